@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// Linear float pictures: storage, files, tone mapping and comparison.
+#ifndef VPL_IMAGE_H
+#define VPL_IMAGE_H
+
+#include <vpl/vecmath.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// A picture of linear RGB. Row 0 is the top; pixel (x, y) starts at pixels[3 * (y * width + x)].
+typedef struct vplImage {
+    int width, height;   // pixels, [1, VPL_MAX_IMAGE_SIZE]
+    float* pixels;       // 3 * width * height floats; radiance in W/(m^2 sr) unless said otherwise
+    vplContext* context; // owner of the memory
+} vplImage;
+
+// Makes a black picture. Destroy with vplImage_Destroy.
+vplResult vplImage_Create(vplContext* context, int width, int height, vplImage** imageOut);
+
+// NULL is allowed.
+void vplImage_Destroy(vplImage* image);
+
+// 64-bit hash of size and float bits: equal hashes mean equal bits. The same on every machine.
+uint64_t vplImage_Hash(const vplImage* image);
+
+typedef enum vplToneMap {
+    VPL_TONEMAP_NONE = 0, // clamp to [0, 1]
+    VPL_TONEMAP_REINHARD  // vplToneMap_Reinhard with its defaults
+} vplToneMap;
+
+typedef struct vplWriteOptions {
+    float exposure;     // stops: pixels are multiplied by 2^exposure first; [-64, 64], default 0; PNG only
+    vplToneMap tonemap; // default VPL_TONEMAP_NONE; PNG only
+    uint32_t cookie;    // set by vplDefaultWriteOptions
+} vplWriteOptions;
+
+vplWriteOptions vplDefaultWriteOptions(void);
+
+// True if pictures can be written to a file of this name: it ends in .png, .hdr, .pfm, or in .exr where
+// OpenEXR is built in.
+bool vplImage_CanWrite(const char* path);
+
+// Writes by extension: .png is 8-bit sRGB after exposure and tone map; .hdr (RGBE), .pfm and .exr are linear
+// and untouched. The file appears whole or not at all. A picture with a NaN or infinity is refused, naming
+// the first such pixel. `options` NULL means defaults.
+vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options);
+
+// Reads .png, .jpg, .bmp, .tga (sRGB, decoded to linear), .hdr, .pfm and, where built in, .exr.
+vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut);
+
+typedef struct vplReinhardDef {
+    float key;       // middle grey the geometric mean maps to, (0, 1], default 0.18
+    float delta;     // added before the logarithm, [0, 1], default 1e-6: keeps black pixels finite
+    float white;     // smallest scaled luminance that maps to 1, > 0; 0 (default): the picture's largest;
+                     // INFINITY: the plain L/(1+L)
+    uint32_t cookie; // set by vplDefaultReinhardDef
+} vplReinhardDef;
+
+vplReinhardDef vplDefaultReinhardDef(void);
+
+// Maps luminance L = key/mean * Y to L(1 + L/white^2)/(1 + L), keeping chromaticity. The mean is geometric;
+// pixels that are not finite do not count. A black picture stays black.
+// Source: Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for Digital Images, SIGGRAPH
+// 2002, equations 1, 2 and 4.
+vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def);
+
+// Linear value to sRGB (IEC 61966-2-1), clamped to [0, 1] first; NaN gives 0.
+float vplSrgb_Encode(float linear);
+
+// sRGB value in [0, 1] to linear.
+float vplSrgb_Decode(float encoded);
+
+// Linear value to the nearest of 256 sRGB codes.
+uint8_t vplSrgb_Code(float linear);
+
+// How far picture A is from reference B. Sums run over all pixels and channels in row order, in double.
+typedef struct vplComparison {
+    double rmse;          // root of the mean of (a - b)^2, in the pictures' unit
+    double relativeRmse;  // rmse / mean of B
+    double relmse;        // mean of (a - b)^2 / (b + 0.01)^2
+    double psnr;          // 10 log10(1 / mse) of values clamped to [0, 1] and sRGB-encoded, dB; infinite if equal
+    double energyRatio;   // sum of A / sum of B; 1 if both are black
+    double maxDifference; // largest |a - b|
+    int maxX, maxY;       // where
+} vplComparison;
+
+// Compares two pictures of one size.
+vplResult vplImage_Compare(const vplImage* a, const vplImage* b, vplComparison* comparisonOut);
+
+// False colours of mean |a - b| over the channels: black is 0, white is `scale` and more (0: the largest
+// difference), with a numbered bar below. The picture is meant for 8-bit files without tone map.
+vplResult vplImage_Heatmap(const vplImage* a, const vplImage* b, float scale, vplImage** imageOut);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

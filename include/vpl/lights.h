@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Virtual lights: plain arrays, and the particle simulation that makes them.
+#ifndef VPL_LIGHTS_H
+#define VPL_LIGHTS_H
+
+#include <vpl/visibility.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define VPL_MAX_STEPS (1 << 20)
+
+// Which formulas are used, for particles and for shading.
+typedef enum vplLighting {
+    VPL_LIGHTING_PHYSICAL = 0, // radiometry: virtual lights emit flux/pi cos, bounded cos cos / d^2
+    VPL_LIGHTING_DOCUMENTED    // as Franchi and Ferrante print it: no falloff, rho/pi per bounce
+} vplLighting;
+
+typedef enum vplSampler {
+    VPL_SAMPLER_RANDOM = 0, // counter-based random numbers
+    VPL_SAMPLER_HALTON,     // radical inverses in the primes
+    VPL_SAMPLER_HAMMERSLEY  // i/N and radical inverses
+} vplSampler;
+
+typedef enum vplBounce {
+    VPL_BOUNCE_AUTO = 0, // reflect for documented lighting, diffuse for physical
+    VPL_BOUNCE_REFLECT,  // like a mirror
+    VPL_BOUNCE_DIFFUSE   // cosine-distributed
+} vplBounce;
+
+typedef struct vplVirtualLight {
+    vplVec3 position; // metres
+    vplVec3 normal;   // unit; of the surface, on the side the particle came from (documented: as declared)
+    vplRgb light;     // documented: the light L the particle carries after attenuation, in the emitter's unit;
+                      // physical: flux in W that the surface sends out if one particle carried all
+    float weight;     // N / floor(rho^k N); the picture also divides by N
+    int step;         // k: 0 for the first hit
+    int particle;     // [0, N)
+    int object;       // where it lies
+} vplVirtualLight;
+
+typedef struct vplParticleDef {
+    vplLighting lighting; // default VPL_LIGHTING_PHYSICAL
+    int particleCount;    // N, [0, VPL_MAX_LIGHTS]; default 10
+    double reflectivity;  // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
+    vplSampler sampler;   // default VPL_SAMPLER_RANDOM
+    vplBounce bounce;     // default VPL_BOUNCE_AUTO
+    uint64_t seed;        // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
+    const vplVec3* directions; // N first directions, unit, instead of the sampler's; NULL (default)
+    uint32_t cookie;           // set by vplDefaultParticleDef
+} vplParticleDef;
+
+vplParticleDef vplDefaultParticleDef(void);
+
+// floor(rho^k N) for k = 0, 1, ... until it is 0, for the decimal number that rho was written as: 0.7 * 10 is 7.
+// Fills at most `capacity` counts (NULL to count only). *stepsOut is the number of steps, *totalOut the sum.
+// VPL_LIMIT beyond VPL_MAX_STEPS steps or VPL_MAX_LIGHTS lights.
+// Source: Keller, Instant Radiosity, 1997, section 4; the rule against rounding is derived in particles.c.
+vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts, int capacity,
+                            int* stepsOut, int64_t* totalOut);
+
+// What a simulation made. Read only.
+typedef struct vplLightSet {
+    const vplVirtualLight* lights; // by step, then by particle
+    int lightCount;
+    const int* stepCounts;   // nominal particles per step: floor(rho^k N)
+    const int* lightsInStep; // lights really left in each step
+    int stepCount;
+    int escaped; // particles that left the scene before their last step
+    int64_t rays, rayObjectTests;
+    int particleCount; // N
+    vplContext* context;
+} vplLightSet;
+
+// Shoots particles from the scene's point emitters, which share N by power. Each hit leaves a virtual light;
+// the first floor(rho^k N) go on. A particle that hits nothing leaves no light and is gone; the weights keep
+// the nominal counts.
+// Source: Franchi and Ferrante, Virtual Point Lights, "Particle Simulation".
+vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
+                               const vplParticleDef* def, vplLightSet** setOut);
+
+// NULL is allowed.
+void vplLightSet_Destroy(vplLightSet* set);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

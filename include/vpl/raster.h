@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// A programmable tile rasterizer. Draws are recorded, then run tile by tile: all draws of one tile before the
+// next tile, so that a tile's pixels stay in cache however many passes there are.
+//
+// Rules: 8 bits of sub-pixel precision, vertices snapped to nearest even, top-left rule: a pixel centre on a
+// shared edge is covered exactly once. Depth is z/w in [0, 1], linear in screen space, computed by one
+// function for all passes: a LESS pass and an EQUAL pass see the same bits.
+#ifndef VPL_RASTER_H
+#define VPL_RASTER_H
+
+#include <vpl/vecmath.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    VPL_LANES = 16,       // fragments per block: 4 x 4 pixels, lane i at (i % 4, i / 4)
+    VPL_BLOCK_SIDE = 4,   // pixels
+    VPL_TILE_SIDE = 64,   // pixels
+    VPL_TILE_BLOCKS = 16, // blocks along a tile's side
+    VPL_MAX_VARYINGS = 8, // floats per vertex, besides the position
+    VPL_MAX_PLANES = 8    // colour planes of a framebuffer
+};
+
+// Where a vertex shader puts its results: element i - first of each array belongs to vertex i.
+typedef struct vplVertices {
+    float *x, *y, *z, *w; // clip space: inside when |x| <= w, |y| <= w and 0 <= z <= w
+    float* varying[VPL_MAX_VARYINGS];
+} vplVertices;
+
+// Shades vertices first .. first + count - 1. Called from any worker.
+typedef void vplVertexFcn(const void* uniforms, int first, int count, const vplVertices* out);
+
+// A block of fragments of one triangle. Lanes that are not covered hold defined numbers that are not written.
+typedef struct vplFragments {
+    int x, y;                    // pixel of lane 0; x and y are multiples of 4
+    int primitive;               // index of the triangle in its mesh
+    int32_t covered[VPL_LANES];  // -1 where the lane is a fragment, else 0
+    float depth[VPL_LANES];      // z/w; a shader with writesDepth replaces it
+    float w[VPL_LANES];          // clip-space w: distance along the view axis
+    float varying[VPL_MAX_VARYINGS][VPL_LANES]; // perspective-correct
+    float plane[VPL_MAX_PLANES][VPL_LANES];     // out: colours; in: what the framebuffer holds, if readsPlanes
+    void* scratch;               // the tile's, see vplFramebuffer
+    int element;                 // of lane 0 in the tile's storage
+} vplFragments;
+
+// Shades one block. Called from any worker.
+typedef void vplFragmentFcn(const void* uniforms, vplFragments* fragments);
+
+typedef enum vplDepthCompare {
+    VPL_DEPTH_LESS = 0,
+    VPL_DEPTH_LESS_EQUAL,
+    VPL_DEPTH_EQUAL,
+    VPL_DEPTH_ALWAYS
+} vplDepthCompare;
+
+typedef enum vplBlend {
+    VPL_BLEND_REPLACE = 0,
+    VPL_BLEND_ADD // framebuffer + fragment
+} vplBlend;
+
+typedef enum vplCull {
+    VPL_CULL_NONE = 0,
+    VPL_CULL_BACK, // drop triangles that are clockwise on screen
+    VPL_CULL_FRONT
+} vplCull;
+
+// All state of a draw.
+typedef struct vplPipeline {
+    vplVertexFcn* vertex;         // required
+    const void* vertexUniforms;   // passed to it; must stay unchanged until the run ends
+    int varyingCount;             // [0, VPL_MAX_VARYINGS]; default 0
+    vplFragmentFcn* fragment;     // NULL (default): depth only
+    const void* fragmentUniforms; // passed to it
+    vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
+    bool depthWrite;              // default true
+    bool writesDepth;             // the fragment shader replaces depth, and the test uses that; default false
+    bool readsPlanes;             // the fragment shader sees the framebuffer and blends by itself; default false
+    bool ownerTest;               // only where the same triangle of the same mesh wrote depth last: of
+                                  // coplanar surfaces one counts; default false
+    vplBlend blend;               // default VPL_BLEND_REPLACE
+    vplCull cull;                 // default VPL_CULL_NONE
+    uint32_t planeMask;           // bit p: plane p is written; default all
+    uint32_t cookie;              // set by vplDefaultPipeline
+} vplPipeline;
+
+vplPipeline vplDefaultPipeline(void);
+
+// Triangles over `vertexCount` vertices. Draws of one mesh with one vertex shader and one uniforms pointer
+// share the vertex work.
+typedef struct vplMesh {
+    const uint32_t* indices; // three per triangle, each < vertexCount
+    int vertexCount, triangleCount;
+} vplMesh;
+
+// Storage of one value per pixel, rows top-down.
+typedef struct vplPlane {
+    float* pixels; // width * height floats, NULL: lives only while its tile is drawn
+    bool load;     // start from `pixels` instead of `clear`; default false
+    float clear;   // default 1 for depth, 0 for colours
+} vplPlane;
+
+typedef struct vplFramebuffer {
+    int width, height; // pixels, [1, VPL_MAX_IMAGE_SIZE]
+    vplPlane depth;
+    vplPlane planes[VPL_MAX_PLANES];
+    int planeCount;      // [0, VPL_MAX_PLANES]
+    size_t scratchBytes; // private memory of a tile, zeroed at its start; for tile tasks
+    uint32_t cookie;     // set by vplDefaultFramebuffer
+} vplFramebuffer;
+
+vplFramebuffer vplDefaultFramebuffer(int width, int height);
+
+// One tile's storage, for tile tasks. Lane l of block b lies at element 16 * b + l; block b covers the pixels
+// from (x + 4 * (b % 16), y + 4 * (b / 16)).
+typedef struct vplTile {
+    int x, y;          // pixel of the upper left corner
+    int width, height; // pixels inside the picture, up to VPL_TILE_SIDE
+    float* depth;
+    float* planes[VPL_MAX_PLANES];
+    void* scratch;
+} vplTile;
+
+// Work on a whole tile between draws.
+typedef void vplTileFcn(void* data, vplTile* tile, int worker);
+
+typedef struct vplRasterStats {
+    int64_t drawCalls;         // draws recorded
+    int64_t fragments;         // fragments that passed all tests
+    int64_t trianglesIn;       // triangles of the meshes whose vertices were shaded
+    int64_t trianglesBinned;   // left after culling and clipping
+    double vertexMs, tilesMs;  // time of the vertex stage (with clipping and binning) and of the tiles
+} vplRasterStats;
+
+// A recorded list of draws on one framebuffer.
+typedef struct vplRaster vplRaster;
+
+vplResult vplRaster_Create(vplContext* context, const vplFramebuffer* framebuffer, vplRaster** rasterOut);
+
+// NULL is allowed.
+void vplRaster_Destroy(vplRaster* raster);
+
+// Records a draw. The mesh, its indices and all uniforms must stay unchanged until the run ends.
+vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline);
+
+// Records work on every tile.
+vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data);
+
+// Runs all that was recorded, in order. `progress` (may be NULL) sees fractions from 0 to 1. May be called
+// again. statsOut may be NULL.
+vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// The one-call level: a scene and options in, a picture and statistics out.
+#ifndef VPL_RENDER_H
+#define VPL_RENDER_H
+
+#include <vpl/shading.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum vplMethod {
+    VPL_METHOD_INSTANT_RADIOSITY = 0, // Franchi and Ferrante, Virtual Point Lights
+    VPL_METHOD_DIRECT                 // the scene's own lights only
+} vplMethod;
+
+// What the picture shows.
+typedef enum vplShow {
+    VPL_SHOW_PICTURE = 0,
+    VPL_SHOW_DEPTH,         // distance along the view axis, metres
+    VPL_SHOW_NORMALS,       // components in [-1, 1]
+    VPL_SHOW_SHADOW_MAP,    // the first emitter's cube unfolded into a cross of 4 x 3 faces, metres
+    VPL_SHOW_SHADOW_FACTOR, // s of the first emitter, 1 in full shadow
+    VPL_SHOW_DIRECT,        // light of the scene's emitters only
+    VPL_SHOW_INDIRECT,      // light of all virtual lights only
+    VPL_SHOW_LIGHT,         // light of virtual light `showLight` only
+    VPL_SHOW_OVERLAY        // the picture with the virtual lights drawn on it, coloured by step
+} vplShow;
+
+typedef struct vplRenderOptions {
+    vplMethod method;     // default VPL_METHOD_INSTANT_RADIOSITY
+    vplLighting lighting; // default VPL_LIGHTING_PHYSICAL
+    int width, height;    // pixels, [1, VPL_MAX_IMAGE_SIZE]; default 1280 x 720
+    int camera;           // index, [0, cameras of the scene); default 0
+
+    int particles;       // N, [0, VPL_MAX_LIGHTS]; default 10
+    double reflectivity; // rho, [0, 1), or negative: the scene's area-weighted mean; default 0.5
+    vplSampler sampler;  // default VPL_SAMPLER_RANDOM
+    vplBounce bounce;    // default VPL_BOUNCE_AUTO
+    uint64_t seed;       // default 0
+
+    vplAccumulation accumulation; // default VPL_ACCUMULATE_DEFERRED
+    int batch;                    // virtual lights per pass, [1, VPL_MAX_LIGHTS]; default 64; batched only
+    float minDistance;            // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
+                                  // (default): half the radius of a disc with one light's share of the area
+
+    int shadowMapSize;   // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
+    vplShadowDef shadow; // bias and PCF of the emitters' shadows; default vplDefaultShadowDef()
+
+    vplShow show;             // default VPL_SHOW_PICTURE
+    int showLight;            // index of a virtual light for VPL_SHOW_LIGHT; default 0
+    vplProgressFcn* progress; // default NULL
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultRenderOptions
+} vplRenderOptions;
+
+vplRenderOptions vplDefaultRenderOptions(void);
+
+enum { VPL_MAX_STAGES = 16, VPL_MAX_STEPS_REPORTED = 64 };
+
+typedef struct vplStage {
+    const char* name; // static
+    double ms;        // wall-clock
+} vplStage;
+
+typedef struct vplRenderStats {
+    vplStage stages[VPL_MAX_STAGES]; // in the order they ran
+    int stageCount;
+    double totalMs;
+    int64_t drawCalls, fragments;
+    int64_t rays, rayObjectTests;
+    int virtualLights;
+    int stepCount;                              // steps of the particle simulation
+    int particlesPerStep[VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted
+    int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
+    int escaped;                                // particles that left the scene
+    int triangles, objects;
+    float minDistance;   // as used, metres
+    double reflectivity; // as used
+    size_t peakBytes;    // most memory held by the context during the call
+    uint64_t imageHash;  // vplImage_Hash
+} vplRenderStats;
+
+// Renders. The picture is radiance in W/(m^2 sr) unless `show` says otherwise; destroy it with
+// vplImage_Destroy. statsOut may be NULL.
+vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
+                    vplRenderStats* statsOut);
+
+// The virtual lights that vplRender would use; destroy with vplLightSet_Destroy.
+vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

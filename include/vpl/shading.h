@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// From geometry, lights and visibility to radiance. Everything here sums irradiance E in a fixed order and
+// turns it into radiance at the end: emission + rho/pi E.
+#ifndef VPL_SHADING_H
+#define VPL_SHADING_H
+
+#include <vpl/image.h>
+#include <vpl/lights.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Lights are summed in float in groups of this many, the groups in double, so that a million equal terms still
+// add up (a plain float sum stops growing at 2^24 of them).
+enum { VPL_LIGHT_GROUP = 64 };
+
+// A camera at work.
+typedef struct vplView {
+    vplVec3 eye, right, up, forward; // right-handed, unit
+    double scaleX, scaleY;           // 1 / tangent of the half-angle, across and up
+    double near, far;                // metres
+    int width, height;               // pixels
+} vplView;
+
+// `camera` must have passed vplScene_AddCamera.
+vplView vplView_Create(const vplCameraDef* camera, int width, int height);
+
+// Pixel coordinates of a point (x right, y down, (0, 0) the upper left corner). False behind the near plane.
+bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);
+
+// A virtual light as the kernel wants it.
+typedef struct vplShadeLight {
+    float px, py, pz; // metres
+    float nx, ny, nz; // unit
+    float r, g, b;    // documented: L * weight / N; physical: intensity on the axis, W/sr
+} vplShadeLight;
+
+// Fills out[0 .. set->lightCount).
+void vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out);
+
+// Adds lights[0 .. count) to the irradiance of 16 points, one after another.
+//   documented: E += L (n.l)+                       (Franchi and Ferrante, no distance, isotropic)
+//   physical:   E += I (n.l)+ (m.-l)+ / max(d^2, minDistance^2)   (Keller 1997, bounded)
+// l is the unit vector to the light, m the light's normal. What coincides with a light receives nothing from
+// it. Distances up to 1e18 m; below 1e-19 m the square underflows and the result is between 0 and the bound.
+void vplAccumulateLights(const vplContext* context, vplLighting lighting, float minDistance,
+                         const vplSurface* surface, const vplShadeLight* lights, int count,
+                         float irradiance[3][VPL_LANES]);
+
+// How virtual lights reach the pixels. All give the same bits.
+typedef enum vplAccumulation {
+    VPL_ACCUMULATE_MULTIPASS = 0, // one pass over the scene per light, depth EQUAL, additive
+    VPL_ACCUMULATE_BATCHED,       // one pass per `batch` lights
+    VPL_ACCUMULATE_DEFERRED       // one pass for a G-buffer, then all lights per tile
+} vplAccumulation;
+
+// What the picture shows.
+typedef enum vplShadeOutput {
+    VPL_OUTPUT_RADIANCE = 0,
+    VPL_OUTPUT_DEPTH,        // distance along the view axis, metres; 0 where nothing is
+    VPL_OUTPUT_NORMALS,      // unit normals as shaded; 0 where nothing is
+    VPL_OUTPUT_SHADOW_FACTOR // s of the first emitter, [0, 1]
+} vplShadeOutput;
+
+typedef struct vplShadeDef {
+    vplLighting lighting;
+    vplAccumulation accumulation;
+    vplShadeOutput output;
+    int batch;                    // lights per pass, >= 1; batched only
+    float minDistance;            // metres, >= 0; 0 is unbounded; physical only
+    const vplEmitterDef* emitters; // point emitters that light directly
+    const vplShadow* shadows;      // one per emitter
+    int emitterCount;              // 0: no direct light
+    int particleCount;             // N, by which documented direct light is divided (0 counts as 1)
+    const vplShadeLight* lights;   // virtual lights
+    int lightCount;                // 0: no indirect light
+    bool emission;                 // surfaces that emit are seen to
+} vplShadeDef;
+
+// Draws the geometry into `image`, which has the view's size.
+vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
+                       vplProgressFcn* progress, void* user, vplImage* image, vplRasterStats* statsOut);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

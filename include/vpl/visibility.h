@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Does light reach x from y? Answered here by a cube shadow map; knows nothing of lights but their place.
+#ifndef VPL_VISIBILITY_H
+#define VPL_VISIBILITY_H
+
+#include <vpl/geometry.h>
+#include <vpl/raster.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define VPL_MAX_SHADOW_MAP  8192
+#define VPL_MAX_PCF_SAMPLES 256
+
+// Faces +x, -x, +y, -y, +z, -z of a cube around a point, with 90 degrees of view each. Frames as in Direct3D:
+// left-handed, right x up = forward.
+typedef struct vplCubeFrame {
+    vplVec3 right, up, forward;
+} vplCubeFrame;
+
+// The frame of face 0 to 5.
+vplCubeFrame vplCube_GetFrame(int face);
+
+// Where a direction meets the cube: face, s and t in [0, 1] (t down), and texel (i, j) of a map with `size`
+// texels a side. Ties go to z, then y, then x. False for the zero vector.
+bool vplCube_Find(vplVec3 direction, int size, int* face, float* s, float* t, int* i, int* j);
+
+typedef struct vplCubeMapDef {
+    vplVec3 position; // metres
+    int size;         // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
+    float near;       // metres, > 0: what is nearer to the position casts no shadow; 0 (default): far * 2^-20
+    float far;        // metres, > near: unit of the stored distances; 0 (default): distance of the farthest vertex
+    uint32_t cookie;  // set by vplDefaultCubeMapDef
+} vplCubeMapDef;
+
+vplCubeMapDef vplDefaultCubeMapDef(void);
+
+// Distances from a point to the nearest surface in all directions. Read only.
+typedef struct vplCubeMap {
+    vplVec3 position;
+    int size;
+    float near, far;
+    const float* texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
+    vplRasterStats stats;
+    vplContext* context;
+} vplCubeMap;
+
+// Draws every object six times. Source: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow
+// Map"; departs in not clamping distances to far, which falsely shadows the corners of the cube.
+vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
+                            void* user, vplCubeMap** mapOut);
+
+// NULL is allowed.
+void vplCubeMap_Destroy(vplCubeMap* map);
+
+// The stored distance in a direction, metres; +infinity where nothing is or for the zero vector.
+float vplCubeMap_Distance(const vplCubeMap* map, vplVec3 direction);
+
+typedef enum vplBiasRule {
+    VPL_BIAS_AUTO = 0, // VPL_BIAS_EXACT; in vplRender with documented lighting VPL_BIAS_PAIR
+    VPL_BIAS_PAIR,     // b_s + b_dmax (1 - n.l): the document's static and dynamic bias
+    VPL_BIAS_EXACT     // r (1 - cos t / cos(t - a)): what a plane at angle t needs when samples are a off
+} vplBiasRule;
+
+typedef struct vplShadowDef {
+    vplBiasRule biasRule; // default VPL_BIAS_AUTO
+    float biasStatic;     // b_s, metres; negative (default): far * texel half-angle + pcfOffset; pair only
+    float biasDynamic;    // b_dmax, metres; negative (default): 5.6 b_s, free of acne up to 80 degrees; pair only
+    int pcfSamples;       // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
+    float pcfOffset;      // off: radius of the disc of samples at the fragment, metres, >= 0; negative
+                          // (default): far / 128
+    uint32_t cookie;      // set by vplDefaultShadowDef
+} vplShadowDef;
+
+vplShadowDef vplDefaultShadowDef(void);
+
+// A checked shadow test with its automatic values filled in and its sample pattern made.
+typedef struct vplShadow {
+    const vplCubeMap* map;
+    vplShadowDef def;
+    float texelTangent;                    // tangent of the largest angle between a texel's centre and corner
+    float offsets[VPL_MAX_PCF_SAMPLES][2]; // on the unit disc, in pairs o, -o; times pcfOffset
+} vplShadow;
+
+vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplShadow* shadowOut);
+
+// The bias subtracted from the distance of a fragment, metres. cosine is max(n.l, 0).
+// Source: VPL_BIAS_PAIR from Franchi and Ferrante, Virtual Point Lights, "Rendering the Point Light with
+// Shadows"; VPL_BIAS_EXACT from the geometry of a plane, derived in src/visibility/shadow_kernel.c.
+float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine);
+
+// The shadow factor s in [0, 1] at a surface point: the share of samples that see something nearer to the
+// light. The samples lie on a disc perpendicular to the light, so no seams show at the cube's edges.
+float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal);
+
+// 16 points at once: the positions and unit normals of a block.
+typedef struct vplSurface {
+    float px[VPL_LANES], py[VPL_LANES], pz[VPL_LANES];
+    float nx[VPL_LANES], ny[VPL_LANES], nz[VPL_LANES];
+} vplSurface;
+
+void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Wall-clock time for statistics. Never for results.
+#ifndef VPL_BASE_CLOCK_H
+#define VPL_BASE_CLOCK_H
+
+#include <time.h>
+
+static inline double vplClockMs(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+#endif

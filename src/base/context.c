@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "base/context.h"
+#include "base/isa.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+enum { CONTEXT_COOKIE = 0x56504c31 };
+
+const char* vplGetVersion(void)
+{
+    return VPL_VERSION_STRING;
+}
+
+const char* vplResult_GetName(vplResult result)
+{
+    switch (result) {
+    case VPL_SUCCESS:
+        return "success";
+    case VPL_CANCELLED:
+        return "cancelled";
+    case VPL_OUT_OF_MEMORY:
+        return "out of memory";
+    case VPL_INVALID_ARGUMENT:
+        return "invalid argument";
+    case VPL_LIMIT:
+        return "limit exceeded";
+    case VPL_FILE_ERROR:
+        return "file error";
+    case VPL_PARSE_ERROR:
+        return "parse error";
+    }
+    return "unknown result";
+}
+
+vplContextDef vplDefaultContextDef(void)
+{
+    vplContextDef def = {0};
+    def.cookie = CONTEXT_COOKIE;
+    return def;
+}
+
+static void* defaultAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
+{
+    (void)user;
+    (void)oldSize;
+    if (newSize == 0) {
+        free(memory);
+        return NULL;
+    }
+    return realloc(memory, newSize);
+}
+
+static int defaultWorkerCount(void)
+{
+#ifdef _OPENMP
+    int count = omp_get_num_procs();
+    return count < 1 ? 1 : count > VPL_MAX_WORKERS ? VPL_MAX_WORKERS : count;
+#else
+    return 1;
+#endif
+}
+
+vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut)
+{
+    vplContext draft = {.def = def ? *def : vplDefaultContextDef()};
+    if (draft.def.cookie != CONTEXT_COOKIE) {
+        return VPL_INVALID_ARGUMENT; // never filled in: even its log may be a wild pointer
+    }
+    if (contextOut == NULL) {
+        return vplFail(&draft, VPL_INVALID_ARGUMENT, "vplContext_Create: contextOut is NULL");
+    }
+    if (draft.def.alloc == NULL) {
+        draft.def.alloc = defaultAlloc;
+    }
+    if (draft.def.workerCount < 0 || draft.def.workerCount > VPL_MAX_WORKERS) {
+        return vplFail(&draft, VPL_INVALID_ARGUMENT, "vplContextDef.workerCount is %d, must be in [0, %d]",
+                       draft.def.workerCount, VPL_MAX_WORKERS);
+    }
+    draft.workerCount = draft.def.workerCount ? draft.def.workerCount : defaultWorkerCount();
+    draft.isa = draft.def.isa == VPL_ISA_AUTO ? vplBestIsa() : draft.def.isa;
+    if (!vplHasIsa(draft.isa)) {
+        return vplFail(&draft, VPL_INVALID_ARGUMENT, "vplContextDef.isa is %s, which this machine or build lacks",
+                       vplIsa_GetName(draft.isa));
+    }
+    vplContext* context = draft.def.alloc(draft.def.allocUser, NULL, 0, sizeof *context);
+    if (context == NULL) {
+        return vplFail(&draft, VPL_OUT_OF_MEMORY, "out of memory: %zu bytes for a context", sizeof *context);
+    }
+    *context = draft;
+    *contextOut = context;
+    return VPL_SUCCESS;
+}
+
+void vplContext_Destroy(vplContext* context)
+{
+    if (context != NULL) {
+        context->def.alloc(context->def.allocUser, context, sizeof *context, 0);
+    }
+}
+
+size_t vplContext_GetBytes(const vplContext* context)
+{
+    return context->bytes;
+}
+
+size_t vplContext_GetPeakBytes(const vplContext* context)
+{
+    return context->peakBytes;
+}
+
+void vplContext_ResetPeakBytes(vplContext* context)
+{
+    context->peakBytes = context->bytes;
+}
+
+vplIsa vplContext_GetIsa(const vplContext* context)
+{
+    return context->isa;
+}
+
+int vplContext_GetWorkerCount(const vplContext* context)
+{
+    return context->workerCount;
+}
+
+static void logArguments(const vplContext* context, vplLogLevel level, const char* format, va_list arguments)
+{
+    if (context == NULL || context->def.log == NULL) {
+        return;
+    }
+    char message[1024];
+    vsnprintf(message, sizeof message, format, arguments);
+    context->def.log(context->def.logUser, level, message);
+}
+
+void vplLog(const vplContext* context, vplLogLevel level, const char* format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    logArguments(context, level, format, arguments);
+    va_end(arguments);
+}
+
+vplResult vplFail(const vplContext* context, vplResult result, const char* format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    logArguments(context, VPL_LOG_ERROR, format, arguments);
+    va_end(arguments);
+    return result;
+}

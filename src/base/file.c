@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// Reads until the end rather than trusting a size, so that pipes and /dev/stdin work.
+static vplResult readAll(vplContext* context, const char* path, int fd, vplByteBuffer* buffer)
+{
+    char chunk[1 << 16];
+    for (;;) {
+        ssize_t got = read(fd, chunk, sizeof chunk);
+        if (got < 0 && errno == EINTR) {
+            continue;
+        }
+        if (got < 0) {
+            return vplFail(context, VPL_FILE_ERROR, "%s: cannot read: %s", path, strerror(errno));
+        }
+        vplByteBuffer_Append(buffer, chunk, (size_t)got);
+        if (buffer->failed) {
+            return VPL_OUT_OF_MEMORY;
+        }
+        if (got == 0) {
+            return VPL_SUCCESS;
+        }
+    }
+}
+
+vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return vplFail(context, VPL_FILE_ERROR, "%s: cannot open: %s", path, strerror(errno));
+    }
+    vplByteBuffer buffer = {context, NULL, 0, 0, false};
+    struct stat info;
+    vplResult result = VPL_SUCCESS;
+    if (fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) { // one allocation for the usual case
+        result = vplReserve(context, &buffer.bytes, &buffer.capacity, (size_t)info.st_size + 1, 1);
+    }
+    if (result == VPL_SUCCESS) {
+        result = readAll(context, path, fd, &buffer);
+    }
+    close(fd);
+    size_t size = buffer.size;
+    if (result == VPL_SUCCESS) {
+        vplByteBuffer_Append(&buffer, "", 1);
+        result = buffer.failed ? VPL_OUT_OF_MEMORY : VPL_SUCCESS;
+    }
+    if (result != VPL_SUCCESS) {
+        vplFree(context, buffer.bytes);
+        return result;
+    }
+    *bytesOut = (char*)buffer.bytes;
+    *sizeOut = size;
+    return VPL_SUCCESS;
+}
+
+static bool writeAll(int fd, const void* bytes, size_t size)
+{
+    const char* at = bytes;
+    while (size > 0) {
+        ssize_t put = write(fd, at, size);
+        if (put < 0 && errno == EINTR) {
+            continue;
+        }
+        if (put <= 0) {
+            return false;
+        }
+        at += put;
+        size -= (size_t)put;
+    }
+    return true;
+}
+
+static vplResult writeDirectly(vplContext* context, const char* path, const void* bytes, size_t size)
+{
+    int fd = open(path, O_WRONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return vplFail(context, VPL_FILE_ERROR, "%s: cannot open for writing: %s", path, strerror(errno));
+    }
+    bool written = writeAll(fd, bytes, size);
+    int cause = errno;
+    if (close(fd) != 0 && written) {
+        written = false;
+        cause = errno;
+    }
+    return written ? VPL_SUCCESS : vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(cause));
+}
+
+// A new file beside `path`, its name written to `name`. Unlike mkstemp this lets the umask decide the mode.
+static int openBeside(const char* path, char* name, size_t size)
+{
+    int fd = -1;
+    for (int attempt = 0; attempt < 100; attempt++) {
+        snprintf(name, size, "%s.%ld-%d.tmp", path, (long)getpid(), attempt);
+        fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (fd >= 0 || errno != EEXIST) {
+            break;
+        }
+    }
+    return fd;
+}
+
+static vplResult writeBeside(vplContext* context, const char* path, const void* bytes, size_t size)
+{
+    size_t room = strlen(path) + 40;
+    char* temporary = vplAlloc(context, room, 1);
+    if (temporary == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplResult result = VPL_SUCCESS;
+    int fd = openBeside(path, temporary, room);
+    if (fd < 0) {
+        result = vplFail(context, VPL_FILE_ERROR, "%s: cannot create: %s", path, strerror(errno));
+        vplFree(context, temporary);
+        return result;
+    }
+    // fsync: a full disk may only be noticed when the pages really go out.
+    bool written = writeAll(fd, bytes, size) && (fsync(fd) == 0 || errno == EINVAL);
+    int cause = errno;
+    if (close(fd) != 0 && written) {
+        written = false;
+        cause = errno;
+    }
+    if (written && rename(temporary, path) != 0) {
+        written = false;
+        cause = errno;
+    }
+    if (!written) {
+        unlink(temporary);
+        result = vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(cause));
+    }
+    vplFree(context, temporary);
+    return result;
+}
+
+vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size)
+{
+    struct stat info;
+    bool exists = stat(path, &info) == 0;
+    if (exists && S_ISDIR(info.st_mode)) {
+        return vplFail(context, VPL_FILE_ERROR, "%s: cannot write: it is a directory", path);
+    }
+    if (exists && !S_ISREG(info.st_mode)) {
+        return writeDirectly(context, path, bytes, size);
+    }
+    char* resolved = exists ? realpath(path, NULL) : NULL; // renaming must not replace a symbolic link
+    vplResult result = writeBeside(context, resolved ? resolved : path, bytes, size);
+    free(resolved);
+    return result;
+}
+
+void vplByteBuffer_Append(vplByteBuffer* buffer, const void* bytes, size_t size)
+{
+    if (buffer->failed || size == 0) {
+        return;
+    }
+    if (vplReserve(buffer->context, &buffer->bytes, &buffer->capacity, buffer->size + size, 1) != VPL_SUCCESS) {
+        buffer->failed = true;
+        return;
+    }
+    memcpy(buffer->bytes + buffer->size, bytes, size);
+    buffer->size += size;
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Eight interleaved multiply-xor lanes (so that a compiler can run them side by side), folded with the
+// finaliser of Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
+#include "base/hash.h"
+
+#include <string.h>
+
+static uint64_t mix(uint64_t x)
+{
+    x ^= x >> 30;
+    x *= 0xBF58476D1CE4E5B9u;
+    x ^= x >> 27;
+    x *= 0x94D049BB133111EBu;
+    return x ^ (x >> 31);
+}
+
+uint64_t vplHashWords(uint64_t state, const uint32_t* words, size_t count)
+{
+    uint64_t lanes[VPL_HASH_LANES];
+    for (int j = 0; j < VPL_HASH_LANES; j++) {
+        lanes[j] = mix(state + (uint64_t)(j + 1) * 0x9E3779B97F4A7C15u);
+    }
+    size_t i = 0;
+    for (; i + VPL_HASH_LANES <= count; i += VPL_HASH_LANES) {
+        for (int j = 0; j < VPL_HASH_LANES; j++) {
+            lanes[j] = (lanes[j] ^ words[i + j]) * 0xD6E8FEB86659FD93u;
+            lanes[j] ^= lanes[j] >> 32;
+        }
+    }
+    for (int j = 0; i < count; i++, j++) {
+        lanes[j] = mix(lanes[j] ^ words[i]);
+    }
+    uint64_t hash = mix(state ^ count);
+    for (int j = 0; j < VPL_HASH_LANES; j++) {
+        hash = mix(hash ^ lanes[j]);
+    }
+    return hash;
+}
+
+uint64_t vplHashFloats(uint64_t state, const float* values, size_t count)
+{
+    // In pieces, so that the bits are read through memcpy and no second copy of an image is needed.
+    uint32_t words[1024];
+    for (size_t i = 0; i < count; i += 1024) {
+        size_t n = count - i < 1024 ? count - i : 1024;
+        memcpy(words, values + i, n * sizeof(float));
+        state = vplHashWords(state, words, n);
+    }
+    return state;
+}

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// 64-bit hashes of words, the same on machines of either byte order. For goldens, not for security.
+#ifndef VPL_BASE_HASH_H
+#define VPL_BASE_HASH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { VPL_HASH_LANES = 8 };
+
+// Hash of `count` 32-bit words, continuing from `state` (0 to start).
+uint64_t vplHashWords(uint64_t state, const uint32_t* words, size_t count);
+
+// Hash of the bit patterns of floats.
+uint64_t vplHashFloats(uint64_t state, const float* values, size_t count);
+
+#endif

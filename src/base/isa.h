@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Kernels are files named *_kernel.c, compiled once per instruction set. Each defines its functions through
+// VPL_KERNEL(name), and a table indexed by vplIsa picks one at run time.
+#ifndef VPL_BASE_ISA_H
+#define VPL_BASE_ISA_H
+
+#include <vpl/base.h>
+
+vplIsa vplBestIsa(void);
+bool vplHasIsa(vplIsa isa);
+
+#define VPL_JOIN2(a, b) a##_##b
+#define VPL_JOIN(a, b)  VPL_JOIN2(a, b)
+#ifdef VPL_KERNEL_ISA
+#define VPL_KERNEL(name) VPL_JOIN(name, VPL_KERNEL_ISA)
+#endif
+
+// Declares the variants of a kernel and builds its table: VPL_KERNEL_TABLE(myTable, MyFcn, myKernel);
+// The Makefile compiles all four for x86-64; elsewhere `scalar` and the baseline, called sse2, are all there is.
+#if defined(__x86_64__)
+#define VPL_KERNEL_TABLE(table, type, name)                                                                       \
+    extern type name##_scalar, name##_sse2, name##_avx2, name##_avx512;                                           \
+    static type* const table[VPL_ISA_COUNT] = {name##_sse2, name##_scalar, name##_sse2, name##_avx2, name##_avx512}
+#else
+#define VPL_KERNEL_TABLE(table, type, name)                                                                       \
+    extern type name##_scalar, name##_sse2;                                                                       \
+    static type* const table[VPL_ISA_COUNT] = {name##_sse2, name##_scalar, name##_sse2, name##_sse2, name##_sse2}
+#endif
+
+#endif

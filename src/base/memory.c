@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Every block is preceded by its own size, so that callers free with one pointer while the allocator still
+// gets the sizes that Lua's contract promises it.
+#include "base/context.h"
+
+#include <string.h>
+
+// Wide enough for any vector load and for one cache line.
+enum { ALIGNMENT = 64 };
+
+typedef struct Header {
+    void* raw;    // what the allocator returned
+    size_t total; // what it was asked for
+} Header;
+
+static Header* headerOf(void* memory)
+{
+    return (Header*)memory - 1;
+}
+
+void* vplAlloc(vplContext* context, size_t count, size_t size)
+{
+    size_t bytes;
+    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2) {
+        vplFail(context, VPL_OUT_OF_MEMORY, "out of memory: %zu elements of %zu bytes exceed the address space", count,
+                size);
+        return NULL;
+    }
+    size_t total = bytes + ALIGNMENT + sizeof(Header);
+    void* raw = context->def.alloc(context->def.allocUser, NULL, 0, total);
+    if (raw == NULL) {
+        vplFail(context, VPL_OUT_OF_MEMORY, "out of memory: %zu bytes wanted, %zu held", bytes, context->bytes);
+        return NULL;
+    }
+    uintptr_t start = ((uintptr_t)raw + sizeof(Header) + ALIGNMENT - 1) & ~(uintptr_t)(ALIGNMENT - 1);
+    void* memory = (void*)start;
+    *headerOf(memory) = (Header){raw, total};
+    context->bytes += total;
+    if (context->bytes > context->peakBytes) {
+        context->peakBytes = context->bytes;
+    }
+    return memory;
+}
+
+void* vplAllocZero(vplContext* context, size_t count, size_t size)
+{
+    void* memory = vplAlloc(context, count, size);
+    if (memory != NULL) {
+        memset(memory, 0, count * size);
+    }
+    return memory;
+}
+
+void vplFree(vplContext* context, void* memory)
+{
+    if (memory != NULL) {
+        Header header = *headerOf(memory);
+        context->bytes -= header.total;
+        context->def.alloc(context->def.allocUser, header.raw, header.total, 0);
+    }
+}
+
+vplResult vplReserve(vplContext* context, void* array, size_t* capacity, size_t count, size_t size)
+{
+    if (count <= *capacity) {
+        return VPL_SUCCESS;
+    }
+    size_t wanted = *capacity + *capacity / 2;
+    wanted = wanted < count ? count : wanted;
+    wanted = wanted < 8 ? 8 : wanted;
+    void* grown = vplAlloc(context, wanted, size);
+    if (grown == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    void* old;
+    memcpy(&old, array, sizeof old); // `array` is the address of a pointer of any type
+    if (old != NULL) {
+        memcpy(grown, old, *capacity * size);
+        vplFree(context, old);
+    }
+    memcpy(array, &grown, sizeof grown);
+    *capacity = wanted;
+    return VPL_SUCCESS;
+}
+
+char* vplCopyString(vplContext* context, const char* text)
+{
+    size_t length = strlen(text) + 1;
+    char* copy = vplAlloc(context, length, 1);
+    if (copy != NULL) {
+        memcpy(copy, text, length);
+    }
+    return copy;
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// The program: parses words, calls the public API, prints. Everything of substance is in the library.
+#ifndef VPL_CLI_CLI_H
+#define VPL_CLI_CLI_H
+
+#include <vpl/vpl.h>
+
+enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
+
+enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8 };
+
+// All options of all commands.
+typedef struct Arguments {
+    const char* command;
+    const char* positionals[MAX_POSITIONALS];
+    int positionalCount;
+    vplRenderOptions render;
+    vplContextDef context;
+    vplWriteOptions write;
+    const char* output;  // -o
+    const char* stats;   // --stats
+    const char* heatmap; // --heatmap
+    double heatScale;
+    int threads[MAX_THREAD_COUNTS];
+    int threadsCount;
+    int runs;
+    bool json, quiet, verbose, help;
+    bool sizeGiven;
+} Arguments;
+
+// Fills `arguments`, or prints one sentence to stderr and returns false.
+bool parseArguments(int count, char** words, Arguments* arguments);
+
+// Prints the general help (command NULL) or that of one command. False if there is no such command.
+bool printHelp(const char* command);
+
+// Prints the options of a command.
+void printOptions(const char* command);
+
+// One sentence on stderr, starting with "vpl: ".
+#if defined(__GNUC__)
+__attribute__((format(printf, 1, 2)))
+#endif
+void complain(const char* format, ...);
+
+// Makes a context that logs to stderr; NULL after complaining.
+vplContext* openContext(const Arguments* arguments);
+
+// Exit code of a result; `reading` says whether a file error was met while reading input.
+int exitCode(vplResult result, bool reading);
+
+// Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
+int finishOutput(int code);
+
+// Progress bar with the time left, on stderr if that is a terminal; also notices SIGINT. Both take a Progress.
+typedef struct Progress {
+    double start, lastDrawn;
+    bool visible;
+} Progress;
+
+Progress beginProgress(bool quiet);
+vplProgressFcn showProgress;
+void endProgress(Progress* progress);
+void catchInterrupts(void);
+
+// Writes the statistics of a render as JSON.
+vplResult writeStats(vplContext* context, const char* path, const vplRenderStats* stats);
+
+// True if a file can probably be written there; complains otherwise. Asked before hours of rendering.
+bool checkOutput(const char* path);
+
+int runRender(const Arguments* arguments);
+int runLights(const Arguments* arguments);
+int runCompare(const Arguments* arguments);
+int runInfo(const Arguments* arguments);
+int runBench(const Arguments* arguments);
+
+#endif

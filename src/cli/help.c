@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "cli/cli.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct Topic {
+    const char *name, *usage, *summary, *text;
+} Topic;
+
+static const Topic TOPICS[] = {
+    {"render", "vpl render SCENE -o FILE [options]", "renders a picture",
+     "Renders SCENE (.json) and writes a picture. Files appear whole or not at all."},
+    {"lights", "vpl lights SCENE [options]", "lists the virtual lights",
+     "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of\n"
+     "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux in\n"
+     "watts that the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N."},
+    {"compare", "vpl compare A B [options]", "measures how far picture A is from reference B",
+     "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), psnr (of clamped sRGB\n"
+     "values, dB), energy_ratio (sum of A / sum of B) and max_difference with its pixel."},
+    {"info", "vpl info SCENE [options]", "says what is in a scene, and what rendering it requires",
+     "Prints counts, bounds, mean reflectance, and the lights, draw calls and memory that a render with the same\n"
+     "options would need."},
+    {"bench", "vpl bench [options]", "times every stage",
+     "Times the stages on the built-in room: medians, counts, hashes, and the speed-up of several threads."},
+};
+
+bool printHelp(const char* command)
+{
+    if (command == NULL) {
+        printf("vpl %s - indirect light with many virtual lights, on the CPU, the same bits everywhere\n\n",
+               vplGetVersion());
+        for (size_t i = 0; i < sizeof TOPICS / sizeof *TOPICS; i++) {
+            printf("  %-36s %s\n", TOPICS[i].usage, TOPICS[i].summary);
+        }
+        printf("  %-36s %s\n", "vpl help [command]", "explains a command and its options");
+        printf("  %-36s %s\n", "vpl --version", "prints the version");
+        printf("\nExit codes: 0 done; 1 could not (disk, memory, cancelled); 2 wrong usage or bad input.\n");
+        return true;
+    }
+    for (size_t i = 0; i < sizeof TOPICS / sizeof *TOPICS; i++) {
+        if (strcmp(TOPICS[i].name, command) == 0) {
+            printf("%s\n\n%s\n\nOptions (--name VALUE or --name=VALUE):\n", TOPICS[i].usage, TOPICS[i].text);
+            printOptions(command);
+            return true;
+        }
+    }
+    return false;
+}

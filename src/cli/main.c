@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void complain(const char* format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("vpl: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+}
+
+static void logToStderr(void* user, vplLogLevel level, const char* message)
+{
+    const Arguments* arguments = user;
+    if (level == VPL_LOG_ERROR) {
+        complain("%s", message);
+    } else if (level == VPL_LOG_WARNING ? !arguments->quiet : arguments->verbose) {
+        complain("%s%s", level == VPL_LOG_WARNING ? "warning: " : "", message);
+    }
+}
+
+vplContext* openContext(const Arguments* arguments)
+{
+    vplContextDef def = arguments->context;
+    def.log = logToStderr;
+    def.logUser = (void*)arguments;
+    vplContext* context = NULL;
+    vplContext_Create(&def, &context);
+    return context;
+}
+
+int exitCode(vplResult result, bool reading)
+{
+    switch (result) {
+    case VPL_SUCCESS:
+        return EXIT_DONE;
+    case VPL_INVALID_ARGUMENT:
+    case VPL_LIMIT:
+    case VPL_PARSE_ERROR:
+        return EXIT_USAGE;
+    case VPL_FILE_ERROR:
+        return reading ? EXIT_USAGE : EXIT_COULD_NOT;
+    case VPL_CANCELLED:
+        complain("cancelled, nothing was written");
+        return EXIT_COULD_NOT;
+    case VPL_OUT_OF_MEMORY:
+        break;
+    }
+    return EXIT_COULD_NOT;
+}
+
+int finishOutput(int code)
+{
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        complain("cannot write to standard output: %s", strerror(errno));
+        return EXIT_COULD_NOT;
+    }
+    return code;
+}
+
+int main(int count, char** words)
+{
+    static const struct {
+        const char* name;
+        int (*run)(const Arguments* arguments);
+        int positionals;
+    } commands[] = {
+        {"render", runRender, 1}, {"lights", runLights, 1}, {"compare", runCompare, 2},
+        {"info", runInfo, 1},     {"bench", runBench, 0},
+    };
+    signal(SIGPIPE, SIG_IGN); // a closed pipe is a failed write, and said so
+    const char* command = count > 1 ? words[1] : NULL;
+    if (command == NULL) {
+        complain("no command; vpl help lists them");
+        return EXIT_USAGE;
+    }
+    if (strcmp(command, "--version") == 0) {
+        printf("vpl %s\n", vplGetVersion());
+        return finishOutput(EXIT_DONE);
+    }
+    if (strcmp(command, "help") == 0 || strcmp(command, "--help") == 0 || strcmp(command, "-h") == 0) {
+        if (!printHelp(count > 2 ? words[2] : NULL)) {
+            complain("no command \"%s\"; vpl help lists them", words[2]);
+            return EXIT_USAGE;
+        }
+        return finishOutput(EXIT_DONE);
+    }
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
+        if (strcmp(command, commands[i].name) != 0) {
+            continue;
+        }
+        Arguments arguments;
+        if (!parseArguments(count, words, &arguments)) {
+            return EXIT_USAGE;
+        }
+        if (arguments.help) {
+            printHelp(command);
+            return finishOutput(EXIT_DONE);
+        }
+        if (arguments.positionalCount < commands[i].positionals) {
+            complain("%s needs %s; vpl help %s", command,
+                     commands[i].positionals == 2 ? "two pictures" : "a scene file", command);
+            return EXIT_USAGE;
+        }
+        catchInterrupts();
+        return finishOutput(commands[i].run(&arguments));
+    }
+    complain("no command \"%s\"; vpl help lists them", command);
+    return EXIT_USAGE;
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "cli/cli.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t interrupted;
+
+static void onInterrupt(int signal)
+{
+    (void)signal;
+    interrupted = 1;
+}
+
+void catchInterrupts(void)
+{
+    struct sigaction action = {.sa_handler = onInterrupt, .sa_flags = SA_RESETHAND}; // a second one kills
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+Progress beginProgress(bool quiet)
+{
+    return (Progress){now(), 0, !quiet && isatty(STDERR_FILENO)};
+}
+
+bool showProgress(void* user, double fraction)
+{
+    Progress* p = user;
+    double time = now();
+    if (p->visible && time - p->lastDrawn > 0.1 && fraction > 0) {
+        char bar[41];
+        for (int i = 0; i < 40; i++) {
+            bar[i] = i < (int)(40 * fraction) ? '#' : '.';
+        }
+        bar[40] = 0;
+        double left = (time - p->start) * (1 - fraction) / fraction;
+        fprintf(stderr, "\r[%s] %3d %%  %d:%02d left ", bar, (int)(100 * fraction), (int)left / 60, (int)left % 60);
+        fflush(stderr);
+        p->lastDrawn = time;
+    }
+    return !interrupted;
+}
+
+void endProgress(Progress* progress)
+{
+    if (progress->visible && progress->lastDrawn > 0) {
+        fputs("\r\033[K", stderr);
+    }
+}

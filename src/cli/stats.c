@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#include "cli/cli.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static json_t* intArray(const int* values, int count)
+{
+    json_t* array = json_array();
+    for (int i = 0; i < count; i++) {
+        json_array_append_new(array, json_integer(values[i]));
+    }
+    return array;
+}
+
+// The public API writes pictures only, so this writes beside the target and renames by itself.
+static vplResult writeText(const char* path, const char* text)
+{
+    char temporary[4200];
+    snprintf(temporary, sizeof temporary, "%s.tmp", path);
+    FILE* file = fopen(temporary, "w");
+    bool good = file != NULL && fputs(text, file) >= 0;
+    good = file != NULL && fclose(file) == 0 && good;
+    good = good && rename(temporary, path) == 0;
+    if (!good) {
+        complain("%s: cannot write the statistics", path);
+        remove(temporary);
+        return VPL_FILE_ERROR;
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult writeStats(vplContext* context, const char* path, const vplRenderStats* stats)
+{
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)stats->imageHash);
+    json_t* stages = json_object();
+    for (int i = 0; i < stats->stageCount; i++) {
+        json_object_set_new(stages, stats->stages[i].name, json_real(stats->stages[i].ms));
+    }
+    json_t* root = json_object();
+    json_object_set_new(root, "stages_ms", stages);
+    json_object_set_new(root, "total_ms", json_real(stats->totalMs));
+    json_object_set_new(root, "draw_calls", json_integer(stats->drawCalls));
+    json_object_set_new(root, "fragments", json_integer(stats->fragments));
+    json_object_set_new(root, "virtual_lights", json_integer(stats->virtualLights));
+    json_object_set_new(root, "lights_per_step", intArray(stats->particlesPerStep, stats->stepCount));
+    json_object_set_new(root, "lights_left_per_step", intArray(stats->lightsPerStep, stats->stepCount));
+    json_object_set_new(root, "escaped", json_integer(stats->escaped));
+    json_object_set_new(root, "ray_object_tests", json_integer(stats->rayObjectTests));
+    json_object_set_new(root, "rays", json_integer(stats->rays));
+    json_object_set_new(root, "objects", json_integer(stats->objects));
+    json_object_set_new(root, "triangles", json_integer(stats->triangles));
+    json_object_set_new(root, "patches", json_integer(0));
+    json_object_set_new(root, "min_distance", json_real(stats->minDistance));
+    json_object_set_new(root, "reflectivity", json_real(stats->reflectivity));
+    json_object_set_new(root, "threads", json_integer(vplContext_GetWorkerCount(context)));
+    json_object_set_new(root, "isa", json_string(vplIsa_GetName(vplContext_GetIsa(context))));
+    json_object_set_new(root, "peak_bytes", json_integer((json_int_t)stats->peakBytes));
+    json_object_set_new(root, "image_hash", json_string(hash));
+    char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    json_decref(root);
+    vplResult result = VPL_OUT_OF_MEMORY;
+    if (text != NULL) {
+        result = writeText(path, text);
+        free(text);
+    }
+    return result;
+}

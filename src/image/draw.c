@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "image/draw.h"
+#include "math/scalar.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+vplRgb vplFalseColour(float t)
+{
+    static const vplRgb stops[6] = {{0, 0, 0},          {0.06f, 0.01f, 0.25f}, {0.45f, 0.02f, 0.12f},
+                                    {0.90f, 0.12f, 0.01f}, {1.0f, 0.60f, 0.02f},  {1, 1, 1}};
+    float at = 5 * vplClampf(t == t ? t : 0, 0, 1);
+    int i = vplMini((int)at, 4);
+    float f = at - (float)i;
+    return (vplRgb){stops[i].r + f * (stops[i + 1].r - stops[i].r), stops[i].g + f * (stops[i + 1].g - stops[i].g),
+                    stops[i].b + f * (stops[i + 1].b - stops[i].b)};
+}
+
+static void setPixel(vplImage* image, int x, int y, vplRgb colour)
+{
+    if (x >= 0 && y >= 0 && x < image->width && y < image->height) {
+        float* p = image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+        p[0] = colour.r;
+        p[1] = colour.g;
+        p[2] = colour.b;
+    }
+}
+
+// Rows of 5 bits, top first.
+typedef struct Glyph {
+    char character;
+    uint8_t rows[7];
+} Glyph;
+
+static const Glyph GLYPHS[] = {
+    {'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},    {'2', {14, 17, 1, 2, 4, 8, 31}},
+    {'3', {31, 2, 4, 2, 1, 17, 14}},     {'4', {2, 6, 10, 18, 31, 2, 2}},   {'5', {31, 16, 30, 1, 1, 17, 14}},
+    {'6', {6, 8, 16, 30, 17, 17, 14}},   {'7', {31, 1, 2, 4, 8, 8, 8}},     {'8', {14, 17, 17, 14, 17, 17, 14}},
+    {'9', {14, 17, 17, 15, 1, 2, 12}},   {'.', {0, 0, 0, 0, 0, 12, 12}},    {'-', {0, 0, 0, 31, 0, 0, 0}},
+    {'+', {0, 4, 4, 31, 4, 4, 0}},       {'e', {0, 0, 14, 17, 31, 16, 14}}, {'%', {24, 25, 2, 4, 8, 19, 3}},
+};
+
+void vplDrawText(vplImage* image, int x, int y, int zoom, vplRgb colour, const char* text)
+{
+    for (; *text; text++, x += 6 * zoom) {
+        for (size_t g = 0; g < sizeof GLYPHS / sizeof *GLYPHS; g++) {
+            if (GLYPHS[g].character != *text) {
+                continue;
+            }
+            for (int i = 0; i < 35 * zoom * zoom; i++) {
+                int px = i % (5 * zoom), py = i / (5 * zoom);
+                if (GLYPHS[g].rows[py / zoom] >> (4 - px / zoom) & 1) {
+                    setPixel(image, x + px, y + py, colour);
+                }
+            }
+        }
+    }
+}
+
+int vplColourBar_GetHeight(int width)
+{
+    return width >= 160 ? 26 : 0;
+}
+
+void vplColourBar_Draw(vplImage* image, int top, int height, float largest)
+{
+    if (height == 0) {
+        return;
+    }
+    for (int x = 0; x < image->width; x++) {
+        for (int y = top + 2; y < top + 14; y++) {
+            setPixel(image, x, y, vplFalseColour((float)x / (float)(image->width - 1)));
+        }
+    }
+    int labels = image->width >= 320 ? 5 : 3;
+    for (int i = 0; i < labels; i++) {
+        char text[32];
+        double value = (double)largest * i / (labels - 1);
+        snprintf(text, sizeof text, value != 0 && (value < 0.001 || value >= 1e5) ? "%.1e" : "%.4g", value);
+        int wide = 6 * (int)strlen(text) - 1;
+        int x = (image->width - 1) * i / (labels - 1) - wide * i / (labels - 1);
+        vplDrawText(image, x, top + 17, 1, (vplRgb){1, 1, 1}, text);
+    }
+}
+
+void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour)
+{
+    if (!(fabsf(x) < 1e6f && fabsf(y) < 1e6f)) {
+        return;
+    }
+    int x0 = (int)floorf(x - radius), x1 = (int)ceilf(x + radius);
+    int y0 = (int)floorf(y - radius), y1 = (int)ceilf(y + radius);
+    for (int j = vplMaxi(y0, 0); j <= vplMini(y1, image->height - 1); j++) {
+        for (int i = vplMaxi(x0, 0); i <= vplMini(x1, image->width - 1); i++) {
+            float dx = (float)i + 0.5f - x, dy = (float)j + 0.5f - y;
+            float d = sqrtf(dx * dx + dy * dy);
+            if (d <= radius) {
+                setPixel(image, i, j, d > radius - 1.2f ? (vplRgb){0, 0, 0} : colour);
+            }
+        }
+    }
+}
+
+void vplDrawLine(vplImage* image, float x0, float y0, float x1, float y1, vplRgb colour)
+{
+    float dx = x1 - x0, dy = y1 - y0;
+    float steps = vplMaxf(fabsf(dx), fabsf(dy));
+    if (!(steps < 1e5f)) {
+        return; // off the picture by far, or not a number
+    }
+    int count = (int)steps + 1;
+    for (int i = 0; i <= count; i++) {
+        float t = (float)i / (float)count;
+        setPixel(image, (int)floorf(x0 + t * dx), (int)floorf(y0 + t * dy), colour);
+    }
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Marks on pictures: false colours, a numbered colour bar, digits, discs and lines. For eyes only.
+#ifndef VPL_IMAGE_DRAW_H
+#define VPL_IMAGE_DRAW_H
+
+#include <vpl/image.h>
+
+// Black, violet, red, orange, yellow, white for t from 0 to 1; clamped outside. Linear RGB.
+vplRgb vplFalseColour(float t);
+
+// Height of the colour bar below a picture of this width: 0 where a picture is too narrow for one.
+int vplColourBar_GetHeight(int width);
+
+// Draws the bar from row `top`, with five numbers from 0 to `largest`.
+void vplColourBar_Draw(vplImage* image, int top, int height, float largest);
+
+// Writes text (digits and "+-.e%") with its top left corner at (x, y); a glyph is 5 by 7 pixels of `zoom`.
+void vplDrawText(vplImage* image, int x, int y, int zoom, vplRgb colour, const char* text);
+
+// A filled disc with a dark rim, clipped to the picture.
+void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour);
+
+// A line one pixel wide, clipped to the picture.
+void vplDrawLine(vplImage* image, float x0, float y0, float x1, float y1, vplRgb colour);
+
+#endif

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "base/context.h"
+#include "base/hash.h"
+#include "image/image_file.h"
+
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+vplResult vplImage_Create(vplContext* context, int width, int height, vplImage** imageOut)
+{
+    if (width < 1 || width > VPL_MAX_IMAGE_SIZE || height < 1 || height > VPL_MAX_IMAGE_SIZE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "image size is %dx%d, each side must be in [1, %d]", width,
+                       height, VPL_MAX_IMAGE_SIZE);
+    }
+    vplImage* image = vplAlloc(context, 1, sizeof *image);
+    float* pixels = image ? vplAllocZero(context, 3 * (size_t)width * (size_t)height, sizeof(float)) : NULL;
+    if (pixels == NULL) {
+        vplFree(context, image);
+        return VPL_OUT_OF_MEMORY;
+    }
+    *image = (vplImage){width, height, pixels, context};
+    *imageOut = image;
+    return VPL_SUCCESS;
+}
+
+void vplImage_Destroy(vplImage* image)
+{
+    if (image != NULL) {
+        vplFree(image->context, image->pixels);
+        vplFree(image->context, image);
+    }
+}
+
+uint64_t vplImage_Hash(const vplImage* image)
+{
+    const uint32_t size[2] = {(uint32_t)image->width, (uint32_t)image->height};
+    uint64_t state = vplHashWords(0, size, 2);
+    return vplHashFloats(state, image->pixels, 3 * (size_t)image->width * (size_t)image->height);
+}
+
+vplResult vplImage_RequireFinite(const vplImage* image, const char* path)
+{
+    size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++) {
+        if (!isfinite(image->pixels[i])) {
+            size_t pixel = i / 3;
+            return vplFail(image->context, VPL_INVALID_ARGUMENT, "%s: not written: pixel (%d, %d) channel %d is %g",
+                           path, (int)(pixel % (size_t)image->width), (int)(pixel / (size_t)image->width),
+                           (int)(i % 3), (double)image->pixels[i]);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+vplWriteOptions vplDefaultWriteOptions(void)
+{
+    return (vplWriteOptions){0, VPL_TONEMAP_NONE, VPL_WRITE_COOKIE};
+}
+
+typedef vplResult EncodeFcn(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
+typedef vplResult DecodeFcn(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                            vplImage** imageOut);
+
+typedef struct Format {
+    const char* extension;
+    EncodeFcn* encode; // NULL: read only
+    DecodeFcn* decode;
+} Format;
+
+static const Format FORMATS[] = {
+    {".png", vplEncodePng, vplDecodeLdr}, {".hdr", vplEncodeHdr, vplDecodeHdr}, {".pfm", vplEncodePfm, vplDecodePfm},
+    {".jpg", NULL, vplDecodeLdr},         {".jpeg", NULL, vplDecodeLdr},        {".bmp", NULL, vplDecodeLdr},
+    {".tga", NULL, vplDecodeLdr},
+};
+
+static const Format* findFormat(const char* path)
+{
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof FORMATS / sizeof *FORMATS; i++) {
+        size_t n = strlen(FORMATS[i].extension);
+        if (length >= n && strcasecmp(path + length - n, FORMATS[i].extension) == 0) {
+            return &FORMATS[i];
+        }
+    }
+    return NULL;
+}
+
+bool vplImage_CanWrite(const char* path)
+{
+    const Format* format = findFormat(path);
+    return format != NULL && format->encode != NULL;
+}
+
+vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
+{
+    const Format* format = findFormat(path);
+    vplWriteOptions settings = options ? *options : vplDefaultWriteOptions();
+    if (settings.cookie != VPL_WRITE_COOKIE) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                       "vplWriteOptions was not made by vplDefaultWriteOptions");
+    }
+    if (format == NULL || format->encode == NULL) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                       "%s: unknown picture format; the name must end in .png, .hdr or .pfm", path);
+    }
+    if (!(fabsf(settings.exposure) <= 64)) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT, "vplWriteOptions.exposure is %g, must be in [-64, 64]",
+                       (double)settings.exposure);
+    }
+    vplResult result = vplImage_RequireFinite(image, path);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplByteBuffer buffer = {image->context, NULL, 0, 0, false};
+    result = format->encode(image, &settings, &buffer);
+    if (result == VPL_SUCCESS && buffer.failed) {
+        result = VPL_OUT_OF_MEMORY;
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplWriteFile(image->context, path, buffer.bytes, buffer.size);
+    }
+    vplFree(image->context, buffer.bytes);
+    return result;
+}
+
+vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut)
+{
+    const Format* format = findFormat(path);
+    if (format == NULL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "%s: unknown picture format; the name must end in .png, .jpg, .bmp, .tga, .hdr or .pfm", path);
+    }
+    char* bytes;
+    size_t size;
+    vplResult result = vplReadFile(context, path, &bytes, &size);
+    if (result == VPL_SUCCESS) {
+        result = format->decode(context, path, (const uint8_t*)bytes, size, imageOut);
+        vplFree(context, bytes);
+    }
+    return result;
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Encoders and decoders of the picture formats; vplImage_Write and vplImage_Read choose among them.
+#ifndef VPL_IMAGE_IMAGE_FILE_H
+#define VPL_IMAGE_IMAGE_FILE_H
+
+#include <vpl/image.h>
+
+#include "base/file.h"
+
+enum { VPL_WRITE_COOKIE = 0x56504c32, VPL_REINHARD_COOKIE = 0x56504c33 };
+
+vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
+vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
+vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
+
+vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut);
+vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut);
+vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut);
+
+// Fails, naming the first pixel that is NaN or infinite.
+vplResult vplImage_RequireFinite(const vplImage* image, const char* path);
+
+#endif

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Particle Simulation", after Alexander
+// Keller, Instant Radiosity, SIGGRAPH 1997. All N particles are shot, then the first floor(rho N) go on, then
+// the first floor(rho^2 N), as the document's figure counts them (its prose skips floor(rho N)).
+//
+// Documented: light is attenuated by rho_d/pi at every hit and reflected like by a mirror. Physical: the flux
+// 4 pi I is multiplied by rho_d and leaves in a cosine-distributed direction.
+#include <vpl/lights.h>
+
+#include "base/context.h"
+#include "lights/samples.h"
+#include "math/sampling.h"
+#include "math/vec.h"
+
+enum { PARTICLE_COOKIE = 0x56504c60 };
+
+vplParticleDef vplDefaultParticleDef(void)
+{
+    return (vplParticleDef){VPL_LIGHTING_PHYSICAL, 10, 0.5, VPL_SAMPLER_RANDOM, VPL_BOUNCE_AUTO, 0, NULL,
+                            PARTICLE_COOKIE};
+}
+
+typedef struct Simulation {
+    const vplGeometry* geometry;
+    const vplEmitterDef* emitters;
+    int emitterCount;
+    double totalPower; // sum of the emitters' mean intensities
+    vplParticleDef def;
+    vplSampleSource samples;
+    const int* stepCounts;
+    const int* stepStart;   // first slot of each step
+    int stepCount;
+    vplVirtualLight* slots; // one per step and particle; step -1 where nothing was hit
+    int* raysOf;            // per particle
+    bool* escapedOf;        // per particle
+} Simulation;
+
+static double powerOf(const vplEmitterDef* e)
+{
+    return ((double)e->intensity.r + e->intensity.g + e->intensity.b) / 3;
+}
+
+// The emitter of particle i, and one over the probability that it was chosen.
+static const vplEmitterDef* chooseEmitter(const Simulation* s, int particle, float* inverseProbability)
+{
+    *inverseProbability = 1;
+    if (s->emitterCount == 1 || s->totalPower == 0) {
+        return &s->emitters[0];
+    }
+    double place = (double)vplSampleSource_Emitter(&s->samples, particle) * s->totalPower;
+    int chosen = -1;
+    for (int i = 0; i < s->emitterCount; i++) {
+        double power = powerOf(&s->emitters[i]);
+        if (power > 0) {
+            chosen = i;
+            if (place < power) {
+                break;
+            }
+        }
+        place -= power;
+    }
+    *inverseProbability = (float)(s->totalPower / powerOf(&s->emitters[chosen]));
+    return &s->emitters[chosen];
+}
+
+static vplVec3 reflect(vplVec3 d, vplVec3 n)
+{
+    float along = vplDot(d, n);
+    vplVec3 r = vplNormalize(vplSub(d, vplScale(2 * along, n)));
+    // Grazing rays may point into the surface after rounding; slide along it instead.
+    float side = along > 0 ? -1.0f : 1.0f, out = side * vplDot(r, n);
+    return out >= 0 ? r : vplNormalize(vplSub(r, vplScale(side * out, n)));
+}
+
+// Follows one particle to its last step.
+static void followParticle(Simulation* s, int particle)
+{
+    bool documented = s->def.lighting == VPL_LIGHTING_DOCUMENTED;
+    bool mirror = s->def.bounce == VPL_BOUNCE_REFLECT || (s->def.bounce == VPL_BOUNCE_AUTO && documented);
+    float u, v, inverseProbability;
+    const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
+    vplRgb light = vplRgbScale(documented ? inverseProbability : inverseProbability * (float)(4 * VPL_PI),
+                               emitter->intensity);
+    vplSampleSource_Direction(&s->samples, particle, 0, &u, &v);
+    vplRay ray = {emitter->position, s->def.directions ? s->def.directions[particle] : vplSampleSphere(u, v)};
+    vplRayStart start = {-1, VPL_FACE_NONE};
+    int step = 0;
+    for (; step < s->stepCount && particle < s->stepCounts[step]; step++) {
+        vplHit hit;
+        s->raysOf[particle]++;
+        if (!vplGeometry_ClosestHit(s->geometry, &ray, start, &hit)) {
+            s->escapedOf[particle] = true;
+            break;
+        }
+        vplRgb rho = s->geometry->materials[s->geometry->objects[hit.object].material].diffuse;
+        light = vplRgbMul(light, documented ? vplRgbScale((float)(1 / VPL_PI), rho) : rho);
+        vplVec3 facing = vplDot(ray.direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
+        s->slots[s->stepStart[step] + particle] = (vplVirtualLight){
+            hit.position,
+            documented ? hit.normal : facing,
+            light,
+            (float)((double)s->def.particleCount / s->stepCounts[step]),
+            step,
+            particle,
+            hit.object,
+        };
+        vplSampleSource_Direction(&s->samples, particle, step + 1, &u, &v);
+        ray.origin = hit.position;
+        ray.direction = mirror ? reflect(ray.direction, hit.normal) : vplSampleCosineAround(facing, u, v);
+        start = (vplRayStart){hit.object, hit.face};
+    }
+    for (; step < s->stepCount && particle < s->stepCounts[step]; step++) {
+        s->slots[s->stepStart[step] + particle].step = -1;
+    }
+}
+
+enum { CHUNK = 128 }; // particles per task
+
+static void followChunk(void* data, int index, int worker)
+{
+    (void)worker;
+    Simulation* s = data;
+    for (int i = index * CHUNK; i < (index + 1) * CHUNK && i < s->def.particleCount; i++) {
+        followParticle(s, i);
+    }
+}
+
+// Closes the gaps that escaped particles left and sums the statistics, in particle order.
+static void collect(const Simulation* s, vplLightSet* set, int* lightsInStep)
+{
+    vplVirtualLight* lights = s->slots;
+    int total = s->stepCount ? s->stepStart[s->stepCount - 1] + s->stepCounts[s->stepCount - 1] : 0;
+    for (int i = 0; i < total; i++) {
+        if (lights[i].step >= 0) {
+            lightsInStep[lights[i].step]++;
+            lights[set->lightCount++] = lights[i];
+        }
+    }
+    for (int i = 0; i < s->def.particleCount; i++) {
+        set->rays += s->raysOf[i];
+        set->escaped += s->escapedOf[i];
+    }
+    set->rayObjectTests = set->rays * s->geometry->objectCount;
+}
+
+static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
+                          const vplParticleDef* def)
+{
+    if (def->cookie != PARTICLE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef was not made by vplDefaultParticleDef");
+    }
+    if (emitterCount < 1) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "the scene has no emitter to shoot particles from");
+    }
+    for (int i = 0; i < emitterCount; i++) {
+        if (emitters[i].type != VPL_EMITTER_POINT) {
+            return vplFail(context, VPL_INVALID_ARGUMENT, "emitter %d is not a point light", i);
+        }
+    }
+    for (int i = 0; def->directions != NULL && i < def->particleCount; i++) {
+        if (!vplIsFiniteVec(def->directions[i])) {
+            return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef.directions[%d] is not finite", i);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult allocate(Simulation* s, vplLightSet* set, int64_t total, int** lightsInStep)
+{
+    vplContext* context = set->context;
+    size_t particles = (size_t)s->def.particleCount, steps = (size_t)set->stepCount;
+    int* counts = vplAlloc(context, steps, sizeof(int));
+    int* starts = vplAlloc(context, steps, sizeof(int));
+    *lightsInStep = vplAllocZero(context, steps, sizeof(int));
+    s->slots = vplAlloc(context, (size_t)total, sizeof *s->slots);
+    s->raysOf = vplAllocZero(context, particles, sizeof *s->raysOf);
+    s->escapedOf = vplAllocZero(context, particles, sizeof *s->escapedOf);
+    set->stepCounts = s->stepCounts = counts;
+    s->stepStart = starts;
+    set->lightsInStep = *lightsInStep;
+    set->lights = s->slots;
+    if (!counts || !starts || !*lightsInStep || !s->slots || !s->raysOf || !s->escapedOf) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplResult result = vplCountParticles(context, s->def.particleCount, s->def.reflectivity, counts, set->stepCount,
+                                         &set->stepCount, &total);
+    for (int i = 0, at = 0; i < set->stepCount; at += counts[i], i++) {
+        starts[i] = at;
+    }
+    return result;
+}
+
+vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
+                               const vplParticleDef* def, vplLightSet** setOut)
+{
+    vplContext* context = geometry->context;
+    int steps;
+    int64_t total;
+    vplResult result = checkDef(context, emitters, emitterCount, def);
+    if (result == VPL_SUCCESS) {
+        result = vplCountParticles(context, def->particleCount, def->reflectivity, NULL, 0, &steps, &total);
+    }
+    vplLightSet* set = result == VPL_SUCCESS ? vplAllocZero(context, 1, sizeof *set) : NULL;
+    if (set == NULL) {
+        return result == VPL_SUCCESS ? VPL_OUT_OF_MEMORY : result;
+    }
+    set->context = context;
+    set->stepCount = steps;
+    set->particleCount = def->particleCount;
+    Simulation s = {.geometry = geometry, .emitters = emitters, .emitterCount = emitterCount, .def = *def};
+    s.samples = vplSampleSource_Make(def->sampler, def->seed, def->particleCount);
+    for (int i = 0; i < emitterCount; i++) {
+        s.totalPower += powerOf(&emitters[i]);
+    }
+    int* lightsInStep;
+    result = allocate(&s, set, total, &lightsInStep);
+    if (result == VPL_SUCCESS) {
+        s.stepCount = set->stepCount;
+        vplParallelFor(context, (def->particleCount + CHUNK - 1) / CHUNK, followChunk, &s);
+        collect(&s, set, lightsInStep);
+    }
+    vplFree(context, (int*)s.stepStart);
+    vplFree(context, s.raysOf);
+    vplFree(context, s.escapedOf);
+    if (result != VPL_SUCCESS) {
+        vplLightSet_Destroy(set);
+        return result;
+    }
+    *setOut = set;
+    return VPL_SUCCESS;
+}
+
+void vplLightSet_Destroy(vplLightSet* set)
+{
+    if (set != NULL) {
+        vplFree(set->context, (void*)set->lights);
+        vplFree(set->context, (void*)set->stepCounts);
+        vplFree(set->context, (void*)set->lightsInStep);
+        vplFree(set->context, set);
+    }
+}

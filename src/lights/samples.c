@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Because only the first floor(rho^k N) particles go on, the first few of them must cover all directions, too.
+// Random and Halton points do. Hammersley points come sorted by their first coordinate, so particle i takes
+// the point i * stride mod N, where stride/N is near the golden ratio: any first few of those are spread out.
+#include "lights/samples.h"
+#include "base/rng.h"
+#include "math/sampling.h"
+
+#include <math.h>
+
+enum { EMITTER_STREAM = 0x80000000u, SHIFT_STREAM = 0x80000001u };
+
+static int64_t commonDivisor(int64_t a, int64_t b)
+{
+    while (b != 0) {
+        int64_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+vplSampleSource vplSampleSource_Make(vplSampler sampler, uint64_t seed, int count)
+{
+    vplSampleSource source = {sampler, seed, count, 1};
+    if (count > 2) {
+        source.stride = (int64_t)rint(count * 0.61803398874989484820);
+        while (commonDivisor(source.stride, count) != 1) {
+            source.stride++;
+        }
+    }
+    return source;
+}
+
+// Cranley-Patterson rotation: seed 0 leaves the sequence as published.
+static float shifted(float value, uint64_t seed, int dimension)
+{
+    if (seed == 0) {
+        return value;
+    }
+    vplRandom4 r = vplRandomAt(seed, SHIFT_STREAM, (uint64_t)dimension);
+    float sum = value + vplUnitFloat(r.v[0]);
+    sum = sum >= 1 ? sum - 1 : sum;
+    return sum < 1 ? sum : 0x1.fffffep-1f;
+}
+
+static float coordinate(const vplSampleSource* s, int particle, int dimension)
+{
+    if (s->sampler == VPL_SAMPLER_HALTON) {
+        return vplHalton((uint64_t)particle, dimension);
+    }
+    int64_t point = (int64_t)particle * s->stride % s->count;
+    return dimension == 0 ? (float)((double)point / s->count) : vplHalton((uint64_t)point, dimension - 1);
+}
+
+void vplSampleSource_Direction(const vplSampleSource* source, int particle, int step, float* u, float* v)
+{
+    // Halton points in primes beyond the 64th need more points than there are particles to look uniform.
+    if (source->sampler == VPL_SAMPLER_RANDOM || 2 * step + 1 >= VPL_PRIME_COUNT) {
+        vplRandom4 r = vplRandomAt(source->seed, (uint32_t)step, (uint64_t)particle);
+        *u = vplUnitFloat(r.v[0]);
+        *v = vplUnitFloat(r.v[1]);
+        return;
+    }
+    *u = shifted(coordinate(source, particle, 2 * step), source->seed, 2 * step);
+    *v = shifted(coordinate(source, particle, 2 * step + 1), source->seed, 2 * step + 1);
+}
+
+float vplSampleSource_Emitter(const vplSampleSource* source, int particle)
+{
+    if (source->sampler == VPL_SAMPLER_RANDOM) {
+        return vplUnitFloat(vplRandomAt(source->seed, EMITTER_STREAM, (uint64_t)particle).v[0]);
+    }
+    double turns = (particle + 0.5) * 0.61803398874989484820;
+    return (float)(turns - floor(turns)) * 0x1.fffffep-1f;
+}

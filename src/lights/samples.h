@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// The numbers in [0, 1) that particles are made of.
+#ifndef VPL_LIGHTS_SAMPLES_H
+#define VPL_LIGHTS_SAMPLES_H
+
+#include <vpl/lights.h>
+
+typedef struct vplSampleSource {
+    vplSampler sampler;
+    uint64_t seed;
+    int count;       // N
+    int64_t stride;  // Hammersley: particle i takes point i * stride mod N
+} vplSampleSource;
+
+vplSampleSource vplSampleSource_Make(vplSampler sampler, uint64_t seed, int count);
+
+// Two numbers for the direction that particle i takes at `step`.
+void vplSampleSource_Direction(const vplSampleSource* source, int particle, int step, float* u, float* v);
+
+// One number that spreads any first few particles evenly over the emitters.
+float vplSampleSource_Emitter(const vplSampleSource* source, int particle);
+
+#endif

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "math/matrix.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+vplMat4 vplMat4_Identity(void)
+{
+    vplMat4 m = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+    return m;
+}
+
+vplMat4 vplMat4_Multiply(const vplMat4* a, const vplMat4* b)
+{
+    vplMat4 out;
+    for (int column = 0; column < 4; column++) {
+        for (int row = 0; row < 4; row++) {
+            double sum = 0; // products of floats are exact in double, so only the sum rounds
+            for (int k = 0; k < 4; k++) {
+                sum += (double)a->m[4 * k + row] * b->m[4 * column + k];
+            }
+            out.m[4 * column + row] = (float)sum;
+        }
+    }
+    return out;
+}
+
+vplAffine vplAffine_FromMat4(const vplMat4* m)
+{
+    vplAffine a;
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 4; column++) {
+            a.m[row][column] = m->m[4 * column + row];
+        }
+    }
+    return a;
+}
+
+vplMat4 vplAffine_ToMat4(const vplAffine* a)
+{
+    vplMat4 m = vplMat4_Identity();
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 4; column++) {
+            m.m[4 * column + row] = (float)a->m[row][column];
+        }
+    }
+    return m;
+}
+
+// Cofactor rows of the 3x3 part: row i is the cross product of the other two columns.
+static double cofactors(const double c[3][3], double rows[3][3])
+{
+    for (int i = 0; i < 3; i++) {
+        const double* u = c[(i + 1) % 3];
+        const double* v = c[(i + 2) % 3];
+        rows[i][0] = u[1] * v[2] - u[2] * v[1];
+        rows[i][1] = u[2] * v[0] - u[0] * v[2];
+        rows[i][2] = u[0] * v[1] - u[1] * v[0];
+    }
+    return c[0][0] * rows[0][0] + c[0][1] * rows[0][1] + c[0][2] * rows[0][2];
+}
+
+// Columns divided by their lengths, so that scales from 1e-30 to 1e30 neither under- nor overflow.
+static void unitColumns(const vplAffine* a, double columns[3][3], double lengths[3])
+{
+    for (int j = 0; j < 3; j++) {
+        double x = a->m[0][j], y = a->m[1][j], z = a->m[2][j];
+        lengths[j] = sqrt(x * x + y * y + z * z);
+        double scale = lengths[j] > 0 ? 1 / lengths[j] : 0;
+        columns[j][0] = x * scale;
+        columns[j][1] = y * scale;
+        columns[j][2] = z * scale;
+    }
+}
+
+double vplAffine_Orthogonality(const vplAffine* a)
+{
+    double columns[3][3], lengths[3], rows[3][3];
+    unitColumns(a, columns, lengths);
+    return fabs(cofactors(columns, rows));
+}
+
+vplAffine vplAffine_Inverse(const vplAffine* a)
+{
+    double columns[3][3], lengths[3], rows[3][3];
+    unitColumns(a, columns, lengths);
+    double det = cofactors(columns, rows);
+    vplAffine out;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            out.m[i][j] = rows[i][j] / det / lengths[i];
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        out.m[i][3] = -(out.m[i][0] * a->m[0][3] + out.m[i][1] * a->m[1][3] + out.m[i][2] * a->m[2][3]);
+    }
+    return out;
+}
+
+vplAffine vplAffine_FromParts(vplVec3 translate, const double quarters[3], vplVec3 scale)
+{
+    double s[3], c[3];
+    for (int i = 0; i < 3; i++) {
+        vplSinCosQuarters(quarters[i], &s[i], &c[i]);
+    }
+    // Rz * Ry * Rx, written out.
+    const double r[3][3] = {
+        {c[2] * c[1], c[2] * s[1] * s[0] - s[2] * c[0], c[2] * s[1] * c[0] + s[2] * s[0]},
+        {s[2] * c[1], s[2] * s[1] * s[0] + c[2] * c[0], s[2] * s[1] * c[0] - c[2] * s[0]},
+        {-s[1], c[1] * s[0], c[1] * c[0]},
+    };
+    vplAffine a;
+    for (int i = 0; i < 3; i++) {
+        a.m[i][0] = r[i][0] * scale.x;
+        a.m[i][1] = r[i][1] * scale.y;
+        a.m[i][2] = r[i][2] * scale.z;
+        a.m[i][3] = vplComponent(translate, i);
+    }
+    return a;
+}
+
+vplMat4 vplMat4_FromParts(vplVec3 translate, const double rotate[3], vplVec3 scale)
+{
+    double quarters[3];
+    for (int i = 0; i < 3; i++) {
+        quarters[i] = rotate[i] / (VPL_PI / 2);
+    }
+    vplAffine a = vplAffine_FromParts(translate, quarters, scale);
+    return vplAffine_ToMat4(&a);
+}
+
+vplMat4 vplMat4_LookAt(vplVec3 eye, vplVec3 target, vplVec3 up)
+{
+    vplVec3 back = vplNormalize(vplSub(eye, target));
+    vplVec3 right = vplNormalize(vplCross(up, back));
+    vplVec3 above = vplCross(back, right);
+    vplMat4 m = vplMat4_Identity();
+    const vplVec3 rows[3] = {right, above, back};
+    for (int i = 0; i < 3; i++) {
+        m.m[i] = rows[i].x;
+        m.m[4 + i] = rows[i].y;
+        m.m[8 + i] = rows[i].z;
+        m.m[12 + i] = -vplDot(rows[i], eye);
+    }
+    return m;
+}
+
+vplMat4 vplMat4_Perspective(double fovY, double aspect, double near, double far)
+{
+    double sine, cosine;
+    vplSinCos(fovY / 2, &sine, &cosine);
+    vplMat4 m = {{0}};
+    m.m[0] = (float)(cosine / (sine * aspect));
+    m.m[5] = (float)(cosine / sine);
+    m.m[10] = (float)(-far / (far - near));
+    m.m[11] = -1;
+    m.m[14] = (float)(-near * far / (far - near));
+    return m;
+}
+
+vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p)
+{
+    return vplVec(m->m[0] * p.x + m->m[4] * p.y + m->m[8] * p.z + m->m[12],
+                  m->m[1] * p.x + m->m[5] * p.y + m->m[9] * p.z + m->m[13],
+                  m->m[2] * p.x + m->m[6] * p.y + m->m[10] * p.z + m->m[14]);
+}
+
+vplVec3 vplMat4_TransformDirection(const vplMat4* m, vplVec3 d)
+{
+    return vplVec(m->m[0] * d.x + m->m[4] * d.y + m->m[8] * d.z, m->m[1] * d.x + m->m[5] * d.y + m->m[9] * d.z,
+                  m->m[2] * d.x + m->m[6] * d.y + m->m[10] * d.z);
+}

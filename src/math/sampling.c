@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Based on: J. G. van der Corput 1935; J. H. Halton, On the efficiency of certain quasi-random sequences of
+// points, Numerische Mathematik 1960; the sequences that Keller's Instant Radiosity and SSVP ask for.
+#include "math/sampling.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+float vplVanDerCorput(uint32_t k)
+{
+    k = (k << 16) | (k >> 16);
+    k = ((k & 0x00ff00ffu) << 8) | ((k & 0xff00ff00u) >> 8);
+    k = ((k & 0x0f0f0f0fu) << 4) | ((k & 0xf0f0f0f0u) >> 4);
+    k = ((k & 0x33333333u) << 2) | ((k & 0xccccccccu) >> 2);
+    k = ((k & 0x55555555u) << 1) | ((k & 0xaaaaaaaau) >> 1);
+    return (float)(k >> 8) * 0x1p-24f;
+}
+
+float vplHalton(uint64_t k, int dimension)
+{
+    static const uint16_t primes[VPL_PRIME_COUNT] = {
+        2,   3,   5,   7,   11,  13,  17,  19,  23,  29,  31,  37,  41,  43,  47,  53,  59,  61,  67,  71,  73,  79,
+        83,  89,  97,  101, 103, 107, 109, 113, 127, 131, 137, 139, 149, 151, 157, 163, 167, 173, 179, 181, 191, 193,
+        197, 199, 211, 223, 227, 229, 233, 239, 241, 251, 257, 263, 269, 271, 277, 281, 283, 293, 307, 311};
+    uint64_t base = primes[dimension];
+    uint64_t digits = 0, scale = 1;
+    while (k > 0 && scale < (UINT64_C(1) << 52) / base) { // beyond 52 bits a float cannot see the digits
+        digits = digits * base + k % base;
+        scale *= base;
+        k /= base;
+    }
+    double value = (double)digits / (double)scale;
+    return (float)(value < 1 - 0x1p-24 ? value : 1 - 0x1p-24); // rounding to float must not reach 1
+}
+
+void vplSamplePolarDisc(float u, float v, float* x, float* y)
+{
+    double sine, cosine;
+    vplSinCosQuarters(4.0 * v, &sine, &cosine);
+    double r = sqrt(u);
+    *x = (float)(r * cosine);
+    *y = (float)(r * sine);
+}
+
+void vplSampleConcentricDisc(float u, float v, float* x, float* y)
+{
+    double a = 2.0 * u - 1, b = 2.0 * v - 1;
+    if (a == 0 && b == 0) {
+        *x = *y = 0;
+        return;
+    }
+    double r, quarters, sine, cosine;
+    if (fabs(a) > fabs(b)) {
+        r = a;
+        quarters = 0.5 * (b / a);
+    } else {
+        r = b;
+        quarters = 1 - 0.5 * (a / b);
+    }
+    vplSinCosQuarters(quarters, &sine, &cosine);
+    *x = (float)(r * cosine);
+    *y = (float)(r * sine);
+}
+
+vplVec3 vplSampleSphere(float u, float v)
+{
+    double z = 1 - 2.0 * u;
+    double r2 = 1 - z * z;
+    double r = sqrt(r2 > 0 ? r2 : 0);
+    double sine, cosine;
+    vplSinCosQuarters(4.0 * v, &sine, &cosine);
+    return vplVec((float)(r * cosine), (float)(r * sine), (float)z);
+}
+
+vplVec3 vplSampleCosine(float u, float v)
+{
+    float x, y;
+    vplSamplePolarDisc(u, v, &x, &y);
+    double z2 = 1.0 - u;
+    return vplVec(x, y, (float)sqrt(z2 > 0 ? z2 : 0));
+}
+
+vplVec3 vplSampleCosineAround(vplVec3 n, float u, float v)
+{
+    vplVec3 d = vplSampleCosine(u, v), tangent, bitangent;
+    vplFrame(n, &tangent, &bitangent);
+    vplVec3 side = vplAdd(vplScale(d.x, tangent), vplScale(d.y, bitangent));
+    return vplNormalize(vplAdd(side, vplScale(d.z, n)));
+}

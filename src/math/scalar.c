@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Reduce the argument to a small interval, then sum a series there. Taylor series (not minimax fits): their
+// coefficients can be checked by eye, and in double the few extra terms cost nothing that matters here.
+#include "math/scalar.h"
+
+#include <vpl/vecmath.h>
+
+#include <float.h>
+#include <string.h>
+
+static const double LN2_HIGH = 0x1.62e42fefa0000p-1; // the low 17 bits are 0, so k * LN2_HIGH is exact
+static const double LN2_LOW = 0x1.cf79abc9e3b3ap-40;
+
+void vplSinCosQuarters(double quarters, double* sine, double* cosine)
+{
+    double nearest = rint(quarters);
+    double x = (quarters - nearest) * (VPL_PI / 2); // |x| <= pi/4
+    double x2 = x * x;
+    double s = 0, c = 0;
+    for (int k = 17; k >= 3; k -= 2) { // sin x = x - x^3/3! + ...; (pi/4)^19/19! < 1e-19
+        s = (1 + s) * (-x2 / ((k - 1) * k));
+        c = (1 + c) * (-x2 / ((k - 2) * (k - 1)));
+    }
+    s = x + x * s;
+    c = 1 + c;
+    switch ((int64_t)nearest & 3) {
+    case 0:
+        *sine = s, *cosine = c;
+        break;
+    case 1:
+        *sine = c, *cosine = -s;
+        break;
+    case 2:
+        *sine = -s, *cosine = -c;
+        break;
+    default:
+        *sine = -c, *cosine = s;
+        break;
+    }
+    *sine += 0.0; // -0 to 0
+    *cosine += 0.0;
+}
+
+void vplSinCos(double radians, double* sine, double* cosine)
+{
+    vplSinCosQuarters(radians / (VPL_PI / 2), sine, cosine);
+}
+
+double vplExp(double x)
+{
+    if (!(x > -745.2)) {
+        return x != x ? x : 0;
+    }
+    if (x > 709.79) {
+        return INFINITY;
+    }
+    double k = rint(x * (1 / 0.69314718055994530942));
+    double r = (x - k * LN2_HIGH) - k * LN2_LOW; // |r| <= ln(2)/2
+    double sum = 0;
+    for (int i = 14; i >= 1; i--) { // 0.35^15/15! < 2e-19
+        sum = (1 + sum) * (r / i);
+    }
+    int half = (int)k / 2; // two steps, so that results near both ends of the range do not overflow early
+    return ldexp(ldexp(1 + sum, half), (int)k - half);
+}
+
+double vplLog1(double x)
+{
+    if (!(x > 0)) {
+        return x == 0 ? -INFINITY : NAN;
+    }
+    if (x > DBL_MAX) {
+        return x;
+    }
+    int exponent;
+    double m = frexp(x, &exponent); // [0.5, 1)
+    if (m < 0.70710678118654752440) {
+        m *= 2;
+        exponent--;
+    }
+    double s = (m - 1) / (m + 1); // |s| <= 0.172; log m = 2 atanh s
+    double s2 = s * s;
+    double sum = 0;
+    for (int k = 23; k >= 3; k -= 2) { // 0.172^24 < 1e-18
+        sum = (sum + 1.0 / k) * s2;
+    }
+    return exponent * LN2_HIGH + (2 * s + (2 * s * sum + exponent * LN2_LOW));
+}
+
+double vplPow(double x, double y)
+{
+    return x > 0 ? vplExp(y * vplLog1(x)) : 0;
+}
+
+// atan x for 0 <= x <= 1: two half-angle steps bring x under 0.2, where the series is short.
+static double atanUnit(double x)
+{
+    for (int i = 0; i < 2; i++) {
+        x = x / (1 + sqrt(1 + x * x)); // atan x = 2 atan(x / (1 + sqrt(1 + x^2)))
+    }
+    double x2 = x * x;
+    double sum = 0;
+    for (int k = 25; k >= 3; k -= 2) {
+        sum = (1.0 / k - sum) * x2; // alternating series, from the small end
+    }
+    return 4 * (x - x * sum);
+}
+
+double vplAtan2(double y, double x)
+{
+    double ax = fabs(x), ay = fabs(y);
+    if (ax == 0 && ay == 0) {
+        return 0;
+    }
+    double angle = ay <= ax ? atanUnit(ay / ax) : VPL_PI / 2 - atanUnit(ax / ay);
+    angle = x < 0 ? VPL_PI - angle : angle;
+    return y < 0 ? -angle : angle;
+}
+
+double vplAcos(double x)
+{
+    x = x < -1 ? -1 : x > 1 ? 1 : x;
+    return vplAtan2(sqrt((1 - x) * (1 + x)), x);
+}

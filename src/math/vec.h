@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Inline vector arithmetic. Sums are written out in one order, so every caller gets the same bits.
+#ifndef VPL_MATH_VEC_H
+#define VPL_MATH_VEC_H
+
+#include <vpl/vecmath.h>
+
+#include <math.h>
+
+static inline vplVec3 vplVec(float x, float y, float z)
+{
+    return (vplVec3){x, y, z};
+}
+
+static inline vplVec3 vplAdd(vplVec3 a, vplVec3 b)
+{
+    return vplVec(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+
+static inline vplVec3 vplSub(vplVec3 a, vplVec3 b)
+{
+    return vplVec(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+static inline vplVec3 vplScale(float s, vplVec3 a)
+{
+    return vplVec(s * a.x, s * a.y, s * a.z);
+}
+
+static inline vplVec3 vplNegate(vplVec3 a)
+{
+    return vplVec(-a.x, -a.y, -a.z);
+}
+
+static inline float vplDot(vplVec3 a, vplVec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline vplVec3 vplCross(vplVec3 a, vplVec3 b)
+{
+    return vplVec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+static inline float vplLength(vplVec3 a)
+{
+    return sqrtf(vplDot(a, a));
+}
+
+// The unit vector along a; 0 for the zero vector. The largest component is brought to 1 first, so that
+// neither tiny nor huge vectors lose their direction to underflow or overflow of the square.
+static inline vplVec3 vplNormalize(vplVec3 a)
+{
+    float largest = fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
+    if (!(largest > 0) || largest > 3.4e38f) {
+        return vplVec(0, 0, 0);
+    }
+    a = vplVec(a.x / largest, a.y / largest, a.z / largest);
+    float length = vplLength(a);
+    return vplVec(a.x / length, a.y / length, a.z / length);
+}
+
+static inline float vplComponent(vplVec3 a, int axis)
+{
+    return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
+
+static inline bool vplIsFiniteVec(vplVec3 a)
+{
+    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
+
+static inline vplRgb vplRgbScale(float s, vplRgb a)
+{
+    return (vplRgb){s * a.r, s * a.g, s * a.b};
+}
+
+static inline vplRgb vplRgbMul(vplRgb a, vplRgb b)
+{
+    return (vplRgb){a.r * b.r, a.g * b.g, a.b * b.b};
+}
+
+static inline vplRgb vplRgbAdd(vplRgb a, vplRgb b)
+{
+    return (vplRgb){a.r + b.r, a.g + b.g, a.b + b.b};
+}
+
+// Luminance with the weights of Rec. 709.
+static inline float vplLuminance(vplRgb c)
+{
+    return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
+}
+
+// An orthonormal frame around the unit vector n: tangent, bitangent and n are right-handed.
+// Based on: Duff, Burgess, Christensen, Hery, Kensler, Liani and Villemin, Building an Orthonormal Basis,
+// Revisited, JCGT 2017: no division by 1 + n_z near 0.
+static inline void vplFrame(vplVec3 n, vplVec3* tangent, vplVec3* bitangent)
+{
+    float sign = copysignf(1.0f, n.z);
+    float a = -1.0f / (sign + n.z);
+    float b = n.x * n.y * a;
+    *tangent = vplVec(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    *bitangent = vplVec(b, sign + n.y * n.y * a, -n.y);
+}
+
+#endif

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+// Records draws and runs them.
+#include "raster/raster.h"
+#include "base/clock.h"
+
+#include <string.h>
+
+enum { PIPELINE_COOKIE = 0x56504c40, FRAMEBUFFER_COOKIE };
+
+vplPipeline vplDefaultPipeline(void)
+{
+    vplPipeline pipeline = {0};
+    pipeline.depthWrite = true;
+    pipeline.planeMask = UINT32_MAX;
+    pipeline.cookie = PIPELINE_COOKIE;
+    return pipeline;
+}
+
+vplFramebuffer vplDefaultFramebuffer(int width, int height)
+{
+    vplFramebuffer framebuffer = {0};
+    framebuffer.width = width;
+    framebuffer.height = height;
+    framebuffer.depth.clear = 1;
+    framebuffer.cookie = FRAMEBUFFER_COOKIE;
+    return framebuffer;
+}
+
+vplResult vplRaster_Create(vplContext* context, const vplFramebuffer* framebuffer, vplRaster** rasterOut)
+{
+    if (framebuffer->cookie != FRAMEBUFFER_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplFramebuffer was not made by vplDefaultFramebuffer");
+    }
+    if (framebuffer->width < 1 || framebuffer->width > VPL_MAX_IMAGE_SIZE || framebuffer->height < 1 ||
+        framebuffer->height > VPL_MAX_IMAGE_SIZE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplFramebuffer is %dx%d, each side must be in [1, %d]",
+                       framebuffer->width, framebuffer->height, VPL_MAX_IMAGE_SIZE);
+    }
+    if (framebuffer->planeCount < 0 || framebuffer->planeCount > VPL_MAX_PLANES) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplFramebuffer.planeCount is %d, must be in [0, %d]",
+                       framebuffer->planeCount, VPL_MAX_PLANES);
+    }
+    vplRaster* raster = vplAllocZero(context, 1, sizeof *raster);
+    if (raster == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    raster->context = context;
+    raster->framebuffer = *framebuffer;
+    raster->tilesX = (framebuffer->width + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
+    raster->tilesY = (framebuffer->height + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
+    *rasterOut = raster;
+    return VPL_SUCCESS;
+}
+
+static void freeGeometry(vplRaster* raster)
+{
+    vplContext* context = raster->context;
+    for (int i = 0; i < raster->shadedCount; i++) {
+        vplShaded* shaded = &raster->shaded[i];
+        vplFree(context, shaded->storage);
+        vplFree(context, shaded->screen);
+        vplFree(context, shaded->outcodes);
+        vplFree(context, shaded->extras);
+        shaded->storage = NULL;
+        shaded->screen = NULL;
+        shaded->outcodes = NULL;
+        shaded->extras = NULL;
+    }
+    vplFree(context, raster->triangles);
+    vplFree(context, raster->bins);
+    vplFree(context, raster->binStart);
+    raster->triangles = NULL;
+    raster->bins = NULL;
+    raster->binStart = NULL;
+}
+
+void vplRaster_Destroy(vplRaster* raster)
+{
+    if (raster != NULL) {
+        vplContext* context = raster->context;
+        freeGeometry(raster);
+        vplFree(context, raster->commands);
+        vplFree(context, raster->pipelines);
+        vplFree(context, raster->shaded);
+        vplFree(context, raster);
+    }
+}
+
+static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const vplPipeline* pipeline)
+{
+    if (pipeline->cookie != PIPELINE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplPipeline was not made by vplDefaultPipeline");
+    }
+    if (pipeline->vertex == NULL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplPipeline.vertex is NULL, must be a vertex shader");
+    }
+    if (pipeline->varyingCount < 0 || pipeline->varyingCount > VPL_MAX_VARYINGS) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplPipeline.varyingCount is %d, must be in [0, %d]",
+                       pipeline->varyingCount, VPL_MAX_VARYINGS);
+    }
+    if (mesh->vertexCount < 0 || mesh->triangleCount < 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplMesh has %d vertices and %d triangles, must not be negative",
+                       mesh->vertexCount, mesh->triangleCount);
+    }
+    return VPL_SUCCESS;
+}
+
+// A draw's vertex work is found again by mesh, shader and uniforms. Scenes draw their objects round and round,
+// so the search starts behind the one found last.
+static int findShaded(const vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
+{
+    int last = raster->commandCount > 0 ? raster->commands[raster->commandCount - 1].shaded : -1;
+    for (int i = 0; i < raster->shadedCount; i++) {
+        int at = (last + 1 + i) % raster->shadedCount;
+        const vplShaded* s = &raster->shaded[at];
+        if (s->key == mesh && s->vertexFcn == pipeline->vertex && s->uniforms == pipeline->vertexUniforms &&
+            s->varyingCount == pipeline->varyingCount) {
+            return at;
+        }
+    }
+    return -1;
+}
+
+static vplResult addShaded(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline, int* indexOut)
+{
+    if (vplReserve(raster->context, &raster->shaded, &raster->shadedCapacity, (size_t)raster->shadedCount + 1,
+                   sizeof *raster->shaded) != VPL_SUCCESS) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplShaded* shaded = &raster->shaded[raster->shadedCount];
+    memset(shaded, 0, sizeof *shaded);
+    shaded->key = mesh;
+    shaded->mesh = *mesh;
+    shaded->vertexFcn = pipeline->vertex;
+    shaded->uniforms = pipeline->vertexUniforms;
+    shaded->varyingCount = pipeline->varyingCount;
+    *indexOut = raster->shadedCount++;
+    return VPL_SUCCESS;
+}
+
+static vplResult addCommand(vplRaster* raster, vplCommand command)
+{
+    if (vplReserve(raster->context, &raster->commands, &raster->commandCapacity, (size_t)raster->commandCount + 1,
+                   sizeof *raster->commands) != VPL_SUCCESS) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    raster->commands[raster->commandCount++] = command;
+    return VPL_SUCCESS;
+}
+
+vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
+{
+    vplResult result = checkDraw(raster->context, mesh, pipeline);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    int shaded = findShaded(raster, mesh, pipeline);
+    if (shaded < 0) {
+        result = addShaded(raster, mesh, pipeline, &shaded);
+        if (result != VPL_SUCCESS) {
+            return result;
+        }
+    }
+    int last = raster->pipelineCount - 1;
+    if (last < 0 || memcmp(&raster->pipelines[last], pipeline, sizeof *pipeline) != 0) {
+        if (vplReserve(raster->context, &raster->pipelines, &raster->pipelineCapacity,
+                       (size_t)raster->pipelineCount + 1, sizeof *raster->pipelines) != VPL_SUCCESS) {
+            return VPL_OUT_OF_MEMORY;
+        }
+        last = raster->pipelineCount++;
+        raster->pipelines[last] = *pipeline;
+    }
+    result = addCommand(raster, (vplCommand){shaded, last, NULL, NULL});
+    if (result == VPL_SUCCESS) {
+        raster->stats.drawCalls++;
+    }
+    return result;
+}
+
+vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data)
+{
+    return addCommand(raster, (vplCommand){-1, 0, fcn, data});
+}
+
+vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut)
+{
+    vplResult result = VPL_SUCCESS;
+    double start = vplClockMs();
+    raster->stats.trianglesIn = 0;
+    raster->stats.fragments = 0;
+    for (int i = 0; i < raster->shadedCount && result == VPL_SUCCESS; i++) {
+        result = vplShadeVertices(raster, &raster->shaded[i]);
+        raster->stats.trianglesIn += raster->shaded[i].mesh.triangleCount;
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplAssembleTriangles(raster);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplBinTriangles(raster);
+    }
+    raster->stats.trianglesBinned = raster->triangleCount;
+    double middle = vplClockMs();
+    if (result == VPL_SUCCESS) {
+        result = vplRunTiles(raster, progress, user);
+    }
+    freeGeometry(raster);
+    raster->stats.vertexMs = middle - start;
+    raster->stats.tilesMs = vplClockMs() - middle;
+    if (result == VPL_SUCCESS && statsOut != NULL) {
+        *statsOut = raster->stats;
+    }
+    return result;
+}

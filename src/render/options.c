@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "render/render.h"
+
+#include <math.h>
+
+enum { OPTIONS_COOKIE = 0x56504c70 };
+
+vplRenderOptions vplDefaultRenderOptions(void)
+{
+    vplRenderOptions o = {0};
+    o.width = 1280;
+    o.height = 720;
+    o.particles = 10;
+    o.reflectivity = 0.5;
+    o.accumulation = VPL_ACCUMULATE_DEFERRED;
+    o.batch = 64;
+    o.minDistance = -1;
+    o.shadowMapSize = 1024;
+    o.shadow = vplDefaultShadowDef();
+    o.cookie = OPTIONS_COOKIE;
+    return o;
+}
+
+static vplResult checkInt(const vplContext* context, const char* name, int value, int low, int high)
+{
+    return value >= low && value <= high
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.%s is %d, must be in [%d, %d]", name, value,
+                         low, high);
+}
+
+vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
+{
+    vplContext* context = vplScene_GetContext(scene);
+    if (o->cookie != OPTIONS_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions was not made by vplDefaultRenderOptions");
+    }
+    int cameras = vplScene_GetCameraCount(scene);
+    if (cameras == 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "the scene has no camera");
+    }
+    const struct {
+        const char* name;
+        int value, low, high;
+    } ints[] = {
+        {"method", (int)o->method, 0, VPL_METHOD_DIRECT},
+        {"lighting", (int)o->lighting, 0, VPL_LIGHTING_DOCUMENTED},
+        {"width", o->width, 1, VPL_MAX_IMAGE_SIZE},
+        {"height", o->height, 1, VPL_MAX_IMAGE_SIZE},
+        {"camera", o->camera, 0, cameras - 1},
+        {"particles", o->particles, 0, VPL_MAX_LIGHTS},
+        {"sampler", (int)o->sampler, 0, VPL_SAMPLER_HAMMERSLEY},
+        {"bounce", (int)o->bounce, 0, VPL_BOUNCE_DIFFUSE},
+        {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_DEFERRED},
+        {"batch", o->batch, 1, VPL_MAX_LIGHTS},
+        {"shadowMapSize", o->shadowMapSize, 1, VPL_MAX_SHADOW_MAP},
+        {"show", (int)o->show, 0, VPL_SHOW_OVERLAY},
+        {"showLight", o->showLight, 0, VPL_MAX_LIGHTS},
+    };
+    for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) {
+        vplResult result = checkInt(context, ints[i].name, ints[i].value, ints[i].low, ints[i].high);
+        if (result != VPL_SUCCESS) {
+            return result;
+        }
+    }
+    if (!(o->reflectivity < 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.reflectivity is %g, must be in [0, 1) or negative for automatic",
+                       o->reflectivity);
+    }
+    if (!isfinite(o->minDistance)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.minDistance is %g, must be finite",
+                       (double)o->minDistance);
+    }
+    return VPL_SUCCESS;
+}

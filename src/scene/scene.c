@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene.h"
+
+#include <string.h>
+
+enum { CAMERA_COOKIE = 0x56504c34, MATERIAL_COOKIE, OBJECT_COOKIE, EMITTER_COOKIE };
+
+static const double DEGREE = VPL_PI / 180;
+
+vplCameraDef vplDefaultCameraDef(void)
+{
+    return (vplCameraDef){{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40 * DEGREE, 0.1, 100, CAMERA_COOKIE};
+}
+
+vplMaterialDef vplDefaultMaterialDef(void)
+{
+    return (vplMaterialDef){NULL, {0.5f, 0.5f, 0.5f}, {0, 0, 0}, MATERIAL_COOKIE};
+}
+
+vplObjectDef vplDefaultObjectDef(void)
+{
+    return (vplObjectDef){NULL, VPL_OBJECT_QUAD, 0, vplMat4_Identity(), OBJECT_COOKIE};
+}
+
+vplEmitterDef vplDefaultEmitterDef(void)
+{
+    return (vplEmitterDef){VPL_EMITTER_POINT, {0, 0, 0},   {0, -1, 0},    {1, 1, 1},
+                           20 * DEGREE,       30 * DEGREE, EMITTER_COOKIE};
+}
+
+vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
+{
+    vplScene* scene = vplAllocZero(context, 1, sizeof *scene);
+    if (scene == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    scene->context = context;
+    *sceneOut = scene;
+    return VPL_SUCCESS;
+}
+
+void vplScene_Destroy(vplScene* scene)
+{
+    if (scene == NULL) {
+        return;
+    }
+    vplContext* context = scene->context;
+    for (int i = 0; i < scene->materialCount; i++) {
+        vplFree(context, (char*)scene->materials[i].name);
+    }
+    for (int i = 0; i < scene->objectCount; i++) {
+        vplFree(context, (char*)scene->objects[i].name);
+    }
+    vplFree(context, scene->cameras);
+    vplFree(context, scene->materials);
+    vplFree(context, scene->objects);
+    vplFree(context, scene->emitters);
+    vplFree(context, scene);
+}
+
+static vplResult report(const vplScene* scene, const char* type, bool initialised, const vplFault* fault)
+{
+    if (!initialised) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s was not made by its default function", type);
+    }
+    if (fault->field == NULL) {
+        return VPL_SUCCESS;
+    }
+    if (fault->index >= 0) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s.%s[%d] %s", type, fault->field, fault->index,
+                       fault->text);
+    }
+    return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s.%s %s", type, fault->field, fault->text);
+}
+
+// Room for one more element at *array; NULL when out of memory.
+static void* grow(vplScene* scene, void* array, int* count, size_t* capacity, size_t size)
+{
+    if (vplReserve(scene->context, array, capacity, (size_t)*count + 1, size) != VPL_SUCCESS) {
+        return NULL;
+    }
+    char* base;
+    memcpy(&base, array, sizeof base);
+    return base + (size_t)*count * size;
+}
+
+static void finish(int* count, int* indexOut)
+{
+    if (indexOut != NULL) {
+        *indexOut = *count;
+    }
+    ++*count;
+}
+
+// Copies an optional name into the scene; false when out of memory.
+static bool keepName(vplScene* scene, const char** name)
+{
+    if (*name != NULL) {
+        *name = vplCopyString(scene->context, *name);
+        return *name != NULL;
+    }
+    return true;
+}
+
+vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut)
+{
+    vplFault fault = vplCheckCamera(def);
+    vplResult result = report(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE, &fault);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplCameraDef* slot =
+        grow(scene, &scene->cameras, &scene->cameraCount, &scene->cameraCapacity, sizeof *scene->cameras);
+    if (slot == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    *slot = *def;
+    finish(&scene->cameraCount, indexOut);
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
+{
+    vplFault fault = vplCheckMaterial(def);
+    vplResult result = report(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE, &fault);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    for (int i = 0; def->name != NULL && i < scene->materialCount; i++) {
+        if (scene->materials[i].name != NULL && strcmp(scene->materials[i].name, def->name) == 0) {
+            return vplFail(scene->context, VPL_INVALID_ARGUMENT, "vplMaterialDef.name \"%s\" is taken, must be unique",
+                           def->name);
+        }
+    }
+    vplMaterialDef* slot =
+        grow(scene, &scene->materials, &scene->materialCount, &scene->materialCapacity, sizeof *scene->materials);
+    vplMaterialDef copy = *def;
+    if (slot == NULL || !keepName(scene, &copy.name)) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    *slot = copy;
+    finish(&scene->materialCount, indexOut);
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut)
+{
+    vplFault fault = vplCheckTransform(&def->transform);
+    vplResult result = report(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE, &fault);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "vplObjectDef.type is %d, must be a vplObjectType",
+                       (int)def->type);
+    }
+    if (def->material < 0 || def->material >= scene->materialCount) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplObjectDef.material is %d, must be one of the scene's %d materials", def->material,
+                       scene->materialCount);
+    }
+    vplObjectDef* slot =
+        grow(scene, &scene->objects, &scene->objectCount, &scene->objectCapacity, sizeof *scene->objects);
+    vplObjectDef copy = *def;
+    if (slot == NULL || !keepName(scene, &copy.name)) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    *slot = copy;
+    finish(&scene->objectCount, indexOut);
+    return VPL_SUCCESS;
+}
+
+vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut)
+{
+    vplFault fault = vplCheckEmitter(def);
+    vplResult result = report(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE, &fault);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplEmitterDef* slot =
+        grow(scene, &scene->emitters, &scene->emitterCount, &scene->emitterCapacity, sizeof *scene->emitters);
+    if (slot == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    *slot = *def;
+    finish(&scene->emitterCount, indexOut);
+    return VPL_SUCCESS;
+}
+
+int vplScene_GetCameraCount(const vplScene* scene)
+{
+    return scene->cameraCount;
+}
+
+int vplScene_GetMaterialCount(const vplScene* scene)
+{
+    return scene->materialCount;
+}
+
+int vplScene_GetObjectCount(const vplScene* scene)
+{
+    return scene->objectCount;
+}
+
+int vplScene_GetEmitterCount(const vplScene* scene)
+{
+    return scene->emitterCount;
+}
+
+const vplCameraDef* vplScene_GetCamera(const vplScene* scene, int index)
+{
+    return &scene->cameras[index];
+}
+
+const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index)
+{
+    return &scene->materials[index];
+}
+
+const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index)
+{
+    return &scene->objects[index];
+}
+
+const vplEmitterDef* vplScene_GetEmitter(const vplScene* scene, int index)
+{
+    return &scene->emitters[index];
+}
+
+vplContext* vplScene_GetContext(const vplScene* scene)
+{
+    return scene->context;
+}

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// One check per number. The API prefixes "vplCameraDef.", the file reader "scene.json:3:14: camera.".
+#include "scene/scene.h"
+#include "math/matrix.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static const vplFault FINE = {NULL, -1, ""};
+
+static vplFault fault(const char* field, int index, const char* format, ...) VPL_PRINTF(3, 4);
+
+static vplFault fault(const char* field, int index, const char* format, ...)
+{
+    vplFault f = {field, index, ""};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(f.text, sizeof f.text, format, arguments);
+    va_end(arguments);
+    return f;
+}
+
+static vplFault checkComponents(const char* field, const float* v, float low, float high)
+{
+    for (int i = 0; i < 3; i++) {
+        if (!(v[i] >= low && v[i] <= high)) {
+            return fault(field, i, "is %g, must be in [%g, %g]", (double)v[i], (double)low, (double)high);
+        }
+    }
+    return FINE;
+}
+
+static vplFault checkPoint(const char* field, vplVec3 p)
+{
+    return checkComponents(field, &p.x, -VPL_MAX_MAGNITUDE, VPL_MAX_MAGNITUDE);
+}
+
+static vplFault checkDirection(const char* field, vplVec3 d)
+{
+    vplFault f = checkPoint(field, d);
+    if (f.field == NULL && vplDot(vplNormalize(d), vplNormalize(d)) == 0) {
+        return fault(field, -1, "is the zero vector, must have a direction");
+    }
+    return f;
+}
+
+vplFault vplCheckCamera(const vplCameraDef* def)
+{
+    vplFault f = checkPoint("eye", def->eye);
+    f = f.field ? f : checkPoint("target", def->target);
+    f = f.field ? f : checkDirection("up", def->up);
+    if (f.field) {
+        return f;
+    }
+    vplVec3 view = vplNormalize(vplSub(def->target, def->eye));
+    if (vplDot(view, view) == 0) {
+        return fault("target", -1, "equals the eye (%g, %g, %g), must differ from it", (double)def->eye.x,
+                     (double)def->eye.y, (double)def->eye.z);
+    }
+    vplVec3 right = vplCross(vplNormalize(def->up), view);
+    if (vplLength(right) < 1e-6f) {
+        return fault("up", -1, "is parallel to the view direction, must not be");
+    }
+    if (!(def->fovY > 0 && def->fovY < VPL_PI)) {
+        return fault("fovY", -1, "is %g, must be in (0, pi) radians", def->fovY);
+    }
+    if (!(def->near > 0 && def->near <= VPL_MAX_MAGNITUDE)) {
+        return fault("near", -1, "is %g, must be in (0, %g]", def->near, (double)VPL_MAX_MAGNITUDE);
+    }
+    if (!(def->far > def->near && def->far <= VPL_MAX_MAGNITUDE)) {
+        return fault("far", -1, "is %g, must be greater than near (%g) and at most %g", def->far, def->near,
+                     (double)VPL_MAX_MAGNITUDE);
+    }
+    return FINE;
+}
+
+vplFault vplCheckMaterial(const vplMaterialDef* def)
+{
+    vplFault f = checkComponents("diffuse", &def->diffuse.r, 0, 1);
+    return f.field ? f : checkComponents("emission", &def->emission.r, 0, VPL_MAX_MAGNITUDE);
+}
+
+vplFault vplCheckTransform(const vplMat4* m)
+{
+    for (int i = 0; i < 16; i++) {
+        if (!(fabsf(m->m[i]) <= VPL_MAX_MAGNITUDE)) {
+            return fault("transform", i, "is %g, must be in [%g, %g]", (double)m->m[i], -(double)VPL_MAX_MAGNITUDE,
+                         (double)VPL_MAX_MAGNITUDE);
+        }
+    }
+    if (m->m[3] != 0 || m->m[7] != 0 || m->m[11] != 0 || m->m[15] != 1) {
+        return fault("transform", -1, "has the last row (%g, %g, %g, %g), must be affine: (0, 0, 0, 1)",
+                     (double)m->m[3], (double)m->m[7], (double)m->m[11], (double)m->m[15]);
+    }
+    for (int j = 0; j < 3; j++) {
+        if (!(vplLength(vplVec(m->m[4 * j], m->m[4 * j + 1], m->m[4 * j + 2])) >= 1e-15f)) {
+            return fault("transform", -1, "scales the %c axis to nothing, must not be singular", 'x' + j);
+        }
+    }
+    vplAffine a = vplAffine_FromMat4(m);
+    if (!(vplAffine_Orthogonality(&a) >= 1e-10)) { // below, the inverse has no correct digit in float
+        return fault("transform", -1, "is singular: its axes lie in one plane");
+    }
+    return FINE;
+}
+
+vplFault vplCheckEmitter(const vplEmitterDef* def)
+{
+    vplFault f = checkPoint("position", def->position);
+    f = f.field ? f : checkComponents("intensity", &def->intensity.r, 0, VPL_MAX_MAGNITUDE);
+    if (f.field == NULL && def->type != VPL_EMITTER_POINT) {
+        f = checkDirection("direction", def->direction);
+    }
+    if (f.field == NULL && def->type == VPL_EMITTER_SPOT) {
+        if (!(def->outerAngle > 0 && def->outerAngle < VPL_PI / 2)) {
+            return fault("outerAngle", -1, "is %g, must be in (0, pi/2) radians", def->outerAngle);
+        }
+        if (!(def->innerAngle >= 0 && def->innerAngle <= def->outerAngle)) {
+            return fault("innerAngle", -1, "is %g, must be in [0, outer angle %g] radians", def->innerAngle,
+                         def->outerAngle);
+        }
+    }
+    return f;
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The light kernel: the one place where virtual lights become irradiance. Compiled once per instruction set;
+// all give the same bits, because + - * / and sqrtf round correctly everywhere.
+// Based on: Franchi and Ferrante, Virtual Point Lights (documented); Alexander Keller, Instant Radiosity,
+// SIGGRAPH 1997 (physical), with the geometry term bounded as r^2 -> max(r^2, c).
+#include "base/isa.h"
+#include "shading/shading.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+vplLightKernelFcn VPL_KERNEL(vplLightsDocumented), VPL_KERNEL(vplLightsPhysical);
+vplEmitterKernelFcn VPL_KERNEL(vplEmitterCosine);
+
+void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
+                                     int count, float inverseBound, float irradiance[restrict 3][VPL_LANES])
+{
+    (void)inverseBound;
+    const vplSurface s = *surface;
+    float r[VPL_LANES], g[VPL_LANES], b[VPL_LANES];
+    memcpy(r, irradiance[0], sizeof r);
+    memcpy(g, irradiance[1], sizeof g);
+    memcpy(b, irradiance[2], sizeof b);
+    for (int i = 0; i < count; i++) {
+        const vplShadeLight light = lights[i];
+        for (int l = 0; l < VPL_LANES; l++) {
+            float x = light.px - s.px[l], y = light.py - s.py[l], z = light.pz - s.pz[l];
+            float d2 = x * x + y * y + z * z;
+            float cosine = s.nx[l] * x + s.ny[l] * y + s.nz[l] * z; // times the distance
+            cosine = cosine > 0 ? cosine : 0;
+            d2 = d2 > FLT_MIN ? d2 : FLT_MIN; // 0/0 becomes 0
+            cosine = cosine / sqrtf(d2);
+            r[l] += light.r * cosine;
+            g[l] += light.g * cosine;
+            b[l] += light.b * cosine;
+        }
+    }
+    memcpy(irradiance[0], r, sizeof r);
+    memcpy(irradiance[1], g, sizeof g);
+    memcpy(irradiance[2], b, sizeof b);
+}
+
+void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vplShadeLight* restrict lights, int count,
+                                   float inverseBound, float irradiance[restrict 3][VPL_LANES])
+{
+    const vplSurface s = *surface;
+    float r[VPL_LANES], g[VPL_LANES], b[VPL_LANES];
+    memcpy(r, irradiance[0], sizeof r);
+    memcpy(g, irradiance[1], sizeof g);
+    memcpy(b, irradiance[2], sizeof b);
+    for (int i = 0; i < count; i++) {
+        const vplShadeLight light = lights[i];
+        for (int l = 0; l < VPL_LANES; l++) {
+            float x = light.px - s.px[l], y = light.py - s.py[l], z = light.pz - s.pz[l];
+            float d2 = x * x + y * y + z * z;
+            float here = s.nx[l] * x + s.ny[l] * y + s.nz[l] * z;             // d times the cosine here,
+            float there = -(light.nx * x + light.ny * y + light.nz * z);      // and at the light
+            here = here > 0 ? here : 0;
+            there = there > 0 ? there : 0;
+            d2 = d2 > FLT_MIN ? d2 : FLT_MIN;
+            float inverse = 1 / d2;
+            float bounded = inverse < inverseBound ? inverse : inverseBound;
+            // cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is 0, not infinity / infinity.
+            float geometry = (here * inverse) * (there * bounded);
+            r[l] += light.r * geometry;
+            g[l] += light.g * geometry;
+            b[l] += light.b * geometry;
+        }
+    }
+    memcpy(irradiance[0], r, sizeof r);
+    memcpy(irradiance[1], g, sizeof g);
+    memcpy(irradiance[2], b, sizeof b);
+}
+
+bool VPL_KERNEL(vplEmitterCosine)(const vplSurface* restrict surface, vplVec3 position, bool falloff,
+                                  float cosine[restrict VPL_LANES])
+{
+    float largest = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        float x = position.x - surface->px[l], y = position.y - surface->py[l], z = position.z - surface->pz[l];
+        float d2 = x * x + y * y + z * z;
+        float c = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z;
+        c = c > 0 ? c : 0;
+        d2 = d2 > FLT_MIN ? d2 : FLT_MIN;
+        c = c / sqrtf(d2);
+        cosine[l] = falloff ? c / d2 : c;
+        largest = cosine[l] > largest ? cosine[l] : largest;
+    }
+    return largest > 0;
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Sets up one render of one view and hands it to the pipeline that was asked for.
+#include "shading/shading.h"
+
+#include <math.h>
+
+static vplResult checkDef(const vplContext* context, const vplView* view, const vplShadeDef* def,
+                          const vplImage* image)
+{
+    if (image->width != view->width || image->height != view->height) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view", image->width,
+                       image->height, view->width, view->height);
+    }
+    if (!(def->minDistance >= 0 && isfinite(def->minDistance))) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.minDistance is %g, must be finite and >= 0",
+                       (double)def->minDistance);
+    }
+    if (def->accumulation == VPL_ACCUMULATE_BATCHED && def->batch < 1) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1", def->batch);
+    }
+    if (def->output == VPL_OUTPUT_SHADOW_FACTOR && def->emitterCount < 1) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter");
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult makeObjects(vplShading* s)
+{
+    const vplGeometry* g = s->geometry;
+    size_t count = (size_t)g->objectCount;
+    s->meshes = vplAlloc(g->context, count, sizeof *s->meshes);
+    s->objects = vplAlloc(g->context, count, sizeof *s->objects);
+    if (s->meshes == NULL || s->objects == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int i = 0; i < g->objectCount; i++) {
+        const vplGeometryObject* o = &g->objects[i];
+        s->meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+        s->objects[i] = (vplObjectUniforms){s, g->positions + o->firstVertex, i};
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
+                       vplProgressFcn* progress, void* user, vplImage* image, vplRasterStats* statsOut)
+{
+    vplContext* context = geometry->context;
+    vplResult result = checkDef(context, view, def, image);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplShading shading = {.geometry = geometry, .view = view, .def = def, .image = image};
+    shading.lightKernel = vplGetLightKernel(context->isa, def->lighting);
+    shading.emitterKernel = vplGetEmitterKernel(context->isa);
+    shading.inverseBound = def->minDistance > 0 ? 1 / (def->minDistance * def->minDistance) : INFINITY;
+    bool deferred = def->accumulation == VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(view->width, view->height);
+    framebuffer.planeCount = deferred ? VPL_PLANE_POSITION + 3 : VPL_PLANE_TRIANGLE + 1;
+    framebuffer.scratchBytes = sizeof(vplTileSums);
+    vplRaster* raster = NULL;
+    void* uniforms = NULL;
+    result = makeObjects(&shading);
+    if (result == VPL_SUCCESS) {
+        result = vplRaster_Create(context, &framebuffer, &raster);
+    }
+    if (result == VPL_SUCCESS) {
+        result = deferred ? vplRecordDeferred(&shading, raster) : vplRecordPasses(&shading, raster, &uniforms);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplRaster_Run(raster, progress, user, statsOut);
+    }
+    vplRaster_Destroy(raster);
+    vplFree(context, uniforms);
+    vplFree(context, shading.objects);
+    vplFree(context, shading.meshes);
+    return result;
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "visibility/shadow.h"
+#include "base/context.h"
+#include "base/isa.h"
+#include "math/sampling.h"
+
+#include <math.h>
+
+VPL_KERNEL_TABLE(BIAS, vplShadowBiasFcn, vplShadowBias);
+VPL_KERNEL_TABLE(FACTOR, vplShadowFactorFcn, vplShadowFactor);
+
+enum { SHADOW_COOKIE = 0x56504c51 };
+
+vplShadowDef vplDefaultShadowDef(void)
+{
+    return (vplShadowDef){VPL_BIAS_AUTO, -1, -1, 16, -1, SHADOW_COOKIE};
+}
+
+// The document asks for S random offsets without a distribution. Ours are uniform on the disc: the concentric
+// map of Hammersley points on one half, and their opposites, so that a straight edge through the centre
+// shadows exactly half of an even S; an odd S has one sample in the centre.
+static void makeOffsets(vplShadow* shadow)
+{
+    int pairs = shadow->def.pcfSamples / 2;
+    for (int i = 0; i < pairs; i++) {
+        float x, y;
+        vplSampleConcentricDisc(0.5f * (((float)i + 0.5f) / (float)pairs), vplVanDerCorput((uint32_t)i), &x, &y);
+        shadow->offsets[2 * i][0] = x;
+        shadow->offsets[2 * i][1] = y;
+        shadow->offsets[2 * i + 1][0] = -x;
+        shadow->offsets[2 * i + 1][1] = -y;
+    }
+    if (shadow->def.pcfSamples % 2) {
+        shadow->offsets[2 * pairs][0] = shadow->offsets[2 * pairs][1] = 0;
+    }
+}
+
+vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplShadow* shadowOut)
+{
+    vplContext* context = map->context;
+    if (def->cookie != SHADOW_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadowDef was not made by vplDefaultShadowDef");
+    }
+    if (def->pcfSamples < 1 || def->pcfSamples > VPL_MAX_PCF_SAMPLES) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadowDef.pcfSamples is %d, must be in [1, %d]",
+                       def->pcfSamples, VPL_MAX_PCF_SAMPLES);
+    }
+    if (!(isfinite(def->biasStatic) && isfinite(def->biasDynamic) && isfinite(def->pcfOffset))) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplShadowDef biases and pcfOffset are %g, %g, %g, must be finite", (double)def->biasStatic,
+                       (double)def->biasDynamic, (double)def->pcfOffset);
+    }
+    vplShadow shadow = {.map = map, .def = *def};
+    // Half a texel's diagonal at the middle of a face, where texels look largest, and 1/128 more for vertices
+    // that were snapped to 1/256 of a texel.
+    shadow.texelTangent = 1.41421356f / (float)map->size * (1 + 1.0f / 128);
+    if (shadow.def.pcfOffset < 0) {
+        shadow.def.pcfOffset = map->far / 128;
+    }
+    if (shadow.def.pcfSamples == 1) {
+        shadow.def.pcfOffset = 0;
+    }
+    if (shadow.def.biasStatic < 0) {
+        shadow.def.biasStatic = map->far * shadow.texelTangent + shadow.def.pcfOffset;
+    }
+    if (shadow.def.biasDynamic < 0) {
+        shadow.def.biasDynamic = 5.6f * shadow.def.biasStatic;
+    }
+    makeOffsets(&shadow);
+    *shadowOut = shadow;
+    return VPL_SUCCESS;
+}
+
+float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine)
+{
+    float distances[VPL_LANES], cosines[VPL_LANES], bias[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        distances[l] = distance;
+        cosines[l] = cosine;
+    }
+    BIAS[shadow->map->context->isa](shadow, distances, cosines, bias);
+    return bias[0];
+}
+
+void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
+{
+    FACTOR[shadow->map->context->isa](shadow, surface, factorOut);
+}
+
+float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal)
+{
+    vplSurface surface;
+    float factor[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        surface.px[l] = position.x;
+        surface.py[l] = position.y;
+        surface.pz[l] = position.z;
+        surface.nx[l] = normal.x;
+        surface.ny[l] = normal.y;
+        surface.nz[l] = normal.z;
+    }
+    vplShadow_FactorBlock(shadow, &surface, factor);
+    return factor[0];
+}
