@@ -78,3 +78,6 @@ deps:
 	@.ci/install-deps
 
 -include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)
+
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/libvpl.a
+	$(CC) $(ALL_CFLAGS) -o $@ $^ -lcmocka $(LDLIBS)

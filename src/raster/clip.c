@@ -9,6 +9,8 @@
 
 typedef struct Plane {
     double x, y, z, w; // inside when the dot product is >= 0
+    int axis;          // the coordinate it bounds, as `limit` times w
+    double limit;
 } Plane;
 
 static double distance(const Plane* p, const vplClipVertex* v)
@@ -25,6 +27,8 @@ static vplClipVertex cut(const Plane* plane, const vplClipVertex* inside, const 
     v.y = inside->y + t * (outside->y - inside->y);
     v.z = inside->z + t * (outside->z - inside->z);
     v.w = inside->w + t * (outside->w - inside->w);
+    // On the plane to the bit: with corners 1e15 apart the sums above would miss it by more than a picture.
+    *(plane->axis == 0 ? &v.x : plane->axis == 1 ? &v.y : &v.z) = plane->limit * v.w;
     for (int k = 0; k < varyings; k++) {
         v.varying[k] = (float)(inside->varying[k] + t * ((double)outside->varying[k] - inside->varying[k]));
     }
@@ -53,8 +57,8 @@ int vplClipTriangle(const vplRaster* raster, int planes, int varyingCount, const
 {
     // 32000 of 32768 pixels: the rest is room for rounding.
     double gx = 2 * 32000.0 / raster->framebuffer.width - 1, gy = 2 * 32000.0 / raster->framebuffer.height - 1;
-    const Plane all[6] = {{0, 0, 1, 0},  {0, 0, -1, 1}, {1, 0, 0, gx},
-                          {-1, 0, 0, gx}, {0, 1, 0, gy}, {0, -1, 0, gy}};
+    const Plane all[6] = {{0, 0, 1, 0, 2, 0},     {0, 0, -1, 1, 2, 1},   {1, 0, 0, gx, 0, -gx},
+                          {-1, 0, 0, gx, 0, gx},  {0, 1, 0, gy, 1, -gy}, {0, -1, 0, gy, 1, gy}};
     const int bits[6] = {VPL_OUT_NEAR, VPL_OUT_FAR, VPL_OUT_GUARD, VPL_OUT_GUARD, VPL_OUT_GUARD, VPL_OUT_GUARD};
     vplClipVertex buffers[2][VPL_MAX_CLIPPED];
     memcpy(buffers[0], in, 3 * sizeof *in);

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Runs all suites; `vpl-tests NAME` runs the tests whose names contain NAME. Ends with "N passed, N failed".
+#include "test.h"
+
+#include <stdlib.h>
+
+extern const Suite rasterSuite, rasterTruthSuite;
+
+int main(int count, char** words)
+{
+    const Suite* const suites[] = {&rasterSuite, &rasterTruthSuite};
+    size_t passed = 0, failed = 0;
+    char filter[128];
+    if (count > 1) {
+        snprintf(filter, sizeof filter, "*%s*", words[1]);
+        cmocka_set_test_filter(filter);
+    }
+    for (size_t i = 0; i < sizeof suites / sizeof *suites; i++) {
+        int bad = _cmocka_run_group_tests(suites[i]->name, suites[i]->tests, suites[i]->count, NULL, NULL);
+        size_t wrong = bad < 0 ? suites[i]->count : (size_t)bad;
+        failed += wrong;
+        passed += suites[i]->count - wrong;
+    }
+    printf("%zu passed, %zu failed\n", passed, failed);
+    return failed > 0;
+}

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include "test.h"
+
+#include "base/rng.h"
+
+#include <stdlib.h>
+
+static char lastMessage[1200];
+
+static void keepMessage(void* user, vplLogLevel level, const char* message)
+{
+    (void)user;
+    (void)level;
+    snprintf(lastMessage, sizeof lastMessage, "%s", message);
+}
+
+const char* takeMessage(void)
+{
+    static char taken[1200];
+    memcpy(taken, lastMessage, sizeof taken);
+    lastMessage[0] = 0;
+    return taken;
+}
+
+vplContext* openIsaContext(int workers, vplIsa isa)
+{
+    vplContextDef def = vplDefaultContextDef();
+    def.workerCount = workers;
+    def.isa = isa;
+    def.log = keepMessage;
+    vplContext* context = NULL;
+    return vplContext_Create(&def, &context) == VPL_SUCCESS ? context : NULL;
+}
+
+vplContext* openTestContext(int workers)
+{
+    vplContext* context = openIsaContext(workers, VPL_ISA_AUTO);
+    assert_non_null(context);
+    takeMessage();
+    return context;
+}
+
+void closeTestContext(vplContext* context)
+{
+    assert_int_equal(vplContext_GetBytes(context), 0);
+    vplContext_Destroy(context);
+}
+
+static char* readText(const char* name)
+{
+    char path[256];
+    snprintf(path, sizeof path, "tests/data/%s", name);
+    FILE* file = fopen(path, "rb");
+    if (file == NULL) {
+        fail_msg("%s: cannot open (tests run from the top of the checkout)", path);
+        return NULL;
+    }
+    fseek(file, 0, SEEK_END);
+    size_t size = (size_t)ftell(file);
+    rewind(file);
+    char* text = malloc(size + 1);
+    assert_int_equal(fread(text, 1, size, file), size);
+    text[size] = 0;
+    fclose(file);
+    return text;
+}
+
+// Splits one line at commas that are not inside quotes; cells point into the line.
+static int splitLine(char* line, char** cells, int most)
+{
+    int count = 0;
+    char* at = line;
+    for (;;) {
+        assert_true(count < most);
+        char* end = at;
+        if (*at == '"') {
+            cells[count++] = ++at;
+            end = strchr(at, '"');
+            *end++ = 0;
+        } else {
+            cells[count++] = at;
+            end = at + strcspn(at, ",");
+        }
+        if (*end != ',') {
+            *end = 0;
+            return count;
+        }
+        *end = 0;
+        at = end + 1;
+    }
+}
+
+Table loadTable(const char* name)
+{
+    Table t = {readText(name), NULL, NULL, 0, 0};
+    enum { MOST = 64 };
+    int capacity = 0;
+    for (char* line = t.text; line != NULL && *line;) {
+        char* next = strchr(line, '\n');
+        if (next != NULL) {
+            *next++ = 0;
+        }
+        if (*line != '#' && *line != 0) {
+            char* cells[MOST];
+            int count = splitLine(line, cells, MOST);
+            if (t.names == NULL) {
+                t.columns = count;
+                t.names = malloc((size_t)count * sizeof(char*));
+                memcpy(t.names, cells, (size_t)count * sizeof(char*));
+            } else {
+                assert_int_equal(count, t.columns);
+                if (t.rows == capacity) {
+                    capacity = capacity ? 2 * capacity : 64;
+                    t.cells = realloc(t.cells, (size_t)capacity * (size_t)t.columns * sizeof(char*));
+                }
+                memcpy(t.cells + (size_t)t.rows++ * (size_t)t.columns, cells, (size_t)count * sizeof(char*));
+            }
+        }
+        line = next;
+    }
+    assert_true(t.rows > 0);
+    return t;
+}
+
+void freeTable(Table* table)
+{
+    free(table->text);
+    free(table->cells);
+    free(table->names);
+}
+
+int columnOf(const Table* table, const char* name)
+{
+    for (int i = 0; i < table->columns; i++) {
+        if (strcmp(table->names[i], name) == 0) {
+            return i;
+        }
+    }
+    fail_msg("no column %s", name);
+    return 0;
+}
+
+const char* cell(const Table* table, int row, const char* name)
+{
+    return table->cells[row * table->columns + columnOf(table, name)];
+}
+
+bool isEmpty(const Table* table, int row, const char* name)
+{
+    return cell(table, row, name)[0] == 0;
+}
+
+double number(const Table* table, int row, const char* name)
+{
+    const char* text = cell(table, row, name);
+    char* end;
+    double value = strtod(text, &end);
+    const char* slash = strchr(text, '/');
+    if (slash != NULL) {
+        value /= strtod(slash + 1, &end); // "1/512"
+    }
+    if (end == text || *end != 0) {
+        fail_msg("row %d, %s: \"%s\" is no number", row, name, text);
+    }
+    return value;
+}
+
+vplVec3 vectorOf(const Table* table, int row, const char* prefix)
+{
+    float v[3];
+    for (int i = 0; i < 3; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "%s%c", prefix, 'x' + i);
+        v[i] = (float)number(table, row, name);
+    }
+    return (vplVec3){v[0], v[1], v[2]};
+}
+
+void assertNear(double value, double wanted, double tolerance, const char* what, int row)
+{
+    if (!(fabs(value - wanted) <= tolerance)) {
+        fail_msg("row %d, %s: %.9g, wanted %.9g within %.3g (off by %.3g)", row, what, value, wanted, tolerance,
+                 value - wanted);
+    }
+}
+
+double uniformAt(uint64_t seed, uint64_t index)
+{
+    return (double)vplRandomAt(seed, 77, index).v[0] * 0x1p-32;
+}
+
+vplScene* loadScene(vplContext* context, const char* name)
+{
+    char path[256];
+    snprintf(path, sizeof path, "tests/data/%s", name);
+    vplScene* scene = NULL;
+    if (vplScene_Load(context, path, &scene) != VPL_SUCCESS) {
+        fail_msg("%s: %s", path, takeMessage());
+    }
+    return scene;
+}

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: MIT
+// Properties of the rasterizer that hold for any triangles.
+#include "raster_support.h"
+
+#include "base/hash.h"
+
+#include <stdlib.h>
+
+// A random soup: clip-space triangles of many sizes, some crossing every clip plane.
+static ClipVertex* makeSoup(uint64_t seed, int triangles)
+{
+    ClipVertex* v = malloc(3 * (size_t)triangles * sizeof *v);
+    for (int i = 0; i < triangles; i++) {
+        double centre[3], size = pow(10, -3 + 3.5 * uniformAt(seed, (uint64_t)i * 64));
+        for (int k = 0; k < 3; k++) {
+            centre[k] = 2.4 * uniformAt(seed, (uint64_t)i * 64 + 1 + (uint64_t)k) - 1.2;
+        }
+        for (int j = 0; j < 3; j++) {
+            uint64_t at = (uint64_t)i * 64 + 8 + 8 * (uint64_t)j;
+            double w = 0.2 + 2 * uniformAt(seed, at);
+            if (uniformAt(seed, at + 1) < 0.05) {
+                w = -w; // behind the eye
+            }
+            v[3 * i + j] = (ClipVertex){(float)(w * (centre[0] + size * (uniformAt(seed, at + 2) - 0.5))),
+                                        (float)(w * (centre[1] + size * (uniformAt(seed, at + 3) - 0.5))),
+                                        (float)(w * (0.5 + 0.5 * centre[2] + 0.5 * size * (uniformAt(seed, at + 4) - 0.5))),
+                                        (float)w,
+                                        {(float)uniformAt(seed, at + 5), (float)j, 1}};
+        }
+    }
+    return v;
+}
+
+static uint64_t hashCanvas(const Canvas* c)
+{
+    size_t count = (size_t)c->framebuffer.width * (size_t)c->framebuffer.height;
+    uint64_t hash = vplHashFloats(0, c->depth, count);
+    for (int k = 0; k < SHOWN_PLANES; k++) {
+        hash = vplHashFloats(hash, c->planes[k], count);
+    }
+    return hash;
+}
+
+static void EqualTouchesExactlyWhatLessLeft(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    for (uint64_t seed = 0; seed < 100; seed++) {
+        ClipVertex* v = makeSoup(seed, 120);
+        uint32_t indices[360];
+        for (uint32_t i = 0; i < 360; i++) {
+            indices[i] = i;
+        }
+        vplMesh mesh = {indices, 360, 120};
+        Canvas c = makeCanvas(90, 70, 0);
+        c.framebuffer.planes[0].clear = -1;
+        vplPipeline less = showPipeline(v), equal = showPipeline(v);
+        less.planeMask = 2; // the owner into plane 1
+        equal.depthCompare = VPL_DEPTH_EQUAL;
+        equal.depthWrite = false;
+        equal.blend = VPL_BLEND_ADD;
+        equal.planeMask = 1; // one per pass into plane 0, from -1
+        vplRaster* raster;
+        assert_int_equal(vplRaster_Create(context, &c.framebuffer, &raster), VPL_SUCCESS);
+        assert_int_equal(vplRaster_Draw(raster, &mesh, &less), VPL_SUCCESS);
+        for (int pass = 0; pass < 3; pass++) {
+            equal.ownerTest = pass == 2; // with and without
+            assert_int_equal(vplRaster_Draw(raster, &mesh, &equal), VPL_SUCCESS);
+        }
+        assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);
+        for (int i = 0; i < 90 * 70; i++) {
+            float wanted = c.depth[i] < 1 ? 2 : -1;
+            if (c.planes[0][i] != wanted) {
+                fail_msg("seed %d, pixel (%d, %d): EQUAL passes left %g, wanted %g", (int)seed, i % 90, i / 90,
+                         (double)c.planes[0][i], (double)wanted);
+            }
+        }
+        vplRaster_Destroy(raster);
+        freeCanvas(&c);
+        free(v);
+    }
+    closeTestContext(context);
+}
+
+// A grid of jittered vertices fills a rectangle: every centre inside is covered by one triangle, whatever the
+// jitter, the diagonals and the windings.
+static void SharedEdgeIsCoveredOnce(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    enum { N = 9 };
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        ClipVertex v[N * N];
+        uint32_t indices[6 * (N - 1) * (N - 1)];
+        int count = 0;
+        for (int i = 0; i < N * N; i++) {
+            int x = i % N, y = i / N;
+            bool inner = x > 0 && y > 0 && x < N - 1 && y < N - 1;
+            double jx = inner ? uniformAt(seed, (uint64_t)i * 4) - 0.5 : 0;
+            double jy = inner ? uniformAt(seed, (uint64_t)i * 4 + 1) - 0.5 : 0;
+            int step = seed % 2 ? 8 * 256 : 8 * 256 + 37; // on pixel centres or off
+            v[i] = fixedVertex(128 + (int)(step * (x + 0.45 * jx)), 128 + (int)(step * (y + 0.45 * jy)), 0.5f, 80, 80);
+        }
+        for (int i = 0; i < (N - 1) * (N - 1); i++) {
+            uint32_t a = (uint32_t)(i / (N - 1) * N + i % (N - 1)), b = a + 1, c = a + N, d = c + 1;
+            bool flip = uniformAt(seed, 1000 + (uint64_t)i) < 0.5;
+            const uint32_t tris[2][6] = {{a, b, c, b, d, c}, {a, d, c, a, d, b}};
+            memcpy(indices + 6 * i, tris[flip], sizeof tris[0]);
+            count += 2;
+        }
+        Canvas c = makeCanvas(80, 80, 0);
+        vplPipeline p = showPipeline(v);
+        p.blend = VPL_BLEND_ADD;
+        p.depthCompare = VPL_DEPTH_ALWAYS;
+        drawList(context, &c, &p, indices, N * N, count);
+        int side = seed % 2 ? 64 : 66; // the centres in the rectangle; right and bottom edges do not own theirs
+        for (int i = 0; i < 80 * 80; i++) {
+            bool inside = i % 80 < side && i / 80 < side;
+            assertNear((double)c.planes[0][i], inside, 0, "times drawn", i);
+        }
+        freeCanvas(&c);
+    }
+    closeTestContext(context);
+}
+
+static uint64_t soupHash(vplContext* context, uint64_t seed)
+{
+    enum { TRIANGLES = 3000 };
+    ClipVertex* v = makeSoup(seed, TRIANGLES);
+    Canvas c = makeCanvas(217, 131, 0);
+    vplPipeline p = showPipeline(v);
+    vplRasterStats stats = drawList(context, &c, &p, NULL, 3 * TRIANGLES, TRIANGLES);
+    uint64_t hash = hashCanvas(&c) ^ (uint64_t)stats.fragments;
+    freeCanvas(&c);
+    free(v);
+    return hash;
+}
+
+static void BitsDoNotDependOnThreadsOrInstructionSet(void** state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 3; seed++) {
+        uint64_t wanted = 0;
+        const int workers[] = {1, 2, 3, 7};
+        for (int i = 0; i < 4; i++) {
+            vplContext* context = openTestContext(workers[i]);
+            uint64_t hash = soupHash(context, seed);
+            wanted = i == 0 ? hash : wanted;
+            assert_true(hash == wanted);
+            closeTestContext(context);
+        }
+        for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+            vplContext* context = openIsaContext(2, (vplIsa)isa);
+            if (context != NULL) {
+                assert_true(soupHash(context, seed) == wanted);
+                closeTestContext(context);
+            }
+        }
+    }
+}
+
+// Pinned bits: compiler, optimisation level and architecture may not change them either.
+static void BitsOfASoupArePinned(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    uint64_t hash = soupHash(context, 1);
+    if (hash != 0x8b1df3ca2a5812fd) {
+        fail_msg("hash %016llx", (unsigned long long)hash);
+    }
+    closeTestContext(context);
+}
+
+static void CullingKeepsOneSide(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    ClipVertex v[6] = {fixedVertex(0, 0, 0.5f, 16, 16),       fixedVertex(0, 4096, 0.5f, 16, 16),
+                       fixedVertex(2048, 0, 0.5f, 16, 16), // counter-clockwise as seen
+                       fixedVertex(4096, 4096, 0.5f, 16, 16), fixedVertex(2048, 4096, 0.5f, 16, 16),
+                       fixedVertex(4096, 0, 0.5f, 16, 16)}; // clockwise as seen
+    int64_t fragments[3];
+    for (int cull = 0; cull < 3; cull++) {
+        Canvas c = makeCanvas(16, 16, 0);
+        vplPipeline p = showPipeline(v);
+        p.cull = (vplCull)cull;
+        fragments[cull] = drawList(context, &c, &p, NULL, 6, 2).fragments;
+        bool left = c.planes[0][16] == 1, right = c.planes[0][14 * 16 + 14] == 1;
+        assert_int_equal(left, cull != VPL_CULL_FRONT);
+        assert_int_equal(right, cull != VPL_CULL_BACK);
+        freeCanvas(&c);
+    }
+    assert_true(fragments[0] == fragments[1] + fragments[2]);
+    closeTestContext(context);
+}
+
+// Two overlapping rectangles in each compare mode, with depth writes on and off.
+static void DepthComparesAndWritesAsAsked(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const float depths[3] = {0.5f, 0.25f, 0.75f}; // equal, nearer, farther than 0.5
+    const bool passes[4][3] = {{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, 1, 1}};
+    for (int compare = 0; compare < 4; compare++) {
+        for (int i = 0; i < 3; i++) {
+            for (int write = 0; write < 2; write++) {
+                ClipVertex v[3] = {fixedVertex(-9000, -9000, depths[i], 8, 8), fixedVertex(9000, 0, depths[i], 8, 8),
+                                   fixedVertex(0, 9000, depths[i], 8, 8)};
+                Canvas c = makeCanvas(8, 8, 0);
+                c.framebuffer.depth.load = true;
+                for (int k = 0; k < 64; k++) {
+                    c.depth[k] = 0.5f;
+                }
+                vplPipeline p = showPipeline(v);
+                p.depthCompare = (vplDepthCompare)compare;
+                p.depthWrite = write;
+                drawList(context, &c, &p, NULL, 3, 1);
+                assert_int_equal(c.planes[0][9] == 1, passes[compare][i]);
+                assertNear((double)c.depth[9], passes[compare][i] && write ? (double)depths[i] : 0.5, 0, "depth", i);
+                freeCanvas(&c);
+            }
+        }
+    }
+    closeTestContext(context);
+}
+
+static void LoadKeepsAndClearReplacesWhatWasThere(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    ClipVertex v[3] = {fixedVertex(0, 0, 0.5f, 70, 66), fixedVertex(2560, 0, 0.5f, 70, 66),
+                       fixedVertex(0, 2560, 0.5f, 70, 66)};
+    for (int load = 0; load < 2; load++) {
+        Canvas c = makeCanvas(70, 66, 3);
+        c.framebuffer.planes[0].load = load;
+        for (int i = 0; i < 70 * 66; i++) {
+            c.planes[0][i] = (float)i;
+        }
+        vplPipeline p = showPipeline(v);
+        p.blend = VPL_BLEND_ADD;
+        drawList(context, &c, &p, NULL, 3, 1);
+        assertNear((double)c.planes[0][0], load ? 1 : 4, 0, "inside", load);
+        int last = 70 * 66 - 1;
+        assertNear((double)c.planes[0][last], load ? last : 3, 0, "outside", load);
+        freeCanvas(&c);
+    }
+    closeTestContext(context);
+}
+
+// X076, X073, X079: what cannot be drawn is dropped and disturbs nothing.
+static void BadTrianglesDrawNothing(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const float bad[] = {NAN, INFINITY, -INFINITY};
+    for (int component = 0; component < 4; component++) {
+        for (int kind = 0; kind < 3; kind++) {
+            ClipVertex v[3] = {{0, 0, 0.5f, 1, {0}}, {1, 0, 0.5f, 1, {0}}, {0, 1, 0.5f, 1, {0}}};
+            (&v[1].x)[component] = bad[kind];
+            Canvas c = makeCanvas(8, 8, 0);
+            vplPipeline p = showPipeline(v);
+            assert_int_equal(drawList(context, &c, &p, NULL, 3, 1).fragments, 0);
+            freeCanvas(&c);
+        }
+    }
+    const ClipVertex dull[4][3] = {
+        {{0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}, {0.5f, 0.5f, 0.5f, 1, {0}}},    // a line
+        {{0, 0, 0.5f, 1, {0}}, {0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}},          // a repeated vertex
+        {{0, 0, -1, -1, {0}}, {1, 0, -1, -1, {0}}, {0, 1, -1, -1, {0}}},             // all behind
+        {{0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}},                   // w = 0
+    };
+    for (int i = 0; i < 4; i++) {
+        Canvas c = makeCanvas(8, 8, 0);
+        vplPipeline p = showPipeline(dull[i]);
+        assert_int_equal(drawList(context, &c, &p, NULL, 3, 1).fragments, 0);
+        freeCanvas(&c);
+    }
+    closeTestContext(context);
+}
+
+// Huge but finite coordinates are clipped to the guard band, not wrapped.
+static void HugeTrianglesCoverThePicture(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const float sizes[] = {10, 1e4f, 1e10f, 1e30f};
+    for (int i = 0; i < 4; i++) {
+        float s = sizes[i];
+        ClipVertex v[3] = {{-3 * s, -s, 0.5f, 1, {1, 0, 0}}, {3 * s, -s, 0.5f, 1, {1, 0, 0}}, {0, 3 * s, 0.5f, 1, {1, 0, 0}}};
+        Canvas c = makeCanvas(33, 17, 0);
+        vplPipeline p = showPipeline(v);
+        assert_int_equal(drawList(context, &c, &p, NULL, 3, 1).fragments, 33 * 17);
+        assertNear((double)c.planes[2][100], 1, 0, "constant varying", i);
+        freeCanvas(&c);
+    }
+    closeTestContext(context);
+}
+
+static void WrongArgumentsAreRefusedWithASentence(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplRaster* raster = NULL;
+    vplFramebuffer f = vplDefaultFramebuffer(0, 5);
+    assert_int_equal(vplRaster_Create(context, &f, &raster), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "0x5"));
+    f = vplDefaultFramebuffer(4, 5);
+    f.planeCount = 99;
+    assert_int_equal(vplRaster_Create(context, &f, &raster), VPL_INVALID_ARGUMENT);
+    f = (vplFramebuffer){0};
+    assert_int_equal(vplRaster_Create(context, &f, &raster), VPL_INVALID_ARGUMENT);
+    assert_null(raster);
+    f = vplDefaultFramebuffer(4, 5);
+    assert_int_equal(vplRaster_Create(context, &f, &raster), VPL_SUCCESS);
+    vplMesh mesh = {NULL, 0, 0};
+    vplPipeline p = vplDefaultPipeline();
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
+    p.vertex = passVertices;
+    p.varyingCount = 9;
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
+    p.varyingCount = 0;
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_SUCCESS); // empty is fine
+    assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);
+    vplRaster_Destroy(raster);
+    closeTestContext(context);
+}
+
+static bool stopAtOnce(void* user, double fraction)
+{
+    ++*(int*)user;
+    return fraction < 0;
+}
+
+static void ProgressCanCancel(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplFramebuffer f = vplDefaultFramebuffer(640, 640);
+    vplRaster* raster;
+    int asked = 0;
+    assert_int_equal(vplRaster_Create(context, &f, &raster), VPL_SUCCESS);
+    assert_int_equal(vplRaster_Run(raster, stopAtOnce, &asked, NULL), VPL_CANCELLED);
+    assert_int_equal(asked, 1);
+    vplRaster_Destroy(raster);
+    closeTestContext(context);
+}
+
+TEST_SUITE(raster, cmocka_unit_test(EqualTouchesExactlyWhatLessLeft), cmocka_unit_test(SharedEdgeIsCoveredOnce),
+           cmocka_unit_test(BitsDoNotDependOnThreadsOrInstructionSet), cmocka_unit_test(BitsOfASoupArePinned),
+           cmocka_unit_test(CullingKeepsOneSide), cmocka_unit_test(DepthComparesAndWritesAsAsked),
+           cmocka_unit_test(LoadKeepsAndClearReplacesWhatWasThere), cmocka_unit_test(BadTrianglesDrawNothing),
+           cmocka_unit_test(HugeTrianglesCoverThePicture), cmocka_unit_test(WrongArgumentsAreRefusedWithASentence),
+           cmocka_unit_test(ProgressCanCancel));
