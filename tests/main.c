@@ -4,11 +4,20 @@
 
 #include <stdlib.h>
 
-extern const Suite rasterSuite, rasterTruthSuite;
+// One line per test file.
+#define ALL_SUITES(X)                                                                                              \
+    X(geometry)                                                                                                    \
+    X(lights)                                                                                                      \
+    X(raster)                                                                                                      \
+    X(rasterTruth)
+
+#define DECLARE(name) extern const Suite name##Suite;
+#define LIST(name)    &name##Suite,
+ALL_SUITES(DECLARE)
 
 int main(int count, char** words)
 {
-    const Suite* const suites[] = {&rasterSuite, &rasterTruthSuite};
+    static const Suite* const suites[] = {ALL_SUITES(LIST)};
     size_t passed = 0, failed = 0;
     char filter[128];
     if (count > 1) {

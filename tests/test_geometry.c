@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+// Rays against quads and boxes: tables of exact answers, then properties. Covers extremes X001 to X031.
+#include "scenes.h"
+
+#include "math/vec.h"
+
+static const double UNIT = 0x1p-24; // rounding unit of float
+static const double C = 1.5;        // what a plain float implementation needs
+
+static void checkHit(const Table* t, int row, const vplHit* hit, double wantedT)
+{
+    double ampT = number(t, row, "amp_t"), ampP = number(t, row, "amp_p");
+    assertNear((double)hit->t, wantedT, C * UNIT * ampT + 1e-45, "t", row);
+    vplVec3 p = vectorOf(t, row, "w");
+    // Positions go back through the model matrix, whose largest element scales the local error.
+    double size = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            char name[4] = {'m', (char)('0' + i), (char)('0' + j), 0};
+            size = fmax(size, fabs(number(t, row, name)));
+        }
+    }
+    double tolerance = 4 * UNIT * size * (1 + C * ampP);
+    assertNear((double)hit->position.x, (double)p.x, tolerance, "px", row);
+    assertNear((double)hit->position.y, (double)p.y, tolerance, "py", row);
+    assertNear((double)hit->position.z, (double)p.z, tolerance, "pz", row);
+}
+
+static void checkNormal(const Table* t, int row, const vplHit* hit)
+{
+    vplVec3 n = vectorOf(t, row, "n");
+    assertNear((double)vplLength(vplSub(hit->normal, n)), 0, 3e-7, "normal", row);
+}
+
+static void EveryRayQuadVerdictOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("ray_quad.csv");
+    int flipped = 0, singular = 0, hits = 0;
+    for (int row = 0; row < t.rows; row++) {
+        const char* status = cell(&t, row, "status");
+        vplMat4 m = matrixOf(&t, row);
+        vplPlacement placement;
+        vplResult made = vplPlacement_Create(context, &m, &placement);
+        if (strcmp(status, "singular") == 0) {
+            assert_int_equal(made, VPL_INVALID_ARGUMENT);
+            singular++;
+            continue;
+        }
+        assert_int_equal(made, VPL_SUCCESS);
+        vplRay ray = {vectorOf(&t, row, "o"), vectorOf(&t, row, "d")};
+        vplHit hit;
+        bool found = vplRay_HitQuad(&ray, &placement, &hit);
+        bool wanted = strcmp(status, "hit") == 0;
+        // t_overflows_float: a hit in real numbers, out of float's range: a stated miss (X017).
+        wanted = wanted && strcmp(cell(&t, row, "cat"), "t_overflows_float") != 0;
+        if (found != wanted) {
+            bool exact = number(&t, row, "exactarith") == 1;
+            double amp = fmax(isEmpty(&t, row, "amp_p") ? 0 : number(&t, row, "amp_p"), number(&t, row, "amp_t"));
+            if (exact || number(&t, row, "margin") >= C * UNIT * amp) {
+                fail_msg("row %d (%s, %s): %s, wanted %s", row, cell(&t, row, "cat"), cell(&t, row, "xform"),
+                         found ? "hit" : "miss", status);
+            }
+            flipped++;
+        } else if (found) {
+            checkHit(&t, row, &hit, number(&t, row, "t"));
+            checkNormal(&t, row, &hit);
+            hits++;
+        }
+    }
+    assert_true(hits > 150 && singular >= 3 && flipped <= 2);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static void EveryRayBoxVerdictOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("ray_box.csv");
+    int flipped = 0, hits = 0;
+    for (int row = 0; row < t.rows; row++) {
+        const char* status = cell(&t, row, "status");
+        vplMat4 m = matrixOf(&t, row);
+        vplPlacement placement;
+        vplResult made = vplPlacement_Create(context, &m, &placement);
+        if (strcmp(status, "singular") == 0) {
+            assert_int_equal(made, VPL_INVALID_ARGUMENT);
+            continue;
+        }
+        assert_int_equal(made, VPL_SUCCESS);
+        vplRay ray = {vectorOf(&t, row, "o"), vectorOf(&t, row, "d")};
+        vplHit hit;
+        bool found = vplRay_HitBox(&ray, &placement, VPL_FACE_NONE, &hit);
+        bool wanted = !isEmpty(&t, row, "t_strict");
+        if (found != wanted) {
+            bool exact = number(&t, row, "exactarith") == 1;
+            double amp = fmax(number(&t, row, "amp_p"), number(&t, row, "amp_t"));
+            if (exact || number(&t, row, "margin") >= C * UNIT * amp) {
+                fail_msg("row %d (%s, %s): %s, wanted %s", row, cell(&t, row, "cat"), cell(&t, row, "xform"),
+                         found ? "hit" : "miss", status);
+            }
+            flipped++;
+        } else if (found) {
+            int mask = (int)number(&t, row, "face_mask");
+            if ((mask >> hit.face & 1) == 0 && number(&t, row, "margin") >= C * UNIT * number(&t, row, "amp_p")) {
+                fail_msg("row %d: face %d, wanted one of mask %d", row, hit.face, mask);
+            }
+            checkHit(&t, row, &hit, number(&t, row, "t_strict"));
+            if (hit.face == (int)number(&t, row, "face")) {
+                checkNormal(&t, row, &hit);
+            }
+            hits++;
+        }
+    }
+    assert_true(hits > 150 && flipped <= 2);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static void EveryRayOfTheRoomMeetsTheObjectOfTheTable(void** state)
+{
+    (void)state;
+    static const char* const faces[6] = {"x+", "x-", "y+", "y-", "z+", "z-"};
+    vplContext* context = openTestContext(1);
+    vplGeometry* room = tableRoom(context);
+    Table objects = loadTable("room_objects.csv"), t = loadTable("room_rays.csv");
+    for (int row = 0; row < t.rows; row++) {
+        vplRay ray = {vectorOf(&t, row, "o"), vectorOf(&t, row, "d")};
+        vplHit hit;
+        const char* wanted = cell(&t, row, "object");
+        if (!vplGeometry_ClosestHit(room, &ray, (vplRayStart){-1, VPL_FACE_NONE}, &hit)) {
+            assert_string_equal("none", wanted);
+            continue;
+        }
+        assert_string_equal(cell(&objects, hit.object, "name"), wanted);
+        assert_string_equal(faces[hit.face], cell(&t, row, "face"));
+        assertNear((double)hit.t, number(&t, row, "t"), 3.2e-6 / (double)vplLength(ray.direction), "t", row);
+        vplVec3 p = vectorOf(&t, row, "p"), n = vectorOf(&t, row, "n");
+        assertNear((double)vplLength(vplSub(hit.position, p)), 0, 3.2e-6, "position", row);
+        assertNear((double)vplLength(vplSub(hit.normal, n)), 0, 2e-7, "normal", row);
+    }
+    freeTable(&t);
+    freeTable(&objects);
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// X003, X004: no scale is too small or too large for the inverse.
+static void AnyUniformScaleGivesTheSameHit(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const float scales[] = {1, 1e-13f, 1e-6f, 1e6f, 1e12f};
+    double wanted = 0;
+    for (int i = 0; i < 5; i++) {
+        float s = scales[i];
+        vplMat4 m = vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){0.3, 0.2, 0.1}, (vplVec3){s, s, s});
+        vplPlacement placement;
+        assert_int_equal(vplPlacement_Create(context, &m, &placement), VPL_SUCCESS);
+        vplRay ray = {{0.1f * s, 0.2f * s, 3 * s}, {0, 0, -s}};
+        vplHit hit;
+        assert_true(vplRay_HitBox(&ray, &placement, VPL_FACE_NONE, &hit));
+        wanted = i == 0 ? (double)hit.t : wanted;
+        assertNear((double)hit.t, wanted, 1e-6, "t", i);
+        assertNear((double)vplLength(hit.normal), 1, 2e-7, "|n|", i);
+    }
+    closeTestContext(context);
+}
+
+// X008, X001: what has no inverse is refused where it is made.
+static void SingularAndNonFiniteMatricesAreRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplPlacement placement;
+    const float bad[] = {NAN, INFINITY, 1e30f};
+    for (int i = 0; i < 3; i++) {
+        for (int element = 0; element < 16; element++) {
+            vplMat4 m = vplMat4_Identity();
+            m.m[element] = bad[i];
+            assert_int_equal(vplPlacement_Create(context, &m, &placement), VPL_INVALID_ARGUMENT);
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        vplMat4 m = vplMat4_Identity();
+        m.m[5 * axis] = 0;
+        assert_int_equal(vplPlacement_Create(context, &m, &placement), VPL_INVALID_ARGUMENT);
+    }
+    closeTestContext(context);
+}
+
+// X029: floor and box bottom lie in one plane; the lower index is reported, from both sides.
+static void AmongEqualDistancesTheLowestObjectWins(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene;
+    vplGeometry* geometry;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    vplScene_AddMaterial(scene, &material, NULL);
+    vplObjectDef object = vplDefaultObjectDef();
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+    }
+    assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);
+    vplRay ray = {{0.1f, 0.2f, 2}, {0, 0, -1}};
+    vplHit hit;
+    assert_true(vplGeometry_ClosestHit(geometry, &ray, (vplRayStart){-1, VPL_FACE_NONE}, &hit));
+    assert_int_equal(hit.object, 0);
+    assert_true(vplGeometry_ClosestHit(geometry, &ray, (vplRayStart){0, VPL_FACE_QUAD}, &hit));
+    assert_int_equal(hit.object, 1);
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// X022, X031: a particle that bounces inside a box meets its other faces, and one that leaves never comes back.
+static void ABoxIsLeftOrCrossedFromItsOwnFace(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    for (uint64_t i = 0; i < 2000; i++) {
+        vplMat4 m = vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){uniformAt(i, 0), uniformAt(i, 1), uniformAt(i, 2)},
+                                      (vplVec3){2, 0.5f, 1});
+        vplPlacement placement;
+        assert_int_equal(vplPlacement_Create(context, &m, &placement), VPL_SUCCESS);
+        vplVec3 d = {(float)uniformAt(i, 3) - 0.5f, (float)uniformAt(i, 4) - 0.5f, (float)uniformAt(i, 5) - 0.5f};
+        vplRay ray = {{1, 2, 3}, d};
+        vplHit out, next;
+        assert_true(vplRay_HitBox(&ray, &placement, VPL_FACE_NONE, &out)); // from the middle
+        assert_true(vplDot(out.normal, d) > 0);
+        ray.origin = out.position;
+        assert_false(vplRay_HitBox(&ray, &placement, out.face, &next)); // onwards: outside
+        ray.direction = vplNegate(d);
+        assert_true(vplRay_HitBox(&ray, &placement, out.face, &next)); // back: across
+        assert_int_not_equal(next.face, out.face);
+        assertNear((double)next.t, 2 * (double)out.t, 1e-5 * (double)out.t + 1e-5, "t", (int)i);
+    }
+    closeTestContext(context);
+}
+
+static void MeanReflectanceIsThatOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* room = tableRoom(context);
+    Table t = loadTable("room_mean_reflectivity.csv"), objects = loadTable("room_objects.csv");
+    assert_string_equal(cell(&t, 0, "definition"), "area_weighted");
+    assertNear(vplGeometry_MeanReflectance(room), number(&t, 0, "scalar_mean_of_rgb"), 1e-7, "mean", 0);
+    double area = 0;
+    for (int row = 0; row < objects.rows; row++) {
+        area += number(&objects, row, "area");
+    }
+    assertNear(vplGeometry_Area(room), area, 1e-5 * area, "area", 0);
+    freeTable(&objects);
+    freeTable(&t);
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// Triangles and ray tests describe the same surfaces: corners lie on the boxes, normals agree with winding,
+// also under mirroring matrices (X005).
+static void TrianglesWindTowardsTheirNormals(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    for (int mirror = 0; mirror < 8; mirror++) {
+        vplScene* scene;
+        vplGeometry* g;
+        assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+        vplMaterialDef material = vplDefaultMaterialDef();
+        vplScene_AddMaterial(scene, &material, NULL);
+        for (int type = 0; type < 2; type++) {
+            vplObjectDef object = vplDefaultObjectDef();
+            object.type = (vplObjectType)type;
+            object.transform = vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){0.5, 1, 2},
+                                                 (vplVec3){mirror & 1 ? -2 : 2, mirror & 2 ? -1 : 1, mirror & 4 ? -3 : 3});
+            assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+        }
+        assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+        assert_int_equal(g->triangleCount, 14);
+        for (int i = 0; i < g->triangleCount; i++) {
+            const vplVec3* p = g->positions + g->objects[g->owners[i]].firstVertex;
+            const uint32_t* index = g->indices + 3 * i;
+            vplVec3 cross = vplCross(vplSub(p[index[1]], p[index[0]]), vplSub(p[index[2]], p[index[0]]));
+            assertNear((double)vplDot(vplNormalize(cross), g->normals[i]), 1, 1e-6, "winding", i);
+        }
+        vplGeometry_Destroy(g);
+        vplScene_Destroy(scene);
+    }
+    closeTestContext(context);
+}
+
+TEST_SUITE(geometry, cmocka_unit_test(EveryRayQuadVerdictOfTheTable), cmocka_unit_test(EveryRayBoxVerdictOfTheTable),
+           cmocka_unit_test(EveryRayOfTheRoomMeetsTheObjectOfTheTable),
+           cmocka_unit_test(AnyUniformScaleGivesTheSameHit), cmocka_unit_test(SingularAndNonFiniteMatricesAreRefused),
+           cmocka_unit_test(AmongEqualDistancesTheLowestObjectWins),
+           cmocka_unit_test(ABoxIsLeftOrCrossedFromItsOwnFace), cmocka_unit_test(MeanReflectanceIsThatOfTheTable),
+           cmocka_unit_test(TrianglesWindTowardsTheirNormals));

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+// Particle counts and the particle simulation. Covers extremes X029 to X048.
+#include "scenes.h"
+
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+static void EveryCountOfTheTableIsTheDecimalOne(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("counts.csv");
+    static int counts[VPL_MAX_STEPS];
+    for (int row = 0; row < t.rows; row++) {
+        int n = (int)number(&t, row, "N"), k = (int)number(&t, row, "k"), steps;
+        int64_t total;
+        if (vplCountParticles(context, n, number(&t, row, "rho"), counts, VPL_MAX_STEPS, &steps, &total) !=
+            VPL_SUCCESS) {
+            fail_msg("row %d: %s", row, takeMessage());
+        }
+        int count = k < steps ? counts[k] : 0;
+        if (count != (int)number(&t, row, "dec")) {
+            fail_msg("row %d: floor(%s^%d %d) is %d, wanted %s", row, cell(&t, row, "rho"), k, n, count,
+                     cell(&t, row, "dec"));
+        }
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static void EveryTotalOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("counts_totals.csv");
+    for (int row = 0; row < t.rows; row++) {
+        int n = (int)number(&t, row, "N"), steps;
+        int64_t total;
+        vplResult result = vplCountParticles(context, n, number(&t, row, "rho"), NULL, 0, &steps, &total);
+        if (number(&t, row, "total_sum_k>=0") > VPL_MAX_LIGHTS) {
+            assert_int_equal(result, VPL_LIMIT);
+            continue;
+        }
+        assert_int_equal(result, VPL_SUCCESS);
+        assert_int_equal(steps, (int)number(&t, row, "steps"));
+        assert_int_equal(total, (int64_t)number(&t, row, "total_sum_k>=0"));
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// X036, X037: exact below the stated limits, refused beyond, never endless.
+static void ExtremeTotalsAreExactOrRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("counts_extreme.csv");
+    int exact = 0;
+    for (int row = 0; row < t.rows; row++) {
+        double wanted = number(&t, row, "total"), steps = number(&t, row, "steps");
+        int made;
+        int64_t total;
+        vplResult result =
+            vplCountParticles(context, (int)number(&t, row, "N"), number(&t, row, "rho"), NULL, 0, &made, &total);
+        if (wanted > VPL_MAX_LIGHTS || steps > VPL_MAX_STEPS) {
+            assert_int_equal(result, VPL_LIMIT);
+        } else {
+            assert_int_equal(result, VPL_SUCCESS);
+            assert_true((double)total == wanted && made == (int)steps);
+            exact++;
+        }
+    }
+    assert_true(exact >= 10);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// X036, X038 to X040: each row of counts_invalid.csv, as its third column asks.
+static void InvalidCountsAreRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const struct {
+        double rho;
+        int n;
+        vplResult result;
+        int steps, total;
+    } cases[] = {
+        {0, 10, VPL_SUCCESS, 1, 10},
+        {1, 10, VPL_INVALID_ARGUMENT, 0, 0},
+        {1.5, 10, VPL_INVALID_ARGUMENT, 0, 0},
+        {-0.5, 10, VPL_INVALID_ARGUMENT, 0, 0},
+        {NAN, 10, VPL_INVALID_ARGUMENT, 0, 0},
+        {INFINITY, 10, VPL_INVALID_ARGUMENT, 0, 0},
+        {0.5, 0, VPL_SUCCESS, 0, 0},
+        {0.5, -1, VPL_INVALID_ARGUMENT, 0, 0},
+        {4.9e-324, 1000000, VPL_SUCCESS, 1, 1000000},
+        {0.9999999999999999, 2, VPL_LIMIT, 0, 0},
+        {0.5, INT32_MAX, VPL_INVALID_ARGUMENT, 0, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        int steps = -1;
+        int64_t total = -1;
+        vplResult result = vplCountParticles(context, cases[i].n, cases[i].rho, NULL, 0, &steps, &total);
+        assert_int_equal(result, cases[i].result);
+        assert_int_equal(steps, result == VPL_SUCCESS ? cases[i].steps : -1);
+        assert_int_equal(total, result == VPL_SUCCESS ? cases[i].total : -1);
+    }
+    closeTestContext(context);
+}
+
+// Simulates one set of room_particles.csv with its own first directions and compares every row.
+static void checkSet(vplContext* context, const vplGeometry* room, const Table* t, const char* name)
+{
+    Table objects = loadTable("room_objects.csv");
+    vplVec3 directions[64];
+    vplParticleDef def = vplDefaultParticleDef();
+    def.lighting = VPL_LIGHTING_DOCUMENTED;
+    def.directions = directions;
+    for (int row = 0; row < t->rows; row++) {
+        if (strcmp(cell(t, row, "set"), name) == 0) {
+            def.particleCount = (int)number(t, row, "N");
+            def.reflectivity = number(t, row, "rho");
+            directions[(int)number(t, row, "particle")] = vectorOf(t, row, "d0");
+        }
+    }
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    emitter.position = (vplVec3){0, 4.5f, 0};
+    emitter.intensity = (vplRgb){10, 10, 10};
+    vplLightSet* set;
+    assert_int_equal(vplSimulateParticles(room, &emitter, 1, &def, &set), VPL_SUCCESS);
+    int at = 0, escaped = 0;
+    for (int row = 0; row < t->rows; row++) {
+        const char* wanted = cell(t, row, "object");
+        if (strcmp(cell(t, row, "set"), name) != 0) {
+            continue;
+        }
+        escaped += strcmp(wanted, "escaped") == 0;
+        if (strcmp(wanted, "escaped") == 0 || strcmp(wanted, "dead") == 0) {
+            continue;
+        }
+        assert_true(at < set->lightCount);
+        const vplVirtualLight* v = &set->lights[at++];
+        assert_int_equal(v->step, (int)number(t, row, "step"));
+        assert_int_equal(v->particle, (int)number(t, row, "particle"));
+        assert_string_equal(cell(&objects, v->object, "name"), wanted);
+        vplVec3 p = vectorOf(t, row, "p"), n = vectorOf(t, row, "n");
+        assertNear((double)v->position.x, (double)p.x, 3.2e-6, "px", row);
+        assertNear((double)v->position.y, (double)p.y, 3.2e-6, "py", row);
+        assertNear((double)v->position.z, (double)p.z, 3.2e-6, "pz", row);
+        assertNear((double)vplLength(vplSub(v->normal, n)), 0, 3e-7, "normal", row);
+        assertNear((double)v->light.r, number(t, row, "Lr"), 1e-6, "Lr", row);
+        assertNear((double)v->light.g, number(t, row, "Lg"), 1e-6, "Lg", row);
+        assertNear((double)v->light.b, number(t, row, "Lb"), 1e-6, "Lb", row);
+        double weight = number(t, row, "N") / number(t, row, "count_at_step");
+        assertNear((double)v->weight, weight, 1e-7 * weight, "weight", row);
+    }
+    assert_int_equal(at, set->lightCount);
+    assert_int_equal(escaped, set->escaped);
+    vplLightSet_Destroy(set);
+    freeTable(&objects);
+    (void)context;
+}
+
+static void EveryParticleOfTheTableLandsWhereItSays(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Table t = loadTable("room_particles.csv");
+    vplGeometry* room = tableRoom(context);
+    const char* const sets[] = {"A", "B", "C", "D"};
+    for (int i = 0; i < 4; i++) {
+        checkSet(context, room, &t, sets[i]);
+    }
+    vplGeometry_Destroy(room);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static vplLightSet* simulate(const vplGeometry* g, vplParticleDef def)
+{
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplLightSet* set = NULL;
+    assert_int_equal(vplSimulateParticles(g, &emitter, 1, &def, &set), VPL_SUCCESS);
+    return set;
+}
+
+static void TenParticlesAtHalfMake18Lights(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    vplLightSet* set = simulate(cube, vplDefaultParticleDef());
+    assert_int_equal(set->lightCount, 18);
+    assert_int_equal(set->escaped, 0);
+    assert_int_equal(set->rays, 18);
+    assert_int_equal(set->rayObjectTests, 18 * 6);
+    const int counts[] = {10, 5, 2, 1};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(set->stepCounts[i], counts[i]);
+        assert_int_equal(set->lightsInStep[i], counts[i]);
+    }
+    vplLightSet_Destroy(set);
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+// vpl_weights.csv: in a closed room the lights of step k carry the flux 4 pi I rho^(k+1), whatever the floor.
+static void FluxOfEachStepIsThatOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Table t = loadTable("vpl_weights.csv");
+    for (int row = 0; row < t.rows; row++) {
+        double rho = number(&t, row, "rho");
+        int k = (int)number(&t, row, "k");
+        vplGeometry* cube = closedCube(context, (float)rho);
+        vplParticleDef def = vplDefaultParticleDef();
+        def.particleCount = (int)number(&t, row, "N");
+        def.reflectivity = rho;
+        vplLightSet* set = simulate(cube, def);
+        double flux = 0;
+        for (int i = 0; i < set->lightCount; i++) {
+            if (set->lights[i].step == k) {
+                flux += (double)set->lights[i].light.r * (double)set->lights[i].weight / def.particleCount;
+                assertNear((double)set->lights[i].weight, number(&t, row, "N/M_k"), 1e-6 * number(&t, row, "N/M_k"),
+                           "weight", row);
+            }
+        }
+        double wanted = 4 * VPL_PI * pow((double)(float)rho, k + 1);
+        assertNear(flux, wanted, 1e-5 * wanted, "flux", row);
+        assert_int_equal(set->lightsInStep[k], (int)number(&t, row, "M_k"));
+        vplLightSet_Destroy(set);
+        vplGeometry_Destroy(cube);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static uint64_t hashLights(const vplLightSet* set)
+{
+    uint64_t hash = (uint64_t)set->lightCount;
+    for (int i = 0; i < set->lightCount; i++) {
+        const vplVirtualLight* v = &set->lights[i];
+        uint64_t words[5] = {0};
+        memcpy(words, &v->position, 12);
+        memcpy((char*)words + 12, &v->light, 12);
+        words[4] = (uint64_t)v->step << 32 | (uint32_t)v->particle;
+        for (int k = 0; k < 5; k++) {
+            hash = (hash ^ words[k]) * 0x9E3779B97F4A7C15u;
+            hash ^= hash >> 29;
+        }
+    }
+    return hash;
+}
+
+static void LightsDoNotDependOnThreads(void** state)
+{
+    (void)state;
+    for (int sampler = 0; sampler < 3; sampler++) {
+        uint64_t wanted = 0;
+        const int workers[] = {1, 2, 3, 7};
+        for (int i = 0; i < 4; i++) {
+            vplContext* context = openTestContext(workers[i]);
+            vplGeometry* room = tableRoom(context);
+            vplParticleDef def = vplDefaultParticleDef();
+            def.particleCount = 3000;
+            def.reflectivity = 0.8;
+            def.sampler = (vplSampler)sampler;
+            def.seed = 5;
+            vplEmitterDef emitters[3] = {vplDefaultEmitterDef(), vplDefaultEmitterDef(), vplDefaultEmitterDef()};
+            emitters[1].position = (vplVec3){1, 4, 1};
+            emitters[2].intensity = (vplRgb){0, 0, 0};
+            vplLightSet* set;
+            assert_int_equal(vplSimulateParticles(room, emitters, 3, &def, &set), VPL_SUCCESS);
+            wanted = i == 0 ? hashLights(set) : wanted;
+            assert_true(hashLights(set) == wanted);
+            vplLightSet_Destroy(set);
+            vplGeometry_Destroy(room);
+            closeTestContext(context);
+        }
+    }
+}
+
+// The first floor(rho^k N) particles must by themselves cover all directions: their mean direction is small.
+static void AnyFirstParticlesCoverTheSphere(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    // Random points: 3 standard deviations of the mean of n unit vectors; the others: better than that by far.
+    const double allowed[3] = {3, 0.7, 0.7};
+    for (int sampler = 0; sampler < 3; sampler++) {
+        vplParticleDef def = vplDefaultParticleDef();
+        def.particleCount = 1024;
+        def.sampler = (vplSampler)sampler;
+        vplLightSet* set = simulate(cube, def);
+        for (int n = 16; n <= 1024; n *= 2) {
+            vplVec3 sum = {0, 0, 0};
+            for (int i = 0; i < n; i++) {
+                sum = vplAdd(sum, vplNormalize(set->lights[i].position)); // the cube's light is at the origin
+            }
+            assertNear((double)vplLength(sum) / n, 0, allowed[sampler] / sqrt(n), "mean direction", sampler);
+        }
+        vplLightSet_Destroy(set);
+    }
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+static void DoublingTheEmitterDoublesEveryBit(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* room = tableRoom(context);
+    vplParticleDef def = vplDefaultParticleDef();
+    def.particleCount = 100;
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplLightSet *one, *two;
+    assert_int_equal(vplSimulateParticles(room, &emitter, 1, &def, &one), VPL_SUCCESS);
+    emitter.intensity = vplRgbScale(2, emitter.intensity);
+    assert_int_equal(vplSimulateParticles(room, &emitter, 1, &def, &two), VPL_SUCCESS);
+    assert_int_equal(one->lightCount, two->lightCount);
+    for (int i = 0; i < one->lightCount; i++) {
+        assert_true(2 * one->lights[i].light.g == two->lights[i].light.g);
+        assert_memory_equal(&one->lights[i].position, &two->lights[i].position, sizeof(vplVec3));
+    }
+    vplLightSet_Destroy(one);
+    vplLightSet_Destroy(two);
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// Two emitters of 1 and 3 W/sr share the particles one to three, and the total flux is that of both.
+static void EmittersShareParticlesByPower(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* cube = closedCube(context, 1);
+    for (int sampler = 0; sampler < 3; sampler++) {
+        vplParticleDef def = vplDefaultParticleDef();
+        def.particleCount = 4000;
+        def.reflectivity = 0;
+        def.sampler = (vplSampler)sampler;
+        vplEmitterDef emitters[2] = {vplDefaultEmitterDef(), vplDefaultEmitterDef()};
+        emitters[0].intensity = (vplRgb){1, 0, 0};
+        emitters[1].intensity = (vplRgb){0, 3, 0};
+        vplLightSet* set;
+        assert_int_equal(vplSimulateParticles(cube, emitters, 2, &def, &set), VPL_SUCCESS);
+        double red = 0, green = 0;
+        for (int i = 0; i < set->lightCount; i++) {
+            red += (double)set->lights[i].light.r / def.particleCount;
+            green += (double)set->lights[i].light.g / def.particleCount;
+        }
+        double slack = sampler == VPL_SAMPLER_RANDOM ? 0.07 : 0.002;
+        assertNear(red, 4 * VPL_PI, slack * 4 * VPL_PI, "red flux", sampler);
+        assertNear(green, 12 * VPL_PI, slack * 12 * VPL_PI, "green flux", sampler);
+        vplLightSet_Destroy(set);
+    }
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+// X048: after a thousand mirror bounces in a closed cube particles still land on its walls.
+static void AThousandBouncesStayOnTheWalls(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* cube = closedCube(context, 1);
+    for (int bounce = VPL_BOUNCE_REFLECT; bounce <= VPL_BOUNCE_DIFFUSE; bounce++) {
+        vplParticleDef def = vplDefaultParticleDef();
+        def.particleCount = 40;
+        def.reflectivity = 0.997;
+        def.bounce = (vplBounce)bounce;
+        vplLightSet* set = simulate(cube, def);
+        assert_true(set->stepCount > 1000);
+        assert_int_equal(set->escaped, 0);
+        for (int i = 0; i < set->lightCount; i++) {
+            vplVec3 p = set->lights[i].position;
+            float largest = fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
+            assertNear((double)largest, 1, 1e-6, "distance of the wall", i);
+        }
+        vplLightSet_Destroy(set);
+    }
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+static void SimulationRefusesWhatItCannotShoot(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    vplParticleDef def = vplDefaultParticleDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplLightSet* set = NULL;
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 0, &def, &set), VPL_INVALID_ARGUMENT);
+    def.reflectivity = 1;
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &def, &set), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "reflectivity is 1"));
+    def = (vplParticleDef){0};
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &def, &set), VPL_INVALID_ARGUMENT);
+    assert_null(set);
+    def = vplDefaultParticleDef();
+    def.particleCount = 0; // X040: no particles, no lights, no error
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &def, &set), VPL_SUCCESS);
+    assert_int_equal(set->lightCount, 0);
+    vplLightSet_Destroy(set);
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+TEST_SUITE(lights, cmocka_unit_test(EveryCountOfTheTableIsTheDecimalOne), cmocka_unit_test(EveryTotalOfTheTable),
+           cmocka_unit_test(ExtremeTotalsAreExactOrRefused), cmocka_unit_test(InvalidCountsAreRefused),
+           cmocka_unit_test(EveryParticleOfTheTableLandsWhereItSays),
+           cmocka_unit_test(TenParticlesAtHalfMake18Lights), cmocka_unit_test(FluxOfEachStepIsThatOfTheTable),
+           cmocka_unit_test(LightsDoNotDependOnThreads), cmocka_unit_test(AnyFirstParticlesCoverTheSphere),
+           cmocka_unit_test(DoublingTheEmitterDoublesEveryBit), cmocka_unit_test(EmittersShareParticlesByPower),
+           cmocka_unit_test(AThousandBouncesStayOnTheWalls), cmocka_unit_test(SimulationRefusesWhatItCannotShoot));
