@@ -9,7 +9,8 @@
     X(geometry)                                                                                                    \
     X(lights)                                                                                                      \
     X(raster)                                                                                                      \
-    X(rasterTruth)
+    X(rasterTruth)                                                                                                 \
+    X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,

@@ -61,11 +61,9 @@ static void fillObject(const Builder* b, const vplObjectDef* def, int index)
     memcpy(b->indices + 3 * object->firstTriangle, quad ? QUAD_INDICES : BOX_INDICES,
            3 * (size_t)object->triangleCount * sizeof(uint32_t));
     for (int i = 0; i < object->triangleCount; i++) {
-        int axis = quad ? 2 : i / 4;
-        vplVec3 n = vplVec(placement->normal[0][axis], placement->normal[1][axis], placement->normal[2][axis]);
-        bool negative = !quad && i / 2 % 2 == 1;
+        const float* n = placement->normal[quad ? VPL_FACE_QUAD : i / 2];
         b->owners[object->firstTriangle + i] = index;
-        b->normals[object->firstTriangle + i] = vplNormalize(negative ? vplNegate(n) : n);
+        b->normals[object->firstTriangle + i] = vplVec(n[0], n[1], n[2]);
     }
 }
 

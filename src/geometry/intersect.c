@@ -9,6 +9,8 @@
 #include "math/vec.h"
 #include "scene/scene.h"
 
+#include <string.h>
+
 vplResult vplPlacement_Create(vplContext* context, const vplMat4* transform, vplPlacement* placementOut)
 {
     vplFault fault = vplCheckTransform(transform);
@@ -17,113 +19,121 @@ vplResult vplPlacement_Create(vplContext* context, const vplMat4* transform, vpl
     }
     vplAffine world = vplAffine_FromMat4(transform);
     vplAffine local = vplAffine_Inverse(&world);
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 4; j++) {
-            placementOut->toWorld[i][j] = (float)world.m[i][j];
-            placementOut->toLocal[i][j] = (float)local.m[i][j];
-        }
-        for (int j = 0; j < 3; j++) {
-            placementOut->normal[i][j] = (float)local.m[j][i];
-        }
+    memcpy(placementOut->toWorld, world.m, sizeof world.m);
+    memcpy(placementOut->toLocal, local.m, sizeof local.m);
+    for (int face = 0; face < 6; face++) { // a row of the inverse is a column of its transpose
+        const double* n = local.m[face >> 1];
+        double largest = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
+        double x = n[0] / largest, y = n[1] / largest, z = n[2] / largest;
+        double scale = (face & 1 ? -1 : 1) / sqrt(x * x + y * y + z * z);
+        placementOut->normal[face][0] = (float)(x * scale);
+        placementOut->normal[face][1] = (float)(y * scale);
+        placementOut->normal[face][2] = (float)(z * scale);
     }
     return VPL_SUCCESS;
 }
 
-static vplVec3 transformPoint(const float m[3][4], vplVec3 p)
+// A ray in local space.
+typedef struct LocalRay {
+    double o[3], d[3];
+} LocalRay;
+
+static LocalRay toLocal(const vplRay* ray, const vplPlacement* p)
 {
-    return vplVec(m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
-                  m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],
-                  m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3]);
+    LocalRay local;
+    for (int i = 0; i < 3; i++) {
+        const double* m = p->toLocal[i];
+        local.o[i] = m[0] * ray->origin.x + m[1] * ray->origin.y + m[2] * ray->origin.z + m[3];
+        local.d[i] = m[0] * ray->direction.x + m[1] * ray->direction.y + m[2] * ray->direction.z;
+    }
+    return local;
 }
 
-static vplVec3 transformDirection(const float m[3][4], vplVec3 d)
+// False where t is not a float: a hit that far away is a miss (X017).
+static bool fillHit(const vplPlacement* p, const double at[3], double t, int face, vplHit* hit)
 {
-    return vplVec(m[0][0] * d.x + m[0][1] * d.y + m[0][2] * d.z, m[1][0] * d.x + m[1][1] * d.y + m[1][2] * d.z,
-                  m[2][0] * d.x + m[2][1] * d.y + m[2][2] * d.z);
-}
-
-// The world normal of local face `face`: a signed column of the normal matrix.
-static vplVec3 faceNormal(const vplPlacement* p, int face)
-{
-    int axis = face >> 1;
-    vplVec3 n = vplVec(p->normal[0][axis], p->normal[1][axis], p->normal[2][axis]);
-    return vplNormalize(face & 1 ? vplNegate(n) : n);
-}
-
-static void fillHit(const vplPlacement* p, vplVec3 local, float t, int face, vplHit* hit)
-{
-    hit->t = t;
-    hit->object = -1;
-    hit->face = face;
-    hit->position = transformPoint(p->toWorld, local);
-    hit->normal = faceNormal(p, face);
+    float world[3];
+    for (int i = 0; i < 3; i++) {
+        const double* m = p->toWorld[i];
+        world[i] = (float)(m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3]);
+    }
+    *hit = (vplHit){(float)t, -1, face, vplVec(world[0], world[1], world[2]),
+                    vplVec(p->normal[face][0], p->normal[face][1], p->normal[face][2])};
+    return hit->t > 0 && isfinite(hit->t);
 }
 
 bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hitOut)
 {
-    vplVec3 o = transformPoint(placement->toLocal, ray->origin);
-    vplVec3 d = transformDirection(placement->toLocal, ray->direction);
-    if (d.z == 0) {
+    LocalRay r = toLocal(ray, placement);
+    if (r.d[2] == 0) {
         return false; // parallel, or in the plane
     }
-    float t = -o.z / d.z;
-    float x = o.x + t * d.x;
-    float y = o.y + t * d.y;
-    if (!(t > 0 && isfinite(t) && fabsf(x) <= 0.5f && fabsf(y) <= 0.5f)) {
+    double t = -r.o[2] / r.d[2];
+    const double at[3] = {r.o[0] + t * r.d[0], r.o[1] + t * r.d[1], 0};
+    if (!(t > 0 && fabs(at[0]) <= 0.5 && fabs(at[1]) <= 0.5)) {
         return false;
     }
-    fillHit(placement, vplVec(x, y, 0), t, VPL_FACE_QUAD, hitOut);
-    return true;
+    return fillHit(placement, at, t, VPL_FACE_QUAD, hitOut);
 }
 
-bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFace, vplHit* hitOut)
+// The part of a ray inside the three slabs, and the faces where it begins and ends.
+typedef struct Span {
+    double entry, exit;
+    int entryFace, exitFace;
+} Span;
+
+static bool intersectSlabs(const LocalRay* r, Span* span)
 {
-    vplVec3 localOrigin = transformPoint(placement->toLocal, ray->origin);
-    vplVec3 localDirection = transformDirection(placement->toLocal, ray->direction);
-    const float o[3] = {localOrigin.x, localOrigin.y, localOrigin.z};
-    const float d[3] = {localDirection.x, localDirection.y, localDirection.z};
-    float entry = -INFINITY, exit = INFINITY;
-    int entryFace = VPL_FACE_NONE, exitFace = VPL_FACE_NONE;
+    *span = (Span){-INFINITY, INFINITY, VPL_FACE_NONE, VPL_FACE_NONE};
     for (int axis = 0; axis < 3; axis++) {
-        if (d[axis] == 0) { // before dividing: (1/2 - 1/2) / 0 is no number
-            if (fabsf(o[axis]) > 0.5f) {
+        double o = r->o[axis], d = r->d[axis];
+        if (d == 0) { // before dividing: (1/2 - 1/2) / 0 is no number
+            if (fabs(o) > 0.5) {
                 return false;
             }
             continue;
         }
-        int nearFace = 2 * axis + (d[axis] > 0); // moving towards +, the - side comes first
-        float tNear = ((d[axis] > 0 ? -0.5f : 0.5f) - o[axis]) / d[axis];
-        float tFar = ((d[axis] > 0 ? 0.5f : -0.5f) - o[axis]) / d[axis];
-        if (tNear > entry) { // strictly: of faces met at one t the lowest axis is named
-            entry = tNear;
-            entryFace = nearFace;
+        int nearFace = 2 * axis + (d > 0); // moving towards +, the - side comes first
+        double tNear = ((d > 0 ? -0.5 : 0.5) - o) / d, tFar = ((d > 0 ? 0.5 : -0.5) - o) / d;
+        if (tNear > span->entry) { // strictly: of faces met at one t the lowest axis is named
+            span->entry = tNear;
+            span->entryFace = nearFace;
         }
-        if (tFar < exit) {
-            exit = tFar;
-            exitFace = nearFace ^ 1;
+        if (tFar < span->exit) {
+            span->exit = tFar;
+            span->exitFace = nearFace ^ 1;
         }
     }
+    return span->entryFace != VPL_FACE_NONE;
+}
+
+bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFace, vplHit* hitOut)
+{
+    LocalRay r = toLocal(ray, placement);
+    Span span;
+    if (!intersectSlabs(&r, &span)) {
+        return false;
+    }
     if (fromFace != VPL_FACE_NONE) {
-        float outward = fromFace & 1 ? -d[fromFace >> 1] : d[fromFace >> 1];
+        double outward = fromFace & 1 ? -r.d[fromFace >> 1] : r.d[fromFace >> 1];
         if (outward >= 0) {
             return false; // a convex box is not met again
         }
-        entry = -INFINITY; // it starts on the surface and crosses the inside
+        span.entry = -INFINITY; // it starts on the surface and crosses the inside
     }
-    bool outside = entry > 0;
-    float t = outside ? entry : exit;
-    int face = outside ? entryFace : exitFace;
-    if (!(entry <= exit && t > 0 && isfinite(t)) || face == VPL_FACE_NONE) {
+    bool outside = span.entry > 0;
+    double t = outside ? span.entry : span.exit;
+    int face = outside ? span.entryFace : span.exitFace;
+    if (!(span.entry <= span.exit && t > 0)) {
         return false;
     }
-    float hit[3];
+    double at[3];
     for (int axis = 0; axis < 3; axis++) {
-        float p = o[axis] + t * d[axis];
-        hit[axis] = p < -0.5f ? -0.5f : p > 0.5f ? 0.5f : p;
+        double p = r.o[axis] + t * r.d[axis];
+        at[axis] = p < -0.5 ? -0.5 : p > 0.5 ? 0.5 : p;
     }
-    hit[face >> 1] = face & 1 ? -0.5f : 0.5f; // the face is known, not guessed from the rounded point
-    fillHit(placement, vplVec(hit[0], hit[1], hit[2]), t, face, hitOut);
-    return true;
+    at[face >> 1] = face & 1 ? -0.5 : 0.5; // the face is known, not guessed from the rounded point
+    return fillHit(placement, at, t, face, hitOut);
 }
 
 static bool hitObject(const vplGeometry* g, int index, const vplRay* ray, vplRayStart start, vplHit* hitOut)
