@@ -10,6 +10,7 @@
     X(lights)                                                                                                      \
     X(raster)                                                                                                      \
     X(rasterTruth)                                                                                                 \
+    X(shading)                                                                                                     \
     X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;

@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: MIT
+// The light kernel, direct light and sums against exact answers. Covers extremes X085 to X092.
+#include "scenes.h"
+
+#include "math/vec.h"
+#include "shading/shading.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+static void fillSurface(vplSurface* s, vplVec3 p, vplVec3 n)
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        s->px[l] = p.x;
+        s->py[l] = p.y;
+        s->pz[l] = p.z;
+        s->nx[l] = n.x;
+        s->ny[l] = n.y;
+        s->nz[l] = n.z;
+    }
+}
+
+// Irradiance that lights[0 .. count) cast on one point, red channel.
+static double irradiance(vplContext* context, vplLighting lighting, float minDistance, vplVec3 p, vplVec3 n,
+                         const vplShadeLight* lights, int count)
+{
+    vplSurface surface;
+    float e[3][VPL_LANES] = {{0}};
+    fillSurface(&surface, p, n);
+    vplAccumulateLights(context, lighting, minDistance, &surface, lights, count, e);
+    for (int l = 1; l < VPL_LANES; l++) {
+        assert_true(e[0][l] == e[0][0]);
+    }
+    return (double)e[0][0];
+}
+
+static vplShadeLight lightAt(vplVec3 p, vplVec3 n, float colour)
+{
+    return (vplShadeLight){p.x, p.y, p.z, n.x, n.y, n.z, colour, colour, colour};
+}
+
+static void EveryKernelValueOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("vpl_kernel.csv");
+    for (int row = 0; row < t.rows; row++) {
+        const char* category = cell(&t, row, "cat");
+        vplVec3 x = vectorOf(&t, row, "x_"), nx = vplNormalize(vectorOf(&t, row, "nx_"));
+        vplShadeLight light = lightAt(vectorOf(&t, row, "y_"), vplNormalize(vectorOf(&t, row, "ny_")), 1);
+        double minDistance = sqrt(number(&t, row, "c"));
+        double bounded = irradiance(context, VPL_LIGHTING_PHYSICAL, (float)minDistance, x, nx, &light, 1);
+        double open = irradiance(context, VPL_LIGHTING_PHYSICAL, 0, x, nx, &light, 1);
+        double documented = irradiance(context, VPL_LIGHTING_DOCUMENTED, 0, x, nx, &light, 1);
+        double wanted = number(&t, row, "G"), wantedBounded = number(&t, row, "G_clamped_r2");
+        assert_true(isfinite(bounded) && bounded >= 0 && isfinite(documented));
+        // Stated range: d^2 must be a float. Beyond, the result is between 0 and the bound (X087, X088).
+        double r2 = number(&t, row, "r2");
+        if (r2 != 0 && (r2 < FLT_MIN || r2 > FLT_MAX)) {
+            assert_true(bounded <= wantedBounded * (1 + 1e-6) && bounded >= 0);
+            continue;
+        }
+        // Each cosine carries the rounding of a dot product of unit vectors, 3e-7, whatever its own size.
+        double slack = 1e-6, scale = r2 > 0 ? 3e-7 / r2 : 0;
+        assertNear(open, wanted, slack * wanted + scale, category, row);
+        assertNear(bounded, wantedBounded, slack * wantedBounded + fmin(scale, 3e-7 / number(&t, row, "c")), category,
+                   row);
+        assertNear(documented, number(&t, row, "documented_kernel"), 4e-7, category, row);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), by 20,000 rings.
+static void ClampLosesOnAPlaneWhatTheTableSays(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("vpl_clamp_plane.csv");
+    enum { RINGS = 20000 };
+    vplShadeLight* rings = malloc(RINGS * sizeof *rings);
+    for (int row = 0; row < t.rows; row++) {
+        double h = number(&t, row, "h"), c = number(&t, row, "c"), sum = 0;
+        // Rings from 1e-3 to 1e3 times the larger of h and sqrt(c), evenly in the logarithm, and a disc inside.
+        double unit = fmax(h, sqrt(c)), inner = 1e-3 * fmin(h, sqrt(c)), ratio = pow(1e3 * unit / inner, 1.0 / RINGS);
+        double r = inner;
+        for (int i = 0; i < RINGS; i++) {
+            double next = r * ratio, middle = sqrt(0.5 * (r * r + next * next));
+            double area = VPL_PI * (next * next - r * r);
+            rings[i] = lightAt(vplVec((float)middle, 0, 0), vplVec(0, 1, 0), (float)area); // L = 1
+            r = next;
+        }
+        for (int i = 0; i < RINGS; i += VPL_LIGHT_GROUP) {
+            int count = RINGS - i < VPL_LIGHT_GROUP ? RINGS - i : VPL_LIGHT_GROUP;
+            sum += irradiance(context, VPL_LIGHTING_PHYSICAL, (float)sqrt(c), vplVec(0, (float)h, 0), vplVec(0, -1, 0),
+                              rings + i, count);
+        }
+        // The rings end at 1000 units: they miss (h / (1000 unit))^2 at most.
+        assertNear(sum / VPL_PI, number(&t, row, "fraction_kept_r2clamp"), 2e-4, "fraction kept", row);
+    }
+    free(rings);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// The first directions of the tables: spherical Fibonacci points about y.
+static vplVec3 fibonacci(int i, int count)
+{
+    double y = 1 - (2.0 * i + 1) / count, r = sqrt(1 - y * y), angle = 2 * VPL_PI * i / 1.61803398874989484820;
+    return vplVec((float)(r * cos(angle)), (float)y, (float)(r * sin(angle)));
+}
+
+// In a sphere lit from its centre G is 1/(4 R^2) between all points: the physical sum is exact for any lights.
+static void FurnaceSphereIsExact(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("furnace_sphere.csv");
+    for (int row = 0; row < t.rows; row++) {
+        double radius = number(&t, row, "R"), rho = number(&t, row, "rho"), intensity = number(&t, row, "I");
+        int n = (int)number(&t, row, "N"), steps;
+        int counts[64];
+        int64_t total;
+        assert_int_equal(vplCountParticles(context, n, rho, counts, 64, &steps, &total), VPL_SUCCESS);
+        assert_int_equal(steps, (int)number(&t, row, "steps"));
+        vplVec3 at = vplScale((float)radius, vplNormalize(vplVec(0.3f, -0.5f, 0.8f))), normal = vplNormalize(vplNegate(at));
+        double e = number(&t, row, "E_direct");
+        for (int k = 0; k < steps; k++) {
+            double flux = 4 * VPL_PI * intensity * pow(rho, k + 1);
+            for (int i = 0; i < counts[k]; i++) {
+                vplVec3 d = fibonacci(i, n); // anywhere on the sphere
+                vplShadeLight light = lightAt(vplScale((float)radius, d), vplNegate(vplNormalize(d)),
+                                              (float)(flux / VPL_PI / counts[k]));
+                e += irradiance(context, VPL_LIGHTING_PHYSICAL, 0, at, normal, &light, 1);
+            }
+        }
+        double wanted = number(&t, row, "radiance_total_phys_truncated");
+        assertNear(rho / VPL_PI * e, wanted, 2e-6 * wanted, "radiance", row);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static void DocumentedFurnaceSphereIsThatOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("furnace_sphere_documented.csv");
+    for (int row = 0; row < t.rows; row++) {
+        double rho = number(&t, row, "rho"), radius = number(&t, row, "R"), sum = 0;
+        int n = (int)number(&t, row, "N"), steps;
+        int counts[64];
+        int64_t total;
+        assert_int_equal(vplCountParticles(context, n, rho, counts, 64, &steps, &total), VPL_SUCCESS);
+        vplVec3 direction = vplNormalize(vectorOf(&t, row, ""));
+        vplVec3 at = vplScale((float)radius, direction);
+        for (int k = 0; k < steps; k++) {
+            double carried = number(&t, row, "I") * pow(rho / VPL_PI, k + 1);
+            for (int i = 0; i < counts[k]; i++) {
+                vplVec3 d = vplScale(k % 2 ? -(float)radius : (float)radius, vplNormalize(fibonacci(i, n)));
+                vplShadeLight light = lightAt(d, vplNormalize(vplNegate(d)), (float)(carried / counts[k]));
+                sum += irradiance(context, VPL_LIGHTING_DOCUMENTED, 0, at, vplNegate(direction), &light, 1);
+            }
+        }
+        double wanted = number(&t, row, "doc_indirect");
+        assertNear(rho / VPL_PI * sum, wanted, 1e-5 * wanted, "documented radiance", row);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// Irradiance of the lights of one step at the floor point (u, -1, v) of the closed cube.
+static double stepIrradiance(vplContext* context, const vplLightSet* set, vplLighting lighting, int step, double u,
+                             double v)
+{
+    vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
+    vplPrepareLights(set, lighting, lights);
+    double sum = 0;
+    for (int i = 0; i < set->lightCount; i++) {
+        if (set->lights[i].step == step) {
+            sum += irradiance(context, lighting, 0, vplVec((float)u, -1, (float)v), vplVec(0, 1, 0), &lights[i], 1);
+        }
+    }
+    free(lights);
+    return sum;
+}
+
+static vplLightSet* cubeLights(const vplGeometry* cube, vplLighting lighting, int n, double rho, uint64_t seed)
+{
+    vplParticleDef def = vplDefaultParticleDef();
+    def.lighting = lighting;
+    def.particleCount = n;
+    def.reflectivity = rho;
+    def.sampler = VPL_SAMPLER_HALTON;
+    def.seed = seed;
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplLightSet* set;
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &def, &set), VPL_SUCCESS);
+    return set;
+}
+
+static void LightsInACubeConvergeToTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Table t = loadTable("cube_physical.csv");
+    vplGeometry* cube = closedCube(context, 0.9f);
+    const char* const columns[3] = {"E1_over_rho", "E2_over_rho^2", "E3_over_rho^3"};
+    enum { SEEDS = 8 };
+    double sums[5][3] = {{0}};
+    assert_int_equal(t.rows, 5);
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        vplLightSet* set = cubeLights(cube, VPL_LIGHTING_PHYSICAL, 20000, 0.9, seed);
+        for (int row = 0; row < t.rows; row++) {
+            for (int k = 0; k < 3; k++) {
+                sums[row][k] += stepIrradiance(context, set, VPL_LIGHTING_PHYSICAL, k, number(&t, row, "u"),
+                                               number(&t, row, "v")) / (SEEDS * pow(0.9, k + 1));
+            }
+        }
+        vplLightSet_Destroy(set);
+    }
+    for (int row = 0; row < t.rows; row++) {
+        for (int k = 0; k < 3; k++) {
+            // The point at (0.9, 0.9) has two walls 0.1 away, and 1/d^2 of few lights there is noisy.
+            double slack = number(&t, row, "u") > 0.8 ? 0.03 : 0.006, wanted = number(&t, row, columns[k]);
+            assertNear(sums[row][k], wanted, slack * wanted, columns[k], row);
+        }
+    }
+    vplGeometry_Destroy(cube);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static void DocumentedLightsInACubeConvergeToTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Table t = loadTable("cube_documented.csv");
+    vplGeometry* cube = closedCube(context, 0.9f);
+    vplLightSet* set = cubeLights(cube, VPL_LIGHTING_DOCUMENTED, 60000, 0.9, 0);
+    for (int row = 0; row < t.rows; row++) {
+        for (int k = 0; k < 4; k++) {
+            char column[8];
+            snprintf(column, sizeof column, "Ecos_k%d", k);
+            double e = stepIrradiance(context, set, VPL_LIGHTING_DOCUMENTED, k, number(&t, row, "u"), number(&t, row, "v"));
+            double wanted = number(&t, row, column);
+            assertNear(e / pow(0.9 / VPL_PI, k + 1), wanted, 0.003 * wanted, column, row);
+        }
+    }
+    vplLightSet_Destroy(set);
+    vplGeometry_Destroy(cube);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// The virtual lights of set A of room_particles.csv, as a kernel wants them.
+static int tableLights(vplShadeLight* lights)
+{
+    Table t = loadTable("room_particles.csv");
+    int count = 0;
+    for (int row = 0; row < t.rows; row++) {
+        if (strcmp(cell(&t, row, "set"), "A") == 0 && !isEmpty(&t, row, "px")) {
+            vplVec3 n = vectorOf(&t, row, "n");
+            float weight = 1 / (float)number(&t, row, "count_at_step");
+            lights[count] = lightAt(vectorOf(&t, row, "p"), n, 0);
+            lights[count].r = weight * (float)number(&t, row, "Lr");
+            lights[count].g = weight * (float)number(&t, row, "Lg");
+            lights[count].b = weight * (float)number(&t, row, "Lb");
+            count++;
+        }
+    }
+    freeTable(&t);
+    return count;
+}
+
+static void checkRgb(const Table* t, int row, const char* prefix, const float e[3][VPL_LANES], vplRgb rho)
+{
+    const float* reflectance = &rho.r;
+    for (int c = 0; c < 3; c++) {
+        char column[24];
+        snprintf(column, sizeof column, "%s_%c", prefix, "rgb"[c]);
+        double wanted = number(t, row, column);
+        assertNear((double)reflectance[c] / VPL_PI * (double)e[c][0], wanted, 1e-5 * wanted + 1e-9, column, row);
+    }
+}
+
+static void EveryPointOfTheRoomIsLitAsTheTableSays(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Table t = loadTable("room_shading.csv"), objects = loadTable("room_objects.csv");
+    vplGeometry* room = tableRoom(context);
+    vplShadeLight lights[18];
+    int count = tableLights(lights);
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    emitter.position = vplVec(0, 4.5f, 0);
+    emitter.intensity = (vplRgb){10, 10, 10};
+    vplCubeMapDef mapDef = vplDefaultCubeMapDef();
+    mapDef.position = emitter.position;
+    vplCubeMap* map;
+    assert_int_equal(vplCubeMap_Create(room, &mapDef, NULL, NULL, &map), VPL_SUCCESS);
+    vplShadowDef shadowDef = vplDefaultShadowDef();
+    shadowDef.pcfSamples = 1;
+    vplShadow shadow;
+    assert_int_equal(vplShadow_Create(map, &shadowDef, &shadow), VPL_SUCCESS);
+    for (int row = 0; row < t.rows; row++) {
+        vplSurface surface;
+        fillSurface(&surface, vectorOf(&t, row, "p"), vectorOf(&t, row, "n"));
+        vplRgb rho = {0, 0, 0};
+        for (int i = 0; i < objects.rows; i++) {
+            if (strcmp(cell(&objects, i, "name"), cell(&t, row, "object")) == 0) {
+                rho = (vplRgb){(float)number(&objects, i, "rho_r"), (float)number(&objects, i, "rho_g"),
+                               (float)number(&objects, i, "rho_b")};
+            }
+        }
+        vplShadeDef def = {.lighting = VPL_LIGHTING_DOCUMENTED, .emitters = &emitter, .shadows = &shadow,
+                           .emitterCount = 1, .particleCount = 10};
+        vplShading shading = {.geometry = room, .def = &def,
+                              .emitterKernel = vplGetEmitterKernel(vplContext_GetIsa(context))};
+        float e[3][VPL_LANES];
+        vplDirectIrradiance(&shading, &surface, e);
+        checkRgb(&t, row, "doc_direct", e, rho);
+        def.lighting = VPL_LIGHTING_PHYSICAL;
+        vplDirectIrradiance(&shading, &surface, e);
+        checkRgb(&t, row, "phys_direct", e, rho);
+        memset(e, 0, sizeof e);
+        vplAccumulateLights(context, VPL_LIGHTING_DOCUMENTED, 0, &surface, lights, count, e);
+        checkRgb(&t, row, "doc_indirect", e, rho);
+        memset(e, 0, sizeof e);
+        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &surface, lights, count, e);
+        checkRgb(&t, row, "kernelG", e, rho);
+    }
+    vplCubeMap_Destroy(map);
+    vplGeometry_Destroy(room);
+    freeTable(&objects);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// estimator_factors.csv: the same particles under both lightings differ by known factors.
+static void BothLightingsDifferByTheFactorsOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* cube = closedCube(context, 0.7f);
+    vplLightSet* documented = cubeLights(cube, VPL_LIGHTING_DOCUMENTED, 50, 0.6, 0);
+    vplParticleDef def = vplDefaultParticleDef();
+    def.particleCount = 50;
+    def.reflectivity = 0.6;
+    def.sampler = VPL_SAMPLER_HALTON;
+    def.bounce = VPL_BOUNCE_REFLECT; // so that they hit the same places
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplLightSet* physical;
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &def, &physical), VPL_SUCCESS);
+    assert_int_equal(documented->lightCount, physical->lightCount);
+    vplShadeLight *d = malloc(500 * sizeof *d), *p = malloc(500 * sizeof *p);
+    vplPrepareLights(documented, VPL_LIGHTING_DOCUMENTED, d);
+    vplPrepareLights(physical, VPL_LIGHTING_PHYSICAL, p);
+    for (int i = 0; i < documented->lightCount; i++) {
+        double factor = 4 * pow(VPL_PI, documented->lights[i].step + 1); // 4 pi^(k+1) (n.w)+
+        assertNear((double)p[i].r, factor * (double)d[i].r, 1e-5 * factor * (double)d[i].r, "factor", i);
+    }
+    free(d);
+    free(p);
+    vplLightSet_Destroy(documented);
+    vplLightSet_Destroy(physical);
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+// A picture of a floor from above, lit by `lights`.
+static vplImage* shadeFloor(vplContext* context, vplShadeDef def, int width, int height)
+{
+    vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = vplVec(0, 3, 0.01f);
+    vplView view = vplView_Create(&camera, width, height);
+    vplImage* image;
+    assert_int_equal(vplImage_Create(context, width, height, &image), VPL_SUCCESS);
+    assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_SUCCESS);
+    vplGeometry_Destroy(g);
+    return image;
+}
+
+// X091: a million equal lights are a million times one, which a float sum could not count.
+static void AMillionEqualLightsAddUp(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    enum { COUNT = 1000000 };
+    vplShadeLight* lights = malloc(COUNT * sizeof *lights);
+    for (int i = 0; i < COUNT; i++) {
+        lights[i] = lightAt(vplVec(0.3f, 2, 0.1f), vplVec(0, -1, 0), 0.1f);
+    }
+    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = lights};
+    def.lightCount = 1;
+    vplImage* one = shadeFloor(context, def, 4, 4);
+    def.lightCount = COUNT;
+    vplImage* many = shadeFloor(context, def, 4, 4);
+    for (int i = 0; i < 3 * 16; i++) {
+        double wanted = COUNT * (double)one->pixels[i];
+        assertNear((double)many->pixels[i], wanted, 4e-6 * wanted, "sum", i);
+    }
+    vplImage_Destroy(one);
+    vplImage_Destroy(many);
+    free(lights);
+    closeTestContext(context);
+}
+
+// X112, X092: sizes that are no multiple of a tile or block, and no light at all.
+static void EveryPixelOfAnySizeIsShadedOnce(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplShadeLight light = lightAt(vplVec(0, 5, 0), vplVec(0, -1, 0), 1);
+    const int sizes[][2] = {{1, 1}, {3, 5}, {64, 64}, {65, 63}, {130, 67}};
+    for (int i = 0; i < 5; i++) {
+        vplShadeDef def = {.lighting = VPL_LIGHTING_DOCUMENTED, .lights = &light, .lightCount = 1, .batch = 1};
+        vplImage* images[3];
+        for (int k = 0; k < 3; k++) {
+            def.accumulation = (vplAccumulation)k;
+            images[k] = shadeFloor(context, def, sizes[i][0], sizes[i][1]);
+            assert_true(vplImage_Hash(images[k]) == vplImage_Hash(images[0]));
+        }
+        for (int p = 0; p < 3 * sizes[i][0] * sizes[i][1]; p++) {
+            assert_true(images[0]->pixels[p] > 0.1f && images[0]->pixels[p] < 0.5f);
+        }
+        for (int k = 0; k < 3; k++) {
+            vplImage_Destroy(images[k]);
+        }
+        def.lightCount = 0;
+        vplImage* dark = shadeFloor(context, def, sizes[i][0], sizes[i][1]);
+        for (int p = 0; p < 3 * sizes[i][0] * sizes[i][1]; p++) {
+            assert_true(dark->pixels[p] == 0);
+        }
+        vplImage_Destroy(dark);
+    }
+    closeTestContext(context);
+}
+
+TEST_SUITE(shading, cmocka_unit_test(EveryKernelValueOfTheTable), cmocka_unit_test(ClampLosesOnAPlaneWhatTheTableSays),
+           cmocka_unit_test(FurnaceSphereIsExact), cmocka_unit_test(DocumentedFurnaceSphereIsThatOfTheTable),
+           cmocka_unit_test(LightsInACubeConvergeToTheTable),
+           cmocka_unit_test(DocumentedLightsInACubeConvergeToTheTable),
+           cmocka_unit_test(EveryPointOfTheRoomIsLitAsTheTableSays),
+           cmocka_unit_test(BothLightingsDifferByTheFactorsOfTheTable), cmocka_unit_test(AMillionEqualLightsAddUp),
+           cmocka_unit_test(EveryPixelOfAnySizeIsShadedOnce));
