@@ -7,7 +7,9 @@
 // One line per test file.
 #define ALL_SUITES(X)                                                                                              \
     X(geometry)                                                                                                    \
+    X(image)                                                                                                       \
     X(lights)                                                                                                      \
+    X(math)                                                                                                        \
     X(raster)                                                                                                      \
     X(rasterTruth)                                                                                                 \
     X(shading)                                                                                                     \

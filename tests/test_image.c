@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+// Pictures: files, tone, comparison. Covers extremes X109 to X112.
+#include "test.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static vplImage* makeImage(vplContext* context, int width, int height)
+{
+    vplImage* image;
+    assert_int_equal(vplImage_Create(context, width, height, &image), VPL_SUCCESS);
+    for (int i = 0; i < 3 * width * height; i++) {
+        image->pixels[i] = (float)(4 * uniformAt(9, (uint64_t)i) * uniformAt(8, (uint64_t)i));
+    }
+    return image;
+}
+
+static void SrgbIsThatOfTheTables(void** state)
+{
+    (void)state;
+    Table t = loadTable("srgb_codes.csv");
+    for (int row = 0; row < t.rows; row++) {
+        int code = (int)number(&t, row, "code");
+        assertNear((double)vplSrgb_Decode((float)code / 255.0f), number(&t, row, "linear"), 2e-7, "decode", row);
+        if (!isEmpty(&t, row, "encode_threshold")) {
+            float threshold = (float)number(&t, row, "encode_threshold");
+            assert_int_equal(vplSrgb_Code(threshold * (1 + 2e-7f)), code);
+            assert_int_equal(vplSrgb_Code(threshold * (1 - 2e-7f)), code - 1);
+        }
+    }
+    freeTable(&t);
+    t = loadTable("srgb_values.csv");
+    for (int row = 0; row + 1 < t.rows; row++) { // the last row is a remark
+        float linear = (float)number(&t, row, "linear");
+        assertNear((double)vplSrgb_Encode(linear), number(&t, row, "encoded_clamped"), 2e-7, "encode", row);
+        // One row lies 2e-8 below a threshold, which a float cannot.
+        double scaled = 255 * number(&t, row, "encoded_clamped");
+        if (fabs(scaled - floor(scaled) - 0.5) > 1e-5) {
+            assert_int_equal(vplSrgb_Code(linear), (int)number(&t, row, "code8"));
+        }
+    }
+    freeTable(&t);
+}
+
+// X111
+static void SrgbCodesAreMonotoneAndDefinedEverywhere(void** state)
+{
+    (void)state;
+    int last = 0;
+    for (int i = 0; i <= 100000; i++) {
+        int code = vplSrgb_Code((float)i / 100000.0f);
+        assert_true(code >= last);
+        last = code;
+    }
+    assert_int_equal(last, 255);
+    assert_int_equal(vplSrgb_Code(NAN), 0);
+    assert_int_equal(vplSrgb_Code(-INFINITY), 0);
+    assert_int_equal(vplSrgb_Code(INFINITY), 255);
+}
+
+static int parseList(const char* text, double* out)
+{
+    int count = 0;
+    while (*text) {
+        char* end;
+        out[count++] = strtod(text, &end);
+        text = *end == ' ' ? end + 1 : end;
+    }
+    return count;
+}
+
+static void ReinhardIsThatOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("reinhard.csv");
+    for (int row = 0; row < t.rows; row++) {
+        double in[8], simple[8], white[8];
+        int count = parseList(cell(&t, row, "luminances"), in);
+        for (int kind = 0; kind < 2; kind++) {
+            const char* column = kind ? "Ld_white=max" : "Ld_simple";
+            // Where the geometric mean is 0 the formula divides by 0: the table is empty, black stays black and
+            // no number is not finite (X109).
+            bool defined = !isEmpty(&t, row, column) && parseList(cell(&t, row, column), kind ? white : simple) == count;
+            vplImage* image;
+            assert_int_equal(vplImage_Create(context, count, 1, &image), VPL_SUCCESS);
+            for (int i = 0; i < 3 * count; i++) {
+                image->pixels[i] = (float)in[i / 3];
+            }
+            vplReinhardDef def = vplDefaultReinhardDef();
+            def.delta = (float)number(&t, row, "delta");
+            def.white = kind ? 0 : INFINITY;
+            assert_int_equal(vplToneMap_Reinhard(image, &def), VPL_SUCCESS);
+            for (int i = 0; i < 3 * count; i++) {
+                assert_true(isfinite(image->pixels[i]));
+                if (defined) {
+                    double wanted = kind ? white[i / 3] : simple[i / 3];
+                    assertNear((double)image->pixels[i], wanted, 3e-6 * wanted + 1e-30, column, row);
+                }
+            }
+            vplImage_Destroy(image);
+        }
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static void ReinhardKeepsChromaticityAsInTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table t = loadTable("reinhard_rgb.csv");
+    for (int row = 0; row < t.rows; row++) {
+        // One pixel is its own mean, so the key sets the scaled luminance: a / L_avg * Y = key.
+        double scaled = number(&t, row, "a_over_Lavg") * number(&t, row, "Y_709");
+        if (!(scaled > 0 && scaled <= 1)) {
+            continue;
+        }
+        vplImage* image;
+        assert_int_equal(vplImage_Create(context, 1, 1, &image), VPL_SUCCESS);
+        const char* const names[2][3] = {{"r", "g", "b"}, {"out_r", "out_g", "out_b"}};
+        for (int c = 0; c < 3; c++) {
+            image->pixels[c] = (float)number(&t, row, names[0][c]);
+        }
+        vplReinhardDef def = vplDefaultReinhardDef();
+        def.delta = 0;
+        def.key = (float)scaled;
+        def.white = INFINITY;
+        assert_int_equal(vplToneMap_Reinhard(image, &def), VPL_SUCCESS);
+        for (int c = 0; c < 3; c++) {
+            double wanted = number(&t, row, names[1][c]);
+            assertNear((double)image->pixels[c], wanted, 1e-6 * wanted, names[1][c], row);
+        }
+        vplImage_Destroy(image);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// X110: one bad pixel must not blacken the others.
+static void ReinhardIgnoresPixelsThatAreNotFinite(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const float bad[] = {NAN, INFINITY, -INFINITY};
+    for (int i = 0; i < 3; i++) {
+        vplImage* image = makeImage(context, 4, 4);
+        image->pixels[7] = bad[i];
+        assert_int_equal(vplToneMap_Reinhard(image, NULL), VPL_SUCCESS);
+        for (int k = 0; k < 48; k++) {
+            assert_true(isfinite(image->pixels[k]));
+        }
+        assert_true(image->pixels[0] > 0 && image->pixels[6] == 0);
+        vplImage_Destroy(image);
+    }
+    closeTestContext(context);
+}
+
+static const char* temporaryName(const char* extension)
+{
+    static char name[128];
+    snprintf(name, sizeof name, "/tmp/vpl-test-%ld%s", (long)getpid(), extension);
+    return name;
+}
+
+static void PfmKeepsEveryBit(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage *image = makeImage(context, 13, 7), *back;
+    image->pixels[5] = 1e-42f;
+    image->pixels[6] = -3e38f;
+    const char* path = temporaryName(".pfm");
+    assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
+    assert_int_equal(vplImage_Read(context, path, &back), VPL_SUCCESS);
+    assert_true(vplImage_Hash(image) == vplImage_Hash(back));
+    unlink(path);
+    vplImage_Destroy(image);
+    vplImage_Destroy(back);
+    closeTestContext(context);
+}
+
+static void HdrKeepsAPercentAndPngKeepsCodes(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage *image = makeImage(context, 33, 9), *back;
+    const char* path = temporaryName(".hdr");
+    assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
+    assert_int_equal(vplImage_Read(context, path, &back), VPL_SUCCESS);
+    for (int i = 0; i < 33 * 9; i++) {
+        float largest = fmaxf(image->pixels[3 * i], fmaxf(image->pixels[3 * i + 1], image->pixels[3 * i + 2]));
+        for (int c = 0; c < 3; c++) { // 8 bits of mantissa, shared exponent, truncated
+            assertNear((double)back->pixels[3 * i + c], (double)image->pixels[3 * i + c], 0.008 * (double)largest, "hdr", i);
+        }
+    }
+    unlink(path);
+    vplImage_Destroy(back);
+    path = temporaryName(".png");
+    assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
+    assert_int_equal(vplImage_Read(context, path, &back), VPL_SUCCESS);
+    for (int i = 0; i < 3 * 33 * 9; i++) {
+        assert_int_equal(vplSrgb_Code(back->pixels[i]), vplSrgb_Code(image->pixels[i]));
+    }
+    unlink(path);
+    vplImage_Destroy(back);
+    vplImage_Destroy(image);
+    closeTestContext(context);
+}
+
+static void ExposureDoublesPerStop(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage *image = makeImage(context, 5, 5), *back;
+    vplWriteOptions options = vplDefaultWriteOptions();
+    options.exposure = -2;
+    const char* path = temporaryName(".png");
+    assert_int_equal(vplImage_Write(image, path, &options), VPL_SUCCESS);
+    assert_int_equal(vplImage_Read(context, path, &back), VPL_SUCCESS);
+    for (int i = 0; i < 75; i++) {
+        assert_int_equal(vplSrgb_Code(back->pixels[i]), vplSrgb_Code(image->pixels[i] / 4));
+    }
+    options.exposure = NAN;
+    assert_int_equal(vplImage_Write(image, path, &options), VPL_INVALID_ARGUMENT);
+    unlink(path);
+    vplImage_Destroy(back);
+    vplImage_Destroy(image);
+    closeTestContext(context);
+}
+
+static void APictureThatIsNotFiniteIsRefusedByName(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage* image = makeImage(context, 8, 8);
+    image->pixels[3 * (8 * 2 + 5) + 1] = NAN;
+    const char* path = temporaryName(".pfm");
+    assert_int_equal(vplImage_Write(image, path, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "pixel (5, 2) channel 1"));
+    assert_int_equal(access(path, F_OK), -1);
+    vplImage_Destroy(image);
+    closeTestContext(context);
+}
+
+static void MalformedPicturesAreRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const char* const texts[] = {"", "PF", "PF\n2 2\n", "PF\n2 2\n0\n", "PF\n-1 2\n-1\n", "PF\n99999 2\n-1\n",
+                                 "PF\n2 2\n-1\nabc", "P6\n2 2\n255\nabcdefabcdef", "PF\nnan 2\n-1\n"};
+    const char* const extensions[] = {".pfm", ".hdr", ".png"};
+    for (int e = 0; e < 3; e++) {
+        for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+            const char* path = temporaryName(extensions[e]);
+            FILE* file = fopen(path, "wb");
+            fputs(texts[i], file);
+            fclose(file);
+            vplImage* image = NULL;
+            assert_int_equal(vplImage_Read(context, path, &image), VPL_PARSE_ERROR);
+            assert_null(image);
+            unlink(path);
+        }
+    }
+    vplImage* image = NULL;
+    assert_int_equal(vplImage_Read(context, "/nonexistent/a.pfm", &image), VPL_FILE_ERROR);
+    assert_int_equal(vplImage_Read(context, "a.xyz", &image), VPL_INVALID_ARGUMENT);
+    closeTestContext(context);
+}
+
+static void MetricsAreTheirDefinitions(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage *a, *b;
+    assert_int_equal(vplImage_Create(context, 2, 1, &a), VPL_SUCCESS);
+    assert_int_equal(vplImage_Create(context, 2, 1, &b), VPL_SUCCESS);
+    for (int i = 0; i < 6; i++) {
+        a->pixels[i] = 0.5f;
+        b->pixels[i] = i < 3 ? 0.5f : 0.25f;
+    }
+    vplComparison c;
+    assert_int_equal(vplImage_Compare(a, b, &c), VPL_SUCCESS);
+    assertNear(c.rmse, sqrt(0.0625 / 2), 1e-12, "rmse", 0);
+    assertNear(c.relativeRmse, sqrt(0.0625 / 2) / 0.375, 1e-12, "relative", 0);
+    assertNear(c.relmse, 0.0625 / (0.26 * 0.26) / 2, 1e-12, "relmse", 0);
+    assertNear(c.energyRatio, 3 / 2.25, 1e-12, "energy", 0);
+    assertNear(c.maxDifference, 0.25, 0, "max", 0);
+    assert_true(c.maxX == 1 && c.maxY == 0);
+    double d = 0.7353569830524495 - 0.5370987304831942; // sRGB of 0.5 and 0.25
+    assertNear(c.psnr, 10 * log10(2 / (d * d)), 1e-4, "psnr", 0);
+    assert_int_equal(vplImage_Compare(a, a, &c), VPL_SUCCESS);
+    assert_true(c.rmse == 0 && c.relmse == 0 && isinf(c.psnr) && c.energyRatio == 1 && c.maxDifference == 0);
+    vplImage *map = NULL, *other = makeImage(context, 3, 1);
+    assert_int_equal(vplImage_Compare(a, other, &c), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_Heatmap(a, b, 0, &map), VPL_SUCCESS);
+    assert_true(map->pixels[0] == 0 && map->pixels[3] == 1);
+    vplImage_Destroy(map);
+    vplImage_Destroy(other);
+    vplImage_Destroy(a);
+    vplImage_Destroy(b);
+    closeTestContext(context);
+}
+
+static void HashSeesEveryBitAndTheShape(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage *a = makeImage(context, 6, 4), *b = makeImage(context, 4, 6);
+    assert_true(vplImage_Hash(a) != vplImage_Hash(b));
+    uint64_t hash = vplImage_Hash(a);
+    for (int i = 0; i < 72; i++) {
+        uint32_t bits;
+        memcpy(&bits, a->pixels + i, 4);
+        bits ^= 1;
+        memcpy(a->pixels + i, &bits, 4);
+        assert_true(vplImage_Hash(a) != hash);
+        bits ^= 1;
+        memcpy(a->pixels + i, &bits, 4);
+    }
+    assert_true(vplImage_Hash(a) == hash);
+    vplImage_Destroy(a);
+    vplImage_Destroy(b);
+    closeTestContext(context);
+}
+
+TEST_SUITE(image, cmocka_unit_test(SrgbIsThatOfTheTables), cmocka_unit_test(SrgbCodesAreMonotoneAndDefinedEverywhere),
+           cmocka_unit_test(ReinhardIsThatOfTheTable), cmocka_unit_test(ReinhardKeepsChromaticityAsInTheTable),
+           cmocka_unit_test(ReinhardIgnoresPixelsThatAreNotFinite), cmocka_unit_test(PfmKeepsEveryBit),
+           cmocka_unit_test(HdrKeepsAPercentAndPngKeepsCodes), cmocka_unit_test(ExposureDoublesPerStop),
+           cmocka_unit_test(APictureThatIsNotFiniteIsRefusedByName), cmocka_unit_test(MalformedPicturesAreRefused),
+           cmocka_unit_test(MetricsAreTheirDefinitions), cmocka_unit_test(HashSeesEveryBitAndTheShape));

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// Elementary functions, random numbers, sequences and warps. Covers extremes X043 to X046.
+#include "test.h"
+
+#include "base/rng.h"
+#include "math/sampling.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+#include <float.h>
+
+static void ElementaryFunctionsAgreeWithLibm(void** state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < 100000; i++) {
+        double u = uniformAt(1, i), x = 40 * u - 20, s, c;
+        vplSinCos(x, &s, &c);
+        assertNear(s, sin(x), 4e-15, "sin", (int)i); // 2 ulp of x / (pi/2), times the slope
+        assertNear(c, cos(x), 4e-15, "cos", (int)i);
+        double e = exp(30 * x);
+        assertNear(vplExp(30 * x), e, 8e-16 * e, "exp", (int)i);
+        double positive = exp(x * 20), l = log(positive);
+        assertNear(vplLog1(positive), l, 4e-16 * fabs(l) + 2e-16, "log", (int)i);
+        double p = pow(u, 1 / 2.4);
+        assertNear(vplPow(u, 1 / 2.4), p, 4e-15 * p, "pow", (int)i);
+        double y = uniformAt(2, i) - 0.5, z = uniformAt(3, i) - 0.5;
+        assertNear(vplAtan2(y, z), atan2(y, z), 1e-15, "atan2", (int)i);
+        assertNear(vplAcos(2 * u - 1), acos(2 * u - 1), 2e-15, "acos", (int)i);
+    }
+}
+
+static void ElementaryFunctionsAreDefinedAtTheirEnds(void** state)
+{
+    (void)state;
+    double s, c;
+    for (int quarter = -8; quarter <= 8; quarter++) {
+        vplSinCos(quarter * (VPL_PI / 2), &s, &c);
+        const double wanted[4] = {0, 1, 0, -1};
+        assertNear(s, wanted[quarter & 3], 0, "sin", quarter);
+        assertNear(c, wanted[(quarter + 1) & 3], 0, "cos", quarter);
+        assert_false(signbit(s) && s == 0);
+    }
+    assert_true(vplExp(-INFINITY) == 0 && vplExp(-746) == 0 && isinf(vplExp(710)) && isnan(vplExp(NAN)));
+    assert_true(vplExp(0) == 1 && vplLog1(1) == 0 && isinf(vplLog1(0)) && isnan(vplLog1(-1)));
+    assert_true(isinf(vplLog1(INFINITY)));
+    assertNear(vplLog1(5e-324), -744.4400719213812, 1e-12, "log of the smallest double", 0);
+    assertNear(vplLog1(DBL_MAX), 709.782712893384, 1e-12, "log of the largest double", 0);
+    assert_true(vplPow(0, 2) == 0 && vplPow(-1, 2) == 0 && vplPow(1, 5) == 1);
+    assert_true(vplAtan2(0, 0) == 0);
+    assertNear(vplAtan2(0, -1), VPL_PI, 0, "atan2", 0);
+    assertNear(vplAcos(2), 0, 0, "acos", 0);
+}
+
+// The published known-answer vectors of Philox 4x32-10 (Random123, kat_vectors).
+static void PhiloxGivesThePublishedNumbers(void** state)
+{
+    (void)state;
+    const uint32_t zeros[4] = {0, 0, 0, 0}, ones[4] = {~0u, ~0u, ~0u, ~0u};
+    const uint32_t wanted[2][4] = {{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8},
+                                   {0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}};
+    assert_memory_equal(vplPhilox(zeros, 0, 0).v, wanted[0], 16);
+    assert_memory_equal(vplPhilox(ones, ~0u, ~0u).v, wanted[1], 16);
+    assert_true(vplUnitFloat(~0u) < 1 && vplUnitFloat(0) == 0);
+}
+
+static void RadicalInversesAreThoseOfTheTables(void** state)
+{
+    (void)state;
+    Table t = loadTable("vdcorput.csv");
+    for (int row = 0; row < t.rows; row++) {
+        uint32_t k = (uint32_t)number(&t, row, "k");
+        double base2 = number(&t, row, "base2"), base3 = number(&t, row, "base3");
+        float v = vplVanDerCorput(k), h2 = vplHalton(k, 0), h3 = vplHalton(k, 1);
+        assert_true(v < 1 && h2 < 1 && h3 < 1); // X044: rounding to float would reach 1
+        assertNear((double)v, base2, 0x1p-24, "base 2", row);
+        assertNear((double)h2, base2, 0x1p-24, "Halton base 2", row);
+        assertNear((double)h3, base3, 0x1p-24, "Halton base 3", row);
+    }
+    freeTable(&t);
+    t = loadTable("hammersley.csv");
+    for (int row = 0; row < t.rows; row++) {
+        assertNear((double)vplVanDerCorput((uint32_t)number(&t, row, "k")), number(&t, row, "vdc"), 0x1p-24, "vdc", row);
+    }
+    freeTable(&t);
+}
+
+static void WarpsAreThoseOfTheTable(void** state)
+{
+    (void)state;
+    Table t = loadTable("disk_maps.csv");
+    for (int row = 0; row < t.rows; row++) {
+        float u = (float)number(&t, row, "u"), v = (float)number(&t, row, "v"), x, y;
+        vplSamplePolarDisc(u, v, &x, &y);
+        assertNear((double)x, number(&t, row, "polar_x"), 1e-7, "polar x", row);
+        assertNear((double)y, number(&t, row, "polar_y"), 1e-7, "polar y", row);
+        vplSampleConcentricDisc(u, v, &x, &y);
+        assertNear((double)x, number(&t, row, "concentric_x"), 1e-7, "concentric x", row);
+        assertNear((double)y, number(&t, row, "concentric_y"), 1e-7, "concentric y", row);
+        vplVec3 d = vplSampleSphere(u, v), wanted = vectorOf(&t, row, "sphere_");
+        assertNear((double)vplLength(vplSub(d, wanted)), 0, 2e-7, "sphere", row);
+        assertNear((double)vplLength(d), 1, 2e-7, "|sphere|", row);
+        d = vplSampleCosine(u, v);
+        wanted = vectorOf(&t, row, "cosine_");
+        assertNear((double)vplLength(vplSub(d, wanted)), 0, 2e-7, "cosine", row);
+        assertNear((double)vplLength(d), 1, 2e-7, "|cosine|", row);
+    }
+    freeTable(&t);
+}
+
+// X046: orthonormal and right-handed for every normal, the poles included.
+static void FramesAreOrthonormalForEveryNormal(void** state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < 20000; i++) {
+        vplVec3 n = vplSampleSphere((float)uniformAt(1, i), (float)uniformAt(2, i)), t, b;
+        const vplVec3 poles[6] = {{0, 0, -1}, {0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {1e-20f, 0, -1}, {1, 0, -0.0f}};
+        n = i < 6 ? poles[i] : n;
+        vplFrame(n, &t, &b);
+        assertNear((double)vplDot(t, b), 0, 1e-6, "t.b", (int)i);
+        assertNear((double)vplDot(t, n), 0, 1e-6, "t.n", (int)i);
+        assertNear((double)vplDot(b, n), 0, 1e-6, "b.n", (int)i);
+        assertNear((double)vplLength(t), 1, 1e-6, "|t|", (int)i);
+        assertNear((double)vplDot(vplCross(t, b), n), 1, 1e-6, "hand", (int)i);
+    }
+}
+
+static void NormalizeKeepsTheDirectionOfAnyLength(void** state)
+{
+    (void)state;
+    const float lengths[] = {1e-42f, 1e-30f, 1, 1e30f, 3e38f};
+    for (int i = 0; i < 5; i++) {
+        vplVec3 n = vplNormalize(vplVec(0.6f * lengths[i], 0, -0.8f * lengths[i]));
+        assertNear((double)n.x, 0.6, i == 0 ? 1e-2 : 2e-7, "x", i); // a denormal has few digits
+        assertNear((double)n.z, -0.8, i == 0 ? 1e-2 : 2e-7, "z", i);
+    }
+    vplVec3 zero = vplNormalize(vplVec(0, 0, 0));
+    assert_true(zero.x == 0 && zero.y == 0 && zero.z == 0);
+}
+
+static void MatricesMoveAsTheyShould(void** state)
+{
+    (void)state;
+    vplMat4 m = vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){VPL_PI / 2, 0, 0}, (vplVec3){2, 2, 2});
+    vplVec3 p = vplMat4_TransformPoint(&m, (vplVec3){0, 1, 0}); // y turns to z
+    assert_true(p.x == 1 && p.y == 2 && p.z == 5);
+    vplVec3 d = vplMat4_TransformDirection(&m, (vplVec3){0, 1, 0});
+    assert_true(d.x == 0 && d.y == 0 && d.z == 2);
+    vplMat4 look = vplMat4_LookAt((vplVec3){0, 0, 5}, (vplVec3){0, 0, 0}, (vplVec3){0, 1, 0});
+    p = vplMat4_TransformPoint(&look, (vplVec3){1, 2, 0});
+    assert_true(p.x == 1 && p.y == 2 && p.z == -5);
+    vplMat4 both = vplMat4_Multiply(&look, &m);
+    vplVec3 once = vplMat4_TransformPoint(&both, (vplVec3){0.5f, 1, -1});
+    vplVec3 twice = vplMat4_TransformPoint(&look, vplMat4_TransformPoint(&m, (vplVec3){0.5f, 1, -1}));
+    assertNear((double)vplLength(vplSub(once, twice)), 0, 1e-6, "product", 0);
+    vplMat4 projection = vplMat4_Perspective(VPL_PI / 2, 1, 1, 9);
+    assertNear((double)projection.m[0], 1, 1e-7, "scale", 0);
+    // Depth 0 at near, 1 at far.
+    assertNear((double)(projection.m[10] * -1 + projection.m[14]), 0, 1e-6, "near", 0);
+    assertNear((double)(projection.m[10] * -9 + projection.m[14]) / 9, 1, 1e-6, "far", 0);
+}
+
+TEST_SUITE(math, cmocka_unit_test(ElementaryFunctionsAgreeWithLibm),
+           cmocka_unit_test(ElementaryFunctionsAreDefinedAtTheirEnds),
+           cmocka_unit_test(PhiloxGivesThePublishedNumbers), cmocka_unit_test(RadicalInversesAreThoseOfTheTables),
+           cmocka_unit_test(WarpsAreThoseOfTheTable), cmocka_unit_test(FramesAreOrthonormalForEveryNormal),
+           cmocka_unit_test(NormalizeKeepsTheDirectionOfAnyLength), cmocka_unit_test(MatricesMoveAsTheyShould));
