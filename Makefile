@@ -1,5 +1,6 @@
 # libvpl. `make help` lists the targets.
-# Every configuration has a folder of its own: make BUILD=build/clang CC=clang MODE=debug SANITIZE=address,undefined
+# Every configuration has a folder of its own:
+#   make BUILD=build/clang CC=clang MODE=debug SANITIZE=address,undefined test-programs
 
 CC      ?= cc
 AR      ?= ar
@@ -18,9 +19,8 @@ endif
 STANDARD := -std=gnu11 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-strict-aliasing
 WARNINGS := -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wno-unknown-pragmas $(WERROR)
 INCLUDES := -Iinclude -Isrc -isystem /usr/include/stb
-OPT_release := -O3 -DNDEBUG
+OPT_release := -O3
 OPT_debug   := -O0
-OPT_size    := -O1
 CFLAGS  ?= -g
 SAN     := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 OMP     := $(if $(filter 1,$(OPENMP)),-fopenmp)
@@ -41,25 +41,105 @@ CLI_SOURCES    := $(wildcard src/cli/*.c)
 LIB_OBJECTS    := $(PLAIN_SOURCES:%.c=$(BUILD)/obj/%.o) \
                   $(foreach isa,$(ISAS),$(KERNEL_SOURCES:%.c=$(BUILD)/obj/%.$(isa).o))
 CLI_OBJECTS    := $(CLI_SOURCES:%.c=$(BUILD)/obj/%.o)
-TEST_SOURCES   := $(wildcard tests/*.c)
-TEST_OBJECTS   := $(TEST_SOURCES:%.c=$(BUILD)/obj/%.o)
+TEST_OBJECTS   := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/*.c))
+GOLDEN_OBJECTS := $(BUILD)/obj/tests/golden/golden.o
+BENCH_PROGRAMS := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
+FUZZERS        := $(patsubst tests/fuzz/%_fuzz.c,%,$(wildcard tests/fuzz/*_fuzz.c))
+REPLAYS        := $(FUZZERS:%=$(BUILD)/fuzz/%_replay)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all help deps demo test
-all: deps
-	@$(MAKE) --no-print-directory build-all
+.PHONY: all programs test-programs help deps demo test check-all bench golden gallery install clean format fuzz
 
-.PHONY: build-all
-build-all: $(BUILD)/libvpl.a $(BUILD)/vpl
+## make             builds build/vpl and build/libvpl.a, installing what is missing
+all: deps
+	@$(MAKE) --no-print-directory programs
+
+programs: $(BUILD)/libvpl.a $(BUILD)/vpl
+
+## make demo        renders the room with 18 virtual lights to build/demo.png
+demo: all
+	$(BUILD)/vpl render examples/scenes/closed-room.json -o $(BUILD)/demo.png --size 800x700 \
+	  --lighting documented --exposure 0.5 --pcf 64 --pcf-offset 0.12
+	@echo "Done: open $(BUILD)/demo.png"
+
+## make test        runs every test; ends with "N passed, N failed"
+test: deps
+	@$(MAKE) --no-print-directory test-programs
+	@tests/run.sh $(BUILD)
+
+test-programs: programs $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS)
+
+## make check-all   the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
+check-all: deps
+	@tests/check_all.sh
+
+## make bench       times every stage
+bench: all
+	@$(MAKE) --no-print-directory $(BENCH_PROGRAMS)
+	$(BUILD)/vpl bench
+	$(BUILD)/bench/acne
+
+## make golden      rewrites golden/ (say in the commit why bits moved)
+golden: deps
+	@$(MAKE) --no-print-directory $(BUILD)/vpl-golden
+	$(BUILD)/vpl-golden write golden
+
+## make gallery     rewrites the README's pictures
+gallery: all
+	tests/gallery.sh $(BUILD)/vpl
+
+## make fuzz        fuzzes the readers for FUZZ_SECONDS each (default 600)
+fuzz: deps
+	@tests/fuzz/run.sh $(FUZZERS)
+
+## make install     library, headers, program, man page and libvpl.pc under PREFIX (/usr/local)
+install: programs
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/vpl $(DESTDIR)$(PREFIX)/lib/pkgconfig \
+	  $(DESTDIR)$(PREFIX)/share/man/man1
+	install $(BUILD)/vpl $(DESTDIR)$(PREFIX)/bin
+	install -m 644 include/vpl/*.h $(DESTDIR)$(PREFIX)/include/vpl
+	install -m 644 $(BUILD)/libvpl.a $(DESTDIR)$(PREFIX)/lib
+	install -m 644 src/cli/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl/base.h)|' \
+	  -e 's|@OMP@|$(OMP)|' src/libvpl.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libvpl.pc
+
+## make format      clang-format over all sources
+format:
+	clang-format -i $(shell git ls-files '*.c' '*.h')
+
+## make clean       removes build/
+clean:
+	rm -rf build
 
 help:
 	@sed -n 's/^## //p' Makefile
+
+deps:
+	@.ci/install-deps
 
 $(BUILD)/libvpl.a: $(LIB_OBJECTS)
 	@rm -f $@
 	$(AR) rcs $@ $^
 
 $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
+	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/libvpl.a
+	$(CC) $(ALL_CFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+
+$(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
+	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(BUILD)/libvpl.a
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/fuzz/%_replay: $(BUILD)/obj/tests/fuzz/%_fuzz.o $(BUILD)/obj/tests/fuzz/replay.o $(BUILD)/libvpl.a
+	@mkdir -p $(@D)
 	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/obj/%.o: %.c
@@ -73,11 +153,5 @@ $(BUILD)/obj/%_kernel.$(1).o: %_kernel.c
 endef
 $(foreach isa,$(ISAS),$(eval $(call KERNEL_RULE,$(isa))))
 
-## make             build build/vpl and build/libvpl.a, installing what is missing
-deps:
-	@.ci/install-deps
-
+.SECONDARY:
 -include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)
-
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/libvpl.a
-	$(CC) $(ALL_CFLAGS) -o $@ $^ -lcmocka $(LDLIBS)

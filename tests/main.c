@@ -12,6 +12,7 @@
     X(math)                                                                                                        \
     X(raster)                                                                                                      \
     X(rasterTruth)                                                                                                 \
+    X(render)                                                                                                      \
     X(shading)                                                                                                     \
     X(visibility)
 

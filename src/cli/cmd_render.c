@@ -1,55 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cli.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-bool checkOutput(const char* path)
+static bool isEmpty(const float* pixel)
 {
-    char folder[4096];
-    const char* slash = strrchr(path, '/');
-    size_t length = slash ? (size_t)(slash - path) : 0;
-    if (length >= sizeof folder) {
-        complain("%s: the name is too long", path);
-        return false;
-    }
-    snprintf(folder, sizeof folder, "%.*s", (int)length, path);
-    const char* shown = slash == NULL ? "." : length == 0 ? "/" : folder;
-    struct stat info;
-    if (stat(path, &info) == 0) {
-        if (S_ISDIR(info.st_mode)) {
-            complain("%s: cannot write: it is a directory", path);
-            return false;
-        }
-        if (!S_ISREG(info.st_mode)) {
-            return true; // a device or a pipe
-        }
-    }
-    if (access(shown, W_OK) != 0) {
-        complain("%s: cannot write: directory %s: %s", path, shown, strerror(errno));
-        return false;
-    }
-    return true;
+    return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0;
 }
 
-// PNG shows what is not light: metres are scaled to the largest, normals packed as (n + 1) / 2.
+// PNG shows what is not light: metres from nearest (white) to farthest (dark), normals packed as (n + 1) / 2.
 static void prepareForEyes(vplImage* image, vplShow show)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
-    float largest = 0;
-    for (size_t i = 0; i < count; i++) {
-        largest = image->pixels[i] > largest ? image->pixels[i] : largest;
+    float smallest = INFINITY, largest = 0;
+    for (size_t i = 0; i < count; i += 3) {
+        if (!isEmpty(image->pixels + i)) {
+            largest = fmaxf(largest, image->pixels[i]);
+            smallest = fminf(smallest, image->pixels[i]);
+        }
     }
+    float scale = largest > smallest ? 0.9f / (largest - smallest) : 0;
     for (size_t i = 0; i < count; i += 3) {
         float* p = image->pixels + i;
-        bool empty = p[0] == 0 && p[1] == 0 && p[2] == 0;
+        bool empty = isEmpty(p);
         for (int c = 0; c < 3 && !empty; c++) {
-            float code = show == VPL_SHOW_NORMALS ? 0.5f * p[c] + 0.5f : 1 - 0.9f * p[c] / largest;
+            float code = show == VPL_SHOW_NORMALS ? 0.5f * p[c] + 0.5f : 1 - scale * (p[c] - smallest);
             p[c] = vplSrgb_Decode(code);
         }
     }
@@ -93,8 +69,8 @@ static int renderScene(const Arguments* a, vplContext* context, const vplScene* 
         for (int i = 0; i < stats.stageCount; i++) {
             complain("%-12s %9.2f ms", stats.stages[i].name, stats.stages[i].ms);
         }
-        complain("%d virtual lights, %lld draw calls, hash %016llx", stats.virtualLights, (long long)stats.drawCalls,
-                 (unsigned long long)stats.imageHash);
+        complain("%d virtual lights, %lld draw calls, hash %016llx", stats.virtualLights,
+                 (long long)stats.drawCalls, (unsigned long long)stats.imageHash);
     }
     code = writePicture(a, image);
     if (code == EXIT_DONE && a->stats != NULL) {
@@ -114,9 +90,14 @@ int runRender(const Arguments* a)
         complain("%s: unknown picture format; the name must end in .png, .hdr or .pfm", a->output);
         return EXIT_USAGE;
     }
+    if (a->stats != NULL && strcmp(a->output, a->stats) == 0) {
+        complain("%s: both the picture and the statistics would be written there", a->output);
+        return EXIT_USAGE;
+    }
     if (!checkOutput(a->output) || (a->stats != NULL && !checkOutput(a->stats))) {
         return EXIT_COULD_NOT;
     }
+    catchInterrupts();
     vplContext* context = openContext(a);
     if (context == NULL) {
         return EXIT_USAGE;

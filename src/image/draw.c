@@ -96,7 +96,7 @@ void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour)
             float dx = (float)i + 0.5f - x, dy = (float)j + 0.5f - y;
             float d = sqrtf(dx * dx + dy * dy);
             if (d <= radius) {
-                setPixel(image, i, j, d > radius - 1.2f ? (vplRgb){0, 0, 0} : colour);
+                setPixel(image, i, j, d > radius - 1 && radius > 2 ? (vplRgb){0, 0, 0} : colour);
             }
         }
     }

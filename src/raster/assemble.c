@@ -76,8 +76,11 @@ static int emitClipped(Assembly* a, const vplShaded* s, const uint32_t* index, i
     }
     if (a->writing) {
         for (int i = 0; i < count; i++) {
-            memcpy(s->extras + (size_t)(*extras + i) * (size_t)s->varyingCount, out[i].varying,
-                   (size_t)s->varyingCount * sizeof(float));
+            float* to = s->extras + (size_t)(*extras + i) * (size_t)(3 + s->varyingCount);
+            to[0] = (float)out[i].x;
+            to[1] = (float)out[i].y;
+            to[2] = (float)out[i].w;
+            memcpy(to + 3, out[i].varying, (size_t)s->varyingCount * sizeof(float));
         }
     }
     *extras += count;
@@ -153,7 +156,7 @@ static vplResult placeChunks(Assembly* a)
             return vplFail(r->context, VPL_LIMIT, "more than %d triangles on screen", INT32_MAX);
         }
         s->triangleCount = (int)triangles - s->firstTriangle;
-        s->extras = vplAlloc(r->context, (size_t)extras * (size_t)s->varyingCount, sizeof(float));
+        s->extras = vplAlloc(r->context, (size_t)extras * (size_t)(3 + s->varyingCount), sizeof(float));
         if (s->extras == NULL) {
             return VPL_OUT_OF_MEMORY;
         }

@@ -13,18 +13,17 @@ enum {
     VPL_TILE_PIXELS = VPL_TILE_SIDE * VPL_TILE_SIDE
 };
 
-// A vertex after projection. Clipping appends more of them behind the mesh's own.
+// A vertex after projection.
 typedef struct vplScreenVertex {
     int32_t x, y; // 24.8 fixed point, y down
     float z;      // z/w
-    float iw;     // 1/w
 } vplScreenVertex;
 
-// One cache line per triangle; edges and planes are set up again in each tile it touches, which costs less
-// than reading them from memory.
+// Less than a cache line per triangle; edges and planes are set up again in each tile it touches, which costs
+// less than reading them from memory.
 typedef struct vplTriangle {
     vplScreenVertex v[3]; // turned so that the area is > 0 with y down: clockwise as seen
-    uint32_t vertex[3];   // where its varyings are
+    uint32_t vertex[3];   // where its clip-space position and varyings are
     int32_t primitive;    // with VPL_CLOCKWISE if it was so before turning
 } vplTriangle;
 
@@ -40,7 +39,7 @@ typedef struct vplShaded {
     vplVertices clip;        // what the vertex shader wrote, one array each in `storage`
     vplScreenVertex* screen; // one per mesh vertex
     uint8_t* outcodes;       // one per mesh vertex
-    float* extras;           // varyings of vertices made by clipping, varyingCount each; numbered from vertexCount
+    float* extras;           // vertices made by clipping: x, y, w, varyings each; numbered from vertexCount
     int firstTriangle, triangleCount;
     float* storage;
 } vplShaded;
@@ -119,7 +118,30 @@ vplResult vplRunTiles(vplRaster* raster, vplProgressFcn* progress, void* user);
 
 // Draws triangles[list[0 .. count)] of one command into one tile.
 typedef void vplDrawTileFcn(vplTileState* state, const vplPipeline* pipeline, const vplShaded* shaded,
-                            const vplTriangle* triangles, const int* list, int count, int planeCount);
+                            const vplTriangle* triangles, const int* list, int count,
+                            const vplFramebuffer* framebuffer);
 
+
+// Clip-space x, y, w and varyings of vertex `at`, which may be one of the extras.
+static inline void vplFetchVertex(const vplShaded* s, uint32_t at, float position[3], float* varyings)
+{
+    const uint32_t own = (uint32_t)s->mesh.vertexCount;
+    if (at < own) {
+        position[0] = s->clip.x[at];
+        position[1] = s->clip.y[at];
+        position[2] = s->clip.w[at];
+        for (int k = 0; k < s->varyingCount; k++) {
+            varyings[k] = s->clip.varying[k][at];
+        }
+        return;
+    }
+    const float* extra = s->extras + (size_t)(at - own) * (size_t)(3 + s->varyingCount);
+    for (int k = 0; k < 3; k++) {
+        position[k] = extra[k];
+    }
+    for (int k = 0; k < s->varyingCount; k++) {
+        varyings[k] = extra[3 + k];
+    }
+}
 
 #endif

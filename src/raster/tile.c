@@ -95,8 +95,7 @@ static void runTile(void* data, int index, int worker)
         }
         int first = state->meshStart[c->shaded], end = state->meshStart[c->shaded + 1];
         if (first < end) {
-            draw(state, &r->pipelines[c->pipeline], &r->shaded[c->shaded], r->triangles, bin + first, end - first,
-                 f->planeCount);
+            draw(state, &r->pipelines[c->pipeline], &r->shaded[c->shaded], r->triangles, bin + first, end - first, f);
         }
     }
     storePlane(r, tile, &f->depth, tile->depth);

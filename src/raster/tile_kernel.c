@@ -15,8 +15,17 @@ typedef struct Setup {
     int32_t laneStep[3][VPL_LANES];   // growth from lane 0 to each lane in whole pixels (e >> 8)
     double laneE[3][VPL_LANES];       // the same, exact
     double z, zx, zy, laneZ[VPL_LANES]; // depth at the tile's first pixel centre, and its growth per pixel
-    float inverseArea;
 } Setup;
+
+// Perspective-correct interpolation. Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D
+// Homogeneous Coordinates, Graphics Hardware 1997: with corners (X, Y, w) in homogeneous pixels, share i of
+// the point seen at pixel p is proportional to (corner j x corner k) . (p, 1). No corner is divided by its w,
+// and none is snapped: snapping decides coverage only, and moves no surface.
+typedef struct Shares {
+    double x[3], y[3], c[3];            // the three planes over pixel indices; their sum is 1/w
+    double lane[3][VPL_LANES];          // growth from lane 0
+    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS], d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
+} Shares;
 
 static void prepare(const vplTriangle* t, const vplTile* tile, Setup* s)
 {
@@ -36,7 +45,6 @@ static void prepare(const vplTriangle* t, const vplTile* tile, Setup* s)
     }
     // Sum of the three edge functions anywhere is the doubled area.
     double inverse = 1 / (double)(s->e[0] + s->e[1] + s->e[2]);
-    s->inverseArea = (float)inverse;
     double z1 = (double)t->v[1].z - t->v[0].z, z2 = (double)t->v[2].z - t->v[0].z;
     s->zx = 256 * inverse * (z1 * s->a[1] + z2 * s->a[2]);
     s->zy = 256 * inverse * (z1 * s->b[1] + z2 * s->b[2]);
@@ -104,36 +112,79 @@ static int compareDepth(vplDepthCompare compare, const float* restrict old, cons
     return 1;
 }
 
-// Perspective-correct w and varyings. Barycentrics are clamped at 0, which changes no covered lane and keeps
-// the others finite.
-static void interpolate(const Setup* s, const vplTriangle* t, const int64_t e[3], const vplShaded* shaded,
-                        vplFragments* f)
+static void crossPlanes(const double p[3][3], Shares* s)
 {
-    const double e0 = (double)e[0], e1 = (double)e[1], e2 = (double)e[2];
-    const float iw0 = t->v[0].iw, iw1 = t->v[1].iw, iw2 = t->v[2].iw;
+    for (int i = 0; i < 3; i++) {
+        const double *u = p[(i + 1) % 3], *v = p[(i + 2) % 3];
+        s->x[i] = u[1] * v[2] - u[2] * v[1];
+        s->y[i] = u[2] * v[0] - u[0] * v[2];
+        s->c[i] = u[0] * v[1] - u[1] * v[0];
+    }
+}
+
+static void prepareShares(const vplTriangle* t, const vplShaded* shaded, const vplFramebuffer* f, Shares* s)
+{
+    double p[3][3];
+    float varyings[3][VPL_MAX_VARYINGS];
+    for (int i = 0; i < 3; i++) {
+        float clip[3];
+        vplFetchVertex(shaded, t->vertex[i], clip, varyings[i]);
+        p[i][0] = 0.5 * f->width * ((double)clip[2] + clip[0]);
+        p[i][1] = 0.5 * f->height * ((double)clip[2] - clip[1]);
+        p[i][2] = clip[2];
+    }
+    crossPlanes(p, s);
+    double determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
+    if (!(determinant > 0)) {
+        // Only snapping gave it an area: then the snapped corners are the triangle.
+        for (int i = 0; i < 3; i++) {
+            p[i][0] = t->v[i].x / 256.0 * p[i][2];
+            p[i][1] = t->v[i].y / 256.0 * p[i][2];
+        }
+        crossPlanes(p, s);
+        determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
+    }
+    // Scaled so that floats hold the planes whatever the unit of w.
+    double scale = 1 / determinant;
+    for (int i = 0; i < 3; i++) {
+        s->x[i] *= scale;
+        s->y[i] *= scale;
+        s->c[i] = s->c[i] * scale + 0.5 * (s->x[i] + s->y[i]); // pixel centres
+        for (int l = 0; l < VPL_LANES; l++) {
+            s->lane[i][l] = s->x[i] * (l & 3) + s->y[i] * (l >> 2);
+        }
+    }
+    for (int k = 0; k < shaded->varyingCount; k++) {
+        s->v0[k] = varyings[0][k];
+        s->d1[k] = varyings[1][k] - varyings[0][k];
+        s->d2[k] = varyings[2][k] - varyings[0][k];
+    }
+}
+
+// Shares are clamped at 0: that keeps points of the outline within the triangle, and lanes that are not covered
+// finite.
+static void interpolate(const Shares* s, int varyingCount, int x, int y, vplFragments* f)
+{
+    double at[3];
+    for (int i = 0; i < 3; i++) {
+        at[i] = s->x[i] * x + (s->y[i] * y + s->c[i]);
+    }
     float b1[VPL_LANES], b2[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        float l0 = (float)(e0 + s->laneE[0][l]) * s->inverseArea;
-        float l1 = (float)(e1 + s->laneE[1][l]) * s->inverseArea;
-        float l2 = (float)(e2 + s->laneE[2][l]) * s->inverseArea;
-        l0 = (l0 > 0 ? l0 : 0) * iw0;
-        l1 = (l1 > 0 ? l1 : 0) * iw1;
-        l2 = (l2 > 0 ? l2 : 0) * iw2;
-        float w = 1 / (l0 + l1 + l2);
+        float s0 = (float)(at[0] + s->lane[0][l]);
+        float s1 = (float)(at[1] + s->lane[1][l]);
+        float s2 = (float)(at[2] + s->lane[2][l]);
+        s0 = s0 > 0 ? s0 : 0;
+        s1 = s1 > 0 ? s1 : 0;
+        s2 = s2 > 0 ? s2 : 0;
+        float w = 1 / (s0 + s1 + s2);
         f->w[l] = w;
-        b1[l] = l1 * w;
-        b2[l] = l2 * w;
+        b1[l] = s1 * w;
+        b2[l] = s2 * w;
     }
-    const uint32_t own = (uint32_t)shaded->mesh.vertexCount;
-    for (int k = 0; k < shaded->varyingCount; k++) {
-        float v[3];
-        for (int i = 0; i < 3; i++) {
-            uint32_t at = t->vertex[i];
-            v[i] = at < own ? shaded->clip.varying[k][at]
-                            : shaded->extras[(size_t)(at - own) * (size_t)shaded->varyingCount + (size_t)k];
-        }
+    for (int k = 0; k < varyingCount; k++) {
         // From corner 0, so that what is equal at all corners stays equal in every bit.
-        const float v0 = v[0], d1 = v[1] - v[0], d2 = v[2] - v[0];
+        const float v0 = s->v0[k], d1 = s->d1[k], d2 = s->d2[k];
         for (int l = 0; l < VPL_LANES; l++) {
             f->varying[k][l] = v0 + (b1[l] * d1 + b2[l] * d2);
         }
@@ -167,13 +218,20 @@ typedef struct Draw {
     const vplPipeline* pipeline;
     const vplShaded* shaded;
     const vplTriangle* triangle;
+    const vplFramebuffer* framebuffer;
+    Shares* shares; // of the triangle, once they are needed
     int owner, planeCount;
+    bool hasShares;
 } Draw;
 
-static void shade(const Draw* d, const Setup* s, const int64_t e[3], int at)
+static void shade(Draw* d, int at)
 {
     vplFragments* f = &d->state->block;
-    interpolate(s, d->triangle, e, d->shaded, f);
+    if (!d->hasShares) {
+        prepareShares(d->triangle, d->shaded, d->framebuffer, d->shares);
+        d->hasShares = true;
+    }
+    interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
     f->primitive = d->triangle->primitive & ~VPL_CLOCKWISE;
     f->scratch = d->state->tile.scratch;
     f->element = at;
@@ -183,7 +241,7 @@ static void shade(const Draw* d, const Setup* s, const int64_t e[3], int at)
     d->pipeline->fragment(d->pipeline->fragmentUniforms, f);
 }
 
-static void drawBlock(const Draw* d, const Setup* s, const int64_t e[3], int x, int y)
+static void drawBlock(Draw* d, const Setup* s, const int64_t e[3], int x, int y)
 {
     vplTileState* state = d->state;
     const vplPipeline* p = d->pipeline;
@@ -203,7 +261,7 @@ static void drawBlock(const Draw* d, const Setup* s, const int64_t e[3], int x, 
     f->x = state->tile.x + x;
     f->y = state->tile.y + y;
     if (p->writesDepth) {
-        shade(d, s, e, at);
+        shade(d, at);
     }
     if (p->ownerTest) {
         for (int l = 0; l < VPL_LANES; l++) {
@@ -225,7 +283,7 @@ static void drawBlock(const Draw* d, const Setup* s, const int64_t e[3], int x, 
         }
     }
     if (p->fragment != NULL && !p->writesDepth) {
-        shade(d, s, e, at);
+        shade(d, at);
     }
     if (p->fragment != NULL) {
         blendPlanes(state, p, at, d->planeCount);
@@ -242,7 +300,7 @@ static int maxOf(int a, int b)
     return a > b ? a : b;
 }
 
-static void drawTriangle(const Draw* d)
+static void drawTriangle(Draw* d)
 {
     const vplTriangle* t = d->triangle;
     const vplTile* tile = &d->state->tile;
@@ -279,11 +337,14 @@ static void drawTriangle(const Draw* d)
 vplDrawTileFcn VPL_KERNEL(vplDrawTile);
 
 void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplPipeline* pipeline, const vplShaded* shaded,
-                             const vplTriangle* triangles, const int* list, int count, int planeCount)
+                             const vplTriangle* triangles, const int* list, int count,
+                             const vplFramebuffer* framebuffer)
 {
-    Draw d = {state, pipeline, shaded, NULL, 0, planeCount};
+    Shares shares;
+    Draw d = {state, pipeline, shaded, NULL, framebuffer, &shares, 0, framebuffer->planeCount, false};
     for (int i = 0; i < count; i++) {
         d.owner = list[i];
+        d.hasShares = false;
         d.triangle = &triangles[list[i]];
         bool clockwise = (d.triangle->primitive & VPL_CLOCKWISE) != 0;
         if (pipeline->cull == VPL_CULL_NONE || (pipeline->cull == VPL_CULL_BACK) != clockwise) {

@@ -18,7 +18,6 @@ vplScreenVertex vplProject(const vplRaster* raster, double x, double y, double z
     v.x = (int32_t)rint(px * scale); // nearest even, as Direct3D snaps; both sides of an edge agree
     v.y = (int32_t)rint(py * scale);
     v.z = (float)(z / w);
-    v.iw = (float)(1 / w);
     return v;
 }
 

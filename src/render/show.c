@@ -33,15 +33,17 @@ vplResult vplUnfoldCubeMap(const vplCubeMap* map, vplImage** imageOut)
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set)
 {
     static const vplRgb colours[4] = {{1, 0.8f, 0.05f}, {1, 0.15f, 0.05f}, {0.1f, 0.4f, 1}, {0.7f, 0.1f, 0.9f}};
-    float radius = fmaxf(2.5f, 0.008f * (float)view->height);
+    float radius = fmaxf(3, 0.009f * (float)view->height);
     for (int i = 0; i < set->lightCount; i++) {
         const vplVirtualLight* light = &set->lights[i];
         float x, y;
         if (!vplView_Project(view, light->position, &x, &y)) {
             continue;
         }
-        // Lights that the camera cannot see are drawn small.
-        vplRay ray = {view->eye, vplSub(light->position, view->eye)};
+        // Lights that the camera cannot see are drawn small. Its view begins at the near plane.
+        vplVec3 way = vplSub(light->position, view->eye);
+        float begin = (float)view->near / vplDot(view->forward, way);
+        vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way)};
         bool hidden = vplGeometry_IsOccluded(geometry, &ray, (vplRayStart){-1, VPL_FACE_NONE}, 0.9999f);
         vplDrawDisc(image, x, y, hidden ? 0.5f * radius : radius, colours[light->step < 3 ? light->step : 3]);
     }

@@ -75,6 +75,19 @@ static void faceDistance(const void* uniforms, vplFragments* f)
     }
 }
 
+// One face's share of the progress of all six.
+typedef struct FaceProgress {
+    vplProgressFcn* progress;
+    void* user;
+    int face;
+} FaceProgress;
+
+static bool reportFace(void* user, double fraction)
+{
+    const FaceProgress* p = user;
+    return p->progress(p->user, (p->face + fraction) / 6);
+}
+
 static vplResult drawFace(const vplGeometry* g, vplCubeMap* map, float* texels, int face, const vplMesh* meshes,
                           vplProgressFcn* progress, void* user)
 {
@@ -103,7 +116,8 @@ static vplResult drawFace(const vplGeometry* g, vplCubeMap* map, float* texels, 
     }
     vplRasterStats stats = {0};
     if (result == VPL_SUCCESS) {
-        result = vplRaster_Run(raster, progress, user, &stats);
+        FaceProgress faceProgress = {progress, user, face};
+        result = vplRaster_Run(raster, progress ? reportFace : NULL, &faceProgress, &stats);
     }
     map->stats.drawCalls += stats.drawCalls;
     map->stats.fragments += stats.fragments;

@@ -51,9 +51,8 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
                        (double)def->biasDynamic, (double)def->pcfOffset);
     }
     vplShadow shadow = {.map = map, .def = *def};
-    // Half a texel's diagonal at the middle of a face, where texels look largest, and 1/128 more for vertices
-    // that were snapped to 1/256 of a texel.
-    shadow.texelTangent = 1.41421356f / (float)map->size * (1 + 1.0f / 128);
+    // Half a texel's diagonal at the middle of a face, where texels look largest.
+    shadow.texelTangent = 1.41421356f / (float)map->size;
     if (shadow.def.pcfOffset < 0) {
         shadow.def.pcfOffset = map->far / 128;
     }

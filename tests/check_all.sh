@@ -1,0 +1,41 @@
+#!/bin/sh
+# The unit tests and golden pictures under every configuration: compilers, optimisation, without OpenMP,
+# sanitizers, threads, another architecture. The bits must be the same in all.
+jobs=$(nproc)
+bad=0
+RUNNER=
+
+# run NAME [MAKE VARIABLES...]: builds and runs one configuration.
+run() {
+    name=$1
+    shift
+    if make -j"$jobs" --no-print-directory BUILD="build/$name" "$@" "build/$name/vpl-tests" "build/$name/vpl-golden" \
+        >"build/$name.log" 2>&1 &&
+        $RUNNER "build/$name/vpl-tests" >>"build/$name.log" 2>&1 &&
+        $RUNNER "build/$name/vpl-golden" check golden "build/$name/golden" >>"build/$name.log" 2>&1; then
+        echo "ok $name"
+    else
+        echo "not ok $name: the end of build/$name.log:"
+        tail -n 20 "build/$name.log"
+        bad=$((bad + 1))
+    fi
+}
+
+mkdir -p build
+run gcc-release CC=gcc
+run gcc-debug CC=gcc MODE=debug
+run gcc-serial CC=gcc OPENMP=0
+if command -v clang >/dev/null 2>&1; then
+    run clang-release CC=clang
+    run clang-debug CC=clang MODE=debug
+    # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor.
+    run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g -O1 -DVPL_TEST_PTHREADS"
+fi
+run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
+if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
+    [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
+    export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu
+    RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
+    run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
+fi
+exit $((bad > 0))

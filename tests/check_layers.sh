@@ -1,0 +1,41 @@
+#!/bin/sh
+# Each folder of src may include only the layers below it. Names file, line and both folders.
+# Public headers <vpl/x.h> count as the folder that implements them.
+cd "${1:-.}" || exit 2
+awk '
+BEGIN {
+    split("base math image scene geometry raster visibility lights shading radiosity reference render cli", names, " ")
+    allowed["base"] = "base"
+    allowed["math"] = "math base"
+    allowed["image"] = "image base math"
+    allowed["scene"] = "scene base math image"
+    allowed["geometry"] = "geometry base math scene"
+    allowed["raster"] = "raster base math image"
+    allowed["visibility"] = "visibility base math geometry raster"
+    allowed["lights"] = "lights base math image scene geometry raster visibility"
+    allowed["shading"] = "shading base math image scene geometry raster visibility lights"
+    allowed["radiosity"] = "radiosity base math image scene geometry raster visibility"
+    allowed["reference"] = "reference base math image scene geometry"
+    allowed["render"] = "render base math image scene geometry raster visibility lights shading radiosity reference"
+    allowed["cli"] = "cli public"
+    layer["vecmath"] = "math"
+}
+{
+    split(FILENAME, path, "/")
+    folder = path[2]
+    if (match($0, /^#include "[a-z]+\//)) {
+        target = substr($0, 11, RLENGTH - 11)
+    } else if (match($0, /^#include <vpl\/[a-z]+\.h>/)) {
+        target = substr($0, 15, RLENGTH - 17)
+        target = target in layer ? layer[target] : target
+        if (folder == "cli") { target = "public" }
+    } else {
+        next
+    }
+    if (index(" " allowed[folder] " ", " " target " ") == 0) {
+        printf "%s:%d: %s must not include %s\n", FILENAME, FNR, folder, target
+        bad++
+    }
+}
+END { exit bad > 0 }
+' $(find src -name "*.[ch]")

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+// Golden pictures: `vpl-golden check golden OUT` renders all and compares the hashes of the float images;
+// `vpl-golden write golden` rewrites them. The PNGs are for eyes, hashes.txt is what counts. On a mismatch
+// the picture, its difference from the golden PNG times eight, and the first differing pixel are shown.
+#include <vpl/vpl.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { SIZE = 96 };
+
+typedef struct Case {
+    const char* name;
+    const char* scene;
+    float exposure; // of the PNG
+    void (*adjust)(vplRenderOptions* o);
+} Case;
+
+static void defaults(vplRenderOptions* o)
+{
+    (void)o;
+}
+
+static void documented(vplRenderOptions* o)
+{
+    o->lighting = VPL_LIGHTING_DOCUMENTED;
+}
+
+static void documentedMultipass(vplRenderOptions* o)
+{
+    o->lighting = VPL_LIGHTING_DOCUMENTED;
+    o->accumulation = VPL_ACCUMULATE_MULTIPASS;
+    o->particles = 100;
+    o->sampler = VPL_SAMPLER_HALTON;
+}
+
+static void manyLights(vplRenderOptions* o)
+{
+    o->particles = 1000;
+    o->sampler = VPL_SAMPLER_HALTON;
+    o->reflectivity = -1;
+}
+
+static void manyLightsBatched(vplRenderOptions* o)
+{
+    manyLights(o);
+    o->accumulation = VPL_ACCUMULATE_BATCHED;
+    o->batch = 100;
+    o->sampler = VPL_SAMPLER_HAMMERSLEY;
+}
+
+static void unbounded(vplRenderOptions* o)
+{
+    o->particles = 200;
+    o->minDistance = 0;
+}
+
+static void hardShadow(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_DIRECT;
+    o->shadow.pcfSamples = 1;
+    o->shadowMapSize = 128;
+}
+
+static void acne(vplRenderOptions* o)
+{
+    hardShadow(o);
+    o->shadow.biasRule = VPL_BIAS_PAIR;
+    o->shadow.biasStatic = 0.002f;
+    o->shadow.biasDynamic = 0;
+}
+
+static void softShadow(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_DIRECT;
+    o->shadow.pcfSamples = 64;
+    o->shadow.pcfOffset = 0.25f;
+}
+
+static void depth(vplRenderOptions* o)
+{
+    o->show = VPL_SHOW_DEPTH;
+}
+
+static void normals(vplRenderOptions* o)
+{
+    o->show = VPL_SHOW_NORMALS;
+}
+
+static void shadowMap(vplRenderOptions* o)
+{
+    o->show = VPL_SHOW_SHADOW_MAP;
+    o->shadowMapSize = 24;
+}
+
+static void shadowFactor(vplRenderOptions* o)
+{
+    o->show = VPL_SHOW_SHADOW_FACTOR;
+}
+
+static void indirect(vplRenderOptions* o)
+{
+    o->show = VPL_SHOW_INDIRECT;
+}
+
+static void oneLight(vplRenderOptions* o)
+{
+    o->lighting = VPL_LIGHTING_DOCUMENTED;
+    o->show = VPL_SHOW_LIGHT;
+    o->showLight = 4;
+}
+
+static void overlay(vplRenderOptions* o)
+{
+    o->show = VPL_SHOW_OVERLAY;
+    o->particles = 60;
+}
+
+static const Case CASES[] = {
+    {"room-physical", "room", 1, defaults},
+    {"room-documented", "closed-room", 0, documented},
+    {"room-documented-multipass", "room", 0, documentedMultipass},
+    {"room-many-lights", "closed-room", 1, manyLights},
+    {"room-many-lights-batched", "room", 1, manyLightsBatched},
+    {"room-unbounded", "room", 1, unbounded},
+    {"hard-shadow", "room", 2, hardShadow},
+    {"acne", "room", 2, acne},
+    {"soft-shadow", "room", 2, softShadow},
+    {"depth", "room", -4, depth},
+    {"normals", "room", 0, normals},
+    {"shadow-map", "room", -3, shadowMap},
+    {"shadow-factor", "room", 0, shadowFactor},
+    {"indirect", "closed-room", 1, indirect},
+    {"light-4", "closed-room", 2, oneLight},
+    {"overlay", "room", 0, overlay},
+};
+
+enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
+
+static void printMessage(void* user, vplLogLevel level, const char* message)
+{
+    (void)user;
+    (void)level;
+    fprintf(stderr, "%s\n", message);
+}
+
+static vplImage* renderCase(vplContext* context, const Case* c)
+{
+    char path[256];
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.width = options.height = SIZE;
+    c->adjust(&options);
+    snprintf(path, sizeof path, "examples/scenes/%s.json", c->scene);
+    if (vplScene_Load(context, path, &scene) == VPL_SUCCESS) {
+        vplRender(scene, &options, &image, NULL);
+    }
+    vplScene_Destroy(scene);
+    return image;
+}
+
+static bool writePng(const Case* c, const vplImage* image, const char* folder, const char* suffix)
+{
+    char path[512];
+    vplWriteOptions write = vplDefaultWriteOptions();
+    write.exposure = c->exposure;
+    snprintf(path, sizeof path, "%s/%s%s.png", folder, c->name, suffix);
+    return vplImage_Write(image, path, &write) == VPL_SUCCESS;
+}
+
+// The hash recorded for a name, or 0.
+static uint64_t recordedHash(const char* folder, const char* name)
+{
+    char path[512], line[256], found[128];
+    unsigned long long hash = 0;
+    snprintf(path, sizeof path, "%s/hashes.txt", folder);
+    FILE* file = fopen(path, "r");
+    while (file != NULL && fgets(line, sizeof line, file) != NULL) {
+        unsigned long long value;
+        if (sscanf(line, "%127s %llx", found, &value) == 2 && strcmp(found, name) == 0) {
+            hash = value;
+        }
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+    return hash;
+}
+
+static void explain(vplContext* context, const Case* c, vplImage* image, const char* folder, const char* out)
+{
+    char path[512];
+    vplImage *golden = NULL, *now = NULL;
+    writePng(c, image, out, "");
+    snprintf(path, sizeof path, "%s/%s.png", folder, c->name);
+    if (vplImage_Read(context, path, &golden) != VPL_SUCCESS) {
+        return;
+    }
+    snprintf(path, sizeof path, "%s/%s.png", out, c->name);
+    if (vplImage_Read(context, path, &now) == VPL_SUCCESS && now->width == golden->width &&
+        now->height == golden->height) {
+        int first = -1;
+        for (int i = 0; i < 3 * now->width * now->height; i++) {
+            float difference = fabsf(now->pixels[i] - golden->pixels[i]);
+            first = first < 0 && difference > 0 ? i / 3 : first;
+            golden->pixels[i] = 8 * difference;
+        }
+        vplImage_Write(golden, (snprintf(path, sizeof path, "%s/%s-difference.png", out, c->name), path), NULL);
+        if (first >= 0) {
+            printf("  first pixel that differs in the PNG: (%d, %d)\n", first % now->width, first / now->width);
+        } else {
+            printf("  the differences are too small for a PNG\n");
+        }
+    }
+    vplImage_Destroy(golden);
+    vplImage_Destroy(now);
+}
+
+static int check(vplContext* context, const char* folder, const char* out)
+{
+    int failed = 0;
+    mkdir(out, 0777);
+    for (int i = 0; i < CASE_COUNT; i++) {
+        vplImage* image = renderCase(context, &CASES[i]);
+        uint64_t hash = image ? vplImage_Hash(image) : 0, wanted = recordedHash(folder, CASES[i].name);
+        if (image == NULL || hash != wanted) {
+            printf("not ok %s: hash %016llx, recorded %016llx; see %s/%s.png\n", CASES[i].name,
+                   (unsigned long long)hash, (unsigned long long)wanted, out, CASES[i].name);
+            failed++;
+            if (image != NULL) {
+                explain(context, &CASES[i], image, folder, out);
+            }
+        }
+        vplImage_Destroy(image);
+    }
+    printf("%d passed, %d failed\n", CASE_COUNT - failed, failed);
+    return failed > 0;
+}
+
+static int rewrite(vplContext* context, const char* folder)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/hashes.txt", folder);
+    FILE* file = fopen(path, "w");
+    if (file == NULL) {
+        return 1;
+    }
+    for (int i = 0; i < CASE_COUNT; i++) {
+        vplImage* image = renderCase(context, &CASES[i]);
+        if (image == NULL || !writePng(&CASES[i], image, folder, "")) {
+            return 1;
+        }
+        fprintf(file, "%s %016llx\n", CASES[i].name, (unsigned long long)vplImage_Hash(image));
+        vplImage_Destroy(image);
+    }
+    return fclose(file) != 0;
+}
+
+int main(int count, char** words)
+{
+    vplContextDef def = vplDefaultContextDef();
+    def.log = printMessage;
+    vplContext* context;
+    if (vplContext_Create(&def, &context) != VPL_SUCCESS) {
+        return 2;
+    }
+    int code = 2;
+    if (count == 4 && strcmp(words[1], "check") == 0) {
+        code = check(context, words[2], words[3]);
+    } else if (count == 3 && strcmp(words[1], "write") == 0) {
+        code = rewrite(context, words[2]);
+    } else {
+        fprintf(stderr, "usage: vpl-golden check GOLDEN OUT | write GOLDEN\n");
+    }
+    vplContext_Destroy(context);
+    return code;
+}

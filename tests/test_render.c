@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: MIT
+// The one-call level: exact relations between whole pictures, counts, and refusals.
+#include "scenes.h"
+
+#include <stdlib.h>
+
+static vplRenderOptions smallOptions(void)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.width = 83;
+    o.height = 61;
+    o.shadowMapSize = 128;
+    return o;
+}
+
+static vplImage* render(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* stats)
+{
+    vplImage* image = NULL;
+    if (vplRender(scene, options, &image, stats) != VPL_SUCCESS) {
+        fail_msg("%s", takeMessage());
+    }
+    return image;
+}
+
+static uint64_t renderHash(const vplScene* scene, const vplRenderOptions* options)
+{
+    vplRenderStats stats;
+    vplImage* image = render(scene, options, &stats);
+    assert_true(stats.imageHash == vplImage_Hash(image));
+    vplImage_Destroy(image);
+    return stats.imageHash;
+}
+
+// Franchi and Ferrante: (7 + M) B draw calls, (7 + M/m) B batched; B = 8 objects, M = 18 lights.
+static void DrawCallsAreThoseOfTheDocument(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room-closed.json");
+    vplRenderOptions o = smallOptions();
+    const struct {
+        vplAccumulation accumulation;
+        int batch, wanted;
+    } cases[] = {{VPL_ACCUMULATE_MULTIPASS, 64, 200}, {VPL_ACCUMULATE_BATCHED, 18, 64},
+                 {VPL_ACCUMULATE_BATCHED, 5, 88},     {VPL_ACCUMULATE_BATCHED, 1, 200},
+                 {VPL_ACCUMULATE_DEFERRED, 64, 56}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        vplRenderStats stats;
+        o.accumulation = cases[i].accumulation;
+        o.batch = cases[i].batch;
+        vplImage_Destroy(render(scene, &o, &stats));
+        assert_int_equal(stats.drawCalls, cases[i].wanted);
+        assert_int_equal(stats.virtualLights, 18);
+        assert_int_equal(stats.rayObjectTests, 144);
+        assert_int_equal(stats.escaped, 0);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static void OpenRoomsKeepNominalCountsAndReportEscapes(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    int escaped = 0;
+    for (o.seed = 0; o.seed < 20; o.seed++) {
+        vplRenderStats stats;
+        vplImage_Destroy(render(scene, &o, &stats));
+        assert_int_equal(stats.stepCount, 4);
+        const int nominal[4] = {10, 5, 2, 1};
+        int lights = 0;
+        for (int i = 0; i < 4; i++) {
+            assert_int_equal(stats.particlesPerStep[i], nominal[i]);
+            assert_true(stats.lightsPerStep[i] <= nominal[i]);
+            lights += stats.lightsPerStep[i];
+        }
+        assert_int_equal(lights, stats.virtualLights);
+        assert_true(stats.virtualLights + stats.escaped <= 18);
+        escaped += stats.escaped;
+    }
+    assert_true(escaped > 0);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// All pipelines, batch sizes around the group size, threads and instruction sets: one hash.
+static void EveryPipelineGivesTheSameBits(void** state)
+{
+    (void)state;
+    for (int lighting = 0; lighting < 2; lighting++) {
+        uint64_t wanted = 0;
+        const int batches[] = {1, 3, 63, 64, 65, 1000};
+        for (int worker = 1; worker <= 7; worker += worker == 1 ? 1 : worker == 2 ? 1 : 4) {
+            vplContext* context = openTestContext(worker);
+            vplScene* scene = loadScene(context, "room.json");
+            vplRenderOptions o = smallOptions();
+            o.lighting = (vplLighting)lighting;
+            o.particles = 130;
+            o.sampler = VPL_SAMPLER_HALTON;
+            wanted = worker == 1 ? renderHash(scene, &o) : wanted;
+            for (int p = 0; p < 3; p++) {
+                o.accumulation = (vplAccumulation)p;
+                for (int i = 0; i < (p == VPL_ACCUMULATE_BATCHED ? 6 : 1); i++) {
+                    o.batch = batches[i];
+                    assert_true(renderHash(scene, &o) == wanted);
+                }
+            }
+            vplScene_Destroy(scene);
+            closeTestContext(context);
+        }
+        for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+            vplContext* context = openIsaContext(2, (vplIsa)isa);
+            if (context == NULL) {
+                continue;
+            }
+            vplScene* scene = loadScene(context, "room.json");
+            vplRenderOptions o = smallOptions();
+            o.lighting = (vplLighting)lighting;
+            o.particles = 130;
+            o.sampler = VPL_SAMPLER_HALTON;
+            assert_true(renderHash(scene, &o) == wanted);
+            vplScene_Destroy(scene);
+            closeTestContext(context);
+        }
+    }
+}
+
+// Two floors in one plane: depth EQUAL alone would light both and add twice.
+static void CoplanarSurfacesAreLitOnce(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    uint64_t hashes[3];
+    vplRenderOptions o = smallOptions();
+    o.particles = 50;
+    for (int p = 0; p < 3; p++) {
+        vplScene* scene = loadScene(context, "room.json");
+        const vplObjectDef* floor = vplScene_GetObject(scene, 0);
+        vplObjectDef copy = *floor;
+        assert_int_equal(vplScene_AddObject(scene, &copy, NULL), VPL_SUCCESS);
+        o.accumulation = (vplAccumulation)p;
+        hashes[p] = renderHash(scene, &o);
+        vplScene_Destroy(scene);
+    }
+    assert_true(hashes[0] == hashes[2] && hashes[1] == hashes[2]);
+    closeTestContext(context);
+}
+
+// Builds the room by hand, scaled and lit by `intensity`: numbers that are powers of two change no digit.
+static vplImage* scaledRoom(vplContext* context, float scale, float intensity, vplLighting lighting)
+{
+    vplScene *from = loadScene(context, "room.json"), *scene;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    for (int i = 0; i < vplScene_GetMaterialCount(from); i++) {
+        assert_int_equal(vplScene_AddMaterial(scene, vplScene_GetMaterial(from, i), NULL), VPL_SUCCESS);
+    }
+    for (int i = 0; i < vplScene_GetObjectCount(from); i++) {
+        vplObjectDef def = *vplScene_GetObject(from, i);
+        for (int k = 0; k < 15; k++) {
+            def.transform.m[k] *= scale;
+        }
+        assert_int_equal(vplScene_AddObject(scene, &def, NULL), VPL_SUCCESS);
+    }
+    vplEmitterDef emitter = *vplScene_GetEmitter(from, 0);
+    emitter.position.y *= scale;
+    emitter.intensity = (vplRgb){intensity, intensity, intensity};
+    assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
+    vplCameraDef camera = *vplScene_GetCamera(from, 0);
+    camera.eye.y *= scale;
+    camera.eye.z *= scale;
+    camera.target.y *= scale;
+    camera.near *= scale;
+    camera.far *= scale;
+    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
+    vplRenderOptions o = smallOptions();
+    o.lighting = lighting;
+    o.particles = 30;
+    vplImage* image = render(scene, &o, NULL);
+    vplScene_Destroy(scene);
+    vplScene_Destroy(from);
+    return image;
+}
+
+static void DoublingTheLightDoublesEveryPixel(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    for (int lighting = 0; lighting < 2; lighting++) {
+        vplImage* one = scaledRoom(context, 1, 8, (vplLighting)lighting);
+        vplImage* two = scaledRoom(context, 1, 16, (vplLighting)lighting);
+        for (int i = 0; i < 3 * one->width * one->height; i++) {
+            assert_true(2 * one->pixels[i] == two->pixels[i]);
+        }
+        vplImage_Destroy(one);
+        vplImage_Destroy(two);
+    }
+    closeTestContext(context);
+}
+
+// Physical light is scale-free: twice the size with four times the intensity is the same picture, bit for bit.
+static void TwiceTheSizeWithFourTimesTheLightIsTheSamePicture(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplImage* small = scaledRoom(context, 1, 8, VPL_LIGHTING_PHYSICAL);
+    vplImage* large = scaledRoom(context, 2, 32, VPL_LIGHTING_PHYSICAL);
+    vplImage* huge = scaledRoom(context, 1024, 8 * 1048576, VPL_LIGHTING_PHYSICAL);
+    assert_true(vplImage_Hash(small) == vplImage_Hash(large));
+    assert_true(vplImage_Hash(small) == vplImage_Hash(huge));
+    vplImage_Destroy(small);
+    vplImage_Destroy(large);
+    vplImage_Destroy(huge);
+    closeTestContext(context);
+}
+
+// Point light above a plane: rho/pi I cos / d^2, against the value at each pixel's own point.
+static void APlaneUnderAPointLightIsLitAsInTheBook(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    vplScene_AddMaterial(scene, &material, NULL);
+    vplObjectDef object = vplDefaultObjectDef();
+    object.transform = vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){10, 10, 1});
+    vplScene_AddObject(scene, &object, NULL);
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    emitter.position = (vplVec3){0.5f, 2, -0.25f};
+    emitter.intensity = (vplRgb){3, 5, 7};
+    vplScene_AddEmitter(scene, &emitter, NULL);
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = (vplVec3){0, 4, 0};
+    camera.target = (vplVec3){0, 0, 0};
+    camera.up = (vplVec3){0, 0, -1};
+    vplScene_AddCamera(scene, &camera, NULL);
+    vplRenderOptions o = smallOptions();
+    o.method = VPL_METHOD_DIRECT;
+    vplImage* image = render(scene, &o, NULL);
+    double half = tan(20 * VPL_PI / 180) * 4;
+    for (int i = 0; i < o.width * o.height; i++) {
+        double x = (2 * (i % o.width + 0.5) / o.width - 1) * half * o.width / o.height;
+        double z = -(1 - 2 * (i / o.width + 0.5) / o.height) * half;
+        double dx = x - 0.5, dz = z + 0.25, d2 = dx * dx + 4 + dz * dz;
+        double wanted = 0.5 / VPL_PI * 3 * (2 / sqrt(d2)) / d2;
+        assertNear((double)image->pixels[3 * i], wanted, 1e-6 * wanted, "red", i);
+        assertNear((double)image->pixels[3 * i + 2], wanted * 7 / 3, 1e-6 * wanted * 7 / 3, "blue", i);
+    }
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// X090: documented direct light falls as 1/N and the indirect sum does not; physical light depends on neither.
+static void DocumentedDirectLightFallsWithN(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room-closed.json");
+    double sums[2][2];
+    for (int lighting = 0; lighting < 2; lighting++) {
+        for (int k = 0; k < 2; k++) {
+            vplRenderOptions o = smallOptions();
+            o.lighting = (vplLighting)lighting;
+            o.shadow.biasRule = VPL_BIAS_EXACT;
+            o.show = VPL_SHOW_DIRECT;
+            o.particles = k ? 20 : 10;
+            vplImage* image = render(scene, &o, NULL);
+            sums[lighting][k] = 0;
+            for (int i = 0; i < 3 * o.width * o.height; i++) {
+                sums[lighting][k] += (double)image->pixels[i];
+            }
+            vplImage_Destroy(image);
+        }
+    }
+    assertNear(sums[VPL_LIGHTING_PHYSICAL][0], sums[VPL_LIGHTING_PHYSICAL][1], 0, "physical", 0);
+    assertNear(sums[VPL_LIGHTING_DOCUMENTED][0] / sums[VPL_LIGHTING_DOCUMENTED][1], 2, 1e-6, "documented", 0);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static void DirectAndEachLightAddUpToThePicture(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room-closed.json");
+    vplRenderOptions o = smallOptions();
+    o.minDistance = 0.5f;
+    vplImage* picture = render(scene, &o, NULL);
+    o.show = VPL_SHOW_DIRECT;
+    vplImage* sum = render(scene, &o, NULL);
+    o.show = VPL_SHOW_INDIRECT;
+    vplImage* indirect = render(scene, &o, NULL);
+    int count = 3 * o.width * o.height;
+    for (int i = 0; i < count; i++) {
+        double wanted = (double)sum->pixels[i] + (double)indirect->pixels[i];
+        assertNear((double)picture->pixels[i], wanted, 3e-7 * wanted, "direct + indirect", i);
+    }
+    o.show = VPL_SHOW_LIGHT;
+    for (o.showLight = 0; o.showLight < 18; o.showLight++) {
+        vplImage* one = render(scene, &o, NULL);
+        for (int i = 0; i < count; i++) {
+            sum->pixels[i] += one->pixels[i];
+        }
+        vplImage_Destroy(one);
+    }
+    for (int i = 0; i < count; i++) {
+        assertNear((double)sum->pixels[i], (double)picture->pixels[i], 2e-6 * (double)picture->pixels[i], "sum", i);
+    }
+    o.showLight = 18;
+    vplImage* none = NULL;
+    assert_int_equal(vplRender(scene, &o, &none, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "light 18 does not exist"));
+    vplImage_Destroy(picture);
+    vplImage_Destroy(sum);
+    vplImage_Destroy(indirect);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static void StagesShowWhatTheySay(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    int middle = 3 * (o.height / 3 * o.width + 2 * o.width / 3), count = 3 * o.width * o.height;
+    o.show = VPL_SHOW_DEPTH;
+    vplImage* image = render(scene, &o, NULL);
+    assertNear((double)image->pixels[middle], 11, 1e-4, "depth of the back wall", 0);
+    vplImage_Destroy(image);
+    o.show = VPL_SHOW_NORMALS;
+    image = render(scene, &o, NULL);
+    assert_true(image->pixels[middle] == 0 && image->pixels[middle + 1] == 0 && image->pixels[middle + 2] == 1);
+    vplImage_Destroy(image);
+    o.show = VPL_SHOW_SHADOW_FACTOR;
+    image = render(scene, &o, NULL);
+    int lit = 0, dark = 0;
+    for (int i = 0; i < count; i++) {
+        assert_true(image->pixels[i] >= 0 && image->pixels[i] <= 1);
+        lit += image->pixels[i] == 0;
+        dark += image->pixels[i] == 1;
+    }
+    assert_true(lit > count / 3 && dark > count / 50);
+    vplImage_Destroy(image);
+    o.show = VPL_SHOW_SHADOW_MAP;
+    image = render(scene, &o, NULL);
+    assert_int_equal(image->width, 4 * o.shadowMapSize);
+    assert_int_equal(image->height, 3 * o.shadowMapSize);
+    // Straight up, in the middle of the upper face, is the ceiling, half a metre away.
+    int above = 3 * (o.shadowMapSize / 2 * image->width + o.shadowMapSize + o.shadowMapSize / 2);
+    assertNear((double)image->pixels[above], 0.5, 1e-3, "distance of the ceiling", 0);
+    vplImage_Destroy(image);
+    o.show = VPL_SHOW_OVERLAY;
+    o.particles = 100;
+    image = render(scene, &o, NULL);
+    o.show = VPL_SHOW_PICTURE;
+    vplImage* plain = render(scene, &o, NULL);
+    int marked = 0;
+    for (int i = 0; i < count; i += 3) {
+        marked += memcmp(image->pixels + i, plain->pixels + i, 12) != 0;
+    }
+    assert_true(marked > 100 && marked < count / 3 * 2 / 3);
+    vplImage_Destroy(image);
+    vplImage_Destroy(plain);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// Only the front of an emitting quad shines.
+static void EmissionLeavesTheFrontOnly(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    for (int back = 0; back < 2; back++) {
+        vplScene* scene;
+        assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+        vplMaterialDef material = vplDefaultMaterialDef();
+        material.diffuse = (vplRgb){0, 0, 0};
+        material.emission = (vplRgb){1, 2, 3};
+        vplScene_AddMaterial(scene, &material, NULL);
+        vplObjectDef object = vplDefaultObjectDef();
+        object.transform = vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){0, back * VPL_PI, 0}, (vplVec3){10, 10, 1});
+        vplScene_AddObject(scene, &object, NULL);
+        vplCameraDef camera = vplDefaultCameraDef();
+        vplScene_AddCamera(scene, &camera, NULL);
+        vplRenderOptions o = smallOptions();
+        o.method = VPL_METHOD_DIRECT;
+        vplImage* image = render(scene, &o, NULL);
+        for (int i = 0; i < 3 * o.width * o.height; i++) {
+            assert_true(image->pixels[i] == (back ? 0 : (float)(i % 3 + 1)));
+        }
+        vplImage_Destroy(image);
+        vplScene_Destroy(scene);
+    }
+    closeTestContext(context);
+}
+
+static void OptionsOutOfRangeAreNamed(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = loadScene(context, "room.json");
+    struct {
+        vplRenderOptions o;
+        const char* name;
+    } cases[10];
+    for (int i = 0; i < 10; i++) {
+        cases[i].o = smallOptions();
+    }
+    cases[0].o.width = 0, cases[0].name = "width is 0, must be in [1, 16384]";
+    cases[1].o.height = 16385, cases[1].name = "height is 16385";
+    cases[2].o.camera = 1, cases[2].name = "camera is 1, must be in [0, 0]";
+    cases[3].o.particles = -1, cases[3].name = "particles is -1";
+    cases[4].o.reflectivity = 1, cases[4].name = "reflectivity is 1";
+    cases[5].o.shadowMapSize = 0, cases[5].name = "shadowMapSize is 0";
+    cases[6].o.minDistance = NAN, cases[6].name = "minDistance is ";
+    cases[7].o.shadow.pcfSamples = 0, cases[7].name = "pcfSamples is 0";
+    cases[8].o.batch = 0, cases[8].name = "batch is 0";
+    cases[9].o.cookie = 0, cases[9].name = "vplDefaultRenderOptions";
+    for (int i = 0; i < 10; i++) {
+        vplImage* image = NULL;
+        assert_int_equal(vplRender(scene, &cases[i].o, &image, NULL), VPL_INVALID_ARGUMENT);
+        assert_null(image);
+        const char* message = takeMessage();
+        if (strstr(message, cases[i].name) == NULL) {
+            fail_msg("\"%s\" lacks \"%s\"", message, cases[i].name);
+        }
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+typedef struct Watch {
+    int calls, stopAt;
+    double last;
+} Watch;
+
+static bool watch(void* user, double fraction)
+{
+    Watch* w = user;
+    assert_true(fraction >= w->last - 1e-9 && fraction <= 1);
+    w->last = fraction;
+    return ++w->calls != w->stopAt;
+}
+
+static void ProgressRisesAndCancels(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    Watch w = {0, -1, 0};
+    o.width = o.height = 300;
+    o.progress = watch;
+    o.progressUser = &w;
+    vplImage_Destroy(render(scene, &o, NULL));
+    assertNear(w.last, 1, 1e-9, "last fraction", 0);
+    int total = w.calls;
+    assert_true(total > 20);
+    for (int stop = 1; stop < total; stop += 7) {
+        vplImage* image = NULL;
+        w = (Watch){0, stop, 0};
+        assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_CANCELLED);
+        assert_null(image);
+        assert_int_equal(w.calls, stop);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// X031, X042, X092: odd scenes give finite pictures.
+static void OddScenesGiveFinitePictures(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    const vplVec3 places[] = {{-0.9f, 1.65f, -0.8f}, {0, 4.5f, 30}, {0, 5, 0}, {0, 0, 0}, {0, 2.5f, 8.5f}, {1e6f, 1e6f, 1e6f}};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        for (int lighting = 0; lighting < 2; lighting++) {
+            vplScene* scene = loadScene(context, "room.json");
+            vplEmitterDef emitter = *vplScene_GetEmitter(scene, 0);
+            emitter.position = places[i]; // in a box, outside, on the ceiling, on the floor, in the eye, far away
+            assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
+            vplRenderOptions o = smallOptions();
+            o.lighting = (vplLighting)lighting;
+            o.minDistance = 0;
+            o.particles = 60;
+            vplImage* image = render(scene, &o, NULL);
+            for (int k = 0; k < 3 * o.width * o.height; k++) {
+                assert_true(isfinite(image->pixels[k]) && image->pixels[k] >= 0);
+            }
+            vplImage_Destroy(image);
+            vplScene_Destroy(scene);
+        }
+    }
+    closeTestContext(context);
+}
+
+TEST_SUITE(render, cmocka_unit_test(DrawCallsAreThoseOfTheDocument),
+           cmocka_unit_test(OpenRoomsKeepNominalCountsAndReportEscapes), cmocka_unit_test(EveryPipelineGivesTheSameBits),
+           cmocka_unit_test(CoplanarSurfacesAreLitOnce), cmocka_unit_test(DoublingTheLightDoublesEveryPixel),
+           cmocka_unit_test(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture),
+           cmocka_unit_test(APlaneUnderAPointLightIsLitAsInTheBook), cmocka_unit_test(DocumentedDirectLightFallsWithN),
+           cmocka_unit_test(DirectAndEachLightAddUpToThePicture), cmocka_unit_test(StagesShowWhatTheySay),
+           cmocka_unit_test(EmissionLeavesTheFrontOnly), cmocka_unit_test(OptionsOutOfRangeAreNamed),
+           cmocka_unit_test(ProgressRisesAndCancels), cmocka_unit_test(OddScenesGiveFinitePictures));
