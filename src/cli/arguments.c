@@ -19,8 +19,8 @@ struct Option {
     int commands;
     ReadFcn* read;
     size_t offset;
-    double low, high;     // numbers
-    const char* choices;  // "a|b|c", in the order of the enum
+    double low, high;    // numbers
+    const char* choices; // "a|b|c", in the order of the enum
     const char* help;
 };
 
@@ -257,9 +257,11 @@ static bool readThreads(const Option* o, const char* value, Arguments* a)
 #define AT(field) offsetof(Arguments, field)
 
 static const Option OPTIONS[] = {
-    {"-o", "FILE", RENDER, readText, AT(output), 0, 0, NULL, "picture to write: .png, .hdr or .pfm (required)"},
-    {"--size", "WxH", RENDER | BENCH, readSize, 0, 0, 0, NULL, "pixels; default 1280x720"},
-    {"--camera", "I", RENDER, readInt, AT(render.camera), 0, 1e9, NULL, "index of the scene's camera; default 0"},
+    {"-o", "FILE", RENDER, readText, AT(output), 0, 0, NULL,
+     "picture to write: .png, .hdr or .pfm (required)"},
+    {"--size", "WxH", RENDER | INFO | BENCH, readSize, 0, 0, 0, NULL, "pixels; default 1280x720"},
+    {"--camera", "I", RENDER, readInt, AT(render.camera), 0, 1e9, NULL,
+     "index of the scene's camera; default 0"},
     {"--method", "M", SCENE, readChoice, AT(render.method), 0, 0, "instant-radiosity|direct",
      "instant-radiosity (default) or direct"},
     {"--lighting", "L", SCENE, readChoice, AT(render.lighting), 0, 0, "physical|documented",
@@ -273,7 +275,8 @@ static const Option OPTIONS[] = {
     {"--bounce", "B", SCENE, readChoice, AT(render.bounce), 0, 0, "auto|reflect|diffuse",
      "auto (default): reflect for documented lighting, diffuse for physical"},
     {"--seed", "S", SCENE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},
-    {"--pipeline", "P", RENDER | INFO, readChoice, AT(render.accumulation), 0, 0, "multipass|batched|deferred",
+    {"--pipeline", "P", RENDER | INFO, readChoice, AT(render.accumulation), 0, 0,
+     "multipass|batched|deferred",
      "multipass, batched or deferred (default): how virtual lights are added; the same bits"},
     {"--batch", "M", RENDER | INFO, readInt, AT(render.batch), 1, VPL_MAX_LIGHTS, NULL,
      "virtual lights per pass of --pipeline batched; default 64"},
@@ -301,7 +304,8 @@ static const Option OPTIONS[] = {
     {"--heat-scale", "X", COMPARE, readDouble, AT(heatScale), 0, 1e30, NULL,
      "difference shown as white; default: the largest"},
     {"--json", NULL, COMPARE | BENCH | INFO, readFlag, AT(json), 0, 0, NULL, "print JSON"},
-    {"--runs", "N", BENCH, readInt, AT(runs), 1, 1000, NULL, "runs of which the median is printed; default 5"},
+    {"--runs", "N", BENCH, readInt, AT(runs), 1, 1000, NULL,
+     "runs of which the median is printed; default 5"},
     {"--threads", "T", RENDER | LIGHTS | BENCH, readThreads, 0, 0, 0, NULL,
      "worker threads, 0 (default): one per processor; bench takes several: 1,2"},
     {"--isa", "I", RENDER | LIGHTS | BENCH, readChoice, AT(context.isa), 0, 0, "auto|scalar|sse2|avx2|avx512",
@@ -361,20 +365,26 @@ static int distance(const char* a, const char* b)
     return row[n];
 }
 
-static const Option* findOption(const char* word, size_t length, int bit)
+static const Option* findOption(const char* command, const char* word, size_t length)
 {
     const Option* nearest = NULL;
+    int bit = commandBit(command), least = 3;
     char name[64];
     snprintf(name, sizeof name, "%.*s", (int)length, word);
     for (int i = 0; i < OPTION_COUNT; i++) {
         const Option* o = &OPTIONS[i];
-        if ((o->commands & bit) == 0) {
-            continue;
+        bool equal = strcmp(o->name, name) == 0;
+        if (equal && (o->commands & bit) == 0) {
+            complain("%s has no option %s", command, name);
+            return NULL;
         }
-        if (strcmp(o->name, name) == 0) {
+        if (equal) {
             return o;
         }
-        if (distance(name, o->name) <= 2 && strlen(name) > 3) {
+        bool begun = strncmp(name, o->name, strlen(name)) == 0; // "--reflect" for "--reflectivity"
+        int far = begun ? 1 : distance(name, o->name);
+        if ((o->commands & bit) != 0 && strlen(name) > 3 && far < least) {
+            least = far;
             nearest = o;
         }
     }
@@ -397,7 +407,7 @@ bool parseArguments(int count, char** words, Arguments* arguments)
 {
     Arguments a = defaultArguments(words[1]);
     int bit = commandBit(words[1]);
-    int most = bit == COMPARE ? 2 : 1;
+    int most = bit == COMPARE ? 2 : bit == BENCH ? 0 : 1;
     for (int i = 2; i < count; i++) {
         const char* word = words[i];
         if (word[0] != '-' || word[1] == 0) {
@@ -409,7 +419,7 @@ bool parseArguments(int count, char** words, Arguments* arguments)
             continue;
         }
         const char* equals = word[1] == '-' ? strchr(word, '=') : NULL;
-        const Option* o = findOption(word, equals ? (size_t)(equals - word) : strlen(word), bit);
+        const Option* o = findOption(a.command, word, equals ? (size_t)(equals - word) : strlen(word));
         if (o == NULL) {
             return false;
         }
@@ -419,7 +429,7 @@ bool parseArguments(int count, char** words, Arguments* arguments)
             return false;
         }
         if (o->value != NULL && value == NULL) {
-            if (i + 1 >= count) {
+            if (i + 1 >= count || strncmp(words[i + 1], "--", 2) == 0) { // a file so named: --name=--file
                 complain("%s needs a value: %s", o->name, o->value);
                 return false;
             }

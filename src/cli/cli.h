@@ -61,6 +61,8 @@ typedef struct Progress {
 Progress beginProgress(bool quiet);
 vplProgressFcn showProgress;
 void endProgress(Progress* progress);
+
+// From here on SIGINT and SIGTERM only make showProgress return false; a second one kills.
 void catchInterrupts(void);
 
 // Writes the statistics of a render as JSON.
@@ -68,6 +70,9 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
 
 // True if a file can probably be written there; complains otherwise. Asked before hours of rendering.
 bool checkOutput(const char* path);
+
+// Writes a whole file beside its target and renames it, or leaves everything as it was and complains.
+bool writeTextFile(const char* path, const char* text);
 
 int runRender(const Arguments* arguments);
 int runLights(const Arguments* arguments);

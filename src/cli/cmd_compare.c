@@ -56,6 +56,7 @@ static int compare(const Arguments* a, const vplImage* first, const vplImage* se
     vplImage* map = NULL;
     code = exitCode(vplImage_Heatmap(first, second, (float)a->heatScale, &map), true);
     if (code == EXIT_DONE) {
+        catchInterrupts(); // no temporary file stays behind
         code = exitCode(vplImage_Write(map, a->heatmap, NULL), false);
     }
     vplImage_Destroy(map);
@@ -67,6 +68,9 @@ int runCompare(const Arguments* a)
     if (a->heatmap != NULL && !vplImage_CanWrite(a->heatmap)) {
         complain("%s: unknown picture format; the name must end in .png, .hdr or .pfm", a->heatmap);
         return EXIT_USAGE;
+    }
+    if (a->heatmap != NULL && !checkOutput(a->heatmap)) {
+        return EXIT_COULD_NOT;
     }
     vplContext* context = openContext(a);
     if (context == NULL) {

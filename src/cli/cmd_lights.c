@@ -6,11 +6,12 @@
 static void printLights(const vplLightSet* set)
 {
     puts("index,step,px,py,pz,nx,ny,nz,r,g,b,weight");
-    for (int i = 0; i < set->lightCount; i++) {
+    for (int i = 0; i < set->lightCount && !ferror(stdout); i++) {
         const vplVirtualLight* v = &set->lights[i];
         printf("%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, v->step, (double)v->position.x,
                (double)v->position.y, (double)v->position.z, (double)v->normal.x, (double)v->normal.y,
-               (double)v->normal.z, (double)v->light.r, (double)v->light.g, (double)v->light.b, (double)v->weight);
+               (double)v->normal.z, (double)v->light.r, (double)v->light.g, (double)v->light.b,
+               (double)v->weight);
     }
 }
 
@@ -29,8 +30,8 @@ int runLights(const Arguments* a)
     if (code == EXIT_DONE) {
         printLights(set);
         if (a->verbose) {
-            complain("%d lights, %d particles escaped, %lld rays, %lld ray-object tests", set->lightCount, set->escaped,
-                     (long long)set->rays, (long long)set->rayObjectTests);
+            complain("%d lights, %d particles escaped, %lld rays, %lld ray-object tests", set->lightCount,
+                     set->escaped, (long long)set->rays, (long long)set->rayObjectTests);
         }
     }
     vplLightSet_Destroy(set);

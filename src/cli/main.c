@@ -77,6 +77,7 @@ int main(int count, char** words)
         {"info", runInfo, 1},     {"bench", runBench, 0},
     };
     signal(SIGPIPE, SIG_IGN); // a closed pipe is a failed write, and said so
+    signal(SIGXFSZ, SIG_IGN); // so is a file beyond the size limit
     const char* command = count > 1 ? words[1] : NULL;
     if (command == NULL) {
         complain("no command; vpl help lists them");
@@ -110,7 +111,6 @@ int main(int count, char** words)
                      commands[i].positionals == 2 ? "two pictures" : "a scene file", command);
             return EXIT_USAGE;
         }
-        catchInterrupts();
         return finishOutput(commands[i].run(&arguments));
     }
     complain("no command \"%s\"; vpl help lists them", command);

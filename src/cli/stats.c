@@ -4,7 +4,6 @@
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static json_t* intArray(const int* values, int count)
 {
@@ -13,23 +12,6 @@ static json_t* intArray(const int* values, int count)
         json_array_append_new(array, json_integer(values[i]));
     }
     return array;
-}
-
-// The public API writes pictures only, so this writes beside the target and renames by itself.
-static vplResult writeText(const char* path, const char* text)
-{
-    char temporary[4200];
-    snprintf(temporary, sizeof temporary, "%s.tmp", path);
-    FILE* file = fopen(temporary, "w");
-    bool good = file != NULL && fputs(text, file) >= 0;
-    good = file != NULL && fclose(file) == 0 && good;
-    good = good && rename(temporary, path) == 0;
-    if (!good) {
-        complain("%s: cannot write the statistics", path);
-        remove(temporary);
-        return VPL_FILE_ERROR;
-    }
-    return VPL_SUCCESS;
 }
 
 vplResult writeStats(vplContext* context, const char* path, const vplRenderStats* stats)
@@ -63,8 +45,10 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(root);
     vplResult result = VPL_OUT_OF_MEMORY;
-    if (text != NULL) {
-        result = writeText(path, text);
+    if (text == NULL) {
+        complain("%s: out of memory while writing JSON", path);
+    } else {
+        result = writeTextFile(path, text) ? VPL_SUCCESS : VPL_FILE_ERROR;
         free(text);
     }
     return result;
