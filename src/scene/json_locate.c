@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks a text that jansson has already accepted, so the syntax need not be checked again: only strings (which
-// may contain any bracket) and nesting matter. Runs on the error path only.
+// Walks a text without NUL bytes that jansson has already accepted, so the syntax need not be checked again: only
+// strings (which may contain any bracket) and nesting matter. Runs on the error path only.
 #include "scene/json_locate.h"
 
 #include <stdbool.h>
@@ -14,7 +14,7 @@ typedef struct Cursor {
 
 static void skipSpace(Cursor* c)
 {
-    while (c->at < c->end && strchr(" \t\r\n", *c->at) != NULL && *c->at != 0) {
+    while (c->at < c->end && strchr(" \t\r\n", *c->at) != NULL) {
         c->at++;
     }
 }
@@ -114,15 +114,20 @@ void vplJson_Locate(const char* text, size_t size, const vplJsonPath* path, int 
     Cursor c = {text, text + size};
     skipSpace(&c);
     descend(&c, path, atKey != 0);
-    *line = 1;
-    const char* lineStart = text;
-    for (const char* p = text; p < c.at && p < c.end; p++) {
+    vplJson_CountLines(text, (size_t)((c.at < c.end ? c.at : c.end) - text), line, column);
+}
+
+void vplJson_CountLines(const char* text, size_t offset, int* line, int* column)
+{
+    *line = *column = 1;
+    for (const char* p = text; p < text + offset; p++) {
         if (*p == '\n') {
             ++*line;
-            lineStart = p + 1;
+            *column = 1;
+        } else if ((*p & 0xC0) != 0x80) { // characters, as jansson and editors count them, not bytes
+            ++*column;
         }
     }
-    *column = (int)(c.at - lineStart) + 1;
 }
 
 void vplJson_FormatPath(const vplJsonPath* path, char* buffer, size_t size)

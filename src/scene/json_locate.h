@@ -14,7 +14,11 @@ typedef struct vplJsonPath {
 
 // Line and column (from 1) of the value at `path` in a syntactically valid text; of its key if `atKey`.
 // A path that leads nowhere gives the innermost value that exists.
-void vplJson_Locate(const char* text, size_t size, const vplJsonPath* path, int atKey, int* line, int* column);
+void vplJson_Locate(const char* text, size_t size, const vplJsonPath* path, int atKey, int* line,
+                    int* column);
+
+// Line and column of a byte of any text.
+void vplJson_CountLines(const char* text, size_t offset, int* line, int* column);
 
 // Writes the path as "objects[2].scale" into buffer.
 void vplJson_FormatPath(const vplJsonPath* path, char* buffer, size_t size);

@@ -29,6 +29,48 @@ static const char* typeName(const json_t* value)
     return "null";
 }
 
+// Names and texts of a broken file end up in messages; what a terminal would obey or choke on becomes '?'.
+static void makePrintable(char* text)
+{
+    unsigned char* p = (unsigned char*)text;
+    while (*p != 0) {
+        int length = *p < 0x80 ? 1 : *p >= 0xF0 ? 4 : *p >= 0xE0 ? 3 : *p >= 0xC2 ? 2 : 0;
+        bool control = *p < 0x20 || *p == 0x7F || (*p == 0xC2 && p[1] < 0xA0);
+        int good = control ? 0 : 1;
+        while (good > 0 && good < length && (p[good] & 0xC0) == 0x80) {
+            good++;
+        }
+        if (length == 0 || good < length) { // also a sequence that a full buffer cut off
+            *p++ = '?';
+        } else {
+            p += length;
+        }
+    }
+}
+
+// jansson skips a NUL byte behind a number as if it were not there (its lexer takes it for an empty buffer).
+static vplResult rejectNul(const vplJsonReader* reader)
+{
+    const char* nul = memchr(reader->text, 0, reader->size);
+    if (nul == NULL) {
+        return VPL_SUCCESS;
+    }
+    int line, column;
+    vplJson_CountLines(reader->text, (size_t)(nul - reader->text), &line, &column);
+    return vplFail(reader->context, VPL_PARSE_ERROR, "%s:%d:%d: a NUL byte, must be text (JSON in UTF-8)",
+                   reader->file, line, column);
+}
+
+static vplResult failSyntax(vplContext* context, const char* file, json_error_t* error)
+{
+    if (error->text[0] == 0 || json_error_code(error) == json_error_out_of_memory) {
+        return vplFail(context, VPL_OUT_OF_MEMORY, "%s: out of memory while reading JSON", file);
+    }
+    makePrintable(error->text);
+    return vplFail(context, VPL_PARSE_ERROR, "%s:%d:%d: %s", file, error->line > 0 ? error->line : 1,
+                   error->column > 0 ? error->column : 1, error->text);
+}
+
 vplResult vplJsonReader_Open(vplContext* context, const char* file, vplJsonReader* readerOut)
 {
     vplJsonReader reader = {context, file, NULL, 0, NULL};
@@ -36,12 +78,15 @@ vplResult vplJsonReader_Open(vplContext* context, const char* file, vplJsonReade
     if (result != VPL_SUCCESS) {
         return result;
     }
-    json_error_t error;
-    reader.root = json_loadb(reader.text, reader.size, JSON_REJECT_DUPLICATES, &error);
-    if (reader.root == NULL) {
-        int column = error.column > 0 ? error.column : 1;
-        result = vplFail(context, VPL_PARSE_ERROR, "%s:%d:%d: %s", file, error.line > 0 ? error.line : 1, column,
-                         error.text);
+    result = rejectNul(&reader);
+    if (result == VPL_SUCCESS) {
+        json_error_t error;
+        // Integers as real: 64 bits are no limit of a scene's numbers.
+        const size_t flags = JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL;
+        reader.root = json_loadb(reader.text, reader.size, flags, &error);
+        result = reader.root != NULL ? VPL_SUCCESS : failSyntax(context, file, &error);
+    }
+    if (result != VPL_SUCCESS) {
         vplFree(context, reader.text);
         return result;
     }
@@ -55,14 +100,16 @@ void vplJsonReader_Close(vplJsonReader* reader)
     vplFree(reader->context, reader->text);
 }
 
-static vplResult failAt(const vplJsonReader* reader, const vplJsonPath* path, bool atKey, const char* message)
+static vplResult failAt(const vplJsonReader* reader, const vplJsonPath* path, bool atKey, char* message)
 {
     char name[256];
     int line, column;
     vplJson_FormatPath(path, name, sizeof name);
+    makePrintable(name);
+    makePrintable(message);
     vplJson_Locate(reader->text, reader->size, path, atKey, &line, &column);
-    return vplFail(reader->context, VPL_PARSE_ERROR, "%s:%d:%d: %s%s%s", reader->file, line, column, name,
-                   name[0] ? " " : "", message);
+    return vplFail(reader->context, VPL_PARSE_ERROR, "%s:%d:%d: %s %s", reader->file, line, column,
+                   name[0] ? name : "the scene", message);
 }
 
 vplResult vplJsonReader_Fail(const vplJsonReader* reader, const vplJsonPath* path, const char* format, ...)
@@ -75,16 +122,20 @@ vplResult vplJsonReader_Fail(const vplJsonReader* reader, const vplJsonPath* pat
     return failAt(reader, path, false, message);
 }
 
-vplResult vplJsonReader_RequireObject(const vplJsonReader* reader, const json_t* value, const vplJsonPath* path)
+vplResult vplJsonReader_RequireObject(const vplJsonReader* reader, const json_t* value,
+                                      const vplJsonPath* path)
 {
-    return json_is_object(value) ? VPL_SUCCESS
-                                 : vplJsonReader_Fail(reader, path, "is %s, must be an object", typeName(value));
+    return json_is_object(value)
+               ? VPL_SUCCESS
+               : vplJsonReader_Fail(reader, path, "is %s, must be an object", typeName(value));
 }
 
-vplResult vplJsonReader_RequireArray(const vplJsonReader* reader, const json_t* value, const vplJsonPath* path)
+vplResult vplJsonReader_RequireArray(const vplJsonReader* reader, const json_t* value,
+                                     const vplJsonPath* path)
 {
-    return json_is_array(value) ? VPL_SUCCESS
-                                : vplJsonReader_Fail(reader, path, "is %s, must be an array", typeName(value));
+    return json_is_array(value)
+               ? VPL_SUCCESS
+               : vplJsonReader_Fail(reader, path, "is %s, must be an array", typeName(value));
 }
 
 static bool isListed(const char* const* keys, const char* key)
@@ -112,7 +163,8 @@ vplResult vplJsonReader_CheckKeys(const vplJsonReader* reader, const json_t* obj
             char message[256] = "is not a known key; known here:";
             for (int i = 0; keys[i] != NULL; i++) {
                 size_t used = strlen(message);
-                snprintf(message + used, sizeof message - used, "%s %s", i ? "," : "", keys[i] + (keys[i][0] == '!'));
+                snprintf(message + used, sizeof message - used, "%s %s", i ? "," : "",
+                         keys[i] + (keys[i][0] == '!'));
             }
             vplJsonPath member = {path, key, 0};
             return failAt(reader, &member, true, message);
@@ -120,21 +172,22 @@ vplResult vplJsonReader_CheckKeys(const vplJsonReader* reader, const json_t* obj
     }
     for (int i = 0; keys[i] != NULL; i++) {
         if (keys[i][0] == '!' && json_object_get(object, keys[i] + 1) == NULL) {
-            return vplJsonReader_Fail(reader, path, "%s \"%s\"", path ? "lacks the key" : "the scene lacks the key",
-                                      keys[i] + 1);
+            return vplJsonReader_Fail(reader, path, "lacks the key \"%s\"", keys[i] + 1);
         }
     }
     return VPL_SUCCESS;
 }
 
-static vplResult readNumber(const vplJsonReader* reader, const json_t* value, const vplJsonPath* path, double* out)
+static vplResult readNumber(const vplJsonReader* reader, const json_t* value, const vplJsonPath* path,
+                            double* out)
 {
     if (!json_is_number(value)) {
         return vplJsonReader_Fail(reader, path, "is %s, must be a number", typeName(value));
     }
     double number = json_number_value(value);
     if (!(fabs(number) <= FLT_MAX)) {
-        return vplJsonReader_Fail(reader, path, "is %g, beyond the range of a float (%g)", number, (double)FLT_MAX);
+        return vplJsonReader_Fail(reader, path, "is %g, beyond the range of a float (%g)", number,
+                                  (double)FLT_MAX);
     }
     *out = number;
     return VPL_SUCCESS;
@@ -157,7 +210,8 @@ vplResult vplJsonReader_Doubles(const vplJsonReader* reader, const json_t* objec
         return VPL_SUCCESS;
     }
     if (!json_is_array(value)) {
-        return vplJsonReader_Fail(reader, &member, "is %s, must be an array of %d numbers", typeName(value), count);
+        return vplJsonReader_Fail(reader, &member, "is %s, must be an array of %d numbers", typeName(value),
+                                  count);
     }
     if (json_array_size(value) != (size_t)count) {
         return vplJsonReader_Fail(reader, &member, "has %zu elements, must be an array of %d numbers",

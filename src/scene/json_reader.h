@@ -39,7 +39,9 @@ vplResult vplJsonReader_String(const vplJsonReader* reader, const json_t* object
                                const char* key, const char** out);
 
 // The value must be an object or array; says what it is instead.
-vplResult vplJsonReader_RequireObject(const vplJsonReader* reader, const json_t* value, const vplJsonPath* path);
-vplResult vplJsonReader_RequireArray(const vplJsonReader* reader, const json_t* value, const vplJsonPath* path);
+vplResult vplJsonReader_RequireObject(const vplJsonReader* reader, const json_t* value,
+                                      const vplJsonPath* path);
+vplResult vplJsonReader_RequireArray(const vplJsonReader* reader, const json_t* value,
+                                     const vplJsonPath* path);
 
 #endif

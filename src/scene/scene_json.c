@@ -15,13 +15,28 @@ typedef struct Loader {
 
 static const double DEGREE = VPL_PI / 180;
 
-// Turns what the checks found into "file:line:column: path sentence"; `key` names the field in the file.
+// The key in a scene file of a def's field.
+static const char* keyOf(const char* field)
+{
+    static const char* const pairs[][2] = {{"fovY", "fov_y"},
+                                           {"innerAngle", "inner_angle"},
+                                           {"outerAngle", "outer_angle"},
+                                           {"transform", "matrix"}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        if (strcmp(field, pairs[i][0]) == 0) {
+            return pairs[i][1];
+        }
+    }
+    return field;
+}
+
+// Turns what the checks found into "file:line:column: path sentence"; `key` overrides the field's own.
 static vplResult reportFault(const Loader* l, const vplJsonPath* path, const char* key, const vplFault* fault)
 {
     if (fault->field == NULL) {
         return VPL_SUCCESS;
     }
-    vplJsonPath member = {path, key ? key : fault->field, 0};
+    vplJsonPath member = {path, key ? key : keyOf(fault->field), 0};
     vplJsonPath component = {&member, NULL, fault->index};
     return vplJsonReader_Fail(&l->json, fault->index >= 0 ? &component : &member, "%s", fault->text);
 }
@@ -44,12 +59,12 @@ static vplResult readAngle(const Loader* l, const json_t* object, const vplJsonP
     return VPL_SUCCESS;
 }
 
-#define TRY(call)                                                                                                  \
-    do {                                                                                                           \
-        vplResult tryResult = (call);                                                                              \
-        if (tryResult != VPL_SUCCESS) {                                                                            \
-            return tryResult;                                                                                      \
-        }                                                                                                          \
+#define TRY(call)                                                                                            \
+    do {                                                                                                     \
+        vplResult tryResult = (call);                                                                        \
+        if (tryResult != VPL_SUCCESS) {                                                                      \
+            return tryResult;                                                                                \
+        }                                                                                                    \
     } while (0)
 
 static vplResult readCamera(Loader* l, const json_t* value, const vplJsonPath* path)
@@ -81,7 +96,7 @@ static vplResult readCameras(Loader* l)
         return readCamera(l, one, &path);
     }
     if (many == NULL) {
-        return vplJsonReader_Fail(&l->json, NULL, "the scene lacks the key \"camera\"");
+        return vplJsonReader_Fail(&l->json, NULL, "lacks the key \"camera\"");
     }
     TRY(vplJsonReader_RequireArray(&l->json, many, &path));
     if (json_array_size(many) == 0) {
@@ -131,24 +146,15 @@ static vplResult readMaterialReference(Loader* l, const json_t* object, const vp
         }
     }
     vplJsonPath member = {path, "material", 0};
-    return vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", which is not among the materials", name ? name : "");
+    return vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", which is not among the materials",
+                              name ? name : "");
 }
 
-// A zero in "scale" is named as such; any other flaw is the matrix's.
-static vplResult readTransform(Loader* l, const json_t* object, const vplJsonPath* path, vplMat4* out)
+// Translate, rotate and scale. A flaw of the matrix they make is named by the key that caused it.
+static vplResult readParts(Loader* l, const json_t* object, const vplJsonPath* path, vplMat4* out)
 {
     const vplJsonReader* json = &l->json;
     const json_t* scaleValue = json_object_get(object, "scale");
-    bool parts = json_object_get(object, "translate") || json_object_get(object, "rotate") || scaleValue;
-    if (json_object_get(object, "matrix") != NULL) {
-        if (parts) {
-            vplJsonPath member = {path, "matrix", 0};
-            return vplJsonReader_Fail(json, &member, "excludes \"translate\", \"rotate\" and \"scale\"");
-        }
-        TRY(vplJsonReader_Floats(json, object, path, "matrix", 16, out->m));
-        vplFault fault = vplCheckTransform(out);
-        return reportFault(l, path, "matrix", &fault);
-    }
     float translate[3] = {0, 0, 0}, scale[3] = {1, 1, 1};
     double quarters[3] = {0, 0, 0};
     TRY(vplJsonReader_Floats(json, object, path, "translate", 3, translate));
@@ -171,12 +177,33 @@ static vplResult readTransform(Loader* l, const json_t* object, const vplJsonPat
                                       (vplVec3){scale[0], scale[1], scale[2]});
     *out = vplAffine_ToMat4(&a);
     vplFault fault = vplCheckTransform(out);
-    fault.index = -1;
-    bool badTranslation = false;
-    for (int i = 0; i < 3; i++) {
-        badTranslation = badTranslation || translate[i] > VPL_MAX_MAGNITUDE || translate[i] < -VPL_MAX_MAGNITUDE;
+    bool translation = fault.index >= 12; // the matrix's last column
+    fault.index = translation ? fault.index - 12 : -1;
+    return reportFault(l, path, translation ? "translate" : "scale", &fault);
+}
+
+static vplResult readTransform(Loader* l, const json_t* object, const vplJsonPath* path, vplMat4* out)
+{
+    const vplJsonReader* json = &l->json;
+    if (json_object_get(object, "matrix") != NULL) {
+        if (json_object_get(object, "translate") || json_object_get(object, "rotate") ||
+            json_object_get(object, "scale")) {
+            vplJsonPath member = {path, "matrix", 0};
+            return vplJsonReader_Fail(json, &member, "excludes \"translate\", \"rotate\" and \"scale\"");
+        }
+        TRY(vplJsonReader_Floats(json, object, path, "matrix", 16, out->m));
+        vplFault fault = vplCheckTransform(out);
+        return reportFault(l, path, NULL, &fault);
     }
-    return reportFault(l, path, badTranslation ? "translate" : "scale", &fault);
+    return readParts(l, object, path, out);
+}
+
+// The type comes before all other keys, because it decides which of them are known.
+static vplResult readType(Loader* l, const json_t* value, const vplJsonPath* path, const char** out)
+{
+    TRY(vplJsonReader_RequireObject(&l->json, value, path));
+    TRY(vplJsonReader_String(&l->json, value, path, "type", out));
+    return *out != NULL ? VPL_SUCCESS : vplJsonReader_Fail(&l->json, path, "lacks the key \"type\"");
 }
 
 static vplResult readObject(Loader* l, const json_t* value, const vplJsonPath* path)
@@ -184,8 +211,7 @@ static vplResult readObject(Loader* l, const json_t* value, const vplJsonPath* p
     static const char* const keys[] = {"!type",  "name",  "!material", "translate",
                                        "rotate", "scale", "matrix",    NULL};
     const char* type = NULL;
-    TRY(vplJsonReader_CheckKeys(&l->json, value, path, keys));
-    TRY(vplJsonReader_String(&l->json, value, path, "type", &type));
+    TRY(readType(l, value, path, &type));
     vplObjectDef def = vplDefaultObjectDef();
     if (strcmp(type, "quad") == 0) {
         def.type = VPL_OBJECT_QUAD;
@@ -195,6 +221,7 @@ static vplResult readObject(Loader* l, const json_t* value, const vplJsonPath* p
         vplJsonPath member = {path, "type", 0};
         return vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", must be \"quad\" or \"box\"", type);
     }
+    TRY(vplJsonReader_CheckKeys(&l->json, value, path, keys));
     TRY(vplJsonReader_String(&l->json, value, path, "name", &def.name));
     TRY(readMaterialReference(l, value, path, &def.material));
     TRY(readTransform(l, value, path, &def.transform));
@@ -204,25 +231,25 @@ static vplResult readObject(Loader* l, const json_t* value, const vplJsonPath* p
 static vplResult readEmitter(Loader* l, const json_t* value, const vplJsonPath* path)
 {
     static const char* const pointKeys[] = {"!type", "name", "!position", "!intensity", NULL};
-    static const char* const spotKeys[] = {"!type",       "name",         "!position", "!direction", "!intensity",
-                                           "inner_angle", "outer_angle", NULL};
+    static const char* const spotKeys[] = {"!type",      "name",        "!position",   "!direction",
+                                           "!intensity", "inner_angle", "outer_angle", NULL};
     static const char* const directionalKeys[] = {"!type", "name", "!direction", "!irradiance", NULL};
     const vplJsonReader* json = &l->json;
     const char* type = NULL;
     const char* name = NULL;
-    TRY(vplJsonReader_RequireObject(json, value, path));
-    TRY(vplJsonReader_String(json, value, path, "type", &type));
+    TRY(readType(l, value, path, &type));
     vplEmitterDef def = vplDefaultEmitterDef();
     const char* const* keys = pointKeys;
-    if (type != NULL && strcmp(type, "spot") == 0) {
+    if (strcmp(type, "spot") == 0) {
         def.type = VPL_EMITTER_SPOT;
         keys = spotKeys;
-    } else if (type != NULL && strcmp(type, "directional") == 0) {
+    } else if (strcmp(type, "directional") == 0) {
         def.type = VPL_EMITTER_DIRECTIONAL;
         keys = directionalKeys;
-    } else if (type != NULL && strcmp(type, "point") != 0) {
+    } else if (strcmp(type, "point") != 0) {
         vplJsonPath member = {path, "type", 0};
-        return vplJsonReader_Fail(json, &member, "is \"%.80s\", must be \"point\", \"spot\" or \"directional\"", type);
+        return vplJsonReader_Fail(json, &member,
+                                  "is \"%.80s\", must be \"point\", \"spot\" or \"directional\"", type);
     }
     TRY(vplJsonReader_CheckKeys(json, value, path, keys));
     TRY(vplJsonReader_String(json, value, path, "name", &name));
@@ -232,20 +259,20 @@ static vplResult readEmitter(Loader* l, const json_t* value, const vplJsonPath* 
     TRY(vplJsonReader_Floats(json, value, path, strength, 3, &def.intensity.r));
     TRY(readAngle(l, value, path, "outer_angle", 0, 90, "(0, 90)", &def.outerAngle));
     TRY(readAngle(l, value, path, "inner_angle", -1e-300, 90, "[0, 90)", &def.innerAngle));
-    vplFault fault = vplCheckEmitter(&def);
-    const char* field = fault.field;
-    if (field != NULL) {
-        field = strcmp(field, "intensity") == 0    ? strength
-                : strcmp(field, "innerAngle") == 0 ? "inner_angle"
-                : strcmp(field, "outerAngle") == 0 ? "outer_angle"
-                                                   : field;
+    if (def.type == VPL_EMITTER_SPOT && def.innerAngle > def.outerAngle) { // said in degrees here
+        vplJsonPath member = {path, "inner_angle", 0};
+        return vplJsonReader_Fail(json, &member, "is %g degrees, must be at most outer_angle (%g)",
+                                  def.innerAngle / DEGREE, def.outerAngle / DEGREE);
     }
-    TRY(reportFault(l, path, field, &fault));
+    vplFault fault = vplCheckEmitter(&def);
+    bool ofStrength = fault.field != NULL && strcmp(fault.field, "intensity") == 0;
+    TRY(reportFault(l, path, ofStrength ? strength : NULL, &fault));
     return vplScene_AddEmitter(l->scene, &def, NULL);
 }
 
 // Reads every element of the array at the root's `key`, if there is one.
-static vplResult readArray(Loader* l, const char* key, vplResult (*read)(Loader*, const json_t*, const vplJsonPath*))
+static vplResult readArray(Loader* l, const char* key,
+                           vplResult (*read)(Loader*, const json_t*, const vplJsonPath*))
 {
     const json_t* array = json_object_get(l->json.root, key);
     vplJsonPath path = {NULL, key, 0};

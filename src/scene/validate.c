@@ -86,8 +86,8 @@ vplFault vplCheckTransform(const vplMat4* m)
 {
     for (int i = 0; i < 16; i++) {
         if (!(fabsf(m->m[i]) <= VPL_MAX_MAGNITUDE)) {
-            return fault("transform", i, "is %g, must be in [%g, %g]", (double)m->m[i], -(double)VPL_MAX_MAGNITUDE,
-                         (double)VPL_MAX_MAGNITUDE);
+            return fault("transform", i, "is %g, must be in [%g, %g]", (double)m->m[i],
+                         -(double)VPL_MAX_MAGNITUDE, (double)VPL_MAX_MAGNITUDE);
         }
     }
     if (m->m[3] != 0 || m->m[7] != 0 || m->m[11] != 0 || m->m[15] != 1) {
@@ -108,6 +108,10 @@ vplFault vplCheckTransform(const vplMat4* m)
 
 vplFault vplCheckEmitter(const vplEmitterDef* def)
 {
+    if (def->type != VPL_EMITTER_POINT && def->type != VPL_EMITTER_SPOT &&
+        def->type != VPL_EMITTER_DIRECTIONAL) {
+        return fault("type", -1, "is %d, must be a vplEmitterType", (int)def->type);
+    }
     vplFault f = checkPoint("position", def->position);
     f = f.field ? f : checkComponents("intensity", &def->intensity.r, 0, VPL_MAX_MAGNITUDE);
     if (f.field == NULL && def->type != VPL_EMITTER_POINT) {
