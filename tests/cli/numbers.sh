@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+# The document's counts. A closed room of B = 8 objects, N = 10 particles, rho = 0.5: 10 + 5 + 2 + 1 = 18 virtual
+# lights, 18 B = 144 ray-object tests, (7 + 18) B = 200 draw calls by multipass, (7 + 18 / m) B batched.
+
+s=$out/s.json
+counted="--particles 10 --reflectivity 0.5"
+small="--size 16x12 --shadow-map 16"
+
+succeeds LightsOfTheClosedRoom "$vpl" lights "$closed" $counted
+equals LightsHeader "index,step,px,py,pz,nx,ny,nz,r,g,b,weight" "$(head -n 1 "$scratch/stdout")"
+equals LightsCount 18 "$(($(wc -l <"$scratch/stdout") - 1))"
+equals LightsPerStep "10 5 2 1" "$(tail -n +2 "$scratch/stdout" | cut -d, -f2 | uniq -c | awk '{printf "%s%s", sep, $1; sep = " "}')"
+equals LightsWeights "1 2 5 10" "$(tail -n +2 "$scratch/stdout" | cut -d, -f12 | uniq | tr '\n' ' ' | sed 's/ $//')"
+check LightsRowsHaveTwelveCells awk -F, 'NF != 12 { exit 1 }' "$scratch/stdout"
+
+# stats NAME SCENE OPTIONS...: renders and leaves the statistics in $s.
+stats() {
+    name=$1
+    shift
+    succeeds "$name" "$vpl" render "$@" -o "$out/a.pfm" --stats "$s"
+}
+stats Multipass "$closed" $counted $small --pipeline multipass
+equals MultipassDrawCalls 200 "$(field "$s" draw_calls)"
+equals RayObjectTests 144 "$(field "$s" ray_object_tests)"
+equals VirtualLights 18 "$(field "$s" virtual_lights)"
+equals StatsLightsPerStep "[10,5,2,1]" "$(field "$s" lights_per_step)"
+equals NothingEscapes 0 "$(field "$s" escaped)"
+stats Batched18 "$closed" $counted $small --pipeline batched --batch 18
+equals Batched18DrawCalls 64 "$(field "$s" draw_calls)"
+stats Batched5 "$closed" $counted $small --pipeline batched --batch 5
+equals Batched5DrawCalls 88 "$(field "$s" draw_calls)"
+stats Deferred "$closed" $counted $small --pipeline deferred
+equals DeferredDrawCalls 56 "$(field "$s" draw_calls)"
+stats OpenRoom "$room" $counted $small
+equals OpenRoomKeepsNominalCounts "[10,5,2,1]" "$(field "$s" lights_per_step)"
+check OpenRoomReportsEscaped test "$(field "$s" escaped)" -gt 0
+for key in stages_ms total_ms draw_calls fragments virtual_lights lights_per_step escaped ray_object_tests rays \
+    triangles patches peak_bytes image_hash; do
+    check "StatsHave_$key" test -n "$(field "$s" $key)"
+done
+check ImageHashHas16Digits grep -qE '"image_hash": "[0-9a-f]{16}"' "$s"
+
+# info foretells what --stats reports afterwards.
+for pipeline in multipass "batched --batch 7" deferred; do
+    for method in instant-radiosity direct; do
+        words="$counted --shadow-map 16 --pipeline $pipeline --method $method"
+        stats "Foretold: $method $pipeline" "$closed" $words --size 16x12
+        succeeds "Info: $method $pipeline" "$vpl" info "$closed" --json $words
+        for key in draw_calls virtual_lights triangles; do
+            equals "InfoForetells_$key: $method $pipeline" "$(field "$s" $key)" "$(field "$scratch/stdout" $key)"
+        done
+    done
+done
+succeeds InfoText "$vpl" info "$room" --size 1920x1080 --shadow-map 512
+check InfoCountsObjects grep -qE '^ +objects +7 \(5 quads, 2 boxes\)$' "$scratch/stdout"
+check InfoCountsTriangles grep -qE '^ +triangles +34$' "$scratch/stdout"
+check InfoHasBounds grep -qE '^ +bounds +\(-2.5, 0, -2.5\) to \(2.5, 5, 2.5\) m$' "$scratch/stdout"
+check InfoHasLights grep -qE '^ +virtual lights +18 \(10, 5, 2, 1\)$' "$scratch/stdout"
+check InfoHasShadowMapSize grep -qE '^ +shadow maps +6.0 MiB$' "$scratch/stdout"
+check InfoHasPictureSize grep -qE '^ +picture +23.7 MiB$' "$scratch/stdout"
+rm -f "$out"/*

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+# Pictures: the same bits whatever the pipeline, threads and instruction set; every --show; compare.
+
+base="--size 75x50 --particles 100 --shadow-map 64"
+
+# hash_of WORDS...: the image hash of a render, or what went wrong.
+hash_of() {
+    if "$vpl" render "$room" $base -o "$out/h.pfm" --stats "$out/h.json" "$@" >"$scratch/stdout" 2>"$scratch/stderr"; then
+        field "$out/h.json" image_hash
+    else
+        cat "$scratch/stderr"
+    fi
+}
+for lighting in physical documented; do
+    wanted=$(hash_of --lighting $lighting)
+    check "HashIsThere_$lighting" test ${#wanted} -eq 18
+    for pipeline in multipass batched deferred; do
+        equals "SameBits_${lighting}_$pipeline" "$wanted" "$(hash_of --lighting $lighting --pipeline $pipeline)"
+    done
+    for threads in 1 2 3 7; do
+        equals "SameBits_${lighting}_threads_$threads" "$wanted" "$(hash_of --lighting $lighting --threads $threads)"
+    done
+    for isa in scalar sse2 avx2 avx512; do
+        found=$(hash_of --lighting $lighting --isa $isa)
+        case $found in
+        *"this machine or build lacks"*) ;;
+        *) equals "SameBits_${lighting}_$isa" "$wanted" "$found" ;;
+        esac
+    done
+done
+equals BatchSizeChangesNothing "$(hash_of --pipeline batched --batch 1)" "$(hash_of --pipeline batched --batch 99)"
+other=$(hash_of --seed 1)
+check AnotherSeedIsAnotherPicture test "$other" != "$(hash_of --seed 2)"
+equals EqualsSignIsASpace "$other" "$(hash_of --seed=1)"
+equals LastOptionWins "$other" "$(hash_of --seed 5 --seed=1)"
+equals LightsKnowNoThreads "$("$vpl" lights "$room" --particles 500 --threads 1 | cksum)" \
+    "$("$vpl" lights "$room" --particles=500 --threads=7 | cksum)"
+
+for show in picture depth normals shadow-map shadow-factor direct indirect light:3 overlay; do
+    succeeds "Show_$show" "$vpl" render "$room" $base -o "$out/$show.png" --show $show
+    check "Show_${show}_IsAPicture" "$vpl" compare "$out/$show.png" "$out/$show.png"
+done
+check NothingShownTwice test "$(cksum "$out"/*.png | cut -d' ' -f1 | sort -u | wc -l)" -eq 9
+
+for type in png hdr pfm; do
+    succeeds "Write_$type" "$vpl" render "$room" $base -o "$out/a.$type" --seed 1
+    succeeds "CompareWithItself_$type" "$vpl" compare "$out/a.$type" "$out/a.$type"
+    check "NoDifference_$type" grep -qE '^rmse +0$' "$scratch/stdout"
+    check "InfinitePsnr_$type" grep -qE '^psnr +inf dB$' "$scratch/stdout"
+    check "EnergyRatioOne_$type" grep -qE '^energy_ratio +1$' "$scratch/stdout"
+done
+succeeds CompareJson "$vpl" compare --json "$out/a.pfm" "$out/a.pfm"
+equals JsonRmse 0.0 "$(field "$scratch/stdout" rmse)"
+equals JsonPsnrIsNull null "$(field "$scratch/stdout" psnr)"
+"$vpl" render "$room" $base -o "$out/b.pfm" --seed 2
+succeeds CompareTwo "$vpl" compare --json "$out/a.pfm" "$out/b.pfm" --heatmap "$out/map.png"
+for key in rmse relative_rmse relmse psnr energy_ratio max_difference max_x max_y; do
+    check "CompareHas_$key" test -n "$(field "$scratch/stdout" $key)"
+done
+check HeatmapIsAPicture "$vpl" compare "$out/map.png" "$out/map.png"
+"$vpl" render "$room" -o "$out/c.pfm" --size 8x8 --shadow-map 16
+refuses CompareDifferentSizes 2 "differ in size: 75x50 and 8x8" "$vpl" compare "$out/a.pfm" "$out/c.pfm"
+
+"$vpl" render "$room" $base -o "$out/loud.pfm" --seed 1 -v >"$scratch/stdout" 2>"$scratch/stderr"
+check ResultsAloneGoToStdout test ! -s "$scratch/stdout" -a -s "$scratch/stderr"
+check VerboseChangesNothing cmp "$out/loud.pfm" "$out/a.pfm"
+check NoTemporaryPictures test -z "$(ls -A "$out" | grep -v -E '\.(png|hdr|pfm|json)$')"

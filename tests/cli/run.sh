@@ -1,0 +1,31 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Tests of the program from the outside: tests/cli/run.sh path/to/vpl, from the top of the checkout. Prints one
+# line per check and "N passed, N failed" at the end. The checks are in the other files of this folder.
+case $1 in
+/*) vpl=$1 ;;
+*) vpl=$PWD/$1 ;;
+esac
+if [ ! -x "$vpl" ]; then
+    echo "usage: tests/cli/run.sh path/to/vpl (from the top of the checkout)" >&2
+    exit 2
+fi
+room=$PWD/tests/data/room.json
+closed=$PWD/tests/data/room-closed.json
+folder=$PWD/tests/cli
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch/out"
+out=$scratch/out # where pictures go; must be as it was after every failure
+passed=0
+failed=0
+
+. "$folder/support.sh"
+. "$folder/usage.sh"
+. "$folder/scenes.sh"
+. "$folder/files.sh"
+. "$folder/numbers.sh"
+. "$folder/pictures.sh"
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+# Bad input: each broken scene of tests/data/broken gives its own sentence with file, line and column.
+
+grep -v '^#' tests/data/broken/expected.csv | tail -n +2 >"$scratch/expected"
+while IFS=, read -r file line column message; do
+    path=tests/data/broken/$file
+    refuses "Broken: $file" 2 "vpl: $path:$line:$column: " "$vpl" render "$path" -o "$out/never.png"
+    check "BrokenSentence: $file" grep -qF -- "$message" "$scratch/stderr"
+done <"$scratch/expected"
+equals EveryBrokenSceneIsListed "$(ls tests/data/broken/*.json | wc -l)" "$(wc -l <"$scratch/expected")"
+
+never=$out/never.png
+refuses SceneIsMissing 2 "missing.json: cannot open: No such file" "$vpl" render "$scratch/missing.json" -o "$never"
+refuses SceneIsAFolder 2 "cannot read: Is a directory" "$vpl" render "$scratch" -o "$never"
+refuses SceneFolderIsAFile 2 "cannot open: Not a directory" "$vpl" render "$room/scene.json" -o "$never"
+cp "$room" "$scratch/secret.json"
+chmod 000 "$scratch/secret.json"
+if [ ! -r "$scratch/secret.json" ]; then # root reads it anyway
+    refuses SceneMayNotBeRead 2 "cannot open: Permission denied" "$vpl" render "$scratch/secret.json" -o "$never"
+fi
+for command in lights info; do
+    refuses "BrokenSceneFor_$command" 2 "$(printf 'nan.json:2:28')" "$vpl" $command tests/data/broken/nan.json
+done
+
+cat >"$scratch/spot.json" <<'SCENE'
+{ "camera": { "eye": [0, 0, 5], "target": [0, 0, 0] }, "objects": [],
+  "lights": [{ "type": "spot", "position": [0, 4, 0], "direction": [0, -1, 0], "intensity": [1, 1, 1] }] }
+SCENE
+cat >"$scratch/dark.json" <<'SCENE'
+{ "camera": { "eye": [0, 0, 5], "target": [0, 0, 0] }, "objects": [] }
+SCENE
+refuses SceneWithoutLights 2 "no emitter" "$vpl" render "$scratch/dark.json" -o "$never" --size 8x8
+refuses LightsOfASceneWithoutLights 2 "no emitter" "$vpl" lights "$scratch/dark.json"
+refuses ShadowMapWithoutLights 2 "no light" \
+    "$vpl" render "$scratch/dark.json" -o "$never" --size 8x8 --method direct --show shadow-map
+succeeds InfoOfASceneThatCannotBeRendered "$vpl" info "$scratch/spot.json"
+check InfoSaysWhyNot grep -q 'not possible:' "$scratch/stdout"
+succeeds ASceneOfNothingIsBlack "$vpl" render "$scratch/dark.json" -o "$out/dark.pfm" --size 8x8 --method direct
+rm -f "$out/dark.pfm"

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+# Wrong usage: exit code 2 and one sentence that says what to type instead. Help and version.
+
+png=$out/never.png
+
+# wrong TEXT WORDS...: named after the words.
+wrong() {
+    text=$1
+    shift
+    refuses "WrongUsage: vpl $(echo "$*" | sed "s|$PWD/||g; s|$scratch/||g")" 2 "$text" "$vpl" "$@"
+}
+
+wrong "no command"
+wrong "no command \"rendr\"" rendr
+wrong "no command \"frob\"" help frob
+wrong "needs a scene file" render
+wrong "needs a scene file" lights
+wrong "needs a scene file" info
+wrong "needs two pictures" compare
+wrong "needs two pictures" compare a.png
+wrong "one word too many: \"second.json\"" render "$room" second.json -o "$png"
+wrong "one word too many: \"c.png\"" compare a.png b.png c.png
+wrong "one word too many: \"x\"" bench x
+wrong "render needs -o FILE" render "$room"
+wrong "must end in .png, .hdr or .pfm" render "$room" -o "$out/never.txt"
+wrong "must end in .png, .hdr or .pfm" render "$room" -o "$out/never"
+wrong "both the picture and the statistics" render "$room" -o "$png" --stats "$png"
+
+wrong "unknown option --particels, did you mean --particles?" render "$room" -o "$png" --particels 5
+wrong "unknown option --thread, did you mean --threads?" lights "$room" --thread=2
+wrong "unknown option --reflect, did you mean --reflectivity?" lights "$room" --reflect 0.5
+wrong "unknown option --xyzzy" render "$room" -o "$png" --xyzzy
+wrong "unknown option -x" info "$room" -x
+wrong "lights has no option --size" lights "$room" --size 8x8
+wrong "compare has no option --seed" compare a.png b.png --seed 1
+wrong "--particles needs a value: N" render "$room" -o "$png" --particles
+wrong "--particles needs a value: N" render "$room" -o "$png" --particles --quiet
+wrong "-o needs a value: FILE" render "$room" -o
+wrong "--quiet takes no value" render "$room" -o "$png" --quiet=yes
+wrong "-o is empty" render "$room" -o ""
+
+wrong "--particles is \"-1\", must be a whole number in [0, 16777216]" lights "$room" --particles -1
+wrong "--particles is \"16777217\"" lights "$room" --particles 16777217
+wrong "--particles is \"99999999999999999999\"" lights "$room" --particles 99999999999999999999
+wrong "--particles is \"ten\"" lights "$room" --particles ten
+wrong "--particles is \"10.5\"" lights "$room" --particles 10.5
+wrong "--particles is \"\"" lights "$room" --particles=
+wrong "--reflectivity is \"1\", must be less than 1" lights "$room" --reflectivity 1
+wrong "--reflectivity is \"-0.1\", must be a number in [0, 1] or auto" lights "$room" --reflectivity -0.1
+wrong "--reflectivity is \"nan\"" lights "$room" --reflectivity nan
+wrong "--reflectivity is \"often\"" lights "$room" --reflectivity often
+wrong "needs more than" lights "$room" --particles 10 --reflectivity 0.99999999
+wrong "leave more than 16777216 virtual lights" lights "$room" --particles 16777216 --reflectivity 0.5
+wrong "--seed is \"-1\"" lights "$room" --seed -1
+wrong "--seed is \"18446744073709551616\"" lights "$room" --seed 18446744073709551616
+wrong "--threads is \"1025\"" lights "$room" --threads 1025
+wrong "--threads is \"1,2\"" lights "$room" --threads 1,2
+wrong "--sampler is \"sobol\", must be one of random|halton|hammersley" lights "$room" --sampler sobol
+wrong "--method is \"\"" lights "$room" --method=
+wrong "--method is \"photon\"" render "$room" -o "$png" --method photon
+wrong "--lighting is \"physica\"" render "$room" -o "$png" --lighting physica
+wrong "--bounce is" lights "$room" --bounce refract
+wrong "--pipeline is" render "$room" -o "$png" --pipeline forward
+wrong "--isa is \"mmx\"" render "$room" -o "$png" --isa mmx
+wrong "--tonemap is" render "$room" -o "$png" --tonemap aces
+wrong "--batch is \"0\"" render "$room" -o "$png" --batch 0
+wrong "--shadow-map is \"0\"" render "$room" -o "$png" --shadow-map 0
+wrong "--shadow-map is \"8193\"" render "$room" -o "$png" --shadow-map 8193
+wrong "--pcf is \"0\"" render "$room" -o "$png" --pcf 0
+wrong "--pcf is \"257\"" render "$room" -o "$png" --pcf 257
+wrong "--pcf-offset is \"-1\"" render "$room" -o "$png" --pcf-offset -1
+wrong "--bias is \"some\"" render "$room" -o "$png" --bias some
+wrong "--bias-slope is \"inf\"" render "$room" -o "$png" --bias-slope inf
+wrong "--min-distance is \"-2\"" render "$room" -o "$png" --min-distance -2
+wrong "--exposure is \"65\"" render "$room" -o "$png" --exposure 65
+wrong "--exposure is \"1e400\"" render "$room" -o "$png" --exposure 1e400
+wrong "camera is 1, must be in [0, 0]" render "$room" -o "$png" --camera 1
+wrong "--camera is \"-1\"" render "$room" -o "$png" --camera -1
+for size in 0x10 10x0 16385x1 1x16385 10 10x 10y10 10x10x10 x -4x4 1e3x2 99999999999999999999x1; do
+    wrong "--size is \"$size\", must be WIDTHxHEIGHT" render "$room" -o "$png" --size $size
+done
+wrong "--show is \"everything\"" render "$room" -o "$png" --show everything
+wrong "--show is \"light:\"" render "$room" -o "$png" --show light:
+wrong "--show is \"light:K\"" render "$room" -o "$png" --show light:K
+wrong "--show is \"light:-1\"" render "$room" -o "$png" --show light:-1
+wrong "virtual light 18 does not exist, there are 18 (from 0)" \
+    render "$closed" -o "$png" --size 8x8 --shadow-map 16 --show light:18
+wrong "--heat-scale is \"-1\"" compare a.png b.png --heat-scale -1
+wrong "must end in .png, .hdr or .pfm" compare a.png b.png --heatmap map.gif
+
+succeeds VersionIsPrinted "$vpl" --version
+check VersionHasThreeNumbers grep -qxE 'vpl [0-9]+\.[0-9]+\.[0-9]+' "$scratch/stdout"
+for command in render lights compare info bench; do
+    succeeds "HelpOf_$command" "$vpl" help $command
+    cp "$scratch/stdout" "$scratch/help"
+    check "HelpOf_${command}_NamesItsUsage" grep -q "^vpl $command" "$scratch/help"
+    succeeds "OptionHelpOf_$command" "$vpl" $command --help
+    check "OptionHelpOf_${command}_IsTheSame" cmp "$scratch/stdout" "$scratch/help"
+done
+succeeds HelpListsCommands "$vpl" help
+check HelpNamesExitCodes grep -q '^Exit codes: 0' "$scratch/stdout"
