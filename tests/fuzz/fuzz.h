@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// What the fuzz targets share. Each target is linked with libFuzzer, or with replay.c to run a corpus once.
+#ifndef VPL_TESTS_FUZZ_FUZZ_H
+#define VPL_TESTS_FUZZ_FUZZ_H
+
+#include <vpl/vpl.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);
+
+// What must hold for every input; abort() is what both libFuzzer and the replay notice.
+#define REQUIRE(condition)                                                                                   \
+    do {                                                                                                     \
+        if (!(condition)) {                                                                                  \
+            fprintf(stderr, "%s:%d: %s\n", __FILE__, __LINE__, #condition);                                  \
+            abort();                                                                                         \
+        }                                                                                                    \
+    } while (0)
+
+// Refuses blocks that only a lying header asks for, so that fuzzing stays fast and needs little memory.
+static inline void* fuzzAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
+{
+    (void)user;
+    (void)oldSize;
+    if (newSize == 0) {
+        free(memory);
+        return NULL;
+    }
+    return newSize > ((size_t)64 << 20) ? NULL : realloc(memory, newSize);
+}
+
+// The last message, so that a failure without its sentence is found.
+typedef struct FuzzLog {
+    char message[1200];
+    int errors;
+} FuzzLog;
+
+static inline void fuzzLog(void* user, vplLogLevel level, const char* message)
+{
+    FuzzLog* log = user;
+    log->errors += level == VPL_LOG_ERROR;
+    snprintf(log->message, sizeof log->message, "%s", message);
+}
+
+static inline vplContext* openFuzzContext(FuzzLog* log)
+{
+    vplContextDef def = vplDefaultContextDef();
+    def.alloc = fuzzAlloc;
+    def.log = fuzzLog;
+    def.logUser = log;
+    def.workerCount = 1;
+    vplContext* context = NULL;
+    REQUIRE(vplContext_Create(&def, &context) == VPL_SUCCESS);
+    return context;
+}
+
+static inline void closeFuzzContext(vplContext* context)
+{
+    REQUIRE(vplContext_GetBytes(context) == 0);
+    vplContext_Destroy(context);
+}
+
+// True if the text is one line of valid UTF-8 without control characters: what a terminal can show.
+static inline bool isPrintable(const char* text)
+{
+    for (const unsigned char* p = (const unsigned char*)text; *p != 0; p++) {
+        int more = *p < 0x80 ? 0 : *p >= 0xF0 ? 3 : *p >= 0xE0 ? 2 : *p >= 0xC2 ? 1 : -1;
+        if (*p < 0x20 || *p == 0x7F || more < 0) {
+            return false;
+        }
+        for (; more > 0; more--) {
+            if ((*++p & 0xC0) != 0x80) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+#endif

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Any bytes as a picture, through each decoder: either one sentence, or a picture that can be compared, hashed
+// and encoded again.
+#include "fuzz.h"
+
+#include "image/image_file.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef vplResult DecodeFcn(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                            vplImage** imageOut);
+
+// A picture of floats survives PFM bit for bit.
+static void requireRoundTrip(vplContext* context, const vplImage* image)
+{
+    vplWriteOptions options = vplDefaultWriteOptions();
+    vplByteBuffer buffer = {.context = context};
+    vplImage* again = NULL;
+    REQUIRE(vplEncodePfm(image, &options, &buffer) == VPL_SUCCESS && !buffer.failed);
+    REQUIRE(vplDecodePfm(context, "again.pfm", buffer.bytes, buffer.size, &again) == VPL_SUCCESS);
+    size_t bytes = 3 * sizeof(float) * (size_t)image->width * (size_t)image->height;
+    REQUIRE(again->width == image->width && again->height == image->height);
+    REQUIRE(memcmp(again->pixels, image->pixels, bytes) == 0);
+    vplImage_Destroy(again);
+    vplFree(context, buffer.bytes);
+}
+
+// Equal to itself, or refused because a pixel is not finite.
+static void requireComparison(const vplImage* image)
+{
+    vplComparison comparison;
+    bool finite = true;
+    for (size_t i = 0; i < 3 * (size_t)image->width * (size_t)image->height; i++) {
+        finite = finite && isfinite(image->pixels[i]);
+    }
+    vplResult result = vplImage_Compare(image, image, &comparison);
+    REQUIRE(result == (finite ? VPL_SUCCESS : VPL_INVALID_ARGUMENT));
+    REQUIRE(result != VPL_SUCCESS || (comparison.rmse == 0 && comparison.relmse == 0));
+}
+
+static void decode(DecodeFcn* decoder, const uint8_t* bytes, size_t size)
+{
+    FuzzLog log = {{0}, 0};
+    vplContext* context = openFuzzContext(&log);
+    vplImage* image = NULL;
+    vplResult result = decoder(context, "picture", bytes, size, &image);
+    if (result == VPL_SUCCESS) {
+        REQUIRE(log.errors == 0 && image->width >= 1 && image->height >= 1);
+        vplImage_Hash(image);
+        if ((size_t)image->width * (size_t)image->height <= 4096) {
+            requireRoundTrip(context, image);
+            requireComparison(image);
+        }
+        vplImage_Destroy(image);
+    } else {
+        REQUIRE(image == NULL && log.errors == 1 && isPrintable(log.message));
+        REQUIRE(result == VPL_PARSE_ERROR || result == VPL_OUT_OF_MEMORY || result == VPL_INVALID_ARGUMENT);
+    }
+    closeFuzzContext(context);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
+{
+    static DecodeFcn* const decoders[] = {vplDecodePfm, vplDecodeHdr, vplDecodeLdr};
+    for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++) {
+        decode(decoders[i], bytes, size);
+    }
+    return 0;
+}

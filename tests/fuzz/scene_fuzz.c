@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Any bytes as a scene file: either one sentence with file, line and column, or a scene that every pipeline
+// renders to the same finite bits.
+#define _GNU_SOURCE
+#include "fuzz.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+// The reader opens files by name; a file in memory has one under /proc.
+static int writeMemoryFile(const uint8_t* bytes, size_t size, char* name, size_t nameSize)
+{
+    int fd = memfd_create("scene", MFD_CLOEXEC);
+    REQUIRE(fd >= 0);
+    REQUIRE(write(fd, bytes, size) == (ssize_t)size);
+    snprintf(name, nameSize, "/proc/self/fd/%d", fd);
+    return fd;
+}
+
+static void requireFinite(const vplImage* image)
+{
+    for (int i = 0; i < 3 * image->width * image->height; i++) {
+        REQUIRE(isfinite(image->pixels[i]));
+    }
+}
+
+static void renderEveryWay(const vplScene* scene)
+{
+    uint64_t hash = 0;
+    vplResult first = VPL_SUCCESS;
+    for (int way = VPL_ACCUMULATE_MULTIPASS; way <= VPL_ACCUMULATE_DEFERRED; way++) {
+        vplRenderOptions options = vplDefaultRenderOptions();
+        options.width = 12;
+        options.height = 8;
+        options.particles = 4;
+        options.shadowMapSize = 4;
+        options.batch = 3;
+        options.accumulation = (vplAccumulation)way;
+        vplImage* image = NULL;
+        vplRenderStats stats;
+        vplResult result = vplRender(scene, &options, &image, &stats);
+        first = way == 0 ? result : first;
+        REQUIRE(result == first);
+        if (result == VPL_SUCCESS) {
+            requireFinite(image);
+            hash = way == 0 ? stats.imageHash : hash;
+            REQUIRE(stats.imageHash == hash);
+        }
+        vplImage_Destroy(image);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
+{
+    FuzzLog log = {{0}, 0};
+    vplContext* context = openFuzzContext(&log);
+    char name[64];
+    int fd = writeMemoryFile(bytes, size, name, sizeof name);
+    vplScene* scene = NULL;
+    vplResult result = vplScene_Load(context, name, &scene);
+    REQUIRE(isPrintable(log.message));
+    if (result == VPL_SUCCESS) {
+        REQUIRE(log.errors == 0);
+        if (vplScene_GetObjectCount(scene) <= 8 && vplScene_GetEmitterCount(scene) <= 3) {
+            renderEveryWay(scene);
+        }
+    } else {
+        REQUIRE(result == VPL_PARSE_ERROR && scene == NULL && log.errors == 1);
+        REQUIRE(strncmp(log.message, name, strlen(name)) == 0);
+        int line, column, used = 0;
+        REQUIRE(sscanf(log.message + strlen(name), ":%d:%d: %n", &line, &column, &used) == 2 && used > 0);
+        REQUIRE(line >= 1 && column >= 1 && log.message[strlen(name) + (size_t)used] != 0);
+    }
+    vplScene_Destroy(scene);
+    close(fd);
+    closeFuzzContext(context);
+    return 0;
+}

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+// Running out of memory: the n-th allocation fails, for every n, and each time the answer is VPL_OUT_OF_MEMORY,
+// one sentence, nothing leaked and no file. New memory is filled with junk, so that success does not depend on it.
+#include "test.h"
+
+#include <jansson.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct Failing {
+    long allocations; // so far
+    long failAt;      // this one returns NULL; -1: none
+    bool stayEmpty;   // and all after it
+    long held;        // blocks not yet freed
+    int errors;       // sentences logged
+} Failing;
+
+static void* failingAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
+{
+    Failing* f = user;
+    if (newSize == 0) {
+        f->held -= memory != NULL;
+        free(memory);
+        return NULL;
+    }
+    long number = f->allocations++;
+    if (number == f->failAt || (f->stayEmpty && f->failAt >= 0 && number > f->failAt)) {
+        return NULL;
+    }
+    char* block = realloc(memory, newSize);
+    f->held += memory == NULL && block != NULL;
+    if (block != NULL && newSize > oldSize) {
+        memset(block + oldSize, 0xCD, newSize - oldSize);
+    }
+    return block;
+}
+
+static void countErrors(void* user, vplLogLevel level, const char* message)
+{
+    Failing* f = user;
+    f->errors += level == VPL_LOG_ERROR && message[0] != 0;
+}
+
+static vplContext* openFailing(Failing* f)
+{
+    vplContextDef def = vplDefaultContextDef();
+    def.alloc = failingAlloc;
+    def.allocUser = f;
+    def.log = countErrors;
+    def.logUser = f;
+    def.workerCount = 2;
+    vplContext* context = NULL;
+    vplContext_Create(&def, &context);
+    return context;
+}
+
+typedef vplResult Work(vplContext* context, const char* path, int variant);
+
+// Does the work with every allocation failing in turn, until it succeeds because there is none left to fail.
+static void failEveryAllocation(Work* work, const char* extension, int variant, bool stayEmpty)
+{
+    char folder[] = "/tmp/vpl-memory-XXXXXX", path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/a.%s", folder, extension);
+    vplResult result = VPL_OUT_OF_MEMORY;
+    long n = 0;
+    for (; result != VPL_SUCCESS; n++) {
+        Failing failing = {.failAt = n, .stayEmpty = stayEmpty};
+        vplContext* context = openFailing(&failing);
+        result = context ? work(context, path, variant) : VPL_OUT_OF_MEMORY;
+        bool intact = context == NULL || vplContext_GetBytes(context) == 0;
+        vplContext_Destroy(context);
+        struct stat info;
+        bool written = stat(path, &info) == 0;
+        if (result == VPL_SUCCESS) {
+            assert_true(failing.allocations <= n && failing.errors == 0);
+        } else if (result != VPL_OUT_OF_MEMORY || (stayEmpty ? failing.errors < 1 : failing.errors != 1) ||
+                   written) {
+            fail_msg("variant %d, allocation %ld: %s, %d sentences%s", variant, n, vplResult_GetName(result),
+                     failing.errors, written ? ", a file" : "");
+        }
+        if (failing.held != 0 || !intact) {
+            fail_msg("variant %d, allocation %ld: %ld blocks leaked", variant, n, failing.held);
+        }
+        unlink(path);
+    }
+    assert_true(n > 5);
+    assert_int_equal(rmdir(folder), 0); // fails if a temporary file stayed behind
+}
+
+static vplRenderOptions smallOptions(int pipeline)
+{
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.width = 32;
+    options.height = 24;
+    options.shadowMapSize = 16;
+    options.particles = 6;
+    options.batch = 4;
+    options.accumulation = (vplAccumulation)pipeline;
+    return options;
+}
+
+static vplResult renderAndWrite(vplContext* context, const char* path, int pipeline)
+{
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    vplRenderOptions options = smallOptions(pipeline);
+    vplWriteOptions write = vplDefaultWriteOptions();
+    write.tonemap = VPL_TONEMAP_REINHARD;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplRender(scene, &options, &image, NULL);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Write(image, path, &write);
+    }
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfARenderIsReported(void** state)
+{
+    (void)state;
+    static const char* const extensions[] = {"png", "hdr", "pfm"};
+    for (int pipeline = VPL_ACCUMULATE_MULTIPASS; pipeline <= VPL_ACCUMULATE_DEFERRED; pipeline++) {
+        failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, false);
+        failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, true);
+    }
+}
+
+// Everything that `show` can ask for.
+static vplResult showAndWrite(vplContext* context, const char* path, int show)
+{
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
+    options.show = (vplShow)show;
+    options.lighting = VPL_LIGHTING_DOCUMENTED;
+    vplResult result = vplScene_Load(context, "tests/data/room-closed.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplRender(scene, &options, &image, NULL);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Write(image, path, NULL);
+    }
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfAShownStageIsReported(void** state)
+{
+    (void)state;
+    for (int show = VPL_SHOW_DEPTH; show <= VPL_SHOW_OVERLAY; show++) {
+        failEveryAllocation(showAndWrite, "pfm", show, false);
+    }
+}
+
+static vplResult readCompareAndMap(vplContext* context, const char* path, int format)
+{
+    static const char* const pictures[] = {"small.pfm", "small.png"};
+    char source[128];
+    snprintf(source, sizeof source, "tests/fuzz/corpus/image/%s", pictures[format]);
+    vplImage *a = NULL, *b = NULL, *map = NULL;
+    vplComparison comparison;
+    vplResult result = vplImage_Read(context, source, &a);
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Read(context, source, &b);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Compare(a, b, &comparison);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Heatmap(a, b, 0, &map);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Write(map, path, NULL);
+    }
+    vplImage_Destroy(a);
+    vplImage_Destroy(b);
+    vplImage_Destroy(map);
+    return result;
+}
+
+static void EveryFailedAllocationOfAComparisonIsReported(void** state)
+{
+    (void)state;
+    for (int format = 0; format < 2; format++) {
+        failEveryAllocation(readCompareAndMap, "png", format, false);
+    }
+}
+
+// ---- jansson allocates by itself
+
+static long jsonAllocations, jsonFailAt;
+
+static void* failingJsonAlloc(size_t size)
+{
+    return jsonAllocations++ == jsonFailAt ? NULL : malloc(size);
+}
+
+// When it has no memory for a key, jansson itself believes that there is none, and calls it a syntax error.
+static void EveryFailedAllocationOfTheJsonReaderIsReported(void** state)
+{
+    (void)state;
+    vplResult result = VPL_OUT_OF_MEMORY;
+    json_set_alloc_funcs(failingJsonAlloc, free);
+    for (jsonFailAt = 0; result != VPL_SUCCESS; jsonFailAt++) {
+        Failing failing = {.failAt = -1};
+        vplContext* context = openFailing(&failing);
+        vplScene* scene = NULL;
+        jsonAllocations = 0;
+        result = vplScene_Load(context, "tests/data/room.json", &scene);
+        vplScene_Destroy(scene);
+        vplContext_Destroy(context);
+        bool told = (result == VPL_OUT_OF_MEMORY || result == VPL_PARSE_ERROR) && failing.errors == 1;
+        if (failing.held != 0 || (result != VPL_SUCCESS && !told)) {
+            json_set_alloc_funcs(malloc, free);
+            fail_msg("allocation %ld of jansson: %s, %d sentences, %ld blocks leaked", jsonFailAt,
+                     vplResult_GetName(result), failing.errors, failing.held);
+        }
+    }
+    json_set_alloc_funcs(malloc, free);
+    assert_true(jsonFailAt > 100);
+}
+
+TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfTheJsonReaderIsReported));
