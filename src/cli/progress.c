@@ -6,26 +6,35 @@
 #include <time.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t interrupted;
-
-static void onInterrupt(int signal)
-{
-    (void)signal;
-    interrupted = 1;
-}
-
-void catchInterrupts(void)
-{
-    struct sigaction action = {.sa_handler = onInterrupt, .sa_flags = SA_RESETHAND}; // a second one kills
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-}
-
 static double now(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static volatile sig_atomic_t interrupted;
+static volatile double firstInterrupt; // seconds; read and written by the handler alone
+
+// The second one kills, unless it comes at once: timeout(1) sends every signal twice.
+static void onInterrupt(int number)
+{
+    if (!interrupted) {
+        firstInterrupt = now();
+        interrupted = 1;
+    } else if (now() - firstInterrupt > 0.5) {
+        signal(number, SIG_DFL);
+        raise(number);
+    }
+}
+
+void catchInterrupts(void)
+{
+    struct sigaction action = {.sa_handler = onInterrupt};
+    sigaddset(&action.sa_mask, SIGINT);
+    sigaddset(&action.sa_mask, SIGTERM);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
 }
 
 Progress beginProgress(bool quiet)
@@ -44,7 +53,8 @@ bool showProgress(void* user, double fraction)
         }
         bar[40] = 0;
         double left = (time - p->start) * (1 - fraction) / fraction;
-        fprintf(stderr, "\r[%s] %3d %%  %d:%02d left ", bar, (int)(100 * fraction), (int)left / 60, (int)left % 60);
+        fprintf(stderr, "\r[%s] %3d %%  %d:%02d left ", bar, (int)(100 * fraction), (int)left / 60,
+                (int)left % 60);
         fflush(stderr);
         p->lastDrawn = time;
     }

@@ -6,8 +6,9 @@
 build=build/fuzzing
 seconds=${FUZZ_SECONDS:-600}
 flags="-g -O1 -fsanitize-ignorelist=tests/fuzz/ignore.txt"
+mkdir -p $build
 make --no-print-directory -j"$(nproc)" BUILD=$build CC=clang MODE=debug OPENMP=0 CFLAGS="$flags" \
-    SANITIZE=fuzzer-no-link,address,undefined $build/libvpl.a || exit 1
+    SANITIZE=fuzzer-no-link,address,undefined $build/libvpl.a >$build/make.log || exit 1
 
 # Blocks beyond 256 MB are refused as if memory had run out: many a broken header asks for gigabytes.
 export ASAN_OPTIONS="allocator_may_return_null=1:max_allocation_size_mb=256:$ASAN_OPTIONS"
