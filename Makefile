@@ -125,7 +125,7 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/libvpl.a
-	$(CC) $(ALL_CFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+	$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
 $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
 	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)

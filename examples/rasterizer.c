@@ -74,7 +74,8 @@ int main(int count, char** words)
         }
     }
     vplResult result = vplImage_Write(image, count > 1 ? words[1] : "rasterizer.png", NULL);
-    printf("%lld triangles drawn, %lld fragments\n", (long long)stats.trianglesBinned, (long long)stats.fragments);
+    printf("%lld triangles drawn, %lld fragments\n", (long long)stats.trianglesBinned,
+           (long long)stats.fragments);
     vplImage_Destroy(image);
     vplRaster_Destroy(raster);
     vplContext_Destroy(context);

@@ -43,9 +43,9 @@ static vplScene* makeScene(vplContext* context)
     vplScene* scene;
     check(vplScene_Create(context, &scene));
     int white = addMaterial(scene, 0.7f, 0.7f, 0.7f), blue = addMaterial(scene, 0.1f, 0.2f, 0.7f);
-    addQuad(scene, white, (vplVec3){0, 0, 0}, -VPL_PI / 2, 0, 4);  // floor, front up
-    addQuad(scene, white, (vplVec3){0, 2, -2}, 0, 0, 4);           // wall behind
-    addQuad(scene, blue, (vplVec3){-2, 2, 0}, 0, VPL_PI / 2, 4);   // wall on the left
+    addQuad(scene, white, (vplVec3){0, 0, 0}, -VPL_PI / 2, 0, 4); // floor, front up
+    addQuad(scene, white, (vplVec3){0, 2, -2}, 0, 0, 4);          // wall behind
+    addQuad(scene, blue, (vplVec3){-2, 2, 0}, 0, VPL_PI / 2, 4);  // wall on the left
 
     vplObjectDef box = vplDefaultObjectDef();
     const double rotate[3] = {0, 0.5, 0};

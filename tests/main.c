@@ -5,15 +5,18 @@
 #include <stdlib.h>
 
 // One line per test file.
-#define ALL_SUITES(X)                                                                                              \
-    X(geometry)                                                                                                    \
-    X(image)                                                                                                       \
-    X(lights)                                                                                                      \
-    X(math)                                                                                                        \
-    X(raster)                                                                                                      \
-    X(rasterTruth)                                                                                                 \
-    X(render)                                                                                                      \
-    X(shading)                                                                                                     \
+#define ALL_SUITES(X)                                                                                        \
+    X(geometry)                                                                                              \
+    X(image)                                                                                                 \
+    X(lights)                                                                                                \
+    X(math)                                                                                                  \
+    X(memory)                                                                                                \
+    X(raster)                                                                                                \
+    X(rasterTruth)                                                                                           \
+    X(render)                                                                                                \
+    X(scene)                                                                                                 \
+    X(sceneChecks)                                                                                           \
+    X(shading)                                                                                               \
     X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;

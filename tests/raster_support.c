@@ -84,6 +84,7 @@ vplRasterStats drawList(vplContext* context, const Canvas* canvas, const vplPipe
 
 ClipVertex fixedVertex(int x, int y, float z, int width, int height)
 {
-    ClipVertex v = {(float)x / (128.0f * (float)width) - 1, 1 - (float)y / (128.0f * (float)height), z, 1, {0}};
+    ClipVertex v = {
+        (float)x / (128.0f * (float)width) - 1, 1 - (float)y / (128.0f * (float)height), z, 1, {0}};
     return v;
 }

@@ -3,6 +3,8 @@
 
 #include "base/rng.h"
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 
 static char lastMessage[1200];
@@ -22,12 +24,58 @@ const char* takeMessage(void)
     return taken;
 }
 
+// A host's own scheduler: threads that take tasks from a counter.
+typedef struct Crew {
+    vplTaskFcn* task;
+    void* data;
+    int count;
+    atomic_int next;
+} Crew;
+
+typedef struct Member {
+    Crew* crew;
+    int worker;
+} Member;
+
+static void* work(void* data)
+{
+    Member* member = data;
+    Crew* crew = member->crew;
+    for (int i = atomic_fetch_add(&crew->next, 1); i < crew->count; i = atomic_fetch_add(&crew->next, 1)) {
+        crew->task(crew->data, i, member->worker);
+    }
+    return NULL;
+}
+
+void threadedFor(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data)
+{
+    enum { MOST = 16 };
+    Crew crew = {task, data, taskCount, 0};
+    Member members[MOST];
+    pthread_t threads[MOST];
+    (void)user;
+    workerCount = workerCount < MOST ? workerCount : MOST;
+    for (int i = 0; i < workerCount; i++) {
+        members[i] = (Member){&crew, i};
+        if (i > 0) {
+            assert_int_equal(pthread_create(&threads[i], NULL, work, &members[i]), 0);
+        }
+    }
+    work(&members[0]);
+    for (int i = 1; i < workerCount; i++) {
+        pthread_join(threads[i], NULL);
+    }
+}
+
 vplContext* openIsaContext(int workers, vplIsa isa)
 {
     vplContextDef def = vplDefaultContextDef();
     def.workerCount = workers;
     def.isa = isa;
     def.log = keepMessage;
+#ifdef VPL_TEST_PTHREADS // for the thread sanitizer, which does not know OpenMP's own synchronisation
+    def.parallelFor = threadedFor;
+#endif
     vplContext* context = NULL;
     return vplContext_Create(&def, &context) == VPL_SUCCESS ? context : NULL;
 }
@@ -179,8 +227,8 @@ vplVec3 vectorOf(const Table* table, int row, const char* prefix)
 void assertNear(double value, double wanted, double tolerance, const char* what, int row)
 {
     if (!(fabs(value - wanted) <= tolerance)) {
-        fail_msg("row %d, %s: %.9g, wanted %.9g within %.3g (off by %.3g)", row, what, value, wanted, tolerance,
-                 value - wanted);
+        fail_msg("row %d, %s: %.9g, wanted %.9g within %.3g (off by %.3g)", row, what, value, wanted,
+                 tolerance, value - wanted);
     }
 }
 

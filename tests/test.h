@@ -22,8 +22,8 @@ typedef struct Suite {
 } Suite;
 
 // Last lines of a test file: TEST_SUITE(raster, cmocka_unit_test(SharedEdgeIsCoveredOnce), ...)
-#define TEST_SUITE(name, ...)                                                                                     \
-    static const struct CMUnitTest name##Tests[] = {__VA_ARGS__};                                                 \
+#define TEST_SUITE(name, ...)                                                                                \
+    static const struct CMUnitTest name##Tests[] = {__VA_ARGS__};                                            \
     const Suite name##Suite = {#name, name##Tests, sizeof name##Tests / sizeof *name##Tests}
 
 // A context with `workers` threads whose last message is kept. Never NULL.
@@ -31,6 +31,9 @@ vplContext* openTestContext(int workers);
 
 // The same with a chosen instruction set; NULL if this machine lacks it.
 vplContext* openIsaContext(int workers, vplIsa isa);
+
+// A vplParallelForFcn made of threads, as a host program might have.
+void threadedFor(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data);
 
 // Destroys it and fails the test if any memory is still held.
 void closeTestContext(vplContext* context);

@@ -58,7 +58,8 @@ static void EveryRayQuadVerdictOfTheTable(void** state)
         wanted = wanted && strcmp(cell(&t, row, "cat"), "t_overflows_float") != 0;
         if (found != wanted) {
             bool exact = number(&t, row, "exactarith") == 1;
-            double amp = fmax(isEmpty(&t, row, "amp_p") ? 0 : number(&t, row, "amp_p"), number(&t, row, "amp_t"));
+            double amp =
+                fmax(isEmpty(&t, row, "amp_p") ? 0 : number(&t, row, "amp_p"), number(&t, row, "amp_t"));
             if (exact || number(&t, row, "margin") >= C * UNIT * amp) {
                 fail_msg("row %d (%s, %s): %s, wanted %s", row, cell(&t, row, "cat"), cell(&t, row, "xform"),
                          found ? "hit" : "miss", status);
@@ -105,7 +106,8 @@ static void EveryRayBoxVerdictOfTheTable(void** state)
             flipped++;
         } else if (found) {
             int mask = (int)number(&t, row, "face_mask");
-            if ((mask >> hit.face & 1) == 0 && number(&t, row, "margin") >= C * UNIT * number(&t, row, "amp_p")) {
+            if ((mask >> hit.face & 1) == 0 &&
+                number(&t, row, "margin") >= C * UNIT * number(&t, row, "amp_p")) {
                 fail_msg("row %d: face %d, wanted one of mask %d", row, hit.face, mask);
             }
             checkHit(&t, row, &hit, number(&t, row, "t_strict"));
@@ -224,11 +226,13 @@ static void ABoxIsLeftOrCrossedFromItsOwnFace(void** state)
     (void)state;
     vplContext* context = openTestContext(1);
     for (uint64_t i = 0; i < 2000; i++) {
-        vplMat4 m = vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){uniformAt(i, 0), uniformAt(i, 1), uniformAt(i, 2)},
+        vplMat4 m = vplMat4_FromParts((vplVec3){1, 2, 3},
+                                      (double[3]){uniformAt(i, 0), uniformAt(i, 1), uniformAt(i, 2)},
                                       (vplVec3){2, 0.5f, 1});
         vplPlacement placement;
         assert_int_equal(vplPlacement_Create(context, &m, &placement), VPL_SUCCESS);
-        vplVec3 d = {(float)uniformAt(i, 3) - 0.5f, (float)uniformAt(i, 4) - 0.5f, (float)uniformAt(i, 5) - 0.5f};
+        vplVec3 d = {(float)uniformAt(i, 3) - 0.5f, (float)uniformAt(i, 4) - 0.5f,
+                     (float)uniformAt(i, 5) - 0.5f};
         vplRay ray = {{1, 2, 3}, d};
         vplHit out, next;
         assert_true(vplRay_HitBox(&ray, &placement, VPL_FACE_NONE, &out)); // from the middle
@@ -277,8 +281,9 @@ static void TrianglesWindTowardsTheirNormals(void** state)
         for (int type = 0; type < 2; type++) {
             vplObjectDef object = vplDefaultObjectDef();
             object.type = (vplObjectType)type;
-            object.transform = vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){0.5, 1, 2},
-                                                 (vplVec3){mirror & 1 ? -2 : 2, mirror & 2 ? -1 : 1, mirror & 4 ? -3 : 3});
+            object.transform =
+                vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){0.5, 1, 2},
+                                  (vplVec3){mirror & 1 ? -2 : 2, mirror & 2 ? -1 : 1, mirror & 4 ? -3 : 3});
             assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
         }
         assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
@@ -295,9 +300,12 @@ static void TrianglesWindTowardsTheirNormals(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(geometry, cmocka_unit_test(EveryRayQuadVerdictOfTheTable), cmocka_unit_test(EveryRayBoxVerdictOfTheTable),
+TEST_SUITE(geometry, cmocka_unit_test(EveryRayQuadVerdictOfTheTable),
+           cmocka_unit_test(EveryRayBoxVerdictOfTheTable),
            cmocka_unit_test(EveryRayOfTheRoomMeetsTheObjectOfTheTable),
-           cmocka_unit_test(AnyUniformScaleGivesTheSameHit), cmocka_unit_test(SingularAndNonFiniteMatricesAreRefused),
+           cmocka_unit_test(AnyUniformScaleGivesTheSameHit),
+           cmocka_unit_test(SingularAndNonFiniteMatricesAreRefused),
            cmocka_unit_test(AmongEqualDistancesTheLowestObjectWins),
-           cmocka_unit_test(ABoxIsLeftOrCrossedFromItsOwnFace), cmocka_unit_test(MeanReflectanceIsThatOfTheTable),
+           cmocka_unit_test(ABoxIsLeftOrCrossedFromItsOwnFace),
+           cmocka_unit_test(MeanReflectanceIsThatOfTheTable),
            cmocka_unit_test(TrianglesWindTowardsTheirNormals));

@@ -21,7 +21,8 @@ static void SrgbIsThatOfTheTables(void** state)
     Table t = loadTable("srgb_codes.csv");
     for (int row = 0; row < t.rows; row++) {
         int code = (int)number(&t, row, "code");
-        assertNear((double)vplSrgb_Decode((float)code / 255.0f), number(&t, row, "linear"), 2e-7, "decode", row);
+        assertNear((double)vplSrgb_Decode((float)code / 255.0f), number(&t, row, "linear"), 2e-7, "decode",
+                   row);
         if (!isEmpty(&t, row, "encode_threshold")) {
             float threshold = (float)number(&t, row, "encode_threshold");
             assert_int_equal(vplSrgb_Code(threshold * (1 + 2e-7f)), code);
@@ -81,7 +82,8 @@ static void ReinhardIsThatOfTheTable(void** state)
             const char* column = kind ? "Ld_white=max" : "Ld_simple";
             // Where the geometric mean is 0 the formula divides by 0: the table is empty, black stays black and
             // no number is not finite (X109).
-            bool defined = !isEmpty(&t, row, column) && parseList(cell(&t, row, column), kind ? white : simple) == count;
+            bool defined =
+                !isEmpty(&t, row, column) && parseList(cell(&t, row, column), kind ? white : simple) == count;
             vplImage* image;
             assert_int_equal(vplImage_Create(context, count, 1, &image), VPL_SUCCESS);
             for (int i = 0; i < 3 * count; i++) {
@@ -189,9 +191,11 @@ static void HdrKeepsAPercentAndPngKeepsCodes(void** state)
     assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
     assert_int_equal(vplImage_Read(context, path, &back), VPL_SUCCESS);
     for (int i = 0; i < 33 * 9; i++) {
-        float largest = fmaxf(image->pixels[3 * i], fmaxf(image->pixels[3 * i + 1], image->pixels[3 * i + 2]));
+        float largest =
+            fmaxf(image->pixels[3 * i], fmaxf(image->pixels[3 * i + 1], image->pixels[3 * i + 2]));
         for (int c = 0; c < 3; c++) { // 8 bits of mantissa, shared exponent, truncated
-            assertNear((double)back->pixels[3 * i + c], (double)image->pixels[3 * i + c], 0.008 * (double)largest, "hdr", i);
+            assertNear((double)back->pixels[3 * i + c], (double)image->pixels[3 * i + c],
+                       0.008 * (double)largest, "hdr", i);
         }
     }
     unlink(path);
@@ -247,8 +251,15 @@ static void MalformedPicturesAreRefused(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(1);
-    const char* const texts[] = {"", "PF", "PF\n2 2\n", "PF\n2 2\n0\n", "PF\n-1 2\n-1\n", "PF\n99999 2\n-1\n",
-                                 "PF\n2 2\n-1\nabc", "P6\n2 2\n255\nabcdefabcdef", "PF\nnan 2\n-1\n"};
+    const char* const texts[] = {"",
+                                 "PF",
+                                 "PF\n2 2\n",
+                                 "PF\n2 2\n0\n",
+                                 "PF\n-1 2\n-1\n",
+                                 "PF\n99999 2\n-1\n",
+                                 "PF\n2 2\n-1\nabc",
+                                 "P6\n2 2\n255\nabcdefabcdef",
+                                 "PF\nnan 2\n-1\n"};
     const char* const extensions[] = {".pfm", ".hdr", ".png"};
     for (int e = 0; e < 3; e++) {
         for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
@@ -324,9 +335,12 @@ static void HashSeesEveryBitAndTheShape(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(image, cmocka_unit_test(SrgbIsThatOfTheTables), cmocka_unit_test(SrgbCodesAreMonotoneAndDefinedEverywhere),
-           cmocka_unit_test(ReinhardIsThatOfTheTable), cmocka_unit_test(ReinhardKeepsChromaticityAsInTheTable),
+TEST_SUITE(image, cmocka_unit_test(SrgbIsThatOfTheTables),
+           cmocka_unit_test(SrgbCodesAreMonotoneAndDefinedEverywhere),
+           cmocka_unit_test(ReinhardIsThatOfTheTable),
+           cmocka_unit_test(ReinhardKeepsChromaticityAsInTheTable),
            cmocka_unit_test(ReinhardIgnoresPixelsThatAreNotFinite), cmocka_unit_test(PfmKeepsEveryBit),
            cmocka_unit_test(HdrKeepsAPercentAndPngKeepsCodes), cmocka_unit_test(ExposureDoublesPerStop),
-           cmocka_unit_test(APictureThatIsNotFiniteIsRefusedByName), cmocka_unit_test(MalformedPicturesAreRefused),
-           cmocka_unit_test(MetricsAreTheirDefinitions), cmocka_unit_test(HashSeesEveryBitAndTheShape));
+           cmocka_unit_test(APictureThatIsNotFiniteIsRefusedByName),
+           cmocka_unit_test(MalformedPicturesAreRefused), cmocka_unit_test(MetricsAreTheirDefinitions),
+           cmocka_unit_test(HashSeesEveryBitAndTheShape));

@@ -61,8 +61,8 @@ static void ExtremeTotalsAreExactOrRefused(void** state)
         double wanted = number(&t, row, "total"), steps = number(&t, row, "steps");
         int made;
         int64_t total;
-        vplResult result =
-            vplCountParticles(context, (int)number(&t, row, "N"), number(&t, row, "rho"), NULL, 0, &made, &total);
+        vplResult result = vplCountParticles(context, (int)number(&t, row, "N"), number(&t, row, "rho"), NULL,
+                                             0, &made, &total);
         if (wanted > VPL_MAX_LIGHTS || steps > VPL_MAX_STEPS) {
             assert_int_equal(result, VPL_LIMIT);
         } else {
@@ -224,8 +224,8 @@ static void FluxOfEachStepIsThatOfTheTable(void** state)
         for (int i = 0; i < set->lightCount; i++) {
             if (set->lights[i].step == k) {
                 flux += (double)set->lights[i].light.r * (double)set->lights[i].weight / def.particleCount;
-                assertNear((double)set->lights[i].weight, number(&t, row, "N/M_k"), 1e-6 * number(&t, row, "N/M_k"),
-                           "weight", row);
+                assertNear((double)set->lights[i].weight, number(&t, row, "N/M_k"),
+                           1e-6 * number(&t, row, "N/M_k"), "weight", row);
             }
         }
         double wanted = 4 * VPL_PI * pow((double)(float)rho, k + 1);
@@ -269,7 +269,8 @@ static void LightsDoNotDependOnThreads(void** state)
             def.reflectivity = 0.8;
             def.sampler = (vplSampler)sampler;
             def.seed = 5;
-            vplEmitterDef emitters[3] = {vplDefaultEmitterDef(), vplDefaultEmitterDef(), vplDefaultEmitterDef()};
+            vplEmitterDef emitters[3] = {vplDefaultEmitterDef(), vplDefaultEmitterDef(),
+                                         vplDefaultEmitterDef()};
             emitters[1].position = (vplVec3){1, 4, 1};
             emitters[2].intensity = (vplRgb){0, 0, 0};
             vplLightSet* set;
@@ -411,10 +412,12 @@ static void SimulationRefusesWhatItCannotShoot(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(lights, cmocka_unit_test(EveryCountOfTheTableIsTheDecimalOne), cmocka_unit_test(EveryTotalOfTheTable),
-           cmocka_unit_test(ExtremeTotalsAreExactOrRefused), cmocka_unit_test(InvalidCountsAreRefused),
+TEST_SUITE(lights, cmocka_unit_test(EveryCountOfTheTableIsTheDecimalOne),
+           cmocka_unit_test(EveryTotalOfTheTable), cmocka_unit_test(ExtremeTotalsAreExactOrRefused),
+           cmocka_unit_test(InvalidCountsAreRefused),
            cmocka_unit_test(EveryParticleOfTheTableLandsWhereItSays),
            cmocka_unit_test(TenParticlesAtHalfMake18Lights), cmocka_unit_test(FluxOfEachStepIsThatOfTheTable),
            cmocka_unit_test(LightsDoNotDependOnThreads), cmocka_unit_test(AnyFirstParticlesCoverTheSphere),
-           cmocka_unit_test(DoublingTheEmitterDoublesEveryBit), cmocka_unit_test(EmittersShareParticlesByPower),
-           cmocka_unit_test(AThousandBouncesStayOnTheWalls), cmocka_unit_test(SimulationRefusesWhatItCannotShoot));
+           cmocka_unit_test(DoublingTheEmitterDoublesEveryBit),
+           cmocka_unit_test(EmittersShareParticlesByPower), cmocka_unit_test(AThousandBouncesStayOnTheWalls),
+           cmocka_unit_test(SimulationRefusesWhatItCannotShoot));

@@ -79,7 +79,8 @@ static void RadicalInversesAreThoseOfTheTables(void** state)
     freeTable(&t);
     t = loadTable("hammersley.csv");
     for (int row = 0; row < t.rows; row++) {
-        assertNear((double)vplVanDerCorput((uint32_t)number(&t, row, "k")), number(&t, row, "vdc"), 0x1p-24, "vdc", row);
+        assertNear((double)vplVanDerCorput((uint32_t)number(&t, row, "k")), number(&t, row, "vdc"), 0x1p-24,
+                   "vdc", row);
     }
     freeTable(&t);
 }
@@ -113,7 +114,8 @@ static void FramesAreOrthonormalForEveryNormal(void** state)
     (void)state;
     for (uint64_t i = 0; i < 20000; i++) {
         vplVec3 n = vplSampleSphere((float)uniformAt(1, i), (float)uniformAt(2, i)), t, b;
-        const vplVec3 poles[6] = {{0, 0, -1}, {0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {1e-20f, 0, -1}, {1, 0, -0.0f}};
+        const vplVec3 poles[6] = {{0, 0, -1}, {0, 0, 1},       {0, -1, 0},
+                                  {0, 1, 0},  {1e-20f, 0, -1}, {1, 0, -0.0f}};
         n = i < 6 ? poles[i] : n;
         vplFrame(n, &t, &b);
         assertNear((double)vplDot(t, b), 0, 1e-6, "t.b", (int)i);
@@ -161,6 +163,8 @@ static void MatricesMoveAsTheyShould(void** state)
 
 TEST_SUITE(math, cmocka_unit_test(ElementaryFunctionsAgreeWithLibm),
            cmocka_unit_test(ElementaryFunctionsAreDefinedAtTheirEnds),
-           cmocka_unit_test(PhiloxGivesThePublishedNumbers), cmocka_unit_test(RadicalInversesAreThoseOfTheTables),
-           cmocka_unit_test(WarpsAreThoseOfTheTable), cmocka_unit_test(FramesAreOrthonormalForEveryNormal),
-           cmocka_unit_test(NormalizeKeepsTheDirectionOfAnyLength), cmocka_unit_test(MatricesMoveAsTheyShould));
+           cmocka_unit_test(PhiloxGivesThePublishedNumbers),
+           cmocka_unit_test(RadicalInversesAreThoseOfTheTables), cmocka_unit_test(WarpsAreThoseOfTheTable),
+           cmocka_unit_test(FramesAreOrthonormalForEveryNormal),
+           cmocka_unit_test(NormalizeKeepsTheDirectionOfAnyLength),
+           cmocka_unit_test(MatricesMoveAsTheyShould));

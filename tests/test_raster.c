@@ -21,11 +21,12 @@ static ClipVertex* makeSoup(uint64_t seed, int triangles)
             if (uniformAt(seed, at + 1) < 0.05) {
                 w = -w; // behind the eye
             }
-            v[3 * i + j] = (ClipVertex){(float)(w * (centre[0] + size * (uniformAt(seed, at + 2) - 0.5))),
-                                        (float)(w * (centre[1] + size * (uniformAt(seed, at + 3) - 0.5))),
-                                        (float)(w * (0.5 + 0.5 * centre[2] + 0.5 * size * (uniformAt(seed, at + 4) - 0.5))),
-                                        (float)w,
-                                        {(float)uniformAt(seed, at + 5), (float)j, 1}};
+            v[3 * i + j] = (ClipVertex){
+                (float)(w * (centre[0] + size * (uniformAt(seed, at + 2) - 0.5))),
+                (float)(w * (centre[1] + size * (uniformAt(seed, at + 3) - 0.5))),
+                (float)(w * (0.5 + 0.5 * centre[2] + 0.5 * size * (uniformAt(seed, at + 4) - 0.5))),
+                (float)w,
+                {(float)uniformAt(seed, at + 5), (float)j, 1}};
         }
     }
     return v;
@@ -71,8 +72,8 @@ static void EqualTouchesExactlyWhatLessLeft(void** state)
         for (int i = 0; i < 90 * 70; i++) {
             float wanted = c.depth[i] < 1 ? 2 : -1;
             if (c.planes[0][i] != wanted) {
-                fail_msg("seed %d, pixel (%d, %d): EQUAL passes left %g, wanted %g", (int)seed, i % 90, i / 90,
-                         (double)c.planes[0][i], (double)wanted);
+                fail_msg("seed %d, pixel (%d, %d): EQUAL passes left %g, wanted %g", (int)seed, i % 90,
+                         i / 90, (double)c.planes[0][i], (double)wanted);
             }
         }
         vplRaster_Destroy(raster);
@@ -99,7 +100,8 @@ static void SharedEdgeIsCoveredOnce(void** state)
             double jx = inner ? uniformAt(seed, (uint64_t)i * 4) - 0.5 : 0;
             double jy = inner ? uniformAt(seed, (uint64_t)i * 4 + 1) - 0.5 : 0;
             int step = seed % 2 ? 8 * 256 : 8 * 256 + 37; // on pixel centres or off
-            v[i] = fixedVertex(128 + (int)(step * (x + 0.45 * jx)), 128 + (int)(step * (y + 0.45 * jy)), 0.5f, 80, 80);
+            v[i] = fixedVertex(128 + (int)(step * (x + 0.45 * jx)), 128 + (int)(step * (y + 0.45 * jy)), 0.5f,
+                               80, 80);
         }
         for (int i = 0; i < (N - 1) * (N - 1); i++) {
             uint32_t a = (uint32_t)(i / (N - 1) * N + i % (N - 1)), b = a + 1, c = a + N, d = c + 1;
@@ -113,7 +115,8 @@ static void SharedEdgeIsCoveredOnce(void** state)
         p.blend = VPL_BLEND_ADD;
         p.depthCompare = VPL_DEPTH_ALWAYS;
         drawList(context, &c, &p, indices, N * N, count);
-        int side = seed % 2 ? 64 : 66; // the centres in the rectangle; right and bottom edges do not own theirs
+        int side =
+            seed % 2 ? 64 : 66; // the centres in the rectangle; right and bottom edges do not own theirs
         for (int i = 0; i < 80 * 80; i++) {
             bool inside = i % 80 < side && i / 80 < side;
             assertNear((double)c.planes[0][i], inside, 0, "times drawn", i);
@@ -204,7 +207,8 @@ static void DepthComparesAndWritesAsAsked(void** state)
     for (int compare = 0; compare < 4; compare++) {
         for (int i = 0; i < 3; i++) {
             for (int write = 0; write < 2; write++) {
-                ClipVertex v[3] = {fixedVertex(-9000, -9000, depths[i], 8, 8), fixedVertex(9000, 0, depths[i], 8, 8),
+                ClipVertex v[3] = {fixedVertex(-9000, -9000, depths[i], 8, 8),
+                                   fixedVertex(9000, 0, depths[i], 8, 8),
                                    fixedVertex(0, 9000, depths[i], 8, 8)};
                 Canvas c = makeCanvas(8, 8, 0);
                 c.framebuffer.depth.load = true;
@@ -216,7 +220,8 @@ static void DepthComparesAndWritesAsAsked(void** state)
                 p.depthWrite = write;
                 drawList(context, &c, &p, NULL, 3, 1);
                 assert_int_equal(c.planes[0][9] == 1, passes[compare][i]);
-                assertNear((double)c.depth[9], passes[compare][i] && write ? (double)depths[i] : 0.5, 0, "depth", i);
+                assertNear((double)c.depth[9], passes[compare][i] && write ? (double)depths[i] : 0.5, 0,
+                           "depth", i);
                 freeCanvas(&c);
             }
         }
@@ -264,10 +269,10 @@ static void BadTrianglesDrawNothing(void** state)
         }
     }
     const ClipVertex dull[4][3] = {
-        {{0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}, {0.5f, 0.5f, 0.5f, 1, {0}}},    // a line
-        {{0, 0, 0.5f, 1, {0}}, {0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}},          // a repeated vertex
-        {{0, 0, -1, -1, {0}}, {1, 0, -1, -1, {0}}, {0, 1, -1, -1, {0}}},             // all behind
-        {{0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}},                   // w = 0
+        {{0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}, {0.5f, 0.5f, 0.5f, 1, {0}}}, // a line
+        {{0, 0, 0.5f, 1, {0}}, {0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}},       // a repeated vertex
+        {{0, 0, -1, -1, {0}}, {1, 0, -1, -1, {0}}, {0, 1, -1, -1, {0}}},          // all behind
+        {{0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}},                // w = 0
     };
     for (int i = 0; i < 4; i++) {
         Canvas c = makeCanvas(8, 8, 0);
@@ -286,7 +291,9 @@ static void HugeTrianglesCoverThePicture(void** state)
     const float sizes[] = {10, 1e4f, 1e10f, 1e30f};
     for (int i = 0; i < 4; i++) {
         float s = sizes[i];
-        ClipVertex v[3] = {{-3 * s, -s, 0.5f, 1, {1, 0, 0}}, {3 * s, -s, 0.5f, 1, {1, 0, 0}}, {0, 3 * s, 0.5f, 1, {1, 0, 0}}};
+        ClipVertex v[3] = {{-3 * s, -s, 0.5f, 1, {1, 0, 0}},
+                           {3 * s, -s, 0.5f, 1, {1, 0, 0}},
+                           {0, 3 * s, 0.5f, 1, {1, 0, 0}}};
         Canvas c = makeCanvas(33, 17, 0);
         vplPipeline p = showPipeline(v);
         assert_int_equal(drawList(context, &c, &p, NULL, 3, 1).fragments, 33 * 17);
@@ -345,9 +352,10 @@ static void ProgressCanCancel(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(raster, cmocka_unit_test(EqualTouchesExactlyWhatLessLeft), cmocka_unit_test(SharedEdgeIsCoveredOnce),
+TEST_SUITE(raster, cmocka_unit_test(EqualTouchesExactlyWhatLessLeft),
+           cmocka_unit_test(SharedEdgeIsCoveredOnce),
            cmocka_unit_test(BitsDoNotDependOnThreadsOrInstructionSet), cmocka_unit_test(BitsOfASoupArePinned),
            cmocka_unit_test(CullingKeepsOneSide), cmocka_unit_test(DepthComparesAndWritesAsAsked),
            cmocka_unit_test(LoadKeepsAndClearReplacesWhatWasThere), cmocka_unit_test(BadTrianglesDrawNothing),
-           cmocka_unit_test(HugeTrianglesCoverThePicture), cmocka_unit_test(WrongArgumentsAreRefusedWithASentence),
-           cmocka_unit_test(ProgressCanCancel));
+           cmocka_unit_test(HugeTrianglesCoverThePicture),
+           cmocka_unit_test(WrongArgumentsAreRefusedWithASentence), cmocka_unit_test(ProgressCanCancel));

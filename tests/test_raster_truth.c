@@ -44,8 +44,8 @@ static void EveryTriangleOfTheTableFillsBitForBit(void** state)
         }
         if (covered != (int)number(&t, row, "covered") ||
             crc32Of(bytes, pixels) != (uint32_t)number(&t, row, "crc32_of_W*H_bytes_0/1")) {
-            fail_msg("row %d (%s): %d pixels covered, wanted %s, or others", row, cell(&t, row, "cat"), covered,
-                     cell(&t, row, "covered"));
+            fail_msg("row %d (%s): %d pixels covered, wanted %s, or others", row, cell(&t, row, "cat"),
+                     covered, cell(&t, row, "covered"));
         }
         free(bytes);
         freeCanvas(&c);
@@ -81,8 +81,8 @@ static void checkMesh(vplContext* context, const char* name, json_t* mesh)
     uint32_t* indices = malloc(3 * (size_t)triangleCount * sizeof *indices);
     for (int i = 0; i < vertexCount; i++) {
         json_t* p = json_array_get(vertices, (size_t)i);
-        v[i] = fixedVertex((int)json_integer_value(json_array_get(p, 0)), (int)json_integer_value(json_array_get(p, 1)),
-                           0.5f, width, height);
+        v[i] = fixedVertex((int)json_integer_value(json_array_get(p, 0)),
+                           (int)json_integer_value(json_array_get(p, 1)), 0.5f, width, height);
     }
     for (int i = 0; i < 3 * triangleCount; i++) {
         json_t* p = json_array_get(triangles, (size_t)i / 3);
@@ -99,7 +99,8 @@ static void checkMesh(vplContext* context, const char* name, json_t* mesh)
         expandRow(json_string_value(json_array_get(rows, (size_t)y)), owner, width);
         for (int x = 0; x < width; x++) {
             int wanted = owner[x], at = y * width + x;
-            if (c.planes[0][at] != (wanted >= 0 ? 1 : 0) || (wanted >= 0 && c.planes[1][at] != (float)wanted)) {
+            if (c.planes[0][at] != (wanted >= 0 ? 1 : 0) ||
+                (wanted >= 0 && c.planes[1][at] != (float)wanted)) {
                 fail_msg("%s at (%d, %d): drawn %g times, sum of owners %g, wanted owner %d", name, x, y,
                          (double)c.planes[0][at], (double)c.planes[1][at], wanted);
             }
@@ -174,7 +175,8 @@ static void VaryingsDepthAndWAreThoseOfTheTable(void** state)
         }
         int at = (int)number(&t, row, "py") * 64 + (int)number(&t, row, "px");
         assert_true(c.planes[0][at] == 1);
-        assertNear((double)c.planes[2][at], number(&t, row, "attr_persp"), 4e-7 * (spread + largest), "attr", row);
+        assertNear((double)c.planes[2][at], number(&t, row, "attr_persp"), 4e-7 * (spread + largest), "attr",
+                   row);
         assertNear((double)c.depth[at], number(&t, row, "z_ndc"), 1.5e-7, "z", row);
         assertNear((double)c.planes[5][at] / number(&t, row, "w"), 1, 5e-7, "w", row);
     }
@@ -216,8 +218,8 @@ static void NearClipCoversWhatTheHomogeneousTestSays(void** state)
             long count = strtol(map + 2, &end, 10);
             for (long i = 0; i < count; i++, at++) {
                 if (value != '?' && (c.planes[0][at] == 1) != (value == '1')) {
-                    fail_msg("row %d, pixel (%d, %d): %g, wanted %c", row, at % 32, at / 32, (double)c.planes[0][at],
-                             value);
+                    fail_msg("row %d, pixel (%d, %d): %g, wanted %c", row, at % 32, at / 32,
+                             (double)c.planes[0][at], value);
                 }
             }
             map = *end == ' ' ? end + 1 : end;
@@ -234,8 +236,8 @@ static void NearClipCoversWhatTheHomogeneousTestSays(void** state)
             }
             const char* names[3] = {"lam0", "lam1", "lam2"};
             for (int i = 0; i < 3; i++) {
-                assertNear((double)c.planes[2 + i][pixel], number(&pixels, pixelRow, names[i]), 1e-5, names[i],
-                           pixelRow);
+                assertNear((double)c.planes[2 + i][pixel], number(&pixels, pixelRow, names[i]), 1e-5,
+                           names[i], pixelRow);
             }
             tested++;
         }

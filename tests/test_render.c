@@ -41,8 +41,10 @@ static void DrawCallsAreThoseOfTheDocument(void** state)
     const struct {
         vplAccumulation accumulation;
         int batch, wanted;
-    } cases[] = {{VPL_ACCUMULATE_MULTIPASS, 64, 200}, {VPL_ACCUMULATE_BATCHED, 18, 64},
-                 {VPL_ACCUMULATE_BATCHED, 5, 88},     {VPL_ACCUMULATE_BATCHED, 1, 200},
+    } cases[] = {{VPL_ACCUMULATE_MULTIPASS, 64, 200},
+                 {VPL_ACCUMULATE_BATCHED, 18, 64},
+                 {VPL_ACCUMULATE_BATCHED, 5, 88},
+                 {VPL_ACCUMULATE_BATCHED, 1, 200},
                  {VPL_ACCUMULATE_DEFERRED, 64, 56}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         vplRenderStats stats;
@@ -125,6 +127,25 @@ static void EveryPipelineGivesTheSameBits(void** state)
             closeTestContext(context);
         }
     }
+}
+
+static void AHostsOwnSchedulerGivesTheSameBits(void** state)
+{
+    (void)state;
+    uint64_t hashes[2];
+    for (int hosted = 0; hosted < 2; hosted++) {
+        vplContextDef def = vplDefaultContextDef();
+        def.workerCount = 3;
+        def.parallelFor = hosted ? threadedFor : NULL;
+        vplContext* context;
+        assert_int_equal(vplContext_Create(&def, &context), VPL_SUCCESS);
+        vplScene* scene = loadScene(context, "room.json");
+        vplRenderOptions o = smallOptions();
+        hashes[hosted] = renderHash(scene, &o);
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+    assert_true(hashes[0] == hashes[1]);
 }
 
 // Two floors in one plane: depth EQUAL alone would light both and add twice.
@@ -225,7 +246,8 @@ static void APlaneUnderAPointLightIsLitAsInTheBook(void** state)
     vplMaterialDef material = vplDefaultMaterialDef();
     vplScene_AddMaterial(scene, &material, NULL);
     vplObjectDef object = vplDefaultObjectDef();
-    object.transform = vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){10, 10, 1});
+    object.transform =
+        vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){10, 10, 1});
     vplScene_AddObject(scene, &object, NULL);
     vplEmitterDef emitter = vplDefaultEmitterDef();
     emitter.position = (vplVec3){0.5f, 2, -0.25f};
@@ -307,7 +329,8 @@ static void DirectAndEachLightAddUpToThePicture(void** state)
         vplImage_Destroy(one);
     }
     for (int i = 0; i < count; i++) {
-        assertNear((double)sum->pixels[i], (double)picture->pixels[i], 2e-6 * (double)picture->pixels[i], "sum", i);
+        assertNear((double)sum->pixels[i], (double)picture->pixels[i], 2e-6 * (double)picture->pixels[i],
+                   "sum", i);
     }
     o.showLight = 18;
     vplImage* none = NULL;
@@ -333,7 +356,8 @@ static void StagesShowWhatTheySay(void** state)
     vplImage_Destroy(image);
     o.show = VPL_SHOW_NORMALS;
     image = render(scene, &o, NULL);
-    assert_true(image->pixels[middle] == 0 && image->pixels[middle + 1] == 0 && image->pixels[middle + 2] == 1);
+    assert_true(image->pixels[middle] == 0 && image->pixels[middle + 1] == 0 &&
+                image->pixels[middle + 2] == 1);
     vplImage_Destroy(image);
     o.show = VPL_SHOW_SHADOW_FACTOR;
     image = render(scene, &o, NULL);
@@ -382,7 +406,8 @@ static void EmissionLeavesTheFrontOnly(void** state)
         material.emission = (vplRgb){1, 2, 3};
         vplScene_AddMaterial(scene, &material, NULL);
         vplObjectDef object = vplDefaultObjectDef();
-        object.transform = vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){0, back * VPL_PI, 0}, (vplVec3){10, 10, 1});
+        object.transform =
+            vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){0, back * VPL_PI, 0}, (vplVec3){10, 10, 1});
         vplScene_AddObject(scene, &object, NULL);
         vplCameraDef camera = vplDefaultCameraDef();
         vplScene_AddCamera(scene, &camera, NULL);
@@ -476,12 +501,14 @@ static void OddScenesGiveFinitePictures(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(2);
-    const vplVec3 places[] = {{-0.9f, 1.65f, -0.8f}, {0, 4.5f, 30}, {0, 5, 0}, {0, 0, 0}, {0, 2.5f, 8.5f}, {1e6f, 1e6f, 1e6f}};
+    const vplVec3 places[] = {{-0.9f, 1.65f, -0.8f}, {0, 4.5f, 30},     {0, 5, 0}, {0, 0, 0},
+                              {0, 2.5f, 8.5f},       {1e6f, 1e6f, 1e6f}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         for (int lighting = 0; lighting < 2; lighting++) {
             vplScene* scene = loadScene(context, "room.json");
             vplEmitterDef emitter = *vplScene_GetEmitter(scene, 0);
-            emitter.position = places[i]; // in a box, outside, on the ceiling, on the floor, in the eye, far away
+            emitter.position =
+                places[i]; // in a box, outside, on the ceiling, on the floor, in the eye, far away
             assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
             vplRenderOptions o = smallOptions();
             o.lighting = (vplLighting)lighting;
@@ -499,10 +526,13 @@ static void OddScenesGiveFinitePictures(void** state)
 }
 
 TEST_SUITE(render, cmocka_unit_test(DrawCallsAreThoseOfTheDocument),
-           cmocka_unit_test(OpenRoomsKeepNominalCountsAndReportEscapes), cmocka_unit_test(EveryPipelineGivesTheSameBits),
-           cmocka_unit_test(CoplanarSurfacesAreLitOnce), cmocka_unit_test(DoublingTheLightDoublesEveryPixel),
+           cmocka_unit_test(OpenRoomsKeepNominalCountsAndReportEscapes),
+           cmocka_unit_test(EveryPipelineGivesTheSameBits),
+           cmocka_unit_test(AHostsOwnSchedulerGivesTheSameBits), cmocka_unit_test(CoplanarSurfacesAreLitOnce),
+           cmocka_unit_test(DoublingTheLightDoublesEveryPixel),
            cmocka_unit_test(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture),
-           cmocka_unit_test(APlaneUnderAPointLightIsLitAsInTheBook), cmocka_unit_test(DocumentedDirectLightFallsWithN),
+           cmocka_unit_test(APlaneUnderAPointLightIsLitAsInTheBook),
+           cmocka_unit_test(DocumentedDirectLightFallsWithN),
            cmocka_unit_test(DirectAndEachLightAddUpToThePicture), cmocka_unit_test(StagesShowWhatTheySay),
            cmocka_unit_test(EmissionLeavesTheFrontOnly), cmocka_unit_test(OptionsOutOfRangeAreNamed),
            cmocka_unit_test(ProgressRisesAndCancels), cmocka_unit_test(OddScenesGiveFinitePictures));

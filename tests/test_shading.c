@@ -63,8 +63,8 @@ static void EveryKernelValueOfTheTable(void** state)
         // Each cosine carries the rounding of a dot product of unit vectors, 3e-7, whatever its own size.
         double slack = 1e-6, scale = r2 > 0 ? 3e-7 / r2 : 0;
         assertNear(open, wanted, slack * wanted + scale, category, row);
-        assertNear(bounded, wantedBounded, slack * wantedBounded + fmin(scale, 3e-7 / number(&t, row, "c")), category,
-                   row);
+        assertNear(bounded, wantedBounded, slack * wantedBounded + fmin(scale, 3e-7 / number(&t, row, "c")),
+                   category, row);
         assertNear(documented, number(&t, row, "documented_kernel"), 4e-7, category, row);
     }
     freeTable(&t);
@@ -82,7 +82,8 @@ static void ClampLosesOnAPlaneWhatTheTableSays(void** state)
     for (int row = 0; row < t.rows; row++) {
         double h = number(&t, row, "h"), c = number(&t, row, "c"), sum = 0;
         // Rings from 1e-3 to 1e3 times the larger of h and sqrt(c), evenly in the logarithm, and a disc inside.
-        double unit = fmax(h, sqrt(c)), inner = 1e-3 * fmin(h, sqrt(c)), ratio = pow(1e3 * unit / inner, 1.0 / RINGS);
+        double unit = fmax(h, sqrt(c)), inner = 1e-3 * fmin(h, sqrt(c)),
+               ratio = pow(1e3 * unit / inner, 1.0 / RINGS);
         double r = inner;
         for (int i = 0; i < RINGS; i++) {
             double next = r * ratio, middle = sqrt(0.5 * (r * r + next * next));
@@ -92,8 +93,8 @@ static void ClampLosesOnAPlaneWhatTheTableSays(void** state)
         }
         for (int i = 0; i < RINGS; i += VPL_LIGHT_GROUP) {
             int count = RINGS - i < VPL_LIGHT_GROUP ? RINGS - i : VPL_LIGHT_GROUP;
-            sum += irradiance(context, VPL_LIGHTING_PHYSICAL, (float)sqrt(c), vplVec(0, (float)h, 0), vplVec(0, -1, 0),
-                              rings + i, count);
+            sum += irradiance(context, VPL_LIGHTING_PHYSICAL, (float)sqrt(c), vplVec(0, (float)h, 0),
+                              vplVec(0, -1, 0), rings + i, count);
         }
         // The rings end at 1000 units: they miss (h / (1000 unit))^2 at most.
         assertNear(sum / VPL_PI, number(&t, row, "fraction_kept_r2clamp"), 2e-4, "fraction kept", row);
@@ -106,7 +107,8 @@ static void ClampLosesOnAPlaneWhatTheTableSays(void** state)
 // The first directions of the tables: spherical Fibonacci points about y.
 static vplVec3 fibonacci(int i, int count)
 {
-    double y = 1 - (2.0 * i + 1) / count, r = sqrt(1 - y * y), angle = 2 * VPL_PI * i / 1.61803398874989484820;
+    double y = 1 - (2.0 * i + 1) / count, r = sqrt(1 - y * y),
+           angle = 2 * VPL_PI * i / 1.61803398874989484820;
     return vplVec((float)(r * cos(angle)), (float)y, (float)(r * sin(angle)));
 }
 
@@ -123,7 +125,8 @@ static void FurnaceSphereIsExact(void** state)
         int64_t total;
         assert_int_equal(vplCountParticles(context, n, rho, counts, 64, &steps, &total), VPL_SUCCESS);
         assert_int_equal(steps, (int)number(&t, row, "steps"));
-        vplVec3 at = vplScale((float)radius, vplNormalize(vplVec(0.3f, -0.5f, 0.8f))), normal = vplNormalize(vplNegate(at));
+        vplVec3 at = vplScale((float)radius, vplNormalize(vplVec(0.3f, -0.5f, 0.8f))),
+                normal = vplNormalize(vplNegate(at));
         double e = number(&t, row, "E_direct");
         for (int k = 0; k < steps; k++) {
             double flux = 4 * VPL_PI * intensity * pow(rho, k + 1);
@@ -170,22 +173,24 @@ static void DocumentedFurnaceSphereIsThatOfTheTable(void** state)
 }
 
 // Irradiance of the lights of one step at the floor point (u, -1, v) of the closed cube.
-static double stepIrradiance(vplContext* context, const vplLightSet* set, vplLighting lighting, int step, double u,
-                             double v)
+static double stepIrradiance(vplContext* context, const vplLightSet* set, vplLighting lighting, int step,
+                             double u, double v)
 {
     vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
     vplPrepareLights(set, lighting, lights);
     double sum = 0;
     for (int i = 0; i < set->lightCount; i++) {
         if (set->lights[i].step == step) {
-            sum += irradiance(context, lighting, 0, vplVec((float)u, -1, (float)v), vplVec(0, 1, 0), &lights[i], 1);
+            sum += irradiance(context, lighting, 0, vplVec((float)u, -1, (float)v), vplVec(0, 1, 0),
+                              &lights[i], 1);
         }
     }
     free(lights);
     return sum;
 }
 
-static vplLightSet* cubeLights(const vplGeometry* cube, vplLighting lighting, int n, double rho, uint64_t seed)
+static vplLightSet* cubeLights(const vplGeometry* cube, vplLighting lighting, int n, double rho,
+                               uint64_t seed)
 {
     vplParticleDef def = vplDefaultParticleDef();
     def.lighting = lighting;
@@ -214,7 +219,8 @@ static void LightsInACubeConvergeToTheTable(void** state)
         for (int row = 0; row < t.rows; row++) {
             for (int k = 0; k < 3; k++) {
                 double e = stepIrradiance(context, set, VPL_LIGHTING_PHYSICAL, k, number(&t, row, "u"),
-                                          number(&t, row, "v")) / pow(0.9, k + 1);
+                                          number(&t, row, "v")) /
+                           pow(0.9, k + 1);
                 sums[row][k] += e / SEEDS;
                 squares[row][k] += e * e / SEEDS;
             }
@@ -246,7 +252,8 @@ static void DocumentedLightsInACubeConvergeToTheTable(void** state)
         for (int k = 0; k < 4; k++) {
             char column[8];
             snprintf(column, sizeof column, "Ecos_k%d", k);
-            double e = stepIrradiance(context, set, VPL_LIGHTING_DOCUMENTED, k, number(&t, row, "u"), number(&t, row, "v"));
+            double e = stepIrradiance(context, set, VPL_LIGHTING_DOCUMENTED, k, number(&t, row, "u"),
+                                      number(&t, row, "v"));
             double wanted = number(&t, row, column);
             assertNear(e / pow(0.9 / VPL_PI, k + 1), wanted, 0.003 * wanted, column, row);
         }
@@ -284,7 +291,8 @@ static void checkRgb(const Table* t, int row, const char* prefix, const float e[
         char column[24];
         snprintf(column, sizeof column, "%s_%c", prefix, "rgb"[c]);
         double wanted = number(t, row, column);
-        assertNear((double)reflectance[c] / VPL_PI * (double)e[c][0], wanted, 1e-5 * wanted + 1e-9, column, row);
+        assertNear((double)reflectance[c] / VPL_PI * (double)e[c][0], wanted, 1e-5 * wanted + 1e-9, column,
+                   row);
     }
 }
 
@@ -317,10 +325,13 @@ static void EveryPointOfTheRoomIsLitAsTheTableSays(void** state)
                                (float)number(&objects, i, "rho_b")};
             }
         }
-        vplShadeDef def = {.lighting = VPL_LIGHTING_DOCUMENTED, .emitters = &emitter, .shadows = &shadow,
-                           .emitterCount = 1, .particleCount = 10};
-        vplShading shading = {.geometry = room, .def = &def,
-                              .emitterKernel = vplGetEmitterKernel(vplContext_GetIsa(context))};
+        vplShadeDef def = {.lighting = VPL_LIGHTING_DOCUMENTED,
+                           .emitters = &emitter,
+                           .shadows = &shadow,
+                           .emitterCount = 1,
+                           .particleCount = 10};
+        vplShading shading = {
+            .geometry = room, .def = &def, .emitterKernel = vplGetEmitterKernel(vplContext_GetIsa(context))};
         float e[3][VPL_LANES];
         vplDirectIrradiance(&shading, &surface, e);
         checkRgb(&t, row, "doc_direct", e, rho);
@@ -396,7 +407,8 @@ static void AMillionEqualLightsAddUp(void** state)
     for (int i = 0; i < COUNT; i++) {
         lights[i] = lightAt(vplVec(0.3f, 2, 0.1f), vplVec(0, -1, 0), 0.1f);
     }
-    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = lights};
+    vplShadeDef def = {
+        .lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = lights};
     def.lightCount = 1;
     vplImage* one = shadeFloor(context, def, 4, 4);
     def.lightCount = COUNT;
@@ -419,7 +431,8 @@ static void EveryPixelOfAnySizeIsShadedOnce(void** state)
     vplShadeLight light = lightAt(vplVec(0, 5, 0), vplVec(0, -1, 0), 1);
     const int sizes[][2] = {{1, 1}, {3, 5}, {64, 64}, {65, 63}, {130, 67}};
     for (int i = 0; i < 5; i++) {
-        vplShadeDef def = {.lighting = VPL_LIGHTING_DOCUMENTED, .lights = &light, .lightCount = 1, .batch = 1};
+        vplShadeDef def = {
+            .lighting = VPL_LIGHTING_DOCUMENTED, .lights = &light, .lightCount = 1, .batch = 1};
         vplImage* images[3];
         for (int k = 0; k < 3; k++) {
             def.accumulation = (vplAccumulation)k;
@@ -442,10 +455,11 @@ static void EveryPixelOfAnySizeIsShadedOnce(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(shading, cmocka_unit_test(EveryKernelValueOfTheTable), cmocka_unit_test(ClampLosesOnAPlaneWhatTheTableSays),
-           cmocka_unit_test(FurnaceSphereIsExact), cmocka_unit_test(DocumentedFurnaceSphereIsThatOfTheTable),
+TEST_SUITE(shading, cmocka_unit_test(EveryKernelValueOfTheTable),
+           cmocka_unit_test(ClampLosesOnAPlaneWhatTheTableSays), cmocka_unit_test(FurnaceSphereIsExact),
+           cmocka_unit_test(DocumentedFurnaceSphereIsThatOfTheTable),
            cmocka_unit_test(LightsInACubeConvergeToTheTable),
            cmocka_unit_test(DocumentedLightsInACubeConvergeToTheTable),
            cmocka_unit_test(EveryPointOfTheRoomIsLitAsTheTableSays),
-           cmocka_unit_test(BothLightingsDifferByTheFactorsOfTheTable), cmocka_unit_test(AMillionEqualLightsAddUp),
-           cmocka_unit_test(EveryPixelOfAnySizeIsShadedOnce));
+           cmocka_unit_test(BothLightingsDifferByTheFactorsOfTheTable),
+           cmocka_unit_test(AMillionEqualLightsAddUp), cmocka_unit_test(EveryPixelOfAnySizeIsShadedOnce));

@@ -15,7 +15,8 @@ static void FramesAreThoseOfTheTable(void** state)
         const vplVec3 rows[3] = {f.right, f.up, f.forward};
         const char* const names[3] = {"right_", "up_", "fwd_"};
         for (int i = 0; i < 3; i++) {
-            assertNear((double)vplLength(vplSub(rows[i], vectorOf(&t, face, names[i]))), 0, 0, names[i], face);
+            assertNear((double)vplLength(vplSub(rows[i], vectorOf(&t, face, names[i]))), 0, 0, names[i],
+                       face);
         }
         vplVec3 cross = vplCross(f.right, f.up); // left-handed: right x up = +forward
         assertNear((double)vplDot(cross, f.forward), 1, 0, "hand", face);
@@ -84,7 +85,8 @@ static void TexelsHoldTheDistanceOfTheWall(void** state)
         assert_int_equal(map->stats.drawCalls, 36);
         for (int i = 0; i < 6 * n * n; i++) {
             vplCubeFrame f = vplCube_GetFrame(i / (n * n));
-            float s = 2 * ((float)(i % n) + 0.5f) / (float)n - 1, t = 1 - 2 * ((float)(i / n % n) + 0.5f) / (float)n;
+            float s = 2 * ((float)(i % n) + 0.5f) / (float)n - 1,
+                  t = 1 - 2 * ((float)(i / n % n) + 0.5f) / (float)n;
             vplVec3 d = vplNormalize(vplAdd(f.forward, vplAdd(vplScale(s, f.right), vplScale(t, f.up))));
             double distance = INFINITY;
             for (int axis = 0; axis < 3; axis++) {
@@ -163,7 +165,8 @@ static void makeFlatMap(FlatMap* flat, vplContext* context, vplVec3 light, float
     for (int i = 0; i < 6; i++) {
         flat->texels[i] = stored;
     }
-    flat->map = (vplCubeMap){.position = light, .size = 1, .far = far, .texels = flat->texels, .context = context};
+    flat->map =
+        (vplCubeMap){.position = light, .size = 1, .far = far, .texels = flat->texels, .context = context};
 }
 
 static void EveryShadowVerdictOfTheTable(void** state)
@@ -186,8 +189,8 @@ static void EveryShadowVerdictOfTheTable(void** state)
         double s = (double)vplShadow_Factor(&shadow, (vplVec3){0, 0, 0}, n);
         assertNear(s, number(&t, row, "s_clamped"), 0, "s", row);
         double cosine = fmax(number(&t, row, "n_dot_lhat"), 0), dist = number(&t, row, "dist");
-        assertNear((double)vplShadow_Bias(&shadow, (float)dist, (float)cosine), number(&t, row, "bias_clamped"), 2e-8,
-                   "bias", row);
+        assertNear((double)vplShadow_Bias(&shadow, (float)dist, (float)cosine),
+                   number(&t, row, "bias_clamped"), 2e-8, "bias", row);
     }
     freeTable(&t);
     closeTestContext(context);
@@ -310,9 +313,11 @@ static vplGeometry* wallOnFloor(vplContext* context, float x0)
     vplMaterialDef material = vplDefaultMaterialDef();
     vplScene_AddMaterial(scene, &material, NULL);
     vplObjectDef object = vplDefaultObjectDef();
-    object.transform = vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){20, 20, 1});
+    object.transform =
+        vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){20, 20, 1});
     vplScene_AddObject(scene, &object, NULL);
-    object.transform = vplMat4_FromParts((vplVec3){x0, 0, 0}, (double[3]){0, VPL_PI / 2, 0}, (vplVec3){20, 1, 1});
+    object.transform =
+        vplMat4_FromParts((vplVec3){x0, 0, 0}, (double[3]){0, VPL_PI / 2, 0}, (vplVec3){20, 1, 1});
     vplScene_AddObject(scene, &object, NULL);
     assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
     vplScene_Destroy(scene);
@@ -328,7 +333,8 @@ static void LightLeaksBehindAWallAsFarAsTheTableSays(void** state)
     enum { SIZE = 1024 };
     int tested = 0;
     for (int row = 0; row < t.rows; row++) {
-        double h = number(&t, row, "light_height"), x0 = number(&t, row, "occluder_x0"), gap = number(&t, row, "gap_exact");
+        double h = number(&t, row, "light_height"), x0 = number(&t, row, "occluder_x0"),
+               gap = number(&t, row, "gap_exact");
         double theta = atan2(x0 + gap, h), texel = 2 * h / SIZE * (1 + pow((x0 + gap) / h, 2));
         if (h != 1 || x0 + gap > 5) {
             continue; // the table scales with h; far out the floor ends
@@ -343,7 +349,8 @@ static void LightLeaksBehindAWallAsFarAsTheTableSays(void** state)
         vplShadow shadow;
         assert_int_equal(vplShadow_Create(map, &def, &shadow), VPL_SUCCESS);
         double step = texel / 16, x = x0 + step;
-        while (x < x0 + 20 && vplShadow_Factor(&shadow, (vplVec3){(float)x, 0, 0.01f}, (vplVec3){0, 1, 0}) == 0) {
+        while (x < x0 + 20 &&
+               vplShadow_Factor(&shadow, (vplVec3){(float)x, 0, 0.01f}, (vplVec3){0, 1, 0}) == 0) {
             x += step;
         }
         // The stored distance is a texel centre's: off by half a texel, in slope as well.
@@ -431,7 +438,8 @@ static void DegenerateShadowsAreDefined(void** state)
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, INFINITY);
     vplShadow shadow = exactShadow(&flat.map, 16, 0.1f);
-    assertNear((double)vplShadow_Factor(&shadow, (vplVec3){1e6f, 0, 0}, (vplVec3){-1, 0, 0}), 0, 0, "nothing", 0);
+    assertNear((double)vplShadow_Factor(&shadow, (vplVec3){1e6f, 0, 0}, (vplVec3){-1, 0, 0}), 0, 0, "nothing",
+               0);
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 1e-3f);
     shadow = exactShadow(&flat.map, 16, 5);
     double in = (double)vplShadow_Factor(&shadow, (vplVec3){0, 0, 0}, (vplVec3){0, 1, 0});
@@ -480,7 +488,8 @@ static void ShadowBitsDoNotDependOnInstructionSet(void** state)
         vplCubeMap* map = makeMap(room, (vplVec3){0, 4.5f, 0}, 200);
         vplShadow shadow = exactShadow(map, 16, 0.1f);
         for (int i = 0; i < 200; i++) {
-            vplVec3 p = {(float)(5 * uniformAt(1, (uint64_t)i) - 2.5), 0, (float)(5 * uniformAt(2, (uint64_t)i) - 2.5)};
+            vplVec3 p = {(float)(5 * uniformAt(1, (uint64_t)i) - 2.5), 0,
+                         (float)(5 * uniformAt(2, (uint64_t)i) - 2.5)};
             float s = vplShadow_Factor(&shadow, p, (vplVec3){0, 1, 0});
             if (isa == VPL_ISA_SCALAR) {
                 wanted[i] = s;
@@ -523,12 +532,13 @@ static void ShadowMapsRefuseBadDefs(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(visibility, cmocka_unit_test(FramesAreThoseOfTheTable),
-           cmocka_unit_test(EveryDirectionOfTheTableFindsItsTexel), cmocka_unit_test(TexelsHoldTheDistanceOfTheWall),
-           cmocka_unit_test(StoredDistancesAreRadialAndUnclamped), cmocka_unit_test(EveryShadowVerdictOfTheTable),
-           cmocka_unit_test(ExactBiasIsThatOfTheTable), cmocka_unit_test(ExactBiasIsEnoughInEveryTexelOfTheTable),
-           cmocka_unit_test(AutomaticPairIsEnoughUpTo80Degrees), cmocka_unit_test(ExactBiasLeavesNoAcneOnAPlane),
-           cmocka_unit_test(LightLeaksBehindAWallAsFarAsTheTableSays), cmocka_unit_test(PcfGivesTheExpectationOfADisc),
-           cmocka_unit_test(PcfCountsTheGridsOfTheTable), cmocka_unit_test(DegenerateShadowsAreDefined),
-           cmocka_unit_test(OffsetsLieOnTheDiscInPairs), cmocka_unit_test(ShadowBitsDoNotDependOnInstructionSet),
-           cmocka_unit_test(ShadowMapsRefuseBadDefs));
+TEST_SUITE(
+    visibility, cmocka_unit_test(FramesAreThoseOfTheTable),
+    cmocka_unit_test(EveryDirectionOfTheTableFindsItsTexel), cmocka_unit_test(TexelsHoldTheDistanceOfTheWall),
+    cmocka_unit_test(StoredDistancesAreRadialAndUnclamped), cmocka_unit_test(EveryShadowVerdictOfTheTable),
+    cmocka_unit_test(ExactBiasIsThatOfTheTable), cmocka_unit_test(ExactBiasIsEnoughInEveryTexelOfTheTable),
+    cmocka_unit_test(AutomaticPairIsEnoughUpTo80Degrees), cmocka_unit_test(ExactBiasLeavesNoAcneOnAPlane),
+    cmocka_unit_test(LightLeaksBehindAWallAsFarAsTheTableSays),
+    cmocka_unit_test(PcfGivesTheExpectationOfADisc), cmocka_unit_test(PcfCountsTheGridsOfTheTable),
+    cmocka_unit_test(DegenerateShadowsAreDefined), cmocka_unit_test(OffsetsLieOnTheDiscInPairs),
+    cmocka_unit_test(ShadowBitsDoNotDependOnInstructionSet), cmocka_unit_test(ShadowMapsRefuseBadDefs));

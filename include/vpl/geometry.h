@@ -78,7 +78,8 @@ typedef struct vplRayStart {
 } vplRayStart;
 
 // The closest hit over all objects; among equal distances the lowest object index. False if there is none.
-bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplRayStart start, vplHit* hitOut);
+bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplRayStart start,
+                            vplHit* hitOut);
 
 // True if something other than the start lies in (0, tMax) along the ray. tMax in units of the direction.
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, vplRayStart start, float tMax);

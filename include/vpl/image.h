@@ -77,10 +77,10 @@ uint8_t vplSrgb_Code(float linear);
 
 // How far picture A is from reference B. Sums run over all pixels and channels in row order, in double.
 typedef struct vplComparison {
-    double rmse;          // root of the mean of (a - b)^2, in the pictures' unit
-    double relativeRmse;  // rmse / mean of B
-    double relmse;        // mean of (a - b)^2 / (b + 0.01)^2
-    double psnr;          // 10 log10(1 / mse) of values clamped to [0, 1] and sRGB-encoded, dB; infinite if equal
+    double rmse;         // root of the mean of (a - b)^2, in the pictures' unit
+    double relativeRmse; // rmse / mean of B
+    double relmse;       // mean of (a - b)^2 / (b + 0.01)^2
+    double psnr; // 10 log10(1 / mse) of values clamped to [0, 1] and sRGB-encoded, dB; infinite if equal
     double energyRatio;   // sum of A / sum of B; 1 if both are black
     double maxDifference; // largest |a - b|
     int maxX, maxY;       // where

@@ -32,23 +32,25 @@ typedef enum vplBounce {
 typedef struct vplVirtualLight {
     vplVec3 position; // metres
     vplVec3 normal;   // unit; of the surface, on the side the particle came from (documented: as declared)
-    vplRgb light;     // documented: the light L the particle carries after attenuation, in the emitter's unit;
-                      // physical: flux in W that the surface sends out if one particle carried all
-    float weight;     // N / floor(rho^k N); the picture also divides by N
-    int step;         // k: 0 for the first hit
-    int particle;     // [0, N)
-    int object;       // where it lies
+    vplRgb light; // documented: the light L the particle carries after attenuation, in the emitter's unit;
+                  // physical: flux in W that the surface sends out if one particle carried all
+    float weight; // N / floor(rho^k N); the picture also divides by N
+    int step;     // k: 0 for the first hit
+    int particle; // [0, N)
+    int object;   // where it lies
 } vplVirtualLight;
 
 typedef struct vplParticleDef {
-    vplLighting lighting; // default VPL_LIGHTING_PHYSICAL
-    int particleCount;    // N, [0, VPL_MAX_LIGHTS]; default 10
-    double reflectivity;  // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
-    vplSampler sampler;   // default VPL_SAMPLER_RANDOM
-    vplBounce bounce;     // default VPL_BOUNCE_AUTO
-    uint64_t seed;        // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
+    vplLighting lighting;      // default VPL_LIGHTING_PHYSICAL
+    int particleCount;         // N, [0, VPL_MAX_LIGHTS]; default 10
+    double reflectivity;       // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
+    vplSampler sampler;        // default VPL_SAMPLER_RANDOM
+    vplBounce bounce;          // default VPL_BOUNCE_AUTO
+    uint64_t seed;             // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
     const vplVec3* directions; // N first directions, unit, instead of the sampler's; NULL (default)
-    uint32_t cookie;           // set by vplDefaultParticleDef
+    vplProgressFcn* progress;  // default NULL
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultParticleDef
 } vplParticleDef;
 
 vplParticleDef vplDefaultParticleDef(void);
@@ -57,8 +59,8 @@ vplParticleDef vplDefaultParticleDef(void);
 // Fills at most `capacity` counts (NULL to count only). *stepsOut is the number of steps, *totalOut the sum.
 // VPL_LIMIT beyond VPL_MAX_STEPS steps or VPL_MAX_LIGHTS lights.
 // Source: Keller, Instant Radiosity, 1997, section 4; the rule against rounding is derived in particles.c.
-vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts, int capacity,
-                            int* stepsOut, int64_t* totalOut);
+vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts,
+                            int capacity, int* stepsOut, int64_t* totalOut);
 
 // What a simulation made. Read only.
 typedef struct vplLightSet {

@@ -34,15 +34,15 @@ typedef void vplVertexFcn(const void* uniforms, int first, int count, const vplV
 
 // A block of fragments of one triangle. Lanes that are not covered hold defined numbers that are not written.
 typedef struct vplFragments {
-    int x, y;                    // pixel of lane 0; x and y are multiples of 4
-    int primitive;               // index of the triangle in its mesh
-    int32_t covered[VPL_LANES];  // -1 where the lane is a fragment, else 0
-    float depth[VPL_LANES];      // z/w; a shader with writesDepth replaces it
-    float w[VPL_LANES];          // clip-space w: distance along the view axis
+    int x, y;                                   // pixel of lane 0; x and y are multiples of 4
+    int primitive;                              // index of the triangle in its mesh
+    int32_t covered[VPL_LANES];                 // -1 where the lane is a fragment, else 0
+    float depth[VPL_LANES];                     // z/w; a shader with writesDepth replaces it
+    float w[VPL_LANES];                         // clip-space w: distance along the view axis
     float varying[VPL_MAX_VARYINGS][VPL_LANES]; // perspective-correct
-    float plane[VPL_MAX_PLANES][VPL_LANES];     // out: colours; in: what the framebuffer holds, if readsPlanes
-    void* scratch;               // the tile's, see vplFramebuffer
-    int element;                 // of lane 0 in the tile's storage
+    float plane[VPL_MAX_PLANES][VPL_LANES]; // out: colours; in: what the framebuffer holds, if readsPlanes
+    void* scratch;                          // the tile's, see vplFramebuffer
+    int element;                            // of lane 0 in the tile's storage
 } vplFragments;
 
 // Shades one block. Called from any worker.
@@ -76,13 +76,13 @@ typedef struct vplPipeline {
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
     bool writesDepth;             // the fragment shader replaces depth, and the test uses that; default false
-    bool readsPlanes;             // the fragment shader sees the framebuffer and blends by itself; default false
-    bool ownerTest;               // only where the same triangle of the same mesh wrote depth last: of
-                                  // coplanar surfaces one counts; default false
-    vplBlend blend;               // default VPL_BLEND_REPLACE
-    vplCull cull;                 // default VPL_CULL_NONE
-    uint32_t planeMask;           // bit p: plane p is written; default all
-    uint32_t cookie;              // set by vplDefaultPipeline
+    bool readsPlanes;   // the fragment shader sees the framebuffer and blends by itself; default false
+    bool ownerTest;     // only where the same triangle of the same mesh wrote depth last: of
+                        // coplanar surfaces one counts; default false
+    vplBlend blend;     // default VPL_BLEND_REPLACE
+    vplCull cull;       // default VPL_CULL_NONE
+    uint32_t planeMask; // bit p: plane p is written; default all
+    uint32_t cookie;    // set by vplDefaultPipeline
 } vplPipeline;
 
 vplPipeline vplDefaultPipeline(void);
@@ -126,11 +126,11 @@ typedef struct vplTile {
 typedef void vplTileFcn(void* data, vplTile* tile, int worker);
 
 typedef struct vplRasterStats {
-    int64_t drawCalls;         // draws recorded
-    int64_t fragments;         // fragments that passed all tests
-    int64_t trianglesIn;       // triangles of the meshes whose vertices were shaded
-    int64_t trianglesBinned;   // left after culling and clipping
-    double vertexMs, tilesMs;  // time of the vertex stage (with clipping and binning) and of the tiles
+    int64_t drawCalls;        // draws recorded
+    int64_t fragments;        // fragments that passed all tests
+    int64_t trianglesIn;      // triangles of the meshes whose vertices were shaded
+    int64_t trianglesBinned;  // left after culling and clipping
+    double vertexMs, tilesMs; // time of the vertex stage (with clipping and binning) and of the tiles
 } vplRasterStats;
 
 // A recorded list of draws on one framebuffer.

@@ -67,8 +67,8 @@ typedef struct vplShadeDef {
     vplLighting lighting;
     vplAccumulation accumulation;
     vplShadeOutput output;
-    int batch;                    // lights per pass, >= 1; batched only
-    float minDistance;            // metres, >= 0; 0 is unbounded; physical only
+    int batch;                     // lights per pass, >= 1; batched only
+    float minDistance;             // metres, >= 0; 0 is unbounded; physical only
     const vplEmitterDef* emitters; // point emitters that light directly
     const vplShadow* shadows;      // one per emitter
     int emitterCount;              // 0: no direct light

@@ -30,8 +30,8 @@ typedef struct vplCubeMapDef {
     vplVec3 position; // metres
     int size;         // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
     float near;       // metres, > 0: what is nearer to the position casts no shadow; 0 (default): far * 2^-20
-    float far;        // metres, > near: unit of the stored distances; 0 (default): distance of the farthest vertex
-    uint32_t cookie;  // set by vplDefaultCubeMapDef
+    float far; // metres, > near: unit of the stored distances; 0 (default): distance of the farthest vertex
+    uint32_t cookie; // set by vplDefaultCubeMapDef
 } vplCubeMapDef;
 
 vplCubeMapDef vplDefaultCubeMapDef(void);
@@ -41,7 +41,8 @@ typedef struct vplCubeMap {
     vplVec3 position;
     int size;
     float near, far;
-    const float* texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
+    const float*
+        texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
     vplRasterStats stats;
     vplContext* context;
 } vplCubeMap;
@@ -66,11 +67,12 @@ typedef enum vplBiasRule {
 typedef struct vplShadowDef {
     vplBiasRule biasRule; // default VPL_BIAS_AUTO
     float biasStatic;     // b_s, metres; negative (default): far * texel half-angle + pcfOffset; pair only
-    float biasDynamic;    // b_dmax, metres; negative (default): 5.6 b_s, free of acne up to 80 degrees; pair only
-    int pcfSamples;       // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
-    float pcfOffset;      // off: radius of the disc of samples at the fragment, metres, >= 0; negative
-                          // (default): far / 128
-    uint32_t cookie;      // set by vplDefaultShadowDef
+    float
+        biasDynamic; // b_dmax, metres; negative (default): 5.6 b_s, free of acne up to 80 degrees; pair only
+    int pcfSamples;  // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
+    float pcfOffset; // off: radius of the disc of samples at the fragment, metres, >= 0; negative
+                     // (default): far / 128
+    uint32_t cookie; // set by vplDefaultShadowDef
 } vplShadowDef;
 
 vplShadowDef vplDefaultShadowDef(void);

@@ -86,7 +86,8 @@ vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut)
     draft.workerCount = draft.def.workerCount ? draft.def.workerCount : defaultWorkerCount();
     draft.isa = draft.def.isa == VPL_ISA_AUTO ? vplBestIsa() : draft.def.isa;
     if (!vplHasIsa(draft.isa)) {
-        return vplFail(&draft, VPL_INVALID_ARGUMENT, "vplContextDef.isa is %s, which this machine or build lacks",
+        return vplFail(&draft, VPL_INVALID_ARGUMENT,
+                       "vplContextDef.isa is %s, which this machine or build lacks",
                        vplIsa_GetName(draft.isa));
     }
     vplContext* context = draft.def.alloc(draft.def.allocUser, NULL, 0, sizeof *context);
@@ -130,6 +131,25 @@ int vplContext_GetWorkerCount(const vplContext* context)
     return context->workerCount;
 }
 
+// Names and texts of a broken file end up in messages; what a terminal would obey or choke on becomes '?'.
+static void makePrintable(char* text)
+{
+    unsigned char* p = (unsigned char*)text;
+    while (*p != 0) {
+        int length = *p < 0x80 ? 1 : *p >= 0xF0 ? 4 : *p >= 0xE0 ? 3 : *p >= 0xC2 ? 2 : 0;
+        bool control = *p < 0x20 || *p == 0x7F || (*p == 0xC2 && p[1] < 0xA0);
+        int good = control ? 0 : 1;
+        while (good > 0 && good < length && (p[good] & 0xC0) == 0x80) {
+            good++;
+        }
+        if (length == 0 || good < length) { // also a sequence that a full buffer cut off
+            *p++ = '?';
+        } else {
+            p += length;
+        }
+    }
+}
+
 static void logArguments(const vplContext* context, vplLogLevel level, const char* format, va_list arguments)
 {
     if (context == NULL || context->def.log == NULL) {
@@ -137,6 +157,7 @@ static void logArguments(const vplContext* context, vplLogLevel level, const cha
     }
     char message[1024];
     vsnprintf(message, sizeof message, format, arguments);
+    makePrintable(message);
     context->def.log(context->def.logUser, level, message);
 }
 

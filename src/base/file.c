@@ -90,7 +90,8 @@ static vplResult writeDirectly(vplContext* context, const char* path, const void
         written = false;
         cause = errno;
     }
-    return written ? VPL_SUCCESS : vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(cause));
+    return written ? VPL_SUCCESS
+                   : vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(cause));
 }
 
 // A new file beside `path`, its name written to `name`. Unlike mkstemp this lets the umask decide the mode.
@@ -161,7 +162,8 @@ void vplByteBuffer_Append(vplByteBuffer* buffer, const void* bytes, size_t size)
     if (buffer->failed || size == 0) {
         return;
     }
-    if (vplReserve(buffer->context, &buffer->bytes, &buffer->capacity, buffer->size + size, 1) != VPL_SUCCESS) {
+    if (vplReserve(buffer->context, &buffer->bytes, &buffer->capacity, buffer->size + size, 1) !=
+        VPL_SUCCESS) {
         buffer->failed = true;
         return;
     }

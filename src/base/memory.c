@@ -22,14 +22,15 @@ void* vplAlloc(vplContext* context, size_t count, size_t size)
 {
     size_t bytes;
     if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2) {
-        vplFail(context, VPL_OUT_OF_MEMORY, "out of memory: %zu elements of %zu bytes exceed the address space", count,
-                size);
+        vplFail(context, VPL_OUT_OF_MEMORY,
+                "out of memory: %zu elements of %zu bytes exceed the address space", count, size);
         return NULL;
     }
     size_t total = bytes + ALIGNMENT + sizeof(Header);
     void* raw = context->def.alloc(context->def.allocUser, NULL, 0, total);
     if (raw == NULL) {
-        vplFail(context, VPL_OUT_OF_MEMORY, "out of memory: %zu bytes wanted, %zu held", bytes, context->bytes);
+        vplFail(context, VPL_OUT_OF_MEMORY, "out of memory: %zu bytes wanted, %zu held", bytes,
+                context->bytes);
         return NULL;
     }
     uintptr_t start = ((uintptr_t)raw + sizeof(Header) + ALIGNMENT - 1) & ~(uintptr_t)(ALIGNMENT - 1);

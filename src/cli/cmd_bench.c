@@ -37,8 +37,8 @@ typedef struct Stage {
     bool direct;
 } Stage;
 
-static void addObject(vplScene* scene, vplObjectType type, int material, vplVec3 place, double turnX, double turnY,
-                      vplVec3 size)
+static void addObject(vplScene* scene, vplObjectType type, int material, vplVec3 place, double turnX,
+                      double turnY, vplVec3 size)
 {
     vplObjectDef def = vplDefaultObjectDef();
     const double rotate[3] = {turnX * VPL_PI / 180, turnY * VPL_PI / 180, 0};
@@ -273,7 +273,8 @@ static void printText(const Arguments* a, const Figure* figures, const int* thre
         } else {
             printf("%17s", "-");
         }
-        printf("  %016llx%s\n", (unsigned long long)f->outcome[0].hash, same ? "" : " DIFFERS BETWEEN THREAD COUNTS");
+        printf("  %016llx%s\n", (unsigned long long)f->outcome[0].hash,
+               same ? "" : " DIFFERS BETWEEN THREAD COUNTS");
     }
 }
 
@@ -284,8 +285,8 @@ static void printJson(const Figure* figures, const int* threads, int columns)
         for (int c = 0; c < columns; c++) {
             char hash[17];
             snprintf(hash, sizeof hash, "%016llx", (unsigned long long)figures[s].outcome[c].hash);
-            json_array_append_new(root, json_pack("{s:s, s:i, s:f, s:I, s:f, s:s}", "stage", STAGES[s].name, "threads",
-                                                  threads[c], "ms", figures[s].ms[c], "draw_calls",
+            json_array_append_new(root, json_pack("{s:s, s:i, s:f, s:I, s:f, s:s}", "stage", STAGES[s].name,
+                                                  "threads", threads[c], "ms", figures[s].ms[c], "draw_calls",
                                                   (json_int_t)figures[s].outcome[c].drawCalls, "pixel_lights",
                                                   figures[s].outcome[c].pixelLights, "hash", hash));
         }

@@ -13,13 +13,16 @@ static const Topic TOPICS[] = {
      "Renders SCENE (.json) and writes a picture. Files appear whole or not at all."},
     {"lights", "vpl lights SCENE [options]", "lists the virtual lights",
      "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of\n"
-     "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux in\n"
+     "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "
+     "in\n"
      "watts that the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N."},
     {"compare", "vpl compare A B [options]", "measures how far picture A is from reference B",
-     "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), psnr (of clamped sRGB\n"
+     "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), psnr (of clamped "
+     "sRGB\n"
      "values, dB), energy_ratio (sum of A / sum of B) and max_difference with its pixel."},
     {"info", "vpl info SCENE [options]", "says what is in a scene, and what rendering it requires",
-     "Prints counts, bounds, mean reflectance, and the lights, draw calls and memory that a render with the same\n"
+     "Prints counts, bounds, mean reflectance, and the lights, draw calls and memory that a render with the "
+     "same\n"
      "options would need."},
     {"bench", "vpl bench [options]", "times every stage",
      "Times the stages on the built-in room: medians, counts, hashes, and the speed-up of several threads."},

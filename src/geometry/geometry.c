@@ -9,7 +9,8 @@
 
 #include <string.h>
 
-static const float QUAD_CORNERS[4][3] = {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}};
+static const float QUAD_CORNERS[4][3] = {
+    {-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}};
 static const uint32_t QUAD_INDICES[6] = {0, 1, 2, 0, 2, 3};
 
 // Corner i has x = +0.5 if bit 0 is set, y if bit 1, z if bit 2.
@@ -90,8 +91,10 @@ static void findBounds(vplGeometry* g)
     g->boundsMin = g->boundsMax = g->positions[0];
     for (int i = 1; i < g->vertexCount; i++) {
         vplVec3 p = g->positions[i];
-        g->boundsMin = vplVec(fminf(g->boundsMin.x, p.x), fminf(g->boundsMin.y, p.y), fminf(g->boundsMin.z, p.z));
-        g->boundsMax = vplVec(fmaxf(g->boundsMax.x, p.x), fmaxf(g->boundsMax.y, p.y), fmaxf(g->boundsMax.z, p.z));
+        g->boundsMin =
+            vplVec(fminf(g->boundsMin.x, p.x), fminf(g->boundsMin.y, p.y), fminf(g->boundsMin.z, p.z));
+        g->boundsMax =
+            vplVec(fmaxf(g->boundsMax.x, p.x), fmaxf(g->boundsMax.y, p.y), fmaxf(g->boundsMax.z, p.z));
     }
 }
 

@@ -10,8 +10,8 @@
 vplResult vplImage_Create(vplContext* context, int width, int height, vplImage** imageOut)
 {
     if (width < 1 || width > VPL_MAX_IMAGE_SIZE || height < 1 || height > VPL_MAX_IMAGE_SIZE) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "image size is %dx%d, each side must be in [1, %d]", width,
-                       height, VPL_MAX_IMAGE_SIZE);
+        return vplFail(context, VPL_INVALID_ARGUMENT, "image size is %dx%d, each side must be in [1, %d]",
+                       width, height, VPL_MAX_IMAGE_SIZE);
     }
     vplImage* image = vplAlloc(context, 1, sizeof *image);
     float* pixels = image ? vplAllocZero(context, 3 * (size_t)width * (size_t)height, sizeof(float)) : NULL;
@@ -39,14 +39,15 @@ uint64_t vplImage_Hash(const vplImage* image)
     return vplHashFloats(state, image->pixels, 3 * (size_t)image->width * (size_t)image->height);
 }
 
-vplResult vplImage_RequireFinite(const vplImage* image, const char* path)
+vplResult vplImage_RequireFinite(const vplImage* image, const char* what)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < count; i++) {
         if (!isfinite(image->pixels[i])) {
             size_t pixel = i / 3;
-            return vplFail(image->context, VPL_INVALID_ARGUMENT, "%s: not written: pixel (%d, %d) channel %d is %g",
-                           path, (int)(pixel % (size_t)image->width), (int)(pixel / (size_t)image->width),
+            return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                           "%s: pixel (%d, %d) channel %d is %g, must be finite", what,
+                           (int)(pixel % (size_t)image->width), (int)(pixel / (size_t)image->width),
                            (int)(i % 3), (double)image->pixels[i]);
         }
     }
@@ -69,8 +70,9 @@ typedef struct Format {
 } Format;
 
 static const Format FORMATS[] = {
-    {".png", vplEncodePng, vplDecodeLdr}, {".hdr", vplEncodeHdr, vplDecodeHdr}, {".pfm", vplEncodePfm, vplDecodePfm},
-    {".jpg", NULL, vplDecodeLdr},         {".jpeg", NULL, vplDecodeLdr},        {".bmp", NULL, vplDecodeLdr},
+    {".png", vplEncodePng, vplDecodeLdr}, {".hdr", vplEncodeHdr, vplDecodeHdr},
+    {".pfm", vplEncodePfm, vplDecodePfm}, {".jpg", NULL, vplDecodeLdr},
+    {".jpeg", NULL, vplDecodeLdr},        {".bmp", NULL, vplDecodeLdr},
     {".tga", NULL, vplDecodeLdr},
 };
 
@@ -105,8 +107,8 @@ vplResult vplImage_Write(const vplImage* image, const char* path, const vplWrite
                        "%s: unknown picture format; the name must end in .png, .hdr or .pfm", path);
     }
     if (!(fabsf(settings.exposure) <= 64)) {
-        return vplFail(image->context, VPL_INVALID_ARGUMENT, "vplWriteOptions.exposure is %g, must be in [-64, 64]",
-                       (double)settings.exposure);
+        return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                       "vplWriteOptions.exposure is %g, must be in [-64, 64]", (double)settings.exposure);
     }
     vplResult result = vplImage_RequireFinite(image, path);
     if (result != VPL_SUCCESS) {
@@ -128,8 +130,9 @@ vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageO
 {
     const Format* format = findFormat(path);
     if (format == NULL) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "%s: unknown picture format; the name must end in .png, .jpg, .bmp, .tga, .hdr or .pfm", path);
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "%s: unknown picture format; the name must end in .png, .jpg, .bmp, .tga, .hdr or .pfm", path);
     }
     char* bytes;
     size_t size;

@@ -13,11 +13,14 @@ vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vp
 vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
 vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
 
-vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut);
-vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut);
-vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut);
+vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut);
+vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut);
+vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut);
 
-// Fails, naming the first pixel that is NaN or infinite.
-vplResult vplImage_RequireFinite(const vplImage* image, const char* path);
+// Fails, naming `what` and the first pixel that is NaN or infinite.
+vplResult vplImage_RequireFinite(const vplImage* image, const char* what);
 
 #endif

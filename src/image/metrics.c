@@ -10,8 +10,8 @@
 static vplResult checkPair(const vplImage* a, const vplImage* b)
 {
     if (a->width != b->width || a->height != b->height) {
-        return vplFail(a->context, VPL_INVALID_ARGUMENT, "the pictures differ in size: %dx%d and %dx%d", a->width,
-                       a->height, b->width, b->height);
+        return vplFail(a->context, VPL_INVALID_ARGUMENT, "the pictures differ in size: %dx%d and %dx%d",
+                       a->width, a->height, b->width, b->height);
     }
     vplResult result = vplImage_RequireFinite(a, "first picture");
     return result == VPL_SUCCESS ? vplImage_RequireFinite(b, "second picture") : result;
@@ -67,8 +67,8 @@ vplResult vplImage_Heatmap(const vplImage* a, const vplImage* b, float scale, vp
         return result;
     }
     if (!(scale >= 0 && isfinite(scale))) {
-        return vplFail(a->context, VPL_INVALID_ARGUMENT, "heat map scale is %g, must be finite and not negative",
-                       (double)scale);
+        return vplFail(a->context, VPL_INVALID_ARGUMENT,
+                       "heat map scale is %g, must be finite and not negative", (double)scale);
     }
     vplImage* image;
     int barHeight = vplColourBar_GetHeight(a->width);

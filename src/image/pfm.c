@@ -9,8 +9,10 @@
 
 static uint32_t readWord(const uint8_t* bytes, bool little)
 {
-    return little ? (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24
-                  : (uint32_t)bytes[3] | (uint32_t)bytes[2] << 8 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[0] << 24;
+    return little ? (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+                        (uint32_t)bytes[3] << 24
+                  : (uint32_t)bytes[3] | (uint32_t)bytes[2] << 8 | (uint32_t)bytes[1] << 16 |
+                        (uint32_t)bytes[0] << 24;
 }
 
 vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
@@ -73,17 +75,20 @@ static bool readHeader(const uint8_t* bytes, size_t size, Header* header)
     return true;
 }
 
-vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut)
+vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut)
 {
     Header header;
     if (!readHeader(bytes, size, &header)) {
-        return vplFail(context, VPL_PARSE_ERROR, "%s: not a PFM picture (wanted PF, width, height, scale)", path);
+        return vplFail(context, VPL_PARSE_ERROR, "%s: not a PFM picture (wanted PF, width, height, scale)",
+                       path);
     }
     size_t rowFloats = (size_t)header.channels * (size_t)header.width;
     size_t wanted = 4 * rowFloats * (size_t)header.height;
     if (size - header.offset < wanted) {
-        return vplFail(context, VPL_PARSE_ERROR, "%s: PFM of %dx%d ends early: %zu bytes of pixels, %zu wanted", path,
-                       header.width, header.height, size - header.offset, wanted);
+        return vplFail(context, VPL_PARSE_ERROR,
+                       "%s: PFM of %dx%d ends early: %zu bytes of pixels, %zu wanted", path, header.width,
+                       header.height, size - header.offset, wanted);
     }
     vplImage* image;
     vplResult result = vplImage_Create(context, header.width, header.height, &image);

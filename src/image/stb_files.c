@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-// PNG, HDR and the formats that are only read, by stb. Both stb headers are compiled into this file alone and
-// static, and their global switches (vertical flip, gamma) are never touched. stb reports success on a full
-// disk, so it only ever writes to memory here.
+// PNG, HDR (written) and the formats that are only read, by stb. Both stb headers are compiled into this file
+// alone and static, and their global switches (vertical flip, gamma) are never touched. stb reports success on
+// a full disk, so it only ever writes to memory here. Its HDR reader is not used: a run of length 0 keeps it
+// busy forever (hdr.c reads them).
 #include "image/image_file.h"
 #include "math/scalar.h"
 
 #include <limits.h>
 #include <string.h>
+
+#pragma GCC diagnostic ignored "-Wunused-function" // stb's, of which we call few
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -19,6 +23,8 @@
 #define STBI_NO_GIF
 #define STBI_NO_PIC
 #define STBI_NO_PNM
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
 #define STBI_MAX_DIMENSIONS VPL_MAX_IMAGE_SIZE
 #include <stb_image.h>
 
@@ -56,8 +62,8 @@ vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vp
     vplContext* context = image->context;
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
     if (count > INT_MAX / 2) { // stb counts bytes in int
-        return vplFail(context, VPL_LIMIT, "a PNG of %dx%d pixels is too large; write .pfm instead", image->width,
-                       image->height);
+        return vplFail(context, VPL_LIMIT, "a PNG of %dx%d pixels is too large; write .pfm instead",
+                       image->width, image->height);
     }
     vplImage* display = NULL;
     vplResult result = applyDisplay(image, options, &display);
@@ -69,7 +75,8 @@ vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vp
         for (size_t i = 0; i < count; i++) {
             codes[i] = vplSrgb_Code(display->pixels[i]);
         }
-        if (!stbi_write_png_to_func(append, buffer, image->width, image->height, 3, codes, 3 * image->width)) {
+        if (!stbi_write_png_to_func(append, buffer, image->width, image->height, 3, codes,
+                                    3 * image->width)) {
             result = vplFail(context, VPL_OUT_OF_MEMORY, "out of memory while encoding a PNG");
         }
     }
@@ -87,45 +94,29 @@ vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vp
     return VPL_SUCCESS;
 }
 
-static vplResult fromStb(vplContext* context, const char* path, int width, int height, const float* hdr,
-                         const uint8_t* ldr, vplImage** imageOut)
-{
-    if (hdr == NULL && ldr == NULL) {
-        return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the picture: %s", path, stbi_failure_reason());
-    }
-    vplImage* image;
-    vplResult result = vplImage_Create(context, width, height, &image);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    size_t count = 3 * (size_t)width * (size_t)height;
-    for (size_t i = 0; i < count; i++) {
-        image->pixels[i] = hdr ? hdr[i] : vplSrgb_Decode((float)ldr[i] / 255.0f);
-    }
-    *imageOut = image;
-    return VPL_SUCCESS;
-}
-
-vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut)
+vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut)
 {
     int width = 0, height = 0, channels;
     uint8_t* codes =
         size <= INT_MAX ? stbi_load_from_memory(bytes, (int)size, &width, &height, &channels, 3) : NULL;
-    vplResult result = fromStb(context, path, width, height, NULL, codes, imageOut);
-    stbi_image_free(codes);
-    return result;
-}
-
-vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size, vplImage** imageOut)
-{
-    int width = 0, height = 0, channels;
-    float* values = NULL;
-    if (size <= INT_MAX && stbi_is_hdr_from_memory(bytes, (int)size)) {
-        values = stbi_loadf_from_memory(bytes, (int)size, &width, &height, &channels, 3);
-    } else {
-        return vplFail(context, VPL_PARSE_ERROR, "%s: not a Radiance HDR picture", path);
+    if (codes == NULL) {
+        const char* reason = stbi_failure_reason();
+        return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the picture: %s", path,
+                       reason != NULL && *reason != 0 ? reason : "its data is damaged");
     }
-    vplResult result = fromStb(context, path, width, height, values, NULL, imageOut);
-    stbi_image_free(values);
+    vplImage* image;
+    vplResult result = vplImage_Create(context, width, height, &image);
+    if (result == VPL_SUCCESS) {
+        float linear[256];
+        for (int code = 0; code < 256; code++) {
+            linear[code] = vplSrgb_Decode((float)code / 255.0f);
+        }
+        for (size_t i = 0; i < 3 * (size_t)width * (size_t)height; i++) {
+            image->pixels[i] = linear[codes[i]];
+        }
+        *imageOut = image;
+    }
+    stbi_image_free(codes);
     return result;
 }

@@ -51,7 +51,8 @@ static vplResult checkReinhard(const vplContext* context, const vplReinhardDef* 
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplReinhardDef was not made by vplDefaultReinhardDef");
     }
     if (!(def->key > 0 && def->key <= 1)) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplReinhardDef.key is %g, must be in (0, 1]", (double)def->key);
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplReinhardDef.key is %g, must be in (0, 1]",
+                       (double)def->key);
     }
     if (!(def->delta >= 0 && def->delta <= 1)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplReinhardDef.delta is %g, must be in [0, 1]",

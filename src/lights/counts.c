@@ -19,12 +19,12 @@ static int64_t countAt(double w, int step)
     return (int64_t)floor(w);
 }
 
-vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts, int capacity,
-                            int* stepsOut, int64_t* totalOut)
+vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts,
+                            int capacity, int* stepsOut, int64_t* totalOut)
 {
     if (particleCount < 0 || particleCount > VPL_MAX_LIGHTS) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "particle count is %d, must be in [0, %d]", particleCount,
-                       VPL_MAX_LIGHTS);
+        return vplFail(context, VPL_INVALID_ARGUMENT, "particle count is %d, must be in [0, %d]",
+                       particleCount, VPL_MAX_LIGHTS);
     }
     if (!(reflectivity >= 0 && reflectivity < 1)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "reflectivity is %g, must be in [0, 1)", reflectivity);
@@ -39,7 +39,8 @@ vplResult vplCountParticles(vplContext* context, int particleCount, double refle
         }
         total += count;
         if (total > VPL_MAX_LIGHTS) {
-            return vplFail(context, VPL_LIMIT, "%d particles at reflectivity %.17g leave more than %d virtual lights",
+            return vplFail(context, VPL_LIMIT,
+                           "%d particles at reflectivity %.17g leave more than %d virtual lights",
                            particleCount, reflectivity, VPL_MAX_LIGHTS);
         }
         if (counts != NULL && step < capacity) {

@@ -16,8 +16,9 @@ enum { PARTICLE_COOKIE = 0x56504c60 };
 
 vplParticleDef vplDefaultParticleDef(void)
 {
-    return (vplParticleDef){VPL_LIGHTING_PHYSICAL, 10, 0.5, VPL_SAMPLER_RANDOM, VPL_BOUNCE_AUTO, 0, NULL,
-                            PARTICLE_COOKIE};
+    return (vplParticleDef){
+        VPL_LIGHTING_PHYSICAL, 10, 0.5, VPL_SAMPLER_RANDOM, VPL_BOUNCE_AUTO, 0, NULL, NULL, NULL,
+        PARTICLE_COOKIE};
 }
 
 typedef struct Simulation {
@@ -28,7 +29,7 @@ typedef struct Simulation {
     vplParticleDef def;
     vplSampleSource samples;
     const int* stepCounts;
-    const int* stepStart;   // first slot of each step
+    const int* stepStart; // first slot of each step
     int stepCount;
     vplVirtualLight* slots; // one per step and particle; step -1 where nothing was hit
     int* raysOf;            // per particle
@@ -96,12 +97,9 @@ static void followParticle(Simulation* s, int particle)
         light = vplRgbMul(light, documented ? vplRgbScale((float)(1 / VPL_PI), rho) : rho);
         vplVec3 facing = vplDot(ray.direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
         s->slots[s->stepStart[step] + particle] = (vplVirtualLight){
-            hit.position,
-            documented ? hit.normal : facing,
-            light,
-            (float)((double)s->def.particleCount / s->stepCounts[step]),
-            step,
-            particle,
+            hit.position, documented ? hit.normal : facing,
+            light,        (float)((double)s->def.particleCount / s->stepCounts[step]),
+            step,         particle,
             hit.object,
         };
         vplSampleSource_Direction(&s->samples, particle, step + 1, &u, &v);
@@ -182,8 +180,8 @@ static vplResult allocate(Simulation* s, vplLightSet* set, int64_t total, int** 
     if (!counts || !starts || !*lightsInStep || !s->slots || !s->raysOf || !s->escapedOf) {
         return VPL_OUT_OF_MEMORY;
     }
-    vplResult result = vplCountParticles(context, s->def.particleCount, s->def.reflectivity, counts, set->stepCount,
-                                         &set->stepCount, &total);
+    vplResult result = vplCountParticles(context, s->def.particleCount, s->def.reflectivity, counts,
+                                         set->stepCount, &set->stepCount, &total);
     for (int i = 0, at = 0; i < set->stepCount; at += counts[i], i++) {
         starts[i] = at;
     }
@@ -216,7 +214,10 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     result = allocate(&s, set, total, &lightsInStep);
     if (result == VPL_SUCCESS) {
         s.stepCount = set->stepCount;
-        vplParallelFor(context, (def->particleCount + CHUNK - 1) / CHUNK, followChunk, &s);
+        result = vplParallelForProgress(context, (def->particleCount + CHUNK - 1) / CHUNK, followChunk, &s,
+                                        def->progress, def->progressUser, 0, 1);
+    }
+    if (result == VPL_SUCCESS) {
         collect(&s, set, lightsInStep);
     }
     vplFree(context, (int*)s.stepStart);

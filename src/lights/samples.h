@@ -8,8 +8,8 @@
 typedef struct vplSampleSource {
     vplSampler sampler;
     uint64_t seed;
-    int count;       // N
-    int64_t stride;  // Hammersley: particle i takes point i * stride mod N
+    int count;      // N
+    int64_t stride; // Hammersley: particle i takes point i * stride mod N
 } vplSampleSource;
 
 vplSampleSource vplSampleSource_Make(vplSampler sampler, uint64_t seed, int count);

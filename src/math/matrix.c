@@ -166,6 +166,7 @@ vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p)
 
 vplVec3 vplMat4_TransformDirection(const vplMat4* m, vplVec3 d)
 {
-    return vplVec(m->m[0] * d.x + m->m[4] * d.y + m->m[8] * d.z, m->m[1] * d.x + m->m[5] * d.y + m->m[9] * d.z,
+    return vplVec(m->m[0] * d.x + m->m[4] * d.y + m->m[8] * d.z,
+                  m->m[1] * d.x + m->m[5] * d.y + m->m[9] * d.z,
                   m->m[2] * d.x + m->m[6] * d.y + m->m[10] * d.z);
 }

@@ -22,7 +22,8 @@ typedef struct Assembly {
 // Writes (or only counts) one projected triangle. Nothing for zero area or where no pixel centre can lie.
 static int emit(Assembly* a, int at, const vplScreenVertex v[3], const uint32_t vertex[3], int primitive)
 {
-    int64_t area = (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
+    int64_t area =
+        (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
     int32_t minX = v[0].x, maxX = v[0].x, minY = v[0].y, maxY = v[0].y;
     for (int i = 1; i < 3; i++) {
         minX = v[i].x < minX ? v[i].x : minX;
@@ -47,8 +48,8 @@ static int emit(Assembly* a, int at, const vplScreenVertex v[3], const uint32_t 
     return 1;
 }
 
-static int emitClipped(Assembly* a, const vplShaded* s, const uint32_t* index, int primitive, int planes, int at,
-                       int* extras)
+static int emitClipped(Assembly* a, const vplShaded* s, const uint32_t* index, int primitive, int planes,
+                       int at, int* extras)
 {
     vplClipVertex in[3], out[VPL_MAX_CLIPPED];
     for (int i = 0; i < 3; i++) {

@@ -71,7 +71,8 @@ vplResult vplBinTriangles(vplRaster* raster)
             }
         }
         if (total > INT32_MAX) {
-            result = vplFail(raster->context, VPL_LIMIT, "more than %d triangle-tile pairs on screen", INT32_MAX);
+            result =
+                vplFail(raster->context, VPL_LIMIT, "more than %d triangle-tile pairs on screen", INT32_MAX);
         } else {
             raster->binStart[b.tileCount] = (int)total;
             raster->bins = vplAlloc(raster->context, (size_t)total, sizeof(int));

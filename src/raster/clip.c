@@ -18,7 +18,8 @@ static double distance(const Plane* p, const vplClipVertex* v)
     return p->x * v->x + p->y * v->y + p->z * v->z + p->w * v->w;
 }
 
-static vplClipVertex cut(const Plane* plane, const vplClipVertex* inside, const vplClipVertex* outside, int varyings)
+static vplClipVertex cut(const Plane* plane, const vplClipVertex* inside, const vplClipVertex* outside,
+                         int varyings)
 {
     double a = distance(plane, inside), b = distance(plane, outside);
     double t = a / (a - b);
@@ -35,7 +36,8 @@ static vplClipVertex cut(const Plane* plane, const vplClipVertex* inside, const 
     return v;
 }
 
-static int clipAgainst(const Plane* plane, int varyings, const vplClipVertex* in, int count, vplClipVertex* out)
+static int clipAgainst(const Plane* plane, int varyings, const vplClipVertex* in, int count,
+                       vplClipVertex* out)
 {
     int made = 0;
     for (int i = 0; i < count; i++) {
@@ -56,10 +58,12 @@ int vplClipTriangle(const vplRaster* raster, int planes, int varyingCount, const
                     vplClipVertex out[VPL_MAX_CLIPPED])
 {
     // 32000 of 32768 pixels: the rest is room for rounding.
-    double gx = 2 * 32000.0 / raster->framebuffer.width - 1, gy = 2 * 32000.0 / raster->framebuffer.height - 1;
-    const Plane all[6] = {{0, 0, 1, 0, 2, 0},     {0, 0, -1, 1, 2, 1},   {1, 0, 0, gx, 0, -gx},
-                          {-1, 0, 0, gx, 0, gx},  {0, 1, 0, gy, 1, -gy}, {0, -1, 0, gy, 1, gy}};
-    const int bits[6] = {VPL_OUT_NEAR, VPL_OUT_FAR, VPL_OUT_GUARD, VPL_OUT_GUARD, VPL_OUT_GUARD, VPL_OUT_GUARD};
+    double gx = 2 * 32000.0 / raster->framebuffer.width - 1,
+           gy = 2 * 32000.0 / raster->framebuffer.height - 1;
+    const Plane all[6] = {{0, 0, 1, 0, 2, 0},    {0, 0, -1, 1, 2, 1},   {1, 0, 0, gx, 0, -gx},
+                          {-1, 0, 0, gx, 0, gx}, {0, 1, 0, gy, 1, -gy}, {0, -1, 0, gy, 1, gy}};
+    const int bits[6] = {VPL_OUT_NEAR,  VPL_OUT_FAR,   VPL_OUT_GUARD,
+                         VPL_OUT_GUARD, VPL_OUT_GUARD, VPL_OUT_GUARD};
     vplClipVertex buffers[2][VPL_MAX_CLIPPED];
     memcpy(buffers[0], in, 3 * sizeof *in);
     int count = 3, from = 0;

@@ -99,8 +99,9 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
                        pipeline->varyingCount, VPL_MAX_VARYINGS);
     }
     if (mesh->vertexCount < 0 || mesh->triangleCount < 0) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplMesh has %d vertices and %d triangles, must not be negative",
-                       mesh->vertexCount, mesh->triangleCount);
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplMesh has %d vertices and %d triangles, must not be negative", mesh->vertexCount,
+                       mesh->triangleCount);
     }
     return VPL_SUCCESS;
 }
@@ -140,8 +141,8 @@ static vplResult addShaded(vplRaster* raster, const vplMesh* mesh, const vplPipe
 
 static vplResult addCommand(vplRaster* raster, vplCommand command)
 {
-    if (vplReserve(raster->context, &raster->commands, &raster->commandCapacity, (size_t)raster->commandCount + 1,
-                   sizeof *raster->commands) != VPL_SUCCESS) {
+    if (vplReserve(raster->context, &raster->commands, &raster->commandCapacity,
+                   (size_t)raster->commandCount + 1, sizeof *raster->commands) != VPL_SUCCESS) {
         return VPL_OUT_OF_MEMORY;
     }
     raster->commands[raster->commandCount++] = command;

@@ -45,8 +45,8 @@ typedef struct vplShaded {
 } vplShaded;
 
 typedef struct vplCommand {
-    int shaded;         // index, or -1 for a tile task
-    int pipeline;       // index
+    int shaded;   // index, or -1 for a tile task
+    int pipeline; // index
     vplTileFcn* tileFcn;
     void* data;
 } vplCommand;
@@ -64,7 +64,7 @@ struct vplRaster {
 
     vplTriangle* triangles; // all meshes', in order
     int triangleCount;
-    int* bins; // triangle indices by tile, ascending within a tile
+    int* bins;     // triangle indices by tile, ascending within a tile
     int* binStart; // tilesX * tilesY + 1
     vplRasterStats stats;
 };
@@ -120,7 +120,6 @@ vplResult vplRunTiles(vplRaster* raster, vplProgressFcn* progress, void* user);
 typedef void vplDrawTileFcn(vplTileState* state, const vplPipeline* pipeline, const vplShaded* shaded,
                             const vplTriangle* triangles, const int* list, int count,
                             const vplFramebuffer* framebuffer);
-
 
 // Clip-space x, y, w and varyings of vertex `at`, which may be one of the extras.
 static inline void vplFetchVertex(const vplShaded* s, uint32_t at, float position[3], float* varyings)

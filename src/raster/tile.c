@@ -10,9 +10,9 @@ VPL_KERNEL_TABLE(DRAW_TILE, vplDrawTileFcn, vplDrawTile);
 
 typedef struct Run {
     vplRaster* raster;
-    vplTileState* states;  // one per worker
+    vplTileState* states;   // one per worker
     int64_t* tileFragments; // one per tile
-    char* memory;          // of all states
+    char* memory;           // of all states
 } Run;
 
 static void fill(float* storage, float value)
@@ -95,7 +95,8 @@ static void runTile(void* data, int index, int worker)
         }
         int first = state->meshStart[c->shaded], end = state->meshStart[c->shaded + 1];
         if (first < end) {
-            draw(state, &r->pipelines[c->pipeline], &r->shaded[c->shaded], r->triangles, bin + first, end - first, f);
+            draw(state, &r->pipelines[c->pipeline], &r->shaded[c->shaded], r->triangles, bin + first,
+                 end - first, f);
         }
     }
     storePlane(r, tile, &f->depth, tile->depth);
@@ -119,7 +120,8 @@ static vplResult makeStates(Run* run)
     size_t perWorker = plane * (2 + (size_t)r->framebuffer.planeCount) + scratch + meshes;
     size_t workers = (size_t)r->context->workerCount;
     run->states = vplAllocZero(r->context, workers, sizeof *run->states);
-    run->tileFragments = vplAllocZero(r->context, (size_t)(r->tilesX * r->tilesY), sizeof *run->tileFragments);
+    run->tileFragments =
+        vplAllocZero(r->context, (size_t)(r->tilesX * r->tilesY), sizeof *run->tileFragments);
     run->memory = vplAlloc(r->context, workers, perWorker);
     if (!run->states || !run->tileFragments || !run->memory) {
         return VPL_OUT_OF_MEMORY;

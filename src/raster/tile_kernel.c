@@ -9,11 +9,11 @@
 
 // A triangle prepared for a tile. Edge i lies opposite corner i; its function is the area at that corner.
 typedef struct Setup {
-    int64_t e[3];                     // at the centre of the tile's first pixel, without the top-left bias
-    int32_t a[3], b[3];               // growth per sub-pixel in x and y
-    int32_t bias[3];                  // -1 where a centre on the edge belongs to the neighbour
-    int32_t laneStep[3][VPL_LANES];   // growth from lane 0 to each lane in whole pixels (e >> 8)
-    double laneE[3][VPL_LANES];       // the same, exact
+    int64_t e[3];                       // at the centre of the tile's first pixel, without the top-left bias
+    int32_t a[3], b[3];                 // growth per sub-pixel in x and y
+    int32_t bias[3];                    // -1 where a centre on the edge belongs to the neighbour
+    int32_t laneStep[3][VPL_LANES];     // growth from lane 0 to each lane in whole pixels (e >> 8)
+    double laneE[3][VPL_LANES];         // the same, exact
     double z, zx, zy, laneZ[VPL_LANES]; // depth at the tile's first pixel centre, and its growth per pixel
 } Setup;
 
@@ -22,9 +22,10 @@ typedef struct Setup {
 // the point seen at pixel p is proportional to (corner j x corner k) . (p, 1). No corner is divided by its w,
 // and none is snapped: snapping decides coverage only, and moves no surface.
 typedef struct Shares {
-    double x[3], y[3], c[3];            // the three planes over pixel indices; their sum is 1/w
-    double lane[3][VPL_LANES];          // growth from lane 0
-    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS], d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
+    double x[3], y[3], c[3];   // the three planes over pixel indices; their sum is 1/w
+    double lane[3][VPL_LANES]; // growth from lane 0
+    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS],
+        d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
 } Shares;
 
 static void prepare(const vplTriangle* t, const vplTile* tile, Setup* s)
@@ -61,7 +62,8 @@ static inline int32_t clampEdge(int64_t e)
 }
 
 // Lanes inside the triangle and the picture; 0 if there are none.
-static int cover(const Setup* s, const int64_t e[3], const vplTile* tile, int x, int y, int32_t covered[VPL_LANES])
+static int cover(const Setup* s, const int64_t e[3], const vplTile* tile, int x, int y,
+                 int32_t covered[VPL_LANES])
 {
     int32_t edge[3];
     for (int i = 0; i < 3; i++) {
@@ -69,7 +71,8 @@ static int cover(const Setup* s, const int64_t e[3], const vplTile* tile, int x,
     }
     int32_t any = 0;
     for (int l = 0; l < VPL_LANES; l++) {
-        int32_t outside = (edge[0] + s->laneStep[0][l]) | (edge[1] + s->laneStep[1][l]) | (edge[2] + s->laneStep[2][l]);
+        int32_t outside =
+            (edge[0] + s->laneStep[0][l]) | (edge[1] + s->laneStep[1][l]) | (edge[2] + s->laneStep[2][l]);
         covered[l] = ~(outside >> 31);
         any |= covered[l];
     }

@@ -52,8 +52,9 @@ static vplResult simulate(vplJob* job, Ingredients* in)
     job->stats.minDistance = in->minDistance;
     if (o->show == VPL_SHOW_LIGHT) {
         if (o->showLight >= in->lightCount) {
-            return vplFail(job->context, VPL_INVALID_ARGUMENT, "virtual light %d does not exist, there are %d (from 0)",
-                           o->showLight, in->lightCount);
+            return vplFail(job->context, VPL_INVALID_ARGUMENT,
+                           "virtual light %d does not exist, there are %d (from 0)", o->showLight,
+                           in->lightCount);
         }
         in->lights[0] = in->lights[o->showLight];
         in->lightCount = 1;
@@ -110,7 +111,8 @@ static vplResult shade(vplJob* job, const Ingredients* in)
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
     vplRasterStats stats = {0};
     if (result == VPL_SUCCESS) {
-        result = vplShadeView(job->geometry, &job->view, &def, vplJob_GetProgress(job), job, job->image, &stats);
+        result =
+            vplShadeView(job->geometry, &job->view, &def, vplJob_GetProgress(job), job, job->image, &stats);
     }
     vplJob_AddRaster(job, &stats);
     return result;

@@ -25,15 +25,16 @@ static vplResult checkInt(const vplContext* context, const char* name, int value
 {
     return value >= low && value <= high
                ? VPL_SUCCESS
-               : vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.%s is %d, must be in [%d, %d]", name, value,
-                         low, high);
+               : vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.%s is %d, must be in [%d, %d]",
+                         name, value, low, high);
 }
 
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
 {
     vplContext* context = vplScene_GetContext(scene);
     if (o->cookie != OPTIONS_COOKIE) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions was not made by vplDefaultRenderOptions");
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions was not made by vplDefaultRenderOptions");
     }
     int cameras = vplScene_GetCameraCount(scene);
     if (cameras == 0) {

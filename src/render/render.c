@@ -48,9 +48,11 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     def.sampler = o->sampler;
     def.bounce = o->bounce;
     def.seed = o->seed;
+    def.progress = vplJob_GetProgress(job);
+    def.progressUser = job;
     int emitters = vplScene_GetEmitterCount(scene);
-    vplResult result = vplSimulateParticles(job->geometry, emitters ? vplScene_GetEmitter(scene, 0) : NULL, emitters,
-                                            &def, setOut);
+    vplResult result = vplSimulateParticles(job->geometry, emitters ? vplScene_GetEmitter(scene, 0) : NULL,
+                                            emitters, &def, setOut);
     if (result != VPL_SUCCESS) {
         return result;
     }

@@ -32,7 +32,8 @@ vplResult vplUnfoldCubeMap(const vplCubeMap* map, vplImage** imageOut)
 
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set)
 {
-    static const vplRgb colours[4] = {{1, 0.8f, 0.05f}, {1, 0.15f, 0.05f}, {0.1f, 0.4f, 1}, {0.7f, 0.1f, 0.9f}};
+    static const vplRgb colours[4] = {
+        {1, 0.8f, 0.05f}, {1, 0.15f, 0.05f}, {0.1f, 0.4f, 1}, {0.7f, 0.1f, 0.9f}};
     float radius = fmaxf(3, 0.009f * (float)view->height);
     for (int i = 0; i < set->lightCount; i++) {
         const vplVirtualLight* light = &set->lights[i];

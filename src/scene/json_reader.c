@@ -29,25 +29,6 @@ static const char* typeName(const json_t* value)
     return "null";
 }
 
-// Names and texts of a broken file end up in messages; what a terminal would obey or choke on becomes '?'.
-static void makePrintable(char* text)
-{
-    unsigned char* p = (unsigned char*)text;
-    while (*p != 0) {
-        int length = *p < 0x80 ? 1 : *p >= 0xF0 ? 4 : *p >= 0xE0 ? 3 : *p >= 0xC2 ? 2 : 0;
-        bool control = *p < 0x20 || *p == 0x7F || (*p == 0xC2 && p[1] < 0xA0);
-        int good = control ? 0 : 1;
-        while (good > 0 && good < length && (p[good] & 0xC0) == 0x80) {
-            good++;
-        }
-        if (length == 0 || good < length) { // also a sequence that a full buffer cut off
-            *p++ = '?';
-        } else {
-            p += length;
-        }
-    }
-}
-
 // jansson skips a NUL byte behind a number as if it were not there (its lexer takes it for an empty buffer).
 static vplResult rejectNul(const vplJsonReader* reader)
 {
@@ -66,7 +47,6 @@ static vplResult failSyntax(vplContext* context, const char* file, json_error_t*
     if (error->text[0] == 0 || json_error_code(error) == json_error_out_of_memory) {
         return vplFail(context, VPL_OUT_OF_MEMORY, "%s: out of memory while reading JSON", file);
     }
-    makePrintable(error->text);
     return vplFail(context, VPL_PARSE_ERROR, "%s:%d:%d: %s", file, error->line > 0 ? error->line : 1,
                    error->column > 0 ? error->column : 1, error->text);
 }
@@ -105,8 +85,6 @@ static vplResult failAt(const vplJsonReader* reader, const vplJsonPath* path, bo
     char name[256];
     int line, column;
     vplJson_FormatPath(path, name, sizeof name);
-    makePrintable(name);
-    makePrintable(message);
     vplJson_Locate(reader->text, reader->size, path, atKey, &line, &column);
     return vplFail(reader->context, VPL_PARSE_ERROR, "%s:%d:%d: %s %s", reader->file, line, column,
                    name[0] ? name : "the scene", message);

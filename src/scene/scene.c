@@ -128,12 +128,12 @@ vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* 
     }
     for (int i = 0; def->name != NULL && i < scene->materialCount; i++) {
         if (scene->materials[i].name != NULL && strcmp(scene->materials[i].name, def->name) == 0) {
-            return vplFail(scene->context, VPL_INVALID_ARGUMENT, "vplMaterialDef.name \"%s\" is taken, must be unique",
-                           def->name);
+            return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                           "vplMaterialDef.name \"%s\" is taken, must be unique", def->name);
         }
     }
-    vplMaterialDef* slot =
-        grow(scene, &scene->materials, &scene->materialCount, &scene->materialCapacity, sizeof *scene->materials);
+    vplMaterialDef* slot = grow(scene, &scene->materials, &scene->materialCount, &scene->materialCapacity,
+                                sizeof *scene->materials);
     vplMaterialDef copy = *def;
     if (slot == NULL || !keepName(scene, &copy.name)) {
         return VPL_OUT_OF_MEMORY;
@@ -151,8 +151,8 @@ vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* inde
         return result;
     }
     if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "vplObjectDef.type is %d, must be a vplObjectType",
-                       (int)def->type);
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplObjectDef.type is %d, must be a vplObjectType", (int)def->type);
     }
     if (def->material < 0 || def->material >= scene->materialCount) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,

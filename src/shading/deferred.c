@@ -95,7 +95,8 @@ static void showTile(void* data, vplTile* tile, int worker)
                     continue;
                 }
                 vplVec3 p = vplVec(surface.px[l], surface.py[l], surface.pz[l]);
-                bool depth = s->def->output == VPL_OUTPUT_DEPTH, normals = s->def->output == VPL_OUTPUT_NORMALS;
+                bool depth = s->def->output == VPL_OUTPUT_DEPTH,
+                     normals = s->def->output == VPL_OUTPUT_NORMALS;
                 float grey = depth ? vplDot(view->forward, vplSub(p, view->eye)) : factor[l];
                 values[0][l] = normals ? surface.nx[l] : grey;
                 values[1][l] = normals ? surface.ny[l] : grey;

@@ -41,8 +41,8 @@ void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const v
     memcpy(irradiance[2], b, sizeof b);
 }
 
-void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vplShadeLight* restrict lights, int count,
-                                   float inverseBound, float irradiance[restrict 3][VPL_LANES])
+void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
+                                   int count, float inverseBound, float irradiance[restrict 3][VPL_LANES])
 {
     const vplSurface s = *surface;
     float r[VPL_LANES], g[VPL_LANES], b[VPL_LANES];
@@ -54,8 +54,8 @@ void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vpl
         for (int l = 0; l < VPL_LANES; l++) {
             float x = light.px - s.px[l], y = light.py - s.py[l], z = light.pz - s.pz[l];
             float d2 = x * x + y * y + z * z;
-            float here = s.nx[l] * x + s.ny[l] * y + s.nz[l] * z;             // d times the cosine here,
-            float there = -(light.nx * x + light.ny * y + light.nz * z);      // and at the light
+            float here = s.nx[l] * x + s.ny[l] * y + s.nz[l] * z;        // d times the cosine here,
+            float there = -(light.nx * x + light.ny * y + light.nz * z); // and at the light
             here = here > 0 ? here : 0;
             there = there > 0 ? there : 0;
             d2 = d2 > FLT_MIN ? d2 : FLT_MIN;
@@ -78,7 +78,8 @@ bool VPL_KERNEL(vplEmitterCosine)(const vplSurface* restrict surface, vplVec3 po
 {
     float largest = 0;
     for (int l = 0; l < VPL_LANES; l++) {
-        float x = position.x - surface->px[l], y = position.y - surface->py[l], z = position.z - surface->pz[l];
+        float x = position.x - surface->px[l], y = position.y - surface->py[l],
+              z = position.z - surface->pz[l];
         float d2 = x * x + y * y + z * z;
         float c = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z;
         c = c > 0 ? c : 0;

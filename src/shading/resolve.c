@@ -73,9 +73,12 @@ void vplResolveTile(void* data, vplTile* tile, int worker)
                     }
                 }
                 const double scale = 1 / VPL_PI;
-                radiance[0][l] = (float)(facet.emission.r + facet.rho.r * scale * sums->irradiance[0][at + l]);
-                radiance[1][l] = (float)(facet.emission.g + facet.rho.g * scale * sums->irradiance[1][at + l]);
-                radiance[2][l] = (float)(facet.emission.b + facet.rho.b * scale * sums->irradiance[2][at + l]);
+                radiance[0][l] =
+                    (float)(facet.emission.r + facet.rho.r * scale * sums->irradiance[0][at + l]);
+                radiance[1][l] =
+                    (float)(facet.emission.g + facet.rho.g * scale * sums->irradiance[1][at + l]);
+                radiance[2][l] =
+                    (float)(facet.emission.b + facet.rho.b * scale * sums->irradiance[2][at + l]);
             }
         }
         vplWriteBlock(s, tile, block, radiance);

@@ -8,15 +8,16 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
                           const vplImage* image)
 {
     if (image->width != view->width || image->height != view->height) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view", image->width,
-                       image->height, view->width, view->height);
+        return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view",
+                       image->width, image->height, view->width, view->height);
     }
     if (!(def->minDistance >= 0 && isfinite(def->minDistance))) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.minDistance is %g, must be finite and >= 0",
-                       (double)def->minDistance);
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplShadeDef.minDistance is %g, must be finite and >= 0", (double)def->minDistance);
     }
     if (def->accumulation == VPL_ACCUMULATE_BATCHED && def->batch < 1) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1", def->batch);
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1",
+                       def->batch);
     }
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR && def->emitterCount < 1) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter");
@@ -64,7 +65,8 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
         result = vplRaster_Create(context, &framebuffer, &raster);
     }
     if (result == VPL_SUCCESS) {
-        result = deferred ? vplRecordDeferred(&shading, raster) : vplRecordPasses(&shading, raster, &uniforms);
+        result =
+            deferred ? vplRecordDeferred(&shading, raster) : vplRecordPasses(&shading, raster, &uniforms);
     }
     if (result == VPL_SUCCESS) {
         result = vplRaster_Run(raster, progress, user, statsOut);

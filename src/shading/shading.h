@@ -8,8 +8,8 @@
 #include "base/context.h"
 
 // Adds lights to irradiance, one after another. inverseBound is 1 / minDistance^2, infinity for no bound.
-typedef void vplLightKernelFcn(const vplSurface* restrict surface, const vplShadeLight* restrict lights, int count,
-                               float inverseBound, float irradiance[restrict 3][VPL_LANES]);
+typedef void vplLightKernelFcn(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
+                               int count, float inverseBound, float irradiance[restrict 3][VPL_LANES]);
 
 // Irradiance of one point emitter of `colour`, times visibility; false (and untouched) where it lights no lane.
 typedef bool vplEmitterKernelFcn(const vplSurface* restrict surface, vplVec3 position, bool falloff,
@@ -27,8 +27,8 @@ typedef struct vplShading {
     vplLightKernelFcn* lightKernel;
     vplEmitterKernelFcn* emitterKernel;
     float inverseBound;
-    vplMesh* meshes;                      // one per object
-    struct vplObjectUniforms* objects;    // one per object
+    vplMesh* meshes;                   // one per object
+    struct vplObjectUniforms* objects; // one per object
 } vplShading;
 
 // Planes of the framebuffer.
@@ -67,7 +67,8 @@ void vplSurface_FromFragments(const vplShading* shading, int object, const vplFr
                               vplSurface* surfaceOut);
 
 // Direct irradiance of all emitters, with shadows.
-void vplDirectIrradiance(const vplShading* shading, const vplSurface* surface, float irradiance[3][VPL_LANES]);
+void vplDirectIrradiance(const vplShading* shading, const vplSurface* surface,
+                         float irradiance[3][VPL_LANES]);
 
 // Moves a finished group from the planes to the sums; tile task, data is unused.
 void vplFoldTile(void* data, vplTile* tile, int worker);

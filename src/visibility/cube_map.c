@@ -17,8 +17,9 @@ vplCubeMapDef vplDefaultCubeMapDef(void)
 vplCubeFrame vplCube_GetFrame(int face)
 {
     static const vplCubeFrame frames[6] = {
-        {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-        {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
+        {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}},
+        {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}},
     };
     return frames[face];
 }
@@ -88,12 +89,12 @@ static bool reportFace(void* user, double fraction)
     return p->progress(p->user, (p->face + fraction) / 6);
 }
 
-static vplResult drawFace(const vplGeometry* g, vplCubeMap* map, float* texels, int face, const vplMesh* meshes,
-                          vplProgressFcn* progress, void* user)
+static vplResult drawFace(const vplGeometry* g, vplCubeMap* map, float* texels, int face,
+                          const vplMesh* meshes, vplProgressFcn* progress, void* user)
 {
     vplContext* context = g->context;
-    FaceUniforms faceUniforms = {g->positions,  map->position, vplCube_GetFrame(face), map->near,
-                                 1 / map->far, 2.0f / (float)map->size};
+    FaceUniforms faceUniforms = {g->positions, map->position, vplCube_GetFrame(face),
+                                 map->near,    1 / map->far,  2.0f / (float)map->size};
     ObjectUniforms* objects = vplAlloc(context, (size_t)g->objectCount, sizeof *objects);
     if (objects == NULL) {
         return VPL_OUT_OF_MEMORY;
@@ -145,8 +146,8 @@ static vplResult checkDef(const vplContext* context, const vplCubeMapDef* def)
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplCubeMapDef was not made by vplDefaultCubeMapDef");
     }
     if (def->size < 1 || def->size > VPL_MAX_SHADOW_MAP) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be in [1, %d]", def->size,
-                       VPL_MAX_SHADOW_MAP);
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be in [1, %d]",
+                       def->size, VPL_MAX_SHADOW_MAP);
     }
     if (!(def->far >= 0 && def->near >= 0 && isfinite(def->far) && (def->far == 0 || def->near < def->far))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
@@ -217,5 +218,6 @@ float vplCubeMap_Distance(const vplCubeMap* map, vplVec3 direction)
     if (!vplCube_Find(direction, map->size, &face, &s, &t, &i, &j)) {
         return INFINITY;
     }
-    return map->texels[((size_t)face * (size_t)map->size + (size_t)j) * (size_t)map->size + (size_t)i] * map->far;
+    return map->texels[((size_t)face * (size_t)map->size + (size_t)j) * (size_t)map->size + (size_t)i] *
+           map->far;
 }

@@ -24,7 +24,8 @@ static void makeOffsets(vplShadow* shadow)
     int pairs = shadow->def.pcfSamples / 2;
     for (int i = 0; i < pairs; i++) {
         float x, y;
-        vplSampleConcentricDisc(0.5f * (((float)i + 0.5f) / (float)pairs), vplVanDerCorput((uint32_t)i), &x, &y);
+        vplSampleConcentricDisc(0.5f * (((float)i + 0.5f) / (float)pairs), vplVanDerCorput((uint32_t)i), &x,
+                                &y);
         shadow->offsets[2 * i][0] = x;
         shadow->offsets[2 * i][1] = y;
         shadow->offsets[2 * i + 1][0] = -x;
@@ -47,8 +48,8 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
     }
     if (!(isfinite(def->biasStatic) && isfinite(def->biasDynamic) && isfinite(def->pcfOffset))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplShadowDef biases and pcfOffset are %g, %g, %g, must be finite", (double)def->biasStatic,
-                       (double)def->biasDynamic, (double)def->pcfOffset);
+                       "vplShadowDef biases and pcfOffset are %g, %g, %g, must be finite",
+                       (double)def->biasStatic, (double)def->biasDynamic, (double)def->pcfOffset);
     }
     vplShadow shadow = {.map = map, .def = *def};
     // Half a texel's diagonal at the middle of a face, where texels look largest.

@@ -18,8 +18,8 @@ static inline float maxOf(float a, float b)
 
 vplShadowBiasFcn VPL_KERNEL(vplShadowBias);
 
-void VPL_KERNEL(vplShadowBias)(const vplShadow* shadow, const float* restrict distance, const float* restrict cosine,
-                               float* restrict bias)
+void VPL_KERNEL(vplShadowBias)(const vplShadow* shadow, const float* restrict distance,
+                               const float* restrict cosine, float* restrict bias)
 {
     const vplShadowDef* d = &shadow->def;
     if (d->biasRule == VPL_BIAS_PAIR) {

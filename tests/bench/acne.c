@@ -30,7 +30,8 @@ static vplVec3 rayThrough(const vplView* v, int x, int y)
 {
     float sx = (float)((2 * (x + 0.5) / v->width - 1) / v->scaleX);
     float sy = (float)((1 - 2 * (y + 0.5) / v->height) / v->scaleY);
-    return (vplVec3){v->forward.x + sx * v->right.x + sy * v->up.x, v->forward.y + sx * v->right.y + sy * v->up.y,
+    return (vplVec3){v->forward.x + sx * v->right.x + sy * v->up.x,
+                     v->forward.y + sx * v->right.y + sy * v->up.y,
                      v->forward.z + sx * v->right.z + sy * v->up.z};
 }
 

@@ -209,9 +209,11 @@ static void explain(vplContext* context, const Case* c, vplImage* image, const c
             first = first < 0 && difference > 0 ? i / 3 : first;
             golden->pixels[i] = 8 * difference;
         }
-        vplImage_Write(golden, (snprintf(path, sizeof path, "%s/%s-difference.png", out, c->name), path), NULL);
+        vplImage_Write(golden, (snprintf(path, sizeof path, "%s/%s-difference.png", out, c->name), path),
+                       NULL);
         if (first >= 0) {
-            printf("  first pixel that differs in the PNG: (%d, %d)\n", first % now->width, first / now->width);
+            printf("  first pixel that differs in the PNG: (%d, %d)\n", first % now->width,
+                   first / now->width);
         } else {
             printf("  the differences are too small for a PNG\n");
         }
