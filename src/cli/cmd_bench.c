@@ -177,6 +177,9 @@ static int compareDoubles(const void* a, const void* b)
 
 static void closeBench(Bench* b)
 {
+    if (b->context == NULL) {
+        return; // it was refused
+    }
     free(b->lights);
     vplImage_Destroy(b->image);
     vplCubeMap_Destroy(b->map);
@@ -223,26 +226,45 @@ typedef struct Figure {
     Outcome outcome[MAX_THREAD_COUNTS];
 } Figure;
 
-// All stages under one thread count.
-static vplResult measureAll(const Arguments* a, int column, int threads, Figure* figures)
+// One stage under all thread counts, in turn, so that a machine that slows down slows all of them.
+static vplResult measureStage(const Arguments* a, int stage, Bench* benches, int columns, Figure* figure)
 {
-    static double times[MAX_RUNS];
-    Bench bench;
-    vplResult result = openBench(a, threads, &bench);
-    for (int s = 0; s < STAGE_COUNT && result == VPL_SUCCESS; s++) {
-        for (int run = -1; run < a->runs && result == VPL_SUCCESS; run++) { // one to warm up
+    static double times[MAX_THREAD_COUNTS][MAX_RUNS];
+    for (int run = -1; run < a->runs; run++) { // one to warm up
+        for (int c = 0; c < columns; c++) {
             Outcome outcome = {0};
             double start = nowMs();
-            result = STAGES[s].run(&bench, &STAGES[s], &outcome);
+            vplResult result = STAGES[stage].run(&benches[c], &STAGES[stage], &outcome);
+            if (result != VPL_SUCCESS) {
+                return result;
+            }
             if (run >= 0) {
-                times[run] = nowMs() - start;
-                figures[s].outcome[column] = outcome;
+                times[c][run] = nowMs() - start;
+                figure->outcome[c] = outcome;
             }
         }
-        qsort(times, (size_t)a->runs, sizeof *times, compareDoubles);
-        figures[s].ms[column] = times[a->runs / 2];
     }
-    closeBench(&bench);
+    for (int c = 0; c < columns; c++) {
+        qsort(times[c], (size_t)a->runs, sizeof(double), compareDoubles);
+        figure->ms[c] = times[c][a->runs / 2];
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult measureAll(const Arguments* a, const int* threads, int columns, Figure* figures)
+{
+    Bench benches[MAX_THREAD_COUNTS];
+    vplResult result = VPL_SUCCESS;
+    int opened = 0;
+    for (; opened < columns && result == VPL_SUCCESS; opened++) {
+        result = openBench(a, threads[opened], &benches[opened]);
+    }
+    for (int s = 0; s < STAGE_COUNT && result == VPL_SUCCESS; s++) {
+        result = measureStage(a, s, benches, columns, &figures[s]);
+    }
+    for (int c = 0; c < opened; c++) {
+        closeBench(&benches[c]);
+    }
     return result;
 }
 
@@ -304,11 +326,9 @@ int runBench(const Arguments* a)
         columns = a->threadsCount;
         memcpy(threads, a->threads, sizeof threads);
     }
-    for (int c = 0; c < columns; c++) {
-        int code = exitCode(measureAll(a, c, threads[c], figures), true);
-        if (code != EXIT_DONE) {
-            return code;
-        }
+    int code = exitCode(measureAll(a, threads, columns, figures), true);
+    if (code != EXIT_DONE) {
+        return code;
     }
     if (a->json) {
         printJson(figures, threads, columns);
