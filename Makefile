@@ -8,6 +8,9 @@ BUILD   ?= build
 MODE    ?= release
 OPENMP  ?= 1
 PREFIX  ?= /usr/local
+# All processors, unless the caller said otherwise; V=1 shows whole commands.
+JOBS    := $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
+Q       := $(if $(V),,@)
 DESTDIR ?=
 
 ifeq ($(origin CC),default)
@@ -52,7 +55,7 @@ EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard example
 
 ## make             builds build/vpl and build/libvpl.a, installing what is missing
 all: deps
-	@$(MAKE) --no-print-directory programs
+	@$(MAKE) --no-print-directory $(JOBS) programs
 
 programs: $(BUILD)/libvpl.a $(BUILD)/vpl
 
@@ -64,7 +67,7 @@ demo: all
 
 ## make test        runs every test; ends with "N passed, N failed"
 test: deps
-	@$(MAKE) --no-print-directory test-programs
+	@$(MAKE) --no-print-directory $(JOBS) test-programs
 	@tests/run.sh $(BUILD)
 
 test-programs: programs $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS)
@@ -75,13 +78,13 @@ check-all: deps
 
 ## make bench       times every stage
 bench: all
-	@$(MAKE) --no-print-directory $(BENCH_PROGRAMS)
+	@$(MAKE) --no-print-directory $(JOBS) $(BENCH_PROGRAMS)
 	$(BUILD)/vpl bench
 	$(BUILD)/bench/acne
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
 golden: deps
-	@$(MAKE) --no-print-directory $(BUILD)/vpl-golden
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/vpl-golden
 	$(BUILD)/vpl-golden write golden
 
 ## make gallery     rewrites the README's pictures
@@ -119,37 +122,46 @@ deps:
 
 $(BUILD)/libvpl.a: $(LIB_OBJECTS)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	@echo "  AR  $@"
+	$(Q)$(AR) rcs $@ $^
 
 $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
-	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/libvpl.a
-	$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
 $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
-	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/fuzz/%_replay: $(BUILD)/obj/tests/fuzz/%_fuzz.o $(BUILD)/obj/tests/fuzz/replay.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -c -o $@ $<
+	@echo "  CC  $<"
+	$(Q)$(CC) $(ALL_CFLAGS) -c -o $@ $<
 
 define KERNEL_RULE
 $(BUILD)/obj/%_kernel.$(1).o: %_kernel.c
 	@mkdir -p $$(@D)
-	$$(CC) $$(ALL_CFLAGS) $$(ISA_$(1)) -DVPL_KERNEL_ISA=$(1) -c -o $$@ $$<
+	@echo "  CC  $$< ($(1))"
+	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(ISA_$(1)) -DVPL_KERNEL_ISA=$(1) -c -o $$@ $$<
 endef
 $(foreach isa,$(ISAS),$(eval $(call KERNEL_RULE,$(isa))))
 
