@@ -13,6 +13,23 @@ static void check(vplResult result, const char* what)
     }
 }
 
+// Irradiance of 16 points along the front of the floor.
+static void lightFloor(const vplContext* context, const vplShadeLight* lights, int lightCount)
+{
+    vplSurface surface;
+    float irradiance[3][VPL_LANES] = {{0}};
+    for (int l = 0; l < VPL_LANES; l++) {
+        surface.px[l] = -2 + 0.25f * (float)l;
+        surface.py[l] = 0;
+        surface.pz[l] = 2;
+        surface.nx[l] = surface.nz[l] = 0;
+        surface.ny[l] = 1;
+    }
+    vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0.2f, &surface, lights, lightCount, irradiance);
+    printf("irradiance along the front of the floor: %g ... %g W/m^2\n", (double)irradiance[0][0],
+           (double)irradiance[0][VPL_LANES - 1]);
+}
+
 int main(int count, char** words)
 {
     if (count < 3) {
@@ -48,18 +65,7 @@ int main(int count, char** words)
     // 3. The light kernel on 16 points at once.
     vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
     vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
-    vplSurface surface;
-    float irradiance[3][VPL_LANES] = {{0}};
-    for (int l = 0; l < VPL_LANES; l++) {
-        surface.px[l] = -2 + 0.25f * (float)l;
-        surface.py[l] = 0;
-        surface.pz[l] = 2;
-        surface.nx[l] = surface.nz[l] = 0;
-        surface.ny[l] = 1;
-    }
-    vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0.2f, &surface, lights, set->lightCount, irradiance);
-    printf("irradiance along the front of the floor: %g ... %g W/m^2\n", (double)irradiance[0][0],
-           (double)irradiance[0][VPL_LANES - 1]);
+    lightFloor(context, lights, set->lightCount);
 
     // 4. All of it in one of the pipelines.
     vplView view = vplView_Create(vplScene_GetCamera(scene, 0), 320, 240);

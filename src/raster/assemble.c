@@ -24,17 +24,10 @@ static int emit(Assembly* a, int at, const vplScreenVertex v[3], const uint32_t 
 {
     int64_t area =
         (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
-    int32_t minX = v[0].x, maxX = v[0].x, minY = v[0].y, maxY = v[0].y;
-    for (int i = 1; i < 3; i++) {
-        minX = v[i].x < minX ? v[i].x : minX;
-        maxX = v[i].x > maxX ? v[i].x : maxX;
-        minY = v[i].y < minY ? v[i].y : minY;
-        maxY = v[i].y > maxY ? v[i].y : maxY;
-    }
-    // The first centre at or right of minX is pixel (minX + 127) >> 8; the last at or left of maxX is (maxX - 128) >> 8.
-    int x0 = (minX + 127) >> 8, x1 = (maxX - 128) >> 8, y0 = (minY + 127) >> 8, y1 = (maxY - 128) >> 8;
+    vplPixelBox box = vplBoundTriangle(v);
     const vplFramebuffer* f = &a->raster->framebuffer;
-    if (area == 0 || x1 < x0 || y1 < y0 || x1 < 0 || y1 < 0 || x0 >= f->width || y0 >= f->height) {
+    if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || box.x1 < 0 || box.y1 < 0 || box.x0 >= f->width ||
+        box.y0 >= f->height) {
         return 0;
     }
     if (a->writing) {

@@ -19,18 +19,10 @@ static void binChunk(void* data, int chunk, int worker)
     int first = chunk * b->chunkSize;
     int end = r->triangleCount - first < b->chunkSize ? r->triangleCount : first + b->chunkSize;
     for (int i = first; i < end; i++) {
-        const vplScreenVertex* v = r->triangles[i].v;
-        int32_t minX = v[0].x, maxX = v[0].x, minY = v[0].y, maxY = v[0].y;
-        for (int k = 1; k < 3; k++) {
-            minX = v[k].x < minX ? v[k].x : minX;
-            maxX = v[k].x > maxX ? v[k].x : maxX;
-            minY = v[k].y < minY ? v[k].y : minY;
-            maxY = v[k].y > maxY ? v[k].y : maxY;
-        }
-        const int shift = VPL_SUBPIXEL_BITS + 6; // 64-pixel tiles
-        _Static_assert(VPL_TILE_SIDE == 1 << 6, "the shift below is for 64-pixel tiles");
-        int x0 = (minX + 127) >> shift, x1 = (maxX - 128) >> shift;
-        int y0 = (minY + 127) >> shift, y1 = (maxY - 128) >> shift;
+        vplPixelBox box = vplBoundTriangle(r->triangles[i].v);
+        const int shift = 6;
+        _Static_assert(VPL_TILE_SIDE == 1 << 6, "the shift is for 64-pixel tiles");
+        int x0 = box.x0 >> shift, x1 = box.x1 >> shift, y0 = box.y0 >> shift, y1 = box.y1 >> shift;
         x0 = x0 < 0 ? 0 : x0;
         y0 = y0 < 0 ? 0 : y0;
         x1 = x1 >= r->tilesX ? r->tilesX - 1 : x1;

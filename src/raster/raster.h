@@ -29,6 +29,24 @@ typedef struct vplTriangle {
 
 enum { VPL_CLOCKWISE = INT32_MIN };
 
+// Pixels whose centres may lie in a triangle: columns x0 to x1, rows y0 to y1; empty if x1 < x0 or y1 < y0. The
+// centre of pixel i lies at 256 i + 128.
+typedef struct vplPixelBox {
+    int x0, x1, y0, y1;
+} vplPixelBox;
+
+static inline vplPixelBox vplBoundTriangle(const vplScreenVertex v[3])
+{
+    int32_t minX = v[0].x, maxX = v[0].x, minY = v[0].y, maxY = v[0].y;
+    for (int i = 1; i < 3; i++) {
+        minX = v[i].x < minX ? v[i].x : minX;
+        maxX = v[i].x > maxX ? v[i].x : maxX;
+        minY = v[i].y < minY ? v[i].y : minY;
+        maxY = v[i].y > maxY ? v[i].y : maxY;
+    }
+    return (vplPixelBox){(minX + 127) >> 8, (maxX - 128) >> 8, (minY + 127) >> 8, (maxY - 128) >> 8};
+}
+
 // The result of the vertex stage for one mesh, vertex shader and uniforms.
 typedef struct vplShaded {
     const vplMesh* key;

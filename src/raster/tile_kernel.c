@@ -309,15 +309,9 @@ static void drawTriangle(Draw* d)
     const vplTile* tile = &d->state->tile;
     Setup s;
     prepare(t, tile, &s);
-    // First and last pixel whose centre can be inside, relative to the tile.
-    int x0 = (minOf(minOf(t->v[0].x, t->v[1].x), t->v[2].x) + 127) >> 8;
-    int x1 = (maxOf(maxOf(t->v[0].x, t->v[1].x), t->v[2].x) - 128) >> 8;
-    int y0 = (minOf(minOf(t->v[0].y, t->v[1].y), t->v[2].y) + 127) >> 8;
-    int y1 = (maxOf(maxOf(t->v[0].y, t->v[1].y), t->v[2].y) - 128) >> 8;
-    x0 = maxOf(x0 - tile->x, 0) & ~3;
-    y0 = maxOf(y0 - tile->y, 0) & ~3;
-    x1 = minOf(x1 - tile->x, tile->width - 1);
-    y1 = minOf(y1 - tile->y, tile->height - 1);
+    const vplPixelBox box = vplBoundTriangle(t->v);
+    const int x0 = maxOf(box.x0 - tile->x, 0) & ~3, x1 = minOf(box.x1 - tile->x, tile->width - 1);
+    const int y0 = maxOf(box.y0 - tile->y, 0) & ~3, y1 = minOf(box.y1 - tile->y, tile->height - 1);
     int64_t reach[3]; // from a block's first centre to the one where the edge function is largest
     for (int i = 0; i < 3; i++) {
         reach[i] = 768 * ((int64_t)maxOf(s.a[i], 0) + maxOf(s.b[i], 0)) + s.bias[i];
