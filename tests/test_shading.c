@@ -383,6 +383,39 @@ static void BothLightingsDifferByTheFactorsOfTheTable(void** state)
     closeTestContext(context);
 }
 
+// depth_precision.csv: the camera's z/w, and what rounding it to float hides.
+static void DepthIsThatOfTheTable(void** state)
+{
+    (void)state;
+    Table t = loadTable("depth_precision.csv");
+    for (int row = 0; row < t.rows; row++) {
+        vplCameraDef camera = vplDefaultCameraDef();
+        camera.eye = vplVec(0, 0, 0);
+        camera.target = vplVec(0, 0, -1);
+        camera.near = number(&t, row, "near");
+        camera.far = number(&t, row, "far");
+        double z = number(&t, row, "view_z"), wanted = number(&t, row, "z_ndc");
+        vplView view = vplView_Create(&camera, 8, 8);
+        vplShading shading = {.view = &view};
+        vplVec3 point = vplVec(0, 0, -(float)z);
+        vplObjectUniforms uniforms = {&shading, &point, 0};
+        float clip[4], world[3];
+        vplVertices out = {&clip[0], &clip[1], &clip[2], &clip[3], {&world[0], &world[1], &world[2]}};
+        vplCameraVertices(&uniforms, 0, 1, &out);
+        // The view depth is a float: half its last bit moves z/w by slope times that.
+        double slope = camera.far / (camera.far - camera.near) * camera.near / (z * z);
+        assertNear((double)clip[2] / (double)clip[3], wanted, 1.5e-7 * wanted + 6e-8 * z * slope + 1e-12,
+                   "z/w", row);
+        float ndc = (float)wanted;
+        double step = 0.5 * ((double)nextafterf(ndc, 2) - (double)ndc) / slope;
+        if (wanted > 0 && wanted < 1) {
+            double half = number(&t, row, "half_step_float32");
+            assertNear(step, half, 0.02 * half, "half step", row);
+        }
+    }
+    freeTable(&t);
+}
+
 // A picture of a floor from above, lit by `lights`.
 static vplImage* shadeFloor(vplContext* context, vplShadeDef def, int width, int height)
 {
@@ -462,4 +495,5 @@ TEST_SUITE(shading, cmocka_unit_test(EveryKernelValueOfTheTable),
            cmocka_unit_test(DocumentedLightsInACubeConvergeToTheTable),
            cmocka_unit_test(EveryPointOfTheRoomIsLitAsTheTableSays),
            cmocka_unit_test(BothLightingsDifferByTheFactorsOfTheTable),
-           cmocka_unit_test(AMillionEqualLightsAddUp), cmocka_unit_test(EveryPixelOfAnySizeIsShadedOnce));
+           cmocka_unit_test(DepthIsThatOfTheTable), cmocka_unit_test(AMillionEqualLightsAddUp),
+           cmocka_unit_test(EveryPixelOfAnySizeIsShadedOnce));
