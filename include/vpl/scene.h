@@ -33,15 +33,30 @@ typedef struct vplMaterialDef {
 
 vplMaterialDef vplDefaultMaterialDef(void);
 
+// Triangles with an order of corners that is counter-clockwise seen from the front.
+typedef struct vplMeshDef {
+    const vplVec3* positions; // vertexCount points in object space
+    const vplVec3* normals; // vertexCount shading normals of any length but 0; NULL (default): flat triangles
+    const uint32_t* indices; // three per triangle, each < vertexCount
+    const int* materials; // one per triangle, as given by vplScene_AddMaterial; NULL (default): the object's
+    int vertexCount;      // [0, VPL_MAX_TRIANGLES]; default 0
+    int triangleCount;    // [0, VPL_MAX_TRIANGLES]; default 0
+    uint32_t cookie;      // set by vplDefaultMeshDef
+} vplMeshDef;
+
+vplMeshDef vplDefaultMeshDef(void);
+
 typedef enum vplObjectType {
     VPL_OBJECT_QUAD = 0, // [-0.5, 0.5]^2 at z = 0, front towards +z
-    VPL_OBJECT_BOX       // [-0.5, 0.5]^3, front outwards
+    VPL_OBJECT_BOX,      // [-0.5, 0.5]^3, front outwards
+    VPL_OBJECT_MESH      // triangles
 } vplObjectType;
 
 typedef struct vplObjectDef {
     const char* name;   // copied; NULL (default): unnamed
     vplObjectType type; // default VPL_OBJECT_QUAD
-    int material;       // index given by vplScene_AddMaterial; default 0
+    int material;       // index given by vplScene_AddMaterial; -1: the mesh's own; default 0
+    int mesh;           // index given by vplScene_AddMesh; mesh only; default 0
     vplMat4 transform;  // object to world, affine, not singular; default identity
     uint32_t cookie;    // set by vplDefaultObjectDef
 } vplObjectDef;
@@ -75,23 +90,32 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut);
 void vplScene_Destroy(vplScene* scene);
 
 // Reads a scene file (see README: Scene files). A mistake is logged as file:line:column: what was found, what
-// was expected.
+// was expected. A path that ends in .obj is read as one mesh with a camera that fits it in and, if nothing
+// emits, a point light; both are logged.
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut);
 
 // Each checks the def, copies it and gives its index (indexOut may be NULL).
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut);
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut);
+vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut);
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut);
 vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut);
 
+// Reads an OBJ file with the MTL files it names and adds its materials (Kd reflectance, Ke emission) and one
+// mesh of all its faces. Faces without a material get a grey one. What is not understood is logged once as a
+// warning; a damaged line is an error with file:line.
+vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut);
+
 int vplScene_GetCameraCount(const vplScene* scene);
 int vplScene_GetMaterialCount(const vplScene* scene);
+int vplScene_GetMeshCount(const vplScene* scene);
 int vplScene_GetObjectCount(const vplScene* scene);
 int vplScene_GetEmitterCount(const vplScene* scene);
 
 // The declared things, with names owned by the scene. The index must be in range.
 const vplCameraDef* vplScene_GetCamera(const vplScene* scene, int index);
 const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index);
+const vplMeshDef* vplScene_GetMesh(const vplScene* scene, int index);
 const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index);
 const vplEmitterDef* vplScene_GetEmitter(const vplScene* scene, int index);
 

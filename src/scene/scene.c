@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-enum { CAMERA_COOKIE = 0x56504c34, MATERIAL_COOKIE, OBJECT_COOKIE, EMITTER_COOKIE };
+enum { CAMERA_COOKIE = 0x56504c34, MATERIAL_COOKIE, OBJECT_COOKIE, EMITTER_COOKIE, MESH_COOKIE };
 
 static const double DEGREE = VPL_PI / 180;
 
@@ -17,9 +17,14 @@ vplMaterialDef vplDefaultMaterialDef(void)
     return (vplMaterialDef){NULL, {0.5f, 0.5f, 0.5f}, {0, 0, 0}, MATERIAL_COOKIE};
 }
 
+vplMeshDef vplDefaultMeshDef(void)
+{
+    return (vplMeshDef){.cookie = MESH_COOKIE};
+}
+
 vplObjectDef vplDefaultObjectDef(void)
 {
-    return (vplObjectDef){NULL, VPL_OBJECT_QUAD, 0, vplMat4_Identity(), OBJECT_COOKIE};
+    return (vplObjectDef){NULL, VPL_OBJECT_QUAD, 0, 0, vplMat4_Identity(), OBJECT_COOKIE};
 }
 
 vplEmitterDef vplDefaultEmitterDef(void)
@@ -51,6 +56,10 @@ void vplScene_Destroy(vplScene* scene)
     for (int i = 0; i < scene->objectCount; i++) {
         vplFree(context, (char*)scene->objects[i].name);
     }
+    for (int i = 0; i < scene->meshCount; i++) {
+        vplFreeMesh(context, &scene->meshes[i]);
+    }
+    vplFree(context, scene->meshes);
     vplFree(context, scene->cameras);
     vplFree(context, scene->materials);
     vplFree(context, scene->objects);
@@ -143,6 +152,60 @@ vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* 
     return VPL_SUCCESS;
 }
 
+void vplFreeMesh(vplContext* context, const vplMeshDef* mesh)
+{
+    vplFree(context, (void*)mesh->positions);
+    vplFree(context, (void*)mesh->normals);
+    vplFree(context, (void*)mesh->indices);
+    vplFree(context, (void*)mesh->materials);
+}
+
+vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, int* indexOut)
+{
+    vplMeshDef* slot =
+        grow(scene, &scene->meshes, &scene->meshCount, &scene->meshCapacity, sizeof *scene->meshes);
+    if (slot == NULL) {
+        vplFreeMesh(scene->context, mesh);
+        return VPL_OUT_OF_MEMORY;
+    }
+    *slot = *mesh;
+    slot->cookie = MESH_COOKIE;
+    finish(&scene->meshCount, indexOut);
+    return VPL_SUCCESS;
+}
+
+// A copy in context memory; NULL stays NULL. Clears *good when out of memory.
+static void* copyArray(vplContext* context, const void* from, int count, size_t size, bool* good)
+{
+    void* copy = from ? vplAlloc(context, (size_t)count, size) : NULL;
+    if (copy != NULL) {
+        memcpy(copy, from, (size_t)count * size);
+    }
+    *good = *good && (copy != NULL || from == NULL);
+    return copy;
+}
+
+vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut)
+{
+    vplFault fault = vplCheckMesh(def, scene->materialCount);
+    vplResult result = report(scene, "vplMeshDef", def->cookie == MESH_COOKIE, &fault);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    bool good = true;
+    vplContext* context = scene->context;
+    vplMeshDef copy = *def;
+    copy.positions = copyArray(context, def->positions, def->vertexCount, sizeof *def->positions, &good);
+    copy.normals = copyArray(context, def->normals, def->vertexCount, sizeof *def->normals, &good);
+    copy.indices = copyArray(context, def->indices, def->triangleCount, 3 * sizeof *def->indices, &good);
+    copy.materials = copyArray(context, def->materials, def->triangleCount, sizeof *def->materials, &good);
+    if (!good) {
+        vplFreeMesh(context, &copy);
+        return VPL_OUT_OF_MEMORY;
+    }
+    return vplScene_AdoptMesh(scene, &copy, indexOut);
+}
+
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut)
 {
     vplFault fault = vplCheckTransform(&def->transform);
@@ -150,11 +213,18 @@ vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* inde
     if (result != VPL_SUCCESS) {
         return result;
     }
-    if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX) {
+    if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX && def->type != VPL_OBJECT_MESH) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                        "vplObjectDef.type is %d, must be a vplObjectType", (int)def->type);
     }
-    if (def->material < 0 || def->material >= scene->materialCount) {
+    bool mesh = def->type == VPL_OBJECT_MESH;
+    if (mesh && (def->mesh < 0 || def->mesh >= scene->meshCount)) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplObjectDef.mesh is %d, must be one of the scene's %d meshes", def->mesh,
+                       scene->meshCount);
+    }
+    bool ownMaterials = mesh && def->material == -1 && scene->meshes[def->mesh].materials != NULL;
+    if (!ownMaterials && (def->material < 0 || def->material >= scene->materialCount)) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                        "vplObjectDef.material is %d, must be one of the scene's %d materials", def->material,
                        scene->materialCount);
@@ -197,6 +267,11 @@ int vplScene_GetMaterialCount(const vplScene* scene)
     return scene->materialCount;
 }
 
+int vplScene_GetMeshCount(const vplScene* scene)
+{
+    return scene->meshCount;
+}
+
 int vplScene_GetObjectCount(const vplScene* scene)
 {
     return scene->objectCount;
@@ -215,6 +290,11 @@ const vplCameraDef* vplScene_GetCamera(const vplScene* scene, int index)
 const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index)
 {
     return &scene->materials[index];
+}
+
+const vplMeshDef* vplScene_GetMesh(const vplScene* scene, int index)
+{
+    return &scene->meshes[index];
 }
 
 const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index)

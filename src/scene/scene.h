@@ -11,11 +11,19 @@ struct vplScene {
     vplContext* context;
     vplCameraDef* cameras;
     vplMaterialDef* materials;
+    vplMeshDef* meshes; // their arrays are the scene's own
     vplObjectDef* objects;
     vplEmitterDef* emitters;
-    int cameraCount, materialCount, objectCount, emitterCount;
-    size_t cameraCapacity, materialCapacity, objectCapacity, emitterCapacity;
+    int cameraCount, materialCount, meshCount, objectCount, emitterCount;
+    size_t cameraCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
 };
+
+// Adds a mesh whose arrays were made by vplAlloc and now belong to the scene, also on failure. Nothing is
+// checked: readers make valid meshes.
+vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, int* indexOut);
+
+// A mesh that is read or copied needs no default function.
+void vplFreeMesh(vplContext* context, const vplMeshDef* mesh);
 
 // What is wrong with a def: which field, and the rest of the sentence after "<field> ".
 typedef struct vplFault {
@@ -26,6 +34,7 @@ typedef struct vplFault {
 
 vplFault vplCheckCamera(const vplCameraDef* def);
 vplFault vplCheckMaterial(const vplMaterialDef* def);
+vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
 

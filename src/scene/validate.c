@@ -82,6 +82,39 @@ vplFault vplCheckMaterial(const vplMaterialDef* def)
     return f.field ? f : checkComponents("emission", &def->emission.r, 0, VPL_MAX_MAGNITUDE);
 }
 
+vplFault vplCheckMesh(const vplMeshDef* def, int materialCount)
+{
+    if (def->vertexCount < 0 || def->triangleCount < 0) {
+        return fault("vertexCount", -1, "and triangleCount are %d and %d, must not be negative",
+                     def->vertexCount, def->triangleCount);
+    }
+    if ((def->vertexCount > 0 && def->positions == NULL) ||
+        (def->triangleCount > 0 && def->indices == NULL)) {
+        return fault("positions", -1, "and indices must not be NULL");
+    }
+    for (int i = 0; i < def->vertexCount; i++) {
+        vplFault f = checkPoint("positions", def->positions[i]);
+        f = f.field || def->normals == NULL ? f : checkDirection("normals", def->normals[i]);
+        if (f.field) {
+            f.index = i;
+            return f;
+        }
+    }
+    for (int i = 0; i < def->triangleCount; i++) {
+        for (int k = 0; k < 3; k++) {
+            if (def->indices[3 * (size_t)i + (size_t)k] >= (uint32_t)def->vertexCount) {
+                return fault("indices", 3 * i + k, "is %u, must be less than the vertexCount %d",
+                             def->indices[3 * (size_t)i + (size_t)k], def->vertexCount);
+            }
+        }
+        if (def->materials != NULL && (def->materials[i] < 0 || def->materials[i] >= materialCount)) {
+            return fault("materials", i, "is %d, must be one of the scene's %d materials", def->materials[i],
+                         materialCount);
+        }
+    }
+    return FINE;
+}
+
 vplFault vplCheckTransform(const vplMat4* m)
 {
     for (int i = 0; i < 16; i++) {
