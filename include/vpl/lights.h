@@ -29,6 +29,12 @@ typedef enum vplBounce {
     VPL_BOUNCE_DIFFUSE   // cosine-distributed
 } vplBounce;
 
+// What stops a particle.
+typedef enum vplParticleGeometry {
+    VPL_PARTICLE_GEOMETRY_EXACT = 0, // the triangles
+    VPL_PARTICLE_GEOMETRY_OBB        // objects' oriented bounding boxes (Franchi and Ferrante, "Improving")
+} vplParticleGeometry;
+
 typedef struct vplVirtualLight {
     vplVec3 position; // metres
     vplVec3 normal;   // unit; of the surface, on the side the particle came from (documented: as declared)
@@ -41,11 +47,12 @@ typedef struct vplVirtualLight {
 } vplVirtualLight;
 
 typedef struct vplParticleDef {
-    vplLighting lighting;      // default VPL_LIGHTING_PHYSICAL
-    int particleCount;         // N, [0, VPL_MAX_LIGHTS]; default 10
-    double reflectivity;       // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
-    vplSampler sampler;        // default VPL_SAMPLER_RANDOM
-    vplBounce bounce;          // default VPL_BOUNCE_AUTO
+    vplLighting lighting;         // default VPL_LIGHTING_PHYSICAL
+    int particleCount;            // N, [0, VPL_MAX_LIGHTS]; default 10
+    double reflectivity;          // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
+    vplSampler sampler;           // default VPL_SAMPLER_RANDOM
+    vplBounce bounce;             // default VPL_BOUNCE_AUTO
+    vplParticleGeometry geometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;             // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
     const vplVec3* directions; // N first directions, unit, instead of the sampler's; NULL (default)
     vplProgressFcn* progress;  // default NULL

@@ -11,7 +11,8 @@ extern "C" {
 
 typedef enum vplMethod {
     VPL_METHOD_INSTANT_RADIOSITY = 0, // Franchi and Ferrante, Virtual Point Lights
-    VPL_METHOD_DIRECT                 // the scene's own lights only
+    VPL_METHOD_DIRECT,                // the scene's own lights only
+    VPL_METHOD_PATH                   // path tracing: the truth that the others are judged against
 } vplMethod;
 
 // What the picture shows.
@@ -24,8 +25,19 @@ typedef enum vplShow {
     VPL_SHOW_DIRECT,        // light of the scene's emitters only
     VPL_SHOW_INDIRECT,      // light of all virtual lights only
     VPL_SHOW_LIGHT,         // light of virtual light `showLight` only
-    VPL_SHOW_OVERLAY        // the picture with the virtual lights drawn on it, coloured by step
+    VPL_SHOW_OVERLAY,       // the picture with the virtual lights drawn on it, coloured by step
+    VPL_SHOW_BOUNCE         // path: light after `showBounce` reflections before the eye's last; 0 is direct
 } vplShow;
+
+// Most paths per pixel, and most bounces of a path.
+enum { VPL_MAX_SAMPLES = 1 << 24, VPL_MAX_BOUNCES = 1 << 16 };
+
+// Whether light from a virtual light is stopped by what is between.
+typedef enum vplLightShadows {
+    VPL_LIGHT_SHADOWS_NONE = 0, // it is not: as Franchi and Ferrante draw
+    VPL_LIGHT_SHADOWS_MAP,      // a cube shadow map per virtual light, one sample: as Keller draws
+    VPL_LIGHT_SHADOWS_RAY       // a ray per pixel and light: exact
+} vplLightShadows;
 
 typedef struct vplRenderOptions {
     vplMethod method;     // default VPL_METHOD_INSTANT_RADIOSITY
@@ -37,18 +49,26 @@ typedef struct vplRenderOptions {
     double reflectivity; // rho, [0, 1), or negative: the scene's area-weighted mean; default 0.5
     vplSampler sampler;  // default VPL_SAMPLER_RANDOM
     vplBounce bounce;    // default VPL_BOUNCE_AUTO
-    uint64_t seed;       // default 0
+    vplParticleGeometry particleGeometry; // default VPL_PARTICLE_GEOMETRY_EXACT
+    uint64_t seed;                        // default 0
 
     vplAccumulation accumulation; // default VPL_ACCUMULATE_DEFERRED
     int batch;                    // virtual lights per pass, [1, VPL_MAX_LIGHTS]; default 64; batched only
     float minDistance;            // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
                                   // (default): half the radius of a disc with one light's share of the area
 
+    vplLightShadows lightShadows; // default VPL_LIGHT_SHADOWS_NONE
+
+    int samplesPerPixel; // path: [1, VPL_MAX_SAMPLES]; default 64
+    int maxBounces;      // path: reflections before the eye's last, [0, VPL_MAX_BOUNCES]; 0: direct light
+                         // only; -1 (default): ended by Russian roulette alone
+
     int shadowMapSize;   // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
     vplShadowDef shadow; // bias and PCF of the emitters' shadows; default vplDefaultShadowDef()
 
     vplShow show;             // default VPL_SHOW_PICTURE
     int showLight;            // index of a virtual light for VPL_SHOW_LIGHT; default 0
+    int showBounce;           // for VPL_SHOW_BOUNCE, [0, VPL_MAX_BOUNCES]; default 0
     vplProgressFcn* progress; // default NULL
     void* progressUser;
     uint32_t cookie; // set by vplDefaultRenderOptions
@@ -75,10 +95,14 @@ typedef struct vplRenderStats {
     int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
     int escaped;                                  // particles that left the scene
     int triangles, objects;
-    float minDistance;   // as used, metres
-    double reflectivity; // as used
-    size_t peakBytes;    // most memory held by the context during the call
-    uint64_t imageHash;  // vplImage_Hash
+    float minDistance;    // as used, metres
+    double reflectivity;  // as used
+    double cpuMs;         // processor time of all threads
+    double errorEstimate; // path: expected rmse of the picture, from two independent halves of the samples;
+                          // negative where there is none
+    double relativeErrorEstimate; // the same divided by the picture's mean
+    size_t peakBytes;             // most memory held by the context during the call
+    uint64_t imageHash;           // vplImage_Hash
 } vplRenderStats;
 
 // Renders. The picture is radiance in W/(m^2 sr) unless `show` says otherwise; destroy it with

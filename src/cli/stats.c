@@ -25,6 +25,7 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     json_t* root = json_object();
     json_object_set_new(root, "stages_ms", stages);
     json_object_set_new(root, "total_ms", json_real(stats->totalMs));
+    json_object_set_new(root, "cpu_ms", json_real(stats->cpuMs));
     json_object_set_new(root, "draw_calls", json_integer(stats->drawCalls));
     json_object_set_new(root, "fragments", json_integer(stats->fragments));
     json_object_set_new(root, "virtual_lights", json_integer(stats->virtualLights));
@@ -38,6 +39,10 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     json_object_set_new(root, "patches", json_integer(0));
     json_object_set_new(root, "min_distance", json_real(stats->minDistance));
     json_object_set_new(root, "reflectivity", json_real(stats->reflectivity));
+    if (stats->errorEstimate >= 0) {
+        json_object_set_new(root, "error_estimate", json_real(stats->errorEstimate));
+        json_object_set_new(root, "relative_error_estimate", json_real(stats->relativeErrorEstimate));
+    }
     json_object_set_new(root, "threads", json_integer(vplContext_GetWorkerCount(context)));
     json_object_set_new(root, "isa", json_string(vplIsa_GetName(vplContext_GetIsa(context))));
     json_object_set_new(root, "peak_bytes", json_integer((json_int_t)stats->peakBytes));

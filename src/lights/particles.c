@@ -16,9 +16,11 @@ enum { PARTICLE_COOKIE = 0x56504c60 };
 
 vplParticleDef vplDefaultParticleDef(void)
 {
-    return (vplParticleDef){
-        VPL_LIGHTING_PHYSICAL, 10, 0.5, VPL_SAMPLER_RANDOM, VPL_BOUNCE_AUTO, 0, NULL, NULL, NULL,
-        PARTICLE_COOKIE};
+    vplParticleDef def = {0};
+    def.particleCount = 10;
+    def.reflectivity = 0.5;
+    def.cookie = PARTICLE_COOKIE;
+    return def;
 }
 
 typedef struct Simulation {

@@ -15,6 +15,8 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.accumulation = VPL_ACCUMULATE_DEFERRED;
     o.batch = 64;
     o.minDistance = -1;
+    o.samplesPerPixel = 64;
+    o.maxBounces = -1;
     o.shadowMapSize = 1024;
     o.shadow = vplDefaultShadowDef();
     o.cookie = OPTIONS_COOKIE;
@@ -44,7 +46,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         const char* name;
         int value, low, high;
     } ints[] = {
-        {"method", (int)o->method, 0, VPL_METHOD_DIRECT},
+        {"method", (int)o->method, 0, VPL_METHOD_PATH},
         {"lighting", (int)o->lighting, 0, VPL_LIGHTING_DOCUMENTED},
         {"width", o->width, 1, VPL_MAX_IMAGE_SIZE},
         {"height", o->height, 1, VPL_MAX_IMAGE_SIZE},
@@ -54,8 +56,13 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"bounce", (int)o->bounce, 0, VPL_BOUNCE_DIFFUSE},
         {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_DEFERRED},
         {"batch", o->batch, 1, VPL_MAX_LIGHTS},
+        {"particleGeometry", (int)o->particleGeometry, 0, VPL_PARTICLE_GEOMETRY_OBB},
+        {"lightShadows", (int)o->lightShadows, 0, VPL_LIGHT_SHADOWS_RAY},
+        {"samplesPerPixel", o->samplesPerPixel, 1, VPL_MAX_SAMPLES},
+        {"maxBounces", o->maxBounces, -1, VPL_MAX_BOUNCES},
+        {"showBounce", o->showBounce, 0, VPL_MAX_BOUNCES},
         {"shadowMapSize", o->shadowMapSize, 1, VPL_MAX_SHADOW_MAP},
-        {"show", (int)o->show, 0, VPL_SHOW_OVERLAY},
+        {"show", (int)o->show, 0, VPL_SHOW_BOUNCE},
         {"showLight", o->showLight, 0, VPL_MAX_LIGHTS},
     };
     for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) {

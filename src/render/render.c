@@ -47,6 +47,7 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     def.reflectivity = o->reflectivity >= 0 ? o->reflectivity : vplGeometry_MeanReflectance(job->geometry);
     def.sampler = o->sampler;
     def.bounce = o->bounce;
+    def.geometry = o->particleGeometry;
     def.seed = o->seed;
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
@@ -81,6 +82,7 @@ static vplResult beginJob(const vplScene* scene, const vplRenderOptions* options
     job->context = vplScene_GetContext(scene);
     job->scene = scene;
     job->options = *options;
+    job->stats.errorEstimate = job->stats.relativeErrorEstimate = -1;
     vplContext_ResetPeakBytes(job->context);
     vplJob_BeginStage(job, 0);
     result = vplGeometry_Create(scene, &job->geometry);
@@ -93,12 +95,12 @@ vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplI
                     vplRenderStats* statsOut)
 {
     vplJob job;
-    double start = vplClockMs();
+    double start = vplClockMs(), cpuStart = vplCpuMs();
     vplResult result = beginJob(scene, options, &job);
     if (result != VPL_SUCCESS) {
         return result;
     }
-    result = vplRenderInstantRadiosity(&job);
+    result = options->method == VPL_METHOD_PATH ? vplRenderPath(&job) : vplRenderInstantRadiosity(&job);
     job.stats.triangles = job.geometry->triangleCount;
     job.stats.objects = job.geometry->objectCount;
     vplGeometry_Destroy(job.geometry);
@@ -107,6 +109,7 @@ vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplI
         return result;
     }
     job.stats.totalMs = vplClockMs() - start;
+    job.stats.cpuMs = vplCpuMs() - cpuStart;
     job.stats.peakBytes = vplContext_GetPeakBytes(job.context);
     if (statsOut != NULL) {
         job.stats.imageHash = vplImage_Hash(job.image);

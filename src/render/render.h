@@ -37,6 +37,7 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut);
 
 // Methods.
 vplResult vplRenderInstantRadiosity(vplJob* job);
+vplResult vplRenderPath(vplJob* job);
 
 // Draws the lights over the picture.
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set);

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// One table describes every option: how it is read, its range, its help and the commands that take it.
+#include "cli/option.h"
+
+#include <string.h>
+
+enum {
+    RENDER = 1,
+    LIGHTS = 2,
+    COMPARE = 4,
+    INFO = 8,
+    BENCH = 16,
+    TRADEOFF = 32,
+    SCENE = RENDER | LIGHTS | INFO
+};
+
+#define AT(field) offsetof(Arguments, field)
+
+const Option OPTIONS[] = {
+    {"-o", "FILE", RENDER, readText, AT(output), 0, 0, NULL,
+     "picture to write: .png, .hdr or .pfm (required)"},
+    {"--size", "WxH", RENDER | INFO | BENCH, readSize, 0, 0, 0, NULL, "pixels; default 1280x720"},
+    {"--camera", "I", RENDER, readInt, AT(render.camera), 0, 1e9, NULL,
+     "index of the scene's camera; default 0"},
+    {"--method", "M", SCENE, readChoice, AT(render.method), 0, 0, "instant-radiosity|direct|path",
+     "instant-radiosity (default), direct: the scene's own lights only, or path: the path-traced reference"},
+    {"--lighting", "L", SCENE, readChoice, AT(render.lighting), 0, 0, "physical|documented",
+     "physical (default) or documented: the formulas as printed"},
+    {"--particles", "N", SCENE, readInt, AT(render.particles), 0, VPL_MAX_LIGHTS, NULL,
+     "particles shot from the light; default 10"},
+    {"--reflectivity", "R", SCENE, readReflectivity, 0, 0, 1, NULL,
+     "share of particles that go on at each step, [0, 1), or auto: the scene's mean; default 0.5"},
+    {"--sampler", "S", SCENE, readChoice, AT(render.sampler), 0, 0, "random|halton|hammersley",
+     "random (default), halton or hammersley"},
+    {"--bounce", "B", SCENE, readChoice, AT(render.bounce), 0, 0, "auto|reflect|diffuse",
+     "auto (default): reflect for documented lighting, diffuse for physical"},
+    {"--seed", "S", SCENE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},
+    {"--pipeline", "P", RENDER | INFO, readChoice, AT(render.accumulation), 0, 0,
+     "multipass|batched|deferred",
+     "multipass, batched or deferred (default): how virtual lights are added; the same bits"},
+    {"--batch", "M", RENDER | INFO, readInt, AT(render.batch), 1, VPL_MAX_LIGHTS, NULL,
+     "virtual lights per pass of --pipeline batched; default 64"},
+    {"--min-distance", "D", RENDER, readFloatOrAuto, AT(render.minDistance), 0, 1e15, NULL,
+     "metres: cos cos / d^2 is bounded as cos cos / max(d^2, D^2); 0: unbounded; default auto"},
+    {"--light-shadows", "V", RENDER | INFO, readChoice, AT(render.lightShadows), 0, 0, "none|map|ray",
+     "none (default), map or ray: whether, and how, virtual lights cast shadows"},
+    {"--particle-geometry", "G", SCENE, readChoice, AT(render.particleGeometry), 0, 0, "exact|obb",
+     "exact (default), or obb: particles stop at an object's oriented bounding box"},
+    {"--spp", "N", RENDER | INFO, readInt, AT(render.samplesPerPixel), 1, VPL_MAX_SAMPLES, NULL,
+     "paths per pixel of --method path; default 64"},
+    {"--max-bounces", "N", RENDER | INFO, readInt, AT(render.maxBounces), -1, VPL_MAX_BOUNCES, NULL,
+     "diffuse reflections of --method path before the eye's last; -1 (default): as many as it takes"},
+    {"--shadow-map", "N", RENDER | INFO, readInt, AT(render.shadowMapSize), 1, VPL_MAX_SHADOW_MAP, NULL,
+     "texels along a face of the cube shadow map; default 1024"},
+    {"--bias", "B", RENDER, readBias, 0, 0, 1e15, NULL,
+     "static bias in metres, auto (default) or exact: what a plane needs at its angle"},
+    {"--bias-slope", "B", RENDER, readBiasSlope, 0, 0, 1e15, NULL, "largest dynamic bias in metres"},
+    {"--pcf", "S", RENDER, readInt, AT(render.shadow.pcfSamples), 1, VPL_MAX_PCF_SAMPLES, NULL,
+     "shadow map samples per pixel; 1 gives hard shadows; default 16"},
+    {"--pcf-offset", "O", RENDER, readFloatOrAuto, AT(render.shadow.pcfOffset), 0, 1e15, NULL,
+     "radius of the disc of samples in metres, or auto (default)"},
+    {"--show", "WHAT", RENDER, readShow, 0, 0, 0,
+     "picture|depth|normals|shadow-map|shadow-factor|direct|indirect|light:K|overlay|bounce:K",
+     "picture (default), depth, normals, shadow-map, shadow-factor, direct, indirect, light:K (K as in vpl "
+     "lights), overlay, bounce:K (--method path: light after K reflections, 0 is direct)"},
+    {"--exposure", "EV", RENDER, readFloat, AT(write.exposure), -64, 64, NULL,
+     "stops, PNG only: pixels times 2^EV; default 0"},
+    {"--tonemap", "T", RENDER, readChoice, AT(write.tonemap), 0, 0, "none|reinhard",
+     "none (default) or reinhard, PNG only"},
+    {"--stats", "FILE", RENDER, readText, AT(stats), 0, 0, NULL, "write statistics as JSON"},
+    {"--heatmap", "FILE", COMPARE, readText, AT(heatmap), 0, 0, NULL, "write a picture of the differences"},
+    {"--heat-scale", "X", COMPARE, readDouble, AT(heatScale), 0, 1e30, NULL,
+     "difference shown as white; default: the largest"},
+    {"--json", NULL, COMPARE | BENCH | INFO, readFlag, AT(json), 0, 0, NULL, "print JSON"},
+    {"--runs", "N", BENCH, readInt, AT(runs), 1, 1000, NULL,
+     "runs of which the median is printed; default 5"},
+    {"--threads", "T", RENDER | LIGHTS | BENCH, readThreads, 0, 0, 0, NULL,
+     "worker threads, 0 (default): one per processor; bench takes several: 1,2"},
+    {"--isa", "I", RENDER | LIGHTS | BENCH, readChoice, AT(context.isa), 0, 0, "auto|scalar|sse2|avx2|avx512",
+     "auto (default), scalar, sse2, avx2, avx512: the same bits"},
+    {"--quiet", NULL, ~0, readFlag, AT(quiet), 0, 0, NULL, "no progress bar, no warnings"},
+    {"-v", NULL, ~0, readFlag, AT(verbose), 0, 0, NULL, "say more"},
+    {"--help", NULL, ~0, readFlag, AT(help), 0, 0, NULL, "print this"},
+};
+
+const int OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS;
+
+int commandBit(const char* command)
+{
+    static const char* const names[] = {"render", "lights", "compare", "info", "bench", "tradeoff"};
+    for (int i = 0; i < 6; i++) {
+        if (strcmp(names[i], command) == 0) {
+            return 1 << i;
+        }
+    }
+    return 0;
+}
