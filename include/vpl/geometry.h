@@ -20,9 +20,15 @@ typedef struct vplPlacement {
 // Fails with VPL_INVALID_ARGUMENT on a singular, non-affine or non-finite matrix.
 vplResult vplPlacement_Create(vplContext* context, const vplMat4* transform, vplPlacement* placementOut);
 
+// Triangles first .. first + count - 1 are invisible to the ray: those it starts on. {0, 0} hides none.
+typedef struct vplSkip {
+    int first, count;
+} vplSkip;
+
 typedef struct vplRay {
     vplVec3 origin;    // metres
     vplVec3 direction; // any length but 0; t counts in its units
+    vplSkip skip;
 } vplRay;
 
 // Faces of the unit box: +x, -x, +y, -y, +z, -z; a quad's only face is VPL_FACE_QUAD.
@@ -31,9 +37,11 @@ enum { VPL_FACE_NONE = -1, VPL_FACE_QUAD = 4 };
 typedef struct vplHit {
     float t;          // > 0 and finite
     int object;       // index in the geometry
-    int face;         // 2 * axis + (0: +, 1: -); VPL_FACE_QUAD for quads
-    vplVec3 position; // on the surface to rounding: the local hit point taken to world space
-    vplVec3 normal;   // unit; a quad's +z, a box's outward normal, also when hit from behind
+    int face;         // 2 * axis + (0: +, 1: -); VPL_FACE_QUAD for quads; VPL_FACE_NONE for meshes
+    int triangle;     // index in the geometry's triangles; for quads and boxes one of the face
+    float u, v;       // mesh: weights of corners 1 and 2
+    vplVec3 position; // on the surface to rounding
+    vplVec3 normal;   // unit, of the front side (a quad's +z, a box's outside), also when hit from behind
 } vplHit;
 
 // Ray against the quad [-0.5, 0.5]^2 at z = 0 in local space: t > 0, closed edges, both sides.
@@ -48,22 +56,29 @@ bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFac
 
 typedef struct vplGeometryObject {
     vplObjectType type;
-    int material;
+    int material;       // -1: each triangle has its own
+    vplRgb reflectance; // mean over its area
+    bool smooth;        // has shading normals
     vplPlacement placement;
-    int firstVertex, vertexCount;     // in positions
-    int firstTriangle, triangleCount; // in indices / 3 and normals
+    vplPlacement bounds; // mesh: the unit box onto its oriented bounding box
+    int firstVertex, vertexCount;
+    int firstTriangle, triangleCount;
 } vplGeometryObject;
 
-// Read only. Triangles are counter-clockwise seen from the front; indices are relative to firstVertex.
+// Read only. Triangles are counter-clockwise seen from the front; a quad has two, a box two per face in the
+// order of the faces. Indices are relative to the object's firstVertex.
 typedef struct vplGeometry {
     const vplGeometryObject* objects;
-    const vplVec3* positions; // world space, metres
-    const uint32_t* indices;  // three per triangle
-    const vplVec3* normals;   // one unit vector per triangle
-    const int* owners;        // the object of each triangle
-    const vplMaterialDef* materials;
+    const vplVec3* positions;        // world space, metres
+    const vplVec3* shadingNormals;   // per vertex: unit on smooth objects, else 0; NULL where none is smooth
+    const uint32_t* indices;         // three per triangle
+    const vplVec3* normals;          // one unit vector per triangle; 0 where its area is 0
+    const int* owners;               // the object of each triangle
+    const int* triangleMaterials;    // the material of each triangle
+    const vplMaterialDef* materials; // without names
     int objectCount, materialCount, vertexCount, triangleCount;
     vplVec3 boundsMin, boundsMax; // of all positions; both 0 when there are none
+    const struct vplBvh* bvh;     // what rays are traced through
     vplContext* context;
 } vplGeometry;
 
@@ -72,17 +87,27 @@ vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut);
 // NULL is allowed.
 void vplGeometry_Destroy(vplGeometry* geometry);
 
-// Where a ray starts, so that it does not hit what it leaves. {-1, VPL_FACE_NONE} in free space.
-typedef struct vplRayStart {
-    int object, face;
-} vplRayStart;
+// The closest hit; among equal distances the lowest triangle. False if there is none. Quads and boxes are hit
+// as vplRay_HitQuad and vplRay_HitBox say, to the last digits of position and normal; mesh triangles by the
+// watertight test of Woop, Benthin and Wald, JCGT 2013: a ray through a shared edge meets one of its triangles.
+bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut);
 
-// The closest hit over all objects; among equal distances the lowest object index. False if there is none.
-bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplRayStart start,
+// True if something lies in (0, tMax) along the ray. tMax in units of the direction.
+bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax);
+
+// A ray that leaves a hit point in `direction` and does not meet what it leaves: the quad, the box (or from
+// inside its face), the triangle. From a mesh it starts a few units in the last place off the surface, because
+// the neighbours of its triangle are not in one plane with it.
+vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction);
+
+// The normal to shade with: interpolated on smooth objects, else the hit's own.
+vplVec3 vplGeometry_ShadingNormal(const vplGeometry* geometry, const vplHit* hit);
+
+// The closest hit among the objects' oriented bounding boxes (quads stay quads): the cheap stand-in for meshes
+// that Franchi and Ferrante propose under "Improving the Particle Simulation". `from` is the hit that the ray
+// leaves, NULL in free space; ray->skip is not used. hitOut->triangle is the object's first.
+bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, const vplHit* from,
                             vplHit* hitOut);
-
-// True if something other than the start lies in (0, tMax) along the ray. tMax in units of the direction.
-bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, vplRayStart start, float tMax);
 
 // Area of all surfaces, one side each, square metres.
 double vplGeometry_Area(const vplGeometry* geometry);

@@ -77,8 +77,9 @@ typedef struct vplLightSet {
     const int* lightsInStep; // lights really left in each step
     int stepCount;
     int escaped; // particles that left the scene before their last step
-    int64_t rays, rayObjectTests;
-    int particleCount; // N
+    int64_t rays;
+    int64_t rayObjectTests; // objects tested; where a hierarchy is used, blocks of 8 triangles
+    int particleCount;      // N
     vplContext* context;
 } vplLightSet;
 

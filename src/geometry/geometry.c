@@ -1,87 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Freezes a scene: every quad becomes two world-space triangles, every box twelve. Corners are rounded from
-// double once and shared by the faces that meet there, so edges are watertight.
-#include <vpl/geometry.h>
-
-#include "math/matrix.h"
+// The frozen scene: world-space arrays of all triangles, and what rays are traced through.
+#include "geometry/bvh.h"
+#include "geometry/freeze.h"
 #include "math/vec.h"
-#include "scene/scene.h"
 
-#include <string.h>
-
-static const float QUAD_CORNERS[4][3] = {
-    {-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}};
-static const uint32_t QUAD_INDICES[6] = {0, 1, 2, 0, 2, 3};
-
-// Corner i has x = +0.5 if bit 0 is set, y if bit 1, z if bit 2.
-static const uint32_t BOX_INDICES[36] = {
-    1, 3, 7, 1, 7, 5, // +x
-    0, 4, 6, 0, 6, 2, // -x
-    2, 6, 7, 2, 7, 3, // +y
-    0, 1, 5, 0, 5, 4, // -y
-    4, 5, 7, 4, 7, 6, // +z
-    0, 2, 3, 0, 3, 1, // -z
-};
-
-typedef struct Builder {
-    vplGeometryObject* objects;
-    vplVec3* positions;
-    uint32_t* indices;
-    vplVec3* normals;
-    int* owners;
-    vplMaterialDef* materials;
-} Builder;
-
-static int vertexCountOf(vplObjectType type)
-{
-    return type == VPL_OBJECT_QUAD ? 4 : 8;
-}
-
-static int triangleCountOf(vplObjectType type)
-{
-    return type == VPL_OBJECT_QUAD ? 2 : 12;
-}
-
-static void fillObject(const Builder* b, const vplObjectDef* def, int index)
-{
-    const vplGeometryObject* object = &b->objects[index];
-    const vplPlacement* placement = &object->placement;
-    bool quad = def->type == VPL_OBJECT_QUAD;
-    vplAffine world = vplAffine_FromMat4(&def->transform);
-    for (int i = 0; i < object->vertexCount; i++) {
-        float p[3];
-        for (int row = 0; row < 3; row++) {
-            double sum = world.m[row][3];
-            for (int axis = 0; axis < 3; axis++) {
-                sum += world.m[row][axis] * (quad ? QUAD_CORNERS[i][axis] : i >> axis & 1 ? 0.5 : -0.5);
-            }
-            p[row] = (float)sum;
-        }
-        b->positions[object->firstVertex + i] = vplVec(p[0], p[1], p[2]);
-    }
-    memcpy(b->indices + 3 * object->firstTriangle, quad ? QUAD_INDICES : BOX_INDICES,
-           3 * (size_t)object->triangleCount * sizeof(uint32_t));
-    for (int i = 0; i < object->triangleCount; i++) {
-        const float* n = placement->normal[quad ? VPL_FACE_QUAD : i / 2];
-        b->owners[object->firstTriangle + i] = index;
-        b->normals[object->firstTriangle + i] = vplVec(n[0], n[1], n[2]);
-    }
-}
-
-// A mirroring matrix turns counter-clockwise into clockwise; swapping two corners turns it back.
-static void keepWinding(const Builder* b, const vplGeometryObject* object)
-{
-    for (int i = 0; i < object->triangleCount; i++) {
-        uint32_t* index = b->indices + 3 * (object->firstTriangle + i);
-        const vplVec3* p = b->positions + object->firstVertex;
-        vplVec3 cross = vplCross(vplSub(p[index[1]], p[index[0]]), vplSub(p[index[2]], p[index[0]]));
-        if (vplDot(cross, b->normals[object->firstTriangle + i]) < 0) {
-            uint32_t swap = index[1];
-            index[1] = index[2];
-            index[2] = swap;
-        }
-    }
-}
+#include <math.h>
 
 static void findBounds(vplGeometry* g)
 {
@@ -98,52 +21,62 @@ static void findBounds(vplGeometry* g)
     }
 }
 
-static vplResult allocate(vplGeometry* g, Builder* b)
+static vplResult allocate(vplGeometry* g, vplFreezer* f, bool smooth)
 {
     vplContext* context = g->context;
-    b->objects = vplAlloc(context, (size_t)g->objectCount, sizeof *b->objects);
-    b->positions = vplAlloc(context, (size_t)g->vertexCount, sizeof *b->positions);
-    b->indices = vplAlloc(context, 3 * (size_t)g->triangleCount, sizeof *b->indices);
-    b->normals = vplAlloc(context, (size_t)g->triangleCount, sizeof *b->normals);
-    b->owners = vplAlloc(context, (size_t)g->triangleCount, sizeof *b->owners);
-    b->materials = vplAlloc(context, (size_t)g->materialCount, sizeof *b->materials);
-    g->objects = b->objects;
-    g->positions = b->positions;
-    g->indices = b->indices;
-    g->normals = b->normals;
-    g->owners = b->owners;
-    g->materials = b->materials;
-    bool complete = b->objects && b->positions && b->indices && b->normals && b->owners && b->materials;
+    const size_t vertices = (size_t)g->vertexCount, triangles = (size_t)g->triangleCount;
+    g->objects = f->objects = vplAllocZero(context, (size_t)g->objectCount, sizeof *f->objects);
+    g->positions = f->positions = vplAlloc(context, vertices, sizeof *f->positions);
+    g->indices = f->indices = vplAlloc(context, 3 * triangles, sizeof *f->indices);
+    g->normals = f->normals = vplAlloc(context, triangles, sizeof *f->normals);
+    g->owners = f->owners = vplAlloc(context, triangles, sizeof *f->owners);
+    g->triangleMaterials = f->materials = vplAlloc(context, triangles, sizeof *f->materials);
+    g->materials = vplAlloc(context, (size_t)g->materialCount, sizeof *g->materials);
+    bool complete =
+        f->objects && f->positions && f->indices && f->normals && f->owners && f->materials && g->materials;
+    if (smooth && complete) {
+        g->shadingNormals = f->shadingNormals = vplAlloc(context, vertices, sizeof *f->shadingNormals);
+        complete = f->shadingNormals != NULL;
+    }
     return complete ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
 }
 
-static vplResult fill(const vplScene* scene, vplGeometry* g, Builder* b)
+static bool isSmooth(const vplScene* scene, const vplObjectDef* def)
+{
+    return def->type == VPL_OBJECT_MESH && scene->meshes[def->mesh].normals != NULL;
+}
+
+static vplResult fill(const vplScene* scene, vplGeometry* g, const vplFreezer* f)
 {
     int vertex = 0, triangle = 0;
     for (int i = 0; i < g->objectCount; i++) {
         const vplObjectDef* def = &scene->objects[i];
-        vplGeometryObject* object = &b->objects[i];
+        vplGeometryObject* object = &f->objects[i];
         *object = (vplGeometryObject){.type = def->type,
                                       .material = def->material,
+                                      .smooth = isSmooth(scene, def),
                                       .firstVertex = vertex,
-                                      .vertexCount = vertexCountOf(def->type),
+                                      .vertexCount = vplCountVertices(scene, def),
                                       .firstTriangle = triangle,
-                                      .triangleCount = triangleCountOf(def->type)};
+                                      .triangleCount = vplCountTriangles(scene, def)};
         vplResult result = vplPlacement_Create(g->context, &def->transform, &object->placement);
         if (result != VPL_SUCCESS) {
             return result;
         }
-        fillObject(b, def, i);
-        keepWinding(b, object);
+        vplFreezeObject(f, i);
         vertex += object->vertexCount;
         triangle += object->triangleCount;
     }
     for (int i = 0; i < g->materialCount; i++) {
-        b->materials[i] = scene->materials[i];
-        b->materials[i].name = NULL; // the scene may be destroyed before the geometry
+        vplMaterialDef* material = (vplMaterialDef*)&g->materials[i];
+        *material = scene->materials[i];
+        material->name = NULL; // the scene may be destroyed before the geometry
     }
     findBounds(g);
-    return VPL_SUCCESS;
+    vplBvh* bvh = NULL;
+    vplResult result = vplBvh_Create(g, VPL_BRUTE_BLOCKS, &bvh);
+    g->bvh = bvh;
+    return result;
 }
 
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
@@ -157,11 +90,13 @@ vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
     g->objectCount = scene->objectCount;
     g->materialCount = scene->materialCount;
     int64_t vertices = 0, triangles = 0;
+    bool smooth = false;
     for (int i = 0; i < scene->objectCount; i++) {
-        vertices += vertexCountOf(scene->objects[i].type);
-        triangles += triangleCountOf(scene->objects[i].type);
+        vertices += vplCountVertices(scene, &scene->objects[i]);
+        triangles += vplCountTriangles(scene, &scene->objects[i]);
+        smooth = smooth || isSmooth(scene, &scene->objects[i]);
     }
-    Builder builder = {NULL, NULL, NULL, NULL, NULL, NULL};
+    vplFreezer freezer = {.scene = scene};
     vplResult result = VPL_SUCCESS;
     if (triangles > VPL_MAX_TRIANGLES || vertices > VPL_MAX_TRIANGLES) {
         result = vplFail(context, VPL_LIMIT, "the scene has %lld triangles, at most %d are allowed",
@@ -169,10 +104,10 @@ vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
     } else {
         g->vertexCount = (int)vertices;
         g->triangleCount = (int)triangles;
-        result = allocate(g, &builder);
+        result = allocate(g, &freezer, smooth);
     }
     if (result == VPL_SUCCESS) {
-        result = fill(scene, g, &builder);
+        result = fill(scene, g, &freezer);
     }
     if (result != VPL_SUCCESS) {
         vplGeometry_Destroy(g);
@@ -191,21 +126,12 @@ void vplGeometry_Destroy(vplGeometry* geometry)
         vplFree(context, (void*)geometry->indices);
         vplFree(context, (void*)geometry->normals);
         vplFree(context, (void*)geometry->owners);
+        vplFree(context, (void*)geometry->shadingNormals);
+        vplFree(context, (void*)geometry->triangleMaterials);
+        vplBvh_Destroy(context, (vplBvh*)geometry->bvh);
         vplFree(context, (void*)geometry->materials);
         vplFree(context, geometry);
     }
-}
-
-static double triangleArea(const vplVec3* p, const uint32_t* index)
-{
-    double u[3], v[3];
-    for (int axis = 0; axis < 3; axis++) {
-        double origin = vplComponent(p[index[0]], axis);
-        u[axis] = vplComponent(p[index[1]], axis) - origin;
-        v[axis] = vplComponent(p[index[2]], axis) - origin;
-    }
-    double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-    return 0.5 * sqrt(x * x + y * y + z * z);
 }
 
 // Sums area, and area times mean reflectance, over all triangles in order.
@@ -214,8 +140,8 @@ static void sumAreas(const vplGeometry* g, double* area, double* reflecting)
     *area = *reflecting = 0;
     for (int i = 0; i < g->triangleCount; i++) {
         const vplGeometryObject* object = &g->objects[g->owners[i]];
-        const vplRgb rho = g->materials[object->material].diffuse;
-        double a = triangleArea(g->positions + object->firstVertex, g->indices + 3 * (size_t)i);
+        const vplRgb rho = g->materials[g->triangleMaterials[i]].diffuse;
+        double a = vplTriangleArea(g->positions + object->firstVertex, g->indices + 3 * (size_t)i);
         *area += a;
         *reflecting += a * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
     }

@@ -3,8 +3,7 @@
 // in local space without renormalising the direction, so that t means the same for all objects. Departs where
 // the text would let a particle hit the surface it just left: t must be > 0, and a box hit from inside
 // reports its exit.
-#include <vpl/geometry.h>
-
+#include "geometry/intersect.h"
 #include "math/matrix.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -57,9 +56,29 @@ static bool fillHit(const vplPlacement* p, const double at[3], double t, int fac
         const double* m = p->toWorld[i];
         world[i] = (float)(m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3]);
     }
-    *hit = (vplHit){(float)t, -1, face, vplVec(world[0], world[1], world[2]),
-                    vplVec(p->normal[face][0], p->normal[face][1], p->normal[face][2])};
+    *hit = (vplHit){.t = (float)t,
+                    .object = -1,
+                    .face = face,
+                    .triangle = -1,
+                    .position = vplVec(world[0], world[1], world[2]),
+                    .normal = vplVec(p->normal[face][0], p->normal[face][1], p->normal[face][2])};
     return hit->t > 0 && isfinite(hit->t);
+}
+
+bool vplRay_HitFace(const vplRay* ray, const vplPlacement* placement, int face, double side, vplHit* hitOut)
+{
+    LocalRay r = toLocal(ray, placement);
+    const int axis = face >> 1;
+    if (r.d[axis] == 0) {
+        return false; // parallel, or in the plane
+    }
+    double t = (side - r.o[axis]) / r.d[axis], at[3];
+    for (int i = 0; i < 3; i++) {
+        double p = r.o[i] + t * r.d[i];
+        at[i] = p < -0.5 ? -0.5 : p > 0.5 ? 0.5 : p;
+    }
+    at[axis] = side; // known, not rounded
+    return t > 0 && fillHit(placement, at, t, face, hitOut);
 }
 
 bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hitOut)
@@ -134,38 +153,4 @@ bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFac
     }
     at[face >> 1] = face & 1 ? -0.5 : 0.5; // the face is known, not guessed from the rounded point
     return fillHit(placement, at, t, face, hitOut);
-}
-
-static bool hitObject(const vplGeometry* g, int index, const vplRay* ray, vplRayStart start, vplHit* hitOut)
-{
-    const vplGeometryObject* object = &g->objects[index];
-    if (object->type == VPL_OBJECT_QUAD) {
-        return start.object != index && vplRay_HitQuad(ray, &object->placement, hitOut);
-    }
-    return vplRay_HitBox(ray, &object->placement, start.object == index ? start.face : VPL_FACE_NONE, hitOut);
-}
-
-bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplRayStart start, vplHit* hitOut)
-{
-    bool found = false;
-    for (int i = 0; i < geometry->objectCount; i++) {
-        vplHit hit;
-        if (hitObject(geometry, i, ray, start, &hit) && (!found || hit.t < hitOut->t)) {
-            *hitOut = hit;
-            hitOut->object = i;
-            found = true;
-        }
-    }
-    return found;
-}
-
-bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, vplRayStart start, float tMax)
-{
-    for (int i = 0; i < geometry->objectCount; i++) {
-        vplHit hit;
-        if (hitObject(geometry, i, ray, start, &hit) && hit.t < tMax) {
-            return true;
-        }
-    }
-    return false;
 }

@@ -8,6 +8,7 @@
 #include <vpl/lights.h>
 
 #include "base/context.h"
+#include "geometry/bvh.h"
 #include "lights/samples.h"
 #include "math/sampling.h"
 #include "math/vec.h"
@@ -35,6 +36,7 @@ typedef struct Simulation {
     int stepCount;
     vplVirtualLight* slots; // one per step and particle; step -1 where nothing was hit
     int* raysOf;            // per particle
+    int* testsOf;           // per particle
     bool* escapedOf;        // per particle
 } Simulation;
 
@@ -75,6 +77,38 @@ static vplVec3 reflect(vplVec3 d, vplVec3 n)
     return out >= 0 ? r : vplNormalize(vplSub(r, vplScale(side * out, n)));
 }
 
+// The particle's next surface; `hit` is the one it leaves, unless this is its first step.
+static bool trace(Simulation* s, int particle, int step, const vplRay* ray, vplHit* hit)
+{
+    if (s->def.geometry == VPL_PARTICLE_GEOMETRY_EXACT) {
+        return vplClosestHit(s->geometry, ray, hit, &s->testsOf[particle]);
+    }
+    const vplHit from = *hit;
+    s->testsOf[particle] += s->geometry->objectCount;
+    return vplGeometry_ClosestBox(s->geometry, ray, step > 0 ? &from : NULL, hit);
+}
+
+// A bounding box has no colour of its own: it reflects as its object does in the mean.
+static vplRgb reflectanceAt(const Simulation* s, const vplHit* hit)
+{
+    const vplGeometry* g = s->geometry;
+    return s->def.geometry == VPL_PARTICLE_GEOMETRY_OBB
+               ? g->objects[hit->object].reflectance
+               : g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+}
+
+// Interpolated normals receive cos(shading) where the surface met cos(geometric) of the light.
+static float shadingFactor(const Simulation* s, const vplHit* hit, vplVec3 direction)
+{
+    if (s->def.geometry == VPL_PARTICLE_GEOMETRY_OBB || !s->geometry->objects[hit->object].smooth) {
+        return 1;
+    }
+    float geometric = fabsf(vplDot(direction, hit->normal));
+    float shading = vplDot(direction, vplGeometry_ShadingNormal(s->geometry, hit));
+    shading *= vplDot(direction, hit->normal) < 0 ? -1.0f : 1.0f;
+    return geometric > 0 && shading > 0 ? shading / geometric : 0;
+}
+
 // Follows one particle to its last step.
 static void followParticle(Simulation* s, int particle)
 {
@@ -85,19 +119,22 @@ static void followParticle(Simulation* s, int particle)
     vplRgb light = vplRgbScale(documented ? inverseProbability : inverseProbability * (float)(4 * VPL_PI),
                                emitter->intensity);
     vplSampleSource_Direction(&s->samples, particle, 0, &u, &v);
-    vplRay ray = {emitter->position, s->def.directions ? s->def.directions[particle] : vplSampleSphere(u, v)};
-    vplRayStart start = {-1, VPL_FACE_NONE};
+    vplRay ray = {
+        emitter->position, s->def.directions ? s->def.directions[particle] : vplSampleSphere(u, v), {0, 0}};
+    vplHit hit;
     int step = 0;
     for (; step < s->stepCount && particle < s->stepCounts[step]; step++) {
-        vplHit hit;
         s->raysOf[particle]++;
-        if (!vplGeometry_ClosestHit(s->geometry, &ray, start, &hit)) {
+        if (!trace(s, particle, step, &ray, &hit)) {
             s->escapedOf[particle] = true;
             break;
         }
-        vplRgb rho = s->geometry->materials[s->geometry->objects[hit.object].material].diffuse;
+        const vplVec3 facing = vplDot(ray.direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
+        const vplRgb rho = reflectanceAt(s, &hit);
         light = vplRgbMul(light, documented ? vplRgbScale((float)(1 / VPL_PI), rho) : rho);
-        vplVec3 facing = vplDot(ray.direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
+        if (!documented) {
+            light = vplRgbScale(shadingFactor(s, &hit, ray.direction), light);
+        }
         s->slots[s->stepStart[step] + particle] = (vplVirtualLight){
             hit.position, documented ? hit.normal : facing,
             light,        (float)((double)s->def.particleCount / s->stepCounts[step]),
@@ -105,9 +142,8 @@ static void followParticle(Simulation* s, int particle)
             hit.object,
         };
         vplSampleSource_Direction(&s->samples, particle, step + 1, &u, &v);
-        ray.origin = hit.position;
-        ray.direction = mirror ? reflect(ray.direction, hit.normal) : vplSampleCosineAround(facing, u, v);
-        start = (vplRayStart){hit.object, hit.face};
+        vplVec3 onward = mirror ? reflect(ray.direction, hit.normal) : vplSampleCosineAround(facing, u, v);
+        ray = vplGeometry_Leave(s->geometry, &hit, onward);
     }
     for (; step < s->stepCount && particle < s->stepCounts[step]; step++) {
         s->slots[s->stepStart[step] + particle].step = -1;
@@ -138,9 +174,9 @@ static void collect(const Simulation* s, vplLightSet* set, int* lightsInStep)
     }
     for (int i = 0; i < s->def.particleCount; i++) {
         set->rays += s->raysOf[i];
+        set->rayObjectTests += s->testsOf[i];
         set->escaped += s->escapedOf[i];
     }
-    set->rayObjectTests = set->rays * s->geometry->objectCount;
 }
 
 static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
@@ -174,12 +210,13 @@ static vplResult allocate(Simulation* s, vplLightSet* set, int64_t total, int** 
     *lightsInStep = vplAllocZero(context, steps, sizeof(int));
     s->slots = vplAlloc(context, (size_t)total, sizeof *s->slots);
     s->raysOf = vplAllocZero(context, particles, sizeof *s->raysOf);
+    s->testsOf = vplAllocZero(context, particles, sizeof *s->testsOf);
     s->escapedOf = vplAllocZero(context, particles, sizeof *s->escapedOf);
     set->stepCounts = s->stepCounts = counts;
     s->stepStart = starts;
     set->lightsInStep = *lightsInStep;
     set->lights = s->slots;
-    if (!counts || !starts || !*lightsInStep || !s->slots || !s->raysOf || !s->escapedOf) {
+    if (!counts || !starts || !*lightsInStep || !s->slots || !s->raysOf || !s->testsOf || !s->escapedOf) {
         return VPL_OUT_OF_MEMORY;
     }
     vplResult result = vplCountParticles(context, s->def.particleCount, s->def.reflectivity, counts,
@@ -224,6 +261,7 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     }
     vplFree(context, (int*)s.stepStart);
     vplFree(context, s.raysOf);
+    vplFree(context, s.testsOf);
     vplFree(context, s.escapedOf);
     if (result != VPL_SUCCESS) {
         vplLightSet_Destroy(set);

@@ -44,8 +44,8 @@ void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* 
         // Lights that the camera cannot see are drawn small. Its view begins at the near plane.
         vplVec3 way = vplSub(light->position, view->eye);
         float begin = (float)view->near / vplDot(view->forward, way);
-        vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way)};
-        bool hidden = vplGeometry_IsOccluded(geometry, &ray, (vplRayStart){-1, VPL_FACE_NONE}, 0.9999f);
+        vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way), {0, 0}};
+        bool hidden = vplGeometry_IsOccluded(geometry, &ray, 0.9999f);
         vplDrawDisc(image, x, y, hidden ? 0.5f * radius : radius, colours[light->step < 3 ? light->step : 3]);
     }
 }

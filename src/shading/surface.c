@@ -77,7 +77,7 @@ vplFacet vplGetFacet(const vplShading* shading, int triangle)
 {
     const vplGeometry* g = shading->geometry;
     const vplGeometryObject* o = &g->objects[g->owners[triangle]];
-    const vplMaterialDef* material = &g->materials[o->material];
+    const vplMaterialDef* material = &g->materials[g->triangleMaterials[triangle]];
     vplFacet facet = {g->normals[triangle], material->diffuse, material->emission};
     vplVec3 corner = g->positions[(uint32_t)o->firstVertex + g->indices[3 * (size_t)triangle]];
     bool fromBehind = vplDot(facet.normal, vplSub(shading->view->eye, corner)) < 0;

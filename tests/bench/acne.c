@@ -40,17 +40,17 @@ static int findPoints(const vplGeometry* g, const vplView* view, vplVec3 light, 
 {
     int count = 0;
     for (int i = 0; i < SIZE * SIZE; i++) {
-        vplRay ray = {view->eye, rayThrough(view, i % SIZE, i / SIZE)};
+        vplRay ray = {view->eye, rayThrough(view, i % SIZE, i / SIZE), {0, 0}};
         vplHit hit;
-        if (!vplGeometry_ClosestHit(g, &ray, (vplRayStart){-1, VPL_FACE_NONE}, &hit)) {
+        if (!vplGeometry_ClosestHit(g, &ray, &hit)) {
             continue;
         }
         vplVec3 l = {light.x - hit.position.x, light.y - hit.position.y, light.z - hit.position.z};
         if (hit.normal.x * l.x + hit.normal.y * l.y + hit.normal.z * l.z <= 0) {
             continue;
         }
-        vplRay shadowRay = {hit.position, l};
-        bool lit = !vplGeometry_IsOccluded(g, &shadowRay, (vplRayStart){hit.object, hit.face}, 1);
+        vplRay shadowRay = vplGeometry_Leave(g, &hit, l);
+        bool lit = !vplGeometry_IsOccluded(g, &shadowRay, 1);
         points[count++] = (Point){hit.position, hit.normal, lit};
     }
     return count;

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: MIT
+// Based on: Ingo Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007: ranges of
+// triangles are split where the surface area heuristic, sampled at bins of centroids, is least.
+// Departs: no binary tree is made first. A node splits its largest child again and again until it has eight.
+#include "geometry/bvh.h"
+#include "base/context.h"
+#include "base/isa.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BINS = 16, LEAF = VPL_BVH_WIDTH, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
+
+typedef struct Box {
+    float low[3], high[3];
+} Box;
+
+static const Box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+// A triangle while the tree is built.
+typedef struct Item {
+    Box box;
+    int id;
+} Item;
+
+typedef struct Range {
+    Box box;
+    int first, count;
+} Range;
+
+typedef struct Builder {
+    vplContext* context;
+    const vplGeometry* geometry;
+    Item* items;
+    vplBvh* bvh;
+    size_t nodeCapacity, blockCapacity;
+} Builder;
+
+static void grow(Box* box, const Box* by)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        box->low[axis] = by->low[axis] < box->low[axis] ? by->low[axis] : box->low[axis];
+        box->high[axis] = by->high[axis] > box->high[axis] ? by->high[axis] : box->high[axis];
+    }
+}
+
+// Half the surface. In double: sides of 1e15 would overflow.
+static double areaOf(const Box* box)
+{
+    double x = (double)box->high[0] - box->low[0], y = (double)box->high[1] - box->low[1],
+           z = (double)box->high[2] - box->low[2];
+    return x >= 0 ? x * y + y * z + z * x : 0;
+}
+
+// Twice the centre.
+static double centreOf(const Item* item, int axis)
+{
+    return (double)item->box.low[axis] + item->box.high[axis];
+}
+
+typedef struct Split {
+    double cost;
+    int axis, bin; // bins up to this one go left
+    double from, scale;
+} Split;
+
+static int binOf(const Split* split, const Item* item)
+{
+    int bin = (int)((centreOf(item, split->axis) - split->from) * split->scale);
+    return bin < BINS ? bin : BINS - 1;
+}
+
+// The cheapest of the 15 planes between bins along one axis.
+static Split splitAlong(const Builder* b, const Range* range, int axis, double from, double to)
+{
+    Split best = {INFINITY, axis, 0, from, BINS / (to - from)};
+    Box boxes[BINS];
+    int counts[BINS] = {0};
+    double rightCost[BINS];
+    for (int i = 0; i < BINS; i++) {
+        boxes[i] = NOTHING;
+    }
+    for (int i = range->first; i < range->first + range->count; i++) {
+        int bin = binOf(&best, &b->items[i]);
+        counts[bin]++;
+        grow(&boxes[bin], &b->items[i].box);
+    }
+    Box right = NOTHING, left = NOTHING;
+    for (int i = BINS - 1, count = 0; i > 0; i--) {
+        grow(&right, &boxes[i]);
+        count += counts[i];
+        rightCost[i] = count ? areaOf(&right) * count : INFINITY;
+    }
+    for (int i = 0, count = 0; i < BINS - 1; i++) {
+        grow(&left, &boxes[i]);
+        count += counts[i];
+        double cost = count ? areaOf(&left) * count + rightCost[i + 1] : INFINITY;
+        if (cost < best.cost) {
+            best.cost = cost;
+            best.bin = i;
+        }
+    }
+    return best;
+}
+
+static Split findSplit(const Builder* b, const Range* range)
+{
+    Split best = {INFINITY, 0, 0, 0, 0};
+    for (int axis = 0; axis < 3; axis++) {
+        double from = INFINITY, to = -INFINITY;
+        for (int i = range->first; i < range->first + range->count; i++) {
+            double centre = centreOf(&b->items[i], axis);
+            from = centre < from ? centre : from;
+            to = centre > to ? centre : to;
+        }
+        if (to > from) {
+            Split split = splitAlong(b, range, axis, from, to);
+            best = split.cost < best.cost ? split : best;
+        }
+    }
+    return best;
+}
+
+static Range makeRange(const Builder* b, int first, int count)
+{
+    Range range = {NOTHING, first, count};
+    for (int i = first; i < first + count; i++) {
+        grow(&range.box, &b->items[i].box);
+    }
+    return range;
+}
+
+// Cuts a range in two; in halves where no plane separates centres, or where the tree gets too deep.
+static void cut(const Builder* b, Range* range, Range* otherOut, int depth)
+{
+    Split split = findSplit(b, range);
+    int first = range->first, end = first + range->count, middle = first + range->count / 2;
+    if (split.cost < INFINITY && depth < HALVING_DEPTH) {
+        middle = first;
+        for (int last = end; middle < last;) {
+            Item* item = &b->items[middle];
+            if (binOf(&split, item) <= split.bin) {
+                middle++;
+            } else {
+                Item swap = b->items[--last];
+                b->items[last] = *item;
+                *item = swap;
+            }
+        }
+    }
+    *otherOut = makeRange(b, middle, end - middle);
+    *range = makeRange(b, first, middle - first);
+}
+
+// The corners of a triangle in world space.
+static void getCorners(const vplGeometry* g, int triangle, float p[3][3])
+{
+    const vplVec3* positions = g->positions + g->objects[g->owners[triangle]].firstVertex;
+    for (int corner = 0; corner < 3; corner++) {
+        vplVec3 at = positions[g->indices[3 * (size_t)triangle + (size_t)corner]];
+        p[corner][0] = at.x;
+        p[corner][1] = at.y;
+        p[corner][2] = at.z;
+    }
+}
+
+static vplResult addBlock(Builder* b, const Range* range, int32_t* childOut)
+{
+    vplBvh* bvh = b->bvh;
+    vplResult result = vplReserve(b->context, &bvh->blocks, &b->blockCapacity, (size_t)bvh->blockCount + 1,
+                                  sizeof *bvh->blocks);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    int ids[VPL_BVH_WIDTH];
+    for (int i = 0; i < range->count; i++) { // ascending, by insertion
+        int at = i;
+        for (; at > 0 && ids[at - 1] > b->items[range->first + i].id; at--) {
+            ids[at] = ids[at - 1];
+        }
+        ids[at] = b->items[range->first + i].id;
+    }
+    vplTriangleBlock* block = &bvh->blocks[bvh->blockCount];
+    for (int lane = 0; lane < VPL_BVH_WIDTH; lane++) {
+        bool used = lane < range->count;
+        float p[3][3];
+        getCorners(b->geometry, ids[used ? lane : 0], p);
+        block->id[lane] = used ? ids[lane] : -1;
+        for (int i = 0; i < 9; i++) {
+            block->p[i / 3][i % 3][lane] = p[i / 3][i % 3];
+        }
+    }
+    *childOut = ~bvh->blockCount++;
+    return VPL_SUCCESS;
+}
+
+// Splits a range into up to eight children.
+static int split(const Builder* b, const Range* range, int depth, Range children[VPL_BVH_WIDTH])
+{
+    int count = 1;
+    children[0] = *range;
+    while (count < VPL_BVH_WIDTH) {
+        int largest = -1;
+        double most = -1;
+        for (int i = 0; i < count; i++) {
+            double area = areaOf(&children[i].box);
+            if (children[i].count > LEAF && area > most) {
+                largest = i;
+                most = area;
+            }
+        }
+        if (largest < 0) {
+            break;
+        }
+        cut(b, &children[largest], &children[count++], depth);
+    }
+    return count;
+}
+
+static vplResult addNode(Builder* b, const Range* range, int depth, int32_t* childOut)
+{
+    if (range->count <= LEAF && depth > 0) {
+        return addBlock(b, range, childOut);
+    }
+    vplBvh* bvh = b->bvh;
+    vplResult result =
+        vplReserve(b->context, &bvh->nodes, &b->nodeCapacity, (size_t)bvh->nodeCount + 1, sizeof *bvh->nodes);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    Range children[VPL_BVH_WIDTH];
+    const int count = split(b, range, depth, children), index = bvh->nodeCount++;
+    vplBvhNode node;
+    for (int i = 0; i < VPL_BVH_WIDTH; i++) {
+        const Box* box = i < count ? &children[i].box : &NOTHING;
+        for (int axis = 0; axis < 3; axis++) {
+            node.low[axis][i] = box->low[axis];
+            node.high[axis][i] = box->high[axis];
+        }
+        node.child[i] = 0;
+    }
+    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+        result = addNode(b, &children[i], depth + 1, &node.child[i]);
+    }
+    bvh->nodes[index] = node; // the array may have moved
+    *childOut = index;
+    return result;
+}
+
+// The triangles that can be hit.
+static int collectItems(const vplGeometry* g, Item* items)
+{
+    int count = 0;
+    for (int i = 0; i < g->triangleCount; i++) {
+        vplVec3 n = g->normals[i];
+        if (n.x != 0 || n.y != 0 || n.z != 0) {
+            float p[3][3];
+            getCorners(g, i, p);
+            vplBoundTriangle(p, items[count].box.low, items[count].box.high);
+            items[count++].id = i;
+        }
+    }
+    return count;
+}
+
+static vplResult build(Builder* b, int count, int bruteBlocks)
+{
+    int32_t child;
+    if (count == 0) {
+        return VPL_SUCCESS;
+    }
+    if ((count + VPL_BVH_WIDTH - 1) / VPL_BVH_WIDTH > bruteBlocks) {
+        Range all = makeRange(b, 0, count);
+        return addNode(b, &all, 0, &child);
+    }
+    vplResult result = VPL_SUCCESS;
+    for (int i = 0; i < count && result == VPL_SUCCESS; i += VPL_BVH_WIDTH) {
+        Range range = {NOTHING, i, count - i < VPL_BVH_WIDTH ? count - i : VPL_BVH_WIDTH};
+        result = addBlock(b, &range, &child);
+    }
+    return result;
+}
+
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut)
+{
+    vplContext* context = geometry->context;
+    Builder b = {.context = context, .geometry = geometry};
+    b.bvh = vplAllocZero(context, 1, sizeof *b.bvh);
+    b.items = b.bvh ? vplAlloc(context, (size_t)geometry->triangleCount, sizeof *b.items) : NULL;
+    vplResult result = VPL_OUT_OF_MEMORY;
+    if (b.items != NULL) {
+        result = build(&b, collectItems(geometry, b.items), bruteBlocks);
+    }
+    vplFree(context, b.items);
+    if (result != VPL_SUCCESS) {
+        vplBvh_Destroy(context, b.bvh);
+        return result;
+    }
+    *bvhOut = b.bvh;
+    return VPL_SUCCESS;
+}
+
+void vplBvh_Destroy(vplContext* context, vplBvh* bvh)
+{
+    if (bvh != NULL) {
+        vplFree(context, bvh->nodes);
+        vplFree(context, bvh->blocks);
+        vplFree(context, bvh);
+    }
+}
+
+VPL_KERNEL_TABLE(CLOSEST, vplTraceClosestFcn, vplTraceClosest);
+VPL_KERNEL_TABLE(ANY, vplTraceAnyFcn, vplTraceAny);
+
+vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa)
+{
+    return CLOSEST[isa];
+}
+
+vplTraceAnyFcn* vplGetTraceAny(vplIsa isa)
+{
+    return ANY[isa];
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// A bounding volume hierarchy with eight children per node over blocks of up to eight triangles. Also the
+// arrays of blocks alone, for scenes so small that testing all of them is faster.
+#ifndef VPL_GEOMETRY_BVH_H
+#define VPL_GEOMETRY_BVH_H
+
+#include <vpl/geometry.h>
+
+enum {
+    VPL_BVH_WIDTH = 8,  // children of a node, and triangles of a block
+    VPL_BVH_DEPTH = 64, // deepest tree; the builder splits in halves before it gets there
+    // Up to this many blocks all are tested: measured by tests/bench/rays.
+    VPL_BRUTE_BLOCKS = 8
+};
+
+// The box that stands for a triangle. It is wider than the corners by what the triangle test may err, about
+// two units in the last place of coordinates and of differences between them.
+static inline void vplBoundTriangle(const float p[3][3], float low[3], float high[3])
+{
+    float extent = 0, largest = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        float a = p[0][axis], b = p[1][axis], c = p[2][axis];
+        float least = a < b ? a : b, most = a > b ? a : b;
+        low[axis] = least < c ? least : c;
+        high[axis] = most > c ? most : c;
+        float size = high[axis] - low[axis];
+        extent = extent > size ? extent : size;
+        float magnitude = -low[axis] > high[axis] ? -low[axis] : high[axis];
+        largest = largest > magnitude ? largest : magnitude;
+    }
+    const float pad = extent * 0x1p-20f + largest * 0x1p-22f;
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] -= pad;
+        high[axis] += pad;
+    }
+}
+
+typedef struct vplBvhNode {
+    float low[3][VPL_BVH_WIDTH], high[3][VPL_BVH_WIDTH]; // unused children: low above high
+    int32_t child[VPL_BVH_WIDTH];                        // >= 0: a node; else ~block
+} vplBvhNode;
+
+// Triangles side by side, so that one instruction tests all of them. Unused lanes have id -1.
+typedef struct vplTriangleBlock {
+    float p[3][3][VPL_BVH_WIDTH]; // [corner][axis]
+    int32_t id[VPL_BVH_WIDTH];    // ascending
+} vplTriangleBlock;
+
+typedef struct vplBvh {
+    vplBvhNode* nodes; // the root first; NULL: test all blocks
+    vplTriangleBlock* blocks;
+    int nodeCount, blockCount;
+} vplBvh;
+
+// Builds over all triangles of positive area; without nodes up to `bruteBlocks` blocks (VPL_BRUTE_BLOCKS is
+// what pays).
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
+void vplBvh_Destroy(vplContext* context, vplBvh* bvh);
+
+// What a traversal found: t is the limit if nothing was.
+typedef struct vplRawHit {
+    float t;
+    float b1, b2; // weights of corners 1 and 2
+    int triangle; // -1: none
+    int blocks;   // tested on the way
+} vplRawHit;
+
+// The closest hit with t in (0, tMax); among equal t the lowest triangle.
+typedef void vplTraceClosestFcn(const vplBvh* bvh, const vplRay* ray, float tMax, vplRawHit* hitOut);
+
+// Whether there is any.
+typedef bool vplTraceAnyFcn(const vplBvh* bvh, const vplRay* ray, float tMax);
+
+vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa);
+vplTraceAnyFcn* vplGetTraceAny(vplIsa isa);
+
+// vplGeometry_ClosestHit that also adds to *tests: objects where all are tested, else blocks of triangles.
+bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests);
+
+#endif

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// Every quad becomes two world-space triangles, every box twelve, a mesh its own. Corners are rounded from
+// double once and shared by the faces that meet there, so edges are watertight.
+#include "geometry/freeze.h"
+#include "math/matrix.h"
+#include "math/vec.h"
+
+#include <math.h>
+#include <string.h>
+
+static const vplVec3 QUAD_CORNERS[4] = {
+    {-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}};
+static const uint32_t QUAD_INDICES[6] = {0, 1, 2, 0, 2, 3};
+
+// Corner i has x = +0.5 if bit 0 is set, y if bit 1, z if bit 2.
+static const vplVec3 BOX_CORNERS[8] = {{-0.5f, -0.5f, -0.5f}, {0.5f, -0.5f, -0.5f}, {-0.5f, 0.5f, -0.5f},
+                                       {0.5f, 0.5f, -0.5f},   {-0.5f, -0.5f, 0.5f}, {0.5f, -0.5f, 0.5f},
+                                       {-0.5f, 0.5f, 0.5f},   {0.5f, 0.5f, 0.5f}};
+static const uint32_t BOX_INDICES[36] = {
+    1, 3, 7, 1, 7, 5, // +x
+    0, 4, 6, 0, 6, 2, // -x
+    2, 6, 7, 2, 7, 3, // +y
+    0, 1, 5, 0, 5, 4, // -y
+    4, 5, 7, 4, 7, 6, // +z
+    0, 2, 3, 0, 3, 1, // -z
+};
+
+// The shape of an object in its own space.
+static vplMeshDef shapeOf(const vplScene* scene, const vplObjectDef* def)
+{
+    if (def->type == VPL_OBJECT_MESH) {
+        return scene->meshes[def->mesh];
+    }
+    vplMeshDef shape = {0};
+    bool quad = def->type == VPL_OBJECT_QUAD;
+    shape.positions = quad ? QUAD_CORNERS : BOX_CORNERS;
+    shape.indices = quad ? QUAD_INDICES : BOX_INDICES;
+    shape.vertexCount = quad ? 4 : 8;
+    shape.triangleCount = quad ? 2 : 12;
+    return shape;
+}
+
+int vplCountVertices(const vplScene* scene, const vplObjectDef* def)
+{
+    return shapeOf(scene, def).vertexCount;
+}
+
+int vplCountTriangles(const vplScene* scene, const vplObjectDef* def)
+{
+    return shapeOf(scene, def).triangleCount;
+}
+
+static vplVec3 toWorld(const vplAffine* world, vplVec3 p)
+{
+    float at[3];
+    for (int row = 0; row < 3; row++) {
+        double sum = world->m[row][3];
+        for (int axis = 0; axis < 3; axis++) {
+            sum += world->m[row][axis] * vplComponent(p, axis);
+        }
+        at[row] = (float)sum;
+    }
+    return vplVec(at[0], at[1], at[2]);
+}
+
+static vplVec3 unit(const double v[3])
+{
+    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (!(largest > 0)) {
+        return vplVec(0, 0, 0);
+    }
+    double x = v[0] / largest, y = v[1] / largest, z = v[2] / largest;
+    double length = sqrt(x * x + y * y + z * z);
+    return vplVec((float)(x / length), (float)(y / length), (float)(z / length));
+}
+
+// A normal is a row vector: it goes through the inverse from the left.
+static vplVec3 normalToWorld(const vplPlacement* placement, vplVec3 n)
+{
+    double v[3];
+    for (int i = 0; i < 3; i++) {
+        v[i] =
+            n.x * placement->toLocal[0][i] + n.y * placement->toLocal[1][i] + n.z * placement->toLocal[2][i];
+    }
+    return unit(v);
+}
+
+// Twice the area, along the normal of the counter-clockwise side. Differences of floats keep all digits here.
+static void crossOf(const vplVec3* p, const uint32_t* index, double cross[3])
+{
+    double u[3], v[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double origin = vplComponent(p[index[0]], axis);
+        u[axis] = vplComponent(p[index[1]], axis) - origin;
+        v[axis] = vplComponent(p[index[2]], axis) - origin;
+    }
+    cross[0] = u[1] * v[2] - u[2] * v[1];
+    cross[1] = u[2] * v[0] - u[0] * v[2];
+    cross[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+double vplTriangleArea(const vplVec3* positions, const uint32_t* index)
+{
+    double c[3];
+    crossOf(positions, index, c);
+    return 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+}
+
+static bool mirrors(const vplPlacement* p)
+{
+    const double(*m)[4] = p->toWorld;
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+               m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+           0;
+}
+
+static void fillVertices(const vplFreezer* f, const vplObjectDef* def, const vplMeshDef* shape,
+                         const vplGeometryObject* object)
+{
+    const vplAffine world = vplAffine_FromMat4(&def->transform);
+    for (int i = 0; i < shape->vertexCount; i++) {
+        f->positions[object->firstVertex + i] = toWorld(&world, shape->positions[i]);
+    }
+    for (int i = 0; f->shadingNormals != NULL && i < shape->vertexCount; i++) {
+        f->shadingNormals[object->firstVertex + i] =
+            object->smooth ? normalToWorld(&object->placement, shape->normals[i]) : vplVec(0, 0, 0);
+    }
+}
+
+static void fillTriangles(const vplFreezer* f, const vplMeshDef* shape, int owner)
+{
+    vplGeometryObject* object = &f->objects[owner];
+    const bool turn = mirrors(&object->placement); // counter-clockwise became clockwise
+    const vplVec3* positions = f->positions + object->firstVertex;
+    double area = 0, sums[3] = {0, 0, 0};
+    for (int i = 0; i < shape->triangleCount; i++) {
+        const size_t at = (size_t)object->firstTriangle + (size_t)i;
+        const uint32_t* from = shape->indices + 3 * (size_t)i;
+        uint32_t* index = f->indices + 3 * at;
+        index[0] = from[0];
+        index[1] = from[turn ? 2 : 1];
+        index[2] = from[turn ? 1 : 2];
+        const int material = object->material >= 0 ? object->material : shape->materials[i];
+        const vplRgb rho = f->scene->materials[material].diffuse;
+        const double a = vplTriangleArea(positions, index);
+        area += a;
+        sums[0] += a * rho.r;
+        sums[1] += a * rho.g;
+        sums[2] += a * rho.b;
+        f->owners[at] = owner;
+        f->materials[at] = material;
+        if (object->type == VPL_OBJECT_MESH) {
+            double cross[3];
+            crossOf(positions, index, cross);
+            f->normals[at] = unit(cross);
+        } else {
+            const float* n =
+                object->placement.normal[object->type == VPL_OBJECT_QUAD ? VPL_FACE_QUAD : i / 2];
+            f->normals[at] = vplVec(n[0], n[1], n[2]);
+        }
+    }
+    if (area > 0) {
+        object->reflectance =
+            (vplRgb){(float)(sums[0] / area), (float)(sums[1] / area), (float)(sums[2] / area)};
+    }
+}
+
+// The box of a mesh in its own axes, taken along with the object. Flat meshes get a thin one.
+static void findOrientedBox(const vplObjectDef* def, const vplMeshDef* shape, vplGeometryObject* object)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, largest = 0;
+    for (int i = 0; i < shape->vertexCount; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            double p = vplComponent(shape->positions[i], axis);
+            low[axis] = p < low[axis] ? p : low[axis];
+            high[axis] = p > high[axis] ? p : high[axis];
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        largest = fmax(largest, fmax(high[axis] - low[axis], 1e-6 * fmax(fabs(low[axis]), fabs(high[axis]))));
+    }
+    vplAffine box = vplAffine_FromMat4(&def->transform), fit = box;
+    for (int row = 0; row < 3; row++) {
+        for (int axis = 0; axis < 3; axis++) {
+            fit.m[row][axis] = box.m[row][axis] * fmax(high[axis] - low[axis], 1e-6 * largest);
+            fit.m[row][3] += box.m[row][axis] * 0.5 * (low[axis] + high[axis]);
+        }
+    }
+    const vplMat4 matrix = vplAffine_ToMat4(&fit);
+    object->bounds = object->placement; // stays where there is no box: no vertices, or all in one point
+    if (shape->vertexCount > 0 && vplCheckTransform(&matrix).field == NULL) {
+        vplPlacement_Create(NULL, &matrix, &object->bounds);
+    }
+}
+
+void vplFreezeObject(const vplFreezer* freezer, int index)
+{
+    const vplObjectDef* def = &freezer->scene->objects[index];
+    const vplMeshDef shape = shapeOf(freezer->scene, def);
+    vplGeometryObject* object = &freezer->objects[index];
+    fillVertices(freezer, def, &shape, object);
+    fillTriangles(freezer, &shape, index);
+    if (def->type == VPL_OBJECT_MESH) {
+        findOrientedBox(def, &shape, object);
+    } else {
+        object->bounds = object->placement;
+    }
+}

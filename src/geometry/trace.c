@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Rays through the frozen scene: triangles find what is hit, the object's own shape says where.
+#include "base/context.h"
+#include "geometry/bvh.h"
+#include "geometry/intersect.h"
+#include "math/vec.h"
+
+#include <math.h>
+
+// Point and normal of a mesh triangle.
+static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
+{
+    const vplVec3* p = g->positions + g->objects[hit->object].firstVertex;
+    const uint32_t* index = g->indices + 3 * (size_t)raw->triangle;
+    const double w1 = raw->b1, w2 = raw->b2;
+    float at[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double a = vplComponent(p[index[0]], axis), b = vplComponent(p[index[1]], axis),
+               c = vplComponent(p[index[2]], axis);
+        at[axis] = (float)(a + w1 * (b - a) + w2 * (c - a));
+    }
+    hit->position = vplVec(at[0], at[1], at[2]);
+    hit->normal = g->normals[raw->triangle];
+    hit->face = VPL_FACE_NONE;
+    hit->t = raw->t;
+}
+
+bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests)
+{
+    vplRawHit raw;
+    vplGetTraceClosest(geometry->context->isa)(geometry->bvh, ray, INFINITY, &raw);
+    *tests += geometry->bvh->nodes ? raw.blocks : geometry->objectCount;
+    if (raw.triangle < 0) {
+        return false;
+    }
+    const int index = geometry->owners[raw.triangle];
+    const vplGeometryObject* object = &geometry->objects[index];
+    vplHit hit = {.object = index};
+    bool exact = false;
+    if (object->type != VPL_OBJECT_MESH) {
+        bool quad = object->type == VPL_OBJECT_QUAD;
+        int face = quad ? VPL_FACE_QUAD : (raw.triangle - object->firstTriangle) / 2;
+        exact = vplRay_HitFace(ray, &object->placement, face, quad ? 0 : face & 1 ? -0.5 : 0.5, &hit);
+        hit.object = index;
+        hit.face = face;
+    }
+    if (!exact) {
+        int face = hit.face;
+        hitTriangle(geometry, &raw, &hit);
+        hit.face = object->type == VPL_OBJECT_MESH ? VPL_FACE_NONE : face;
+    }
+    hit.triangle = raw.triangle;
+    hit.u = raw.b1;
+    hit.v = raw.b2;
+    *hitOut = hit;
+    return true;
+}
+
+bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)
+{
+    int tests = 0;
+    return vplClosestHit(geometry, ray, hitOut, &tests);
+}
+
+bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)
+{
+    return vplGetTraceAny(geometry->context->isa)(geometry->bvh, ray, tMax);
+}
+
+vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction)
+{
+    const vplGeometryObject* object = &geometry->objects[hit->object];
+    const bool outward = vplDot(direction, hit->normal) >= 0;
+    vplRay ray = {hit->position, direction, {hit->triangle, 1}};
+    if (object->type == VPL_OBJECT_QUAD || (object->type == VPL_OBJECT_BOX && outward)) {
+        ray.skip = (vplSkip){object->firstTriangle, object->triangleCount}; // flat or convex: not met again
+    } else if (object->type == VPL_OBJECT_BOX) {
+        ray.skip = (vplSkip){object->firstTriangle + 2 * hit->face, 2};
+    } else {
+        // The point is off the triangle by rounding, and its neighbours meet it at an angle: step clear of both.
+        vplVec3 p = hit->position;
+        float largest = fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
+        ray.origin = vplAdd(p, vplScale((outward ? 1 : -1) * largest * 0x1p-20f, hit->normal));
+    }
+    return ray;
+}
+
+vplVec3 vplGeometry_ShadingNormal(const vplGeometry* geometry, const vplHit* hit)
+{
+    const vplGeometryObject* object = &geometry->objects[hit->object];
+    if (!object->smooth) {
+        return hit->normal;
+    }
+    const vplVec3* n = geometry->shadingNormals + object->firstVertex;
+    const uint32_t* index = geometry->indices + 3 * (size_t)hit->triangle;
+    vplVec3 sum = vplAdd(vplScale(1 - hit->u - hit->v, n[index[0]]),
+                         vplAdd(vplScale(hit->u, n[index[1]]), vplScale(hit->v, n[index[2]])));
+    float length = vplLength(sum);
+    if (!(length > 0)) {
+        return hit->normal;
+    }
+    float sign = vplDot(sum, hit->normal) < 0 ? -1 : 1; // normals that disagree with the winding
+    return vplScale(sign / length, sum);
+}
+
+bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, const vplHit* from,
+                            vplHit* hitOut)
+{
+    bool found = false;
+    for (int i = 0; i < geometry->objectCount; i++) {
+        const vplGeometryObject* object = &geometry->objects[i];
+        const bool left = from != NULL && from->object == i;
+        vplHit hit;
+        bool met;
+        if (object->type == VPL_OBJECT_QUAD) {
+            met = !left && vplRay_HitQuad(ray, &object->placement, &hit);
+        } else {
+            met = vplRay_HitBox(ray, object->type == VPL_OBJECT_BOX ? &object->placement : &object->bounds,
+                                left ? from->face : VPL_FACE_NONE, &hit);
+        }
+        if (met && (!found || hit.t < hitOut->t)) {
+            *hitOut = hit;
+            hitOut->object = i;
+            hitOut->triangle = object->firstTriangle;
+            found = true;
+        }
+    }
+    return found;
+}
