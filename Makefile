@@ -81,6 +81,7 @@ bench: all
 	@$(MAKE) --no-print-directory $(JOBS) $(BENCH_PROGRAMS)
 	$(BUILD)/vpl bench
 	$(BUILD)/bench/acne
+	$(BUILD)/bench/rays examples/scenes/room.json
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
 golden: deps
@@ -137,6 +138,10 @@ $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
+# Peers that benchmarks are measured against, where this machine has them.
+EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
+$(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
+$(BUILD)/bench/rays: LDLIBS += $(EMBREE)
 $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
