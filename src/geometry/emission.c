@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023, chapter 12,
+// for the powers and the spot's falloff.
+#include "geometry/emission.h"
+#include "base/context.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+#include <string.h>
+
+static double meanOf(vplRgb c)
+{
+    return ((double)c.r + c.g + c.b) / 3;
+}
+
+vplRgb vplScaleRadiometric(double s, vplRgb c)
+{
+    const double most = 0x1.fffffep+127;
+    double r = s * c.r, g = s * c.g, b = s * c.b;
+    return (vplRgb){(float)(r < most ? r : most), (float)(g < most ? g : most), (float)(b < most ? b : most)};
+}
+
+// ---- spots
+
+static void spotCosines(const vplEmitterDef* spot, double* inner, double* outer)
+{
+    double sine;
+    vplSinCos(spot->innerAngle, &sine, inner);
+    vplSinCos(spot->outerAngle, &sine, outer);
+}
+
+double vplSpot_Falloff(const vplEmitterDef* spot, double cosine)
+{
+    double inner, outer;
+    spotCosines(spot, &inner, &outer);
+    if (cosine >= inner) {
+        return 1;
+    }
+    if (cosine <= outer) {
+        return 0;
+    }
+    double x = (cosine - outer) / (inner - outer);
+    return x * x * (3 - 2 * x);
+}
+
+// The smooth step is symmetric, so the ring between the angles counts half.
+double vplSpot_SolidAngle(const vplEmitterDef* spot)
+{
+    double inner, outer;
+    spotCosines(spot, &inner, &outer);
+    return 2 * VPL_PI * ((1 - inner) + (inner - outer) / 2);
+}
+
+double vplSpot_SampleCosine(const vplEmitterDef* spot, double u)
+{
+    double inner, outer;
+    spotCosines(spot, &inner, &outer);
+    double plain = 1 - inner, ring = (inner - outer) / 2;
+    double at = u * (plain + ring);
+    if (at <= plain || ring <= 0) {
+        return 1 - at;
+    }
+    // In the ring the integral of the smooth step up to x is x^3 - x^4/2; what is left of u is measured from
+    // the outer edge. Bisection to the last bit of a float needs no derivative and always takes the same path.
+    double wanted = (plain + ring - at) / (2 * ring), low = 0, high = 1;
+    for (int i = 0; i < 30; i++) {
+        double x = (low + high) / 2;
+        *(x * x * x * (1 - x / 2) < wanted ? &low : &high) = x;
+    }
+    return outer + (low + high) / 2 * (inner - outer);
+}
+
+vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction)
+{
+    if (emitter->type != VPL_EMITTER_SPOT) {
+        return emitter->intensity;
+    }
+    double cosine = vplDot(vplNormalize(emitter->direction), direction);
+    return vplRgbScale((float)vplSpot_Falloff(emitter, cosine), emitter->intensity);
+}
+
+// ---- the list
+
+vplTriangleCorners vplGeometry_Corners(const vplGeometry* g, int triangle)
+{
+    const vplVec3* p = g->positions + g->objects[g->owners[triangle]].firstVertex;
+    const uint32_t* index = g->indices + 3 * (size_t)triangle;
+    return (vplTriangleCorners){{p[index[0]], p[index[1]], p[index[2]]}};
+}
+
+double vplGeometry_TriangleArea(const vplGeometry* g, int triangle)
+{
+    vplTriangleCorners t = vplGeometry_Corners(g, triangle);
+    const vplVec3 *a = &t.corner[0], *b = &t.corner[1], *c = &t.corner[2];
+    double ux = (double)b->x - a->x, uy = (double)b->y - a->y, uz = (double)b->z - a->z;
+    double vx = (double)c->x - a->x, vy = (double)c->y - a->y, vz = (double)c->z - a->z;
+    double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    return 0.5 * sqrt(nx * nx + ny * ny + nz * nz);
+}
+
+// Counts the sources, or fills in as many as were counted.
+typedef struct Lister {
+    vplEmissionSource* sources; // NULL to count
+    double* sums;
+    int count;
+} Lister;
+
+static void list(Lister* l, int emitter, int triangle, double factor, vplRgb light)
+{
+    double power = factor * meanOf(light);
+    if (!(power > 0)) {
+        return;
+    }
+    if (l->sources != NULL) {
+        l->sources[l->count] = (vplEmissionSource){emitter, triangle, vplScaleRadiometric(factor, light)};
+        l->sums[l->count + 1] = l->sums[l->count] + power;
+    }
+    l->count++;
+}
+
+static void listSources(const vplEmission* e, Lister* l, int* firstTriangle)
+{
+    const vplGeometry* g = e->geometry;
+    for (int i = 0; i < e->emitterCount; i++) {
+        const vplEmitterDef* emitter = &e->emitters[i];
+        double factor = emitter->type == VPL_EMITTER_POINT  ? 4 * VPL_PI
+                        : emitter->type == VPL_EMITTER_SPOT ? vplSpot_SolidAngle(emitter)
+                                                            : VPL_PI * e->radius * e->radius;
+        list(l, i, -1, factor, emitter->intensity);
+    }
+    *firstTriangle = l->count;
+    for (int i = 0; i < g->triangleCount; i++) {
+        vplRgb radiance = g->materials[g->triangleMaterials[i]].emission;
+        if (meanOf(radiance) > 0) {
+            list(l, -1, i, VPL_PI * vplGeometry_TriangleArea(g, i), radiance);
+        }
+    }
+}
+
+static void coverGeometry(vplEmission* e)
+{
+    vplVec3 low = e->geometry->boundsMin, high = e->geometry->boundsMax;
+    e->centre = vplScale(0.5f, vplAdd(low, high));
+    double x = (double)high.x - low.x, y = (double)high.y - low.y, z = (double)high.z - low.z;
+    e->radius = 0.5 * sqrt(x * x + y * y + z * z);
+}
+
+static vplResult fill(vplEmission* e, const vplEmitterDef* emitters)
+{
+    vplContext* context = e->context;
+    vplEmitterDef* copies = vplAlloc(context, (size_t)e->emitterCount, sizeof *copies);
+    e->emitters = copies;
+    if (copies == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int i = 0; i < e->emitterCount; i++) {
+        copies[i] = emitters[i];
+        copies[i].direction = vplNormalize(emitters[i].direction);
+    }
+    Lister counter = {NULL, NULL, 0};
+    listSources(e, &counter, &e->firstTriangle);
+    e->sourceCount = counter.count;
+    vplEmissionSource* sources = vplAlloc(context, (size_t)e->sourceCount, sizeof *sources);
+    e->sources = sources;
+    double* sums = sources ? vplAlloc(context, (size_t)e->sourceCount + 1, sizeof *sums) : NULL;
+    e->cumulative = sums;
+    if (sums == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    sums[0] = 0;
+    Lister lister = {sources, sums, 0};
+    listSources(e, &lister, &e->firstTriangle);
+    return VPL_SUCCESS;
+}
+
+vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
+                             vplEmission** emissionOut)
+{
+    vplEmission* e = vplAllocZero(geometry->context, 1, sizeof *e);
+    if (e == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    e->context = geometry->context;
+    e->geometry = geometry;
+    e->emitterCount = emitterCount;
+    coverGeometry(e);
+    vplResult result = fill(e, emitters);
+    if (result != VPL_SUCCESS) {
+        vplEmission_Destroy(e);
+        return result;
+    }
+    *emissionOut = e;
+    return VPL_SUCCESS;
+}
+
+void vplEmission_Destroy(vplEmission* emission)
+{
+    if (emission != NULL) {
+        vplFree(emission->context, (void*)emission->emitters);
+        vplFree(emission->context, (void*)emission->sources);
+        vplFree(emission->context, (void*)emission->cumulative);
+        vplFree(emission->context, emission);
+    }
+}
+
+double vplEmission_Power(const vplEmission* emission)
+{
+    return emission->cumulative[emission->sourceCount];
+}
+
+int vplEmission_Choose(const vplEmission* e, int first, double choice, double* restOut)
+{
+    const double* sums = e->cumulative;
+    double start = sums[first], place = start + choice * (sums[e->sourceCount] - start);
+    int low = first, high = e->sourceCount - 1; // sums[low] <= place < sums[high + 1], but for rounding
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if (place < sums[middle + 1]) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    while (low > first && sums[low + 1] == sums[low]) {
+        low--; // a source too weak to be felt in the sum; reached when `place` was rounded up to the total
+    }
+    double rest = (place - sums[low]) / (sums[low + 1] - sums[low]);
+    *restOut = rest > 0 ? (rest < 1 ? rest : 0x1.fffffep-1) : 0;
+    return low;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Based on: Eric Heitz, A Low-Distortion Map Between Triangle and Square, 2019, for points on triangles; Alexander
+// Keller, Instant Radiosity, SIGGRAPH 1997, for particles that start where light does.
+#include "geometry/emission.h"
+#include "math/sampling.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, float u, float v)
+{
+    // The square is folded along its diagonal onto the triangle: strata stay compact.
+    float b, c;
+    if (v > u) {
+        b = 0.5f * u;
+        c = v - b;
+    } else {
+        c = 0.5f * v;
+        b = u - c;
+    }
+    float a = 1 - b - c;
+    vplTriangleCorners t = vplGeometry_Corners(geometry, triangle);
+    int owner = geometry->owners[triangle];
+    const vplGeometryObject* object = &geometry->objects[owner];
+    vplHit hit = {
+        .object = owner, .triangle = triangle, .u = b, .v = c, .normal = geometry->normals[triangle]};
+    hit.face = object->type == VPL_OBJECT_QUAD  ? VPL_FACE_QUAD
+               : object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2
+                                                : VPL_FACE_NONE;
+    hit.position =
+        vplAdd(vplScale(a, t.corner[0]), vplAdd(vplScale(b, t.corner[1]), vplScale(c, t.corner[2])));
+    return hit;
+}
+
+static vplVec3 directionAround(vplVec3 axis, double cosine, float v)
+{
+    vplVec3 tangent, bitangent;
+    double sine2 = 1 - cosine * cosine, along, across;
+    float radius = (float)sqrt(sine2 > 0 ? sine2 : 0);
+    vplFrame(axis, &tangent, &bitangent);
+    vplSinCosQuarters(4.0 * v, &across, &along);
+    vplVec3 side =
+        vplAdd(vplScale(radius * (float)along, tangent), vplScale(radius * (float)across, bitangent));
+    return vplNormalize(vplAdd(side, vplScale((float)cosine, axis)));
+}
+
+// From a disc just outside the sphere around the geometry.
+static vplVec3 startOutside(const vplEmission* e, vplVec3 direction, float u, float v)
+{
+    float x, y, radius = (float)e->radius;
+    vplVec3 tangent, bitangent;
+    vplSampleConcentricDisc(u, v, &x, &y);
+    vplFrame(direction, &tangent, &bitangent);
+    vplVec3 onDisc = vplAdd(vplScale(radius * x, tangent), vplScale(radius * y, bitangent));
+    return vplAdd(e->centre, vplSub(onDisc, vplScale(1.001f * radius, direction)));
+}
+
+static void startFromEmitter(const vplEmission* e, const vplEmitterDef* emitter, const float u[4],
+                             vplParticle* p)
+{
+    p->ray.origin = emitter->position;
+    p->ray.skip = (vplSkip){0, 0};
+    if (emitter->type == VPL_EMITTER_POINT) {
+        p->ray.direction = vplSampleSphere(u[2], u[3]);
+    } else if (emitter->type == VPL_EMITTER_SPOT) {
+        p->ray.direction = directionAround(emitter->direction, vplSpot_SampleCosine(emitter, u[2]), u[3]);
+    } else {
+        p->ray.direction = emitter->direction;
+        p->ray.origin = startOutside(e, emitter->direction, u[0], u[1]);
+    }
+    p->normal = p->ray.direction;
+}
+
+bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
+                                vplParticle* particleOut)
+{
+    if (emission->sourceCount == 0) {
+        return false;
+    }
+    double rest;
+    int chosen = vplEmission_Choose(emission, 0, choice, &rest);
+    const vplEmissionSource* source = &emission->sources[chosen];
+    const double* sums = emission->cumulative + chosen;
+    vplParticle p = {.source = chosen};
+    p.flux = vplScaleRadiometric(vplEmission_Power(emission) / (sums[1] - sums[0]), source->power);
+    if (source->triangle >= 0) {
+        vplHit start = vplGeometry_SampleTriangle(emission->geometry, source->triangle, u[0], u[1]);
+        vplVec3 direction = vplSampleCosineAround(start.normal, u[2], u[3]);
+        p.ray = vplGeometry_Leave(emission->geometry, &start, direction);
+        p.normal = start.normal;
+    } else {
+        startFromEmitter(emission, &emission->emitters[source->emitter], u, &p);
+    }
+    *particleOut = p;
+    return true;
+}
