@@ -119,6 +119,66 @@ double vplGeometry_MeanReflectance(const vplGeometry* geometry);
 // Length of the diagonal of the bounding box, metres.
 float vplGeometry_Diagonal(const vplGeometry* geometry);
 
+// ---- everything that emits
+
+// An emitter of the scene, or a triangle whose material emits (from its front only).
+typedef struct vplEmissionSource {
+    int emitter;  // index of the emitter; -1: a triangle
+    int triangle; // index of the triangle; -1: an emitter
+    vplRgb power; // W
+} vplEmissionSource;
+
+// One list of all sources with power, for path tracing and for shooting particles. Read only. A source is
+// chosen with the probability of its share of the power, taken as the mean of the three channels.
+typedef struct vplEmission {
+    const vplGeometry* geometry;
+    const vplEmitterDef* emitters;    // a copy; directions are unit vectors
+    const vplEmissionSource* sources; // emitters first, in the scene's order, then triangles in theirs
+    const double* cumulative; // W: sum of the powers of all sources before this one; one more than sources
+    int emitterCount, sourceCount;
+    int firstTriangle; // index of the first source that is a triangle
+    vplVec3 centre;    // of the sphere around the geometry, which directional emitters cover
+    double radius;     // metres; 0 where there is no geometry
+    vplContext* context;
+} vplEmission;
+
+// Powers: point 4 pi I; spot I times the solid angle weighted by the falloff; directional E pi radius^2;
+// triangle pi L area. `emitters` may be NULL if emitterCount is 0.
+vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
+                             vplEmission** emissionOut);
+
+// NULL is allowed.
+void vplEmission_Destroy(vplEmission* emission);
+
+// W; mean of the three channels; all sources.
+double vplEmission_Power(const vplEmission* emission);
+
+// How much of a spot's full intensity goes where the angle to its axis has this cosine: 1 inside the inner
+// angle, 0 outside the outer, between them 3x^2 - 2x^3 of the cosine's way from outer to inner.
+// Source: Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.2.1 (SmoothStep).
+double vplSpot_Falloff(const vplEmitterDef* spot, double cosine);
+
+// Intensity of a point or spot emitter in a direction (unit vector away from it), W/sr; the irradiance of a
+// directional emitter, W/m^2.
+vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction);
+
+// A point on a triangle, uniform over its area for u, v uniform in [0, 1).
+vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, float u, float v);
+
+// A particle on its way. It carries the flux of all sources: divide by the number of particles.
+typedef struct vplParticle {
+    vplRay ray;     // unit direction; of a directional emitter from outside the geometry
+    vplVec3 normal; // unit: of the triangle, else the direction
+    vplRgb flux;    // W; its mean over the channels is vplEmission_Power, whatever the source
+    int source;     // index
+} vplParticle;
+
+// A particle from five numbers in [0, 1): `choice` takes the source, u[0], u[1] the place (triangle,
+// directional), u[2], u[3] the direction (cosine-distributed from a triangle, uniform from a point, by the
+// falloff from a spot). False where nothing emits.
+bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
+                                vplParticle* particleOut);
+
 #ifdef __cplusplus
 }
 #endif

@@ -95,11 +95,10 @@ static double wayFrom(vplVec3 a, vplVec3 b, double way[3])
 {
     double x = (double)b.x - a.x, y = (double)b.y - a.y, z = (double)b.z - a.z;
     double distance = sqrt(x * x + y * y + z * z);
-    if (distance > 0) {
-        way[0] = x / distance;
-        way[1] = y / distance;
-        way[2] = z / distance;
-    }
+    double scale = distance > 0 ? 1 / distance : 0;
+    way[0] = x * scale;
+    way[1] = y * scale;
+    way[2] = z * scale;
     return distance;
 }
 
