@@ -79,10 +79,11 @@ int main(int count, char** words)
     def.lightCount = set->lightCount;
     def.emission = true;
     vplImage* image;
-    vplRasterStats stats;
+    vplShadeStats stats;
     check(vplImage_Create(context, 320, 240, &image), "image");
     check(vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats), "shading");
-    printf("%lld draw calls, %lld fragments\n", (long long)stats.drawCalls, (long long)stats.fragments);
+    printf("%lld draw calls, %lld fragments\n", (long long)stats.raster.drawCalls,
+           (long long)stats.raster.fragments);
     check(vplToneMap_Reinhard(image, NULL), "tone map");
     check(vplImage_Write(image, words[2], NULL), "picture");
 

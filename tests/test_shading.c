@@ -330,13 +330,19 @@ static void EveryPointOfTheRoomIsLitAsTheTableSays(void** state)
                            .shadows = &shadow,
                            .emitterCount = 1,
                            .particleCount = 10};
-        vplShading shading = {
-            .geometry = room, .def = &def, .emitterKernel = vplGetEmitterKernel(vplContext_GetIsa(context))};
+        vplEmitterRay ray = {.position = emitter.position};
+        vplShading shading = {.geometry = room,
+                              .def = &def,
+                              .emitterKernel = vplGetEmitterKernel(vplContext_GetIsa(context)),
+                              .emitters = &ray};
+        vplPoints points = {.surface = surface};
+        int64_t rays = 0;
         float e[3][VPL_LANES];
-        vplDirectIrradiance(&shading, &surface, e);
+        vplDirectIrradiance(&shading, &points, e, &rays);
         checkRgb(&t, row, "doc_direct", e, rho);
         def.lighting = VPL_LIGHTING_PHYSICAL;
-        vplDirectIrradiance(&shading, &surface, e);
+        ray.falloff = true;
+        vplDirectIrradiance(&shading, &points, e, &rays);
         checkRgb(&t, row, "phys_direct", e, rho);
         memset(e, 0, sizeof e);
         vplAccumulateLights(context, VPL_LIGHTING_DOCUMENTED, 0, &surface, lights, count, e);
@@ -398,7 +404,7 @@ static void DepthIsThatOfTheTable(void** state)
         vplView view = vplView_Create(&camera, 8, 8);
         vplShading shading = {.view = &view};
         vplVec3 point = vplVec(0, 0, -(float)z);
-        vplObjectUniforms uniforms = {&shading, &point, 0};
+        vplObjectUniforms uniforms = {&shading, &point, NULL, 0};
         float clip[4], world[3];
         vplVertices out = {&clip[0], &clip[1], &clip[2], &clip[3], {&world[0], &world[1], &world[2]}};
         vplCameraVertices(&uniforms, 0, 1, &out);

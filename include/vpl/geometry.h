@@ -150,6 +150,9 @@ vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* e
 // NULL is allowed.
 void vplEmission_Destroy(vplEmission* emission);
 
+// Square metres of all triangles that emit.
+double vplEmission_Area(const vplEmission* emission);
+
 // W; mean of the three channels; all sources.
 double vplEmission_Power(const vplEmission* emission);
 

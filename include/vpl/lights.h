@@ -83,15 +83,28 @@ typedef struct vplLightSet {
     vplContext* context;
 } vplLightSet;
 
-// Shoots particles from the scene's point emitters, which share N by power. Each hit leaves a virtual light;
-// the first floor(rho^k N) go on. A particle that hits nothing leaves no light and is gone; the weights keep
-// the nominal counts.
+// Shoots particles from the scene's emitters, and for physical lighting also from triangles that emit; all share
+// N by power. Documented lighting knows point emitters only. Each hit leaves a virtual light; the first
+// floor(rho^k N) go on. A particle that hits nothing leaves no light and is gone; the weights keep the nominal
+// counts.
 // Source: Franchi and Ferrante, Virtual Point Lights, "Particle Simulation".
 vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                                const vplParticleDef* def, vplLightSet** setOut);
 
 // NULL is allowed.
 void vplLightSet_Destroy(vplLightSet* set);
+
+// A virtual light as the kernel wants it.
+typedef struct vplShadeLight {
+    float px, py, pz; // metres
+    float nx, ny, nz; // unit
+    float r, g, b;    // documented: L * weight / N; physical: intensity on the axis, W/sr
+} vplShadeLight;
+
+// Lights that stand for the emitting triangles in direct light: `count` points spread over them by power, each
+// with its share of it. Returns how many were written: count, or 0 where no triangle emits.
+// Source: Keller, Instant Radiosity, 1997, section 3.
+int vplMakeLampLights(const vplEmission* emission, int count, vplShadeLight* out);
 
 #ifdef __cplusplus
 }

@@ -57,7 +57,12 @@ typedef struct vplRenderOptions {
     float minDistance;            // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
                                   // (default): half the radius of a disc with one light's share of the area
 
-    vplLightShadows lightShadows; // default VPL_LIGHT_SHADOWS_NONE
+    vplLightShadows lightShadows; // of virtual lights; RAY also replaces the emitters' shadow maps; default
+                                  // VPL_LIGHT_SHADOWS_NONE
+    int lightMapSize;             // texels along a face of a virtual light's map, [1, VPL_MAX_SHADOW_MAP];
+                                  // default 128
+    int lampLights;               // lights that stand for area emitters in direct light, with shadow rays,
+                                  // [1, VPL_MAX_LIGHTS]; default 64
 
     int samplesPerPixel; // path: [1, VPL_MAX_SAMPLES]; default 64
     int maxBounces;      // path: reflections before the eye's last, [0, VPL_MAX_BOUNCES]; 0: direct light

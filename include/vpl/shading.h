@@ -29,13 +29,6 @@ vplView vplView_Create(const vplCameraDef* camera, int width, int height);
 // Pixel coordinates of a point (x right, y down, (0, 0) the upper left corner). False behind the near plane.
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);
 
-// A virtual light as the kernel wants it.
-typedef struct vplShadeLight {
-    float px, py, pz; // metres
-    float nx, ny, nz; // unit
-    float r, g, b;    // documented: L * weight / N; physical: intensity on the axis, W/sr
-} vplShadeLight;
-
 // Fills out[0 .. set->lightCount).
 void vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out);
 
@@ -69,18 +62,28 @@ typedef struct vplShadeDef {
     vplShadeOutput output;
     int batch;                     // lights per pass, >= 1; batched only
     float minDistance;             // metres, >= 0; 0 is unbounded; physical only
-    const vplEmitterDef* emitters; // point emitters that light directly
-    const vplShadow* shadows;      // one per emitter
-    int emitterCount;              // 0: no direct light
+    const vplEmitterDef* emitters; // emitters that light directly; documented: point emitters only
+    const vplShadow* shadows;   // one per emitter; where its map is NULL, and for directional emitters, rays
+    int emitterCount;           // 0: no direct light
+    const vplShadeLight* lamps; // direct light of area emitters, always with shadow rays; physical only
+    int lampCount;
+    float lampMinDistance;         // as minDistance
     int particleCount;             // N, by which documented direct light is divided (0 counts as 1)
     const vplShadeLight* lights;   // virtual lights
     int lightCount;                // 0: no indirect light
+    const vplShadow* lightShadows; // one per virtual light; NULL: they cast none, or by rays
+    bool lightRays;                // virtual lights cast shadows by rays
     bool emission;                 // surfaces that emit are seen to
 } vplShadeDef;
 
+typedef struct vplShadeStats {
+    vplRasterStats raster;
+    int64_t shadowRays;
+} vplShadeStats;
+
 // Draws the geometry into `image`, which has the view's size.
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
-                       vplProgressFcn* progress, void* user, vplImage* image, vplRasterStats* statsOut);
+                       vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut);
 
 #ifdef __cplusplus
 }

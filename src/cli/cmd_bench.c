@@ -133,9 +133,9 @@ static vplResult runShading(Bench* b, const Stage* stage, Outcome* outcome)
     def.particleCount = 10;
     def.lights = b->lights;
     def.lightCount = stage->lights;
-    vplRasterStats stats;
+    vplShadeStats stats;
     vplResult result = vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->image, &stats);
-    outcome->drawCalls = stats.drawCalls;
+    outcome->drawCalls = stats.raster.drawCalls;
     outcome->pixelLights = (double)b->image->width * b->image->height * stage->lights;
     outcome->hash = vplImage_Hash(b->image);
     return result;

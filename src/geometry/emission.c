@@ -203,6 +203,15 @@ void vplEmission_Destroy(vplEmission* emission)
     }
 }
 
+double vplEmission_Area(const vplEmission* emission)
+{
+    double area = 0;
+    for (int i = emission->firstTriangle; i < emission->sourceCount; i++) {
+        area += vplGeometry_TriangleArea(emission->geometry, emission->sources[i].triangle);
+    }
+    return area;
+}
+
 double vplEmission_Power(const vplEmission* emission)
 {
     return emission->cumulative[emission->sourceCount];

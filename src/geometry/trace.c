@@ -62,6 +62,42 @@ bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplH
     return vplClosestHit(geometry, ray, hitOut, &tests);
 }
 
+vplVec3 vplGeometry_Inside(const vplGeometry* g, int triangle, vplVec3 point)
+{
+    // Raster coverage is snapped to 1/256 pixel, so a triangle's pixel centre may lie that far outside of it.
+    const double inset = 0x1p-16;
+    const vplVec3* p = g->positions + g->objects[g->owners[triangle]].firstVertex;
+    const uint32_t* index = g->indices + 3 * (size_t)triangle;
+    double a[3], u[3], v[3], w[3], uu = 0, uv = 0, vv = 0, wu = 0, wv = 0;
+    for (int i = 0; i < 3; i++) {
+        a[i] = vplComponent(p[index[0]], i);
+        u[i] = vplComponent(p[index[1]], i) - a[i];
+        v[i] = vplComponent(p[index[2]], i) - a[i];
+        w[i] = vplComponent(point, i) - a[i];
+        uu += u[i] * u[i];
+        uv += u[i] * v[i];
+        vv += v[i] * v[i];
+        wu += w[i] * u[i];
+        wv += w[i] * v[i];
+    }
+    const double area = uu * vv - uv * uv;
+    if (!(area > 0)) {
+        return point;
+    }
+    double b = (vv * wu - uv * wv) / area, c = (uu * wv - uv * wu) / area, rest = 1 - b - c;
+    if (b >= inset && c >= inset && rest >= inset) {
+        return point;
+    }
+    b = b > inset ? b : inset;
+    c = c > inset ? c : inset;
+    rest = rest > inset ? rest : inset;
+    const double sum = b + c + rest;
+    b /= sum;
+    c /= sum;
+    return vplVec((float)(a[0] + b * u[0] + c * v[0]), (float)(a[1] + b * u[1] + c * v[1]),
+                  (float)(a[2] + b * u[2] + c * v[2]));
+}
+
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)
 {
     return vplGetTraceAny(geometry->context->isa)(geometry->bvh, ray, tMax);

@@ -28,7 +28,8 @@ typedef struct Simulation {
     const vplGeometry* geometry;
     const vplEmitterDef* emitters;
     int emitterCount;
-    double totalPower; // sum of the emitters' mean intensities
+    double totalPower;           // sum of the emitters' mean intensities
+    const vplEmission* emission; // physical lighting only
     vplParticleDef def;
     vplSampleSource samples;
     const int* stepCounts;
@@ -109,21 +110,43 @@ static float shadingFactor(const Simulation* s, const vplHit* hit, vplVec3 direc
     return geometric > 0 && shading > 0 ? shading / geometric : 0;
 }
 
+// Where a particle begins and what it carries; false where nothing emits.
+static bool start(const Simulation* s, int particle, vplRay* ray, vplRgb* light)
+{
+    float u[4];
+    vplSampleSource_Direction(&s->samples, particle, 0, &u[2], &u[3]);
+    if (s->emission != NULL) {
+        vplParticle p;
+        vplSampleSource_Place(&s->samples, particle, &u[0], &u[1]);
+        if (!vplEmission_SampleParticle(s->emission, vplSampleSource_Emitter(&s->samples, particle), u, &p)) {
+            return false;
+        }
+        *ray = p.ray;
+        *light = p.flux;
+    } else {
+        float inverseProbability;
+        const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
+        *light = vplRgbScale(inverseProbability, emitter->intensity);
+        *ray = (vplRay){emitter->position, vplSampleSphere(u[2], u[3]), {0, 0}};
+    }
+    if (s->def.directions != NULL) {
+        ray->direction = s->def.directions[particle];
+    }
+    return true;
+}
+
 // Follows one particle to its last step.
 static void followParticle(Simulation* s, int particle)
 {
     bool documented = s->def.lighting == VPL_LIGHTING_DOCUMENTED;
     bool mirror = s->def.bounce == VPL_BOUNCE_REFLECT || (s->def.bounce == VPL_BOUNCE_AUTO && documented);
-    float u, v, inverseProbability;
-    const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
-    vplRgb light = vplRgbScale(documented ? inverseProbability : inverseProbability * (float)(4 * VPL_PI),
-                               emitter->intensity);
-    vplSampleSource_Direction(&s->samples, particle, 0, &u, &v);
-    vplRay ray = {
-        emitter->position, s->def.directions ? s->def.directions[particle] : vplSampleSphere(u, v), {0, 0}};
+    float u, v;
+    vplRgb light;
+    vplRay ray;
+    const bool started = start(s, particle, &ray, &light);
     vplHit hit;
     int step = 0;
-    for (; step < s->stepCount && particle < s->stepCounts[step]; step++) {
+    for (; started && step < s->stepCount && particle < s->stepCounts[step]; step++) {
         s->raysOf[particle]++;
         if (!trace(s, particle, step, &ray, &hit)) {
             s->escapedOf[particle] = true;
@@ -185,13 +208,17 @@ static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitte
     if (def->cookie != PARTICLE_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef was not made by vplDefaultParticleDef");
     }
-    if (emitterCount < 1) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "the scene has no emitter to shoot particles from");
-    }
-    for (int i = 0; i < emitterCount; i++) {
+    for (int i = 0; def->lighting == VPL_LIGHTING_DOCUMENTED && i < emitterCount; i++) {
         if (emitters[i].type != VPL_EMITTER_POINT) {
-            return vplFail(context, VPL_INVALID_ARGUMENT, "emitter %d is not a point light", i);
+            return vplFail(
+                context, VPL_INVALID_ARGUMENT,
+                "light %d is not a point light, and documented lighting knows no others; use physical", i);
         }
+    }
+    if (def->lighting == VPL_LIGHTING_DOCUMENTED && emitterCount < 1) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "the scene has no emitter to shoot particles from: documented lighting needs a point light");
     }
     for (int i = 0; def->directions != NULL && i < def->particleCount; i++) {
         if (!vplIsFiniteVec(def->directions[i])) {
@@ -249,8 +276,19 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     for (int i = 0; i < emitterCount; i++) {
         s.totalPower += powerOf(&emitters[i]);
     }
-    int* lightsInStep;
-    result = allocate(&s, set, total, &lightsInStep);
+    vplEmission* emission = NULL;
+    if (def->lighting == VPL_LIGHTING_PHYSICAL) {
+        result = vplEmission_Create(geometry, emitters, emitterCount, &emission);
+        s.emission = emission;
+    }
+    if (result == VPL_SUCCESS && emission != NULL && emission->sourceCount == 0 && emitterCount == 0) {
+        result = vplFail(context, VPL_INVALID_ARGUMENT,
+                         "the scene has no emitter: no light, and no surface that emits");
+    }
+    int* lightsInStep = NULL;
+    if (result == VPL_SUCCESS) {
+        result = allocate(&s, set, total, &lightsInStep);
+    }
     if (result == VPL_SUCCESS) {
         s.stepCount = set->stepCount;
         result = vplParallelForProgress(context, (def->particleCount + CHUNK - 1) / CHUNK, followChunk, &s,
@@ -259,6 +297,7 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     if (result == VPL_SUCCESS) {
         collect(&s, set, lightsInStep);
     }
+    vplEmission_Destroy(emission);
     vplFree(context, (int*)s.stepStart);
     vplFree(context, s.raysOf);
     vplFree(context, s.testsOf);

@@ -74,3 +74,17 @@ float vplSampleSource_Emitter(const vplSampleSource* source, int particle)
     double turns = (particle + 0.5) * 0.61803398874989484820;
     return (float)(turns - floor(turns)) * 0x1.fffffep-1f;
 }
+
+void vplSampleSource_Place(const vplSampleSource* source, int particle, float* u, float* v)
+{
+    if (source->sampler == VPL_SAMPLER_RANDOM) {
+        vplRandom4 r = vplRandomAt(source->seed, EMITTER_STREAM, (uint64_t)particle);
+        *u = vplUnitFloat(r.v[1]);
+        *v = vplUnitFloat(r.v[2]);
+        return;
+    }
+    // Powers of 1 over the plastic number.
+    double x = (particle + 0.5) * 0.75487766624669276, y = (particle + 0.5) * 0.56984029099805327;
+    *u = shifted((float)(x - floor(x)) * 0x1.fffffep-1f, source->seed, VPL_PRIME_COUNT);
+    *v = shifted((float)(y - floor(y)) * 0x1.fffffep-1f, source->seed, VPL_PRIME_COUNT + 1);
+}

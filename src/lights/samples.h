@@ -20,4 +20,8 @@ void vplSampleSource_Direction(const vplSampleSource* source, int particle, int 
 // One number that spreads any first few particles evenly over the emitters.
 float vplSampleSource_Emitter(const vplSampleSource* source, int particle);
 
+// Two numbers for the place where particle i starts on its source: the sequence R2 (Roberts 2018, The
+// Unreasonable Effectiveness of Quasirandom Sequences), whose first few points are spread out, too.
+void vplSampleSource_Place(const vplSampleSource* source, int particle, float* u, float* v);
+
 #endif

@@ -6,11 +6,20 @@
 
 #include <math.h>
 
+// Shadow maps from some points.
+typedef struct Maps {
+    vplCubeMap** maps; // NULL where a point needs none
+    vplShadow* shadows;
+    int count;
+} Maps;
+
 typedef struct Ingredients {
     const vplEmitterDef* emitters;
     int emitterCount;
-    vplCubeMap** maps; // one per emitter
-    vplShadow* shadows;
+    Maps emitterMaps, lightMaps;
+    vplShadeLight* lamps;
+    int lampCount;
+    float lampMinDistance;
     vplLightSet* set;
     vplShadeLight* lights;
     int lightCount;
@@ -62,28 +71,101 @@ static vplResult simulate(vplJob* job, Ingredients* in)
     return VPL_SUCCESS;
 }
 
-static vplResult makeShadows(vplJob* job, Ingredients* in)
+static vplResult allocateMaps(vplJob* job, int count, Maps* maps)
+{
+    maps->count = count;
+    maps->maps = vplAllocZero(job->context, (size_t)count, sizeof *maps->maps);
+    maps->shadows = vplAllocZero(job->context, (size_t)count, sizeof *maps->shadows);
+    return maps->maps && maps->shadows ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+static void freeMaps(vplJob* job, Maps* maps)
+{
+    for (int i = 0; maps->maps != NULL && i < maps->count; i++) {
+        vplCubeMap_Destroy(maps->maps[i]);
+    }
+    vplFree(job->context, maps->maps);
+    vplFree(job->context, maps->shadows);
+}
+
+static vplResult makeMap(vplJob* job, vplVec3 position, int size, const vplShadowDef* shadowDef, Maps* maps,
+                         int i)
+{
+    vplCubeMapDef def = vplDefaultCubeMapDef();
+    def.position = position;
+    def.size = size;
+    vplResult result = vplCubeMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps->maps[i]);
+    if (result == VPL_SUCCESS) {
+        vplJob_AddRaster(job, &maps->maps[i]->stats);
+        result = vplShadow_Create(maps->maps[i], shadowDef, &maps->shadows[i]);
+    }
+    return result;
+}
+
+// Point and spot emitters have cube maps; directional ones, and all where rays are asked for, do without.
+static vplResult makeEmitterShadows(vplJob* job, Ingredients* in)
 {
     const vplRenderOptions* o = &job->options;
-    in->maps = vplAllocZero(job->context, (size_t)in->emitterCount, sizeof *in->maps);
-    in->shadows = vplAlloc(job->context, (size_t)in->emitterCount, sizeof *in->shadows);
-    vplResult result = in->maps && in->shadows ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    const bool documented = o->lighting == VPL_LIGHTING_DOCUMENTED;
     vplShadowDef shadowDef = o->shadow;
-    if (shadowDef.biasRule == VPL_BIAS_AUTO && o->lighting == VPL_LIGHTING_DOCUMENTED) {
+    if (shadowDef.biasRule == VPL_BIAS_AUTO && documented) {
         shadowDef.biasRule = VPL_BIAS_PAIR;
     }
+    vplResult result = allocateMaps(job, in->emitterCount, &in->emitterMaps);
     for (int i = 0; i < in->emitterCount && result == VPL_SUCCESS; i++) {
-        if (in->emitters[i].type != VPL_EMITTER_POINT) {
-            return vplFail(job->context, VPL_INVALID_ARGUMENT, "light %d is not a point light", i);
+        if (documented && in->emitters[i].type != VPL_EMITTER_POINT) {
+            return vplFail(
+                job->context, VPL_INVALID_ARGUMENT,
+                "light %d is not a point light, and documented lighting knows no others; use physical", i);
         }
-        vplCubeMapDef def = vplDefaultCubeMapDef();
-        def.position = in->emitters[i].position;
-        def.size = o->shadowMapSize;
-        result = vplCubeMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &in->maps[i]);
-        if (result == VPL_SUCCESS) {
-            vplJob_AddRaster(job, &in->maps[i]->stats);
-            result = vplShadow_Create(in->maps[i], &shadowDef, &in->shadows[i]);
+        if (in->emitters[i].type != VPL_EMITTER_DIRECTIONAL && o->lightShadows != VPL_LIGHT_SHADOWS_RAY) {
+            result =
+                makeMap(job, in->emitters[i].position, o->shadowMapSize, &shadowDef, &in->emitterMaps, i);
         }
+    }
+    return result;
+}
+
+// One small map per virtual light, seen from just above its surface.
+static vplResult makeLightShadows(vplJob* job, Ingredients* in)
+{
+    vplShadowDef shadowDef = vplDefaultShadowDef();
+    shadowDef.pcfSamples = 1;
+    const float lift = vplGeometry_Diagonal(job->geometry) * 0x1p-14f;
+    vplResult result = allocateMaps(job, in->lightCount, &in->lightMaps);
+    for (int i = 0; i < in->lightCount && result == VPL_SUCCESS; i++) {
+        const vplShadeLight* l = &in->lights[i];
+        vplVec3 at = {l->px + lift * l->nx, l->py + lift * l->ny, l->pz + lift * l->nz};
+        result = makeMap(job, at, job->options.lightMapSize, &shadowDef, &in->lightMaps, i);
+    }
+    return result;
+}
+
+static vplResult makeLamps(vplJob* job, Ingredients* in)
+{
+    vplEmission* emission;
+    vplResult result = vplEmission_Create(job->geometry, NULL, 0, &emission);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    double area = 0;
+    if (emission->sourceCount > 0) {
+        const int count = job->options.lampLights;
+        in->lamps = vplAlloc(job->context, (size_t)count, sizeof *in->lamps);
+        in->lampCount = in->lamps ? vplMakeLampLights(emission, count, in->lamps) : 0;
+        result = in->lamps ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+        area = vplEmission_Area(emission);
+        in->lampMinDistance = (float)(0.5 * sqrt(area / count / VPL_PI));
+    }
+    vplEmission_Destroy(emission);
+    return result;
+}
+
+static vplResult makeDirect(vplJob* job, Ingredients* in)
+{
+    vplResult result = makeEmitterShadows(job, in);
+    if (result == VPL_SUCCESS && job->options.lighting == VPL_LIGHTING_PHYSICAL) {
+        result = makeLamps(job, in);
     }
     return result;
 }
@@ -102,19 +184,25 @@ static vplResult shade(vplJob* job, const Ingredients* in)
     def.batch = o->batch;
     def.minDistance = in->minDistance;
     def.emitters = in->emitters;
-    def.shadows = in->shadows;
-    def.emitterCount = in->shadows ? in->emitterCount : 0;
+    def.shadows = in->emitterMaps.shadows;
+    def.emitterCount = in->emitterMaps.shadows ? in->emitterCount : 0;
+    def.lamps = in->lamps;
+    def.lampCount = in->lampCount;
+    def.lampMinDistance = in->lampMinDistance;
+    def.lightShadows = in->lightMaps.shadows;
+    def.lightRays = o->lightShadows == VPL_LIGHT_SHADOWS_RAY;
     def.particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles;
     def.lights = in->lights;
     def.lightCount = in->lightCount;
     def.emission = !indirectOnly;
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
-    vplRasterStats stats = {0};
+    vplShadeStats stats = {0};
     if (result == VPL_SUCCESS) {
         result =
             vplShadeView(job->geometry, &job->view, &def, vplJob_GetProgress(job), job, job->image, &stats);
     }
-    vplJob_AddRaster(job, &stats);
+    vplJob_AddRaster(job, &stats.raster);
+    job->stats.rays += stats.shadowRays;
     return result;
 }
 
@@ -129,18 +217,24 @@ static vplResult cook(vplJob* job, Ingredients* in)
     }
     if (result == VPL_SUCCESS && needsShadows(o)) {
         vplJob_BeginStage(job, 0.15);
-        result = makeShadows(job, in);
+        result = makeDirect(job, in);
         vplJob_EndStage(job, "shadow map");
+    }
+    if (result == VPL_SUCCESS && in->lightCount > 0 && o->lightShadows == VPL_LIGHT_SHADOWS_MAP) {
+        vplJob_BeginStage(job, 0.4);
+        result = makeLightShadows(job, in);
+        vplJob_EndStage(job, "light shadow maps");
     }
     if (result != VPL_SUCCESS) {
         return result;
     }
     if (o->show == VPL_SHOW_SHADOW_MAP || o->show == VPL_SHOW_SHADOW_FACTOR) {
-        if (in->emitterCount == 0) {
-            return vplFail(job->context, VPL_INVALID_ARGUMENT, "the scene has no light that casts shadows");
+        if (in->emitterCount == 0 || in->emitterMaps.maps[0] == NULL) {
+            return vplFail(job->context, VPL_INVALID_ARGUMENT,
+                           "the scene has no light with a shadow map, or the first casts shadows by rays");
         }
         if (o->show == VPL_SHOW_SHADOW_MAP) {
-            return vplUnfoldCubeMap(in->maps[0], &job->image);
+            return vplUnfoldCubeMap(in->emitterMaps.maps[0], &job->image);
         }
     }
     vplJob_BeginStage(job, 1);
@@ -158,11 +252,9 @@ vplResult vplRenderInstantRadiosity(vplJob* job)
     in.emitterCount = vplScene_GetEmitterCount(job->scene);
     in.emitters = in.emitterCount ? vplScene_GetEmitter(job->scene, 0) : NULL;
     vplResult result = cook(job, &in);
-    for (int i = 0; in.maps != NULL && i < in.emitterCount; i++) {
-        vplCubeMap_Destroy(in.maps[i]);
-    }
-    vplFree(job->context, in.maps);
-    vplFree(job->context, in.shadows);
+    freeMaps(job, &in.emitterMaps);
+    freeMaps(job, &in.lightMaps);
+    vplFree(job->context, in.lamps);
     vplFree(job->context, in.lights);
     vplLightSet_Destroy(in.set);
     return result;

@@ -15,6 +15,8 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.accumulation = VPL_ACCUMULATE_DEFERRED;
     o.batch = 64;
     o.minDistance = -1;
+    o.lightMapSize = 128;
+    o.lampLights = 64;
     o.samplesPerPixel = 64;
     o.maxBounces = -1;
     o.shadowMapSize = 1024;
@@ -58,6 +60,8 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"batch", o->batch, 1, VPL_MAX_LIGHTS},
         {"particleGeometry", (int)o->particleGeometry, 0, VPL_PARTICLE_GEOMETRY_OBB},
         {"lightShadows", (int)o->lightShadows, 0, VPL_LIGHT_SHADOWS_RAY},
+        {"lightMapSize", o->lightMapSize, 1, VPL_MAX_SHADOW_MAP},
+        {"lampLights", o->lampLights, 1, VPL_MAX_LIGHTS},
         {"samplesPerPixel", o->samplesPerPixel, 1, VPL_MAX_SAMPLES},
         {"maxBounces", o->maxBounces, -1, VPL_MAX_BOUNCES},
         {"showBounce", o->showBounce, 0, VPL_MAX_BOUNCES},

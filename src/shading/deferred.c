@@ -17,29 +17,27 @@ static void gbufferFragments(const void* uniforms, vplFragments* f)
         memcpy(&f->plane[VPL_PLANE_TRIANGLE][l], &id, sizeof id);
     }
     memcpy(f->plane[VPL_PLANE_POSITION], f->varying[0], 3 * sizeof f->varying[0]);
+    if (u->normals != NULL) {
+        memcpy(f->plane[VPL_PLANE_NORMAL], f->varying[VPL_CAMERA_VARYINGS], 3 * sizeof f->varying[0]);
+    }
 }
 
-// The surface of a block of the G-buffer; false where it is empty.
-static bool readSurface(const vplShading* s, const vplTile* tile, int element, int triangles[VPL_LANES],
-                        vplSurface* surface)
+// The points of a block of the G-buffer; false where it is empty.
+static bool readPoints(const vplShading* s, const vplTile* tile, int element, vplPoints* points)
 {
-    if (!vplReadTriangles(tile, element, triangles)) {
+    if (!vplReadTriangles(tile, element, points->triangle)) {
         return false;
     }
+    vplSurface* surface = &points->surface;
     memcpy(surface->px, tile->planes[VPL_PLANE_POSITION] + element, sizeof surface->px);
     memcpy(surface->py, tile->planes[VPL_PLANE_POSITION + 1] + element, sizeof surface->py);
     memcpy(surface->pz, tile->planes[VPL_PLANE_POSITION + 2] + element, sizeof surface->pz);
-    vplVec3 n = {0, 0, 0};
-    int last = -1;
-    for (int l = 0; l < VPL_LANES; l++) {
-        if (triangles[l] != last) {
-            last = triangles[l];
-            n = last < 0 ? vplVec(0, 0, 0) : vplGetFacet(s, last).normal;
-        }
-        surface->nx[l] = n.x;
-        surface->ny[l] = n.y;
-        surface->nz[l] = n.z;
+    if (s->smooth) {
+        memcpy(surface->nx, tile->planes[VPL_PLANE_NORMAL] + element, sizeof surface->nx);
+        memcpy(surface->ny, tile->planes[VPL_PLANE_NORMAL + 1] + element, sizeof surface->ny);
+        memcpy(surface->nz, tile->planes[VPL_PLANE_NORMAL + 2] + element, sizeof surface->nz);
     }
+    vplPoints_FinishNormals(s, points);
     return true;
 }
 
@@ -51,13 +49,12 @@ static void lightTile(void* data, vplTile* tile, int worker)
     vplTileSums* sums = tile->scratch;
     for (int block = 0; block < BLOCKS; block++) {
         const int at = block * VPL_LANES;
-        int triangles[VPL_LANES];
-        vplSurface surface;
+        vplPoints points;
         float part[3][VPL_LANES];
-        if (!readSurface(s, tile, at, triangles, &surface)) {
+        if (!readPoints(s, tile, at, &points)) {
             continue;
         }
-        vplDirectIrradiance(s, &surface, part);
+        vplDirectIrradiance(s, &points, part, &sums->shadowRays);
         for (int first = 0;; first += VPL_LIGHT_GROUP) {
             for (int c = 0; c < 3; c++) {
                 for (int l = 0; l < VPL_LANES; l++) {
@@ -69,7 +66,7 @@ static void lightTile(void* data, vplTile* tile, int worker)
                 break;
             }
             int count = def->lightCount - first < VPL_LIGHT_GROUP ? def->lightCount - first : VPL_LIGHT_GROUP;
-            s->lightKernel(&surface, def->lights + first, count, s->inverseBound, part);
+            vplIndirectIrradiance(s, &points, first, count, part, &sums->shadowRays);
         }
     }
 }
@@ -82,25 +79,25 @@ static void showTile(void* data, vplTile* tile, int worker)
     const vplView* view = s->view;
     for (int block = 0; block < BLOCKS; block++) {
         const int at = block * VPL_LANES;
-        int triangles[VPL_LANES];
-        vplSurface surface;
+        vplPoints points;
+        const vplSurface* surface = &points.surface;
         float values[3][VPL_LANES] = {{0}};
-        if (readSurface(s, tile, at, triangles, &surface)) {
+        if (readPoints(s, tile, at, &points)) {
             float factor[VPL_LANES] = {0};
             if (s->def->output == VPL_OUTPUT_SHADOW_FACTOR) {
-                vplShadow_FactorBlock(&s->def->shadows[0], &surface, factor);
+                vplShadow_FactorBlock(&s->def->shadows[0], s->smooth ? &points.plane : surface, factor);
             }
             for (int l = 0; l < VPL_LANES; l++) {
-                if (triangles[l] < 0) {
+                if (points.triangle[l] < 0) {
                     continue;
                 }
-                vplVec3 p = vplVec(surface.px[l], surface.py[l], surface.pz[l]);
+                vplVec3 p = vplVec(surface->px[l], surface->py[l], surface->pz[l]);
                 bool depth = s->def->output == VPL_OUTPUT_DEPTH,
                      normals = s->def->output == VPL_OUTPUT_NORMALS;
                 float grey = depth ? vplDot(view->forward, vplSub(p, view->eye)) : factor[l];
-                values[0][l] = normals ? surface.nx[l] : grey;
-                values[1][l] = normals ? surface.ny[l] : grey;
-                values[2][l] = normals ? surface.nz[l] : grey;
+                values[0][l] = normals ? surface->nx[l] : grey;
+                values[1][l] = normals ? surface->ny[l] : grey;
+                values[2][l] = normals ? surface->nz[l] : grey;
             }
         }
         vplWriteBlock(s, tile, block, values);
@@ -114,7 +111,7 @@ vplResult vplRecordDeferred(const vplShading* shading, vplRaster* raster)
         vplPipeline pipeline = vplCameraPipeline(shading, i);
         pipeline.fragment = gbufferFragments;
         pipeline.fragmentUniforms = &shading->objects[i];
-        pipeline.planeMask = 15u << VPL_PLANE_TRIANGLE;
+        pipeline.planeMask = 15u << VPL_PLANE_TRIANGLE | (shading->smooth ? 7u << VPL_PLANE_NORMAL : 0);
         result = vplRaster_Draw(raster, &shading->meshes[i], &pipeline);
     }
     void* data = (void*)shading;

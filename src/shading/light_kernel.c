@@ -73,19 +73,30 @@ void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vpl
     memcpy(irradiance[2], b, sizeof b);
 }
 
-bool VPL_KERNEL(vplEmitterCosine)(const vplSurface* restrict surface, vplVec3 position, bool falloff,
+// Directional: n.l. Point: n.l / d^2. Spot: that times the smooth step of its cone (see vplSpot_Falloff).
+bool VPL_KERNEL(vplEmitterCosine)(const vplSurface* restrict surface, const vplEmitterRay* emitter,
                                   float cosine[restrict VPL_LANES])
 {
+    const vplEmitterRay e = *emitter;
     float largest = 0;
     for (int l = 0; l < VPL_LANES; l++) {
-        float x = position.x - surface->px[l], y = position.y - surface->py[l],
-              z = position.z - surface->pz[l];
+        float x = e.position.x - surface->px[l], y = e.position.y - surface->py[l],
+              z = e.position.z - surface->pz[l];
+        x = e.parallel ? -e.direction.x : x;
+        y = e.parallel ? -e.direction.y : y;
+        z = e.parallel ? -e.direction.z : z;
         float d2 = x * x + y * y + z * z;
         float c = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z;
         c = c > 0 ? c : 0;
         d2 = d2 > FLT_MIN ? d2 : FLT_MIN;
-        c = c / sqrtf(d2);
-        cosine[l] = falloff ? c / d2 : c;
+        float d = sqrtf(d2);
+        c = c / d;
+        c = e.falloff && !e.parallel ? c / d2 : c;
+        float axis = -(e.direction.x * x + e.direction.y * y + e.direction.z * z) / d;
+        float step = (axis - e.cosOuter) * e.inverseRing;
+        step = step > 0 ? step : 0;
+        step = step < 1 ? step : 1;
+        cosine[l] = e.spot ? c * (step * step * (3 - 2 * step)) : c;
         largest = cosine[l] > largest ? cosine[l] : largest;
     }
     return largest > 0;

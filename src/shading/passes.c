@@ -19,9 +19,10 @@ static void directFragments(const void* uniforms, vplFragments* f)
 {
     const PassUniforms* u = uniforms;
     const vplShading* s = u->shading;
-    vplSurface surface;
-    vplSurface_FromFragments(s, u->object, f, &surface);
-    vplDirectIrradiance(s, &surface, f->plane);
+    vplTileSums* sums = f->scratch;
+    vplPoints points;
+    vplPoints_FromFragments(s, u->object, f, &points);
+    vplDirectIrradiance(s, &points, f->plane, &sums->shadowRays);
     const int id = s->geometry->objects[u->object].firstTriangle + f->primitive + 1;
     for (int l = 0; l < VPL_LANES; l++) {
         memcpy(&f->plane[VPL_PLANE_TRIANGLE][l], &id, sizeof id);
@@ -32,10 +33,11 @@ static void oneLightFragments(const void* uniforms, vplFragments* f)
 {
     const PassUniforms* u = uniforms;
     const vplShading* s = u->shading;
-    vplSurface surface;
-    vplSurface_FromFragments(s, u->object, f, &surface);
+    vplTileSums* sums = f->scratch;
+    vplPoints points;
+    vplPoints_FromFragments(s, u->object, f, &points);
     memset(f->plane, 0, 3 * sizeof f->plane[0]);
-    s->lightKernel(&surface, s->def->lights + u->first, 1, s->inverseBound, f->plane);
+    vplIndirectIrradiance(s, &points, u->first, 1, f->plane, &sums->shadowRays);
 }
 
 // Several lights in one pass. The framebuffer's part of the group goes through the kernel as its starting
@@ -45,13 +47,13 @@ static void lightBatchFragments(const void* uniforms, vplFragments* f)
     const PassUniforms* u = uniforms;
     const vplShading* s = u->shading;
     vplTileSums* sums = f->scratch;
-    vplSurface surface;
-    vplSurface_FromFragments(s, u->object, f, &surface);
+    vplPoints points;
+    vplPoints_FromFragments(s, u->object, f, &points);
     const int end = u->first + u->count;
     for (int first = u->first; first < end;) {
         int groupEnd = (first / VPL_LIGHT_GROUP + 1) * VPL_LIGHT_GROUP;
         int next = groupEnd < end ? groupEnd : end;
-        s->lightKernel(&surface, s->def->lights + first, next - first, s->inverseBound, f->plane);
+        vplIndirectIrradiance(s, &points, first, next - first, f->plane, &sums->shadowRays);
         first = next;
         for (int c = 0; next == groupEnd && c < 3; c++) {
             for (int l = 0; l < VPL_LANES; l++) {

@@ -55,6 +55,7 @@ void vplResolveTile(void* data, vplTile* tile, int worker)
     (void)worker;
     const vplShading* s = data;
     const vplTileSums* sums = tile->scratch;
+    __atomic_fetch_add(s->shadowRays, sums->shadowRays, __ATOMIC_RELAXED);
     for (int block = 0; block < BLOCKS; block++) {
         const int at = block * VPL_LANES;
         int triangles[VPL_LANES], last = -1;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sets up one render of one view and hands it to the pipeline that was asked for.
+#include "math/scalar.h"
+#include "math/vec.h"
 #include "shading/shading.h"
 
 #include <math.h>
@@ -19,8 +21,13 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1",
                        def->batch);
     }
-    if (def->output == VPL_OUTPUT_SHADOW_FACTOR && def->emitterCount < 1) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter");
+    if (!(def->lampMinDistance >= 0 && isfinite(def->lampMinDistance))) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplShadeDef.lampMinDistance is %g, must be finite and >= 0",
+                       (double)def->lampMinDistance);
+    }
+    if (def->output == VPL_OUTPUT_SHADOW_FACTOR && (def->emitterCount < 1 || def->shadows[0].map == NULL)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter with a shadow map");
     }
     return VPL_SUCCESS;
 }
@@ -37,13 +44,40 @@ static vplResult makeObjects(vplShading* s)
     for (int i = 0; i < g->objectCount; i++) {
         const vplGeometryObject* o = &g->objects[i];
         s->meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
-        s->objects[i] = (vplObjectUniforms){s, g->positions + o->firstVertex, i};
+        s->objects[i] = (vplObjectUniforms){s, g->positions + o->firstVertex,
+                                            o->smooth ? g->shadingNormals + o->firstVertex : NULL, i};
     }
     return VPL_SUCCESS;
 }
 
+static vplResult makeEmitters(vplShading* s)
+{
+    const vplShadeDef* def = s->def;
+    s->emitters = vplAlloc(s->geometry->context, (size_t)def->emitterCount, sizeof *s->emitters);
+    for (int i = 0; s->emitters != NULL && i < def->emitterCount; i++) {
+        const vplEmitterDef* e = &def->emitters[i];
+        double sine, inner, outer;
+        vplSinCos(e->innerAngle, &sine, &inner);
+        vplSinCos(e->outerAngle, &sine, &outer);
+        s->emitters[i] =
+            (vplEmitterRay){.position = e->position,
+                            .direction = vplNormalize(e->direction),
+                            .cosOuter = (float)outer,
+                            .inverseRing = inner > outer ? (float)(1 / (inner - outer)) : 0x1p100f,
+                            .spot = e->type == VPL_EMITTER_SPOT,
+                            .parallel = e->type == VPL_EMITTER_DIRECTIONAL,
+                            .falloff = def->lighting == VPL_LIGHTING_PHYSICAL};
+    }
+    return s->emitters ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+static float inverseSquare(float distance)
+{
+    return distance > 0 ? 1 / (distance * distance) : INFINITY;
+}
+
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
-                       vplProgressFcn* progress, void* user, vplImage* image, vplRasterStats* statsOut)
+                       vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut)
 {
     vplContext* context = geometry->context;
     vplResult result = checkDef(context, view, def, image);
@@ -53,7 +87,11 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     vplShading shading = {.geometry = geometry, .view = view, .def = def, .image = image};
     shading.lightKernel = vplGetLightKernel(context->isa, def->lighting);
     shading.emitterKernel = vplGetEmitterKernel(context->isa);
-    shading.inverseBound = def->minDistance > 0 ? 1 / (def->minDistance * def->minDistance) : INFINITY;
+    shading.inverseBound = inverseSquare(def->minDistance);
+    shading.lampInverseBound = inverseSquare(def->lampMinDistance);
+    shading.smooth = geometry->shadingNormals != NULL;
+    vplShadeStats stats = {0};
+    shading.shadowRays = &stats.shadowRays;
     bool deferred = def->accumulation == VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
     vplFramebuffer framebuffer = vplDefaultFramebuffer(view->width, view->height);
     framebuffer.planeCount = deferred ? VPL_PLANE_POSITION + 3 : VPL_PLANE_TRIANGLE + 1;
@@ -62,6 +100,9 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     void* uniforms = NULL;
     result = makeObjects(&shading);
     if (result == VPL_SUCCESS) {
+        result = makeEmitters(&shading);
+    }
+    if (result == VPL_SUCCESS) {
         result = vplRaster_Create(context, &framebuffer, &raster);
     }
     if (result == VPL_SUCCESS) {
@@ -69,10 +110,14 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
             deferred ? vplRecordDeferred(&shading, raster) : vplRecordPasses(&shading, raster, &uniforms);
     }
     if (result == VPL_SUCCESS) {
-        result = vplRaster_Run(raster, progress, user, statsOut);
+        result = vplRaster_Run(raster, progress, user, &stats.raster);
+    }
+    if (result == VPL_SUCCESS && statsOut != NULL) {
+        *statsOut = stats;
     }
     vplRaster_Destroy(raster);
     vplFree(context, uniforms);
+    vplFree(context, shading.emitters);
     vplFree(context, shading.objects);
     vplFree(context, shading.meshes);
     return result;

@@ -11,8 +11,16 @@
 typedef void vplLightKernelFcn(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
                                int count, float inverseBound, float irradiance[restrict 3][VPL_LANES]);
 
-// Irradiance of one point emitter of `colour`, times visibility; false (and untouched) where it lights no lane.
-typedef bool vplEmitterKernelFcn(const vplSurface* restrict surface, vplVec3 position, bool falloff,
+// An emitter as its kernel wants it.
+typedef struct vplEmitterRay {
+    vplVec3 position;            // metres; point and spot
+    vplVec3 direction;           // unit, where light travels; spot and directional
+    float cosOuter, inverseRing; // spot: 1 / (cos inner - cos outer)
+    bool spot, parallel, falloff;
+} vplEmitterRay;
+
+// Irradiance per unit of intensity, without shadows; false where it lights no lane.
+typedef bool vplEmitterKernelFcn(const vplSurface* restrict surface, const vplEmitterRay* emitter,
                                  float cosine[restrict VPL_LANES]);
 
 vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting);
@@ -26,14 +34,25 @@ typedef struct vplShading {
     vplImage* image;
     vplLightKernelFcn* lightKernel;
     vplEmitterKernelFcn* emitterKernel;
-    float inverseBound;
+    float inverseBound, lampInverseBound;
+    bool smooth;                       // some object has shading normals
     vplMesh* meshes;                   // one per object
     struct vplObjectUniforms* objects; // one per object
+    vplEmitterRay* emitters;           // one per emitter
+    int64_t* shadowRays;               // counted atomically: sums of integers do not depend on the order
 } vplShading;
+
+// What a block of pixels shows.
+typedef struct vplPoints {
+    vplSurface surface;      // positions, and the normals that light is received with
+    vplSurface plane;        // the same with the triangles' own normals; filled only where smooth
+    int triangle[VPL_LANES]; // index in geometry->normals, -1 where nothing is
+} vplPoints;
 
 // Planes of the framebuffer.
 enum {
-    VPL_PLANE_IRRADIANCE = 0, // 3 planes: the light group being summed
+    VPL_PLANE_IRRADIANCE = 0, // 3 planes: the light group being summed; not in deferred shading, where
+    VPL_PLANE_NORMAL = 0,     // 3 planes: interpolated normals, of smooth geometry
     VPL_PLANE_TRIANGLE = 3,   // bits of an int: 1 + index in geometry->normals, 0 where nothing is
     VPL_PLANE_POSITION = 4    // 3 planes, deferred only
 };
@@ -41,17 +60,19 @@ enum {
 // Scratch of a tile: sums of whole groups.
 typedef struct vplTileSums {
     double irradiance[3][VPL_TILE_SIDE * VPL_TILE_SIDE];
+    int64_t shadowRays;
 } vplTileSums;
 
 // Vertex shader of all camera passes, and its uniforms.
 typedef struct vplObjectUniforms {
     const vplShading* shading;
     const vplVec3* positions;
+    const vplVec3* normals; // NULL: flat
     int object;
 } vplObjectUniforms;
 
 void vplCameraVertices(const void* uniforms, int first, int count, const vplVertices* out);
-enum { VPL_CAMERA_VARYINGS = 3 }; // world position
+enum { VPL_CAMERA_VARYINGS = 3 }; // world position; three more for the normal of smooth objects
 
 // What the shading of a triangle needs besides positions.
 typedef struct vplFacet {
@@ -62,13 +83,26 @@ typedef struct vplFacet {
 // `triangle` is an index in geometry->normals.
 vplFacet vplGetFacet(const vplShading* shading, int triangle);
 
-// The surface of a block of fragments.
-void vplSurface_FromFragments(const vplShading* shading, int object, const vplFragments* fragments,
-                              vplSurface* surfaceOut);
+// The points of a block of fragments.
+void vplPoints_FromFragments(const vplShading* shading, int object, const vplFragments* fragments,
+                             vplPoints* pointsOut);
 
-// Direct irradiance of all emitters, with shadows.
-void vplDirectIrradiance(const vplShading* shading, const vplSurface* surface,
-                         float irradiance[3][VPL_LANES]);
+// Fills in `plane` and turns raw interpolated normals in `surface` into unit vectors on the right side, where
+// triangles and positions are known. `smooth` says which lanes have interpolated normals.
+void vplPoints_FinishNormals(const vplShading* shading, vplPoints* points);
+
+// Direct irradiance of all emitters and lamps, with shadows. Counts the rays it cast.
+void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, float irradiance[3][VPL_LANES],
+                         int64_t* rays);
+
+// Adds virtual lights first .. first + count - 1, with the shadows that were asked for.
+void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
+                           float irradiance[3][VPL_LANES], int64_t* rays);
+
+// Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
+// where that is behind the triangle. Lanes of amount 0 cast no ray.
+void vplCastShadowRays(const vplShading* shading, const vplPoints* points, vplVec3 target, bool parallel,
+                       float amount[VPL_LANES], int64_t* rays);
 
 // Moves a finished group from the planes to the sums; tile task, data is unused.
 void vplFoldTile(void* data, vplTile* tile, int worker);

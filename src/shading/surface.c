@@ -4,6 +4,8 @@
 #include "math/vec.h"
 #include "shading/shading.h"
 
+#include <string.h>
+
 vplView vplView_Create(const vplCameraDef* camera, int width, int height)
 {
     vplView view;
@@ -62,6 +64,11 @@ void vplCameraVertices(const void* uniforms, int first, int count, const vplVert
         out->varying[1][i] = p.y;
         out->varying[2][i] = p.z;
     }
+    for (int i = 0; u->normals != NULL && i < count; i++) {
+        out->varying[3][i] = u->normals[first + i].x;
+        out->varying[4][i] = u->normals[first + i].y;
+        out->varying[5][i] = u->normals[first + i].z;
+    }
 }
 
 vplPipeline vplCameraPipeline(const vplShading* shading, int object)
@@ -69,7 +76,7 @@ vplPipeline vplCameraPipeline(const vplShading* shading, int object)
     vplPipeline pipeline = vplDefaultPipeline();
     pipeline.vertex = vplCameraVertices;
     pipeline.vertexUniforms = &shading->objects[object];
-    pipeline.varyingCount = VPL_CAMERA_VARYINGS;
+    pipeline.varyingCount = VPL_CAMERA_VARYINGS + (shading->objects[object].normals ? 3 : 0);
     return pipeline;
 }
 
@@ -90,42 +97,59 @@ vplFacet vplGetFacet(const vplShading* shading, int triangle)
     return facet;
 }
 
-void vplSurface_FromFragments(const vplShading* shading, int object, const vplFragments* fragments,
-                              vplSurface* surfaceOut)
+// Interpolated normals are used where there are any, on the triangle's side.
+static vplVec3 shadingNormal(const vplSurface* raw, int lane, vplVec3 plane)
 {
-    int triangle = shading->geometry->objects[object].firstTriangle + fragments->primitive;
-    vplVec3 n = vplGetFacet(shading, triangle).normal;
-    for (int l = 0; l < VPL_LANES; l++) {
-        surfaceOut->px[l] = fragments->varying[0][l];
-        surfaceOut->py[l] = fragments->varying[1][l];
-        surfaceOut->pz[l] = fragments->varying[2][l];
-        surfaceOut->nx[l] = n.x;
-        surfaceOut->ny[l] = n.y;
-        surfaceOut->nz[l] = n.z;
+    vplVec3 n = vplVec(raw->nx[lane], raw->ny[lane], raw->nz[lane]);
+    float length = vplLength(n);
+    if (!(length > 0)) {
+        return plane;
+    }
+    return vplScale((vplDot(n, plane) < 0 ? -1.0f : 1.0f) / length, n);
+}
+
+void vplPoints_FinishNormals(const vplShading* shading, vplPoints* points)
+{
+    vplSurface* s = &points->surface;
+    vplVec3 n = {0, 0, 0};
+    bool smooth = false;
+    if (shading->smooth) {
+        memcpy(&points->plane, s, sizeof *s);
+    }
+    for (int l = 0, last = -1; l < VPL_LANES; l++) {
+        const int triangle = points->triangle[l];
+        if (triangle != last) {
+            last = triangle;
+            n = triangle < 0 ? vplVec(0, 0, 0) : vplGetFacet(shading, triangle).normal;
+            smooth = triangle >= 0 && shading->geometry->objects[shading->geometry->owners[triangle]].smooth;
+        }
+        const vplVec3 to = smooth ? shadingNormal(s, l, n) : n;
+        s->nx[l] = to.x;
+        s->ny[l] = to.y;
+        s->nz[l] = to.z;
+        if (shading->smooth) {
+            points->plane.nx[l] = n.x;
+            points->plane.ny[l] = n.y;
+            points->plane.nz[l] = n.z;
+        }
     }
 }
 
-void vplDirectIrradiance(const vplShading* shading, const vplSurface* surface, float irradiance[3][VPL_LANES])
+void vplPoints_FromFragments(const vplShading* shading, int object, const vplFragments* fragments,
+                             vplPoints* pointsOut)
 {
-    const vplShadeDef* def = shading->def;
-    const bool documented = def->lighting == VPL_LIGHTING_DOCUMENTED;
-    const float weight = documented && def->particleCount > 0 ? 1 / (float)def->particleCount : 1;
+    vplSurface* s = &pointsOut->surface;
+    const int triangle = shading->geometry->objects[object].firstTriangle + fragments->primitive;
+    memcpy(s->px, fragments->varying[0], sizeof s->px);
+    memcpy(s->py, fragments->varying[1], sizeof s->py);
+    memcpy(s->pz, fragments->varying[2], sizeof s->pz);
+    if (shading->objects[object].normals != NULL) {
+        memcpy(s->nx, fragments->varying[3], sizeof s->nx);
+        memcpy(s->ny, fragments->varying[4], sizeof s->ny);
+        memcpy(s->nz, fragments->varying[5], sizeof s->nz);
+    }
     for (int l = 0; l < VPL_LANES; l++) {
-        irradiance[0][l] = irradiance[1][l] = irradiance[2][l] = 0;
+        pointsOut->triangle[l] = fragments->covered[l] ? triangle : -1;
     }
-    for (int i = 0; i < def->emitterCount; i++) {
-        const vplEmitterDef* e = &def->emitters[i];
-        float cosine[VPL_LANES], shadow[VPL_LANES];
-        if (!shading->emitterKernel(surface, e->position, !documented, cosine)) {
-            continue;
-        }
-        vplShadow_FactorBlock(&def->shadows[i], surface, shadow);
-        const vplRgb colour = vplRgbScale(weight, e->intensity);
-        for (int l = 0; l < VPL_LANES; l++) {
-            float lit = (1 - shadow[l]) * cosine[l];
-            irradiance[0][l] += colour.r * lit;
-            irradiance[1][l] += colour.g * lit;
-            irradiance[2][l] += colour.b * lit;
-        }
-    }
+    vplPoints_FinishNormals(shading, pointsOut);
 }

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+// Light and what stops it: emitters and virtual lights with shadow maps or shadow rays. The arithmetic of light
+// is the kernels'; here it is only multiplied by visibility.
+#include "geometry/intersect.h"
+#include "math/vec.h"
+#include "shading/shading.h"
+
+#include <string.h>
+
+static vplHit hitOf(const vplGeometry* g, const vplPoints* points, int lane)
+{
+    const int triangle = points->triangle[lane];
+    const vplGeometryObject* object = &g->objects[g->owners[triangle]];
+    const vplSurface* s = &points->surface;
+    vplHit hit = {.object = g->owners[triangle],
+                  .triangle = triangle,
+                  .position = vplGeometry_Inside(g, triangle, vplVec(s->px[lane], s->py[lane], s->pz[lane])),
+                  .normal = g->normals[triangle]};
+    hit.face = object->type == VPL_OBJECT_QUAD  ? VPL_FACE_QUAD
+               : object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2
+                                                : VPL_FACE_NONE;
+    return hit;
+}
+
+void vplCastShadowRays(const vplShading* shading, const vplPoints* points, vplVec3 target, bool parallel,
+                       float amount[VPL_LANES], int64_t* rays)
+{
+    const vplGeometry* g = shading->geometry;
+    const vplSurface* plane = shading->smooth ? &points->plane : &points->surface;
+    for (int l = 0; l < VPL_LANES; l++) {
+        if (!(amount[l] > 0) || points->triangle[l] < 0) {
+            continue;
+        }
+        const vplHit hit = hitOf(g, points, l);
+        const vplVec3 way = parallel ? vplNegate(target) : vplSub(target, hit.position);
+        if (!(vplDot(way, vplVec(plane->nx[l], plane->ny[l], plane->nz[l])) > 0)) {
+            amount[l] = 0;
+            continue;
+        }
+        const vplRay ray = vplGeometry_Leave(g, &hit, way);
+        ++*rays;
+        if (vplGeometry_IsOccluded(g, &ray, parallel ? INFINITY : 1)) {
+            amount[l] = 0;
+        }
+    }
+}
+
+// Multiplies `amount` by what the emitter's shadow leaves of it.
+static void shadowEmitter(const vplShading* s, const vplPoints* points, int index, float amount[VPL_LANES],
+                          int64_t* rays)
+{
+    const vplShadow* shadow = &s->def->shadows[index];
+    const vplEmitterRay* emitter = &s->emitters[index];
+    if (emitter->parallel || shadow->map == NULL) {
+        vplCastShadowRays(s, points, emitter->parallel ? emitter->direction : emitter->position,
+                          emitter->parallel, amount, rays);
+        return;
+    }
+    float factor[VPL_LANES];
+    if (s->smooth) { // a shadow belongs to the plane of the triangle, and so does its far side
+        float cosine[VPL_LANES];
+        s->emitterKernel(&points->plane, emitter, cosine);
+        for (int l = 0; l < VPL_LANES; l++) {
+            amount[l] = cosine[l] > 0 ? amount[l] : 0;
+        }
+    }
+    vplShadow_FactorBlock(shadow, s->smooth ? &points->plane : &points->surface, factor);
+    for (int l = 0; l < VPL_LANES; l++) {
+        amount[l] *= 1 - factor[l];
+    }
+}
+
+// A virtual light lies on a surface that must not shadow it: rays aim a little above.
+static vplVec3 aimAt(const vplShadeLight* light)
+{
+    const float x = light->px, y = light->py, z = light->pz;
+    float largest = fmaxf(fabsf(x), fmaxf(fabsf(y), fabsf(z))) * 0x1p-18f;
+    return vplVec(x + largest * light->nx, y + largest * light->ny, z + largest * light->nz);
+}
+
+// Adds one light after another, each with a ray or a map of its own.
+static void addShadowed(const vplShading* s, const vplPoints* points, const vplShadeLight* lights,
+                        const vplShadow* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
+                        int64_t* rays)
+{
+    for (int i = 0; i < count; i++) {
+        float part[3][VPL_LANES] = {{0}}, visible[VPL_LANES];
+        s->lightKernel(&points->surface, &lights[i], 1, inverseBound, part);
+        int lit = 0;
+        for (int l = 0; l < VPL_LANES; l++) {
+            visible[l] = part[0][l] + part[1][l] + part[2][l] > 0 ? 1.0f : 0.0f;
+            lit |= visible[l] > 0;
+        }
+        if (!lit) {
+            continue;
+        }
+        if (maps == NULL) {
+            vplCastShadowRays(s, points, aimAt(&lights[i]), false, visible, rays);
+        } else {
+            float factor[VPL_LANES];
+            vplShadow_FactorBlock(&maps[i], s->smooth ? &points->plane : &points->surface, factor);
+            for (int l = 0; l < VPL_LANES; l++) {
+                visible[l] *= 1 - factor[l];
+            }
+        }
+        for (int c = 0; c < 3; c++) {
+            for (int l = 0; l < VPL_LANES; l++) {
+                irradiance[c][l] += visible[l] * part[c][l];
+            }
+        }
+    }
+}
+
+void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, float irradiance[3][VPL_LANES],
+                         int64_t* rays)
+{
+    const vplShadeDef* def = shading->def;
+    const bool documented = def->lighting == VPL_LIGHTING_DOCUMENTED;
+    const float weight = documented && def->particleCount > 0 ? 1 / (float)def->particleCount : 1;
+    memset(irradiance, 0, 3 * sizeof irradiance[0]);
+    for (int i = 0; i < def->emitterCount; i++) {
+        float amount[VPL_LANES];
+        if (!shading->emitterKernel(&points->surface, &shading->emitters[i], amount)) {
+            continue;
+        }
+        shadowEmitter(shading, points, i, amount, rays);
+        const vplRgb colour = vplRgbScale(weight, def->emitters[i].intensity);
+        for (int l = 0; l < VPL_LANES; l++) {
+            irradiance[0][l] += colour.r * amount[l];
+            irradiance[1][l] += colour.g * amount[l];
+            irradiance[2][l] += colour.b * amount[l];
+        }
+    }
+    for (int first = 0; first < def->lampCount; first += VPL_LIGHT_GROUP) {
+        const int count = def->lampCount - first < VPL_LIGHT_GROUP ? def->lampCount - first : VPL_LIGHT_GROUP;
+        float part[3][VPL_LANES] = {{0}};
+        addShadowed(shading, points, def->lamps + first, NULL, count, shading->lampInverseBound, part, rays);
+        for (int c = 0; c < 3; c++) {
+            for (int l = 0; l < VPL_LANES; l++) {
+                irradiance[c][l] += part[c][l];
+            }
+        }
+    }
+}
+
+void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
+                           float irradiance[3][VPL_LANES], int64_t* rays)
+{
+    const vplShadeDef* def = shading->def;
+    const vplShadeLight* lights = def->lights + first;
+    if (def->lightShadows == NULL && !def->lightRays) {
+        shading->lightKernel(&points->surface, lights, count, shading->inverseBound, irradiance);
+    } else {
+        addShadowed(shading, points, lights, def->lightShadows ? def->lightShadows + first : NULL, count,
+                    shading->inverseBound, irradiance, rays);
+    }
+}
