@@ -12,6 +12,7 @@
     X(lights)                                                                                                \
     X(math)                                                                                                  \
     X(memory)                                                                                                \
+    X(path)                                                                                                  \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \
     X(render)                                                                                                \

@@ -12,43 +12,6 @@ static const struct {
     uint32_t m[3];
 } POLYNOMIALS[VPL_SOBOL_DIMENSIONS - 1] = {{1, 0, {1}}, {2, 1, {1, 3}}, {3, 1, {1, 3, 1}}};
 
-vplSobol vplSobol_Make(void)
-{
-    vplSobol sobol;
-    for (int bit = 0; bit < 32; bit++) {
-        sobol.columns[bit][0] = UINT32_C(1) << (31 - bit);
-    }
-    for (int d = 1; d < VPL_SOBOL_DIMENSIONS; d++) {
-        int degree = POLYNOMIALS[d - 1].degree, inner = POLYNOMIALS[d - 1].coefficients;
-        for (int bit = 0; bit < 32; bit++) {
-            if (bit < degree) {
-                sobol.columns[bit][d] = POLYNOMIALS[d - 1].m[bit] << (31 - bit);
-                continue;
-            }
-            uint32_t before = sobol.columns[bit - degree][d], v = before ^ (before >> degree);
-            for (int k = 1; k < degree; k++) {
-                v ^= inner >> (degree - 1 - k) & 1 ? sobol.columns[bit - k][d] : 0;
-            }
-            sobol.columns[bit][d] = v;
-        }
-    }
-    return sobol;
-}
-
-void vplSobol_Point(const vplSobol* sobol, uint32_t index, uint32_t fractionsOut[VPL_SOBOL_DIMENSIONS])
-{
-    uint32_t x[VPL_SOBOL_DIMENSIONS] = {0};
-    for (int bit = 0; index != 0; bit++, index >>= 1) {
-        uint32_t mask = -(index & 1);
-        for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
-            x[d] ^= sobol->columns[bit][d] & mask;
-        }
-    }
-    for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
-        fractionsOut[d] = x[d];
-    }
-}
-
 static uint32_t reverseBits(uint32_t x)
 {
     x = (x << 16) | (x >> 16);
@@ -56,6 +19,68 @@ static uint32_t reverseBits(uint32_t x)
     x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
     x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
     return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+// Columns of one dimension's generating matrix, one for each bit of the index.
+static void makeColumns(int dimension, uint32_t columns[32])
+{
+    for (int bit = 0; bit < 32; bit++) {
+        columns[bit] = UINT32_C(1) << (31 - bit);
+    }
+    if (dimension == 0) {
+        return;
+    }
+    const int degree = POLYNOMIALS[dimension - 1].degree, inner = POLYNOMIALS[dimension - 1].coefficients;
+    for (int bit = 0; bit < 32; bit++) {
+        if (bit < degree) {
+            columns[bit] = POLYNOMIALS[dimension - 1].m[bit] << (31 - bit);
+            continue;
+        }
+        uint32_t before = columns[bit - degree], v = before ^ (before >> degree);
+        for (int k = 1; k < degree; k++) {
+            v ^= inner >> (degree - 1 - k) & 1 ? columns[bit - k] : 0;
+        }
+        columns[bit] = v;
+    }
+}
+
+vplSobol vplSobol_Make(void)
+{
+    vplSobol sobol;
+    for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+        uint32_t columns[32];
+        makeColumns(d, columns);
+        for (int i = 0; i < 8 * 16; i++) {
+            uint32_t sum = 0;
+            for (int k = 0; k < 4; k++) {
+                sum ^= i >> k & 1 ? columns[31 - (i / 16 * 4 + k)] : 0;
+            }
+            sobol.share[i / 16][i % 16][d] = reverseBits(sum);
+        }
+    }
+    return sobol;
+}
+
+// Both the index and the fractions in reverse.
+static void pointInReverse(const vplSobol* sobol, uint32_t index, uint32_t x[VPL_SOBOL_DIMENSIONS])
+{
+    for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+        x[d] = sobol->share[0][index & 15][d];
+    }
+    for (int i = 1; i < 8; i++) {
+        const uint32_t* share = sobol->share[i][index >> (4 * i) & 15];
+        for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+            x[d] ^= share[d];
+        }
+    }
+}
+
+void vplSobol_Point(const vplSobol* sobol, uint32_t index, uint32_t fractionsOut[VPL_SOBOL_DIMENSIONS])
+{
+    pointInReverse(sobol, reverseBits(index), fractionsOut);
+    for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+        fractionsOut[d] = reverseBits(fractionsOut[d]);
+    }
 }
 
 // Sums and products carry upwards only, and the factors are even: a bit depends on those below it alone.
@@ -77,12 +102,12 @@ uint32_t vplOwenScramble(uint32_t fraction, uint32_t seed)
 void vplSobol_Sample(const vplSobol* sobol, uint64_t seed, uint64_t stream, uint32_t dimension,
                      uint32_t index, float sampleOut[VPL_SOBOL_DIMENSIONS])
 {
-    vplRandom4 seeds = vplRandomAt(seed, dimension, stream);
+    const vplRandom4 seeds = vplRandomAt(seed, dimension, stream);
     uint32_t x[VPL_SOBOL_DIMENSIONS];
     // Shuffling keeps each aligned block of 2^k indices together: it stays as evenly spread as it was.
-    uint32_t shuffled = vplOwenScramble(index, seeds.v[0] ^ (seeds.v[1] << 16 | seeds.v[2] >> 16));
-    vplSobol_Point(sobol, shuffled, x);
+    const uint32_t shuffle = seeds.v[0] ^ (seeds.v[1] << 16 | seeds.v[2] >> 16);
+    pointInReverse(sobol, permuteUpwards(reverseBits(index), shuffle), x);
     for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
-        sampleOut[d] = vplUnitFloat(vplOwenScramble(x[d], seeds.v[d]));
+        sampleOut[d] = vplUnitFloat(reverseBits(permuteUpwards(x[d], seeds.v[d])));
     }
 }

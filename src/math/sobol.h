@@ -7,9 +7,10 @@
 
 enum { VPL_SOBOL_DIMENSIONS = 4 };
 
-// Generating matrices: columns[bit][dimension].
+// What index bits contribute to a point, four of them at a time. Indices and fractions have their bits in reverse,
+// because that is how scrambling needs them.
 typedef struct vplSobol {
-    uint32_t columns[32][VPL_SOBOL_DIMENSIONS];
+    uint32_t share[8][16][VPL_SOBOL_DIMENSIONS];
 } vplSobol;
 
 vplSobol vplSobol_Make(void);

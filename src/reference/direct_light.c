@@ -204,12 +204,14 @@ static void addOneEmitter(const vplPathScene* s, const vplPathVertex* v, double 
 }
 
 vplDirectLight vplSampleDirect(const vplPathScene* scene, const vplPathVertex* vertex, const float u[2],
-                               double choice, int64_t* rays)
+                               const vplPathNumbers* numbers, uint32_t set, int64_t* rays)
 {
     const vplEmission* e = scene->emission;
     vplDirectLight light = {0, 0, 0};
     if (e->emitterCount > scene->def.allEmitters) {
-        addOneEmitter(scene, vertex, choice, &light, rays);
+        float more[4];
+        vplPathNumbers_Get(numbers, set, more);
+        addOneEmitter(scene, vertex, (double)more[0], &light, rays);
     } else {
         for (int i = 0; i < e->emitterCount; i++) {
             addEmitter(scene, vertex, &e->emitters[i], unshadowed(&e->emitters[i], vertex), 1, &light, rays);

@@ -66,14 +66,16 @@ static void add(double sum[3], vplRgb weight, double r, double g, double b)
 }
 
 // Whether a path goes on; those that do carry the light of those that do not.
-static bool survives(const vplPathScene* s, float u, vplRgb* throughput)
+static bool survives(const vplPathScene* s, const vplPathNumbers* numbers, uint32_t set, vplRgb* throughput)
 {
     float most = fmaxf(throughput->r, fmaxf(throughput->g, throughput->b));
     float chance = most / (float)s->def.rouletteFrom;
     if (chance >= 1) {
         return true;
     }
-    if (u >= chance) {
+    float u[4];
+    vplPathNumbers_Get(numbers, set, u);
+    if (u[1] >= chance) {
         return false;
     }
     *throughput = vplRgbScale(1 / chance, *throughput);
@@ -88,11 +90,12 @@ static void reflectOn(const vplPathScene* s, vplPathVertex vertex, const vplPath
     const bool area = s->trianglePower > 0;
     for (int bounce = 0; bounce <= s->def.lastBounce; bounce++) {
         const bool counts = bounce >= s->def.firstBounce, last = bounce == s->def.lastBounce;
-        float u[4], more[4];
-        vplPathNumbers_Get(numbers, (uint32_t)(2 * bounce + 1), u);
-        vplPathNumbers_Get(numbers, (uint32_t)(2 * bounce + 2), more);
+        const uint32_t set =
+            (uint32_t)(2 * bounce + 1); // and set + 1, where more than four numbers are needed
+        float u[4];
+        vplPathNumbers_Get(numbers, set, u);
         if (counts) {
-            vplDirectLight d = vplSampleDirect(s, &vertex, u + 2, (double)more[0], rays);
+            vplDirectLight d = vplSampleDirect(s, &vertex, u + 2, numbers, set + 1, rays);
             add(sum, throughput, d.r, d.g, d.b);
         }
         if (last && !area) {
@@ -100,7 +103,7 @@ static void reflectOn(const vplPathScene* s, vplPathVertex vertex, const vplPath
         }
         throughput = vplRgbMul(throughput, vertex.rho);
         vplVec3 direction = vplSampleCosineAround(vertex.shading, u[0], u[1]);
-        if (!(vplDot(direction, vertex.normal) > 0) || !survives(s, more[1], &throughput)) {
+        if (!(vplDot(direction, vertex.normal) > 0) || !survives(s, numbers, set + 1, &throughput)) {
             return;
         }
         vplRay ray = vplGeometry_Leave(s->geometry, &vertex.hit, direction);

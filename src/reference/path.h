@@ -35,14 +35,14 @@ typedef struct vplPathVertex {
     vplRgb rho;
 } vplPathVertex;
 
-// Radiance that the sources send to the vertex and it reflects. u picks the place on an emitting triangle, choice
-// the emitter.
+// Radiance that the sources send to the vertex and it reflects. u picks the place on an emitting triangle, the first
+// number of `set` the emitter where there are many.
 typedef struct vplDirectLight {
     double r, g, b;
 } vplDirectLight;
 
 vplDirectLight vplSampleDirect(const vplPathScene* scene, const vplPathVertex* vertex, const float u[2],
-                               double choice, int64_t* rays);
+                               const vplPathNumbers* numbers, uint32_t set, int64_t* rays);
 
 // The weight of emission that a path from `vertex` met by itself at `hit`, in direction `direction` (unit).
 double vplWeightOfChance(const vplPathScene* scene, const vplPathVertex* vertex, const vplHit* hit,

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// What the path tracer's choices are worth: error of the picture, rays, time, and variance times time against the
+// first line of each group (smaller is better). `bench/path SCENE [SAMPLES [SIZE]]`.
+#include "base/clock.h"
+#include "reference/path_trace.h"
+
+#include <vpl/vpl.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct Line {
+    const char* group;
+    const char* name;
+    void (*adjust)(vplPathDef* def);
+} Line;
+
+static void asItIs(vplPathDef* def)
+{
+    (void)def;
+}
+
+static void randomNumbers(vplPathDef* def)
+{
+    def->random = true;
+}
+
+static void balance(vplPathDef* def)
+{
+    def->lights = VPL_PATH_BALANCE;
+}
+
+static void points(vplPathDef* def)
+{
+    def->lights = VPL_PATH_POINTS;
+}
+
+static void chance(vplPathDef* def)
+{
+    def->lights = VPL_PATH_CHANCE;
+}
+
+static void rouletteAt1(vplPathDef* def)
+{
+    def->rouletteFrom = 1;
+}
+
+static void rouletteAtHalf(vplPathDef* def)
+{
+    def->rouletteFrom = 0.5;
+}
+
+static void rouletteAtEighth(vplPathDef* def)
+{
+    def->rouletteFrom = 0.125;
+}
+
+static void rouletteAt64th(vplPathDef* def)
+{
+    def->rouletteFrom = 1.0 / 64;
+}
+
+static void oneEmitter(vplPathDef* def)
+{
+    def->allEmitters = 0;
+}
+
+static void allEmitters(vplPathDef* def)
+{
+    def->allEmitters = 1 << 24;
+}
+
+static const Line LINES[] = {
+    {"numbers", "scrambled Sobol'", asItIs},
+    {"numbers", "random", randomNumbers},
+    {"lamps", "both, power heuristic", asItIs},
+    {"lamps", "both, balance heuristic", balance},
+    {"lamps", "points on lamps alone", points},
+    {"lamps", "paths alone", chance},
+    {"roulette", "below a quarter", asItIs},
+    {"roulette", "always", rouletteAt1},
+    {"roulette", "below a half", rouletteAtHalf},
+    {"roulette", "below an eighth", rouletteAtEighth},
+    {"roulette", "below a 64th", rouletteAt64th},
+    {"emitters", "all of up to four, else one", asItIs},
+    {"emitters", "one", oneEmitter},
+    {"emitters", "all", allEmitters},
+};
+
+static vplResult measure(const vplGeometry* geometry, const vplPathDef* def, int samples, vplPathStats* stats,
+                         double* ms)
+{
+    vplPathTracer* tracer = NULL;
+    vplImage* image = NULL;
+    double start = vplCpuMs();
+    vplResult result = vplPathTracer_Create(geometry, def, &tracer);
+    if (result == VPL_SUCCESS) {
+        result = vplPathTracer_Pass(tracer, samples, NULL, NULL, 0, 1);
+    }
+    *ms = vplCpuMs() - start;
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Create(geometry->context, def->width, def->height, &image);
+    }
+    if (result == VPL_SUCCESS) {
+        vplPathTracer_Resolve(tracer, image, stats);
+    }
+    vplImage_Destroy(image);
+    vplPathTracer_Destroy(tracer);
+    return result;
+}
+
+static int run(const vplScene* scene, const vplGeometry* geometry, int samples, int size)
+{
+    double first = 0;
+    printf("%-9s %-28s %10s %8s %9s %9s %9s\n", "", "", "error", "of mean", "rays/path", "Mrays/s",
+           "var*time");
+    for (size_t i = 0; i < sizeof LINES / sizeof *LINES; i++) {
+        vplPathDef def = vplDefaultPathDef();
+        def.camera = vplScene_GetCamera(scene, 0);
+        def.emitterCount = vplScene_GetEmitterCount(scene);
+        def.emitters = def.emitterCount ? vplScene_GetEmitter(scene, 0) : NULL;
+        def.width = def.height = size;
+        LINES[i].adjust(&def);
+        vplPathStats stats;
+        double ms;
+        if (measure(geometry, &def, samples, &stats, &ms) != VPL_SUCCESS) {
+            return 1;
+        }
+        double cost = stats.errorEstimate * stats.errorEstimate * ms;
+        if (i == 0 || LINES[i].group != LINES[i - 1].group) {
+            first = cost;
+        }
+        printf("%-9s %-28s %10.4g %7.2f%% %9.2f %9.2f %9.2f\n", LINES[i].group, LINES[i].name,
+               stats.errorEstimate, 100 * stats.relativeErrorEstimate,
+               (double)stats.rays / size / size / samples, (double)stats.rays / ms / 1000, cost / first);
+        fflush(stdout);
+    }
+    return 0;
+}
+
+static void printMessage(void* user, vplLogLevel level, const char* message)
+{
+    (void)user;
+    (void)level;
+    fprintf(stderr, "%s\n", message);
+}
+
+int main(int count, char** words)
+{
+    vplContextDef def = vplDefaultContextDef();
+    def.log = printMessage;
+    vplContext* context = NULL;
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    const char* path = count > 1 ? words[1] : "examples/scenes/room-area.json";
+    int code = 1;
+    if (vplContext_Create(&def, &context) == VPL_SUCCESS &&
+        vplScene_Load(context, path, &scene) == VPL_SUCCESS &&
+        vplGeometry_Create(scene, &geometry) == VPL_SUCCESS) {
+        code = run(scene, geometry, count > 2 ? atoi(words[2]) : 64, count > 3 ? atoi(words[3]) : 128);
+    }
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    vplContext_Destroy(context);
+    return code;
+}
