@@ -28,7 +28,11 @@ CFLAGS  ?= -g
 SAN     := $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all -fno-omit-frame-pointer)
 OMP     := $(if $(filter 1,$(OPENMP)),-fopenmp)
 ALL_CFLAGS = $(STANDARD) $(WARNINGS) $(INCLUDES) $(OPT_$(MODE)) $(OMP) $(SAN) $(CFLAGS) -MMD -MP
-LDLIBS  := -ljansson -lm
+# EXR pictures where OpenEXR's C library is installed; EXR=0 does without.
+EXR     ?= $(shell printf '\043include <OpenEXR/openexr.h>\nint main(void){exr_get_library_version(0,0,0,0);return 0;}' \
+             | $(CC) -x c - -o /dev/null -lOpenEXRCore >/dev/null 2>&1 && echo 1 || echo 0)
+EXR     := $(EXR)
+LDLIBS  := -ljansson $(if $(filter 1,$(EXR)),-lOpenEXRCore) -lm
 
 MACHINE := $(shell $(CC) -dumpmachine 2>/dev/null)
 ISAS    := scalar sse2 $(if $(filter x86_64%,$(MACHINE)),avx2 avx512)
@@ -51,7 +55,7 @@ FUZZERS        := $(patsubst tests/fuzz/%_fuzz.c,%,$(wildcard tests/fuzz/*_fuzz.
 REPLAYS        := $(FUZZERS:%=$(BUILD)/fuzz/%_replay)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all programs test-programs help deps demo test check-all bench golden gallery install clean format fuzz
+.PHONY: all libs programs test-programs help deps demo test check-all bench golden gallery install clean format fuzz
 
 ## make             builds build/vpl and build/libvpl.a, installing what is missing
 all: deps
@@ -105,7 +109,7 @@ install: programs
 	install -m 644 $(BUILD)/libvpl.a $(DESTDIR)$(PREFIX)/lib
 	install -m 644 src/cli/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl/base.h)|' \
-	  -e 's|@OMP@|$(OMP)|' src/libvpl.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libvpl.pc
+	  -e 's|@OMP@|$(OMP)|' -e 's|@LIBS@|$(LDLIBS)|' src/libvpl.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libvpl.pc
 
 ## make format      clang-format over all sources
 format:
@@ -169,6 +173,18 @@ $(BUILD)/obj/%_kernel.$(1).o: %_kernel.c
 	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(ISA_$(1)) -DVPL_KERNEL_ISA=$(1) -c -o $$@ $$<
 endef
 $(foreach isa,$(ISAS),$(eval $(call KERNEL_RULE,$(isa))))
+
+# OpenEXR may come or go between two builds.
+$(BUILD)/obj/src/image/exr.o: $(BUILD)/obj/exr-$(EXR)
+$(BUILD)/obj/src/image/exr.o: ALL_CFLAGS += -DVPL_EXR=$(EXR)
+$(BUILD)/obj/exr-$(EXR):
+	@mkdir -p $(@D)
+	@rm -f $(BUILD)/obj/exr-*
+	@touch $@
+
+# Prints what a program that is linked with libvpl.a needs besides.
+libs:
+	@echo $(LDLIBS)
 
 .SECONDARY:
 -include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)

@@ -54,7 +54,7 @@ check ExampleRasterizerRuns writes "$scratch/raster.png" "$build/examples/raster
 sed -n '/^```c$/,/^```$/p' README.md | sed '/^```/d' >"$scratch/readme.c"
 readme_program() {
     [ -s "$scratch/readme.c" ] &&
-        "$cc" -std=gnu11 -Wall -Werror -Iinclude "$scratch/readme.c" "$build/libvpl.a" $SANITIZE_FLAGS -fopenmp -ljansson -lm -o "$scratch/readme" &&
+        "$cc" -std=gnu11 -Wall -Werror -Iinclude "$scratch/readme.c" "$build/libvpl.a" $SANITIZE_FLAGS -fopenmp $(make -s --no-print-directory libs) -o "$scratch/readme" &&
         cp $scene "$scratch/room.json" && (cd "$scratch" && ./readme) && [ -s "$scratch/room.png" ]
 }
 [ -n "$SANITIZE_FLAGS" ] || check ReadmeProgramCompilesAndRuns readme_program

@@ -76,6 +76,7 @@ static Arguments defaultArguments(const char* command)
     a.render = vplDefaultRenderOptions();
     a.context = vplDefaultContextDef();
     a.write = vplDefaultWriteOptions();
+    a.heat = vplDefaultHeatmapDef();
     a.runs = 5;
     return a;
 }

@@ -20,7 +20,9 @@ typedef struct Arguments {
     const char* output;  // -o
     const char* stats;   // --stats
     const char* heatmap; // --heatmap
-    double heatScale;
+    vplHeatmapDef heat;
+    int region[4];     // --region: x, y, width, height; width 0: all of the picture
+    int columns, rows; // --regions; 0: none
     int threads[MAX_THREAD_COUNTS];
     int threadsCount;
     int runs;

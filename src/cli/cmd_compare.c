@@ -6,14 +6,35 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void printText(const vplComparison* c)
+// Everything that is printed.
+typedef struct Findings {
+    vplComparison pixels;
+    double ssim, flip;
+    vplRegion* regions;
+    int regionCount;
+} Findings;
+
+static void printText(const Findings* f)
 {
+    const vplComparison* c = &f->pixels;
     printf("rmse            %.9g\n", c->rmse);
     printf("relative_rmse   %.9g\n", c->relativeRmse);
     printf("relmse          %.9g\n", c->relmse);
+    printf("trimmed_relmse  %.9g\n", c->trimmedRelmse);
     printf("psnr            %.6g dB\n", c->psnr);
+    printf("ssim            %.9g\n", f->ssim);
+    printf("flip            %.9g\n", f->flip);
     printf("energy_ratio    %.9g\n", c->energyRatio);
     printf("max_difference  %.9g at (%d, %d)\n", c->maxDifference, c->maxX, c->maxY);
+    if (f->regionCount > 0) {
+        printf("\n%6s %6s %6s %6s %13s %13s %13s %13s\n", "x", "y", "width", "height", "mean_a", "mean_b",
+               "ratio", "rmse");
+    }
+    for (int i = 0; i < f->regionCount; i++) {
+        const vplRegion* r = &f->regions[i];
+        printf("%6d %6d %6d %6d %13.6g %13.6g %13.6g %13.6g\n", r->x, r->y, r->width, r->height, r->meanA,
+               r->meanB, r->ratio, r->rmse);
+    }
 }
 
 // JSON knows no infinity: what is infinite is null.
@@ -22,39 +43,93 @@ static json_t* number(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
-static void printJson(const vplComparison* c)
+static json_t* describeRegions(const Findings* f)
 {
+    json_t* array = json_array();
+    for (int i = 0; i < f->regionCount; i++) {
+        const vplRegion* r = &f->regions[i];
+        json_t* entry = json_object();
+        json_object_set_new(entry, "x", json_integer(r->x));
+        json_object_set_new(entry, "y", json_integer(r->y));
+        json_object_set_new(entry, "width", json_integer(r->width));
+        json_object_set_new(entry, "height", json_integer(r->height));
+        json_object_set_new(entry, "mean_a", number(r->meanA));
+        json_object_set_new(entry, "mean_b", number(r->meanB));
+        json_object_set_new(entry, "ratio", number(r->ratio));
+        json_object_set_new(entry, "rmse", number(r->rmse));
+        json_array_append_new(array, entry);
+    }
+    return array;
+}
+
+static void printJson(const Findings* f, double ppd)
+{
+    const vplComparison* c = &f->pixels;
     json_t* root = json_object();
     json_object_set_new(root, "rmse", number(c->rmse));
     json_object_set_new(root, "relative_rmse", number(c->relativeRmse));
     json_object_set_new(root, "relmse", number(c->relmse));
+    json_object_set_new(root, "trimmed_relmse", number(c->trimmedRelmse));
     json_object_set_new(root, "psnr", number(c->psnr));
+    json_object_set_new(root, "ssim", number(f->ssim));
+    json_object_set_new(root, "flip", number(f->flip));
+    json_object_set_new(root, "flip_ppd", number(ppd));
     json_object_set_new(root, "energy_ratio", number(c->energyRatio));
     json_object_set_new(root, "max_difference", number(c->maxDifference));
     json_object_set_new(root, "max_x", json_integer(c->maxX));
     json_object_set_new(root, "max_y", json_integer(c->maxY));
+    if (f->regionCount > 0) {
+        json_object_set_new(root, "regions", describeRegions(f));
+    }
     json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(root);
 }
 
-static int compare(const Arguments* a, const vplImage* first, const vplImage* second)
+static vplResult compareRegions(const Arguments* a, const vplImage* first, const vplImage* second,
+                                Findings* findings)
 {
-    vplComparison comparison;
-    int code = exitCode(vplImage_Compare(first, second, &comparison), true);
-    if (code != EXIT_DONE) {
-        return code;
+    bool fits = a->columns <= first->width && a->rows <= first->height; // or the library says what is wrong
+    findings->regionCount = a->columns * a->rows;
+    findings->regions = fits ? calloc((size_t)findings->regionCount, sizeof *findings->regions) : NULL;
+    if (fits && findings->regions == NULL) {
+        complain("out of memory: %d regions", findings->regionCount);
+        return VPL_OUT_OF_MEMORY;
     }
-    if (a->json) {
-        printJson(&comparison);
-    } else {
-        printText(&comparison);
+    return vplImage_CompareRegions(first, second, a->columns, a->rows, findings->regions);
+}
+
+// Places are those of the whole pictures, though a cut-out was measured.
+static void movePlaces(Findings* f, const int region[4])
+{
+    f->pixels.maxX += region[0];
+    f->pixels.maxY += region[1];
+    for (int i = 0; i < f->regionCount; i++) {
+        f->regions[i].x += region[0];
+        f->regions[i].y += region[1];
     }
-    if (a->heatmap == NULL) {
-        return EXIT_DONE;
+}
+
+static vplResult measure(const Arguments* a, const vplImage* first, const vplImage* second,
+                         Findings* findings)
+{
+    vplResult result = vplImage_Compare(first, second, &findings->pixels);
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Ssim(first, second, &findings->ssim, NULL);
     }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Flip(first, second, a->heat.ppd, &findings->flip, NULL);
+    }
+    if (result == VPL_SUCCESS && a->columns > 0) {
+        result = compareRegions(a, first, second, findings);
+    }
+    return result;
+}
+
+static int writeHeatmap(const Arguments* a, const vplImage* first, const vplImage* second)
+{
     vplImage* map = NULL;
-    code = exitCode(vplImage_Heatmap(first, second, (float)a->heatScale, &map), true);
+    int code = exitCode(vplImage_HeatmapOf(first, second, &a->heat, &map), true);
     if (code == EXIT_DONE) {
         catchInterrupts(); // no temporary file stays behind
         code = exitCode(vplImage_Write(map, a->heatmap, NULL), false);
@@ -63,10 +138,46 @@ static int compare(const Arguments* a, const vplImage* first, const vplImage* se
     return code;
 }
 
+static int compare(const Arguments* a, const vplImage* first, const vplImage* second)
+{
+    Findings findings = {.regions = NULL};
+    int code = exitCode(measure(a, first, second, &findings), true);
+    if (code == EXIT_DONE) {
+        movePlaces(&findings, a->region);
+        if (a->json) {
+            printJson(&findings, a->heat.ppd);
+        } else {
+            printText(&findings);
+        }
+    }
+    free(findings.regions);
+    return code == EXIT_DONE && a->heatmap != NULL ? writeHeatmap(a, first, second) : code;
+}
+
+// Replaces both pictures by what --region asks for.
+static int cropBoth(const int region[4], vplImage* images[2])
+{
+    if (images[0]->width != images[1]->width || images[0]->height != images[1]->height) {
+        complain("the pictures differ in size: %dx%d and %dx%d", images[0]->width, images[0]->height,
+                 images[1]->width, images[1]->height);
+        return EXIT_USAGE;
+    }
+    int code = EXIT_DONE;
+    for (int i = 0; i < 2 && code == EXIT_DONE; i++) {
+        vplImage* crop = NULL;
+        code = exitCode(vplImage_Crop(images[i], region[0], region[1], region[2], region[3], &crop), true);
+        if (code == EXIT_DONE) {
+            vplImage_Destroy(images[i]);
+            images[i] = crop;
+        }
+    }
+    return code;
+}
+
 int runCompare(const Arguments* a)
 {
     if (a->heatmap != NULL && !vplImage_CanWrite(a->heatmap)) {
-        complain("%s: unknown picture format; the name must end in .png, .hdr or .pfm", a->heatmap);
+        complain("%s: unknown picture format; the name must end in %s", a->heatmap, vplImage_GetExtensions());
         return EXIT_USAGE;
     }
     if (a->heatmap != NULL && !checkOutput(a->heatmap)) {
@@ -80,6 +191,9 @@ int runCompare(const Arguments* a)
     int code = EXIT_DONE;
     for (int i = 0; i < 2 && code == EXIT_DONE; i++) {
         code = exitCode(vplImage_Read(context, a->positionals[i], &images[i]), true);
+    }
+    if (code == EXIT_DONE && a->region[2] > 0) {
+        code = cropBoth(a->region, images);
     }
     if (code == EXIT_DONE) {
         code = compare(a, images[0], images[1]);

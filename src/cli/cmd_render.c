@@ -87,7 +87,7 @@ int runRender(const Arguments* a)
         return EXIT_USAGE;
     }
     if (!vplImage_CanWrite(a->output)) {
-        complain("%s: unknown picture format; the name must end in .png, .hdr or .pfm", a->output);
+        complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
         return EXIT_USAGE;
     }
     if (a->stats != NULL && strcmp(a->output, a->stats) == 0) {

@@ -28,6 +28,6 @@ extern const int OPTION_COUNT;
 int commandBit(const char* command);
 
 ReadFcn readInt, readSeed, readFloat, readDouble, readFloatOrAuto, readReflectivity, readBias, readBiasSlope,
-    readFlag, readText, readChoice, readShow, readSize, readThreads;
+    readFlag, readText, readChoice, readShow, readSize, readThreads, readRegion, readGrid;
 
 #endif

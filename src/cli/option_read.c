@@ -210,24 +210,61 @@ bool readShow(const Option* o, const char* value, Arguments* a)
     return true;
 }
 
-bool readSize(const Option* o, const char* value, Arguments* a)
+// "AxB", both in [1, VPL_MAX_IMAGE_SIZE].
+static bool parsePair(const char* value, int* first, int* second)
 {
     char* end;
     errno = 0;
-    long width = strtol(value, &end, 10), height = 0;
+    long a = strtol(value, &end, 10), b = 0;
     bool good = end != value && *end == 'x';
     if (good) {
         char* start = end + 1;
-        height = strtol(start, &end, 10);
+        b = strtol(start, &end, 10);
         good = !isPast(start, end) && errno == 0;
     }
-    if (!good || width < 1 || width > VPL_MAX_IMAGE_SIZE || height < 1 || height > VPL_MAX_IMAGE_SIZE) {
+    if (!good || a < 1 || a > VPL_MAX_IMAGE_SIZE || b < 1 || b > VPL_MAX_IMAGE_SIZE) {
+        return false;
+    }
+    *first = (int)a;
+    *second = (int)b;
+    return true;
+}
+
+bool readSize(const Option* o, const char* value, Arguments* a)
+{
+    if (!parsePair(value, &a->render.width, &a->render.height)) {
         complain("%s is \"%s\", must be WIDTHxHEIGHT, each in [1, %d]", o->name, value, VPL_MAX_IMAGE_SIZE);
         return false;
     }
-    a->render.width = (int)width;
-    a->render.height = (int)height;
     a->sizeGiven = true;
+    return true;
+}
+
+bool readGrid(const Option* o, const char* value, Arguments* a)
+{
+    if (!parsePair(value, &a->columns, &a->rows)) {
+        complain("%s is \"%s\", must be COLUMNSxROWS, each in [1, %d]", o->name, value, VPL_MAX_IMAGE_SIZE);
+        return false;
+    }
+    return true;
+}
+
+// Whether it lies inside the pictures is asked when they are there.
+bool readRegion(const Option* o, const char* value, Arguments* a)
+{
+    const char* at = value;
+    for (int i = 0; i < 4; i++) {
+        char* end;
+        errno = 0;
+        long number = strtol(at, &end, 10);
+        bool good = end != at && errno == 0 && *end == (i < 3 ? ',' : 0) && number >= i / 2;
+        if (!good || number > VPL_MAX_IMAGE_SIZE) {
+            complain("%s is \"%s\", must be X,Y,WIDTH,HEIGHT in pixels, X and Y from 0", o->name, value);
+            return false;
+        }
+        a->region[i] = (int)number;
+        at = end + 1;
+    }
     return true;
 }
 

@@ -6,17 +6,38 @@
 #include <stdio.h>
 #include <string.h>
 
+// Straight lines between `count` colours at equal steps.
+static vplRgb mixStops(const vplRgb* stops, int count, float t)
+{
+    float at = (float)(count - 1) * vplClampf(t == t ? t : 0, 0, 1);
+    int i = vplMini((int)at, count - 2);
+    float f = at - (float)i;
+    return (vplRgb){stops[i].r + f * (stops[i + 1].r - stops[i].r),
+                    stops[i].g + f * (stops[i + 1].g - stops[i].g),
+                    stops[i].b + f * (stops[i + 1].b - stops[i].b)};
+}
+
 vplRgb vplFalseColour(float t)
 {
     static const vplRgb stops[6] = {
         {0, 0, 0}, {0.06f, 0.01f, 0.25f}, {0.45f, 0.02f, 0.12f}, {0.90f, 0.12f, 0.01f}, {1.0f, 0.60f, 0.02f},
         {1, 1, 1}};
-    float at = 5 * vplClampf(t == t ? t : 0, 0, 1);
-    int i = vplMini((int)at, 4);
-    float f = at - (float)i;
-    return (vplRgb){stops[i].r + f * (stops[i + 1].r - stops[i].r),
-                    stops[i].g + f * (stops[i + 1].g - stops[i].g),
-                    stops[i].b + f * (stops[i + 1].b - stops[i].b)};
+    return mixStops(stops, 6, t);
+}
+
+// Every 16th colour of matplotlib's magma (Smith and van der Walt, 2015, CC0), in sRGB; the lines between them
+// stay within 0.01 of it.
+vplRgb vplMagma(float t)
+{
+    static const vplRgb stops[17] = {
+        {0.001f, 0.000f, 0.014f}, {0.039f, 0.031f, 0.133f}, {0.112f, 0.065f, 0.276f},
+        {0.210f, 0.062f, 0.417f}, {0.315f, 0.071f, 0.485f}, {0.413f, 0.110f, 0.504f},
+        {0.511f, 0.147f, 0.508f}, {0.611f, 0.181f, 0.499f}, {0.713f, 0.214f, 0.476f},
+        {0.814f, 0.254f, 0.438f}, {0.901f, 0.316f, 0.390f}, {0.959f, 0.414f, 0.360f},
+        {0.986f, 0.530f, 0.380f}, {0.996f, 0.648f, 0.442f}, {0.997f, 0.763f, 0.530f},
+        {0.993f, 0.878f, 0.634f}, {0.987f, 0.991f, 0.750f}};
+    vplRgb c = mixStops(stops, 17, t);
+    return (vplRgb){vplSrgb_Decode(c.r), vplSrgb_Decode(c.g), vplSrgb_Decode(c.b)};
 }
 
 static void setPixel(vplImage* image, int x, int y, vplRgb colour)
@@ -68,14 +89,14 @@ int vplColourBar_GetHeight(int width)
     return width >= 160 ? 26 : 0;
 }
 
-void vplColourBar_Draw(vplImage* image, int top, int height, float largest)
+void vplColourBar_Draw(vplImage* image, int top, int height, float largest, vplColourFcn* colour)
 {
     if (height == 0) {
         return;
     }
     for (int x = 0; x < image->width; x++) {
         for (int y = top + 2; y < top + 14; y++) {
-            setPixel(image, x, y, vplFalseColour((float)x / (float)(image->width - 1)));
+            setPixel(image, x, y, colour((float)x / (float)(image->width - 1)));
         }
     }
     int labels = image->width >= 320 ? 5 : 3;

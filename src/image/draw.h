@@ -8,11 +8,16 @@
 // Black, violet, red, orange, yellow, white for t from 0 to 1; clamped outside. Linear RGB.
 vplRgb vplFalseColour(float t);
 
+// The magma colours that FLIP's maps are shown in: black, violet, red, pale yellow. Linear RGB.
+vplRgb vplMagma(float t);
+
 // Height of the colour bar below a picture of this width: 0 where a picture is too narrow for one.
 int vplColourBar_GetHeight(int width);
 
-// Draws the bar from row `top`, with five numbers from 0 to `largest`.
-void vplColourBar_Draw(vplImage* image, int top, int height, float largest);
+typedef vplRgb vplColourFcn(float t);
+
+// Draws a bar of these colours from row `top`, with five numbers from 0 to `largest`.
+void vplColourBar_Draw(vplImage* image, int top, int height, float largest, vplColourFcn* colour);
 
 // Writes text (digits and "+-.e%") with its top left corner at (x, y); a glyph is 5 by 7 pixels of `zoom`.
 void vplDrawText(vplImage* image, int x, int y, int zoom, vplRgb colour, const char* text);

@@ -71,9 +71,9 @@ typedef struct Format {
 
 static const Format FORMATS[] = {
     {".png", vplEncodePng, vplDecodeLdr}, {".hdr", vplEncodeHdr, vplDecodeHdr},
-    {".pfm", vplEncodePfm, vplDecodePfm}, {".jpg", NULL, vplDecodeLdr},
-    {".jpeg", NULL, vplDecodeLdr},        {".bmp", NULL, vplDecodeLdr},
-    {".tga", NULL, vplDecodeLdr},
+    {".pfm", vplEncodePfm, vplDecodePfm}, {".exr", vplEncodeExr, vplDecodeExr},
+    {".jpg", NULL, vplDecodeLdr},         {".jpeg", NULL, vplDecodeLdr},
+    {".bmp", NULL, vplDecodeLdr},         {".tga", NULL, vplDecodeLdr},
 };
 
 static const Format* findFormat(const char* path)
@@ -91,7 +91,12 @@ static const Format* findFormat(const char* path)
 bool vplImage_CanWrite(const char* path)
 {
     const Format* format = findFormat(path);
-    return format != NULL && format->encode != NULL;
+    return format != NULL && format->encode != NULL && (format->encode != vplEncodeExr || vplHasExr());
+}
+
+const char* vplImage_GetExtensions(void)
+{
+    return vplHasExr() ? ".png, .hdr, .pfm or .exr" : ".png, .hdr or .pfm (this build has no OpenEXR)";
 }
 
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
@@ -102,9 +107,9 @@ vplResult vplImage_Write(const vplImage* image, const char* path, const vplWrite
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "vplWriteOptions was not made by vplDefaultWriteOptions");
     }
-    if (format == NULL || format->encode == NULL) {
+    if (!vplImage_CanWrite(path)) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
-                       "%s: unknown picture format; the name must end in .png, .hdr or .pfm", path);
+                       "%s: unknown picture format; the name must end in %s", path, vplImage_GetExtensions());
     }
     if (!(fabsf(settings.exposure) <= 64)) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
@@ -130,9 +135,9 @@ vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageO
 {
     const Format* format = findFormat(path);
     if (format == NULL) {
-        return vplFail(
-            context, VPL_INVALID_ARGUMENT,
-            "%s: unknown picture format; the name must end in .png, .jpg, .bmp, .tga, .hdr or .pfm", path);
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "%s: unknown picture format; the name must end in .jpg, .bmp, .tga, %s", path,
+                       vplImage_GetExtensions());
     }
     char* bytes;
     size_t size;

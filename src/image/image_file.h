@@ -7,11 +7,12 @@
 
 #include "base/file.h"
 
-enum { VPL_WRITE_COOKIE = 0x56504c32, VPL_REINHARD_COOKIE = 0x56504c33 };
+enum { VPL_WRITE_COOKIE = 0x56504c32, VPL_REINHARD_COOKIE = 0x56504c33, VPL_HEATMAP_COOKIE = 0x56504c48 };
 
 vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
 vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
 vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
+vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
 
 vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
                        vplImage** imageOut);
@@ -19,6 +20,11 @@ vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* byt
                        vplImage** imageOut);
 vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
                        vplImage** imageOut);
+vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut);
+
+// True if OpenEXR is built in; otherwise the two above only say that it is not.
+bool vplHasExr(void);
 
 // Fails, naming `what` and the first pixel that is NaN or infinite.
 vplResult vplImage_RequireFinite(const vplImage* image, const char* what);

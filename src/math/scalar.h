@@ -22,6 +22,9 @@ double vplLog1(double x);
 // x^y for x > 0; 0 for x <= 0.
 double vplPow(double x, double y);
 
+// Cube root of x; 0 for x <= 0.
+double vplCbrt(double x);
+
 // Angle of (y, x) in (-pi, pi]; 0 at the origin.
 double vplAtan2(double y, double x);
 

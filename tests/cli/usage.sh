@@ -22,8 +22,8 @@ wrong "one word too many: \"second.json\"" render "$room" second.json -o "$png"
 wrong "one word too many: \"c.png\"" compare a.png b.png c.png
 wrong "one word too many: \"x\"" bench x
 wrong "render needs -o FILE" render "$room"
-wrong "must end in .png, .hdr or .pfm" render "$room" -o "$out/never.txt"
-wrong "must end in .png, .hdr or .pfm" render "$room" -o "$out/never"
+wrong "must end in .png, .hdr" render "$room" -o "$out/never.txt"
+wrong "must end in .png, .hdr" render "$room" -o "$out/never"
 wrong "both the picture and the statistics" render "$room" -o "$png" --stats "$png"
 
 wrong "unknown option --particels, did you mean --particles?" render "$room" -o "$png" --particels 5
@@ -86,7 +86,7 @@ wrong "--show is \"light:-1\"" render "$room" -o "$png" --show light:-1
 wrong "virtual light 18 does not exist, there are 18 (from 0)" \
     render "$closed" -o "$png" --size 8x8 --shadow-map 16 --show light:18
 wrong "--heat-scale is \"-1\"" compare a.png b.png --heat-scale -1
-wrong "must end in .png, .hdr or .pfm" compare a.png b.png --heatmap map.gif
+wrong "must end in .png, .hdr" compare a.png b.png --heatmap map.gif
 
 succeeds VersionIsPrinted "$vpl" --version
 check VersionHasThreeNumbers grep -qxE 'vpl [0-9]+\.[0-9]+\.[0-9]+' "$scratch/stdout"

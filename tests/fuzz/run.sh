@@ -18,7 +18,7 @@ for name in "$@"; do
     [ -f "tests/fuzz/$name.dict" ] && dictionary=-dict=tests/fuzz/$name.dict
     mkdir -p "$build/$name"
     clang -std=gnu11 $flags -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -Iinclude -Isrc \
-        -o "$build/fuzz-$name" "tests/fuzz/${name}_fuzz.c" $build/libvpl.a -ljansson -lm || exit 1
+        -o "$build/fuzz-$name" "tests/fuzz/${name}_fuzz.c" $build/libvpl.a $(make -s --no-print-directory libs) || exit 1
     if "$build/fuzz-$name" -max_total_time="$seconds" -timeout=20 -malloc_limit_mb=0 -rss_limit_mb=4000 \
         -max_len=4096 -print_final_stats=1 -artifact_prefix="$build/$name-" $dictionary "$build/$name" \
         "tests/fuzz/corpus/$name" >"$build/$name.log" 2>&1; then

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// What the metrics share.
+#ifndef VPL_IMAGE_METRICS_H
+#define VPL_IMAGE_METRICS_H
+
+#include <vpl/image.h>
+
+// Fails unless both pictures have one size and finite pixels.
+vplResult vplRequirePair(const vplImage* a, const vplImage* b);
+
+// Adds numbers from first to last: the one order of summation that all metrics have.
+double vplSumInOrder(const double* values, int count);
+
+// Sets all three channels of a pixel.
+void vplSetGrey(vplImage* image, int x, int y, float value);
+
+#endif

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Parts of pictures: a rectangle cut out, and a comparison block by block.
+#include "base/context.h"
+#include "image/metrics.h"
+
+#include <math.h>
+#include <string.h>
+
+vplResult vplImage_Crop(const vplImage* image, int x, int y, int width, int height, vplImage** imageOut)
+{
+    bool inside = x >= 0 && y >= 0 && width >= 1 && height >= 1 && x < image->width && y < image->height &&
+                  width <= image->width - x && height <= image->height - y;
+    if (!inside) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                       "region %dx%d at (%d, %d) must lie inside the picture, which is %dx%d", width, height,
+                       x, y, image->width, image->height);
+    }
+    vplImage* crop;
+    vplResult result = vplImage_Create(image->context, width, height, &crop);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    size_t row = 3 * (size_t)width;
+    for (int i = 0; i < height; i++) {
+        size_t first = 3 * ((size_t)(y + i) * (size_t)image->width + (size_t)x);
+        memcpy(crop->pixels + (size_t)i * row, image->pixels + first, row * sizeof(float));
+    }
+    *imageOut = crop;
+    return VPL_SUCCESS;
+}
+
+static void measure(const vplImage* a, const vplImage* b, vplRegion* region)
+{
+    double square = 0, sumA = 0, sumB = 0;
+    for (int y = region->y; y < region->y + region->height; y++) {
+        size_t first = 3 * ((size_t)y * (size_t)a->width + (size_t)region->x);
+        for (size_t i = first; i < first + 3 * (size_t)region->width; i++) {
+            double va = a->pixels[i], vb = b->pixels[i];
+            square += (va - vb) * (va - vb);
+            sumA += va;
+            sumB += vb;
+        }
+    }
+    double count = 3.0 * region->width * region->height;
+    region->meanA = sumA / count;
+    region->meanB = sumB / count;
+    region->ratio = sumA == sumB ? 1 : sumA / sumB;
+    region->rmse = sqrt(square / count);
+}
+
+// Where block `index` of `count` begins along a side: whole blocks differ by one pixel at most.
+static int beginOf(int index, int count, int side)
+{
+    return (int)((int64_t)index * side / count);
+}
+
+vplResult vplImage_CompareRegions(const vplImage* a, const vplImage* b, int columns, int rows,
+                                  vplRegion* regionsOut)
+{
+    vplResult result = vplRequirePair(a, b);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    if (columns < 1 || columns > a->width || rows < 1 || rows > a->height) {
+        return vplFail(a->context, VPL_INVALID_ARGUMENT,
+                       "regions are %dx%d, must be in [1, %d] and [1, %d]: one pixel each at least", columns,
+                       rows, a->width, a->height);
+    }
+    for (int j = 0; j < rows; j++) {
+        for (int i = 0; i < columns; i++) {
+            vplRegion* region = &regionsOut[(size_t)j * (size_t)columns + (size_t)i];
+            region->x = beginOf(i, columns, a->width);
+            region->y = beginOf(j, rows, a->height);
+            region->width = beginOf(i + 1, columns, a->width) - region->x;
+            region->height = beginOf(j + 1, rows, a->height) - region->y;
+            measure(a, b, region);
+        }
+    }
+    return VPL_SUCCESS;
+}
