@@ -11,7 +11,7 @@ enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8 };
 
 // What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures,
 // enough particles to see something, and the sampler and hard shadows that the truth of a point light wants.
-#define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --pcf 1"
+#define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --shadow-map 256 --pcf 1"
 
 // All options of all commands.
 typedef struct Arguments {

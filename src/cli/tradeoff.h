@@ -86,7 +86,7 @@ typedef struct Tradeoff {
 bool listSettings(Tradeoff* t);
 
 // The words after `vpl render` that make this setting's picture, without the output.
-void writeCommand(const Tradeoff* t, const Setting* s, char* words, size_t size);
+void writeCommand(const Setting* s, char* words, size_t size);
 
 // ---- measuring
 

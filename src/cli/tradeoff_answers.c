@@ -16,14 +16,28 @@ static bool isJudged(const Tradeoff* t, double limit)
     return limit > t->reference.error;
 }
 
+// Lines may break between words only: half an option cannot be copied.
+static void addWords(const char* words, Text* html)
+{
+    while (*words != 0) {
+        size_t length = strcspn(words, " ");
+        char word[256];
+        snprintf(word, sizeof word, "%.*s", (int)length, words);
+        addText(html, "<span>");
+        addEscaped(html, word);
+        addText(html, "</span>%s", words[length] ? " " : "");
+        words += length + (words[length] == ' ');
+    }
+}
+
 static void addCommand(const Tradeoff* t, const Setting* s, Text* html)
 {
     char command[SENTENCE];
-    writeCommand(t, s, command, sizeof command);
+    writeCommand(s, command, sizeof command);
     addText(html, "<code class=\"copy\">vpl render ");
     addEscaped(html, t->arguments->positionals[0]);
     addText(html, " ");
-    addEscaped(html, command);
+    addWords(command, html);
     addText(html, " -o picture.png</code>");
 }
 

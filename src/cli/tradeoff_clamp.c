@@ -68,7 +68,7 @@ static void addPanel(const Clamp* c, const Range* r, const char* title, bool per
         addText(c->svg, "<line class=\"grid\" x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\"/>", LEFT,
                 WIDTH - RIGHT, y, y);
         addText(c->svg, "<text class=\"soft\" x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.4g%s</text>\n",
-                LEFT - 8, y + 4, percent ? 100 * value : value, percent ? " %" : "");
+                LEFT - 8, y + 4, 0 + (percent ? 100 * value : value), percent ? " %" : "");
     }
     addText(c->svg, "<path class=\"axis\" d=\"M%d %.1fV%.1fH%d\"/>\n", LEFT, r->bottom - PANEL, r->bottom,
             WIDTH - RIGHT);
@@ -141,7 +141,7 @@ void addClamp(const Tradeoff* t, Text* html)
         return;
     }
     char command[SENTENCE];
-    writeCommand(t, &t->settings[0], command, sizeof command);
+    writeCommand(&t->settings[0], command, sizeof command);
     addText(
         html,
         "<h2>The clamp: blotches against lost light</h2>\n<p>A virtual light lights what is nearer than D "

@@ -29,10 +29,12 @@ static int errorTrend(const Setting* base, const Setting* s)
     return below == common ? -1 : above == common ? 1 : 0;
 }
 
-// Times within a tenth are the same: machines are not quieter than that.
+// Times within a tenth, or of overlapping bands, are the same: machines are not quieter than that.
 static int costTrend(const Setting* base, const Setting* s)
 {
-    return s->cpuMs > 1.1 * base->cpuMs ? 1 : s->cpuMs < 0.9 * base->cpuMs ? -1 : 0;
+    bool above = s->cpuMs > 1.1 * base->cpuMs && s->cpuLow > base->cpuHigh;
+    bool below = s->cpuMs < 0.9 * base->cpuMs && s->cpuHigh < base->cpuLow;
+    return above ? 1 : below ? -1 : 0;
 }
 
 static bool isBetter(const Knob* knob, Verdict verdict, double perHalving, const Setting* s)
@@ -102,26 +104,32 @@ static void sortKnobs(Knob* knobs, int count)
     }
 }
 
+// The option that the sweep turns, the last word before its values.
+static void addNothing(const Knob* knob, Text* html)
+{
+    const char* option = strrchr(knob->sweep->words, ' ');
+    addText(html, "<td><code>%s</code></td><td colspan=\"3\">%s</td><td class=\"n\">&ndash;</td></tr>\n",
+            option ? option + 1 : knob->sweep->words,
+            knob->worse ? "buys nothing: the base's value is best, some others are worse"
+                        : "buys nothing: all values give the same error at the same cost");
+}
+
 static void addKnob(const Setting* base, const Knob* knob, Text* html)
 {
-    static const char* const words[] = {"less error for no more time", "buys accuracy with time",
-                                        "saves time, same error", ""};
+    static const char* const words[] = {"less error for no more time", "less error for more time",
+                                        "saves time at the same error", ""};
     char from[32], to[32];
     addText(html, "<tr><td>%s</td>", knob->sweep->meaning);
     if (knob->best == NULL) {
-        addText(html,
-                "<td><code>%s</code></td><td colspan=\"3\">buys nothing here: %s</td><td>&ndash;</td></tr>\n",
-                strrchr(knob->sweep->words, '-') - 1 > knob->sweep->words ? knob->sweep->words : "",
-                knob->worse ? "no value is better than the base's, some are worse"
-                            : "no value changes the error by more than 2 % or saves a tenth of the time");
+        addNothing(knob, html);
         return;
     }
     formatPercent(base->error, from, sizeof from);
     formatPercent(knob->best->error, to, sizeof to);
-    addText(html, "<td><code>%s</code></td><td>%s &rarr; %s</td>", knob->best->change, from, to);
+    addText(html, "<td><code>%s</code></td><td class=\"n\">%s &rarr; %s</td>", knob->best->change, from, to);
     formatTime(base->cpuMs, from, sizeof from);
     formatTime(knob->best->cpuMs, to, sizeof to);
-    addText(html, "<td>%s &rarr; %s</td><td>%s</td>", from, to, words[knob->verdict]);
+    addText(html, "<td class=\"n\">%s &rarr; %s</td><td>%s</td>", from, to, words[knob->verdict]);
     formatTime(knob->perHalving, from, sizeof from);
     addText(html, "<td class=\"n\">%s</td></tr>\n",
             knob->verdict == VERDICT_BUYS   ? from
@@ -138,7 +146,7 @@ void addKnobs(const Tradeoff* t, Text* html)
         return;
     }
     char command[SENTENCE];
-    writeCommand(t, base, command, sizeof command);
+    writeCommand(base, command, sizeof command);
     sortKnobs(knobs, count);
     addText(html, "<h2>What each knob buys</h2>\n<p>One option at a time is changed from the base, <code>");
     addEscaped(html, command);
@@ -146,7 +154,8 @@ void addKnobs(const Tradeoff* t, Text* html)
             "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor time "
             "added for each factor of two by which the error falls. A change counts only if all seeds agree "
             "and it is larger than 2 %% (error) or 10 %% (time).</p>\n<table><tr><th>knob</th><th>change</th>"
-            "<th>error</th><th>processor time</th><th>verdict</th><th class=\"n\">per halving</th></tr>\n");
+            "<th class=\"n\">error</th><th class=\"n\">processor time</th><th>verdict</th><th "
+            "class=\"n\">per halving</th></tr>\n");
     for (int i = 0; i < count; i++) {
         addKnob(base, &knobs[i], html);
     }

@@ -29,23 +29,32 @@ double medianOf(const double* values, int count)
     return count % 2 ? upper : 0.5 * (ofRank(values, count, count / 2 - 1) + upper);
 }
 
-// True if point j makes point i pointless.
-static bool beats(const double* cost, const double* error, int j, int i)
+// The next point by cost, then by error, then by index, whose error is below the limit; -1: none.
+static int nextOnFront(const double* cost, const double* error, int count, double limit)
 {
-    bool asGood = cost[j] <= cost[i] && error[j] <= error[i];
-    bool better = cost[j] < cost[i] || error[j] < error[i];
-    return asGood && (better || j < i);
+    int next = -1;
+    for (int i = 0; i < count; i++) {
+        bool counts = !isnan(cost[i]) && error[i] < limit;
+        if (counts &&
+            (next < 0 || cost[i] < cost[next] || (cost[i] == cost[next] && error[i] < error[next]))) {
+            next = i;
+        }
+    }
+    return next;
 }
 
-int markFront(const double* cost, const double* error, int count, bool* onFront)
+// What costs less than a marked point has an error above the limit, or it would have been marked first.
+int markFront(const double* cost, const double* error, int count, double gain, bool* onFront)
 {
     int marked = 0;
     for (int i = 0; i < count; i++) {
-        onFront[i] = !isnan(cost[i]) && !isnan(error[i]);
-        for (int j = 0; j < count && onFront[i]; j++) {
-            onFront[i] = !beats(cost, error, j, i);
-        }
-        marked += onFront[i];
+        onFront[i] = false;
+    }
+    double limit = INFINITY;
+    for (int i = nextOnFront(cost, error, count, limit); i >= 0; i = nextOnFront(cost, error, count, limit)) {
+        onFront[i] = true;
+        marked++;
+        limit = (1 - gain) * error[i];
     }
     return marked;
 }
@@ -116,7 +125,7 @@ int logTicks(double low, double high, double* ticks, int most)
     return count;
 }
 
-// Two significant digits below 10, three from 100 up: enough to choose by, no more than timing repeats.
+// Two digits below 10, all whole ones above: no more than timing repeats.
 static int decimals(double value)
 {
     return value < 1 ? 2 : value < 10 ? 1 : 0;
@@ -137,5 +146,5 @@ void formatTime(double ms, char* text, size_t size)
 void formatPercent(double fraction, char* text, size_t size)
 {
     double percent = 100 * fraction;
-    snprintf(text, size, "%.*f %%", decimals(percent), percent);
+    snprintf(text, size, "%.*f %%", percent < 1 ? 2 : percent < 99.95 ? 1 : 0, percent);
 }

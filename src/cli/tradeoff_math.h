@@ -9,9 +9,10 @@
 // The middle value, or the mean of the two middle ones; NAN of none. `values` may be in any order and stays so.
 double medianOf(const double* values, int count);
 
-// Marks the Pareto front: points that no other point beats in cost and error at once. Of equal points the first
-// counts. Returns how many there are. A point with a NAN is never on it.
-int markFront(const double* cost, const double* error, int count, bool* onFront);
+// Marks the Pareto front, thinned: by ascending cost, each point whose error is less than (1 - gain) times that of
+// all points marked before. A gain of 0 is the whole front. Of equal points the first counts; a point with a NAN
+// is never marked. Returns how many are.
+int markFront(const double* cost, const double* error, int count, double gain, bool* onFront);
 
 // Index of the cheapest point with error <= limit, -1 if there is none; of equal costs the first.
 int cheapestWithin(const double* cost, const double* error, int count, double limit);
@@ -36,7 +37,7 @@ int logTicks(double low, double high, double* ticks, int most);
 // "0.83 ms", "41 ms", "1.24 s", "3 min 20 s".
 void formatTime(double ms, char* text, size_t size);
 
-// "0.83 %", "4.2 %", "130 %" from a fraction.
+// "0.83 %", "14.2 %", "130 %" from a fraction.
 void formatPercent(double fraction, char* text, size_t size);
 
 #endif

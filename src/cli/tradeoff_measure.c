@@ -66,37 +66,47 @@ static double foresee(const Tradeoff* t, const Setting* s)
                    : guess[s->family] * pixels * s->work * pipeline;
 }
 
-static void measureSetting(Tradeoff* t, Setting* s)
+// Short renders are repeated and the least time counts: what disturbs a machine only ever adds.
+enum { REPEATS = 3, SHORT_MS = 100 };
+
+static vplResult timeAgain(Tradeoff* t, const vplRenderOptions* options, vplRenderStats* stats)
 {
-    s->runs = calloc((size_t)t->arguments->seeds, sizeof *s->runs);
-    if (s->runs == NULL) {
-        snprintf(s->problem, sizeof s->problem, "out of memory");
-        return;
-    }
-    for (int k = 0; k < t->arguments->seeds; k++) {
-        Run* run = &s->runs[k];
-        vplRenderOptions options = s->arguments.render;
-        run->seed = options.seed += (uint64_t)k;
+    vplResult result = VPL_SUCCESS;
+    for (int i = 1; i < REPEATS && stats->totalMs < SHORT_MS && result == VPL_SUCCESS; i++) {
         vplImage* image = NULL;
-        vplResult result = renderQuietly(t, &options, &image, &run->stats);
-        if (result == VPL_SUCCESS) {
-            result = vplImage_Compare(image, t->reference.image, &run->comparison);
+        vplRenderStats again;
+        result = renderQuietly(t, options, &image, &again);
+        if (result == VPL_SUCCESS && again.cpuMs < stats->cpuMs) {
+            *stats = again;
         }
-        if (result != VPL_SUCCESS) {
-            bool late = result == VPL_CANCELLED;
-            s->exhausted = late && k == 0;
-            snprintf(s->problem, sizeof s->problem, "%s", late ? "" : t->message);
-            vplImage_Destroy(image);
-            return;
-        }
-        s->runCount = k + 1;
-        if (k == 0) {
-            s->image = image;
-            s->wallMs = run->stats.totalMs; // for foresee, until the median is known
-        } else {
-            vplImage_Destroy(image);
-        }
+        vplImage_Destroy(image);
     }
+    return result;
+}
+
+// One more seed of a setting.
+static void measureSeed(Tradeoff* t, Setting* s)
+{
+    Run* run = &s->runs[s->runCount];
+    vplRenderOptions options = s->arguments.render;
+    run->seed = options.seed += (uint64_t)s->runCount;
+    vplImage* image = NULL;
+    vplResult result = renderQuietly(t, &options, &image, &run->stats);
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Compare(image, t->reference.image, &run->comparison);
+    }
+    if (result == VPL_SUCCESS) {
+        result = timeAgain(t, &options, &run->stats);
+    }
+    if (result != VPL_SUCCESS) {
+        s->exhausted = result == VPL_CANCELLED;
+        snprintf(s->problem, sizeof s->problem, "%s", s->exhausted ? "" : t->message);
+    } else if (s->runCount++ == 0) {
+        s->wallMs = run->stats.totalMs; // for foresee, until the median is known
+        s->image = image;
+        image = NULL;
+    }
+    vplImage_Destroy(image);
 }
 
 // Pictures are kept for the report; those of settings that another one beats are not needed any more.
@@ -110,12 +120,13 @@ static void dropPictures(Tradeoff* t)
     }
 }
 
-static Setting* findNext(Tradeoff* t, double* ms)
+// The setting that will be the cheapest of those with `done` seeds; NULL if there is none left.
+static Setting* findNext(Tradeoff* t, int done, double* ms)
 {
     Setting* next = NULL;
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
-        bool open = !isMeasured(s) && s->problem[0] == 0 && !s->exhausted;
+        bool open = s->runCount == done && s->problem[0] == 0 && !s->exhausted;
         double cost = open ? foresee(t, s) : INFINITY;
         if (open && (next == NULL || cost < *ms)) {
             next = s;
@@ -125,44 +136,79 @@ static Setting* findNext(Tradeoff* t, double* ms)
     return next;
 }
 
-static void say(const Tradeoff* t, const Setting* s)
+static void say(const Setting* s)
 {
     char time[32], error[32];
+    const char* change = s->change[0] ? s->change : "(base)";
     formatTime(s->cpuMs, time, sizeof time);
     formatPercent(s->error, error, sizeof error);
-    if (isMeasured(s)) {
-        complain("%-10s %-10s %s", time, error, s->change[0] ? s->change : "(base)");
+    if (s->problem[0] != 0 || s->exhausted) {
+        complain("%s: %s", change, s->exhausted ? "no time left" : s->problem);
     } else {
-        complain("%s: %s", s->change[0] ? s->change : "(base)", s->exhausted ? "no time" : s->problem);
+        complain("%-10s %-10s %s", time, error, change);
     }
-    (void)t;
 }
 
-int measureSettings(Tradeoff* t)
+// One seed of every setting, the cheapest first, as long as it is before `end`. Seeds are rounds, not rows: what
+// disturbs the machine for a while then hits all settings, and the medians of none.
+static void measureRound(Tradeoff* t, int round, double end)
 {
-    double ms;
-    for (Setting* s = findNext(t, &ms); s != NULL && !t->interrupted; s = findNext(t, &ms)) {
-        if (secondsNow() + 1e-3 * ms < t->deadline) {
-            measureSetting(t, s);
+    double ms = 0;
+    for (Setting* s = findNext(t, round, &ms); s != NULL && !t->interrupted; s = findNext(t, round, &ms)) {
+        if (secondsNow() + 1e-3 * ms < end) {
+            measureSeed(t, s);
         } else {
             s->exhausted = true; // and so will be the rest, which is dearer
         }
         summarise(t);
         dropPictures(t);
-        if (t->arguments->verbose) {
-            say(t, s);
+        if (t->arguments->verbose && round == 0) {
+            say(s);
         }
     }
+}
+
+static bool makeRoom(Tradeoff* t)
+{
+    bool good = true;
+    for (int i = 0; i < t->settingCount && good; i++) {
+        t->settings[i].runs = calloc((size_t)t->arguments->seeds, sizeof(Run));
+        good = t->settings[i].runs != NULL;
+    }
+    return good;
+}
+
+// A processor that was idle is slow at first; that must not be the cheapest setting's fault.
+static void warmUp(Tradeoff* t)
+{
+    vplImage* image = NULL;
+    renderQuietly(t, &t->settings[0].arguments.render, &image, NULL);
+    vplImage_Destroy(image);
+}
+
+int measureSettings(Tradeoff* t)
+{
+    if (!makeRoom(t)) {
+        complain("out of memory");
+        return EXIT_COULD_NOT;
+    }
+    warmUp(t);
+    for (int round = 0; round < t->arguments->seeds; round++) {
+        double now = secondsNow();
+        measureRound(t, round, now + (t->deadline - now) / (t->arguments->seeds - round));
+    }
+    int measured = 0;
     for (int i = 0; i < t->settingCount; i++) {
-        if (isMeasured(&t->settings[i])) {
-            return EXIT_DONE;
-        }
+        measured += isMeasured(&t->settings[i]);
     }
-    const Setting* base = &t->settings[0];
-    complain("no setting could be measured: %s", t->interrupted          ? "interrupted"
-                                                 : base->problem[0] != 0 ? base->problem
-                                                                         : "the time is too short");
-    return t->interrupted || base->problem[0] == 0 ? EXIT_COULD_NOT : EXIT_USAGE;
+    if (measured > 0) {
+        return EXIT_DONE;
+    }
+    const char* problem = t->settings[0].problem;
+    complain("no setting could be measured: %s", t->interrupted    ? "interrupted"
+                                                 : problem[0] != 0 ? problem
+                                                                   : "the time is too short");
+    return t->interrupted || problem[0] == 0 ? EXIT_COULD_NOT : EXIT_USAGE;
 }
 
 static double field(const Run* run, int which)
@@ -178,6 +224,9 @@ static double field(const Run* run, int which)
         return run->comparison.energyRatio;
     }
 }
+
+// A numbered point of the plot takes at least this share off the error: less is chance, and crowds.
+static const double FRONT_GAIN = 0.03;
 
 // The median of a figure over the seeds, and the least and the most.
 static double band(const Setting* s, int which, double* low, double* high)
@@ -207,7 +256,7 @@ void summarise(Tradeoff* t)
         cost[i] = s->cpuMs;
         error[i] = s->error;
     }
-    markFront(cost, error, t->settingCount, onFront);
+    markFront(cost, error, t->settingCount, FRONT_GAIN, onFront);
     for (int i = 0; i < t->settingCount; i++) {
         t->settings[i].onFront = onFront[i];
     }
@@ -227,7 +276,7 @@ int findCheapest(const Tradeoff* t, Family family, double limit)
         const Setting* s = &t->settings[i];
         bool counts = isMeasured(s) && (family == FAMILY_COUNT || s->family == family);
         cost[i] = s->cpuMs;
-        error[i] = counts ? s->error : INFINITY;
+        error[i] = counts ? s->error : NAN;
     }
     return cheapestWithin(cost, error, t->settingCount, limit);
 }

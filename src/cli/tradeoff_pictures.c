@@ -37,6 +37,14 @@ static void addFigure(Text* html, const vplImage* image, const vplWriteOptions* 
     addText(html, "\"><figcaption>%s</figcaption></figure>\n", caption);
 }
 
+// About half of the truth's mean, of one digit so that the numbers of the bar are short.
+static double heatScale(const Tradeoff* t)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.0e", 0.5 * t->reference.mean);
+    return strtod(text, NULL);
+}
+
 static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions* options, Text* html)
 {
     char time[32], error[32], caption[128];
@@ -44,16 +52,15 @@ static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions*
     formatPercent(s->runs[0].comparison.relativeRmse, error, sizeof error);
     addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number, time, error);
     char command[SENTENCE];
-    writeCommand(t, s, command, sizeof command);
+    writeCommand(s, command, sizeof command);
     addEscaped(html, command);
     addText(html, "</code></p>\n<div class=\"row\">");
     addFigure(html, s->image, options, FAMILY_NAMES[s->family]);
     addFigure(html, t->reference.image, options, "the truth");
     vplImage* map = NULL;
-    if (vplImage_Heatmap(s->image, t->reference.image, (float)(0.5 * t->reference.mean), &map) ==
-        VPL_SUCCESS) {
-        snprintf(caption, sizeof caption, "difference; white is %.2g W/(m&sup2; sr), half the truth's mean",
-                 0.5 * t->reference.mean);
+    if (vplImage_Heatmap(s->image, t->reference.image, (float)heatScale(t), &map) == VPL_SUCCESS) {
+        snprintf(caption, sizeof caption,
+                 "difference; white is %g W/(m&sup2; sr), about half the truth's mean", heatScale(t));
         addFigure(html, map, NULL, caption);
     } else {
         html->failed = true;

@@ -13,7 +13,7 @@ static const char CSS[] =
     "main{max-width:1000px;margin:0 auto;padding:1.5rem}\n"
     "h1{font-size:1.7rem;margin:.2rem 0} h2{margin-top:2.4rem} h3{margin:1.6rem 0 .3rem;font-size:1.05rem}\n"
     "code{background:var(--panel);padding:.1em .3em;border-radius:3px;font-size:.9em}\n"
-    "code.copy{display:inline-block;user-select:all;overflow-wrap:anywhere}\n"
+    "code.copy{display:inline-block;user-select:all;overflow-wrap:anywhere} code span{white-space:nowrap}\n"
     ".answer{border-left:5px solid var(--f3);padding:.4rem .9rem;background:var(--panel);font-size:1.1rem}\n"
     "table{border-collapse:collapse;width:100%;font-size:.92rem} th,td{text-align:left;padding:.35rem .5rem;"
     "border-bottom:1px solid var(--line);vertical-align:top} .n{text-align:right;white-space:nowrap}\n"

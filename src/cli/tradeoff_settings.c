@@ -27,7 +27,7 @@ const Sweep SWEEPS[] = {
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
     {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
     {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
-    {"bias", "--bias", "exact 0 @0.001 @0.003 @0.01", "Shadow bias"},
+    {"bias", "--bias", "auto 0 @0.001 @0.003 @0.01", "Shadow bias"},
     {"pipeline", "--pipeline", "deferred batched multipass", "How virtual lights are added up"},
     {"particle-geometry", "--particle-geometry", "exact obb", "What stops a particle"},
 };
@@ -92,22 +92,27 @@ static double workOf(const vplRenderOptions* o)
                                             : 50 + o->particles / (1 - reflectivity);
 }
 
-void writeCommand(const Tradeoff* t, const Setting* s, char* words, size_t size)
+// The words that make `plain` into `a`.
+static void writeDifference(const Arguments* plain, const Arguments* a, char* words, size_t size)
 {
-    Arguments plain = *t->arguments;
-    plain.render = vplDefaultRenderOptions();
     size_t used = 0;
     words[0] = 0;
     for (int i = 0; i < OPTION_COUNT; i++) {
         char value[64], usual[64];
-        if (writeOption(&OPTIONS[i], &s->arguments, value, sizeof value) &&
-            writeOption(&OPTIONS[i], &plain, usual, sizeof usual) && value[0] != 0 &&
-            strcmp(value, usual) != 0) {
+        if (writeOption(&OPTIONS[i], a, value, sizeof value) && value[0] != 0 &&
+            writeOption(&OPTIONS[i], plain, usual, sizeof usual) && strcmp(value, usual) != 0) {
             int length =
                 snprintf(words + used, size - used, "%s%s %s", used ? " " : "", OPTIONS[i].name, value);
             used += length > 0 && (size_t)length < size - used ? (size_t)length : 0;
         }
     }
+}
+
+void writeCommand(const Setting* s, char* words, size_t size)
+{
+    Arguments plain = s->arguments;
+    plain.render = vplDefaultRenderOptions();
+    writeDifference(&plain, &s->arguments, words, size);
 }
 
 // Options that the method never looks at go back to their defaults: equal settings look equal, and a command to
@@ -140,9 +145,9 @@ static bool addSetting(Tradeoff* t, const char* words, unsigned sweep)
     }
     forgetUnused(&s.arguments.render);
     char command[SENTENCE], other[SENTENCE];
-    writeCommand(t, &s, command, sizeof command);
+    writeCommand(&s, command, sizeof command);
     for (int i = 0; i < t->settingCount; i++) {
-        writeCommand(t, &t->settings[i], other, sizeof other);
+        writeCommand(&t->settings[i], other, sizeof other);
         if (strcmp(command, other) == 0) {
             t->settings[i].sweeps |= sweep;
             return true;
@@ -152,34 +157,44 @@ static bool addSetting(Tradeoff* t, const char* words, unsigned sweep)
         complain("more than %d settings", MAX_SETTINGS);
         return false;
     }
-    snprintf(s.change, sizeof s.change, "%s", words);
     s.family = familyOf(&s.arguments.render);
+    if (s.family == FAMILY_DIRECT || s.family == FAMILY_PATH) {
+        snprintf(s.change, sizeof s.change, "%s", words); // what it does not use is no difference
+    } else {
+        writeDifference(t->arguments, &s.arguments, s.change, sizeof s.change);
+    }
     s.work = workOf(&s.arguments.render);
     t->settings[t->settingCount++] = s;
     return true;
 }
 
-// Two digits of a length, so that a command line reads well.
-static double rounded(double metres)
+// Copies words; @X becomes a length in metres, of two digits so that a command line reads well.
+static void expandLengths(const Tradeoff* t, const char* from, char* words, size_t size)
 {
-    char text[32];
-    snprintf(text, sizeof text, "%.1e", metres);
-    return strtod(text, NULL);
+    size_t used = 0;
+    while (*from != 0 && used + 1 < size) {
+        if (*from != '@') {
+            words[used++] = *from++;
+            continue;
+        }
+        char* end;
+        char digits[32];
+        snprintf(digits, sizeof digits, "%.1e", t->diagonal * strtod(from + 1, &end));
+        int length = snprintf(words + used, size - used, "%g", strtod(digits, NULL));
+        used += (size_t)length < size - used ? (size_t)length : 0;
+        from = end;
+    }
+    words[used] = 0;
 }
 
 static bool addSweep(Tradeoff* t, int index)
 {
     const Sweep* sweep = &SWEEPS[index];
-    char value[32];
+    char value[32], pattern[128], words[128];
     int length;
     for (const char* at = sweep->values; sscanf(at, " %31s%n", value, &length) == 1; at += length) {
-        char words[128];
-        if (value[0] == '@') {
-            snprintf(words, sizeof words, "%s %g", sweep->words,
-                     rounded(t->diagonal * strtod(value + 1, NULL)));
-        } else {
-            snprintf(words, sizeof words, "%s %s", sweep->words, value);
-        }
+        snprintf(pattern, sizeof pattern, "%s %s", sweep->words, value);
+        expandLengths(t, pattern, words, sizeof words);
         if (!addSetting(t, words, 1u << index)) {
             return false;
         }

@@ -103,7 +103,7 @@ static void addRow(const Tradeoff* t, int index, const Run* run, const Stages* s
     char command[SENTENCE];
     Setting seeded = *s;
     seeded.arguments.render.seed = run->seed;
-    writeCommand(t, &seeded, command, sizeof command);
+    writeCommand(&seeded, command, sizeof command);
     addText(csv, "%s\n", command);
 }
 
