@@ -50,6 +50,13 @@ const char* vplImage_GetExtensions(void);
 // the first such pixel. `options` NULL means defaults.
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options);
 
+// The bytes of the .png file that vplImage_Write would write, for pages and sockets; free with vplPng_Free.
+vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* options, uint8_t** bytesOut,
+                             size_t* sizeOut);
+
+// Frees what vplImage_EncodePng gave. NULL is allowed.
+void vplPng_Free(vplContext* context, uint8_t* bytes);
+
 // Reads .png, .jpg, .bmp, .tga (sRGB, decoded to linear), .hdr, .pfm and, where built in, .exr.
 vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut);
 

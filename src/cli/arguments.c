@@ -44,26 +44,27 @@ static int distance(const char* a, const char* b)
 
 static const Option* findOption(const char* command, const char* word, size_t length)
 {
-    const Option* nearest = NULL;
+    const Option *nearest = NULL, *elsewhere = NULL;
     int bit = commandBit(command), least = 3;
     char name[64];
     snprintf(name, sizeof name, "%.*s", (int)length, word);
     for (int i = 0; i < OPTION_COUNT; i++) {
         const Option* o = &OPTIONS[i];
         bool equal = strcmp(o->name, name) == 0;
-        if (equal && (o->commands & bit) == 0) {
-            complain("%s has no option %s", command, name);
-            return NULL;
-        }
-        if (equal) {
+        if (equal && (o->commands & bit) != 0) {
             return o;
         }
+        elsewhere = equal ? o : elsewhere;
         bool begun = strncmp(name, o->name, strlen(name)) == 0; // "--reflect" for "--reflectivity"
         int far = begun ? 1 : distance(name, o->name);
         if ((o->commands & bit) != 0 && strlen(name) > 3 && far < least) {
             least = far;
             nearest = o;
         }
+    }
+    if (elsewhere != NULL) {
+        complain("%s has no option %s", command, name);
+        return NULL;
     }
     complain("unknown option %s%s%s%s", name, nearest ? ", did you mean " : "", nearest ? nearest->name : "",
              nearest ? "?" : "");
@@ -78,6 +79,11 @@ static Arguments defaultArguments(const char* command)
     a.write = vplDefaultWriteOptions();
     a.heat = vplDefaultHeatmapDef();
     a.runs = 5;
+    a.seeds = 3;
+    a.seconds = 300;
+    if (strcmp(command, "tradeoff") == 0) {
+        changeArguments(TRADEOFF_BASE, &a);
+    }
     return a;
 }
 
@@ -118,5 +124,19 @@ bool parseArguments(int count, char** words, Arguments* arguments)
         }
     }
     *arguments = a;
+    return true;
+}
+
+bool changeArguments(const char* words, Arguments* arguments)
+{
+    char name[64], value[64];
+    int length;
+    while (sscanf(words, " %63s %63s%n", name, value, &length) == 2) {
+        const Option* o = findOption("render", name, strlen(name));
+        if (o == NULL || !o->read(o, value, arguments)) {
+            return false;
+        }
+        words += length;
+    }
     return true;
 }

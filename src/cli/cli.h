@@ -9,6 +9,10 @@ enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
 
 enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8 };
 
+// What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures,
+// enough particles to see something, and the sampler and hard shadows that the truth of a point light wants.
+#define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --shadow-map 256 --pcf 1"
+
 // All options of all commands.
 typedef struct Arguments {
     const char* command;
@@ -26,12 +30,20 @@ typedef struct Arguments {
     int threads[MAX_THREAD_COUNTS];
     int threadsCount;
     int runs;
+    const char* reference; // --reference
+    const char* sweeps;    // --sweeps
+    int seeds;
+    double seconds; // --time
+    int referenceSpp;
     bool json, quiet, verbose, help;
     bool sizeGiven;
 } Arguments;
 
 // Fills `arguments`, or prints one sentence to stderr and returns false.
 bool parseArguments(int count, char** words, Arguments* arguments);
+
+// Applies more words of `vpl render`, separated by spaces, or complains and returns false.
+bool changeArguments(const char* words, Arguments* arguments);
 
 // Prints the general help (command NULL) or that of one command. False if there is no such command.
 bool printHelp(const char* command);
@@ -81,5 +93,6 @@ int runLights(const Arguments* arguments);
 int runCompare(const Arguments* arguments);
 int runInfo(const Arguments* arguments);
 int runBench(const Arguments* arguments);
+int runTradeoff(const Arguments* arguments);
 
 #endif

@@ -27,6 +27,10 @@ extern const int OPTION_COUNT;
 // The bit of a command's name, 0 if there is none such.
 int commandBit(const char* command);
 
+// The value of an option that decides what a picture looks like, as option->read would read it; empty where only
+// the default can be meant. False for all other options.
+bool writeOption(const Option* option, const Arguments* arguments, char* text, size_t size);
+
 ReadFcn readInt, readSeed, readFloat, readDouble, readFloatOrAuto, readReflectivity, readBias, readBiasSlope,
     readFlag, readText, readChoice, readShow, readSize, readThreads, readRegion, readGrid;
 

@@ -99,36 +99,58 @@ const char* vplImage_GetExtensions(void)
     return vplHasExr() ? ".png, .hdr, .pfm or .exr" : ".png, .hdr or .pfm (this build has no OpenEXR)";
 }
 
-vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
+static vplResult encode(const Format* format, const vplImage* image, const char* what,
+                        const vplWriteOptions* options, vplByteBuffer* buffer)
 {
-    const Format* format = findFormat(path);
     vplWriteOptions settings = options ? *options : vplDefaultWriteOptions();
     if (settings.cookie != VPL_WRITE_COOKIE) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "vplWriteOptions was not made by vplDefaultWriteOptions");
     }
-    if (!vplImage_CanWrite(path)) {
-        return vplFail(image->context, VPL_INVALID_ARGUMENT,
-                       "%s: unknown picture format; the name must end in %s", path, vplImage_GetExtensions());
-    }
     if (!(fabsf(settings.exposure) <= 64)) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "vplWriteOptions.exposure is %g, must be in [-64, 64]", (double)settings.exposure);
     }
-    vplResult result = vplImage_RequireFinite(image, path);
-    if (result != VPL_SUCCESS) {
-        return result;
+    vplResult result = vplImage_RequireFinite(image, what);
+    if (result == VPL_SUCCESS) {
+        result = format->encode(image, &settings, buffer);
+    }
+    return result == VPL_SUCCESS && buffer->failed ? VPL_OUT_OF_MEMORY : result;
+}
+
+vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
+{
+    const Format* format = findFormat(path);
+    if (!vplImage_CanWrite(path)) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                       "%s: unknown picture format; the name must end in %s", path, vplImage_GetExtensions());
     }
     vplByteBuffer buffer = {image->context, NULL, 0, 0, false};
-    result = format->encode(image, &settings, &buffer);
-    if (result == VPL_SUCCESS && buffer.failed) {
-        result = VPL_OUT_OF_MEMORY;
-    }
+    vplResult result = encode(format, image, path, options, &buffer);
     if (result == VPL_SUCCESS) {
         result = vplWriteFile(image->context, path, buffer.bytes, buffer.size);
     }
     vplFree(image->context, buffer.bytes);
     return result;
+}
+
+vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* options, uint8_t** bytesOut,
+                             size_t* sizeOut)
+{
+    vplByteBuffer buffer = {image->context, NULL, 0, 0, false};
+    vplResult result = encode(findFormat(".png"), image, "PNG", options, &buffer);
+    if (result != VPL_SUCCESS) {
+        vplFree(image->context, buffer.bytes);
+        return result;
+    }
+    *bytesOut = buffer.bytes;
+    *sizeOut = buffer.size;
+    return VPL_SUCCESS;
+}
+
+void vplPng_Free(vplContext* context, uint8_t* bytes)
+{
+    vplFree(context, bytes);
 }
 
 vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut)

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// Measures error against time: which settings for 5 % error, and what do they cost?
+#include "cli/tradeoff.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html", "reference.pfm"};
+
+enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
+
+// Errors of the library are printed, except while settings are tried out.
+static void keepLog(void* user, vplLogLevel level, const char* message)
+{
+    Tradeoff* t = user;
+    if (level == VPL_LOG_ERROR) {
+        snprintf(t->message, sizeof t->message, "%s", message);
+    }
+    if (level == VPL_LOG_ERROR ? !t->silent
+                               : level == VPL_LOG_WARNING && !t->arguments->quiet && !t->silent) {
+        complain("%s%s", level == VPL_LOG_WARNING ? "warning: " : "", message);
+    }
+}
+
+static bool joinPath(const char* folder, const char* name, char* path)
+{
+    int length = snprintf(path, PATH_MAX, "%s/%s", folder, name);
+    if (length >= PATH_MAX) {
+        complain("%s: the name is too long", folder);
+    }
+    return length < PATH_MAX;
+}
+
+// Makes the folder if it is missing and asks whether all files can be written. *made tells whether to undo it.
+static bool prepareFolder(const char* folder, bool* made)
+{
+    char path[PATH_MAX];
+    *made = mkdir(folder, 0777) == 0;
+    if (!*made && errno != EEXIST) {
+        complain("%s: cannot create the folder: %s", folder, strerror(errno));
+        return false;
+    }
+    for (int i = 0; i < FILE_COUNT; i++) {
+        if (!joinPath(folder, FILES[i], path) || !checkOutput(path)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool writeResult(const Tradeoff* t, const char* name, void write(const Tradeoff* t, Text* text))
+{
+    char path[PATH_MAX];
+    Text text = {0};
+    write(t, &text);
+    bool good = joinPath(t->arguments->output, name, path);
+    if (good && (text.failed || text.bytes == NULL)) {
+        complain("%s: out of memory", path);
+        good = false;
+    }
+    good = good && writeTextFile(path, text.bytes);
+    free(text.bytes);
+    return good;
+}
+
+static int writeResults(Tradeoff* t)
+{
+    char path[PATH_MAX];
+    const char* folder = t->arguments->output;
+    if (t->reference.spp > 0 && (!joinPath(folder, "reference.pfm", path) ||
+                                 vplImage_Write(t->reference.image, path, NULL) != VPL_SUCCESS)) {
+        return EXIT_COULD_NOT;
+    }
+    bool good = writeResult(t, "tradeoff.csv", writeTable) && writeResult(t, "tradeoff.svg", writePlot) &&
+                writeResult(t, "report.html", writeReport);
+    if (good && t->interrupted) {
+        complain("interrupted; what had been measured is in %s/report.html", folder);
+    }
+    return good && !t->interrupted ? EXIT_DONE : EXIT_COULD_NOT;
+}
+
+static int measure(Tradeoff* t)
+{
+    t->start = secondsNow();
+    t->deadline = t->start + t->arguments->seconds;
+    t->progress = beginProgress(t->arguments->quiet);
+    int code = makeReference(t);
+    if (code == EXIT_DONE) {
+        code = measureSettings(t);
+    }
+    endProgress(&t->progress);
+    return code;
+}
+
+static int readScene(Tradeoff* t)
+{
+    int code = exitCode(vplScene_Load(t->context, t->arguments->positionals[0], &t->scene), true);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    vplGeometry* geometry = NULL;
+    code = exitCode(vplGeometry_Create(t->scene, &geometry), true);
+    t->diagonal = geometry ? (double)vplGeometry_Diagonal(geometry) : 0;
+    vplGeometry_Destroy(geometry);
+    int cameras = vplScene_GetCameraCount(t->scene);
+    if (code == EXIT_DONE && t->arguments->render.camera >= cameras) {
+        complain("--camera is %d, but the scene has %d (from 0)", t->arguments->render.camera, cameras);
+        code = EXIT_USAGE;
+    }
+    return code;
+}
+
+static int run(Tradeoff* t)
+{
+    int code = readScene(t);
+    if (code != EXIT_DONE || !listSettings(t)) {
+        return code != EXIT_DONE ? code : EXIT_USAGE;
+    }
+    bool made = false;
+    if (t->arguments->reference != NULL) { // a wrong one must not leave an empty folder
+        code = makeReference(t);
+    }
+    if (code == EXIT_DONE && !prepareFolder(t->arguments->output, &made)) {
+        code = EXIT_COULD_NOT;
+    }
+    if (code == EXIT_DONE) {
+        code = measure(t);
+        code = code == EXIT_DONE ? writeResults(t) : code;
+    }
+    if (code != EXIT_DONE && made) {
+        rmdir(t->arguments->output); // stays if there is something in it
+    }
+    return code;
+}
+
+static void destroy(Tradeoff* t)
+{
+    for (int i = 0; i < t->settingCount; i++) {
+        vplImage_Destroy(t->settings[i].image);
+        free(t->settings[i].runs);
+    }
+    vplImage_Destroy(t->reference.image);
+    vplScene_Destroy(t->scene);
+    vplContext_Destroy(t->context);
+    free(t);
+}
+
+int runTradeoff(const Arguments* a)
+{
+    if (a->output == NULL) {
+        complain("tradeoff needs -o DIR, the folder for the report");
+        return EXIT_USAGE;
+    }
+    if (a->render.lighting != VPL_LIGHTING_PHYSICAL) {
+        complain("--lighting documented has no truth to measure errors against; tradeoff is for physical");
+        return EXIT_USAGE;
+    }
+    Tradeoff* t = calloc(1, sizeof *t);
+    if (t == NULL) {
+        complain("out of memory");
+        return EXIT_COULD_NOT;
+    }
+    catchInterrupts();
+    t->arguments = a;
+    vplContextDef def = a->context;
+    def.log = keepLog;
+    def.logUser = t;
+    int code = vplContext_Create(&def, &t->context) == VPL_SUCCESS ? run(t) : EXIT_USAGE;
+    destroy(t);
+    return code;
+}

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: MIT
+// Renders the settings, cheapest first, until all are done or the time is up.
+#include "cli/tradeoff.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+double secondsNow(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// The bar shows the share of the time that is used up; the fraction of one picture would jump back and forth.
+static bool watch(void* user, double fraction)
+{
+    Tradeoff* t = user;
+    double now = secondsNow(), used = (now - t->start) / (t->deadline - t->start);
+    (void)fraction;
+    if (!showProgress(&t->progress, used < 0.999 ? used : 0.999)) {
+        t->interrupted = true;
+    }
+    return !t->interrupted && now < t->deadline;
+}
+
+vplResult renderQuietly(Tradeoff* t, const vplRenderOptions* options, vplImage** imageOut,
+                        vplRenderStats* stats)
+{
+    vplRenderOptions watched = *options;
+    watched.progress = watch;
+    watched.progressUser = t;
+    t->message[0] = 0;
+    t->silent = true;
+    vplResult result = vplRender(t->scene, &watched, imageOut, stats);
+    t->silent = false;
+    if (result != VPL_SUCCESS && t->message[0] == 0) {
+        snprintf(t->message, sizeof t->message, "%s", vplResult_GetName(result));
+    }
+    return result;
+}
+
+// Milliseconds of the wall clock that one picture will take. The nearest measured setting of the same kind is
+// scaled by the work; where there is none yet, a guess per pixel that only has to put the kinds in order.
+static double foresee(const Tradeoff* t, const Setting* s)
+{
+    static const double guess[FAMILY_COUNT] = {1e-4, 1e-7, 1e-5, 1e-5, 1e-3};
+    const vplRenderOptions* o = &s->arguments.render;
+    const Setting* nearest = NULL;
+    double least = INFINITY;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* other = &t->settings[i];
+        double far = fabs(log(other->work / s->work));
+        if (isMeasured(other) && other->family == s->family &&
+            other->arguments.render.accumulation == o->accumulation && far < least) {
+            nearest = other;
+            least = far;
+        }
+    }
+    double pixels = (double)o->width * o->height;
+    double pipeline = o->accumulation == VPL_ACCUMULATE_DEFERRED ? 1 : 10;
+    return nearest ? nearest->wallMs * s->work / nearest->work
+                   : guess[s->family] * pixels * s->work * pipeline;
+}
+
+// Short renders are repeated and the least time counts: what disturbs a machine only ever adds.
+enum { REPEATS = 3, SHORT_MS = 100 };
+
+static vplResult timeAgain(Tradeoff* t, const vplRenderOptions* options, vplRenderStats* stats)
+{
+    vplResult result = VPL_SUCCESS;
+    for (int i = 1; i < REPEATS && stats->totalMs < SHORT_MS && result == VPL_SUCCESS; i++) {
+        vplImage* image = NULL;
+        vplRenderStats again;
+        result = renderQuietly(t, options, &image, &again);
+        if (result == VPL_SUCCESS && again.cpuMs < stats->cpuMs) {
+            *stats = again;
+        }
+        vplImage_Destroy(image);
+    }
+    return result;
+}
+
+// One more seed of a setting.
+static void measureSeed(Tradeoff* t, Setting* s)
+{
+    Run* run = &s->runs[s->runCount];
+    vplRenderOptions options = s->arguments.render;
+    run->seed = options.seed += (uint64_t)s->runCount;
+    vplImage* image = NULL;
+    vplResult result = renderQuietly(t, &options, &image, &run->stats);
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Compare(image, t->reference.image, &run->comparison);
+    }
+    if (result == VPL_SUCCESS) {
+        result = timeAgain(t, &options, &run->stats);
+    }
+    if (result != VPL_SUCCESS) {
+        s->exhausted = result == VPL_CANCELLED;
+        snprintf(s->problem, sizeof s->problem, "%s", s->exhausted ? "" : t->message);
+    } else if (s->runCount++ == 0) {
+        s->wallMs = run->stats.totalMs; // for foresee, until the median is known
+        s->image = image;
+        image = NULL;
+    }
+    vplImage_Destroy(image);
+}
+
+// Pictures are kept for the report; those of settings that another one beats are not needed any more.
+static void dropPictures(Tradeoff* t)
+{
+    for (int i = 0; i < t->settingCount; i++) {
+        if (!t->settings[i].onFront) {
+            vplImage_Destroy(t->settings[i].image);
+            t->settings[i].image = NULL;
+        }
+    }
+}
+
+// The setting that will be the cheapest of those with `done` seeds; NULL if there is none left.
+static Setting* findNext(Tradeoff* t, int done, double* ms)
+{
+    Setting* next = NULL;
+    for (int i = 0; i < t->settingCount; i++) {
+        Setting* s = &t->settings[i];
+        bool open = s->runCount == done && s->problem[0] == 0 && !s->exhausted;
+        double cost = open ? foresee(t, s) : INFINITY;
+        if (open && (next == NULL || cost < *ms)) {
+            next = s;
+            *ms = cost;
+        }
+    }
+    return next;
+}
+
+static void say(const Setting* s)
+{
+    char time[32], error[32];
+    const char* change = s->change[0] ? s->change : "(base)";
+    formatTime(s->cpuMs, time, sizeof time);
+    formatPercent(s->error, error, sizeof error);
+    if (s->problem[0] != 0 || s->exhausted) {
+        complain("%s: %s", change, s->exhausted ? "no time left" : s->problem);
+    } else {
+        complain("%-10s %-10s %s", time, error, change);
+    }
+}
+
+// One seed of every setting, the cheapest first, as long as it is before `end`. Seeds are rounds, not rows: what
+// disturbs the machine for a while then hits all settings, and the medians of none.
+static void measureRound(Tradeoff* t, int round, double end)
+{
+    double ms = 0;
+    for (Setting* s = findNext(t, round, &ms); s != NULL && !t->interrupted; s = findNext(t, round, &ms)) {
+        if (secondsNow() + 1e-3 * ms < end) {
+            measureSeed(t, s);
+        } else {
+            s->exhausted = true; // and so will be the rest, which is dearer
+        }
+        summarise(t);
+        dropPictures(t);
+        if (t->arguments->verbose && round == 0) {
+            say(s);
+        }
+    }
+}
+
+static bool makeRoom(Tradeoff* t)
+{
+    bool good = true;
+    for (int i = 0; i < t->settingCount && good; i++) {
+        t->settings[i].runs = calloc((size_t)t->arguments->seeds, sizeof(Run));
+        good = t->settings[i].runs != NULL;
+    }
+    return good;
+}
+
+// A processor that was idle is slow at first; that must not be the cheapest setting's fault.
+static void warmUp(Tradeoff* t)
+{
+    vplImage* image = NULL;
+    renderQuietly(t, &t->settings[0].arguments.render, &image, NULL);
+    vplImage_Destroy(image);
+}
+
+int measureSettings(Tradeoff* t)
+{
+    if (!makeRoom(t)) {
+        complain("out of memory");
+        return EXIT_COULD_NOT;
+    }
+    warmUp(t);
+    for (int round = 0; round < t->arguments->seeds; round++) {
+        double now = secondsNow();
+        measureRound(t, round, now + (t->deadline - now) / (t->arguments->seeds - round));
+    }
+    int measured = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        measured += isMeasured(&t->settings[i]);
+    }
+    if (measured > 0) {
+        return EXIT_DONE;
+    }
+    const char* problem = t->settings[0].problem;
+    complain("no setting could be measured: %s", t->interrupted    ? "interrupted"
+                                                 : problem[0] != 0 ? problem
+                                                                   : "the time is too short");
+    return t->interrupted || problem[0] == 0 ? EXIT_COULD_NOT : EXIT_USAGE;
+}
+
+static double field(const Run* run, int which)
+{
+    switch (which) {
+    case 0:
+        return run->comparison.relativeRmse;
+    case 1:
+        return run->stats.cpuMs;
+    case 2:
+        return run->stats.totalMs;
+    default:
+        return run->comparison.energyRatio;
+    }
+}
+
+// A numbered point of the plot takes at least this share off the error: less is chance, and crowds.
+static const double FRONT_GAIN = 0.03;
+
+// The median of a figure over the seeds, and the least and the most.
+static double band(const Setting* s, int which, double* low, double* high)
+{
+    double values[64]; // --seeds takes no more
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (int k = 0; k < s->runCount; k++) {
+        values[k] = field(&s->runs[k], which);
+        *low = fmin(*low, values[k]);
+        *high = fmax(*high, values[k]);
+    }
+    return medianOf(values, s->runCount);
+}
+
+void summarise(Tradeoff* t)
+{
+    double cost[MAX_SETTINGS], error[MAX_SETTINGS];
+    bool onFront[MAX_SETTINGS];
+    for (int i = 0; i < t->settingCount; i++) {
+        Setting* s = &t->settings[i];
+        double low, high;
+        s->error = band(s, 0, &s->errorLow, &s->errorHigh);
+        s->cpuMs = band(s, 1, &s->cpuLow, &s->cpuHigh);
+        s->wallMs = band(s, 2, &low, &high);
+        s->energy = band(s, 3, &low, &high);
+        cost[i] = s->cpuMs;
+        error[i] = s->error;
+    }
+    markFront(cost, error, t->settingCount, FRONT_GAIN, onFront);
+    for (int i = 0; i < t->settingCount; i++) {
+        t->settings[i].onFront = onFront[i];
+    }
+    for (int i = 0; i < t->settingCount; i++) {
+        Setting* s = &t->settings[i];
+        s->number = 1;
+        for (int j = 0; j < t->settingCount; j++) {
+            s->number += onFront[j] && cost[j] < cost[i];
+        }
+    }
+}
+
+int findCheapest(const Tradeoff* t, Family family, double limit)
+{
+    double cost[MAX_SETTINGS], error[MAX_SETTINGS];
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* s = &t->settings[i];
+        bool counts = isMeasured(s) && (family == FAMILY_COUNT || s->family == family);
+        cost[i] = s->cpuMs;
+        error[i] = counts ? s->error : NAN;
+    }
+    return cheapestWithin(cost, error, t->settingCount, limit);
+}
+
+double findFloor(const Tradeoff* t, Family family)
+{
+    double work[MAX_SETTINGS], error[MAX_SETTINGS];
+    int count = 0;
+    const vplRenderOptions* base = &t->settings[0].arguments.render;
+    for (int i = 0; i < t->settingCount; i++) { // a sweep of particles stands in ascending order
+        const Setting* s = &t->settings[i];
+        if (isMeasured(s) && s->family == family && (s->sweeps & 63) != 0 &&
+            s->arguments.render.minDistance == base->minDistance) {
+            work[count] = s->work;
+            error[count++] = s->error;
+        }
+    }
+    return floorOf(work, error, count);
+}

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// Which settings are measured: a table of sweeps. A new option of `vpl render` is measured by a new row.
+#include "cli/option.h"
+#include "cli/tradeoff.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char PARTICLES[] = "3 10 30 100 300 1000 3000 10000 30000 65536";
+
+const Sweep SWEEPS[] = {
+    {"frontier", "--light-shadows none --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows map --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows ray --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows none --min-distance @0.03 --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows map --min-distance @0.03 --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows ray --min-distance @0.03 --particles", PARTICLES, NULL},
+    {"path", "--method path --spp", "1 2 4 8 16 32 64 128 256 512 1024", NULL},
+    {"direct", "--method", "direct", NULL},
+    {"particles", "--particles", PARTICLES, "Particles"},
+    {"light-shadows", "--light-shadows", "none map ray", "Shadows of virtual lights"},
+    {"min-distance", "--min-distance", "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4",
+     "Clamp of near virtual lights"},
+    {"sampler", "--sampler", "random halton hammersley", "Where particles go"},
+    {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
+    {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
+    {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
+    {"bias", "--bias", "auto 0 @0.001 @0.003 @0.01", "Shadow bias"},
+    {"pipeline", "--pipeline", "deferred batched multipass", "How virtual lights are added up"},
+    {"particle-geometry", "--particle-geometry", "exact obb", "What stops a particle"},
+};
+
+const int SWEEP_COUNT = sizeof SWEEPS / sizeof *SWEEPS;
+
+_Static_assert(sizeof SWEEPS / sizeof *SWEEPS <= MAX_SWEEPS, "a sweep is a bit of Setting.sweeps");
+
+const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only", "virtual lights without shadows",
+                                                "virtual lights with shadow maps",
+                                                "virtual lights with shadow rays", "path tracing"};
+
+// True if `name` is one of the words in "a,b,c"; NULL names all.
+static bool isListed(const char* list, const char* name)
+{
+    size_t length = strlen(name);
+    for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
+        if (strcspn(at, ",") == length && strncmp(at, name, length) == 0) {
+            return true;
+        }
+    }
+    return list == NULL;
+}
+
+static bool checkSweepNames(const char* list)
+{
+    for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
+        int length = (int)strcspn(at, ","), known = 0;
+        for (int i = 0; i < SWEEP_COUNT; i++) {
+            known |=
+                (int)strlen(SWEEPS[i].name) == length && strncmp(at, SWEEPS[i].name, (size_t)length) == 0;
+        }
+        if (!known) {
+            complain("--sweeps names \"%.*s\"; vpl help tradeoff lists the sweeps", length, at);
+            return false;
+        }
+    }
+    return true;
+}
+
+static Family familyOf(const vplRenderOptions* o)
+{
+    switch (o->method) {
+    case VPL_METHOD_DIRECT:
+        return FAMILY_DIRECT;
+    case VPL_METHOD_PATH:
+        return FAMILY_PATH;
+    case VPL_METHOD_INSTANT_RADIOSITY:
+        break;
+    }
+    return o->lightShadows == VPL_LIGHT_SHADOWS_MAP   ? FAMILY_MAP
+           : o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? FAMILY_RAY
+                                                      : FAMILY_UNSHADOWED;
+}
+
+// Lights or paths, and a constant for what every picture costs.
+static double workOf(const vplRenderOptions* o)
+{
+    double reflectivity = o->reflectivity >= 0 ? o->reflectivity : 0.7;
+    return o->method == VPL_METHOD_PATH     ? o->samplesPerPixel
+           : o->method == VPL_METHOD_DIRECT ? 1
+                                            : 50 + o->particles / (1 - reflectivity);
+}
+
+// The words that make `plain` into `a`.
+static void writeDifference(const Arguments* plain, const Arguments* a, char* words, size_t size)
+{
+    size_t used = 0;
+    words[0] = 0;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        char value[64], usual[64];
+        if (writeOption(&OPTIONS[i], a, value, sizeof value) && value[0] != 0 &&
+            writeOption(&OPTIONS[i], plain, usual, sizeof usual) && strcmp(value, usual) != 0) {
+            int length =
+                snprintf(words + used, size - used, "%s%s %s", used ? " " : "", OPTIONS[i].name, value);
+            used += length > 0 && (size_t)length < size - used ? (size_t)length : 0;
+        }
+    }
+}
+
+void writeCommand(const Setting* s, char* words, size_t size)
+{
+    Arguments plain = s->arguments;
+    plain.render = vplDefaultRenderOptions();
+    writeDifference(&plain, &s->arguments, words, size);
+}
+
+// Options that the method never looks at go back to their defaults: equal settings look equal, and a command to
+// copy says only what matters.
+static void forgetUnused(vplRenderOptions* o)
+{
+    if (o->method == VPL_METHOD_INSTANT_RADIOSITY) {
+        return;
+    }
+    vplRenderOptions plain = vplDefaultRenderOptions();
+    plain.method = o->method;
+    plain.width = o->width;
+    plain.height = o->height;
+    plain.camera = o->camera;
+    plain.seed = o->seed;
+    plain.samplesPerPixel = o->samplesPerPixel;
+    if (o->method == VPL_METHOD_DIRECT) {
+        plain.shadowMapSize = o->shadowMapSize;
+        plain.shadow = o->shadow;
+    }
+    *o = plain;
+}
+
+// Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too.
+static bool addSetting(Tradeoff* t, const char* words, unsigned sweep)
+{
+    Setting s = {.arguments = *t->arguments, .sweeps = sweep};
+    if (!changeArguments(words, &s.arguments)) {
+        return false;
+    }
+    forgetUnused(&s.arguments.render);
+    char command[SENTENCE], other[SENTENCE];
+    writeCommand(&s, command, sizeof command);
+    for (int i = 0; i < t->settingCount; i++) {
+        writeCommand(&t->settings[i], other, sizeof other);
+        if (strcmp(command, other) == 0) {
+            t->settings[i].sweeps |= sweep;
+            return true;
+        }
+    }
+    if (t->settingCount == MAX_SETTINGS) {
+        complain("more than %d settings", MAX_SETTINGS);
+        return false;
+    }
+    s.family = familyOf(&s.arguments.render);
+    if (s.family == FAMILY_DIRECT || s.family == FAMILY_PATH) {
+        snprintf(s.change, sizeof s.change, "%s", words); // what it does not use is no difference
+    } else {
+        writeDifference(t->arguments, &s.arguments, s.change, sizeof s.change);
+    }
+    s.work = workOf(&s.arguments.render);
+    t->settings[t->settingCount++] = s;
+    return true;
+}
+
+// Copies words; @X becomes a length in metres, of two digits so that a command line reads well.
+static void expandLengths(const Tradeoff* t, const char* from, char* words, size_t size)
+{
+    size_t used = 0;
+    while (*from != 0 && used + 1 < size) {
+        if (*from != '@') {
+            words[used++] = *from++;
+            continue;
+        }
+        char* end;
+        char digits[32];
+        snprintf(digits, sizeof digits, "%.1e", t->diagonal * strtod(from + 1, &end));
+        int length = snprintf(words + used, size - used, "%g", strtod(digits, NULL));
+        used += (size_t)length < size - used ? (size_t)length : 0;
+        from = end;
+    }
+    words[used] = 0;
+}
+
+static bool addSweep(Tradeoff* t, int index)
+{
+    const Sweep* sweep = &SWEEPS[index];
+    char value[32], pattern[128], words[128];
+    int length;
+    for (const char* at = sweep->values; sscanf(at, " %31s%n", value, &length) == 1; at += length) {
+        snprintf(pattern, sizeof pattern, "%s %s", sweep->words, value);
+        expandLengths(t, pattern, words, sizeof words);
+        if (!addSetting(t, words, 1u << index)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool listSettings(Tradeoff* t)
+{
+    unsigned knobs = 0;
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        bool chosen = isListed(t->arguments->sweeps, SWEEPS[i].name);
+        knobs |= chosen && SWEEPS[i].meaning != NULL ? 1u << i : 0;
+    }
+    if (!checkSweepNames(t->arguments->sweeps) || !addSetting(t, "", knobs)) {
+        return false;
+    }
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        if (isListed(t->arguments->sweeps, SWEEPS[i].name) && !addSweep(t, i)) {
+            return false;
+        }
+    }
+    return true;
+}
