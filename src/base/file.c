@@ -61,6 +61,30 @@ vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, si
     return VPL_SUCCESS;
 }
 
+bool vplIsRegularFile(const char* path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+const char* vplBaseName(const char* path)
+{
+    const char* slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+char* vplPathBeside(vplContext* context, const char* from, const char* name, size_t length)
+{
+    size_t folder = length > 0 && name[0] == '/' ? 0 : (size_t)(vplBaseName(from) - from);
+    char* path = vplAlloc(context, folder + length + 1, 1);
+    if (path != NULL) {
+        memcpy(path, from, folder);
+        memcpy(path + folder, name, length);
+        path[folder + length] = 0;
+    }
+    return path;
+}
+
 static bool writeAll(int fd, const void* bytes, size_t size)
 {
     const char* at = bytes;

@@ -12,6 +12,16 @@ vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, si
 // either its old self or complete. What is not a regular file (a device, a pipe) is written directly.
 vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
 
+// True if there is a regular file of this name: no folder, device or pipe.
+bool vplIsRegularFile(const char* path);
+
+// The path of `name` (length bytes) as seen from the folder of the file `from`: absolute names stay as they are.
+// Freed with vplFree; NULL when out of memory.
+char* vplPathBeside(vplContext* context, const char* from, const char* name, size_t length);
+
+// The part of a path behind its last '/'.
+const char* vplBaseName(const char* path);
+
 // A buffer that grows as an encoder appends to it. Start with {context}.
 typedef struct vplByteBuffer {
     vplContext* context;

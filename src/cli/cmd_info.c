@@ -7,14 +7,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { QUADS = 0, BOXES, OBJECT_TYPES, POINTS = 0, SPOTS, DIRECTIONALS, EMITTER_TYPES };
+enum { OBJECT_TYPES = VPL_OBJECT_MESH + 1, POINTS = 0, SPOTS, DIRECTIONALS, EMITTER_TYPES };
 
 static const char* const METHODS[] = {"instant-radiosity", "direct"};
 static const char* const PIPELINES[] = {"multipass", "batched", "deferred"};
 
 typedef struct Info {
     const char* path;
-    int cameras, materials, objects, emitters, triangles;
+    int cameras, materials, objects, emitters, triangles, meshes;
+    int64_t meshVertices, meshTriangles;
     int objectsOfType[OBJECT_TYPES], emittersOfType[EMITTER_TYPES];
     vplVec3 low, high;
     double diagonal, area, reflectance;
@@ -34,7 +35,12 @@ static void describeScene(const vplScene* scene, Info* info)
     info->objects = vplScene_GetObjectCount(scene);
     info->emitters = vplScene_GetEmitterCount(scene);
     for (int i = 0; i < info->objects; i++) {
-        info->objectsOfType[vplScene_GetObject(scene, i)->type == VPL_OBJECT_BOX ? BOXES : QUADS]++;
+        info->objectsOfType[vplScene_GetObject(scene, i)->type]++;
+    }
+    info->meshes = vplScene_GetMeshCount(scene);
+    for (int i = 0; i < info->meshes; i++) {
+        info->meshVertices += vplScene_GetMesh(scene, i)->vertexCount;
+        info->meshTriangles += vplScene_GetMesh(scene, i)->triangleCount;
     }
     for (int i = 0; i < info->emitters; i++) {
         vplEmitterType type = vplScene_GetEmitter(scene, i)->type;
@@ -115,8 +121,13 @@ static void printText(const Info* info)
     printf("%s\n", info->path);
     printf("  %-16s %d\n", "cameras", info->cameras);
     printf("  %-16s %d\n", "materials", info->materials);
-    printf("  %-16s %d (%d quads, %d boxes)\n", "objects", info->objects, info->objectsOfType[QUADS],
-           info->objectsOfType[BOXES]);
+    printf("  %-16s %d (%d quads, %d boxes, %d meshes)\n", "objects", info->objects,
+           info->objectsOfType[VPL_OBJECT_QUAD], info->objectsOfType[VPL_OBJECT_BOX],
+           info->objectsOfType[VPL_OBJECT_MESH]);
+    if (info->meshes > 0) {
+        printf("  %-16s %d (%lld vertices, %lld triangles)\n", "mesh files", info->meshes,
+               (long long)info->meshVertices, (long long)info->meshTriangles);
+    }
     printf("  %-16s %d (%d point, %d spot, %d directional)\n", "lights", info->emitters,
            info->emittersOfType[POINTS], info->emittersOfType[SPOTS], info->emittersOfType[DIRECTIONALS]);
     printf("  %-16s %d\n", "triangles", info->triangles);
@@ -161,13 +172,16 @@ static json_t* renderJson(const Info* info)
 static bool printJson(const Info* info)
 {
     json_t* root = json_pack(
-        "{s:i, s:i, s:{s:i, s:i, s:i}, s:{s:i, s:i, s:i, s:i}, s:i, s:o, s:o, s:f, s:f, s:f, s:o}", "cameras",
-        info->cameras, "materials", info->materials, "objects", "total", info->objects, "quad",
-        info->objectsOfType[QUADS], "box", info->objectsOfType[BOXES], "lights", "total", info->emitters,
-        "point", info->emittersOfType[POINTS], "spot", info->emittersOfType[SPOTS], "directional",
-        info->emittersOfType[DIRECTIONALS], "triangles", info->triangles, "bounds_min", vector(info->low),
-        "bounds_max", vector(info->high), "diagonal", info->diagonal, "area", info->area, "mean_reflectance",
-        info->reflectance, "render", renderJson(info));
+        "{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:i, s:o, s:o, s:f, "
+        "s:f, s:f, s:o}",
+        "cameras", info->cameras, "materials", info->materials, "objects", "total", info->objects, "quad",
+        info->objectsOfType[VPL_OBJECT_QUAD], "box", info->objectsOfType[VPL_OBJECT_BOX], "mesh",
+        info->objectsOfType[VPL_OBJECT_MESH], "meshes", "total", info->meshes, "vertices",
+        (json_int_t)info->meshVertices, "triangles", (json_int_t)info->meshTriangles, "lights", "total",
+        info->emitters, "point", info->emittersOfType[POINTS], "spot", info->emittersOfType[SPOTS],
+        "directional", info->emittersOfType[DIRECTIONALS], "triangles", info->triangles, "bounds_min",
+        vector(info->low), "bounds_max", vector(info->high), "diagonal", info->diagonal, "area", info->area,
+        "mean_reflectance", info->reflectance, "render", renderJson(info));
     char* text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     if (text != NULL) {
         puts(text);

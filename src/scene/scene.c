@@ -141,15 +141,28 @@ vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* 
                            "vplMaterialDef.name \"%s\" is taken, must be unique", def->name);
         }
     }
+    vplMaterialDef copy = *def;
+    return keepName(scene, &copy.name) ? vplScene_AdoptMaterial(scene, &copy, indexOut) : VPL_OUT_OF_MEMORY;
+}
+
+vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut)
+{
     vplMaterialDef* slot = grow(scene, &scene->materials, &scene->materialCount, &scene->materialCapacity,
                                 sizeof *scene->materials);
-    vplMaterialDef copy = *def;
-    if (slot == NULL || !keepName(scene, &copy.name)) {
+    if (slot == NULL) {
+        vplFree(scene->context, (char*)material->name);
         return VPL_OUT_OF_MEMORY;
     }
-    *slot = copy;
+    *slot = *material;
     finish(&scene->materialCount, indexOut);
     return VPL_SUCCESS;
+}
+
+void vplScene_DropMaterials(vplScene* scene, int count)
+{
+    while (scene->materialCount > count) {
+        vplFree(scene->context, (char*)scene->materials[--scene->materialCount].name);
+    }
 }
 
 void vplFreeMesh(vplContext* context, const vplMeshDef* mesh)

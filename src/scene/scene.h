@@ -22,8 +22,18 @@ struct vplScene {
 // checked: readers make valid meshes.
 vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, int* indexOut);
 
-// A mesh that is read or copied needs no default function.
+// Adds a material whose name (or NULL) was made by vplAlloc and now belongs to the scene, also on failure.
+// Nothing is checked: the name must be unique.
+vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut);
+
+// Takes back the materials from number `count` on; nothing may refer to them.
+void vplScene_DropMaterials(vplScene* scene, int count);
+
 void vplFreeMesh(vplContext* context, const vplMeshDef* mesh);
+
+// Reads a scene file, or an OBJ file with a camera and a light of our own.
+vplResult vplScene_LoadJson(vplContext* context, const char* path, vplScene** sceneOut);
+vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, vplScene** sceneOut);
 
 // What is wrong with a def: which field, and the rest of the sentence after "<field> ".
 typedef struct vplFault {

@@ -2,7 +2,9 @@
 // Scene files: one function per kind of thing, each filling the same def that a C program would, so that files
 // and programs share every check. Angles are degrees here and radians there.
 #include "scene/json_reader.h"
+#include "base/file.h"
 #include "math/matrix.h"
+#include "scene/obj_index.h"
 #include "scene/scene.h"
 
 #include <stdio.h>
@@ -11,6 +13,8 @@
 typedef struct Loader {
     vplJsonReader json;
     vplScene* scene;
+    int materialCount;  // of the scene file itself; those of meshes follow
+    vplNames meshFiles; // paths of the scene's meshes, in their order
 } Loader;
 
 static const double DEGREE = VPL_PI / 180;
@@ -139,7 +143,7 @@ static vplResult readMaterialReference(Loader* l, const json_t* object, const vp
 {
     const char* name = NULL;
     TRY(vplJsonReader_String(&l->json, object, path, "material", &name));
-    for (int i = 0; name != NULL && i < l->scene->materialCount; i++) {
+    for (int i = 0; name != NULL && i < l->materialCount; i++) {
         if (strcmp(l->scene->materials[i].name, name) == 0) {
             *out = i;
             return VPL_SUCCESS;
@@ -206,25 +210,71 @@ static vplResult readType(Loader* l, const json_t* value, const vplJsonPath* pat
     return *out != NULL ? VPL_SUCCESS : vplJsonReader_Fail(&l->json, path, "lacks the key \"type\"");
 }
 
-static vplResult readObject(Loader* l, const json_t* value, const vplJsonPath* path)
+// Reads the file of a mesh, unless an object above has it, too.
+static vplResult readMeshFile(Loader* l, const char* path, int* out)
 {
-    static const char* const keys[] = {"!type",  "name",  "!material", "translate",
-                                       "rotate", "scale", "matrix",    NULL};
+    size_t length = strlen(path);
+    *out = vplNames_Find(&l->meshFiles, path, length);
+    if (*out >= 0) {
+        return VPL_SUCCESS;
+    }
+    int mesh;
+    TRY(vplScene_LoadObj(l->scene, path, &mesh));
+    return vplNames_Add(&l->meshFiles, path, length, out);
+}
+
+static vplResult readMesh(Loader* l, const json_t* object, const vplJsonPath* path, int* out)
+{
+    const char* name = NULL;
+    vplJsonPath member = {path, "file", 0};
+    TRY(vplJsonReader_String(&l->json, object, path, "file", &name));
+    char* whole = vplPathBeside(l->json.context, l->json.file, name, strlen(name));
+    if (whole == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplResult result =
+        vplIsRegularFile(whole)
+            ? readMeshFile(l, whole, out)
+            : vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", but there is no file %.200s", name, whole);
+    vplFree(l->json.context, whole);
+    return result;
+}
+
+static vplResult readObjectType(Loader* l, const json_t* value, const vplJsonPath* path, vplObjectType* out)
+{
+    static const char* const types[] = {"quad", "box", "mesh"};
     const char* type = NULL;
     TRY(readType(l, value, path, &type));
-    vplObjectDef def = vplDefaultObjectDef();
-    if (strcmp(type, "quad") == 0) {
-        def.type = VPL_OBJECT_QUAD;
-    } else if (strcmp(type, "box") == 0) {
-        def.type = VPL_OBJECT_BOX;
-    } else {
-        vplJsonPath member = {path, "type", 0};
-        return vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", must be \"quad\" or \"box\"", type);
+    for (int i = 0; i < 3; i++) {
+        if (strcmp(type, types[i]) == 0) {
+            *out = (vplObjectType)i;
+            return VPL_SUCCESS;
+        }
     }
-    TRY(vplJsonReader_CheckKeys(&l->json, value, path, keys));
+    vplJsonPath member = {path, "type", 0};
+    return vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", must be \"quad\", \"box\" or \"mesh\"", type);
+}
+
+static vplResult readObject(Loader* l, const json_t* value, const vplJsonPath* path)
+{
+    static const char* const shapeKeys[] = {"!type",  "name",  "!material", "translate",
+                                            "rotate", "scale", "matrix",    NULL};
+    static const char* const meshKeys[] = {"!type",  "name",  "material", "!file", "translate",
+                                           "rotate", "scale", "matrix",   NULL};
+    vplObjectDef def = vplDefaultObjectDef();
+    TRY(readObjectType(l, value, path, &def.type));
+    bool mesh = def.type == VPL_OBJECT_MESH;
+    TRY(vplJsonReader_CheckKeys(&l->json, value, path, mesh ? meshKeys : shapeKeys));
     TRY(vplJsonReader_String(&l->json, value, path, "name", &def.name));
-    TRY(readMaterialReference(l, value, path, &def.material));
+    if (!mesh || json_object_get(value, "material") != NULL) {
+        TRY(readMaterialReference(l, value, path, &def.material));
+    } else {
+        def.material = -1;
+    }
     TRY(readTransform(l, value, path, &def.transform));
+    if (mesh) {
+        TRY(readMesh(l, value, path, &def.mesh));
+    }
     return vplScene_AddObject(l->scene, &def, NULL);
 }
 
@@ -293,18 +343,20 @@ static vplResult readScene(Loader* l)
     TRY(vplJsonReader_CheckKeys(&l->json, l->json.root, NULL, keys));
     TRY(readCameras(l));
     TRY(readMaterials(l));
+    l->materialCount = l->scene->materialCount;
     TRY(readArray(l, "objects", readObject));
     return readArray(l, "lights", readEmitter);
 }
 
-vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)
+vplResult vplScene_LoadJson(vplContext* context, const char* path, vplScene** sceneOut)
 {
-    Loader loader = {.scene = NULL};
+    Loader loader = {.meshFiles = {.index = {.context = context}}};
     TRY(vplJsonReader_Open(context, path, &loader.json));
     vplResult result = vplScene_Create(context, &loader.scene);
     if (result == VPL_SUCCESS) {
         result = readScene(&loader);
     }
+    vplNames_Close(&loader.meshFiles);
     vplJsonReader_Close(&loader.json);
     if (result != VPL_SUCCESS) {
         vplScene_Destroy(loader.scene);

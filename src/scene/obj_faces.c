@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// The third sweep over an OBJ file: faces, cut into triangles.
+#include "scene/obj.h"
+
+#include <string.h>
+
+// What the sweep knows at a line.
+typedef struct Sweep {
+    vplObj* obj;
+    vplObjMesh* mesh;
+    int64_t points, normals; // v and vn met so far: negative indices count back from them
+    int material;
+    vplPolygon polygon;
+    uint32_t cornerPoints[VPL_MAX_CORNERS];
+    int64_t cornerNormals[VPL_MAX_CORNERS]; // -1: none
+    vplVec3 positions[VPL_MAX_CORNERS];
+    const char* firstCrossing; // face whose outline crosses itself
+    int64_t crossingCount;
+} Sweep;
+
+// One index of a corner up to the next '/'. Saturates; false if there are no digits.
+static bool readInteger(vplWord* word, vplWord* numberOut, int64_t* out)
+{
+    const char* p = word->start;
+    bool negative = p < word->end && *p == '-';
+    p += p < word->end && (*p == '-' || *p == '+');
+    const char* digits = p;
+    int64_t value = 0;
+    for (; p < word->end && *p >= '0' && *p <= '9'; p++) {
+        value = value > (int64_t)1 << 40 ? value : 10 * value + (*p - '0');
+    }
+    bool good = p > digits && (p == word->end || *p == '/');
+    while (p < word->end && *p != '/') {
+        p++;
+    }
+    *numberOut = (vplWord){word->start, p};
+    word->start = p;
+    *out = negative ? -value : value;
+    return good;
+}
+
+// An index as a number from 0. `before` is how many of its kind stand above the line, `total` how many there are.
+static vplResult readIndex(const Sweep* s, vplWord corner, vplWord* word, const char* kind, int64_t before,
+                           int64_t total, int64_t* out)
+{
+    int64_t index;
+    vplWord number;
+    bool good = readInteger(word, &number, &index);
+    int64_t place = index > 0 ? index - 1 : before + index;
+    if (good && index != 0 && place >= 0 && place < total) {
+        *out = place;
+        return VPL_SUCCESS;
+    }
+    number = number.start == number.end ? corner : number; // "/3" or "3//": nothing stands where it must
+    if (total == 0) {
+        return vplText_FailWord(&s->obj->text, number, "no index of a %s: there are none", kind);
+    }
+    return vplText_FailWord(&s->obj->text, number, "an index of a %s: 1 to %lld, or -1 to -%lld", kind,
+                            (long long)total, (long long)before);
+}
+
+// v, v/vt, v//vn or v/vt/vn.
+static vplResult readCorner(Sweep* s, vplWord corner, int i)
+{
+    const vplObj* obj = s->obj;
+    vplWord word = corner, number;
+    int64_t point = 0, ignored;
+    s->cornerNormals[i] = -1;
+    vplResult result = readIndex(s, corner, &word, "point (v)", s->points, obj->pointCount, &point);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    s->cornerPoints[i] = obj->pointOf[point];
+    if (word.start == word.end) {
+        return VPL_SUCCESS;
+    }
+    word.start++;
+    bool noTexture = word.start < word.end && *word.start == '/';
+    if (!noTexture && !readInteger(&word, &number, &ignored)) { // any index will do: none is used
+        return vplText_FailWord(&obj->text, number.start < number.end ? number : corner,
+                                "an index of a texture coordinate (vt)");
+    }
+    if (word.start == word.end) {
+        return VPL_SUCCESS;
+    }
+    word.start++;
+    result = readIndex(s, corner, &word, "normal (vn)", s->normals, obj->normalCount, &s->cornerNormals[i]);
+    return result == VPL_SUCCESS && word.start < word.end
+               ? vplText_FailWord(&obj->text, word, "the end of the corner")
+               : result;
+}
+
+static vplResult addTriangle(Sweep* s, int a, int b, int c)
+{
+    const uint32_t points[3] = {s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]};
+    const int64_t normals[3] = {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]};
+    return vplObjMesh_AddTriangle(s->obj, s->mesh, points, normals, s->material);
+}
+
+static vplResult addPolygon(Sweep* s, int corners, const char* face)
+{
+    vplResult result = VPL_SUCCESS;
+    for (int i = 0; i < corners; i++) {
+        s->positions[i] = s->obj->points[s->cornerPoints[i]];
+    }
+    vplPolygon_Triangulate(&s->polygon, s->positions, corners);
+    if (!s->polygon.simple) {
+        s->firstCrossing = s->crossingCount++ == 0 ? face : s->firstCrossing;
+    }
+    for (int i = 0; i < s->polygon.triangleCount && result == VPL_SUCCESS; i++) {
+        const int* t = s->polygon.triangles[i];
+        result = addTriangle(s, t[0], t[1], t[2]);
+    }
+    return result;
+}
+
+static vplResult readFace(Sweep* s, vplWord line)
+{
+    int corners = 0;
+    vplWord word;
+    const char* face = line.start;
+    while (vplNextWord(&line, &word)) { // at most VPL_MAX_CORNERS: the first sweep counted
+        vplResult result = readCorner(s, word, corners++);
+        if (result != VPL_SUCCESS) {
+            return result;
+        }
+    }
+    return corners == 3 ? addTriangle(s, 0, 1, 2) : addPolygon(s, corners, face);
+}
+
+static vplResult readLine(Sweep* s, vplWord line)
+{
+    vplWord keyword;
+    switch (vplObj_ReadKeyword(&line, &keyword)) {
+    case VPL_OBJ_POINT:
+        s->points++;
+        break;
+    case VPL_OBJ_NORMAL:
+        s->normals++;
+        break;
+    case VPL_OBJ_FACE:
+        return readFace(s, line);
+    case VPL_OBJ_MATERIAL:
+        return vplObjMaterials_Get(&s->obj->materials, vplRestOfLine(line), &s->material);
+    default:
+        break;
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult readLines(Sweep* s)
+{
+    const char* at = NULL;
+    vplWord line;
+    vplResult result = VPL_SUCCESS;
+    while (result == VPL_SUCCESS && vplText_NextLine(&s->obj->text, &at, &line)) {
+        result = readLine(s, line);
+    }
+    if (result == VPL_SUCCESS && s->crossingCount > 0) {
+        vplText_WarnAt(&s->obj->text, s->firstCrossing,
+                       "the outline of this face crosses itself; triangles may overlap (%lld such faces)",
+                       (long long)s->crossingCount);
+    }
+    return result;
+}
+
+static vplResult allocate(const vplObj* obj, vplObjMesh* mesh)
+{
+    size_t triangles = (size_t)obj->triangleCount;
+    *mesh = (vplObjMesh){.corners = {.context = obj->context}};
+    mesh->indices = vplAlloc(obj->context, triangles, 3 * sizeof *mesh->indices);
+    mesh->materials = vplAlloc(obj->context, triangles, sizeof *mesh->materials);
+    if (mesh->indices == NULL || mesh->materials == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    if (!obj->hasNormals) {
+        mesh->vertexOf = vplAlloc(obj->context, obj->differentPoints, sizeof *mesh->vertexOf);
+        if (mesh->vertexOf == NULL) {
+            return VPL_OUT_OF_MEMORY;
+        }
+        memset(mesh->vertexOf, 0xFF, obj->differentPoints * sizeof *mesh->vertexOf); // VPL_NO_ENTRY
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
+{
+    vplResult result = allocate(obj, mesh);
+    Sweep* sweep = result == VPL_SUCCESS ? vplAllocZero(obj->context, 1, sizeof *sweep) : NULL;
+    if (sweep == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    sweep->obj = obj;
+    sweep->mesh = mesh;
+    sweep->material = -1;
+    result = readLines(sweep);
+    vplFree(obj->context, sweep);
+    return result;
+}

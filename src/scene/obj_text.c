@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "scene/obj_text.h"
+#include "base/file.h"
+#include "scene/obj_number.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool isBlank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\v';
+}
+
+// Turns the line end at bytes[i] into '\n' (or '\v' behind a backslash) and gives the index of its last byte.
+static size_t endLine(vplText* t, size_t i, char mark)
+{
+    char* b = t->bytes;
+    if (b[i] == '\r' && b[i + 1] == '\n') { // the byte behind the file is 0
+        b[i++] = ' ';
+    }
+    b[i] = mark;
+    return i;
+}
+
+// Makes line ends alike in place, so that offsets still tell lines and columns. Comments are not continued: one
+// that ends in a Windows path would swallow the line below.
+static vplResult normalise(vplText* t)
+{
+    char* b = t->bytes;
+    bool comment = false, behindBlank = true;
+    for (size_t i = 0; i < t->size; i++) {
+        char c = b[i];
+        if (c > '#' && c != '\\') { // nearly all bytes
+            behindBlank = false;
+        } else if (c == '\n' || c == '\r') {
+            i = endLine(t, i, '\n');
+            comment = false;
+            behindBlank = true;
+        } else if (c == '\\' && !comment && (b[i + 1] == '\n' || b[i + 1] == '\r' || i + 1 == t->size)) {
+            b[i] = ' ';
+            i = i + 1 < t->size ? endLine(t, i + 1, '\v') : i;
+            behindBlank = true;
+        } else if (c == 0) {
+            return vplText_FailAt(t, b + i, VPL_PARSE_ERROR, "found a NUL byte, expected text");
+        } else if (c == '\v' || c == '\f') {
+            b[i] = ' ';
+            behindBlank = true;
+        } else {
+            comment = comment || (c == '#' && behindBlank);
+            behindBlank = isBlank(c);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
+{
+    vplText text = {context, file, NULL, 0};
+    vplResult result = vplReadFile(context, file, &text.bytes, &text.size);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    if (text.size >= 3 && memcmp(text.bytes, "\xEF\xBB\xBF", 3) == 0) { // a byte order mark
+        memset(text.bytes, ' ', 3);
+    }
+    result = normalise(&text);
+    if (result != VPL_SUCCESS) {
+        vplText_Close(&text);
+        return result;
+    }
+    *textOut = text;
+    return VPL_SUCCESS;
+}
+
+void vplText_Close(vplText* text)
+{
+    vplFree(text->context, text->bytes);
+    text->bytes = NULL;
+}
+
+static vplWord skipBlanks(vplWord line)
+{
+    while (line.start < line.end && isBlank(*line.start)) {
+        line.start++;
+    }
+    return line;
+}
+
+bool vplText_NextLine(const vplText* text, const char** at, vplWord* lineOut)
+{
+    const char* end = text->bytes + text->size;
+    const char* start = *at ? *at : text->bytes;
+    while (start < end) {
+        const char* newline = memchr(start, '\n', (size_t)(end - start));
+        vplWord line = skipBlanks((vplWord){start, newline ? newline : end});
+        start = newline ? newline + 1 : end;
+        if (line.start < line.end && *line.start != '#') {
+            *at = start;
+            *lineOut = line;
+            return true;
+        }
+    }
+    return false;
+}
+
+bool vplNextWord(vplWord* line, vplWord* wordOut)
+{
+    *line = skipBlanks(*line);
+    const char* start = line->start;
+    if (start == line->end || *start == '#') {
+        *wordOut = (vplWord){start, start};
+        return false;
+    }
+    const char* end = start;
+    while (end < line->end && !isBlank(*end)) {
+        end++;
+    }
+    line->start = end;
+    *wordOut = (vplWord){start, end};
+    return true;
+}
+
+vplWord vplRestOfLine(vplWord line)
+{
+    line = skipBlanks(line);
+    while (line.end > line.start && isBlank(line.end[-1])) {
+        line.end--;
+    }
+    return line;
+}
+
+bool vplWord_Is(vplWord word, const char* text)
+{
+    size_t length = strlen(text);
+    return (size_t)(word.end - word.start) == length && memcmp(word.start, text, length) == 0;
+}
+
+// Line and column, from 1, in bytes.
+static void locate(const vplText* text, const char* at, long long* line, long long* column)
+{
+    const char* start = text->bytes;
+    *line = 1;
+    for (const char* p = text->bytes; p < at; p++) {
+        if (*p == '\n' || *p == '\v' || (*p == '\r' && p[1] != '\n')) { // '\r': not normalised so far
+            ++*line;
+            start = p + 1;
+        }
+    }
+    *column = at - start + 1;
+}
+
+static void logAt(const vplText* text, const char* at, vplLogLevel level, const char* format,
+                  va_list arguments)
+{
+    char message[512];
+    long long line, column;
+    vsnprintf(message, sizeof message, format, arguments);
+    locate(text, at, &line, &column);
+    vplLog(text->context, level, "%s:%lld:%lld: %s", text->file, line, column, message);
+}
+
+vplResult vplText_FailAt(const vplText* text, const char* at, vplResult result, const char* format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    logAt(text, at, VPL_LOG_ERROR, format, arguments);
+    va_end(arguments);
+    return result;
+}
+
+void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    logAt(text, at, VPL_LOG_WARNING, format, arguments);
+    va_end(arguments);
+}
+
+vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format, ...)
+{
+    char expected[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(expected, sizeof expected, format, arguments);
+    va_end(arguments);
+    int length = word.end - word.start > 60 ? 60 : (int)(word.end - word.start);
+    if (length == 0) {
+        return vplText_FailAt(text, word.start, VPL_PARSE_ERROR, "found the end of the line, expected %s",
+                              expected);
+    }
+    return vplText_FailAt(text, word.start, VPL_PARSE_ERROR, "found \"%.*s\", expected %s", length,
+                          word.start, expected);
+}
+
+vplResult vplText_Number(const vplText* text, vplWord* line, const char* what, float low, float high,
+                         float* out)
+{
+    vplWord word;
+    float value;
+    vplNextWord(line, &word);
+    if (!vplReadNumber(word.start, word.end, &value)) {
+        return vplText_FailWord(text, word, "%s", what);
+    }
+    if (!(value >= low && value <= high)) {
+        return vplText_FailWord(text, word, "%s in [%g, %g]", what, (double)low, (double)high);
+    }
+    *out = value;
+    return VPL_SUCCESS;
+}
+
+vplResult vplText_RequireEnd(const vplText* text, vplWord line)
+{
+    vplWord word;
+    return vplNextWord(&line, &word) ? vplText_FailWord(text, word, "the end of the line") : VPL_SUCCESS;
+}
+
+void vplText_WarnOnce(const vplText* text, vplUnknownWords* unknown, vplWord word)
+{
+    size_t length = (size_t)(word.end - word.start);
+    for (int i = 0; i < unknown->count; i++) {
+        const vplWord known = unknown->words[i];
+        if ((size_t)(known.end - known.start) == length && memcmp(known.start, word.start, length) == 0) {
+            return;
+        }
+    }
+    if (unknown->count == VPL_MOST_UNKNOWN) {
+        return;
+    }
+    unknown->words[unknown->count++] = word;
+    vplText_WarnAt(text, word.start, "%.*s is not supported and has no effect%s",
+                   length > 60 ? 60 : (int)length, word.start,
+                   unknown->count == VPL_MOST_UNKNOWN ? "; further such statements are not told" : "");
+}

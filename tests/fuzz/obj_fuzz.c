@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Any bytes as an OBJ file and, behind the first byte 0x1F, the MTL file that it may name as "100": either one
+// sentence with file, line and column and a scene as it was, or a valid mesh, the same when read again.
+#define _GNU_SOURCE
+#include "fuzz.h"
+
+#include "base/hash.h"
+#include "scene/obj_number.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+enum { OBJ_FILE = 99, MTL_FILE = 100 };
+
+#define FOLDER "/proc/self/fd/"
+
+// The reader opens files by name; a file in memory has one under /proc.
+static void writeMemoryFile(int number, const uint8_t* bytes, size_t size)
+{
+    int fd = memfd_create("obj", MFD_CLOEXEC);
+    REQUIRE(fd >= 0 && dup2(fd, number) == number);
+    REQUIRE(write(number, bytes, size) == (ssize_t)size);
+    close(fd);
+}
+
+static void requireSentence(const FuzzLog* log)
+{
+    int file, line, column, used = 0;
+    REQUIRE(log->errors == 1 && isPrintable(log->message));
+    REQUIRE(sscanf(log->message, FOLDER "%d:%d:%d: found %n", &file, &line, &column, &used) == 3 && used > 0);
+    REQUIRE(line >= 1 && column >= 1 && strstr(log->message + used, "expected ") != NULL);
+}
+
+static void requireMesh(const vplScene* scene)
+{
+    const vplMeshDef* mesh = vplScene_GetMesh(scene, 0);
+    vplFault fault = vplCheckMesh(mesh, vplScene_GetMaterialCount(scene));
+    REQUIRE(fault.field == NULL && mesh->triangleCount > 0 && mesh->materials != NULL);
+    for (int i = 0; mesh->normals != NULL && i < mesh->vertexCount; i++) {
+        vplVec3 n = mesh->normals[i];
+        REQUIRE(fabsf(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5f);
+    }
+    for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
+        REQUIRE(vplCheckMaterial(vplScene_GetMaterial(scene, i)).field == NULL);
+    }
+}
+
+static uint64_t hashMesh(const vplScene* scene)
+{
+    const vplMeshDef* mesh = vplScene_GetMesh(scene, 0);
+    size_t vertices = (size_t)mesh->vertexCount, triangles = (size_t)mesh->triangleCount;
+    uint64_t hash = vplHashFloats(0, &mesh->positions[0].x, 3 * vertices);
+    hash = mesh->normals ? vplHashFloats(hash, &mesh->normals[0].x, 3 * vertices) : hash;
+    hash = vplHashWords(hash, mesh->indices, 3 * triangles);
+    return vplHashWords(hash, (const uint32_t*)mesh->materials, triangles);
+}
+
+// 0 if the file was refused.
+static uint64_t load(void)
+{
+    FuzzLog log = {{0}, 0};
+    vplContext* context = openFuzzContext(&log);
+    vplScene* scene = NULL;
+    uint64_t hash = 0;
+    int mesh = -1;
+    char name[32];
+    snprintf(name, sizeof name, FOLDER "%d", OBJ_FILE);
+    REQUIRE(vplScene_Create(context, &scene) == VPL_SUCCESS);
+    vplResult result = vplScene_LoadObj(scene, name, &mesh);
+    if (result == VPL_SUCCESS) {
+        REQUIRE(mesh == 0 && log.errors == 0 && isPrintable(log.message));
+        requireMesh(scene);
+        hash = hashMesh(scene);
+    } else {
+        REQUIRE(result == VPL_PARSE_ERROR && mesh == -1);
+        REQUIRE(vplScene_GetMeshCount(scene) == 0 && vplScene_GetMaterialCount(scene) == 0);
+        requireSentence(&log);
+    }
+    vplScene_Destroy(scene);
+    closeFuzzContext(context);
+    return hash;
+}
+
+// What we take for a number, the C library does, too, and gives it the same bits.
+static void requireNumber(const uint8_t* bytes, size_t size)
+{
+    char text[512], *end;
+    float value;
+    size = size < sizeof text - 1 ? size : sizeof text - 1;
+    memcpy(text, bytes, size);
+    text[size] = 0;
+    size_t length = strcspn(text, " \n");
+    text[length] = 0;
+    if (vplReadNumber(text, text + length, &value)) {
+        float wanted = strtof(text, &end);
+        REQUIRE(end == text + length && wanted == value);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
+{
+    const uint8_t* split = size ? memchr(bytes, 0x1F, size) : NULL;
+    size_t objSize = split ? (size_t)(split - bytes) : size;
+    writeMemoryFile(OBJ_FILE, bytes, objSize);
+    writeMemoryFile(MTL_FILE, split ? split + 1 : bytes, split ? size - objSize - 1 : 0);
+    uint64_t hash = load();
+    REQUIRE(load() == hash);
+    close(OBJ_FILE);
+    close(MTL_FILE);
+    requireNumber(bytes, size);
+    return 0;
+}
