@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Based on: Ingo Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007: ranges of
 // triangles are split where the surface area heuristic, sampled at bins of centroids, is least.
-// Departs: no binary tree is made first. A node splits its largest child again and again until it has eight.
+// And: Henri Ylitie, Tero Karras and Samuli Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed
+// Wide BVHs, HPG 2017, section 4.1: which nodes of the binary tree become the children of wide ones, and where
+// blocks begin, is found by dynamic programming over the expected cost.
 #include "geometry/bvh.h"
 #include "base/context.h"
 #include "base/isa.h"
@@ -9,7 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { BINS = 16, LEAF = VPL_BVH_WIDTH, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
+enum { BINS = 16, LEAF = VPL_BVH_WIDTH, BINARY_LEAF = 2, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
+
+// Work of a visit, relative: a block is read from further away and takes more arithmetic.
+static const double NODE_COST = 1, BLOCK_COST = 1.2;
 
 typedef struct Box {
     float low[3], high[3];
@@ -28,8 +33,20 @@ typedef struct Range {
     int first, count;
 } Range;
 
+// A node of the binary tree, with the ways in which it can become part of a wide one.
+typedef struct Binary {
+    Range range;
+    int left, right; // -1: none
+    double cost[VPL_BVH_WIDTH];
+    int8_t take[VPL_BVH_WIDTH], wide;
+    bool isBlock;
+} Binary;
+
 typedef struct Builder {
     vplContext* context;
+    Binary* binary;
+    int binaryCount;
+    size_t binaryCapacity;
     const vplGeometry* geometry;
     Item* items;
     vplBvh* bvh;
@@ -194,33 +211,91 @@ static vplResult addBlock(Builder* b, const Range* range, int32_t* childOut)
     return VPL_SUCCESS;
 }
 
-// Splits a range into up to eight children.
-static int split(const Builder* b, const Range* range, int depth, Range children[VPL_BVH_WIDTH])
+// ---- the binary tree
+
+// Appends the node of a range and those below it; *indexOut is its place. Children come after their parents.
+static vplResult addBinary(Builder* b, const Range* range, int depth, int* indexOut)
 {
-    int count = 1;
-    children[0] = *range;
-    while (count < VPL_BVH_WIDTH) {
-        int largest = -1;
-        double most = -1;
-        for (int i = 0; i < count; i++) {
-            double area = areaOf(&children[i].box);
-            if (children[i].count > LEAF && area > most) {
-                largest = i;
-                most = area;
-            }
-        }
-        if (largest < 0) {
-            break;
-        }
-        cut(b, &children[largest], &children[count++], depth);
+    const int index = b->binaryCount;
+    vplResult result =
+        vplReserve(b->context, &b->binary, &b->binaryCapacity, (size_t)index + 1, sizeof *b->binary);
+    if (result != VPL_SUCCESS) {
+        return result;
     }
-    return count;
+    b->binaryCount++;
+    Binary node = {.range = *range, .left = -1, .right = -1};
+    if (range->count > BINARY_LEAF) {
+        Range left = *range, right;
+        cut(b, &left, &right, depth);
+        result = addBinary(b, &left, depth + 1, &node.left);
+        if (result == VPL_SUCCESS) {
+            result = addBinary(b, &right, depth + 1, &node.right);
+        }
+    }
+    b->binary[index] = node; // the array may have moved
+    *indexOut = index;
+    return result;
 }
 
-static vplResult addNode(Builder* b, const Range* range, int depth, int32_t* childOut)
+// ---- the wide tree
+
+// cost[j - 1] is the least expected work for a binary subtree that becomes at most j children of some wide node;
+// take[j - 1] is how many of them the left half gets, 0: as with j - 1.
+static void findCosts(const Builder* b, Binary* node)
 {
-    if (range->count <= LEAF && depth > 0) {
-        return addBlock(b, range, childOut);
+    const double area = areaOf(&node->range.box);
+    const double leaf = node->range.count <= LEAF ? BLOCK_COST * area : INFINITY;
+    if (node->left < 0) {
+        for (int j = 0; j < VPL_BVH_WIDTH; j++) {
+            node->cost[j] = leaf;
+            node->take[j] = 0;
+        }
+        return;
+    }
+    const Binary *l = &b->binary[node->left], *r = &b->binary[node->right];
+    for (int j = 2; j <= VPL_BVH_WIDTH; j++) {
+        node->cost[j - 1] = INFINITY;
+        for (int k = 1; k < j; k++) {
+            const double cost = l->cost[k - 1] + r->cost[j - k - 1];
+            if (cost < node->cost[j - 1]) {
+                node->cost[j - 1] = cost;
+                node->take[j - 1] = (int8_t)k;
+            }
+        }
+    }
+    node->wide = node->take[VPL_BVH_WIDTH - 1]; // how its own eight are shared, should it be a wide node
+    const double inner = NODE_COST * area + node->cost[VPL_BVH_WIDTH - 1];
+    node->isBlock = leaf <= inner;
+    node->cost[0] = leaf < inner ? leaf : inner;
+    node->take[0] = 0;
+    for (int j = 2; j <= VPL_BVH_WIDTH; j++) {
+        if (node->cost[j - 2] <= node->cost[j - 1]) {
+            node->cost[j - 1] = node->cost[j - 2];
+            node->take[j - 1] = 0;
+        }
+    }
+}
+
+// Lists the at most `count` children that the subtree becomes.
+static void listChildren(const Builder* b, int index, int count, int children[VPL_BVH_WIDTH], int* childCount)
+{
+    const Binary* node = &b->binary[index];
+    while (count > 1 && node->take[count - 1] == 0) {
+        count--;
+    }
+    if (count == 1) {
+        children[(*childCount)++] = index;
+        return;
+    }
+    listChildren(b, node->left, node->take[count - 1], children, childCount);
+    listChildren(b, node->right, count - node->take[count - 1], children, childCount);
+}
+
+static vplResult addNode(Builder* b, int index, int32_t* childOut)
+{
+    const Binary* from = &b->binary[index];
+    if (from->left < 0 || from->isBlock) {
+        return addBlock(b, &from->range, childOut);
     }
     vplBvh* bvh = b->bvh;
     vplResult result =
@@ -228,22 +303,41 @@ static vplResult addNode(Builder* b, const Range* range, int depth, int32_t* chi
     if (result != VPL_SUCCESS) {
         return result;
     }
-    Range children[VPL_BVH_WIDTH];
-    const int count = split(b, range, depth, children), index = bvh->nodeCount++;
+    int children[VPL_BVH_WIDTH], count = 0;
+    listChildren(b, from->left, from->wide, children, &count);
+    listChildren(b, from->right, VPL_BVH_WIDTH - from->wide, children, &count);
+    const int place = bvh->nodeCount++;
     vplBvhNode node;
     for (int i = 0; i < VPL_BVH_WIDTH; i++) {
-        const Box* box = i < count ? &children[i].box : &NOTHING;
+        const Box* box = i < count ? &b->binary[children[i]].range.box : &NOTHING;
         for (int axis = 0; axis < 3; axis++) {
-            node.low[axis][i] = box->low[axis];
-            node.high[axis][i] = box->high[axis];
+            node.planes[axis][i] = box->low[axis];
+            node.planes[axis + 3][i] = box->high[axis];
         }
         node.child[i] = 0;
     }
     for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        result = addNode(b, &children[i], depth + 1, &node.child[i]);
+        result = addNode(b, children[i], &node.child[i]);
     }
-    bvh->nodes[index] = node; // the array may have moved
-    *childOut = index;
+    bvh->nodes[place] = node; // the array may have moved
+    *childOut = place;
+    return result;
+}
+
+static vplResult buildTree(Builder* b, int count)
+{
+    const Range all = makeRange(b, 0, count);
+    int root;
+    int32_t child;
+    vplResult result = addBinary(b, &all, 0, &root);
+    for (int i = b->binaryCount - 1; i >= 0 && result == VPL_SUCCESS; i--) {
+        findCosts(b, &b->binary[i]);
+    }
+    if (result == VPL_SUCCESS) {
+        b->binary[root].isBlock = false; // the root is a node
+        result = addNode(b, root, &child);
+    }
+    vplFree(b->context, b->binary);
     return result;
 }
 
@@ -270,8 +364,7 @@ static vplResult build(Builder* b, int count, int bruteBlocks)
         return VPL_SUCCESS;
     }
     if ((count + VPL_BVH_WIDTH - 1) / VPL_BVH_WIDTH > bruteBlocks) {
-        Range all = makeRange(b, 0, count);
-        return addNode(b, &all, 0, &child);
+        return buildTree(b, count);
     }
     vplResult result = VPL_SUCCESS;
     for (int i = 0; i < count && result == VPL_SUCCESS; i += VPL_BVH_WIDTH) {

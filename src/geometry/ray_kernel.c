@@ -17,6 +17,7 @@ enum { WIDTH = VPL_BVH_WIDTH };
 // A ray prepared for both tests. The triangle test works in axes (kx, ky, kz) where the ray runs along z.
 typedef struct Prepared {
     float origin[3], inverse[3];
+    int nearPlane[3], farPlane[3]; // rows of vplBvhNode.planes
     float sx, sy, sz;
     int kx, ky, kz;
     int skipFirst, skipCount;
@@ -39,6 +40,8 @@ static Prepared prepare(const vplRay* ray)
     for (int k = 0; k < 3; k++) {
         // Not 1/0: 0 times infinity is no number. A slab that the ray does not leave is made too wide to decide.
         p.inverse[k] = 1 / (fabsf(d[k]) > 0x1p-126f ? d[k] : copysignf(0x1p-126f, d[k]));
+        p.nearPlane[k] = p.inverse[k] < 0 ? k + 3 : k;
+        p.farPlane[k] = p.inverse[k] < 0 ? k : k + 3;
     }
     p.skipFirst = ray->skip.first;
     p.skipCount = ray->skip.count;
@@ -54,119 +57,118 @@ static void edgesInDouble(const float a[2], const float b[2], const float c[2], 
     *w = (float)((double)b[0] * a[1] - (double)b[1] * a[0]);
 }
 
-// Tests the triangles of a block; t is +infinity where one is missed. Returns whether any was hit.
-static int32_t testBlock(const Prepared* r, const vplTriangleBlock* block, float t[WIDTH], float b1[WIDTH],
-                         float b2[WIDTH])
+// Tests the triangles of a block. Bit i of the result: lane i was hit.
+static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vplTriangleBlock* block,
+                                                    float* restrict t, float* restrict b1, float* restrict b2)
 {
     float x[3][WIDTH], y[3][WIDTH], z[3][WIDTH], u[WIDTH], v[WIDTH], w[WIDTH];
-    int32_t anyZero = 0;
+    const float ox = r->origin[r->kx], oy = r->origin[r->ky], oz = r->origin[r->kz];
+    const float sx = r->sx, sy = r->sy, sz = r->sz;
     for (int corner = 0; corner < 3; corner++) {
         const float* restrict px = block->p[corner][r->kx];
         const float* restrict py = block->p[corner][r->ky];
         const float* restrict pz = block->p[corner][r->kz];
         for (int i = 0; i < WIDTH; i++) {
-            float dz = pz[i] - r->origin[r->kz];
-            x[corner][i] = (px[i] - r->origin[r->kx]) - r->sx * dz;
-            y[corner][i] = (py[i] - r->origin[r->ky]) - r->sy * dz;
-            z[corner][i] = r->sz * dz;
+            float dz = pz[i] - oz;
+            x[corner][i] = (px[i] - ox) - sx * dz;
+            y[corner][i] = (py[i] - oy) - sy * dz;
+            z[corner][i] = sz * dz;
         }
     }
+    uint32_t zeros = 0;
     for (int i = 0; i < WIDTH; i++) {
         u[i] = x[2][i] * y[1][i] - y[2][i] * x[1][i];
         v[i] = x[0][i] * y[2][i] - y[0][i] * x[2][i];
         w[i] = x[1][i] * y[0][i] - y[1][i] * x[0][i];
-        anyZero |= (u[i] == 0) | (v[i] == 0) | (w[i] == 0);
+        zeros |= (uint32_t)((u[i] == 0) | (v[i] == 0) | (w[i] == 0)) << i;
     }
-    for (int i = 0; anyZero && i < WIDTH; i++) {
-        if (u[i] == 0 || v[i] == 0 || w[i] == 0) {
-            const float a[2] = {x[0][i], y[0][i]}, b[2] = {x[1][i], y[1][i]}, c[2] = {x[2][i], y[2][i]};
-            edgesInDouble(a, b, c, &u[i], &v[i], &w[i]);
-        }
+    for (; zeros != 0; zeros &= zeros - 1) {
+        const int i = __builtin_ctz(zeros);
+        const float a[2] = {x[0][i], y[0][i]}, b[2] = {x[1][i], y[1][i]}, c[2] = {x[2][i], y[2][i]};
+        edgesInDouble(a, b, c, &u[i], &v[i], &w[i]);
     }
-    int32_t any = 0;
+    const uint32_t first = (uint32_t)r->skipFirst, count = (uint32_t)r->skipCount;
+    uint32_t hits = 0;
     for (int i = 0; i < WIDTH; i++) {
-        int32_t negative = (u[i] < 0) | (v[i] < 0) | (w[i] < 0),
-                positive = (u[i] > 0) | (v[i] > 0) | (w[i] > 0);
+        float least = u[i] < v[i] ? u[i] : v[i], most = u[i] > v[i] ? u[i] : v[i];
+        least = least < w[i] ? least : w[i];
+        most = most > w[i] ? most : w[i];
         float det = u[i] + v[i] + w[i];
         float inverse = 1 / (det != 0 ? det : 1);
         float distance = (u[i] * z[0][i] + v[i] * z[1][i] + w[i] * z[2][i]) * inverse;
-        int32_t skipped = (uint32_t)(block->id[i] - r->skipFirst) < (uint32_t)r->skipCount;
-        int32_t hit = !(negative & positive) & (det != 0) & (distance > 0) & (distance < INFINITY) &
-                      (block->id[i] >= 0) & !skipped;
-        t[i] = hit ? distance : INFINITY;
+        uint32_t id = (uint32_t)block->id[i]; // unused lanes: beyond all
+        int32_t shown = (id - first >= count) & (id < 0x80000000u);
+        int32_t inside = ((least >= 0) | (most <= 0)) & (det != 0);
+        t[i] = distance;
         b1[i] = v[i] * inverse;
         b2[i] = w[i] * inverse;
-        any |= hit;
+        hits |= (uint32_t)(inside & shown & (distance > 0) & (distance < INFINITY)) << i;
     }
-    return any;
+    return hits;
 }
 
-// Where a ray is inside a box; entry above exit where it misses.
-typedef struct Span {
-    float entry, exit;
-} Span;
-
-static inline Span clipSlabs(const Prepared* r, const float nearPlane[3], const float farPlane[3])
+// Where a ray enters a box and where it leaves it: planes minus origin times the inverse of the direction.
+static inline float slabEntry(float x, float y, float z)
 {
-    float x0 = (nearPlane[0] - r->origin[0]) * r->inverse[0],
-          x1 = (farPlane[0] - r->origin[0]) * r->inverse[0];
-    float y0 = (nearPlane[1] - r->origin[1]) * r->inverse[1],
-          y1 = (farPlane[1] - r->origin[1]) * r->inverse[1];
-    float z0 = (nearPlane[2] - r->origin[2]) * r->inverse[2],
-          z1 = (farPlane[2] - r->origin[2]) * r->inverse[2];
-    float entry = x0 > y0 ? x0 : y0, exit = x1 < y1 ? x1 : y1;
-    entry = entry > z0 ? entry : z0;
-    exit = exit < z1 ? exit : z1;
-    return (Span){entry > 0 ? entry : 0, exit};
+    float t = x > y ? x : y;
+    t = t > z ? t : z;
+    return t > 0 ? t : 0;
 }
 
-// Entry distances of a node's children, +infinity where the ray misses or enters beyond `limit`.
-static int32_t testBoxes(const Prepared* r, const vplBvhNode* node, float limit, float entry[WIDTH])
+static inline float slabExit(float x, float y, float z)
 {
-    const float* restrict nearX = r->inverse[0] < 0 ? node->high[0] : node->low[0];
-    const float* restrict farX = r->inverse[0] < 0 ? node->low[0] : node->high[0];
-    const float* restrict nearY = r->inverse[1] < 0 ? node->high[1] : node->low[1];
-    const float* restrict farY = r->inverse[1] < 0 ? node->low[1] : node->high[1];
-    const float* restrict nearZ = r->inverse[2] < 0 ? node->high[2] : node->low[2];
-    const float* restrict farZ = r->inverse[2] < 0 ? node->low[2] : node->high[2];
-    int32_t any = 0;
+    float t = x < y ? x : y;
+    return t < z ? t : z;
+}
+
+// Entry distances of a node's children. Bit i of the result: child i is met, and before `limit`.
+static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, float limit,
+                                 float* restrict entry)
+{
+    const float* restrict nearX = node->planes[r->nearPlane[0]];
+    const float* restrict nearY = node->planes[r->nearPlane[1]];
+    const float* restrict nearZ = node->planes[r->nearPlane[2]];
+    const float* restrict farX = node->planes[r->farPlane[0]];
+    const float* restrict farY = node->planes[r->farPlane[1]];
+    const float* restrict farZ = node->planes[r->farPlane[2]];
+    const float ox = r->origin[0], oy = r->origin[1], oz = r->origin[2];
+    const float ix = r->inverse[0], iy = r->inverse[1], iz = r->inverse[2];
+    uint32_t hits = 0;
     for (int i = 0; i < WIDTH; i++) {
-        const float nearPlane[3] = {nearX[i], nearY[i], nearZ[i]}, farPlane[3] = {farX[i], farY[i], farZ[i]};
-        const Span span = clipSlabs(r, nearPlane, farPlane);
-        int32_t hit = (span.entry <= span.exit) & (span.entry <= limit);
-        entry[i] = hit ? span.entry : INFINITY;
-        any |= hit;
+        float in = slabEntry((nearX[i] - ox) * ix, (nearY[i] - oy) * iy, (nearZ[i] - oz) * iz);
+        float out = slabExit((farX[i] - ox) * ix, (farY[i] - oy) * iy, (farZ[i] - oz) * iz);
+        entry[i] = in;
+        hits |= (uint32_t)((in <= out) & (in <= limit)) << i;
     }
-    return any;
+    return hits;
 }
 
 // Moves a hit into its triangle's box; +infinity where the ray misses the box.
 static float clampToBox(const Prepared* r, const vplTriangleBlock* block, int lane, float t)
 {
-    float corner[3][3], low[3], high[3], nearPlane[3], farPlane[3];
+    float corner[3][3], planes[2][3], in[3], out[3];
     for (int i = 0; i < 9; i++) {
         corner[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
     }
-    vplBoundTriangle(corner, low, high);
+    vplBoundTriangle(corner, planes[0], planes[1]);
     for (int axis = 0; axis < 3; axis++) {
-        nearPlane[axis] = r->inverse[axis] < 0 ? high[axis] : low[axis];
-        farPlane[axis] = r->inverse[axis] < 0 ? low[axis] : high[axis];
+        int side = r->nearPlane[axis] >= 3;
+        in[axis] = (planes[side][axis] - r->origin[axis]) * r->inverse[axis];
+        out[axis] = (planes[1 - side][axis] - r->origin[axis]) * r->inverse[axis];
     }
-    const Span span = clipSlabs(r, nearPlane, farPlane);
-    t = t > span.entry ? t : span.entry;
-    t = t < span.exit ? t : span.exit;
-    return span.entry <= span.exit && t > 0 ? t : INFINITY;
+    const float entry = slabEntry(in[0], in[1], in[2]), exit = slabExit(out[0], out[1], out[2]);
+    t = t > entry ? t : entry;
+    t = t < exit ? t : exit;
+    return entry <= exit && t > 0 ? t : INFINITY;
 }
 
 // Lanes in order, so among equal t of a block the lowest triangle stays; across blocks it is compared.
-static void keepClosest(const Prepared* r, const vplTriangleBlock* block, vplRawHit* best)
+static inline void keepClosest(const Prepared* r, const vplTriangleBlock* block, vplRawHit* best)
 {
     float t[WIDTH], b1[WIDTH], b2[WIDTH];
-    if (!testBlock(r, block, t, b1, b2)) {
-        return;
-    }
-    for (int i = 0; i < WIDTH; i++) {
-        float at = t[i] < INFINITY ? clampToBox(r, block, i, t[i]) : INFINITY;
+    for (uint32_t hits = testBlock(r, block, t, b1, b2); hits != 0; hits &= hits - 1) {
+        const int i = __builtin_ctz(hits);
+        const float at = clampToBox(r, block, i, t[i]);
         if (at < best->t || (at == best->t && best->triangle > block->id[i])) {
             best->t = at;
             best->b1 = b1[i];
@@ -179,11 +181,10 @@ static void keepClosest(const Prepared* r, const vplTriangleBlock* block, vplRaw
 static bool hasHitBelow(const Prepared* r, const vplTriangleBlock* block, float limit)
 {
     float t[WIDTH], b1[WIDTH], b2[WIDTH];
-    if (testBlock(r, block, t, b1, b2)) {
-        for (int i = 0; i < WIDTH; i++) {
-            if (t[i] < INFINITY && clampToBox(r, block, i, t[i]) < limit) {
-                return true;
-            }
+    for (uint32_t hits = testBlock(r, block, t, b1, b2); hits != 0; hits &= hits - 1) {
+        const int i = __builtin_ctz(hits);
+        if (clampToBox(r, block, i, t[i]) < limit) {
+            return true;
         }
     }
     return false;
@@ -194,21 +195,28 @@ typedef struct Entry {
     int32_t child;
 } Entry;
 
-// Pushes the children that were hit, nearest last. Returns the new height of the stack.
-static int push(const vplBvhNode* node, const float entry[WIDTH], Entry* stack, int height)
+// Pushes the children that were hit but the nearest, which is returned; there must be one.
+static Entry pushOthers(const vplBvhNode* node, uint32_t hits, const float entry[WIDTH], Entry* stack,
+                        int* height)
 {
-    const int base = height;
-    for (int i = 0; i < WIDTH; i++) {
-        if (entry[i] < INFINITY) {
-            int at = height++;
-            while (at > base && stack[at - 1].t < entry[i]) { // insertion sort: few are hit
-                stack[at] = stack[at - 1];
-                at--;
-            }
-            stack[at] = (Entry){entry[i], node->child[i]};
+    int i = __builtin_ctz(hits);
+    Entry nearest = {entry[i], node->child[i]};
+    const int base = *height;
+    for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
+        i = __builtin_ctz(hits);
+        Entry other = {entry[i], node->child[i]};
+        if (other.t < nearest.t) {
+            Entry swap = nearest;
+            nearest = other;
+            other = swap;
         }
+        int at = (*height)++;
+        for (; at > base && stack[at - 1].t < other.t; at--) { // insertion sort: few are hit
+            stack[at] = stack[at - 1];
+        }
+        stack[at] = other;
     }
-    return height;
+    return nearest;
 }
 
 vplTraceClosestFcn VPL_KERNEL(vplTraceClosest);
@@ -217,29 +225,28 @@ void VPL_KERNEL(vplTraceClosest)(const vplBvh* bvh, const vplRay* ray, float tMa
 {
     const Prepared r = prepare(ray);
     vplRawHit best = {tMax, 0, 0, -1, 0};
-    Entry stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1];
-    int height = 0;
-    if (bvh->nodes != NULL) {
-        stack[height++] = (Entry){0, 0};
-    }
     for (int i = 0; bvh->nodes == NULL && i < bvh->blockCount; i++, best.blocks++) {
         keepClosest(&r, &bvh->blocks[i], &best);
     }
-    while (height > 0) {
-        const Entry top = stack[--height];
-        if (top.t > best.t) {
-            continue;
-        }
+    Entry stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1], top = {0, 0};
+    int height = 0;
+    for (bool more = bvh->nodes != NULL; more;) {
+        float entry[WIDTH];
+        uint32_t hits = 0;
         if (top.child < 0) {
             keepClosest(&r, &bvh->blocks[~top.child], &best);
             best.blocks++;
+        } else {
+            hits = testBoxes(&r, &bvh->nodes[top.child], best.t, entry);
+        }
+        if (hits != 0) {
+            top = pushOthers(&bvh->nodes[top.child], hits, entry, stack, &height);
             continue;
         }
-        float entry[WIDTH];
-        const vplBvhNode* node = &bvh->nodes[top.child];
-        if (testBoxes(&r, node, best.t, entry)) {
-            height = push(node, entry, stack, height);
-        }
+        do {
+            more = height > 0;
+            top = stack[more ? --height : 0];
+        } while (more && top.t > best.t);
     }
     *hitOut = best;
 }
@@ -249,33 +256,27 @@ vplTraceAnyFcn VPL_KERNEL(vplTraceAny);
 bool VPL_KERNEL(vplTraceAny)(const vplBvh* bvh, const vplRay* ray, float tMax)
 {
     const Prepared r = prepare(ray);
-    int32_t stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1];
-    int height = 0;
-    if (bvh->nodes != NULL) {
-        stack[height++] = 0;
-    }
     for (int i = 0; bvh->nodes == NULL && i < bvh->blockCount; i++) {
         if (hasHitBelow(&r, &bvh->blocks[i], tMax)) {
             return true;
         }
     }
-    while (height > 0) {
-        const int32_t child = stack[--height];
-        if (child < 0) {
-            if (hasHitBelow(&r, &bvh->blocks[~child], tMax)) {
-                return true;
+    Entry stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1], top = {0, 0};
+    int height = 0;
+    for (bool more = bvh->nodes != NULL; more;) {
+        if (top.child >= 0) {
+            float entry[WIDTH];
+            const vplBvhNode* node = &bvh->nodes[top.child];
+            const uint32_t hits = testBoxes(&r, node, tMax, entry);
+            if (hits != 0) { // nearest first: what stops light is often near
+                top = pushOthers(node, hits, entry, stack, &height);
+                continue;
             }
-            continue;
+        } else if (hasHitBelow(&r, &bvh->blocks[~top.child], tMax)) {
+            return true;
         }
-        float entry[WIDTH];
-        const vplBvhNode* node = &bvh->nodes[child];
-        if (testBoxes(&r, node, tMax, entry)) {
-            for (int i = 0; i < WIDTH; i++) {
-                if (entry[i] < INFINITY) {
-                    stack[height++] = node->child[i];
-                }
-            }
-        }
+        more = height > 0;
+        top = stack[more ? --height : 0];
     }
     return false;
 }

@@ -28,8 +28,14 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
 bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests)
 {
     vplRawHit raw;
-    vplGetTraceClosest(geometry->context->isa)(geometry->bvh, ray, INFINITY, &raw);
-    *tests += geometry->bvh->nodes ? raw.blocks : geometry->objectCount;
+    vplBvh bvh = *geometry->bvh;
+    if (tests != NULL && bvh.blockCount <= VPL_COUNTED_BLOCKS) {
+        bvh.nodes = NULL;
+    }
+    vplGetTraceClosest(geometry->context->isa)(&bvh, ray, INFINITY, &raw);
+    if (tests != NULL) {
+        *tests += bvh.nodes ? raw.blocks : geometry->objectCount;
+    }
     if (raw.triangle < 0) {
         return false;
     }
@@ -58,8 +64,7 @@ bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOu
 
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)
 {
-    int tests = 0;
-    return vplClosestHit(geometry, ray, hitOut, &tests);
+    return vplClosestHit(geometry, ray, hitOut, NULL);
 }
 
 vplVec3 vplGeometry_Inside(const vplGeometry* g, int triangle, vplVec3 point)

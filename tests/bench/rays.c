@@ -186,7 +186,7 @@ static void measure(Bench* b, const vplScene* scene, int runs)
             followRays(b, kind == 2);
         }
         double speed[3][32] = {{0}}, hits[3] = {0};
-        const int few = b->rayCount / (1 + b->all->blockCount / 64); // all blocks take their time
+        const int few = b->all->blockCount <= 1024 ? b->rayCount / (1 + b->all->blockCount / 64) : 0;
         for (int run = 0; run < runs; run++) {
             double start = vplClockMs();
             hits[0] = traceAll(b, b->tree, kind == 2, b->rayCount);
