@@ -270,23 +270,49 @@ typedef struct Agreement {
     int64_t *hits, *wrong; // per chunk
 } Agreement;
 
+// The closest of all triangles for each of CHUNK rays. Blocks in groups that stay in cache, rays inside.
+static void testAll(const Bench* b, const vplRay* rays, int count, vplRawHit* truth)
+{
+    enum { GROUP = 64 };
+    for (int first = 0; first < b->all->blockCount; first += GROUP) {
+        vplBvh group = *b->all;
+        group.blocks += first;
+        group.blockCount = group.blockCount - first < GROUP ? group.blockCount - first : GROUP;
+        for (int i = 0; i < count; i++) {
+            vplRawHit hit;
+            b->closest(&group, &rays[i], INFINITY, &hit);
+            bool better = hit.t < truth[i].t || (hit.t == truth[i].t && hit.triangle < truth[i].triangle);
+            if (hit.triangle >= 0 && (better || truth[i].triangle < 0)) {
+                truth[i] = hit;
+            }
+        }
+    }
+}
+
 static void compareChunk(void* data, int chunk, int worker)
 {
     (void)worker;
     const Agreement* a = data;
     const Bench* b = a->bench;
-    for (int64_t i = (int64_t)chunk * CHUNK; i < (int64_t)(chunk + 1) * CHUNK && i < a->count; i++) {
-        const vplRay ray = makeTestRay(b->geometry, (uint64_t)i);
-        vplRawHit hit, truth;
-        b->closest(b->tree, &ray, INFINITY, &hit);
-        b->closest(b->all, &ray, INFINITY, &truth);
-        hit.blocks = truth.blocks = 0;
-        // Half way to the hit nothing may be, and just beyond it something must.
-        bool any = b->any(b->tree, &ray, nextafterf(truth.t, INFINITY)),
-             before = b->any(b->tree, &ray, truth.t);
-        bool found = truth.triangle >= 0;
+    const int64_t from = (int64_t)chunk * CHUNK;
+    const int count = a->count - from < CHUNK ? (int)(a->count - from) : CHUNK;
+    vplRay rays[CHUNK];
+    vplRawHit truth[CHUNK];
+    for (int i = 0; i < count; i++) {
+        rays[i] = makeTestRay(b->geometry, (uint64_t)(from + i));
+        truth[i] = (vplRawHit){INFINITY, 0, 0, -1, 0};
+    }
+    testAll(b, rays, count, truth);
+    for (int i = 0; i < count; i++) {
+        vplRawHit hit;
+        b->closest(b->tree, &rays[i], INFINITY, &hit);
+        hit.blocks = truth[i].blocks = 0;
+        // Up to the hit nothing may be, and just beyond it something must.
+        const bool found = truth[i].triangle >= 0,
+                   any = b->any(b->tree, &rays[i], nextafterf(truth[i].t, INFINITY)),
+                   before = b->any(b->tree, &rays[i], truth[i].t);
         a->hits[chunk] += found;
-        a->wrong[chunk] += memcmp(&hit, &truth, sizeof hit) != 0 || any != found || (found && before);
+        a->wrong[chunk] += memcmp(&hit, &truth[i], sizeof hit) != 0 || any != found || (found && before);
     }
 }
 
