@@ -27,17 +27,22 @@ static void randomNumbers(vplPathDef* def)
 
 static void balance(vplPathDef* def)
 {
-    def->lights = VPL_PATH_BALANCE;
+    def->balance = true;
 }
 
 static void points(vplPathDef* def)
 {
-    def->lights = VPL_PATH_POINTS;
+    def->ways = VPL_PATH_POINTS;
 }
 
 static void chance(vplPathDef* def)
 {
-    def->lights = VPL_PATH_CHANCE;
+    def->ways = VPL_PATH_CHANCE;
+}
+
+static void pointsAndChance(vplPathDef* def)
+{
+    def->ways = VPL_PATH_POINTS | VPL_PATH_CHANCE;
 }
 
 static void rouletteAt1(vplPathDef* def)
@@ -45,9 +50,9 @@ static void rouletteAt1(vplPathDef* def)
     def->rouletteFrom = 1;
 }
 
-static void rouletteAtHalf(vplPathDef* def)
+static void rouletteAtQuarter(vplPathDef* def)
 {
-    def->rouletteFrom = 0.5;
+    def->rouletteFrom = 0.25;
 }
 
 static void rouletteAtEighth(vplPathDef* def)
@@ -73,13 +78,14 @@ static void allEmitters(vplPathDef* def)
 static const Line LINES[] = {
     {"numbers", "scrambled Sobol'", asItIs},
     {"numbers", "random", randomNumbers},
-    {"lamps", "both, power heuristic", asItIs},
-    {"lamps", "both, balance heuristic", balance},
-    {"lamps", "points on lamps alone", points},
-    {"lamps", "paths alone", chance},
-    {"roulette", "below a quarter", asItIs},
+    {"lights", "all ways, power heuristic", asItIs},
+    {"lights", "all ways, balance heuristic", balance},
+    {"lights", "points and chance", pointsAndChance},
+    {"lights", "points alone", points},
+    {"lights", "chance alone", chance},
+    {"roulette", "below a half", asItIs},
     {"roulette", "always", rouletteAt1},
-    {"roulette", "below a half", rouletteAtHalf},
+    {"roulette", "below a quarter", rouletteAtQuarter},
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
     {"emitters", "all of up to four, else one", asItIs},
