@@ -73,9 +73,9 @@ static vplLight3 reflected(double scale, vplRgb rho, vplRgb light)
     return (vplLight3){scale * rho.r * light.r, scale * rho.g * light.g, scale * rho.b * light.b};
 }
 
-// Sources are chosen by power and particles sent out by intensity. So the density of a particle in a direction is
-// the intensity there, over the power of all; and that of a point on a triangle is pi times its radiance over the
-// power of all triangles.
+// Sources are chosen by power and particles sent out by intensity: the density of a particle from an emitter is its
+// intensity over the power of all. A particle's start on a triangle has the density of a chosen point, but for the
+// share that triangles have of all power; of the ratio only that and the cosine's lobe remain.
 vplLightWay vplFindWay(const vplPathScene* s, const vplPathVertex* vertex, const vplLightPoint* light)
 {
     const vplEmitterDef* e = light->emitter >= 0 ? &s->emission->emitters[light->emitter] : NULL;
@@ -106,7 +106,8 @@ vplLightWay vplFindWay(const vplPathScene* s, const vplPathVertex* vertex, const
         double density = VPL_PI * meanOf(radiance) / s->trianglePower; // of the point, per square metre
         found.chance = cosine / VPL_PI * found.cosineAtLight * falloff / density;
         found.value = reflected(found.chance, vertex->rho, radiance);
-        found.particle = meanOf(radiance) * found.cosineAtLight / s->power * flat * falloff / vertex->density;
+        found.particle =
+            s->trianglePower / s->power * found.cosineAtLight / VPL_PI * flat * falloff / vertex->density;
     }
     return found;
 }
