@@ -126,6 +126,7 @@ static int run(const vplScene* scene, const vplGeometry* geometry, int samples, 
         def.emitterCount = vplScene_GetEmitterCount(scene);
         def.emitters = def.emitterCount ? vplScene_GetEmitter(scene, 0) : NULL;
         def.width = def.height = size;
+        def.emission = false; // the edges of what is seen to emit would hide the rest
         LINES[i].adjust(&def);
         vplPathStats stats;
         double ms;
