@@ -50,9 +50,9 @@ static void rouletteAt1(vplPathDef* def)
     def->rouletteFrom = 1;
 }
 
-static void rouletteAtQuarter(vplPathDef* def)
+static void rouletteAtHalf(vplPathDef* def)
 {
-    def->rouletteFrom = 0.25;
+    def->rouletteFrom = 0.5;
 }
 
 static void rouletteAtEighth(vplPathDef* def)
@@ -83,9 +83,9 @@ static const Line LINES[] = {
     {"lights", "points and chance", pointsAndChance},
     {"lights", "points alone", points},
     {"lights", "chance alone", chance},
-    {"roulette", "below a half", asItIs},
+    {"roulette", "below a quarter", asItIs},
     {"roulette", "always", rouletteAt1},
-    {"roulette", "below a quarter", rouletteAtQuarter},
+    {"roulette", "below a half", rouletteAtHalf},
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
     {"emitters", "all of up to four, else one", asItIs},
