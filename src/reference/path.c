@@ -8,6 +8,8 @@
 #include "math/sampling.h"
 #include "math/vec.h"
 
+enum { CAMERA_SET, PARTICLE_SET, FIRST_SET };
+
 void vplPathNumbers_Get(const vplPathNumbers* numbers, uint32_t set, float out[4])
 {
     const vplPathScene* s = numbers->scene;
@@ -39,10 +41,13 @@ static vplRay cameraRay(const vplPathScene* s, int x, int y, const float offset[
     return ray;
 }
 
-static vplPathVertex vertexAt(const vplPathScene* s, const vplHit* hit, vplVec3 direction)
+vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction)
 {
     const vplGeometry* g = s->geometry;
-    vplPathVertex v = {.hit = *hit, .normal = hit->normal, .shading = vplGeometry_ShadingNormal(g, hit)};
+    vplPathVertex v = {.hit = *hit,
+                       .normal = hit->normal,
+                       .shading = vplGeometry_ShadingNormal(g, hit),
+                       .density = INFINITY};
     v.rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
     if (vplDot(direction, hit->normal) > 0) {
         v.normal = vplNegate(v.normal);
@@ -58,11 +63,11 @@ static vplRgb emissionAt(const vplPathScene* s, const vplHit* hit, vplVec3 direc
                                               : (vplRgb){0, 0, 0};
 }
 
-static void add(double sum[3], vplRgb weight, double r, double g, double b)
+static void add(double sum[3], vplRgb weight, vplLight3 light)
 {
-    sum[0] += weight.r * r;
-    sum[1] += weight.g * g;
-    sum[2] += weight.b * b;
+    sum[0] += weight.r * light.r;
+    sum[1] += weight.g * light.g;
+    sum[2] += weight.b * light.b;
 }
 
 // Whether a path goes on; those that do carry the light of those that do not.
@@ -82,23 +87,48 @@ static bool survives(const vplPathScene* s, const vplPathNumbers* numbers, uint3
     return true;
 }
 
+// Emission that the path has met by itself after leaving `from`.
+static vplLight3 meetEmission(const vplPathScene* s, const vplPathVertex* from, const vplHit* hit,
+                              vplVec3 direction)
+{
+    vplRgb emission = emissionAt(s, hit, direction);
+    if (emission.r + emission.g + emission.b <= 0) {
+        return (vplLight3){0, 0, 0};
+    }
+    vplLightPoint light = {-1, hit->triangle, hit->position, hit->normal};
+    vplLightWay way = vplFindWay(s, from, &light);
+    double weight = vplWeightOfChance(s, &way);
+    return (vplLight3){weight * emission.r, weight * emission.g, weight * emission.b};
+}
+
+// The next vertex, with the density that the reflection had of leading there.
+static vplPathVertex arrive(const vplPathScene* s, const vplPathVertex* from, const vplHit* hit,
+                            vplVec3 direction)
+{
+    vplPathVertex v = vplPathVertex_Make(s, hit, direction);
+    double cosines = (double)vplDot(direction, from->shading) * -(double)vplDot(direction, v.normal);
+    v.density = cosines / (VPL_PI * hit->t * hit->t);
+    return v;
+}
+
 // The bounces after the eye's first hit. Every picture follows the same paths, so that bounces add up exactly.
-static void reflectOn(const vplPathScene* s, vplPathVertex vertex, const vplPathNumbers* numbers,
-                      double sum[3], int64_t* rays)
+static void reflectOn(const vplPathScene* s, vplPathVertex vertex, const vplLanding* landing,
+                      const vplPathNumbers* numbers, double sum[3], int64_t* rays)
 {
     vplRgb throughput = {1, 1, 1};
-    const bool area = s->trianglePower > 0;
     for (int bounce = 0; bounce <= s->def.lastBounce; bounce++) {
-        const bool counts = bounce >= s->def.firstBounce, last = bounce == s->def.lastBounce;
         const uint32_t set =
-            (uint32_t)(2 * bounce + 1); // and set + 1, where more than four numbers are needed
+            (uint32_t)(2 * bounce + FIRST_SET); // and the next, where four numbers are not enough
+        const bool counts = bounce >= s->def.firstBounce, last = bounce == s->def.lastBounce;
         float u[4];
         vplPathNumbers_Get(numbers, set, u);
         if (counts) {
-            vplDirectLight d = vplSampleDirect(s, &vertex, u + 2, numbers, set + 1, rays);
-            add(sum, throughput, d.r, d.g, d.b);
+            add(sum, throughput, vplSampleDirect(s, &vertex, u + 2, numbers, set + 1, rays));
         }
-        if (last && !area) {
+        if (landing->landed && !last && bounce + 1 >= s->def.firstBounce) {
+            add(sum, throughput, vplConnect(s, &vertex, landing, rays));
+        }
+        if (last && s->trianglePower <= 0) {
             return;
         }
         throughput = vplRgbMul(throughput, vertex.rho);
@@ -112,12 +142,10 @@ static void reflectOn(const vplPathScene* s, vplPathVertex vertex, const vplPath
         if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
             return;
         }
-        vplRgb emission = emissionAt(s, &hit, direction);
-        if (counts && emission.r + emission.g + emission.b > 0) {
-            double weight = vplWeightOfChance(s, &vertex, &hit, direction);
-            add(sum, throughput, weight * emission.r, weight * emission.g, weight * emission.b);
+        if (counts) {
+            add(sum, throughput, meetEmission(s, &vertex, &hit, direction));
         }
-        vertex = vertexAt(s, &hit, direction);
+        vertex = arrive(s, &vertex, &hit, direction);
     }
 }
 
@@ -125,9 +153,9 @@ void vplFollowPath(const vplPathScene* scene, int x, int y, const vplPathNumbers
                    int64_t* rays)
 {
     const vplCameraDef* camera = scene->def.camera;
-    float u[4];
+    float u[4], start[4];
     vplHit hit;
-    vplPathNumbers_Get(numbers, 0, u);
+    vplPathNumbers_Get(numbers, CAMERA_SET, u);
     vplRay ray = cameraRay(scene, x, y, u);
     ++*rays;
     if (!vplGeometry_ClosestHit(scene->geometry, &ray, &hit) || (double)hit.t > camera->far - camera->near) {
@@ -135,7 +163,12 @@ void vplFollowPath(const vplPathScene* scene, int x, int y, const vplPathNumbers
     }
     if (scene->def.emission) {
         vplRgb emission = emissionAt(scene, &hit, ray.direction);
-        add(sum, (vplRgb){1, 1, 1}, emission.r, emission.g, emission.b);
+        add(sum, (vplRgb){1, 1, 1}, (vplLight3){emission.r, emission.g, emission.b});
     }
-    reflectOn(scene, vertexAt(scene, &hit, ray.direction), numbers, sum, rays);
+    vplLanding landing = {.landed = false};
+    if (scene->def.ways & VPL_PATH_PARTICLES && scene->def.lastBounce > 0) {
+        vplPathNumbers_Get(numbers, PARTICLE_SET, start);
+        landing = vplShootParticle(scene, (double)u[2], start, rays);
+    }
+    reflectOn(scene, vplPathVertex_Make(scene, &hit, ray.direction), &landing, numbers, sum, rays);
 }

@@ -12,9 +12,9 @@ typedef struct vplPathScene {
     vplEmission* emission;
     vplPathDef def;
     vplSobol sobol;
-    vplVec3 right, up, forward; // of the camera
-    double scaleX, scaleY;      // tangents of its half-angles
-    double trianglePower;       // W, of all triangles that emit
+    vplVec3 right, up, forward;  // of the camera
+    double scaleX, scaleY;       // tangents of its half-angles
+    double power, trianglePower; // W, of all sources and of the triangles among them
 } vplPathScene;
 
 // Where the numbers of one path come from.
@@ -33,20 +33,57 @@ typedef struct vplPathVertex {
     vplVec3 normal;  // of the surface, on the side the path came from
     vplVec3 shading; // to shade with, turned the same way
     vplRgb rho;
+    double density; // with which a reflection leads here, per square metre; infinite for what the eye sees
 } vplPathVertex;
+
+vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
+
+// Radiance, or a share of it.
+typedef struct vplLight3 {
+    double r, g, b;
+} vplLight3;
+
+// A point on a light.
+typedef struct vplLightPoint {
+    int emitter, triangle; // index of one, -1 for the other
+    vplVec3 position, normal;
+} vplLightPoint;
+
+// The way from a vertex to a point on a light, as if nothing stood between.
+typedef struct vplLightWay {
+    vplLight3 value;         // what the vertex reflects, over the density of choosing the point
+    double chance, particle; // densities of finding the same path in the other ways, over that of choosing it
+    double distance, cosineAtLight; // 0: there is no way
+} vplLightWay;
+
+vplLightWay vplFindWay(const vplPathScene* scene, const vplPathVertex* vertex, const vplLightPoint* light);
+
+// Weights of a path that was found by choosing the point, by chance, and by a particle; the last over its density.
+double vplWeightOfPoint(const vplPathScene* scene, const vplLightWay* way);
+double vplWeightOfChance(const vplPathScene* scene, const vplLightWay* way);
+double vplWeightOfParticle(const vplPathScene* scene, const vplLightWay* way);
+
+// Whether `place` is seen from the vertex; the cosine is the place's own towards the vertex.
+bool vplSees(const vplPathScene* scene, const vplPathVertex* vertex, vplVec3 place, double distance,
+             double cosineAtPlace, int64_t* rays);
 
 // Radiance that the sources send to the vertex and it reflects. u picks the place on an emitting triangle, the first
 // number of `set` the emitter where there are many.
-typedef struct vplDirectLight {
-    double r, g, b;
-} vplDirectLight;
+vplLight3 vplSampleDirect(const vplPathScene* scene, const vplPathVertex* vertex, const float u[2],
+                          const vplPathNumbers* numbers, uint32_t set, int64_t* rays);
 
-vplDirectLight vplSampleDirect(const vplPathScene* scene, const vplPathVertex* vertex, const float u[2],
-                               const vplPathNumbers* numbers, uint32_t set, int64_t* rays);
+// Where a particle from a light has landed.
+typedef struct vplLanding {
+    bool landed;
+    vplLightPoint light;
+    vplHit hit;
+} vplLanding;
 
-// The weight of emission that a path from `vertex` met by itself at `hit`, in direction `direction` (unit).
-double vplWeightOfChance(const vplPathScene* scene, const vplPathVertex* vertex, const vplHit* hit,
-                         vplVec3 direction);
+vplLanding vplShootParticle(const vplPathScene* scene, double choice, const float u[4], int64_t* rays);
+
+// Radiance that reaches the vertex by one reflection where the particle has landed, and is reflected again.
+vplLight3 vplConnect(const vplPathScene* scene, const vplPathVertex* vertex, const vplLanding* landing,
+                     int64_t* rays);
 
 // Follows one path through pixel (x, y) and adds the radiance it brings to sum.
 void vplFollowPath(const vplPathScene* scene, int x, int y, const vplPathNumbers* numbers, double sum[3],

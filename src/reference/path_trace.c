@@ -27,7 +27,8 @@ struct vplPathTracer {
 vplPathDef vplDefaultPathDef(void)
 {
     // rouletteFrom and allEmitters: least variance for the time on the room, see tests/bench/path.c.
-    return (vplPathDef){.lastBounce = 1 << 16, .emission = true, .rouletteFrom = 0.5, .allEmitters = 4};
+    return (vplPathDef){
+        .lastBounce = 1 << 16, .emission = true, .ways = VPL_PATH_ALL, .rouletteFrom = 0.25, .allEmitters = 4};
 }
 
 // The same frame as the rasterizer's view has.
@@ -66,7 +67,8 @@ vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* de
         return result;
     }
     const vplEmission* e = t->scene.emission;
-    t->scene.trianglePower = vplEmission_Power(e) - e->cumulative[e->firstTriangle];
+    t->scene.power = vplEmission_Power(e);
+    t->scene.trianglePower = t->scene.power - e->cumulative[e->firstTriangle];
     *tracerOut = t;
     return VPL_SUCCESS;
 }

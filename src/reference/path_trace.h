@@ -7,13 +7,13 @@
 #include <vpl/geometry.h>
 #include <vpl/image.h>
 
-// How light from emitting triangles is found at each vertex of a path; the last two are there to be measured.
-typedef enum vplPathLights {
-    VPL_PATH_BOTH = 0, // by a point on a light and by the path itself, weighted by Veach's power heuristic
-    VPL_PATH_BALANCE,  // the same by his balance heuristic
-    VPL_PATH_POINTS,   // by points on lights alone
-    VPL_PATH_CHANCE    // by the path alone
-} vplPathLights;
+// Three ways in which a path can find its last steps to a light; where several can, their results are weighted.
+enum {
+    VPL_PATH_POINTS = 1,    // from a surface to a point on a light
+    VPL_PATH_CHANCE = 2,    // a reflected path meets a light by itself
+    VPL_PATH_PARTICLES = 4, // from a surface to where a particle from a light has landed
+    VPL_PATH_ALL = 7
+};
 
 typedef struct vplPathDef {
     const vplCameraDef* camera;
@@ -24,8 +24,9 @@ typedef struct vplPathDef {
     int firstBounce,
         lastBounce; // the picture adds up light after these numbers of reflections before the eye's
     uint64_t seed;
-    vplPathLights lights;
-    bool random;         // independent random numbers instead of Sobol's points
+    int ways;     // VPL_PATH_POINTS | ...; points are taken for what cannot be met by chance, in any case
+    bool balance; // weights by the balance heuristic instead of the power heuristic
+    bool random;  // independent random numbers instead of Sobol's points
     double rouletteFrom; // a path whose throughput is below this may end; larger ends sooner
     int allEmitters;     // up to so many emitters are all asked at each vertex, of more only one
 } vplPathDef;

@@ -27,17 +27,22 @@ static void randomNumbers(vplPathDef* def)
 
 static void balance(vplPathDef* def)
 {
-    def->lights = VPL_PATH_BALANCE;
+    def->balance = true;
 }
 
 static void points(vplPathDef* def)
 {
-    def->lights = VPL_PATH_POINTS;
+    def->ways = VPL_PATH_POINTS;
 }
 
 static void chance(vplPathDef* def)
 {
-    def->lights = VPL_PATH_CHANCE;
+    def->ways = VPL_PATH_CHANCE;
+}
+
+static void pointsAndChance(vplPathDef* def)
+{
+    def->ways = VPL_PATH_POINTS | VPL_PATH_CHANCE;
 }
 
 static void rouletteAt1(vplPathDef* def)
@@ -73,10 +78,11 @@ static void allEmitters(vplPathDef* def)
 static const Line LINES[] = {
     {"numbers", "scrambled Sobol'", asItIs},
     {"numbers", "random", randomNumbers},
-    {"lamps", "both, power heuristic", asItIs},
-    {"lamps", "both, balance heuristic", balance},
-    {"lamps", "points on lamps alone", points},
-    {"lamps", "paths alone", chance},
+    {"lights", "all ways, power heuristic", asItIs},
+    {"lights", "all ways, balance heuristic", balance},
+    {"lights", "points and chance", pointsAndChance},
+    {"lights", "points alone", points},
+    {"lights", "chance alone", chance},
     {"roulette", "below a quarter", asItIs},
     {"roulette", "always", rouletteAt1},
     {"roulette", "below a half", rouletteAtHalf},
@@ -120,6 +126,7 @@ static int run(const vplScene* scene, const vplGeometry* geometry, int samples, 
         def.emitterCount = vplScene_GetEmitterCount(scene);
         def.emitters = def.emitterCount ? vplScene_GetEmitter(scene, 0) : NULL;
         def.width = def.height = size;
+        def.emission = false; // the edges of what is seen to emit would hide the rest
         LINES[i].adjust(&def);
         vplPathStats stats;
         double ms;
