@@ -18,7 +18,7 @@ enum {
 
 const Option OPTIONS[] = {
     {"-o", "FILE", RENDER, readText, AT(output), 0, 0, NULL,
-     "picture to write: .png, .hdr or .pfm (required)"},
+     "picture to write: .png, .hdr, .pfm or, where built in, .exr (required)"},
     {"--size", "WxH", RENDER | INFO | BENCH, readSize, 0, 0, 0, NULL, "pixels; default 1280x720"},
     {"--camera", "I", RENDER, readInt, AT(render.camera), 0, 1e9, NULL,
      "index of the scene's camera; default 0"},
