@@ -39,6 +39,9 @@ static void requireComparison(const vplImage* image)
     vplResult result = vplImage_Compare(image, image, &comparison);
     REQUIRE(result == (finite ? VPL_SUCCESS : VPL_INVALID_ARGUMENT));
     REQUIRE(result != VPL_SUCCESS || (comparison.rmse == 0 && comparison.relmse == 0));
+    if ((size_t)image->width * (size_t)image->height > 256) {
+        return; // these two are slow
+    }
     double ssim = 1, flip = 0;
     REQUIRE(vplImage_Ssim(image, image, &ssim, NULL) == result && ssim == 1);
     REQUIRE(vplImage_Flip(image, image, VPL_DEFAULT_PPD, &flip, NULL) == result && flip == 0);
