@@ -26,6 +26,7 @@ mkdir -p build
 run gcc-release CC=gcc
 run gcc-debug CC=gcc MODE=debug
 run gcc-serial CC=gcc OPENMP=0
+run gcc-no-exr CC=gcc EXR=0
 if command -v clang >/dev/null 2>&1; then
     run clang-release CC=clang
     run clang-debug CC=clang MODE=debug

@@ -7,11 +7,13 @@
 
 // One line per test file.
 #define ALL_SUITES(X)                                                                                        \
+    X(exr)                                                                                                   \
     X(geometry)                                                                                              \
     X(image)                                                                                                 \
     X(lights)                                                                                                \
     X(math)                                                                                                  \
     X(memory)                                                                                                \
+    X(metrics)                                                                                               \
     X(path)                                                                                                  \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \

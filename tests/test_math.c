@@ -23,6 +23,8 @@ static void ElementaryFunctionsAgreeWithLibm(void** state)
         assertNear(vplLog1(positive), l, 4e-16 * fabs(l) + 2e-16, "log", (int)i);
         double p = pow(u, 1 / 2.4);
         assertNear(vplPow(u, 1 / 2.4), p, 4e-15 * p, "pow", (int)i);
+        double root = cbrt(positive);
+        assertNear(vplCbrt(positive), root, 8e-16 * root, "cbrt", (int)i); // 5 roundings of ours, libm's own
         double y = uniformAt(2, i) - 0.5, z = uniformAt(3, i) - 0.5;
         assertNear(vplAtan2(y, z), atan2(y, z), 1e-15, "atan2", (int)i);
         assertNear(vplAcos(2 * u - 1), acos(2 * u - 1), 2e-15, "acos", (int)i);
@@ -46,6 +48,12 @@ static void ElementaryFunctionsAreDefinedAtTheirEnds(void** state)
     assertNear(vplLog1(5e-324), -744.4400719213812, 1e-12, "log of the smallest double", 0);
     assertNear(vplLog1(DBL_MAX), 709.782712893384, 1e-12, "log of the largest double", 0);
     assert_true(vplPow(0, 2) == 0 && vplPow(-1, 2) == 0 && vplPow(1, 5) == 1);
+    assert_true(vplCbrt(0) == 0 && vplCbrt(-8) == 0 && vplCbrt(1) == 1);
+    assert_true(isinf(vplCbrt(INFINITY)) && vplCbrt(NAN) == 0);
+    for (int i = 0; i < 3; i++) {
+        double x = (const double[]){4e-320, DBL_MIN, DBL_MAX}[i], root = cbrt(x);
+        assertNear(vplCbrt(x), root, 8e-16 * root, "cbrt at the ends", i);
+    }
     assert_true(vplAtan2(0, 0) == 0);
     assertNear(vplAtan2(0, -1), VPL_PI, 0, "atan2", 0);
     assertNear(vplAcos(2), 0, 0, "acos", 0);

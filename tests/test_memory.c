@@ -123,7 +123,7 @@ static vplResult renderAndWrite(vplContext* context, const char* path, int pipel
 static void EveryFailedAllocationOfARenderIsReported(void** state)
 {
     (void)state;
-    static const char* const extensions[] = {"png", "hdr", "pfm"};
+    const char* const extensions[] = {"png", vplImage_CanWrite("a.exr") ? "exr" : "hdr", "pfm"};
     for (int pipeline = VPL_ACCUMULATE_MULTIPASS; pipeline <= VPL_ACCUMULATE_DEFERRED; pipeline++) {
         failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, false);
         failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, true);
@@ -160,7 +160,7 @@ static void EveryFailedAllocationOfAShownStageIsReported(void** state)
 
 static vplResult readCompareAndMap(vplContext* context, const char* path, int format)
 {
-    static const char* const pictures[] = {"small.pfm", "small.png"};
+    static const char* const pictures[] = {"small.pfm", "small.png", "small.hdr"};
     char source[128];
     snprintf(source, sizeof source, "tests/fuzz/corpus/image/%s", pictures[format]);
     vplImage *a = NULL, *b = NULL, *map = NULL;
@@ -172,8 +172,10 @@ static vplResult readCompareAndMap(vplContext* context, const char* path, int fo
     if (result == VPL_SUCCESS) {
         result = vplImage_Compare(a, b, &comparison);
     }
+    vplHeatmapDef def = vplDefaultHeatmapDef();
+    def.of = format == 0 ? VPL_HEAT_FLIP : format == 1 ? VPL_HEAT_SSIM : VPL_HEAT_RELATIVE;
     if (result == VPL_SUCCESS) {
-        result = vplImage_Heatmap(a, b, 0, &map);
+        result = vplImage_HeatmapOf(a, b, &def, &map);
     }
     if (result == VPL_SUCCESS) {
         result = vplImage_Write(map, path, NULL);
@@ -187,8 +189,9 @@ static vplResult readCompareAndMap(vplContext* context, const char* path, int fo
 static void EveryFailedAllocationOfAComparisonIsReported(void** state)
 {
     (void)state;
-    for (int format = 0; format < 2; format++) {
+    for (int format = 0; format < 3; format++) {
         failEveryAllocation(readCompareAndMap, "png", format, false);
+        failEveryAllocation(readCompareAndMap, "png", format, true);
     }
 }
 

@@ -108,6 +108,10 @@ void vplContext_ResetPeakBytes(vplContext* context);
 vplIsa vplContext_GetIsa(const vplContext* context);
 int vplContext_GetWorkerCount(const vplContext* context);
 
+// Writes a whole file: to a temporary name beside the target, checked, then renamed, so that the target is
+// either its old self or complete. What is not a regular file (a device, a pipe) is written directly.
+vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
+
 // "0.1.0"
 const char* vplGetVersion(void);
 

@@ -8,10 +8,6 @@
 // Reads a whole file and adds a 0 byte behind it. *bytesOut is freed with vplFree.
 vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut);
 
-// Writes a whole file: to a temporary name beside the target, checked, then renamed, so that the target is
-// either its old self or complete. What is not a regular file (a device, a pipe) is written directly.
-vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
-
 // True if there is a regular file of this name: no folder, device or pipe.
 bool vplIsRegularFile(const char* path);
 

@@ -17,9 +17,12 @@ static const Topic TOPICS[] = {
      "in\n"
      "watts that the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N."},
     {"compare", "vpl compare A B [options]", "measures how far picture A is from reference B",
-     "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), psnr (of clamped "
-     "sRGB\n"
-     "values, dB), energy_ratio (sum of A / sum of B) and max_difference with its pixel."},
+     "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), trimmed_relmse "
+     "(the\n"
+     "same without the 0.1 % of the pixels where it is largest), psnr (dB), ssim and flip (all three of "
+     "values\n"
+     "clamped to [0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and max_difference\n"
+     "with its pixel. --regions adds a table of blocks."},
     {"info", "vpl info SCENE [options]", "says what is in a scene, and what rendering it requires",
      "Prints counts, bounds, mean reflectance, and the lights, draw calls and memory that a render with the "
      "same\n"

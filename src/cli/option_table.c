@@ -18,7 +18,7 @@ enum {
 
 const Option OPTIONS[] = {
     {"-o", "FILE", RENDER, readText, AT(output), 0, 0, NULL,
-     "picture to write: .png, .hdr or .pfm (required)"},
+     "picture to write: .png, .hdr, .pfm or, where built in, .exr (required)"},
     {"-o", "DIR", TRADEOFF, readText, AT(output), 0, 0, NULL,
      "folder for tradeoff.csv, report.html, tradeoff.svg and reference.pfm, made if missing (required)"},
     {"--reference", "FILE", TRADEOFF, readText, AT(reference), 0, 0, NULL,

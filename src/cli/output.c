@@ -46,58 +46,23 @@ bool checkOutput(const char* path)
     return good;
 }
 
-// Writes all of `text` to an open file and closes it; errno tells why not.
-static bool writeAndClose(int descriptor, const char* text)
+static void complainOf(void* user, vplLogLevel level, const char* message)
 {
-    FILE* file = fdopen(descriptor, "w");
-    if (file == NULL) {
-        close(descriptor);
-        return false;
+    (void)user;
+    if (level == VPL_LOG_ERROR) {
+        complain("%s", message);
     }
-    bool written = fputs(text, file) >= 0 && fflush(file) == 0;
-    int cause = errno;
-    bool closed = fclose(file) == 0;
-    errno = written ? errno : cause;
-    return written && closed;
-}
-
-static bool writeBeside(const char* path, const char* text)
-{
-    char temporary[PATH_MAX];
-    int length = snprintf(temporary, sizeof temporary, "%s.%ld.tmp", path, (long)getpid());
-    if (length >= (int)sizeof temporary) {
-        errno = ENAMETOOLONG;
-        return false;
-    }
-    int descriptor = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0) {
-        return false;
-    }
-    if (writeAndClose(descriptor, text) && rename(temporary, path) == 0) {
-        return true;
-    }
-    int cause = errno;
-    unlink(temporary);
-    errno = cause;
-    return false;
 }
 
 bool writeTextFile(const char* path, const char* text)
 {
-    struct stat info;
-    bool exists = stat(path, &info) == 0, good;
-    if (exists && !S_ISREG(info.st_mode)) {
-        int descriptor = open(path, O_WRONLY | O_CLOEXEC);
-        good = descriptor >= 0 && writeAndClose(descriptor, text);
-    } else {
-        char* target = exists ? realpath(path, NULL) : NULL;
-        good = writeBeside(target ? target : path, text);
-        int cause = errno;
-        free(target);
-        errno = cause;
+    vplContextDef def = vplDefaultContextDef();
+    def.log = complainOf;
+    vplContext* context;
+    if (vplContext_Create(&def, &context) != VPL_SUCCESS) {
+        return false;
     }
-    if (!good) {
-        complain("%s: cannot write: %s", path, strerror(errno));
-    }
-    return good;
+    vplResult result = vplWriteFile(context, path, text, strlen(text));
+    vplContext_Destroy(context);
+    return result == VPL_SUCCESS;
 }

@@ -106,7 +106,9 @@ static int64_t writeStream(exr_const_context_t exr, void* user, const void* from
         return -1;
     }
     uint64_t over = buffer->size - offset < size ? buffer->size - offset : size;
-    memcpy(buffer->bytes + offset, from, over);
+    if (over > 0) {
+        memcpy(buffer->bytes + offset, from, over);
+    }
     vplByteBuffer_Append(buffer, (const uint8_t*)from + over, size - over);
     return buffer->failed ? -1 : (int64_t)size;
 }

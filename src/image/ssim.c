@@ -69,12 +69,12 @@ static void sumColumns(const Ssim* s, int y, double* moments, int stride)
         const float *rowA = s->planes[0] + first, *rowB = s->planes[1] + first;
         double w = s->weights[k < 0 ? -k : k];
         for (int x = 0; x < s->width; x++) {
-            double a = rowA[x], b = rowB[x], wa = w * a, wb = w * b;
-            ma[x] += wa;
-            mb[x] += wb;
-            maa[x] += wa * a;
-            mbb[x] += wb * b;
-            mab[x] += wa * b;
+            double a = rowA[x], b = rowB[x]; // floats: their products are exact, and symmetric
+            ma[x] += w * a;
+            mb[x] += w * b;
+            maa[x] += w * (a * a);
+            mbb[x] += w * (b * b);
+            mab[x] += w * (a * b);
         }
     }
     for (int m = 0; m < MOMENTS; m++) {

@@ -96,8 +96,11 @@ double vplPow(double x, double y)
 // leaves less than rounding. The constant is two thirds of the exponent's bias, moved to centre the error.
 double vplCbrt(double x)
 {
-    if (!(x >= DBL_MIN)) {
-        return vplPow(x, 1.0 / 3); // subnormal: its exponent says nothing
+    if (!(x > 0) || x > DBL_MAX) {
+        return x > 0 ? x : 0;
+    }
+    if (x < DBL_MIN || x > 0x1p1020) { // its exponent says nothing, or 3x would overflow below
+        return x < 1 ? vplCbrt(x * 0x1p54) * 0x1p-18 : vplCbrt(x * 0x1p-54) * 0x1p18;
     }
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);

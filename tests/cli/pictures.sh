@@ -54,14 +54,47 @@ equals JsonRmse 0.0 "$(field "$scratch/stdout" rmse)"
 equals JsonPsnrIsNull null "$(field "$scratch/stdout" psnr)"
 "$vpl" render "$room" $base -o "$out/b.pfm" --seed 2
 succeeds CompareTwo "$vpl" compare --json "$out/a.pfm" "$out/b.pfm" --heatmap "$out/map.png"
-for key in rmse relative_rmse relmse psnr energy_ratio max_difference max_x max_y; do
+for key in rmse relative_rmse relmse trimmed_relmse psnr ssim flip flip_ppd energy_ratio max_difference max_x max_y; do
     check "CompareHas_$key" test -n "$(field "$scratch/stdout" $key)"
 done
 check HeatmapIsAPicture "$vpl" compare "$out/map.png" "$out/map.png"
 "$vpl" render "$room" -o "$out/c.pfm" --size 8x8 --shadow-map 16
+metrics=$("$vpl" compare --json "$out/a.pfm" "$out/b.pfm" --threads 1 | cksum)
+for threads in 2 3 7; do
+    equals "MetricsKnowNoThreads_$threads" "$metrics" "$("$vpl" compare --json "$out/a.pfm" "$out/b.pfm" --threads $threads | cksum)"
+done
+for what in difference relative ssim flip; do
+    succeeds "HeatmapOf_$what" "$vpl" compare "$out/a.pfm" "$out/b.pfm" --heatmap "$out/heat-$what.png" --heatmap-of $what
+done
+check HeatmapsDiffer test "$(cksum "$out"/heat-*.png | cut -d' ' -f1 | sort -u | wc -l)" -eq 4
+"$vpl" compare --json "$out/a.pfm" "$out/b.pfm" >"$scratch/near"
+"$vpl" compare --json "$out/a.pfm" "$out/b.pfm" --ppd 300 >"$scratch/far"
+check PixelsPerDegreeChangeFlip test "$(field "$scratch/near" flip)" != "$(field "$scratch/far" flip)"
+equals PixelsPerDegreeChangeNoSsim "$(field "$scratch/near" ssim)" "$(field "$scratch/far" ssim)"
+
+succeeds RegionsAreATable "$vpl" compare "$out/a.pfm" "$out/b.pfm" --regions 5x2
+equals RegionsHaveTenRows 10 "$(sed '1,/mean_a/d' "$scratch/stdout" | wc -l)"
+succeeds RegionsAreJson "$vpl" compare "$out/a.pfm" "$out/b.pfm" --regions 3x2 --json
+equals RegionsHaveSixObjects 6 "$(grep -c mean_a "$scratch/stdout")"
+# A region's rmse is that of the same rectangle alone; its largest difference is told in the whole picture.
+"$vpl" compare "$out/a.pfm" "$out/b.pfm" --json --region 25,0,25,25 >"$scratch/region"
+equals RegionIsItsBlock "$(field "$scratch/region" rmse)" \
+    "$(tr -d ' \n' <"$scratch/stdout" | sed 's/.*"x":25,"y":0,[^}]*"rmse":\([^}]*\)}.*/\1/')"
+check RegionTellsPlacesInThePicture test "$(field "$scratch/region" max_x)" -ge 25
+refuses RegionOutside 2 "must lie inside the picture, which is 75x50" "$vpl" compare "$out/a.pfm" "$out/b.pfm" --region 70,0,6,1
+refuses RegionDoesNotHideSizes 2 "differ in size" "$vpl" compare "$out/a.pfm" "$out/c.pfm" --region 0,0,4,4
+refuses TooManyRegions 2 "must be in [1, 75] and [1, 50]" "$vpl" compare "$out/a.pfm" "$out/b.pfm" --regions 76x1
+if "$vpl" render "$room" $base -o "$out/a.exr" --seed 1 2>"$scratch/stderr"; then
+    succeeds CompareExr "$vpl" compare "$out/a.exr" "$out/a.pfm"
+    check ExrKeepsTheRender grep -qE '^rmse +0$' "$scratch/stdout"
+else
+    check NoOpenExrIsSaid grep -q 'this build has no OpenEXR' "$scratch/stderr"
+    exr=$PWD/tests/fuzz/corpus/image/none.exr
+    refuses NoOpenExrToRead 2 "no OpenEXR" "$vpl" compare "$exr" "$exr"
+fi
 refuses CompareDifferentSizes 2 "differ in size: 75x50 and 8x8" "$vpl" compare "$out/a.pfm" "$out/c.pfm"
 
 "$vpl" render "$room" $base -o "$out/loud.pfm" --seed 1 -v >"$scratch/stdout" 2>"$scratch/stderr"
 check ResultsAloneGoToStdout test ! -s "$scratch/stdout" -a -s "$scratch/stderr"
 check VerboseChangesNothing cmp "$out/loud.pfm" "$out/a.pfm"
-check NoTemporaryPictures test -z "$(ls -A "$out" | grep -v -E '\.(png|hdr|pfm|json)$')"
+check NoTemporaryPictures test -z "$(ls -A "$out" | grep -v -E '\.(png|hdr|pfm|exr|json)$')"

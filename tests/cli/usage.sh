@@ -86,6 +86,15 @@ wrong "--show is \"light:-1\"" render "$room" -o "$png" --show light:-1
 wrong "virtual light 18 does not exist, there are 18 (from 0)" \
     render "$closed" -o "$png" --size 8x8 --shadow-map 16 --show light:18
 wrong "--heat-scale is \"-1\"" compare a.png b.png --heat-scale -1
+wrong "--heatmap-of is \"noise\", must be one of difference|relative|ssim|flip" compare a.png b.png --heatmap-of noise
+wrong "--ppd is \"0.5\", must be a number in [1, 1000]" compare a.png b.png --ppd 0.5
+wrong "--ppd is \"nan\"" compare a.png b.png --ppd nan
+for region in 1,2,3 1,2,3,0 1,2,0,3 -1,0,2,2 1,2,3,4,5 1,2,3,x 1x2x3x4 0,0,99999,1 ""; do
+    wrong "--region is \"$region\", must be X,Y,WIDTH,HEIGHT" compare a.png b.png --region="$region"
+done
+for grid in 0x1 1x0 4 4x 4,4 99999x1; do
+    wrong "--regions is \"$grid\", must be COLUMNSxROWS" compare a.png b.png --regions $grid
+done
 wrong "must end in .png, .hdr" compare a.png b.png --heatmap map.gif
 
 succeeds VersionIsPrinted "$vpl" --version

@@ -1,0 +1,586 @@
+// SPDX-License-Identifier: MIT
+// SSIM, FLIP, trimmed relmse, regions, heat maps: against other implementations (tests/data/metrics.csv), exact
+// relations, odd sizes, refusals.
+#include "test.h"
+
+#include <stdlib.h>
+
+// 32 bits in, 32 well-mixed bits out.
+static uint32_t mix(uint32_t n)
+{
+    n = (n ^ n >> 16) * 0x45d9f3bu;
+    n = (n ^ n >> 16) * 0x45d9f3bu;
+    return n ^ n >> 16;
+}
+
+// A byte of noise for value `index`.
+static int noise(uint32_t seed, uint32_t index)
+{
+    return (int)(mix(seed * 1000003u + index) >> 24);
+}
+
+static int referenceValue(int pair, int x, int y, int channel, int width)
+{
+    switch (pair) {
+    case 0: // ramps
+        return (4 * x + y * (channel + 1)) % 256;
+    case 1: // a checkerboard
+        return (x / 8 + y / 6) % 2 == 0 ? 40 + 60 * channel : 200 - 50 * channel;
+    default:
+        return noise(7, (uint32_t)((y * width + x) * 3 + channel));
+    }
+}
+
+// Grain on ramps, edges shifted by (2, 1), or noise with colours that are swapped and beyond 1 here and there.
+static float testValue(int pair, int x, int y, int channel, int width)
+{
+    float same = (float)referenceValue(pair, x, y, channel, width) / 256;
+    switch (pair) {
+    case 0:
+        return same + (float)(noise(11, (uint32_t)((y * width + x) * 3 + channel)) - 128) / 1024;
+    case 1:
+        return (float)referenceValue(pair, x < 2 ? 0 : x - 2, y < 1 ? 0 : y - 1, channel, width) / 256;
+    default:
+        return (x + y) % 5 ? same : 1.5f * (float)referenceValue(pair, x, y, (channel + 1) % 3, width) / 256;
+    }
+}
+
+typedef struct Pair {
+    vplImage *a, *b; // test and reference
+} Pair;
+
+static Pair makePair(vplContext* context, int kind, int width, int height)
+{
+    Pair p;
+    assert_int_equal(vplImage_Create(context, width, height, &p.a), VPL_SUCCESS);
+    assert_int_equal(vplImage_Create(context, width, height, &p.b), VPL_SUCCESS);
+    for (int i = 0; i < 3 * width * height; i++) {
+        int x = i / 3 % width, y = i / 3 / width;
+        p.a->pixels[i] = testValue(kind, x, y, i % 3, width);
+        p.b->pixels[i] = (float)referenceValue(kind, x, y, i % 3, width) / 256;
+    }
+    return p;
+}
+
+static void freePair(Pair p)
+{
+    vplImage_Destroy(p.a);
+    vplImage_Destroy(p.b);
+}
+
+static float valueAt(const vplImage* map, int x, int y)
+{
+    return map->pixels[3 * (y * map->width + x)];
+}
+
+// Other implementations agree to 1e-8 (SSIM) and 2e-5 (FLIP, which they and we compute in float: where nothing
+// but rounding makes an edge, its square root shows).
+static void SsimAndFlipAreThoseOfOtherImplementations(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Table t = loadTable("metrics.csv");
+    assert_true(t.rows >= 30);
+    for (int row = 0; row < t.rows; row++) {
+        Pair p = makePair(context, (int)number(&t, row, "pair"), (int)number(&t, row, "width"),
+                          (int)number(&t, row, "height"));
+        int x = (int)number(&t, row, "px"), y = (int)number(&t, row, "py");
+        double ssim, flip;
+        vplImage *ssimMap, *flipMap;
+        assert_int_equal(vplImage_Ssim(p.a, p.b, &ssim, &ssimMap), VPL_SUCCESS);
+        assert_int_equal(vplImage_Flip(p.a, p.b, number(&t, row, "ppd"), &flip, &flipMap), VPL_SUCCESS);
+        assertNear(flip, number(&t, row, "flip"), 3e-5, "flip", row);
+        assertNear((double)valueAt(flipMap, x, y), number(&t, row, "flip_px"), 1e-4, "flip_px", row);
+        if (!isEmpty(&t, row, "ssim")) {
+            assertNear(ssim, number(&t, row, "ssim"), 1e-7, "ssim", row);
+            assertNear((double)valueAt(ssimMap, x, y), number(&t, row, "ssim_px"), 1e-6, "ssim_px", row);
+        }
+        vplImage_Destroy(ssimMap);
+        vplImage_Destroy(flipMap);
+        freePair(p);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+static void APictureIsEqualToItself(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    static const int sizes[][2] = {{64, 48}, {12, 40}, {10, 11}, {3, 2}, {1, 1}, {1, 30}, {30, 1}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        for (int kind = 0; kind < 3; kind++) {
+            Pair p = makePair(context, kind, sizes[i][0], sizes[i][1]);
+            double ssim, flip;
+            vplComparison c;
+            assert_int_equal(vplImage_Ssim(p.a, p.a, &ssim, NULL), VPL_SUCCESS);
+            assert_int_equal(vplImage_Flip(p.a, p.a, VPL_DEFAULT_PPD, &flip, NULL), VPL_SUCCESS);
+            assert_int_equal(vplImage_Compare(p.a, p.a, &c), VPL_SUCCESS);
+            assert_true(ssim == 1 && flip == 0 && c.trimmedRelmse == 0 && isinf(c.psnr));
+            freePair(p);
+        }
+    }
+    closeTestContext(context);
+}
+
+static void SsimAndFlipAreSymmetric(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    for (int kind = 0; kind < 3; kind++) {
+        Pair p = makePair(context, kind, 40, 30);
+        double ssim[2], flip[2];
+        assert_int_equal(vplImage_Ssim(p.a, p.b, &ssim[0], NULL), VPL_SUCCESS);
+        assert_int_equal(vplImage_Ssim(p.b, p.a, &ssim[1], NULL), VPL_SUCCESS);
+        assert_int_equal(vplImage_Flip(p.a, p.b, 40, &flip[0], NULL), VPL_SUCCESS);
+        assert_int_equal(vplImage_Flip(p.b, p.a, 40, &flip[1], NULL), VPL_SUCCESS);
+        assert_true(ssim[0] == ssim[1] && flip[0] == flip[1]);
+        assert_true(ssim[0] < 1 && flip[0] > 0);
+        freePair(p);
+    }
+    closeTestContext(context);
+}
+
+static vplImage* makeFlat(vplContext* context, int width, int height, float r, float g, float b)
+{
+    vplImage* image;
+    assert_int_equal(vplImage_Create(context, width, height, &image), VPL_SUCCESS);
+    for (int i = 0; i < width * height; i++) {
+        image->pixels[3 * i] = r;
+        image->pixels[3 * i + 1] = g;
+        image->pixels[3 * i + 2] = b;
+    }
+    return image;
+}
+
+// Two flat pictures have no variance: SSIM is (2 m n + C1) / (m^2 + n^2 + C1) of the encoded values, whatever
+// the size, though below 11 pixels borders are mirrored.
+static void SsimOfFlatPicturesIsItsLuminanceTerm(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    static const int sizes[][2] = {{20, 20}, {11, 5}, {4, 30}, {1, 1}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        vplImage* a = makeFlat(context, sizes[i][0], sizes[i][1], 0.5f, 0.5f, 0.5f);
+        vplImage* b = makeFlat(context, sizes[i][0], sizes[i][1], 0.25f, 0.25f, 7.0f);
+        const double m = 0.7353569830524495,
+                     n = 0.5370987304831942; // sRGB of 0.5 and 0.25; 7 is clamped to 1
+        double grey = (2 * m * n + 1e-4) / (m * m + n * n + 1e-4), blue = (2 * m + 1e-4) / (m * m + 1 + 1e-4);
+        double ssim;
+        assert_int_equal(vplImage_Ssim(a, b, &ssim, NULL), VPL_SUCCESS);
+        assertNear(ssim, (2 * grey + blue) / 3, 1e-6, "flat", (int)i);
+        vplImage_Destroy(a);
+        vplImage_Destroy(b);
+    }
+    closeTestContext(context);
+}
+
+// Beyond the window's reach a local change has no effect, and the borders do not count in the mean.
+static void SsimSeesWithinItsWindowOnly(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Pair p = makePair(context, 1, 32, 32);
+    memcpy(p.a->pixels, p.b->pixels, 3 * 32 * 32 * sizeof(float));
+    p.a->pixels[3 * (16 * 32 + 16)] += 0.25f;
+    double ssim;
+    vplImage* map;
+    assert_int_equal(vplImage_Ssim(p.a, p.b, &ssim, &map), VPL_SUCCESS);
+    double sum = 0;
+    for (int y = 0; y < 32; y++) {
+        for (int x = 0; x < 32; x++) {
+            bool near = abs(x - 16) <= 5 && abs(y - 16) <= 5;
+            assert_true(near ? valueAt(map, x, y) < 1 : valueAt(map, x, y) == 1);
+            sum += x >= 5 && x < 27 && y >= 5 && y < 27 ? (double)valueAt(map, x, y) : 0;
+        }
+    }
+    assertNear(ssim, sum / (22 * 22), 1e-7, "mean", 0);
+    vplImage_Destroy(map);
+    freePair(p);
+    closeTestContext(context);
+}
+
+// Green and blue are the two colours that are farthest apart, so by definition their colour error is 1; away
+// from edges that is all there is. Clamping makes 9 the same as 1.
+static void FlipOfGreenAndBlueIsOne(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage *green = makeFlat(context, 24, 24, 0, 9, -3), *blue = makeFlat(context, 24, 24, 0, 0, 1);
+    double flip;
+    assert_int_equal(vplImage_Flip(green, blue, VPL_DEFAULT_PPD, &flip, NULL), VPL_SUCCESS);
+    assertNear(flip, 1, 1e-6, "green and blue", 0);
+    vplImage_Destroy(green);
+    vplImage_Destroy(blue);
+    // Black and white differ by 100 in L*. Green is (87.7347, -86.1827, 83.1793) and blue (32.2970, 79.1875,
+    // -107.8602) in L*a*b* (Bruce Lindbloom's tables); Hunt's effect multiplies a and b by L/100.
+    double da = 0.877347 * -86.1827 - 0.322970 * 79.1875, db = 0.877347 * 83.1793 - 0.322970 * -107.8602;
+    double largest = pow(87.7347 - 32.2970 + sqrt(da * da + db * db), 0.7), knee = 0.4 * largest;
+    double wanted = 0.95 + 0.05 * (pow(100, 0.7) - knee) / (largest - knee);
+    vplImage *black = makeFlat(context, 24, 24, 0, 0, 0), *white = makeFlat(context, 24, 24, 1, 1, 1);
+    assert_int_equal(vplImage_Flip(black, white, VPL_DEFAULT_PPD, &flip, NULL), VPL_SUCCESS);
+    assertNear(flip, wanted, 5e-5, "black and white", 0);
+    vplImage_Destroy(black);
+    vplImage_Destroy(white);
+    closeTestContext(context);
+}
+
+static void AFlipMapIsInRangeAndItsMeanIsTheMean(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    for (int kind = 0; kind < 3; kind++) {
+        Pair p = makePair(context, kind, 37, 23);
+        double flip, sum = 0;
+        vplImage* map;
+        assert_int_equal(vplImage_Flip(p.a, p.b, 50, &flip, &map), VPL_SUCCESS);
+        for (int i = 0; i < 37 * 23; i++) {
+            const float* v = map->pixels + 3 * i;
+            assert_true(v[0] >= 0 && v[0] <= 1 && v[0] == v[1] && v[0] == v[2]);
+            sum += (double)v[0];
+        }
+        assertNear(flip, sum / (37 * 23), 1e-7, "mean", kind);
+        vplImage_Destroy(map);
+        freePair(p);
+    }
+    closeTestContext(context);
+}
+
+// The farther the eye, the less is seen of grain.
+static void FlipOfGrainFallsWithDistance(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Pair p = makePair(context, 0, 48, 48);
+    double last = 1, flip;
+    for (double ppd = 15; ppd < 300; ppd *= 2) {
+        assert_int_equal(vplImage_Flip(p.a, p.b, ppd, &flip, NULL), VPL_SUCCESS);
+        assert_true(flip < last);
+        last = flip;
+    }
+    freePair(p);
+    closeTestContext(context);
+}
+
+typedef struct Bits {
+    uint64_t ssimMap, flipMap, heat[4];
+    double ssim, flip;
+    vplComparison c;
+    vplRegion regions[12];
+} Bits;
+
+static Bits measureBits(vplContext* context)
+{
+    Bits bits;
+    memset(&bits, 0, sizeof bits); // padding is compared, too
+    Pair p = makePair(context, 2, 61, 43);
+    vplImage* map;
+    assert_int_equal(vplImage_Ssim(p.a, p.b, &bits.ssim, &map), VPL_SUCCESS);
+    bits.ssimMap = vplImage_Hash(map);
+    vplImage_Destroy(map);
+    assert_int_equal(vplImage_Flip(p.a, p.b, VPL_DEFAULT_PPD, &bits.flip, &map), VPL_SUCCESS);
+    bits.flipMap = vplImage_Hash(map);
+    vplImage_Destroy(map);
+    assert_int_equal(vplImage_Compare(p.a, p.b, &bits.c), VPL_SUCCESS);
+    assert_int_equal(vplImage_CompareRegions(p.a, p.b, 4, 3, bits.regions), VPL_SUCCESS);
+    for (int of = VPL_HEAT_DIFFERENCE; of <= VPL_HEAT_FLIP; of++) {
+        vplHeatmapDef def = vplDefaultHeatmapDef();
+        def.of = (vplHeat)of;
+        assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_SUCCESS);
+        bits.heat[of] = vplImage_Hash(map);
+        vplImage_Destroy(map);
+    }
+    freePair(p);
+    return bits;
+}
+
+// The numbers written here hold for every compiler, optimisation and machine as well.
+static void ThreadsAndMachinesChangeNoBitOfAMetric(void** state)
+{
+    (void)state;
+    Bits first = {0};
+    for (int workers = 1; workers <= 7; workers += workers < 3 ? 1 : 4) {
+        vplContext* context = openTestContext(workers);
+        Bits bits = measureBits(context);
+        closeTestContext(context);
+        if (workers == 1) {
+            first = bits;
+        }
+        assert_memory_equal(&bits, &first, sizeof bits);
+    }
+    assert_true(first.ssim == 0x1.8dad213e1bf79p-1 && first.flip == 0x1.0f998fa0caad7p-2);
+    assert_true(first.ssimMap == 0x553dddd38688666b && first.flipMap == 0x95ff114f7dd33966);
+}
+
+static int compareDoubles(const void* a, const void* b)
+{
+    double x = *(const double*)a, y = *(const double*)b;
+    return (x > y) - (x < y);
+}
+
+// Against sorting, for sizes around the thousands, with ties and with fireflies.
+static void TrimmedRelmseLeavesOutTheLargestThousandth(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    static const int widths[] = {1, 999, 1000, 1001, 1999, 2000, 7777, 12000};
+    for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
+        int n = widths[i];
+        Pair p = makePair(context, 2, n, 1);
+        double* values = calloc((size_t)n, sizeof *values);
+        for (int x = 0; x < n; x++) {
+            float firefly = x % 997 == 3 ? 1e18f : x % 7 == 0 ? 2.0f : 0;
+            for (int c = 0; c < 3; c++) {
+                float* a = &p.a->pixels[3 * x + c];
+                *a += firefly;
+                double b = p.b->pixels[3 * x + c], r = (*a - b) / (b + 0.01);
+                values[x] += r * r;
+            }
+        }
+        qsort(values, (size_t)n, sizeof *values, compareDoubles);
+        double sum = 0;
+        for (int x = 0; x < n - n / 1000; x++) {
+            sum += values[x];
+        }
+        vplComparison c;
+        assert_int_equal(vplImage_Compare(p.a, p.b, &c), VPL_SUCCESS);
+        double wanted = sum / (3.0 * (n - n / 1000));
+        assertNear(c.trimmedRelmse, wanted, 1e-12 * wanted, "trimmed", n);
+        assert_true(n < 1000 ? c.trimmedRelmse == c.relmse : c.trimmedRelmse <= c.relmse);
+        free(values);
+        freePair(p);
+    }
+    closeTestContext(context);
+}
+
+static void RegionsCoverEveryPixelOnce(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Pair p = makePair(context, 0, 37, 23);
+    vplComparison c;
+    assert_int_equal(vplImage_Compare(p.a, p.b, &c), VPL_SUCCESS);
+    static const int grids[][2] = {{1, 1}, {5, 4}, {37, 23}, {1, 23}};
+    vplRegion regions[37 * 23];
+    for (size_t g = 0; g < sizeof grids / sizeof *grids; g++) {
+        int count = grids[g][0] * grids[g][1], pixels = 0, covered[37 * 23] = {0};
+        assert_int_equal(vplImage_CompareRegions(p.a, p.b, grids[g][0], grids[g][1], regions), VPL_SUCCESS);
+        double square = 0, sumA = 0, sumB = 0;
+        for (int i = 0; i < count; i++) {
+            const vplRegion* r = &regions[i];
+            int n = r->width * r->height;
+            pixels += n;
+            for (int k = 0; k < n; k++) {
+                covered[(r->y + k / r->width) * 37 + r->x + k % r->width]++;
+            }
+            square += r->rmse * r->rmse * n;
+            sumA += r->meanA * n;
+            sumB += r->meanB * n;
+            if (r->meanB > 0) { // one pixel of the ramps is black
+                assertNear(r->ratio, r->meanA / r->meanB, 1e-12, "ratio", i);
+            }
+        }
+        for (int i = 0; i < 37 * 23; i++) {
+            assert_int_equal(covered[i], 1);
+        }
+        assertNear(sqrt(square / pixels), c.rmse, 1e-12, "rmse", (int)g);
+        assertNear(sumA / sumB, c.energyRatio, 1e-12, "energy", (int)g);
+    }
+    freePair(p);
+    closeTestContext(context);
+}
+
+static void BlackRegionsHaveARatio(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage *black = makeFlat(context, 4, 4, 0, 0, 0), *grey = makeFlat(context, 4, 4, 1, 1, 1);
+    vplRegion region;
+    assert_int_equal(vplImage_CompareRegions(black, black, 1, 1, &region), VPL_SUCCESS);
+    assert_true(region.ratio == 1 && region.rmse == 0);
+    assert_int_equal(vplImage_CompareRegions(grey, black, 1, 1, &region), VPL_SUCCESS);
+    assert_true(isinf(region.ratio) && region.rmse == 1);
+    vplImage_Destroy(black);
+    vplImage_Destroy(grey);
+    closeTestContext(context);
+}
+
+static void ACropIsItsRectangle(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Pair p = makePair(context, 2, 13, 9);
+    vplImage* crop = NULL;
+    assert_int_equal(vplImage_Crop(p.a, 3, 2, 10, 7, &crop), VPL_SUCCESS);
+    for (int i = 0; i < 3 * 10 * 7; i++) {
+        int x = 3 + i / 3 % 10, y = 2 + i / 3 / 10;
+        assert_true(crop->pixels[i] == p.a->pixels[3 * (y * 13 + x) + i % 3]);
+    }
+    vplImage_Destroy(crop);
+    static const int outside[][4] = {{-1, 0, 2, 2}, {0, -1, 2, 2}, {0, 0, 0, 2}, {0, 0, 2, 0},
+                                     {13, 0, 1, 1}, {4, 0, 10, 1}, {0, 8, 1, 2}, {1, 1, 2147483647, 1}};
+    for (size_t i = 0; i < sizeof outside / sizeof *outside; i++) {
+        const int* r = outside[i];
+        crop = NULL;
+        assert_int_equal(vplImage_Crop(p.a, r[0], r[1], r[2], r[3], &crop), VPL_INVALID_ARGUMENT);
+        assert_non_null(strstr(takeMessage(), "inside the picture, which is 13x9"));
+        assert_null(crop);
+    }
+    freePair(p);
+    closeTestContext(context);
+}
+
+// Each kind is black where nothing differs and bright where much does; FLIP's bright end is pale yellow.
+static void HeatMapsShowWhatTheyAreOf(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Pair p = makePair(context, 1, 200, 60);
+    memcpy(p.a->pixels, p.b->pixels, (size_t)3 * 200 * 60 * sizeof(float));
+    for (int i = 0; i < 3 * 60; i++) { // the top left 20x20 is turned around
+        for (int x = 0; i < 3 * 20 && x < 20; x++) {
+            p.a->pixels[3 * (i / 3 * 200 + x) + i % 3] = 1 - p.b->pixels[3 * (i / 3 * 200 + x) + i % 3];
+        }
+    }
+    for (int of = VPL_HEAT_DIFFERENCE; of <= VPL_HEAT_FLIP; of++) {
+        vplHeatmapDef def = vplDefaultHeatmapDef();
+        def.of = (vplHeat)of;
+        vplImage* map;
+        assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_SUCCESS);
+        assert_true(map->width == 200 && map->height == 86); // with the colour bar
+        const float *same = map->pixels + 3 * (50 * 200 + 150), *other = map->pixels + 3 * (10 * 200 + 10);
+        assert_true(same[0] < 0.002f && same[1] < 0.002f && same[2] < 0.002f);
+        assert_true(other[0] + other[1] + other[2] > 0.3f);
+        // The right end of the bar is the colour of the largest value.
+        const float* end = map->pixels + 3 * (65 * 200 + 199);
+        assert_true(of == VPL_HEAT_FLIP ? end[0] > 0.9f && end[2] < 0.6f : end[0] == 1 && end[2] == 1);
+        vplImage_Destroy(map);
+    }
+    freePair(p);
+    closeTestContext(context);
+}
+
+static void BadArgumentsAreRefusedInASentence(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Pair p = makePair(context, 0, 8, 8);
+    double mean = -1;
+    vplImage* map = NULL;
+    vplRegion region;
+    static const double ppds[] = {0, 0.99, 1000.5, -5, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof ppds / sizeof *ppds; i++) {
+        assert_int_equal(vplImage_Flip(p.a, p.b, ppds[i], &mean, &map), VPL_INVALID_ARGUMENT);
+        assert_non_null(strstr(takeMessage(), "must be in [1, 1000]"));
+    }
+    static const int grids[][2] = {{0, 1}, {1, 0}, {9, 1}, {1, 9}, {-1, -1}};
+    for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
+        assert_int_equal(vplImage_CompareRegions(p.a, p.b, grids[i][0], grids[i][1], &region),
+                         VPL_INVALID_ARGUMENT);
+        assert_non_null(strstr(takeMessage(), "must be in [1, 8] and [1, 8]"));
+    }
+    vplHeatmapDef def = vplDefaultHeatmapDef();
+    def.of = (vplHeat)4;
+    assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_INVALID_ARGUMENT);
+    def = vplDefaultHeatmapDef();
+    def.scale = NAN;
+    assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_INVALID_ARGUMENT);
+    def = vplDefaultHeatmapDef();
+    def.cookie = 0;
+    assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_INVALID_ARGUMENT);
+    assert_true(mean == -1 && map == NULL);
+    freePair(p);
+    closeTestContext(context);
+}
+
+// By every metric, whichever picture it is in, naming the pixel.
+static void PicturesThatAreNotFiniteAreRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    static const float bad[] = {NAN, INFINITY, -INFINITY};
+    for (int i = 0; i < 6; i++) {
+        Pair p = makePair(context, 0, 6, 5);
+        (i < 3 ? p.a : p.b)->pixels[3 * (2 * 6 + 4) + 1] = bad[i % 3];
+        double mean;
+        vplImage* map = NULL;
+        vplRegion region;
+        vplComparison c;
+        const char* const name = i < 3 ? "first picture: pixel (4, 2)" : "second picture: pixel (4, 2)";
+        for (int metric = 0; metric < 5; metric++) {
+            vplResult result = metric == 0   ? vplImage_Compare(p.a, p.b, &c)
+                               : metric == 1 ? vplImage_Ssim(p.a, p.b, &mean, &map)
+                               : metric == 2 ? vplImage_Flip(p.a, p.b, 60, &mean, &map)
+                               : metric == 3 ? vplImage_CompareRegions(p.a, p.b, 1, 1, &region)
+                                             : vplImage_HeatmapOf(p.a, p.b, NULL, &map);
+            assert_int_equal(result, VPL_INVALID_ARGUMENT);
+            assert_non_null(strstr(takeMessage(), name));
+            assert_null(map);
+        }
+        freePair(p);
+    }
+    closeTestContext(context);
+}
+
+static void PicturesOfDifferentSizeAreRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Pair p = makePair(context, 0, 6, 5), q = makePair(context, 0, 5, 6);
+    double mean;
+    vplRegion region;
+    assert_int_equal(vplImage_Ssim(p.a, q.a, &mean, NULL), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_Flip(p.a, q.a, 60, &mean, NULL), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_CompareRegions(p.a, q.a, 1, 1, &region), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "differ in size: 6x5 and 5x6"));
+    freePair(p);
+    freePair(q);
+    closeTestContext(context);
+}
+
+// Values that a renderer may well make: metrics stay finite and in range.
+static void HugeAndNegativeValuesGiveFiniteMetrics(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Pair p = makePair(context, 2, 20, 20);
+    static const float values[] = {3e38f, -3e38f, 1e-42f, -1e-42f, -0.01f, 1e20f, 0, 1};
+    for (int i = 0; i < 3 * 400; i++) {
+        p.a->pixels[i] = values[noise(1, (uint32_t)i) % 8];
+        p.b->pixels[i] = values[noise(2, (uint32_t)i) % 8];
+    }
+    double ssim, flip;
+    vplImage* map;
+    vplComparison c;
+    assert_int_equal(vplImage_Ssim(p.a, p.b, &ssim, NULL), VPL_SUCCESS);
+    assert_int_equal(vplImage_Flip(p.a, p.b, 60, &flip, NULL), VPL_SUCCESS);
+    assert_int_equal(vplImage_Compare(p.a, p.b, &c), VPL_SUCCESS);
+    assert_true(ssim >= -1 && ssim <= 1 && flip >= 0 && flip <= 1);
+    assert_true(isfinite(c.rmse) && isfinite(c.relmse) && isfinite(c.trimmedRelmse));
+    for (int of = VPL_HEAT_DIFFERENCE; of <= VPL_HEAT_FLIP; of++) {
+        vplHeatmapDef def = vplDefaultHeatmapDef();
+        def.of = (vplHeat)of;
+        assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_SUCCESS);
+        for (int i = 0; i < 3 * 400; i++) {
+            assert_true(map->pixels[i] >= 0 && map->pixels[i] <= 1);
+        }
+        vplImage_Destroy(map);
+    }
+    freePair(p);
+    closeTestContext(context);
+}
+
+TEST_SUITE(metrics, cmocka_unit_test(SsimAndFlipAreThoseOfOtherImplementations),
+           cmocka_unit_test(APictureIsEqualToItself), cmocka_unit_test(SsimAndFlipAreSymmetric),
+           cmocka_unit_test(SsimOfFlatPicturesIsItsLuminanceTerm),
+           cmocka_unit_test(SsimSeesWithinItsWindowOnly), cmocka_unit_test(FlipOfGreenAndBlueIsOne),
+           cmocka_unit_test(AFlipMapIsInRangeAndItsMeanIsTheMean),
+           cmocka_unit_test(FlipOfGrainFallsWithDistance),
+           cmocka_unit_test(ThreadsAndMachinesChangeNoBitOfAMetric),
+           cmocka_unit_test(TrimmedRelmseLeavesOutTheLargestThousandth),
+           cmocka_unit_test(RegionsCoverEveryPixelOnce), cmocka_unit_test(BlackRegionsHaveARatio),
+           cmocka_unit_test(ACropIsItsRectangle), cmocka_unit_test(HeatMapsShowWhatTheyAreOf),
+           cmocka_unit_test(BadArgumentsAreRefusedInASentence),
+           cmocka_unit_test(PicturesThatAreNotFiniteAreRefused),
+           cmocka_unit_test(PicturesOfDifferentSizeAreRefused),
+           cmocka_unit_test(HugeAndNegativeValuesGiveFiniteMetrics));
