@@ -13,6 +13,8 @@
     X(math)                                                                                                  \
     X(memory)                                                                                                \
     X(path)                                                                                                  \
+    X(obj)                                                                                                   \
+    X(objParts)                                                                                              \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \
     X(render)                                                                                                \

@@ -185,6 +185,10 @@ static vplResult allocate(const vplObj* obj, vplObjMesh* mesh)
 
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
 {
+    if (obj->triangleCount == 0) {
+        return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size, VPL_PARSE_ERROR,
+                              "found the end of the file, expected a face (f)");
+    }
     vplResult result = allocate(obj, mesh);
     Sweep* sweep = result == VPL_SUCCESS ? vplAllocZero(obj->context, 1, sizeof *sweep) : NULL;
     if (sweep == NULL) {
