@@ -15,6 +15,7 @@
     X(path)                                                                                                  \
     X(obj)                                                                                                   \
     X(objParts)                                                                                              \
+    X(objScene)                                                                                              \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \
     X(render)                                                                                                \

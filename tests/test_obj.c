@@ -1,96 +1,6 @@
 // SPDX-License-Identifier: MIT
 // OBJ and MTL files: what is right arrives as it was written, what is damaged is named by file, line and column.
-#include "test.h"
-
-#include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-// ---- files of the moment, and all that is said about them
-
-typedef struct Desk {
-    char folder[64], obj[96], mtl[96];
-    vplContext* context;
-    vplScene* scene;
-    char said[4000]; // one line per message: "warning: ...\n"
-} Desk;
-
-static void keepAll(void* user, vplLogLevel level, const char* message)
-{
-    static const char* const levels[] = {"error", "warning", "info"};
-    Desk* d = user;
-    size_t used = strlen(d->said);
-    snprintf(d->said + used, sizeof d->said - used, "%s: %s\n", levels[level], message);
-}
-
-static void openDesk(Desk* d)
-{
-    *d = (Desk){.folder = "/tmp/vpl-obj-XXXXXX"};
-    assert_non_null(mkdtemp(d->folder));
-    snprintf(d->obj, sizeof d->obj, "%s/a.obj", d->folder);
-    snprintf(d->mtl, sizeof d->mtl, "%s/a.mtl", d->folder);
-    vplContextDef def = vplDefaultContextDef();
-    def.workerCount = 1;
-    def.log = keepAll;
-    def.logUser = d;
-    assert_int_equal(vplContext_Create(&def, &d->context), VPL_SUCCESS);
-    assert_int_equal(vplScene_Create(d->context, &d->scene), VPL_SUCCESS);
-}
-
-static void closeDesk(Desk* d)
-{
-    vplScene_Destroy(d->scene);
-    closeTestContext(d->context);
-    unlink(d->obj);
-    unlink(d->mtl);
-    assert_int_equal(rmdir(d->folder), 0);
-}
-
-static void writeText(const char* path, const char* text)
-{
-    FILE* file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    fclose(file);
-}
-
-// Reads an OBJ file from text into the desk's scene.
-static const vplMeshDef* readText(Desk* d, const char* text)
-{
-    int mesh = -1;
-    d->said[0] = 0;
-    writeText(d->obj, text);
-    if (vplScene_LoadObj(d->scene, d->obj, &mesh) != VPL_SUCCESS) {
-        fail_msg("%s%s", text, d->said);
-    }
-    return vplScene_GetMesh(d->scene, mesh);
-}
-
-static int countOf(const char* text, const char* part)
-{
-    int count = 0;
-    for (const char* p = strstr(text, part); p != NULL; p = strstr(p + 1, part)) {
-        count++;
-    }
-    return count;
-}
-
-static vplVec3 cornerOf(const vplMeshDef* mesh, int triangle, int corner)
-{
-    return mesh->positions[mesh->indices[3 * triangle + corner]];
-}
-
-static void assertPoint(vplVec3 p, double x, double y, double z)
-{
-    if (p.x != (float)x || p.y != (float)y || p.z != (float)z) {
-        fail_msg("(%g, %g, %g), wanted (%g, %g, %g)", (double)p.x, (double)p.y, (double)p.z, x, y, z);
-    }
-}
-
-static void assertRgb(vplRgb c, double r, double g, double b)
-{
-    assertPoint((vplVec3){c.r, c.g, c.b}, r, g, b);
-}
+#include "obj_support.h"
 
 // ---- damaged files
 
@@ -194,9 +104,9 @@ static void EveryFormOfAFaceGivesTheSameTriangle(void** state)
         }
         const vplMeshDef* mesh = readText(&d, texts[i]);
         assert_true(mesh->triangleCount == 1 && mesh->vertexCount == 3 && d.said[0] == 0);
-        assertPoint(cornerOf(mesh, 0, 0), 0, 0, 0);
-        assertPoint(cornerOf(mesh, 0, 1), 1, 0, 0);
-        assertPoint(cornerOf(mesh, 0, 2), 0, 1, 0);
+        assertPoint(meshCorner(mesh, 0, 0), 0, 0, 0);
+        assertPoint(meshCorner(mesh, 0, 1), 1, 0, 0);
+        assertPoint(meshCorner(mesh, 0, 2), 0, 1, 0);
         assert_true((mesh->normals != NULL) == (strstr(texts[i], "vn") != NULL));
         closeDesk(&d);
     }
@@ -206,7 +116,7 @@ static double areaOf(const vplMeshDef* mesh, int material)
 {
     double area = 0;
     for (int i = 0; i < mesh->triangleCount; i++) {
-        vplVec3 a = cornerOf(mesh, i, 0), b = cornerOf(mesh, i, 1), c = cornerOf(mesh, i, 2);
+        vplVec3 a = meshCorner(mesh, i, 0), b = meshCorner(mesh, i, 1), c = meshCorner(mesh, i, 2);
         double u[3] = {b.x - a.x, b.y - a.y, b.z - a.z}, v[3] = {c.x - a.x, c.y - a.y, c.z - a.z};
         double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
         area += mesh->materials[i] == material ? 0.5 * sqrt(x * x + y * y + z * z) : 0;
@@ -230,11 +140,11 @@ static void AFileOfEverythingIsRead(void** state)
     for (int i = 0; i < 3; i++) {
         assert_string_equal(vplScene_GetMaterial(d.scene, i)->name, names[i]);
     }
-    assertRgb(vplScene_GetMaterial(d.scene, 0)->diffuse, 0.5, 0.25, 0.125);
-    assertRgb(vplScene_GetMaterial(d.scene, 0)->emission, 0, 0, 0);
-    assertRgb(vplScene_GetMaterial(d.scene, 1)->diffuse, 0.75, 0.75, 0.75);
-    assertRgb(vplScene_GetMaterial(d.scene, 2)->diffuse, 0, 0, 0);
-    assertRgb(vplScene_GetMaterial(d.scene, 2)->emission, 10, 20, 30);
+    assertColour(vplScene_GetMaterial(d.scene, 0)->diffuse, 0.5, 0.25, 0.125);
+    assertColour(vplScene_GetMaterial(d.scene, 0)->emission, 0, 0, 0);
+    assertColour(vplScene_GetMaterial(d.scene, 1)->diffuse, 0.75, 0.75, 0.75);
+    assertColour(vplScene_GetMaterial(d.scene, 2)->diffuse, 0, 0, 0);
+    assertColour(vplScene_GetMaterial(d.scene, 2)->emission, 10, 20, 30);
     assertNear(areaOf(m, 0), 4 + 8 + 2, 1e-12, "brick", 0);
     assertNear(areaOf(m, 1), 2 * sqrt(5), 1e-12, "fine paint", 0);
     assertNear(areaOf(m, 2), 16 - 6, 1e-12, "lamp", 0); // (0,0) (4,0) (4,4) (2,1) (0,4)
@@ -351,7 +261,7 @@ static void AGridComesBackAsItWasWritten(void** state)
     for (int i = 0; i < SIDE * SIDE; i++) { // vertices are numbered by their first use
         int row = i / SIDE, column = i % SIDE, square = row * (SIDE - 1) + column;
         if (row < SIDE - 1 && column < SIDE - 1) {
-            vplVec3 p = cornerOf(mesh, 2 * square, 0);
+            vplVec3 p = meshCorner(mesh, 2 * square, 0);
             assert_memory_equal(&p, &points[i], sizeof p);
         }
     }
