@@ -15,6 +15,9 @@
     X(memory)                                                                                                \
     X(metrics)                                                                                               \
     X(path)                                                                                                  \
+    X(obj)                                                                                                   \
+    X(objParts)                                                                                              \
+    X(objScene)                                                                                              \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \
     X(render)                                                                                                \

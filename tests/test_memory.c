@@ -195,6 +195,29 @@ static void EveryFailedAllocationOfAComparisonIsReported(void** state)
     }
 }
 
+static vplResult readMeshes(vplContext* context, const char* path, int variant)
+{
+    static const char* const scenes[] = {"tests/data/obj/meshes.json", "tests/data/obj/everything.obj",
+                                         "tests/data/obj/square.obj"};
+    (void)path;
+    vplScene* scene = NULL;
+    vplResult result = vplScene_Load(context, scenes[variant], &scene);
+    if (result == VPL_SUCCESS) { // once more into a scene that has the names already
+        result = vplScene_LoadObj(scene, scenes[variant ? variant : 1], NULL);
+    }
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfTheObjReaderIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 3; variant++) {
+        failEveryAllocation(readMeshes, "png", variant, false);
+        failEveryAllocation(readMeshes, "png", variant, true);
+    }
+}
+
 // ---- jansson allocates by itself
 
 static long jsonAllocations, jsonFailAt;
@@ -232,4 +255,5 @@ static void EveryFailedAllocationOfTheJsonReaderIsReported(void** state)
 TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheJsonReaderIsReported));

@@ -101,9 +101,9 @@ vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut);
 vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut);
 
-// Reads an OBJ file with the MTL files it names and adds its materials (Kd reflectance, Ke emission) and one
-// mesh of all its faces. Faces without a material get a grey one. What is not understood is logged once as a
-// warning; a damaged line is an error with file:line.
+// Reads an OBJ file with the MTL files it names (see README: Meshes) and adds one mesh of all its faces and the
+// materials they use (Kd reflectance, Ke emission), named "file.obj:name". Faces without a material get a grey
+// one. What is not understood is logged once as a warning; a damaged line is an error with file:line:column.
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut);
 
 int vplScene_GetCameraCount(const vplScene* scene);

@@ -10,7 +10,9 @@ typedef struct Topic {
 
 static const Topic TOPICS[] = {
     {"render", "vpl render SCENE -o FILE [options]", "renders a picture",
-     "Renders SCENE (.json) and writes a picture. Files appear whole or not at all."},
+     "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
+     "or a\n"
+     "mesh (.obj), which gets a camera that sees all of it and, if nothing emits, a light."},
     {"lights", "vpl lights SCENE [options]", "lists the virtual lights",
      "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of\n"
      "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "

@@ -144,10 +144,6 @@ vplResult vplObj_Count(vplObj* obj)
     if (result != VPL_SUCCESS) {
         return result;
     }
-    if (obj->triangleCount == 0) {
-        return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size, VPL_PARSE_ERROR,
-                              "found the end of the file, expected a face (f)");
-    }
     if (obj->pointCount > VPL_MAX_TRIANGLES || obj->triangleCount > VPL_MAX_TRIANGLES) {
         return vplFail(obj->context, VPL_LIMIT,
                        "%s: %lld points (v) and %lld triangles, at most %d are allowed", obj->text.file,

@@ -100,25 +100,26 @@ static vplResult addTriangle(Sweep* s, int a, int b, int c)
 static vplResult addPolygon(Sweep* s, int corners, const char* face)
 {
     vplResult result = VPL_SUCCESS;
+    int64_t emptyBefore = s->mesh->emptyCount;
     for (int i = 0; i < corners; i++) {
         s->positions[i] = s->obj->points[s->cornerPoints[i]];
     }
     vplPolygon_Triangulate(&s->polygon, s->positions, corners);
-    if (!s->polygon.simple) {
-        s->firstCrossing = s->crossingCount++ == 0 ? face : s->firstCrossing;
-    }
     for (int i = 0; i < s->polygon.triangleCount && result == VPL_SUCCESS; i++) {
         const int* t = s->polygon.triangles[i];
         result = addTriangle(s, t[0], t[1], t[2]);
     }
+    bool hasArea = s->mesh->emptyCount < emptyBefore + s->polygon.triangleCount;
+    if (!s->polygon.simple && hasArea) {
+        s->firstCrossing = s->crossingCount++ == 0 ? face : s->firstCrossing;
+    }
     return result;
 }
 
-static vplResult readFace(Sweep* s, vplWord line)
+static vplResult readFace(Sweep* s, vplWord line, const char* face)
 {
     int corners = 0;
     vplWord word;
-    const char* face = line.start;
     while (vplNextWord(&line, &word)) { // at most VPL_MAX_CORNERS: the first sweep counted
         vplResult result = readCorner(s, word, corners++);
         if (result != VPL_SUCCESS) {
@@ -139,7 +140,7 @@ static vplResult readLine(Sweep* s, vplWord line)
         s->normals++;
         break;
     case VPL_OBJ_FACE:
-        return readFace(s, line);
+        return readFace(s, line, keyword.start);
     case VPL_OBJ_MATERIAL:
         return vplObjMaterials_Get(&s->obj->materials, vplRestOfLine(line), &s->material);
     default:
@@ -158,7 +159,7 @@ static vplResult readLines(Sweep* s)
     }
     if (result == VPL_SUCCESS && s->crossingCount > 0) {
         vplText_WarnAt(&s->obj->text, s->firstCrossing,
-                       "the outline of this face crosses itself; triangles may overlap (%lld such faces)",
+                       "the outline of this face crosses itself; its triangles may overlap (%lld such faces)",
                        (long long)s->crossingCount);
     }
     return result;
@@ -185,6 +186,10 @@ static vplResult allocate(const vplObj* obj, vplObjMesh* mesh)
 
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
 {
+    if (obj->triangleCount == 0) {
+        return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size, VPL_PARSE_ERROR,
+                              "found the end of the file, expected a face (f)");
+    }
     vplResult result = allocate(obj, mesh);
     Sweep* sweep = result == VPL_SUCCESS ? vplAllocZero(obj->context, 1, sizeof *sweep) : NULL;
     if (sweep == NULL) {

@@ -23,8 +23,9 @@ static double turn(const double* a, const double* b, const double* c)
 }
 
 // The plane's axes: along the largest component of the normal, so that straight lines, turns and ratios of areas
-// stay what they are. Swapped where the normal points away, so that every polygon turns left.
-static void project(vplPolygon* g, const vplVec3* corners, int count)
+// stay what they are. Swapped where the normal points away, so that every polygon turns left. False if there is no
+// normal: the corners lie on a line, or the outline turns as much to the left as to the right.
+static bool project(vplPolygon* g, const vplVec3* corners, int count)
 {
     double n[3] = {0, 0, 0};
     const float* origin = &corners[0].x;
@@ -45,6 +46,7 @@ static void project(vplPolygon* g, const vplVec3* corners, int count)
         g->at[i][0] = (double)(&corners[i].x)[u];
         g->at[i][1] = (double)(&corners[i].x)[v];
     }
+    return n[axis] != 0;
 }
 
 // True if every corner turns left and the outline goes round once: then x turns back exactly twice.
@@ -62,6 +64,27 @@ static bool isStrictlyConvex(const vplPolygon* g, int count)
         direction = now;
     }
     return reversals + (direction != first) <= 2;
+}
+
+static bool isLeftAndRight(double a, double b)
+{
+    return (a > 0 && b < 0) || (a < 0 && b > 0);
+}
+
+// True if two edges meet between their ends.
+static bool crossesItself(const vplPolygon* g, int count)
+{
+    for (int i = 0; i < count; i++) {
+        const double *a = g->at[i], *b = g->at[(i + 1) % count];
+        for (int j = i + 2; j < count; j++) {
+            const double *c = g->at[j], *d = g->at[(j + 1) % count];
+            if (isLeftAndRight(turn(a, b, c), turn(a, b, d)) &&
+                isLeftAndRight(turn(c, d, a), turn(c, d, b))) {
+                return true;
+            }
+        }
+    }
+    return false;
 }
 
 static void emit(vplPolygon* g, int a, int b, int c)
@@ -154,8 +177,7 @@ static void clipEars(vplPolygon* g, int count)
     int start = 0;
     for (int left = count; left > 3; left--) {
         int tip = findEar(g, start, &care);
-        g->simple = g->simple && tip >= 0;
-        tip = tip >= 0 ? tip : start;
+        tip = tip >= 0 ? tip : start; // what crosses itself may have none
         int previous = g->previous[tip], next = g->next[tip];
         emit(g, previous, tip, next);
         g->next[previous] = next;
@@ -172,9 +194,9 @@ static void clipEars(vplPolygon* g, int count)
 void vplPolygon_Triangulate(vplPolygon* polygon, const vplVec3* corners, int count)
 {
     polygon->triangleCount = 0;
-    polygon->simple = true;
-    project(polygon, corners, count);
+    polygon->simple = project(polygon, corners, count);
     if (!isStrictlyConvex(polygon, count)) {
+        polygon->simple = polygon->simple && !crossesItself(polygon, count);
         clipEars(polygon, count);
         return;
     }

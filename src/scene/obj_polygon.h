@@ -14,7 +14,7 @@ typedef struct vplPolygon {
     bool ear[VPL_MAX_CORNERS];
     int triangles[VPL_MAX_CORNERS - 2][3]; // the result: corners in the polygon's own order of turning
     int triangleCount;
-    bool simple; // false: the outline crosses itself, and the triangles cover it somehow
+    bool simple; // false: the outline crosses itself or has no area, and the triangles cover it somehow
 } vplPolygon;
 
 // Cuts a polygon of 3 to VPL_MAX_CORNERS corners into `count` - 2 triangles that cover it without overlap, also

@@ -52,7 +52,7 @@ for pipeline in multipass "batched --batch 7" deferred; do
     done
 done
 succeeds InfoText "$vpl" info "$room" --size 1920x1080 --shadow-map 512
-check InfoCountsObjects grep -qE '^ +objects +7 \(5 quads, 2 boxes\)$' "$scratch/stdout"
+check InfoCountsObjects grep -qE '^ +objects +7 \(5 quads, 2 boxes, 0 meshes\)$' "$scratch/stdout"
 check InfoCountsTriangles grep -qE '^ +triangles +34$' "$scratch/stdout"
 check InfoHasBounds grep -qE '^ +bounds +\(-2.5, 0, -2.5\) to \(2.5, 5, 2.5\) m$' "$scratch/stdout"
 check InfoHasLights grep -qE '^ +virtual lights +18 \(10, 5, 2, 1\)$' "$scratch/stdout"

@@ -37,3 +37,28 @@ succeeds InfoOfASceneThatCannotBeRendered "$vpl" info "$scratch/spot.json"
 check InfoSaysWhyNot grep -q 'not possible:' "$scratch/stdout"
 succeeds ASceneOfNothingIsBlack "$vpl" render "$scratch/dark.json" -o "$out/dark.pfm" --size 8x8 --method direct
 rm -f "$out/dark.pfm"
+
+grep -v '^#' tests/data/obj/broken/expected.csv | tail -n +2 >"$scratch/expected"
+while IFS=, read -r file where line column found expected; do
+    path=tests/data/obj/broken
+    refuses "BrokenObj: $file" 2 "vpl: $path/$where:$line:$column: " "$vpl" info "$path/$file"
+    check "BrokenObjSentence: $file" grep -qF -- "$found" "$scratch/stderr"
+    check "BrokenObjExpects: $file" grep -qF -- "$expected" "$scratch/stderr"
+done <"$scratch/expected"
+equals EveryBrokenObjIsListed "$(ls tests/data/obj/broken/*.obj | wc -l)" "$(wc -l <"$scratch/expected")"
+refuses ObjIsMissing 2 "none.obj: cannot open: No such file" "$vpl" render "$scratch/none.obj" -o "$never"
+
+# A mesh in a scene, and by itself: the program says what it added, unless told to be quiet.
+succeeds InfoOfASceneOfMeshes "$vpl" info tests/data/obj/meshes.json --json
+equals InfoCountsObjectsOfMeshes 3 "$(field "$scratch/stdout" mesh)"
+equals InfoCountsTrianglesOfMeshes 11 "$(tr -d ' \n' <"$scratch/stdout" | sed -n 's/.*"meshes":{[^}]*"triangles":\([0-9]*\).*/\1/p')"
+succeeds ASceneOfMeshesIsRendered "$vpl" render tests/data/obj/meshes.json -o "$out/meshes.pfm" --size 32x24 --method direct
+"$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 32x24 --method direct 2>"$scratch/said"
+equals ObjAloneIsRendered 0 $?
+check ObjAloneSaysItsCamera grep -q 'square.obj: an OBJ file has no camera; it looks from' "$scratch/said"
+check ObjAloneSaysItsLight grep -q 'square.obj: nothing emits light; a point light of' "$scratch/said"
+equals ObjAloneSaysNoMore 2 "$(wc -l <"$scratch/said")"
+cp "$out/square.pfm" "$scratch/square.pfm"
+succeeds ObjAloneIsSilentWhenQuiet "$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 32x24 --method direct --quiet
+check ObjAloneHasTheSameBits cmp "$out/square.pfm" "$scratch/square.pfm"
+rm -f "$out/meshes.pfm" "$out/square.pfm"

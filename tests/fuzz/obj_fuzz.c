@@ -28,10 +28,12 @@ static void writeMemoryFile(int number, const uint8_t* bytes, size_t size)
 
 static void requireSentence(const FuzzLog* log)
 {
-    int file, line, column, used = 0;
+    int line, column, used = 0;
+    const char* place = log->message + strcspn(log->message, ":"); // an mtllib may name any open file
     REQUIRE(log->errors == 1 && isPrintable(log->message));
-    REQUIRE(sscanf(log->message, FOLDER "%d:%d:%d: found %n", &file, &line, &column, &used) == 3 && used > 0);
-    REQUIRE(line >= 1 && column >= 1 && strstr(log->message + used, "expected ") != NULL);
+    REQUIRE(strncmp(log->message, FOLDER, strlen(FOLDER)) == 0);
+    REQUIRE(sscanf(place, ":%d:%d: found %n", &line, &column, &used) == 2 && used > 0);
+    REQUIRE(line >= 1 && column >= 1 && strstr(place + used, "expected ") != NULL);
 }
 
 static void requireMesh(const vplScene* scene)
