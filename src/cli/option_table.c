@@ -64,6 +64,8 @@ const Option OPTIONS[] = {
      "exact (default), or obb: particles stop at an object's oriented bounding box"},
     {"--spp", "N", RENDER | INFO, readInt, AT(render.samplesPerPixel), 1, VPL_MAX_SAMPLES, NULL,
      "paths per pixel of --method path; default 64"},
+    {"--pixel", "P", RENDER, readChoice, AT(render.pixel), 0, 0, "area|centre",
+     "area (default): --method path averages over each pixel; centre: looks at its centre, as other methods"},
     {"--max-bounces", "N", RENDER | INFO, readInt, AT(render.maxBounces), -1, VPL_MAX_BOUNCES, NULL,
      "diffuse reflections of --method path before the eye's last; -1 (default): as many as it takes"},
     {"--shadow-map", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.shadowMapSize), 1, VPL_MAX_SHADOW_MAP,
