@@ -10,7 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html", "reference.pfm"};
+static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html", "reference-a.pfm",
+                                    "reference-b.pfm"};
 
 enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
@@ -72,9 +73,11 @@ static int writeResults(Tradeoff* t)
 {
     char path[PATH_MAX];
     const char* folder = t->arguments->output;
-    if (t->reference.spp > 0 && (!joinPath(folder, "reference.pfm", path) ||
-                                 vplImage_Write(t->reference.image, path, NULL) != VPL_SUCCESS)) {
-        return EXIT_COULD_NOT;
+    for (int i = 0; i < 2 && t->reference.spp > 0; i++) {
+        if (!joinPath(folder, i == 0 ? "reference-a.pfm" : "reference-b.pfm", path) ||
+            vplImage_Write(t->reference.halves[i], path, NULL) != VPL_SUCCESS) {
+            return EXIT_COULD_NOT;
+        }
     }
     bool good = writeResult(t, "tradeoff.csv", writeTable) && writeResult(t, "tradeoff.svg", writePlot) &&
                 writeResult(t, "report.html", writeReport);
@@ -145,6 +148,8 @@ static void destroy(Tradeoff* t)
         free(t->settings[i].runs);
     }
     vplImage_Destroy(t->reference.image);
+    vplImage_Destroy(t->reference.halves[0]);
+    vplImage_Destroy(t->reference.halves[1]);
     vplScene_Destroy(t->scene);
     vplContext_Destroy(t->context);
     free(t);

@@ -37,6 +37,7 @@ typedef struct Run {
     uint64_t seed;
     vplRenderStats stats;
     vplComparison comparison;
+    double error; // as errorOf
 } Run;
 
 typedef struct Setting {
@@ -47,7 +48,7 @@ typedef struct Setting {
     double work; // foreseen, in units that only compare settings of one family and pipeline
     Run* runs;
     int runCount;
-    double error, errorLow, errorHigh; // relative rmse: median, least and most of the seeds
+    double error, errorLow, errorHigh; // as errorOf: median, least and most of the seeds
     double cpuMs, cpuLow, cpuHigh, wallMs;
     double energy;           // median of the ratio to the truth's
     char problem[SENTENCE];  // why it was not measured; empty: it was, or time ran out before
@@ -59,10 +60,12 @@ typedef struct Setting {
 // The picture that counts as true.
 typedef struct Reference {
     vplImage* image;
-    double error; // its own, as relative rmse; negative where it is not known
-    int spp;      // 0: from a file
-    double ms;    // processor time
-    double mean;  // of all pixels and channels
+    vplImage* halves[2]; // independent pictures of which it is the mean; NULL if there is only one
+    double error;        // its own, as relative rmse; negative where it is not known
+    double resolution;   // errors below this cannot be told from 0; 0 where that is not known
+    int spp;             // 0: from files
+    double ms;           // processor time
+    double mean;         // of all pixels and channels
 } Reference;
 
 typedef struct Tradeoff {
@@ -94,6 +97,10 @@ double secondsNow(void);
 
 // Reads or path-traces the truth. A sentence was printed unless it returns EXIT_DONE.
 int makeReference(Tradeoff* t);
+
+// The error that all of this is about: root mean square difference from the truth / mean of the truth. With two
+// halves, free of the reference's own noise. Never below the reference's resolution.
+double errorOf(const Reference* r, const vplImage* image, const vplComparison* comparison);
 
 // Renders all settings that fit into the time. EXIT_DONE also if interrupted; then t->interrupted says so.
 int measureSettings(Tradeoff* t);

@@ -13,7 +13,7 @@ enum { LIMIT_COUNT = sizeof LIMITS / sizeof *LIMITS };
 
 static bool isJudged(const Tradeoff* t, double limit)
 {
-    return limit > t->reference.error;
+    return limit > t->reference.resolution;
 }
 
 // Lines may break between words only: half an option cannot be copied.
@@ -47,7 +47,7 @@ static void addRow(const Tradeoff* t, double limit, Text* html)
     int found = findCheapest(t, FAMILY_COUNT, limit);
     addText(html, "<tr><th>%g %%</th>", 100 * limit);
     if (!isJudged(t, limit)) {
-        addText(html, "<td colspan=\"5\">below the reference's own error: not judged</td></tr>\n");
+        addText(html, "<td colspan=\"5\">below what the reference can tell: not judged</td></tr>\n");
         return;
     }
     if (found < 0) {
@@ -100,8 +100,8 @@ static void addFamily(const Tradeoff* t, Family family, Text* html)
         formatTime(found >= 0 ? t->settings[found].cpuMs : 0, text, sizeof text);
         addText(html, "<td class=\"n\">%s</td>", found >= 0 ? text : "&ndash;");
     }
-    formatPercent(fmax(least, t->reference.error), text, sizeof text);
-    addText(html, "<td class=\"n\">%s%s</td></tr>\n", least <= t->reference.error ? "&le; " : "", text);
+    formatPercent(fmax(least, t->reference.resolution), text, sizeof text);
+    addText(html, "<td class=\"n\">%s%s</td></tr>\n", least <= t->reference.resolution ? "&le; " : "", text);
 }
 
 // The same question asked of each family alone: the best is not always what one wants to use.
@@ -145,7 +145,7 @@ static void addFloors(const Tradeoff* t, Text* html)
 {
     for (int f = FAMILY_UNSHADOWED; f <= FAMILY_RAY; f++) {
         double floor = findFloor(t, (Family)f);
-        if (isfinite(floor) && floor > t->reference.error) {
+        if (isfinite(floor) && floor > t->reference.resolution) {
             char text[32];
             formatPercent(floor, text, sizeof text);
             addText(html,
@@ -167,8 +167,9 @@ void addAnswers(const Tradeoff* t, Text* html)
     addFloors(t, html);
     addText(html,
             "<li><em>Error</em> is the root-mean-square difference from the true picture divided by the true "
-            "picture's mean: what <code>vpl compare</code> prints as <code>relative_rmse</code>. Background "
-            "counts.</li>\n"
+            "picture's mean, over all pixels: the <code>relative_rmse</code> of <code>vpl compare</code>, "
+            "less the "
+            "truth's own noise.</li>\n"
             "<li><em>Energy</em> is all light in the picture divided by all light in the truth: 1 is right, "
             "less is darker.</li>\n</ul>\n");
     addText(html,

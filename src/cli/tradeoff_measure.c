@@ -96,6 +96,9 @@ static void measureSeed(Tradeoff* t, Setting* s)
         result = vplImage_Compare(image, t->reference.image, &run->comparison);
     }
     if (result == VPL_SUCCESS) {
+        run->error = errorOf(&t->reference, image, &run->comparison);
+    }
+    if (result == VPL_SUCCESS) {
         result = timeAgain(t, &options, &run->stats);
     }
     if (result != VPL_SUCCESS) {
@@ -215,7 +218,7 @@ static double field(const Run* run, int which)
 {
     switch (which) {
     case 0:
-        return run->comparison.relativeRmse;
+        return run->error;
     case 1:
         return run->stats.cpuMs;
     case 2:
@@ -285,11 +288,10 @@ double findFloor(const Tradeoff* t, Family family)
 {
     double work[MAX_SETTINGS], error[MAX_SETTINGS];
     int count = 0;
-    const vplRenderOptions* base = &t->settings[0].arguments.render;
-    for (int i = 0; i < t->settingCount; i++) { // a sweep of particles stands in ascending order
+    for (int i = 0; i < t->settingCount; i++) { // particles stand in ascending order
         const Setting* s = &t->settings[i];
-        if (isMeasured(s) && s->family == family && (s->sweeps & 63) != 0 &&
-            s->arguments.render.minDistance == base->minDistance) {
+        // The first rows of SWEEPS are particles for none, map and ray, in the order of the families.
+        if (isMeasured(s) && s->family == family && (s->sweeps >> (family - FAMILY_UNSHADOWED) & 1) != 0) {
             work[count] = s->work;
             error[count++] = s->error;
         }

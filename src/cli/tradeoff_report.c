@@ -53,24 +53,35 @@ static void addReference(const Tradeoff* t, Text* html)
 {
     const Reference* r = &t->reference;
     char text[32];
+    formatTime(r->ms, text, sizeof text);
     addText(html, "<li>The truth: ");
-    if (r->spp == 0) {
+    if (r->spp > 0) {
+        addText(
+            html,
+            "path traced in two independent halves with %d paths per pixel in all (%s of processor time), "
+            "through the centres of pixels as all methods draw: jagged edges do not count as error. "
+            "<code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
+            r->spp, text);
+    } else {
         addText(html, "<code>");
         addEscaped(html, t->arguments->reference);
-        addText(html,
-                "</code>, as given; its own error is not known, so small errors may be the file's.</li>\n");
+        addText(html, "</code>, as given.");
+    }
+    if (r->error < 0) {
+        addText(html, " Its own error is not known; small errors may be the file's.</li>\n");
         return;
     }
-    formatTime(r->ms, text, sizeof text);
-    addText(html,
-            "path traced with %d paths per pixel in two independent halves (%s of processor time; "
-            "<code>reference.pfm</code>, to be used again with <code>--reference</code>). ",
-            r->spp, text);
     formatPercent(r->error, text, sizeof text);
-    addText(html,
-            "Half the difference of the halves says that it is wrong by <strong>%s</strong> itself; no error "
-            "below that is claimed.</li>\n",
-            text);
+    addText(
+        html,
+        " It is noisy by %s itself, but the noise of the halves is independent and cancels in the mean of ",
+        text);
+    formatPercent(r->resolution, text, sizeof text);
+    addText(
+        html,
+        "(x &minus; a)(x &minus; b). What remains unknown is <strong>%s</strong>, two standard errors; no "
+        "error below that is claimed.</li>\n",
+        text);
 }
 
 // "AMD EPYC ...", or what uname says where /proc/cpuinfo has no such line.
