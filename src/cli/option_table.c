@@ -102,7 +102,7 @@ const Option OPTIONS[] = {
     {"--runs", "N", BENCH, readInt, AT(runs), 1, 1000, NULL,
      "runs of which the median is printed; default 5"},
     {"--threads", "T", RENDER | LIGHTS | BENCH | COMPARE | TRADEOFF, readThreads, 0, 0, 0, NULL,
-     "worker threads, 0 (default): one per processor; bench takes several: 1,2"},
+     "worker threads, 0 (default, tradeoff: 1): one per processor; bench takes several: 1,2"},
     {"--isa", "I", RENDER | LIGHTS | BENCH | TRADEOFF, readChoice, AT(context.isa), 0, 0,
      "auto|scalar|sse2|avx2|avx512", "auto (default), scalar, sse2, avx2, avx512: the same bits"},
     {"--quiet", NULL, ~0, readFlag, AT(quiet), 0, 0, NULL, "no progress bar, no warnings"},

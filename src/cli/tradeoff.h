@@ -38,6 +38,7 @@ typedef struct Run {
     vplRenderStats stats;
     vplComparison comparison;
     double error; // as errorOf
+    double ssim, flip;
 } Run;
 
 typedef struct Setting {
@@ -70,9 +71,11 @@ typedef struct Reference {
 
 typedef struct Tradeoff {
     const Arguments* arguments; // of the command line; its render options are the base
-    vplContext* context;
+    vplContext* context;        // in which settings are measured
     vplScene* scene;
-    double diagonal; // of the scene, metres
+    vplContext* tracing; // in which the reference is made, with all threads
+    vplScene* traced;    // the same scene there
+    double diagonal;     // of the scene, metres
     Reference reference;
     Setting settings[MAX_SETTINGS];
     int settingCount;
@@ -109,8 +112,8 @@ int measureSettings(Tradeoff* t);
 void summarise(Tradeoff* t);
 
 // Renders with the library's error kept in t->message and the deadline watched.
-vplResult renderQuietly(Tradeoff* t, const vplRenderOptions* options, vplImage** imageOut,
-                        vplRenderStats* stats);
+vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptions* options,
+                        vplImage** imageOut, vplRenderStats* stats);
 
 // ---- results
 

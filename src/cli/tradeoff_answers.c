@@ -47,18 +47,16 @@ static void addRow(const Tradeoff* t, double limit, Text* html)
     int found = findCheapest(t, FAMILY_COUNT, limit);
     addText(html, "<tr><th>%g %%</th>", 100 * limit);
     if (!isJudged(t, limit)) {
-        addText(html, "<td colspan=\"5\">below what the reference can tell: not judged</td></tr>\n");
+        addText(html, "<td colspan=\"4\">below what the reference can tell: not judged</td></tr>\n");
         return;
     }
     if (found < 0) {
-        addText(html, "<td colspan=\"5\">not reached</td></tr>\n");
+        addText(html, "<td colspan=\"4\">not reached</td></tr>\n");
         return;
     }
     const Setting* s = &t->settings[found];
     formatTime(s->cpuMs, text, sizeof text);
     addText(html, "<td class=\"n\"><strong>%s</strong></td>", text);
-    formatTime(s->wallMs, text, sizeof text);
-    addText(html, "<td class=\"n\">%s</td>", text);
     formatPercent(s->error, text, sizeof text);
     addText(html, "<td class=\"n\">%s%s</td>", text, s->errorHigh > limit ? "<sup>a</sup>" : "");
     addText(html, "<td class=\"n\">%.3f</td><td>", s->energy);
@@ -120,7 +118,7 @@ static void addFamilies(const Tradeoff* t, Text* html)
 
 static void addSummaryOf(const Tradeoff* t, double limit, Text* html)
 {
-    char cpu[32], wall[32];
+    char cpu[32];
     int found = isJudged(t, limit) ? findCheapest(t, FAMILY_COUNT, limit) : -1;
     if (found < 0) {
         addText(html, "<p class=\"answer\"><strong>%g %% error</strong> %s.</p>\n", 100 * limit,
@@ -130,13 +128,11 @@ static void addSummaryOf(const Tradeoff* t, double limit, Text* html)
     }
     const Setting* s = &t->settings[found];
     formatTime(s->cpuMs, cpu, sizeof cpu);
-    formatTime(s->wallMs, wall, sizeof wall);
-    addText(html,
-            "<p class=\"answer\"><strong>%g %% error costs %s</strong> of processor time per %dx%d picture "
-            "(%s on %d thread%s), by %s:<br>",
-            100 * limit, cpu, s->arguments.render.width, s->arguments.render.height, wall,
-            vplContext_GetWorkerCount(t->context), vplContext_GetWorkerCount(t->context) > 1 ? "s" : "",
-            FAMILY_NAMES[s->family]);
+    addText(
+        html,
+        "<p class=\"answer\"><strong>%g %% error costs %s</strong> of processor time per %dx%d picture, by "
+        "%s:<br>",
+        100 * limit, cpu, s->arguments.render.width, s->arguments.render.height, FAMILY_NAMES[s->family]);
     addCommand(t, s, html);
     addText(html, "</p>\n");
 }
@@ -172,10 +168,9 @@ void addAnswers(const Tradeoff* t, Text* html)
             "truth's own noise.</li>\n"
             "<li><em>Energy</em> is all light in the picture divided by all light in the truth: 1 is right, "
             "less is darker.</li>\n</ul>\n");
-    addText(html,
-            "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th class=\"n\">waiting"
-            "</th><th class=\"n\">measured error</th><th class=\"n\">energy</th><th>cheapest setting, to copy"
-            "</th></tr>\n");
+    addText(html, "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th "
+                  "class=\"n\">measured error</th><th class=\"n\">energy</th><th>cheapest setting, to copy"
+                  "</th></tr>\n");
     for (int i = 0; i < LIMIT_COUNT; i++) {
         addRow(t, LIMITS[i], html);
     }

@@ -27,15 +27,15 @@ static bool watch(void* user, double fraction)
     return !t->interrupted && now < t->deadline;
 }
 
-vplResult renderQuietly(Tradeoff* t, const vplRenderOptions* options, vplImage** imageOut,
-                        vplRenderStats* stats)
+vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptions* options,
+                        vplImage** imageOut, vplRenderStats* stats)
 {
     vplRenderOptions watched = *options;
     watched.progress = watch;
     watched.progressUser = t;
     t->message[0] = 0;
     t->silent = true;
-    vplResult result = vplRender(t->scene, &watched, imageOut, stats);
+    vplResult result = vplRender(scene, &watched, imageOut, stats);
     t->silent = false;
     if (result != VPL_SUCCESS && t->message[0] == 0) {
         snprintf(t->message, sizeof t->message, "%s", vplResult_GetName(result));
@@ -75,13 +75,24 @@ static vplResult timeAgain(Tradeoff* t, const vplRenderOptions* options, vplRend
     for (int i = 1; i < REPEATS && stats->totalMs < SHORT_MS && result == VPL_SUCCESS; i++) {
         vplImage* image = NULL;
         vplRenderStats again;
-        result = renderQuietly(t, options, &image, &again);
+        result = renderQuietly(t, t->scene, options, &image, &again);
         if (result == VPL_SUCCESS && again.cpuMs < stats->cpuMs) {
             *stats = again;
         }
         vplImage_Destroy(image);
     }
     return result;
+}
+
+static vplResult compare(const Tradeoff* t, const vplImage* image, Run* run)
+{
+    const vplImage* truth = t->reference.image;
+    vplResult result = vplImage_Compare(image, truth, &run->comparison);
+    if (result == VPL_SUCCESS) {
+        run->error = errorOf(&t->reference, image, &run->comparison);
+        result = vplImage_Ssim(image, truth, &run->ssim, NULL);
+    }
+    return result == VPL_SUCCESS ? vplImage_Flip(image, truth, VPL_DEFAULT_PPD, &run->flip, NULL) : result;
 }
 
 // One more seed of a setting.
@@ -91,12 +102,9 @@ static void measureSeed(Tradeoff* t, Setting* s)
     vplRenderOptions options = s->arguments.render;
     run->seed = options.seed += (uint64_t)s->runCount;
     vplImage* image = NULL;
-    vplResult result = renderQuietly(t, &options, &image, &run->stats);
+    vplResult result = renderQuietly(t, t->scene, &options, &image, &run->stats);
     if (result == VPL_SUCCESS) {
-        result = vplImage_Compare(image, t->reference.image, &run->comparison);
-    }
-    if (result == VPL_SUCCESS) {
-        run->error = errorOf(&t->reference, image, &run->comparison);
+        result = compare(t, image, run);
     }
     if (result == VPL_SUCCESS) {
         result = timeAgain(t, &options, &run->stats);
@@ -185,7 +193,7 @@ static bool makeRoom(Tradeoff* t)
 static void warmUp(Tradeoff* t)
 {
     vplImage* image = NULL;
-    renderQuietly(t, &t->settings[0].arguments.render, &image, NULL);
+    renderQuietly(t, t->scene, &t->settings[0].arguments.render, &image, NULL);
     vplImage_Destroy(image);
 }
 

@@ -77,7 +77,7 @@ static vplResult traceHalf(Tradeoff* t, int samples, int half, vplImage** imageO
     o.samplesPerPixel = samples;
     // Far from the seeds of the settings: a path-traced setting must not share paths with its own judge.
     o.seed = base->seed ^ (UINT64_C(0x7472757468000000) + (uint64_t)half);
-    return renderQuietly(t, &o, imageOut, stats);
+    return renderQuietly(t, t->traced, &o, imageOut, stats);
 }
 
 static int explain(Tradeoff* t, vplResult result)
