@@ -75,12 +75,14 @@ static bool anySeedAbove(const Tradeoff* t)
     return false;
 }
 
+// FAMILY_COUNT: of any.
 static double leastError(const Tradeoff* t, Family family)
 {
     double least = INFINITY;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
-        least = isMeasured(s) && s->family == family ? fmin(least, s->error) : least;
+        least =
+            isMeasured(s) && (family == FAMILY_COUNT || s->family == family) ? fmin(least, s->error) : least;
     }
     return least;
 }
@@ -116,23 +118,24 @@ static void addFamilies(const Tradeoff* t, Text* html)
     addText(html, "</table>\n");
 }
 
-static void addSummaryOf(const Tradeoff* t, double limit, Text* html)
+static void addSummary(const Tradeoff* t, double limit, const Setting* s, Text* html)
 {
-    char cpu[32];
-    int found = isJudged(t, limit) ? findCheapest(t, FAMILY_COUNT, limit) : -1;
-    if (found < 0) {
-        addText(html, "<p class=\"answer\"><strong>%g %% error</strong> %s.</p>\n", 100 * limit,
-                isJudged(t, limit) ? "was not reached by any setting measured"
-                                   : "cannot be judged with this reference");
-        return;
-    }
-    const Setting* s = &t->settings[found];
+    char cpu[32], error[32];
     formatTime(s->cpuMs, cpu, sizeof cpu);
-    addText(
-        html,
-        "<p class=\"answer\"><strong>%g %% error costs %s</strong> of processor time per %dx%d picture, by "
-        "%s:<br>",
-        100 * limit, cpu, s->arguments.render.width, s->arguments.render.height, FAMILY_NAMES[s->family]);
+    formatPercent(s->error, error, sizeof error);
+    addText(html, "<p class=\"answer\">");
+    if (s->error <= limit && isJudged(t, limit)) {
+        addText(html, "<strong>%g %% error costs %s</strong> of processor time per %dx%d picture",
+                100 * limit, cpu, s->arguments.render.width, s->arguments.render.height);
+    } else {
+        addText(html, "<strong>%g %% error %s.</strong> The least error was %s for %s of processor time",
+                100 * limit,
+                isJudged(t, limit)
+                    ? "was not reached in the time given"
+                    : "cannot be judged with this reference; more <code>--time</code> makes a better one",
+                error, cpu);
+    }
+    addText(html, ", by %s:<br>", FAMILY_NAMES[s->family]);
     addCommand(t, s, html);
     addText(html, "</p>\n");
 }
@@ -158,7 +161,9 @@ static void addFloors(const Tradeoff* t, Text* html)
 
 void addAnswers(const Tradeoff* t, Text* html)
 {
-    addSummaryOf(t, 0.05, html);
+    int found = isJudged(t, 0.05) ? findCheapest(t, FAMILY_COUNT, 0.05) : -1;
+    found = found >= 0 ? found : findCheapest(t, FAMILY_COUNT, leastError(t, FAMILY_COUNT));
+    addSummary(t, 0.05, &t->settings[found], html);
     addText(html, "<ul>\n");
     addFloors(t, html);
     addText(html,
