@@ -24,6 +24,7 @@
     X(scene)                                                                                                 \
     X(sceneChecks)                                                                                           \
     X(shading)                                                                                               \
+    X(tradeoff)                                                                                              \
     X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;

@@ -79,7 +79,7 @@ installed_program() {
 [ -n "$SANITIZE_FLAGS" ] || check InstalledLibraryIsFoundByPkgConfig installed_program
 
 options_in_man_page() {
-    for command in render lights compare info bench; do
+    for command in render lights compare info tradeoff bench; do
         "$build/vpl" help $command | sed -n 's/^  \(--[a-z-]*\).*/\1/p'
     done | sort -u | while read -r option; do
         grep -q -- "$(echo "$option" | sed 's/-/\\\\-/g')" src/cli/vpl.1 || { echo "vpl.1 lacks $option"; exit 1; }

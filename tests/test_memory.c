@@ -252,7 +252,33 @@ static void EveryFailedAllocationOfTheJsonReaderIsReported(void** state)
     assert_true(jsonFailAt > 100);
 }
 
-TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
+static vplResult encodePng(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    (void)variant;
+    vplImage* image = NULL;
+    uint8_t* bytes = NULL;
+    size_t size;
+    vplWriteOptions write = vplDefaultWriteOptions();
+    write.tonemap = VPL_TONEMAP_REINHARD;
+    vplResult result = vplImage_Create(context, 60, 40, &image);
+    if (result == VPL_SUCCESS) {
+        result = vplImage_EncodePng(image, &write, &bytes, &size);
+    }
+    vplPng_Free(context, bytes);
+    vplImage_Destroy(image);
+    return result;
+}
+
+static void EveryFailedAllocationOfAnEncodedPngIsReported(void** state)
+{
+    (void)state;
+    failEveryAllocation(encodePng, "png", 0, false);
+    failEveryAllocation(encodePng, "png", 0, true);
+}
+
+TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),

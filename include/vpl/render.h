@@ -39,6 +39,12 @@ typedef enum vplLightShadows {
     VPL_LIGHT_SHADOWS_RAY       // a ray per pixel and light: exact
 } vplLightShadows;
 
+// Where in a pixel the path tracer looks.
+typedef enum vplPixel {
+    VPL_PIXEL_AREA = 0, // everywhere: the pixel is the mean over its square, edges are smooth
+    VPL_PIXEL_CENTRE    // its centre, as all other methods do: for comparing with them
+} vplPixel;
+
 typedef struct vplRenderOptions {
     vplMethod method;     // default VPL_METHOD_INSTANT_RADIOSITY
     vplLighting lighting; // default VPL_LIGHTING_PHYSICAL
@@ -67,6 +73,7 @@ typedef struct vplRenderOptions {
     int samplesPerPixel; // path: [1, VPL_MAX_SAMPLES]; default 64
     int maxBounces;      // path: reflections before the eye's last, [0, VPL_MAX_BOUNCES]; 0: direct light
                          // only; -1 (default): ended by Russian roulette alone
+    vplPixel pixel;      // path: default VPL_PIXEL_AREA
 
     int shadowMapSize;   // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
     vplShadowDef shadow; // bias and PCF of the emitters' shadows; default vplDefaultShadowDef()

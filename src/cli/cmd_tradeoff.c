@@ -10,7 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html", "reference.pfm"};
+static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html", "reference-a.pfm",
+                                    "reference-b.pfm"};
 
 enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
@@ -72,9 +73,11 @@ static int writeResults(Tradeoff* t)
 {
     char path[PATH_MAX];
     const char* folder = t->arguments->output;
-    if (t->reference.spp > 0 && (!joinPath(folder, "reference.pfm", path) ||
-                                 vplImage_Write(t->reference.image, path, NULL) != VPL_SUCCESS)) {
-        return EXIT_COULD_NOT;
+    for (int i = 0; i < 2 && t->reference.spp > 0; i++) {
+        if (!joinPath(folder, i == 0 ? "reference-a.pfm" : "reference-b.pfm", path) ||
+            vplImage_Write(t->reference.halves[i], path, NULL) != VPL_SUCCESS) {
+            return EXIT_COULD_NOT;
+        }
     }
     bool good = writeResult(t, "tradeoff.csv", writeTable) && writeResult(t, "tradeoff.svg", writePlot) &&
                 writeResult(t, "report.html", writeReport);
@@ -97,9 +100,33 @@ static int measure(Tradeoff* t)
     return code;
 }
 
+static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOut)
+{
+    vplContextDef def = t->arguments->context;
+    def.log = keepLog;
+    def.logUser = t;
+    def.workerCount = workers;
+    return vplContext_Create(&def, contextOut);
+}
+
+static int checkCamera(const Tradeoff* t)
+{
+    int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.camera;
+    if (camera >= cameras) {
+        complain("--camera is %d, the scene has %d (from 0)", camera, cameras);
+    }
+    return camera < cameras ? EXIT_DONE : EXIT_USAGE;
+}
+
 static int readScene(Tradeoff* t)
 {
-    int code = exitCode(vplScene_Load(t->context, t->arguments->positionals[0], &t->scene), true);
+    const char* path = t->arguments->positionals[0];
+    int code = exitCode(vplScene_Load(t->context, path, &t->scene), true);
+    if (code == EXIT_DONE && t->arguments->reference == NULL) {
+        t->silent = true; // what there is to say about the scene has been said
+        code = exitCode(vplScene_Load(t->tracing, path, &t->traced), true);
+        t->silent = false;
+    }
     if (code != EXIT_DONE) {
         return code;
     }
@@ -107,12 +134,7 @@ static int readScene(Tradeoff* t)
     code = exitCode(vplGeometry_Create(t->scene, &geometry), true);
     t->diagonal = geometry ? (double)vplGeometry_Diagonal(geometry) : 0;
     vplGeometry_Destroy(geometry);
-    int cameras = vplScene_GetCameraCount(t->scene);
-    if (code == EXIT_DONE && t->arguments->render.camera >= cameras) {
-        complain("--camera is %d, but the scene has %d (from 0)", t->arguments->render.camera, cameras);
-        code = EXIT_USAGE;
-    }
-    return code;
+    return code == EXIT_DONE ? checkCamera(t) : code;
 }
 
 static int run(Tradeoff* t)
@@ -145,8 +167,12 @@ static void destroy(Tradeoff* t)
         free(t->settings[i].runs);
     }
     vplImage_Destroy(t->reference.image);
+    vplImage_Destroy(t->reference.halves[0]);
+    vplImage_Destroy(t->reference.halves[1]);
     vplScene_Destroy(t->scene);
     vplContext_Destroy(t->context);
+    vplScene_Destroy(t->traced);
+    vplContext_Destroy(t->tracing);
     free(t);
 }
 
@@ -167,10 +193,12 @@ int runTradeoff(const Arguments* a)
     }
     catchInterrupts();
     t->arguments = a;
-    vplContextDef def = a->context;
-    def.log = keepLog;
-    def.logUser = t;
-    int code = vplContext_Create(&def, &t->context) == VPL_SUCCESS ? run(t) : EXIT_USAGE;
+    // One thread unless told otherwise: threads that wait for each other also use processor time, the more the
+    // busier the machine is.
+    int workers = a->threadsCount > 0 ? a->context.workerCount : 1;
+    bool open = openContextFor(t, workers, &t->context) == VPL_SUCCESS &&
+                openContextFor(t, a->context.workerCount, &t->tracing) == VPL_SUCCESS;
+    int code = open ? run(t) : EXIT_USAGE;
     destroy(t);
     return code;
 }

@@ -37,6 +37,8 @@ typedef struct Run {
     uint64_t seed;
     vplRenderStats stats;
     vplComparison comparison;
+    double error; // as errorOf
+    double ssim, flip;
 } Run;
 
 typedef struct Setting {
@@ -47,7 +49,7 @@ typedef struct Setting {
     double work; // foreseen, in units that only compare settings of one family and pipeline
     Run* runs;
     int runCount;
-    double error, errorLow, errorHigh; // relative rmse: median, least and most of the seeds
+    double error, errorLow, errorHigh; // as errorOf: median, least and most of the seeds
     double cpuMs, cpuLow, cpuHigh, wallMs;
     double energy;           // median of the ratio to the truth's
     char problem[SENTENCE];  // why it was not measured; empty: it was, or time ran out before
@@ -59,17 +61,21 @@ typedef struct Setting {
 // The picture that counts as true.
 typedef struct Reference {
     vplImage* image;
-    double error; // its own, as relative rmse; negative where it is not known
-    int spp;      // 0: from a file
-    double ms;    // processor time
-    double mean;  // of all pixels and channels
+    vplImage* halves[2]; // independent pictures of which it is the mean; NULL if there is only one
+    double error;        // its own, as relative rmse; negative where it is not known
+    double resolution;   // errors below this cannot be told from 0; 0 where that is not known
+    int spp;             // 0: from files
+    double ms;           // processor time
+    double mean;         // of all pixels and channels
 } Reference;
 
 typedef struct Tradeoff {
     const Arguments* arguments; // of the command line; its render options are the base
-    vplContext* context;
+    vplContext* context;        // in which settings are measured
     vplScene* scene;
-    double diagonal; // of the scene, metres
+    vplContext* tracing; // in which the reference is made, with all threads
+    vplScene* traced;    // the same scene there
+    double diagonal;     // of the scene, metres
     Reference reference;
     Setting settings[MAX_SETTINGS];
     int settingCount;
@@ -95,6 +101,10 @@ double secondsNow(void);
 // Reads or path-traces the truth. A sentence was printed unless it returns EXIT_DONE.
 int makeReference(Tradeoff* t);
 
+// The error that all of this is about: root mean square difference from the truth / mean of the truth. With two
+// halves, free of the reference's own noise. Never below the reference's resolution.
+double errorOf(const Reference* r, const vplImage* image, const vplComparison* comparison);
+
 // Renders all settings that fit into the time. EXIT_DONE also if interrupted; then t->interrupted says so.
 int measureSettings(Tradeoff* t);
 
@@ -102,8 +112,8 @@ int measureSettings(Tradeoff* t);
 void summarise(Tradeoff* t);
 
 // Renders with the library's error kept in t->message and the deadline watched.
-vplResult renderQuietly(Tradeoff* t, const vplRenderOptions* options, vplImage** imageOut,
-                        vplRenderStats* stats);
+vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptions* options,
+                        vplImage** imageOut, vplRenderStats* stats);
 
 // ---- results
 

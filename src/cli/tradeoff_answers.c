@@ -13,7 +13,7 @@ enum { LIMIT_COUNT = sizeof LIMITS / sizeof *LIMITS };
 
 static bool isJudged(const Tradeoff* t, double limit)
 {
-    return limit > t->reference.error;
+    return limit > t->reference.resolution;
 }
 
 // Lines may break between words only: half an option cannot be copied.
@@ -47,18 +47,16 @@ static void addRow(const Tradeoff* t, double limit, Text* html)
     int found = findCheapest(t, FAMILY_COUNT, limit);
     addText(html, "<tr><th>%g %%</th>", 100 * limit);
     if (!isJudged(t, limit)) {
-        addText(html, "<td colspan=\"5\">below the reference's own error: not judged</td></tr>\n");
+        addText(html, "<td colspan=\"4\">below what the reference can tell: not judged</td></tr>\n");
         return;
     }
     if (found < 0) {
-        addText(html, "<td colspan=\"5\">not reached</td></tr>\n");
+        addText(html, "<td colspan=\"4\">not reached</td></tr>\n");
         return;
     }
     const Setting* s = &t->settings[found];
     formatTime(s->cpuMs, text, sizeof text);
     addText(html, "<td class=\"n\"><strong>%s</strong></td>", text);
-    formatTime(s->wallMs, text, sizeof text);
-    addText(html, "<td class=\"n\">%s</td>", text);
     formatPercent(s->error, text, sizeof text);
     addText(html, "<td class=\"n\">%s%s</td>", text, s->errorHigh > limit ? "<sup>a</sup>" : "");
     addText(html, "<td class=\"n\">%.3f</td><td>", s->energy);
@@ -77,12 +75,14 @@ static bool anySeedAbove(const Tradeoff* t)
     return false;
 }
 
+// FAMILY_COUNT: of any.
 static double leastError(const Tradeoff* t, Family family)
 {
     double least = INFINITY;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
-        least = isMeasured(s) && s->family == family ? fmin(least, s->error) : least;
+        least =
+            isMeasured(s) && (family == FAMILY_COUNT || s->family == family) ? fmin(least, s->error) : least;
     }
     return least;
 }
@@ -100,8 +100,8 @@ static void addFamily(const Tradeoff* t, Family family, Text* html)
         formatTime(found >= 0 ? t->settings[found].cpuMs : 0, text, sizeof text);
         addText(html, "<td class=\"n\">%s</td>", found >= 0 ? text : "&ndash;");
     }
-    formatPercent(fmax(least, t->reference.error), text, sizeof text);
-    addText(html, "<td class=\"n\">%s%s</td></tr>\n", least <= t->reference.error ? "&le; " : "", text);
+    formatPercent(fmax(least, t->reference.resolution), text, sizeof text);
+    addText(html, "<td class=\"n\">%s%s</td></tr>\n", least <= t->reference.resolution ? "&le; " : "", text);
 }
 
 // The same question asked of each family alone: the best is not always what one wants to use.
@@ -118,25 +118,24 @@ static void addFamilies(const Tradeoff* t, Text* html)
     addText(html, "</table>\n");
 }
 
-static void addSummaryOf(const Tradeoff* t, double limit, Text* html)
+static void addSummary(const Tradeoff* t, double limit, const Setting* s, Text* html)
 {
-    char cpu[32], wall[32];
-    int found = isJudged(t, limit) ? findCheapest(t, FAMILY_COUNT, limit) : -1;
-    if (found < 0) {
-        addText(html, "<p class=\"answer\"><strong>%g %% error</strong> %s.</p>\n", 100 * limit,
-                isJudged(t, limit) ? "was not reached by any setting measured"
-                                   : "cannot be judged with this reference");
-        return;
-    }
-    const Setting* s = &t->settings[found];
+    char cpu[32], error[32];
     formatTime(s->cpuMs, cpu, sizeof cpu);
-    formatTime(s->wallMs, wall, sizeof wall);
-    addText(html,
-            "<p class=\"answer\"><strong>%g %% error costs %s</strong> of processor time per %dx%d picture "
-            "(%s on %d thread%s), by %s:<br>",
-            100 * limit, cpu, s->arguments.render.width, s->arguments.render.height, wall,
-            vplContext_GetWorkerCount(t->context), vplContext_GetWorkerCount(t->context) > 1 ? "s" : "",
-            FAMILY_NAMES[s->family]);
+    formatPercent(s->error, error, sizeof error);
+    addText(html, "<p class=\"answer\">");
+    if (s->error <= limit && isJudged(t, limit)) {
+        addText(html, "<strong>%g %% error costs %s</strong> of processor time per %dx%d picture",
+                100 * limit, cpu, s->arguments.render.width, s->arguments.render.height);
+    } else {
+        addText(html, "<strong>%g %% error %s.</strong> The least error was %s for %s of processor time",
+                100 * limit,
+                isJudged(t, limit)
+                    ? "was not reached in the time given"
+                    : "cannot be judged with this reference; more <code>--time</code> makes a better one",
+                error, cpu);
+    }
+    addText(html, ", by %s:<br>", FAMILY_NAMES[s->family]);
     addCommand(t, s, html);
     addText(html, "</p>\n");
 }
@@ -145,7 +144,7 @@ static void addFloors(const Tradeoff* t, Text* html)
 {
     for (int f = FAMILY_UNSHADOWED; f <= FAMILY_RAY; f++) {
         double floor = findFloor(t, (Family)f);
-        if (isfinite(floor) && floor > t->reference.error) {
+        if (isfinite(floor) && floor > t->reference.resolution) {
             char text[32];
             formatPercent(floor, text, sizeof text);
             addText(html,
@@ -162,19 +161,21 @@ static void addFloors(const Tradeoff* t, Text* html)
 
 void addAnswers(const Tradeoff* t, Text* html)
 {
-    addSummaryOf(t, 0.05, html);
+    int found = isJudged(t, 0.05) ? findCheapest(t, FAMILY_COUNT, 0.05) : -1;
+    found = found >= 0 ? found : findCheapest(t, FAMILY_COUNT, leastError(t, FAMILY_COUNT));
+    addSummary(t, 0.05, &t->settings[found], html);
     addText(html, "<ul>\n");
     addFloors(t, html);
     addText(html,
             "<li><em>Error</em> is the root-mean-square difference from the true picture divided by the true "
-            "picture's mean: what <code>vpl compare</code> prints as <code>relative_rmse</code>. Background "
-            "counts.</li>\n"
+            "picture's mean, over all pixels: the <code>relative_rmse</code> of <code>vpl compare</code>, "
+            "less the "
+            "truth's own noise.</li>\n"
             "<li><em>Energy</em> is all light in the picture divided by all light in the truth: 1 is right, "
             "less is darker.</li>\n</ul>\n");
-    addText(html,
-            "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th class=\"n\">waiting"
-            "</th><th class=\"n\">measured error</th><th class=\"n\">energy</th><th>cheapest setting, to copy"
-            "</th></tr>\n");
+    addText(html, "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th "
+                  "class=\"n\">measured error</th><th class=\"n\">energy</th><th>cheapest setting, to copy"
+                  "</th></tr>\n");
     for (int i = 0; i < LIMIT_COUNT; i++) {
         addRow(t, LIMITS[i], html);
     }

@@ -22,7 +22,7 @@ static int errorTrend(const Setting* base, const Setting* s)
 {
     int common = s->runCount < base->runCount ? s->runCount : base->runCount, below = 0, above = 0;
     for (int k = 0; k < common; k++) {
-        double ratio = s->runs[k].comparison.relativeRmse / base->runs[k].comparison.relativeRmse;
+        double ratio = s->runs[k].error / base->runs[k].error;
         below += ratio < 0.98;
         above += ratio > 1.02;
     }

@@ -125,6 +125,25 @@ int logTicks(double low, double high, double* ticks, int most)
     return count;
 }
 
+double jointSquare(const float* x, const float* a, const float* b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += ((double)x[i] - (double)a[i]) * ((double)x[i] - (double)b[i]);
+    }
+    return sum / (double)count;
+}
+
+double jointUncertainty(const float* a, const float* b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        double square = ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
+        sum += square * square;
+    }
+    return sqrt(sum / 12) / (double)count;
+}
+
 // Two digits below 10, all whole ones above: no more than timing repeats.
 static int decimals(double value)
 {

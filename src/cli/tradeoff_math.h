@@ -34,6 +34,15 @@ bool logRange(const double* values, int count, double* low, double* high);
 // where the range spans more than four decades.
 int logTicks(double low, double high, double* ticks, int most);
 
+// Mean of (x - a)(x - b). If a and b are independent and both right on average, their noise cancels: this is the
+// mean squared error of x alone, where (x - a)^2 would also count the noise of a. May come out negative near 0.
+double jointSquare(const float* x, const float* a, const float* b, size_t count);
+
+// The standard error of jointSquare where x is right, from the difference of a and b: for noise a' and b' of
+// variance v each, a'b' has variance v^2 and (a' - b')^4 a mean of 12 v^2 (if normal; more if spiky, so that
+// this errs on the safe side).
+double jointUncertainty(const float* a, const float* b, size_t count);
+
 // "0.83 ms", "41 ms", "1.24 s", "3 min 20 s".
 void formatTime(double ms, char* text, size_t size);
 

@@ -27,15 +27,15 @@ static bool watch(void* user, double fraction)
     return !t->interrupted && now < t->deadline;
 }
 
-vplResult renderQuietly(Tradeoff* t, const vplRenderOptions* options, vplImage** imageOut,
-                        vplRenderStats* stats)
+vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptions* options,
+                        vplImage** imageOut, vplRenderStats* stats)
 {
     vplRenderOptions watched = *options;
     watched.progress = watch;
     watched.progressUser = t;
     t->message[0] = 0;
     t->silent = true;
-    vplResult result = vplRender(t->scene, &watched, imageOut, stats);
+    vplResult result = vplRender(scene, &watched, imageOut, stats);
     t->silent = false;
     if (result != VPL_SUCCESS && t->message[0] == 0) {
         snprintf(t->message, sizeof t->message, "%s", vplResult_GetName(result));
@@ -75,13 +75,24 @@ static vplResult timeAgain(Tradeoff* t, const vplRenderOptions* options, vplRend
     for (int i = 1; i < REPEATS && stats->totalMs < SHORT_MS && result == VPL_SUCCESS; i++) {
         vplImage* image = NULL;
         vplRenderStats again;
-        result = renderQuietly(t, options, &image, &again);
+        result = renderQuietly(t, t->scene, options, &image, &again);
         if (result == VPL_SUCCESS && again.cpuMs < stats->cpuMs) {
             *stats = again;
         }
         vplImage_Destroy(image);
     }
     return result;
+}
+
+static vplResult compare(const Tradeoff* t, const vplImage* image, Run* run)
+{
+    const vplImage* truth = t->reference.image;
+    vplResult result = vplImage_Compare(image, truth, &run->comparison);
+    if (result == VPL_SUCCESS) {
+        run->error = errorOf(&t->reference, image, &run->comparison);
+        result = vplImage_Ssim(image, truth, &run->ssim, NULL);
+    }
+    return result == VPL_SUCCESS ? vplImage_Flip(image, truth, VPL_DEFAULT_PPD, &run->flip, NULL) : result;
 }
 
 // One more seed of a setting.
@@ -91,9 +102,9 @@ static void measureSeed(Tradeoff* t, Setting* s)
     vplRenderOptions options = s->arguments.render;
     run->seed = options.seed += (uint64_t)s->runCount;
     vplImage* image = NULL;
-    vplResult result = renderQuietly(t, &options, &image, &run->stats);
+    vplResult result = renderQuietly(t, t->scene, &options, &image, &run->stats);
     if (result == VPL_SUCCESS) {
-        result = vplImage_Compare(image, t->reference.image, &run->comparison);
+        result = compare(t, image, run);
     }
     if (result == VPL_SUCCESS) {
         result = timeAgain(t, &options, &run->stats);
@@ -182,7 +193,7 @@ static bool makeRoom(Tradeoff* t)
 static void warmUp(Tradeoff* t)
 {
     vplImage* image = NULL;
-    renderQuietly(t, &t->settings[0].arguments.render, &image, NULL);
+    renderQuietly(t, t->scene, &t->settings[0].arguments.render, &image, NULL);
     vplImage_Destroy(image);
 }
 
@@ -194,8 +205,11 @@ int measureSettings(Tradeoff* t)
     }
     warmUp(t);
     for (int round = 0; round < t->arguments->seeds; round++) {
-        double now = secondsNow();
-        measureRound(t, round, now + (t->deadline - now) / (t->arguments->seeds - round));
+        // The first seed gets more than its share: it is better to know a dear setting by one seed than not at
+        // all, and the dearer a setting, the less its seeds differ.
+        double now = secondsNow(), left = t->deadline - now;
+        int rounds = t->arguments->seeds - round;
+        measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.6 : 1.0 / rounds));
     }
     int measured = 0;
     for (int i = 0; i < t->settingCount; i++) {
@@ -215,7 +229,7 @@ static double field(const Run* run, int which)
 {
     switch (which) {
     case 0:
-        return run->comparison.relativeRmse;
+        return run->error;
     case 1:
         return run->stats.cpuMs;
     case 2:
@@ -285,11 +299,10 @@ double findFloor(const Tradeoff* t, Family family)
 {
     double work[MAX_SETTINGS], error[MAX_SETTINGS];
     int count = 0;
-    const vplRenderOptions* base = &t->settings[0].arguments.render;
-    for (int i = 0; i < t->settingCount; i++) { // a sweep of particles stands in ascending order
+    for (int i = 0; i < t->settingCount; i++) { // particles stand in ascending order
         const Setting* s = &t->settings[i];
-        if (isMeasured(s) && s->family == family && (s->sweeps & 63) != 0 &&
-            s->arguments.render.minDistance == base->minDistance) {
+        // The first rows of SWEEPS are particles for none, map and ray, in the order of the families.
+        if (isMeasured(s) && s->family == family && (s->sweeps >> (family - FAMILY_UNSHADOWED) & 1) != 0) {
             work[count] = s->work;
             error[count++] = s->error;
         }

@@ -49,7 +49,7 @@ static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions*
 {
     char time[32], error[32], caption[128];
     formatTime(s->cpuMs, time, sizeof time);
-    formatPercent(s->runs[0].comparison.relativeRmse, error, sizeof error);
+    formatPercent(s->runs[0].error, error, sizeof error);
     addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number, time, error);
     char command[SENTENCE];
     writeCommand(s, command, sizeof command);

@@ -156,11 +156,11 @@ static void addNumbers(const Tradeoff* t, const Plot* p)
 // Below its own error the reference cannot tell who is right.
 static void addUnknown(const Tradeoff* t, const Plot* p)
 {
-    double y = atY(p, fmax(t->reference.error, p->lowY));
-    if (t->reference.error > p->lowY) {
+    double y = atY(p, fmax(t->reference.resolution, p->lowY));
+    if (t->reference.resolution > p->lowY) {
         addText(p->svg, "<rect class=\"unknown\" x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%.1f\"/>", LEFT, y,
                 WIDTH - LEFT - RIGHT, HEIGHT - BOTTOM - y);
-        addText(p->svg, "<text class=\"soft\" x=\"%d\" y=\"%.1f\">below the reference's own error</text>\n",
+        addText(p->svg, "<text class=\"soft\" x=\"%d\" y=\"%.1f\">below what the reference can tell</text>\n",
                 LEFT + 8, HEIGHT - BOTTOM - 6.0);
     }
 }

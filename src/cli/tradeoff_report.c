@@ -53,24 +53,35 @@ static void addReference(const Tradeoff* t, Text* html)
 {
     const Reference* r = &t->reference;
     char text[32];
+    formatTime(r->ms, text, sizeof text);
     addText(html, "<li>The truth: ");
-    if (r->spp == 0) {
+    if (r->spp > 0) {
+        addText(
+            html,
+            "path traced in two independent halves with %d paths per pixel in all (%s of processor time), "
+            "through the centres of pixels as all methods draw: jagged edges do not count as error. "
+            "<code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
+            r->spp, text);
+    } else {
         addText(html, "<code>");
         addEscaped(html, t->arguments->reference);
-        addText(html,
-                "</code>, as given; its own error is not known, so small errors may be the file's.</li>\n");
+        addText(html, "</code>, as given.");
+    }
+    if (r->error < 0) {
+        addText(html, " Its own error is not known; small errors may be the file's.</li>\n");
         return;
     }
-    formatTime(r->ms, text, sizeof text);
-    addText(html,
-            "path traced with %d paths per pixel in two independent halves (%s of processor time; "
-            "<code>reference.pfm</code>, to be used again with <code>--reference</code>). ",
-            r->spp, text);
     formatPercent(r->error, text, sizeof text);
-    addText(html,
-            "Half the difference of the halves says that it is wrong by <strong>%s</strong> itself; no error "
-            "below that is claimed.</li>\n",
-            text);
+    addText(
+        html,
+        " It is noisy by %s itself, but the noise of the halves is independent and cancels in the mean of ",
+        text);
+    formatPercent(r->resolution, text, sizeof text);
+    addText(
+        html,
+        "(x &minus; a)(x &minus; b). What remains unknown is <strong>%s</strong>, two standard errors; no "
+        "error below that is claimed.</li>\n",
+        text);
 }
 
 // "AMD EPYC ...", or what uname says where /proc/cpuinfo has no such line.
@@ -170,9 +181,12 @@ void addMethod(const Tradeoff* t, Text* html)
         "<li>Every setting was rendered with up to %d seed%s from %llu; figures are medians, bands run from "
         "the least to the most. Settings ran from the cheapest to the dearest.</li>\n"
         "<li>Processor time is the time of all threads together for the whole of <code>vpl render</code> "
-        "without reading the scene and writing the picture; waiting is by the wall clock.</li>\n",
+        "without reading the scene and writing the picture, here measured on %d thread%s. Several threads "
+        "share "
+        "it, so one waits less. Of short renders the fastest of three counts.</li>\n",
         t->arguments->seeds, t->arguments->seeds == 1 ? "" : "s",
-        (unsigned long long)t->arguments->render.seed);
+        (unsigned long long)t->arguments->render.seed, vplContext_GetWorkerCount(t->context),
+        vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
     addMachine(t, html);
     addText(
         html,

@@ -17,7 +17,8 @@ const Sweep SWEEPS[] = {
     {"frontier", "--light-shadows none --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows map --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows ray --min-distance @0.03 --particles", PARTICLES, NULL},
-    {"path", "--method path --spp", "1 2 4 8 16 32 64 128 256 512 1024", NULL},
+    {"frontier", "--light-shadows ray --shadow-map 2048 --particles", PARTICLES, NULL},
+    {"path", "--pixel centre --method path --spp", "1 2 4 8 16 32 64 128 256 512 1024", NULL},
     {"direct", "--method", "direct", NULL},
     {"particles", "--particles", PARTICLES, "Particles"},
     {"light-shadows", "--light-shadows", "none map ray", "Shadows of virtual lights"},
@@ -129,6 +130,7 @@ static void forgetUnused(vplRenderOptions* o)
     plain.camera = o->camera;
     plain.seed = o->seed;
     plain.samplesPerPixel = o->samplesPerPixel;
+    plain.pixel = o->pixel;
     if (o->method == VPL_METHOD_DIRECT) {
         plain.shadowMapSize = o->shadowMapSize;
         plain.shadow = o->shadow;

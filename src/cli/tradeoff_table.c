@@ -43,9 +43,9 @@ static void addHeader(const Tradeoff* t, const Stages* stages, Text* csv)
             addText(csv, ",");
         }
     }
-    addText(csv,
-            "virtual_lights,min_distance_used,reflectivity_used,image_hash,relative_rmse,rmse,relmse,psnr,"
-            "energy_ratio,max_difference,draw_calls,rays,peak_bytes,cpu_ms,total_ms,");
+    addText(csv, "virtual_lights,min_distance_used,reflectivity_used,image_hash,error,relative_rmse,rmse,"
+                 "relmse,trimmed_relmse,ssim,flip,psnr,"
+                 "energy_ratio,max_difference,draw_calls,rays,peak_bytes,cpu_ms,total_ms,");
     for (int i = 0; i < stages->count; i++) {
         addText(csv, "ms_");
         for (const char* c = stages->names[i]; *c; c++) {
@@ -74,8 +74,9 @@ static void addFigures(const Run* run, const Stages* stages, Text* csv)
     const vplComparison* c = &run->comparison;
     addText(csv, "%d,%.9g,%.9g,%016llx,", s->virtualLights, (double)s->minDistance, s->reflectivity,
             (unsigned long long)s->imageHash);
-    addText(csv, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,", c->relativeRmse, c->rmse, c->relmse, c->psnr,
-            c->energyRatio, c->maxDifference);
+    addText(csv, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,", run->error, c->relativeRmse, c->rmse, c->relmse,
+            c->trimmedRelmse, run->ssim, run->flip);
+    addText(csv, "%.9g,%.9g,%.9g,", c->psnr, c->energyRatio, c->maxDifference);
     addText(csv, "%lld,%lld,%zu,%.3f,%.3f,", (long long)s->drawCalls, (long long)s->rays, s->peakBytes,
             s->cpuMs, s->totalMs);
     for (int i = 0; i < stages->count; i++) {

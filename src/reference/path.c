@@ -29,8 +29,12 @@ void vplPathNumbers_Get(const vplPathNumbers* numbers, uint32_t set, float out[4
 static vplRay cameraRay(const vplPathScene* s, int x, int y, const float offset[2])
 {
     const vplCameraDef* camera = s->def.camera;
-    double across = s->scaleX * (2 * (x + (double)offset[0]) / s->def.width - 1);
-    double upward = s->scaleY * (1 - 2 * (y + (double)offset[1]) / s->def.height);
+    // A hair right of and below the centre: an edge through it belongs to the surface that the rasterizer's
+    // top-left rule gives it to. In a symmetric room whole rows of centres lie on edges.
+    double px = x + (s->def.pixelCentres ? 0.5 + 0x1p-10 : (double)offset[0]);
+    double py = y + (s->def.pixelCentres ? 0.5 + 0x1p-12 : (double)offset[1]);
+    double across = s->scaleX * (2 * px / s->def.width - 1);
+    double upward = s->scaleY * (1 - 2 * py / s->def.height);
     double d[3] = {s->forward.x + across * s->right.x + upward * s->up.x,
                    s->forward.y + across * s->right.y + upward * s->up.y,
                    s->forward.z + across * s->right.z + upward * s->up.z};

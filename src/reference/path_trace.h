@@ -21,6 +21,7 @@ typedef struct vplPathDef {
     int emitterCount;
     int width, height; // pixels
     bool emission;     // surfaces that emit are seen to
+    bool pixelCentres; // paths start at the centres of pixels, as the rasterizer samples them
     int firstBounce,
         lastBounce; // the picture adds up light after these numbers of reflections before the eye's
     uint64_t seed;

@@ -64,6 +64,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"lampLights", o->lampLights, 1, VPL_MAX_LIGHTS},
         {"samplesPerPixel", o->samplesPerPixel, 1, VPL_MAX_SAMPLES},
         {"maxBounces", o->maxBounces, -1, VPL_MAX_BOUNCES},
+        {"pixel", (int)o->pixel, 0, VPL_PIXEL_CENTRE},
         {"showBounce", o->showBounce, 0, VPL_MAX_BOUNCES},
         {"shadowMapSize", o->shadowMapSize, 1, VPL_MAX_SHADOW_MAP},
         {"show", (int)o->show, 0, VPL_SHOW_BOUNCE},

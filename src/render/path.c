@@ -11,6 +11,7 @@ static vplResult describe(vplJob* job, vplPathDef* def)
                        "the path tracer knows physical lighting only, not documented");
     }
     def->emission = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_DIRECT;
+    def->pixelCentres = o->pixel == VPL_PIXEL_CENTRE;
     def->lastBounce = o->maxBounces >= 0 ? o->maxBounces : VPL_MAX_BOUNCES;
     if (o->show == VPL_SHOW_DIRECT) {
         def->lastBounce = 0;

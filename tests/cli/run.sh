@@ -26,6 +26,7 @@ failed=0
 . "$folder/files.sh"
 . "$folder/numbers.sh"
 . "$folder/pictures.sh"
+. "$folder/tradeoff.sh"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

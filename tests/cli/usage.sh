@@ -99,7 +99,7 @@ wrong "must end in .png, .hdr" compare a.png b.png --heatmap map.gif
 
 succeeds VersionIsPrinted "$vpl" --version
 check VersionHasThreeNumbers grep -qxE 'vpl [0-9]+\.[0-9]+\.[0-9]+' "$scratch/stdout"
-for command in render lights compare info bench; do
+for command in render lights compare info tradeoff bench; do
     succeeds "HelpOf_$command" "$vpl" help $command
     cp "$scratch/stdout" "$scratch/help"
     check "HelpOf_${command}_NamesItsUsage" grep -q "^vpl $command" "$scratch/help"

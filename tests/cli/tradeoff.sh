@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+# vpl tradeoff: what is refused, what is written, and that figures do not depend on the run or the threads.
+
+tiny="--size 16x9 --shadow-map 32 --quiet"
+report=$out/t
+
+refuses TradeoffNeedsAFolder 2 "tradeoff needs -o DIR" "$vpl" tradeoff "$closed"
+refuses TradeoffNeedsAScene 2 "needs a scene file" "$vpl" tradeoff -o "$report"
+refuses TradeoffOfAMissingScene 2 "cannot open: No such file" "$vpl" tradeoff "$out/no.json" -o "$report"
+refuses TradeoffHasNoDocumentedTruth 2 "has no truth" "$vpl" tradeoff "$closed" -o "$report" --lighting documented
+refuses TradeoffKnowsItsSweeps 2 "--sweeps names \"frontiers\"" "$vpl" tradeoff "$closed" -o "$report" --sweeps path,frontiers
+refuses TradeoffHasNoMethod 2 "tradeoff has no option --method" "$vpl" tradeoff "$closed" -o "$report" --method path
+refuses TradeoffOfACameraThatIsNone 2 "--camera is 3, the scene has 1" "$vpl" tradeoff "$closed" -o "$report" --camera 3
+refuses TradeoffNeedsASeed 2 "--seeds is \"0\"" "$vpl" tradeoff "$closed" -o "$report" --seeds 0
+refuses TradeoffInNoTime 1 "the time is too short" "$vpl" tradeoff "$closed" -o "$report" $tiny --time 0
+refuses TradeoffWithAMissingReference 2 "cannot open: No such file" \
+    "$vpl" tradeoff "$closed" -o "$report" $tiny --reference "$out/none.pfm"
+"$vpl" render "$closed" -o "$scratch/other.pfm" --size 15x9 --shadow-map 32
+refuses TradeoffWithAReferenceOfAnotherSize 2 "the reference has 15x9 pixels, must have 16x9" \
+    "$vpl" tradeoff "$closed" -o "$report" $tiny --reference "$scratch/other.pfm"
+"$vpl" render "$closed" -o "$scratch/black.pfm" --size 16x9 --shadow-map 32 --method direct --show indirect
+refuses TradeoffWithABlackReference 2 "the reference is black" \
+    "$vpl" tradeoff "$closed" -o "$report" $tiny --reference "$scratch/black.pfm"
+touch "$out/file"
+refuses TradeoffIntoAFile 1 "Not a directory" "$vpl" tradeoff "$closed" -o "$out/file" $tiny
+refuses TradeoffIntoAFolderOfNothing 1 "cannot create the folder: No such file" \
+    "$vpl" tradeoff "$closed" -o "$out/no/where" $tiny
+mkdir -p "$out/taken/report.html"
+refuses TradeoffOverAFolder 1 "report.html: cannot write: it is a directory" "$vpl" tradeoff "$closed" -o "$out/taken" $tiny
+rm -r "$out/taken" "$out/file"
+
+# A few settings, all of which fit into the time; twice, the second time with the first one's reference.
+few="$tiny --seeds 2 --time 120 --sweeps sampler,min-distance,pipeline,direct,path --particles 20"
+succeeds Tradeoff "$vpl" tradeoff "$closed" -o "$report" $few --reference-spp 16
+equals TradeoffFiles "reference-a.pfm reference-b.pfm report.html tradeoff.csv tradeoff.svg " "$(ls -A "$report" | tr '\n' ' ')"
+succeeds TradeoffWithReference "$vpl" tradeoff "$closed" -o "$out/u" $few --threads 2 \
+    --reference "$report/reference-a.pfm,$report/reference-b.pfm"
+
+# column FILE NAME: the cells below a heading.
+column() {
+    awk -F, -v name="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i; next } { print $at }' "$1"
+}
+csv=$report/tradeoff.csv
+check TradeoffRowsAreWhole awk -F, 'NR == 1 { n = NF } NF != n || /,,command|nan|inf,/ { exit 1 }' "$csv"
+for name in setting family sweeps on_front seed method particles reflectivity sampler min_distance light_shadows \
+    shadow_map pcf pipeline spp size camera virtual_lights image_hash error relative_rmse rmse relmse trimmed_relmse \
+    ssim flip psnr energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading ms_paths command; do
+    check "TradeoffHas_$name" test -n "$(column "$csv" $name)"
+done
+equals TradeoffSeeds "0 1" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
+equals TradeoffSamplers "halton hammersley random" "$(column "$csv" sampler | sort -u | tr '\n' ' ' | sed 's/ $//')"
+for name in setting seed image_hash error rmse relmse energy_ratio virtual_lights command; do
+    equals "TradeoffRepeats_$name" "$(column "$csv" $name | cksum)" "$(column "$out/u/tradeoff.csv" $name | cksum)"
+done
+equals PipelinesMakeOnePicture 1 "$(awk -F, '$5 == 0 && $3 ~ /pipeline/' "$csv" | grep -oE ',[0-9a-f]{16},' | sort -u | wc -l)"
+equals PipelinesAreThree 3 "$(awk -F, '$5 == 0 && $3 ~ /pipeline/' "$csv" | wc -l)"
+
+# The command of a row makes the row's picture.
+column "$csv" command | while read -r command; do
+    hash=$(grep -F ",$command" "$csv" | grep -oE '[0-9a-f]{16}' | head -n 1)
+    "$vpl" render "$closed" $command -o "$scratch/again.pfm" --stats "$scratch/again.json" --quiet
+    [ "$(field "$scratch/again.json" image_hash)" = "\"$hash\"" ] || echo "$command: $hash"
+done >"$scratch/commands"
+equals TradeoffCommandsMakeTheirPictures "" "$(cat "$scratch/commands")"
+
+html=$report/report.html
+check ReportAnswersTheQuestion grep -qE '5 % error (costs|was not reached|cannot be judged)' "$html"
+for limit in 20 10 5 2 1; do
+    check "ReportHasARowFor_$limit" grep -q "<th>$limit %</th>" "$html"
+done
+check ReportHasPictures grep -q 'src="data:image/png;base64,iVBORw0KGgo' "$html"
+check ReportNeedsNoOtherFile test -z "$(grep -oE '(src|href)="[^"]*' "$html" | grep -v '^src="data:image/png;base64,')"
+check ReportNeedsNoNetwork test -z "$(grep -oE '<script|<link|@import|url\(|https?://[^"]*' "$html" | grep -v 'http://www.w3.org/2000/svg')"
+check ReportHasNoNans test -z "$(sed 's/base64,[^"]*//g' "$html" | grep -owE 'nan|inf|-nan')"
+if command -v xmllint >/dev/null 2>&1; then
+    check PlotIsXml xmllint --noout "$report/tradeoff.svg"
+else
+    check PlotIsSvg grep -q '</svg>' "$report/tradeoff.svg"
+fi
+
+# Interrupted: what was measured is there and whole, and the exit code says so. The time is far too long otherwise.
+if command -v timeout >/dev/null 2>&1; then
+    timeout --preserve-status -s INT -k 60 3 "$vpl" tradeoff "$closed" -o "$out/i" --size 64x36 --quiet --time 600 \
+        --reference-spp 2 2>"$scratch/stderr"
+    equals TradeoffInterrupted "1 vpl: interrupted; what had been measured is in $out/i/report.html" "$? $(cat "$scratch/stderr")"
+    check InterruptedReportIsWhole grep -q '</html>' "$out/i/report.html"
+    check InterruptedReportSaysSo grep -q 'Interrupted: only what was measured' "$out/i/report.html"
+fi
+rm -rf "$out"
+mkdir "$out"

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// The arithmetic of vpl tradeoff, and the PNG that its report embeds.
+#include "test.h"
+
+#include "cli/tradeoff_math.h"
+
+static void MedianIsTheMiddleOrTheMeanOfTwo(void** state)
+{
+    (void)state;
+    const double odd[] = {9, 1, 5}, even[] = {4, 1, 3, 2}, ties[] = {7, 7, 1, 7}, one[] = {3};
+    assertNear(medianOf(odd, 3), 5, 0, "odd", 0);
+    assertNear(medianOf(even, 4), 2.5, 0, "even", 0);
+    assertNear(medianOf(ties, 4), 7, 0, "ties", 0);
+    assertNear(medianOf(one, 1), 3, 0, "one", 0);
+    assert_true(isnan(medianOf(one, 0)));
+    assertNear(even[0], 4, 0, "stays as it was", 0);
+}
+
+static void FrontHoldsWhatNothingBeats(void** state)
+{
+    (void)state;
+    //                     front, beaten, front, equal, front, dearer, not measured
+    const double cost[] = {1, 2, 2, 2, 5, 6, NAN}, error[] = {9, 9, 7, 7, 1, 1, NAN};
+    bool onFront[7];
+    assert_int_equal(markFront(cost, error, 7, 0, onFront), 3);
+    const bool wanted[] = {true, false, true, false, true, false, false};
+    assert_memory_equal(onFront, wanted, sizeof wanted);
+}
+
+// By definition, in random cases: a point is on the front if and only if no other is as good in both and better in
+// one, or equal and before it.
+static void FrontFollowsItsDefinition(void** state)
+{
+    (void)state;
+    enum { COUNT = 12 };
+    for (uint64_t seed = 0; seed < 500; seed++) {
+        double cost[COUNT], error[COUNT];
+        bool onFront[COUNT];
+        int marked = 0;
+        for (int i = 0; i < COUNT; i++) { // few values, so that there are ties
+            cost[i] = floor(6 * uniformAt(seed, 2 * (uint64_t)i));
+            error[i] = 1 + floor(6 * uniformAt(seed, 2 * (uint64_t)i + 1));
+        }
+        int count = markFront(cost, error, COUNT, 0, onFront);
+        for (int i = 0; i < COUNT; i++) {
+            bool beaten = false;
+            for (int j = 0; j < COUNT; j++) {
+                bool as = cost[j] <= cost[i] && error[j] <= error[i];
+                beaten |= as && (cost[j] < cost[i] || error[j] < error[i] || j < i);
+            }
+            assert_int_equal(onFront[i], !beaten);
+            marked += onFront[i];
+        }
+        assert_int_equal(count, marked);
+    }
+}
+
+static void ThinFrontLeavesOutSmallGains(void** state)
+{
+    (void)state;
+    const double cost[] = {1, 2, 3, 4}, error[] = {10, 9.8, 9.6, 5};
+    bool onFront[4];
+    assert_int_equal(markFront(cost, error, 4, 0.03, onFront), 3); // 9.8 is not 3 % below 10, 9.6 is
+    assert_true(onFront[0] && !onFront[1] && onFront[2] && onFront[3]);
+}
+
+static void CheapestWithinALimit(void** state)
+{
+    (void)state;
+    const double cost[] = {5, 3, 3, 1, 0}, error[] = {1, 2, 2, 9, NAN};
+    assert_int_equal(cheapestWithin(cost, error, 5, 2), 1);
+    assert_int_equal(cheapestWithin(cost, error, 5, 1), 0);
+    assert_int_equal(cheapestWithin(cost, error, 5, 100), 3);
+    assert_int_equal(cheapestWithin(cost, error, 5, 0.5), -1);
+}
+
+static void HalvingTwiceCostsHalfTheDifference(void** state)
+{
+    (void)state;
+    assertNear(costPerHalving(10, 0.8, 40, 0.2), 15, 1e-12, "two halvings for 30", 0);
+    assertNear(costPerHalving(10, 0.4, 4, 0.2), -6, 1e-12, "less error and less time", 0);
+    assert_true(isinf(costPerHalving(10, 0.2, 40, 0.2)));
+    assert_true(isinf(costPerHalving(10, 0.2, 40, 0.3)));
+    assertNear(costPerHalving(10, 0.2, 40, 0), 0, 0, "no error left", 0);
+}
+
+static void FloorShowsWhereWorkNoLongerHelps(void** state)
+{
+    (void)state;
+    const double work[] = {10, 30, 100, 300}, falling[] = {40, 23, 13, 7.3}, biased[] = {40, 20, 12.5, 12.1};
+    assert_true(isnan(floorOf(work, falling, 4)));
+    assertNear(floorOf(work, biased, 4), 12.1, 0, "floor", 0);
+    const double close[] = {10, 30, 100, 110}; // 12.1 is compared with 20, which is far above
+    assert_true(isnan(floorOf(close, biased, 4)));
+    assert_true(isnan(floorOf(work, biased, 1)));
+}
+
+static void JointSquareIsFreeOfTheReferencesNoise(void** state)
+{
+    (void)state;
+    enum { COUNT = 100000 };
+    static float x[COUNT], a[COUNT], b[COUNT];
+    for (uint64_t i = 0; i < COUNT; i++) { // the truth is 1, the halves have noise of deviation 0.5
+        double spread = 0.5 * sqrt(12);
+        a[i] = (float)(1 + spread * (uniformAt(1, i) - 0.5));
+        b[i] = (float)(1 + spread * (uniformAt(2, i) - 0.5));
+        x[i] = i % 2 ? 1.1f : 0.9f;
+    }
+    double uncertainty = jointUncertainty(a, b, COUNT);
+    // Variance 0.25 each: a'b' has deviation 0.25, their mean 0.25 / sqrt(n); uniform noise is less spiky than
+    // normal noise, (a' - b')^4 is 9.6 v^2 for it.
+    assertNear(uncertainty, 0.25 * sqrt(9.6 / 12) / sqrt(COUNT), 0.02 * uncertainty, "uncertainty", 0);
+    assertNear(jointSquare(x, a, b, COUNT), 0.01, 3 * uncertainty, "mean squared error", 0);
+    assertNear(jointSquare(a, a, b, COUNT), 0, 3 * uncertainty, "a judged by itself and b", 0);
+}
+
+static void AxesHoldAllValues(void** state)
+{
+    (void)state;
+    double low, high, ticks[8];
+    const double values[] = {0, 3, 40, NAN, -1, INFINITY};
+    assert_true(logRange(values, 6, &low, &high));
+    assert_true(low < 3 && high > 40 && high / low >= 10);
+    const double one[] = {7};
+    assert_true(logRange(one, 1, &low, &high));
+    assertNear(high / low, 10, 1e-9, "one decade at least", 0);
+    assert_false(logRange(values, 1, &low, &high));
+    assert_int_equal(logTicks(0.9, 55, ticks, 8), 6); // 1 2 5 10 20 50
+    assertNear(ticks[0] + ticks[5], 51, 1e-12, "first and last", 0);
+    assert_int_equal(logTicks(0.5, 2e5, ticks, 8), 6); // 1 to 100000
+}
+
+static void TimesAndSharesReadWell(void** state)
+{
+    (void)state;
+    static const struct {
+        double ms;
+        const char* text;
+    } times[] = {{0.834, "0.83 ms"}, {4.26, "4.3 ms"},  {999.4, "999 ms"},
+                 {1240, "1.24 s"},   {12400, "12.4 s"}, {200000, "3 min 20 s"}};
+    char text[32];
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+        formatTime(times[i].ms, text, sizeof text);
+        assert_string_equal(text, times[i].text);
+    }
+    formatPercent(0.0083, text, sizeof text);
+    assert_string_equal(text, "0.83 %");
+    formatPercent(0.142, text, sizeof text);
+    assert_string_equal(text, "14.2 %");
+    formatPercent(1.3, text, sizeof text);
+    assert_string_equal(text, "130 %");
+}
+
+static void EncodedPngIsTheFileThatWouldBeWritten(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplImage* image;
+    assert_int_equal(vplImage_Create(context, 5, 3, &image), VPL_SUCCESS);
+    for (int i = 0; i < 45; i++) {
+        image->pixels[i] = (float)i / 44;
+    }
+    uint8_t* bytes = NULL;
+    size_t size = 0;
+    const char* path = "/tmp/vpl-test-encode.png";
+    assert_int_equal(vplImage_EncodePng(image, NULL, &bytes, &size), VPL_SUCCESS);
+    assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
+    static uint8_t file[4096];
+    FILE* opened = fopen(path, "rb");
+    assert_non_null(opened);
+    assert_int_equal(fread(file, 1, sizeof file, opened), size);
+    fclose(opened);
+    remove(path);
+    assert_memory_equal(file, bytes, size);
+    vplPng_Free(context, bytes);
+    image->pixels[7] = NAN;
+    assert_int_equal(vplImage_EncodePng(image, NULL, &bytes, &size), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "pixel (2, 0) channel 1"));
+    vplImage_Destroy(image);
+    closeTestContext(context);
+}
+
+TEST_SUITE(tradeoff, cmocka_unit_test(MedianIsTheMiddleOrTheMeanOfTwo),
+           cmocka_unit_test(FrontHoldsWhatNothingBeats), cmocka_unit_test(FrontFollowsItsDefinition),
+           cmocka_unit_test(ThinFrontLeavesOutSmallGains), cmocka_unit_test(CheapestWithinALimit),
+           cmocka_unit_test(HalvingTwiceCostsHalfTheDifference),
+           cmocka_unit_test(FloorShowsWhereWorkNoLongerHelps),
+           cmocka_unit_test(JointSquareIsFreeOfTheReferencesNoise), cmocka_unit_test(AxesHoldAllValues),
+           cmocka_unit_test(TimesAndSharesReadWell), cmocka_unit_test(EncodedPngIsTheFileThatWouldBeWritten));
