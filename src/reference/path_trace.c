@@ -27,8 +27,11 @@ struct vplPathTracer {
 vplPathDef vplDefaultPathDef(void)
 {
     // rouletteFrom and allEmitters: least variance for the time on the room, see tests/bench/path.c.
-    return (vplPathDef){
-        .lastBounce = 1 << 16, .emission = true, .ways = VPL_PATH_ALL, .rouletteFrom = 0.25, .allEmitters = 4};
+    return (vplPathDef){.lastBounce = 1 << 16,
+                        .emission = true,
+                        .ways = VPL_PATH_ALL,
+                        .rouletteFrom = 0.25,
+                        .allEmitters = 4};
 }
 
 // The same frame as the rasterizer's view has.
