@@ -9,6 +9,7 @@
 #define ALL_SUITES(X)                                                                                        \
     X(exr)                                                                                                   \
     X(geometry)                                                                                              \
+    X(hits)                                                                                                  \
     X(image)                                                                                                 \
     X(lights)                                                                                                \
     X(math)                                                                                                  \
@@ -18,6 +19,7 @@
     X(obj)                                                                                                   \
     X(objParts)                                                                                              \
     X(objScene)                                                                                              \
+    X(rays)                                                                                                  \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \
     X(render)                                                                                                \

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Triangles for tests: closed surfaces and loose ones, and dice to place them with.
+#ifndef VPL_TESTS_SHAPES_H
+#define VPL_TESTS_SHAPES_H
+
+#include "test.h"
+
+// Three corners per triangle, counter-clockwise seen from outside. What meets has the same bits.
+typedef struct Shape {
+    vplVec3* corners;
+    int triangleCount, capacity;
+} Shape;
+
+void addTriangle(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c);
+void freeShape(Shape* shape);
+
+// Closed surfaces around the origin: an icosahedron halved `levels` times and blown up to the unit sphere; the
+// unit sphere in `rings` rings of twice as many parts, needles at the poles; the box [-1, 1]^3 in cells^2 cells
+// a face.
+Shape icosphere(int levels);
+Shape ringSphere(int rings);
+Shape gridBox(int cells);
+
+// Scales, rotates (radians), moves, in this order.
+void placeShape(Shape* shape, float scale, const double rotate[3], vplVec3 offset);
+
+// A scene with one material of reflectance rho.
+vplScene* sceneOf(vplContext* context, float rho);
+
+// Adds the shape as an object of material 0; smooth: its corners are its normals.
+void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* transform);
+
+// Freezes the scene and destroys it.
+vplGeometry* freezeScene(vplScene* scene);
+
+// Numbers from a seed, one after another.
+typedef struct Dice {
+    uint64_t seed, next;
+} Dice;
+
+float roll(Dice* dice, float low, float high);
+vplVec3 rollVec(Dice* dice, float size); // each component in [-size, size)
+vplVec3 rollUnit(Dice* dice);            // a direction, all alike
+
+#endif
