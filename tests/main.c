@@ -7,6 +7,7 @@
 
 // One line per test file.
 #define ALL_SUITES(X)                                                                                        \
+    X(emitters)                                                                                              \
     X(exr)                                                                                                   \
     X(geometry)                                                                                              \
     X(hits)                                                                                                  \

@@ -105,7 +105,8 @@ vplVec3 vplGeometry_ShadingNormal(const vplGeometry* geometry, const vplHit* hit
 
 // The closest hit among the objects' oriented bounding boxes (quads stay quads): the cheap stand-in for meshes
 // that Franchi and Ferrante propose under "Improving the Particle Simulation". `from` is the hit that the ray
-// leaves, NULL in free space; ray->skip is not used. hitOut->triangle is the object's first.
+// leaves, NULL in free space; a mesh that is left from one of its own triangles is not met. ray->skip is not
+// used. hitOut->triangle is the object's first.
 bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, const vplHit* from,
                             vplHit* hitOut);
 

@@ -155,6 +155,8 @@ bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, cons
         bool met;
         if (object->type == VPL_OBJECT_QUAD) {
             met = !left && vplRay_HitQuad(ray, &object->placement, &hit);
+        } else if (left && from->face == VPL_FACE_NONE) {
+            met = false; // from a triangle inside the box: on its way out
         } else {
             met = vplRay_HitBox(ray, object->type == VPL_OBJECT_BOX ? &object->placement : &object->bounds,
                                 left ? from->face : VPL_FACE_NONE, &hit);

@@ -78,15 +78,15 @@ static vplVec3 reflect(vplVec3 d, vplVec3 n)
     return out >= 0 ? r : vplNormalize(vplSub(r, vplScale(side * out, n)));
 }
 
-// The particle's next surface; `hit` is the one it leaves, unless this is its first step.
-static bool trace(Simulation* s, int particle, int step, const vplRay* ray, vplHit* hit)
+// The particle's next surface; `hit` is the one it leaves, its object -1 in free space.
+static bool trace(Simulation* s, int particle, const vplRay* ray, vplHit* hit)
 {
     if (s->def.geometry == VPL_PARTICLE_GEOMETRY_EXACT) {
         return vplClosestHit(s->geometry, ray, hit, &s->testsOf[particle]);
     }
     const vplHit from = *hit;
     s->testsOf[particle] += s->geometry->objectCount;
-    return vplGeometry_ClosestBox(s->geometry, ray, step > 0 ? &from : NULL, hit);
+    return vplGeometry_ClosestBox(s->geometry, ray, from.object >= 0 ? &from : NULL, hit);
 }
 
 // A bounding box has no colour of its own: it reflects as its object does in the mean.
@@ -110,8 +110,22 @@ static float shadingFactor(const Simulation* s, const vplHit* hit, vplVec3 direc
     return geometric > 0 && shading > 0 ? shading / geometric : 0;
 }
 
-// Where a particle begins and what it carries; false where nothing emits.
-static bool start(const Simulation* s, int particle, vplRay* ray, vplRgb* light)
+// The surface that a particle comes from.
+static vplHit sourceOf(const Simulation* s, const vplParticle* p)
+{
+    const vplGeometry* g = s->geometry;
+    const int triangle = s->emission->sources[p->source].triangle;
+    vplHit hit = {.object = -1, .face = VPL_FACE_NONE, .triangle = triangle};
+    if (triangle >= 0) {
+        hit.object = g->owners[triangle];
+        const vplGeometryObject* object = &g->objects[hit.object];
+        hit.face = object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2 : VPL_FACE_NONE;
+    }
+    return hit;
+}
+
+// Where a particle begins and what it carries; `from` is what it leaves. False where nothing emits.
+static bool start(const Simulation* s, int particle, vplRay* ray, vplRgb* light, vplHit* from)
 {
     float u[4];
     vplSampleSource_Direction(&s->samples, particle, 0, &u[2], &u[3]);
@@ -123,6 +137,7 @@ static bool start(const Simulation* s, int particle, vplRay* ray, vplRgb* light)
         }
         *ray = p.ray;
         *light = p.flux;
+        *from = sourceOf(s, &p);
     } else {
         float inverseProbability;
         const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
@@ -143,12 +158,12 @@ static void followParticle(Simulation* s, int particle)
     float u, v;
     vplRgb light;
     vplRay ray;
-    const bool started = start(s, particle, &ray, &light);
-    vplHit hit;
+    vplHit hit = {.object = -1};
+    const bool started = start(s, particle, &ray, &light, &hit);
     int step = 0;
     for (; started && step < s->stepCount && particle < s->stepCounts[step]; step++) {
         s->raysOf[particle]++;
-        if (!trace(s, particle, step, &ray, &hit)) {
+        if (!trace(s, particle, &ray, &hit)) {
             s->escapedOf[particle] = true;
             break;
         }

@@ -78,6 +78,21 @@ static vplVec3 aimAt(const vplShadeLight* light)
     return vplVec(x + largest * light->nx, y + largest * light->ny, z + largest * light->nz);
 }
 
+// What is left of the lanes of `visible` by a light's map. A map lets light through what it meets first, also
+// from behind: where normals are interpolated the triangle itself says on which side the light is.
+static void shadowByMap(const vplShading* s, const vplPoints* points, const vplShadeLight* light,
+                        const vplShadow* map, float visible[VPL_LANES])
+{
+    const vplSurface* p = s->smooth ? &points->plane : &points->surface;
+    float factor[VPL_LANES];
+    vplShadow_FactorBlock(map, p, factor);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const vplVec3 way = vplVec(light->px - p->px[l], light->py - p->py[l], light->pz - p->pz[l]);
+        const bool behind = s->smooth && !(vplDot(way, vplVec(p->nx[l], p->ny[l], p->nz[l])) > 0);
+        visible[l] *= behind ? 0 : 1 - factor[l];
+    }
+}
+
 // Adds one light after another, each with a ray or a map of its own.
 static void addShadowed(const vplShading* s, const vplPoints* points, const vplShadeLight* lights,
                         const vplShadow* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
@@ -97,11 +112,7 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
         if (maps == NULL) {
             vplCastShadowRays(s, points, aimAt(&lights[i]), false, visible, rays);
         } else {
-            float factor[VPL_LANES];
-            vplShadow_FactorBlock(&maps[i], s->smooth ? &points->plane : &points->surface, factor);
-            for (int l = 0; l < VPL_LANES; l++) {
-                visible[l] *= 1 - factor[l];
-            }
+            shadowByMap(s, points, &lights[i], &maps[i], visible);
         }
         for (int c = 0; c < 3; c++) {
             for (int l = 0; l < VPL_LANES; l++) {

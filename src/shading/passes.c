@@ -72,7 +72,9 @@ static vplResult recordPass(const vplShading* s, vplRaster* raster, vplPipeline 
     vplResult result = VPL_SUCCESS;
     for (int i = 0; i < s->geometry->objectCount && result == VPL_SUCCESS; i++) {
         uniforms[i] = (PassUniforms){s, i, first, count};
-        state.vertexUniforms = &s->objects[i];
+        const vplPipeline own = vplCameraPipeline(s, i); // smooth objects have more varyings than flat ones
+        state.vertexUniforms = own.vertexUniforms;
+        state.varyingCount = own.varyingCount;
         state.fragmentUniforms = &uniforms[i];
         result = vplRaster_Draw(raster, &s->meshes[i], &state);
     }
