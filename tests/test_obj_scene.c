@@ -219,11 +219,11 @@ static void assertSeen(const vplScene* scene)
 static void AnObjAloneGetsACameraAndALight(void** state)
 {
     (void)state;
-    static const char* const texts[] = {TRIANGLE,
-                                        "v 1000 -5000 30000\nv 1001 -5000 30000\nv 1000 -4999 30003\nv 1000 "
-                                        "-5002 29999\nf 1 2 3 4\nf 1 2 4\n",
-                                        "v -1e-9 0 0\nv 1e-9 0 0\nv 0 1e-9 2e-9\nf 1 2 3\n",
-                                        "v -1e9 0 5e9\nv 1e9 0 0\nv 0 1e9 -1e9\nf 1 2 3\n"};
+    static const char* const texts[] = {
+        TRIANGLE,
+        "v 1000 -500 3000\nv 1001 -500 3000\nv 1000 -499 3003\nv 1000 -502 2999\nf 1 2 3 4\nf 1 2 4\n",
+        "v -1e-9 0 0\nv 1e-9 0 0\nv 0 1e-9 2e-9\nf 1 2 3\n",
+        "v -1e9 0 5e9\nv 1e9 0 0\nv 0 1e9 -1e9\nf 1 2 3\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         Desk d;
         vplScene* scene = NULL;

@@ -26,8 +26,8 @@ static void warnOfUndefined(const vplObj* obj)
     }
 }
 
-// A start for the names of a file's materials that no name in the scene has: "room.obj:", else "room.obj(2):"
-// and so on. Files may share material names, and one file may be read twice.
+// A start for the names of a file's materials that no name in the scene has: "room.obj:", else with the number of
+// the mesh, from 1: "room.obj(2):". Files may share material names, and one file may be read twice.
 static char* makePrefix(const vplScene* scene, const char* path)
 {
     const char* base = vplBaseName(path);
@@ -38,7 +38,7 @@ static char* makePrefix(const vplScene* scene, const char* path)
     }
     snprintf(prefix, room, "%s:", base);
     bool taken = true;
-    for (int number = 2; taken; number++) {
+    for (int number = scene->meshCount + 1; taken; number++) {
         taken = false;
         for (int i = 0; i < scene->materialCount && !taken; i++) {
             const char* name = scene->materials[i].name;
