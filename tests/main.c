@@ -7,6 +7,7 @@
 
 // One line per test file.
 #define ALL_SUITES(X)                                                                                        \
+    X(emission)                                                                                              \
     X(exr)                                                                                                   \
     X(geometry)                                                                                              \
     X(image)                                                                                                 \
@@ -14,10 +15,10 @@
     X(math)                                                                                                  \
     X(memory)                                                                                                \
     X(metrics)                                                                                               \
-    X(path)                                                                                                  \
     X(obj)                                                                                                   \
     X(objParts)                                                                                              \
     X(objScene)                                                                                              \
+    X(path)                                                                                                  \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \
     X(render)                                                                                                \
