@@ -122,7 +122,7 @@ static void overlay(vplRenderOptions* o)
 static void paths(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_PATH;
-    o->samplesPerPixel = 16;
+    o->samplesPerPixel = 32;
 }
 
 static void secondBounce(vplRenderOptions* o)
@@ -160,8 +160,9 @@ enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
 static void printMessage(void* user, vplLogLevel level, const char* message)
 {
     (void)user;
-    (void)level;
-    fprintf(stderr, "%s\n", message);
+    if (level != VPL_LOG_INFO) {
+        fprintf(stderr, "%s\n", message);
+    }
 }
 
 static vplImage* renderCase(vplContext* context, const Case* c)
