@@ -86,6 +86,7 @@ bench: all
 	$(BUILD)/vpl bench
 	$(BUILD)/bench/acne
 	$(BUILD)/bench/rays examples/scenes/room.json
+	$(BUILD)/bench/path examples/scenes/room-area.json
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
 golden: deps

@@ -8,6 +8,7 @@
 // One line per test file.
 #define ALL_SUITES(X)                                                                                        \
     X(emitters)                                                                                              \
+    X(emission)                                                                                              \
     X(exr)                                                                                                   \
     X(geometry)                                                                                              \
     X(hits)                                                                                                  \
@@ -16,11 +17,11 @@
     X(math)                                                                                                  \
     X(memory)                                                                                                \
     X(metrics)                                                                                               \
-    X(path)                                                                                                  \
     X(obj)                                                                                                   \
     X(objParts)                                                                                              \
     X(objScene)                                                                                              \
     X(rays)                                                                                                  \
+    X(path)                                                                                                  \
     X(raster)                                                                                                \
     X(rasterTruth)                                                                                           \
     X(render)                                                                                                \

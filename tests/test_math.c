@@ -5,6 +5,7 @@
 #include "base/rng.h"
 #include "math/sampling.h"
 #include "math/scalar.h"
+#include "math/sobol.h"
 #include "math/vec.h"
 
 #include <float.h>
@@ -169,10 +170,96 @@ static void MatricesMoveAsTheyShould(void** state)
     assertNear((double)(projection.m[10] * -9 + projection.m[14]) / 9, 1, 1e-6, "far", 0);
 }
 
+// The first eight points, worked out by hand from the primitive polynomials and first numbers of Joe and Kuo.
+static void SobolPointsAreThePublishedOnes(void** state)
+{
+    (void)state;
+    static const double wanted[8][VPL_SOBOL_DIMENSIONS] = {
+        {0, 0, 0, 0},
+        {0.5, 0.5, 0.5, 0.5},
+        {0.25, 0.75, 0.75, 0.75},
+        {0.75, 0.25, 0.25, 0.25},
+        {0.125, 0.625, 0.375, 0.125},
+        {0.625, 0.125, 0.875, 0.625},
+        {0.375, 0.375, 0.625, 0.875},
+        {0.875, 0.875, 0.125, 0.375},
+    };
+    const vplSobol sobol = vplSobol_Make();
+    for (uint32_t i = 0; i < 8; i++) {
+        uint32_t fractions[VPL_SOBOL_DIMENSIONS];
+        vplSobol_Point(&sobol, i, fractions);
+        for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+            assertNear(fractions[d] * 0x1p-32, wanted[i][d], 0, "fraction", (int)i);
+        }
+    }
+}
+
+// Scrambled and shuffled, the first 2^k points still put one into each stratum of every dimension, and one into each
+// of the cells of any shape that halving the first two dimensions k times makes.
+static void ScrambledPointsKeepTheirStrata(void** state)
+{
+    (void)state;
+    enum { K = 8, COUNT = 1 << K };
+    const vplSobol sobol = vplSobol_Make();
+    for (uint32_t stream = 0; stream < 50; stream++) {
+        float p[COUNT][VPL_SOBOL_DIMENSIONS];
+        for (uint32_t i = 0; i < COUNT; i++) {
+            vplSobol_Sample(&sobol, 9, stream, stream % 3, i, p[i]);
+        }
+        for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+            bool taken[COUNT] = {false};
+            for (int i = 0; i < COUNT; i++) {
+                bool* cell = &taken[(int)(p[i][d] * COUNT)];
+                assert_false(*cell);
+                *cell = true;
+            }
+        }
+        for (int k = 0; k <= K; k++) {
+            bool taken[COUNT] = {false};
+            for (int i = 0; i < COUNT; i++) {
+                int x = (int)(p[i][0] * (float)(1 << k)), y = (int)(p[i][1] * (float)(1 << (K - k)));
+                assert_false(taken[(x << (K - k)) + y]);
+                taken[(x << (K - k)) + y] = true;
+            }
+        }
+    }
+}
+
+// One place of a sequence looks uniform over all streams, and two streams have nothing to do with each other.
+static void StreamsAreIndependent(void** state)
+{
+    (void)state;
+    enum { STREAMS = 20000 };
+    const vplSobol sobol = vplSobol_Make();
+    for (uint32_t index = 0; index < 5; index++) {
+        double mean[VPL_SOBOL_DIMENSIONS] = {0}, products[3] = {0};
+        for (uint64_t stream = 0; stream < STREAMS; stream++) {
+            float a[VPL_SOBOL_DIMENSIONS], b[VPL_SOBOL_DIMENSIONS], c[VPL_SOBOL_DIMENSIONS];
+            vplSobol_Sample(&sobol, 1, stream, 0, index, a);
+            vplSobol_Sample(&sobol, 1, stream + 1, 0, index, b);
+            vplSobol_Sample(&sobol, 1, stream, 1, index, c);
+            for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+                mean[d] += (double)a[d] / STREAMS;
+            }
+            const double x[3] = {(double)b[0], (double)c[0], (double)a[1]}; // pixels, sets, dimensions
+            for (int i = 0; i < 3; i++) {
+                products[i] += ((double)a[0] - 0.5) * (x[i] - 0.5) / STREAMS;
+            }
+        }
+        for (int d = 0; d < VPL_SOBOL_DIMENSIONS; d++) {
+            assertNear(mean[d], 0.5, 0.01, "mean", (int)index); // five standard deviations
+        }
+        for (int i = 0; i < 3; i++) {
+            assertNear(products[i], 0, 0.003, "covariance", i);
+        }
+    }
+}
+
 TEST_SUITE(math, cmocka_unit_test(ElementaryFunctionsAgreeWithLibm),
            cmocka_unit_test(ElementaryFunctionsAreDefinedAtTheirEnds),
            cmocka_unit_test(PhiloxGivesThePublishedNumbers),
            cmocka_unit_test(RadicalInversesAreThoseOfTheTables), cmocka_unit_test(WarpsAreThoseOfTheTable),
-           cmocka_unit_test(FramesAreOrthonormalForEveryNormal),
+           cmocka_unit_test(SobolPointsAreThePublishedOnes), cmocka_unit_test(ScrambledPointsKeepTheirStrata),
+           cmocka_unit_test(StreamsAreIndependent), cmocka_unit_test(FramesAreOrthonormalForEveryNormal),
            cmocka_unit_test(NormalizeKeepsTheDirectionOfAnyLength),
            cmocka_unit_test(MatricesMoveAsTheyShould));

@@ -130,6 +130,34 @@ static void EveryFailedAllocationOfARenderIsReported(void** state)
     }
 }
 
+static vplResult pathAndWrite(vplContext* context, const char* path, int variant)
+{
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
+    options.method = VPL_METHOD_PATH;
+    options.samplesPerPixel = 2;
+    vplResult result = vplScene_Load(
+        context, variant ? "examples/scenes/room-area.json" : "examples/scenes/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplRender(scene, &options, &image, NULL);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Write(image, path, NULL);
+    }
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(pathAndWrite, "pfm", variant, variant);
+    }
+}
+
 // Everything that `show` can ask for.
 static vplResult showAndWrite(vplContext* context, const char* path, int show)
 {
@@ -279,6 +307,7 @@ static void EveryFailedAllocationOfAnEncodedPngIsReported(void** state)
 
 TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReported),
            cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),

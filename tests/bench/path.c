@@ -164,7 +164,7 @@ int main(int count, char** words)
     if (vplContext_Create(&def, &context) == VPL_SUCCESS &&
         vplScene_Load(context, path, &scene) == VPL_SUCCESS &&
         vplGeometry_Create(scene, &geometry) == VPL_SUCCESS) {
-        code = run(scene, geometry, count > 2 ? atoi(words[2]) : 64, count > 3 ? atoi(words[3]) : 128);
+        code = run(scene, geometry, count > 2 ? atoi(words[2]) : 32, count > 3 ? atoi(words[3]) : 96);
     }
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);

@@ -98,3 +98,23 @@ refuses CompareDifferentSizes 2 "differ in size: 75x50 and 8x8" "$vpl" compare "
 check ResultsAloneGoToStdout test ! -s "$scratch/stdout" -a -s "$scratch/stderr"
 check VerboseChangesNothing cmp "$out/loud.pfm" "$out/a.pfm"
 check NoTemporaryPictures test -z "$(ls -A "$out" | grep -v -E '\.(png|hdr|pfm|exr|json)$')"
+
+# The path-traced reference: the same bits for all threads and instruction sets, what it can show, what it tells.
+paths="--method path --spp 3"
+wanted=$(hash_of $paths)
+check PathsHaveAHash test ${#wanted} -eq 18
+for threads in 1 3; do
+    equals "PathsKnowNoThreads_$threads" "$wanted" "$(hash_of $paths --threads $threads)"
+done
+equals PathsKnowNoIsa "$wanted" "$(hash_of $paths --isa scalar)"
+check OtherPathsForOtherSeeds test "$wanted" != "$(hash_of $paths --seed 1)"
+check PathsTellTheirError test "$(field "$out/h.json" error_estimate)" != null
+check MoreBouncesAreAnotherPicture test "$(hash_of $paths --max-bounces 0)" != "$(hash_of $paths --max-bounces 1)"
+equals NoBouncesAreDirectLight "$(hash_of $paths --max-bounces 0)" "$(hash_of $paths --show direct)"
+for show in indirect bounce:0 bounce:2; do
+    succeeds "PathsShow_$show" "$vpl" render "$room" $base $paths -o "$out/h.png" --show $show
+done
+"$vpl" render "$room" $base $paths -o "$out/h.png" -v 2>"$scratch/told"
+check PathsSayTheirError grep -q "remaining error about" "$scratch/told"
+refuses PathsAreNotDocumented 2 "physical lighting only" "$vpl" render "$room" $paths --lighting documented -o "$out/h.png"
+refuses PathsShowNoNormals 2 "bounce:K" "$vpl" render "$room" $paths --show normals -o "$out/h.png"

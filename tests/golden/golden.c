@@ -119,6 +119,20 @@ static void overlay(vplRenderOptions* o)
     o->particles = 60;
 }
 
+static void paths(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_PATH;
+    o->samplesPerPixel = 32;
+}
+
+static void secondBounce(vplRenderOptions* o)
+{
+    paths(o);
+    o->show = VPL_SHOW_BOUNCE;
+    o->showBounce = 2;
+    o->seed = 7;
+}
+
 static const Case CASES[] = {
     {"room-physical", "room", 1, defaults},
     {"room-documented", "closed-room", 0, documented},
@@ -136,6 +150,9 @@ static const Case CASES[] = {
     {"indirect", "closed-room", 1, indirect},
     {"light-4", "closed-room", 2, oneLight},
     {"overlay", "room", 0, overlay},
+    {"path-area", "room-area", 1, paths},
+    {"path-point", "closed-room", 1, paths},
+    {"path-bounce-2", "room", 3, secondBounce},
 };
 
 enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
@@ -143,8 +160,9 @@ enum { CASE_COUNT = sizeof CASES / sizeof *CASES };
 static void printMessage(void* user, vplLogLevel level, const char* message)
 {
     (void)user;
-    (void)level;
-    fprintf(stderr, "%s\n", message);
+    if (level != VPL_LOG_INFO) {
+        fprintf(stderr, "%s\n", message);
+    }
 }
 
 static vplImage* renderCase(vplContext* context, const Case* c)
