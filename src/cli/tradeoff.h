@@ -80,7 +80,7 @@ typedef struct Tradeoff {
     Setting settings[MAX_SETTINGS];
     int settingCount;
     Progress progress;
-    double start, deadline; // seconds
+    double start, deadline; // seconds; INFINITY: none
     bool interrupted;
     char message[SENTENCE]; // the last error of the library
     bool silent;            // errors are kept, not printed
