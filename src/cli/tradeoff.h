@@ -118,9 +118,9 @@ vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptio
 // ---- results
 
 void writeTable(const Tradeoff* t, Text* csv);
+void addMarker(Text* svg, Family family, bool solid, double x, double y);
 void writeStyle(Text* css); // colours of both the plots and the report
 void writePlot(const Tradeoff* t, Text* svg);
-void writeClampPlot(const Tradeoff* t, Text* svg); // adds nothing where there are fewer than two points
 void writeReport(const Tradeoff* t, Text* html);
 
 // The index of the cheapest setting of a family (FAMILY_COUNT: any) with a median error within the limit, or -1.
