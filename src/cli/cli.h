@@ -10,8 +10,10 @@ enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
 enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8 };
 
 // What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures,
-// enough particles to see something, and the sampler and hard shadows that the truth of a point light wants.
-#define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --shadow-map 256 --pcf 1"
+// enough particles to see something, the sampler and hard shadows that the truth of a point light wants, and a
+// seed other than 0, with which the first Halton point is the origin in all dimensions: the particle that it
+// drives goes on to the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error, else 18 %).
+#define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --seed 1 --shadow-map 256 --pcf 1"
 
 // All options of all commands.
 typedef struct Arguments {

@@ -30,16 +30,14 @@ static const Topic TOPICS[] = {
      "same\n"
      "options would need."},
     {"tradeoff", "vpl tradeoff SCENE -o DIR [options]", "measures error against time",
-     "Renders SCENE with many settings and several seeds, compares each picture with a reference, and writes "
-     "to\n"
-     "DIR: report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot),\n"
-     "tradeoff.csv (every figure) and the reference as reference-a.pfm and reference-b.pfm. Render options "
-     "given here change the base that the "
-     "sweeps\n"
-     "start from. Physical lighting only: the documented formulas have no truth to compare with. Sweeps for\n"
-     "--sweeps: frontier, path, direct, light-shadows, min-distance, sampler, reflectivity, shadow-map, "
-     "pcf,\n"
-     "bias, pipeline, particle-geometry."},
+     "Renders SCENE with many settings and several seeds, compares each picture with a reference, and "
+     "writes\n"
+     "to DIR: report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot),\n"
+     "tradeoff.csv (every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options\n"
+     "given here change the base that the sweeps start from: " TRADEOFF_BASE ".\n"
+     "Physical lighting only: the documented formulas have no truth to compare with.\n"
+     "Sweeps: frontier, path, direct, particles, light-shadows, min-distance, sampler, reflectivity,\n"
+     "shadow-map, pcf, bias, pipeline, particle-geometry."},
     {"bench", "vpl bench [options]", "times every stage",
      "Times the stages on the built-in room: medians, counts, hashes, and the speed-up of several threads."},
 };

@@ -80,7 +80,7 @@ typedef struct Tradeoff {
     Setting settings[MAX_SETTINGS];
     int settingCount;
     Progress progress;
-    double start, deadline; // seconds
+    double start, deadline; // seconds; INFINITY: none
     bool interrupted;
     char message[SENTENCE]; // the last error of the library
     bool silent;            // errors are kept, not printed
@@ -118,9 +118,9 @@ vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptio
 // ---- results
 
 void writeTable(const Tradeoff* t, Text* csv);
+void addMarker(Text* svg, Family family, bool solid, double x, double y);
 void writeStyle(Text* css); // colours of both the plots and the report
 void writePlot(const Tradeoff* t, Text* svg);
-void writeClampPlot(const Tradeoff* t, Text* svg); // adds nothing where there are fewer than two points
 void writeReport(const Tradeoff* t, Text* html);
 
 // The index of the cheapest setting of a family (FAMILY_COUNT: any) with a median error within the limit, or -1.

@@ -16,20 +16,6 @@ static bool isJudged(const Tradeoff* t, double limit)
     return limit > t->reference.resolution;
 }
 
-// Lines may break between words only: half an option cannot be copied.
-static void addWords(const char* words, Text* html)
-{
-    while (*words != 0) {
-        size_t length = strcspn(words, " ");
-        char word[256];
-        snprintf(word, sizeof word, "%.*s", (int)length, words);
-        addText(html, "<span>");
-        addEscaped(html, word);
-        addText(html, "</span>%s", words[length] ? " " : "");
-        words += length + (words[length] == ' ');
-    }
-}
-
 static void addCommand(const Tradeoff* t, const Setting* s, Text* html)
 {
     char command[SENTENCE];
@@ -37,7 +23,7 @@ static void addCommand(const Tradeoff* t, const Setting* s, Text* html)
     addText(html, "<code class=\"copy\">vpl render ");
     addEscaped(html, t->arguments->positionals[0]);
     addText(html, " ");
-    addWords(command, html);
+    addWords(html, command);
     addText(html, " -o picture.png</code>");
 }
 

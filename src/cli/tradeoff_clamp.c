@@ -10,7 +10,8 @@ enum { WIDTH = 900, PANEL = 200, GAP = 34, LEFT = 72, RIGHT = 24, TOP = 26, BOTT
 
 typedef struct Clamp {
     const Setting* points[MAX_POINTS]; // by ascending distance
-    int count;
+    int column[MAX_POINTS];            // points of one distance stand in one column
+    int count, columns;
     Text* svg;
 } Clamp;
 
@@ -37,10 +38,19 @@ static void findPoints(const Tradeoff* t, Clamp* clamp)
     }
 }
 
+static void findColumns(Clamp* c)
+{
+    for (int i = 0; i < c->count; i++) {
+        bool another = i > 0 && distanceOf(c->points[i]) > distanceOf(c->points[i - 1]) * 1.02;
+        c->column[i] = i == 0 ? 0 : c->column[i - 1] + another;
+        c->columns = c->column[i] + 1;
+    }
+}
+
 // Evenly spaced: the distances run over decades and begin with 0.
 static double atX(const Clamp* c, int i)
 {
-    return LEFT + (WIDTH - LEFT - RIGHT) * (i + 0.5) / c->count;
+    return LEFT + (WIDTH - LEFT - RIGHT) * (c->column[i] + 0.5) / c->columns;
 }
 
 typedef struct Range {
@@ -74,21 +84,42 @@ static void addPanel(const Clamp* c, const Range* r, const char* title, bool per
             WIDTH - RIGHT);
 }
 
-static void addLine(const Clamp* c, const Range* r, bool energy)
+static void addLine(const Clamp* c, const Range* r, Family family, bool energy)
 {
-    addText(c->svg, "<path class=\"f%d band\" d=\"", c->points[0]->family);
+    const char* command = "M";
+    addText(c->svg, "<path class=\"f%d band\" d=\"", family);
     for (int i = 0; i < c->count; i++) {
         const Setting* s = c->points[i];
-        addText(c->svg, "%c%.1f %.1f", i ? 'L' : 'M', atX(c, i), atY(r, energy ? s->energy : s->error));
+        if (s->family == family) {
+            addText(c->svg, "%s%.1f %.1f", command, atX(c, i), atY(r, energy ? s->energy : s->error));
+            command = "L";
+        }
     }
     addText(c->svg, "\"/>\n");
     for (int i = 0; i < c->count; i++) {
         const Setting* s = c->points[i];
-        addText(c->svg, "<circle class=\"f%d\" r=\"4\" cx=\"%.1f\" cy=\"%.1f\"/>", s->family, atX(c, i),
-                atY(r, energy ? s->energy : s->error));
-        if (!energy) {
-            addText(c->svg, "<path class=\"f%d band\" d=\"M%.1f %.1fV%.1f\"/>", s->family, atX(c, i),
+        if (s->family == family) {
+            addMarker(c->svg, family, true, atX(c, i), atY(r, energy ? s->energy : s->error));
+        }
+        if (s->family == family && !energy) {
+            addText(c->svg, "<path class=\"f%d band\" d=\"M%.1f %.1fV%.1f\"/>", family, atX(c, i),
                     atY(r, s->errorLow), atY(r, s->errorHigh));
+        }
+    }
+}
+
+static void addLegend(const Clamp* c)
+{
+    int x = LEFT + 150;
+    for (int f = 0; f < FAMILY_COUNT; f++) {
+        bool present = false;
+        for (int i = 0; i < c->count; i++) {
+            present |= c->points[i]->family == (Family)f;
+        }
+        if (present) {
+            addMarker(c->svg, (Family)f, true, x, TOP - 12);
+            addText(c->svg, "<text x=\"%d\" y=\"%d\">%s</text>\n", x + 12, TOP - 8, FAMILY_NAMES[f]);
+            x += 250;
         }
     }
 }
@@ -97,6 +128,9 @@ static void addDistances(const Clamp* c, int y)
 {
     for (int i = 0; i < c->count; i++) {
         bool automatic = c->points[i]->arguments.render.minDistance < 0;
+        if (i > 0 && c->column[i] == c->column[i - 1]) {
+            continue;
+        }
         addText(c->svg, "<text class=\"soft\" x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%.2g m%s</text>\n",
                 atX(c, i), y, distanceOf(c->points[i]),
                 automatic                       ? " (auto)"
@@ -126,8 +160,11 @@ static void drawClamp(const Clamp* c)
     addPanel(c, &error, "error", true);
     addPanel(c, &energy, "energy: all light / all light of the truth", false);
     addText(c->svg, "<path class=\"front\" d=\"M%d %.1fH%d\"/>\n", LEFT, atY(&energy, 1), WIDTH - RIGHT);
-    addLine(c, &error, false);
-    addLine(c, &energy, true);
+    for (int f = 0; f < FAMILY_COUNT; f++) {
+        addLine(c, &error, (Family)f, false);
+        addLine(c, &energy, (Family)f, true);
+    }
+    addLegend(c);
     addDistances(c, height - BOTTOM + 18);
     addText(c->svg, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">--min-distance D</text>\n</svg>\n",
             (LEFT + WIDTH - RIGHT) / 2, height - 12);
@@ -140,6 +177,7 @@ void addClamp(const Tradeoff* t, Text* html)
     if (clamp.count < 2) {
         return;
     }
+    findColumns(&clamp);
     char command[SENTENCE];
     writeCommand(&t->settings[0], command, sizeof command);
     addText(
@@ -147,7 +185,7 @@ void addClamp(const Tradeoff* t, Text* html)
         "<h2>The clamp: blotches against lost light</h2>\n<p>A virtual light lights what is nearer than D "
         "only as if it were D away. A small D leaves bright blotches around the lights, a large one "
         "loses light, in corners first. All else as in the base, <code>");
-    addEscaped(html, command);
+    addWords(html, command);
     addText(html, "</code>.</p>\n");
     drawClamp(&clamp);
 }

@@ -12,9 +12,9 @@ typedef struct Knob {
     const Sweep* sweep;
     const Setting* best;
     Verdict verdict;
-    double perHalving; // milliseconds of processor time
-    int values;        // measured, besides the base
-    bool worse;        // some value makes the error larger
+    double perHalving;  // milliseconds of processor time
+    int values;         // measured, besides the base
+    bool worse, dearer; // some value makes the error larger, or costs more
 } Knob;
 
 // -1 or 1 if every seed agrees that the error falls or grows, and by more than 2 %; else 0.
@@ -51,12 +51,14 @@ static void judge(Knob* knob, const Setting* base, const Setting* s)
 {
     int error = errorTrend(base, s), cost = costTrend(base, s);
     double perHalving = costPerHalving(base->cpuMs, base->error, s->cpuMs, s->error);
-    Verdict verdict = error < 0 && cost <= 0   ? VERDICT_FREE
-                      : error < 0              ? VERDICT_BUYS
-                      : error == 0 && cost < 0 ? VERDICT_SAVES
-                                               : VERDICT_NOTHING;
+    bool same = s->error <= 1.02 * base->error; // seeds that disagree do not prove it
+    Verdict verdict = error < 0 && cost <= 0           ? VERDICT_FREE
+                      : error < 0                      ? VERDICT_BUYS
+                      : error == 0 && same && cost < 0 ? VERDICT_SAVES
+                                                       : VERDICT_NOTHING;
     knob->values++;
     knob->worse |= error > 0;
+    knob->dearer |= cost > 0;
     if (verdict != VERDICT_NOTHING && isBetter(knob, verdict, perHalving, s)) {
         knob->best = s;
         knob->verdict = verdict;
@@ -68,7 +70,7 @@ static int findKnobs(const Tradeoff* t, Knob* knobs)
 {
     int count = 0;
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        Knob knob = {&SWEEPS[i], NULL, VERDICT_NOTHING, INFINITY, 0, false};
+        Knob knob = {&SWEEPS[i], NULL, VERDICT_NOTHING, INFINITY, 0, false, false};
         for (int j = 1; j < t->settingCount; j++) {
             const Setting* s = &t->settings[j];
             if ((s->sweeps >> i & 1) != 0 && isMeasured(s) && SWEEPS[i].meaning != NULL) {
@@ -110,8 +112,9 @@ static void addNothing(const Knob* knob, Text* html)
     const char* option = strrchr(knob->sweep->words, ' ');
     addText(html, "<td><code>%s</code></td><td colspan=\"3\">%s</td><td class=\"n\">&ndash;</td></tr>\n",
             option ? option + 1 : knob->sweep->words,
-            knob->worse ? "buys nothing: the base's value is best, some others are worse"
-                        : "buys nothing: all values give the same error at the same cost");
+            knob->worse    ? "buys nothing: the base's value is best, others are worse"
+            : knob->dearer ? "buys nothing: all values give the same error, others than the base's cost more"
+                           : "buys nothing: all values give the same error at the same cost");
 }
 
 static void addKnob(const Setting* base, const Knob* knob, Text* html)
@@ -126,7 +129,9 @@ static void addKnob(const Setting* base, const Knob* knob, Text* html)
     }
     formatPercent(base->error, from, sizeof from);
     formatPercent(knob->best->error, to, sizeof to);
-    addText(html, "<td><code>%s</code></td><td class=\"n\">%s &rarr; %s</td>", knob->best->change, from, to);
+    addText(html, "<td><code>");
+    addWords(html, knob->best->change);
+    addText(html, "</code></td><td class=\"n\">%s &rarr; %s</td>", from, to);
     formatTime(base->cpuMs, from, sizeof from);
     formatTime(knob->best->cpuMs, to, sizeof to);
     addText(html, "<td class=\"n\">%s &rarr; %s</td><td>%s</td>", from, to, words[knob->verdict]);
@@ -149,7 +154,7 @@ void addKnobs(const Tradeoff* t, Text* html)
     writeCommand(base, command, sizeof command);
     sortKnobs(knobs, count);
     addText(html, "<h2>What each knob buys</h2>\n<p>One option at a time is changed from the base, <code>");
-    addEscaped(html, command);
+    addWords(html, command);
     addText(html,
             "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor time "
             "added for each factor of two by which the error falls. A change counts only if all seeds agree "

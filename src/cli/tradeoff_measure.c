@@ -189,6 +189,19 @@ static bool makeRoom(Tradeoff* t)
     return good;
 }
 
+// A setting may come to the front only when later seeds are known, its picture gone: the same bits are made again.
+static void restorePictures(Tradeoff* t)
+{
+    t->deadline = INFINITY;
+    for (int i = 0; i < t->settingCount; i++) {
+        Setting* s = &t->settings[i];
+        if (s->onFront && s->image == NULL) {
+            vplRenderStats stats;
+            renderQuietly(t, t->scene, &s->arguments.render, &s->image, &stats);
+        }
+    }
+}
+
 // A processor that was idle is slow at first; that must not be the cheapest setting's fault.
 static void warmUp(Tradeoff* t)
 {
@@ -211,6 +224,7 @@ int measureSettings(Tradeoff* t)
         int rounds = t->arguments->seeds - round;
         measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.6 : 1.0 / rounds));
     }
+    restorePictures(t);
     int measured = 0;
     for (int i = 0; i < t->settingCount; i++) {
         measured += isMeasured(&t->settings[i]);

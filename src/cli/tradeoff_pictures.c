@@ -53,7 +53,7 @@ static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions*
     addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number, time, error);
     char command[SENTENCE];
     writeCommand(s, command, sizeof command);
-    addEscaped(html, command);
+    addWords(html, command);
     addText(html, "</code></p>\n<div class=\"row\">");
     addFigure(html, s->image, options, FAMILY_NAMES[s->family]);
     addFigure(html, t->reference.image, options, "the truth");

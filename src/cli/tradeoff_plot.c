@@ -45,7 +45,7 @@ void writeStyle(Text* css)
                  "stroke-width:3px}\n");
 }
 
-static void addMarker(Text* svg, Family family, bool solid, double x, double y)
+void addMarker(Text* svg, Family family, bool solid, double x, double y)
 {
     static const char* const shapes[FAMILY_COUNT] = {"M-5 -5H5V5H-5Z",
                                                      "M0 -5.5A5.5 5.5 0 1 1 0 5.5A5.5 5.5 0 1 1 0 -5.5Z",

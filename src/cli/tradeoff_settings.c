@@ -10,6 +10,8 @@
 
 static const char PARTICLES[] = "3 10 30 100 300 1000 3000 10000 30000 65536";
 
+static const char DISTANCES[] = "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4";
+
 const Sweep SWEEPS[] = {
     {"frontier", "--light-shadows none --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows map --particles", PARTICLES, NULL},
@@ -22,8 +24,8 @@ const Sweep SWEEPS[] = {
     {"direct", "--method", "direct", NULL},
     {"particles", "--particles", PARTICLES, "Particles"},
     {"light-shadows", "--light-shadows", "none map ray", "Shadows of virtual lights"},
-    {"min-distance", "--min-distance", "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4",
-     "Clamp of near virtual lights"},
+    {"min-distance", "--min-distance", DISTANCES, "Clamp of near virtual lights"},
+    {"min-distance", "--light-shadows map --min-distance", DISTANCES, NULL},
     {"sampler", "--sampler", "random halton hammersley", "Where particles go"},
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
     {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},

@@ -56,6 +56,19 @@ void addEscaped(Text* text, const char* plain)
     }
 }
 
+void addWords(Text* html, const char* words)
+{
+    while (*words != 0) {
+        size_t length = strcspn(words, " ");
+        char word[256];
+        snprintf(word, sizeof word, "%.*s", (int)length, words);
+        addText(html, "<span>");
+        addEscaped(html, word);
+        addText(html, "</span>%s", words[length] ? " " : "");
+        words += length + (words[length] == ' ');
+    }
+}
+
 void addCell(Text* text, const char* plain)
 {
     bool quoted = strpbrk(plain, ",\"\r\n") != NULL;

@@ -20,6 +20,9 @@ void addText(Text* text, const char* format, ...);
 // Adds text with what HTML takes for markup written as entities.
 void addEscaped(Text* text, const char* plain);
 
+// Adds words of a command line such that lines break between options only: half a word cannot be copied.
+void addWords(Text* html, const char* words);
+
 // Adds a cell of a CSV row, in quotes where it needs them, and a comma behind it.
 void addCell(Text* text, const char* plain);
 

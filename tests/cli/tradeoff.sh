@@ -47,13 +47,13 @@ for name in setting family sweeps on_front seed method particles reflectivity sa
     ssim flip psnr energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading ms_paths command; do
     check "TradeoffHas_$name" test -n "$(column "$csv" $name)"
 done
-equals TradeoffSeeds "0 1" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
+equals TradeoffSeeds "1 2" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
 equals TradeoffSamplers "halton hammersley random" "$(column "$csv" sampler | sort -u | tr '\n' ' ' | sed 's/ $//')"
 for name in setting seed image_hash error rmse relmse energy_ratio virtual_lights command; do
     equals "TradeoffRepeats_$name" "$(column "$csv" $name | cksum)" "$(column "$out/u/tradeoff.csv" $name | cksum)"
 done
-equals PipelinesMakeOnePicture 1 "$(awk -F, '$5 == 0 && $3 ~ /pipeline/' "$csv" | grep -oE ',[0-9a-f]{16},' | sort -u | wc -l)"
-equals PipelinesAreThree 3 "$(awk -F, '$5 == 0 && $3 ~ /pipeline/' "$csv" | wc -l)"
+equals PipelinesMakeOnePicture 1 "$(awk -F, '$5 == 1 && $3 ~ /pipeline/' "$csv" | grep -oE ',[0-9a-f]{16},' | sort -u | wc -l)"
+equals PipelinesAreThree 3 "$(awk -F, '$5 == 1 && $3 ~ /pipeline/' "$csv" | wc -l)"
 
 # The command of a row makes the row's picture.
 column "$csv" command | while read -r command; do
