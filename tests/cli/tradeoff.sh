@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# vpl tradeoff: what is refused, what is written, and that figures do not depend on the run or the threads.
+# vpl tradeoff: what is refused, what is written, and that figures do not depend on the run.
 
 tiny="--size 16x9 --shadow-map 32 --quiet"
 report=$out/t
@@ -33,7 +33,7 @@ rm -r "$out/taken" "$out/file"
 few="$tiny --seeds 2 --time 100000 --sweeps sampler,min-distance,pipeline,direct --particles 4"
 succeeds Tradeoff "$vpl" tradeoff "$closed" -o "$report" $few --reference-spp 16
 equals TradeoffFiles "reference-a.pfm reference-b.pfm report.html tradeoff.csv tradeoff.svg " "$(ls -A "$report" | tr '\n' ' ')"
-succeeds TradeoffWithReference "$vpl" tradeoff "$closed" -o "$out/u" $few --threads 2 \
+succeeds TradeoffWithReference "$vpl" tradeoff "$closed" -o "$out/u" $few \
     --reference "$report/reference-a.pfm,$report/reference-b.pfm"
 
 # column FILE NAME: the cells below a heading.
