@@ -87,10 +87,10 @@ static void HalvingTwiceCostsHalfTheDifference(void** state)
 static void FloorShowsWhereWorkNoLongerHelps(void** state)
 {
     (void)state;
-    const double work[] = {10, 30, 100, 300}, falling[] = {40, 23, 13, 7.3}, biased[] = {40, 20, 12.5, 12.1};
+    const double work[] = {10, 30, 100, 300}, falling[] = {40, 23, 13, 7.3}, biased[] = {40, 14, 12.5, 12.1};
     assert_true(isnan(floorOf(work, falling, 4)));
     assertNear(floorOf(work, biased, 4), 12.1, 0, "floor", 0);
-    const double close[] = {10, 30, 100, 110}; // 12.1 is compared with 20, which is far above
+    const double close[] = {10, 30, 100, 110}; // 12.1 is compared with 40, which is far above
     assert_true(isnan(floorOf(close, biased, 4)));
     assert_true(isnan(floorOf(work, biased, 1)));
 }

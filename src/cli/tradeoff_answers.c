@@ -130,7 +130,8 @@ static void addFloors(const Tradeoff* t, Text* html)
 {
     for (int f = FAMILY_UNSHADOWED; f <= FAMILY_RAY; f++) {
         double floor = findFloor(t, (Family)f);
-        if (isfinite(floor) && floor > t->reference.resolution) {
+        // No floor where another clamp or shadow map gets below it.
+        if (floor > t->reference.resolution && leastError(t, (Family)f) > 0.85 * floor) {
             char text[32];
             formatPercent(floor, text, sizeof text);
             addText(html,

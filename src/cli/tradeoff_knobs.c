@@ -112,9 +112,10 @@ static void addNothing(const Knob* knob, Text* html)
     const char* option = strrchr(knob->sweep->words, ' ');
     addText(html, "<td><code>%s</code></td><td colspan=\"3\">%s</td><td class=\"n\">&ndash;</td></tr>\n",
             option ? option + 1 : knob->sweep->words,
-            knob->worse    ? "buys nothing: the base's value is best, others are worse"
-            : knob->dearer ? "buys nothing: all values give the same error, others than the base's cost more"
-                           : "buys nothing: all values give the same error at the same cost");
+            knob->worse ? "buys nothing: the base's value is best, others are worse"
+            : knob->dearer
+                ? "buys nothing: no value changes the error on all seeds, others than the base's cost more"
+                : "buys nothing: no value changes the error on all seeds, or the cost");
 }
 
 static void addKnob(const Setting* base, const Knob* knob, Text* html)

@@ -81,10 +81,10 @@ double costPerHalving(double cost0, double error0, double cost1, double error1)
 double floorOf(const double* work, const double* error, int count)
 {
     int before = count - 2;
-    while (before >= 0 && work[before] * 2 > work[count - 1]) {
+    while (before >= 0 && work[before] * 8 > work[count - 1]) {
         before--;
     }
-    return before >= 0 && error[count - 1] > 0.9 * error[before] ? error[count - 1] : NAN;
+    return before >= 0 && error[count - 1] > 0.8 * error[before] ? error[count - 1] : NAN;
 }
 
 bool logRange(const double* values, int count, double* low, double* high)

@@ -22,8 +22,8 @@ int cheapestWithin(const double* cost, const double* error, int count, double li
 double costPerHalving(double cost0, double error0, double cost1, double error1);
 
 // The error that a series ends at, where more work no longer helps: error[i] was measured with work[i]
-// (ascending). NAN unless the last step with at least twice the work took less than a tenth off, though chance
-// alone, which falls as 1/sqrt(work), would have taken off 29 % or more.
+// (ascending). NAN unless the last eightfold of work took less than a fifth off, though of chance alone, which
+// falls as 1/sqrt(work), 65 % would have gone.
 double floorOf(const double* work, const double* error, int count);
 
 // A low and a high end for a logarithmic axis around positive values, a tenth of a decade of room on each side;

@@ -131,9 +131,15 @@ static void addLeftOut(const Tradeoff* t, Text* html)
         failed += !isMeasured(s) && s->problem[0] != 0;
     }
     addText(html, "<li>%d settings measured", t->settingCount - late - failed);
-    addText(html, late ? ", %d left out when the time of %g s was up" : "", late, t->arguments->seconds);
-    addText(html, failed ? ", %d not measured:</li>\n<ul>" : ".</li>\n", failed);
-    for (int i = 0; i < t->settingCount && failed > 0; i++) {
+    if (late > 0) {
+        addText(html, ", %d left out when the time of %g s was up", late, t->arguments->seconds);
+    }
+    if (failed == 0) {
+        addText(html, ".</li>\n");
+        return;
+    }
+    addText(html, ", %d not measured:</li>\n<ul>", failed);
+    for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
         if (!isMeasured(s) && s->problem[0] != 0) {
             addText(html, "<li><code>%s</code>: ", s->change[0] ? s->change : "the base");
@@ -141,7 +147,7 @@ static void addLeftOut(const Tradeoff* t, Text* html)
             addText(html, "</li>\n");
         }
     }
-    addText(html, "%s", failed ? "</ul>\n" : "");
+    addText(html, "</ul>\n");
 }
 
 static void addAllSettings(const Tradeoff* t, Text* html)

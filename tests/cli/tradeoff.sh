@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# vpl tradeoff: what is refused, what is written, and that figures do not depend on the run or the threads.
+# vpl tradeoff: what is refused, what is written, and that figures do not depend on the run.
 
 tiny="--size 16x9 --shadow-map 32 --quiet"
 report=$out/t
@@ -30,10 +30,10 @@ refuses TradeoffOverAFolder 1 "report.html: cannot write: it is a directory" "$v
 rm -r "$out/taken" "$out/file"
 
 # A few settings, all of which fit into the time; twice, the second time with the first one's reference.
-few="$tiny --seeds 2 --time 120 --sweeps sampler,min-distance,pipeline,direct,path --particles 20"
+few="$tiny --seeds 2 --time 100000 --sweeps sampler,min-distance,pipeline,direct --particles 4"
 succeeds Tradeoff "$vpl" tradeoff "$closed" -o "$report" $few --reference-spp 16
 equals TradeoffFiles "reference-a.pfm reference-b.pfm report.html tradeoff.csv tradeoff.svg " "$(ls -A "$report" | tr '\n' ' ')"
-succeeds TradeoffWithReference "$vpl" tradeoff "$closed" -o "$out/u" $few --threads 2 \
+succeeds TradeoffWithReference "$vpl" tradeoff "$closed" -o "$out/u" $few \
     --reference "$report/reference-a.pfm,$report/reference-b.pfm"
 
 # column FILE NAME: the cells below a heading.
@@ -44,7 +44,7 @@ csv=$report/tradeoff.csv
 check TradeoffRowsAreWhole awk -F, 'NR == 1 { n = NF } NF != n || /,,command|nan|inf,/ { exit 1 }' "$csv"
 for name in setting family sweeps on_front seed method particles reflectivity sampler min_distance light_shadows \
     shadow_map pcf pipeline spp size camera virtual_lights image_hash error relative_rmse rmse relmse trimmed_relmse \
-    ssim flip psnr energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading ms_paths command; do
+    ssim flip psnr energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading command; do
     check "TradeoffHas_$name" test -n "$(column "$csv" $name)"
 done
 equals TradeoffSeeds "1 2" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
@@ -78,10 +78,17 @@ else
     check PlotIsSvg grep -q '</svg>' "$report/tradeoff.svg"
 fi
 
+# Paths judged by other paths: sixteen a pixel (row 6, after the base, 1, 2, 4 and 8) have less than half the error
+# of one.
+succeeds TradeoffOfPaths "$vpl" tradeoff "$closed" -o "$out/p" $tiny --seeds 1 --time 5 --sweeps path --reference-spp 64
+check PathsHaveTheirStage test -n "$(column "$out/p/tradeoff.csv" ms_paths)"
+check SixteenPathsBeatOne awk -v one="$(column "$out/p/tradeoff.csv" error | sed -n 2p)" \
+    -v sixteen="$(column "$out/p/tradeoff.csv" error | sed -n 6p)" 'BEGIN { exit !(sixteen > 0 && sixteen < one / 2) }'
+
 # Interrupted: what was measured is there and whole, and the exit code says so. The time is far too long otherwise.
 if command -v timeout >/dev/null 2>&1; then
-    timeout --preserve-status -s INT -k 60 3 "$vpl" tradeoff "$closed" -o "$out/i" --size 64x36 --quiet --time 600 \
-        --reference-spp 2 2>"$scratch/stderr"
+    timeout --preserve-status -s INT -k 60 3 "$vpl" tradeoff "$closed" -o "$out/i" $tiny --time 100000 \
+        --reference "$report/reference-a.pfm" 2>"$scratch/stderr"
     equals TradeoffInterrupted "1 vpl: interrupted; what had been measured is in $out/i/report.html" "$? $(cat "$scratch/stderr")"
     check InterruptedReportIsWhole grep -q '</html>' "$out/i/report.html"
     check InterruptedReportSaysSo grep -q 'Interrupted: only what was measured' "$out/i/report.html"
