@@ -49,7 +49,9 @@ typedef struct vplRenderOptions {
     vplMethod method;     // default VPL_METHOD_INSTANT_RADIOSITY
     vplLighting lighting; // default VPL_LIGHTING_PHYSICAL
     int width, height;    // pixels, [1, VPL_MAX_IMAGE_SIZE]; default 1280 x 720
-    int camera;           // index, [0, cameras of the scene); default 0
+    int antialias; // samples per pixel of rasterizing methods, averaged as the path tracer's box filter
+                   // does; [1, 4096]; default 1: the pixel's centre
+    int camera;    // index, [0, cameras of the scene); default 0
 
     int particles;       // N, [0, VPL_MAX_LIGHTS]; default 10
     double reflectivity; // rho, [0, 1), or negative: the scene's area-weighted mean; default 0.5

@@ -19,12 +19,16 @@ enum { VPL_LIGHT_GROUP = 64 };
 typedef struct vplView {
     vplVec3 eye, right, up, forward; // right-handed, unit
     double scaleX, scaleY;           // 1 / tangent of the half-angle, across and up
-    double near, far;                // metres
-    int width, height;               // pixels
+    double offsetX, offsetY; // where in the pixel it is sampled, from the centre; units of half pictures
+    double near, far;        // metres
+    int width, height;       // pixels
 } vplView;
 
 // `camera` must have passed vplScene_AddCamera.
 vplView vplView_Create(const vplCameraDef* camera, int width, int height);
+
+// The same view sampled at (x, y) in [0, 1)^2 of each pixel, y down, instead of at (0.5, 0.5).
+vplView vplView_At(const vplView* view, double x, double y);
 
 // Pixel coordinates of a point (x right, y down, (0, 0) the upper left corner). False behind the near plane.
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);

@@ -32,6 +32,8 @@ const Option OPTIONS[] = {
      "only these sweeps, as in frontier,sampler; default: all"},
     {"--size", "WxH", RENDER | INFO | BENCH | TRADEOFF, readSize, 0, 0, 0, NULL,
      "pixels; default 1280x720, for tradeoff 320x180"},
+    {"--antialias", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.antialias), 1, 4096, NULL,
+     "samples per pixel of rasterizing methods; default 1"},
     {"--camera", "I", RENDER | TRADEOFF, readInt, AT(render.camera), 0, 1e9, NULL,
      "index of the scene's camera; default 0"},
     {"--method", "M", SCENE & ~TRADEOFF, readChoice, AT(render.method), 0, 0, "instant-radiosity|direct|path",

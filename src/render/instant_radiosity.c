@@ -2,6 +2,7 @@
 // Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights: simulate particles, render the cube
 // shadow map of the point light, render the scene lit by it with shadows, then add every virtual light.
 // Direct lighting is the same recipe without particles.
+#include "math/sampling.h"
 #include "render/render.h"
 
 #include <math.h>
@@ -170,6 +171,45 @@ static vplResult makeDirect(vplJob* job, Ingredients* in)
     return result;
 }
 
+// One look at every pixel at place i of `count`: Hammersley points, so that edges along the axes, too, are cut at
+// as many places as there are samples.
+static vplResult shadeSample(vplJob* job, const vplShadeDef* def, int i, int count)
+{
+    double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
+    vplView view = vplView_At(&job->view, (i + 0.5) / count, y - floor(y));
+    vplShadeStats stats = {0};
+    vplResult result =
+        vplShadeView(job->geometry, &view, def, vplJob_GetProgress(job), job, job->image, &stats);
+    vplJob_AddRaster(job, &stats.raster);
+    job->stats.rays += stats.shadowRays;
+    return result;
+}
+
+static vplResult shadeSamples(vplJob* job, const vplShadeDef* def)
+{
+    const int count = job->options.antialias;
+    const size_t values = 3 * (size_t)job->image->width * (size_t)job->image->height;
+    if (count == 1) {
+        return shadeSample(job, def, 0, 1);
+    }
+    double* sums = vplAllocZero(job->context, values, sizeof *sums);
+    vplResult result = sums ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    const double from = job->progressFrom, to = job->progressTo;
+    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+        job->progressFrom = from + (to - from) * i / count;
+        job->progressTo = from + (to - from) * (i + 1) / count;
+        result = shadeSample(job, def, i, count);
+        for (size_t k = 0; k < values && result == VPL_SUCCESS; k++) {
+            sums[k] += (double)job->image->pixels[k];
+        }
+    }
+    for (size_t k = 0; k < values && result == VPL_SUCCESS; k++) {
+        job->image->pixels[k] = (float)(sums[k] / count);
+    }
+    vplFree(job->context, sums);
+    return result;
+}
+
 static vplResult shade(vplJob* job, const Ingredients* in)
 {
     const vplRenderOptions* o = &job->options;
@@ -196,14 +236,7 @@ static vplResult shade(vplJob* job, const Ingredients* in)
     def.lightCount = in->lightCount;
     def.emission = !indirectOnly;
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
-    vplShadeStats stats = {0};
-    if (result == VPL_SUCCESS) {
-        result =
-            vplShadeView(job->geometry, &job->view, &def, vplJob_GetProgress(job), job, job->image, &stats);
-    }
-    vplJob_AddRaster(job, &stats.raster);
-    job->stats.rays += stats.shadowRays;
-    return result;
+    return result == VPL_SUCCESS ? shadeSamples(job, &def) : result;
 }
 
 static vplResult cook(vplJob* job, Ingredients* in)

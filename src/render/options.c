@@ -10,6 +10,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     vplRenderOptions o = {0};
     o.width = 1280;
     o.height = 720;
+    o.antialias = 1;
     o.particles = 10;
     o.reflectivity = 0.5;
     o.accumulation = VPL_ACCUMULATE_DEFERRED;
@@ -52,6 +53,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"lighting", (int)o->lighting, 0, VPL_LIGHTING_DOCUMENTED},
         {"width", o->width, 1, VPL_MAX_IMAGE_SIZE},
         {"height", o->height, 1, VPL_MAX_IMAGE_SIZE},
+        {"antialias", o->antialias, 1, 4096},
         {"camera", o->camera, 0, cameras - 1},
         {"particles", o->particles, 0, VPL_MAX_LIGHTS},
         {"sampler", (int)o->sampler, 0, VPL_SAMPLER_HAMMERSLEY},

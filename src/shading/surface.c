@@ -17,11 +17,20 @@ vplView vplView_Create(const vplCameraDef* camera, int width, int height)
     vplSinCos(camera->fovY / 2, &sine, &cosine);
     view.scaleY = cosine / sine;
     view.scaleX = view.scaleY * height / width;
+    view.offsetX = view.offsetY = 0;
     view.near = camera->near;
     view.far = camera->far;
     view.width = width;
     view.height = height;
     return view;
+}
+
+vplView vplView_At(const vplView* view, double x, double y)
+{
+    vplView moved = *view;
+    moved.offsetX = (1 - 2 * x) / view->width;
+    moved.offsetY = (2 * y - 1) / view->height;
+    return moved;
 }
 
 typedef struct ViewPoint {
@@ -32,9 +41,9 @@ typedef struct ViewPoint {
 static ViewPoint toView(const vplView* v, vplVec3 p)
 {
     double x = (double)p.x - v->eye.x, y = (double)p.y - v->eye.y, z = (double)p.z - v->eye.z;
-    return (ViewPoint){v->scaleX * (v->right.x * x + v->right.y * y + v->right.z * z),
-                       v->scaleY * (v->up.x * x + v->up.y * y + v->up.z * z),
-                       v->forward.x * x + v->forward.y * y + v->forward.z * z};
+    double depth = v->forward.x * x + v->forward.y * y + v->forward.z * z;
+    return (ViewPoint){v->scaleX * (v->right.x * x + v->right.y * y + v->right.z * z) + v->offsetX * depth,
+                       v->scaleY * (v->up.x * x + v->up.y * y + v->up.z * z) + v->offsetY * depth, depth};
 }
 
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y)
