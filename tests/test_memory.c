@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Running out of memory: the n-th allocation fails, for every n, and each time the answer is VPL_OUT_OF_MEMORY,
 // one sentence, nothing leaked and no file. New memory is filled with junk, so that success does not depend on it.
-#include "test.h"
+#include "shapes.h"
 
 #include <jansson.h>
 #include <stdlib.h>
@@ -158,6 +158,96 @@ static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
     }
 }
 
+// ---- meshes with a tree, lamps, and shadows of virtual lights
+
+static vplResult addBall(vplScene* scene, const Shape* ball)
+{
+    uint32_t indices[3 * 320];
+    for (uint32_t i = 0; i < 3 * 320; i++) {
+        indices[i] = i;
+    }
+    vplMeshDef mesh = vplDefaultMeshDef();
+    vplObjectDef object = vplDefaultObjectDef();
+    vplMaterialDef lamp = vplDefaultMaterialDef();
+    mesh.positions = mesh.normals = ball->corners;
+    mesh.indices = indices;
+    mesh.vertexCount = 3 * ball->triangleCount;
+    mesh.triangleCount = ball->triangleCount;
+    lamp.emission = (vplRgb){1, 2, 3};
+    vplResult result = vplScene_AddMesh(scene, &mesh, &object.mesh);
+    if (result == VPL_SUCCESS) {
+        result = vplScene_AddMaterial(scene, &lamp, &object.material);
+    }
+    if (result == VPL_SUCCESS) {
+        object.type = VPL_OBJECT_MESH;
+        object.transform.m[13] = 3;
+        result = vplScene_AddObject(scene, &object, NULL);
+    }
+    return result;
+}
+
+// Variants: a pipeline each for no shadows, maps and rays.
+static vplResult renderBall(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    Shape ball = icosphere(2);
+    vplRenderOptions options = smallOptions(variant);
+    options.lightShadows = (vplLightShadows)variant;
+    options.width = options.height = 8;
+    options.particles = 2;
+    options.shadowMapSize = options.lightMapSize = 2;
+    options.lampLights = 3;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = addBall(scene, &ball);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplRender(scene, &options, &image, NULL);
+    }
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    freeShape(&ball);
+    return result;
+}
+
+static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 3; variant++) {
+        failEveryAllocation(renderBall, "png", variant, false);
+    }
+}
+
+// Only the geometry of a mesh: its tree grows as it is built.
+static vplResult freezeBall(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    (void)variant;
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    Shape ball = icosphere(2);
+    vplResult result = vplScene_Create(context, &scene);
+    if (result == VPL_SUCCESS) {
+        result = addBall(scene, &ball);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+    }
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    freeShape(&ball);
+    return result;
+}
+
+static void EveryFailedAllocationOfAGeometryIsReported(void** state)
+{
+    (void)state;
+    failEveryAllocation(freezeBall, "png", 0, false);
+    failEveryAllocation(freezeBall, "png", 0, true);
+}
+
 // Everything that `show` can ask for.
 static vplResult showAndWrite(vplContext* context, const char* path, int show)
 {
@@ -308,6 +398,8 @@ static void EveryFailedAllocationOfAnEncodedPngIsReported(void** state)
 TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReported),
            cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),
