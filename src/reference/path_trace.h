@@ -29,7 +29,6 @@ typedef struct vplPathDef {
     bool balance; // weights by the balance heuristic instead of the power heuristic
     bool random;  // independent random numbers instead of Sobol's points
     double rouletteFrom; // a path whose throughput is below this may end; larger ends sooner
-    int allEmitters;     // up to so many emitters are all asked at each vertex, of more only one
 } vplPathDef;
 
 vplPathDef vplDefaultPathDef(void);

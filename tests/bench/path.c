@@ -65,16 +65,6 @@ static void rouletteAt64th(vplPathDef* def)
     def->rouletteFrom = 1.0 / 64;
 }
 
-static void oneEmitter(vplPathDef* def)
-{
-    def->allEmitters = 0;
-}
-
-static void allEmitters(vplPathDef* def)
-{
-    def->allEmitters = 1 << 24;
-}
-
 static const Line LINES[] = {
     {"numbers", "scrambled Sobol'", asItIs},
     {"numbers", "random", randomNumbers},
@@ -88,9 +78,6 @@ static const Line LINES[] = {
     {"roulette", "below a half", rouletteAtHalf},
     {"roulette", "below an eighth", rouletteAtEighth},
     {"roulette", "below a 64th", rouletteAt64th},
-    {"emitters", "all of up to four, else one", asItIs},
-    {"emitters", "one", oneEmitter},
-    {"emitters", "all", allEmitters},
 };
 
 static vplResult measure(const vplGeometry* geometry, const vplPathDef* def, int samples, vplPathStats* stats,
