@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Because only the first floor(rho^k N) particles go on, the first few of them must cover all directions, too.
 // Random and Halton points do. Hammersley points come sorted by their first coordinate, so particle i takes
-// the point i * stride mod N, where stride/N is near the golden ratio: any first few of those are spread out.
+// the point (i + 1) * stride mod N, where stride/N is near the golden ratio: any first few of those are spread out.
+// Counting begins at 1, because point 0 is 0 in every dimension and the first particle goes furthest: with 100
+// particles the last steps, which it takes alone, sent all light along one edge (145 % error in cornell-area).
 #include "lights/samples.h"
 #include "base/rng.h"
 #include "math/sampling.h"
@@ -47,9 +49,9 @@ static float shifted(float value, uint64_t seed, int dimension)
 static float coordinate(const vplSampleSource* s, int particle, int dimension)
 {
     if (s->sampler == VPL_SAMPLER_HALTON) {
-        return vplHalton((uint64_t)particle, dimension);
+        return vplHalton((uint64_t)particle + 1, dimension);
     }
-    int64_t point = (int64_t)particle * s->stride % s->count;
+    int64_t point = ((int64_t)particle + 1) * s->stride % s->count;
     return dimension == 0 ? (float)((double)point / s->count) : vplHalton((uint64_t)point, dimension - 1);
 }
 

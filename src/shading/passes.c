@@ -73,6 +73,7 @@ static vplResult recordPass(const vplShading* s, vplRaster* raster, vplPipeline 
     for (int i = 0; i < s->geometry->objectCount && result == VPL_SUCCESS; i++) {
         uniforms[i] = (PassUniforms){s, i, first, count};
         const vplPipeline own = vplCameraPipeline(s, i); // smooth objects have more varyings than flat ones
+        state.vertex = own.vertex;
         state.vertexUniforms = own.vertexUniforms;
         state.varyingCount = own.varyingCount;
         state.fragmentUniforms = &uniforms[i];
@@ -93,13 +94,13 @@ vplResult vplRecordPasses(const vplShading* shading, vplRaster* raster, void** u
         return VPL_OUT_OF_MEMORY;
     }
     *uniformsOut = uniforms;
-    vplPipeline less = vplCameraPipeline(shading, 0);
+    vplPipeline less = vplDefaultPipeline();
     less.fragment = directFragments;
     vplResult result = recordPass(shading, raster, less, uniforms, 0, 0);
     if (result == VPL_SUCCESS) {
         result = vplRaster_TileTask(raster, vplFoldTile, NULL);
     }
-    vplPipeline equal = vplCameraPipeline(shading, 0);
+    vplPipeline equal = vplDefaultPipeline();
     equal.fragment = one ? oneLightFragments : lightBatchFragments;
     equal.depthCompare = VPL_DEPTH_EQUAL;
     equal.depthWrite = false;
