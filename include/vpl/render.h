@@ -63,7 +63,7 @@ typedef struct vplRenderOptions {
     vplAccumulation accumulation; // default VPL_ACCUMULATE_DEFERRED
     int batch;                    // virtual lights per pass, [1, VPL_MAX_LIGHTS]; default 64; batched only
     float minDistance;            // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
-                                  // (default): half the radius of a disc with one light's share of the area
+                                  // (default): the radius of a disc with one light's share of the area
 
     vplLightShadows lightShadows; // of virtual lights; RAY also replaces the emitters' shadow maps; default
                                   // VPL_LIGHT_SHADOWS_NONE

@@ -55,9 +55,11 @@ static vplResult simulate(vplJob* job, Ingredients* in)
     in->lightCount = in->set->lightCount;
     in->minDistance = o->minDistance;
     if (o->minDistance < 0) {
-        // A light stands for its share of all surfaces; nearer than about that share's radius it is no point.
+        // A light stands for its share of all surfaces; nearer than that share's radius it is no point. Half as
+        // much leaves 5 to 35 % more rmse and twice as much takes a few per cent of the light away (room,
+        // room-area, cornell-area; 32 to 2048 particles with shadows by rays; --show indirect).
         double share = in->lightCount ? vplGeometry_Area(job->geometry) / in->lightCount : 0;
-        in->minDistance = (float)(0.5 * sqrt(share / VPL_PI));
+        in->minDistance = (float)sqrt(share / VPL_PI);
     }
     job->stats.minDistance = in->minDistance;
     if (o->show == VPL_SHOW_LIGHT) {
