@@ -2,6 +2,7 @@
 // Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023, chapter 12,
 // for the powers and the spot's falloff.
 #include "geometry/emission.h"
+#include "geometry/freeze.h"
 #include "base/context.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -90,12 +91,8 @@ vplTriangleCorners vplGeometry_Corners(const vplGeometry* g, int triangle)
 
 double vplGeometry_TriangleArea(const vplGeometry* g, int triangle)
 {
-    vplTriangleCorners t = vplGeometry_Corners(g, triangle);
-    const vplVec3 *a = &t.corner[0], *b = &t.corner[1], *c = &t.corner[2];
-    double ux = (double)b->x - a->x, uy = (double)b->y - a->y, uz = (double)b->z - a->z;
-    double vx = (double)c->x - a->x, vy = (double)c->y - a->y, vz = (double)c->z - a->z;
-    double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    return 0.5 * sqrt(nx * nx + ny * ny + nz * nz);
+    return vplTriangleArea(g->positions + g->objects[g->owners[triangle]].firstVertex,
+                           g->indices + 3 * (size_t)triangle);
 }
 
 // Counts the sources, or fills in as many as were counted.

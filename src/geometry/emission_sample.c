@@ -2,6 +2,7 @@
 // Based on: Eric Heitz, A Low-Distortion Map Between Triangle and Square, 2019, for points on triangles; Alexander
 // Keller, Instant Radiosity, SIGGRAPH 1997, for particles that start where light does.
 #include "geometry/emission.h"
+#include "geometry/intersect.h"
 #include "math/sampling.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -19,13 +20,12 @@ vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, flo
     }
     float a = 1 - b - c;
     vplTriangleCorners t = vplGeometry_Corners(geometry, triangle);
-    int owner = geometry->owners[triangle];
-    const vplGeometryObject* object = &geometry->objects[owner];
-    vplHit hit = {
-        .object = owner, .triangle = triangle, .u = b, .v = c, .normal = geometry->normals[triangle]};
-    hit.face = object->type == VPL_OBJECT_QUAD  ? VPL_FACE_QUAD
-               : object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2
-                                                : VPL_FACE_NONE;
+    vplHit hit = {.object = geometry->owners[triangle],
+                  .face = vplGeometry_FaceOf(geometry, triangle),
+                  .triangle = triangle,
+                  .u = b,
+                  .v = c,
+                  .normal = geometry->normals[triangle]};
     hit.position =
         vplAdd(vplScale(a, t.corner[0]), vplAdd(vplScale(b, t.corner[1]), vplScale(c, t.corner[2])));
     return hit;

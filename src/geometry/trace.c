@@ -7,6 +7,14 @@
 
 #include <math.h>
 
+int vplGeometry_FaceOf(const vplGeometry* g, int triangle)
+{
+    const vplGeometryObject* object = &g->objects[g->owners[triangle]];
+    return object->type == VPL_OBJECT_QUAD  ? VPL_FACE_QUAD
+           : object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2
+                                            : VPL_FACE_NONE;
+}
+
 // Point and normal of a mesh triangle.
 static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
 {
@@ -21,7 +29,6 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
     }
     hit->position = vplVec(at[0], at[1], at[2]);
     hit->normal = g->normals[raw->triangle];
-    hit->face = VPL_FACE_NONE;
     hit->t = raw->t;
 }
 
@@ -39,22 +46,16 @@ bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOu
     if (raw.triangle < 0) {
         return false;
     }
-    const int index = geometry->owners[raw.triangle];
+    const int index = geometry->owners[raw.triangle], face = vplGeometry_FaceOf(geometry, raw.triangle);
     const vplGeometryObject* object = &geometry->objects[index];
-    vplHit hit = {.object = index};
-    bool exact = false;
-    if (object->type != VPL_OBJECT_MESH) {
-        bool quad = object->type == VPL_OBJECT_QUAD;
-        int face = quad ? VPL_FACE_QUAD : (raw.triangle - object->firstTriangle) / 2;
-        exact = vplRay_HitFace(ray, &object->placement, face, quad ? 0 : face & 1 ? -0.5 : 0.5, &hit);
-        hit.object = index;
-        hit.face = face;
-    }
+    vplHit hit = {0};
+    const double side = object->type == VPL_OBJECT_QUAD ? 0 : face & 1 ? -0.5 : 0.5;
+    const bool exact = face != VPL_FACE_NONE && vplRay_HitFace(ray, &object->placement, face, side, &hit);
+    hit.object = index;
     if (!exact) {
-        int face = hit.face;
         hitTriangle(geometry, &raw, &hit);
-        hit.face = object->type == VPL_OBJECT_MESH ? VPL_FACE_NONE : face;
     }
+    hit.face = face;
     hit.triangle = raw.triangle;
     hit.u = raw.b1;
     hit.v = raw.b2;

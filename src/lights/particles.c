@@ -9,6 +9,7 @@
 
 #include "base/context.h"
 #include "geometry/bvh.h"
+#include "geometry/intersect.h"
 #include "lights/samples.h"
 #include "math/sampling.h"
 #include "math/vec.h"
@@ -118,8 +119,7 @@ static vplHit sourceOf(const Simulation* s, const vplParticle* p)
     vplHit hit = {.object = -1, .face = VPL_FACE_NONE, .triangle = triangle};
     if (triangle >= 0) {
         hit.object = g->owners[triangle];
-        const vplGeometryObject* object = &g->objects[hit.object];
-        hit.face = object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2 : VPL_FACE_NONE;
+        hit.face = vplGeometry_FaceOf(g, triangle);
     }
     return hit;
 }

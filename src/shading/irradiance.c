@@ -10,16 +10,13 @@
 static vplHit hitOf(const vplGeometry* g, const vplPoints* points, int lane)
 {
     const int triangle = points->triangle[lane];
-    const vplGeometryObject* object = &g->objects[g->owners[triangle]];
     const vplSurface* s = &points->surface;
-    vplHit hit = {.object = g->owners[triangle],
-                  .triangle = triangle,
-                  .position = vplGeometry_Inside(g, triangle, vplVec(s->px[lane], s->py[lane], s->pz[lane])),
-                  .normal = g->normals[triangle]};
-    hit.face = object->type == VPL_OBJECT_QUAD  ? VPL_FACE_QUAD
-               : object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2
-                                                : VPL_FACE_NONE;
-    return hit;
+    const vplVec3 seen = vplVec(s->px[lane], s->py[lane], s->pz[lane]);
+    return (vplHit){.object = g->owners[triangle],
+                    .face = vplGeometry_FaceOf(g, triangle),
+                    .triangle = triangle,
+                    .position = vplGeometry_Inside(g, triangle, seen),
+                    .normal = g->normals[triangle]};
 }
 
 void vplCastShadowRays(const vplShading* shading, const vplPoints* points, vplVec3 target, bool parallel,
