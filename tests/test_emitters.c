@@ -691,7 +691,51 @@ static void ParticlesStopAtTheBoxOfAMesh(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(emitters, cmocka_unit_test(SpotAndSunAreAnalytic),
+static double energyOf(const vplScene* scene, const vplRenderOptions* options)
+{
+    vplImage* image;
+    double sum = 0;
+    assert_int_equal(vplRender(scene, options, &image, NULL), VPL_SUCCESS);
+    for (int i = 0; i < 3 * image->width * image->height; i++) {
+        sum += (double)image->pixels[i];
+    }
+    vplImage_Destroy(image);
+    return sum;
+}
+
+// Virtual lights with shadows by rays and path tracing are two estimates of one picture. Four seeds of 512
+// particles leave about 1 % of noise in the mean (tests/bench/energy.sh: larger pictures, more particles).
+static void EnergyIsThatOfPathTracing(void** state)
+{
+    (void)state;
+    static const char* const scenes[] = {"examples/scenes/room.json", "examples/scenes/room-area.json"};
+    vplContext* context = openTestContext(2);
+    for (int i = 0; i < 2; i++) {
+        vplScene* scene;
+        assert_int_equal(vplScene_Load(context, scenes[i], &scene), VPL_SUCCESS);
+        vplRenderOptions o = vplDefaultRenderOptions();
+        o.width = o.height = 16;
+        o.pixel = VPL_PIXEL_CENTRE;
+        o.method = VPL_METHOD_PATH;
+        o.samplesPerPixel = 1024;
+        const double truth = energyOf(scene, &o);
+        o.method = VPL_METHOD_INSTANT_RADIOSITY;
+        o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+        o.sampler = VPL_SAMPLER_HALTON;
+        o.particles = 512;
+        double sum = 0;
+        for (o.seed = 1; o.seed <= 4; o.seed++) {
+            sum += energyOf(scene, &o);
+        }
+        assertNear(sum / 4 / truth, 1, 0.025, scenes[i], i);
+        o.lightShadows = VPL_LIGHT_SHADOWS_NONE; // light through boxes is seen
+        assert_true(energyOf(scene, &o) > 1.01 * sum / 4);
+        vplScene_Destroy(scene);
+    }
+    closeTestContext(context);
+}
+
+TEST_SUITE(emitters, cmocka_unit_test(EnergyIsThatOfPathTracing), cmocka_unit_test(SpotAndSunAreAnalytic),
            cmocka_unit_test(LampLightsConvergeToTheFormFactor), cmocka_unit_test(RayAndMapShadowsAgree),
            cmocka_unit_test(RayShadowsAreExact), cmocka_unit_test(SmoothTrianglesAreDarkFromBehind),
            cmocka_unit_test(SmoothMeshesShadeWithoutSeams),
