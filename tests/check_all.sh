@@ -38,7 +38,8 @@ if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-s
     [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
     export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu
     RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
-    # Emulated, the memory tests take ten minutes and the ways of finding light three, and threads of the host's own never come back to life.
+    # Emulated, the memory tests take ten minutes and the ways of finding light three; threads of the host's own
+    # never come back to life.
     EXCLUDE="-memory -AHostsOwnScheduler -AllWaysOfFindingLightAgree"
     run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
 fi
