@@ -117,13 +117,25 @@ static vplVec3 shadingNormal(const vplSurface* raw, int lane, vplVec3 plane)
     return vplScale((vplDot(n, plane) < 0 ? -1.0f : 1.0f) / length, n);
 }
 
+static void setNormal(const vplShading* shading, vplPoints* points, int lane, bool smooth, vplVec3 plane)
+{
+    const vplVec3 n = smooth ? shadingNormal(&points->surface, lane, plane) : plane;
+    points->surface.nx[lane] = n.x;
+    points->surface.ny[lane] = n.y;
+    points->surface.nz[lane] = n.z;
+    if (shading->smooth) {
+        points->plane.nx[lane] = plane.x;
+        points->plane.ny[lane] = plane.y;
+        points->plane.nz[lane] = plane.z;
+    }
+}
+
 void vplPoints_FinishNormals(const vplShading* shading, vplPoints* points)
 {
-    vplSurface* s = &points->surface;
     vplVec3 n = {0, 0, 0};
     bool smooth = false;
     if (shading->smooth) {
-        memcpy(&points->plane, s, sizeof *s);
+        memcpy(&points->plane, &points->surface, sizeof points->plane);
     }
     for (int l = 0, last = -1; l < VPL_LANES; l++) {
         const int triangle = points->triangle[l];
@@ -132,15 +144,7 @@ void vplPoints_FinishNormals(const vplShading* shading, vplPoints* points)
             n = triangle < 0 ? vplVec(0, 0, 0) : vplGetFacet(shading, triangle).normal;
             smooth = triangle >= 0 && shading->geometry->objects[shading->geometry->owners[triangle]].smooth;
         }
-        const vplVec3 to = smooth ? shadingNormal(s, l, n) : n;
-        s->nx[l] = to.x;
-        s->ny[l] = to.y;
-        s->nz[l] = to.z;
-        if (shading->smooth) {
-            points->plane.nx[l] = n.x;
-            points->plane.ny[l] = n.y;
-            points->plane.nz[l] = n.z;
-        }
+        setNormal(shading, points, l, smooth, n);
     }
 }
 
@@ -157,8 +161,13 @@ void vplPoints_FromFragments(const vplShading* shading, int object, const vplFra
         memcpy(s->ny, fragments->varying[4], sizeof s->ny);
         memcpy(s->nz, fragments->varying[5], sizeof s->nz);
     }
+    if (shading->smooth) {
+        memcpy(&pointsOut->plane, s, sizeof *s);
+    }
+    const vplVec3 n = vplGetFacet(shading, triangle).normal; // one triangle for all lanes
+    const bool smooth = shading->objects[object].normals != NULL;
     for (int l = 0; l < VPL_LANES; l++) {
         pointsOut->triangle[l] = fragments->covered[l] ? triangle : -1;
+        setNormal(shading, pointsOut, l, smooth, n);
     }
-    vplPoints_FinishNormals(shading, pointsOut);
 }
