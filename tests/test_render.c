@@ -525,7 +525,59 @@ static void OddScenesGiveFinitePictures(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(render, cmocka_unit_test(DrawCallsAreThoseOfTheDocument),
+// How much of pixel `i` of 8 the interval [a, b] of the picture's [-1, 1] covers.
+static double coverage(int i, double a, double b)
+{
+    double from = fmax((a + 1) * 4, i), to = fmin((b + 1) * 4, i + 1);
+    return to > from ? to - from : 0;
+}
+
+// A glowing square that covers parts of pixels: its mean over a pixel is its share of it.
+static void AntialiasingIsTheBoxFilter(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    vplCameraDef camera = vplDefaultCameraDef(); // at z = 5; half the picture is 5 tan(fov / 2) metres
+    camera.fovY = 2 * atan(0.2);
+    vplScene_AddCamera(scene, &camera, NULL);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.emission = (vplRgb){2, 2, 2};
+    vplScene_AddMaterial(scene, &material, NULL);
+    vplObjectDef object = vplDefaultObjectDef();
+    object.transform.m[0] = 1.17f; // x from -0.425 to 0.745 of half a picture
+    object.transform.m[5] = 0.74f; // y from -0.42 to 0.32
+    object.transform.m[12] = 0.16f;
+    object.transform.m[13] = -0.05f;
+    vplScene_AddObject(scene, &object, NULL);
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.width = o.height = 8;
+    o.method = VPL_METHOD_DIRECT;
+    double worst[3];
+    const int samples[3] = {1, 16, 256};
+    for (int k = 0; k < 3; k++) {
+        vplImage* image;
+        o.antialias = samples[k];
+        assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_SUCCESS);
+        worst[k] = 0;
+        for (int i = 0; i < 64; i++) {
+            double share = coverage(i % 8, -0.425, 0.745) * coverage(7 - i / 8, -0.42, 0.32);
+            worst[k] = fmax(worst[k], fabs((double)image->pixels[3 * i] / 2 - share));
+        }
+        vplImage_Destroy(image);
+    }
+    assert_true(worst[0] > 0.4); // the centre alone is in or out
+    assert_true(worst[1] < 0.1);
+    assert_true(worst[2] < 0.012);
+    o.antialias = 0;
+    assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+TEST_SUITE(render, cmocka_unit_test(AntialiasingIsTheBoxFilter),
+           cmocka_unit_test(DrawCallsAreThoseOfTheDocument),
            cmocka_unit_test(OpenRoomsKeepNominalCountsAndReportEscapes),
            cmocka_unit_test(EveryPipelineGivesTheSameBits),
            cmocka_unit_test(AHostsOwnSchedulerGivesTheSameBits), cmocka_unit_test(CoplanarSurfacesAreLitOnce),
