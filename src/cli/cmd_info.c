@@ -9,7 +9,7 @@
 
 enum { OBJECT_TYPES = VPL_OBJECT_MESH + 1, POINTS = 0, SPOTS, DIRECTIONALS, EMITTER_TYPES };
 
-static const char* const METHODS[] = {"instant-radiosity", "direct"};
+static const char* const METHODS[] = {"instant-radiosity", "direct", "path"};
 static const char* const PIPELINES[] = {"multipass", "batched", "deferred"};
 
 typedef struct Info {
@@ -19,6 +19,8 @@ typedef struct Info {
     int objectsOfType[OBJECT_TYPES], emittersOfType[EMITTER_TYPES];
     vplVec3 low, high;
     double diagonal, area, reflectance;
+    int lampTriangles; // that emit
+    double lampArea;   // square metres
     // of a render
     const Arguments* arguments;
     double reflectivity;
@@ -61,18 +63,49 @@ static vplResult describeGeometry(const vplScene* scene, Info* info)
         info->diagonal = (double)vplGeometry_Diagonal(geometry);
         info->area = vplGeometry_Area(geometry);
         info->reflectance = vplGeometry_MeanReflectance(geometry);
+        vplEmission* emission = NULL;
+        result = vplEmission_Create(geometry, NULL, 0, &emission);
+        if (result == VPL_SUCCESS) {
+            info->lampTriangles = emission->sourceCount;
+            info->lampArea = vplEmission_Area(emission);
+            vplEmission_Destroy(emission);
+        }
         vplGeometry_Destroy(geometry);
     }
     return result;
 }
 
-static const char* findProblem(const Info* info, vplMethod method)
+static const char* findProblem(const Info* info, const vplRenderOptions* o)
 {
-    if (info->emittersOfType[SPOTS] + info->emittersOfType[DIRECTIONALS] > 0) {
-        return "only point lights can be rendered so far";
+    const bool documented = o->lighting == VPL_LIGHTING_DOCUMENTED;
+    if (documented && o->method == VPL_METHOD_PATH) {
+        return "the path tracer knows physical lighting only";
     }
-    return info->emitters == 0 && method != VPL_METHOD_DIRECT ? "there is no light to shoot particles from"
-                                                              : NULL;
+    if (documented && info->emittersOfType[SPOTS] + info->emittersOfType[DIRECTIONALS] > 0) {
+        return "documented lighting knows point lights only";
+    }
+    const bool shines = info->emitters > 0 || (info->lampTriangles > 0 && !documented);
+    return !shines && o->method == VPL_METHOD_INSTANT_RADIOSITY ? "there is no light to shoot particles from"
+                                                                : NULL;
+}
+
+// Draws and shadow maps of the rasterizing methods: directional emitters, and all where rays are asked for, have
+// no map.
+static void countDraws(const vplRenderOptions* o, Info* info)
+{
+    const int64_t perPass = o->accumulation == VPL_ACCUMULATE_BATCHED ? o->batch : 1;
+    const int64_t passes =
+        o->accumulation == VPL_ACCUMULATE_DEFERRED ? 0 : (info->virtualLights + perPass - 1) / perPass;
+    const int64_t maps =
+        o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
+    const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? info->virtualLights : 0;
+    const int64_t size = o->shadowMapSize, lightSize = o->lightMapSize;
+    info->drawCalls = info->objects * (6 * (maps + lightMaps) + (1 + passes) * o->antialias);
+    info->shadowMapBytes =
+        6 * (maps * size * size + lightMaps * lightSize * lightSize) * (int64_t)sizeof(float);
+    const int64_t lamps = info->lampTriangles > 0 ? o->lampLights : 0;
+    info->lightBytes = info->virtualLights * (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight)) +
+                       lamps * (int64_t)sizeof(vplShadeLight);
 }
 
 static vplResult describeRender(vplContext* context, const Arguments* a, Info* info)
@@ -80,7 +113,7 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
     const vplRenderOptions* o = &a->render;
     info->arguments = a;
     info->reflectivity = o->reflectivity >= 0 ? o->reflectivity : info->reflectance;
-    if (o->method != VPL_METHOD_DIRECT) {
+    if (o->method == VPL_METHOD_INSTANT_RADIOSITY) {
         vplResult result =
             vplCountParticles(context, o->particles, info->reflectivity, info->particlesPerStep,
                               VPL_MAX_STEPS_REPORTED, &info->steps, &info->virtualLights);
@@ -88,15 +121,11 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
             return result;
         }
     }
-    int64_t perPass = o->accumulation == VPL_ACCUMULATE_BATCHED ? o->batch : 1;
-    int64_t passes =
-        o->accumulation == VPL_ACCUMULATE_DEFERRED ? 0 : (info->virtualLights + perPass - 1) / perPass;
-    int64_t texels = 6 * (int64_t)o->shadowMapSize * o->shadowMapSize;
-    info->drawCalls = info->objects * (6 * (int64_t)info->emitters + 1 + passes);
-    info->shadowMapBytes = info->emitters * texels * (int64_t)sizeof(float);
-    info->lightBytes = info->virtualLights * (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight));
+    if (o->method != VPL_METHOD_PATH) {
+        countDraws(o, info);
+    }
     info->pictureBytes = 3 * (int64_t)sizeof(float) * o->width * o->height;
-    info->problem = findProblem(info, o->method);
+    info->problem = findProblem(info, o);
     return VPL_SUCCESS;
 }
 
@@ -130,18 +159,26 @@ static void printText(const Info* info)
     }
     printf("  %-16s %d (%d point, %d spot, %d directional)\n", "lights", info->emitters,
            info->emittersOfType[POINTS], info->emittersOfType[SPOTS], info->emittersOfType[DIRECTIONALS]);
+    if (info->lampTriangles > 0) {
+        printf("  %-16s %d triangles, %g m^2\n", "lamps", info->lampTriangles, info->lampArea);
+    }
     printf("  %-16s %d\n", "triangles", info->triangles);
     printf("  %-16s (%g, %g, %g) to (%g, %g, %g) m\n", "bounds", (double)info->low.x, (double)info->low.y,
            (double)info->low.z, (double)info->high.x, (double)info->high.y, (double)info->high.z);
     printf("  %-16s %g m\n", "diagonal", info->diagonal);
     printf("  %-16s %g m^2\n", "area", info->area);
     printf("  %-16s %.4f (mean over the area)\n", "reflectance", info->reflectance);
-    printf("\nto render it by %s, %s, at %dx%d\n", METHODS[o->method], PIPELINES[o->accumulation], o->width,
-           o->height);
-    printSteps(info);
-    printf("  %-16s %lld\n", "draw calls", (long long)info->drawCalls);
-    printBytes("shadow maps", info->shadowMapBytes);
-    printBytes("lights", info->lightBytes);
+    if (o->method == VPL_METHOD_PATH) {
+        printf("\nto render it by path, at %dx%d\n", o->width, o->height);
+        printf("  %-16s %lld\n", "paths", (long long)o->width * o->height * o->samplesPerPixel);
+    } else {
+        printf("\nto render it by %s, %s, at %dx%d\n", METHODS[o->method], PIPELINES[o->accumulation],
+               o->width, o->height);
+        printSteps(info);
+        printf("  %-16s %lld\n", "draw calls", (long long)info->drawCalls);
+        printBytes("shadow maps", info->shadowMapBytes);
+        printBytes("lights", info->lightBytes);
+    }
     printBytes("picture", info->pictureBytes);
     if (info->problem != NULL) {
         printf("  %-16s %s\n", "not possible:", info->problem);
@@ -172,16 +209,17 @@ static json_t* renderJson(const Info* info)
 static bool printJson(const Info* info)
 {
     json_t* root = json_pack(
-        "{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:i, s:o, s:o, s:f, "
-        "s:f, s:f, s:o}",
+        "{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:i, s:i, s:f, s:o, "
+        "s:o, s:f, s:f, s:f, s:o}",
         "cameras", info->cameras, "materials", info->materials, "objects", "total", info->objects, "quad",
         info->objectsOfType[VPL_OBJECT_QUAD], "box", info->objectsOfType[VPL_OBJECT_BOX], "mesh",
         info->objectsOfType[VPL_OBJECT_MESH], "meshes", "total", info->meshes, "vertices",
         (json_int_t)info->meshVertices, "triangles", (json_int_t)info->meshTriangles, "lights", "total",
         info->emitters, "point", info->emittersOfType[POINTS], "spot", info->emittersOfType[SPOTS],
-        "directional", info->emittersOfType[DIRECTIONALS], "triangles", info->triangles, "bounds_min",
-        vector(info->low), "bounds_max", vector(info->high), "diagonal", info->diagonal, "area", info->area,
-        "mean_reflectance", info->reflectance, "render", renderJson(info));
+        "directional", info->emittersOfType[DIRECTIONALS], "triangles", info->triangles, "lamp_triangles",
+        info->lampTriangles, "lamp_area", info->lampArea, "bounds_min", vector(info->low), "bounds_max",
+        vector(info->high), "diagonal", info->diagonal, "area", info->area, "mean_reflectance",
+        info->reflectance, "render", renderJson(info));
     char* text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     if (text != NULL) {
         puts(text);
