@@ -6,7 +6,7 @@ bad=0
 RUNNER=
 EXCLUDE=
 # Long statistics, which have nothing new to say where the bits are the same; one configuration runs all.
-LONG="-memory -AllWaysOfFindingLight -ErrorEstimatePredicts -MatchesTheTable -EnergyIsThatOfPath"
+LONG="-memory -AllWaysOfFindingLight -ErrorEstimatePredicts -MatchesTheTable -FurnaceGlows -EnergyIsThatOfPath"
 
 # run NAME [MAKE VARIABLES...]: builds and runs one configuration.
 run() {
