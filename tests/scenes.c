@@ -44,7 +44,7 @@ static vplGeometry* freeze(vplScene* scene)
     return geometry;
 }
 
-static vplScene* greyScene(vplContext* context, float rho)
+vplScene* sceneOf(vplContext* context, float rho)
 {
     vplScene* scene;
     assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
@@ -56,7 +56,7 @@ static vplScene* greyScene(vplContext* context, float rho)
 
 vplGeometry* closedCube(vplContext* context, float rho)
 {
-    vplScene* scene = greyScene(context, rho);
+    vplScene* scene = sceneOf(context, rho);
     for (int face = 0; face < 6; face++) {
         float side = face & 1 ? -1 : 1; // the wall at `side` on axis face / 2, turned towards the middle
         double rotate[3] = {0, 0, 0};
@@ -80,7 +80,7 @@ vplGeometry* closedCube(vplContext* context, float rho)
 
 vplGeometry* floorQuad(vplContext* context, vplVec3 centre, float size, float rho)
 {
-    vplScene* scene = greyScene(context, rho);
+    vplScene* scene = sceneOf(context, rho);
     vplObjectDef object = vplDefaultObjectDef();
     object.transform = vplMat4_FromParts(centre, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){size, size, 1});
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);

@@ -119,16 +119,6 @@ void placeShape(Shape* shape, float scale, const double rotate[3], vplVec3 offse
     }
 }
 
-vplScene* sceneOf(vplContext* context, float rho)
-{
-    vplScene* scene;
-    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
-    vplMaterialDef material = vplDefaultMaterialDef();
-    material.diffuse = (vplRgb){rho, rho, rho};
-    assert_int_equal(vplScene_AddMaterial(scene, &material, NULL), VPL_SUCCESS);
-    return scene;
-}
-
 void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* transform)
 {
     const int corners = 3 * shape->triangleCount;

@@ -3,7 +3,7 @@
 #ifndef VPL_TESTS_SHAPES_H
 #define VPL_TESTS_SHAPES_H
 
-#include "test.h"
+#include "scenes.h"
 
 // Three corners per triangle, counter-clockwise seen from outside. What meets has the same bits.
 typedef struct Shape {
@@ -23,9 +23,6 @@ Shape gridBox(int cells);
 
 // Scales, rotates (radians), moves, in this order.
 void placeShape(Shape* shape, float scale, const double rotate[3], vplVec3 offset);
-
-// A scene with one material of reflectance rho.
-vplScene* sceneOf(vplContext* context, float rho);
 
 // Adds the shape as an object of material 0; smooth: its corners are its normals.
 void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* transform);

@@ -247,3 +247,12 @@ vplScene* loadScene(vplContext* context, const char* name)
     }
     return scene;
 }
+
+vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut)
+{
+    vplImage* image = NULL;
+    if (vplRender(scene, options, &image, statsOut) != VPL_SUCCESS) {
+        fail_msg("%s", takeMessage());
+    }
+    return image;
+}

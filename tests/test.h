@@ -68,4 +68,7 @@ double uniformAt(uint64_t seed, uint64_t index);
 // The benchmark room (tests/data/room.json), or the same with a front wall and the camera inside.
 vplScene* loadScene(vplContext* context, const char* name);
 
+// vplRender, or a failed test with the library's sentence. statsOut may be NULL.
+vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);
+
 #endif

@@ -6,18 +6,9 @@
 #include "geometry/emission.h"
 #include "math/vec.h"
 
-static vplImage* render(const vplScene* scene, const vplRenderOptions* options)
-{
-    vplImage* image = NULL;
-    if (vplRender(scene, options, &image, NULL) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return image;
-}
-
 static uint64_t renderHash(const vplScene* scene, const vplRenderOptions* options)
 {
-    vplImage* image = render(scene, options);
+    vplImage* image = renderScene(scene, options, NULL);
     uint64_t hash = vplImage_Hash(image);
     vplImage_Destroy(image);
     return hash;
@@ -91,7 +82,7 @@ static void SpotAndSunAreAnalytic(void** state)
         o.width = o.height = SIZE;
         o.shadowMapSize = 64;
         o.lightShadows = which & 2 ? VPL_LIGHT_SHADOWS_RAY : VPL_LIGHT_SHADOWS_NONE;
-        vplImage* image = render(scene, &o);
+        vplImage* image = renderScene(scene, &o, NULL);
         const double inner = cos(20 * VPL_PI / 180), outer = cos(30 * VPL_PI / 180), length = sqrt(1.0125);
         int seen[3] = {0};
         for (int i = 0; i < SIZE * SIZE; i++) {
@@ -144,7 +135,7 @@ static void LampLightsConvergeToTheFormFactor(void** state)
         o.method = VPL_METHOD_DIRECT;
         o.width = o.height = SIZE;
         o.lampLights = cases[n].count;
-        vplImage* image = render(scene, &o);
+        vplImage* image = renderScene(scene, &o, NULL);
         double worst = 0;
         for (int i = 0; i < SIZE * SIZE; i++) {
             double x, z, factor = 0;
@@ -173,12 +164,12 @@ static void RayAndMapShadowsAgree(void** state)
     o.height = 48;
     o.particles = 8;
     o.show = VPL_SHOW_INDIRECT;
-    vplImage* none = render(scene, &o);
+    vplImage* none = renderScene(scene, &o, NULL);
     o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    vplImage* rays = render(scene, &o);
+    vplImage* rays = renderScene(scene, &o, NULL);
     o.lightShadows = VPL_LIGHT_SHADOWS_MAP;
     o.lightMapSize = 256;
-    vplImage* maps = render(scene, &o);
+    vplImage* maps = renderScene(scene, &o, NULL);
     double sum = 0, apart = 0, stopped = 0;
     for (int i = 0; i < 3 * o.width * o.height; i++) {
         sum += (double)rays->pixels[i];
@@ -281,7 +272,7 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     o.shadow.pcfSamples = 1;
     o.lampLights = 1;
     o.lightShadows = map ? VPL_LIGHT_SHADOWS_MAP : VPL_LIGHT_SHADOWS_RAY;
-    image = render(scene, &o);
+    image = renderScene(scene, &o, NULL);
     vplScene_Destroy(scene);
     return image;
 }
@@ -388,7 +379,7 @@ static void SmoothMeshesShadeWithoutSeams(void** state)
         o.method = VPL_METHOD_DIRECT;
         o.width = o.height = VIEW;
         o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-        vplImage* image = render(scene, &o);
+        vplImage* image = renderScene(scene, &o, NULL);
         double across = 0, beside = 0;
         for (int row = 0; row < VIEW; row++) {
             const float* p = image->pixels + 3 * (row * VIEW + VIEW / 2);
@@ -494,7 +485,8 @@ static void DoublingEmittersDoublesEveryBit(void** state)
     for (int shadows = 0; shadows < 3; shadows++) {
         vplScene *one = zoo(context, 1), *two = zoo(context, 2), *small = zoo(context, 0x1p-40f);
         const vplRenderOptions o = zooOptions(shadows);
-        vplImage *a = render(one, &o), *b = render(two, &o), *c = render(small, &o);
+        vplImage *a = renderScene(one, &o, NULL), *b = renderScene(two, &o, NULL),
+                 *c = renderScene(small, &o, NULL);
         int lit = 0;
         for (int i = 0; i < 3 * o.width * o.height; i++) {
             assert_true(b->pixels[i] == 2 * a->pixels[i] && c->pixels[i] == 0x1p-40f * a->pixels[i]);
@@ -532,7 +524,7 @@ static void DocumentedLightingRefusesOtherEmitters(void** state)
                                 "light 1 is not a point light, and documented lighting knows no "
                                 "others; use physical");
             o.lighting = VPL_LIGHTING_PHYSICAL;
-            vplImage_Destroy(render(scene, &o));
+            vplImage_Destroy(renderScene(scene, &o, NULL));
         }
         vplScene_Destroy(scene);
     }

@@ -3,7 +3,7 @@
 #include "scenes.h"
 #include "shapes.h"
 
-#include "geometry/intersect.h"
+#include "geometry/triangle.h"
 #include "math/matrix.h"
 #include "math/vec.h"
 

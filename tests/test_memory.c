@@ -101,23 +101,30 @@ static vplRenderOptions smallOptions(int pipeline)
     return options;
 }
 
-static vplResult renderAndWrite(vplContext* context, const char* path, int pipeline)
+// A whole run of the program: scene file in, picture file out.
+static vplResult renderFile(vplContext* context, const char* from, const vplRenderOptions* options,
+                            const vplWriteOptions* write, const char* to)
 {
     vplScene* scene = NULL;
     vplImage* image = NULL;
-    vplRenderOptions options = smallOptions(pipeline);
-    vplWriteOptions write = vplDefaultWriteOptions();
-    write.tonemap = VPL_TONEMAP_REINHARD;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    vplResult result = vplScene_Load(context, from, &scene);
     if (result == VPL_SUCCESS) {
-        result = vplRender(scene, &options, &image, NULL);
+        result = vplRender(scene, options, &image, NULL);
     }
     if (result == VPL_SUCCESS) {
-        result = vplImage_Write(image, path, &write);
+        result = vplImage_Write(image, to, write);
     }
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
     return result;
+}
+
+static vplResult renderAndWrite(vplContext* context, const char* path, int pipeline)
+{
+    vplRenderOptions options = smallOptions(pipeline);
+    vplWriteOptions write = vplDefaultWriteOptions();
+    write.tonemap = VPL_TONEMAP_REINHARD;
+    return renderFile(context, "tests/data/room.json", &options, &write, path);
 }
 
 static void EveryFailedAllocationOfARenderIsReported(void** state)
@@ -132,22 +139,11 @@ static void EveryFailedAllocationOfARenderIsReported(void** state)
 
 static vplResult pathAndWrite(vplContext* context, const char* path, int variant)
 {
-    vplScene* scene = NULL;
-    vplImage* image = NULL;
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
     options.method = VPL_METHOD_PATH;
     options.samplesPerPixel = 2;
-    vplResult result = vplScene_Load(
-        context, variant ? "examples/scenes/room-area.json" : "examples/scenes/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplRender(scene, &options, &image, NULL);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Write(image, path, NULL);
-    }
-    vplImage_Destroy(image);
-    vplScene_Destroy(scene);
-    return result;
+    return renderFile(context, variant ? "examples/scenes/room-area.json" : "examples/scenes/room.json",
+                      &options, NULL, path);
 }
 
 static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
@@ -251,21 +247,10 @@ static void EveryFailedAllocationOfAGeometryIsReported(void** state)
 // Everything that `show` can ask for.
 static vplResult showAndWrite(vplContext* context, const char* path, int show)
 {
-    vplScene* scene = NULL;
-    vplImage* image = NULL;
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
     options.show = (vplShow)show;
     options.lighting = VPL_LIGHTING_DOCUMENTED;
-    vplResult result = vplScene_Load(context, "tests/data/room-closed.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplRender(scene, &options, &image, NULL);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Write(image, path, NULL);
-    }
-    vplImage_Destroy(image);
-    vplScene_Destroy(scene);
-    return result;
+    return renderFile(context, "tests/data/room-closed.json", &options, NULL, path);
 }
 
 static void EveryFailedAllocationOfAShownStageIsReported(void** state)

@@ -127,15 +127,6 @@ static vplRenderOptions pathOptions(int size, int samples)
     return o;
 }
 
-static vplImage* render(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* stats)
-{
-    vplImage* image = NULL;
-    if (vplRender(scene, options, &image, stats) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return image;
-}
-
 static double meanOfImage(const vplImage* image, int channel)
 {
     double sum = 0;
@@ -148,7 +139,7 @@ static double meanOfImage(const vplImage* image, int channel)
 // Mean of one channel of a small picture.
 static double radianceOf(const vplScene* scene, const vplRenderOptions* options, int channel)
 {
-    vplImage* image = render(scene, options, NULL);
+    vplImage* image = renderScene(scene, options, NULL);
     double mean = meanOfImage(image, channel);
     vplImage_Destroy(image);
     return mean;
@@ -174,7 +165,7 @@ static void FurnaceGlowsEverywhereAlike(void** state)
         addRoom(scene, addMaterial(scene, cases[i].rho, 2));
         addCamera(scene, (vplVec3){0.3f, 0.1f, 0.2f}, (vplVec3){-1, -0.4f, -0.8f}, 1.5);
         vplRenderOptions options = pathOptions(8, cases[i].samples);
-        vplImage* image = render(scene, &options, NULL);
+        vplImage* image = renderScene(scene, &options, NULL);
         const double wanted = 2 / (1 - (double)cases[i].rho);
         for (int k = 0; k < 3 * 8 * 8; k++) {
             assertNear((double)image->pixels[k], wanted, cases[i].pixel * wanted, "pixel", (int)i);
@@ -199,7 +190,7 @@ static void WhiteBodyInAFurnaceVanishes(void** state)
         addSphere(scene, white, (vplVec3){0, 0, 0}, 0.5f, 3, smooth);
         addCamera(scene, (vplVec3){0, 0, 0.95f}, (vplVec3){0, 0, 0}, 0.8);
         vplRenderOptions options = pathOptions(32, 64);
-        vplImage* image = render(scene, &options, NULL);
+        vplImage* image = renderScene(scene, &options, NULL);
         double mean = meanOfImage(image, 1);
         if (smooth) {
             assert_true(mean < 1 + 1e-4 && mean > 0.95);
@@ -338,7 +329,7 @@ static void assertMean(const vplScene* scene, const vplRenderOptions* options, d
                        const char* what, int row)
 {
     vplRenderStats stats;
-    vplImage* image = render(scene, options, &stats);
+    vplImage* image = renderScene(scene, options, &stats);
     double deviations = 4 * stats.errorEstimate / options->width;
     assert_true(deviations < share * wanted);
     assertNear(meanOfImage(image, 0), wanted, fmax(deviations, 1e-6 * wanted), what, row);
@@ -422,7 +413,7 @@ static vplImage* renderShown(const vplScene* scene, vplShow show, int bounce)
     options.maxBounces = 3;
     options.show = show;
     options.showBounce = bounce;
-    return render(scene, &options, NULL);
+    return renderScene(scene, &options, NULL);
 }
 
 // Whatever is shown, the same paths are followed, so parts add up to the whole but for rounding.
@@ -490,7 +481,7 @@ static void ErrorEstimatePredictsTheDifferenceOfSeeds(void** state)
             vplImage* images[2];
             for (int i = 0; i < 2; i++) {
                 vplRenderStats stats;
-                images[i] = render(scene, &options, &stats);
+                images[i] = renderScene(scene, &options, &stats);
                 predicted += stats.errorEstimate * stats.errorEstimate;
                 double sum =
                     meanOfImage(images[i], 0) + meanOfImage(images[i], 1) + meanOfImage(images[i], 2);
@@ -506,7 +497,7 @@ static void ErrorEstimatePredictsTheDifferenceOfSeeds(void** state)
         assertNear(sqrt(found / predicted), 1, 0.15, "found / predicted", s);
         vplRenderStats stats;
         options.samplesPerPixel = 1;
-        vplImage_Destroy(render(scene, &options, &stats));
+        vplImage_Destroy(renderScene(scene, &options, &stats));
         assert_true(stats.errorEstimate < 0); // nothing to compare with
         vplScene_Destroy(scene);
     }
@@ -584,7 +575,7 @@ static uint64_t hashOf(vplContext* context, const char* path)
     vplRenderStats stats;
     vplRenderOptions options = pathOptions(40, 7);
     vplScene* scene = loadExample(context, path);
-    vplImage_Destroy(render(scene, &options, &stats));
+    vplImage_Destroy(renderScene(scene, &options, &stats));
     vplScene_Destroy(scene);
     closeTestContext(context);
     return stats.imageHash;
@@ -672,9 +663,9 @@ static void PixelsAreTheRasterizersPixels(void** state)
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     vplRenderOptions options = pathOptions(96, 64);
     options.width = 128;
-    vplImage* paths = render(scene, &options, NULL);
+    vplImage* paths = renderScene(scene, &options, NULL);
     options.method = VPL_METHOD_DIRECT;
-    vplImage* raster = render(scene, &options, NULL);
+    vplImage* raster = renderScene(scene, &options, NULL);
     int pure = 0;
     for (int i = 0; i < 128 * 96; i++) {
         float value = paths->pixels[3 * i];
@@ -711,7 +702,7 @@ static void LightsOnSurfacesAndEdgesGiveNumbers(void** state)
     vplRenderOptions options = pathOptions(24, 8);
     options.maxBounces = 20;
     vplRenderStats stats;
-    vplImage* image = render(scene, &options, &stats);
+    vplImage* image = renderScene(scene, &options, &stats);
     for (int i = 0; i < 3 * 24 * 24; i++) {
         assert_true(image->pixels[i] >= 0 && image->pixels[i] < INFINITY);
     }
@@ -745,7 +736,7 @@ static void NothingToSeeIsBlack(void** state)
     addCamera(scene, (vplVec3){0, 0, 1}, (vplVec3){0, 0, 0}, 1);
     vplRenderOptions options = pathOptions(8, 2);
     vplRenderStats stats;
-    vplImage* image = render(scene, &options, &stats);
+    vplImage* image = renderScene(scene, &options, &stats);
     assertNear(meanOfImage(image, 0), 0, 0, "mean", 0);
     assertNear(stats.relativeErrorEstimate, 0, 0, "relative error", 0);
     vplImage_Destroy(image);

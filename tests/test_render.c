@@ -13,19 +13,10 @@ static vplRenderOptions smallOptions(void)
     return o;
 }
 
-static vplImage* render(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* stats)
-{
-    vplImage* image = NULL;
-    if (vplRender(scene, options, &image, stats) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return image;
-}
-
 static uint64_t renderHash(const vplScene* scene, const vplRenderOptions* options)
 {
     vplRenderStats stats;
-    vplImage* image = render(scene, options, &stats);
+    vplImage* image = renderScene(scene, options, &stats);
     assert_true(stats.imageHash == vplImage_Hash(image));
     vplImage_Destroy(image);
     return stats.imageHash;
@@ -50,7 +41,7 @@ static void DrawCallsAreThoseOfTheDocument(void** state)
         vplRenderStats stats;
         o.accumulation = cases[i].accumulation;
         o.batch = cases[i].batch;
-        vplImage_Destroy(render(scene, &o, &stats));
+        vplImage_Destroy(renderScene(scene, &o, &stats));
         assert_int_equal(stats.drawCalls, cases[i].wanted);
         assert_int_equal(stats.virtualLights, 18);
         assert_int_equal(stats.rayObjectTests, 144);
@@ -69,7 +60,7 @@ static void OpenRoomsKeepNominalCountsAndReportEscapes(void** state)
     int escaped = 0;
     for (o.seed = 0; o.seed < 20; o.seed++) {
         vplRenderStats stats;
-        vplImage_Destroy(render(scene, &o, &stats));
+        vplImage_Destroy(renderScene(scene, &o, &stats));
         assert_int_equal(stats.stepCount, 4);
         const int nominal[4] = {10, 5, 2, 1};
         int lights = 0;
@@ -198,7 +189,7 @@ static vplImage* scaledRoom(vplContext* context, float scale, float intensity, v
     vplRenderOptions o = smallOptions();
     o.lighting = lighting;
     o.particles = 30;
-    vplImage* image = render(scene, &o, NULL);
+    vplImage* image = renderScene(scene, &o, NULL);
     vplScene_Destroy(scene);
     vplScene_Destroy(from);
     return image;
@@ -260,7 +251,7 @@ static void APlaneUnderAPointLightIsLitAsInTheBook(void** state)
     vplScene_AddCamera(scene, &camera, NULL);
     vplRenderOptions o = smallOptions();
     o.method = VPL_METHOD_DIRECT;
-    vplImage* image = render(scene, &o, NULL);
+    vplImage* image = renderScene(scene, &o, NULL);
     double half = tan(20 * VPL_PI / 180) * 4;
     for (int i = 0; i < o.width * o.height; i++) {
         double x = (2 * (i % o.width + 0.5) / o.width - 1) * half * o.width / o.height;
@@ -289,7 +280,7 @@ static void DocumentedDirectLightFallsWithN(void** state)
             o.shadow.biasRule = VPL_BIAS_EXACT;
             o.show = VPL_SHOW_DIRECT;
             o.particles = k ? 20 : 10;
-            vplImage* image = render(scene, &o, NULL);
+            vplImage* image = renderScene(scene, &o, NULL);
             sums[lighting][k] = 0;
             for (int i = 0; i < 3 * o.width * o.height; i++) {
                 sums[lighting][k] += (double)image->pixels[i];
@@ -310,11 +301,11 @@ static void DirectAndEachLightAddUpToThePicture(void** state)
     vplScene* scene = loadScene(context, "room-closed.json");
     vplRenderOptions o = smallOptions();
     o.minDistance = 0.5f;
-    vplImage* picture = render(scene, &o, NULL);
+    vplImage* picture = renderScene(scene, &o, NULL);
     o.show = VPL_SHOW_DIRECT;
-    vplImage* sum = render(scene, &o, NULL);
+    vplImage* sum = renderScene(scene, &o, NULL);
     o.show = VPL_SHOW_INDIRECT;
-    vplImage* indirect = render(scene, &o, NULL);
+    vplImage* indirect = renderScene(scene, &o, NULL);
     int count = 3 * o.width * o.height;
     for (int i = 0; i < count; i++) {
         double wanted = (double)sum->pixels[i] + (double)indirect->pixels[i];
@@ -322,7 +313,7 @@ static void DirectAndEachLightAddUpToThePicture(void** state)
     }
     o.show = VPL_SHOW_LIGHT;
     for (o.showLight = 0; o.showLight < 18; o.showLight++) {
-        vplImage* one = render(scene, &o, NULL);
+        vplImage* one = renderScene(scene, &o, NULL);
         for (int i = 0; i < count; i++) {
             sum->pixels[i] += one->pixels[i];
         }
@@ -351,16 +342,16 @@ static void StagesShowWhatTheySay(void** state)
     vplRenderOptions o = smallOptions();
     int middle = 3 * (o.height / 3 * o.width + 2 * o.width / 3), count = 3 * o.width * o.height;
     o.show = VPL_SHOW_DEPTH;
-    vplImage* image = render(scene, &o, NULL);
+    vplImage* image = renderScene(scene, &o, NULL);
     assertNear((double)image->pixels[middle], 11, 1e-4, "depth of the back wall", 0);
     vplImage_Destroy(image);
     o.show = VPL_SHOW_NORMALS;
-    image = render(scene, &o, NULL);
+    image = renderScene(scene, &o, NULL);
     assert_true(image->pixels[middle] == 0 && image->pixels[middle + 1] == 0 &&
                 image->pixels[middle + 2] == 1);
     vplImage_Destroy(image);
     o.show = VPL_SHOW_SHADOW_FACTOR;
-    image = render(scene, &o, NULL);
+    image = renderScene(scene, &o, NULL);
     int lit = 0, dark = 0;
     for (int i = 0; i < count; i++) {
         assert_true(image->pixels[i] >= 0 && image->pixels[i] <= 1);
@@ -370,7 +361,7 @@ static void StagesShowWhatTheySay(void** state)
     assert_true(lit > count / 3 && dark > count / 50);
     vplImage_Destroy(image);
     o.show = VPL_SHOW_SHADOW_MAP;
-    image = render(scene, &o, NULL);
+    image = renderScene(scene, &o, NULL);
     assert_int_equal(image->width, 4 * o.shadowMapSize);
     assert_int_equal(image->height, 3 * o.shadowMapSize);
     // Straight up, in the middle of the upper face, is the ceiling, half a metre away.
@@ -379,9 +370,9 @@ static void StagesShowWhatTheySay(void** state)
     vplImage_Destroy(image);
     o.show = VPL_SHOW_OVERLAY;
     o.particles = 100;
-    image = render(scene, &o, NULL);
+    image = renderScene(scene, &o, NULL);
     o.show = VPL_SHOW_PICTURE;
-    vplImage* plain = render(scene, &o, NULL);
+    vplImage* plain = renderScene(scene, &o, NULL);
     int marked = 0;
     for (int i = 0; i < count; i += 3) {
         marked += memcmp(image->pixels + i, plain->pixels + i, 12) != 0;
@@ -413,7 +404,7 @@ static void EmissionLeavesTheFrontOnly(void** state)
         vplScene_AddCamera(scene, &camera, NULL);
         vplRenderOptions o = smallOptions();
         o.method = VPL_METHOD_DIRECT;
-        vplImage* image = render(scene, &o, NULL);
+        vplImage* image = renderScene(scene, &o, NULL);
         for (int i = 0; i < 3 * o.width * o.height; i++) {
             assert_true(image->pixels[i] == (back ? 0 : (float)(i % 3 + 1)));
         }
@@ -481,7 +472,7 @@ static void ProgressRisesAndCancels(void** state)
     o.width = o.height = 300;
     o.progress = watch;
     o.progressUser = &w;
-    vplImage_Destroy(render(scene, &o, NULL));
+    vplImage_Destroy(renderScene(scene, &o, NULL));
     assertNear(w.last, 1, 1e-9, "last fraction", 0);
     int total = w.calls;
     assert_true(total > 20);
@@ -514,7 +505,7 @@ static void OddScenesGiveFinitePictures(void** state)
             o.lighting = (vplLighting)lighting;
             o.minDistance = 0;
             o.particles = 60;
-            vplImage* image = render(scene, &o, NULL);
+            vplImage* image = renderScene(scene, &o, NULL);
             for (int k = 0; k < 3 * o.width * o.height; k++) {
                 assert_true(isfinite(image->pixels[k]) && image->pixels[k] >= 0);
             }

@@ -68,6 +68,9 @@ int exitCode(vplResult result, bool reading);
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
 int finishOutput(int code);
 
+// Of a clock that never goes back.
+double secondsNow(void);
+
 // Progress bar with the time left, on stderr if that is a terminal; also notices SIGINT. Both take a Progress.
 typedef struct Progress {
     double start, lastDrawn;

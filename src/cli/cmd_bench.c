@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 typedef struct Bench {
     vplContext* context;
@@ -162,13 +161,6 @@ static const Stage STAGES[] = {
 
 enum { STAGE_COUNT = sizeof STAGES / sizeof *STAGES, MAX_RUNS = 1000 };
 
-static double nowMs(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
 static int compareDoubles(const void* a, const void* b)
 {
     double x = *(const double*)a, y = *(const double*)b;
@@ -233,13 +225,13 @@ static vplResult measureStage(const Arguments* a, int stage, Bench* benches, int
     for (int run = -1; run < a->runs; run++) { // one to warm up
         for (int c = 0; c < columns; c++) {
             Outcome outcome = {0};
-            double start = nowMs();
+            double start = secondsNow();
             vplResult result = STAGES[stage].run(&benches[c], &STAGES[stage], &outcome);
             if (result != VPL_SUCCESS) {
                 return result;
             }
             if (run >= 0) {
-                times[c][run] = nowMs() - start;
+                times[c][run] = 1e3 * (secondsNow() - start);
                 figure->outcome[c] = outcome;
             }
         }

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What is in a scene, and what a render with the same options would need. Nothing is rendered: counts follow
 // from floor(rho^k N) and from the passes over the objects, as --stats reports them afterwards.
-#include "cli/cli.h"
+#include "cli/option.h"
 
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { OBJECT_TYPES = VPL_OBJECT_MESH + 1, POINTS = 0, SPOTS, DIRECTIONALS, EMITTER_TYPES };
-
-static const char* const METHODS[] = {"instant-radiosity", "direct", "path"};
-static const char* const PIPELINES[] = {"multipass", "batched", "deferred"};
 
 typedef struct Info {
     const char* path;
@@ -23,6 +20,7 @@ typedef struct Info {
     double lampArea;   // square metres
     // of a render
     const Arguments* arguments;
+    char method[32], pipeline[32]; // as in the options
     double reflectivity;
     int steps, particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights, drawCalls;
@@ -112,6 +110,8 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
 {
     const vplRenderOptions* o = &a->render;
     info->arguments = a;
+    writeNamedOption("--method", a, info->method, sizeof info->method);
+    writeNamedOption("--pipeline", a, info->pipeline, sizeof info->pipeline);
     info->reflectivity = o->reflectivity >= 0 ? o->reflectivity : info->reflectance;
     if (o->method == VPL_METHOD_INSTANT_RADIOSITY) {
         vplResult result =
@@ -172,8 +172,7 @@ static void printText(const Info* info)
         printf("\nto render it by path, at %dx%d\n", o->width, o->height);
         printf("  %-16s %lld\n", "paths", (long long)o->width * o->height * o->samplesPerPixel);
     } else {
-        printf("\nto render it by %s, %s, at %dx%d\n", METHODS[o->method], PIPELINES[o->accumulation],
-               o->width, o->height);
+        printf("\nto render it by %s, %s, at %dx%d\n", info->method, info->pipeline, o->width, o->height);
         printSteps(info);
         printf("  %-16s %lld\n", "draw calls", (long long)info->drawCalls);
         printBytes("shadow maps", info->shadowMapBytes);
@@ -198,9 +197,9 @@ static json_t* renderJson(const Info* info)
         json_array_append_new(steps, json_integer(info->particlesPerStep[i]));
     }
     return json_pack("{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:s?}", "method",
-                     METHODS[o->method], "pipeline", PIPELINES[o->accumulation], "width", o->width, "height",
-                     o->height, "reflectivity", info->reflectivity, "steps", info->steps, "lights_per_step",
-                     steps, "virtual_lights", (json_int_t)info->virtualLights, "draw_calls",
+                     info->method, "pipeline", info->pipeline, "width", o->width, "height", o->height,
+                     "reflectivity", info->reflectivity, "steps", info->steps, "lights_per_step", steps,
+                     "virtual_lights", (json_int_t)info->virtualLights, "draw_calls",
                      (json_int_t)info->drawCalls, "shadow_map_bytes", (json_int_t)info->shadowMapBytes,
                      "light_bytes", (json_int_t)info->lightBytes, "picture_bytes",
                      (json_int_t)info->pictureBytes, "problem", info->problem);

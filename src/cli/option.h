@@ -31,6 +31,9 @@ int commandBit(const char* command);
 // the default can be meant. False for all other options.
 bool writeOption(const Option* option, const Arguments* arguments, char* text, size_t size);
 
+// The same by the option's name.
+void writeNamedOption(const char* name, const Arguments* arguments, char* text, size_t size);
+
 ReadFcn readInt, readSeed, readFloat, readDouble, readFloatOrAuto, readReflectivity, readBias, readBiasSlope,
     readFlag, readText, readChoice, readShow, readSize, readThreads, readRegion, readGrid;
 

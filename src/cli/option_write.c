@@ -80,3 +80,13 @@ bool writeOption(const Option* o, const Arguments* a, char* text, size_t size)
     }
     return true;
 }
+
+void writeNamedOption(const char* name, const Arguments* a, char* text, size_t size)
+{
+    text[0] = 0;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (strcmp(OPTIONS[i].name, name) == 0) {
+            writeOption(&OPTIONS[i], a, text, size);
+        }
+    }
+}

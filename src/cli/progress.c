@@ -6,7 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static double now(void)
+double secondsNow(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -20,9 +20,9 @@ static volatile double firstInterrupt; // seconds; read and written by the handl
 static void onInterrupt(int number)
 {
     if (!interrupted) {
-        firstInterrupt = now();
+        firstInterrupt = secondsNow();
         interrupted = 1;
-    } else if (now() - firstInterrupt > 0.5) {
+    } else if (secondsNow() - firstInterrupt > 0.5) {
         signal(number, SIG_DFL);
         raise(number);
     }
@@ -39,13 +39,13 @@ void catchInterrupts(void)
 
 Progress beginProgress(bool quiet)
 {
-    return (Progress){now(), 0, !quiet && isatty(STDERR_FILENO)};
+    return (Progress){secondsNow(), 0, !quiet && isatty(STDERR_FILENO)};
 }
 
 bool showProgress(void* user, double fraction)
 {
     Progress* p = user;
-    double time = now();
+    double time = secondsNow();
     if (p->visible && time - p->lastDrawn > 0.1 && fraction > 0) {
         char bar[41];
         for (int i = 0; i < 40; i++) {

@@ -96,8 +96,6 @@ void writeCommand(const Setting* s, char* words, size_t size);
 
 // ---- measuring
 
-double secondsNow(void);
-
 // Reads or path-traces the truth. A sentence was printed unless it returns EXIT_DONE.
 int makeReference(Tradeoff* t);
 

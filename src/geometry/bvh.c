@@ -7,6 +7,8 @@
 #include "geometry/bvh.h"
 #include "base/context.h"
 #include "base/isa.h"
+#include "geometry/triangle.h"
+#include "math/vec.h"
 
 #include <math.h>
 #include <string.h>
@@ -169,15 +171,12 @@ static void cut(const Builder* b, Range* range, Range* otherOut, int depth)
     *range = makeRange(b, first, middle - first);
 }
 
-// The corners of a triangle in world space.
+// By corner and axis, in world space.
 static void getCorners(const vplGeometry* g, int triangle, float p[3][3])
 {
-    const vplVec3* positions = g->positions + g->objects[g->owners[triangle]].firstVertex;
-    for (int corner = 0; corner < 3; corner++) {
-        vplVec3 at = positions[g->indices[3 * (size_t)triangle + (size_t)corner]];
-        p[corner][0] = at.x;
-        p[corner][1] = at.y;
-        p[corner][2] = at.z;
+    const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
+    for (int i = 0; i < 9; i++) {
+        p[i / 3][i % 3] = vplComponent(t.corner[i / 3], i % 3);
     }
 }
 

@@ -2,17 +2,12 @@
 // Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023, chapter 12,
 // for the powers and the spot's falloff.
 #include "geometry/emission.h"
-#include "geometry/freeze.h"
+#include "geometry/triangle.h"
 #include "base/context.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 
 #include <string.h>
-
-static double meanOf(vplRgb c)
-{
-    return ((double)c.r + c.g + c.b) / 3;
-}
 
 vplRgb vplScaleRadiometric(double s, vplRgb c)
 {
@@ -82,19 +77,6 @@ vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction)
 
 // ---- the list
 
-vplTriangleCorners vplGeometry_Corners(const vplGeometry* g, int triangle)
-{
-    const vplVec3* p = g->positions + g->objects[g->owners[triangle]].firstVertex;
-    const uint32_t* index = g->indices + 3 * (size_t)triangle;
-    return (vplTriangleCorners){{p[index[0]], p[index[1]], p[index[2]]}};
-}
-
-double vplGeometry_TriangleArea(const vplGeometry* g, int triangle)
-{
-    return vplTriangleArea(g->positions + g->objects[g->owners[triangle]].firstVertex,
-                           g->indices + 3 * (size_t)triangle);
-}
-
 // Counts the sources, or fills in as many as were counted.
 typedef struct Lister {
     vplEmissionSource* sources; // NULL to count
@@ -104,7 +86,7 @@ typedef struct Lister {
 
 static void list(Lister* l, int emitter, int triangle, double factor, vplRgb light)
 {
-    double power = factor * meanOf(light);
+    double power = factor * vplRgbMean(light);
     if (!(power > 0)) {
         return;
     }
@@ -128,7 +110,7 @@ static void listSources(const vplEmission* e, Lister* l, int* firstTriangle)
     *firstTriangle = l->count;
     for (int i = 0; i < g->triangleCount; i++) {
         vplRgb radiance = g->materials[g->triangleMaterials[i]].emission;
-        if (meanOf(radiance) > 0) {
+        if (vplRgbMean(radiance) > 0) {
             list(l, -1, i, VPL_PI * vplGeometry_TriangleArea(g, i), radiance);
         }
     }

@@ -5,15 +5,6 @@
 
 #include <vpl/geometry.h>
 
-typedef struct vplTriangleCorners {
-    vplVec3 corner[3]; // world space
-} vplTriangleCorners;
-
-vplTriangleCorners vplGeometry_Corners(const vplGeometry* geometry, int triangle);
-
-// Square metres, in double from the rounded corners.
-double vplGeometry_TriangleArea(const vplGeometry* geometry, int triangle);
-
 // s c in double, cut at the largest float: radiances and sizes of up to 1e15 reach beyond it together.
 vplRgb vplScaleRadiometric(double s, vplRgb c);
 

@@ -2,7 +2,7 @@
 // Based on: Eric Heitz, A Low-Distortion Map Between Triangle and Square, 2019, for points on triangles; Alexander
 // Keller, Instant Radiosity, SIGGRAPH 1997, for particles that start where light does.
 #include "geometry/emission.h"
-#include "geometry/intersect.h"
+#include "geometry/triangle.h"
 #include "math/sampling.h"
 #include "math/scalar.h"
 #include "math/vec.h"

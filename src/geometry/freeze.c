@@ -2,6 +2,7 @@
 // Every quad becomes two world-space triangles, every box twelve, a mesh its own. Corners are rounded from
 // double once and shared by the faces that meet there, so edges are watertight.
 #include "geometry/freeze.h"
+#include "geometry/triangle.h"
 #include "math/matrix.h"
 #include "math/vec.h"
 
@@ -85,27 +86,6 @@ static vplVec3 normalToWorld(const vplPlacement* placement, vplVec3 n)
     return unit(v);
 }
 
-// Twice the area, along the normal of the counter-clockwise side. Differences of floats keep all digits here.
-static void crossOf(const vplVec3* p, const uint32_t* index, double cross[3])
-{
-    double u[3], v[3];
-    for (int axis = 0; axis < 3; axis++) {
-        double origin = vplComponent(p[index[0]], axis);
-        u[axis] = vplComponent(p[index[1]], axis) - origin;
-        v[axis] = vplComponent(p[index[2]], axis) - origin;
-    }
-    cross[0] = u[1] * v[2] - u[2] * v[1];
-    cross[1] = u[2] * v[0] - u[0] * v[2];
-    cross[2] = u[0] * v[1] - u[1] * v[0];
-}
-
-double vplTriangleArea(const vplVec3* positions, const uint32_t* index)
-{
-    double c[3];
-    crossOf(positions, index, c);
-    return 0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
-}
-
 static bool mirrors(const vplPlacement* p)
 {
     const double(*m)[4] = p->toWorld;
@@ -143,7 +123,8 @@ static void fillTriangles(const vplFreezer* f, const vplMeshDef* shape, int owne
         index[2] = from[turn ? 1 : 2];
         const int material = object->material >= 0 ? object->material : shape->materials[i];
         const vplRgb rho = f->scene->materials[material].diffuse;
-        const double a = vplTriangleArea(positions, index);
+        const vplTriangleCorners corners = vplCornersOf(positions, index);
+        const double a = vplTriangle_Area(&corners);
         area += a;
         sums[0] += a * rho.r;
         sums[1] += a * rho.g;
@@ -152,7 +133,7 @@ static void fillTriangles(const vplFreezer* f, const vplMeshDef* shape, int owne
         f->materials[at] = material;
         if (object->type == VPL_OBJECT_MESH) {
             double cross[3];
-            crossOf(positions, index, cross);
+            vplTriangle_Cross(&corners, cross);
             f->normals[at] = unit(cross);
         } else {
             const float* n =
@@ -188,7 +169,6 @@ static void findOrientedBox(const vplObjectDef* def, const vplMeshDef* shape, vp
         }
     }
     const vplMat4 matrix = vplAffine_ToMat4(&fit);
-    object->bounds = object->placement; // stays where there is no box: no vertices, or all in one point
     if (shape->vertexCount > 0 && vplCheckTransform(&matrix).field == NULL) {
         vplPlacement_Create(NULL, &matrix, &object->bounds);
     }
@@ -201,9 +181,8 @@ void vplFreezeObject(const vplFreezer* freezer, int index)
     vplGeometryObject* object = &freezer->objects[index];
     fillVertices(freezer, def, &shape, object);
     fillTriangles(freezer, &shape, index);
+    object->bounds = object->placement; // stays for a mesh without a box: no vertices, or all in one point
     if (def->type == VPL_OBJECT_MESH) {
         findOrientedBox(def, &shape, object);
-    } else {
-        object->bounds = object->placement;
     }
 }

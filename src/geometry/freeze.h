@@ -24,7 +24,4 @@ int vplCountTriangles(const vplScene* scene, const vplObjectDef* def);
 // Fills the vertices and triangles of object `index`, whose placement, counts and places are set.
 void vplFreezeObject(const vplFreezer* freezer, int index);
 
-// Area of a triangle of `positions`, in double.
-double vplTriangleArea(const vplVec3* positions, const uint32_t* index);
-
 #endif

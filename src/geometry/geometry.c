@@ -2,6 +2,7 @@
 // The frozen scene: world-space arrays of all triangles, and what rays are traced through.
 #include "geometry/bvh.h"
 #include "geometry/freeze.h"
+#include "geometry/triangle.h"
 #include "math/vec.h"
 
 #include <math.h>
@@ -139,9 +140,8 @@ static void sumAreas(const vplGeometry* g, double* area, double* reflecting)
 {
     *area = *reflecting = 0;
     for (int i = 0; i < g->triangleCount; i++) {
-        const vplGeometryObject* object = &g->objects[g->owners[i]];
         const vplRgb rho = g->materials[g->triangleMaterials[i]].diffuse;
-        double a = vplTriangleArea(g->positions + object->firstVertex, g->indices + 3 * (size_t)i);
+        double a = vplGeometry_TriangleArea(g, i);
         *area += a;
         *reflecting += a * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
     }

@@ -3,28 +3,20 @@
 #include "base/context.h"
 #include "geometry/bvh.h"
 #include "geometry/intersect.h"
+#include "geometry/triangle.h"
 #include "math/vec.h"
 
 #include <math.h>
 
-int vplGeometry_FaceOf(const vplGeometry* g, int triangle)
-{
-    const vplGeometryObject* object = &g->objects[g->owners[triangle]];
-    return object->type == VPL_OBJECT_QUAD  ? VPL_FACE_QUAD
-           : object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2
-                                            : VPL_FACE_NONE;
-}
-
 // Point and normal of a mesh triangle.
 static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
 {
-    const vplVec3* p = g->positions + g->objects[hit->object].firstVertex;
-    const uint32_t* index = g->indices + 3 * (size_t)raw->triangle;
+    const vplTriangleCorners t = vplGeometry_Corners(g, raw->triangle);
     const double w1 = raw->b1, w2 = raw->b2;
     float at[3];
     for (int axis = 0; axis < 3; axis++) {
-        double a = vplComponent(p[index[0]], axis), b = vplComponent(p[index[1]], axis),
-               c = vplComponent(p[index[2]], axis);
+        double a = vplComponent(t.corner[0], axis), b = vplComponent(t.corner[1], axis),
+               c = vplComponent(t.corner[2], axis);
         at[axis] = (float)(a + w1 * (b - a) + w2 * (c - a));
     }
     hit->position = vplVec(at[0], at[1], at[2]);
@@ -66,42 +58,6 @@ bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOu
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)
 {
     return vplClosestHit(geometry, ray, hitOut, NULL);
-}
-
-vplVec3 vplGeometry_Inside(const vplGeometry* g, int triangle, vplVec3 point)
-{
-    // Raster coverage is snapped to 1/256 pixel, so a triangle's pixel centre may lie that far outside of it.
-    const double inset = 0x1p-16;
-    const vplVec3* p = g->positions + g->objects[g->owners[triangle]].firstVertex;
-    const uint32_t* index = g->indices + 3 * (size_t)triangle;
-    double a[3], u[3], v[3], w[3], uu = 0, uv = 0, vv = 0, wu = 0, wv = 0;
-    for (int i = 0; i < 3; i++) {
-        a[i] = vplComponent(p[index[0]], i);
-        u[i] = vplComponent(p[index[1]], i) - a[i];
-        v[i] = vplComponent(p[index[2]], i) - a[i];
-        w[i] = vplComponent(point, i) - a[i];
-        uu += u[i] * u[i];
-        uv += u[i] * v[i];
-        vv += v[i] * v[i];
-        wu += w[i] * u[i];
-        wv += w[i] * v[i];
-    }
-    const double area = uu * vv - uv * uv;
-    if (!(area > 0)) {
-        return point;
-    }
-    double b = (vv * wu - uv * wv) / area, c = (uu * wv - uv * wu) / area, rest = 1 - b - c;
-    if (b >= inset && c >= inset && rest >= inset) {
-        return point;
-    }
-    b = b > inset ? b : inset;
-    c = c > inset ? c : inset;
-    rest = rest > inset ? rest : inset;
-    const double sum = b + c + rest;
-    b /= sum;
-    c /= sum;
-    return vplVec((float)(a[0] + b * u[0] + c * v[0]), (float)(a[1] + b * u[1] + c * v[1]),
-                  (float)(a[2] + b * u[2] + c * v[2]));
 }
 
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)

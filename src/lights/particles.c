@@ -9,7 +9,7 @@
 
 #include "base/context.h"
 #include "geometry/bvh.h"
-#include "geometry/intersect.h"
+#include "geometry/triangle.h"
 #include "lights/samples.h"
 #include "math/sampling.h"
 #include "math/vec.h"
@@ -44,7 +44,7 @@ typedef struct Simulation {
 
 static double powerOf(const vplEmitterDef* e)
 {
-    return ((double)e->intensity.r + e->intensity.g + e->intensity.b) / 3;
+    return vplRgbMean(e->intensity);
 }
 
 // The emitter of particle i, and one over the probability that it was chosen.

@@ -85,6 +85,12 @@ static inline vplRgb vplRgbAdd(vplRgb a, vplRgb b)
     return (vplRgb){a.r + b.r, a.g + b.g, a.b + b.b};
 }
 
+// Mean of the channels, by which sources share particles.
+static inline double vplRgbMean(vplRgb c)
+{
+    return ((double)c.r + c.g + c.b) / 3;
+}
+
 // Luminance with the weights of Rec. 709.
 static inline float vplLuminance(vplRgb c)
 {

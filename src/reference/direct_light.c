@@ -63,11 +63,6 @@ static double along(vplVec3 n, const double way[3])
     return n.x * way[0] + n.y * way[1] + n.z * way[2];
 }
 
-static double meanOf(vplRgb c)
-{
-    return ((double)c.r + c.g + c.b) / 3;
-}
-
 static vplLight3 reflected(double scale, vplRgb rho, vplRgb light)
 {
     return (vplLight3){scale * rho.r * light.r, scale * rho.g * light.g, scale * rho.b * light.b};
@@ -99,11 +94,11 @@ vplLightWay vplFindWay(const vplPathScene* s, const vplPathVertex* vertex, const
     if (e != NULL) {
         vplRgb i = vplEmitter_Intensity(e, vplVec((float)-way[0], (float)-way[1], (float)-way[2]));
         found.value = reflected(cosine * falloff / VPL_PI, vertex->rho, i);
-        found.particle = meanOf(i) / s->power * flat * falloff / vertex->density;
+        found.particle = vplRgbMean(i) / s->power * flat * falloff / vertex->density;
     } else {
         const vplGeometry* g = s->geometry;
         vplRgb radiance = g->materials[g->triangleMaterials[light->triangle]].emission;
-        double density = VPL_PI * meanOf(radiance) / s->trianglePower; // of the point, per square metre
+        double density = VPL_PI * vplRgbMean(radiance) / s->trianglePower; // of the point, per square metre
         found.chance = cosine / VPL_PI * found.cosineAtLight * falloff / density;
         found.value = reflected(found.chance, vertex->rho, radiance);
         found.particle =

@@ -1,40 +1,58 @@
 // SPDX-License-Identifier: MIT
 // Light and what stops it: emitters and virtual lights with shadow maps or shadow rays. The arithmetic of light
 // is the kernels'; here it is only multiplied by visibility.
-#include "geometry/intersect.h"
+#include "geometry/triangle.h"
 #include "math/vec.h"
 #include "shading/shading.h"
 
 #include <string.h>
 
-static vplHit hitOf(const vplGeometry* g, const vplPoints* points, int lane)
+// Shadows belong to the triangles' own planes.
+static const vplSurface* planeOf(const vplShading* s, const vplPoints* points)
 {
-    const int triangle = points->triangle[lane];
-    const vplSurface* s = &points->surface;
-    const vplVec3 seen = vplVec(s->px[lane], s->py[lane], s->pz[lane]);
-    return (vplHit){.object = g->owners[triangle],
-                    .face = vplGeometry_FaceOf(g, triangle),
-                    .triangle = triangle,
-                    .position = vplGeometry_Inside(g, triangle, seen),
-                    .normal = g->normals[triangle]};
+    return s->smooth ? &points->plane : &points->surface;
 }
 
-void vplCastShadowRays(const vplShading* shading, const vplPoints* points, vplVec3 target, bool parallel,
-                       float amount[VPL_LANES], int64_t* rays)
+// Where rays leave a block, the same for all its lights.
+typedef struct Starts {
+    vplHit hit[VPL_LANES]; // of lanes that show a triangle
+} Starts;
+
+static void findStarts(const vplGeometry* g, const vplPoints* points, Starts* starts)
+{
+    const vplSurface* s = &points->surface;
+    for (int l = 0; l < VPL_LANES; l++) {
+        const int triangle = points->triangle[l];
+        if (triangle < 0) {
+            continue;
+        }
+        const vplVec3 seen = vplVec(s->px[l], s->py[l], s->pz[l]);
+        starts->hit[l] = (vplHit){.object = g->owners[triangle],
+                                  .face = vplGeometry_FaceOf(g, triangle),
+                                  .triangle = triangle,
+                                  .position = vplGeometry_Inside(g, triangle, seen),
+                                  .normal = g->normals[triangle]};
+    }
+}
+
+// Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
+// where that is behind the triangle. Lanes of amount 0 cast no ray.
+static void castShadowRays(const vplShading* shading, const vplPoints* points, const Starts* starts,
+                           vplVec3 target, bool parallel, float amount[VPL_LANES], int64_t* rays)
 {
     const vplGeometry* g = shading->geometry;
-    const vplSurface* plane = shading->smooth ? &points->plane : &points->surface;
+    const vplSurface* plane = planeOf(shading, points);
     for (int l = 0; l < VPL_LANES; l++) {
         if (!(amount[l] > 0) || points->triangle[l] < 0) {
             continue;
         }
-        const vplHit hit = hitOf(g, points, l);
-        const vplVec3 way = parallel ? vplNegate(target) : vplSub(target, hit.position);
+        const vplHit* hit = &starts->hit[l];
+        const vplVec3 way = parallel ? vplNegate(target) : vplSub(target, hit->position);
         if (!(vplDot(way, vplVec(plane->nx[l], plane->ny[l], plane->nz[l])) > 0)) {
             amount[l] = 0;
             continue;
         }
-        const vplRay ray = vplGeometry_Leave(g, &hit, way);
+        const vplRay ray = vplGeometry_Leave(g, hit, way);
         ++*rays;
         if (vplGeometry_IsOccluded(g, &ray, parallel ? INFINITY : 1)) {
             amount[l] = 0;
@@ -49,8 +67,10 @@ static void shadowEmitter(const vplShading* s, const vplPoints* points, int inde
     const vplShadow* shadow = &s->def->shadows[index];
     const vplEmitterRay* emitter = &s->emitters[index];
     if (emitter->parallel || shadow->map == NULL) {
-        vplCastShadowRays(s, points, emitter->parallel ? emitter->direction : emitter->position,
-                          emitter->parallel, amount, rays);
+        Starts starts;
+        findStarts(s->geometry, points, &starts);
+        castShadowRays(s, points, &starts, emitter->parallel ? emitter->direction : emitter->position,
+                       emitter->parallel, amount, rays);
         return;
     }
     float factor[VPL_LANES];
@@ -61,7 +81,7 @@ static void shadowEmitter(const vplShading* s, const vplPoints* points, int inde
             amount[l] = cosine[l] > 0 ? amount[l] : 0;
         }
     }
-    vplShadow_FactorBlock(shadow, s->smooth ? &points->plane : &points->surface, factor);
+    vplShadow_FactorBlock(shadow, planeOf(s, points), factor);
     for (int l = 0; l < VPL_LANES; l++) {
         amount[l] *= 1 - factor[l];
     }
@@ -80,7 +100,7 @@ static vplVec3 aimAt(const vplShadeLight* light)
 static void shadowByMap(const vplShading* s, const vplPoints* points, const vplShadeLight* light,
                         const vplShadow* map, float visible[VPL_LANES])
 {
-    const vplSurface* p = s->smooth ? &points->plane : &points->surface;
+    const vplSurface* p = planeOf(s, points);
     float factor[VPL_LANES];
     vplShadow_FactorBlock(map, p, factor);
     for (int l = 0; l < VPL_LANES; l++) {
@@ -95,6 +115,10 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
                         const vplShadow* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
                         int64_t* rays)
 {
+    Starts starts;
+    if (maps == NULL) {
+        findStarts(s->geometry, points, &starts);
+    }
     for (int i = 0; i < count; i++) {
         float part[3][VPL_LANES] = {{0}}, visible[VPL_LANES];
         s->lightKernel(&points->surface, &lights[i], 1, inverseBound, part);
@@ -107,7 +131,7 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
             continue;
         }
         if (maps == NULL) {
-            vplCastShadowRays(s, points, aimAt(&lights[i]), false, visible, rays);
+            castShadowRays(s, points, &starts, aimAt(&lights[i]), false, visible, rays);
         } else {
             shadowByMap(s, points, &lights[i], &maps[i], visible);
         }

@@ -99,11 +99,6 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
                            float irradiance[3][VPL_LANES], int64_t* rays);
 
-// Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
-// where that is behind the triangle. Lanes of amount 0 cast no ray.
-void vplCastShadowRays(const vplShading* shading, const vplPoints* points, vplVec3 target, bool parallel,
-                       float amount[VPL_LANES], int64_t* rays);
-
 // Moves a finished group from the planes to the sums; tile task, data is unused.
 void vplFoldTile(void* data, vplTile* tile, int worker);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The camera, its vertex shader, and the surface that a block of fragments shows.
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "shading/shading.h"
@@ -92,11 +93,10 @@ vplPipeline vplCameraPipeline(const vplShading* shading, int object)
 vplFacet vplGetFacet(const vplShading* shading, int triangle)
 {
     const vplGeometry* g = shading->geometry;
-    const vplGeometryObject* o = &g->objects[g->owners[triangle]];
     const vplMaterialDef* material = &g->materials[g->triangleMaterials[triangle]];
     vplFacet facet = {g->normals[triangle], material->diffuse, material->emission};
-    vplVec3 corner = g->positions[(uint32_t)o->firstVertex + g->indices[3 * (size_t)triangle]];
-    bool fromBehind = vplDot(facet.normal, vplSub(shading->view->eye, corner)) < 0;
+    const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
+    bool fromBehind = vplDot(facet.normal, vplSub(shading->view->eye, t.corner[0])) < 0;
     if (fromBehind) {
         facet.emission = (vplRgb){0, 0, 0};
         if (shading->def->lighting == VPL_LIGHTING_PHYSICAL) {
