@@ -15,12 +15,12 @@ extern "C" {
 #endif
 
 enum {
-    VPL_LANES = 16,       // fragments per block: 4 x 4 pixels, lane i at (i % 4, i / 4)
-    VPL_BLOCK_SIDE = 4,   // pixels
-    VPL_TILE_SIDE = 64,   // pixels
-    VPL_TILE_BLOCKS = 16, // blocks along a tile's side
-    VPL_MAX_VARYINGS = 8, // floats per vertex, besides the position
-    VPL_MAX_PLANES = 8    // colour planes of a framebuffer
+    VPL_LANES = 16,        // fragments per block: 4 x 4 pixels, lane i at (i % 4, i / 4)
+    VPL_BLOCK_SIDE = 4,    // pixels
+    VPL_TILE_SIDE = 64,    // pixels
+    VPL_TILE_BLOCKS = 16,  // blocks along a tile's side
+    VPL_MAX_VARYINGS = 12, // floats per vertex, besides the position
+    VPL_MAX_PLANES = 8     // colour planes of a framebuffer
 };
 
 // Where a vertex shader puts its results: element i - first of each array belongs to vertex i.
@@ -37,7 +37,7 @@ typedef struct vplFragments {
     int x, y;                                   // pixel of lane 0; x and y are multiples of 4
     int primitive;                              // index of the triangle in its mesh
     int32_t covered[VPL_LANES];                 // -1 where the lane is a fragment, else 0
-    float depth[VPL_LANES];                     // z/w; a shader with writesDepth replaces it
+    float depth[VPL_LANES];                     // z/w; a shader with writesDepth sets it
     float w[VPL_LANES];                         // clip-space w: distance along the view axis
     float varying[VPL_MAX_VARYINGS][VPL_LANES]; // perspective-correct
     float plane[VPL_MAX_PLANES][VPL_LANES]; // out: colours; in: what the framebuffer holds, if readsPlanes
@@ -73,6 +73,9 @@ typedef struct vplPipeline {
     int varyingCount;             // [0, VPL_MAX_VARYINGS]; default 0
     vplFragmentFcn* fragment;     // NULL (default): depth only
     const void* fragmentUniforms; // passed to it
+    vplFragmentFcn* surface; // runs before the fragment shader, with vertexUniforms, and may change and add
+                             // varyings; once where several passes (ownerTest) shade a block; default NULL
+    int surfaceCount;        // varyings there are after it, [varyingCount, VPL_MAX_VARYINGS]
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
     bool writesDepth;             // the fragment shader replaces depth, and the test uses that; default false
@@ -98,6 +101,7 @@ typedef struct vplMesh {
 typedef struct vplPlane {
     float* pixels; // width * height floats, NULL: lives only while its tile is drawn
     bool load;     // start from `pixels` instead of `clear`; default false
+    bool scratch;  // starts as anything: is written before it is read; not for depth; default false
     float clear;   // default 1 for depth, 0 for colours
 } vplPlane;
 
@@ -115,9 +119,9 @@ vplFramebuffer vplDefaultFramebuffer(int width, int height);
 // One tile's storage, for tile tasks. Lane l of block b lies at element 16 * b + l; block b covers the pixels
 // from (x + 4 * (b % 16), y + 4 * (b / 16)).
 typedef struct vplTile {
-    int x, y;          // pixel of the upper left corner
-    int width, height; // pixels inside the picture, up to VPL_TILE_SIDE
-    float* depth;
+    int x, y;           // pixel of the upper left corner
+    int width, height;  // pixels inside the picture, up to VPL_TILE_SIDE
+    const float* depth; // only draws change it
     float* planes[VPL_MAX_PLANES];
     void* scratch;
 } vplTile;
@@ -150,6 +154,10 @@ vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data);
 // Runs all that was recorded, in order. `progress` (may be NULL) sees fractions from 0 to 1. May be called
 // again. statsOut may be NULL.
 vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut);
+
+// The same for several rasters of one context, whose tiles run side by side. statsOut: one per raster, or NULL.
+vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
+                           vplRasterStats* statsOut);
 
 #ifdef __cplusplus
 }

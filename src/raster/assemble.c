@@ -1,177 +1,147 @@
 // SPDX-License-Identifier: MIT
-// From shaded vertices to the list of triangles to draw, in mesh order. Two passes over chunks of triangles,
-// one that counts and one that writes, so that chunks run in parallel and the order does not depend on them.
+// From shaded vertices to references to the triangles that may be seen, in drawing order. Chunks of triangles
+// run in parallel; each knows beforehand where its results may go, so that the order does not depend on them.
 #include "raster/raster.h"
 
 #include <string.h>
 
-enum { CHUNK = 2048 };
-
-typedef struct Chunk {
-    int shaded, first, count; // triangles of one mesh
-    int triangles, extras;    // made; after the prefix sum: where they go
-} Chunk;
-
-typedef struct Assembly {
-    vplRaster* raster;
-    Chunk* chunks;
-    int chunkCount;
-    bool writing;
-} Assembly;
-
-// Writes (or only counts) one projected triangle. Nothing for zero area or where no pixel centre can lie.
-static int emit(Assembly* a, int at, const vplScreenVertex v[3], const uint32_t vertex[3], int primitive)
+// The part of triangle `first` to `end` - 1 that belongs to one mesh, from `first` on: returns where it ends and
+// moves *mesh to that mesh.
+static int meshPart(const vplRaster* r, int first, int end, int* mesh)
 {
-    int64_t area =
-        (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
-    vplPixelBox box = vplBoundTriangle(v);
-    const vplFramebuffer* f = &a->raster->framebuffer;
-    if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || box.x1 < 0 || box.y1 < 0 || box.x0 >= f->width ||
-        box.y0 >= f->height) {
-        return 0;
+    while (*mesh + 1 < r->shadedCount && r->shaded[*mesh + 1].firstTriangle <= first) {
+        ++*mesh;
     }
-    if (a->writing) {
-        bool clockwise = area > 0; // as seen, because y points down
-        vplTriangle* t = &a->raster->triangles[at];
-        int second = clockwise ? 1 : 2, third = clockwise ? 2 : 1;
-        *t = (vplTriangle){{v[0], v[second], v[third]},
-                           {vertex[0], vertex[second], vertex[third]},
-                           clockwise ? primitive | VPL_CLOCKWISE : primitive};
-    }
-    return 1;
+    const int meshEnd = r->shaded[*mesh].firstTriangle + r->shaded[*mesh].mesh.triangleCount;
+    return meshEnd < end ? meshEnd : end;
 }
 
-static int emitClipped(Assembly* a, const vplShaded* s, const uint32_t* index, int primitive, int planes,
-                       int at, int* extras)
+// Outcode bits of the planes that a triangle must be cut by; -1 where it is dropped.
+static int planesOf(const vplShaded* s, const uint32_t* index)
 {
+    const int c0 = s->outcodes[index[0]], c1 = s->outcodes[index[1]], c2 = s->outcodes[index[2]];
+    const int any = c0 | c1 | c2;
+    if ((any & VPL_OUT_BAD) || (c0 & c1 & c2 & ~VPL_OUT_GUARD)) {
+        return -1;
+    }
+    return any & (VPL_OUT_NEAR | VPL_OUT_FAR | VPL_OUT_GUARD);
+}
+
+void vplCountCuts(void* data, int chunkIndex, int worker)
+{
+    (void)worker;
+    const vplTriangleStage* stage = data;
+    const vplRaster* r = stage->raster;
+    vplChunk* chunk = &stage->chunks[chunkIndex];
+    chunk->cut = 0;
+    const int end = chunk->first + chunk->count;
+    for (int i = chunk->first, mesh = 0, partEnd; i < end; i = partEnd) {
+        partEnd = meshPart(r, i, end, &mesh);
+        const vplShaded* s = &r->shaded[mesh];
+        const bool mayCut = s->outcodesTogether & (VPL_OUT_NEAR | VPL_OUT_FAR | VPL_OUT_GUARD);
+        for (; mayCut && i < partEnd; i++) {
+            chunk->cut += planesOf(s, s->mesh.indices + 3 * (size_t)(i - s->firstTriangle)) > 0;
+        }
+    }
+}
+
+// Where a chunk writes.
+typedef struct Writer {
+    const vplTriangleStage* stage;
+    vplChunk* chunk;
+    int* counts; // by tile
+    int clipped, extras;
+} Writer;
+
+// Keeps one projected triangle; false for zero area or where no pixel centre can lie.
+static bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
+{
+    const vplRaster* r = w->stage->raster;
+    const int64_t area =
+        (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
+    const vplPixelBox box = vplBoundTriangle(v);
+    if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || box.x1 < 0 || box.y1 < 0 ||
+        box.x0 >= r->framebuffer.width || box.y0 >= r->framebuffer.height) {
+        return false;
+    }
+    const int shift = 6;
+    _Static_assert(VPL_TILE_SIDE == 1 << 6, "the shift is for 64-pixel tiles");
+    const int x0 = box.x0 > 0 ? box.x0 >> shift : 0, y0 = box.y0 > 0 ? box.y0 >> shift : 0;
+    int x1 = box.x1 >> shift, y1 = box.y1 >> shift;
+    x1 = x1 >= r->tilesX ? r->tilesX - 1 : x1;
+    y1 = y1 >= r->tilesY ? r->tilesY - 1 : y1;
+    r->refs[w->chunk->firstRef + w->chunk->refCount++] =
+        (vplTriangleRef){source, (uint8_t)x0, (uint8_t)y0, (uint8_t)x1, (uint8_t)y1};
+    for (int y = y0; y <= y1; y++) {
+        for (int x = x0; x <= x1; x++) {
+            w->counts[y * r->tilesX + x]++;
+        }
+    }
+    return true;
+}
+
+static void emitClipped(Writer* w, const vplShaded* s, const uint32_t* index, int primitive, int planes)
+{
+    const vplRaster* r = w->stage->raster;
     vplClipVertex in[3], out[VPL_MAX_CLIPPED];
     for (int i = 0; i < 3; i++) {
-        uint32_t v = index[i];
+        const uint32_t v = index[i];
         in[i] = (vplClipVertex){s->clip.x[v], s->clip.y[v], s->clip.z[v], s->clip.w[v], {0}};
         for (int k = 0; k < s->varyingCount; k++) {
             in[i].varying[k] = s->clip.varying[k][v];
         }
     }
-    int count = vplClipTriangle(a->raster, planes, s->varyingCount, in, out);
-    vplScreenVertex screen[VPL_MAX_CLIPPED];
+    const int count = vplClipTriangle(r, planes, s->varyingCount, in, out);
+    vplScreenVertex* screen = r->extraScreen + w->extras;
     for (int i = 0; i < count; i++) {
         if (!(out[i].w >= 1e-30)) {
-            return 0; // only a point in the eye is left
+            return; // only a point in the eye is left
         }
-        double z = out[i].z < 0 ? 0 : out[i].z > out[i].w ? out[i].w : out[i].z; // rounding dust of the cuts
-        screen[i] = vplProject(a->raster, out[i].x, out[i].y, z, out[i].w);
+        const double z = out[i].z < 0          ? 0
+                         : out[i].z > out[i].w ? out[i].w
+                                               : out[i].z; // rounding dust of the cuts
+        screen[i] = vplProject(r, out[i].x, out[i].y, z, out[i].w);
+        float* to = r->extras + (size_t)(w->extras + i) * (size_t)r->extraStride;
+        to[0] = (float)out[i].x;
+        to[1] = (float)out[i].y;
+        to[2] = (float)out[i].w;
+        memcpy(to + 3, out[i].varying, (size_t)s->varyingCount * sizeof(float));
     }
-    int made = 0;
+    const uint32_t base = (uint32_t)(s->mesh.vertexCount + w->extras);
     for (int i = 1; i + 1 < count; i++) { // a fan
         const vplScreenVertex v[3] = {screen[0], screen[i], screen[i + 1]};
-        uint32_t base = (uint32_t)(s->mesh.vertexCount + *extras);
-        const uint32_t vertex[3] = {base, base + (uint32_t)i, base + (uint32_t)i + 1};
-        made += emit(a, at + made, v, vertex, primitive);
-    }
-    if (a->writing) {
-        for (int i = 0; i < count; i++) {
-            float* to = s->extras + (size_t)(*extras + i) * (size_t)(3 + s->varyingCount);
-            to[0] = (float)out[i].x;
-            to[1] = (float)out[i].y;
-            to[2] = (float)out[i].w;
-            memcpy(to + 3, out[i].varying, (size_t)s->varyingCount * sizeof(float));
+        if (emit(w, v, (uint32_t)VPL_CLIPPED | (uint32_t)w->clipped)) {
+            r->clipped[w->clipped++] =
+                (vplClippedTriangle){{base, base + (uint32_t)i, base + (uint32_t)i + 1}, primitive};
         }
     }
-    *extras += count;
-    return made;
+    w->extras += count;
 }
 
-static void assembleChunk(void* data, int chunkIndex, int worker)
+void vplAssembleChunk(void* data, int chunkIndex, int worker)
 {
     (void)worker;
-    Assembly* a = data;
-    Chunk* chunk = &a->chunks[chunkIndex];
-    const vplShaded* s = &a->raster->shaded[chunk->shaded];
-    int triangles = a->writing ? chunk->triangles : 0, extras = a->writing ? chunk->extras : 0;
-    for (int i = chunk->first; i < chunk->first + chunk->count; i++) {
-        const uint32_t* index = s->mesh.indices + 3 * (size_t)i;
-        int c0 = s->outcodes[index[0]], c1 = s->outcodes[index[1]], c2 = s->outcodes[index[2]];
-        int any = c0 | c1 | c2;
-        if ((any & VPL_OUT_BAD) || (c0 & c1 & c2 & ~VPL_OUT_GUARD)) {
-            continue;
+    const vplTriangleStage* stage = data;
+    const vplRaster* r = stage->raster;
+    vplChunk* chunk = &stage->chunks[chunkIndex];
+    Writer w = {stage, chunk, stage->counts + (size_t)chunkIndex * (size_t)stage->tileCount,
+                chunk->firstClipped, chunk->firstClipped / VPL_MAX_PIECES * VPL_MAX_CLIPPED};
+    const int end = chunk->first + chunk->count;
+    for (int i = chunk->first, mesh = 0, partEnd; i < end;) {
+        partEnd = meshPart(r, i, end, &mesh);
+        vplShaded* s = &r->shaded[mesh];
+        if (i == s->firstTriangle) {
+            s->firstRef = chunk->firstRef + chunk->refCount;
         }
-        int planes = any & (VPL_OUT_NEAR | VPL_OUT_FAR | VPL_OUT_GUARD);
-        if (planes) {
-            triangles += emitClipped(a, s, index, i, planes, triangles, &extras);
-        } else {
-            const vplScreenVertex v[3] = {s->screen[index[0]], s->screen[index[1]], s->screen[index[2]]};
-            triangles += emit(a, triangles, v, index, i);
-        }
-    }
-    if (!a->writing) {
-        chunk->triangles = triangles;
-        chunk->extras = extras;
-    }
-}
-
-static vplResult makeChunks(Assembly* a)
-{
-    vplRaster* r = a->raster;
-    for (int i = 0; i < r->shadedCount; i++) {
-        a->chunkCount += (r->shaded[i].mesh.triangleCount + CHUNK - 1) / CHUNK;
-    }
-    a->chunks = vplAlloc(r->context, (size_t)a->chunkCount, sizeof *a->chunks);
-    if (a->chunks == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    int at = 0;
-    for (int i = 0; i < r->shadedCount; i++) {
-        int total = r->shaded[i].mesh.triangleCount;
-        for (int first = 0; first < total; first += CHUNK) {
-            a->chunks[at++] = (Chunk){i, first, total - first < CHUNK ? total - first : CHUNK, 0, 0};
+        for (; i < partEnd; i++) {
+            const uint32_t* index = s->mesh.indices + 3 * (size_t)(i - s->firstTriangle);
+            const int planes = planesOf(s, index);
+            if (planes > 0) {
+                emitClipped(&w, s, index, i - s->firstTriangle, planes);
+            } else if (planes == 0) {
+                const vplScreenVertex v[3] = {s->screen[index[0]], s->screen[index[1]], s->screen[index[2]]};
+                emit(&w, v, (uint32_t)i);
+            }
         }
     }
-    return VPL_SUCCESS;
-}
-
-// Turns the chunks' counts into places and makes room for what they will write.
-static vplResult placeChunks(Assembly* a)
-{
-    vplRaster* r = a->raster;
-    int64_t triangles = 0;
-    for (int i = 0, chunk = 0; i < r->shadedCount; i++) {
-        vplShaded* s = &r->shaded[i];
-        int64_t extras = 0;
-        s->firstTriangle = (int)triangles;
-        for (; chunk < a->chunkCount && a->chunks[chunk].shaded == i; chunk++) {
-            Chunk* c = &a->chunks[chunk];
-            int64_t madeTriangles = c->triangles, madeExtras = c->extras;
-            c->triangles = (int)triangles;
-            c->extras = (int)extras;
-            triangles += madeTriangles;
-            extras += madeExtras;
-        }
-        if (triangles > INT32_MAX || extras + s->mesh.vertexCount > INT32_MAX) {
-            return vplFail(r->context, VPL_LIMIT, "more than %d triangles on screen", INT32_MAX);
-        }
-        s->triangleCount = (int)triangles - s->firstTriangle;
-        s->extras = vplAlloc(r->context, (size_t)extras * (size_t)(3 + s->varyingCount), sizeof(float));
-        if (s->extras == NULL) {
-            return VPL_OUT_OF_MEMORY;
-        }
-    }
-    r->triangleCount = (int)triangles;
-    r->triangles = vplAlloc(r->context, (size_t)triangles, sizeof *r->triangles);
-    return r->triangles ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-}
-
-vplResult vplAssembleTriangles(vplRaster* raster)
-{
-    Assembly a = {raster, NULL, 0, false};
-    vplResult result = makeChunks(&a);
-    if (result == VPL_SUCCESS) {
-        vplParallelFor(raster->context, a.chunkCount, assembleChunk, &a);
-        result = placeChunks(&a);
-    }
-    if (result == VPL_SUCCESS) {
-        a.writing = true;
-        vplParallelFor(raster->context, a.chunkCount, assembleChunk, &a);
-    }
-    vplFree(raster->context, a.chunks);
-    return result;
 }

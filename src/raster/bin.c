@@ -3,78 +3,142 @@
 // every tile lists its triangles in drawing order whatever the threads did.
 #include "raster/raster.h"
 
-typedef struct Binning {
-    vplRaster* raster;
-    int* counts; // [chunk][tile]; after the prefix sum: the place of the chunk's next entry
-    int tileCount, chunkSize;
-    bool writing;
-} Binning;
-
-static void binChunk(void* data, int chunk, int worker)
+static void binChunk(void* data, int chunkIndex, int worker)
 {
     (void)worker;
-    Binning* b = data;
-    vplRaster* r = b->raster;
-    int* counts = b->counts + (size_t)chunk * (size_t)b->tileCount;
-    int first = chunk * b->chunkSize;
-    int end = r->triangleCount - first < b->chunkSize ? r->triangleCount : first + b->chunkSize;
-    for (int i = first; i < end; i++) {
-        vplPixelBox box = vplBoundTriangle(r->triangles[i].v);
-        const int shift = 6;
-        _Static_assert(VPL_TILE_SIDE == 1 << 6, "the shift is for 64-pixel tiles");
-        int x0 = box.x0 >> shift, x1 = box.x1 >> shift, y0 = box.y0 >> shift, y1 = box.y1 >> shift;
-        x0 = x0 < 0 ? 0 : x0;
-        y0 = y0 < 0 ? 0 : y0;
-        x1 = x1 >= r->tilesX ? r->tilesX - 1 : x1;
-        y1 = y1 >= r->tilesY ? r->tilesY - 1 : y1;
-        for (int y = y0; y <= y1; y++) {
-            for (int x = x0; x <= x1; x++) {
-                int* count = &counts[y * r->tilesX + x];
-                if (b->writing) {
-                    r->bins[*count] = i;
-                }
-                ++*count;
+    const vplTriangleStage* stage = data;
+    const vplRaster* r = stage->raster;
+    const vplChunk* chunk = &stage->chunks[chunkIndex];
+    int* next = stage->counts + (size_t)chunkIndex * (size_t)stage->tileCount;
+    for (int i = chunk->firstRef; i < chunk->firstRef + chunk->refCount; i++) {
+        const vplTriangleRef ref = r->refs[i];
+        for (int y = ref.y0; y <= ref.y1; y++) {
+            for (int x = ref.x0; x <= ref.x1; x++) {
+                r->bins[next[y * r->tilesX + x]++] = i;
             }
         }
     }
 }
 
+static vplResult makeChunks(vplTriangleStage* stage)
+{
+    vplRaster* r = stage->raster;
+    int64_t total = 0;
+    for (int i = 0; i < r->shadedCount; i++) {
+        r->shaded[i].firstTriangle = (int)total;
+        total += r->shaded[i].mesh.triangleCount;
+        if (total > INT32_MAX) {
+            return vplFail(r->context, VPL_LIMIT, "more than %d triangles on screen", INT32_MAX);
+        }
+    }
+    r->trianglesIn = (int)total;
+    stage->chunkSize = 4096;
+    // The table of counts is chunks * tiles: few, large chunks where there are many of both.
+    while (total / stage->chunkSize * stage->tileCount > 1 << 22) {
+        stage->chunkSize *= 2;
+    }
+    stage->chunkCount = (int)((total + stage->chunkSize - 1) / stage->chunkSize);
+    stage->chunks = vplAlloc(r->context, (size_t)stage->chunkCount, sizeof *stage->chunks);
+    stage->counts =
+        vplAllocZero(r->context, (size_t)stage->chunkCount * (size_t)stage->tileCount, sizeof *stage->counts);
+    for (int i = 0; stage->chunks != NULL && i < stage->chunkCount; i++) {
+        const int first = i * stage->chunkSize;
+        const int count =
+            r->trianglesIn - first < stage->chunkSize ? r->trianglesIn - first : stage->chunkSize;
+        stage->chunks[i] = (vplChunk){.first = first, .count = count};
+    }
+    return stage->chunks && stage->counts ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+// Room for what the chunks may make: a triangle that is cut becomes up to seven.
+static vplResult reserveRefs(vplTriangleStage* stage)
+{
+    vplRaster* r = stage->raster;
+    int64_t refs = 0, cuts = 0;
+    for (int i = 0; i < stage->chunkCount; i++) {
+        vplChunk* chunk = &stage->chunks[i];
+        chunk->firstRef = (int)refs;
+        chunk->firstClipped = (int)(cuts * VPL_MAX_PIECES);
+        refs += chunk->count + (int64_t)chunk->cut * (VPL_MAX_PIECES - 1);
+        cuts += chunk->cut;
+        if (refs > INT32_MAX || cuts * VPL_MAX_CLIPPED > INT32_MAX) {
+            return vplFail(r->context, VPL_LIMIT, "more than %d triangles on screen", INT32_MAX);
+        }
+    }
+    r->extraStride = 3;
+    for (int i = 0; i < r->shadedCount; i++) {
+        const int stride = 3 + r->shaded[i].varyingCount;
+        r->extraStride = r->extraStride > stride ? r->extraStride : stride;
+        if (cuts * VPL_MAX_CLIPPED + r->shaded[i].mesh.vertexCount > INT32_MAX) {
+            return vplFail(r->context, VPL_LIMIT, "more than %d vertices on screen", INT32_MAX);
+        }
+    }
+    const size_t extras = (size_t)cuts * VPL_MAX_CLIPPED;
+    r->refs = vplAlloc(r->context, (size_t)refs, sizeof *r->refs);
+    r->clipped = vplAlloc(r->context, (size_t)cuts * VPL_MAX_PIECES, sizeof *r->clipped);
+    r->extraScreen = vplAlloc(r->context, extras, sizeof *r->extraScreen);
+    r->extras = vplAlloc(r->context, extras * (size_t)r->extraStride, sizeof *r->extras);
+    return r->refs && r->clipped && r->extraScreen && r->extras ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+// Turns the chunks' counts into places and makes room for the bins.
+static vplResult reserveBins(vplTriangleStage* stage)
+{
+    vplRaster* r = stage->raster;
+    int64_t total = 0;
+    r->binStart = vplAlloc(r->context, (size_t)stage->tileCount + 1, sizeof *r->binStart);
+    if (r->binStart == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int tile = 0; tile < stage->tileCount && total <= INT32_MAX; tile++) {
+        r->binStart[tile] = (int)total;
+        for (int chunk = 0; chunk < stage->chunkCount; chunk++) {
+            int* count = &stage->counts[(size_t)chunk * (size_t)stage->tileCount + (size_t)tile];
+            const int n = *count;
+            *count = (int)total;
+            total += n;
+        }
+    }
+    if (total > INT32_MAX) {
+        return vplFail(r->context, VPL_LIMIT, "more than %d triangle-tile pairs on screen", INT32_MAX);
+    }
+    r->binStart[stage->tileCount] = (int)total;
+    r->bins = vplAlloc(r->context, (size_t)total, sizeof *r->bins);
+    return r->bins ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
+// Meshes without triangles begin where the next one does.
+static void finishRefs(const vplTriangleStage* stage)
+{
+    vplRaster* r = stage->raster;
+    for (int i = 0; i < stage->chunkCount; i++) {
+        r->stats.trianglesBinned += stage->chunks[i].refCount;
+    }
+    for (int i = r->shadedCount - 1, next = INT32_MAX; i >= 0; i--) {
+        vplShaded* s = &r->shaded[i];
+        s->firstRef = s->mesh.triangleCount > 0 ? s->firstRef : next;
+        next = s->firstRef;
+    }
+}
+
 vplResult vplBinTriangles(vplRaster* raster)
 {
-    Binning b = {raster, NULL, raster->tilesX * raster->tilesY, 4096, false};
-    // The table of counts is chunks * tiles: few, large chunks where there are many of both.
-    while ((int64_t)(raster->triangleCount / b.chunkSize) * b.tileCount > 1 << 22) {
-        b.chunkSize *= 2;
-    }
-    int chunks = (raster->triangleCount + b.chunkSize - 1) / b.chunkSize;
-    b.counts = vplAllocZero(raster->context, (size_t)chunks * (size_t)b.tileCount, sizeof(int));
-    raster->binStart = vplAlloc(raster->context, (size_t)b.tileCount + 1, sizeof(int));
-    vplResult result = b.counts && raster->binStart ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    vplContext* context = raster->context;
+    vplTriangleStage stage = {.raster = raster, .tileCount = raster->tilesX * raster->tilesY};
+    vplResult result = makeChunks(&stage);
     if (result == VPL_SUCCESS) {
-        vplParallelFor(raster->context, chunks, binChunk, &b);
-        int64_t total = 0;
-        for (int tile = 0; tile < b.tileCount && total <= INT32_MAX; tile++) {
-            raster->binStart[tile] = (int)total;
-            for (int chunk = 0; chunk < chunks; chunk++) {
-                int* count = &b.counts[(size_t)chunk * (size_t)b.tileCount + (size_t)tile];
-                int n = *count;
-                *count = (int)total;
-                total += n;
-            }
-        }
-        if (total > INT32_MAX) {
-            result =
-                vplFail(raster->context, VPL_LIMIT, "more than %d triangle-tile pairs on screen", INT32_MAX);
-        } else {
-            raster->binStart[b.tileCount] = (int)total;
-            raster->bins = vplAlloc(raster->context, (size_t)total, sizeof(int));
-            result = raster->bins ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-        }
+        vplParallelFor(context, stage.chunkCount, vplCountCuts, &stage);
+        result = reserveRefs(&stage);
     }
     if (result == VPL_SUCCESS) {
-        b.writing = true;
-        vplParallelFor(raster->context, chunks, binChunk, &b);
+        vplParallelFor(context, stage.chunkCount, vplAssembleChunk, &stage);
+        result = reserveBins(&stage);
     }
-    vplFree(raster->context, b.counts);
+    if (result == VPL_SUCCESS) {
+        vplParallelFor(context, stage.chunkCount, binChunk, &stage);
+        finishRefs(&stage);
+    }
+    vplFree(context, stage.counts);
+    vplFree(context, stage.chunks);
     return result;
 }

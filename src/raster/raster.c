@@ -60,18 +60,16 @@ static void freeGeometry(vplRaster* raster)
         vplFree(context, shaded->storage);
         vplFree(context, shaded->screen);
         vplFree(context, shaded->outcodes);
-        vplFree(context, shaded->extras);
         shaded->storage = NULL;
         shaded->screen = NULL;
         shaded->outcodes = NULL;
-        shaded->extras = NULL;
     }
-    vplFree(context, raster->triangles);
-    vplFree(context, raster->bins);
-    vplFree(context, raster->binStart);
-    raster->triangles = NULL;
-    raster->bins = NULL;
-    raster->binStart = NULL;
+    void** const arrays[] = {(void**)&raster->refs,   (void**)&raster->clipped, (void**)&raster->extraScreen,
+                             (void**)&raster->extras, (void**)&raster->bins,    (void**)&raster->binStart};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        vplFree(context, *arrays[i]);
+        *arrays[i] = NULL;
+    }
 }
 
 void vplRaster_Destroy(vplRaster* raster)
@@ -98,6 +96,12 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplPipeline.varyingCount is %d, must be in [0, %d]",
                        pipeline->varyingCount, VPL_MAX_VARYINGS);
     }
+    const bool wrongSurface =
+        pipeline->surfaceCount < pipeline->varyingCount || pipeline->surfaceCount > VPL_MAX_VARYINGS;
+    if (pipeline->surface != NULL && wrongSurface) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplPipeline.surfaceCount is %d, must be in [%d, %d]",
+                       pipeline->surfaceCount, pipeline->varyingCount, VPL_MAX_VARYINGS);
+    }
     if (mesh->vertexCount < 0 || mesh->triangleCount < 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplMesh has %d vertices and %d triangles, must not be negative", mesh->vertexCount,
@@ -115,7 +119,7 @@ static int findShaded(const vplRaster* raster, const vplMesh* mesh, const vplPip
         int at = (last + 1 + i) % raster->shadedCount;
         const vplShaded* s = &raster->shaded[at];
         if (s->key == mesh && s->vertexFcn == pipeline->vertex && s->uniforms == pipeline->vertexUniforms &&
-            s->varyingCount == pipeline->varyingCount) {
+            s->varyingCount == pipeline->varyingCount && s->surfaceFcn == pipeline->surface) {
             return at;
         }
     }
@@ -135,6 +139,8 @@ static vplResult addShaded(vplRaster* raster, const vplMesh* mesh, const vplPipe
     shaded->vertexFcn = pipeline->vertex;
     shaded->uniforms = pipeline->vertexUniforms;
     shaded->varyingCount = pipeline->varyingCount;
+    shaded->surfaceFcn = pipeline->surface;
+    shaded->surfaceCount = pipeline->surface ? pipeline->surfaceCount : pipeline->varyingCount;
     *indexOut = raster->shadedCount++;
     return VPL_SUCCESS;
 }
@@ -171,7 +177,7 @@ vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeli
         last = raster->pipelineCount++;
         raster->pipelines[last] = *pipeline;
     }
-    result = addCommand(raster, (vplCommand){shaded, last, NULL, NULL});
+    result = addCommand(raster, (vplCommand){.shaded = shaded, .pipeline = last});
     if (result == VPL_SUCCESS) {
         raster->stats.drawCalls++;
     }
@@ -180,35 +186,50 @@ vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeli
 
 vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data)
 {
-    return addCommand(raster, (vplCommand){-1, 0, fcn, data});
+    return addCommand(raster, (vplCommand){.shaded = -1, .tileFcn = fcn, .data = data});
 }
 
-vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut)
+// Vertices, triangles and bins.
+static vplResult prepare(vplRaster* raster)
 {
-    vplResult result = VPL_SUCCESS;
-    double start = vplClockMs();
+    vplResult result = vplFindPasses(raster);
+    const double start = vplClockMs();
     raster->stats.trianglesIn = 0;
+    raster->stats.trianglesBinned = 0;
     raster->stats.fragments = 0;
     for (int i = 0; i < raster->shadedCount && result == VPL_SUCCESS; i++) {
         result = vplShadeVertices(raster, &raster->shaded[i]);
         raster->stats.trianglesIn += raster->shaded[i].mesh.triangleCount;
     }
     if (result == VPL_SUCCESS) {
-        result = vplAssembleTriangles(raster);
-    }
-    if (result == VPL_SUCCESS) {
         result = vplBinTriangles(raster);
     }
-    raster->stats.trianglesBinned = raster->triangleCount;
-    double middle = vplClockMs();
-    if (result == VPL_SUCCESS) {
-        result = vplRunTiles(raster, progress, user);
+    raster->stats.vertexMs = vplClockMs() - start;
+    return result;
+}
+
+vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
+                           vplRasterStats* statsOut)
+{
+    vplResult result = VPL_SUCCESS;
+    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+        result = prepare(rasters[i]);
     }
-    freeGeometry(raster);
-    raster->stats.vertexMs = middle - start;
-    raster->stats.tilesMs = vplClockMs() - middle;
-    if (result == VPL_SUCCESS && statsOut != NULL) {
-        *statsOut = raster->stats;
+    const double start = vplClockMs();
+    if (result == VPL_SUCCESS) {
+        result = vplRunTiles(rasters, count, progress, user);
+    }
+    for (int i = 0; i < count; i++) {
+        freeGeometry(rasters[i]);
+        rasters[i]->stats.tilesMs = (vplClockMs() - start) / count;
+        if (result == VPL_SUCCESS && statsOut != NULL) {
+            statsOut[i] = rasters[i]->stats;
+        }
     }
     return result;
+}
+
+vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut)
+{
+    return vplRaster_RunAll(&raster, 1, progress, user, statsOut);
 }

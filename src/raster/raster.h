@@ -19,15 +19,29 @@ typedef struct vplScreenVertex {
     float z;      // z/w
 } vplScreenVertex;
 
-// Less than a cache line per triangle; edges and planes are set up again in each tile it touches, which costs
-// less than reading them from memory.
+// What is kept of a triangle that may be seen. Corners are looked up again in each tile that it touches: 8 bytes
+// instead of 52 are written, and a million small triangles are limited by memory.
+typedef struct vplTriangleRef {
+    uint32_t source;        // number among all meshes' triangles, or VPL_CLIPPED | index in `clipped`
+    uint8_t x0, y0, x1, y1; // tiles that its pixel box touches
+} vplTriangleRef;
+
+enum { VPL_CLIPPED = INT32_MIN };
+_Static_assert(VPL_MAX_IMAGE_SIZE / VPL_TILE_SIDE <= 256, "tile numbers are bytes");
+
+// A piece of a triangle that was cut.
+typedef struct vplClippedTriangle {
+    uint32_t vertex[3]; // as in vplTriangle
+    int32_t primitive;
+} vplClippedTriangle;
+
+// A triangle ready to be drawn.
 typedef struct vplTriangle {
     vplScreenVertex v[3]; // turned so that the area is > 0 with y down: clockwise as seen
     uint32_t vertex[3];   // where its clip-space position and varyings are
-    int32_t primitive;    // with VPL_CLOCKWISE if it was so before turning
+    int32_t primitive;
+    bool clockwise; // it was so before turning
 } vplTriangle;
-
-enum { VPL_CLOCKWISE = INT32_MIN };
 
 // Pixels whose centres may lie in a triangle: columns x0 to x1, rows y0 to y1; empty if x1 < x0 or y1 < y0. The
 // centre of pixel i lies at 256 i + 128.
@@ -52,13 +66,15 @@ typedef struct vplShaded {
     const vplMesh* key;
     vplMesh mesh;
     vplVertexFcn* vertexFcn;
+    vplFragmentFcn* surfaceFcn;
     const void* uniforms;
-    int varyingCount;
+    int varyingCount, surfaceCount;
     vplVertices clip;        // what the vertex shader wrote, one array each in `storage`
     vplScreenVertex* screen; // one per mesh vertex
     uint8_t* outcodes;       // one per mesh vertex
-    float* extras;           // vertices made by clipping: x, y, w, varyings each; numbered from vertexCount
-    int firstTriangle, triangleCount;
+    uint8_t outcodesTogether;
+    int firstTriangle; // number of its first triangle among all meshes'
+    int firstRef;      // where its part of raster->refs begins
     float* storage;
 } vplShaded;
 
@@ -67,6 +83,12 @@ typedef struct vplCommand {
     int pipeline; // index
     vplTileFcn* tileFcn;
     void* data;
+    // Passes: draws that leave depth and owners alone and meet what is visible (see repeat.c).
+    bool repeats;
+    int epoch;      // passes of one epoch see the same depths and owners
+    int passesEnd;  // of the first pass in a row: behind the last
+    int chainStart; // first pass of this row with the same mesh
+    int chainNext;  // next one, or -1
 } vplCommand;
 
 struct vplRaster {
@@ -80,10 +102,15 @@ struct vplRaster {
     int commandCount, pipelineCount, shadedCount;
     size_t commandCapacity, pipelineCapacity, shadedCapacity;
 
-    vplTriangle* triangles; // all meshes', in order
-    int triangleCount;
-    int* bins;     // triangle indices by tile, ascending within a tile
+    int trianglesIn;      // of all meshes
+    vplTriangleRef* refs; // in drawing order, with gaps between the chunks that made them
+    vplClippedTriangle* clipped;
+    vplScreenVertex* extraScreen; // vertices made by clipping,
+    float* extras;                // and their x, y, w and varyings, extraStride each
+    int extraStride;
+    int* bins;     // indices in refs by tile, ascending within a tile
     int* binStart; // tilesX * tilesY + 1
+    bool keepsOwners, keepsPasses;
     vplRasterStats stats;
 };
 
@@ -117,30 +144,73 @@ int vplClipTriangle(const vplRaster* raster, int planes, int varyingCount, const
 // Projects one clip-space position that needs no clipping.
 vplScreenVertex vplProject(const vplRaster* raster, double x, double y, double z, double w);
 
-// Makes raster->triangles from all shaded meshes.
-vplResult vplAssembleTriangles(vplRaster* raster);
+// A piece of work of the triangle stage: a range of all meshes' triangles.
+typedef struct vplChunk {
+    int first, count;       // triangles
+    int cut;                // of these, how many may have to be clipped
+    int firstRef, refCount; // made
+    int firstClipped;       // its part of raster->clipped; its extras begin at 9 / 7 of that
+} vplChunk;
 
-// Makes raster->bins.
+typedef struct vplTriangleStage {
+    vplRaster* raster;
+    vplChunk* chunks;
+    int chunkCount, chunkSize, tileCount;
+    int* counts; // [chunk][tile]; after the prefix sum: the place of the chunk's next entry
+} vplTriangleStage;
+
+enum { VPL_MAX_PIECES = VPL_MAX_CLIPPED - 2 };
+
+// Makes refs, and what clipping makes, of one chunk; counts them by tile. A task of vplParallelFor.
+void vplAssembleChunk(void* stage, int chunk, int worker);
+
+// Counts a chunk's triangles that may have to be clipped.
+void vplCountCuts(void* stage, int chunk, int worker);
+
+// Makes refs and bins from all shaded meshes.
 vplResult vplBinTriangles(vplRaster* raster);
+
+// Finds passes among the commands (see repeat.c).
+vplResult vplFindPasses(vplRaster* raster);
+
+// A block that passed depth and owner tests, kept to be shaded by pass after pass. Depths, w and varyings
+// follow, 16 floats each.
+typedef struct vplKeptBlock {
+    int32_t x, y, element, primitive, count;
+    _Alignas(64) int32_t covered[VPL_LANES];
+} vplKeptBlock;
 
 // Storage of the tile being drawn by one worker.
 typedef struct vplTileState {
     vplTile tile;
-    int32_t* owner; // index of the triangle that wrote depth last, -1: none
-    int* meshStart; // [shadedCount + 1] into the tile's bin
+    float* depth;    // the tile's
+    float* farthest; // per block: no depth in it is larger
+    int32_t* owner;  // index of the triangle that wrote depth last, -1: none; NULL where nobody asks
+    int* meshStart;  // [shadedCount + 1] into the tile's bin
+    char* kept;      // vplKeptBlocks of `keptStride` bytes, at most one per pixel
+    int* keptStart;  // [shadedCount] first kept block of a mesh,
+    int* keptEnd;    // behind its last,
+    int* keptEpoch;  // and the epoch they were made in, -1: none
+    int keptCount;
+    size_t keptStride;
     int64_t fragments;
-    vplFragments block; // scratch of the kernel
+    int32_t fragmentLanes[VPL_LANES]; // fragments by lane
+    _Alignas(64) vplFragments block;  // scratch of the kernel
 } vplTileState;
 
-vplResult vplRunTiles(vplRaster* raster, vplProgressFcn* progress, void* user);
+// Runs the tiles of several rasters, one after another.
+vplResult vplRunTiles(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user);
 
-// Draws triangles[list[0 .. count)] of one command into one tile.
-typedef void vplDrawTileFcn(vplTileState* state, const vplPipeline* pipeline, const vplShaded* shaded,
-                            const vplTriangle* triangles, const int* list, int count,
-                            const vplFramebuffer* framebuffer);
+// Draws refs list[0 .. count) of one command into one tile; `keep`: keeps the blocks instead of shading them.
+typedef void vplDrawTileFcn(vplTileState* state, const vplRaster* raster, const vplCommand* command,
+                            const int* list, int count, bool keep);
+
+// Shades the kept blocks of a mesh by all passes of a chain.
+typedef void vplRunPassesFcn(vplTileState* state, const vplRaster* raster, int firstCommand);
 
 // Clip-space x, y, w and varyings of vertex `at`, which may be one of the extras.
-static inline void vplFetchVertex(const vplShaded* s, uint32_t at, float position[3], float* varyings)
+static inline void vplFetchVertex(const vplRaster* raster, const vplShaded* s, uint32_t at, float position[3],
+                                  float* varyings)
 {
     const uint32_t own = (uint32_t)s->mesh.vertexCount;
     if (at < own) {
@@ -152,7 +222,7 @@ static inline void vplFetchVertex(const vplShaded* s, uint32_t at, float positio
         }
         return;
     }
-    const float* extra = s->extras + (size_t)(at - own) * (size_t)(3 + s->varyingCount);
+    const float* extra = raster->extras + (size_t)(at - own) * (size_t)raster->extraStride;
     for (int k = 0; k < 3; k++) {
         position[k] = extra[k];
     }

@@ -4,15 +4,20 @@
 #include "raster/raster.h"
 #include "base/isa.h"
 
+#include <math.h>
 #include <string.h>
 
 VPL_KERNEL_TABLE(DRAW_TILE, vplDrawTileFcn, vplDrawTile);
+VPL_KERNEL_TABLE(RUN_PASSES, vplRunPassesFcn, vplRunPasses);
 
 typedef struct Run {
-    vplRaster* raster;
+    vplRaster* const* rasters;
+    int rasterCount;
+    int* firstTile;         // [rasterCount + 1]
     vplTileState* states;   // one per worker
     int64_t* tileFragments; // one per tile
     char* memory;           // of all states
+    int meshes;             // most of any raster
 } Run;
 
 static void fill(float* storage, float value)
@@ -58,7 +63,7 @@ static void findMeshes(const vplRaster* r, const int* bin, int count, int* meshS
 {
     int at = 0;
     for (int i = 0; i < r->shadedCount; i++) {
-        while (at < count && bin[at] < r->shaded[i].firstTriangle) {
+        while (at < count && bin[at] < r->shaded[i].firstRef) {
             at++;
         }
         meshStart[i] = at;
@@ -66,93 +71,203 @@ static void findMeshes(const vplRaster* r, const int* bin, int count, int* meshS
     meshStart[r->shadedCount] = count;
 }
 
-static void runTile(void* data, int index, int worker)
+// Draws that shade what is visible, mesh by mesh.
+static void runPasses(const vplRaster* r, vplTileState* state, int first, const int* bin)
+{
+    for (int i = first; i < r->commands[first].passesEnd; i++) {
+        const vplCommand* c = &r->commands[i];
+        const int mesh = c->shaded, start = state->meshStart[mesh], end = state->meshStart[mesh + 1];
+        if (start >= end || c->chainStart != i) {
+            continue;
+        }
+        if (state->keptEpoch[mesh] != c->epoch) {
+            state->keptEpoch[mesh] = c->epoch;
+            state->keptStart[mesh] = state->keptCount;
+            DRAW_TILE[r->context->isa](state, r, c, bin + start, end - start, true);
+            state->keptEnd[mesh] = state->keptCount;
+        }
+        RUN_PASSES[r->context->isa](state, r, i);
+    }
+}
+
+static void runCommands(const vplRaster* r, vplTileState* state, const int* bin, int worker)
+{
+    int epoch = -1;
+    for (int i = 0; i < r->commandCount;) {
+        const vplCommand* c = &r->commands[i];
+        if (c->repeats) {
+            state->keptCount = c->epoch == epoch ? state->keptCount : 0;
+            epoch = c->epoch;
+            runPasses(r, state, i, bin);
+            i = c->passesEnd;
+            continue;
+        }
+        i++;
+        if (c->shaded < 0) {
+            c->tileFcn(c->data, &state->tile, worker);
+            continue;
+        }
+        const int start = state->meshStart[c->shaded], end = state->meshStart[c->shaded + 1];
+        if (start < end) {
+            DRAW_TILE[r->context->isa](state, r, c, bin + start, end - start, false);
+        }
+    }
+}
+
+static void loadPlanes(const vplRaster* r, vplTileState* state)
+{
+    const vplFramebuffer* f = &r->framebuffer;
+    const vplTile* tile = &state->tile;
+    loadPlane(r, tile, &f->depth, state->depth);
+    for (int i = 0; i < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; i++) {
+        state->farthest[i] = f->depth.load ? INFINITY : f->depth.clear;
+    }
+    for (int k = 0; k < f->planeCount; k++) {
+        if (!f->planes[k].scratch) {
+            loadPlane(r, tile, &f->planes[k], tile->planes[k]);
+        }
+    }
+    if (r->keepsOwners) {
+        memset(state->owner, 0xff, VPL_TILE_PIXELS * sizeof(int32_t));
+    }
+    memset(tile->scratch, 0, f->scratchBytes);
+}
+
+static void runTile(void* data, int number, int worker)
 {
     Run* run = data;
-    vplRaster* r = run->raster;
+    int which = 0;
+    while (number >= run->firstTile[which + 1]) {
+        which++;
+    }
+    const vplRaster* r = run->rasters[which];
+    const int index = number - run->firstTile[which];
     const vplFramebuffer* f = &r->framebuffer;
-    vplTileState* state = &run->states[worker];
+    vplTileState own = run->states[worker], *state = &own;
     vplTile* tile = &state->tile;
     tile->x = index % r->tilesX * VPL_TILE_SIDE;
     tile->y = index / r->tilesX * VPL_TILE_SIDE;
     tile->width = f->width - tile->x < VPL_TILE_SIDE ? f->width - tile->x : VPL_TILE_SIDE;
     tile->height = f->height - tile->y < VPL_TILE_SIDE ? f->height - tile->y : VPL_TILE_SIDE;
-    state->fragments = 0;
-    loadPlane(r, tile, &f->depth, tile->depth);
-    for (int k = 0; k < f->planeCount; k++) {
-        loadPlane(r, tile, &f->planes[k], tile->planes[k]);
-    }
-    memset(state->owner, 0xff, VPL_TILE_PIXELS * sizeof(int32_t));
-    memset(tile->scratch, 0, f->scratchBytes);
+    state->owner = r->keepsOwners ? state->owner : NULL;
+    loadPlanes(r, state);
     const int* bin = r->bins + r->binStart[index];
     findMeshes(r, bin, r->binStart[index + 1] - r->binStart[index], state->meshStart);
-    vplDrawTileFcn* draw = DRAW_TILE[r->context->isa];
-    for (int i = 0; i < r->commandCount; i++) {
-        const vplCommand* c = &r->commands[i];
-        if (c->shaded < 0) {
-            c->tileFcn(c->data, tile, worker);
-            continue;
-        }
-        int first = state->meshStart[c->shaded], end = state->meshStart[c->shaded + 1];
-        if (first < end) {
-            draw(state, &r->pipelines[c->pipeline], &r->shaded[c->shaded], r->triangles, bin + first,
-                 end - first, f);
-        }
-    }
-    storePlane(r, tile, &f->depth, tile->depth);
+    memset(state->keptEpoch, 0xff, (size_t)r->shadedCount * sizeof(int));
+    runCommands(r, state, bin, worker);
+    storePlane(r, tile, &f->depth, state->depth);
     for (int k = 0; k < f->planeCount; k++) {
         storePlane(r, tile, &f->planes[k], tile->planes[k]);
     }
-    run->tileFragments[index] = state->fragments;
+    for (int l = 0; l < VPL_LANES; l++) {
+        state->fragments += state->fragmentLanes[l];
+    }
+    run->tileFragments[number] = state->fragments;
 }
+
+// Sizes of a worker's memory: the most that any raster needs.
+typedef struct Needs {
+    size_t planes, scratch, meshes, kept, keptStride;
+    bool owners;
+} Needs;
 
 static size_t roundUp(size_t bytes)
 {
     return (bytes + 63) & ~(size_t)63;
 }
 
+static size_t mostOf(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+static Needs findNeeds(const Run* run)
+{
+    Needs n = {0};
+    for (int i = 0; i < run->rasterCount; i++) {
+        const vplRaster* r = run->rasters[i];
+        n.planes = mostOf(n.planes, (size_t)r->framebuffer.planeCount);
+        n.scratch = mostOf(n.scratch, roundUp(r->framebuffer.scratchBytes));
+        n.meshes = mostOf(n.meshes, (size_t)r->shadedCount);
+        n.owners |= r->keepsOwners;
+        for (int k = 0; r->keepsPasses && k < r->shadedCount; k++) {
+            const size_t floats = (2 + (size_t)r->shaded[k].surfaceCount) * VPL_LANES;
+            n.keptStride = mostOf(n.keptStride, sizeof(vplKeptBlock) + floats * sizeof(float));
+        }
+    }
+    n.kept = n.keptStride * VPL_TILE_PIXELS; // each pixel has one owner
+    return n;
+}
+
+static char* take(char** at, size_t bytes)
+{
+    char* taken = *at;
+    *at += roundUp(bytes);
+    return taken;
+}
+
+// Lays a worker's state out from `at` on and returns its end. Vectors must not straddle cache lines.
+static char* layOut(const Needs* n, vplTileState* state, char* at)
+{
+    const size_t plane = VPL_TILE_PIXELS * sizeof(float), perMesh = (n->meshes + 1) * sizeof(int);
+    state->tile.depth = state->depth = (float*)take(&at, plane);
+    for (size_t k = 0; k < n->planes; k++) {
+        state->tile.planes[k] = (float*)take(&at, plane);
+    }
+    state->owner = (int32_t*)take(&at, n->owners ? plane : 0);
+    state->farthest = (float*)take(&at, VPL_TILE_BLOCKS * VPL_TILE_BLOCKS * sizeof(float));
+    state->tile.scratch = take(&at, n->scratch);
+    state->meshStart = (int*)take(&at, perMesh);
+    state->keptStart = (int*)take(&at, perMesh);
+    state->keptEnd = (int*)take(&at, perMesh);
+    state->keptEpoch = (int*)take(&at, perMesh);
+    state->keptStride = n->keptStride;
+    state->kept = take(&at, n->kept);
+    return at;
+}
+
 static vplResult makeStates(Run* run)
 {
-    vplRaster* r = run->raster;
-    size_t plane = VPL_TILE_PIXELS * sizeof(float);
-    size_t scratch = roundUp(r->framebuffer.scratchBytes);
-    size_t meshes = roundUp(((size_t)r->shadedCount + 1) * sizeof(int));
-    size_t perWorker = plane * (2 + (size_t)r->framebuffer.planeCount) + scratch + meshes;
-    size_t workers = (size_t)r->context->workerCount;
-    run->states = vplAllocZero(r->context, workers, sizeof *run->states);
-    run->tileFragments =
-        vplAllocZero(r->context, (size_t)(r->tilesX * r->tilesY), sizeof *run->tileFragments);
-    run->memory = vplAlloc(r->context, workers, perWorker);
-    if (!run->states || !run->tileFragments || !run->memory) {
+    vplContext* context = run->rasters[0]->context;
+    const size_t workers = (size_t)context->workerCount;
+    const Needs needs = findNeeds(run);
+    vplTileState sample;
+    const size_t perWorker = (size_t)(layOut(&needs, &sample, NULL) - (char*)NULL);
+    int64_t tiles = 0;
+    run->firstTile = vplAlloc(context, (size_t)run->rasterCount + 1, sizeof *run->firstTile);
+    for (int i = 0; run->firstTile != NULL && i <= run->rasterCount; i++) {
+        run->firstTile[i] = (int)tiles;
+        tiles += i < run->rasterCount ? run->rasters[i]->tilesX * run->rasters[i]->tilesY : 0;
+    }
+    run->states = vplAllocZero(context, workers, sizeof *run->states);
+    run->tileFragments = vplAllocZero(context, (size_t)tiles, sizeof *run->tileFragments);
+    run->memory = vplAlloc(context, workers * perWorker + 64, 1);
+    if (!run->firstTile || !run->states || !run->tileFragments || !run->memory) {
         return VPL_OUT_OF_MEMORY;
     }
+    char* at = (char*)roundUp((uintptr_t)run->memory);
     for (size_t i = 0; i < workers; i++) {
-        char* at = run->memory + i * perWorker;
-        vplTileState* state = &run->states[i];
-        state->tile.depth = (float*)at;
-        state->owner = (int32_t*)(at += plane);
-        for (int k = 0; k < r->framebuffer.planeCount; k++) {
-            state->tile.planes[k] = (float*)(at += plane);
-        }
-        state->tile.scratch = at += plane;
-        state->meshStart = (int*)(at + scratch);
+        at = layOut(&needs, &run->states[i], at);
     }
     return VPL_SUCCESS;
 }
 
-vplResult vplRunTiles(vplRaster* raster, vplProgressFcn* progress, void* user)
+vplResult vplRunTiles(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user)
 {
-    Run run = {raster, NULL, NULL, NULL};
-    int tileCount = raster->tilesX * raster->tilesY;
+    Run run = {.rasters = rasters, .rasterCount = count};
+    vplContext* context = rasters[0]->context;
     vplResult result = makeStates(&run);
     if (result == VPL_SUCCESS) {
-        result = vplParallelForProgress(raster->context, tileCount, runTile, &run, progress, user, 0, 1);
+        result = vplParallelForProgress(context, run.firstTile[count], runTile, &run, progress, user, 0, 1);
     }
-    for (int i = 0; i < tileCount && result == VPL_SUCCESS; i++) {
-        raster->stats.fragments += run.tileFragments[i];
+    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+        for (int tile = run.firstTile[i]; tile < run.firstTile[i + 1]; tile++) {
+            rasters[i]->stats.fragments += run.tileFragments[tile];
+        }
     }
-    vplFree(raster->context, run.memory);
-    vplFree(raster->context, run.tileFragments);
-    vplFree(raster->context, run.states);
+    vplFree(context, run.memory);
+    vplFree(context, run.tileFragments);
+    vplFree(context, run.states);
+    vplFree(context, run.firstTile);
     return result;
 }

@@ -1,59 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Draws triangles into one tile, block by block. Compiled once per instruction set; all give the same bits.
-// Based on: Juan Pineda, A Parallel Algorithm for Polygon Rasterization, SIGGRAPH 1988: edge functions. Ours
-// are exact integers, so coverage cannot depend on where a block or a tile starts.
-#include "raster/raster.h"
+// Draws triangles into one tile: 4 x 4 squares of 4 x 4 blocks of 4 x 4 pixels. Squares and blocks that a
+// triangle does not touch are left out, in those it fills no pixel is asked. Compiled once per instruction set;
+// all give the same bits.
+// Based on: Michael Abrash, Rasterization on Larrabee, Game Developers Conference 2009: three levels of 4 x 4.
+// Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility, SIGGRAPH 1993: a block knows the
+// farthest depth in it, and what lies behind that is not looked at.
 #include "base/isa.h"
+#include "raster/setup.h"
 
+#include <math.h>
 #include <string.h>
 
-// A triangle prepared for a tile. Edge i lies opposite corner i; its function is the area at that corner.
-typedef struct Setup {
-    int64_t e[3];                       // at the centre of the tile's first pixel, without the top-left bias
-    int32_t a[3], b[3];                 // growth per sub-pixel in x and y
-    int32_t bias[3];                    // -1 where a centre on the edge belongs to the neighbour
-    int32_t laneStep[3][VPL_LANES];     // growth from lane 0 to each lane in whole pixels (e >> 8)
-    double laneE[3][VPL_LANES];         // the same, exact
-    double z, zx, zy, laneZ[VPL_LANES]; // depth at the tile's first pixel centre, and its growth per pixel
-} Setup;
+enum { SQUARE_SIDE = 4 * VPL_BLOCK_SIDE };
 
-// Perspective-correct interpolation. Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D
-// Homogeneous Coordinates, Graphics Hardware 1997: with corners (X, Y, w) in homogeneous pixels, share i of
-// the point seen at pixel p is proportional to (corner j x corner k) . (p, 1). No corner is divided by its w,
-// and none is snapped: snapping decides coverage only, and moves no surface.
-typedef struct Shares {
-    double x[3], y[3], c[3];   // the three planes over pixel indices; their sum is 1/w
-    double lane[3][VPL_LANES]; // growth from lane 0
-    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS],
-        d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
-} Shares;
+typedef struct Draw {
+    vplTileState* state;
+    const vplRaster* raster;
+    const vplPipeline* pipeline;
+    const vplShaded* shaded;
+    const vplTriangle* triangle;
+    Shares* shares;              // of the triangle, once they are needed
+    int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e >> 8)
+    int owner;
+    bool hasShares, keep, depthOnly, rejects, tightens;
+} Draw;
 
-static void prepare(const vplTriangle* t, const vplTile* tile, Setup* s)
-{
-    const int64_t px = (int64_t)tile->x * 256 + 128, py = (int64_t)tile->y * 256 + 128;
-    for (int i = 0; i < 3; i++) {
-        const vplScreenVertex* p = &t->v[(i + 1) % 3];
-        const vplScreenVertex* q = &t->v[(i + 2) % 3];
-        int32_t dx = q->x - p->x, dy = q->y - p->y;
-        s->a[i] = -dy;
-        s->b[i] = dx;
-        s->e[i] = (int64_t)dx * (py - p->y) - (int64_t)dy * (px - p->x);
-        s->bias[i] = dy < 0 || (dy == 0 && dx > 0) ? 0 : -1; // left and top edges own their centres
-        for (int l = 0; l < VPL_LANES; l++) {
-            s->laneStep[i][l] = s->a[i] * (l & 3) + s->b[i] * (l >> 2);
-            s->laneE[i][l] = 256.0 * s->laneStep[i][l];
-        }
-    }
-    // Sum of the three edge functions anywhere is the doubled area.
-    double inverse = 1 / (double)(s->e[0] + s->e[1] + s->e[2]);
-    double z1 = (double)t->v[1].z - t->v[0].z, z2 = (double)t->v[2].z - t->v[0].z;
-    s->zx = 256 * inverse * (z1 * s->a[1] + z2 * s->a[2]);
-    s->zy = 256 * inverse * (z1 * s->b[1] + z2 * s->b[2]);
-    s->z = t->v[0].z + inverse * (z1 * (double)s->e[1] + z2 * (double)s->e[2]);
-    for (int l = 0; l < VPL_LANES; l++) {
-        s->laneZ[l] = s->zx * (l & 3) + s->zy * (l >> 2);
-    }
-}
+// ---- coverage
 
 static inline int32_t clampEdge(int64_t e)
 {
@@ -61,21 +33,21 @@ static inline int32_t clampEdge(int64_t e)
     return e > 1 << 30 ? 1 << 30 : e < -(1 << 30) ? -(1 << 30) : (int32_t)e;
 }
 
-// Lanes inside the triangle and the picture; 0 if there are none.
-static int cover(const Setup* s, const int64_t e[3], const vplTile* tile, int x, int y,
-                 int32_t covered[VPL_LANES])
+// Lanes of the block at (x, y) that are inside the triangle and the picture; 0 if there are none.
+static inline int32_t cover(const Draw* d, const Setup* s, int x, int y, int32_t covered[restrict VPL_LANES])
 {
     int32_t edge[3];
     for (int i = 0; i < 3; i++) {
-        edge[i] = clampEdge((e[i] + s->bias[i]) >> 8);
+        edge[i] = clampEdge((s->e[i] + 256 * ((int64_t)s->a[i] * x + (int64_t)s->b[i] * y)) >> 8);
     }
     int32_t any = 0;
     for (int l = 0; l < VPL_LANES; l++) {
-        int32_t outside =
-            (edge[0] + s->laneStep[0][l]) | (edge[1] + s->laneStep[1][l]) | (edge[2] + s->laneStep[2][l]);
+        const int32_t outside =
+            (edge[0] + d->steps[0][l]) | (edge[1] + d->steps[1][l]) | (edge[2] + d->steps[2][l]);
         covered[l] = ~(outside >> 31);
         any |= covered[l];
     }
+    const vplTile* tile = &d->state->tile;
     if (any && (x + VPL_BLOCK_SIDE > tile->width || y + VPL_BLOCK_SIDE > tile->height)) {
         any = 0;
         for (int l = 0; l < VPL_LANES; l++) {
@@ -86,8 +58,52 @@ static int cover(const Setup* s, const int64_t e[3], const vplTile* tile, int x,
     return any;
 }
 
-static int compareDepth(vplDepthCompare compare, const float* restrict old, const float* restrict depth,
-                        int32_t* restrict covered)
+// 4 x 4 cells, one bit each.
+typedef struct Cells {
+    uint32_t touched, filled;
+} Cells;
+
+static inline double least3(double a, double b, double c)
+{
+    const double ab = a < b ? a : b;
+    return ab < c ? ab : c;
+}
+
+// Which cells of `side` pixels from (x, y) on a triangle touches, and which it fills. Doubles hold these integers
+// exactly, and unlike 64-bit integers they have a minimum in every instruction set.
+static inline Cells classify(const Setup* s, int x, int y, int side)
+{
+    double e[3], right[3], down[3], most[3], least[3];
+    for (int i = 0; i < 3; i++) {
+        const double a = 256.0 * s->a[i], b = 256.0 * s->b[i];
+        e[i] = (double)s->e[i] + (a * x + b * y);
+        right[i] = a * side;
+        down[i] = b * side;
+        most[i] = (side - 1) * ((a > 0 ? a : 0) + (b > 0 ? b : 0)); // from a cell's first centre
+        least[i] = (side - 1) * ((a < 0 ? a : 0) + (b < 0 ? b : 0));
+    }
+    float highest[VPL_LANES], lowest[VPL_LANES]; // only the sign is of interest
+    for (int l = 0; l < VPL_LANES; l++) {
+        const int column = l & 3, row = l >> 2;
+        const double u = e[0] + (right[0] * column + down[0] * row);
+        const double v = e[1] + (right[1] * column + down[1] * row);
+        const double w = e[2] + (right[2] * column + down[2] * row);
+        highest[l] = (float)least3(u + most[0], v + most[1], w + most[2]);
+        lowest[l] = (float)least3(u + least[0], v + least[1], w + least[2]);
+    }
+    Cells cells = {0, 0};
+    for (int l = 0; l < VPL_LANES; l++) {
+        cells.touched |= (uint32_t)(highest[l] >= 0) << l;
+        cells.filled |= (uint32_t)(lowest[l] >= 0) << l;
+    }
+    return cells;
+}
+
+// ---- blocks
+
+// Lanes that pass the depth test stay covered; 0 if there are none.
+static inline int32_t compareDepth(vplDepthCompare compare, const float* restrict old,
+                                   const float* restrict depth, int32_t* restrict covered)
 {
     int32_t any = 0;
     switch (compare) {
@@ -115,88 +131,9 @@ static int compareDepth(vplDepthCompare compare, const float* restrict old, cons
     return 1;
 }
 
-static void crossPlanes(const double p[3][3], Shares* s)
+static inline void blendPlanes(vplTileState* state, const vplPipeline* p, int at, int planeCount)
 {
-    for (int i = 0; i < 3; i++) {
-        const double *u = p[(i + 1) % 3], *v = p[(i + 2) % 3];
-        s->x[i] = u[1] * v[2] - u[2] * v[1];
-        s->y[i] = u[2] * v[0] - u[0] * v[2];
-        s->c[i] = u[0] * v[1] - u[1] * v[0];
-    }
-}
-
-static void prepareShares(const vplTriangle* t, const vplShaded* shaded, const vplFramebuffer* f, Shares* s)
-{
-    double p[3][3];
-    float varyings[3][VPL_MAX_VARYINGS];
-    for (int i = 0; i < 3; i++) {
-        float clip[3];
-        vplFetchVertex(shaded, t->vertex[i], clip, varyings[i]);
-        p[i][0] = 0.5 * f->width * ((double)clip[2] + clip[0]);
-        p[i][1] = 0.5 * f->height * ((double)clip[2] - clip[1]);
-        p[i][2] = clip[2];
-    }
-    crossPlanes(p, s);
-    double determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
-    if (!(determinant > 0)) {
-        // Only snapping gave it an area: then the snapped corners are the triangle.
-        for (int i = 0; i < 3; i++) {
-            p[i][0] = t->v[i].x / 256.0 * p[i][2];
-            p[i][1] = t->v[i].y / 256.0 * p[i][2];
-        }
-        crossPlanes(p, s);
-        determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
-    }
-    // Scaled so that floats hold the planes whatever the unit of w.
-    double scale = 1 / determinant;
-    for (int i = 0; i < 3; i++) {
-        s->x[i] *= scale;
-        s->y[i] *= scale;
-        s->c[i] = s->c[i] * scale + 0.5 * (s->x[i] + s->y[i]); // pixel centres
-        for (int l = 0; l < VPL_LANES; l++) {
-            s->lane[i][l] = s->x[i] * (l & 3) + s->y[i] * (l >> 2);
-        }
-    }
-    for (int k = 0; k < shaded->varyingCount; k++) {
-        s->v0[k] = varyings[0][k];
-        s->d1[k] = varyings[1][k] - varyings[0][k];
-        s->d2[k] = varyings[2][k] - varyings[0][k];
-    }
-}
-
-// Shares are clamped at 0: that keeps points of the outline within the triangle, and lanes that are not covered
-// finite.
-static void interpolate(const Shares* s, int varyingCount, int x, int y, vplFragments* f)
-{
-    double at[3];
-    for (int i = 0; i < 3; i++) {
-        at[i] = s->x[i] * x + (s->y[i] * y + s->c[i]);
-    }
-    float b1[VPL_LANES], b2[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        float s0 = (float)(at[0] + s->lane[0][l]);
-        float s1 = (float)(at[1] + s->lane[1][l]);
-        float s2 = (float)(at[2] + s->lane[2][l]);
-        s0 = s0 > 0 ? s0 : 0;
-        s1 = s1 > 0 ? s1 : 0;
-        s2 = s2 > 0 ? s2 : 0;
-        float w = 1 / (s0 + s1 + s2);
-        f->w[l] = w;
-        b1[l] = s1 * w;
-        b2[l] = s2 * w;
-    }
-    for (int k = 0; k < varyingCount; k++) {
-        // From corner 0, so that what is equal at all corners stays equal in every bit.
-        const float v0 = s->v0[k], d1 = s->d1[k], d2 = s->d2[k];
-        for (int l = 0; l < VPL_LANES; l++) {
-            f->varying[k][l] = v0 + (b1[l] * d1 + b2[l] * d2);
-        }
-    }
-}
-
-static void blendPlanes(vplTileState* state, const vplPipeline* p, int at, int planeCount)
-{
-    vplFragments* f = &state->block;
+    const vplFragments* f = &state->block;
     for (int k = 0; k < planeCount; k++) {
         if ((p->planeMask >> k & 1) == 0) {
             continue;
@@ -205,7 +142,7 @@ static void blendPlanes(vplTileState* state, const vplPipeline* p, int at, int p
         const float* restrict from = f->plane[k];
         if (p->blend == VPL_BLEND_ADD) {
             for (int l = 0; l < VPL_LANES; l++) {
-                float sum = to[l] + from[l];
+                const float sum = to[l] + from[l];
                 to[l] = f->covered[l] ? sum : to[l];
             }
         } else {
@@ -216,57 +153,88 @@ static void blendPlanes(vplTileState* state, const vplPipeline* p, int at, int p
     }
 }
 
-typedef struct Draw {
-    vplTileState* state;
-    const vplPipeline* pipeline;
-    const vplShaded* shaded;
-    const vplTriangle* triangle;
-    const vplFramebuffer* framebuffer;
-    Shares* shares; // of the triangle, once they are needed
-    int owner, planeCount;
-    bool hasShares;
-} Draw;
+static inline void runFragmentShader(vplTileState* state, const vplPipeline* p, int planeCount)
+{
+    vplFragments* f = &state->block;
+    for (int k = 0; p->readsPlanes && k < planeCount; k++) {
+        memcpy(f->plane[k], state->tile.planes[k] + f->element, sizeof f->plane[k]);
+    }
+    p->fragment(p->fragmentUniforms, f);
+}
 
-static void shade(Draw* d, int at)
+// Interpolates, and runs the surface shader.
+static void makeSurface(Draw* d)
 {
     vplFragments* f = &d->state->block;
     if (!d->hasShares) {
-        prepareShares(d->triangle, d->shaded, d->framebuffer, d->shares);
+        setUpShares(d->raster, d->triangle, d->shaded, d->shares);
         d->hasShares = true;
     }
     interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
-    f->primitive = d->triangle->primitive & ~VPL_CLOCKWISE;
-    f->scratch = d->state->tile.scratch;
-    f->element = at;
-    for (int k = 0; d->pipeline->readsPlanes && k < d->planeCount; k++) {
-        memcpy(f->plane[k], d->state->tile.planes[k] + at, sizeof f->plane[k]);
+    if (d->pipeline->surface != NULL) {
+        d->pipeline->surface(d->pipeline->vertexUniforms, f);
     }
-    d->pipeline->fragment(d->pipeline->fragmentUniforms, f);
 }
 
-static void drawBlock(Draw* d, const Setup* s, const int64_t e[3], int x, int y)
+static int keptVaryings(const vplTileState* state)
+{
+    return (int)((state->keptStride - sizeof(vplKeptBlock)) / sizeof(float)) / VPL_LANES - 2;
+}
+
+static void keepBlock(vplTileState* state)
+{
+    const vplFragments* f = &state->block;
+    vplKeptBlock* kept = (vplKeptBlock*)(state->kept + (size_t)state->keptCount++ * state->keptStride);
+    float* to = (float*)(kept + 1);
+    kept->x = f->x;
+    kept->y = f->y;
+    kept->element = f->element;
+    kept->primitive = f->primitive;
+    kept->count = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        kept->covered[l] = f->covered[l];
+        kept->count -= f->covered[l];
+    }
+    memcpy(to, f->depth, sizeof f->depth);
+    memcpy(to + VPL_LANES, f->w, sizeof f->w);
+    memcpy(to + 2 * VPL_LANES, f->varying, (size_t)keptVaryings(state) * sizeof f->varying[0]);
+}
+
+static inline float clampDepth(double z)
+{
+    float v = (float)z;
+    v = v > 0 ? v : 0;
+    return v < 1 ? v : 1;
+}
+
+// Depth and nothing else.
+static inline void drawDepth(Draw* d, const Setup* s, double z, int at, const int32_t covered[VPL_LANES])
+{
+    vplTileState* state = d->state;
+    float* restrict depth = state->depth + at;
+    int32_t* restrict counts = state->fragmentLanes;
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float v = clampDepth(z + s->laneZ[l]);
+        const int32_t passed = covered[l] & (v < depth[l] ? -1 : 0);
+        depth[l] = passed ? v : depth[l];
+        counts[l] -= passed;
+    }
+}
+
+// Depth, owners and planes, as the pipeline says. f->covered and f->depth are set.
+static inline void drawFragments(Draw* d)
 {
     vplTileState* state = d->state;
     const vplPipeline* p = d->pipeline;
     vplFragments* f = &state->block;
-    if (!cover(s, e, &state->tile, x, y, f->covered)) {
-        return;
-    }
-    const int at = ((y >> 2) * VPL_TILE_BLOCKS + (x >> 2)) * VPL_LANES;
-    float* restrict depth = state->tile.depth + at;
-    int32_t* restrict owner = state->owner + at;
-    const double z = s->z + (s->zx * x + s->zy * y);
-    for (int l = 0; l < VPL_LANES; l++) {
-        float v = (float)(z + s->laneZ[l]);
-        v = v > 0 ? v : 0;
-        f->depth[l] = v < 1 ? v : 1;
-    }
-    f->x = state->tile.x + x;
-    f->y = state->tile.y + y;
+    const int at = f->element;
+    float* restrict depth = state->depth + at;
     if (p->writesDepth) {
-        shade(d, at);
+        makeSurface(d);
+        runFragmentShader(state, p, d->raster->framebuffer.planeCount);
     }
     if (p->ownerTest) {
+        const int32_t* restrict owner = state->owner + at;
         for (int l = 0; l < VPL_LANES; l++) {
             f->covered[l] &= owner[l] == d->owner ? -1 : 0;
         }
@@ -274,78 +242,200 @@ static void drawBlock(Draw* d, const Setup* s, const int64_t e[3], int x, int y)
     if (!compareDepth(p->depthCompare, depth, f->depth, f->covered)) {
         return;
     }
-    int count = 0;
-    for (int l = 0; l < VPL_LANES; l++) {
-        count -= f->covered[l];
+    if (d->keep) {
+        makeSurface(d);
+        keepBlock(state);
+        return;
     }
-    state->fragments += count;
+    for (int l = 0; l < VPL_LANES; l++) {
+        state->fragmentLanes[l] -= f->covered[l];
+    }
     if (p->depthWrite) {
         for (int l = 0; l < VPL_LANES; l++) {
             depth[l] = f->covered[l] ? f->depth[l] : depth[l];
+        }
+        for (int l = 0; state->owner != NULL && l < VPL_LANES; l++) {
+            int32_t* restrict owner = state->owner + at;
             owner[l] = f->covered[l] ? d->owner : owner[l];
         }
     }
-    if (p->fragment != NULL && !p->writesDepth) {
-        shade(d, at);
-    }
     if (p->fragment != NULL) {
-        blendPlanes(state, p, at, d->planeCount);
+        if (!p->writesDepth) {
+            makeSurface(d);
+            runFragmentShader(state, p, d->raster->framebuffer.planeCount);
+        }
+        blendPlanes(state, p, at, d->raster->framebuffer.planeCount);
     }
 }
 
-static int minOf(int a, int b)
+// `filled`: all lanes are inside the triangle and the picture.
+static inline void drawBlock(Draw* d, const Setup* s, int x, int y, bool filled)
+{
+    vplTileState* state = d->state;
+    vplFragments* f = &state->block;
+    const int block = (y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
+    const double z = s->z + (s->zx * x + s->zy * y);
+    if (d->rejects && clampDepth(z + s->leastZ) > state->farthest[block]) {
+        return;
+    }
+    for (int l = 0; filled && l < VPL_LANES; l++) {
+        f->covered[l] = -1;
+    }
+    if (!filled && !cover(d, s, x, y, f->covered)) {
+        return;
+    }
+    if (d->tightens && filled) { // no lane keeps a depth beyond the triangle's
+        const float most = clampDepth(z + s->mostZ);
+        state->farthest[block] = most < state->farthest[block] ? most : state->farthest[block];
+    }
+    if (d->depthOnly) {
+        drawDepth(d, s, z, block * VPL_LANES, f->covered);
+        return;
+    }
+    f->x = state->tile.x + x;
+    f->y = state->tile.y + y;
+    f->element = block * VPL_LANES;
+    for (int l = 0; !d->pipeline->writesDepth && l < VPL_LANES; l++) {
+        f->depth[l] = clampDepth(z + s->laneZ[l]);
+    }
+    drawFragments(d);
+}
+
+// ---- triangles
+
+static inline int minOf(int a, int b)
 {
     return a < b ? a : b;
 }
 
-static int maxOf(int a, int b)
+static inline int maxOf(int a, int b)
 {
     return a > b ? a : b;
+}
+
+// The blocks of a square whose bits are set in `within`.
+static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, bool filled)
+{
+    Cells cells = {0xffff, 0xffff};
+    if (!filled) {
+        cells = classify(s, x, y, VPL_BLOCK_SIDE);
+    }
+    const vplTile* tile = &d->state->tile;
+    for (uint32_t blocks = cells.touched & within; blocks != 0; blocks &= blocks - 1) {
+        const int i = __builtin_ctz(blocks);
+        const int bx = x + (i & 3) * VPL_BLOCK_SIDE, by = y + (i >> 2) * VPL_BLOCK_SIDE;
+        const bool inPicture = bx + VPL_BLOCK_SIDE <= tile->width && by + VPL_BLOCK_SIDE <= tile->height;
+        drawBlock(d, s, bx, by, (cells.filled >> i & 1) && inPicture);
+    }
+}
+
+// Cells of 4 x 4 between two columns and two rows.
+static inline uint32_t cellsWithin(int x0, int x1, int y0, int y1)
+{
+    x0 = maxOf(x0, 0);
+    y0 = maxOf(y0, 0);
+    x1 = minOf(x1, 3);
+    y1 = minOf(y1, 3);
+    const uint32_t row = (2u << x1) - (1u << x0);
+    const uint32_t rows = (0x1111u << 4 * y0) & (0x1111u >> 4 * (3 - y1));
+    return row * rows;
 }
 
 static void drawTriangle(Draw* d)
 {
     const vplTriangle* t = d->triangle;
     const vplTile* tile = &d->state->tile;
-    Setup s;
-    prepare(t, tile, &s);
     const vplPixelBox box = vplBoundTriangle(t->v);
-    const int x0 = maxOf(box.x0 - tile->x, 0) & ~3, x1 = minOf(box.x1 - tile->x, tile->width - 1);
-    const int y0 = maxOf(box.y0 - tile->y, 0) & ~3, y1 = minOf(box.y1 - tile->y, tile->height - 1);
-    int64_t reach[3]; // from a block's first centre to the one where the edge function is largest
+    const int x0 = maxOf(box.x0 - tile->x, 0) / VPL_BLOCK_SIDE,
+              y0 = maxOf(box.y0 - tile->y, 0) / VPL_BLOCK_SIDE;
+    const int x1 = minOf(box.x1 - tile->x, tile->width - 1) / VPL_BLOCK_SIDE,
+              y1 = minOf(box.y1 - tile->y, tile->height - 1) / VPL_BLOCK_SIDE;
+    Setup s;
+    setUp(t, tile, &s);
     for (int i = 0; i < 3; i++) {
-        reach[i] = 768 * ((int64_t)maxOf(s.a[i], 0) + maxOf(s.b[i], 0)) + s.bias[i];
+        for (int l = 0; l < VPL_LANES; l++) {
+            d->steps[i][l] = s.a[i] * (l & 3) + s.b[i] * (l >> 2);
+        }
     }
-    for (int y = y0; y <= y1; y += VPL_BLOCK_SIDE) {
-        for (int x = x0; x <= x1; x += VPL_BLOCK_SIDE) {
-            int64_t e[3];
-            bool outside = false;
-            for (int i = 0; i < 3; i++) {
-                e[i] = s.e[i] + 256 * ((int64_t)s.a[i] * x + (int64_t)s.b[i] * y);
-                outside |= e[i] + reach[i] < 0;
-            }
-            if (!outside) {
-                drawBlock(d, &s, e, x, y);
+    if (x1 - x0 <= 1 && y1 - y0 <= 1) { // small: asking pixels at once is less work
+        for (int y = y0; y <= y1; y++) {
+            for (int x = x0; x <= x1; x++) {
+                drawBlock(d, &s, x * VPL_BLOCK_SIDE, y * VPL_BLOCK_SIDE, false);
             }
         }
+        return;
+    }
+    Cells squares = {0xffff, 0};
+    if (x1 - x0 >= 4 || y1 - y0 >= 4) {
+        squares = classify(&s, 0, 0, SQUARE_SIDE);
+    }
+    squares.touched &= cellsWithin(x0 / 4, x1 / 4, y0 / 4, y1 / 4);
+    for (; squares.touched != 0; squares.touched &= squares.touched - 1) {
+        const int i = __builtin_ctz(squares.touched), x = i & 3, y = i >> 2;
+        drawSquare(d, &s, x * SQUARE_SIDE, y * SQUARE_SIDE,
+                   cellsWithin(x0 - 4 * x, x1 - 4 * x, y0 - 4 * y, y1 - 4 * y), squares.filled >> i & 1);
     }
 }
 
 vplDrawTileFcn VPL_KERNEL(vplDrawTile);
 
-void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplPipeline* pipeline, const vplShaded* shaded,
-                             const vplTriangle* triangles, const int* list, int count,
-                             const vplFramebuffer* framebuffer)
+void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const vplCommand* command,
+                             const int* list, int count, bool keep)
 {
+    const vplPipeline* p = &raster->pipelines[command->pipeline];
+    const bool nearer = p->depthCompare == VPL_DEPTH_LESS || p->depthCompare == VPL_DEPTH_LESS_EQUAL;
     Shares shares;
-    Draw d = {state, pipeline, shaded, NULL, framebuffer, &shares, 0, framebuffer->planeCount, false};
+    Draw d = {.state = state,
+              .raster = raster,
+              .pipeline = p,
+              .shaded = &raster->shaded[command->shaded],
+              .shares = &shares,
+              .keep = keep,
+              .rejects = nearer && !p->writesDepth,
+              .tightens = nearer && !p->writesDepth && p->depthWrite && !p->ownerTest};
+    d.depthOnly = p->fragment == NULL && p->depthCompare == VPL_DEPTH_LESS && p->depthWrite &&
+                  !p->ownerTest && state->owner == NULL;
+    state->block.scratch = state->tile.scratch;
     for (int i = 0; i < count; i++) {
+        const vplTriangle triangle = fetchTriangle(raster, d.shaded, list[i]);
         d.owner = list[i];
         d.hasShares = false;
-        d.triangle = &triangles[list[i]];
-        bool clockwise = (d.triangle->primitive & VPL_CLOCKWISE) != 0;
-        if (pipeline->cull == VPL_CULL_NONE || (pipeline->cull == VPL_CULL_BACK) != clockwise) {
+        d.triangle = &triangle;
+        state->block.primitive = triangle.primitive;
+        if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != triangle.clockwise) {
             drawTriangle(&d);
+        }
+    }
+    if (p->depthWrite && p->depthCompare == VPL_DEPTH_ALWAYS) {
+        for (int i = 0; i < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; i++) {
+            state->farthest[i] = INFINITY;
+        }
+    }
+}
+
+vplRunPassesFcn VPL_KERNEL(vplRunPasses);
+
+void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int first)
+{
+    vplFragments* f = &state->block;
+    const int mesh = raster->commands[first].shaded, planeCount = raster->framebuffer.planeCount;
+    const size_t varyings = (size_t)keptVaryings(state);
+    for (int i = state->keptStart[mesh]; i < state->keptEnd[mesh]; i++) {
+        const vplKeptBlock* kept = (const vplKeptBlock*)(state->kept + (size_t)i * state->keptStride);
+        const float* from = (const float*)(kept + 1);
+        f->x = kept->x;
+        f->y = kept->y;
+        f->element = kept->element;
+        f->primitive = kept->primitive;
+        memcpy(f->covered, kept->covered, sizeof f->covered);
+        memcpy(f->depth, from, sizeof f->depth);
+        memcpy(f->w, from + VPL_LANES, sizeof f->w);
+        memcpy(f->varying, from + 2 * VPL_LANES, varyings * sizeof f->varying[0]);
+        for (int c = first; c >= 0; c = raster->commands[c].chainNext) {
+            const vplPipeline* p = &raster->pipelines[raster->commands[c].pipeline];
+            runFragmentShader(state, p, planeCount);
+            blendPlanes(state, p, kept->element, planeCount);
+            state->fragments += kept->count;
         }
     }
 }

@@ -9,33 +9,53 @@ enum { CHUNK = 4096 };
 // Below this w a vertex is as good as in the eye: 1/w would near the end of float's range.
 static const double SMALLEST_W = 1e-30;
 
-vplScreenVertex vplProject(const vplRaster* raster, double x, double y, double z, double w)
+typedef struct Pixel {
+    double x, y;
+} Pixel;
+
+static Pixel toPixel(const vplRaster* raster, double x, double y, double w)
 {
-    double px = (x / w * 0.5 + 0.5) * raster->framebuffer.width;
-    double py = (0.5 - y / w * 0.5) * raster->framebuffer.height;
-    double scale = 1 << VPL_SUBPIXEL_BITS;
-    vplScreenVertex v;
-    v.x = (int32_t)rint(px * scale); // nearest even, as Direct3D snaps; both sides of an edge agree
-    v.y = (int32_t)rint(py * scale);
-    v.z = (float)(z / w);
-    return v;
+    return (Pixel){(x / w * 0.5 + 0.5) * raster->framebuffer.width,
+                   (0.5 - y / w * 0.5) * raster->framebuffer.height};
 }
 
-static uint8_t outcodeOf(const vplRaster* raster, double x, double y, double z, double w)
+// To the nearest even, as Direct3D snaps, so that both sides of an edge agree. Adding 1.5 * 2^52 leaves no bits
+// below 1, as rint does, which is a function call on plain x86-64.
+static int32_t nearest(double v)
+{
+    return (int32_t)((v + 0x1.8p52) - 0x1.8p52);
+}
+
+static vplScreenVertex snap(Pixel p, double z)
+{
+    const double scale = 1 << VPL_SUBPIXEL_BITS;
+    return (vplScreenVertex){nearest(p.x * scale), nearest(p.y * scale), (float)z};
+}
+
+vplScreenVertex vplProject(const vplRaster* raster, double x, double y, double z, double w)
+{
+    return snap(toPixel(raster, x, y, w), z / w);
+}
+
+// Outcode of a clip-space position, and where it lies on the screen unless that is out of range.
+static uint8_t projectVertex(const vplRaster* raster, double x, double y, double z, double w,
+                             vplScreenVertex* screenOut)
 {
     if (!(isfinite(x) && isfinite(y) && isfinite(z) && isfinite(w))) {
         return VPL_OUT_BAD;
     }
     int code = (x < -w ? VPL_OUT_LEFT : 0) | (x > w ? VPL_OUT_RIGHT : 0) | (y < -w ? VPL_OUT_BOTTOM : 0) |
                (y > w ? VPL_OUT_TOP : 0) | (z < 0 ? VPL_OUT_NEAR : 0) | (z > w ? VPL_OUT_FAR : 0);
-    double limit = (double)VPL_FIXED_LIMIT / (1 << VPL_SUBPIXEL_BITS);
-    bool guarded = false;
-    if (w >= SMALLEST_W) {
-        double px = (x / w * 0.5 + 0.5) * raster->framebuffer.width;
-        double py = (0.5 - y / w * 0.5) * raster->framebuffer.height;
-        guarded = fabs(px) <= limit && fabs(py) <= limit;
+    if (w < SMALLEST_W) {
+        return (uint8_t)(code | VPL_OUT_GUARD);
     }
-    return (uint8_t)(code | (guarded ? 0 : VPL_OUT_GUARD));
+    const double limit = (double)VPL_FIXED_LIMIT / (1 << VPL_SUBPIXEL_BITS);
+    const Pixel p = toPixel(raster, x, y, w);
+    if (!(fabs(p.x) <= limit && fabs(p.y) <= limit)) {
+        return (uint8_t)(code | VPL_OUT_GUARD);
+    }
+    *screenOut = snap(p, z / w);
+    return (uint8_t)code;
 }
 
 typedef struct Job {
@@ -55,14 +75,14 @@ static void shadeChunk(void* data, int index, int worker)
         part.varying[k] = s->clip.varying[k] + first;
     }
     s->vertexFcn(s->uniforms, first, count, &part);
+    uint8_t together = 0;
     for (int i = 0; i < count; i++) {
         double x = part.x[i], y = part.y[i], z = part.z[i], w = part.w[i];
-        uint8_t code = outcodeOf(job->raster, x, y, z, w);
+        uint8_t code = projectVertex(job->raster, x, y, z, w, &s->screen[first + i]);
         s->outcodes[first + i] = code;
-        if ((code & (VPL_OUT_BAD | VPL_OUT_GUARD)) == 0) {
-            s->screen[first + i] = vplProject(job->raster, x, y, z, w);
-        }
+        together |= code;
     }
+    __atomic_fetch_or(&s->outcodesTogether, together, __ATOMIC_RELAXED);
 }
 
 vplResult vplShadeVertices(vplRaster* raster, vplShaded* shaded)
@@ -82,6 +102,7 @@ vplResult vplShadeVertices(vplRaster* raster, vplShaded* shaded)
     for (int k = 0; k < shaded->varyingCount; k++) {
         shaded->clip.varying[k] = at + (4 + (size_t)k) * count;
     }
+    shaded->outcodesTogether = 0;
     Job job = {raster, shaded};
     vplParallelFor(raster->context, (shaded->mesh.vertexCount + CHUNK - 1) / CHUNK, shadeChunk, &job);
     return VPL_SUCCESS;
