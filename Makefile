@@ -38,6 +38,8 @@ MACHINE := $(shell $(CC) -dumpmachine 2>/dev/null)
 ISAS    := scalar sse2 $(if $(filter x86_64%,$(MACHINE)),avx2 avx512)
 ISA_scalar := -fno-tree-vectorize -fno-tree-slp-vectorize
 ISA_sse2   :=
+# gcc would unroll loops over 16 lanes before it thinks of vectors.
+LANES      := $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),,--param max-completely-peel-times=15)
 ISA_avx2   := -mavx2
 ISA_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 
@@ -171,7 +173,7 @@ define KERNEL_RULE
 $(BUILD)/obj/%_kernel.$(1).o: %_kernel.c
 	@mkdir -p $$(@D)
 	@echo "  CC  $$< ($(1))"
-	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(ISA_$(1)) -DVPL_KERNEL_ISA=$(1) -c -o $$@ $$<
+	$$(Q)$$(CC) $$(ALL_CFLAGS) $$(ISA_$(1)) $$(LANES) -DVPL_KERNEL_ISA=$(1) -c -o $$@ $$<
 endef
 $(foreach isa,$(ISAS),$(eval $(call KERNEL_RULE,$(isa))))
 

@@ -34,15 +34,15 @@ typedef void vplVertexFcn(const void* uniforms, int first, int count, const vplV
 
 // A block of fragments of one triangle. Lanes that are not covered hold defined numbers that are not written.
 typedef struct vplFragments {
-    int x, y;                                   // pixel of lane 0; x and y are multiples of 4
-    int primitive;                              // index of the triangle in its mesh
     int32_t covered[VPL_LANES];                 // -1 where the lane is a fragment, else 0
     float depth[VPL_LANES];                     // z/w; a shader with writesDepth sets it
-    float w[VPL_LANES];                         // clip-space w: distance along the view axis
+    float w[VPL_LANES];                         // clip-space w: distance along the view axis; see needsW
     float varying[VPL_MAX_VARYINGS][VPL_LANES]; // perspective-correct
     float plane[VPL_MAX_PLANES][VPL_LANES]; // out: colours; in: what the framebuffer holds, if readsPlanes
-    void* scratch;                          // the tile's, see vplFramebuffer
+    int x, y;                               // pixel of lane 0; x and y are multiples of 4
+    int primitive;                          // index of the triangle in its mesh
     int element;                            // of lane 0 in the tile's storage
+    void* scratch;                          // the tile's, see vplFramebuffer
 } vplFragments;
 
 // Shades one block. Called from any worker.
@@ -79,6 +79,7 @@ typedef struct vplPipeline {
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
     bool writesDepth;             // the fragment shader replaces depth, and the test uses that; default false
+    bool needsW;                  // shaders read w; without it only varyings bring w along; default false
     bool readsPlanes;   // the fragment shader sees the framebuffer and blends by itself; default false
     bool ownerTest;     // only where the same triangle of the same mesh wrote depth last: of
                         // coplanar surfaces one counts; default false

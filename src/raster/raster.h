@@ -194,8 +194,8 @@ typedef struct vplTileState {
     int keptCount;
     size_t keptStride;
     int64_t fragments;
-    int32_t fragmentLanes[VPL_LANES]; // fragments by lane
-    _Alignas(64) vplFragments block;  // scratch of the kernel
+    _Alignas(64) int32_t fragmentLanes[VPL_LANES]; // fragments by lane
+    _Alignas(64) vplFragments block;               // scratch of the kernel
 } vplTileState;
 
 // Runs the tiles of several rasters, one after another.

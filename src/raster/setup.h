@@ -13,7 +13,7 @@ typedef struct Setup {
     int64_t e[3];       // at the centre of the tile's first pixel, with the bias below
     int32_t a[3], b[3]; // growth per sub-pixel in x and y
     double z, zx, zy;   // depth at the tile's first pixel centre, and its growth per pixel
-    double laneZ[VPL_LANES];
+    _Alignas(64) double laneZ[VPL_LANES];
     double leastZ, mostZ; // of laneZ
 } Setup;
 
@@ -82,8 +82,8 @@ static inline void setUp(const vplTriangle* t, const vplTile* tile, Setup* s)
 // the point seen at pixel p is proportional to (corner j x corner k) . (p, 1). No corner is divided by its w,
 // and none is snapped: snapping decides coverage only, and moves no surface.
 typedef struct Shares {
-    double x[3], y[3], c[3];   // the three planes over pixel indices; their sum is 1/w
-    double lane[3][VPL_LANES]; // growth from lane 0
+    double x[3], y[3], c[3];                // the three planes over pixel indices; their sum is 1/w
+    _Alignas(64) double lane[3][VPL_LANES]; // growth from lane 0
     float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS],
         d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
 } Shares;

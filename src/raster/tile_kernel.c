@@ -19,8 +19,8 @@ typedef struct Draw {
     const vplPipeline* pipeline;
     const vplShaded* shaded;
     const vplTriangle* triangle;
-    Shares* shares;              // of the triangle, once they are needed
-    int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e >> 8)
+    Shares* shares;                           // of the triangle, once they are needed
+    _Alignas(64) int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e >> 8)
     int owner;
     bool hasShares, keep, depthOnly, rejects, tightens;
 } Draw;
@@ -101,54 +101,88 @@ static inline Cells classify(const Setup* s, int x, int y, int side)
 
 // ---- blocks
 
-// Lanes that pass the depth test stay covered; 0 if there are none.
-static inline int32_t compareDepth(vplDepthCompare compare, const float* restrict old,
-                                   const float* restrict depth, int32_t* restrict covered)
+// -1 where a depth passes the test against the one that is there.
+static inline int32_t passes(vplDepthCompare compare, float depth, float old)
 {
-    int32_t any = 0;
     switch (compare) {
     case VPL_DEPTH_LESS:
-        for (int l = 0; l < VPL_LANES; l++) {
-            covered[l] &= depth[l] < old[l] ? -1 : 0;
-            any |= covered[l];
-        }
-        return any;
+        return depth < old ? -1 : 0;
     case VPL_DEPTH_LESS_EQUAL:
-        for (int l = 0; l < VPL_LANES; l++) {
-            covered[l] &= depth[l] <= old[l] ? -1 : 0;
-            any |= covered[l];
-        }
-        return any;
+        return depth <= old ? -1 : 0;
     case VPL_DEPTH_EQUAL:
-        for (int l = 0; l < VPL_LANES; l++) {
-            covered[l] &= depth[l] == old[l] ? -1 : 0;
-            any |= covered[l];
-        }
-        return any;
+        return depth == old ? -1 : 0;
     case VPL_DEPTH_ALWAYS:
         break;
     }
-    return 1;
+    return -1;
+}
+
+// Lanes that pass owner and depth test stay covered; 0 if there are none. `compare` is a constant where this is
+// called, so that each test is a loop without branches.
+static inline int32_t testLanes(vplTileState* state, vplDepthCompare compare, bool ownerTest, int owner,
+                                int at)
+{
+    vplFragments* f = &state->block;
+    int32_t covered[VPL_LANES], owners[VPL_LANES], any = 0;
+    float depth[VPL_LANES], old[VPL_LANES];
+    memcpy(covered, f->covered, sizeof covered);
+    memcpy(depth, f->depth, sizeof depth);
+    memcpy(old, state->depth + at, sizeof old);
+    if (ownerTest) {
+        memcpy(owners, state->owner + at, sizeof owners);
+        for (int l = 0; l < VPL_LANES; l++) {
+            covered[l] &= owners[l] == owner ? -1 : 0;
+        }
+    }
+    for (int l = 0; l < VPL_LANES; l++) {
+        covered[l] &= passes(compare, depth[l], old[l]);
+        any |= covered[l];
+    }
+    memcpy(f->covered, covered, sizeof covered);
+    return any;
+}
+
+static inline int32_t testFragments(vplTileState* state, const vplPipeline* p, int owner, int at)
+{
+    switch (p->depthCompare) {
+    case VPL_DEPTH_LESS:
+        return testLanes(state, VPL_DEPTH_LESS, p->ownerTest, owner, at);
+    case VPL_DEPTH_LESS_EQUAL:
+        return testLanes(state, VPL_DEPTH_LESS_EQUAL, p->ownerTest, owner, at);
+    case VPL_DEPTH_EQUAL:
+        return testLanes(state, VPL_DEPTH_EQUAL, p->ownerTest, owner, at);
+    case VPL_DEPTH_ALWAYS:
+        break;
+    }
+    return testLanes(state, VPL_DEPTH_ALWAYS, p->ownerTest, owner, at);
+}
+
+static inline void blendPlane(vplBlend blend, const int32_t covered[VPL_LANES], const float* drawn,
+                              float* plane)
+{
+    float from[VPL_LANES], to[VPL_LANES];
+    memcpy(from, drawn, sizeof from);
+    memcpy(to, plane, sizeof to);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float kept = to[l], sum = kept + from[l]; // made for all lanes: a choice then, not a branch
+        to[l] = covered[l] ? (blend == VPL_BLEND_ADD ? sum : from[l]) : kept;
+    }
+    memcpy(plane, to, sizeof to);
 }
 
 static inline void blendPlanes(vplTileState* state, const vplPipeline* p, int at, int planeCount)
 {
     const vplFragments* f = &state->block;
+    int32_t covered[VPL_LANES];
+    memcpy(covered, f->covered, sizeof covered);
     for (int k = 0; k < planeCount; k++) {
         if ((p->planeMask >> k & 1) == 0) {
             continue;
         }
-        float* restrict to = state->tile.planes[k] + at;
-        const float* restrict from = f->plane[k];
         if (p->blend == VPL_BLEND_ADD) {
-            for (int l = 0; l < VPL_LANES; l++) {
-                const float sum = to[l] + from[l];
-                to[l] = f->covered[l] ? sum : to[l];
-            }
+            blendPlane(VPL_BLEND_ADD, covered, f->plane[k], state->tile.planes[k] + at);
         } else {
-            for (int l = 0; l < VPL_LANES; l++) {
-                to[l] = f->covered[l] ? from[l] : to[l];
-            }
+            blendPlane(VPL_BLEND_REPLACE, covered, f->plane[k], state->tile.planes[k] + at);
         }
     }
 }
@@ -166,6 +200,9 @@ static inline void runFragmentShader(vplTileState* state, const vplPipeline* p, 
 static void makeSurface(Draw* d)
 {
     vplFragments* f = &d->state->block;
+    if (d->shaded->varyingCount == 0 && !d->pipeline->needsW) {
+        return;
+    }
     if (!d->hasShares) {
         setUpShares(d->raster, d->triangle, d->shaded, d->shares);
         d->hasShares = true;
@@ -207,39 +244,71 @@ static inline float clampDepth(double z)
     return v < 1 ? v : 1;
 }
 
-// Depth and nothing else.
-static inline void drawDepth(Draw* d, const Setup* s, double z, int at, const int32_t covered[VPL_LANES])
+// Depth and nothing else. Lanes are copied first, so that the compiler need not ask whether arrays overlap.
+static inline void drawDepth(vplTileState* state, const Setup* s, double z, int at, bool filled)
 {
-    vplTileState* state = d->state;
-    float* restrict depth = state->depth + at;
-    int32_t* restrict counts = state->fragmentLanes;
+    float depth[VPL_LANES];
+    int32_t counts[VPL_LANES], passed[VPL_LANES];
+    memcpy(depth, state->depth + at, sizeof depth);
+    memcpy(counts, state->fragmentLanes, sizeof counts);
+    memcpy(passed, state->block.covered, sizeof passed);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float v = clampDepth(z + s->laneZ[l]);
-        const int32_t passed = covered[l] & (v < depth[l] ? -1 : 0);
-        depth[l] = passed ? v : depth[l];
-        counts[l] -= passed;
+        const float v = clampDepth(z + s->laneZ[l]), kept = depth[l];
+        passed[l] = (filled ? -1 : passed[l]) & (v < kept ? -1 : 0);
+        depth[l] = passed[l] ? v : kept;
+        counts[l] -= passed[l];
+    }
+    memcpy(state->depth + at, depth, sizeof depth);
+    memcpy(state->fragmentLanes, counts, sizeof counts);
+}
+
+static inline void countFragments(vplTileState* state)
+{
+    int32_t counts[VPL_LANES];
+    memcpy(counts, state->fragmentLanes, sizeof counts);
+    for (int l = 0; l < VPL_LANES; l++) {
+        counts[l] -= state->block.covered[l];
+    }
+    memcpy(state->fragmentLanes, counts, sizeof counts);
+}
+
+static inline void writeDepth(vplTileState* state, int owner, int at)
+{
+    const vplFragments* f = &state->block;
+    float depth[VPL_LANES];
+    memcpy(depth, state->depth + at, sizeof depth);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float drawn = f->depth[l], kept = depth[l];
+        depth[l] = f->covered[l] ? drawn : kept;
+    }
+    memcpy(state->depth + at, depth, sizeof depth);
+    if (state->owner != NULL) {
+        int32_t owners[VPL_LANES];
+        memcpy(owners, state->owner + at, sizeof owners);
+        for (int l = 0; l < VPL_LANES; l++) {
+            const int32_t kept = owners[l];
+            owners[l] = f->covered[l] ? owner : kept;
+        }
+        memcpy(state->owner + at, owners, sizeof owners);
     }
 }
 
-// Depth, owners and planes, as the pipeline says. f->covered and f->depth are set.
-static inline void drawFragments(Draw* d)
+// Depth, owners and planes, as the pipeline says, of the lanes in f->covered.
+static void drawFragments(Draw* d, const Setup* s, double z)
 {
     vplTileState* state = d->state;
     const vplPipeline* p = d->pipeline;
     vplFragments* f = &state->block;
     const int at = f->element;
-    float* restrict depth = state->depth + at;
     if (p->writesDepth) {
         makeSurface(d);
         runFragmentShader(state, p, d->raster->framebuffer.planeCount);
-    }
-    if (p->ownerTest) {
-        const int32_t* restrict owner = state->owner + at;
+    } else {
         for (int l = 0; l < VPL_LANES; l++) {
-            f->covered[l] &= owner[l] == d->owner ? -1 : 0;
+            f->depth[l] = clampDepth(z + s->laneZ[l]);
         }
     }
-    if (!compareDepth(p->depthCompare, depth, f->depth, f->covered)) {
+    if (!testFragments(state, p, d->owner, at)) {
         return;
     }
     if (d->keep) {
@@ -247,17 +316,9 @@ static inline void drawFragments(Draw* d)
         keepBlock(state);
         return;
     }
-    for (int l = 0; l < VPL_LANES; l++) {
-        state->fragmentLanes[l] -= f->covered[l];
-    }
+    countFragments(state);
     if (p->depthWrite) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            depth[l] = f->covered[l] ? f->depth[l] : depth[l];
-        }
-        for (int l = 0; state->owner != NULL && l < VPL_LANES; l++) {
-            int32_t* restrict owner = state->owner + at;
-            owner[l] = f->covered[l] ? d->owner : owner[l];
-        }
+        writeDepth(state, d->owner, at);
     }
     if (p->fragment != NULL) {
         if (!p->writesDepth) {
@@ -269,7 +330,8 @@ static inline void drawFragments(Draw* d)
 }
 
 // `filled`: all lanes are inside the triangle and the picture.
-static inline void drawBlock(Draw* d, const Setup* s, int x, int y, bool filled)
+static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y,
+                                                            bool filled)
 {
     vplTileState* state = d->state;
     vplFragments* f = &state->block;
@@ -277,9 +339,6 @@ static inline void drawBlock(Draw* d, const Setup* s, int x, int y, bool filled)
     const double z = s->z + (s->zx * x + s->zy * y);
     if (d->rejects && clampDepth(z + s->leastZ) > state->farthest[block]) {
         return;
-    }
-    for (int l = 0; filled && l < VPL_LANES; l++) {
-        f->covered[l] = -1;
     }
     if (!filled && !cover(d, s, x, y, f->covered)) {
         return;
@@ -289,16 +348,20 @@ static inline void drawBlock(Draw* d, const Setup* s, int x, int y, bool filled)
         state->farthest[block] = most < state->farthest[block] ? most : state->farthest[block];
     }
     if (d->depthOnly) {
-        drawDepth(d, s, z, block * VPL_LANES, f->covered);
+        if (filled) {
+            drawDepth(state, s, z, block * VPL_LANES, true);
+        } else {
+            drawDepth(state, s, z, block * VPL_LANES, false);
+        }
         return;
+    }
+    if (filled) {
+        memset(f->covered, 0xff, sizeof f->covered);
     }
     f->x = state->tile.x + x;
     f->y = state->tile.y + y;
     f->element = block * VPL_LANES;
-    for (int l = 0; !d->pipeline->writesDepth && l < VPL_LANES; l++) {
-        f->depth[l] = clampDepth(z + s->laneZ[l]);
-    }
-    drawFragments(d);
+    drawFragments(d, s, z);
 }
 
 // ---- triangles

@@ -112,6 +112,7 @@ static vplResult drawFace(const vplGeometry* g, vplCubeMap* map, float* texels, 
         pipeline.fragment = faceDistance;
         pipeline.fragmentUniforms = &faceUniforms;
         pipeline.writesDepth = true;
+        pipeline.needsW = true;
         pipeline.planeMask = 0;
         result = vplRaster_Draw(raster, &meshes[i], &pipeline);
     }
