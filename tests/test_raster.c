@@ -323,8 +323,15 @@ static void WrongArgumentsAreRefusedWithASentence(void** state)
     vplPipeline p = vplDefaultPipeline();
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
     p.vertex = passVertices;
-    p.varyingCount = 9;
+    p.varyingCount = VPL_MAX_VARYINGS + 1;
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
+    p.varyingCount = 2;
+    p.surface = showFragments;
+    p.surfaceCount = 1;
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
+    p.surfaceCount = VPL_MAX_VARYINGS + 1;
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
+    p.surface = NULL;
     p.varyingCount = 0;
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_SUCCESS); // empty is fine
     assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);

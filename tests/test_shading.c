@@ -335,7 +335,7 @@ static void EveryPointOfTheRoomIsLitAsTheTableSays(void** state)
                               .def = &def,
                               .emitterKernel = vplGetEmitterKernel(vplContext_GetIsa(context)),
                               .emitters = &ray};
-        vplPoints points = {.surface = surface};
+        vplPoints points = {.surface = &surface, .plane = &surface};
         int64_t rays = 0;
         float e[3][VPL_LANES];
         vplDirectIrradiance(&shading, &points, e, &rays);

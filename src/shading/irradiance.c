@@ -7,12 +7,6 @@
 
 #include <string.h>
 
-// Shadows belong to the triangles' own planes.
-static const vplSurface* planeOf(const vplShading* s, const vplPoints* points)
-{
-    return s->smooth ? &points->plane : &points->surface;
-}
-
 // Where rays leave a block, the same for all its lights.
 typedef struct Starts {
     vplHit hit[VPL_LANES]; // of lanes that show a triangle
@@ -20,7 +14,7 @@ typedef struct Starts {
 
 static void findStarts(const vplGeometry* g, const vplPoints* points, Starts* starts)
 {
-    const vplSurface* s = &points->surface;
+    const vplSurface* s = points->surface;
     for (int l = 0; l < VPL_LANES; l++) {
         const int triangle = points->triangle[l];
         if (triangle < 0) {
@@ -41,7 +35,7 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
                            vplVec3 target, bool parallel, float amount[VPL_LANES], int64_t* rays)
 {
     const vplGeometry* g = shading->geometry;
-    const vplSurface* plane = planeOf(shading, points);
+    const vplSurface* plane = points->plane;
     for (int l = 0; l < VPL_LANES; l++) {
         if (!(amount[l] > 0) || points->triangle[l] < 0) {
             continue;
@@ -76,12 +70,12 @@ static void shadowEmitter(const vplShading* s, const vplPoints* points, int inde
     float factor[VPL_LANES];
     if (s->smooth) { // a shadow belongs to the plane of the triangle, and so does its far side
         float cosine[VPL_LANES];
-        s->emitterKernel(&points->plane, emitter, cosine);
+        s->emitterKernel(points->plane, emitter, cosine);
         for (int l = 0; l < VPL_LANES; l++) {
             amount[l] = cosine[l] > 0 ? amount[l] : 0;
         }
     }
-    vplShadow_FactorBlock(shadow, planeOf(s, points), factor);
+    vplShadow_FactorBlock(shadow, points->plane, factor);
     for (int l = 0; l < VPL_LANES; l++) {
         amount[l] *= 1 - factor[l];
     }
@@ -100,7 +94,7 @@ static vplVec3 aimAt(const vplShadeLight* light)
 static void shadowByMap(const vplShading* s, const vplPoints* points, const vplShadeLight* light,
                         const vplShadow* map, float visible[VPL_LANES])
 {
-    const vplSurface* p = planeOf(s, points);
+    const vplSurface* p = points->plane;
     float factor[VPL_LANES];
     vplShadow_FactorBlock(map, p, factor);
     for (int l = 0; l < VPL_LANES; l++) {
@@ -121,7 +115,7 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
     }
     for (int i = 0; i < count; i++) {
         float part[3][VPL_LANES] = {{0}}, visible[VPL_LANES];
-        s->lightKernel(&points->surface, &lights[i], 1, inverseBound, part);
+        s->lightKernel(points->surface, &lights[i], 1, inverseBound, part);
         int lit = 0;
         for (int l = 0; l < VPL_LANES; l++) {
             visible[l] = part[0][l] + part[1][l] + part[2][l] > 0 ? 1.0f : 0.0f;
@@ -152,7 +146,7 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
     memset(irradiance, 0, 3 * sizeof irradiance[0]);
     for (int i = 0; i < def->emitterCount; i++) {
         float amount[VPL_LANES];
-        if (!shading->emitterKernel(&points->surface, &shading->emitters[i], amount)) {
+        if (!shading->emitterKernel(points->surface, &shading->emitters[i], amount)) {
             continue;
         }
         shadowEmitter(shading, points, i, amount, rays);
@@ -181,7 +175,7 @@ void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, i
     const vplShadeDef* def = shading->def;
     const vplShadeLight* lights = def->lights + first;
     if (def->lightShadows == NULL && !def->lightRays) {
-        shading->lightKernel(&points->surface, lights, count, shading->inverseBound, irradiance);
+        shading->lightKernel(points->surface, lights, count, shading->inverseBound, irradiance);
     } else {
         addShadowed(shading, points, lights, def->lightShadows ? def->lightShadows + first : NULL, count,
                     shading->inverseBound, irradiance, rays);

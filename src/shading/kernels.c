@@ -7,6 +7,29 @@
 VPL_KERNEL_TABLE(DOCUMENTED, vplLightKernelFcn, vplLightsDocumented);
 VPL_KERNEL_TABLE(PHYSICAL, vplLightKernelFcn, vplLightsPhysical);
 VPL_KERNEL_TABLE(EMITTER, vplEmitterKernelFcn, vplEmitterCosine);
+VPL_KERNEL_TABLE(CULL_DOCUMENTED, vplCullFcn, vplCullDocumented);
+VPL_KERNEL_TABLE(CULL_PHYSICAL, vplCullFcn, vplCullPhysical);
+VPL_KERNEL_TABLE(SURFACE, vplFragmentFcn, vplShadeSurface);
+VPL_KERNEL_TABLE(GBUFFER, vplFragmentFcn, vplWriteGbuffer);
+VPL_KERNEL_TABLE(DIRECT, vplFragmentFcn, vplShadeDirect);
+VPL_KERNEL_TABLE(ONE_LIGHT, vplFragmentFcn, vplShadeOneLight);
+VPL_KERNEL_TABLE(LIGHT_BATCH, vplFragmentFcn, vplShadeLightBatch);
+VPL_KERNEL_TABLE(LIGHT_TILE, vplTileFcn, vplLightTile);
+VPL_KERNEL_TABLE(SHOW_TILE, vplTileFcn, vplShowTile);
+VPL_KERNEL_TABLE(FOLD_TILE, vplTileFcn, vplFoldTile);
+VPL_KERNEL_TABLE(RESOLVE_TILE, vplTileFcn, vplResolveTile);
+
+vplShadingKernels vplGetShadingKernels(vplIsa isa)
+{
+    return (vplShadingKernels){SURFACE[isa],   GBUFFER[isa],     DIRECT[isa],
+                               ONE_LIGHT[isa], LIGHT_BATCH[isa], LIGHT_TILE[isa],
+                               SHOW_TILE[isa], FOLD_TILE[isa],   RESOLVE_TILE[isa]};
+}
+
+vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting)
+{
+    return lighting == VPL_LIGHTING_DOCUMENTED ? CULL_DOCUMENTED[isa] : CULL_PHYSICAL[isa];
+}
 
 vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting)
 {

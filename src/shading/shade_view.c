@@ -5,6 +5,7 @@
 #include "shading/shading.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static vplResult checkDef(const vplContext* context, const vplView* view, const vplShadeDef* def,
                           const vplImage* image)
@@ -71,6 +72,33 @@ static vplResult makeEmitters(vplShading* s)
     return s->emitters ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
 }
 
+// Columns of the virtual lights, from which those that give nothing can be told; not where each light's shadow is
+// asked for anyway.
+static vplResult makeColumns(vplShading* s)
+{
+    const vplShadeDef* def = s->def;
+    if (def->lightCount == 0 || def->lightShadows != NULL || def->lightRays) {
+        return VPL_SUCCESS;
+    }
+    const size_t groups = ((size_t)def->lightCount + VPL_LIGHT_GROUP - 1) / VPL_LIGHT_GROUP;
+    const size_t padded = groups * VPL_LIGHT_GROUP;
+    float* storage = vplAllocZero(s->geometry->context, 6 * padded, sizeof *storage);
+    if (storage == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int k = 0; k < 6; k++) {
+        s->columns[k] = storage + (size_t)k * padded;
+    }
+    for (int i = 0; i < def->lightCount; i++) {
+        const vplShadeLight* light = &def->lights[i];
+        const float values[6] = {light->px, light->py, light->pz, light->nx, light->ny, light->nz};
+        for (int k = 0; k < 6; k++) {
+            s->columns[k][i] = values[k];
+        }
+    }
+    return VPL_SUCCESS;
+}
+
 static float inverseSquare(float distance)
 {
     return distance > 0 ? 1 / (distance * distance) : INFINITY;
@@ -87,6 +115,7 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     vplShading shading = {.geometry = geometry, .view = view, .def = def, .image = image};
     shading.lightKernel = vplGetLightKernel(context->isa, def->lighting);
     shading.emitterKernel = vplGetEmitterKernel(context->isa);
+    shading.cull = vplGetCull(context->isa, def->lighting);
     shading.inverseBound = inverseSquare(def->minDistance);
     shading.lampInverseBound = inverseSquare(def->lampMinDistance);
     shading.smooth = geometry->shadingNormals != NULL;
@@ -95,12 +124,19 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     bool deferred = def->accumulation == VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
     vplFramebuffer framebuffer = vplDefaultFramebuffer(view->width, view->height);
     framebuffer.planeCount = deferred ? VPL_PLANE_POSITION + 3 : VPL_PLANE_TRIANGLE + 1;
-    framebuffer.scratchBytes = sizeof(vplTileSums);
+    framebuffer.scratchBytes = deferred ? offsetof(vplTileSums, irradiance) : sizeof(vplTileSums);
+    for (int k = 0; deferred && k < 3; k++) {
+        framebuffer.planes[VPL_PLANE_NORMAL + k].scratch = true; // the triangle's plane says what is there
+        framebuffer.planes[VPL_PLANE_POSITION + k].scratch = true;
+    }
     vplRaster* raster = NULL;
     void* uniforms = NULL;
     result = makeObjects(&shading);
     if (result == VPL_SUCCESS) {
         result = makeEmitters(&shading);
+    }
+    if (result == VPL_SUCCESS && deferred) {
+        result = makeColumns(&shading);
     }
     if (result == VPL_SUCCESS) {
         result = vplRaster_Create(context, &framebuffer, &raster);
@@ -117,6 +153,7 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     }
     vplRaster_Destroy(raster);
     vplFree(context, uniforms);
+    vplFree(context, shading.columns[0]);
     vplFree(context, shading.emitters);
     vplFree(context, shading.objects);
     vplFree(context, shading.meshes);

@@ -11,6 +11,16 @@
 typedef void vplLightKernelFcn(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
                                int count, float inverseBound, float irradiance[restrict 3][VPL_LANES]);
 
+// Smallest and largest px, py, pz, nx, ny, nz of some points.
+typedef struct vplBounds {
+    float low[6], high[6];
+} vplBounds;
+
+// keep[i] = 0 where light first + i gives exactly nothing to any point within the bounds, else 1. `columns` are
+// the lights' px, py, pz, nx, ny, nz. count is in [1, VPL_LIGHT_GROUP].
+typedef void vplCullFcn(const vplBounds* bounds, float* const columns[6], int first, int count,
+                        int32_t keep[VPL_LIGHT_GROUP]);
+
 // An emitter as its kernel wants it.
 typedef struct vplEmitterRay {
     vplVec3 position;            // metres; point and spot
@@ -24,6 +34,7 @@ typedef bool vplEmitterKernelFcn(const vplSurface* restrict surface, const vplEm
                                  float cosine[restrict VPL_LANES]);
 
 vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting);
+vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting);
 vplEmitterKernelFcn* vplGetEmitterKernel(vplIsa isa);
 
 // One render of one view.
@@ -34,6 +45,8 @@ typedef struct vplShading {
     vplImage* image;
     vplLightKernelFcn* lightKernel;
     vplEmitterKernelFcn* emitterKernel;
+    vplCullFcn* cull;
+    float* columns[6]; // of the virtual lights, for `cull`; NULL where no light is left out
     float inverseBound, lampInverseBound;
     bool smooth;                       // some object has shading normals
     vplMesh* meshes;                   // one per object
@@ -44,8 +57,9 @@ typedef struct vplShading {
 
 // What a block of pixels shows.
 typedef struct vplPoints {
-    vplSurface surface;      // positions, and the normals that light is received with
-    vplSurface plane;        // the same with the triangles' own normals; filled only where smooth
+    const vplSurface* surface; // positions, and the normals that light is received with
+    const vplSurface*
+        plane; // the same with the triangles' own normals; equals `surface` where none is smooth
     int triangle[VPL_LANES]; // index in geometry->normals, -1 where nothing is
 } vplPoints;
 
@@ -57,10 +71,10 @@ enum {
     VPL_PLANE_POSITION = 4    // 3 planes, deferred only
 };
 
-// Scratch of a tile: sums of whole groups.
+// Scratch of a tile. Deferred shading needs the first number only.
 typedef struct vplTileSums {
-    double irradiance[3][VPL_TILE_SIDE * VPL_TILE_SIDE];
     int64_t shadowRays;
+    _Alignas(64) double irradiance[3][VPL_TILE_SIDE * VPL_TILE_SIDE]; // sums of whole groups
 } vplTileSums;
 
 // Vertex shader of all camera passes, and its uniforms.
@@ -72,7 +86,9 @@ typedef struct vplObjectUniforms {
 } vplObjectUniforms;
 
 void vplCameraVertices(const void* uniforms, int first, int count, const vplVertices* out);
-enum { VPL_CAMERA_VARYINGS = 3 }; // world position; three more for the normal of smooth objects
+// World position; three more for the normal of smooth objects. After the surface shader: a vplSurface, and where
+// some object is smooth another one for vplPoints.plane.
+enum { VPL_CAMERA_VARYINGS = 3, VPL_SURFACE_VARYINGS = 6 };
 
 // What the shading of a triangle needs besides positions.
 typedef struct vplFacet {
@@ -83,14 +99,6 @@ typedef struct vplFacet {
 // `triangle` is an index in geometry->normals.
 vplFacet vplGetFacet(const vplShading* shading, int triangle);
 
-// The points of a block of fragments.
-void vplPoints_FromFragments(const vplShading* shading, int object, const vplFragments* fragments,
-                             vplPoints* pointsOut);
-
-// Fills in `plane` and turns raw interpolated normals in `surface` into unit vectors on the right side, where
-// triangles and positions are known. `smooth` says which lanes have interpolated normals.
-void vplPoints_FinishNormals(const vplShading* shading, vplPoints* points);
-
 // Direct irradiance of all emitters and lamps, with shadows. Counts the rays it cast.
 void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, float irradiance[3][VPL_LANES],
                          int64_t* rays);
@@ -99,17 +107,30 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
                            float irradiance[3][VPL_LANES], int64_t* rays);
 
-// Moves a finished group from the planes to the sums; tile task, data is unused.
-void vplFoldTile(void* data, vplTile* tile, int worker);
-
-// Turns sums into radiance and writes the picture; tile task, data is the vplShading.
-void vplResolveTile(void* data, vplTile* tile, int worker);
-
 // Writes three values per pixel of a block to the picture.
 void vplWriteBlock(const vplShading* shading, const vplTile* tile, int block, float values[3][VPL_LANES]);
 
-// Index in geometry->normals of each lane of a block, -1 where nothing is. Returns whether any lane has one.
-bool vplReadTriangles(const vplTile* tile, int element, int triangles[VPL_LANES]);
+// What runs per block or per tile, compiled for an instruction set.
+typedef struct vplShadingKernels {
+    vplFragmentFcn* surface;    // surface shader of all camera passes
+    vplFragmentFcn* gbuffer;    // fragment shaders: the deferred pass,
+    vplFragmentFcn* direct;     // emitters,
+    vplFragmentFcn* oneLight;   // one virtual light,
+    vplFragmentFcn* lightBatch; // several
+    vplTileFcn* light;   // tile tasks, data is the vplShading: lights the G-buffer and writes the picture,
+    vplTileFcn* show;    // shows depth, normals or shadow factor instead,
+    vplTileFcn* fold;    // moves a finished group of lights from the planes to the sums,
+    vplTileFcn* resolve; // turns sums into radiance and writes the picture
+} vplShadingKernels;
+
+vplShadingKernels vplGetShadingKernels(vplIsa isa);
+
+// Uniforms of the fragment shaders in passes.
+typedef struct vplPassUniforms {
+    const vplShading* shading;
+    int object;
+    int first, count; // virtual lights of this pass
+} vplPassUniforms;
 
 // The pipelines: record all draws and tile tasks.
 vplResult vplRecordPasses(const vplShading* shading, vplRaster* raster, void** uniformsOut);

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The camera, its vertex shader, and the surface that a block of fragments shows.
+// The camera, its vertex shader, and what a triangle shows to it.
 #include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "shading/shading.h"
-
-#include <string.h>
 
 vplView vplView_Create(const vplCameraDef* camera, int width, int height)
 {
@@ -87,6 +85,8 @@ vplPipeline vplCameraPipeline(const vplShading* shading, int object)
     pipeline.vertex = vplCameraVertices;
     pipeline.vertexUniforms = &shading->objects[object];
     pipeline.varyingCount = VPL_CAMERA_VARYINGS + (shading->objects[object].normals ? 3 : 0);
+    pipeline.surface = vplGetShadingKernels(shading->geometry->context->isa).surface;
+    pipeline.surfaceCount = VPL_SURFACE_VARYINGS * (shading->smooth ? 2 : 1);
     return pipeline;
 }
 
@@ -104,70 +104,4 @@ vplFacet vplGetFacet(const vplShading* shading, int triangle)
         }
     }
     return facet;
-}
-
-// Interpolated normals are used where there are any, on the triangle's side.
-static vplVec3 shadingNormal(const vplSurface* raw, int lane, vplVec3 plane)
-{
-    vplVec3 n = vplVec(raw->nx[lane], raw->ny[lane], raw->nz[lane]);
-    float length = vplLength(n);
-    if (!(length > 0)) {
-        return plane;
-    }
-    return vplScale((vplDot(n, plane) < 0 ? -1.0f : 1.0f) / length, n);
-}
-
-static void setNormal(const vplShading* shading, vplPoints* points, int lane, bool smooth, vplVec3 plane)
-{
-    const vplVec3 n = smooth ? shadingNormal(&points->surface, lane, plane) : plane;
-    points->surface.nx[lane] = n.x;
-    points->surface.ny[lane] = n.y;
-    points->surface.nz[lane] = n.z;
-    if (shading->smooth) {
-        points->plane.nx[lane] = plane.x;
-        points->plane.ny[lane] = plane.y;
-        points->plane.nz[lane] = plane.z;
-    }
-}
-
-void vplPoints_FinishNormals(const vplShading* shading, vplPoints* points)
-{
-    vplVec3 n = {0, 0, 0};
-    bool smooth = false;
-    if (shading->smooth) {
-        memcpy(&points->plane, &points->surface, sizeof points->plane);
-    }
-    for (int l = 0, last = -1; l < VPL_LANES; l++) {
-        const int triangle = points->triangle[l];
-        if (triangle != last) {
-            last = triangle;
-            n = triangle < 0 ? vplVec(0, 0, 0) : vplGetFacet(shading, triangle).normal;
-            smooth = triangle >= 0 && shading->geometry->objects[shading->geometry->owners[triangle]].smooth;
-        }
-        setNormal(shading, points, l, smooth, n);
-    }
-}
-
-void vplPoints_FromFragments(const vplShading* shading, int object, const vplFragments* fragments,
-                             vplPoints* pointsOut)
-{
-    vplSurface* s = &pointsOut->surface;
-    const int triangle = shading->geometry->objects[object].firstTriangle + fragments->primitive;
-    memcpy(s->px, fragments->varying[0], sizeof s->px);
-    memcpy(s->py, fragments->varying[1], sizeof s->py);
-    memcpy(s->pz, fragments->varying[2], sizeof s->pz);
-    if (shading->objects[object].normals != NULL) {
-        memcpy(s->nx, fragments->varying[3], sizeof s->nx);
-        memcpy(s->ny, fragments->varying[4], sizeof s->ny);
-        memcpy(s->nz, fragments->varying[5], sizeof s->nz);
-    }
-    if (shading->smooth) {
-        memcpy(&pointsOut->plane, s, sizeof *s);
-    }
-    const vplVec3 n = vplGetFacet(shading, triangle).normal; // one triangle for all lanes
-    const bool smooth = shading->objects[object].normals != NULL;
-    for (int l = 0; l < VPL_LANES; l++) {
-        pointsOut->triangle[l] = fragments->covered[l] ? triangle : -1;
-        setNormal(shading, pointsOut, l, smooth, n);
-    }
 }

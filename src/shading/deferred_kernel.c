@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// What a tile of the G-buffer shows: light, depth, normals or a shadow factor. Lit in squares of 4 x 4 blocks,
+// whose points, sums and lights stay in the first cache.
+#include "base/isa.h"
+#include "math/vec.h"
+#include "shading/normals.h"
+#include "shading/resolve.h"
+
+enum { SQUARE = 4, SQUARES = VPL_TILE_BLOCKS / SQUARE, SQUARE_BLOCKS = SQUARE * SQUARE };
+
+vplFragmentFcn VPL_KERNEL(vplWriteGbuffer);
+vplTileFcn VPL_KERNEL(vplLightTile), VPL_KERNEL(vplShowTile);
+
+void VPL_KERNEL(vplWriteGbuffer)(const void* uniforms, vplFragments* f)
+{
+    const vplObjectUniforms* u = uniforms;
+    const int triangle = u->shading->geometry->objects[u->object].firstTriangle + f->primitive;
+    int32_t id[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        id[l] = triangle + 1;
+    }
+    memcpy(f->plane[VPL_PLANE_TRIANGLE], id, sizeof id);
+    memcpy(f->plane[VPL_PLANE_POSITION], f->varying[0], 3 * sizeof f->varying[0]);
+    if (u->normals != NULL) {
+        memcpy(f->plane[VPL_PLANE_NORMAL], f->varying[VPL_CAMERA_VARYINGS], 3 * sizeof f->varying[0]);
+    }
+}
+
+// A block of the G-buffer.
+typedef struct Block {
+    _Alignas(64) vplSurface surface, plane; // `plane` only where some object is smooth
+    vplPoints points;
+    double sums[3][VPL_LANES];
+} Block;
+
+// Normals of the triangles that a block shows, and which of them are smooth.
+static void readFacets(const vplShading* s, const int triangles[VPL_LANES], vplSurface* plane,
+                       int32_t smooth[VPL_LANES])
+{
+    const vplGeometry* g = s->geometry;
+    vplVec3 n = {0, 0, 0};
+    int32_t isSmooth = 0;
+    for (int l = 0, last = -1; l < VPL_LANES; l++) {
+        const int triangle = triangles[l];
+        if (triangle != last) {
+            last = triangle;
+            n = triangle < 0 ? vplVec(0, 0, 0) : vplGetFacet(s, triangle).normal;
+            isSmooth = triangle >= 0 && g->objects[g->owners[triangle]].smooth ? -1 : 0;
+        }
+        plane->nx[l] = n.x;
+        plane->ny[l] = n.y;
+        plane->nz[l] = n.z;
+        smooth[l] = isSmooth;
+    }
+}
+
+// False where it is empty.
+static bool readBlock(const vplShading* s, const vplTile* tile, int element, Block* b)
+{
+    if (!vplReadTriangles(tile, element, b->points.triangle)) {
+        return false;
+    }
+    memcpy(b->surface.px, tile->planes[VPL_PLANE_POSITION] + element, sizeof b->surface.px);
+    memcpy(b->surface.py, tile->planes[VPL_PLANE_POSITION + 1] + element, sizeof b->surface.py);
+    memcpy(b->surface.pz, tile->planes[VPL_PLANE_POSITION + 2] + element, sizeof b->surface.pz);
+    b->points.surface = b->points.plane = &b->surface;
+    if (!s->smooth && vplSameTriangle(b->points.triangle)) {
+        vplSetNormals(vplGetFacet(s, b->points.triangle[0]).normal, &b->surface);
+        return true;
+    }
+    int32_t smooth[VPL_LANES];
+    if (!s->smooth) {
+        readFacets(s, b->points.triangle, &b->surface, smooth);
+        return true;
+    }
+    b->points.plane = &b->plane;
+    memcpy(&b->plane, &b->surface, 3 * sizeof b->surface.px);
+    readFacets(s, b->points.triangle, &b->plane, smooth);
+    memcpy(b->surface.nx, tile->planes[VPL_PLANE_NORMAL] + element, sizeof b->surface.nx);
+    memcpy(b->surface.ny, tile->planes[VPL_PLANE_NORMAL + 1] + element, sizeof b->surface.ny);
+    memcpy(b->surface.nz, tile->planes[VPL_PLANE_NORMAL + 2] + element, sizeof b->surface.nz);
+    vplFinishNormals(&b->plane, smooth, &b->surface);
+    return true;
+}
+
+// ---- light
+
+// Where the points of some blocks lie and where they face.
+static vplBounds findBounds(const Block* blocks, const int* lit, int count)
+{
+    float low[6][VPL_LANES], high[6][VPL_LANES];
+    for (int k = 0; k < 6; k++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            low[k][l] = INFINITY;
+            high[k][l] = -INFINITY;
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        const Block* b = &blocks[lit[i]];
+        for (int k = 0; k < 6; k++) {
+            const float* value = b->surface.px + k * VPL_LANES;
+            for (int l = 0; l < VPL_LANES; l++) {
+                const float v = value[l];
+                const float least = v < low[k][l] ? v : low[k][l], most = v > high[k][l] ? v : high[k][l];
+                low[k][l] = b->points.triangle[l] < 0 ? low[k][l] : least;
+                high[k][l] = b->points.triangle[l] < 0 ? high[k][l] : most;
+            }
+        }
+    }
+    vplBounds bounds;
+    for (int k = 0; k < 6; k++) {
+        bounds.low[k] = low[k][0];
+        bounds.high[k] = high[k][0];
+        for (int l = 1; l < VPL_LANES; l++) {
+            bounds.low[k] = low[k][l] < bounds.low[k] ? low[k][l] : bounds.low[k];
+            bounds.high[k] = high[k][l] > bounds.high[k] ? high[k][l] : bounds.high[k];
+        }
+    }
+    return bounds;
+}
+
+static void addGroup(Block* b, float part[3][VPL_LANES])
+{
+    for (int c = 0; c < 3; c++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            b->sums[c][l] += (double)part[c][l];
+        }
+    }
+}
+
+// Virtual lights first .. first + count - 1, without those that face away from all blocks or the other way round.
+static void addLights(const vplShading* s, Block* blocks, const int* lit, int litCount,
+                      const vplBounds* bounds, int first, int count)
+{
+    int32_t keep[VPL_LIGHT_GROUP];
+    vplShadeLight kept[VPL_LIGHT_GROUP];
+    int keptCount = 0;
+    s->cull(bounds, s->columns, first, count, keep);
+    for (int i = 0; i < count; i++) {
+        kept[keptCount] = s->def->lights[first + i];
+        keptCount += keep[i];
+    }
+    for (int i = 0; keptCount > 0 && i < litCount; i++) {
+        _Alignas(64) float part[3][VPL_LANES] = {{0}};
+        s->lightKernel(&blocks[lit[i]].surface, kept, keptCount, s->inverseBound, part);
+        addGroup(&blocks[lit[i]], part);
+    }
+}
+
+static void addShadowedLights(const vplShading* s, Block* b, int first, int count, int64_t* rays)
+{
+    _Alignas(64) float part[3][VPL_LANES] = {{0}};
+    vplIndirectIrradiance(s, &b->points, first, count, part, rays);
+    addGroup(b, part);
+}
+
+static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, Block blocks[SQUARE_BLOCKS])
+{
+    vplTileSums* tileSums = tile->scratch;
+    int lit[SQUARE_BLOCKS], litCount = 0;
+    for (int i = 0; i < SQUARE_BLOCKS; i++) {
+        Block* b = &blocks[i];
+        memset(b->sums, 0, sizeof b->sums);
+        if (readBlock(s, tile, (firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE) * VPL_LANES, b)) {
+            _Alignas(64) float part[3][VPL_LANES];
+            vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
+            addGroup(b, part);
+            lit[litCount++] = i;
+        }
+    }
+    const int lightCount = s->def->lightCount;
+    const bool culls = lightCount > 0 && litCount > 0 && s->columns[0] != NULL;
+    vplBounds bounds = {{0}, {0}};
+    if (culls) {
+        bounds = findBounds(blocks, lit, litCount);
+    }
+    for (int first = 0; first < lightCount; first += VPL_LIGHT_GROUP) {
+        const int count = lightCount - first < VPL_LIGHT_GROUP ? lightCount - first : VPL_LIGHT_GROUP;
+        if (culls) {
+            addLights(s, blocks, lit, litCount, &bounds, first, count);
+            continue;
+        }
+        for (int i = 0; i < litCount; i++) {
+            addShadowedLights(s, &blocks[lit[i]], first, count, &tileSums->shadowRays);
+        }
+    }
+    for (int i = 0; i < SQUARE_BLOCKS; i++) {
+        vplResolveBlock(s, tile, firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE,
+                        blocks[i].points.triangle, blocks[i].sums);
+    }
+}
+
+void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
+{
+    (void)worker;
+    const vplShading* s = data;
+    const vplTileSums* tileSums = tile->scratch;
+    Block blocks[SQUARE_BLOCKS];
+    for (int square = 0; square < SQUARES * SQUARES; square++) {
+        const int x = square % SQUARES, y = square / SQUARES;
+        if (x * SQUARE * VPL_BLOCK_SIDE < tile->width && y * SQUARE * VPL_BLOCK_SIDE < tile->height) {
+            lightSquare(s, tile, (y * VPL_TILE_BLOCKS + x) * SQUARE, blocks);
+        }
+    }
+    __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
+}
+
+// ---- a look at the stages
+
+void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
+{
+    (void)worker;
+    const vplShading* s = data;
+    const vplView* view = s->view;
+    const bool depth = s->def->output == VPL_OUTPUT_DEPTH, normals = s->def->output == VPL_OUTPUT_NORMALS;
+    for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
+        Block b;
+        float values[3][VPL_LANES] = {{0}}, factor[VPL_LANES] = {0};
+        if (!readBlock(s, tile, block * VPL_LANES, &b)) {
+            vplWriteBlock(s, tile, block, values);
+            continue;
+        }
+        if (s->def->output == VPL_OUTPUT_SHADOW_FACTOR) {
+            vplShadow_FactorBlock(&s->def->shadows[0], b.points.plane, factor);
+        }
+        for (int l = 0; l < VPL_LANES; l++) {
+            if (b.points.triangle[l] < 0) {
+                continue;
+            }
+            const vplVec3 p = vplVec(b.surface.px[l], b.surface.py[l], b.surface.pz[l]);
+            const float grey = depth ? vplDot(view->forward, vplSub(p, view->eye)) : factor[l];
+            values[0][l] = normals ? b.surface.nx[l] : grey;
+            values[1][l] = normals ? b.surface.ny[l] : grey;
+            values[2][l] = normals ? b.surface.nz[l] : grey;
+        }
+        vplWriteBlock(s, tile, block, values);
+    }
+}

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Shaders of the passes: emitters once, then virtual lights one by one or in batches.
+#include "base/isa.h"
+#include "shading/resolve.h"
+
+#include <string.h>
+
+enum { BLOCKS = VPL_TILE_BLOCKS * VPL_TILE_BLOCKS };
+
+static inline int triangleOf(const vplPassUniforms* u, const vplFragments* f)
+{
+    return u->shading->geometry->objects[u->object].firstTriangle + f->primitive;
+}
+
+// The points of a block, which the surface shader has prepared.
+static inline vplPoints pointsOf(const vplPassUniforms* u, const vplFragments* f)
+{
+    vplPoints points;
+    points.surface = (const vplSurface*)f->varying[0];
+    points.plane = u->shading->smooth ? (const vplSurface*)f->varying[VPL_SURFACE_VARYINGS] : points.surface;
+    const int triangle = triangleOf(u, f);
+    for (int l = 0; l < VPL_LANES; l++) {
+        points.triangle[l] = f->covered[l] ? triangle : -1;
+    }
+    return points;
+}
+
+vplFragmentFcn VPL_KERNEL(vplShadeDirect), VPL_KERNEL(vplShadeOneLight), VPL_KERNEL(vplShadeLightBatch);
+vplTileFcn VPL_KERNEL(vplFoldTile), VPL_KERNEL(vplResolveTile);
+
+void VPL_KERNEL(vplShadeDirect)(const void* uniforms, vplFragments* f)
+{
+    const vplPassUniforms* u = uniforms;
+    vplTileSums* sums = f->scratch;
+    const vplPoints points = pointsOf(u, f);
+    vplDirectIrradiance(u->shading, &points, f->plane, &sums->shadowRays);
+    int32_t id[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        id[l] = triangleOf(u, f) + 1;
+    }
+    memcpy(f->plane[VPL_PLANE_TRIANGLE], id, sizeof id);
+}
+
+void VPL_KERNEL(vplShadeOneLight)(const void* uniforms, vplFragments* f)
+{
+    const vplPassUniforms* u = uniforms;
+    const vplShading* s = u->shading;
+    memset(f->plane, 0, 3 * sizeof f->plane[0]);
+    if (s->def->lightShadows == NULL && !s->def->lightRays) {
+        s->lightKernel((const vplSurface*)f->varying[0], s->def->lights + u->first, 1, s->inverseBound,
+                       f->plane);
+        return;
+    }
+    vplTileSums* sums = f->scratch;
+    const vplPoints points = pointsOf(u, f);
+    vplIndirectIrradiance(s, &points, u->first, 1, f->plane, &sums->shadowRays);
+}
+
+// Several lights in one pass. The framebuffer's part of the group goes through the kernel as its starting
+// value, and full groups are folded here, so that each light is added in the same order as one by one.
+void VPL_KERNEL(vplShadeLightBatch)(const void* uniforms, vplFragments* f)
+{
+    const vplPassUniforms* u = uniforms;
+    vplTileSums* sums = f->scratch;
+    const vplPoints points = pointsOf(u, f);
+    const int end = u->first + u->count;
+    for (int first = u->first; first < end;) {
+        const int groupEnd = (first / VPL_LIGHT_GROUP + 1) * VPL_LIGHT_GROUP;
+        const int next = groupEnd < end ? groupEnd : end;
+        vplIndirectIrradiance(u->shading, &points, first, next - first, f->plane, &sums->shadowRays);
+        first = next;
+        for (int c = 0; next == groupEnd && c < 3; c++) {
+            for (int l = 0; l < VPL_LANES; l++) {
+                double* sum = &sums->irradiance[c][f->element + l];
+                *sum += f->covered[l] ? (double)f->plane[c][l] : 0.0;
+                f->plane[c][l] = 0;
+            }
+        }
+    }
+}
+
+void VPL_KERNEL(vplFoldTile)(void* data, vplTile* tile, int worker)
+{
+    (void)data;
+    (void)worker;
+    vplTileSums* sums = tile->scratch;
+    const int rows = (tile->height + VPL_BLOCK_SIDE - 1) / VPL_BLOCK_SIDE;
+    for (int c = 0; c < 3; c++) {
+        float* restrict part = tile->planes[VPL_PLANE_IRRADIANCE + c];
+        double* restrict sum = sums->irradiance[c];
+        for (int i = 0; i < rows * VPL_TILE_BLOCKS * VPL_LANES; i++) {
+            sum[i] += (double)part[i];
+            part[i] = 0;
+        }
+    }
+}
+
+void VPL_KERNEL(vplResolveTile)(void* data, vplTile* tile, int worker)
+{
+    (void)worker;
+    const vplShading* s = data;
+    const vplTileSums* tileSums = tile->scratch;
+    __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
+    for (int block = 0; block < BLOCKS; block++) {
+        int triangles[VPL_LANES];
+        double sums[3][VPL_LANES];
+        vplReadTriangles(tile, block * VPL_LANES, triangles);
+        for (int c = 0; c < 3; c++) {
+            memcpy(sums[c], tileSums->irradiance[c] + block * VPL_LANES, sizeof sums[c]);
+        }
+        vplResolveBlock(s, tile, block, triangles, sums);
+    }
+}
