@@ -54,15 +54,27 @@ static void readFacets(const vplShading* s, const int triangles[VPL_LANES], vplS
     }
 }
 
+// One coordinate of a block: 0 where nothing is, because nothing was written there.
+static void readPlane(const vplTile* tile, int plane, int element, const int triangles[VPL_LANES],
+                      float valueOut[VPL_LANES])
+{
+    float value[VPL_LANES];
+    memcpy(value, tile->planes[plane] + element, sizeof value);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float there = value[l];
+        valueOut[l] = triangles[l] < 0 ? 0 : there;
+    }
+}
+
 // False where it is empty.
 static bool readBlock(const vplShading* s, const vplTile* tile, int element, Block* b)
 {
     if (!vplReadTriangles(tile, element, b->points.triangle)) {
         return false;
     }
-    memcpy(b->surface.px, tile->planes[VPL_PLANE_POSITION] + element, sizeof b->surface.px);
-    memcpy(b->surface.py, tile->planes[VPL_PLANE_POSITION + 1] + element, sizeof b->surface.py);
-    memcpy(b->surface.pz, tile->planes[VPL_PLANE_POSITION + 2] + element, sizeof b->surface.pz);
+    readPlane(tile, VPL_PLANE_POSITION, element, b->points.triangle, b->surface.px);
+    readPlane(tile, VPL_PLANE_POSITION + 1, element, b->points.triangle, b->surface.py);
+    readPlane(tile, VPL_PLANE_POSITION + 2, element, b->points.triangle, b->surface.pz);
     b->points.surface = b->points.plane = &b->surface;
     if (!s->smooth && vplSameTriangle(b->points.triangle)) {
         vplSetNormals(vplGetFacet(s, b->points.triangle[0]).normal, &b->surface);
@@ -76,9 +88,9 @@ static bool readBlock(const vplShading* s, const vplTile* tile, int element, Blo
     b->points.plane = &b->plane;
     memcpy(&b->plane, &b->surface, 3 * sizeof b->surface.px);
     readFacets(s, b->points.triangle, &b->plane, smooth);
-    memcpy(b->surface.nx, tile->planes[VPL_PLANE_NORMAL] + element, sizeof b->surface.nx);
-    memcpy(b->surface.ny, tile->planes[VPL_PLANE_NORMAL + 1] + element, sizeof b->surface.ny);
-    memcpy(b->surface.nz, tile->planes[VPL_PLANE_NORMAL + 2] + element, sizeof b->surface.nz);
+    readPlane(tile, VPL_PLANE_NORMAL, element, b->points.triangle, b->surface.nx);
+    readPlane(tile, VPL_PLANE_NORMAL + 1, element, b->points.triangle, b->surface.ny);
+    readPlane(tile, VPL_PLANE_NORMAL + 2, element, b->points.triangle, b->surface.nz);
     vplFinishNormals(&b->plane, smooth, &b->surface);
     return true;
 }
