@@ -170,9 +170,9 @@ static inline void blendPlane(vplBlend blend, const int32_t covered[VPL_LANES], 
     memcpy(plane, to, sizeof to);
 }
 
-static inline void blendPlanes(vplTileState* state, const vplPipeline* p, int at, int planeCount)
+static inline void blendPlanes(const vplPipeline* p, const vplFragments* f, float* const planes[],
+                               int planeCount)
 {
-    const vplFragments* f = &state->block;
     int32_t covered[VPL_LANES];
     memcpy(covered, f->covered, sizeof covered);
     for (int k = 0; k < planeCount; k++) {
@@ -180,18 +180,18 @@ static inline void blendPlanes(vplTileState* state, const vplPipeline* p, int at
             continue;
         }
         if (p->blend == VPL_BLEND_ADD) {
-            blendPlane(VPL_BLEND_ADD, covered, f->plane[k], state->tile.planes[k] + at);
+            blendPlane(VPL_BLEND_ADD, covered, f->plane[k], planes[k] + f->element);
         } else {
-            blendPlane(VPL_BLEND_REPLACE, covered, f->plane[k], state->tile.planes[k] + at);
+            blendPlane(VPL_BLEND_REPLACE, covered, f->plane[k], planes[k] + f->element);
         }
     }
 }
 
-static inline void runFragmentShader(vplTileState* state, const vplPipeline* p, int planeCount)
+static inline void runFragmentShader(const vplPipeline* p, vplFragments* f, float* const planes[],
+                                     int planeCount)
 {
-    vplFragments* f = &state->block;
     for (int k = 0; p->readsPlanes && k < planeCount; k++) {
-        memcpy(f->plane[k], state->tile.planes[k] + f->element, sizeof f->plane[k]);
+        memcpy(f->plane[k], planes[k] + f->element, sizeof f->plane[k]);
     }
     p->fragment(p->fragmentUniforms, f);
 }
@@ -302,7 +302,7 @@ static void drawFragments(Draw* d, const Setup* s, double z)
     const int at = f->element;
     if (p->writesDepth) {
         makeSurface(d);
-        runFragmentShader(state, p, d->raster->framebuffer.planeCount);
+        runFragmentShader(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
     } else {
         for (int l = 0; l < VPL_LANES; l++) {
             f->depth[l] = clampDepth(z + s->laneZ[l]);
@@ -323,9 +323,9 @@ static void drawFragments(Draw* d, const Setup* s, double z)
     if (p->fragment != NULL) {
         if (!p->writesDepth) {
             makeSurface(d);
-            runFragmentShader(state, p, d->raster->framebuffer.planeCount);
+            runFragmentShader(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
         }
-        blendPlanes(state, p, at, d->raster->framebuffer.planeCount);
+        blendPlanes(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
     }
 }
 
@@ -483,6 +483,9 @@ void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int 
     vplFragments* f = &state->block;
     const int mesh = raster->commands[first].shaded, planeCount = raster->framebuffer.planeCount;
     const size_t varyings = (size_t)keptVaryings(state);
+    float* planes[VPL_MAX_PLANES];
+    memcpy(planes, state->tile.planes, sizeof planes);
+    int64_t fragments = 0;
     for (int i = state->keptStart[mesh]; i < state->keptEnd[mesh]; i++) {
         const vplKeptBlock* kept = (const vplKeptBlock*)(state->kept + (size_t)i * state->keptStride);
         const float* from = (const float*)(kept + 1);
@@ -496,9 +499,10 @@ void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int 
         memcpy(f->varying, from + 2 * VPL_LANES, varyings * sizeof f->varying[0]);
         for (int c = first; c >= 0; c = raster->commands[c].chainNext) {
             const vplPipeline* p = &raster->pipelines[raster->commands[c].pipeline];
-            runFragmentShader(state, p, planeCount);
-            blendPlanes(state, p, kept->element, planeCount);
-            state->fragments += kept->count;
+            runFragmentShader(p, f, planes, planeCount);
+            blendPlanes(p, f, planes, planeCount);
+            fragments += kept->count;
         }
     }
+    state->fragments += fragments;
 }

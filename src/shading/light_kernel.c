@@ -17,7 +17,6 @@ void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const v
                                      int count, float inverseBound, float irradiance[restrict 3][VPL_LANES])
 {
     (void)inverseBound;
-    const vplSurface s = *surface;
     float r[VPL_LANES], g[VPL_LANES], b[VPL_LANES];
     memcpy(r, irradiance[0], sizeof r);
     memcpy(g, irradiance[1], sizeof g);
@@ -25,9 +24,9 @@ void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const v
     for (int i = 0; i < count; i++) {
         const vplShadeLight light = lights[i];
         for (int l = 0; l < VPL_LANES; l++) {
-            float x = light.px - s.px[l], y = light.py - s.py[l], z = light.pz - s.pz[l];
+            float x = light.px - surface->px[l], y = light.py - surface->py[l], z = light.pz - surface->pz[l];
             float d2 = x * x + y * y + z * z;
-            float cosine = s.nx[l] * x + s.ny[l] * y + s.nz[l] * z; // times the distance
+            float cosine = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z; // times the distance
             cosine = cosine > 0 ? cosine : 0;
             d2 = d2 > FLT_MIN ? d2 : FLT_MIN; // 0/0 becomes 0
             cosine = cosine / sqrtf(d2);
@@ -44,7 +43,6 @@ void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const v
 void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
                                    int count, float inverseBound, float irradiance[restrict 3][VPL_LANES])
 {
-    const vplSurface s = *surface;
     float r[VPL_LANES], g[VPL_LANES], b[VPL_LANES];
     memcpy(r, irradiance[0], sizeof r);
     memcpy(g, irradiance[1], sizeof g);
@@ -52,10 +50,11 @@ void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vpl
     for (int i = 0; i < count; i++) {
         const vplShadeLight light = lights[i];
         for (int l = 0; l < VPL_LANES; l++) {
-            float x = light.px - s.px[l], y = light.py - s.py[l], z = light.pz - s.pz[l];
+            float x = light.px - surface->px[l], y = light.py - surface->py[l], z = light.pz - surface->pz[l];
             float d2 = x * x + y * y + z * z;
-            float here = s.nx[l] * x + s.ny[l] * y + s.nz[l] * z;        // d times the cosine here,
-            float there = -(light.nx * x + light.ny * y + light.nz * z); // and at the light
+            float here =
+                surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z; // d times the cosine here,
+            float there = -(light.nx * x + light.ny * y + light.nz * z);      // and at the light
             here = here > 0 ? here : 0;
             there = there > 0 ? there : 0;
             d2 = d2 > FLT_MIN ? d2 : FLT_MIN;
