@@ -78,8 +78,11 @@ typedef struct vplPipeline {
     int surfaceCount;        // varyings there are after it, [varyingCount, VPL_MAX_VARYINGS]
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
-    bool writesDepth;             // the fragment shader replaces depth, and the test uses that; default false
-    bool needsW;                  // shaders read w; without it only varyings bring w along; default false
+    float
+        distanceScale;  // not 0: depth is the distance from the eye of a view of 90 by 90 degrees times this,
+                        // instead of z/w; for draws without fragment shader and depthCompare LESS; default 0
+    bool writesDepth;   // the fragment shader replaces depth, and the test uses that; default false
+    bool needsW;        // shaders read w; without it only varyings bring w along; default false
     bool readsPlanes;   // the fragment shader sees the framebuffer and blends by itself; default false
     bool ownerTest;     // only where the same triangle of the same mesh wrote depth last: of
                         // coplanar surfaces one counts; default false

@@ -52,6 +52,11 @@ typedef struct vplCubeMap {
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
                             void* user, vplCubeMap** mapOut);
 
+// Draws the map again, for a light that moved: the same size, no memory is made for texels. Where it fails, the
+// map's contents are undefined.
+vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
+                            vplProgressFcn* progress, void* user);
+
 // NULL is allowed.
 void vplCubeMap_Destroy(vplCubeMap* map);
 

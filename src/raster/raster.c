@@ -96,6 +96,13 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplPipeline.varyingCount is %d, must be in [0, %d]",
                        pipeline->varyingCount, VPL_MAX_VARYINGS);
     }
+    if (pipeline->distanceScale != 0 &&
+        (pipeline->fragment != NULL || pipeline->depthCompare != VPL_DEPTH_LESS || !pipeline->depthWrite)) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "vplPipeline.distanceScale is %g, must be 0 for draws that do more than write the least depth",
+            (double)pipeline->distanceScale);
+    }
     const bool wrongSurface =
         pipeline->surfaceCount < pipeline->varyingCount || pipeline->surfaceCount > VPL_MAX_VARYINGS;
     if (pipeline->surface != NULL && wrongSurface) {

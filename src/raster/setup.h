@@ -137,26 +137,28 @@ static inline void setUpShares(const vplRaster* r, const vplTriangle* t, const v
     }
 }
 
-// Shares are clamped at 0: that keeps points of the outline within the triangle, and lanes that are not covered
-// finite.
+// Shares of the corners in a block, not yet divided by their sum. Clamped at 0: that keeps points of the outline
+// within the triangle, and lanes that are not covered finite.
+static inline void sharesOf(const Shares* s, int x, int y, float share[3][VPL_LANES])
+{
+    for (int i = 0; i < 3; i++) {
+        const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);
+        for (int l = 0; l < VPL_LANES; l++) {
+            const float v = (float)(at + s->lane[i][l]);
+            share[i][l] = v > 0 ? v : 0;
+        }
+    }
+}
+
 static inline void interpolate(const Shares* s, int varyingCount, int x, int y, vplFragments* f)
 {
-    double at[3];
-    for (int i = 0; i < 3; i++) {
-        at[i] = s->x[i] * x + (s->y[i] * y + s->c[i]);
-    }
-    float b1[VPL_LANES], b2[VPL_LANES];
+    float share[3][VPL_LANES], b1[VPL_LANES], b2[VPL_LANES];
+    sharesOf(s, x, y, share);
     for (int l = 0; l < VPL_LANES; l++) {
-        float s0 = (float)(at[0] + s->lane[0][l]);
-        float s1 = (float)(at[1] + s->lane[1][l]);
-        float s2 = (float)(at[2] + s->lane[2][l]);
-        s0 = s0 > 0 ? s0 : 0;
-        s1 = s1 > 0 ? s1 : 0;
-        s2 = s2 > 0 ? s2 : 0;
-        const float w = 1 / (s0 + s1 + s2);
+        const float w = 1 / (share[0][l] + share[1][l] + share[2][l]);
         f->w[l] = w;
-        b1[l] = s1 * w;
-        b2[l] = s2 * w;
+        b1[l] = share[1][l] * w;
+        b2[l] = share[2][l] * w;
     }
     for (int k = 0; k < varyingCount; k++) {
         // From corner 0, so that what is equal at all corners stays equal in every bit.

@@ -22,7 +22,7 @@ typedef struct Draw {
     Shares* shares;                           // of the triangle, once they are needed
     _Alignas(64) int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e >> 8)
     int owner;
-    bool hasShares, keep, depthOnly, rejects, tightens;
+    bool hasShares, keep, depthOnly, distances, rejects, tightens;
 } Draw;
 
 // ---- coverage
@@ -196,6 +196,14 @@ static inline void runFragmentShader(const vplPipeline* p, vplFragments* f, floa
     p->fragment(p->fragmentUniforms, f);
 }
 
+static inline void needShares(Draw* d)
+{
+    if (!d->hasShares) {
+        setUpShares(d->raster, d->triangle, d->shaded, d->shares);
+        d->hasShares = true;
+    }
+}
+
 // Interpolates, and runs the surface shader.
 static void makeSurface(Draw* d)
 {
@@ -203,10 +211,7 @@ static void makeSurface(Draw* d)
     if (d->shaded->varyingCount == 0 && !d->pipeline->needsW) {
         return;
     }
-    if (!d->hasShares) {
-        setUpShares(d->raster, d->triangle, d->shaded, d->shares);
-        d->hasShares = true;
-    }
+    needShares(d);
     interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
     if (d->pipeline->surface != NULL) {
         d->pipeline->surface(d->pipeline->vertexUniforms, f);
@@ -254,6 +259,32 @@ static inline void drawDepth(vplTileState* state, const Setup* s, double z, int 
     memcpy(passed, state->block.covered, sizeof passed);
     for (int l = 0; l < VPL_LANES; l++) {
         const float v = clampDepth(z + s->laneZ[l]), kept = depth[l];
+        passed[l] = (filled ? -1 : passed[l]) & (v < kept ? -1 : 0);
+        depth[l] = passed[l] ? v : kept;
+        counts[l] -= passed[l];
+    }
+    memcpy(state->depth + at, depth, sizeof depth);
+    memcpy(state->fragmentLanes, counts, sizeof counts);
+}
+
+// Distance from the eye and nothing else. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the
+// Cube Shadow Map"; departs: w is turned into a distance by the texel's own direction.
+static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
+{
+    vplTileState* state = d->state;
+    const float scale = d->pipeline->distanceScale, texel = 2.0f / (float)d->raster->framebuffer.width;
+    const float left = (float)(state->tile.x + x), top = (float)(state->tile.y + y);
+    float depth[VPL_LANES], share[3][VPL_LANES];
+    int32_t counts[VPL_LANES], passed[VPL_LANES];
+    memcpy(depth, state->depth + at, sizeof depth);
+    memcpy(counts, state->fragmentLanes, sizeof counts);
+    memcpy(passed, state->block.covered, sizeof passed);
+    sharesOf(d->shares, state->tile.x + x, state->tile.y + y, share);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float s = (left + (float)(l & 3) + 0.5f) * texel - 1;
+        const float t = 1 - (top + (float)(l >> 2) + 0.5f) * texel;
+        const float w = 1 / (share[0][l] + share[1][l] + share[2][l]);
+        const float v = w * sqrtf(1 + s * s + t * t) * scale, kept = depth[l];
         passed[l] = (filled ? -1 : passed[l]) & (v < kept ? -1 : 0);
         depth[l] = passed[l] ? v : kept;
         counts[l] -= passed[l];
@@ -347,6 +378,14 @@ static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup
         const float most = clampDepth(z + s->mostZ);
         state->farthest[block] = most < state->farthest[block] ? most : state->farthest[block];
     }
+    if (d->distances) {
+        if (filled) {
+            drawDistance(d, x, y, block * VPL_LANES, true);
+        } else {
+            drawDistance(d, x, y, block * VPL_LANES, false);
+        }
+        return;
+    }
     if (d->depthOnly) {
         if (filled) {
             drawDepth(state, s, z, block * VPL_LANES, true);
@@ -420,6 +459,9 @@ static void drawTriangle(Draw* d)
             d->steps[i][l] = s.a[i] * (l & 3) + s.b[i] * (l >> 2);
         }
     }
+    if (d->distances) {
+        needShares(d);
+    }
     if (x1 - x0 <= 1 && y1 - y0 <= 1) { // small: asking pixels at once is less work
         for (int y = y0; y <= y1; y++) {
             for (int x = x0; x <= x1; x++) {
@@ -447,6 +489,7 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
 {
     const vplPipeline* p = &raster->pipelines[command->pipeline];
     const bool nearer = p->depthCompare == VPL_DEPTH_LESS || p->depthCompare == VPL_DEPTH_LESS_EQUAL;
+    const bool byPlane = nearer && !p->writesDepth && p->distanceScale == 0; // depth is the triangle's plane
     Shares shares;
     Draw d = {.state = state,
               .raster = raster,
@@ -454,8 +497,9 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
               .shaded = &raster->shaded[command->shaded],
               .shares = &shares,
               .keep = keep,
-              .rejects = nearer && !p->writesDepth,
-              .tightens = nearer && !p->writesDepth && p->depthWrite && !p->ownerTest};
+              .distances = p->distanceScale != 0,
+              .rejects = byPlane,
+              .tightens = byPlane && p->depthWrite && !p->ownerTest};
     d.depthOnly = p->fragment == NULL && p->depthCompare == VPL_DEPTH_LESS && p->depthWrite &&
                   !p->ownerTest && state->owner == NULL;
     state->block.scratch = state->tile.scratch;

@@ -7,6 +7,8 @@
 #include "visibility/cube_texel.h"
 #include "visibility/shadow.h"
 
+#include <string.h>
+
 enum { CUBE_COOKIE = 0x56504c50 };
 
 vplCubeMapDef vplDefaultCubeMapDef(void)
@@ -38,18 +40,15 @@ bool vplCube_Find(vplVec3 direction, int size, int* face, float* s, float* t, in
     return true;
 }
 
-// What the shaders of one face need.
-typedef struct FaceUniforms {
-    const vplVec3* positions;
+typedef struct Face {
     vplVec3 light;
     vplCubeFrame frame;
-    float near, inverseFar;
-    float texel; // 2 / size
-} FaceUniforms;
+    float near;
+} Face;
 
 // What the vertex shader of one object on one face needs.
 typedef struct ObjectUniforms {
-    const FaceUniforms* face;
+    const Face* face;
     const vplVec3* positions;
 } ObjectUniforms;
 
@@ -66,69 +65,70 @@ static void faceVertices(const void* uniforms, int first, int count, const vplVe
     }
 }
 
-static void faceDistance(const void* uniforms, vplFragments* f)
-{
-    const FaceUniforms* u = uniforms;
-    for (int l = 0; l < VPL_LANES; l++) {
-        float s = ((float)(f->x + (l & 3)) + 0.5f) * u->texel - 1;
-        float t = 1 - ((float)(f->y + (l >> 2)) + 0.5f) * u->texel;
-        f->depth[l] = f->w[l] * sqrtf(1 + s * s + t * t) * u->inverseFar;
-    }
-}
+// The six faces, drawn side by side.
+typedef struct Faces {
+    Face faces[6];
+    vplRaster* rasters[6];
+    vplMesh* meshes;         // one per object
+    ObjectUniforms* objects; // one per object and face
+} Faces;
 
-// One face's share of the progress of all six.
-typedef struct FaceProgress {
-    vplProgressFcn* progress;
-    void* user;
-    int face;
-} FaceProgress;
-
-static bool reportFace(void* user, double fraction)
+static vplResult recordFace(Faces* f, const vplGeometry* g, const vplCubeMap* map, float* texels, int face)
 {
-    const FaceProgress* p = user;
-    return p->progress(p->user, (p->face + fraction) / 6);
-}
-
-static vplResult drawFace(const vplGeometry* g, vplCubeMap* map, float* texels, int face,
-                          const vplMesh* meshes, vplProgressFcn* progress, void* user)
-{
-    vplContext* context = g->context;
-    FaceUniforms faceUniforms = {g->positions, map->position, vplCube_GetFrame(face),
-                                 map->near,    1 / map->far,  2.0f / (float)map->size};
-    ObjectUniforms* objects = vplAlloc(context, (size_t)g->objectCount, sizeof *objects);
-    if (objects == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
     vplFramebuffer framebuffer = vplDefaultFramebuffer(map->size, map->size);
     framebuffer.depth.clear = INFINITY;
     framebuffer.depth.pixels = texels + (size_t)face * (size_t)map->size * (size_t)map->size;
-    vplRaster* raster = NULL;
-    vplResult result = vplRaster_Create(context, &framebuffer, &raster);
+    f->faces[face] = (Face){map->position, vplCube_GetFrame(face), map->near};
+    vplResult result = vplRaster_Create(g->context, &framebuffer, &f->rasters[face]);
     for (int i = 0; i < g->objectCount && result == VPL_SUCCESS; i++) {
-        objects[i] = (ObjectUniforms){&faceUniforms, g->positions + g->objects[i].firstVertex};
+        ObjectUniforms* object = &f->objects[face * g->objectCount + i];
+        *object = (ObjectUniforms){&f->faces[face], g->positions + g->objects[i].firstVertex};
         vplPipeline pipeline = vplDefaultPipeline();
         pipeline.vertex = faceVertices;
-        pipeline.vertexUniforms = &objects[i];
-        pipeline.fragment = faceDistance;
-        pipeline.fragmentUniforms = &faceUniforms;
-        pipeline.writesDepth = true;
-        pipeline.needsW = true;
-        pipeline.planeMask = 0;
-        result = vplRaster_Draw(raster, &meshes[i], &pipeline);
+        pipeline.vertexUniforms = object;
+        pipeline.distanceScale = 1 / map->far;
+        result = vplRaster_Draw(f->rasters[face], &f->meshes[i], &pipeline);
     }
-    vplRasterStats stats = {0};
+    return result;
+}
+
+static void addStats(vplRasterStats* sum, const vplRasterStats* stats)
+{
+    sum->drawCalls += stats->drawCalls;
+    sum->fragments += stats->fragments;
+    sum->trianglesIn += stats->trianglesIn;
+    sum->trianglesBinned += stats->trianglesBinned;
+    sum->vertexMs += stats->vertexMs;
+    sum->tilesMs += stats->tilesMs;
+}
+
+static vplResult drawFaces(const vplGeometry* g, vplCubeMap* map, vplProgressFcn* progress, void* user)
+{
+    vplContext* context = g->context;
+    const size_t count = (size_t)g->objectCount;
+    Faces f = {.meshes = vplAlloc(context, count, sizeof *f.meshes),
+               .objects = vplAlloc(context, 6 * count, sizeof *f.objects)};
+    vplResult result = f.meshes && f.objects ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    for (int i = 0; result == VPL_SUCCESS && i < g->objectCount; i++) {
+        const vplGeometryObject* o = &g->objects[i];
+        f.meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+    }
+    for (int face = 0; face < 6 && result == VPL_SUCCESS; face++) {
+        result = recordFace(&f, g, map, (float*)map->texels, face);
+    }
+    vplRasterStats stats[6];
     if (result == VPL_SUCCESS) {
-        FaceProgress faceProgress = {progress, user, face};
-        result = vplRaster_Run(raster, progress ? reportFace : NULL, &faceProgress, &stats);
+        result = vplRaster_RunAll(f.rasters, 6, progress, user, stats);
     }
-    map->stats.drawCalls += stats.drawCalls;
-    map->stats.fragments += stats.fragments;
-    map->stats.trianglesIn += stats.trianglesIn;
-    map->stats.trianglesBinned += stats.trianglesBinned;
-    map->stats.vertexMs += stats.vertexMs;
-    map->stats.tilesMs += stats.tilesMs;
-    vplRaster_Destroy(raster);
-    vplFree(context, objects);
+    memset(&map->stats, 0, sizeof map->stats);
+    for (int face = 0; face < 6; face++) {
+        if (result == VPL_SUCCESS) {
+            addStats(&map->stats, &stats[face]);
+        }
+        vplRaster_Destroy(f.rasters[face]);
+    }
+    vplFree(context, f.objects);
+    vplFree(context, f.meshes);
     return result;
 }
 
@@ -158,15 +158,11 @@ static vplResult checkDef(const vplContext* context, const vplCubeMapDef* def)
     return VPL_SUCCESS;
 }
 
-// One mesh per object. They must outlive the runs that draw them.
-static vplMesh* makeMeshes(const vplGeometry* g)
+static void place(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def)
 {
-    vplMesh* meshes = vplAlloc(g->context, (size_t)g->objectCount, sizeof *meshes);
-    for (int i = 0; meshes != NULL && i < g->objectCount; i++) {
-        const vplGeometryObject* o = &g->objects[i];
-        meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
-    }
-    return meshes;
+    map->position = def->position;
+    map->far = def->far > 0 ? def->far : farthestVertex(geometry, def->position);
+    map->near = def->near > 0 ? def->near : map->far * 0x1p-20f;
 }
 
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
@@ -179,29 +175,37 @@ vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* de
     }
     vplCubeMap* map = vplAllocZero(context, 1, sizeof *map);
     float* texels = vplAlloc(context, 6 * (size_t)def->size * (size_t)def->size, sizeof(float));
-    vplMesh* meshes = makeMeshes(geometry);
-    if (map == NULL || texels == NULL || meshes == NULL) {
+    if (map == NULL || texels == NULL) {
         vplFree(context, map);
         vplFree(context, texels);
-        vplFree(context, meshes);
         return VPL_OUT_OF_MEMORY;
     }
     map->context = context;
     map->texels = texels;
-    map->position = def->position;
     map->size = def->size;
-    map->far = def->far > 0 ? def->far : farthestVertex(geometry, def->position);
-    map->near = def->near > 0 ? def->near : map->far * 0x1p-20f;
-    for (int face = 0; face < 6 && result == VPL_SUCCESS; face++) {
-        result = drawFace(geometry, map, texels, face, meshes, progress, user);
-    }
-    vplFree(context, meshes);
+    place(map, geometry, def);
+    result = drawFaces(geometry, map, progress, user);
     if (result != VPL_SUCCESS) {
         vplCubeMap_Destroy(map);
         return result;
     }
     *mapOut = map;
     return VPL_SUCCESS;
+}
+
+vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
+                            vplProgressFcn* progress, void* user)
+{
+    const vplResult result = checkDef(map->context, def);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    if (def->size != map->size) {
+        return vplFail(map->context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be the map's %d",
+                       def->size, map->size);
+    }
+    place(map, geometry, def);
+    return drawFaces(geometry, map, progress, user);
 }
 
 void vplCubeMap_Destroy(vplCubeMap* map)
