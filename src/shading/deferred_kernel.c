@@ -30,6 +30,8 @@ void VPL_KERNEL(vplWriteGbuffer)(const void* uniforms, vplFragments* f)
 typedef struct Block {
     _Alignas(64) vplSurface surface, plane; // `plane` only where some object is smooth
     vplPoints points;
+    vplReflector reflector; // where all lanes show one triangle
+    bool same;
     double sums[3][VPL_LANES];
 } Block;
 
@@ -70,24 +72,30 @@ static void readPlane(const vplTile* tile, int plane, int element, const int tri
 static bool readBlock(const vplShading* s, const vplTile* tile, int element, Block* b)
 {
     if (!vplReadTriangles(tile, element, b->points.triangle)) {
+        b->same = true;
         return false;
     }
     readPlane(tile, VPL_PLANE_POSITION, element, b->points.triangle, b->surface.px);
     readPlane(tile, VPL_PLANE_POSITION + 1, element, b->points.triangle, b->surface.py);
     readPlane(tile, VPL_PLANE_POSITION + 2, element, b->points.triangle, b->surface.pz);
     b->points.surface = b->points.plane = &b->surface;
-    if (!s->smooth && vplSameTriangle(b->points.triangle)) {
-        vplSetNormals(vplGetFacet(s, b->points.triangle[0]).normal, &b->surface);
-        return true;
-    }
+    b->same = vplSameTriangle(b->points.triangle);
     int32_t smooth[VPL_LANES];
+    vplSurface* flat = s->smooth ? &b->plane : &b->surface;
+    if (b->same) {
+        const vplFacet facet = vplGetFacet(s, b->points.triangle[0]);
+        const vplGeometry* g = s->geometry;
+        vplSetNormals(facet.normal, flat);
+        b->reflector = vplReflectorOf(s, &facet);
+        memset(smooth, g->objects[g->owners[b->points.triangle[0]]].smooth ? 0xff : 0, sizeof smooth);
+    } else {
+        readFacets(s, b->points.triangle, flat, smooth);
+    }
     if (!s->smooth) {
-        readFacets(s, b->points.triangle, &b->surface, smooth);
         return true;
     }
     b->points.plane = &b->plane;
     memcpy(&b->plane, &b->surface, 3 * sizeof b->surface.px);
-    readFacets(s, b->points.triangle, &b->plane, smooth);
     readPlane(tile, VPL_PLANE_NORMAL, element, b->points.triangle, b->surface.nx);
     readPlane(tile, VPL_PLANE_NORMAL + 1, element, b->points.triangle, b->surface.ny);
     readPlane(tile, VPL_PLANE_NORMAL + 2, element, b->points.triangle, b->surface.nz);
@@ -131,6 +139,15 @@ static vplBounds findBounds(const Block* blocks, const int* lit, int count)
     return bounds;
 }
 
+static void startSums(Block* b, float part[3][VPL_LANES])
+{
+    for (int c = 0; c < 3; c++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            b->sums[c][l] = (double)part[c][l];
+        }
+    }
+}
+
 static void addGroup(Block* b, float part[3][VPL_LANES])
 {
     for (int c = 0; c < 3; c++) {
@@ -166,17 +183,22 @@ static void addShadowedLights(const vplShading* s, Block* b, int first, int coun
     addGroup(b, part);
 }
 
+// Block i of a square.
+static inline int blockOf(int firstBlock, int i)
+{
+    return firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE;
+}
+
 static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, Block blocks[SQUARE_BLOCKS])
 {
     vplTileSums* tileSums = tile->scratch;
     int lit[SQUARE_BLOCKS], litCount = 0;
     for (int i = 0; i < SQUARE_BLOCKS; i++) {
         Block* b = &blocks[i];
-        memset(b->sums, 0, sizeof b->sums);
-        if (readBlock(s, tile, (firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE) * VPL_LANES, b)) {
+        if (readBlock(s, tile, blockOf(firstBlock, i) * VPL_LANES, b)) {
             _Alignas(64) float part[3][VPL_LANES];
             vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
-            addGroup(b, part);
+            startSums(b, part);
             lit[litCount++] = i;
         }
     }
@@ -196,9 +218,23 @@ static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, Bloc
             addShadowedLights(s, &blocks[lit[i]], first, count, &tileSums->shadowRays);
         }
     }
+}
+
+static void writeSquare(const vplShading* s, const vplTile* tile, int firstBlock, Block blocks[SQUARE_BLOCKS])
+{
     for (int i = 0; i < SQUARE_BLOCKS; i++) {
-        vplResolveBlock(s, tile, firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE,
-                        blocks[i].points.triangle, blocks[i].sums);
+        Block* b = &blocks[i];
+        float radiance[3][VPL_LANES] = {{0}};
+        if (b->same && b->points.triangle[0] < 0) {
+            vplWriteBlock(s, tile, blockOf(firstBlock, i), radiance);
+            continue;
+        }
+        if (b->same) {
+            vplResolveSame(&b->reflector, b->sums, radiance);
+        } else {
+            vplResolveMixed(s, b->points.triangle, b->sums, radiance);
+        }
+        vplWriteBlock(s, tile, blockOf(firstBlock, i), radiance);
     }
 }
 
@@ -211,7 +247,9 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
     for (int square = 0; square < SQUARES * SQUARES; square++) {
         const int x = square % SQUARES, y = square / SQUARES;
         if (x * SQUARE * VPL_BLOCK_SIDE < tile->width && y * SQUARE * VPL_BLOCK_SIDE < tile->height) {
-            lightSquare(s, tile, (y * VPL_TILE_BLOCKS + x) * SQUARE, blocks);
+            const int firstBlock = (y * VPL_TILE_BLOCKS + x) * SQUARE;
+            lightSquare(s, tile, firstBlock, blocks);
+            writeSquare(s, tile, firstBlock, blocks);
         }
     }
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);

@@ -108,6 +108,13 @@ void VPL_KERNEL(vplResolveTile)(void* data, vplTile* tile, int worker)
         for (int c = 0; c < 3; c++) {
             memcpy(sums[c], tileSums->irradiance[c] + block * VPL_LANES, sizeof sums[c]);
         }
-        vplResolveBlock(s, tile, block, triangles, sums);
+        float radiance[3][VPL_LANES];
+        if (vplSameTriangle(triangles)) {
+            const vplReflector r = vplGetReflector(s, triangles[0]);
+            vplResolveSame(&r, sums, radiance);
+        } else {
+            vplResolveMixed(s, triangles, sums, radiance);
+        }
+        vplWriteBlock(s, tile, block, radiance);
     }
 }

@@ -36,44 +36,78 @@ typedef struct vplReflector {
     float emission[3];
 } vplReflector;
 
+static inline vplReflector vplReflectorOf(const vplShading* s, const vplFacet* f)
+{
+    const double scale = 1 / VPL_PI;
+    vplReflector r = {{f->rho.r * scale, f->rho.g * scale, f->rho.b * scale}, {0, 0, 0}};
+    if (s->def->emission) {
+        r.emission[0] = f->emission.r;
+        r.emission[1] = f->emission.g;
+        r.emission[2] = f->emission.b;
+    }
+    return r;
+}
+
 static inline vplReflector vplGetReflector(const vplShading* s, int triangle)
 {
     if (triangle < 0) {
         return (vplReflector){{0, 0, 0}, {0, 0, 0}};
     }
     const vplFacet f = vplGetFacet(s, triangle);
-    const double scale = 1 / VPL_PI;
-    vplReflector r = {{f.rho.r * scale, f.rho.g * scale, f.rho.b * scale}, {0, 0, 0}};
-    if (s->def->emission) {
-        r.emission[0] = f.emission.r;
-        r.emission[1] = f.emission.g;
-        r.emission[2] = f.emission.b;
-    }
-    return r;
+    return vplReflectorOf(s, &f);
 }
 
-static inline void vplResolveBlock(const vplShading* s, const vplTile* tile, int block,
-                                   const int triangles[VPL_LANES], double sums[3][VPL_LANES])
+// Writes three values per pixel of a block to the picture.
+static inline void vplWriteBlock(const vplShading* shading, const vplTile* tile, int block,
+                                 float values[3][VPL_LANES])
 {
-    float radiance[3][VPL_LANES];
-    vplReflector r = vplGetReflector(s, triangles[0]);
-    if (vplSameTriangle(triangles)) {
-        for (int c = 0; c < 3; c++) {
-            for (int l = 0; l < VPL_LANES; l++) {
-                radiance[c][l] = (float)(r.emission[c] + r.factor[c] * sums[c][l]);
-            }
-        }
-    } else {
-        for (int l = 0; l < VPL_LANES; l++) {
-            if (l > 0 && triangles[l] != triangles[l - 1]) {
-                r = vplGetReflector(s, triangles[l]);
-            }
-            for (int c = 0; c < 3; c++) {
-                radiance[c][l] = (float)(r.emission[c] + r.factor[c] * sums[c][l]);
-            }
+    vplImage* image = shading->image;
+    const int x = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, y = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
+    // Rows start where vectors do: what is read back must have been written in one piece.
+    _Alignas(64) float rows[VPL_BLOCK_SIDE][VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        float* pixel = &rows[l / VPL_BLOCK_SIDE][3 * (l % VPL_BLOCK_SIDE)];
+        pixel[0] = values[0][l];
+        pixel[1] = values[1][l];
+        pixel[2] = values[2][l];
+    }
+    const size_t pitch = 3 * (size_t)image->width;
+    float* to = image->pixels + (size_t)(tile->y + y) * pitch + 3 * (size_t)(tile->x + x);
+    const int width = tile->width - x < VPL_BLOCK_SIDE ? tile->width - x : VPL_BLOCK_SIDE;
+    for (int row = 0; row < VPL_BLOCK_SIDE && y + row < tile->height && width > 0; row++, to += pitch) {
+        if (width == VPL_BLOCK_SIDE) {
+            memcpy(to, rows[row], 3 * VPL_BLOCK_SIDE * sizeof(float));
+        } else {
+            memcpy(to, rows[row], 3 * (size_t)width * sizeof(float));
         }
     }
-    vplWriteBlock(s, tile, block, radiance);
+}
+
+// One triangle in all lanes.
+static inline void vplResolveSame(const vplReflector* r, double sums[3][VPL_LANES],
+                                  float radiance[3][VPL_LANES])
+{
+    for (int c = 0; c < 3; c++) {
+        const double factor = r->factor[c];
+        const float emission = r->emission[c];
+        for (int l = 0; l < VPL_LANES; l++) {
+            radiance[c][l] = (float)(emission + factor * sums[c][l]);
+        }
+    }
+}
+
+static inline void vplResolveMixed(const vplShading* s, const int triangles[VPL_LANES],
+                                   double sums[3][VPL_LANES], float radiance[3][VPL_LANES])
+{
+    vplReflector r = vplGetReflector(s, triangles[0]);
+    for (int l = 0; l < VPL_LANES; l++) {
+        if (l > 0 && triangles[l] != triangles[l - 1]) {
+            r = vplGetReflector(s, triangles[l]);
+        }
+        for (int c = 0; c < 3; c++) {
+            radiance[c][l] = (float)(r.emission[c] + r.factor[c] * sums[c][l]);
+        }
+    }
 }
 
 #endif

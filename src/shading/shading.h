@@ -107,9 +107,6 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
                            float irradiance[3][VPL_LANES], int64_t* rays);
 
-// Writes three values per pixel of a block to the picture.
-void vplWriteBlock(const vplShading* shading, const vplTile* tile, int block, float values[3][VPL_LANES]);
-
 // What runs per block or per tile, compiled for an instruction set.
 typedef struct vplShadingKernels {
     vplFragmentFcn* surface;    // surface shader of all camera passes
