@@ -62,8 +62,10 @@ typedef struct vplRenderOptions {
 
     vplAccumulation accumulation; // default VPL_ACCUMULATE_DEFERRED
     int batch;                    // virtual lights per pass, [1, VPL_MAX_LIGHTS]; default 64; batched only
-    float minDistance;            // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
-                                  // (default): the radius of a disc with one light's share of the area
+    int interleave;    // K: each pixel meets every K^2-th virtual light, [1, VPL_MAX_INTERLEAVE]; default 4;
+                       // interleaved only
+    float minDistance; // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
+                       // (default): the radius of a disc with one light's share of the area
 
     vplLightShadows lightShadows; // of virtual lights; RAY also replaces the emitters' shadow maps; default
                                   // VPL_LIGHT_SHADOWS_NONE

@@ -15,6 +15,9 @@ extern "C" {
 // add up (a plain float sum stops growing at 2^24 of them).
 enum { VPL_LIGHT_GROUP = 64 };
 
+// Largest side of the square of pixels that share the virtual lights of interleaved shading.
+enum { VPL_MAX_INTERLEAVE = 16 };
+
 // A camera at work.
 typedef struct vplView {
     vplVec3 eye, right, up, forward; // right-handed, unit
@@ -45,11 +48,12 @@ void vplAccumulateLights(const vplContext* context, vplLighting lighting, float 
                          const vplSurface* surface, const vplShadeLight* lights, int count,
                          float irradiance[3][VPL_LANES]);
 
-// How virtual lights reach the pixels. All give the same bits.
+// How virtual lights reach the pixels. The first three give the same bits.
 typedef enum vplAccumulation {
     VPL_ACCUMULATE_MULTIPASS = 0, // one pass over the scene per light, depth EQUAL, additive
     VPL_ACCUMULATE_BATCHED,       // one pass per `batch` lights
-    VPL_ACCUMULATE_DEFERRED       // one pass for a G-buffer, then all lights per tile
+    VPL_ACCUMULATE_DEFERRED,      // one pass for a G-buffer, then all lights per tile
+    VPL_ACCUMULATE_INTERLEAVED // every K^2-th light per pixel; K x K pixels of a surface share what they got
 } vplAccumulation;
 
 // What the picture shows.
@@ -65,6 +69,7 @@ typedef struct vplShadeDef {
     vplAccumulation accumulation;
     vplShadeOutput output;
     int batch;                     // lights per pass, >= 1; batched only
+    int interleave;                // K, [1, VPL_MAX_INTERLEAVE]; interleaved only; 1 is deferred
     float minDistance;             // metres, >= 0; 0 is unbounded; physical only
     const vplEmitterDef* emitters; // emitters that light directly; documented: point emitters only
     const vplShadow* shadows;   // one per emitter; where its map is NULL, and for directional emitters, rays

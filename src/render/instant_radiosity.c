@@ -224,6 +224,7 @@ static vplResult shade(vplJob* job, const Ingredients* in)
                  : o->show == VPL_SHOW_SHADOW_FACTOR ? VPL_OUTPUT_SHADOW_FACTOR
                                                      : VPL_OUTPUT_RADIANCE;
     def.batch = o->batch;
+    def.interleave = o->interleave;
     def.minDistance = in->minDistance;
     def.emitters = in->emitters;
     def.shadows = in->emitterMaps.shadows;

@@ -15,6 +15,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.reflectivity = 0.5;
     o.accumulation = VPL_ACCUMULATE_DEFERRED;
     o.batch = 64;
+    o.interleave = 4;
     o.minDistance = -1;
     o.lightMapSize = 128;
     o.lampLights = 64;
@@ -58,8 +59,9 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"particles", o->particles, 0, VPL_MAX_LIGHTS},
         {"sampler", (int)o->sampler, 0, VPL_SAMPLER_HAMMERSLEY},
         {"bounce", (int)o->bounce, 0, VPL_BOUNCE_DIFFUSE},
-        {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_DEFERRED},
+        {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_INTERLEAVED},
         {"batch", o->batch, 1, VPL_MAX_LIGHTS},
+        {"interleave", o->interleave, 1, VPL_MAX_INTERLEAVE},
         {"particleGeometry", (int)o->particleGeometry, 0, VPL_PARTICLE_GEOMETRY_OBB},
         {"lightShadows", (int)o->lightShadows, 0, VPL_LIGHT_SHADOWS_RAY},
         {"lightMapSize", o->lightMapSize, 1, VPL_MAX_SHADOW_MAP},

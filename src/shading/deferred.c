@@ -20,5 +20,6 @@ vplResult vplRecordDeferred(const vplShading* shading, vplRaster* raster)
         return result;
     }
     const bool light = shading->def->output == VPL_OUTPUT_RADIANCE;
-    return vplRaster_TileTask(raster, light ? kernels.light : kernels.show, (void*)shading);
+    vplTileFcn* lights = shading->interleave != NULL ? kernels.interleaved : kernels.light;
+    return vplRaster_TileTask(raster, light ? lights : kernels.show, (void*)shading);
 }

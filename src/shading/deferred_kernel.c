@@ -26,33 +26,7 @@ void VPL_KERNEL(vplWriteGbuffer)(const void* uniforms, vplFragments* f)
 
 // ---- light
 
-// Virtual lights first .. first + count - 1, without those that face away from all blocks or the other way round.
-static void addLights(const vplShading* s, vplBlock* blocks, const int* lit, int litCount,
-                      const vplBounds* bounds, int first, int count)
-{
-    int32_t keep[VPL_LIGHT_GROUP];
-    vplShadeLight kept[VPL_LIGHT_GROUP];
-    int keptCount = 0;
-    s->cull(bounds, s->columns, first, count, keep);
-    for (int i = 0; i < count; i++) {
-        kept[keptCount] = s->def->lights[first + i];
-        keptCount += keep[i];
-    }
-    for (int i = 0; keptCount > 0 && i < litCount; i++) {
-        _Alignas(64) float part[3][VPL_LANES] = {{0}};
-        s->lightKernel(&blocks[lit[i]].surface, kept, keptCount, s->inverseBound, part);
-        vplAddGroup(&blocks[lit[i]], part);
-    }
-}
-
-static void addShadowedLights(const vplShading* s, vplBlock* b, int first, int count, int64_t* rays)
-{
-    _Alignas(64) float part[3][VPL_LANES] = {{0}};
-    vplIndirectIrradiance(s, &b->points, first, count, part, rays);
-    vplAddGroup(b, part);
-}
-
-// vplBlock i of a square.
+// Block i of a square.
 static inline int blockOf(int firstBlock, int i)
 {
     return firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE;
@@ -71,22 +45,13 @@ static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplB
             lit[litCount++] = i;
         }
     }
-    const int lightCount = s->def->lightCount;
-    const bool culls = lightCount > 0 && litCount > 0 && s->columns[0] != NULL;
+    const bool culls = s->columns[0] != NULL && litCount > 0;
     vplBounds bounds = {{0}, {0}};
     if (culls) {
         bounds = vplFindBounds(blocks, lit, litCount);
     }
-    for (int first = 0; first < lightCount; first += VPL_LIGHT_GROUP) {
-        const int count = lightCount - first < VPL_LIGHT_GROUP ? lightCount - first : VPL_LIGHT_GROUP;
-        if (culls) {
-            addLights(s, blocks, lit, litCount, &bounds, first, count);
-            continue;
-        }
-        for (int i = 0; i < litCount; i++) {
-            addShadowedLights(s, &blocks[lit[i]], first, count, &tileSums->shadowRays);
-        }
-    }
+    vplAddLights(s, blocks, lit, litCount, culls ? &bounds : NULL, 0, s->def->lightCount,
+                 &tileSums->shadowRays);
 }
 
 void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)

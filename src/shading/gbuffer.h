@@ -136,6 +136,48 @@ static inline void vplAddGroup(vplBlock* b, float part[3][VPL_LANES])
     }
 }
 
+// Virtual lights first .. first + count - 1, without those that face away from all blocks or the other way round.
+static inline void vplAddKeptLights(const vplShading* s, vplBlock* blocks, const int* lit, int litCount,
+                                    const vplBounds* bounds, int first, int count)
+{
+    int32_t keep[VPL_LIGHT_GROUP];
+    vplShadeLight kept[VPL_LIGHT_GROUP];
+    int keptCount = 0;
+    s->cull(bounds, s->columns, first, count, keep);
+    for (int i = 0; i < count; i++) {
+        kept[keptCount] = s->def->lights[first + i];
+        keptCount += keep[i];
+    }
+    for (int i = 0; keptCount > 0 && i < litCount; i++) {
+        _Alignas(64) float part[3][VPL_LANES] = {{0}};
+        s->lightKernel(&blocks[lit[i]].surface, kept, keptCount, s->inverseBound, part);
+        vplAddGroup(&blocks[lit[i]], part);
+    }
+}
+
+static inline void vplAddShadowedLights(const vplShading* s, vplBlock* b, int first, int count, int64_t* rays)
+{
+    _Alignas(64) float part[3][VPL_LANES] = {{0}};
+    vplIndirectIrradiance(s, &b->points, first, count, part, rays);
+    vplAddGroup(b, part);
+}
+
+// Virtual lights first .. first + count - 1, in groups. Without bounds none is left out.
+static inline void vplAddLights(const vplShading* s, vplBlock* blocks, const int* lit, int litCount,
+                                const vplBounds* bounds, int first, int count, int64_t* rays)
+{
+    for (const int end = first + count; first < end; first += VPL_LIGHT_GROUP) {
+        const int group = end - first < VPL_LIGHT_GROUP ? end - first : VPL_LIGHT_GROUP;
+        if (bounds != NULL) {
+            vplAddKeptLights(s, blocks, lit, litCount, bounds, first, group);
+            continue;
+        }
+        for (int i = 0; i < litCount; i++) {
+            vplAddShadowedLights(s, &blocks[lit[i]], first, group, rays);
+        }
+    }
+}
+
 // Sums become radiance and pixels of block `block` of the tile.
 static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
 {

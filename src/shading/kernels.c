@@ -15,15 +15,17 @@ VPL_KERNEL_TABLE(DIRECT, vplFragmentFcn, vplShadeDirect);
 VPL_KERNEL_TABLE(ONE_LIGHT, vplFragmentFcn, vplShadeOneLight);
 VPL_KERNEL_TABLE(LIGHT_BATCH, vplFragmentFcn, vplShadeLightBatch);
 VPL_KERNEL_TABLE(LIGHT_TILE, vplTileFcn, vplLightTile);
+VPL_KERNEL_TABLE(INTERLEAVED_TILE, vplTileFcn, vplInterleaveTile);
+VPL_KERNEL_TABLE(GATHER_TILE, vplTaskFcn, vplGatherTile);
 VPL_KERNEL_TABLE(SHOW_TILE, vplTileFcn, vplShowTile);
 VPL_KERNEL_TABLE(FOLD_TILE, vplTileFcn, vplFoldTile);
 VPL_KERNEL_TABLE(RESOLVE_TILE, vplTileFcn, vplResolveTile);
 
 vplShadingKernels vplGetShadingKernels(vplIsa isa)
 {
-    return (vplShadingKernels){SURFACE[isa],   GBUFFER[isa],     DIRECT[isa],
-                               ONE_LIGHT[isa], LIGHT_BATCH[isa], LIGHT_TILE[isa],
-                               SHOW_TILE[isa], FOLD_TILE[isa],   RESOLVE_TILE[isa]};
+    return (vplShadingKernels){SURFACE[isa],     GBUFFER[isa],    DIRECT[isa],           ONE_LIGHT[isa],
+                               LIGHT_BATCH[isa], LIGHT_TILE[isa], INTERLEAVED_TILE[isa], GATHER_TILE[isa],
+                               SHOW_TILE[isa],   FOLD_TILE[isa],  RESOLVE_TILE[isa]};
 }
 
 vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting)

@@ -22,6 +22,11 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1",
                        def->batch);
     }
+    if (def->accumulation == VPL_ACCUMULATE_INTERLEAVED &&
+        (def->interleave < 1 || def->interleave > VPL_MAX_INTERLEAVE)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.interleave is %d, must be in [1, %d]",
+                       def->interleave, VPL_MAX_INTERLEAVE);
+    }
     if (!(def->lampMinDistance >= 0 && isfinite(def->lampMinDistance))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplShadeDef.lampMinDistance is %g, must be finite and >= 0",
@@ -81,7 +86,8 @@ static vplResult makeColumns(vplShading* s)
         return VPL_SUCCESS;
     }
     const size_t groups = ((size_t)def->lightCount + VPL_LIGHT_GROUP - 1) / VPL_LIGHT_GROUP;
-    const size_t padded = groups * VPL_LIGHT_GROUP;
+    // Whole vectors are read, of interleaved lights from anywhere on.
+    const size_t padded = groups * VPL_LIGHT_GROUP + VPL_LANES;
     float* storage = vplAllocZero(s->geometry->context, 6 * padded, sizeof *storage);
     if (storage == NULL) {
         return VPL_OUT_OF_MEMORY;
@@ -121,7 +127,9 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     shading.smooth = geometry->shadingNormals != NULL;
     vplShadeStats stats = {0};
     shading.shadowRays = &stats.shadowRays;
-    bool deferred = def->accumulation == VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
+    bool deferred = def->accumulation >= VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
+    bool interleaved = def->accumulation == VPL_ACCUMULATE_INTERLEAVED && def->interleave > 1 &&
+                       def->lightCount > 0 && def->output == VPL_OUTPUT_RADIANCE;
     vplFramebuffer framebuffer = vplDefaultFramebuffer(view->width, view->height);
     framebuffer.planeCount = deferred ? VPL_PLANE_POSITION + 3 : VPL_PLANE_TRIANGLE + 1;
     framebuffer.scratchBytes = deferred ? offsetof(vplTileSums, irradiance) : sizeof(vplTileSums);
@@ -134,6 +142,9 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     result = makeObjects(&shading);
     if (result == VPL_SUCCESS) {
         result = makeEmitters(&shading);
+    }
+    if (result == VPL_SUCCESS && interleaved) {
+        result = vplOpenInterleave(&shading, &framebuffer);
     }
     if (result == VPL_SUCCESS && deferred) {
         result = makeColumns(&shading);
@@ -148,10 +159,14 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     if (result == VPL_SUCCESS) {
         result = vplRaster_Run(raster, progress, user, &stats.raster);
     }
+    if (result == VPL_SUCCESS && interleaved) {
+        result = vplGatherInterleaved(&shading, progress, user);
+    }
     if (result == VPL_SUCCESS && statsOut != NULL) {
         *statsOut = stats;
     }
     vplRaster_Destroy(raster);
+    vplCloseInterleave(&shading);
     vplFree(context, uniforms);
     vplFree(context, shading.columns[0]);
     vplFree(context, shading.emitters);

@@ -53,6 +53,7 @@ typedef struct vplShading {
     struct vplObjectUniforms* objects; // one per object
     vplEmitterRay* emitters;           // one per emitter
     int64_t* shadowRays;               // counted atomically: sums of integers do not depend on the order
+    struct vplInterleave* interleave;  // NULL: every pixel meets every light
 } vplShading;
 
 // What a block of pixels shows.
@@ -68,7 +69,9 @@ enum {
     VPL_PLANE_IRRADIANCE = 0, // 3 planes: the light group being summed; not in deferred shading, where
     VPL_PLANE_NORMAL = 0,     // 3 planes: interpolated normals, of smooth geometry
     VPL_PLANE_TRIANGLE = 3,   // bits of an int: 1 + index in geometry->normals, 0 where nothing is
-    VPL_PLANE_POSITION = 4    // 3 planes, deferred only
+    VPL_PLANE_POSITION = 4,   // 3 planes, deferred only
+    VPL_PLANE_INDIRECT = 4,   // 3 planes, interleaved only: irradiance, once positions have done their work
+    VPL_PLANE_DISTANCE = 7    // along the view axis, interleaved only
 };
 
 // Scratch of a tile. Deferred shading needs the first number only.
@@ -114,10 +117,12 @@ typedef struct vplShadingKernels {
     vplFragmentFcn* direct;     // emitters,
     vplFragmentFcn* oneLight;   // one virtual light,
     vplFragmentFcn* lightBatch; // several
-    vplTileFcn* light;   // tile tasks, data is the vplShading: lights the G-buffer and writes the picture,
-    vplTileFcn* show;    // shows depth, normals or shadow factor instead,
-    vplTileFcn* fold;    // moves a finished group of lights from the planes to the sums,
-    vplTileFcn* resolve; // turns sums into radiance and writes the picture
+    vplTileFcn* light; // tile tasks, data is the vplShading: lights the G-buffer and writes the picture,
+    vplTileFcn* interleaved; // lights each pixel by the lights of its class,
+    vplTaskFcn* gather;      // tasks, data is the vplShading: mixes the classes,
+    vplTileFcn* show;        // shows depth, normals or shadow factor instead,
+    vplTileFcn* fold;        // moves a finished group of lights from the planes to the sums,
+    vplTileFcn* resolve;     // turns sums into radiance and writes the picture
 } vplShadingKernels;
 
 vplShadingKernels vplGetShadingKernels(vplIsa isa);
@@ -132,6 +137,12 @@ typedef struct vplPassUniforms {
 // The pipelines: record all draws and tile tasks.
 vplResult vplRecordPasses(const vplShading* shading, vplRaster* raster, void** uniformsOut);
 vplResult vplRecordDeferred(const vplShading* shading, vplRaster* raster);
+
+// Interleaved shading: sorts the lights and makes planes for the framebuffer; replaces shading->def. Then, after
+// the tiles, the second step.
+vplResult vplOpenInterleave(vplShading* shading, vplFramebuffer* framebuffer);
+vplResult vplGatherInterleaved(const vplShading* shading, vplProgressFcn* progress, void* user);
+void vplCloseInterleave(vplShading* shading);
 
 // A pipeline set up for the camera; the fragment shader is the caller's.
 vplPipeline vplCameraPipeline(const vplShading* shading, int object);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// What interleaved shading keeps between its two steps: lighting, and gathering what neighbours received.
+#ifndef VPL_SHADING_GATHER_H
+#define VPL_SHADING_GATHER_H
+
+#include "shading/shading.h"
+
+enum {
+    VPL_GATHER_WIDTH = 64,                             // pixels of a task of the second step
+    VPL_GATHER_HEIGHT = 32,                            // 16, 64 and 128 take as long or longer
+    VPL_GATHER_COLUMNS = VPL_GATHER_WIDTH + VPL_LANES, // with the windows of the outermost pixels,
+    VPL_GATHER_ROWS = VPL_GATHER_HEIGHT + VPL_MAX_INTERLEAVE - 1,
+    VPL_GATHER_RUNS = VPL_GATHER_WIDTH / VPL_LANES // runs of 16 pixels in a row
+};
+
+// Planes of the whole picture.
+enum { VPL_GATHER_INDIRECT = 0, VPL_GATHER_TRIANGLE = 3, VPL_GATHER_DISTANCE, VPL_GATHER_PLANES };
+
+// A worker's copy of a part of the picture. 0 outside the picture.
+typedef struct vplGatherRoom {
+    _Alignas(64) float indirect[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
+    float rowSums[3][VPL_GATHER_ROWS][VPL_GATHER_WIDTH];   // over K pixels each
+    int32_t triangle[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS]; // 1 + index in geometry->normals, 0: nothing
+    int32_t uniform[VPL_GATHER_ROWS][VPL_GATHER_RUNS]; // the one triangle in a run and its windows, else 0
+    // Where some window shows several triangles only: distances along the view axis, normals of triangles, and
+    // positions from the eye.
+    float distance[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
+    float normal[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
+    float position[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
+} vplGatherRoom;
+
+typedef struct vplInterleave {
+    vplShadeDef def; // with the lights in the order of their classes
+    vplShadeLight* lights;
+    vplShadow* shadows;   // NULL where lights have no maps
+    float* planes;        // VPL_GATHER_PLANES of pixelCount values
+    vplGatherRoom* rooms; // one per worker
+    size_t pixelCount;
+    int side;           // K
+    int tilesX, tilesY; // of the second step
+} vplInterleave;
+
+static inline float* vplGatherPlane(const vplInterleave* w, int plane)
+{
+    return w->planes + (size_t)plane * w->pixelCount;
+}
+
+// First of a class's lights; that of the next class ends them.
+static inline int vplClassStart(int lightCount, int classCount, int which)
+{
+    const int each = lightCount / classCount, more = lightCount % classCount;
+    return which * each + (which < more ? which : more);
+}
+
+#endif

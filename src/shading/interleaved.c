@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Interleaved shading: pixel (x, y) belongs to class (y mod K) K + x mod K and is lit by every K^2-th virtual
+// light, K^2 times as brightly; then pixels take the mean of the K x K around them that lie on about the same
+// surface. Where all of them do, each light counts once.
+// Based on: Segovia, Iehl, Mitanchey and Peroche, Non-interleaved Deferred Shading of Interleaved Sample
+// Patterns, Graphics Hardware 2006. Departs: a pixel's class is its place in the picture, and classes are
+// collected from a tile at a time, which is in cache, instead of in sub-pictures; gathering weighs each pixel of
+// the window with 0 or 1 instead of filtering across discontinuity masks.
+#include "shading/gather.h"
+
+#include <string.h>
+
+// Lights i with equal i mod classCount side by side.
+static vplResult sortLights(vplShading* s, vplInterleave* w)
+{
+    vplContext* context = s->geometry->context;
+    const vplShadeDef* def = s->def;
+    const int count = def->lightCount, classCount = w->side * w->side;
+    w->lights = vplAlloc(context, (size_t)count, sizeof *w->lights);
+    w->shadows = def->lightShadows ? vplAlloc(context, (size_t)count, sizeof *w->shadows) : NULL;
+    if (w->lights == NULL || (def->lightShadows != NULL && w->shadows == NULL)) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    int at = 0;
+    for (int first = 0; first < classCount; first++) {
+        for (int i = first; i < count; i += classCount, at++) {
+            w->lights[at] = def->lights[i];
+            if (w->shadows != NULL) {
+                w->shadows[at] = def->lightShadows[i];
+            }
+        }
+    }
+    w->def = *def;
+    w->def.lights = w->lights;
+    w->def.lightShadows = w->shadows;
+    return VPL_SUCCESS;
+}
+
+vplResult vplOpenInterleave(vplShading* shading, vplFramebuffer* framebuffer)
+{
+    vplContext* context = shading->geometry->context;
+    vplInterleave* w = vplAllocZero(context, 1, sizeof *w);
+    if (w == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    shading->interleave = w;
+    const int width = framebuffer->width, height = framebuffer->height;
+    w->side = shading->def->interleave;
+    w->pixelCount = (size_t)width * (size_t)height;
+    w->tilesX = (width + VPL_GATHER_WIDTH - 1) / VPL_GATHER_WIDTH;
+    w->tilesY = (height + VPL_GATHER_HEIGHT - 1) / VPL_GATHER_HEIGHT;
+    w->planes = vplAlloc(context, w->pixelCount, VPL_GATHER_PLANES * sizeof *w->planes);
+    w->rooms = vplAlloc(context, (size_t)context->workerCount, sizeof *w->rooms);
+    if (w->planes == NULL || w->rooms == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    framebuffer->planeCount = VPL_PLANE_DISTANCE + 1;
+    vplPlane* planes = framebuffer->planes;
+    for (int k = 0; k < 3; k++) {
+        planes[VPL_PLANE_INDIRECT + k].pixels = vplGatherPlane(w, VPL_GATHER_INDIRECT + k);
+    }
+    planes[VPL_PLANE_TRIANGLE].pixels = vplGatherPlane(w, VPL_GATHER_TRIANGLE);
+    planes[VPL_PLANE_DISTANCE].pixels = vplGatherPlane(w, VPL_GATHER_DISTANCE);
+    planes[VPL_PLANE_DISTANCE].scratch = true;
+    const vplResult result = sortLights(shading, w);
+    if (result == VPL_SUCCESS) {
+        shading->def = &w->def;
+    }
+    return result;
+}
+
+vplResult vplGatherInterleaved(const vplShading* shading, vplProgressFcn* progress, void* user)
+{
+    const vplInterleave* w = shading->interleave;
+    vplContext* context = shading->geometry->context;
+    return vplParallelForProgress(context, w->tilesX * w->tilesY, vplGetShadingKernels(context->isa).gather,
+                                  (void*)shading, progress, user, 1, 1);
+}
+
+void vplCloseInterleave(vplShading* shading)
+{
+    vplContext* context = shading->geometry->context;
+    vplInterleave* w = shading->interleave;
+    if (w != NULL) {
+        vplFree(context, w->rooms);
+        vplFree(context, w->planes);
+        vplFree(context, w->shadows);
+        vplFree(context, w->lights);
+        vplFree(context, w);
+    }
+}

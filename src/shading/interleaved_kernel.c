@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// The first step of interleaved shading: pixels of one class, collected from a region of the tile, meet the lights
+// of that class 16 at a time.
+#include "base/isa.h"
+#include "shading/gather.h"
+#include "shading/gbuffer.h"
+
+enum {
+    SQUARE = 4, // blocks along a side: what is read and lit directly at once
+    MAX_CHUNKS = 4
+};
+
+vplTileFcn VPL_KERNEL(vplInterleaveTile);
+
+// A square of pixels of the tile. Its side is chosen so that classes fill vectors and points stay in the first
+// cache: at least 16 and at most 64 pixels of a class.
+typedef struct Region {
+    int x, y, width, height; // in the tile
+    vplBounds bounds;        // of what is visible in it
+    bool any;
+} Region;
+
+static int sideOf(int interleave)
+{
+    return interleave <= 4 ? 16 : interleave <= 8 ? 32 : 64;
+}
+
+static inline void storeLanes(vplTile* tile, int plane, int element, const float values[VPL_LANES])
+{
+    memcpy(tile->planes[plane] + element, values, VPL_LANES * sizeof values[0]);
+}
+
+// Direct light becomes pixels; what lights and windows will ask for becomes planes.
+static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplBlock* b, int64_t* rays)
+{
+    const int element = block * VPL_LANES;
+    float distance[VPL_LANES] = {0};
+    if (!vplReadBlock(s, tile, element, b)) {
+        for (int k = 0; k < 3; k++) {
+            storeLanes(tile, VPL_PLANE_INDIRECT + k, element, distance);
+        }
+    } else {
+        _Alignas(64) float part[3][VPL_LANES];
+        vplDirectIrradiance(s, &b->points, part, rays);
+        vplStartSums(b, part);
+        const vplSurface* p = &b->surface;
+        const vplVec3 eye = s->view->eye, forward = s->view->forward;
+        for (int l = 0; l < VPL_LANES; l++) {
+            distance[l] = forward.x * (p->px[l] - eye.x) + forward.y * (p->py[l] - eye.y) +
+                          forward.z * (p->pz[l] - eye.z);
+        }
+        for (int k = 0; k < 3; k++) {
+            storeLanes(tile, VPL_PLANE_POSITION + k, element, p->px + k * VPL_LANES);
+            storeLanes(tile, VPL_PLANE_NORMAL + k, element, p->nx + k * VPL_LANES);
+        }
+    }
+    storeLanes(tile, VPL_PLANE_DISTANCE, element, distance);
+    vplWriteLit(s, tile, block, b);
+}
+
+static void addBounds(const vplBounds* more, Region* r)
+{
+    for (int k = 0; k < 6; k++) {
+        const float low = more->low[k], high = more->high[k];
+        r->bounds.low[k] = r->any && r->bounds.low[k] < low ? r->bounds.low[k] : low;
+        r->bounds.high[k] = r->any && r->bounds.high[k] > high ? r->bounds.high[k] : high;
+    }
+    r->any = true;
+}
+
+// All blocks of a region, square by square.
+static void prepareRegion(const vplShading* s, vplTile* tile, Region* r)
+{
+    vplTileSums* tileSums = tile->scratch;
+    vplBlock blocks[SQUARE * SQUARE];
+    const int side = SQUARE * VPL_BLOCK_SIDE, across = (r->width + side - 1) / side;
+    for (int square = 0; square < across * ((r->height + side - 1) / side); square++) {
+        const int x = (r->x + square % across * side) / VPL_BLOCK_SIDE;
+        const int y = (r->y + square / across * side) / VPL_BLOCK_SIDE;
+        int lit[SQUARE * SQUARE], litCount = 0;
+        for (int i = 0; i < SQUARE * SQUARE; i++) {
+            vplBlock* b = &blocks[i];
+            prepareBlock(s, tile, (y + i / SQUARE) * VPL_TILE_BLOCKS + x + i % SQUARE, b,
+                         &tileSums->shadowRays);
+            if (!b->same || b->points.triangle[0] >= 0) {
+                lit[litCount++] = i;
+            }
+        }
+        if (litCount > 0) {
+            const vplBounds bounds = vplFindBounds(blocks, lit, litCount);
+            addBounds(&bounds, r);
+        }
+    }
+}
+
+// Element of the tile's planes that holds pixel (x, y).
+static inline int elementOf(int x, int y)
+{
+    const int block = y / VPL_BLOCK_SIDE * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
+    return block * VPL_LANES + y % VPL_BLOCK_SIDE * VPL_BLOCK_SIDE + x % VPL_BLOCK_SIDE;
+}
+
+// Elements that show something, of every K-th pixel from (x, y) on. Returns their number, at most 16 MAX_CHUNKS.
+static int listPixels(const vplTile* tile, const Region* r, int x0, int y0, int step, int* elements)
+{
+    const int32_t* triangles = (const int32_t*)tile->planes[VPL_PLANE_TRIANGLE];
+    int count = 0;
+    for (int y = y0; y < r->y + r->height; y += step) {
+        for (int x = x0; x < r->x + r->width; x += step) {
+            const int element = elementOf(x, y);
+            elements[count] = element;
+            count += triangles[element] != 0;
+        }
+    }
+    return count;
+}
+
+// Brings 16 pixels together. Lanes behind the last repeat the first, and show nothing that casts a ray.
+static void collect(const vplShading* s, const vplTile* tile, int* elements, int count, vplBlock* b)
+{
+    for (int l = count; l < VPL_LANES; l++) {
+        elements[l] = elements[0];
+    }
+    for (int k = 0; k < 3; k++) {
+        const float *position = tile->planes[VPL_PLANE_POSITION + k],
+                    *normal = tile->planes[VPL_PLANE_NORMAL + k];
+        float *p = b->surface.px + k * VPL_LANES, *n = b->surface.nx + k * VPL_LANES;
+        for (int l = 0; l < VPL_LANES; l++) {
+            p[l] = position[elements[l]];
+            n[l] = normal[elements[l]];
+        }
+    }
+    memset(b->sums, 0, sizeof b->sums);
+    b->points.surface = b->points.plane = &b->surface;
+    if (s->def->lightShadows == NULL && !s->def->lightRays) {
+        return;
+    }
+    const int32_t* triangles = (const int32_t*)tile->planes[VPL_PLANE_TRIANGLE];
+    for (int l = 0; l < VPL_LANES; l++) {
+        b->points.triangle[l] = l < count ? triangles[elements[l]] - 1 : -1;
+    }
+    if (s->smooth) {
+        int32_t smooth[VPL_LANES];
+        memcpy(&b->plane, &b->surface, 3 * sizeof b->surface.px);
+        vplReadFacets(s, b->points.triangle, &b->plane, smooth);
+        b->points.plane = &b->plane;
+    }
+}
+
+// Irradiance goes where positions were: no other class wants these.
+static void scatter(vplTile* tile, const int* elements, int count, double factor, const vplBlock* b)
+{
+    for (int c = 0; c < 3; c++) {
+        float* plane = tile->planes[VPL_PLANE_INDIRECT + c];
+        for (int l = 0; l < count; l++) {
+            plane[elements[l]] = (float)(factor * b->sums[c][l]);
+        }
+    }
+}
+
+// The pixels of one class by the lights of that class.
+static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int x, int y)
+{
+    static const int all[MAX_CHUNKS] = {0, 1, 2, 3};
+    const int side = s->interleave->side, classes = side * side, lightCount = s->def->lightCount;
+    const int which = (tile->y + y) % side * side + (tile->x + x) % side;
+    const int first = vplClassStart(lightCount, classes, which);
+    const int end = vplClassStart(lightCount, classes, which + 1);
+    vplTileSums* tileSums = tile->scratch;
+    int elements[(MAX_CHUNKS + 1) * VPL_LANES];
+    const int count = listPixels(tile, r, x, y, side, elements);
+    const int chunks = (count + VPL_LANES - 1) / VPL_LANES;
+    vplBlock blocks[MAX_CHUNKS];
+    for (int i = 0; i < chunks; i++) {
+        const int left = count - i * VPL_LANES;
+        collect(s, tile, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, &blocks[i]);
+    }
+    vplAddLights(s, blocks, all, chunks, s->columns[0] != NULL ? &r->bounds : NULL, first, end - first,
+                 &tileSums->shadowRays);
+    for (int i = 0; i < chunks; i++) {
+        const int left = count - i * VPL_LANES;
+        scatter(tile, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, classes, &blocks[i]);
+    }
+}
+
+void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
+{
+    (void)worker;
+    const vplShading* s = data;
+    const vplTileSums* tileSums = tile->scratch;
+    const int side = sideOf(s->interleave->side);
+    for (int y = 0; y < tile->height; y += side) {
+        for (int x = 0; x < tile->width; x += side) {
+            Region r = {.x = x, .y = y};
+            r.width = tile->width - x < side ? tile->width - x : side;
+            r.height = tile->height - y < side ? tile->height - y : side;
+            prepareRegion(s, tile, &r);
+            for (int k = 0; r.any && k < s->interleave->side * s->interleave->side; k++) {
+                lightClass(s, tile, &r, x + k % s->interleave->side, y + k / s->interleave->side);
+            }
+        }
+    }
+    __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
+}
