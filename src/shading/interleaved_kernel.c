@@ -6,14 +6,14 @@
 #include "shading/gbuffer.h"
 
 enum {
-    SQUARE = 4, // blocks along a side: what is read and lit directly at once
-    MAX_CHUNKS = 4
+    SQUARE = 4,     // blocks along a side: what is read and lit directly at once
+    MAX_CHUNKS = 11 // 13 x 13 pixels, of 64 x 64 at K = 5
 };
 
 vplTileFcn VPL_KERNEL(vplInterleaveTile);
 
 // A square of pixels of the tile. Its side is chosen so that classes fill vectors and points stay in the first
-// cache: at least 16 and at most 64 pixels of a class.
+// cache: 16 pixels of a class or more.
 typedef struct Region {
     int x, y, width, height; // in the tile
     vplBounds bounds;        // of what is visible in it
@@ -22,7 +22,7 @@ typedef struct Region {
 
 static int sideOf(int interleave)
 {
-    return interleave <= 4 ? 16 : interleave <= 8 ? 32 : 64;
+    return interleave <= 2 ? 16 : interleave <= 4 ? 32 : 64;
 }
 
 static inline void storeLanes(vplTile* tile, int plane, int element, const float values[VPL_LANES])
@@ -96,8 +96,9 @@ static void prepareRegion(const vplShading* s, vplTile* tile, Region* r)
 // Element of the tile's planes that holds pixel (x, y).
 static inline int elementOf(int x, int y)
 {
-    const int block = y / VPL_BLOCK_SIDE * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
-    return block * VPL_LANES + y % VPL_BLOCK_SIDE * VPL_BLOCK_SIDE + x % VPL_BLOCK_SIDE;
+    const unsigned u = (unsigned)x, v = (unsigned)y; // division is a shift
+    const unsigned block = v / VPL_BLOCK_SIDE * VPL_TILE_BLOCKS + u / VPL_BLOCK_SIDE;
+    return (int)(block * VPL_LANES + v % VPL_BLOCK_SIDE * VPL_BLOCK_SIDE + u % VPL_BLOCK_SIDE);
 }
 
 // Elements that show something, of every K-th pixel from (x, y) on. Returns their number, at most 16 MAX_CHUNKS.
@@ -161,7 +162,7 @@ static void scatter(vplTile* tile, const int* elements, int count, double factor
 // The pixels of one class by the lights of that class.
 static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int x, int y)
 {
-    static const int all[MAX_CHUNKS] = {0, 1, 2, 3};
+    static const int all[MAX_CHUNKS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
     const int side = s->interleave->side, classes = side * side, lightCount = s->def->lightCount;
     const int which = (tile->y + y) % side * side + (tile->x + x) % side;
     const int first = vplClassStart(lightCount, classes, which);
