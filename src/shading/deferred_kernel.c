@@ -32,13 +32,14 @@ static inline int blockOf(int firstBlock, int i)
     return firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE;
 }
 
-static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplBlock blocks[SQUARE_BLOCKS])
+static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplSeen* seen,
+                        vplBlock blocks[SQUARE_BLOCKS])
 {
     vplTileSums* tileSums = tile->scratch;
     int lit[SQUARE_BLOCKS], litCount = 0;
     for (int i = 0; i < SQUARE_BLOCKS; i++) {
         vplBlock* b = &blocks[i];
-        if (vplReadBlock(s, tile, blockOf(firstBlock, i) * VPL_LANES, b)) {
+        if (vplReadBlock(s, tile, blockOf(firstBlock, i) * VPL_LANES, seen, b)) {
             _Alignas(64) float part[3][VPL_LANES];
             vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
             vplStartSums(b, part);
@@ -59,12 +60,13 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
     (void)worker;
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
+    vplSeen seen = {.triangle = -1};
     vplBlock blocks[SQUARE_BLOCKS];
     for (int square = 0; square < SQUARES * SQUARES; square++) {
         const int x = square % SQUARES, y = square / SQUARES;
         if (x * SQUARE * VPL_BLOCK_SIDE < tile->width && y * SQUARE * VPL_BLOCK_SIDE < tile->height) {
             const int firstBlock = (y * VPL_TILE_BLOCKS + x) * SQUARE;
-            lightSquare(s, tile, firstBlock, blocks);
+            lightSquare(s, tile, firstBlock, &seen, blocks);
             for (int i = 0; i < SQUARE_BLOCKS; i++) {
                 vplWriteLit(s, tile, blockOf(firstBlock, i), &blocks[i]);
             }
@@ -81,10 +83,11 @@ void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
     const vplShading* s = data;
     const vplView* view = s->view;
     const bool depth = s->def->output == VPL_OUTPUT_DEPTH, normals = s->def->output == VPL_OUTPUT_NORMALS;
+    vplSeen seen = {.triangle = -1};
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
         vplBlock b;
         float values[3][VPL_LANES] = {{0}}, factor[VPL_LANES] = {0};
-        if (!vplReadBlock(s, tile, block * VPL_LANES, &b)) {
+        if (!vplReadBlock(s, tile, block * VPL_LANES, &seen, &b)) {
             vplWriteBlock(s, tile, block, values);
             continue;
         }

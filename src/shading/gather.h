@@ -14,7 +14,7 @@ enum {
 };
 
 // Planes of the whole picture.
-enum { VPL_GATHER_INDIRECT = 0, VPL_GATHER_TRIANGLE = 3, VPL_GATHER_DISTANCE, VPL_GATHER_PLANES };
+enum { VPL_GATHER_INDIRECT = 0, VPL_GATHER_TRIANGLE = 3, VPL_GATHER_PLANES };
 
 // A worker's copy of a part of the picture. 0 outside the picture.
 typedef struct vplGatherRoom {
@@ -22,8 +22,9 @@ typedef struct vplGatherRoom {
     float rowSums[3][VPL_GATHER_ROWS][VPL_GATHER_WIDTH];   // over K pixels each
     int32_t triangle[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS]; // 1 + index in geometry->normals, 0: nothing
     int32_t uniform[VPL_GATHER_ROWS][VPL_GATHER_RUNS]; // the one triangle in a run and its windows, else 0
-    // Where some window shows several triangles only: distances along the view axis, normals of triangles, and
-    // positions from the eye.
+    // Where some window shows several triangles only: the triangles' planes n.x = offset, and distances along the
+    // view axis and positions in these planes, all from the eye.
+    float offset[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
     float distance[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
     float normal[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
     float position[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];

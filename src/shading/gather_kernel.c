@@ -4,6 +4,7 @@
 // where a run of 16 pixels and all their windows show one triangle, the sums of rows are shared, and the bits are
 // those of the windows summed one by one.
 #include "base/isa.h"
+#include "geometry/triangle.h"
 #include "math/vec.h"
 #include "shading/gather.h"
 #include "shading/resolve.h"
@@ -81,34 +82,45 @@ static void sumRows(int side, vplGatherRoom* room, const Part* part)
     }
 }
 
-// Normals of triangles, and positions from the eye, of all that the windows reach.
-static void findSurfaces(const vplShading* s, const Part* part, int reach, vplGatherRoom* room)
+// The planes of the triangles in a row.
+static void findPlanes(const vplShading* s, const int32_t* triangles, int row, int columns,
+                       vplGatherRoom* room)
 {
-    const vplView* view = s->view;
     vplVec3 n = {0, 0, 0};
-    int32_t last = 0;
-    for (int row = 0; row < part->rows; row++) {
-        for (int i = 0; i < part->columns; i++) {
-            const int32_t triangle = room->triangle[row][i];
-            if (triangle != last) {
-                last = triangle;
-                n = triangle == 0 ? vplVec(0, 0, 0) : vplGetFacet(s, triangle - 1).normal;
-            }
-            room->normal[0][row][i] = n.x;
-            room->normal[1][row][i] = n.y;
-            room->normal[2][row][i] = n.z;
+    float offset = 0;
+    for (int i = 0, last = 0; i < columns; i++) {
+        if (triangles[i] != last) {
+            last = triangles[i];
+            n = last == 0 ? vplVec(0, 0, 0) : vplGetFacet(s, last - 1).normal;
+            const vplVec3 eye = s->view->eye;
+            offset =
+                last == 0 ? 0 : vplDot(n, vplSub(vplGeometry_Corners(s->geometry, last - 1).corner[0], eye));
         }
-        const double y = 1 - (2 * (part->y - reach + row) + 1) / (double)view->height;
-        const float up = (float)((y - view->offsetY) / view->scaleY);
-        const double step = 2 / (double)view->width;
-        const double x0 = (2 * (part->x - reach) + 1) / (double)view->width - 1 - view->offsetX;
-        for (int i = 0; i < VPL_GATHER_COLUMNS; i++) {
-            const float right = (float)((x0 + i * step) / view->scaleX), w = room->distance[row][i];
-            const vplVec3 f = view->forward, r = view->right, u = view->up;
-            room->position[0][row][i] = w * (f.x + right * r.x + up * u.x);
-            room->position[1][row][i] = w * (f.y + right * r.y + up * u.y);
-            room->position[2][row][i] = w * (f.z + right * r.z + up * u.z);
-        }
+        room->normal[0][row][i] = n.x;
+        room->normal[1][row][i] = n.y;
+        room->normal[2][row][i] = n.z;
+        room->offset[row][i] = offset;
+    }
+}
+
+// Where the lines of sight of a row meet these planes; NaN where nothing is.
+static void findPositions(const vplView* view, const Part* part, int reach, int row, vplGatherRoom* room)
+{
+    const double y = 1 - (2 * (part->y - reach + row) + 1) / (double)view->height - view->offsetY;
+    const double x = (2 * (part->x - reach) + 1) / (double)view->width - 1 - view->offsetX;
+    const float up = (float)(y / view->scaleY), right0 = (float)(x / view->scaleX);
+    const float step = (float)(2 / (double)view->width / view->scaleX);
+    const vplVec3 r = view->right, f = vplAdd(view->forward, vplScale(up, view->up));
+    const float *nx = room->normal[0][row], *ny = room->normal[1][row], *nz = room->normal[2][row];
+    float *px = room->position[0][row], *py = room->position[1][row], *pz = room->position[2][row];
+    for (int i = 0; i < part->columns; i++) {
+        const float right = right0 + (float)i * step;
+        const float x1 = f.x + right * r.x, y1 = f.y + right * r.y, z1 = f.z + right * r.z;
+        const float w = room->offset[row][i] / (nx[i] * x1 + ny[i] * y1 + nz[i] * z1);
+        room->distance[row][i] = w;
+        px[i] = w * x1;
+        py[i] = w * y1;
+        pz[i] = w * z1;
     }
 }
 
@@ -144,8 +156,7 @@ static void findCentre(const vplGatherRoom* room, int row, int column, Centre* c
         c->nx[l] = room->normal[0][row][x];
         c->ny[l] = room->normal[1][row][x];
         c->nz[l] = room->normal[2][row][x];
-        c->offset[l] = c->nx[l] * room->position[0][row][x] + c->ny[l] * room->position[1][row][x] +
-                       c->nz[l] * room->position[2][row][x];
+        c->offset[l] = room->offset[row][x];
         c->slack[l] = MAX_DISTANCE * room->distance[row][x];
         c->triangle[l] = room->triangle[row][x];
     }
@@ -200,39 +211,64 @@ static void meanOfMixed(const vplGatherRoom* room, int side, int row, int x, flo
     }
 }
 
-// Adds what 16 pixels reflect to the picture.
-static void addReflected(const vplShading* s, const int32_t triangles[VPL_LANES], float mean[3][VPL_LANES],
-                         float* pixels, int count)
+// The triangle that was looked up last.
+typedef struct Seen {
+    int32_t triangle;
+    vplReflector reflector;
+} Seen;
+
+static inline void see(const vplShading* s, int32_t triangle, Seen* seen)
 {
-    float factor[3][VPL_LANES];
-    _Alignas(64) float rows[3 * VPL_LANES];
-    vplReflector r = vplGetReflector(s, triangles[0] - 1);
-    for (int l = 0; l < VPL_LANES; l++) {
-        if (l > 0 && triangles[l] != triangles[l - 1]) {
-            r = vplGetReflector(s, triangles[l] - 1);
-        }
+    if (triangle != seen->triangle) {
+        seen->triangle = triangle;
+        seen->reflector = vplGetReflector(s, triangle - 1);
+    }
+}
+
+// Turns irradiance into radiance.
+static void reflect(const vplShading* s, const int32_t triangles[VPL_LANES], bool uniform, Seen* seen,
+                    float mean[3][VPL_LANES])
+{
+    if (uniform) {
+        see(s, triangles[0], seen);
         for (int c = 0; c < 3; c++) {
-            factor[c][l] = (float)r.factor[c];
+            const float factor = (float)seen->reflector.factor[c];
+            for (int l = 0; l < VPL_LANES; l++) {
+                mean[c][l] *= factor;
+            }
         }
+        return;
     }
     for (int l = 0; l < VPL_LANES; l++) {
-        rows[3 * l] = factor[0][l] * mean[0][l];
-        rows[3 * l + 1] = factor[1][l] * mean[1][l];
-        rows[3 * l + 2] = factor[2][l] * mean[2][l];
+        see(s, triangles[l], seen);
+        for (int c = 0; c < 3; c++) {
+            mean[c][l] *= (float)seen->reflector.factor[c];
+        }
+    }
+}
+
+static void addToPixels(float values[3][VPL_LANES], float* pixels, int count)
+{
+    _Alignas(64) float row[3 * VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        row[3 * l] = values[0][l];
+        row[3 * l + 1] = values[1][l];
+        row[3 * l + 2] = values[2][l];
     }
     if (count >= VPL_LANES) {
         for (int i = 0; i < 3 * VPL_LANES; i++) {
-            pixels[i] += rows[i];
+            pixels[i] += row[i];
         }
         return;
     }
     for (int i = 0; i < 3 * count; i++) {
-        pixels[i] += rows[i];
+        pixels[i] += row[i];
     }
 }
 
 // Pixels x .. x + 15 of one row of the part.
-static void gatherRun(const vplShading* s, const vplGatherRoom* room, const Part* part, int row, int x)
+static void gatherRun(const vplShading* s, const vplGatherRoom* room, const Part* part, int row, int x,
+                      Seen* seen)
 {
     const int side = s->interleave->side;
     const int32_t* triangles = room->triangle[row + side / 2] + x + side / 2;
@@ -255,7 +291,8 @@ static void gatherRun(const vplShading* s, const vplGatherRoom* room, const Part
     }
     float* pixels =
         s->image->pixels + 3 * ((size_t)(part->y + row) * (size_t)s->image->width + (size_t)(part->x + x));
-    addReflected(s, triangles, mean, pixels, part->width - x);
+    reflect(s, triangles, uniform, seen, mean);
+    addToPixels(mean, pixels, part->width - x);
 }
 
 void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
@@ -280,12 +317,15 @@ void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
     }
     sumRows(side, room, &part);
     if (part.mixed) {
-        loadPlane(image, vplGatherPlane(w, VPL_GATHER_DISTANCE), &part, reach, room->distance[0]);
-        findSurfaces(s, &part, reach, room);
+        for (int row = 0; row < part.rows; row++) {
+            findPlanes(s, room->triangle[row], row, part.columns, room);
+            findPositions(s->view, &part, reach, row, room);
+        }
     }
+    Seen seen = {0, {{0}, {0}}};
     for (int row = 0; row < part.height; row++) {
         for (int x = 0; x < part.width; x += VPL_LANES) {
-            gatherRun(s, room, &part, row, x);
+            gatherRun(s, room, &part, row, x, &seen);
         }
     }
 }

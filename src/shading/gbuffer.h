@@ -49,8 +49,28 @@ static inline void vplReadPlane(const vplTile* tile, int plane, int element, con
     }
 }
 
+// The triangle that was looked up last: most blocks show that of the block before.
+typedef struct vplSeen {
+    int triangle; // -1 at first
+    vplFacet facet;
+    vplReflector reflector;
+    bool smooth;
+} vplSeen;
+
+static inline void vplSee(const vplShading* s, int triangle, vplSeen* seen)
+{
+    if (triangle != seen->triangle) {
+        const vplGeometry* g = s->geometry;
+        seen->triangle = triangle;
+        seen->facet = vplGetFacet(s, triangle);
+        seen->reflector = vplReflectorOf(s, &seen->facet);
+        seen->smooth = g->objects[g->owners[triangle]].smooth;
+    }
+}
+
 // False where it is empty.
-static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int element, vplBlock* b)
+static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int element, vplSeen* seen,
+                                vplBlock* b)
 {
     if (!vplReadTriangles(tile, element, b->points.triangle)) {
         b->same = true;
@@ -64,11 +84,10 @@ static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int el
     int32_t smooth[VPL_LANES];
     vplSurface* flat = s->smooth ? &b->plane : &b->surface;
     if (b->same) {
-        const vplFacet facet = vplGetFacet(s, b->points.triangle[0]);
-        const vplGeometry* g = s->geometry;
-        vplSetNormals(facet.normal, flat);
-        b->reflector = vplReflectorOf(s, &facet);
-        memset(smooth, g->objects[g->owners[b->points.triangle[0]]].smooth ? 0xff : 0, sizeof smooth);
+        vplSee(s, b->points.triangle[0], seen);
+        vplSetNormals(seen->facet.normal, flat);
+        b->reflector = seen->reflector;
+        memset(smooth, seen->smooth ? 0xff : 0, sizeof smooth);
     } else {
         vplReadFacets(s, b->points.triangle, flat, smooth);
     }

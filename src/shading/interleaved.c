@@ -54,14 +54,11 @@ vplResult vplOpenInterleave(vplShading* shading, vplFramebuffer* framebuffer)
     if (w->planes == NULL || w->rooms == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    framebuffer->planeCount = VPL_PLANE_DISTANCE + 1;
     vplPlane* planes = framebuffer->planes;
     for (int k = 0; k < 3; k++) {
         planes[VPL_PLANE_INDIRECT + k].pixels = vplGatherPlane(w, VPL_GATHER_INDIRECT + k);
     }
     planes[VPL_PLANE_TRIANGLE].pixels = vplGatherPlane(w, VPL_GATHER_TRIANGLE);
-    planes[VPL_PLANE_DISTANCE].pixels = vplGatherPlane(w, VPL_GATHER_DISTANCE);
-    planes[VPL_PLANE_DISTANCE].scratch = true;
     const vplResult result = sortLights(shading, w);
     if (result == VPL_SUCCESS) {
         shading->def = &w->def;

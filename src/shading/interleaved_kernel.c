@@ -31,30 +31,25 @@ static inline void storeLanes(vplTile* tile, int plane, int element, const float
 }
 
 // Direct light becomes pixels; what lights and windows will ask for becomes planes.
-static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplBlock* b, int64_t* rays)
+static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplSeen* seen, vplBlock* b,
+                         int64_t* rays)
 {
     const int element = block * VPL_LANES;
-    float distance[VPL_LANES] = {0};
-    if (!vplReadBlock(s, tile, element, b)) {
+    const float nothing[VPL_LANES] = {0};
+    if (!vplReadBlock(s, tile, element, seen, b)) {
         for (int k = 0; k < 3; k++) {
-            storeLanes(tile, VPL_PLANE_INDIRECT + k, element, distance);
+            storeLanes(tile, VPL_PLANE_INDIRECT + k, element, nothing);
         }
     } else {
         _Alignas(64) float part[3][VPL_LANES];
         vplDirectIrradiance(s, &b->points, part, rays);
         vplStartSums(b, part);
         const vplSurface* p = &b->surface;
-        const vplVec3 eye = s->view->eye, forward = s->view->forward;
-        for (int l = 0; l < VPL_LANES; l++) {
-            distance[l] = forward.x * (p->px[l] - eye.x) + forward.y * (p->py[l] - eye.y) +
-                          forward.z * (p->pz[l] - eye.z);
-        }
         for (int k = 0; k < 3; k++) {
             storeLanes(tile, VPL_PLANE_POSITION + k, element, p->px + k * VPL_LANES);
             storeLanes(tile, VPL_PLANE_NORMAL + k, element, p->nx + k * VPL_LANES);
         }
     }
-    storeLanes(tile, VPL_PLANE_DISTANCE, element, distance);
     vplWriteLit(s, tile, block, b);
 }
 
@@ -69,7 +64,7 @@ static void addBounds(const vplBounds* more, Region* r)
 }
 
 // All blocks of a region, square by square.
-static void prepareRegion(const vplShading* s, vplTile* tile, Region* r)
+static void prepareRegion(const vplShading* s, vplTile* tile, Region* r, vplSeen* seen)
 {
     vplTileSums* tileSums = tile->scratch;
     vplBlock blocks[SQUARE * SQUARE];
@@ -80,7 +75,7 @@ static void prepareRegion(const vplShading* s, vplTile* tile, Region* r)
         int lit[SQUARE * SQUARE], litCount = 0;
         for (int i = 0; i < SQUARE * SQUARE; i++) {
             vplBlock* b = &blocks[i];
-            prepareBlock(s, tile, (y + i / SQUARE) * VPL_TILE_BLOCKS + x + i % SQUARE, b,
+            prepareBlock(s, tile, (y + i / SQUARE) * VPL_TILE_BLOCKS + x + i % SQUARE, seen, b,
                          &tileSums->shadowRays);
             if (!b->same || b->points.triangle[0] >= 0) {
                 lit[litCount++] = i;
@@ -117,17 +112,24 @@ static int listPixels(const vplTile* tile, const Region* r, int x0, int y0, int 
 }
 
 // Brings 16 pixels together. Lanes behind the last repeat the first, and show nothing that casts a ray.
-static void collect(const vplShading* s, const vplTile* tile, int* elements, int count, vplBlock* b)
+static void collect(const vplShading* s, const vplTile* tile, const Region* r, int* elements, int count,
+                    vplBlock* b)
 {
     for (int l = count; l < VPL_LANES; l++) {
         elements[l] = elements[0];
     }
     for (int k = 0; k < 3; k++) {
-        const float *position = tile->planes[VPL_PLANE_POSITION + k],
-                    *normal = tile->planes[VPL_PLANE_NORMAL + k];
+        const float* position = tile->planes[VPL_PLANE_POSITION + k];
+        const float* normal = tile->planes[VPL_PLANE_NORMAL + k];
         float *p = b->surface.px + k * VPL_LANES, *n = b->surface.nx + k * VPL_LANES;
         for (int l = 0; l < VPL_LANES; l++) {
             p[l] = position[elements[l]];
+        }
+        const float low = r->bounds.low[3 + k], high = r->bounds.high[3 + k];
+        for (int l = 0; l < VPL_LANES; l++) {
+            n[l] = low;
+        }
+        for (int l = 0; low != high && l < VPL_LANES; l++) {
             n[l] = normal[elements[l]];
         }
     }
@@ -174,7 +176,7 @@ static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int 
     vplBlock blocks[MAX_CHUNKS];
     for (int i = 0; i < chunks; i++) {
         const int left = count - i * VPL_LANES;
-        collect(s, tile, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, &blocks[i]);
+        collect(s, tile, r, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, &blocks[i]);
     }
     vplAddLights(s, blocks, all, chunks, s->columns[0] != NULL ? &r->bounds : NULL, first, end - first,
                  &tileSums->shadowRays);
@@ -190,12 +192,13 @@ void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
     const int side = sideOf(s->interleave->side);
+    vplSeen seen = {.triangle = -1};
     for (int y = 0; y < tile->height; y += side) {
         for (int x = 0; x < tile->width; x += side) {
             Region r = {.x = x, .y = y};
             r.width = tile->width - x < side ? tile->width - x : side;
             r.height = tile->height - y < side ? tile->height - y : side;
-            prepareRegion(s, tile, &r);
+            prepareRegion(s, tile, &r, &seen);
             for (int k = 0; r.any && k < s->interleave->side * s->interleave->side; k++) {
                 lightClass(s, tile, &r, x + k % s->interleave->side, y + k / s->interleave->side);
             }

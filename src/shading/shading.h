@@ -70,8 +70,7 @@ enum {
     VPL_PLANE_NORMAL = 0,     // 3 planes: interpolated normals, of smooth geometry
     VPL_PLANE_TRIANGLE = 3,   // bits of an int: 1 + index in geometry->normals, 0 where nothing is
     VPL_PLANE_POSITION = 4,   // 3 planes, deferred only
-    VPL_PLANE_INDIRECT = 4,   // 3 planes, interleaved only: irradiance, once positions have done their work
-    VPL_PLANE_DISTANCE = 7    // along the view axis, interleaved only
+    VPL_PLANE_INDIRECT = 4    // 3 planes, interleaved only: irradiance, once positions have done their work
 };
 
 // Scratch of a tile. Deferred shading needs the first number only.
