@@ -6,10 +6,11 @@
 #include "shading/shading.h"
 
 enum {
-    VPL_GATHER_WIDTH = 64,                             // pixels of a task of the second step
-    VPL_GATHER_HEIGHT = 32,                            // 16, 64 and 128 take as long or longer
-    VPL_GATHER_COLUMNS = VPL_GATHER_WIDTH + VPL_LANES, // with the windows of the outermost pixels,
-    VPL_GATHER_ROWS = VPL_GATHER_HEIGHT + VPL_MAX_INTERLEAVE - 1,
+    VPL_GATHER_WIDTH = 64,  // pixels of a task of the second step
+    VPL_GATHER_HEIGHT = 32, // 16, 64 and 128 take as long or longer
+    VPL_GATHER_COLUMNS =
+        VPL_GATHER_WIDTH + 2 * VPL_MAX_INTERLEAVE, // with the windows of the outermost pixels,
+    VPL_GATHER_ROWS = VPL_GATHER_HEIGHT + 2 * VPL_MAX_INTERLEAVE,
     VPL_GATHER_RUNS = VPL_GATHER_WIDTH / VPL_LANES // runs of 16 pixels in a row
 };
 

@@ -22,6 +22,17 @@ typedef struct Part {
     bool any;
 } Part;
 
+// Pixels along a window, and the weight of pixel i.
+static inline int tapsOf(int side)
+{
+    return 2 * side - 1;
+}
+
+static inline float weightOf(int side, int i)
+{
+    return (float)(i < side ? i + 1 : 2 * side - 1 - i);
+}
+
 // Copies a plane's rows, 0 outside the picture. `to` has VPL_GATHER_COLUMNS values per row.
 static void loadPlane(const vplImage* image, const float* plane, const Part* part, int reach, float* to)
 {
@@ -48,7 +59,7 @@ static void findUniform(int side, vplGatherRoom* room, Part* part)
         for (int run = 0; run < VPL_GATHER_RUNS; run++) {
             const int32_t* at = room->triangle[row] + run * VPL_LANES;
             int32_t different = 0, any = 0;
-            for (int i = 0; i < VPL_LANES + side - 1; i++) {
+            for (int i = 0; i < VPL_LANES + tapsOf(side) - 1; i++) {
                 different |= at[i] ^ at[0];
                 any |= at[i];
             }
@@ -73,9 +84,10 @@ static void sumRows(int side, vplGatherRoom* room, const Part* part)
             for (int x = 0; x < VPL_GATHER_WIDTH; x++) {
                 to[x] = from[x];
             }
-            for (int i = 1; i < side; i++) {
+            for (int i = 1; i < tapsOf(side); i++) {
+                const float weight = weightOf(side, i);
                 for (int x = 0; x < VPL_GATHER_WIDTH; x++) {
-                    to[x] += from[x + i];
+                    to[x] += weight * from[x + i];
                 }
             }
         }
@@ -127,13 +139,14 @@ static void findPositions(const vplView* view, const Part* part, int reach, int 
 // Mean over the windows of 16 pixels of one triangle.
 static void meanOfUniform(const vplGatherRoom* room, int side, int row, int x, float mean[3][VPL_LANES])
 {
-    const float inverse = 1 / (float)(side * side);
+    const float inverse = 1 / (float)(side * side * side * side);
     for (int c = 0; c < 3; c++) {
         float sum[VPL_LANES] = {0};
-        for (int i = 0; i < side; i++) {
+        for (int i = 0; i < tapsOf(side); i++) {
+            const float weight = weightOf(side, i);
             const float* from = room->rowSums[c][row + i] + x;
             for (int l = 0; l < VPL_LANES; l++) {
-                sum[l] += from[l];
+                sum[l] += weight * from[l];
             }
         }
         for (int l = 0; l < VPL_LANES; l++) {
@@ -142,69 +155,108 @@ static void meanOfUniform(const vplGatherRoom* room, int side, int row, int x, f
     }
 }
 
-// One row of the windows of 16 pixels whose own place is `at`, (row, column).
-typedef struct Centre {
-    float nx[VPL_LANES], ny[VPL_LANES], nz[VPL_LANES];
-    float offset[VPL_LANES], slack[VPL_LANES]; // of the tangent plane: |n.q - offset| <= slack
-    int32_t triangle[VPL_LANES];
-} Centre;
-
-static void findCentre(const vplGatherRoom* room, int row, int column, Centre* c)
+// How far the pixels of a row of windows are from the plane of the triangle at (row0, x0): 0 on that triangle itself,
+// infinity where another surface faces elsewhere or nothing is.
+static void measureRow(const vplGatherRoom* room, int row0, int x0, int row, int x, int count,
+                       float apart[VPL_GATHER_COLUMNS])
 {
-    for (int l = 0; l < VPL_LANES; l++) {
-        const int x = column + l;
-        c->nx[l] = room->normal[0][row][x];
-        c->ny[l] = room->normal[1][row][x];
-        c->nz[l] = room->normal[2][row][x];
-        c->offset[l] = room->offset[row][x];
-        c->slack[l] = MAX_DISTANCE * room->distance[row][x];
-        c->triangle[l] = room->triangle[row][x];
-    }
-}
-
-// Adds the pixels at `x` of the window's row.
-static inline void addTaps(const vplGatherRoom* room, const Centre* c, int row, int x, float count[VPL_LANES],
-                           float sum[3][VPL_LANES])
-{
+    const int32_t own = room->triangle[row0][x0];
+    const float ox = room->normal[0][row0][x0], oy = room->normal[1][row0][x0],
+                oz = room->normal[2][row0][x0];
+    const float offset = room->offset[row0][x0];
     const int32_t* triangle = room->triangle[row] + x;
     const float *nx = room->normal[0][row] + x, *ny = room->normal[1][row] + x,
                 *nz = room->normal[2][row] + x;
     const float *px = room->position[0][row] + x, *py = room->position[1][row] + x,
                 *pz = room->position[2][row] + x;
-    const float *r = room->indirect[0][row] + x, *g = room->indirect[1][row] + x,
-                *b = room->indirect[2][row] + x;
-    for (int l = 0; l < VPL_LANES; l++) {
-        const float cosine = c->nx[l] * nx[l] + c->ny[l] * ny[l] + c->nz[l] * nz[l];
-        const float above = c->nx[l] * px[l] + c->ny[l] * py[l] + c->nz[l] * pz[l] - c->offset[l];
-        const float er = r[l], eg = g[l], eb = b[l];
-        const int near = (cosine >= MIN_NORMALS) & (above <= c->slack[l]) & (-above <= c->slack[l]);
-        const int same = (triangle[l] == c->triangle[l]) | (near & (triangle[l] != 0));
-        count[l] += same ? 1.0f : 0.0f;
-        sum[0][l] += same ? er : 0.0f;
-        sum[1][l] += same ? eg : 0.0f;
-        sum[2][l] += same ? eb : 0.0f;
+    for (int i = 0; i < count; i++) {
+        const float cosine = ox * nx[i] + oy * ny[i] + oz * nz[i];
+        const float above = fabsf(ox * px[i] + oy * py[i] + oz * pz[i] - offset);
+        const float other = cosine >= MIN_NORMALS ? above : INFINITY; // normals of nothing are 0
+        apart[i] = triangle[i] == own ? 0 : other;
     }
 }
 
-// Mean over those pixels of each window that lie on the surface of its middle.
+// Adds a row of all windows.
+static void addRow(const vplGatherRoom* room, int side, int row, int x, const float apart[VPL_GATHER_COLUMNS],
+                   const float slack[VPL_LANES], float count[VPL_LANES], float sum[3][VPL_LANES])
+{
+    for (int i = 0; i < tapsOf(side); i++) {
+        const float weight = weightOf(side, i);
+        const float *r = room->indirect[0][row] + x + i, *g = room->indirect[1][row] + x + i,
+                    *b = room->indirect[2][row] + x + i;
+        for (int l = 0; l < VPL_LANES; l++) {
+            const float er = weight * r[l], eg = weight * g[l], eb = weight * b[l];
+            const bool same = apart[i + l] <= slack[l];
+            count[l] += same ? weight : 0.0f;
+            sum[0][l] += same ? er : 0.0f;
+            sum[1][l] += same ? eg : 0.0f;
+            sum[2][l] += same ? eb : 0.0f;
+        }
+    }
+}
+
+// The same where the row shows the triangle of all their middles.
+static void takeRow(const vplGatherRoom* room, int side, int row, int x, float count[VPL_LANES],
+                    float sum[3][VPL_LANES])
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        count[l] = (float)(side * side);
+        sum[0][l] = room->rowSums[0][row][x + l];
+        sum[1][l] = room->rowSums[1][row][x + l];
+        sum[2][l] = room->rowSums[2][row][x + l];
+    }
+}
+
+// Adds the windows of those pixels that show the triangle of pixel `lane`.
+static void addWindows(const vplGatherRoom* room, int side, int row, int x, int lane, float count[VPL_LANES],
+                       float total[3][VPL_LANES])
+{
+    const int row0 = row + side - 1, x0 = x + side - 1;
+    const int32_t own = room->triangle[row0][x0 + lane];
+    float slack[VPL_LANES], apart[VPL_GATHER_COLUMNS];
+    int32_t others = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        const int32_t triangle = room->triangle[row0][x0 + l];
+        const float most = MAX_DISTANCE * room->distance[row0][x0 + l];
+        const float atLeast0 = most > 0 ? most : 0; // NaN: seen from within its plane
+        slack[l] = triangle == own ? atLeast0 : -1;
+        others |= triangle ^ own;
+    }
+    for (int i = 0; i < tapsOf(side); i++) {
+        const float weight = weightOf(side, i);
+        float sum[3][VPL_LANES] = {{0}}, rowCount[VPL_LANES] = {0};
+        if (others == 0 && room->uniform[row + i][x / VPL_LANES] == own) {
+            takeRow(room, side, row + i, x, rowCount, sum);
+        } else {
+            measureRow(room, row0, x0 + lane, row + i, x, VPL_LANES + tapsOf(side) - 1, apart);
+            addRow(room, side, row + i, x, apart, slack, rowCount, sum);
+        }
+        for (int l = 0; l < VPL_LANES; l++) {
+            count[l] += weight * rowCount[l];
+            total[0][l] += weight * sum[0][l];
+            total[1][l] += weight * sum[1][l];
+            total[2][l] += weight * sum[2][l];
+        }
+    }
+}
+
+// Mean over those pixels of each window that lie on the surface of its middle, for each triangle among these.
 static void meanOfMixed(const vplGatherRoom* room, int side, int row, int x, float mean[3][VPL_LANES])
 {
-    Centre centre;
-    findCentre(room, row + side / 2, x + side / 2, &centre);
+    const int32_t* own = room->triangle[row + side - 1] + x + side - 1;
     float count[VPL_LANES] = {0}, total[3][VPL_LANES] = {{0}};
-    for (int i = 0; i < side; i++) {
-        float sum[3][VPL_LANES] = {{0}};
-        for (int j = 0; j < side; j++) {
-            addTaps(room, &centre, row + i, x + j, count, sum);
+    for (int l = 0; l < VPL_LANES; l++) {
+        bool seen = own[l] == 0;
+        for (int k = 0; k < l; k++) {
+            seen |= own[k] == own[l];
         }
-        for (int c = 0; c < 3; c++) {
-            for (int l = 0; l < VPL_LANES; l++) {
-                total[c][l] += sum[c][l];
-            }
+        if (!seen) {
+            addWindows(room, side, row, x, l, count, total);
         }
     }
     for (int l = 0; l < VPL_LANES; l++) {
-        const float inverse = 1 / count[l]; // at least 1: the pixel itself
+        const float inverse = count[l] > 0 ? 1 / count[l] : 0; // nothing is in the middle
         mean[0][l] = total[0][l] * inverse;
         mean[1][l] = total[1][l] * inverse;
         mean[2][l] = total[2][l] * inverse;
@@ -271,9 +323,9 @@ static void gatherRun(const vplShading* s, const vplGatherRoom* room, const Part
                       Seen* seen)
 {
     const int side = s->interleave->side;
-    const int32_t* triangles = room->triangle[row + side / 2] + x + side / 2;
+    const int32_t* triangles = room->triangle[row + side - 1] + x + side - 1;
     bool uniform = room->uniform[row][x / VPL_LANES] != 0;
-    for (int i = 1; i < side; i++) {
+    for (int i = 1; i < tapsOf(side); i++) {
         uniform &= room->uniform[row + i][x / VPL_LANES] == room->uniform[row][x / VPL_LANES];
     }
     float mean[3][VPL_LANES];
@@ -301,12 +353,12 @@ void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
     const vplInterleave* w = s->interleave;
     const vplImage* image = s->image;
     vplGatherRoom* room = &w->rooms[worker];
-    const int side = w->side, reach = side / 2;
+    const int side = w->side, reach = side - 1;
     Part part = {.x = task % w->tilesX * VPL_GATHER_WIDTH, .y = task / w->tilesX * VPL_GATHER_HEIGHT};
     part.width = image->width - part.x < VPL_GATHER_WIDTH ? image->width - part.x : VPL_GATHER_WIDTH;
     part.height = image->height - part.y < VPL_GATHER_HEIGHT ? image->height - part.y : VPL_GATHER_HEIGHT;
-    part.columns = VPL_GATHER_WIDTH + side - 1;
-    part.rows = part.height + side - 1;
+    part.columns = VPL_GATHER_WIDTH + tapsOf(side) - 1;
+    part.rows = part.height + tapsOf(side) - 1;
     loadPlane(image, vplGatherPlane(w, VPL_GATHER_TRIANGLE), &part, reach, (float*)room->triangle[0]);
     findUniform(side, room, &part);
     if (!part.any) {
