@@ -77,20 +77,17 @@ static void findUniform(int side, vplGatherRoom* room, Part* part)
 
 static void sumRows(int side, vplGatherRoom* room, const Part* part)
 {
-    for (int c = 0; c < 3; c++) {
-        for (int row = 0; row < part->rows; row++) {
-            const float* restrict from = room->indirect[c][row];
-            float* restrict to = room->rowSums[c][row];
-            for (int x = 0; x < VPL_GATHER_WIDTH; x++) {
-                to[x] = from[x];
-            }
-            for (int i = 1; i < tapsOf(side); i++) {
-                const float weight = weightOf(side, i);
-                for (int x = 0; x < VPL_GATHER_WIDTH; x++) {
-                    to[x] += weight * from[x + i];
-                }
+    for (int i = 0; i < 3 * part->rows * VPL_GATHER_RUNS; i++) {
+        const int row = i / VPL_GATHER_RUNS % part->rows, x = i % VPL_GATHER_RUNS * VPL_LANES;
+        const float* from = room->indirect[i / VPL_GATHER_RUNS / part->rows][row] + x;
+        float sum[VPL_LANES] = {0};
+        for (int k = 0; k < tapsOf(side); k++) {
+            const float weight = weightOf(side, k);
+            for (int l = 0; l < VPL_LANES; l++) {
+                sum[l] += weight * from[k + l];
             }
         }
+        memcpy(room->rowSums[i / VPL_GATHER_RUNS / part->rows][row] + x, sum, sizeof sum);
     }
 }
 
@@ -177,23 +174,27 @@ static void measureRow(const vplGatherRoom* room, int row0, int x0, int row, int
     }
 }
 
-// Adds a row of all windows.
-static void addRow(const vplGatherRoom* room, int side, int row, int x, const float apart[VPL_GATHER_COLUMNS],
+// Sums a row of all windows.
+static void sumRow(const vplGatherRoom* room, int side, int row, int x, const float apart[VPL_GATHER_COLUMNS],
                    const float slack[VPL_LANES], float count[VPL_LANES], float sum[3][VPL_LANES])
 {
+    float n[VPL_LANES] = {0}, red[VPL_LANES] = {0}, green[VPL_LANES] = {0}, blue[VPL_LANES] = {0};
     for (int i = 0; i < tapsOf(side); i++) {
         const float weight = weightOf(side, i);
         const float *r = room->indirect[0][row] + x + i, *g = room->indirect[1][row] + x + i,
                     *b = room->indirect[2][row] + x + i;
         for (int l = 0; l < VPL_LANES; l++) {
-            const float er = weight * r[l], eg = weight * g[l], eb = weight * b[l];
-            const bool same = apart[i + l] <= slack[l];
-            count[l] += same ? weight : 0.0f;
-            sum[0][l] += same ? er : 0.0f;
-            sum[1][l] += same ? eg : 0.0f;
-            sum[2][l] += same ? eb : 0.0f;
+            const float taken = apart[i + l] <= slack[l] ? weight : 0;
+            n[l] += taken;
+            red[l] += taken * r[l];
+            green[l] += taken * g[l];
+            blue[l] += taken * b[l];
         }
     }
+    memcpy(count, n, sizeof n);
+    memcpy(sum[0], red, sizeof red);
+    memcpy(sum[1], green, sizeof green);
+    memcpy(sum[2], blue, sizeof blue);
 }
 
 // The same where the row shows the triangle of all their middles.
@@ -225,12 +226,12 @@ static void addWindows(const vplGatherRoom* room, int side, int row, int x, int 
     }
     for (int i = 0; i < tapsOf(side); i++) {
         const float weight = weightOf(side, i);
-        float sum[3][VPL_LANES] = {{0}}, rowCount[VPL_LANES] = {0};
+        float sum[3][VPL_LANES], rowCount[VPL_LANES];
         if (others == 0 && room->uniform[row + i][x / VPL_LANES] == own) {
             takeRow(room, side, row + i, x, rowCount, sum);
         } else {
             measureRow(room, row0, x0 + lane, row + i, x, VPL_LANES + tapsOf(side) - 1, apart);
-            addRow(room, side, row + i, x, apart, slack, rowCount, sum);
+            sumRow(room, side, row + i, x, apart, slack, rowCount, sum);
         }
         for (int l = 0; l < VPL_LANES; l++) {
             count[l] += weight * rowCount[l];
