@@ -15,6 +15,7 @@
     X(geometry)                                                                                              \
     X(hits)                                                                                                  \
     X(image)                                                                                                 \
+    X(interleaved)                                                                                           \
     X(lights)                                                                                                \
     X(math)                                                                                                  \
     X(memory)                                                                                                \

@@ -130,8 +130,8 @@ static vplResult renderAndWrite(vplContext* context, const char* path, int pipel
 static void EveryFailedAllocationOfARenderIsReported(void** state)
 {
     (void)state;
-    const char* const extensions[] = {"png", vplImage_CanWrite("a.exr") ? "exr" : "hdr", "pfm"};
-    for (int pipeline = VPL_ACCUMULATE_MULTIPASS; pipeline <= VPL_ACCUMULATE_DEFERRED; pipeline++) {
+    const char* const extensions[] = {"png", vplImage_CanWrite("a.exr") ? "exr" : "hdr", "pfm", "pfm"};
+    for (int pipeline = VPL_ACCUMULATE_MULTIPASS; pipeline <= VPL_ACCUMULATE_INTERLEAVED; pipeline++) {
         failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, false);
         failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, true);
     }

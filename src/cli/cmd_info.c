@@ -93,7 +93,7 @@ static void countDraws(const vplRenderOptions* o, Info* info)
 {
     const int64_t perPass = o->accumulation == VPL_ACCUMULATE_BATCHED ? o->batch : 1;
     const int64_t passes =
-        o->accumulation == VPL_ACCUMULATE_DEFERRED ? 0 : (info->virtualLights + perPass - 1) / perPass;
+        o->accumulation >= VPL_ACCUMULATE_DEFERRED ? 0 : (info->virtualLights + perPass - 1) / perPass;
     const int64_t maps =
         o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
     const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? info->virtualLights : 0;

@@ -53,7 +53,7 @@ static double foresee(const Tradeoff* t, const Setting* s)
         }
     }
     double pixels = (double)o->width * o->height;
-    double pipeline = o->accumulation == VPL_ACCUMULATE_DEFERRED ? 1 : 10;
+    double pipeline = o->accumulation >= VPL_ACCUMULATE_DEFERRED ? 1 : 10;
     return nearest ? nearest->wallMs * s->work / nearest->work
                    : guess[s->family] * pixels * s->work * pipeline;
 }

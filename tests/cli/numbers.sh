@@ -41,7 +41,7 @@ done
 check ImageHashHas16Digits grep -qE '"image_hash": "[0-9a-f]{16}"' "$s"
 
 # info foretells what --stats reports afterwards.
-for pipeline in multipass "batched --batch 7" deferred; do
+for pipeline in multipass "batched --batch 7" deferred interleaved; do
     for method in instant-radiosity direct path "instant-radiosity --antialias 3" \
         "instant-radiosity --light-shadows map --light-map 8" "instant-radiosity --light-shadows ray"; do
         words="$counted --shadow-map 16 --pipeline $pipeline --method $method"

@@ -28,6 +28,19 @@ for lighting in physical documented; do
         esac
     done
 done
+shared=$(hash_of --pipeline interleaved --antialias 2)
+check InterleavedIsAnotherPicture test "$shared" != "$(hash_of --antialias 2)"
+equals InterleavedByOneIsDeferred "$(hash_of)" "$(hash_of --pipeline interleaved --interleave 1)"
+for threads in 1 2 3 7; do
+    equals "SameBits_interleaved_threads_$threads" "$shared" "$(hash_of --pipeline interleaved --antialias 2 --threads $threads)"
+done
+for isa in scalar sse2 avx2 avx512; do
+    found=$(hash_of --pipeline interleaved --antialias 2 --isa $isa)
+    case $found in
+    *"this machine or build lacks"*) ;;
+    *) equals "SameBits_interleaved_$isa" "$shared" "$found" ;;
+    esac
+done
 equals BatchSizeChangesNothing "$(hash_of --pipeline batched --batch 1)" "$(hash_of --pipeline batched --batch 99)"
 other=$(hash_of --seed 1)
 check AnotherSeedIsAnotherPicture test "$other" != "$(hash_of --seed 2)"

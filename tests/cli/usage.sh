@@ -64,6 +64,7 @@ wrong "--pipeline is" render "$room" -o "$png" --pipeline forward
 wrong "--isa is \"mmx\"" render "$room" -o "$png" --isa mmx
 wrong "--tonemap is" render "$room" -o "$png" --tonemap aces
 wrong "--batch is \"0\"" render "$room" -o "$png" --batch 0
+wrong "--interleave is \"17\"" render "$room" -o "$png" --interleave 17
 wrong "--shadow-map is \"0\"" render "$room" -o "$png" --shadow-map 0
 wrong "--shadow-map is \"8193\"" render "$room" -o "$png" --shadow-map 8193
 wrong "--pcf is \"0\"" render "$room" -o "$png" --pcf 0

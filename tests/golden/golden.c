@@ -52,6 +52,12 @@ static void manyLightsBatched(vplRenderOptions* o)
     o->sampler = VPL_SAMPLER_HAMMERSLEY;
 }
 
+static void interleaved(vplRenderOptions* o)
+{
+    manyLights(o);
+    o->accumulation = VPL_ACCUMULATE_INTERLEAVED;
+}
+
 static void unbounded(vplRenderOptions* o)
 {
     o->particles = 200;
@@ -139,6 +145,7 @@ static const Case CASES[] = {
     {"room-documented-multipass", "room", 0, documentedMultipass},
     {"room-many-lights", "closed-room", 1, manyLights},
     {"room-many-lights-batched", "room", 1, manyLightsBatched},
+    {"interleaved-room", "room", 1, interleaved},
     {"room-unbounded", "room", 1, unbounded},
     {"hard-shadow", "room", 2, hardShadow},
     {"acne", "room", 2, acne},

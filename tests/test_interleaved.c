@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+// Interleaved shading against deferred shading and against its definition, written out pixel by pixel.
+#include "shapes.h"
+
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+enum { MAX_SIDE = VPL_MAX_INTERLEAVE };
+
+// A step in a floor, a wall behind it, and nothing beyond: normals that differ, and planes that do.
+static vplGeometry* stage(vplContext* context)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    const vplVec3 places[3] = {{0, 0, 0}, {0.7f, 0.5f, 0.3f}, {0, 1, -2}},
+                  sizes[3] = {{4, 4, 1}, {1, 1, 1}, {4, 2, 1}};
+    for (int i = 0; i < 3; i++) {
+        vplObjectDef object = vplDefaultObjectDef();
+        const double rotate[3] = {i < 2 ? -VPL_PI / 2 : 0, 0, 0};
+        object.transform = vplMat4_FromParts(places[i], rotate, sizes[i]);
+        assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+    }
+    return freezeScene(scene);
+}
+
+static vplView viewOf(vplVec3 eye, int width, int height)
+{
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = eye;
+    camera.target = vplVec(0, 0.2f, 0);
+    return vplView_Create(&camera, width, height);
+}
+
+static vplShadeLight* rollLights(int count, uint64_t seed)
+{
+    Dice dice = {seed, 0};
+    vplShadeLight* lights = malloc((size_t)count * sizeof *lights);
+    for (int i = 0; i < count; i++) {
+        const vplVec3 p = rollVec(&dice, 2);
+        lights[i] = (vplShadeLight){
+            p.x, 3 + 0.5f * p.y, p.z, 0, -1, 0, roll(&dice, 0, 1), roll(&dice, 0, 1), roll(&dice, 0, 1)};
+    }
+    return lights;
+}
+
+static vplShadeDef defOf(const vplShadeLight* lights, int count, int side)
+{
+    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.3f};
+    def.accumulation = side > 0 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    def.interleave = side;
+    def.lights = lights;
+    def.lightCount = count;
+    return def;
+}
+
+static vplImage* shadeStage(const vplGeometry* g, const vplView* view, const vplShadeDef* def)
+{
+    vplImage* image;
+    assert_int_equal(vplImage_Create(g->context, view->width, view->height, &image), VPL_SUCCESS);
+    assert_int_equal(vplShadeView(g, view, def, NULL, NULL, image, NULL), VPL_SUCCESS);
+    return image;
+}
+
+// What a pixel shows: distance along the view axis, the place from the eye, the normal.
+typedef struct Look {
+    double w, p[3], n[3];
+} Look;
+
+static Look* lookAt(const vplGeometry* g, const vplView* view)
+{
+    vplShadeDef def = defOf(NULL, 0, 0);
+    def.output = VPL_OUTPUT_DEPTH;
+    vplImage* depth = shadeStage(g, view, &def);
+    def.output = VPL_OUTPUT_NORMALS;
+    vplImage* normals = shadeStage(g, view, &def);
+    Look* looks = malloc((size_t)(view->width * view->height) * sizeof *looks);
+    for (int i = 0; i < view->width * view->height; i++) {
+        const double x = ((i % view->width + 0.5) / view->width * 2 - 1) / view->scaleX;
+        const double y = (1 - (i / view->width + 0.5) / view->height * 2) / view->scaleY;
+        for (int k = 0; k < 3; k++) {
+            const double f = (double)vplComponent(view->forward, k), r = (double)vplComponent(view->right, k),
+                         u = (double)vplComponent(view->up, k);
+            looks[i].w = (double)depth->pixels[3 * i];
+            looks[i].p[k] = looks[i].w * (f + x * r + y * u);
+            looks[i].n[k] = (double)normals->pixels[3 * i + k];
+        }
+    }
+    vplImage_Destroy(depth);
+    vplImage_Destroy(normals);
+    return looks;
+}
+
+static bool oneSurface(const Look* a, const Look* b)
+{
+    double cosine = 0, apart = 0;
+    for (int k = 0; k < 3; k++) {
+        cosine += a->n[k] * b->n[k];
+        apart += a->n[k] * (b->p[k] - a->p[k]);
+    }
+    return b->w > 0 && cosine >= 0.9 && fabs(apart) <= 0.01 * a->w;
+}
+
+// The definition: pictures of the lights of each class alone, of which each pixel gives the one of its own class.
+static vplImage** classPictures(const vplGeometry* g, const vplView* view, const vplShadeLight* lights,
+                                int count, int side)
+{
+    vplImage** pictures = malloc((size_t)(side * side) * sizeof *pictures);
+    vplShadeLight* own = malloc((size_t)count * sizeof *own);
+    for (int c = 0; c < side * side; c++) {
+        int ownCount = 0;
+        for (int i = c; i < count; i += side * side) {
+            own[ownCount++] = lights[i];
+        }
+        const vplShadeDef def = defOf(own, ownCount, 0);
+        pictures[c] = shadeStage(g, view, &def);
+    }
+    free(own);
+    return pictures;
+}
+
+// Weights fall from K in the middle to 1 at K - 1 pixels from it.
+static double expected(vplImage** pictures, const Look* looks, int x, int y, int side, int channel)
+{
+    const int width = pictures[0]->width, height = pictures[0]->height;
+    double sum = 0, weights = 0;
+    for (int v = y - side + 1; v < y + side; v++) {
+        for (int u = x - side + 1; u < x + side; u++) {
+            if (u < 0 || v < 0 || u >= width || v >= height ||
+                !oneSurface(&looks[y * width + x], &looks[v * width + u])) {
+                continue;
+            }
+            const double weight = (double)((side - abs(u - x)) * (side - abs(v - y)));
+            const vplImage* own = pictures[v % side * side + u % side];
+            sum += weight * side * side * (double)own->pixels[3 * (v * width + u) + channel];
+            weights += weight;
+        }
+    }
+    return weights > 0 ? sum / weights : 0;
+}
+
+static void checkDefinition(const vplGeometry* g, int width, int height, int side, int lightCount)
+{
+    const vplView view = viewOf(vplVec(1, 2, 5), width, height);
+    vplShadeLight* lights = rollLights(lightCount, (uint64_t)side);
+    Look* looks = lookAt(g, &view);
+    vplImage** pictures = classPictures(g, &view, lights, lightCount, side);
+    const vplShadeDef def = defOf(lights, lightCount, side);
+    vplImage* image = shadeStage(g, &view, &def);
+    int lit = 0;
+    for (int i = 0; i < 3 * width * height; i++) {
+        const double wanted = expected(pictures, looks, i / 3 % width, i / 3 / width, side, i % 3);
+        assertNear((double)image->pixels[i], wanted, 2e-6 * wanted, "radiance", i);
+        lit += wanted > 0;
+    }
+    assert_true(lit > width * height / 8);
+    for (int c = 0; c < side * side; c++) {
+        vplImage_Destroy(pictures[c]);
+    }
+    vplImage_Destroy(image);
+    free(pictures);
+    free(looks);
+    free(lights);
+}
+
+// Sides that divide tiles and such that do not; sizes likewise; fewer lights than classes, and more than a group.
+static void EveryPixelIsThatOfTheDefinition(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* g = stage(context);
+    static const int cases[][4] = {{128, 96, 2, 300}, {150, 70, 3, 100}, {130, 67, 4, 512}, {70, 131, 5, 60},
+                                   {90, 60, 8, 130},  {67, 45, 16, 300}, {66, 65, 7, 20}};
+    for (int i = 0; i < 7; i++) {
+        checkDefinition(g, cases[i][0], cases[i][1], cases[i][2], cases[i][3]);
+    }
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// Away from the picture's border every light counts exactly once, and what is linear over the window keeps its
+// value: lights 2 km above a floor are, to a float.
+static void FarLightsOnAFloorAreThoseOfDeferredShading(void** state)
+{
+    (void)state;
+    enum { COUNT = 9 * 256, WIDTH = 100, HEIGHT = 80 };
+    vplContext* context = openTestContext(2);
+    vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 100, 0.5f);
+    const vplView view = viewOf(vplVec(0, 3, 0.5f), WIDTH, HEIGHT);
+    vplShadeLight* lights = rollLights(COUNT, 1);
+    for (int i = 0; i < COUNT; i++) {
+        lights[i].py = 2000 + 100 * lights[i].py;
+        lights[i].r *= 1e6f;
+    }
+    vplShadeDef def = defOf(lights, COUNT, 0);
+    vplImage* deferred = shadeStage(g, &view, &def);
+    static const int sides[] = {2, 3, 4, 8, 16};
+    for (int k = 0; k < 5; k++) {
+        def = defOf(lights, COUNT, sides[k]);
+        vplImage* image = shadeStage(g, &view, &def);
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+            const int x = i / 3 % WIDTH, y = i / 3 / WIDTH, border = sides[k] - 1;
+            if (x >= border && y >= border && x < WIDTH - border && y < HEIGHT - border) {
+                const double wanted = (double)deferred->pixels[i];
+                assert_true(wanted > 0);
+                assertNear((double)image->pixels[i], wanted, 1e-6 * wanted, "radiance", sides[k]);
+            }
+        }
+        vplImage_Destroy(image);
+    }
+    vplImage_Destroy(deferred);
+    free(lights);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// A wall whose lights all lie in its plane gets exactly nothing, however bright the floor that it stands on.
+static void NoLightLeaksOverAnEdge(void** state)
+{
+    (void)state;
+    enum { SIZE = 96, COUNT = 200 };
+    vplContext* context = openTestContext(2);
+    vplGeometry* g = stage(context);
+    const vplView view = viewOf(vplVec(0, 2, 5), SIZE, SIZE);
+    vplShadeLight* lights = rollLights(COUNT, 3);
+    for (int i = 0; i < COUNT; i++) {
+        lights[i].pz = -2.5f; // behind the wall, above the floor
+    }
+    vplShadeDef def = defOf(lights, COUNT, 0);
+    def.output = VPL_OUTPUT_NORMALS;
+    vplImage* normals = shadeStage(g, &view, &def);
+    for (int side = 2; side <= MAX_SIDE; side *= 2) {
+        def = defOf(lights, COUNT, side);
+        vplImage* image = shadeStage(g, &view, &def);
+        int walls = 0, floors = 0;
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            const float* e = image->pixels + 3 * i;
+            const float* n = normals->pixels + 3 * i;
+            assert_true(n[1] > 0.5f ? e[0] > 0 : e[0] == 0 && e[1] == 0 && e[2] == 0);
+            walls += n[2] > 0.5f;
+            floors += n[1] > 0.5f;
+        }
+        assert_true(walls > 100 && floors > 100);
+        vplImage_Destroy(image);
+    }
+    vplImage_Destroy(normals);
+    free(lights);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// ---- whole renders
+
+static vplRenderOptions optionsOf(int side)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.width = 131;
+    o.height = 75;
+    o.particles = 150;
+    o.sampler = VPL_SAMPLER_HALTON;
+    o.shadowMapSize = 32;
+    o.lightMapSize = 8;
+    o.lampLights = 4;
+    o.accumulation = side > 0 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    o.interleave = side > 0 ? side : 4;
+    return o;
+}
+
+// A room with a smooth ball, so that normals and planes differ.
+static vplScene* ballRoom(vplContext* context)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    Shape ball = icosphere(2);
+    placeShape(&ball, 0.7f, (double[3]){0, 0, 0}, vplVec(0.2f, 2.2f, 0.8f));
+    addShape(scene, &ball, true, NULL);
+    freeShape(&ball);
+    return scene;
+}
+
+static uint64_t hashOf(vplContext* context, const vplRenderOptions* o)
+{
+    vplRenderStats stats;
+    vplScene* scene = ballRoom(context);
+    vplImage_Destroy(renderScene(scene, o, &stats));
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return stats.imageHash;
+}
+
+static void BlocksOfOnePixelAreDeferredBitForBit(void** state)
+{
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        vplRenderOptions one = optionsOf(1), deferred = optionsOf(0);
+        one.lighting = deferred.lighting = (vplLighting)(i % 2);
+        one.lightShadows = deferred.lightShadows = (vplLightShadows)(i / 2);
+        one.particles = deferred.particles = 40;
+        assert_true(hashOf(openTestContext(2), &one) == hashOf(openTestContext(2), &deferred));
+    }
+}
+
+static void ThreadsAndInstructionSetsChangeNoBit(void** state)
+{
+    (void)state;
+    static const int workers[] = {2, 3, 7}, sides[] = {4, 3, 16};
+    for (int i = 0; i < 5; i++) {
+        vplRenderOptions o = optionsOf(sides[i % 3]);
+        o.lightShadows = (vplLightShadows)(i < 3 ? 0 : i - 2);
+        o.particles = i < 3 ? 150 : 20;
+        o.antialias = i == 0 ? 2 : 1;
+        o.lighting = i == 1 ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
+        const uint64_t wanted = hashOf(openTestContext(1), &o);
+        for (int k = 0; k < 3; k++) {
+            assert_true(hashOf(openTestContext(workers[k]), &o) == wanted);
+        }
+        for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+            vplContext* context = openIsaContext(2, (vplIsa)isa);
+            assert_true(context == NULL || hashOf(context, &o) == wanted);
+        }
+    }
+}
+
+// 512 lights and more in the room, with each kind of shadow: the same energy, and a bounded error.
+static void IndirectLightKeepsItsEnergy(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    for (int shadows = 0; shadows < 3; shadows++) {
+        for (int side = 2; side <= 8; side *= 2) {
+            vplRenderOptions o = optionsOf(0);
+            o.width = 192;
+            o.height = 108;
+            o.show = VPL_SHOW_INDIRECT;
+            o.particles = shadows ? 100 : 345;
+            o.lightShadows = (vplLightShadows)shadows;
+            vplImage* deferred = renderScene(scene, &o, NULL);
+            o.accumulation = VPL_ACCUMULATE_INTERLEAVED;
+            o.interleave = side;
+            vplImage* image = renderScene(scene, &o, NULL);
+            vplComparison c;
+            assert_int_equal(vplImage_Compare(image, deferred, &c), VPL_SUCCESS);
+            assertNear(c.energyRatio, 1, 0.01, "energy", side);
+            assert_true(c.relativeRmse > 0 && c.relativeRmse < 0.03 * side);
+            vplImage_Destroy(image);
+            vplImage_Destroy(deferred);
+        }
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static void SizesOfBlocksOutOfRangeAreRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = loadScene(context, "room.json");
+    static const int wrong[] = {-1, 0, 17};
+    vplImage* image = NULL;
+    for (int i = 0; i < 3; i++) {
+        vplRenderOptions o = optionsOf(4);
+        o.interleave = wrong[i];
+        assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+        assert_true(image == NULL && strstr(takeMessage(), "vplRenderOptions.interleave is ") != NULL);
+    }
+    vplGeometry* g = stage(context);
+    const vplView view = viewOf(vplVec(0, 2, 5), 4, 4);
+    assert_int_equal(vplImage_Create(context, 4, 4, &image), VPL_SUCCESS);
+    for (int i = 0; i < 3; i++) {
+        vplShadeDef def = defOf(NULL, 0, 4);
+        def.interleave = wrong[i];
+        assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_INVALID_ARGUMENT);
+        assert_true(strstr(takeMessage(), "vplShadeDef.interleave is ") != NULL);
+    }
+    vplImage_Destroy(image);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+TEST_SUITE(interleaved, cmocka_unit_test(EveryPixelIsThatOfTheDefinition),
+           cmocka_unit_test(FarLightsOnAFloorAreThoseOfDeferredShading),
+           cmocka_unit_test(NoLightLeaksOverAnEdge), cmocka_unit_test(BlocksOfOnePixelAreDeferredBitForBit),
+           cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),
+           cmocka_unit_test(IndirectLightKeepsItsEnergy),
+           cmocka_unit_test(SizesOfBlocksOutOfRangeAreRefused));
