@@ -319,19 +319,20 @@ static void ThreadsAndInstructionSetsChangeNoBit(void** state)
     }
 }
 
-// 512 lights and more in the room, with each kind of shadow: the same energy, and a bounded error.
+// 512 lights and more in the room, with each kind of shadow fewer: the same energy, and a bounded
+// error. Without shadows it is 6, 10 and 14 %, at 1920 x 1080 0.9, 2.1 and 4.4 % (edges count less there).
 static void IndirectLightKeepsItsEnergy(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     for (int shadows = 0; shadows < 3; shadows++) {
-        for (int side = 2; side <= 8; side *= 2) {
+        for (int side = shadows ? 4 : 2; side <= (shadows ? 4 : 8); side *= 2) {
             vplRenderOptions o = optionsOf(0);
-            o.width = 192;
-            o.height = 108;
+            o.width = 384;
+            o.height = 216;
             o.show = VPL_SHOW_INDIRECT;
-            o.particles = shadows ? 100 : 345;
+            o.particles = shadows ? 20 : 345;
             o.lightShadows = (vplLightShadows)shadows;
             vplImage* deferred = renderScene(scene, &o, NULL);
             o.accumulation = VPL_ACCUMULATE_INTERLEAVED;
