@@ -53,7 +53,7 @@ typedef enum vplAccumulation {
     VPL_ACCUMULATE_MULTIPASS = 0, // one pass over the scene per light, depth EQUAL, additive
     VPL_ACCUMULATE_BATCHED,       // one pass per `batch` lights
     VPL_ACCUMULATE_DEFERRED,      // one pass for a G-buffer, then all lights per tile
-    VPL_ACCUMULATE_INTERLEAVED // every K^2-th light per pixel; K x K pixels of a surface share what they got
+    VPL_ACCUMULATE_INTERLEAVED    // every K^2-th light per pixel, then means of neighbours on one surface
 } vplAccumulation;
 
 // What the picture shows.

@@ -7,7 +7,7 @@
 
 enum {
     VPL_GATHER_WIDTH = 64,  // pixels of a task of the second step
-    VPL_GATHER_HEIGHT = 32, // 16, 64 and 128 take as long or longer
+    VPL_GATHER_HEIGHT = 32, // 16 takes longer, 64 as long
     VPL_GATHER_COLUMNS =
         VPL_GATHER_WIDTH + 2 * VPL_MAX_INTERLEAVE, // with the windows of the outermost pixels,
     VPL_GATHER_ROWS = VPL_GATHER_HEIGHT + 2 * VPL_MAX_INTERLEAVE,
@@ -20,7 +20,7 @@ enum { VPL_GATHER_INDIRECT = 0, VPL_GATHER_TRIANGLE = 3, VPL_GATHER_PLANES };
 // A worker's copy of a part of the picture. 0 outside the picture.
 typedef struct vplGatherRoom {
     _Alignas(64) float indirect[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
-    float rowSums[3][VPL_GATHER_ROWS][VPL_GATHER_WIDTH];   // over K pixels each
+    float rowSums[3][VPL_GATHER_ROWS][VPL_GATHER_WIDTH];   // over the window of each pixel
     int32_t triangle[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS]; // 1 + index in geometry->normals, 0: nothing
     int32_t uniform[VPL_GATHER_ROWS][VPL_GATHER_RUNS]; // the one triangle in a run and its windows, else 0
     // Where some window shows several triangles only: the triangles' planes n.x = offset, and distances along the
