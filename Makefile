@@ -88,6 +88,7 @@ bench: all
 	$(BUILD)/vpl bench
 	$(BUILD)/bench/acne
 	$(BUILD)/bench/rays examples/scenes/room.json
+	$(BUILD)/bench/interleaved examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
