@@ -137,7 +137,8 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/obj/src/cli/tradeoff_math.o $(BUILD)/libvpl.a
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/obj/src/cli/tradeoff_math.o \
+                    $(BUILD)/obj/src/cli/bench_fit.o $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 

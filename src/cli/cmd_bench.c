@@ -2,6 +2,7 @@
 // Times every stage on the benchmark room. Each figure is a median of runs that alternate between the thread
 // counts; speed-ups compare medians of one call. Hashes show that all thread counts gave the same bits.
 #include "cli/bench.h"
+#include "cli/tradeoff_math.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,18 +30,6 @@ double processorSeconds(void)
 void settle(void)
 {
     nanosleep(&(struct timespec){0, 10000000}, NULL);
-}
-
-static int compareDoubles(const void* a, const void* b)
-{
-    double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
-
-static double sortedMedian(double* values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, compareDoubles);
-    return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
 }
 
 static vplResult runOnce(const Stage* stage, Bench* b, double* seconds, double* processor, Outcome* outcome)
@@ -81,8 +70,8 @@ static vplResult measureStage(const Arguments* a, Bench* benches, int columns, R
         runs += !first || longest > WARM_UP;
     }
     for (int c = 0; c < columns; c++) {
-        row->figure[c].ms = sortedMedian(wall[c], runs);
-        row->figure[c].cpuMs = sortedMedian(processor[c], runs);
+        row->figure[c].ms = medianOf(wall[c], runs);
+        row->figure[c].cpuMs = medianOf(processor[c], runs);
         row->figure[c].runs = runs;
     }
     return VPL_SUCCESS;
