@@ -12,14 +12,15 @@ typedef struct Bench {
     vplContext* context;
     vplScene* scene;
     vplGeometry* geometry;
-    vplCubeMap* map;
-    vplShadow shadow;
     vplLightSet* set;
     vplShadeLight* lights; // of all virtual lights
     vplImage* image;       // what shading stages draw into, of the size asked for
     vplImage* quarter;     // the same for stages of rays: a quarter of the width and height
-    vplImage* picture;     // lit directly and by 18 lights, for the stages of pictures
-    vplScene* field;       // bumpy spheres, made when a stage first asks for them
+    // Made when a stage first asks for them:
+    vplCubeMap* map;
+    vplShadow shadow;
+    vplImage* picture; // lit directly and by 18 lights, for the stages of pictures
+    vplScene* field;   // bumpy spheres
     vplGeometry* fieldGeometry;
 } Bench;
 
@@ -70,14 +71,16 @@ typedef struct Row {
 
 // ---- bench_room.c
 
-// Makes everything but the field. `threads` 0 is one per processor. A Bench of zeros may be closed.
+// Makes the room, its lights and images. `threads` 0 is one per processor. A Bench of zeros may be closed.
 vplResult openBench(const Arguments* a, int threads, int width, int height, Bench* b);
 void closeBench(Bench* b);
 
 // 16 spheres of about triangleCount triangles in all, with bumps, in front of the room's camera.
 vplResult buildField(vplContext* context, int triangleCount, vplScene** sceneOut);
 
-// Makes b->field and b->fieldGeometry if they are missing.
+// Make what is missing.
+vplResult needShadow(Bench* b);
+vplResult needPicture(Bench* b);
 vplResult needField(Bench* b);
 
 // ---- bench_stages.c, bench_raster.c, bench_rays.c

@@ -150,8 +150,11 @@ static vplResult makeLights(Bench* b)
     return VPL_SUCCESS;
 }
 
-static vplResult makeShadow(Bench* b)
+vplResult needShadow(Bench* b)
 {
+    if (b->map != NULL) {
+        return VPL_SUCCESS;
+    }
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.position = vplScene_GetEmitter(b->scene, 0)->position;
     vplResult result = vplCubeMap_Create(b->geometry, &def, NULL, NULL, &b->map);
@@ -159,14 +162,23 @@ static vplResult makeShadow(Bench* b)
     return result == VPL_SUCCESS ? vplShadow_Create(b->map, &shadowDef, &b->shadow) : result;
 }
 
+vplResult needPicture(Bench* b)
+{
+    if (b->picture != NULL) {
+        return VPL_SUCCESS;
+    }
+    const Stage lit = {
+        .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = 18, .batch = 1, .flags = STAGE_DIRECT};
+    Outcome outcome;
+    vplResult result = vplImage_Create(b->context, b->image->width, b->image->height, &b->picture);
+    return result == VPL_SUCCESS ? shadeInto(b, b->geometry, &lit, b->picture, &outcome) : result;
+}
+
 static vplResult makeImages(Bench* b, int width, int height)
 {
     vplResult result = vplImage_Create(b->context, width, height, &b->image);
     if (result == VPL_SUCCESS) {
         result = vplImage_Create(b->context, (width + 3) / 4, (height + 3) / 4, &b->quarter);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Create(b->context, width, height, &b->picture);
     }
     return result;
 }
@@ -189,15 +201,6 @@ vplResult openBench(const Arguments* a, int threads, int width, int height, Benc
     }
     if (result == VPL_SUCCESS) {
         result = makeLights(b);
-    }
-    if (result == VPL_SUCCESS) {
-        result = makeShadow(b);
-    }
-    if (result == VPL_SUCCESS) {
-        const Stage lit = {
-            .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = 18, .batch = 1, .flags = STAGE_DIRECT};
-        Outcome outcome;
-        result = shadeInto(b, b->geometry, &lit, b->picture, &outcome);
     }
     return result;
 }

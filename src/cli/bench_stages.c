@@ -47,6 +47,10 @@ static vplResult runCubeMap(Bench* b, const Stage* stage, Outcome* outcome)
 vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, vplImage* image,
                     Outcome* outcome)
 {
+    vplResult result = stage->flags & STAGE_DIRECT ? needShadow(b) : VPL_SUCCESS;
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
     vplShadeDef def = {0};
     def.lighting = stage->lighting;
     def.accumulation = stage->accumulation;
@@ -63,7 +67,7 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
     def.output = stage->flags & STAGE_NORMALS ? VPL_OUTPUT_NORMALS : VPL_OUTPUT_RADIANCE;
     vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), image->width, image->height);
     vplShadeStats stats;
-    vplResult result = vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats);
+    result = vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats);
     if (result != VPL_SUCCESS) {
         return result;
     }
@@ -102,7 +106,10 @@ static vplResult runPng(Bench* b, const Stage* stage, Outcome* outcome)
     options.tonemap = VPL_TONEMAP_REINHARD;
     uint8_t* bytes;
     size_t size;
-    vplResult result = vplImage_EncodePng(b->picture, &options, &bytes, &size);
+    vplResult result = needPicture(b);
+    if (result == VPL_SUCCESS) {
+        result = vplImage_EncodePng(b->picture, &options, &bytes, &size);
+    }
     if (result == VPL_SUCCESS) {
         for (size_t i = 0; i < size; i++) {
             outcome->hash = (outcome->hash ^ bytes[i]) * 0x100000001B3u;
@@ -118,9 +125,12 @@ static vplResult runToneMap(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
     const size_t bytes = 3 * sizeof(float) * (size_t)b->image->width * (size_t)b->image->height;
-    memcpy(b->image->pixels, b->picture->pixels, bytes);
     vplReinhardDef def = vplDefaultReinhardDef();
-    vplResult result = vplToneMap_Reinhard(b->image, &def);
+    vplResult result = needPicture(b);
+    if (result == VPL_SUCCESS) {
+        memcpy(b->image->pixels, b->picture->pixels, bytes);
+        result = vplToneMap_Reinhard(b->image, &def);
+    }
     outcome->work = (double)b->image->width * b->image->height;
     outcome->unit = "pixels";
     outcome->image = b->image;

@@ -7,12 +7,12 @@ refuses BenchRunsAtLeastOnce 2 "--runs is \"0\"" "$vpl" bench --runs 0
 refuses RenderIsNotScaled 2 "render has no option --scaling" "$vpl" render "$closed" -o "$out/never.png" --scaling
 
 # All stages but those of many triangles, at sizes that leave odd blocks; no stage differs between thread counts.
-for stage in particles fill pixels light tone; do
-    succeeds "BenchStage_$stage" "$vpl" bench --size 70x38 --runs 1 --threads 1,2,3 --stage $stage
+for stage in particles fill pixels direct "18 lights" tone; do
+    succeeds "BenchStage_${stage% lights}" "$vpl" bench --size 70x38 --runs 1 --threads 1,2,3 --stage "$stage"
     if grep -q DIFFERS "$scratch/stdout" || [ "$(wc -l <"$scratch/stdout")" -lt 4 ]; then
-        not_ok "BenchStageSameBits_$stage" "$(head -n 4 "$scratch/stdout" | tail -n 2)"
+        not_ok "BenchStageSameBits_${stage% lights}" "$(head -n 4 "$scratch/stdout" | tail -n 2)"
     else
-        ok "BenchStageSameBits_$stage"
+        ok "BenchStageSameBits_${stage% lights}"
     fi
 done
 succeeds BenchOfOnePixel "$vpl" bench --size 1x1 --runs 1 --threads 1 --stage "of 2 pixels"
