@@ -89,6 +89,7 @@ bench: all
 	$(BUILD)/bench/acne
 	$(BUILD)/bench/rays examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
+	$(BUILD)/bench/roofline
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
 golden: deps
@@ -150,6 +151,13 @@ $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
 EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
+ROOFLINE := $(foreach part,roofline roofline/loops roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
+              $(BUILD)/obj/tests/bench/$(part).o)
+$(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
+	@mkdir -p $(@D)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
 $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
