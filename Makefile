@@ -94,6 +94,7 @@ bench: all
 	$(BUILD)/bench/rays examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/roofline
+	$(BUILD)/vpl bench --scaling
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
 golden: deps

@@ -114,8 +114,9 @@ void settle(void);
 
 // ---- bench_print.c
 
-void printStages(const Arguments* a, int width, int height, const Row* rows, int rowCount, const int* threads,
-                 int columns);
+// `load`: average of the last minute, before it began.
+void printStages(const Arguments* a, int width, int height, double load, const Row* rows, int rowCount,
+                 const int* threads, int columns);
 void printStagesJson(const Row* rows, int rowCount, const int* threads, int columns);
 
 // ---- bench_scaling.c

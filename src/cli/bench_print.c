@@ -72,12 +72,16 @@ static void printRow(const Row* row, const int* threads, int columns)
     printf("%s\n", same ? "" : "  DIFFERS BETWEEN THREAD COUNTS");
 }
 
-void printStages(const Arguments* a, int width, int height, const Row* rows, int rowCount, const int* threads,
-                 int columns)
+void printStages(const Arguments* a, int width, int height, double load, const Row* rows, int rowCount,
+                 const int* threads, int columns)
 {
     printf("room at %dx%d (1/16: at a quarter of width and height); medians of up to %d runs, ms: of the "
            "wall clock, of the processors\n",
            width, height, a->runs);
+    if (load >= 0.5) {
+        printf("a load average of %.2f before this: what else runs takes processors away from speed-ups\n",
+               load);
+    }
     printf("%-35s %4s", "stage", "runs");
     for (int c = 0; c < columns; c++) {
         printf(" %5d thr  processor", threads[c]);

@@ -124,11 +124,13 @@ static int runStages(const Arguments* a, Row* rows)
         complain("no stage of bench has \"%s\" in its name", a->stage);
         return EXIT_USAGE;
     }
+    double load = 0;
+    load = getloadavg(&load, 1) == 1 ? load : 0;
     int code = exitCode(measureAll(a, width, height, threads, columns, rows, count), true);
     if (code == EXIT_DONE && a->json) {
         printStagesJson(rows, count, threads, columns);
     } else if (code == EXIT_DONE) {
-        printStages(a, width, height, rows, count, threads, columns);
+        printStages(a, width, height, load, rows, count, threads, columns);
     }
     return code;
 }
