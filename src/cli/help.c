@@ -42,7 +42,8 @@ static const Topic TOPICS[] = {
      "Times the stages on the built-in room: medians of the wall clock and of processor time, counts, "
      "hashes,\n"
      "and what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. With\n"
-     "--scaling, how time grows with lights, pixels, triangles, threads and the shadow map's size: exponents\n"
+     "--scaling, how time grows with lights, pixels, triangles, threads and the shadow map's size: "
+     "exponents\n"
      "fitted over all points and over the upper half, and the part of the time that does not grow."},
 };
 
