@@ -21,6 +21,7 @@ typedef struct Measured {
     const Series* series;
     double n[MAX_POINTS], ms[MAX_POINTS], cpuMs[MAX_POINTS];
     int points, runs;
+    bool oneThread;
     double exponent, upper; // of all points, and of the upper half
     FixedFit fit;
 } Measured;
@@ -56,6 +57,7 @@ static vplResult openSweep(const Arguments* a, const Series* series, Sweep* s)
     const int width = a->sizeGiven ? a->render.width : 640, height = a->sizeGiven ? a->render.height : 360;
     vplResult result = openBench(a, a->threadsCount > 0 ? a->threads[0] : 1, width, height, &s->bench);
     if (result == VPL_SUCCESS) {
+        s->threads = vplContext_GetWorkerCount(s->bench.context);
         choosePoints(series, s);
     }
     for (int i = 0; i < s->points && result == VPL_SUCCESS && series->prepare != NULL; i++) {
@@ -86,12 +88,23 @@ static vplResult measureSweep(Sweep* s, Measured* m)
     }
     m->runs = run;
     m->points = s->points;
+    m->oneThread = s->threads == 1 && m->series->most > 0;
     for (int i = 0; i < s->points; i++) {
         m->n[i] = s->n[i];
         m->ms[i] = medianOf(wall[i], run);
         m->cpuMs[i] = medianOf(processor[i], run);
     }
     return VPL_SUCCESS;
+}
+
+// On one thread processor time is what the wall clock would show if nothing else ran.
+static void fitSeries(Measured* m)
+{
+    const double* times = m->oneThread ? m->cpuMs : m->ms;
+    const int half = m->points > 3 ? m->points / 2 : 0;
+    m->exponent = fitExponent(m->n, times, m->points);
+    m->upper = fitExponent(m->n + half, times + half, m->points - half);
+    m->fit = fitFixed(m->n, times, m->points, m->series->expected);
 }
 
 static vplResult measureSeries(const Arguments* a, Measured* m)
@@ -103,10 +116,7 @@ static vplResult measureSeries(const Arguments* a, Measured* m)
     }
     closeSweep(&sweep);
     if (result == VPL_SUCCESS) {
-        const int half = m->points > 3 ? m->points / 2 : 0;
-        m->exponent = fitExponent(m->n, m->ms, m->points);
-        m->upper = fitExponent(m->n + half, m->ms + half, m->points - half);
-        m->fit = fitFixed(m->n, m->ms, m->points, m->series->expected);
+        fitSeries(m);
     }
     return result;
 }
@@ -114,10 +124,12 @@ static vplResult measureSeries(const Arguments* a, Measured* m)
 static void printSeries(const Measured* m)
 {
     const Series* s = m->series;
-    printf("\n%s\n%20s %12s %12s %16s\n", s->name, s->unit, "ms", "processor", "ns / n^expected");
+    const double* times = m->oneThread ? m->cpuMs : m->ms;
+    printf("\n%s; fitted: %s time\n%20s %12s %12s %16s\n", s->name, m->oneThread ? "processor" : "wall-clock",
+           s->unit, "ms", "processor", "ns / n^expected");
     for (int i = 0; i < m->points; i++) {
         printf("%20.0f %12.3f %12.3f %16.4g\n", m->n[i], m->ms[i], m->cpuMs[i],
-               1e6 * m->ms[i] / pow(m->n[i], s->expected));
+               1e6 * times[i] / pow(m->n[i], s->expected));
     }
     if (isnan(m->exponent)) {
         printf("  one point only: no exponent\n");
@@ -145,11 +157,11 @@ static json_t* seriesJson(const Measured* m)
         json_array_append_new(
             points, json_pack("{s:f, s:f, s:f}", "n", m->n[i], "ms", m->ms[i], "cpu_ms", m->cpuMs[i]));
     }
-    return json_pack("{s:s, s:s, s:i, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "series", m->series->name, "unit",
-                     m->series->unit, "runs", m->runs, "expected", m->series->expected, "exponent",
-                     number(m->exponent), "exponent_upper_half", number(m->upper), "fixed_ms",
-                     number(m->fit.fixed), "ms_per_unit", number(m->fit.scale), "fit_off_by",
-                     number(m->fit.worst), "points", points);
+    return json_pack("{s:s, s:s, s:s, s:i, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "series", m->series->name,
+                     "unit", m->series->unit, "fitted", m->oneThread ? "cpu_ms" : "ms", "runs", m->runs,
+                     "expected", m->series->expected, "exponent", number(m->exponent), "exponent_upper_half",
+                     number(m->upper), "fixed_ms", number(m->fit.fixed), "ms_per_unit", number(m->fit.scale),
+                     "fit_off_by", number(m->fit.worst), "points", points);
 }
 
 int runScaling(const Arguments* a)

@@ -103,8 +103,8 @@ const Series SERIES[] = {
      1 << 20, 4, makeField, traceTriangles},
     {"deferred, 512 lights, against threads", "threads", -1, "tiles are independent", 1, 0, 2, openThreads,
      shadeThreads},
-    {"cube shadow map against size", "texels along a face", 2, "each texel costs the same", 256, 4096, 2,
-     NULL, drawCubeMap},
+    {"cube shadow map against size", "texels along a face", 2,
+     "each texel costs the same, until maps outgrow the caches", 256, 4096, 2, NULL, drawCubeMap},
 };
 
 const int SERIES_COUNT = sizeof SERIES / sizeof *SERIES;

@@ -11,6 +11,7 @@ enum { MAX_POINTS = 16 };
 typedef struct Sweep {
     const Arguments* arguments;
     Bench bench;
+    int threads;          // of bench
     double n[MAX_POINTS]; // what is varied
     int points;
     vplScene* scenes[MAX_POINTS]; // each series uses one of these
