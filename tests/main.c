@@ -9,6 +9,7 @@
 
 // One line per test file.
 #define ALL_SUITES(X)                                                                                        \
+    X(bench)                                                                                                 \
     X(emitters)                                                                                              \
     X(emission)                                                                                              \
     X(exr)                                                                                                   \
