@@ -7,6 +7,7 @@
 // farthest depth in it, and what lies behind that is not looked at.
 #include "base/isa.h"
 #include "raster/setup.h"
+#include "raster/shares.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,32 +19,30 @@ typedef struct Draw {
     const vplRaster* raster;
     const vplPipeline* pipeline;
     const vplShaded* shaded;
-    const vplTriangle* triangle;
-    Shares* shares;                           // of the triangle, once they are needed
-    _Alignas(64) int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e >> 8)
-    int owner;
+    const Batch* batch;
+    int place, owner; // of the triangle: in its batch, and its name among owners
+    Shares* shares;   // of the triangle, once they are needed
     bool hasShares, keep, depthOnly, distances, rejects, tightens;
 } Draw;
 
 // ---- coverage
 
-static inline int32_t clampEdge(int64_t e)
+static inline void edgesAt(const Setup* s, int x, int y, int32_t edge[3])
 {
-    // Within a block an edge grows by less than 2^28, so beyond 2^30 only the sign matters.
-    return e > 1 << 30 ? 1 << 30 : e < -(1 << 30) ? -(1 << 30) : (int32_t)e;
+    for (int i = 0; i < 3; i++) {
+        edge[i] = edgeOf(s->e[i] + 256 * (s->a[i] * x + s->b[i] * y));
+    }
 }
 
-// Lanes of the block at (x, y) that are inside the triangle and the picture; 0 if there are none.
-static inline int32_t cover(const Draw* d, const Setup* s, int x, int y, int32_t covered[restrict VPL_LANES])
+// Lanes of the block at (x, y) that are inside the triangle and the picture; 0 if there are none. `edge`: its edge
+// functions in lane 0.
+static inline int32_t cover(const Draw* d, const Setup* s, const int32_t edge[3], int x, int y,
+                            int32_t covered[restrict VPL_LANES])
 {
-    int32_t edge[3];
-    for (int i = 0; i < 3; i++) {
-        edge[i] = clampEdge((s->e[i] + 256 * ((int64_t)s->a[i] * x + (int64_t)s->b[i] * y)) >> 8);
-    }
     int32_t any = 0;
     for (int l = 0; l < VPL_LANES; l++) {
         const int32_t outside =
-            (edge[0] + d->steps[0][l]) | (edge[1] + d->steps[1][l]) | (edge[2] + d->steps[2][l]);
+            (edge[0] + s->steps[0][l]) | (edge[1] + s->steps[1][l]) | (edge[2] + s->steps[2][l]);
         covered[l] = ~(outside >> 31);
         any |= covered[l];
     }
@@ -76,7 +75,7 @@ static inline Cells classify(const Setup* s, int x, int y, int side)
     double e[3], right[3], down[3], most[3], least[3];
     for (int i = 0; i < 3; i++) {
         const double a = 256.0 * s->a[i], b = 256.0 * s->b[i];
-        e[i] = (double)s->e[i] + (a * x + b * y);
+        e[i] = s->e[i] + (a * x + b * y);
         right[i] = a * side;
         down[i] = b * side;
         most[i] = (side - 1) * ((a > 0 ? a : 0) + (b > 0 ? b : 0)); // from a cell's first centre
@@ -199,7 +198,8 @@ static inline void runFragmentShader(const vplPipeline* p, vplFragments* f, floa
 static inline void needShares(Draw* d)
 {
     if (!d->hasShares) {
-        setUpShares(d->raster, d->triangle, d->shaded, d->shares);
+        const vplTriangle t = triangleOf(d->batch, d->place);
+        setUpShares(d->raster, &t, d->shaded, d->shares);
         d->hasShares = true;
     }
 }
@@ -360,23 +360,17 @@ static void drawFragments(Draw* d, const Setup* s, double z)
     }
 }
 
-// `filled`: all lanes are inside the triangle and the picture.
+// `edge`: edge functions in lane 0; NULL: all lanes are inside the triangle and the picture.
 static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y,
-                                                            bool filled)
+                                                            const int32_t edge[3])
 {
     vplTileState* state = d->state;
     vplFragments* f = &state->block;
+    const bool filled = edge == NULL;
     const int block = (y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
     const double z = s->z + (s->zx * x + s->zy * y);
-    if (d->rejects && clampDepth(z + s->leastZ) > state->farthest[block]) {
+    if (!filled && !cover(d, s, edge, x, y, f->covered)) {
         return;
-    }
-    if (!filled && !cover(d, s, x, y, f->covered)) {
-        return;
-    }
-    if (d->tightens && filled) { // no lane keeps a depth beyond the triangle's
-        const float most = clampDepth(z + s->mostZ);
-        state->farthest[block] = most < state->farthest[block] ? most : state->farthest[block];
     }
     if (d->distances) {
         if (filled) {
@@ -403,6 +397,22 @@ static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup
     drawFragments(d, s, z);
 }
 
+// A block of a larger triangle: not drawn where it lies behind all that is there.
+static inline __attribute__((always_inline)) void drawBlockInFront(Draw* d, const Setup* s, int x, int y,
+                                                                   const int32_t edge[3])
+{
+    float* farthest = &d->state->farthest[(y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE];
+    const double z = s->z + (s->zx * x + s->zy * y);
+    if (d->rejects && clampDepth(z + s->leastZ) > *farthest) {
+        return;
+    }
+    if (d->tightens && edge == NULL) { // no lane keeps a depth beyond the triangle's
+        const float most = clampDepth(z + s->mostZ);
+        *farthest = most < *farthest ? most : *farthest;
+    }
+    drawBlock(d, s, x, y, edge);
+}
+
 // ---- triangles
 
 static inline int minOf(int a, int b)
@@ -427,7 +437,13 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
         const int i = __builtin_ctz(blocks);
         const int bx = x + (i & 3) * VPL_BLOCK_SIDE, by = y + (i >> 2) * VPL_BLOCK_SIDE;
         const bool inPicture = bx + VPL_BLOCK_SIDE <= tile->width && by + VPL_BLOCK_SIDE <= tile->height;
-        drawBlock(d, s, bx, by, (cells.filled >> i & 1) && inPicture);
+        if ((cells.filled >> i & 1) && inPicture) {
+            drawBlockInFront(d, s, bx, by, NULL);
+        } else {
+            int32_t edge[3];
+            edgesAt(s, bx, by, edge);
+            drawBlockInFront(d, s, bx, by, edge);
+        }
     }
 }
 
@@ -445,27 +461,25 @@ static inline uint32_t cellsWithin(int x0, int x1, int y0, int y1)
 
 static void drawTriangle(Draw* d)
 {
-    const vplTriangle* t = d->triangle;
-    const vplTile* tile = &d->state->tile;
-    const vplPixelBox box = vplBoundTriangle(t->v);
-    const int x0 = maxOf(box.x0 - tile->x, 0) / VPL_BLOCK_SIDE,
-              y0 = maxOf(box.y0 - tile->y, 0) / VPL_BLOCK_SIDE;
-    const int x1 = minOf(box.x1 - tile->x, tile->width - 1) / VPL_BLOCK_SIDE,
-              y1 = minOf(box.y1 - tile->y, tile->height - 1) / VPL_BLOCK_SIDE;
+    const Batch* t = d->batch;
+    const int x0 = t->x0[d->place], x1 = t->x1[d->place], y0 = t->y0[d->place], y1 = t->y1[d->place];
     Setup s;
-    setUp(t, tile, &s);
-    for (int i = 0; i < 3; i++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            d->steps[i][l] = s.a[i] * (l & 3) + s.b[i] * (l >> 2);
-        }
-    }
+    setUp(t, d->place, &s);
     if (d->distances) {
         needShares(d);
     }
-    if (x1 - x0 <= 1 && y1 - y0 <= 1) { // small: asking pixels at once is less work
+    if (x1 == x0 && y1 == y0) {
+        const int32_t edge[3] = {t->edge[0][d->place], t->edge[1][d->place], t->edge[2][d->place]};
+        drawBlock(d, &s, x0 * VPL_BLOCK_SIDE, y0 * VPL_BLOCK_SIDE, edge);
+        return;
+    }
+    boundDepth(&s);
+    if (x1 - x0 <= 1 && y1 - y0 <= 1) { // asking pixels at once is less work
         for (int y = y0; y <= y1; y++) {
             for (int x = x0; x <= x1; x++) {
-                drawBlock(d, &s, x * VPL_BLOCK_SIDE, y * VPL_BLOCK_SIDE, false);
+                int32_t edge[3];
+                edgesAt(&s, x * VPL_BLOCK_SIDE, y * VPL_BLOCK_SIDE, edge);
+                drawBlockInFront(d, &s, x * VPL_BLOCK_SIDE, y * VPL_BLOCK_SIDE, edge);
             }
         }
         return;
@@ -491,11 +505,14 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
     const bool nearer = p->depthCompare == VPL_DEPTH_LESS || p->depthCompare == VPL_DEPTH_LESS_EQUAL;
     const bool byPlane = nearer && !p->writesDepth && p->distanceScale == 0; // depth is the triangle's plane
     Shares shares;
+    Batch batch;
+    memset(&batch, 0, sizeof batch); // places that stay empty are computed, too
     Draw d = {.state = state,
               .raster = raster,
               .pipeline = p,
               .shaded = &raster->shaded[command->shaded],
               .shares = &shares,
+              .batch = &batch,
               .keep = keep,
               .distances = p->distanceScale != 0,
               .rejects = byPlane,
@@ -503,14 +520,20 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
     d.depthOnly = p->fragment == NULL && p->depthCompare == VPL_DEPTH_LESS && p->depthWrite &&
                   !p->ownerTest && state->owner == NULL;
     state->block.scratch = state->tile.scratch;
-    for (int i = 0; i < count; i++) {
-        const vplTriangle triangle = fetchTriangle(raster, d.shaded, list[i]);
-        d.owner = list[i];
-        d.hasShares = false;
-        d.triangle = &triangle;
-        state->block.primitive = triangle.primitive;
-        if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != triangle.clockwise) {
-            drawTriangle(&d);
+    for (int first = 0; first < count; first += BATCH) {
+        const int some = count - first < BATCH ? count - first : BATCH;
+        for (int k = 0; k < some; k++) {
+            fetchTriangle(raster, d.shaded, list[first + k], &batch, k);
+        }
+        setUpBatch(&state->tile, &batch);
+        for (int k = 0; k < some; k++) {
+            d.owner = list[first + k];
+            d.place = k;
+            d.hasShares = false;
+            state->block.primitive = batch.primitive[k];
+            if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != (batch.clockwise[k] != 0)) {
+                drawTriangle(&d);
+            }
         }
     }
     if (p->depthWrite && p->depthCompare == VPL_DEPTH_ALWAYS) {
