@@ -61,7 +61,7 @@ FUZZERS        := $(patsubst tests/fuzz/%_fuzz.c,%,$(wildcard tests/fuzz/*_fuzz.
 REPLAYS        := $(FUZZERS:%=$(BUILD)/fuzz/%_replay)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all libs programs test-programs help deps demo test check-all bench golden gallery install clean format fuzz
+.PHONY: all libs programs test-programs help deps demo test check-all bench bench-peers golden gallery install clean format fuzz
 
 ## make             builds build/vpl and build/libvpl.a, installing what is missing
 all: deps
@@ -95,6 +95,15 @@ bench: all
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling
+
+## make bench-peers  beside Mesa's llvmpipe and Intel's Embree, which are installed where they can be
+bench-peers: all
+	@.ci/install-deps $(PEER_PACKAGES) || true
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/bench/peers $(BUILD)/bench/rays
+	$(BUILD)/bench/peers --threads 1 $(PEER_OPTIONS)
+	$(BUILD)/bench/peers --threads 2 $(PEER_OPTIONS)
+	$(BUILD)/bench/rays examples/scenes/room.json
+PEER_PACKAGES := libegl-dev libgl-dev libopengl-dev libegl1 libgl1-mesa-dri libembree-dev
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
 golden: deps
@@ -163,6 +172,17 @@ $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
+PEER_HEADERS := /usr/include/EGL/egl.h /usr/include/GL/glcorearb.h
+PEER_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/bench/peers/*.c))
+ifeq ($(words $(wildcard $(PEER_HEADERS))),2)
+$(BUILD)/bench/peers: $(PEER_OBJECTS) $(BUILD)/libvpl.a
+	@mkdir -p $(@D)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ -lEGL -lOpenGL $(LDLIBS)
+else
+$(BUILD)/bench/peers:
+	@echo "bench-peers needs EGL and OpenGL to build: $(PEER_HEADERS)" >&2; exit 1
+endif
 $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
