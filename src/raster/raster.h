@@ -89,6 +89,8 @@ typedef struct vplCommand {
     int passesEnd;  // of the first pass in a row: behind the last
     int chainStart; // first pass of this row with the same mesh
     int chainNext;  // next one, or -1
+    int fused;      // of a chain's first: how many passes one call may shade, all or 0;
+    int uniforms;   // theirs begin here in raster->passUniforms
 } vplCommand;
 
 struct vplRaster {
@@ -111,6 +113,7 @@ struct vplRaster {
     int* bins;     // indices in refs by tile, ascending within a tile
     int* binStart; // tilesX * tilesY + 1
     bool keepsOwners, keepsPasses;
+    const void** passUniforms; // chain by chain
     vplRasterStats stats;
 };
 
@@ -207,6 +210,8 @@ typedef void vplDrawTileFcn(vplTileState* state, const vplRaster* raster, const 
 
 // Shades the kept blocks of a mesh by all passes of a chain.
 typedef void vplRunPassesFcn(vplTileState* state, const vplRaster* raster, int firstCommand);
+
+bool vplIsPass(const vplPipeline* pipeline);
 
 // Clip-space x, y, w and varyings of vertex `at`, which may be one of the extras.
 static inline void vplFetchVertex(const vplRaster* raster, const vplShaded* s, uint32_t at, float position[3],

@@ -186,13 +186,35 @@ static inline void blendPlanes(const vplPipeline* p, const vplFragments* f, floa
     }
 }
 
+static inline void readPlanes(vplFragments* f, float* const planes[], uint32_t mask, int planeCount)
+{
+    for (int k = 0; k < planeCount; k++) {
+        if (mask >> k & 1) {
+            memcpy(f->plane[k], planes[k] + f->element, sizeof f->plane[k]);
+        }
+    }
+}
+
 static inline void runFragmentShader(const vplPipeline* p, vplFragments* f, float* const planes[],
                                      int planeCount)
 {
-    for (int k = 0; p->readsPlanes && k < planeCount; k++) {
-        memcpy(f->plane[k], planes[k] + f->element, sizeof f->plane[k]);
+    if (p->readsPlanes) {
+        readPlanes(f, planes, UINT32_MAX, planeCount);
     }
     p->fragment(p->fragmentUniforms, f);
+}
+
+// Several passes in one call.
+static inline void runPassShader(const vplPipeline* p, const void* const* uniforms, int count,
+                                 vplFragments* f, float* const planes[], int planeCount)
+{
+    readPlanes(f, planes, p->planeMask, planeCount);
+    p->passes(uniforms, count, f);
+    for (int k = 0; k < planeCount; k++) {
+        if (p->planeMask >> k & 1) {
+            blendPlane(VPL_BLEND_REPLACE, f->covered, f->plane[k], planes[k] + f->element);
+        }
+    }
 }
 
 static inline void needShares(Draw* d)
@@ -548,7 +570,8 @@ vplRunPassesFcn VPL_KERNEL(vplRunPasses);
 void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int first)
 {
     vplFragments* f = &state->block;
-    const int mesh = raster->commands[first].shaded, planeCount = raster->framebuffer.planeCount;
+    const vplCommand* start = &raster->commands[first];
+    const int mesh = start->shaded, planeCount = raster->framebuffer.planeCount;
     const size_t varyings = (size_t)keptVaryings(state);
     float* planes[VPL_MAX_PLANES];
     memcpy(planes, state->tile.planes, sizeof planes);
@@ -564,10 +587,20 @@ void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int 
         memcpy(f->depth, from, sizeof f->depth);
         memcpy(f->w, from + VPL_LANES, sizeof f->w);
         memcpy(f->varying, from + 2 * VPL_LANES, varyings * sizeof f->varying[0]);
+        if (start->fused > 0) {
+            runPassShader(&raster->pipelines[start->pipeline], raster->passUniforms + start->uniforms,
+                          start->fused, f, planes, planeCount);
+            fragments += (int64_t)kept->count * start->fused;
+            continue;
+        }
         for (int c = first; c >= 0; c = raster->commands[c].chainNext) {
             const vplPipeline* p = &raster->pipelines[raster->commands[c].pipeline];
-            runFragmentShader(p, f, planes, planeCount);
-            blendPlanes(p, f, planes, planeCount);
+            if (p->passes != NULL) {
+                runPassShader(p, &p->fragmentUniforms, 1, f, planes, planeCount);
+            } else {
+                runFragmentShader(p, f, planes, planeCount);
+                blendPlanes(p, f, planes, planeCount);
+            }
             fragments += kept->count;
         }
     }
