@@ -91,6 +91,7 @@ bench: all
 	@$(MAKE) --no-print-directory $(JOBS) $(BENCH_PROGRAMS)
 	$(BUILD)/vpl bench
 	$(BUILD)/bench/acne
+	$(BUILD)/bench/shadow examples/scenes/room.json
 	$(BUILD)/bench/rays examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/roofline

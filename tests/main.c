@@ -10,6 +10,7 @@
 // One line per test file.
 #define ALL_SUITES(X)                                                                                        \
     X(bench)                                                                                                 \
+    X(bounds)                                                                                                \
     X(emitters)                                                                                              \
     X(emission)                                                                                              \
     X(exr)                                                                                                   \

@@ -158,6 +158,9 @@ vplResult needShadow(Bench* b)
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.position = vplScene_GetEmitter(b->scene, 0)->position;
     vplResult result = vplCubeMap_Create(b->geometry, &def, NULL, NULL, &b->map);
+    if (result == VPL_SUCCESS) {
+        result = vplCubeMap_FindBounds(b->map);
+    }
     vplShadowDef shadowDef = vplDefaultShadowDef();
     return result == VPL_SUCCESS ? vplShadow_Create(b->map, &shadowDef, &b->shadow) : result;
 }

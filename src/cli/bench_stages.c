@@ -44,6 +44,19 @@ static vplResult runCubeMap(Bench* b, const Stage* stage, Outcome* outcome)
     return result;
 }
 
+// Once per map, for the soft shadows of direct light.
+static vplResult runMapBounds(Bench* b, const Stage* stage, Outcome* outcome)
+{
+    (void)stage;
+    vplResult result = needShadow(b);
+    if (result == VPL_SUCCESS) {
+        result = vplCubeMap_FindBounds(b->map);
+        outcome->work = 6.0 * b->map->size * b->map->size;
+        outcome->unit = "texels";
+    }
+    return result;
+}
+
 vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, vplImage* image,
                     Outcome* outcome)
 {
@@ -155,6 +168,7 @@ const Stage STAGES[] = {
     {"path tracing, 1 spp, 1/16", runPath, PHYSICAL, 0, 0, 1, 0},
     {"shadow rays of 64 lights, 1/16", runShading, PHYSICAL, DEFERRED, 64, 1, RAYS},
     {"cube shadow map, 6 x 1024^2", runCubeMap, PHYSICAL, 0, 0, 1, 0},
+    {"bounds of the map", runMapBounds, PHYSICAL, 0, 0, 1, 0},
     {"depth fill, 8 layers", runFill, PHYSICAL, 0, 0, 1, 0},
     {"additive fill, 8 layers, 4 planes", runAdditiveFill, PHYSICAL, 0, 0, 1, 0},
     {"triangles of 2 pixels", runSmallTriangles, PHYSICAL, 0, 0, 1, 0},
