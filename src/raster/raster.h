@@ -183,11 +183,13 @@ typedef struct vplKeptBlock {
     _Alignas(64) int32_t covered[VPL_LANES];
 } vplKeptBlock;
 
+enum { VPL_COUNTERS = 4 };
+
 // Storage of the tile being drawn by one worker.
 typedef struct vplTileState {
     vplTile tile;
     float* depth;    // the tile's
-    float* farthest; // per block: no depth in it is larger
+    float* farthest; // per block, square by square: no depth in it is larger
     int32_t* owner;  // index of the triangle that wrote depth last, -1: none; NULL where nobody asks
     int* meshStart;  // [shadedCount + 1] into the tile's bin
     char* kept;      // vplKeptBlocks of `keptStride` bytes, at most one per pixel
@@ -197,8 +199,8 @@ typedef struct vplTileState {
     int keptCount;
     size_t keptStride;
     int64_t fragments;
-    _Alignas(64) int32_t fragmentLanes[VPL_LANES]; // fragments by lane
-    _Alignas(64) vplFragments block;               // scratch of the kernel
+    _Alignas(64) int32_t fragmentLanes[VPL_COUNTERS][VPL_LANES]; // fragments by lane
+    _Alignas(64) vplFragments block;                             // scratch of the kernel
 } vplTileState;
 
 // Runs the tiles of several rasters, one after another.

@@ -159,8 +159,8 @@ static void runTile(void* data, int number, int worker)
     for (int k = 0; k < f->planeCount; k++) {
         storePlane(r, tile, &f->planes[k], tile->planes[k]);
     }
-    for (int l = 0; l < VPL_LANES; l++) {
-        state->fragments += state->fragmentLanes[l];
+    for (int i = 0; i < VPL_COUNTERS * VPL_LANES; i++) {
+        state->fragments += state->fragmentLanes[i / VPL_LANES][i % VPL_LANES];
     }
     run->tileFragments[number] = state->fragments;
 }

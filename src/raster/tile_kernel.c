@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SQUARE_SIDE = 4 * VPL_BLOCK_SIDE };
+enum { SQUARE_SIDE = 4 * VPL_BLOCK_SIDE, SQUARES = VPL_TILE_SIDE / SQUARE_SIDE };
 
 typedef struct Draw {
     vplTileState* state;
@@ -22,6 +22,7 @@ typedef struct Draw {
     const Batch* batch;
     int place, owner; // of the triangle: in its batch, and its name among owners
     Shares* shares;   // of the triangle, once they are needed
+    float texel;      // of a view of 90 by 90 degrees, whose half is 1
     bool hasShares, keep, depthOnly, distances, rejects, tightens;
 } Draw;
 
@@ -271,22 +272,27 @@ static inline float clampDepth(double z)
     return v < 1 ? v : 1;
 }
 
+// Fragments by lane. Neighbouring blocks count in different places: none waits for the one before.
+static inline int32_t* countersOf(vplTileState* state, int at)
+{
+    return state->fragmentLanes[at / VPL_LANES % VPL_COUNTERS];
+}
+
 // Depth and nothing else. Lanes are copied first, so that the compiler need not ask whether arrays overlap.
 static inline void drawDepth(vplTileState* state, const Setup* s, double z, int at, bool filled)
 {
+    int32_t* counts = countersOf(state, at);
     float depth[VPL_LANES];
-    int32_t counts[VPL_LANES], passed[VPL_LANES];
+    int32_t covered[VPL_LANES];
     memcpy(depth, state->depth + at, sizeof depth);
-    memcpy(counts, state->fragmentLanes, sizeof counts);
-    memcpy(passed, state->block.covered, sizeof passed);
+    memcpy(covered, state->block.covered, sizeof covered);
     for (int l = 0; l < VPL_LANES; l++) {
         const float v = clampDepth(z + s->laneZ[l]), kept = depth[l];
-        passed[l] = (filled ? -1 : passed[l]) & (v < kept ? -1 : 0);
-        depth[l] = passed[l] ? v : kept;
-        counts[l] -= passed[l];
+        const int32_t passed = (filled ? -1 : covered[l]) & (v < kept ? -1 : 0);
+        depth[l] = passed ? v : kept;
+        counts[l] -= passed;
     }
     memcpy(state->depth + at, depth, sizeof depth);
-    memcpy(state->fragmentLanes, counts, sizeof counts);
 }
 
 // Distance from the eye and nothing else. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the
@@ -294,35 +300,24 @@ static inline void drawDepth(vplTileState* state, const Setup* s, double z, int 
 static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
 {
     vplTileState* state = d->state;
-    const float scale = d->pipeline->distanceScale, texel = 2.0f / (float)d->raster->framebuffer.width;
+    const float scale = d->pipeline->distanceScale, texel = d->texel;
     const float left = (float)(state->tile.x + x), top = (float)(state->tile.y + y);
+    int32_t* counts = countersOf(state, at);
     float depth[VPL_LANES], share[3][VPL_LANES];
-    int32_t counts[VPL_LANES], passed[VPL_LANES];
+    int32_t covered[VPL_LANES];
     memcpy(depth, state->depth + at, sizeof depth);
-    memcpy(counts, state->fragmentLanes, sizeof counts);
-    memcpy(passed, state->block.covered, sizeof passed);
+    memcpy(covered, state->block.covered, sizeof covered);
     sharesOf(d->shares, state->tile.x + x, state->tile.y + y, share);
     for (int l = 0; l < VPL_LANES; l++) {
         const float s = (left + (float)(l & 3) + 0.5f) * texel - 1;
         const float t = 1 - (top + (float)(l >> 2) + 0.5f) * texel;
         const float w = 1 / (share[0][l] + share[1][l] + share[2][l]);
         const float v = w * sqrtf(1 + s * s + t * t) * scale, kept = depth[l];
-        passed[l] = (filled ? -1 : passed[l]) & (v < kept ? -1 : 0);
-        depth[l] = passed[l] ? v : kept;
-        counts[l] -= passed[l];
+        const int32_t passed = (filled ? -1 : covered[l]) & (v < kept ? -1 : 0);
+        depth[l] = passed ? v : kept;
+        counts[l] -= passed;
     }
     memcpy(state->depth + at, depth, sizeof depth);
-    memcpy(state->fragmentLanes, counts, sizeof counts);
-}
-
-static inline void countFragments(vplTileState* state)
-{
-    int32_t counts[VPL_LANES];
-    memcpy(counts, state->fragmentLanes, sizeof counts);
-    for (int l = 0; l < VPL_LANES; l++) {
-        counts[l] -= state->block.covered[l];
-    }
-    memcpy(state->fragmentLanes, counts, sizeof counts);
 }
 
 static inline void writeDepth(vplTileState* state, int owner, int at)
@@ -369,7 +364,10 @@ static void drawFragments(Draw* d, const Setup* s, double z)
         keepBlock(state);
         return;
     }
-    countFragments(state);
+    int32_t* counts = countersOf(state, at);
+    for (int l = 0; l < VPL_LANES; l++) {
+        counts[l] -= f->covered[l];
+    }
     if (p->depthWrite) {
         writeDepth(state, d->owner, at);
     }
@@ -382,15 +380,14 @@ static void drawFragments(Draw* d, const Setup* s, double z)
     }
 }
 
-// `edge`: edge functions in lane 0; NULL: all lanes are inside the triangle and the picture.
-static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y,
+// z: depth in lane 0. `edge`: edge functions there; NULL: all lanes are inside the triangle and the picture.
+static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y, double z,
                                                             const int32_t edge[3])
 {
     vplTileState* state = d->state;
     vplFragments* f = &state->block;
     const bool filled = edge == NULL;
     const int block = (y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
-    const double z = s->z + (s->zx * x + s->zy * y);
     if (!filled && !cover(d, s, edge, x, y, f->covered)) {
         return;
     }
@@ -419,22 +416,6 @@ static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup
     drawFragments(d, s, z);
 }
 
-// A block of a larger triangle: not drawn where it lies behind all that is there.
-static inline __attribute__((always_inline)) void drawBlockInFront(Draw* d, const Setup* s, int x, int y,
-                                                                   const int32_t edge[3])
-{
-    float* farthest = &d->state->farthest[(y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE];
-    const double z = s->z + (s->zx * x + s->zy * y);
-    if (d->rejects && clampDepth(z + s->leastZ) > *farthest) {
-        return;
-    }
-    if (d->tightens && edge == NULL) { // no lane keeps a depth beyond the triangle's
-        const float most = clampDepth(z + s->mostZ);
-        *farthest = most < *farthest ? most : *farthest;
-    }
-    drawBlock(d, s, x, y, edge);
-}
-
 // ---- triangles
 
 static inline int minOf(int a, int b)
@@ -447,28 +428,6 @@ static inline int maxOf(int a, int b)
     return a > b ? a : b;
 }
 
-// The blocks of a square whose bits are set in `within`.
-static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, bool filled)
-{
-    Cells cells = {0xffff, 0xffff};
-    if (!filled) {
-        cells = classify(s, x, y, VPL_BLOCK_SIDE);
-    }
-    const vplTile* tile = &d->state->tile;
-    for (uint32_t blocks = cells.touched & within; blocks != 0; blocks &= blocks - 1) {
-        const int i = __builtin_ctz(blocks);
-        const int bx = x + (i & 3) * VPL_BLOCK_SIDE, by = y + (i >> 2) * VPL_BLOCK_SIDE;
-        const bool inPicture = bx + VPL_BLOCK_SIDE <= tile->width && by + VPL_BLOCK_SIDE <= tile->height;
-        if ((cells.filled >> i & 1) && inPicture) {
-            drawBlockInFront(d, s, bx, by, NULL);
-        } else {
-            int32_t edge[3];
-            edgesAt(s, bx, by, edge);
-            drawBlockInFront(d, s, bx, by, edge);
-        }
-    }
-}
-
 // Cells of 4 x 4 between two columns and two rows.
 static inline uint32_t cellsWithin(int x0, int x1, int y0, int y1)
 {
@@ -476,9 +435,76 @@ static inline uint32_t cellsWithin(int x0, int x1, int y0, int y1)
     y0 = maxOf(y0, 0);
     x1 = minOf(x1, 3);
     y1 = minOf(y1, 3);
+    if (x1 < x0 || y1 < y0) {
+        return 0;
+    }
     const uint32_t row = (2u << x1) - (1u << x0);
     const uint32_t rows = (0x1111u << 4 * y0) & (0x1111u >> 4 * (3 - y1));
     return row * rows;
+}
+
+static inline double depthAt(const Setup* s, int x, int y)
+{
+    return s->z + (s->zx * x + s->zy * y);
+}
+
+// Blocks of a square in which all that is there is nearer than the triangle. z: its depths in lane 0 of each.
+static inline uint32_t hiddenBlocks(const Setup* s, const double z[VPL_LANES],
+                                    const float farthest[VPL_LANES])
+{
+    uint32_t hidden = 0;
+    for (int i = 0; i < VPL_LANES; i++) {
+        hidden |= (uint32_t)(clampDepth(z[i] + s->leastZ) > farthest[i]) << i;
+    }
+    return hidden;
+}
+
+// In blocks that the triangle fills no lane keeps a depth beyond the triangle's.
+static inline void tightenBlocks(const Setup* s, const double z[VPL_LANES], uint32_t filled,
+                                 float farthest[VPL_LANES])
+{
+    for (int i = 0; i < VPL_LANES; i++) {
+        const float most = clampDepth(z[i] + s->mostZ), kept = farthest[i];
+        const float least = most < kept ? most : kept;
+        farthest[i] = (filled >> i & 1) != 0 ? least : kept;
+    }
+}
+
+// The blocks of a square whose bits are set in `within`.
+static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, bool filled)
+{
+    const vplTile* tile = &d->state->tile;
+    Cells cells = {0xffff, 0xffff};
+    if (!filled) {
+        cells = classify(s, x, y, VPL_BLOCK_SIDE);
+    }
+    cells.touched &= within;
+    if (x + SQUARE_SIDE > tile->width || y + SQUARE_SIDE > tile->height) {
+        cells.filled &= cellsWithin(0, (tile->width - x) / VPL_BLOCK_SIDE - 1, 0,
+                                    (tile->height - y) / VPL_BLOCK_SIDE - 1);
+    }
+    double z[VPL_LANES];
+    for (int i = 0; i < VPL_LANES; i++) {
+        z[i] = depthAt(s, x + (i & 3) * VPL_BLOCK_SIDE, y + (i >> 2) * VPL_BLOCK_SIDE);
+    }
+    float* farthest = d->state->farthest + (y / SQUARE_SIDE * SQUARES + x / SQUARE_SIDE) * VPL_LANES;
+    if (d->rejects) {
+        cells.touched &= ~hiddenBlocks(s, z, farthest);
+    }
+    if (d->tightens) {
+        tightenBlocks(s, z, cells.touched & cells.filled, farthest);
+    }
+    for (uint32_t blocks = cells.touched; blocks != 0; blocks &= blocks - 1) {
+        const int i = __builtin_ctz(blocks);
+        const int bx = x + (i & 3) * VPL_BLOCK_SIDE, by = y + (i >> 2) * VPL_BLOCK_SIDE;
+        if (cells.filled >> i & 1) {
+            drawBlock(d, s, bx, by, z[i], NULL);
+        } else {
+            int32_t edge[3];
+            edgesAt(s, bx, by, edge);
+            drawBlock(d, s, bx, by, z[i], edge);
+        }
+    }
 }
 
 static void drawTriangle(Draw* d)
@@ -492,20 +518,22 @@ static void drawTriangle(Draw* d)
     }
     if (x1 == x0 && y1 == y0) {
         const int32_t edge[3] = {t->edge[0][d->place], t->edge[1][d->place], t->edge[2][d->place]};
-        drawBlock(d, &s, x0 * VPL_BLOCK_SIDE, y0 * VPL_BLOCK_SIDE, edge);
+        const int x = x0 * VPL_BLOCK_SIDE, y = y0 * VPL_BLOCK_SIDE;
+        drawBlock(d, &s, x, y, depthAt(&s, x, y), edge);
         return;
     }
-    boundDepth(&s);
     if (x1 - x0 <= 1 && y1 - y0 <= 1) { // asking pixels at once is less work
-        for (int y = y0; y <= y1; y++) {
-            for (int x = x0; x <= x1; x++) {
+        for (int row = y0; row <= y1; row++) {
+            for (int column = x0; column <= x1; column++) {
+                const int x = column * VPL_BLOCK_SIDE, y = row * VPL_BLOCK_SIDE;
                 int32_t edge[3];
-                edgesAt(&s, x * VPL_BLOCK_SIDE, y * VPL_BLOCK_SIDE, edge);
-                drawBlockInFront(d, &s, x * VPL_BLOCK_SIDE, y * VPL_BLOCK_SIDE, edge);
+                edgesAt(&s, x, y, edge);
+                drawBlock(d, &s, x, y, depthAt(&s, x, y), edge);
             }
         }
         return;
     }
+    boundDepth(&s);
     Cells squares = {0xffff, 0};
     if (x1 - x0 >= 4 || y1 - y0 >= 4) {
         squares = classify(&s, 0, 0, SQUARE_SIDE);
@@ -537,6 +565,7 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
               .batch = &batch,
               .keep = keep,
               .distances = p->distanceScale != 0,
+              .texel = 2.0f / (float)raster->framebuffer.width,
               .rejects = byPlane,
               .tightens = byPlane && p->depthWrite && !p->ownerTest};
     d.depthOnly = p->fragment == NULL && p->depthCompare == VPL_DEPTH_LESS && p->depthWrite &&
