@@ -26,14 +26,7 @@
     X(objScene)                                                                                              \
     X(rays)                                                                                                  \
     X(path)                                                                                                  \
-    X(raster)                                                                                                \
-    X(rasterTruth)                                                                                           \
-    X(render)                                                                                                \
-    X(scene)                                                                                                 \
-    X(sceneChecks)                                                                                           \
-    X(shading)                                                                                               \
-    X(tradeoff)                                                                                              \
-    X(visibility)
+    X(passes) X(raster) X(rasterTruth) X(render) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,

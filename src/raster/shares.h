@@ -67,26 +67,26 @@ static inline void setUpShares(const vplRaster* r, const vplTriangle* t, const v
 
 // Shares of the corners in a block, not yet divided by their sum. Clamped at 0: that keeps points of the outline
 // within the triangle, and lanes that are not covered finite.
-static inline void sharesOf(const Shares* s, int x, int y, float share[3][VPL_LANES])
+static inline void shareOf(const Shares* s, int i, int x, int y, float share[VPL_LANES])
 {
-    for (int i = 0; i < 3; i++) {
-        const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);
-        for (int l = 0; l < VPL_LANES; l++) {
-            const float v = (float)(at + s->lane[i][l]);
-            share[i][l] = v > 0 ? v : 0;
-        }
+    const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float v = (float)(at + s->lane[i][l]);
+        share[l] = v > 0 ? v : 0;
     }
 }
 
 static inline void interpolate(const Shares* s, int varyingCount, int x, int y, vplFragments* f)
 {
-    float share[3][VPL_LANES], b1[VPL_LANES], b2[VPL_LANES];
-    sharesOf(s, x, y, share);
+    float share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES], b1[VPL_LANES], b2[VPL_LANES];
+    shareOf(s, 0, x, y, share0);
+    shareOf(s, 1, x, y, share1);
+    shareOf(s, 2, x, y, share2);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float w = 1 / (share[0][l] + share[1][l] + share[2][l]);
+        const float w = 1 / (share0[l] + share1[l] + share2[l]);
         f->w[l] = w;
-        b1[l] = share[1][l] * w;
-        b2[l] = share[2][l] * w;
+        b1[l] = share1[l] * w;
+        b2[l] = share2[l] * w;
     }
     for (int k = 0; k < varyingCount; k++) {
         // From corner 0, so that what is equal at all corners stays equal in every bit.

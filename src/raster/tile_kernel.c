@@ -303,15 +303,17 @@ static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled
     const float scale = d->pipeline->distanceScale, texel = d->texel;
     const float left = (float)(state->tile.x + x), top = (float)(state->tile.y + y);
     int32_t* counts = countersOf(state, at);
-    float depth[VPL_LANES], share[3][VPL_LANES];
+    float depth[VPL_LANES], share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES];
     int32_t covered[VPL_LANES];
     memcpy(depth, state->depth + at, sizeof depth);
     memcpy(covered, state->block.covered, sizeof covered);
-    sharesOf(d->shares, state->tile.x + x, state->tile.y + y, share);
+    shareOf(d->shares, 0, state->tile.x + x, state->tile.y + y, share0);
+    shareOf(d->shares, 1, state->tile.x + x, state->tile.y + y, share1);
+    shareOf(d->shares, 2, state->tile.x + x, state->tile.y + y, share2);
     for (int l = 0; l < VPL_LANES; l++) {
         const float s = (left + (float)(l & 3) + 0.5f) * texel - 1;
         const float t = 1 - (top + (float)(l >> 2) + 0.5f) * texel;
-        const float w = 1 / (share[0][l] + share[1][l] + share[2][l]);
+        const float w = 1 / (share0[l] + share1[l] + share2[l]);
         const float v = w * sqrtf(1 + s * s + t * t) * scale, kept = depth[l];
         const int32_t passed = (filled ? -1 : covered[l]) & (v < kept ? -1 : 0);
         depth[l] = passed ? v : kept;
@@ -556,7 +558,10 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
     const bool byPlane = nearer && !p->writesDepth && p->distanceScale == 0; // depth is the triangle's plane
     Shares shares;
     Batch batch;
-    memset(&batch, 0, sizeof batch); // places that stay empty are computed, too
+    memset(batch.x, 0, sizeof batch.x); // places that stay empty are computed, too
+    memset(batch.y, 0, sizeof batch.y);
+    memset(batch.z, 0, sizeof batch.z);
+    memset(batch.vertex, 0, sizeof batch.vertex);
     Draw d = {.state = state,
               .raster = raster,
               .pipeline = p,
