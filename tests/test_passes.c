@@ -179,6 +179,28 @@ static void HiddenBlocksAreHidden(void** state)
     closeTestContext(context);
 }
 
+// Depth-only draws have paths of their own, also for triangles of a few pixels.
+static void DepthAloneIsTheDepthOfShadedDraws(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        const int width = 20 + (int)(seed * 7), height = 200 - (int)(seed * 3); // pixels of many sizes
+        ClipVertex* v = makeSoup(2100 + seed, TRIANGLES);
+        Canvas one = makeCanvas(width, height, 0), two = makeCanvas(width, height, 0);
+        vplPipeline p = showPipeline(v);
+        const vplRasterStats shaded = drawList(context, &one, &p, ascending(), 3 * TRIANGLES, TRIANGLES);
+        p.fragment = NULL;
+        const vplRasterStats alone = drawList(context, &two, &p, ascending(), 3 * TRIANGLES, TRIANGLES);
+        assert_memory_equal(one.depth, two.depth, (size_t)width * (size_t)height * sizeof(float));
+        assert_int_equal(shaded.fragments, alone.fragments);
+        freeCanvas(&one);
+        freeCanvas(&two);
+        free(v);
+    }
+    closeTestContext(context);
+}
+
 // The document's shader: distance from the eye of a 90 degree view, over far.
 static void writeDistance(const void* uniforms, vplFragments* f)
 {
@@ -282,5 +304,6 @@ static void DrawsThatAreNoPassesAreRefused(void** state)
 
 TEST_SUITE(passes, cmocka_unit_test(PassesOverKeptBlocksGiveTheBitsOfDraws),
            cmocka_unit_test(SurfaceShadersRunBeforeFragmentShaders), cmocka_unit_test(HiddenBlocksAreHidden),
-           cmocka_unit_test(DistancesNeedNoShader), cmocka_unit_test(RastersSideBySideGiveTheBitsOfEachAlone),
+           cmocka_unit_test(DepthAloneIsTheDepthOfShadedDraws), cmocka_unit_test(DistancesNeedNoShader),
+           cmocka_unit_test(RastersSideBySideGiveTheBitsOfEachAlone),
            cmocka_unit_test(DrawsThatAreNoPassesAreRefused));

@@ -13,6 +13,7 @@ enum { BATCH = VPL_LANES };
 
 // Edge i lies opposite corner i; its function is the area at that corner.
 typedef struct Batch {
+    _Alignas(64) int32_t left[BATCH], right[BATCH], top[BATCH], bottom[BATCH]; // pixel boxes in the tile
     _Alignas(64) int32_t x[3][BATCH], y[3][BATCH]; // corners, 24.8 fixed point; turned by setUpBatch
     _Alignas(64) float z[3][BATCH];
     _Alignas(64) double e[3][BATCH]; // at the centre of the tile's first pixel, with the bias below
@@ -74,10 +75,14 @@ static inline void boundBatch(const vplTile* tile, Batch* t)
         const int32_t y0 = ((least3i(t->y[0][k], t->y[1][k], t->y[2][k]) + 127) >> 8) - top;
         const int32_t x1 = ((most3i(t->x[0][k], t->x[1][k], t->x[2][k]) - 128) >> 8) - left;
         const int32_t y1 = ((most3i(t->y[0][k], t->y[1][k], t->y[2][k]) - 128) >> 8) - top;
-        t->x0[k] = (x0 > 0 ? x0 : 0) >> 2;
-        t->y0[k] = (y0 > 0 ? y0 : 0) >> 2;
-        t->x1[k] = (x1 < right ? x1 : right) >> 2;
-        t->y1[k] = (y1 < bottom ? y1 : bottom) >> 2;
+        t->left[k] = x0 > 0 ? x0 : 0;
+        t->top[k] = y0 > 0 ? y0 : 0;
+        t->right[k] = x1 < right ? x1 : right;
+        t->bottom[k] = y1 < bottom ? y1 : bottom;
+        t->x0[k] = t->left[k] >> 2;
+        t->y0[k] = t->top[k] >> 2;
+        t->x1[k] = t->right[k] >> 2;
+        t->y1[k] = t->bottom[k] >> 2;
     }
 }
 

@@ -8,6 +8,7 @@
 #include "base/isa.h"
 #include "raster/setup.h"
 #include "raster/shares.h"
+#include "raster/tiny.h"
 
 #include <math.h>
 #include <string.h>
@@ -263,13 +264,6 @@ static void keepBlock(vplTileState* state)
     memcpy(to, f->depth, sizeof f->depth);
     memcpy(to + VPL_LANES, f->w, sizeof f->w);
     memcpy(to + 2 * VPL_LANES, f->varying, (size_t)keptVaryings(state) * sizeof f->varying[0]);
-}
-
-static inline float clampDepth(double z)
-{
-    float v = (float)z;
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
 }
 
 // Fragments by lane. Neighbouring blocks count in different places: none waits for the one before.
@@ -558,6 +552,7 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
     const bool byPlane = nearer && !p->writesDepth && p->distanceScale == 0; // depth is the triangle's plane
     Shares shares;
     Batch batch;
+    Tiny tiny;
     memset(batch.x, 0, sizeof batch.x); // places that stay empty are computed, too
     memset(batch.y, 0, sizeof batch.y);
     memset(batch.z, 0, sizeof batch.z);
@@ -582,12 +577,17 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
             fetchTriangle(raster, d.shaded, list[first + k], &batch, k);
         }
         setUpBatch(&state->tile, &batch);
+        if (d.depthOnly) {
+            testTiny(&batch, &tiny);
+        }
         for (int k = 0; k < some; k++) {
             d.owner = list[first + k];
             d.place = k;
             d.hasShares = false;
             state->block.primitive = batch.primitive[k];
-            if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != (batch.clockwise[k] != 0)) {
+            if (d.depthOnly && p->cull == VPL_CULL_NONE && isTiny(&batch, k)) {
+                state->fragments += drawTiny(&tiny, k, state->depth);
+            } else if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != (batch.clockwise[k] != 0)) {
                 drawTriangle(&d);
             }
         }
