@@ -568,8 +568,8 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
               .texel = 2.0f / (float)raster->framebuffer.width,
               .rejects = byPlane,
               .tightens = byPlane && p->depthWrite && !p->ownerTest};
-    d.depthOnly = p->fragment == NULL && p->depthCompare == VPL_DEPTH_LESS && p->depthWrite &&
-                  !p->ownerTest && state->owner == NULL;
+    d.depthOnly = p->fragment == NULL && p->distanceScale == 0 && p->depthCompare == VPL_DEPTH_LESS &&
+                  p->depthWrite && !p->ownerTest && state->owner == NULL;
     state->block.scratch = state->tile.scratch;
     for (int first = 0; first < count; first += BATCH) {
         const int some = count - first < BATCH ? count - first : BATCH;
