@@ -10,9 +10,26 @@
 #include "geometry/bvh.h"
 
 #include <math.h>
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
 #include <string.h>
 
 enum { WIDTH = VPL_BVH_WIDTH };
+
+// Bit i of the result: flags[i] is not 0, but -1.
+static inline uint32_t collectBits(const int32_t flags[WIDTH])
+{
+#if defined(__AVX__)
+    return (uint32_t)_mm256_movemask_ps(_mm256_loadu_ps((const float*)flags));
+#else
+    uint32_t bits = 0;
+    for (int i = 0; i < WIDTH; i++) {
+        bits |= (uint32_t)(flags[i] & 1) << i;
+    }
+    return bits;
+#endif
+}
 
 // A ray prepared for both tests. The triangle test works in axes (kx, ky, kz) where the ray runs along z.
 typedef struct Prepared {
@@ -75,36 +92,39 @@ static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vpl
             z[corner][i] = sz * dz;
         }
     }
-    uint32_t zeros = 0;
+    int32_t flags[WIDTH];
     for (int i = 0; i < WIDTH; i++) {
         u[i] = x[2][i] * y[1][i] - y[2][i] * x[1][i];
         v[i] = x[0][i] * y[2][i] - y[0][i] * x[2][i];
         w[i] = x[1][i] * y[0][i] - y[1][i] * x[0][i];
-        zeros |= (uint32_t)((u[i] == 0) | (v[i] == 0) | (w[i] == 0)) << i;
+        flags[i] = -((u[i] == 0) | (v[i] == 0) | (w[i] == 0));
     }
-    for (; zeros != 0; zeros &= zeros - 1) {
+    for (uint32_t zeros = collectBits(flags); zeros != 0; zeros &= zeros - 1) {
         const int i = __builtin_ctz(zeros);
         const float a[2] = {x[0][i], y[0][i]}, b[2] = {x[1][i], y[1][i]}, c[2] = {x[2][i], y[2][i]};
         edgesInDouble(a, b, c, &u[i], &v[i], &w[i]);
     }
     const uint32_t first = (uint32_t)r->skipFirst, count = (uint32_t)r->skipCount;
-    uint32_t hits = 0;
     for (int i = 0; i < WIDTH; i++) {
         float least = u[i] < v[i] ? u[i] : v[i], most = u[i] > v[i] ? u[i] : v[i];
         least = least < w[i] ? least : w[i];
         most = most > w[i] ? most : w[i];
+        uint32_t id = (uint32_t)block->id[i]; // unused lanes: beyond all
+        flags[i] = -(((least >= 0) | (most <= 0)) & (id - first >= count) & (id < 0x80000000u));
+    }
+    if (collectBits(flags) == 0) { // most blocks
+        return 0;
+    }
+    for (int i = 0; i < WIDTH; i++) {
         float det = u[i] + v[i] + w[i];
         float inverse = 1 / (det != 0 ? det : 1);
         float distance = (u[i] * z[0][i] + v[i] * z[1][i] + w[i] * z[2][i]) * inverse;
-        uint32_t id = (uint32_t)block->id[i]; // unused lanes: beyond all
-        int32_t shown = (id - first >= count) & (id < 0x80000000u);
-        int32_t inside = ((least >= 0) | (most <= 0)) & (det != 0);
         t[i] = distance;
         b1[i] = v[i] * inverse;
         b2[i] = w[i] * inverse;
-        hits |= (uint32_t)(inside & shown & (distance > 0) & (distance < INFINITY)) << i;
+        flags[i] &= -((det != 0) & (distance > 0) & (distance < INFINITY));
     }
-    return hits;
+    return collectBits(flags);
 }
 
 // Where a ray enters a box and where it leaves it: planes minus origin times the inverse of the direction.
@@ -136,14 +156,14 @@ static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, floa
     const float* restrict farZ = node->planes[r->farPlane[2]];
     const float ox = r->origin[0], oy = r->origin[1], oz = r->origin[2];
     const float ix = r->inverse[0], iy = r->inverse[1], iz = r->inverse[2];
-    uint32_t hits = 0;
+    int32_t met[WIDTH];
     for (int i = 0; i < WIDTH; i++) {
         float in = slabEntry((nearX[i] - ox) * ix, (nearY[i] - oy) * iy, (nearZ[i] - oz) * iz);
         float out = slabExit((farX[i] - ox) * ix, (farY[i] - oy) * iy, (farZ[i] - oz) * iz);
         entry[i] = in;
-        hits |= (uint32_t)((in <= out) & (in <= limit)) << i;
+        met[i] = -((in <= out) & (in <= limit));
     }
-    return hits;
+    return collectBits(met);
 }
 
 // Moves a hit into its triangle's box; +infinity where the ray misses the box.
@@ -264,22 +284,25 @@ bool VPL_KERNEL(vplTraceAny)(const vplBvh* bvh, const vplRay* ray, float tMax)
             return true;
         }
     }
-    Entry stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1], top = {0, 0};
+    int32_t stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1], child = 0;
     int height = 0;
     for (bool more = bvh->nodes != NULL; more;) {
-        if (top.child >= 0) {
+        if (child >= 0) {
             float entry[WIDTH];
-            const vplBvhNode* node = &bvh->nodes[top.child];
-            const uint32_t hits = testBoxes(&r, node, tMax, entry);
-            if (hits != 0) { // nearest first: what stops light is often near
-                top = pushOthers(node, hits, entry, stack, &height);
+            const vplBvhNode* node = &bvh->nodes[child];
+            uint32_t hits = testBoxes(&r, node, tMax, entry);
+            if (hits != 0) {
+                child = node->child[__builtin_ctz(hits)];
+                for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
+                    stack[height++] = node->child[__builtin_ctz(hits)];
+                }
                 continue;
             }
-        } else if (hasHitBelow(&r, &bvh->blocks[~top.child], tMax)) {
+        } else if (hasHitBelow(&r, &bvh->blocks[~child], tMax)) {
             return true;
         }
         more = height > 0;
-        top = stack[more ? --height : 0];
+        child = stack[more ? --height : 0];
     }
     return false;
 }

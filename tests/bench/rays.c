@@ -188,16 +188,16 @@ static void measure(Bench* b, const vplScene* scene, int runs)
         double speed[3][32] = {{0}}, hits[3] = {0};
         const int few = b->all->blockCount <= 1024 ? b->rayCount / (1 + b->all->blockCount / 64) : 0;
         for (int run = 0; run < runs; run++) {
-            double start = vplClockMs();
+            double start = vplCpuMs();
             hits[0] = traceAll(b, b->tree, kind == 2, b->rayCount);
-            speed[0][run] = b->rayCount / (vplClockMs() - start) / 1e3;
-            start = vplClockMs();
+            speed[0][run] = b->rayCount / (vplCpuMs() - start) / 1e3;
+            start = vplCpuMs();
             traceAll(b, b->all, kind == 2, few);
-            speed[1][run] = few / (vplClockMs() - start) / 1e3;
+            speed[1][run] = few / (vplCpuMs() - start) / 1e3;
 #ifdef HAVE_EMBREE
-            start = vplClockMs();
+            start = vplCpuMs();
             hits[2] = traceEmbree(b, embree, kind == 2, b->rayCount);
-            speed[2][run] = b->rayCount / (vplClockMs() - start) / 1e3;
+            speed[2][run] = b->rayCount / (vplCpuMs() - start) / 1e3;
 #endif
         }
         double tree = median(speed[0], runs), peer = median(speed[2], runs);
@@ -351,10 +351,10 @@ int main(int argc, char** argv)
     vplScene* scene;
     check(vplScene_Load(b.context, argc > 1 ? argv[1] : "examples/scenes/room.json", &scene));
     check(vplGeometry_Create(scene, &b.geometry));
-    double start = vplClockMs();
+    double start = vplCpuMs();
     check(vplBvh_Create(b.geometry, 0, &b.tree));
     printf("%d triangles, tree built in %.1f ms: %d nodes, %d blocks\n", b.geometry->triangleCount,
-           vplClockMs() - start, b.tree->nodeCount, b.tree->blockCount);
+           vplCpuMs() - start, b.tree->nodeCount, b.tree->blockCount);
     check(vplBvh_Create(b.geometry, 1 << 30, &b.all));
     b.closest = vplGetTraceClosest(vplContext_GetIsa(b.context));
     b.any = vplGetTraceAny(vplContext_GetIsa(b.context));
