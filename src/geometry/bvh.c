@@ -306,7 +306,7 @@ static vplResult addNode(Builder* b, int index, int32_t* childOut)
     listChildren(b, from->left, from->wide, children, &count);
     listChildren(b, from->right, VPL_BVH_WIDTH - from->wide, children, &count);
     const int place = bvh->nodeCount++;
-    vplBvhNode node;
+    vplBvhNode node = {.count = count};
     for (int i = 0; i < VPL_BVH_WIDTH; i++) {
         const Box* box = i < count ? &b->binary[children[i]].range.box : &NOTHING;
         for (int axis = 0; axis < 3; axis++) {
@@ -402,11 +402,17 @@ void vplBvh_Destroy(vplContext* context, vplBvh* bvh)
 }
 
 VPL_KERNEL_TABLE(CLOSEST, vplTraceClosestFcn, vplTraceClosest);
+VPL_KERNEL_TABLE(PACKET, vplTraceAnyPacketFcn, vplTraceAnyPacket);
 VPL_KERNEL_TABLE(ANY, vplTraceAnyFcn, vplTraceAny);
 
 vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa)
 {
     return CLOSEST[isa];
+}
+
+vplTraceAnyPacketFcn* vplGetTraceAnyPacket(vplIsa isa)
+{
+    return PACKET[isa];
 }
 
 vplTraceAnyFcn* vplGetTraceAny(vplIsa isa)

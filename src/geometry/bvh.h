@@ -41,7 +41,8 @@ static inline void vplBoundTriangle(const float p[3][3], float low[3], float hig
 typedef struct vplBvhNode {
     float planes[6][VPL_BVH_WIDTH]; // low x, y, z, high x, y, z; unused children: low above high
     int32_t child[VPL_BVH_WIDTH];   // >= 0: a node; else ~block
-} vplBvhNode;
+    int32_t count;                  // of children; they come first
+} __attribute__((aligned(64))) vplBvhNode;
 
 // Triangles side by side, so that one instruction tests all of them. Unused lanes have id -1.
 typedef struct vplTriangleBlock {
@@ -74,6 +75,24 @@ typedef void vplTraceClosestFcn(const vplBvh* bvh, const vplRay* ray, float tMax
 // Whether there is any.
 typedef bool vplTraceAnyFcn(const vplBvh* bvh, const vplRay* ray, float tMax);
 
+// Up to sixteen rays with something in common, such as the light they are cast to.
+enum { VPL_RAY_PACKET = 16 };
+
+typedef struct vplRayPacket {
+    vplRay rays[VPL_RAY_PACKET];
+    uint32_t active; // bit i: ray i is there
+} vplRayPacket;
+
+static inline void vplRayPacket_Set(vplRayPacket* packet, int lane, const vplRay* ray)
+{
+    packet->rays[lane] = *ray;
+    packet->active |= 1u << lane;
+}
+
+// Bit i of the result: what vplTraceAnyFcn says about ray i.
+typedef uint32_t vplTraceAnyPacketFcn(const vplBvh* bvh, const vplRayPacket* rays, float tMax);
+
+vplTraceAnyPacketFcn* vplGetTraceAnyPacket(vplIsa isa);
 vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa);
 vplTraceAnyFcn* vplGetTraceAny(vplIsa isa);
 
