@@ -45,15 +45,17 @@ static inline Entry pushOthers(const vplBvhNode* node, uint32_t hits, const floa
 {
     int i = __builtin_ctz(hits);
     Entry nearest = makeEntry(entry[i], node->child[i]);
-    Entry* top = stack + *height;
+    Entry *const base = stack + *height, *top = base;
     for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
         i = __builtin_ctz(hits);
         const Entry next = makeEntry(entry[i], node->child[i]);
         const Entry other = next > nearest ? next : nearest;
         nearest = next > nearest ? nearest : next;
-        const Entry below = top[-1];
-        top[-1] = other > below ? other : below;
-        *top++ = other > below ? below : other;
+        Entry* at = top++;
+        for (; at > base && at[-1] < other; at--) {
+            *at = at[-1];
+        }
+        *at = other;
     }
     *height = (int)(top - stack);
     return nearest;
