@@ -42,6 +42,7 @@ typedef struct Binary {
     double cost[VPL_BVH_WIDTH];
     int8_t take[VPL_BVH_WIDTH], wide;
     bool isBlock;
+    double surface;
 } Binary;
 
 typedef struct Builder {
@@ -242,6 +243,14 @@ static vplResult addBinary(Builder* b, const Range* range, int depth, int* index
 // take[j - 1] is how many of them the left half gets, 0: as with j - 1.
 static void findCosts(const Builder* b, Binary* node)
 {
+    node->surface = 0;
+    if (node->left < 0) {
+        for (int i = 0; i < node->range.count; i++) {
+            node->surface += vplGeometry_TriangleArea(b->geometry, b->items[node->range.first + i].id);
+        }
+    } else {
+        node->surface = b->binary[node->left].surface + b->binary[node->right].surface;
+    }
     const double area = areaOf(&node->range.box);
     const double leaf = node->range.count <= LEAF ? BLOCK_COST * area : INFINITY;
     if (node->left < 0) {
@@ -290,6 +299,13 @@ static void listChildren(const Builder* b, int index, int count, int children[VP
     listChildren(b, node->right, count - node->take[count - 1], children, childCount);
 }
 
+static double orderOf(const Binary* n)
+{
+    double area = areaOf(&n->range.box);
+    double p = n->surface / (n->surface + area+1e-30);
+    return p * area / n->cost[0];
+}
+#define ORDER(c) orderOf(&b->binary[c])
 static vplResult addNode(Builder* b, int index, int32_t* childOut)
 {
     const Binary* from = &b->binary[index];
@@ -305,6 +321,13 @@ static vplResult addNode(Builder* b, int index, int32_t* childOut)
     int children[VPL_BVH_WIDTH], count = 0;
     listChildren(b, from->left, from->wide, children, &count);
     listChildren(b, from->right, VPL_BVH_WIDTH - from->wide, children, &count);
+    for (int i = 1; i < count; i++) {
+        for (int k = i; k > 0 && ORDER(children[k - 1]) < ORDER(children[k]); k--) {
+            int swap = children[k];
+            children[k] = children[k - 1];
+            children[k - 1] = swap;
+        }
+    }
     const int place = bvh->nodeCount++;
     vplBvhNode node = {.count = count};
     for (int i = 0; i < VPL_BVH_WIDTH; i++) {

@@ -79,13 +79,21 @@ typedef bool vplTraceAnyFcn(const vplBvh* bvh, const vplRay* ray, float tMax);
 enum { VPL_RAY_PACKET = 16 };
 
 typedef struct vplRayPacket {
-    vplRay rays[VPL_RAY_PACKET];
+    float origin[3][VPL_RAY_PACKET], direction[3][VPL_RAY_PACKET];
+    int32_t skipFirst[VPL_RAY_PACKET], skipCount[VPL_RAY_PACKET];
     uint32_t active; // bit i: ray i is there
 } vplRayPacket;
 
 static inline void vplRayPacket_Set(vplRayPacket* packet, int lane, const vplRay* ray)
 {
-    packet->rays[lane] = *ray;
+    packet->origin[0][lane] = ray->origin.x;
+    packet->origin[1][lane] = ray->origin.y;
+    packet->origin[2][lane] = ray->origin.z;
+    packet->direction[0][lane] = ray->direction.x;
+    packet->direction[1][lane] = ray->direction.y;
+    packet->direction[2][lane] = ray->direction.z;
+    packet->skipFirst[lane] = ray->skip.first;
+    packet->skipCount[lane] = ray->skip.count;
     packet->active |= 1u << lane;
 }
 

@@ -50,6 +50,12 @@ typedef struct Prepared {
 
 enum { ROW = WIDTH * sizeof(float) };
 
+static inline void setRows(Prepared* p, int axis)
+{
+    p->nearRow[axis] = ROW * (p->inverse[axis] < 0 ? axis + 3 : axis);
+    p->farRow[axis] = ROW * (p->inverse[axis] < 0 ? axis : axis + 3);
+}
+
 static inline Prepared prepare(const vplRay* ray)
 {
     Prepared p;
@@ -67,8 +73,7 @@ static inline Prepared prepare(const vplRay* ray)
     for (int k = 0; k < 3; k++) {
         // Not 1/0: 0 times infinity is no number. A slab that the ray does not leave is made too wide to decide.
         p.inverse[k] = 1 / (fabsf(d[k]) > 0x1p-126f ? d[k] : copysignf(0x1p-126f, d[k]));
-        p.nearRow[k] = ROW * (p.inverse[k] < 0 ? k + 3 : k);
-        p.farRow[k] = ROW * (p.inverse[k] < 0 ? k : k + 3);
+        setRows(&p, k);
     }
     p.skipFirst = ray->skip.first;
     p.skipCount = ray->skip.count;
