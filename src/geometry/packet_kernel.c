@@ -5,7 +5,7 @@
 // Culling Methods for Entire Ray Packets, 2006 (intervals). Departs: where few rays are left they go on alone.
 #include "geometry/ray_tests.h"
 
-enum { LANES = VPL_RAY_PACKET, FEW = 3, FEW_AT_BLOCK = 4 };
+enum { LANES = VPL_RAY_PACKET, FEW = 3, FEW_AT_BLOCK = 2 };
 
 // A subtree and the rays that enter it.
 typedef struct Visit {
@@ -28,7 +28,11 @@ typedef struct Packet {
 
 static inline uint32_t collectLanes(const int32_t flags[LANES])
 {
+#if defined(VPL_MOVEMASK) && defined(__AVX512DQ__)
+    return (uint32_t)_mm512_movepi32_mask(_mm512_loadu_si512(flags));
+#else
     return collectBits(flags) | collectBits(flags + WIDTH) << WIDTH;
+#endif
 }
 
 // ---- preparing
@@ -71,22 +75,30 @@ static void prepareLanes(const vplRayPacket* rays, Packet* restrict p)
     }
 }
 
+// The least and the most of all lanes, in halves.
+static inline void findRange(const float values[LANES], float* leastOut, float* mostOut)
+{
+    float least[LANES], most[LANES];
+    memcpy(least, values, sizeof least);
+    memcpy(most, values, sizeof most);
+    for (int half = LANES / 2; half > 0; half /= 2) {
+        for (int i = 0; i < half; i++) {
+            least[i] = least[i] < least[i + half] ? least[i] : least[i + half];
+            most[i] = most[i] > most[i + half] ? most[i] : most[i + half];
+        }
+    }
+    *leastOut = least[0];
+    *mostOut = most[0];
+}
+
 static void prepareIntervals(Packet* p)
 {
     for (int axis = 0; axis < 3; axis++) {
-        const float* restrict o = p->origin[axis];
-        const float* restrict v = p->inverse[axis];
-        float low = o[0], high = o[0], least = v[0], most = v[0];
-        for (int i = 1; i < LANES; i++) {
-            low = o[i] < low ? o[i] : low;
-            high = o[i] > high ? o[i] : high;
-            least = v[i] < least ? v[i] : least;
-            most = v[i] > most ? v[i] : most;
-        }
-        const bool down = most < 0;
-        p->least[axis] = least;
-        p->most[axis] = most;
-        p->tells[axis] = down || least > 0;
+        float low, high;
+        findRange(p->origin[axis], &low, &high);
+        findRange(p->inverse[axis], &p->least[axis], &p->most[axis]);
+        const bool down = p->most[axis] < 0;
+        p->tells[axis] = down || p->least[axis] > 0;
         p->enterOrigin[axis] = down ? low : high;
         p->leaveOrigin[axis] = down ? high : low;
         p->enterRow[axis] = down ? axis + 3 : axis;
@@ -267,7 +279,8 @@ static uint32_t finishAlone(const Packet* p, const vplBvh* bvh, const Visit* vis
 // Rays that meet something in the tree.
 static uint32_t traceTree(const Packet* p, const vplBvh* bvh, uint32_t active)
 {
-    Visit stack[VPL_BVH_DEPTH * (WIDTH - 1) + WIDTH] = {{0, active}};
+    Visit stack[VPL_BVH_DEPTH * (WIDTH - 1) + WIDTH];
+    stack[0] = (Visit){0, active};
     uint32_t hits = 0;
     for (int height = 1; height > 0 && hits != active;) {
         Visit visit = stack[--height];

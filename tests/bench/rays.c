@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// How fast rays are: bench/rays SCENE [--runs N] [--isa NAME] [--all]
+// How fast rays are: bench/rays SCENE [--runs N] [--isa NAME] [--all] [--only KIND]
 // Millions of rays per second of processor time, on one thread, medians of alternated runs, and as a share of Intel
 // Embree's (robust scene, built at high quality) where it was found at build time. The last line is the time to build
 // the tree against Embree's at medium quality, on one thread and on all. --all: also without a tree.
+// --only: rays of this number in the table, and no building.
 #include "bench.h"
 #include "base/clock.h"
 #include "math/sampling.h"
@@ -211,7 +212,7 @@ static int traceEmbree(const Bench* b, RTCScene scene, Kind kind)
 
 // ---- measuring
 
-static void measure(Bench* b, int runs, bool brute)
+static void measure(Bench* b, int runs, bool brute, int only)
 {
 #ifdef HAVE_EMBREE
     RTCDevice device = rtcNewDevice("threads=1");
@@ -221,6 +222,9 @@ static void measure(Bench* b, int runs, bool brute)
     printf("%-20s %10s %10s %10s   %s\n", "rays", "tree M/s", "all M/s", "Embree M/s",
            "tree / Embree (hits)");
     for (Kind kind = 0; kind < KIND_COUNT; kind++) {
+        if (only >= 0 && (int)kind != only) {
+            continue;
+        }
         makeRays(b, kind);
         double speed[3][MOST_RUNS] = {{0}};
         int hits[3] = {0};
@@ -296,13 +300,14 @@ static vplIsa isaOf(const char* name)
 
 int main(int argc, char** argv)
 {
-    int runs = 7;
+    int runs = 7, only = -1;
     bool brute = false;
     vplIsa isa = VPL_ISA_AUTO;
     for (int i = 2; i < argc; i++) {
         const char* value = i + 1 < argc ? argv[i + 1] : "";
         brute = brute || strcmp(argv[i], "--all") == 0;
         runs = strcmp(argv[i], "--runs") == 0 ? atoi(value) : runs;
+        only = strcmp(argv[i], "--only") == 0 ? atoi(value) : only;
         isa = strcmp(argv[i], "--isa") == 0 ? isaOf(value) : isa;
     }
     runs = runs < 1 ? 1 : runs > MOST_RUNS ? MOST_RUNS : runs;
@@ -315,14 +320,16 @@ int main(int argc, char** argv)
     printf("%s, %s: %d triangles, %d nodes, %d blocks\n", path, vplIsa_GetName(vplContext_GetIsa(b.context)),
            b.geometry->triangleCount, b.tree->nodeCount, b.tree->blockCount);
     b.rays = malloc(MOST_RAYS * sizeof *b.rays);
-    measure(&b, runs, brute);
+    measure(&b, runs, brute, only);
     free(b.rays);
     vplBvh_Destroy(b.context, b.tree);
     vplBvh_Destroy(b.context, b.all);
     vplGeometry_Destroy(b.geometry);
     vplScene_Destroy(b.scene);
     vplContext_Destroy(b.context);
-    measureBuild(path, 1, runs);
-    measureBuild(path, 0, runs);
+    if (only < 0) {
+        measureBuild(path, 1, runs);
+        measureBuild(path, 0, runs);
+    }
     return 0;
 }
