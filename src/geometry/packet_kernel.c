@@ -156,8 +156,8 @@ static inline uint32_t testIntervals(const Packet* p, const vplBvhNode* node)
 // Bit i of the result: ray i meets the box of a child before the limit.
 static inline uint32_t testLanes(const Packet* p, const vplBvhNode* node, int child)
 {
-    const float *restrict ox = p->origin[0], *restrict oy = p->origin[1], *restrict oz = p->origin[2];
-    const float *restrict ix = p->inverse[0], *restrict iy = p->inverse[1], *restrict iz = p->inverse[2];
+    const float* restrict ox = p->origin[0], * restrict oy = p->origin[1], * restrict oz = p->origin[2];
+    const float* restrict ix = p->inverse[0], * restrict iy = p->inverse[1], * restrict iz = p->inverse[2];
     const float lowX = node->planes[0][child], lowY = node->planes[1][child], lowZ = node->planes[2][child];
     const float highX = node->planes[3][child], highY = node->planes[4][child],
                 highZ = node->planes[5][child];
@@ -180,8 +180,8 @@ static inline uint32_t testLanes(const Packet* p, const vplBvhNode* node, int ch
 static uint32_t testTriangle(const Packet* p, const vplTriangleBlock* block, int lane, int kz)
 {
     const int kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
-    const float *restrict ox = p->origin[kx], *restrict oy = p->origin[ky], *restrict oz = p->origin[kz];
-    const float *restrict sx = p->sx, *restrict sy = p->sy, *restrict sz = p->sz;
+    const float* restrict ox = p->origin[kx], * restrict oy = p->origin[ky], * restrict oz = p->origin[kz];
+    const float* restrict sx = p->sx, * restrict sy = p->sy, * restrict sz = p->sz;
     float x[3][LANES], y[3][LANES], z[3][LANES], u[LANES], v[LANES], w[LANES];
     int32_t flags[LANES];
     for (int corner = 0; corner < 3; corner++) {
@@ -210,8 +210,8 @@ static uint32_t testTriangle(const Packet* p, const vplTriangleBlock* block, int
         float least = u[i] < v[i] ? u[i] : v[i], most = u[i] > v[i] ? u[i] : v[i];
         least = least < w[i] ? least : w[i];
         most = most > w[i] ? most : w[i];
-        flags[i] = -(((least >= 0) | (most <= 0)) &
-                     (id - (uint32_t)p->skipFirst[i] >= (uint32_t)p->skipCount[i]));
+        flags[i] =
+            -(((least >= 0) | (most <= 0)) & (id - (uint32_t)p->skipFirst[i] >= (uint32_t)p->skipCount[i]));
     }
     if (collectLanes(flags) == 0) {
         return 0;
@@ -221,8 +221,8 @@ static uint32_t testTriangle(const Packet* p, const vplTriangleBlock* block, int
         corner[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
     }
     vplBoundTriangle(corner, low, high);
-    const float *restrict px = p->origin[0], *restrict py = p->origin[1], *restrict pz = p->origin[2];
-    const float *restrict ix = p->inverse[0], *restrict iy = p->inverse[1], *restrict iz = p->inverse[2];
+    const float* restrict px = p->origin[0], * restrict py = p->origin[1], * restrict pz = p->origin[2];
+    const float* restrict ix = p->inverse[0], * restrict iy = p->inverse[1], * restrict iz = p->inverse[2];
     const float limit = p->limit;
     for (int i = 0; i < LANES; i++) {
         const float det = u[i] + v[i] + w[i];
@@ -235,8 +235,8 @@ static uint32_t testTriangle(const Packet* p, const vplTriangleBlock* block, int
         const float out = slabExit(ax < bx ? bx : ax, ay < by ? by : ay, az < bz ? bz : az);
         float t = distance > in ? distance : in;
         t = t < out ? t : out;
-        flags[i] &= -((det != 0) & (distance > 0) & (distance < INFINITY) & (in <= out) & (t > 0) &
-                      (t < limit));
+        flags[i] &=
+            -((det != 0) & (distance > 0) & (distance < INFINITY) & (in <= out) & (t > 0) & (t < limit));
     }
     return collectLanes(flags);
 }

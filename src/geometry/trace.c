@@ -65,6 +65,11 @@ bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, floa
     return vplGetTraceAny(geometry->context->isa)(geometry->bvh, ray, tMax);
 }
 
+uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax)
+{
+    return vplGetTraceAnyPacket(geometry->context->isa)(geometry->bvh, rays, tMax);
+}
+
 vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction)
 {
     const vplGeometryObject* object = &geometry->objects[hit->object];

@@ -30,7 +30,8 @@ static inline void say(void* user, vplLogLevel level, const char* message)
 }
 
 // 0 workers: as many as there are processors.
-static inline void openScene(const char* path, int workers, vplIsa isa, vplContext** contextOut, vplScene** sceneOut)
+static inline void openScene(const char* path, int workers, vplIsa isa, vplContext** contextOut,
+                             vplScene** sceneOut)
 {
     vplContextDef def = vplDefaultContextDef();
     def.log = say;

@@ -64,8 +64,8 @@ static void followRays(Bench* b, bool shadow)
             continue;
         }
         vplVec3 n = vplDot(hit.normal, b->rays[i].direction) > 0 ? vplNegate(hit.normal) : hit.normal;
-        vplVec3 d = shadow ? vplSub(light, hit.position)
-                           : vplSampleCosineAround(n, unit(i, 0, 0), unit(i, 0, 1));
+        vplVec3 d =
+            shadow ? vplSub(light, hit.position) : vplSampleCosineAround(n, unit(i, 0, 0), unit(i, 0, 1));
         b->rays[count++] = vplGeometry_Leave(b->geometry, &hit, d);
     }
     b->rayCount = count;
@@ -243,8 +243,8 @@ static void measure(Bench* b, int runs, bool brute, int only)
 #endif
         }
         double tree = median(speed[0], runs), peer = median(speed[2], runs);
-        printf("%-20s %10.2f %10.2f %10.2f   %.2f (%d, %d)\n", KINDS[kind], tree, median(speed[1], runs), peer,
-               peer > 0 ? tree / peer : 0, hits[0], hits[2]);
+        printf("%-20s %10.2f %10.2f %10.2f   %.2f (%d, %d)\n", KINDS[kind], tree, median(speed[1], runs),
+               peer, peer > 0 ? tree / peer : 0, hits[0], hits[2]);
     }
 #ifdef HAVE_EMBREE
     rtcReleaseScene(embree);
