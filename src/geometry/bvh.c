@@ -28,8 +28,10 @@ static void boxTriangle(const vplGeometry* g, int triangle, vplBuildBox* box)
         p[i][1] = t.corner[i].y;
         p[i][2] = t.corner[i].z;
     }
-    vplBoundTriangle(p, box->low, box->high);
-    box->low[3] = box->high[3] = 0;
+    float low[3], high[3];
+    vplBoundTriangle(p, low, high);
+    box->low = (vplFour){low[0], low[1], low[2], 0};
+    box->high = (vplFour){high[0], high[1], high[2], 0};
 }
 
 static void collectChunk(void* data, int chunk, int worker)
@@ -37,23 +39,22 @@ static void collectChunk(void* data, int chunk, int worker)
     (void)worker;
     const Collection* c = data;
     const vplGeometry* g = c->builder->geometry;
-    vplBuildRange range = {vplNoBox, vplNoBox, chunk * VPL_BUILD_CHUNK, 0};
-    for (int i = range.first; i < g->triangleCount && i < range.first + VPL_BUILD_CHUNK; i++) {
+    const int first = chunk * VPL_BUILD_CHUNK;
+    int count = 0;
+    for (int i = first; i < g->triangleCount && i < first + VPL_BUILD_CHUNK; i++) {
         const vplVec3 n = g->normals[i];
         if (n.x != 0 || n.y != 0 || n.z != 0) {
-            const int at = range.first + range.count++;
-            boxTriangle(g, i, &c->builder->items[at]);
-            c->builder->ids[at] = i;
-            vplRange_Add(&range, &c->builder->items[at]);
+            boxTriangle(g, i, &c->builder->items[first + count]);
+            c->builder->ids[first + count++] = i;
         }
     }
-    c->ranges[chunk] = range;
+    c->ranges[chunk] = vplMakeRange(c->builder, first, count);
 }
 
 // All of them, moved together.
 static vplBuildRange joinChunks(const Collection* c, int chunks)
 {
-    vplBuildRange all = {vplNoBox, vplNoBox, 0, 0};
+    vplBuildRange all = {vplNoBox(), vplNoBox(), 0, 0};
     for (int i = 0; i < chunks; i++) {
         const vplBuildRange* part = &c->ranges[i];
         const vplBuilder* b = c->builder;
@@ -61,8 +62,8 @@ static vplBuildRange joinChunks(const Collection* c, int chunks)
             memmove(b->items + all.count, b->items + part->first, (size_t)part->count * sizeof *b->items);
             memmove(b->ids + all.count, b->ids + part->first, (size_t)part->count * sizeof *b->ids);
         }
-        vplGrowBox(&all.box, &part->box);
-        vplGrowBox(&all.centres, &part->centres);
+        all.box = vplJoinBoxes(all.box, part->box);
+        all.centres = vplJoinBoxes(all.centres, part->centres);
         all.count += part->count;
     }
     return all;
@@ -106,10 +107,8 @@ static int placeOf(const vplBuildRange* range)
 
 static void setNode(const vplBuilder* b, int index, const vplBuildRange* range)
 {
-    vplBinary* node = &b->binary[index];
-    *node = (vplBinary){.first = range->first, .count = range->count, .left = -1, .right = -1};
-    memcpy(node->low, range->box.low, sizeof node->low);
-    memcpy(node->high, range->box.high, sizeof node->high);
+    b->binary[index] =
+        (vplBinary){.box = range->box, .first = range->first, .count = range->count, .left = -1, .right = -1};
 }
 
 static float surfaceOf(const vplBuilder* b, const vplBinary* node)

@@ -4,6 +4,9 @@
 #define VPL_GEOMETRY_BVH_BUILD_H
 
 #include "geometry/bvh.h"
+#include "geometry/four.h"
+
+#include <math.h>
 
 enum {
     VPL_BINARY_LEAF = 2,   // ranges of up to this many triangles are not split
@@ -12,9 +15,9 @@ enum {
     VPL_BUILD_CHUNK = 4096 // triangles that one task boxes, and blocks that one task fills
 };
 
-// Four floats, so that one instruction works on all; the last of each is ignored.
+// The last of each four is ignored.
 typedef struct vplBuildBox {
-    float low[4], high[4];
+    vplFour low, high;
 } vplBuildBox;
 
 // A part of the items, with the boxes of their boxes and of their centres.
@@ -30,7 +33,7 @@ typedef struct vplBuildCosts {
 
 // A node of the binary tree, with the ways in which it can become part of a wide one.
 typedef struct vplBinary {
-    float low[3], high[3];
+    vplBuildBox box;
     int first, count;
     int left, right;            // -1: none
     float promise;              // what any-hit rays expect of it: see vplFindCosts
@@ -42,42 +45,36 @@ typedef struct vplBinary {
 
 typedef struct vplBuilder {
     const vplGeometry* geometry;
-    vplBuildBox* items; // of triangles; low[3] is the area
+    vplBuildBox* items; // of triangles
     int32_t* ids;       // of the same triangles
     vplBinary* binary;
     float unit; // 1 / the longest side of all: areas are taken in this unit, and stay far from overflow
 } vplBuilder;
 
-extern const vplBuildBox vplNoBox;
-
-static inline void vplGrowBox(vplBuildBox* restrict box, const vplBuildBox* restrict by)
+static inline vplBuildBox vplNoBox(void)
 {
-    for (int i = 0; i < 4; i++) {
-        box->low[i] = by->low[i] < box->low[i] ? by->low[i] : box->low[i];
-    }
-    for (int i = 0; i < 4; i++) {
-        box->high[i] = by->high[i] > box->high[i] ? by->high[i] : box->high[i];
-    }
+    return (vplBuildBox){vplFour_Of(INFINITY), vplFour_Of(-INFINITY)};
+}
+
+static inline vplBuildBox vplJoinBoxes(vplBuildBox a, vplBuildBox b)
+{
+    return (vplBuildBox){vplFour_Min(a.low, b.low), vplFour_Max(a.high, b.high)};
 }
 
 // Half the surface.
-static inline float vplHalfSurface(const vplBuilder* b, const float low[3], const float high[3])
+static inline float vplHalfSurface(const vplBuilder* b, const vplBuildBox* box)
 {
-    const float x = (high[0] - low[0]) * b->unit, y = (high[1] - low[1]) * b->unit,
-                z = (high[2] - low[2]) * b->unit;
-    return x * y + y * z + z * x;
+    const vplFour side = (box->high - box->low) * b->unit;
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 
-// Adds item `index` to the boxes of a range.
-static inline void vplRange_Add(vplBuildRange* restrict range, const vplBuildBox* restrict item)
+static inline vplFour vplCentre(const vplBuildBox* item)
 {
-    vplBuildBox centre;
-    for (int i = 0; i < 4; i++) {
-        centre.low[i] = centre.high[i] = 0.5f * item->low[i] + 0.5f * item->high[i];
-    }
-    vplGrowBox(&range->box, item);
-    vplGrowBox(&range->centres, &centre);
+    return 0.5f * item->low + 0.5f * item->high;
 }
+
+// Items first .. first + count - 1 with the boxes around them.
+vplBuildRange vplMakeRange(const vplBuilder* builder, int first, int count);
 
 // Cuts a range in two; in halves where no plane separates centres, or where the tree gets too deep.
 void vplCutRange(const vplBuilder* builder, vplBuildRange* range, vplBuildRange* otherOut, int depth);

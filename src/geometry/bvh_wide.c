@@ -33,7 +33,7 @@ static void shareChildren(vplBinary* node, const vplBuildCosts* left, const vplB
 void vplFindCosts(const vplBuilder* b, vplBinary* node, const vplBuildCosts* left, const vplBuildCosts* right,
                   vplBuildCosts* costs)
 {
-    const float area = vplHalfSurface(b, node->low, node->high);
+    const float area = vplHalfSurface(b, &node->box);
     const float block = node->count <= VPL_BVH_WIDTH ? BLOCK_COST * area : INFINITY;
     if (left == NULL) {
         for (int j = 0; j < VPL_BVH_WIDTH; j++) {
@@ -103,8 +103,8 @@ static void sortChildren(const vplBuilder* b, int children[VPL_BVH_WIDTH], int c
 static void setChild(vplBvhNode* node, int i, const vplBinary* child)
 {
     for (int axis = 0; axis < 3; axis++) {
-        node->planes[axis][i] = child ? child->low[axis] : INFINITY;
-        node->planes[axis + 3][i] = child ? child->high[axis] : -INFINITY;
+        node->planes[axis][i] = child ? child->box.low[axis] : INFINITY;
+        node->planes[axis + 3][i] = child ? child->box.high[axis] : -INFINITY;
     }
     node->child[i] = 0;
 }
