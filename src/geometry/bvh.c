@@ -31,7 +31,7 @@ static void boxTriangle(const vplGeometry* g, int triangle, vplBuildBox* box)
     float low[3], high[3];
     vplBoundTriangle(p, low, high);
     box->low = (vplFour){low[0], low[1], low[2], 0};
-    box->high = (vplFour){high[0], high[1], high[2], 0};
+    box->high = (vplFour){high[0], high[1], high[2], (float)vplTriangle_Area(&t)};
 }
 
 static void collectChunk(void* data, int chunk, int worker)
@@ -88,7 +88,7 @@ static vplResult collectItems(vplBuilder* b, vplBuildRange* allOut)
 // A subtree of `count` items has fewer than 2 count nodes; those of the items from `first` on have their place in
 // the array at 2 first, after the nodes above all tasks.
 typedef struct Task {
-    vplBuildRange range;
+    vplBuildRange range, other; // other: the right half, while it is cut
     int parent, depth;
     bool isRight;
     vplBuildCosts costs;
@@ -98,6 +98,7 @@ typedef struct Plan {
     const vplBuilder* builder;
     Task tasks[VPL_BUILD_TASKS];
     int taskCount, topCount;
+    int cuts[VPL_BUILD_TASKS]; // tasks of a wave
 } Plan;
 
 static int placeOf(const vplBuildRange* range)
@@ -116,11 +117,11 @@ static float surfaceOf(const vplBuilder* b, const vplBinary* node)
     if (node->left >= 0) {
         return b->binary[node->left].surface + b->binary[node->right].surface;
     }
-    double surface = 0;
+    float surface = 0;
     for (int i = node->first; i < node->first + node->count; i++) {
-        surface += vplGeometry_TriangleArea(b->geometry, b->ids[i]);
+        surface += b->items[i].high[3] * b->unit * b->unit;
     }
-    return (float)(surface * b->unit * b->unit);
+    return surface;
 }
 
 // Builds the subtree of a range from place *next on.
@@ -153,38 +154,53 @@ static void buildTask(void* data, int index, int worker)
     buildRange(plan->builder, task->range, task->depth, &next, &task->costs);
 }
 
-static int largestTask(const Plan* plan)
+static void cutTask(void* data, int index, int worker)
 {
-    int largest = 0;
-    for (int i = 1; i < plan->taskCount; i++) {
-        largest = plan->tasks[i].range.count > plan->tasks[largest].range.count ? i : largest;
-    }
-    return largest;
+    (void)worker;
+    Plan* plan = data;
+    Task* task = &plan->tasks[plan->cuts[index]];
+    vplCutRange(plan->builder, &task->range, &task->other, task->depth);
 }
 
-// Cuts the largest range again and again. The nodes above the tasks come first in the array, parents first.
-static void planTasks(Plan* plan, const vplBuildRange* all)
+// Makes a node of a task that was cut, a task of its left half and another one of its right half.
+static void divideTask(Plan* plan, int index, const vplBuildRange* whole)
 {
     const vplBuilder* b = plan->builder;
+    Task* left = &plan->tasks[index];
+    Task* right = &plan->tasks[plan->taskCount++];
+    const int node = plan->topCount++;
+    setNode(b, node, whole);
+    if (left->parent >= 0) {
+        *(left->isRight ? &b->binary[left->parent].right : &b->binary[left->parent].left) = node;
+    }
+    left->parent = node;
+    left->depth++;
+    left->isRight = false;
+    *right = *left;
+    right->range = left->other;
+    right->isRight = true;
+}
+
+// Cuts all that are large, in waves. The nodes above the tasks come first in the array, parents first.
+static void planTasks(Plan* plan, const vplBuildRange* all)
+{
+    const int share = all->count / (VPL_BUILD_TASKS / 2);
+    const int large = share > VPL_TASK_LEAST ? share : VPL_TASK_LEAST;
     plan->tasks[0] = (Task){.range = *all, .parent = -1};
     plan->taskCount = 1;
-    while (plan->taskCount < VPL_BUILD_TASKS) {
-        Task* task = &plan->tasks[largestTask(plan)];
-        if (task->range.count <= VPL_TASK_LEAST) {
-            return;
+    for (int count = 1; count > 0;) {
+        vplBuildRange whole[VPL_BUILD_TASKS];
+        count = 0;
+        for (int i = 0; i < plan->taskCount && plan->taskCount + count < VPL_BUILD_TASKS; i++) {
+            if (plan->tasks[i].range.count > large) {
+                whole[count] = plan->tasks[i].range;
+                plan->cuts[count++] = i;
+            }
         }
-        const int index = plan->topCount++;
-        setNode(b, index, &task->range);
-        if (task->parent >= 0) {
-            *(task->isRight ? &b->binary[task->parent].right : &b->binary[task->parent].left) = index;
+        vplParallelFor(plan->builder->geometry->context, count, cutTask, plan);
+        for (int i = 0; i < count; i++) {
+            divideTask(plan, plan->cuts[i], &whole[i]);
         }
-        Task* right = &plan->tasks[plan->taskCount++];
-        task->parent = index;
-        task->depth++;
-        task->isRight = false;
-        *right = *task;
-        right->isRight = true;
-        vplCutRange(b, &task->range, &right->range, task->depth - 1);
     }
 }
 
@@ -243,11 +259,11 @@ static vplResult build(vplBuilder* b, int bruteBlocks, vplBvh* bvh)
     if ((all.count + VPL_BVH_WIDTH - 1) / VPL_BVH_WIDTH <= bruteBlocks) {
         return vplMakeBlocks(b, all.count, bvh);
     }
-    float longest = 0;
+    float half = 0x1p-100f; // of the longest side; 1e38 and its double would be beyond all floats
     for (int axis = 0; axis < 3; axis++) {
-        longest = fmaxf(longest, all.box.high[axis] - all.box.low[axis]);
+        half = fmaxf(half, 0.5f * all.box.high[axis] - 0.5f * all.box.low[axis]);
     }
-    b->unit = 1 / longest; // triangles have boxes of some size
+    b->unit = 0.5f / fminf(half, 0x1p127f);
     return buildTree(b, &all, bvh);
 }
 

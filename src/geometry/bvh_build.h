@@ -45,7 +45,7 @@ typedef struct vplBinary {
 
 typedef struct vplBuilder {
     const vplGeometry* geometry;
-    vplBuildBox* items; // of triangles
+    vplBuildBox* items; // of triangles; high[3] is the area in square metres
     int32_t* ids;       // of the same triangles
     vplBinary* binary;
     float unit; // 1 / the longest side of all: areas are taken in this unit, and stay far from overflow
@@ -64,7 +64,7 @@ static inline vplBuildBox vplJoinBoxes(vplBuildBox a, vplBuildBox b)
 // Half the surface.
 static inline float vplHalfSurface(const vplBuilder* b, const vplBuildBox* box)
 {
-    const vplFour side = (box->high - box->low) * b->unit;
+    const vplFour side = box->high * b->unit - box->low * b->unit;
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 

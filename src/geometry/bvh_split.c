@@ -3,7 +3,7 @@
 // triangles are split where the surface area heuristic, sampled at bins of centroids, is least.
 #include "geometry/bvh_build.h"
 
-enum { BINS = 16, FEWER_BINS = 8, FEW_ITEMS = 8, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
+enum { BINS = 16, FEWER_BINS = 8, FEW_ITEMS = 16, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
 
 typedef struct Split {
     float cost;
@@ -43,10 +43,19 @@ static Binning makeBinning(const vplBuildRange* range)
     return b;
 }
 
+// The same on one axis.
+static inline int binOf(const Binning* b, const vplBuildBox* item, int axis)
+{
+    const float low = item->low[axis], high = item->high[axis];
+    const float bin = (0.5f * low + 0.5f * high - b->from[axis]) * b->scale[axis];
+    return (int)bin < b->count - 1 ? (int)bin : b->count - 1;
+}
+
 static inline vplFourInts binsOf(const Binning* b, const vplBuildBox* item)
 {
-    const vplFour last = vplFour_Of((float)(b->count - 1));
-    return __builtin_convertvector(vplFour_Min((vplCentre(item) - b->from) * b->scale, last), vplFourInts);
+    const vplFour last = vplFour_Of((float)(b->count - 1)), none = {0, 0, 0, 0};
+    const vplFour bins = (vplCentre(item) - b->from) * b->scale;
+    return __builtin_convertvector(vplFour_Max(vplFour_Min(bins, last), none), vplFourInts);
 }
 
 static void fillBins(const vplBuilder* b, const vplBuildRange* range, const Binning* binning, Bins* bins)
@@ -103,7 +112,7 @@ static int partition(const vplBuilder* b, const vplBuildRange* range, const Binn
         b->ids[i] = b->ids[left];
         b->items[left] = item;
         b->ids[left] = id;
-        left += binsOf(binning, &item)[split->axis] <= split->bin;
+        left += binOf(binning, &item, split->axis) <= split->bin;
     }
     return left - range->first;
 }
@@ -119,7 +128,8 @@ void vplCutRange(const vplBuilder* b, vplBuildRange* range, vplBuildRange* other
         for (int axis = 0; axis < 3; axis++) {
             splitAlong(b, &bins, binning.count, axis, &split);
         }
-        left = split.cost < INFINITY ? partition(b, range, &binning, &split) : left;
+        const int parted = split.cost < INFINITY ? partition(b, range, &binning, &split) : 0;
+        left = parted > 0 && parted < range->count ? parted : left; // boxes beyond all floats have no centre
     }
     *otherOut = vplMakeRange(b, range->first + left, range->count - left);
     *range = vplMakeRange(b, range->first, left);

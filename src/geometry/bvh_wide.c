@@ -19,8 +19,9 @@ static void shareChildren(vplBinary* node, const vplBuildCosts* left, const vplB
                           vplBuildCosts* costs)
 {
     for (int j = 2; j <= VPL_BVH_WIDTH; j++) {
-        costs->cost[j - 1] = INFINITY;
-        for (int k = 1; k < j; k++) {
+        costs->cost[j - 1] = left->cost[0] + right->cost[j - 2];
+        node->take[j - 1] = 1;
+        for (int k = 2; k < j; k++) {
             const float cost = left->cost[k - 1] + right->cost[j - k - 1];
             if (cost < costs->cost[j - 1]) {
                 costs->cost[j - 1] = cost;
@@ -123,9 +124,11 @@ static int32_t addChild(Widening* w, int index, bool mustBeNode)
     int children[VPL_BVH_WIDTH], count = 0;
     listChildren(w->builder, from->left, from->wide, children, &count);
     listChildren(w->builder, from->right, VPL_BVH_WIDTH - from->wide, children, &count);
-    sortChildren(w->builder, children, count);
     const int place = bvh->nodeCount++;
     vplBvhNode* node = bvh->nodes ? &bvh->nodes[place] : NULL;
+    if (node != NULL) {
+        sortChildren(w->builder, children, count);
+    }
     for (int i = 0; node != NULL && i < VPL_BVH_WIDTH; i++) {
         setChild(node, i, i < count ? &w->builder->binary[children[i]] : NULL);
         node->count = count;
