@@ -11,6 +11,17 @@
 #include <math.h>
 #include <string.h>
 
+void vplBuilder_Run(const vplBuilder* builder, int count, vplTaskFcn* task, void* data)
+{
+    if (!builder->alone) {
+        vplParallelFor(builder->geometry->context, count, task, data);
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        task(data, i, 0);
+    }
+}
+
 // ---- the triangles that can be hit
 
 // A chunk of triangles: items are written from its first triangle on.
@@ -42,8 +53,7 @@ static void collectChunk(void* data, int chunk, int worker)
     const int first = chunk * VPL_BUILD_CHUNK;
     int count = 0;
     for (int i = first; i < g->triangleCount && i < first + VPL_BUILD_CHUNK; i++) {
-        const vplVec3 n = g->normals[i];
-        if (n.x != 0 || n.y != 0 || n.z != 0) {
+        if (vplCanBeHit(g, i)) {
             boxTriangle(g, i, &c->builder->items[first + count]);
             c->builder->ids[first + count++] = i;
         }
@@ -77,7 +87,7 @@ static vplResult collectItems(vplBuilder* b, vplBuildRange* allOut)
     if (c.ranges == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    vplParallelFor(context, chunks, collectChunk, &c);
+    vplBuilder_Run(b, chunks, collectChunk, &c);
     *allOut = joinChunks(&c, chunks);
     vplFree(context, c.ranges);
     return VPL_SUCCESS;
@@ -197,7 +207,7 @@ static void planTasks(Plan* plan, const vplBuildRange* all)
                 plan->cuts[count++] = i;
             }
         }
-        vplParallelFor(plan->builder->geometry->context, count, cutTask, plan);
+        vplBuilder_Run(plan->builder, count, cutTask, plan);
         for (int i = 0; i < count; i++) {
             divideTask(plan, plan->cuts[i], &whole[i]);
         }
@@ -240,7 +250,7 @@ static vplResult buildTree(vplBuilder* b, const vplBuildRange* all, vplBvh* bvh)
     if (plan != NULL) {
         plan->builder = b;
         planTasks(plan, all);
-        vplParallelFor(context, plan->taskCount, buildTask, plan);
+        vplBuilder_Run(b, plan->taskCount, buildTask, plan);
         joinTasks(plan);
         result = vplWiden(b, plan->topCount > 0 ? 0 : placeOf(all), bvh);
     }
@@ -267,11 +277,11 @@ static vplResult build(vplBuilder* b, int bruteBlocks, vplBvh* bvh)
     return buildTree(b, &all, bvh);
 }
 
-vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut)
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, bool alone, vplBvh** bvhOut)
 {
     vplContext* context = geometry->context;
     const size_t count = (size_t)geometry->triangleCount;
-    vplBuilder b = {.geometry = geometry};
+    vplBuilder b = {.geometry = geometry, .alone = alone};
     vplBvh* bvh = vplAllocZero(context, 1, sizeof *bvh);
     b.items = bvh ? vplAlloc(context, count, sizeof *b.items) : NULL;
     b.ids = b.items ? vplAlloc(context, count, sizeof *b.ids) : NULL;
@@ -297,29 +307,24 @@ void vplBvh_Destroy(vplContext* context, vplBvh* bvh)
 
 // ---- kernels
 
-VPL_KERNEL_TABLE(CLOSEST, vplTraceClosestFcn, vplTraceClosest);
-VPL_KERNEL_TABLE(ANY, vplTraceAnyFcn, vplTraceAny);
-VPL_KERNEL_TABLE(PACKET, vplTraceAnyPacketFcn, vplTraceAnyPacket);
-
 // 512 bits are for lanes by the dozen: collecting eight flags from a mask register takes longer than from a vector,
-// and boxes and triangles are tested one after another. AVX2 on the same processor (Zen 4; bench/rays --isa) traces
-// 1.05x of the rays of AVX-512, in packets 1.1x; in the room, packets 0.85x.
-static vplIsa isaOfRays(vplIsa isa)
-{
-    return isa == VPL_ISA_AVX512 ? VPL_ISA_AVX2 : isa;
-}
+// and boxes and triangles are tested one after another. AVX2 on the same processor (Zen 4) traces 1.05x of the rays
+// of AVX-512, in packets 1.1x in Sponza and Sibenik, 0.85x in the room.
+VPL_NARROW_KERNEL_TABLE(CLOSEST, vplTraceClosestFcn, vplTraceClosest);
+VPL_NARROW_KERNEL_TABLE(ANY, vplTraceAnyFcn, vplTraceAny);
+VPL_NARROW_KERNEL_TABLE(PACKET, vplTraceAnyPacketFcn, vplTraceAnyPacket);
 
 vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa)
 {
-    return CLOSEST[isaOfRays(isa)];
+    return CLOSEST[isa];
 }
 
 vplTraceAnyFcn* vplGetTraceAny(vplIsa isa)
 {
-    return ANY[isaOfRays(isa)];
+    return ANY[isa];
 }
 
 vplTraceAnyPacketFcn* vplGetTraceAnyPacket(vplIsa isa)
 {
-    return PACKET[isaOfRays(isa)];
+    return PACKET[isa];
 }

@@ -57,8 +57,19 @@ typedef struct vplBvh {
 } vplBvh;
 
 // Builds over all triangles of positive area; without nodes up to `bruteBlocks` blocks (VPL_BRUTE_BLOCKS is
-// what pays).
-vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
+// what pays). `alone`: on the calling thread only.
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, bool alone, vplBvh** bvhOut);
+// A triangle without area never is.
+static inline bool vplCanBeHit(const vplGeometry* g, int triangle)
+{
+    const vplVec3 n = g->normals[triangle];
+    return n.x != 0 || n.y != 0 || n.z != 0;
+}
+
+// Of 1 to 8 triangles, ascending.
+void vplTriangleBlock_Fill(vplTriangleBlock* block, const vplGeometry* geometry, const int32_t* ids,
+                           int count);
+
 void vplBvh_Destroy(vplContext* context, vplBvh* bvh);
 
 // What a traversal found: t is the limit if nothing was.
@@ -95,6 +106,13 @@ static inline void vplRayPacket_Set(vplRayPacket* packet, int lane, const vplRay
     packet->skipFirst[lane] = ray->skip.first;
     packet->skipCount[lane] = ray->skip.count;
     packet->active |= 1u << lane;
+}
+
+static inline vplRay vplRayPacket_Get(const vplRayPacket* packet, int lane)
+{
+    return (vplRay){{packet->origin[0][lane], packet->origin[1][lane], packet->origin[2][lane]},
+                    {packet->direction[0][lane], packet->direction[1][lane], packet->direction[2][lane]},
+                    {packet->skipFirst[lane], packet->skipCount[lane]}};
 }
 
 // Bit i of the result: what vplTraceAnyFcn says about ray i.

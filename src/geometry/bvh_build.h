@@ -48,6 +48,7 @@ typedef struct vplBuilder {
     vplBuildBox* items; // of triangles; high[3] is the area in square metres
     int32_t* ids;       // of the same triangles
     vplBinary* binary;
+    bool alone; // on one thread
     float unit; // 1 / the longest side of all: areas are taken in this unit, and stay far from overflow
 } vplBuilder;
 
@@ -75,6 +76,9 @@ static inline vplFour vplCentre(const vplBuildBox* item)
 
 // Items first .. first + count - 1 with the boxes around them.
 vplBuildRange vplMakeRange(const vplBuilder* builder, int first, int count);
+
+// Runs tasks on all workers, or on this one.
+void vplBuilder_Run(const vplBuilder* builder, int count, vplTaskFcn* task, void* data);
 
 // Cuts a range in two; in halves where no plane separates centres, or where the tree gets too deep.
 void vplCutRange(const vplBuilder* builder, vplBuildRange* range, vplBuildRange* otherOut, int depth);

@@ -142,23 +142,10 @@ static int32_t addChild(Widening* w, int index, bool mustBeNode)
     return place;
 }
 
-// Triangles of a block, ascending.
-static void fillBlock(const Widening* w, int index)
+void vplTriangleBlock_Fill(vplTriangleBlock* block, const vplGeometry* g, const int32_t* ids, int count)
 {
-    const struct Part* part = &w->parts[index];
-    const int32_t* from = w->builder->ids + part->first;
-    const vplGeometry* g = w->builder->geometry;
-    vplTriangleBlock* block = &w->bvh->blocks[index];
-    int32_t ids[VPL_BVH_WIDTH];
-    for (int i = 0; i < part->count; i++) {
-        int at = i;
-        for (; at > 0 && ids[at - 1] > from[i]; at--) {
-            ids[at] = ids[at - 1];
-        }
-        ids[at] = from[i];
-    }
     for (int lane = 0; lane < VPL_BVH_WIDTH; lane++) {
-        const bool used = lane < part->count;
+        const bool used = lane < count;
         const vplTriangleCorners t = vplGeometry_Corners(g, ids[used ? lane : 0]);
         block->id[lane] = used ? ids[lane] : -1;
         for (int corner = 0; corner < 3; corner++) {
@@ -167,6 +154,21 @@ static void fillBlock(const Widening* w, int index)
             block->p[corner][2][lane] = t.corner[corner].z;
         }
     }
+}
+
+static void fillBlock(const Widening* w, int index)
+{
+    const struct Part* part = &w->parts[index];
+    const int32_t* from = w->builder->ids + part->first;
+    int32_t ids[VPL_BVH_WIDTH];
+    for (int i = 0; i < part->count; i++) {
+        int at = i;
+        for (; at > 0 && ids[at - 1] > from[i]; at--) {
+            ids[at] = ids[at - 1];
+        }
+        ids[at] = from[i];
+    }
+    vplTriangleBlock_Fill(&w->bvh->blocks[index], w->builder->geometry, ids, part->count);
 }
 
 static void fillBlocks(void* data, int task, int worker)
@@ -189,9 +191,8 @@ static vplResult allocateBlocks(Widening* w, int count)
 
 static void finishBlocks(Widening* w)
 {
-    vplContext* context = w->builder->geometry->context;
-    vplParallelFor(context, (w->bvh->blockCount + VPL_BUILD_CHUNK - 1) / VPL_BUILD_CHUNK, fillBlocks, w);
-    vplFree(context, w->parts);
+    vplBuilder_Run(w->builder, (w->bvh->blockCount + VPL_BUILD_CHUNK - 1) / VPL_BUILD_CHUNK, fillBlocks, w);
+    vplFree(w->builder->geometry->context, w->parts);
 }
 
 vplResult vplWiden(const vplBuilder* builder, int root, vplBvh* bvh)

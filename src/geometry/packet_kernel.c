@@ -28,11 +28,7 @@ typedef struct Packet {
 
 static inline uint32_t collectLanes(const int32_t flags[LANES])
 {
-#if defined(VPL_MOVEMASK) && defined(__AVX512DQ__)
-    return (uint32_t)_mm512_movepi32_mask(_mm512_loadu_si512(flags));
-#else
     return collectBits(flags) | collectBits(flags + WIDTH) << WIDTH;
-#endif
 }
 
 // ---- preparing
