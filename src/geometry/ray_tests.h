@@ -11,6 +11,7 @@
 
 #include "base/isa.h"
 #include "geometry/bvh.h"
+#include "geometry/four.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,7 +42,7 @@ static inline uint32_t collectBits(const int32_t flags[WIDTH])
 
 // A ray prepared for both tests. The triangle test works in axes (kx, ky, kz) where the ray runs along z.
 typedef struct Prepared {
-    float origin[3], inverse[3];
+    vplFour origin, inverse;   // the last is not used
     int nearRow[3], farRow[3]; // offsets in bytes of rows of vplBvhNode.planes
     float sx, sy, sz;
     int kx, ky, kz;
@@ -56,23 +57,36 @@ static inline void setRows(Prepared* p, int axis)
     p->farRow[axis] = ROW * (p->inverse[axis] < 0 ? axis : axis + 3);
 }
 
+// The axis of the largest component. Without branches: those of random rays would be mispredicted.
+static inline int longestAxis(float x, float y, float z)
+{
+    x = fabsf(x);
+    y = fabsf(y);
+    const float most = x > y ? x : y;
+    const int axis = x > y ? 0 : 1;
+    return most > fabsf(z) ? axis : 2;
+}
+
 static inline Prepared prepare(const vplRay* ray)
 {
+    static const int next[4] = {1, 2, 0, 1};
     Prepared p;
     const float d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
-    p.origin[0] = ray->origin.x;
-    p.origin[1] = ray->origin.y;
-    p.origin[2] = ray->origin.z;
-    p.kz =
-        fabsf(d[0]) > fabsf(d[1]) ? (fabsf(d[0]) > fabsf(d[2]) ? 0 : 2) : (fabsf(d[1]) > fabsf(d[2]) ? 1 : 2);
-    p.kx = (p.kz + 1) % 3;
-    p.ky = (p.kx + 1) % 3;
-    p.sx = d[p.kx] / d[p.kz];
-    p.sy = d[p.ky] / d[p.kz];
-    p.sz = 1 / d[p.kz];
+    p.origin = (vplFour){ray->origin.x, ray->origin.y, ray->origin.z, 0};
+    p.kz = longestAxis(d[0], d[1], d[2]);
+    p.kx = next[p.kz];
+    p.ky = next[p.kz + 1];
+    const vplFour shear = (vplFour){d[p.kx], d[p.ky], 1, 1} / vplFour_Of(d[p.kz]);
+    p.sx = shear[0];
+    p.sy = shear[1];
+    p.sz = shear[2];
+    vplFour divisor = {1, 1, 1, 1};
     for (int k = 0; k < 3; k++) {
         // Not 1/0: 0 times infinity is no number. A slab that the ray does not leave is made too wide to decide.
-        p.inverse[k] = 1 / (fabsf(d[k]) > 0x1p-126f ? d[k] : copysignf(0x1p-126f, d[k]));
+        divisor[k] = fabsf(d[k]) > 0x1p-126f ? d[k] : copysignf(0x1p-126f, d[k]);
+    }
+    p.inverse = 1 / divisor;
+    for (int k = 0; k < 3; k++) {
         setRows(&p, k);
     }
     p.skipFirst = ray->skip.first;
@@ -186,19 +200,24 @@ static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, floa
     return collectBits(met);
 }
 
-// Moves a hit into its triangle's box; +infinity where the ray misses the box.
-static float clampToBox(const Prepared* r, const vplTriangleBlock* block, int lane, float t)
+// Moves a hit into its triangle's box, which is that of vplBoundTriangle; +infinity where the ray misses the box.
+static __attribute__((noinline)) float clampToBox(const Prepared* r, const vplTriangleBlock* block, int lane,
+                                                  float t)
 {
-    float corner[3][3], planes[2][3], in[3], out[3];
-    for (int i = 0; i < 9; i++) {
-        corner[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
+    vplFour corner[3];
+    for (int i = 0; i < 3; i++) {
+        corner[i] = (vplFour){block->p[i][0][lane], block->p[i][1][lane], block->p[i][2][lane], 0};
     }
-    vplBoundTriangle(corner, planes[0], planes[1]);
-    for (int axis = 0; axis < 3; axis++) {
-        int side = r->inverse[axis] < 0;
-        in[axis] = (planes[side][axis] - r->origin[axis]) * r->inverse[axis];
-        out[axis] = (planes[1 - side][axis] - r->origin[axis]) * r->inverse[axis];
-    }
+    const vplFour low = vplFour_Min(corner[0], vplFour_Min(corner[1], corner[2]));
+    const vplFour high = vplFour_Max(corner[0], vplFour_Max(corner[1], corner[2]));
+    const vplFour size = high - low, magnitude = vplFour_Max(-low, high);
+    float extent = size[0] > size[1] ? size[0] : size[1];
+    float largest = magnitude[0] > magnitude[1] ? magnitude[0] : magnitude[1];
+    extent = extent > size[2] ? extent : size[2];
+    largest = largest > magnitude[2] ? largest : magnitude[2];
+    const float pad = extent * 0x1p-20f + largest * 0x1p-22f;
+    const vplFour a = (low - pad - r->origin) * r->inverse, b = (high + pad - r->origin) * r->inverse;
+    const vplFour in = vplFour_Min(a, b), out = vplFour_Max(a, b);
     const float entry = slabEntry(in[0], in[1], in[2]), exit = slabExit(out[0], out[1], out[2]);
     t = t > entry ? t : entry;
     t = t < exit ? t : exit;
