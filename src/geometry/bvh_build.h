@@ -80,6 +80,9 @@ vplBuildRange vplMakeRange(const vplBuilder* builder, int first, int count);
 // Runs tasks on all workers, or on this one.
 void vplBuilder_Run(const vplBuilder* builder, int count, vplTaskFcn* task, void* data);
 
+// Fills in items and ids, for which there is room.
+vplResult vplCollectItems(const vplBuilder* builder, vplBuildRange* allOut);
+
 // Cuts a range in two; in halves where no plane separates centres, or where the tree gets too deep.
 void vplCutRange(const vplBuilder* builder, vplBuildRange* range, vplBuildRange* otherOut, int depth);
 

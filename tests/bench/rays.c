@@ -5,15 +5,12 @@
 // the tree against Embree's at medium quality, on one thread and on all. --all: also without a tree.
 // --only: rays of this number in the table, and no building.
 #include "bench.h"
+#include "embree.h"
 #include "base/clock.h"
 #include "math/sampling.h"
 
 #include <math.h>
 #include <string.h>
-
-#ifdef HAVE_EMBREE
-#include <embree3/rtcore.h>
-#endif
 
 enum { SIDE = 512, MOST_RAYS = SIDE * SIDE, MOST_RUNS = 63 };
 
@@ -123,94 +120,16 @@ static int traceAll(const Bench* b, const vplBvh* bvh, Kind kind, int count)
     return hits;
 }
 
+// ---- measuring
+
 #ifdef HAVE_EMBREE
-static RTCScene makeEmbree(RTCDevice device, const vplGeometry* g, enum RTCBuildQuality quality)
+static EmbreeWay wayOf(Kind kind)
 {
-    RTCScene scene = rtcNewScene(device);
-    RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                              3 * sizeof(float), (size_t)g->vertexCount);
-    uint32_t* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                3 * sizeof(uint32_t), (size_t)g->triangleCount);
-    memcpy(vertices, g->positions, (size_t)g->vertexCount * sizeof *g->positions);
-    for (int i = 0; i < g->triangleCount; i++) {
-        for (int k = 0; k < 3; k++) {
-            indices[3 * i + k] = g->indices[3 * i + k] + (uint32_t)g->objects[g->owners[i]].firstVertex;
-        }
-    }
-    rtcCommitGeometry(mesh);
-    rtcAttachGeometry(scene, mesh);
-    rtcReleaseGeometry(mesh);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, quality);
-    return scene;
-}
-
-static struct RTCRay toEmbree(const vplRay* r, float limit)
-{
-    return (struct RTCRay){.org_x = r->origin.x,
-                           .org_y = r->origin.y,
-                           .org_z = r->origin.z,
-                           .dir_x = r->direction.x,
-                           .dir_y = r->direction.y,
-                           .dir_z = r->direction.z,
-                           .tnear = 1e-5f,
-                           .tfar = limit,
-                           .mask = ~0u};
-}
-
-static int tracePackets(const Bench* b, RTCScene scene, struct RTCIntersectContext* context)
-{
-    int hits = 0;
-    for (int i = 0; i < b->rayCount; i += 16) {
-        struct RTCRay16 p;
-        __attribute__((aligned(64))) int valid[16];
-        const int lanes = b->rayCount - i < 16 ? b->rayCount - i : 16;
-        memset(&p, 0, sizeof p);
-        for (int lane = 0; lane < 16; lane++) {
-            valid[lane] = lane < lanes ? -1 : 0;
-            const vplRay* r = &b->rays[lane < lanes ? i + lane : i];
-            p.org_x[lane] = r->origin.x;
-            p.org_y[lane] = r->origin.y;
-            p.org_z[lane] = r->origin.z;
-            p.dir_x[lane] = r->direction.x;
-            p.dir_y[lane] = r->direction.y;
-            p.dir_z[lane] = r->direction.z;
-            p.tnear[lane] = 1e-5f;
-            p.tfar[lane] = 1;
-            p.mask[lane] = ~0u;
-        }
-        rtcOccluded16(valid, scene, context, &p);
-        for (int lane = 0; lane < lanes; lane++) {
-            hits += p.tfar[lane] < 0;
-        }
-    }
-    return hits;
-}
-
-static int traceEmbree(const Bench* b, RTCScene scene, Kind kind)
-{
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = kind == COHERENT || kind >= SHADOW ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                       : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    int hits = 0;
-    for (int i = 0; i < b->rayCount && kind <= RANDOM; i++) {
-        struct RTCRayHit q = {.ray = toEmbree(&b->rays[i], INFINITY)};
-        q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene, &context, &q);
-        hits += q.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-    }
-    for (int i = 0; i < b->rayCount && (kind == RANDOM_ANY || kind == SHADOW); i++) {
-        struct RTCRay ray = toEmbree(&b->rays[i], 1);
-        rtcOccluded1(scene, &context, &ray);
-        hits += ray.tfar < 0;
-    }
-    return hits + (kind == SHADOW_16 ? tracePackets(b, scene, &context) : 0);
+    return (EmbreeWay){.any = kind >= RANDOM_ANY,
+                       .packets = kind == SHADOW_16,
+                       .coherent = kind == COHERENT || kind >= SHADOW};
 }
 #endif
-
-// ---- measuring
 
 static void measure(Bench* b, int runs, bool brute, int only)
 {
@@ -238,7 +157,7 @@ static void measure(Bench* b, int runs, bool brute, int only)
             speed[1][run] = few / (vplCpuMs() - start) / 1e3;
 #ifdef HAVE_EMBREE
             start = vplCpuMs();
-            hits[2] = traceEmbree(b, embree, kind);
+            hits[2] = traceEmbree(embree, b->rays, b->rayCount, wayOf(kind));
             speed[2][run] = b->rayCount / (vplCpuMs() - start) / 1e3;
 #endif
         }
