@@ -25,6 +25,7 @@
     X(objParts)                                                                                              \
     X(objScene)                                                                                              \
     X(rays)                                                                                                  \
+    X(packets)                                                                                               \
     X(path)                                                                                                  \
     X(passes) X(raster) X(rasterTruth) X(render) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
 

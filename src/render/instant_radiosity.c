@@ -288,6 +288,9 @@ static vplResult cook(vplJob* job, Ingredients* in)
     result = shade(job, in);
     vplJob_EndStage(job, "shading");
     if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && in->set != NULL) {
+        result = vplGeometry_PrepareRays(job->geometry);
+    }
+    if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && in->set != NULL) {
         vplDrawLights(job->image, job->geometry, &job->view, in->set);
     }
     return result;

@@ -201,9 +201,10 @@ double lookUp(void* work, int which)
 
 static void makeChain(vplBvh* bvh, int count)
 {
-    bvh->nodes = calloc((size_t)count, sizeof *bvh->nodes);
+    bvh->nodes = aligned_alloc(64, (size_t)count * sizeof *bvh->nodes);
     bvh->nodeCount = count;
     for (int n = 0; bvh->nodes != NULL && n < count; n++) {
+        bvh->nodes[n].count = VPL_BVH_WIDTH;
         for (int i = 0; i < VPL_BVH_WIDTH; i++) {
             const bool way = i == n % VPL_BVH_WIDTH && n + 1 < count; // the last is missed in all its boxes
             for (int k = 0; k < 6; k++) {
