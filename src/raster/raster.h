@@ -112,7 +112,7 @@ struct vplRaster {
     int extraStride;
     int* bins;     // indices in refs by tile, ascending within a tile
     int* binStart; // tilesX * tilesY + 1
-    bool keepsOwners, keepsPasses;
+    bool keepsOwners, keepsPasses, hasTasks;
     const void** passUniforms; // chain by chain
     vplRasterStats stats;
 };

@@ -71,7 +71,7 @@ vplResult vplFindPasses(vplRaster* raster)
         return VPL_OUT_OF_MEMORY;
     }
     int epoch = 0;
-    raster->keepsOwners = raster->keepsPasses = false;
+    raster->keepsOwners = raster->keepsPasses = raster->hasTasks = false;
     for (int i = 0; i < raster->commandCount; i++) {
         vplCommand* c = &raster->commands[i];
         const vplPipeline* p = c->shaded < 0 ? NULL : &raster->pipelines[c->pipeline];
@@ -80,6 +80,7 @@ vplResult vplFindPasses(vplRaster* raster)
         c->epoch = epoch;
         raster->keepsOwners |= p != NULL && p->ownerTest;
         raster->keepsPasses |= c->repeats;
+        raster->hasTasks |= p == NULL;
     }
     findRows(raster, last);
     vplFree(raster->context, last);

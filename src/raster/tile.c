@@ -133,6 +133,21 @@ static void loadPlanes(const vplRaster* r, vplTileState* state)
     memset(tile->scratch, 0, f->scratchBytes);
 }
 
+// A tile where nothing is drawn keeps what was there or is cleared, without a way through the tile's storage.
+static void clearTile(const vplRaster* r, const vplTile* tile)
+{
+    const vplFramebuffer* f = &r->framebuffer;
+    for (int k = -1; k < f->planeCount; k++) {
+        const vplPlane* plane = k < 0 ? &f->depth : &f->planes[k];
+        for (int y = 0; plane->pixels && !plane->load && y < tile->height; y++) {
+            float* row = plane->pixels + (size_t)(tile->y + y) * (size_t)f->width + tile->x;
+            for (int x = 0; x < tile->width; x++) {
+                row[x] = plane->clear;
+            }
+        }
+    }
+}
+
 static void runTile(void* data, int number, int worker)
 {
     Run* run = data;
@@ -149,10 +164,15 @@ static void runTile(void* data, int number, int worker)
     tile->y = index / r->tilesX * VPL_TILE_SIDE;
     tile->width = f->width - tile->x < VPL_TILE_SIDE ? f->width - tile->x : VPL_TILE_SIDE;
     tile->height = f->height - tile->y < VPL_TILE_SIDE ? f->height - tile->y : VPL_TILE_SIDE;
+    const int* bin = r->bins + r->binStart[index];
+    const int count = r->binStart[index + 1] - r->binStart[index];
+    if (count == 0 && !r->hasTasks) {
+        clearTile(r, tile);
+        return;
+    }
     state->owner = r->keepsOwners ? state->owner : NULL;
     loadPlanes(r, state);
-    const int* bin = r->bins + r->binStart[index];
-    findMeshes(r, bin, r->binStart[index + 1] - r->binStart[index], state->meshStart);
+    findMeshes(r, bin, count, state->meshStart);
     memset(state->keptEpoch, 0xff, (size_t)r->shadedCount * sizeof(int));
     runCommands(r, state, bin, worker);
     storePlane(r, tile, &f->depth, state->depth);

@@ -108,6 +108,7 @@ void openRoom(Room* room, const Options* o)
     room->physical = makeLights(room, VPL_LIGHTING_PHYSICAL);
     makeGrid(room);
     vplCubeWay(room, NULL);
+    demand(vplCubeMap_FindBounds(room->map) == VPL_SUCCESS, "no bounds");
     room->covered = countCovered(room);
 }
 

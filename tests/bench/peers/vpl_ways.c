@@ -25,8 +25,12 @@ void vplLightsWay(Room* room, const Row* row)
     shade(room, row, false);
 }
 
+// The map's bounds belong to the map, and are built once for all pictures: outside this row, inside the frames.
 void vplDirectWay(Room* room, const Row* row)
 {
+    if (room->map->bounds == NULL) { // drawn again by another row
+        demand(vplCubeMap_FindBounds(room->map) == VPL_SUCCESS, "no bounds");
+    }
     shade(room, row, true);
 }
 
@@ -36,20 +40,24 @@ void vplCubeWay(Room* room, const Row* row)
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.position = room->emitter->position;
     def.size = CUBE_SIZE;
-    vplCubeMap* map;
-    demand(vplCubeMap_Create(room->geometry, &def, NULL, NULL, &map) == VPL_SUCCESS, "no shadow map");
-    vplCubeMap_Destroy(room->map);
-    room->map = map;
-    room->draws += map->stats.drawCalls;
+    if (room->map == NULL) {
+        demand(vplCubeMap_Create(room->geometry, &def, NULL, NULL, &room->map) == VPL_SUCCESS,
+               "no shadow map");
+    } else { // as OpenGL, which draws into the same texture again
+        demand(vplCubeMap_Redraw(room->map, room->geometry, &def, NULL, NULL) == VPL_SUCCESS,
+               "no shadow map");
+    }
+    room->draws += room->map->stats.drawCalls;
     vplShadowDef shadowDef = vplDefaultShadowDef();
     shadowDef.biasRule = VPL_BIAS_PAIR; // the document's, as vplRender does for documented lighting
     shadowDef.pcfSamples = PCF_SAMPLES;
-    demand(vplShadow_Create(map, &shadowDef, &room->shadow) == VPL_SUCCESS, "no shadow");
+    demand(vplShadow_Create(room->map, &shadowDef, &room->shadow) == VPL_SUCCESS, "no shadow");
 }
 
 void vplFrameWay(Room* room, const Row* row)
 {
     vplCubeWay(room, row);
+    demand(vplCubeMap_FindBounds(room->map) == VPL_SUCCESS, "no bounds");
     shade(room, row, true);
 }
 
@@ -68,12 +76,14 @@ static void layerVertices(const void* uniforms, int first, int count, const vplV
     }
 }
 
-static void constantColour(const void* uniforms, vplFragments* f)
+static void constantColour(const void* const* uniforms, int count, vplFragments* f)
 {
     (void)uniforms;
-    for (int p = 0; p < ADD_PLANES; p++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            f->plane[p][l] = LAYER_COLOUR;
+    for (int i = 0; i < count; i++) {
+        for (int p = 0; p < ADD_PLANES; p++) {
+            for (int l = 0; l < VPL_LANES; l++) {
+                f->plane[p][l] += LAYER_COLOUR;
+            }
         }
     }
 }
@@ -143,17 +153,20 @@ void vplAddFillWay(Room* room, const Row* row)
 {
     (void)row;
     static const int middle = 0;
-    const vplMesh one = {countingIndices(), 3, 1}, many = {countingIndices(), 3 * ADD_LAYERS, ADD_LAYERS};
+    const vplMesh one = {countingIndices(), 3, 1};
     vplPipeline pipeline = vplDefaultPipeline();
     pipeline.vertex = layerVertices;
     pipeline.vertexUniforms = &middle;
     vplRaster* raster = beginRaster(room, true);
     draw(raster, &one, &pipeline);
-    pipeline.fragment = constantColour;
+    pipeline.passes = constantColour;
     pipeline.depthCompare = VPL_DEPTH_EQUAL;
     pipeline.depthWrite = false;
+    pipeline.ownerTest = true;
     pipeline.blend = VPL_BLEND_ADD;
-    draw(raster, &many, &pipeline);
+    for (int i = 0; i < ADD_LAYERS; i++) {
+        draw(raster, &one, &pipeline);
+    }
     endRaster(room, raster);
 }
 
