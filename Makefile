@@ -40,7 +40,11 @@ ISA_scalar := -fno-tree-vectorize -fno-tree-slp-vectorize
 ISA_sse2   :=
 # gcc would unroll loops over 16 lanes before it thinks of vectors.
 LANES      := $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),,--param max-completely-peel-times=15)
-ISA_avx2   := -mavx2
+# gcc copies 16 bytes at a time unless told; loads of 32 bytes then wait for both stores to reach the cache: without
+# these the fills of bench/roofline take 1.6 and 4.0 times as long under AVX2. clang needs and knows them not.
+MOVES      := $(shell $(CC) -mavx2 -mmove-max=256 -mstore-max=256 -x c -c /dev/null -o /dev/null 2>/dev/null \
+                && echo -mmove-max=256 -mstore-max=256)
+ISA_avx2   := -mavx2 $(MOVES)
 ISA_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 
 LIB_SOURCES    := $(filter-out src/cli/%,$(wildcard src/*/*.c))
@@ -57,7 +61,7 @@ FUZZERS        := $(patsubst tests/fuzz/%_fuzz.c,%,$(wildcard tests/fuzz/*_fuzz.
 REPLAYS        := $(FUZZERS:%=$(BUILD)/fuzz/%_replay)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all libs programs test-programs help deps demo test check-all bench golden gallery install clean format fuzz
+.PHONY: all libs programs test-programs help deps demo test check-all bench bench-peers golden gallery install clean format fuzz
 
 ## make             builds build/vpl and build/libvpl.a, installing what is missing
 all: deps
@@ -87,9 +91,21 @@ bench: all
 	@$(MAKE) --no-print-directory $(JOBS) $(BENCH_PROGRAMS)
 	$(BUILD)/vpl bench
 	$(BUILD)/bench/acne
+	$(BUILD)/bench/shadow examples/scenes/room.json
 	$(BUILD)/bench/rays examples/scenes/room.json
 	$(BUILD)/bench/interleaved examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
+	$(BUILD)/bench/roofline
+	$(BUILD)/vpl bench --scaling
+
+## make bench-peers  beside Mesa's llvmpipe and Intel's Embree, which are installed where they can be
+bench-peers: all
+	@.ci/install-deps $(PEER_PACKAGES) || true
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/bench/peers $(BUILD)/bench/rays
+	$(BUILD)/bench/peers --threads 1 $(PEER_OPTIONS)
+	$(BUILD)/bench/peers --threads 2 $(PEER_OPTIONS)
+	$(BUILD)/bench/rays examples/scenes/room.json
+PEER_PACKAGES := libegl-dev libgl-dev libopengl-dev libegl1 libgl1-mesa-dri libembree-dev
 
 ## make golden      rewrites golden/ (say in the commit why bits moved)
 golden: deps
@@ -138,7 +154,8 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/obj/src/cli/tradeoff_math.o $(BUILD)/libvpl.a
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/obj/src/cli/tradeoff_math.o \
+                    $(BUILD)/obj/src/cli/bench_fit.o $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -150,6 +167,24 @@ $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
 EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
+ROOFLINE := $(foreach part,roofline roofline/loops roofline/work roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
+              $(BUILD)/obj/tests/bench/$(part).o)
+$(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
+	@mkdir -p $(@D)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+PEER_HEADERS := /usr/include/EGL/egl.h /usr/include/GL/glcorearb.h
+PEER_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/bench/peers/*.c))
+ifeq ($(words $(wildcard $(PEER_HEADERS))),2)
+$(BUILD)/bench/peers: $(PEER_OBJECTS) $(BUILD)/libvpl.a
+	@mkdir -p $(@D)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ -lEGL -lOpenGL $(LDLIBS)
+else
+$(BUILD)/bench/peers:
+	@echo "bench-peers needs EGL and OpenGL to build: $(PEER_HEADERS)" >&2; exit 1
+endif
 $(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"

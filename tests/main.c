@@ -9,6 +9,8 @@
 
 // One line per test file.
 #define ALL_SUITES(X)                                                                                        \
+    X(bench)                                                                                                 \
+    X(bounds)                                                                                                \
     X(emitters)                                                                                              \
     X(emission)                                                                                              \
     X(exr)                                                                                                   \
@@ -24,15 +26,9 @@
     X(objParts)                                                                                              \
     X(objScene)                                                                                              \
     X(rays)                                                                                                  \
+    X(packets)                                                                                               \
     X(path)                                                                                                  \
-    X(raster)                                                                                                \
-    X(rasterTruth)                                                                                           \
-    X(render)                                                                                                \
-    X(scene)                                                                                                 \
-    X(sceneChecks)                                                                                           \
-    X(shading)                                                                                               \
-    X(tradeoff)                                                                                              \
-    X(visibility)
+    X(passes) X(raster) X(rasterTruth) X(render) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,

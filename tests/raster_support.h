@@ -37,4 +37,10 @@ vplRasterStats drawList(vplContext* context, const Canvas* canvas, const vplPipe
 // A vertex that projects exactly onto a point given in 1/256 pixels, y down, at depth z.
 ClipVertex fixedVertex(int x, int y, float z, int width, int height);
 
+// A random soup: clip-space triangles of many sizes, some crossing every clip plane. The caller frees it.
+ClipVertex* makeSoup(uint64_t seed, int triangles);
+
+// Of depth and all planes.
+uint64_t hashCanvas(const Canvas* canvas);
+
 #endif

@@ -2,6 +2,10 @@
 // Pictures: files, tone, comparison. Covers extremes X109 to X112.
 #include "test.h"
 
+#include "image/srgb_table.h"
+
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -335,7 +339,29 @@ static void HashSeesEveryBitAndTheShape(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(image, cmocka_unit_test(SrgbIsThatOfTheTables),
+// Around every place where the code changes, and at values that are no light.
+static void CodesByTableAreThoseOfTheFormula(void** state)
+{
+    (void)state;
+    vplSrgbTable table;
+    vplSrgbTable_Fill(&table);
+    float odd[] = {0, -0.0f, -1, NAN, INFINITY, -INFINITY, 1, 2, 1e30f, 1e-30f, 0x1p-13f, 0x1p-14f, FLT_MIN};
+    uint8_t code;
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        vplSrgbTable_Encode(&table, &odd[i], 1, &code);
+        assert_int_equal(code, vplSrgb_Code(odd[i]));
+    }
+    for (int k = 0; k < 255; k++) {
+        float x = table.next[k] * (1 - 0x1p-18f);
+        for (int i = 0; i < 100; i++, x = nextafterf(x, 2)) {
+            vplSrgbTable_Encode(&table, &x, 1, &code);
+            assert_int_equal(code, vplSrgb_Code(x));
+        }
+        assert_true(vplSrgb_Code(table.next[k]) == k + 1 && vplSrgb_Code(nextafterf(table.next[k], 0)) == k);
+    }
+}
+
+TEST_SUITE(image, cmocka_unit_test(CodesByTableAreThoseOfTheFormula), cmocka_unit_test(SrgbIsThatOfTheTables),
            cmocka_unit_test(SrgbCodesAreMonotoneAndDefinedEverywhere),
            cmocka_unit_test(ReinhardIsThatOfTheTable),
            cmocka_unit_test(ReinhardKeepsChromaticityAsInTheTable),

@@ -216,7 +216,7 @@ static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** s
     }
 }
 
-// Only the geometry of a mesh: its tree grows as it is built.
+// Only the geometry of a mesh, and its tree.
 static vplResult freezeBall(vplContext* context, const char* path, int variant)
 {
     (void)path;
@@ -230,6 +230,9 @@ static vplResult freezeBall(vplContext* context, const char* path, int variant)
     }
     if (result == VPL_SUCCESS) {
         result = vplGeometry_Create(scene, &geometry);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_PrepareRays(geometry);
     }
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);

@@ -6,42 +6,6 @@
 
 #include <stdlib.h>
 
-// A random soup: clip-space triangles of many sizes, some crossing every clip plane.
-static ClipVertex* makeSoup(uint64_t seed, int triangles)
-{
-    ClipVertex* v = malloc(3 * (size_t)triangles * sizeof *v);
-    for (int i = 0; i < triangles; i++) {
-        double centre[3], size = pow(10, -3 + 3.5 * uniformAt(seed, (uint64_t)i * 64));
-        for (int k = 0; k < 3; k++) {
-            centre[k] = 2.4 * uniformAt(seed, (uint64_t)i * 64 + 1 + (uint64_t)k) - 1.2;
-        }
-        for (int j = 0; j < 3; j++) {
-            uint64_t at = (uint64_t)i * 64 + 8 + 8 * (uint64_t)j;
-            double w = 0.2 + 2 * uniformAt(seed, at);
-            if (uniformAt(seed, at + 1) < 0.05) {
-                w = -w; // behind the eye
-            }
-            v[3 * i + j] = (ClipVertex){
-                (float)(w * (centre[0] + size * (uniformAt(seed, at + 2) - 0.5))),
-                (float)(w * (centre[1] + size * (uniformAt(seed, at + 3) - 0.5))),
-                (float)(w * (0.5 + 0.5 * centre[2] + 0.5 * size * (uniformAt(seed, at + 4) - 0.5))),
-                (float)w,
-                {(float)uniformAt(seed, at + 5), (float)j, 1}};
-        }
-    }
-    return v;
-}
-
-static uint64_t hashCanvas(const Canvas* c)
-{
-    size_t count = (size_t)c->framebuffer.width * (size_t)c->framebuffer.height;
-    uint64_t hash = vplHashFloats(0, c->depth, count);
-    for (int k = 0; k < SHOWN_PLANES; k++) {
-        hash = vplHashFloats(hash, c->planes[k], count);
-    }
-    return hash;
-}
-
 static void EqualTouchesExactlyWhatLessLeft(void** state)
 {
     (void)state;

@@ -5,7 +5,7 @@
 #include "base/context.h"
 #include "base/hash.h"
 #include "base/isa.h"
-#include "geometry/bvh.h"
+#include "geometry/ray_tree.h"
 #include "math/vec.h"
 
 #include <limits.h>
@@ -130,8 +130,8 @@ static void TreeAgreesWithAllTriangles(void** state)
         addShape(scene, &soup, false, NULL);
         vplGeometry* g = freezeScene(scene);
         vplBvh *tree, *all;
-        assert_int_equal(vplBvh_Create(g, 0, &tree), VPL_SUCCESS);
-        assert_int_equal(vplBvh_Create(g, INT_MAX, &all), VPL_SUCCESS);
+        assert_int_equal(vplBvh_Create(g, 0, false, &tree), VPL_SUCCESS);
+        assert_int_equal(vplBvh_Create(g, INT_MAX, false, &all), VPL_SUCCESS);
         assert_true(tree->nodeCount > 1 && all->nodes == NULL && all->blockCount >= 25);
         const float extent = vplGeometry_Diagonal(g);
         int hits = 0;
@@ -280,7 +280,7 @@ static void EqualDistancesGoToTheLowestTriangle(void** state)
         addShape(scene, &wall, false, NULL);
     }
     vplGeometry* g = freezeScene(scene);
-    assert_true(g->bvh->nodes != NULL);
+    assert_true(vplGeometry_GetBvh(g)->nodes != NULL);
     Dice dice = {5, 0};
     for (int i = 0; i < 1000; i++) {
         vplVec3 target = rollVec(&dice, 0.5f);
@@ -310,13 +310,13 @@ static void AThousandCopiesOfATriangleAreATreeOfHalves(void** state)
     addShape(scene, &copies, false, NULL);
     vplGeometry* g = freezeScene(scene);
     int triangles = 0;
-    for (int i = 0; i < g->bvh->blockCount; i++) {
+    for (int i = 0; i < vplGeometry_GetBvh(g)->blockCount; i++) {
         for (int lane = 0; lane < VPL_BVH_WIDTH; lane++) {
-            triangles += g->bvh->blocks[i].id[lane] >= 0;
+            triangles += vplGeometry_GetBvh(g)->blocks[i].id[lane] >= 0;
         }
     }
     assert_int_equal(triangles, 1000);
-    assert_true(g->bvh->nodeCount > 1 && g->bvh->blockCount <= 256);
+    assert_true(vplGeometry_GetBvh(g)->nodeCount > 1 && vplGeometry_GetBvh(g)->blockCount <= 256);
     for (int first = 0; first < 1000; first += 37) {
         vplRay ray = {{0.1f, 0.2f, 3}, {0, 0, -1}, {0, first}};
         vplHit hit;

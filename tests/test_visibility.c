@@ -532,8 +532,37 @@ static void ShadowMapsRefuseBadDefs(void** state)
     closeTestContext(context);
 }
 
+// Also with bounds, which belong to what was drawn before.
+static void RedrawnMapsAreThoseOfNewOnes(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* room = wallOnFloor(context, 0.5f);
+    const size_t texels = (size_t)6 * 100 * 100;
+    vplCubeMapDef def = vplDefaultCubeMapDef();
+    def.position = (vplVec3){0, 4.5f, 0};
+    def.size = 100;
+    vplCubeMap *moved, *fresh;
+    assert_int_equal(vplCubeMap_Create(room, &def, NULL, NULL, &moved), VPL_SUCCESS);
+    assert_int_equal(vplCubeMap_FindBounds(moved), VPL_SUCCESS);
+    def.position = (vplVec3){0.3f, 2.5f, 1.7f};
+    assert_int_equal(vplCubeMap_Create(room, &def, NULL, NULL, &fresh), VPL_SUCCESS);
+    assert_true(memcmp(moved->texels, fresh->texels, texels * sizeof(float)) != 0);
+    assert_int_equal(vplCubeMap_Redraw(moved, room, &def, NULL, NULL), VPL_SUCCESS);
+    assert_memory_equal(moved->texels, fresh->texels, texels * sizeof(float));
+    assert_true(moved->far == fresh->far && moved->near == fresh->near && moved->position.x == 0.3f);
+    assert_int_equal(moved->stats.fragments, fresh->stats.fragments);
+    assert_null(moved->bounds);
+    def.size = 64;
+    assert_int_equal(vplCubeMap_Redraw(moved, room, &def, NULL, NULL), VPL_INVALID_ARGUMENT);
+    vplCubeMap_Destroy(moved);
+    vplCubeMap_Destroy(fresh);
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
 TEST_SUITE(
-    visibility, cmocka_unit_test(FramesAreThoseOfTheTable),
+    visibility, cmocka_unit_test(RedrawnMapsAreThoseOfNewOnes), cmocka_unit_test(FramesAreThoseOfTheTable),
     cmocka_unit_test(EveryDirectionOfTheTableFindsItsTexel), cmocka_unit_test(TexelsHoldTheDistanceOfTheWall),
     cmocka_unit_test(StoredDistancesAreRadialAndUnclamped), cmocka_unit_test(EveryShadowVerdictOfTheTable),
     cmocka_unit_test(ExactBiasIsThatOfTheTable), cmocka_unit_test(ExactBiasIsEnoughInEveryTexelOfTheTable),

@@ -78,7 +78,7 @@ typedef struct vplGeometry {
     const vplMaterialDef* materials; // without names
     int objectCount, materialCount, vertexCount, triangleCount;
     vplVec3 boundsMin, boundsMax; // of all positions; both 0 when there are none
-    const struct vplBvh* bvh;     // what rays are traced through
+    struct vplRayTree* rayTree;   // what rays are traced through, once there are any
     vplContext* context;
 } vplGeometry;
 
@@ -86,6 +86,10 @@ vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut);
 
 // NULL is allowed.
 void vplGeometry_Destroy(vplGeometry* geometry);
+
+// Builds what rays are traced through, with all workers; of no effect when repeated. Whoever casts a ray without it
+// waits while one thread does the same. Stages that cast rays call it themselves. Not to be called from a task.
+vplResult vplGeometry_PrepareRays(const vplGeometry* geometry);
 
 // The closest hit; among equal distances the lowest triangle. False if there is none. Quads and boxes are hit
 // as vplRay_HitQuad and vplRay_HitBox say, to the last digits of position and normal; mesh triangles by the

@@ -48,6 +48,10 @@ typedef struct vplFragments {
 // Shades one block. Called from any worker.
 typedef void vplFragmentFcn(const void* uniforms, vplFragments* fragments);
 
+// Shades one block by `count` passes, in order, with the uniforms of each: f->plane holds the framebuffer, and what
+// the passes would add one after another is added to it. The bits must be the same for any split into calls.
+typedef void vplPassesFcn(const void* const* uniforms, int count, vplFragments* fragments);
+
 typedef enum vplDepthCompare {
     VPL_DEPTH_LESS = 0,
     VPL_DEPTH_LESS_EQUAL,
@@ -76,6 +80,9 @@ typedef struct vplPipeline {
     vplFragmentFcn* surface; // runs before the fragment shader, with vertexUniforms, and may change and add
                              // varyings; once where several passes (ownerTest) shade a block; default NULL
     int surfaceCount;        // varyings there are after it, [varyingCount, VPL_MAX_VARYINGS]
+    vplPassesFcn*
+        passes; // instead of `fragment`, where draws with ownerTest, EQUAL, no depth write, ADD and no
+                // culling follow each other: then one call shades a block for many; default NULL
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
     float

@@ -12,6 +12,8 @@ extern "C" {
 
 #define VPL_MAX_SHADOW_MAP  8192
 #define VPL_MAX_PCF_SAMPLES 256
+// With fewer samples per point a shadow does not ask the map's bounds.
+#define VPL_MIN_BOUND_SAMPLES 8
 
 // Faces +x, -x, +y, -y, +z, -z of a cube around a point, with 90 degrees of view each. Frames as in Direct3D:
 // left-handed, right x up = forward.
@@ -43,6 +45,7 @@ typedef struct vplCubeMap {
     float near, far;
     const float*
         texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
+    const struct vplCubeBounds* bounds; // NULL before vplCubeMap_FindBounds
     vplRasterStats stats;
     vplContext* context;
 } vplCubeMap;
@@ -52,10 +55,15 @@ typedef struct vplCubeMap {
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
                             void* user, vplCubeMap** mapOut);
 
-// Draws the map again, for a light that moved: the same size, no memory is made for texels. Where it fails, the
-// map's contents are undefined.
+// Draws the map again, for a light that moved: the same size, no memory is made for texels, and bounds are
+// forgotten. Where it fails, the map's contents are undefined.
 vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
                             vplProgressFcn* progress, void* user);
+
+// Finds what the texels of each region have in common, so that for most points one look takes the place of all
+// samples of a soft shadow. Shadows keep their bits. It costs about as much as a sample per texel, and pays where
+// points times samples are more than the texels. On failure the map is as it was.
+vplResult vplCubeMap_FindBounds(vplCubeMap* map);
 
 // NULL is allowed.
 void vplCubeMap_Destroy(vplCubeMap* map);
@@ -86,6 +94,7 @@ vplShadowDef vplDefaultShadowDef(void);
 typedef struct vplShadow {
     const vplCubeMap* map;
     vplShadowDef def;
+    float reach;                           // not less than any offset, metres
     float texelTangent;                    // tangent of the largest angle between a texel's centre and corner
     float offsets[VPL_MAX_PCF_SAMPLES][2]; // on the unit disc, in pairs o, -o; times pcfOffset
 } vplShadow;

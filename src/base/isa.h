@@ -17,16 +17,22 @@ bool vplHasIsa(vplIsa isa);
 
 // Declares the variants of a kernel and builds its table: VPL_KERNEL_TABLE(myTable, MyFcn, myKernel);
 // The Makefile compiles all four for x86-64; elsewhere `scalar` and the baseline, called sse2, are all there is.
+// VPL_NARROW_KERNEL_TABLE: for AVX-512, too, takes the kernel of AVX2.
 #if defined(__x86_64__)
 #define VPL_KERNEL_TABLE(table, type, name)                                                                  \
     extern type name##_scalar, name##_sse2, name##_avx2, name##_avx512;                                      \
     static type* const table[VPL_ISA_COUNT] = {name##_sse2, name##_scalar, name##_sse2, name##_avx2,         \
                                                name##_avx512}
+#define VPL_NARROW_KERNEL_TABLE(table, type, name)                                                           \
+    extern type name##_scalar, name##_sse2, name##_avx2;                                                     \
+    static type* const table[VPL_ISA_COUNT] = {name##_sse2, name##_scalar, name##_sse2, name##_avx2,         \
+                                               name##_avx2}
 #else
 #define VPL_KERNEL_TABLE(table, type, name)                                                                  \
     extern type name##_scalar, name##_sse2;                                                                  \
     static type* const table[VPL_ISA_COUNT] = {name##_sse2, name##_scalar, name##_sse2, name##_sse2,         \
                                                name##_sse2}
+#define VPL_NARROW_KERNEL_TABLE VPL_KERNEL_TABLE
 #endif
 
 #endif

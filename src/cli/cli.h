@@ -32,6 +32,8 @@ typedef struct Arguments {
     int threads[MAX_THREAD_COUNTS];
     int threadsCount;
     int runs;
+    const char* stage; // --stage; NULL: all
+    bool all, scaling;
     const char* reference; // --reference
     const char* sweeps;    // --sweeps
     int seeds;

@@ -1,394 +1,226 @@
 // SPDX-License-Identifier: MIT
-// Based on: Ingo Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007: ranges of
-// triangles are split where the surface area heuristic, sampled at bins of centroids, is least.
-// And: Henri Ylitie, Tero Karras and Samuli Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed
-// Wide BVHs, HPG 2017, section 4.1: which nodes of the binary tree become the children of wide ones, and where
-// blocks begin, is found by dynamic programming over the expected cost.
+// Builds the hierarchy. What is done side by side is cut by the number of triangles alone, and each task writes its
+// own slots, so the tree does not depend on the number of workers.
 #include "geometry/bvh.h"
 #include "base/context.h"
 #include "base/isa.h"
+#include "geometry/bvh_build.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
 #include <math.h>
-#include <string.h>
 
-enum { BINS = 16, LEAF = VPL_BVH_WIDTH, BINARY_LEAF = 2, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
-
-// Work of a visit, relative: a block is read from further away and takes more arithmetic.
-static const double NODE_COST = 1, BLOCK_COST = 1.2;
-
-typedef struct Box {
-    float low[3], high[3];
-} Box;
-
-static const Box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-
-// A triangle while the tree is built.
-typedef struct Item {
-    Box box;
-    int id;
-} Item;
-
-typedef struct Range {
-    Box box;
-    int first, count;
-} Range;
-
-// A node of the binary tree, with the ways in which it can become part of a wide one.
-typedef struct Binary {
-    Range range;
-    int left, right; // -1: none
-    double cost[VPL_BVH_WIDTH];
-    int8_t take[VPL_BVH_WIDTH], wide;
-    bool isBlock;
-} Binary;
-
-typedef struct Builder {
-    vplContext* context;
-    Binary* binary;
-    int binaryCount;
-    size_t binaryCapacity;
-    const vplGeometry* geometry;
-    Item* items;
-    vplBvh* bvh;
-    size_t nodeCapacity, blockCapacity;
-} Builder;
-
-static void grow(Box* box, const Box* by)
+void vplBuilder_Run(const vplBuilder* builder, int count, vplTaskFcn* task, void* data)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        box->low[axis] = by->low[axis] < box->low[axis] ? by->low[axis] : box->low[axis];
-        box->high[axis] = by->high[axis] > box->high[axis] ? by->high[axis] : box->high[axis];
+    if (!builder->alone) {
+        vplParallelFor(builder->geometry->context, count, task, data);
+        return;
     }
-}
-
-// Half the surface. In double: sides of 1e15 would overflow.
-static double areaOf(const Box* box)
-{
-    double x = (double)box->high[0] - box->low[0], y = (double)box->high[1] - box->low[1],
-           z = (double)box->high[2] - box->low[2];
-    return x >= 0 ? x * y + y * z + z * x : 0;
-}
-
-// Twice the centre.
-static double centreOf(const Item* item, int axis)
-{
-    return (double)item->box.low[axis] + item->box.high[axis];
-}
-
-typedef struct Split {
-    double cost;
-    int axis, bin; // bins up to this one go left
-    double from, scale;
-} Split;
-
-static int binOf(const Split* split, const Item* item)
-{
-    int bin = (int)((centreOf(item, split->axis) - split->from) * split->scale);
-    return bin < BINS ? bin : BINS - 1;
-}
-
-// The cheapest of the 15 planes between bins along one axis.
-static Split splitAlong(const Builder* b, const Range* range, int axis, double from, double to)
-{
-    Split best = {INFINITY, axis, 0, from, BINS / (to - from)};
-    Box boxes[BINS];
-    int counts[BINS] = {0};
-    double rightCost[BINS];
-    for (int i = 0; i < BINS; i++) {
-        boxes[i] = NOTHING;
+    for (int i = 0; i < count; i++) {
+        task(data, i, 0);
     }
-    for (int i = range->first; i < range->first + range->count; i++) {
-        int bin = binOf(&best, &b->items[i]);
-        counts[bin]++;
-        grow(&boxes[bin], &b->items[i].box);
-    }
-    Box right = NOTHING, left = NOTHING;
-    for (int i = BINS - 1, count = 0; i > 0; i--) {
-        grow(&right, &boxes[i]);
-        count += counts[i];
-        rightCost[i] = count ? areaOf(&right) * count : INFINITY;
-    }
-    for (int i = 0, count = 0; i < BINS - 1; i++) {
-        grow(&left, &boxes[i]);
-        count += counts[i];
-        double cost = count ? areaOf(&left) * count + rightCost[i + 1] : INFINITY;
-        if (cost < best.cost) {
-            best.cost = cost;
-            best.bin = i;
-        }
-    }
-    return best;
-}
-
-static Split findSplit(const Builder* b, const Range* range)
-{
-    Split best = {INFINITY, 0, 0, 0, 0};
-    for (int axis = 0; axis < 3; axis++) {
-        double from = INFINITY, to = -INFINITY;
-        for (int i = range->first; i < range->first + range->count; i++) {
-            double centre = centreOf(&b->items[i], axis);
-            from = centre < from ? centre : from;
-            to = centre > to ? centre : to;
-        }
-        if (to > from) {
-            Split split = splitAlong(b, range, axis, from, to);
-            best = split.cost < best.cost ? split : best;
-        }
-    }
-    return best;
-}
-
-static Range makeRange(const Builder* b, int first, int count)
-{
-    Range range = {NOTHING, first, count};
-    for (int i = first; i < first + count; i++) {
-        grow(&range.box, &b->items[i].box);
-    }
-    return range;
-}
-
-// Cuts a range in two; in halves where no plane separates centres, or where the tree gets too deep.
-static void cut(const Builder* b, Range* range, Range* otherOut, int depth)
-{
-    Split split = findSplit(b, range);
-    int first = range->first, end = first + range->count, middle = first + range->count / 2;
-    if (split.cost < INFINITY && depth < HALVING_DEPTH) {
-        middle = first;
-        for (int last = end; middle < last;) {
-            Item* item = &b->items[middle];
-            if (binOf(&split, item) <= split.bin) {
-                middle++;
-            } else {
-                Item swap = b->items[--last];
-                b->items[last] = *item;
-                *item = swap;
-            }
-        }
-    }
-    *otherOut = makeRange(b, middle, end - middle);
-    *range = makeRange(b, first, middle - first);
-}
-
-// By corner and axis, in world space.
-static void getCorners(const vplGeometry* g, int triangle, float p[3][3])
-{
-    const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
-    for (int i = 0; i < 9; i++) {
-        p[i / 3][i % 3] = vplComponent(t.corner[i / 3], i % 3);
-    }
-}
-
-static vplResult addBlock(Builder* b, const Range* range, int32_t* childOut)
-{
-    vplBvh* bvh = b->bvh;
-    vplResult result = vplReserve(b->context, &bvh->blocks, &b->blockCapacity, (size_t)bvh->blockCount + 1,
-                                  sizeof *bvh->blocks);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    int ids[VPL_BVH_WIDTH];
-    for (int i = 0; i < range->count; i++) { // ascending, by insertion
-        int at = i;
-        for (; at > 0 && ids[at - 1] > b->items[range->first + i].id; at--) {
-            ids[at] = ids[at - 1];
-        }
-        ids[at] = b->items[range->first + i].id;
-    }
-    vplTriangleBlock* block = &bvh->blocks[bvh->blockCount];
-    for (int lane = 0; lane < VPL_BVH_WIDTH; lane++) {
-        bool used = lane < range->count;
-        float p[3][3];
-        getCorners(b->geometry, ids[used ? lane : 0], p);
-        block->id[lane] = used ? ids[lane] : -1;
-        for (int i = 0; i < 9; i++) {
-            block->p[i / 3][i % 3][lane] = p[i / 3][i % 3];
-        }
-    }
-    *childOut = ~bvh->blockCount++;
-    return VPL_SUCCESS;
 }
 
 // ---- the binary tree
 
-// Appends the node of a range and those below it; *indexOut is its place. Children come after their parents.
-static vplResult addBinary(Builder* b, const Range* range, int depth, int* indexOut)
+// A subtree of `count` items has fewer than 2 count nodes; those of the items from `first` on have their place in
+// the array at 2 first, after the nodes above all tasks.
+typedef struct Task {
+    vplBuildRange range, other; // other: the right half, while it is cut
+    int parent, depth;
+    bool isRight;
+    vplBuildCosts costs;
+} Task;
+
+typedef struct Plan {
+    const vplBuilder* builder;
+    Task tasks[VPL_BUILD_TASKS];
+    int taskCount, topCount;
+    int cuts[VPL_BUILD_TASKS]; // tasks of a wave
+} Plan;
+
+static int placeOf(const vplBuildRange* range)
 {
-    const int index = b->binaryCount;
-    vplResult result =
-        vplReserve(b->context, &b->binary, &b->binaryCapacity, (size_t)index + 1, sizeof *b->binary);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    b->binaryCount++;
-    Binary node = {.range = *range, .left = -1, .right = -1};
-    if (range->count > BINARY_LEAF) {
-        Range left = *range, right;
-        cut(b, &left, &right, depth);
-        result = addBinary(b, &left, depth + 1, &node.left);
-        if (result == VPL_SUCCESS) {
-            result = addBinary(b, &right, depth + 1, &node.right);
-        }
-    }
-    b->binary[index] = node; // the array may have moved
-    *indexOut = index;
-    return result;
+    return VPL_BUILD_TASKS + 2 * range->first;
 }
 
-// ---- the wide tree
-
-// cost[j - 1] is the least expected work for a binary subtree that becomes at most j children of some wide node;
-// take[j - 1] is how many of them the left half gets, 0: as with j - 1.
-static void findCosts(const Builder* b, Binary* node)
+static void setNode(const vplBuilder* b, int index, const vplBuildRange* range)
 {
-    const double area = areaOf(&node->range.box);
-    const double leaf = node->range.count <= LEAF ? BLOCK_COST * area : INFINITY;
-    if (node->left < 0) {
-        for (int j = 0; j < VPL_BVH_WIDTH; j++) {
-            node->cost[j] = leaf;
-            node->take[j] = 0;
-        }
-        return;
+    b->binary[index] =
+        (vplBinary){.box = range->box, .first = range->first, .count = range->count, .left = -1, .right = -1};
+}
+
+static float surfaceOf(const vplBuilder* b, const vplBinary* node)
+{
+    if (node->left >= 0) {
+        return b->binary[node->left].surface + b->binary[node->right].surface;
     }
-    const Binary *l = &b->binary[node->left], *r = &b->binary[node->right];
-    for (int j = 2; j <= VPL_BVH_WIDTH; j++) {
-        node->cost[j - 1] = INFINITY;
-        for (int k = 1; k < j; k++) {
-            const double cost = l->cost[k - 1] + r->cost[j - k - 1];
-            if (cost < node->cost[j - 1]) {
-                node->cost[j - 1] = cost;
-                node->take[j - 1] = (int8_t)k;
+    float surface = 0;
+    for (int i = node->first; i < node->first + node->count; i++) {
+        surface += b->items[i].high[3] * b->unit * b->unit;
+    }
+    return surface;
+}
+
+// Builds the subtree of a range from place *next on.
+static int buildRange(const vplBuilder* b, vplBuildRange range, int depth, int* next, vplBuildCosts* costs)
+{
+    const int index = (*next)++;
+    vplBinary* node = &b->binary[index];
+    setNode(b, index, &range);
+    if (range.count <= VPL_BINARY_LEAF) {
+        node->surface = surfaceOf(b, node);
+        vplFindCosts(b, node, NULL, NULL, costs);
+        return index;
+    }
+    vplBuildRange right;
+    vplBuildCosts leftCosts, rightCosts;
+    vplCutRange(b, &range, &right, depth);
+    node->left = buildRange(b, range, depth + 1, next, &leftCosts);
+    node->right = buildRange(b, right, depth + 1, next, &rightCosts);
+    node->surface = surfaceOf(b, node);
+    vplFindCosts(b, node, &leftCosts, &rightCosts, costs);
+    return index;
+}
+
+static void buildTask(void* data, int index, int worker)
+{
+    (void)worker;
+    Plan* plan = data;
+    Task* task = &plan->tasks[index];
+    int next = placeOf(&task->range);
+    buildRange(plan->builder, task->range, task->depth, &next, &task->costs);
+}
+
+static void cutTask(void* data, int index, int worker)
+{
+    (void)worker;
+    Plan* plan = data;
+    Task* task = &plan->tasks[plan->cuts[index]];
+    vplCutRange(plan->builder, &task->range, &task->other, task->depth);
+}
+
+// Makes a node of a task that was cut, a task of its left half and another one of its right half.
+static void divideTask(Plan* plan, int index, const vplBuildRange* whole)
+{
+    const vplBuilder* b = plan->builder;
+    Task* left = &plan->tasks[index];
+    Task* right = &plan->tasks[plan->taskCount++];
+    const int node = plan->topCount++;
+    setNode(b, node, whole);
+    if (left->parent >= 0) {
+        *(left->isRight ? &b->binary[left->parent].right : &b->binary[left->parent].left) = node;
+    }
+    left->parent = node;
+    left->depth++;
+    left->isRight = false;
+    *right = *left;
+    right->range = left->other;
+    right->isRight = true;
+}
+
+// Cuts all that are large, in waves. The nodes above the tasks come first in the array, parents first.
+static void planTasks(Plan* plan, const vplBuildRange* all)
+{
+    const int share = all->count / (VPL_BUILD_TASKS / 2);
+    const int large = share > VPL_TASK_LEAST ? share : VPL_TASK_LEAST;
+    plan->tasks[0] = (Task){.range = *all, .parent = -1};
+    plan->taskCount = 1;
+    for (int count = 1; count > 0;) {
+        vplBuildRange whole[VPL_BUILD_TASKS];
+        count = 0;
+        for (int i = 0; i < plan->taskCount && plan->taskCount + count < VPL_BUILD_TASKS; i++) {
+            if (plan->tasks[i].range.count > large) {
+                whole[count] = plan->tasks[i].range;
+                plan->cuts[count++] = i;
             }
         }
-    }
-    node->wide = node->take[VPL_BVH_WIDTH - 1]; // how its own eight are shared, should it be a wide node
-    const double inner = NODE_COST * area + node->cost[VPL_BVH_WIDTH - 1];
-    node->isBlock = leaf <= inner;
-    node->cost[0] = leaf < inner ? leaf : inner;
-    node->take[0] = 0;
-    for (int j = 2; j <= VPL_BVH_WIDTH; j++) {
-        if (node->cost[j - 2] <= node->cost[j - 1]) {
-            node->cost[j - 1] = node->cost[j - 2];
-            node->take[j - 1] = 0;
+        vplBuilder_Run(plan->builder, count, cutTask, plan);
+        for (int i = 0; i < count; i++) {
+            divideTask(plan, plan->cuts[i], &whole[i]);
         }
     }
 }
 
-// Lists the at most `count` children that the subtree becomes.
-static void listChildren(const Builder* b, int index, int count, int children[VPL_BVH_WIDTH], int* childCount)
+// Hangs the tasks' subtrees below the top and finds its costs, children first.
+static void joinTasks(const Plan* plan)
 {
-    const Binary* node = &b->binary[index];
-    while (count > 1 && node->take[count - 1] == 0) {
-        count--;
+    const vplBuilder* b = plan->builder;
+    vplBuildCosts top[VPL_BUILD_TASKS];
+    const vplBuildCosts* halves[VPL_BUILD_TASKS][2];
+    for (int i = 0; i < plan->taskCount; i++) {
+        const Task* task = &plan->tasks[i];
+        if (task->parent >= 0) {
+            vplBinary* parent = &b->binary[task->parent];
+            *(task->isRight ? &parent->right : &parent->left) = placeOf(&task->range);
+            halves[task->parent][task->isRight] = &task->costs;
+        }
     }
-    if (count == 1) {
-        children[(*childCount)++] = index;
-        return;
+    for (int i = plan->topCount - 1; i >= 0; i--) {
+        vplBinary* node = &b->binary[i];
+        for (int half = 0; half < 2; half++) {
+            const int child = half ? node->right : node->left;
+            if (child < plan->topCount) {
+                halves[i][half] = &top[child];
+            }
+        }
+        node->surface = surfaceOf(b, node);
+        vplFindCosts(b, node, halves[i][0], halves[i][1], &top[i]);
     }
-    listChildren(b, node->left, node->take[count - 1], children, childCount);
-    listChildren(b, node->right, count - node->take[count - 1], children, childCount);
 }
 
-static vplResult addNode(Builder* b, int index, int32_t* childOut)
+static vplResult buildTree(vplBuilder* b, const vplBuildRange* all, vplBvh* bvh)
 {
-    const Binary* from = &b->binary[index];
-    if (from->left < 0 || from->isBlock) {
-        return addBlock(b, &from->range, childOut);
+    vplContext* context = b->geometry->context;
+    b->binary = vplAlloc(context, VPL_BUILD_TASKS + 2 * (size_t)all->count, sizeof *b->binary);
+    Plan* plan = b->binary ? vplAllocZero(context, 1, sizeof *plan) : NULL;
+    vplResult result = VPL_OUT_OF_MEMORY;
+    if (plan != NULL) {
+        plan->builder = b;
+        planTasks(plan, all);
+        vplBuilder_Run(b, plan->taskCount, buildTask, plan);
+        joinTasks(plan);
+        result = vplWiden(b, plan->topCount > 0 ? 0 : placeOf(all), bvh);
     }
-    vplBvh* bvh = b->bvh;
-    vplResult result =
-        vplReserve(b->context, &bvh->nodes, &b->nodeCapacity, (size_t)bvh->nodeCount + 1, sizeof *bvh->nodes);
-    if (result != VPL_SUCCESS) {
+    vplFree(context, plan);
+    vplFree(context, b->binary);
+    return result;
+}
+
+static vplResult build(vplBuilder* b, int bruteBlocks, vplBvh* bvh)
+{
+    vplBuildRange all;
+    vplResult result = vplCollectItems(b, &all);
+    if (result != VPL_SUCCESS || all.count == 0) {
         return result;
     }
-    int children[VPL_BVH_WIDTH], count = 0;
-    listChildren(b, from->left, from->wide, children, &count);
-    listChildren(b, from->right, VPL_BVH_WIDTH - from->wide, children, &count);
-    const int place = bvh->nodeCount++;
-    vplBvhNode node;
-    for (int i = 0; i < VPL_BVH_WIDTH; i++) {
-        const Box* box = i < count ? &b->binary[children[i]].range.box : &NOTHING;
-        for (int axis = 0; axis < 3; axis++) {
-            node.planes[axis][i] = box->low[axis];
-            node.planes[axis + 3][i] = box->high[axis];
-        }
-        node.child[i] = 0;
+    if ((all.count + VPL_BVH_WIDTH - 1) / VPL_BVH_WIDTH <= bruteBlocks) {
+        return vplMakeBlocks(b, all.count, bvh);
     }
-    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        result = addNode(b, children[i], &node.child[i]);
+    float half = 0x1p-100f; // of the longest side; 1e38 and its double would be beyond all floats
+    for (int axis = 0; axis < 3; axis++) {
+        half = fmaxf(half, 0.5f * all.box.high[axis] - 0.5f * all.box.low[axis]);
     }
-    bvh->nodes[place] = node; // the array may have moved
-    *childOut = place;
-    return result;
+    b->unit = 0.5f / fminf(half, 0x1p127f);
+    return buildTree(b, &all, bvh);
 }
 
-static vplResult buildTree(Builder* b, int count)
-{
-    const Range all = makeRange(b, 0, count);
-    int root;
-    int32_t child;
-    vplResult result = addBinary(b, &all, 0, &root);
-    for (int i = b->binaryCount - 1; i >= 0 && result == VPL_SUCCESS; i--) {
-        findCosts(b, &b->binary[i]);
-    }
-    if (result == VPL_SUCCESS) {
-        b->binary[root].isBlock = false; // the root is a node
-        result = addNode(b, root, &child);
-    }
-    vplFree(b->context, b->binary);
-    return result;
-}
-
-// The triangles that can be hit.
-static int collectItems(const vplGeometry* g, Item* items)
-{
-    int count = 0;
-    for (int i = 0; i < g->triangleCount; i++) {
-        vplVec3 n = g->normals[i];
-        if (n.x != 0 || n.y != 0 || n.z != 0) {
-            float p[3][3];
-            getCorners(g, i, p);
-            vplBoundTriangle(p, items[count].box.low, items[count].box.high);
-            items[count++].id = i;
-        }
-    }
-    return count;
-}
-
-static vplResult build(Builder* b, int count, int bruteBlocks)
-{
-    int32_t child;
-    if (count == 0) {
-        return VPL_SUCCESS;
-    }
-    if ((count + VPL_BVH_WIDTH - 1) / VPL_BVH_WIDTH > bruteBlocks) {
-        return buildTree(b, count);
-    }
-    vplResult result = VPL_SUCCESS;
-    for (int i = 0; i < count && result == VPL_SUCCESS; i += VPL_BVH_WIDTH) {
-        Range range = {NOTHING, i, count - i < VPL_BVH_WIDTH ? count - i : VPL_BVH_WIDTH};
-        result = addBlock(b, &range, &child);
-    }
-    return result;
-}
-
-vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut)
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, bool alone, vplBvh** bvhOut)
 {
     vplContext* context = geometry->context;
-    Builder b = {.context = context, .geometry = geometry};
-    b.bvh = vplAllocZero(context, 1, sizeof *b.bvh);
-    b.items = b.bvh ? vplAlloc(context, (size_t)geometry->triangleCount, sizeof *b.items) : NULL;
-    vplResult result = VPL_OUT_OF_MEMORY;
-    if (b.items != NULL) {
-        result = build(&b, collectItems(geometry, b.items), bruteBlocks);
-    }
+    const size_t count = (size_t)geometry->triangleCount;
+    vplBuilder b = {.geometry = geometry, .alone = alone};
+    vplBvh* bvh = vplAllocZero(context, 1, sizeof *bvh);
+    b.items = bvh ? vplAlloc(context, count, sizeof *b.items) : NULL;
+    b.ids = b.items ? vplAlloc(context, count, sizeof *b.ids) : NULL;
+    vplResult result = b.ids ? build(&b, bruteBlocks, bvh) : VPL_OUT_OF_MEMORY;
     vplFree(context, b.items);
+    vplFree(context, b.ids);
     if (result != VPL_SUCCESS) {
-        vplBvh_Destroy(context, b.bvh);
+        vplBvh_Destroy(context, bvh);
         return result;
     }
-    *bvhOut = b.bvh;
+    *bvhOut = bvh;
     return VPL_SUCCESS;
 }
 
@@ -401,8 +233,14 @@ void vplBvh_Destroy(vplContext* context, vplBvh* bvh)
     }
 }
 
-VPL_KERNEL_TABLE(CLOSEST, vplTraceClosestFcn, vplTraceClosest);
-VPL_KERNEL_TABLE(ANY, vplTraceAnyFcn, vplTraceAny);
+// ---- kernels
+
+// 512 bits are for lanes by the dozen: collecting eight flags from a mask register takes longer than from a vector,
+// and boxes and triangles are tested one after another. AVX2 on the same processor (Zen 4) traces 1.05x of the rays
+// of AVX-512, in packets 1.1x in Sponza and Sibenik, 0.85x in the room.
+VPL_NARROW_KERNEL_TABLE(CLOSEST, vplTraceClosestFcn, vplTraceClosest);
+VPL_NARROW_KERNEL_TABLE(ANY, vplTraceAnyFcn, vplTraceAny);
+VPL_NARROW_KERNEL_TABLE(PACKET, vplTraceAnyPacketFcn, vplTraceAnyPacket);
 
 vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa)
 {
@@ -412,4 +250,9 @@ vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa)
 vplTraceAnyFcn* vplGetTraceAny(vplIsa isa)
 {
     return ANY[isa];
+}
+
+vplTraceAnyPacketFcn* vplGetTraceAnyPacket(vplIsa isa)
+{
+    return PACKET[isa];
 }

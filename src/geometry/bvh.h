@@ -41,7 +41,8 @@ static inline void vplBoundTriangle(const float p[3][3], float low[3], float hig
 typedef struct vplBvhNode {
     float planes[6][VPL_BVH_WIDTH]; // low x, y, z, high x, y, z; unused children: low above high
     int32_t child[VPL_BVH_WIDTH];   // >= 0: a node; else ~block
-} vplBvhNode;
+    int32_t count;                  // of children; they come first
+} __attribute__((aligned(64))) vplBvhNode;
 
 // Triangles side by side, so that one instruction tests all of them. Unused lanes have id -1.
 typedef struct vplTriangleBlock {
@@ -56,8 +57,19 @@ typedef struct vplBvh {
 } vplBvh;
 
 // Builds over all triangles of positive area; without nodes up to `bruteBlocks` blocks (VPL_BRUTE_BLOCKS is
-// what pays).
-vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
+// what pays). `alone`: on the calling thread only.
+vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, bool alone, vplBvh** bvhOut);
+// A triangle without area never is.
+static inline bool vplCanBeHit(const vplGeometry* g, int triangle)
+{
+    const vplVec3 n = g->normals[triangle];
+    return n.x != 0 || n.y != 0 || n.z != 0;
+}
+
+// Of 1 to 8 triangles, ascending.
+void vplTriangleBlock_Fill(vplTriangleBlock* block, const vplGeometry* geometry, const int32_t* ids,
+                           int count);
+
 void vplBvh_Destroy(vplContext* context, vplBvh* bvh);
 
 // What a traversal found: t is the limit if nothing was.
@@ -74,10 +86,46 @@ typedef void vplTraceClosestFcn(const vplBvh* bvh, const vplRay* ray, float tMax
 // Whether there is any.
 typedef bool vplTraceAnyFcn(const vplBvh* bvh, const vplRay* ray, float tMax);
 
+// Up to sixteen rays with something in common, such as the light they are cast to.
+enum { VPL_RAY_PACKET = 16 };
+
+typedef struct vplRayPacket {
+    float origin[3][VPL_RAY_PACKET], direction[3][VPL_RAY_PACKET];
+    int32_t skipFirst[VPL_RAY_PACKET], skipCount[VPL_RAY_PACKET];
+    uint32_t active; // bit i: ray i is there
+} vplRayPacket;
+
+static inline void vplRayPacket_Set(vplRayPacket* packet, int lane, const vplRay* ray)
+{
+    packet->origin[0][lane] = ray->origin.x;
+    packet->origin[1][lane] = ray->origin.y;
+    packet->origin[2][lane] = ray->origin.z;
+    packet->direction[0][lane] = ray->direction.x;
+    packet->direction[1][lane] = ray->direction.y;
+    packet->direction[2][lane] = ray->direction.z;
+    packet->skipFirst[lane] = ray->skip.first;
+    packet->skipCount[lane] = ray->skip.count;
+    packet->active |= 1u << lane;
+}
+
+static inline vplRay vplRayPacket_Get(const vplRayPacket* packet, int lane)
+{
+    return (vplRay){{packet->origin[0][lane], packet->origin[1][lane], packet->origin[2][lane]},
+                    {packet->direction[0][lane], packet->direction[1][lane], packet->direction[2][lane]},
+                    {packet->skipFirst[lane], packet->skipCount[lane]}};
+}
+
+// Bit i of the result: what vplTraceAnyFcn says about ray i.
+typedef uint32_t vplTraceAnyPacketFcn(const vplBvh* bvh, const vplRayPacket* rays, float tMax);
+
+vplTraceAnyPacketFcn* vplGetTraceAnyPacket(vplIsa isa);
 vplTraceClosestFcn* vplGetTraceClosest(vplIsa isa);
 vplTraceAnyFcn* vplGetTraceAny(vplIsa isa);
 
 // vplGeometry_ClosestHit that also adds to *tests (may be NULL): objects where all are tested, else blocks.
 bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests);
+
+// vplGeometry_IsOccluded for each ray of a packet: bit i of the result is ray i.
+uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax);
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The frozen scene: world-space arrays of all triangles, and what rays are traced through.
-#include "geometry/bvh.h"
+// The frozen scene: world-space arrays of all triangles.
 #include "geometry/freeze.h"
+#include "geometry/ray_tree.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
@@ -74,10 +74,7 @@ static vplResult fill(const vplScene* scene, vplGeometry* g, const vplFreezer* f
         material->name = NULL; // the scene may be destroyed before the geometry
     }
     findBounds(g);
-    vplBvh* bvh = NULL;
-    vplResult result = vplBvh_Create(g, VPL_BRUTE_BLOCKS, &bvh);
-    g->bvh = bvh;
-    return result;
+    return vplRayTree_Create(g->context, &g->rayTree);
 }
 
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
@@ -129,7 +126,7 @@ void vplGeometry_Destroy(vplGeometry* geometry)
         vplFree(context, (void*)geometry->owners);
         vplFree(context, (void*)geometry->shadingNormals);
         vplFree(context, (void*)geometry->triangleMaterials);
-        vplBvh_Destroy(context, (vplBvh*)geometry->bvh);
+        vplRayTree_Destroy(context, geometry->rayTree);
         vplFree(context, (void*)geometry->materials);
         vplFree(context, geometry);
     }

@@ -3,6 +3,7 @@
 #include "base/context.h"
 #include "geometry/bvh.h"
 #include "geometry/intersect.h"
+#include "geometry/ray_tree.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
@@ -27,13 +28,18 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
 bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests)
 {
     vplRawHit raw;
-    vplBvh bvh = *geometry->bvh;
-    if (tests != NULL && bvh.blockCount <= VPL_COUNTED_BLOCKS) {
-        bvh.nodes = NULL;
-    }
-    vplGetTraceClosest(geometry->context->isa)(&bvh, ray, INFINITY, &raw);
-    if (tests != NULL) {
-        *tests += bvh.nodes ? raw.blocks : geometry->objectCount;
+    const vplBvh* tree = vplGeometry_GetBvh(geometry);
+    if (tree != NULL) {
+        vplBvh bvh = *tree;
+        if (tests != NULL && bvh.blockCount <= VPL_COUNTED_BLOCKS) {
+            bvh.nodes = NULL;
+        }
+        vplGetTraceClosest(geometry->context->isa)(&bvh, ray, INFINITY, &raw);
+        if (tests != NULL) {
+            *tests += bvh.nodes ? raw.blocks : geometry->objectCount;
+        }
+    } else {
+        vplClosestOfTriangles(geometry, ray, &raw);
     }
     if (raw.triangle < 0) {
         return false;
@@ -62,7 +68,23 @@ bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplH
 
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)
 {
-    return vplGetTraceAny(geometry->context->isa)(geometry->bvh, ray, tMax);
+    const vplBvh* bvh = vplGeometry_GetBvh(geometry);
+    return bvh ? vplGetTraceAny(geometry->context->isa)(bvh, ray, tMax)
+               : vplAnyOfTriangles(geometry, ray, tMax);
+}
+
+uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax)
+{
+    const vplBvh* bvh = vplGeometry_GetBvh(geometry);
+    if (bvh != NULL) {
+        return vplGetTraceAnyPacket(geometry->context->isa)(bvh, rays, tMax);
+    }
+    uint32_t hits = 0;
+    for (int i = 0; i < VPL_RAY_PACKET; i++) {
+        const vplRay ray = vplRayPacket_Get(rays, i);
+        hits |= (uint32_t)((rays->active >> i & 1) && vplAnyOfTriangles(geometry, &ray, tMax)) << i;
+    }
+    return hits;
 }
 
 vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction)

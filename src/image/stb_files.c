@@ -4,6 +4,7 @@
 // a full disk, so it only ever writes to memory here. Its HDR reader is not used: a run of length 0 keeps it
 // busy forever (hdr.c reads them).
 #include "image/image_file.h"
+#include "image/srgb_table.h"
 #include "math/scalar.h"
 
 #include <limits.h>
@@ -72,9 +73,9 @@ vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vp
         result = VPL_OUT_OF_MEMORY;
     }
     if (result == VPL_SUCCESS) {
-        for (size_t i = 0; i < count; i++) {
-            codes[i] = vplSrgb_Code(display->pixels[i]);
-        }
+        vplSrgbTable table;
+        vplSrgbTable_Fill(&table);
+        vplSrgbTable_Encode(&table, display->pixels, count, codes);
         if (!stbi_write_png_to_func(append, buffer, image->width, image->height, 3, codes,
                                     3 * image->width)) {
             result = vplFail(context, VPL_OUT_OF_MEMORY, "out of memory while encoding a PNG");

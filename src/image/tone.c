@@ -70,42 +70,92 @@ static double luminance(const float* pixel)
     return 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
 }
 
-vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def)
+// Rows worked on side by side; what is summed over pixels is summed afterwards, in their order.
+enum { BAND = 64 };
+
+typedef struct Reinhard {
+    vplImage* image;
+    double delta, scale, white;
+    int firstRow;
+    double* logs; // of a band; NAN where a pixel does not count
+} Reinhard;
+
+static void findLogs(void* data, int row, int worker)
 {
-    vplReinhardDef settings = def ? *def : vplDefaultReinhardDef();
-    vplResult result = checkReinhard(image->context, &settings);
-    if (result != VPL_SUCCESS) {
-        return result;
+    (void)worker;
+    const Reinhard* r = data;
+    const int width = r->image->width;
+    const float* pixels = r->image->pixels + 3 * (size_t)(r->firstRow + row) * (size_t)width;
+    for (int x = 0; x < width; x++) {
+        const double y = luminance(pixels + 3 * x);
+        const bool counts = isfinite(y) && y + r->delta > 0;
+        r->logs[(size_t)row * (size_t)width + (size_t)x] = counts ? vplLog1(y + r->delta) : (double)NAN;
     }
-    size_t count = (size_t)image->width * (size_t)image->height;
-    double logSum = 0, largest = 0;
-    size_t counted = 0;
-    for (size_t i = 0; i < count; i++) {
-        double y = luminance(image->pixels + 3 * i);
-        if (isfinite(y) && y + settings.delta > 0) {
-            logSum += vplLog1(y + settings.delta);
-            largest = y > largest ? y : largest;
-            counted++;
-        }
-    }
-    if (counted == 0 || largest == 0) {
-        return VPL_SUCCESS; // black stays black
-    }
-    double scale = settings.key / vplExp(logSum / (double)counted);
-    double white = settings.white > 0 ? settings.white : scale * largest;
-    for (size_t i = 0; i < count; i++) {
-        float* pixel = image->pixels + 3 * i;
-        double y = luminance(pixel);
+}
+
+static void mapRow(void* data, int row, int worker)
+{
+    (void)worker;
+    const Reinhard* r = data;
+    const int width = r->image->width;
+    for (int x = 0; x < width; x++) {
+        float* pixel = r->image->pixels + 3 * ((size_t)row * (size_t)width + (size_t)x);
+        const double y = luminance(pixel);
         if (!(y > 0 && isfinite(y))) {
             pixel[0] = pixel[1] = pixel[2] = 0;
             continue;
         }
-        double l = scale * y;
+        const double l = r->scale * y;
         // Each factor divided by 1 + l on its own: l can be 1e30, and its square beyond double after more.
-        double mapped = l / (1 + l) * (1 + l / white / white);
+        const double mapped = l / (1 + l) * (1 + l / r->white / r->white);
         for (int c = 0; c < 3; c++) {
             pixel[c] = (float)(pixel[c] * (mapped / y));
         }
+    }
+}
+
+typedef struct Sums {
+    double log, largest;
+    size_t counted;
+} Sums;
+
+static void sumBand(Reinhard* r, Sums* sums)
+{
+    const vplImage* image = r->image;
+    const int rows = image->height - r->firstRow < BAND ? image->height - r->firstRow : BAND;
+    vplParallelFor(image->context, rows, findLogs, r);
+    const float* pixels = image->pixels + 3 * (size_t)r->firstRow * (size_t)image->width;
+    for (size_t i = 0; i < (size_t)rows * (size_t)image->width; i++) {
+        if (!isnan(r->logs[i])) {
+            const double y = luminance(pixels + 3 * i);
+            sums->log += r->logs[i];
+            sums->largest = y > sums->largest ? y : sums->largest;
+            sums->counted++;
+        }
+    }
+}
+
+vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def)
+{
+    const vplReinhardDef settings = def ? *def : vplDefaultReinhardDef();
+    const vplResult result = checkReinhard(image->context, &settings);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    Reinhard r = {.image = image, .delta = settings.delta};
+    r.logs = vplAlloc(image->context, (size_t)BAND * (size_t)image->width, sizeof *r.logs);
+    if (r.logs == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    Sums sums = {0, 0, 0};
+    for (; r.firstRow < image->height; r.firstRow += BAND) {
+        sumBand(&r, &sums);
+    }
+    vplFree(image->context, r.logs);
+    if (sums.counted > 0 && sums.largest > 0) { // black stays black
+        r.scale = settings.key / vplExp(sums.log / (double)sums.counted);
+        r.white = settings.white > 0 ? settings.white : r.scale * sums.largest;
+        vplParallelFor(image->context, image->height, mapRow, &r);
     }
     return VPL_SUCCESS;
 }

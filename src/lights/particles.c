@@ -301,6 +301,9 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
                          "the scene has no emitter: no light, and no surface that emits");
     }
     int* lightsInStep = NULL;
+    if (result == VPL_SUCCESS && def->geometry == VPL_PARTICLE_GEOMETRY_EXACT) {
+        result = vplGeometry_PrepareRays(geometry);
+    }
     if (result == VPL_SUCCESS) {
         result = allocate(&s, set, total, &lightsInStep);
     }

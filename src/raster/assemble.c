@@ -47,34 +47,33 @@ void vplCountCuts(void* data, int chunkIndex, int worker)
 
 // Where a chunk writes.
 typedef struct Writer {
-    const vplTriangleStage* stage;
-    vplChunk* chunk;
+    const vplRaster* raster;
+    vplTriangleRef* next;
     int* counts; // by tile
+    int tilesX, tilesY, width, height;
     int clipped, extras;
 } Writer;
 
 // Keeps one projected triangle; false for zero area or where no pixel centre can lie.
-static bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
+static inline bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
 {
-    const vplRaster* r = w->stage->raster;
     const int64_t area =
         (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
     const vplPixelBox box = vplBoundTriangle(v);
-    if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || box.x1 < 0 || box.y1 < 0 ||
-        box.x0 >= r->framebuffer.width || box.y0 >= r->framebuffer.height) {
+    if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || (box.x1 | box.y1) < 0 || box.x0 >= w->width ||
+        box.y0 >= w->height) {
         return false;
     }
     const int shift = 6;
     _Static_assert(VPL_TILE_SIDE == 1 << 6, "the shift is for 64-pixel tiles");
     const int x0 = box.x0 > 0 ? box.x0 >> shift : 0, y0 = box.y0 > 0 ? box.y0 >> shift : 0;
     int x1 = box.x1 >> shift, y1 = box.y1 >> shift;
-    x1 = x1 >= r->tilesX ? r->tilesX - 1 : x1;
-    y1 = y1 >= r->tilesY ? r->tilesY - 1 : y1;
-    r->refs[w->chunk->firstRef + w->chunk->refCount++] =
-        (vplTriangleRef){source, (uint8_t)x0, (uint8_t)y0, (uint8_t)x1, (uint8_t)y1};
+    x1 = x1 >= w->tilesX ? w->tilesX - 1 : x1;
+    y1 = y1 >= w->tilesY ? w->tilesY - 1 : y1;
+    *w->next++ = (vplTriangleRef){source, (uint8_t)x0, (uint8_t)y0, (uint8_t)x1, (uint8_t)y1};
     for (int y = y0; y <= y1; y++) {
         for (int x = x0; x <= x1; x++) {
-            w->counts[y * r->tilesX + x]++;
+            w->counts[y * w->tilesX + x]++;
         }
     }
     return true;
@@ -82,7 +81,7 @@ static bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
 
 static void emitClipped(Writer* w, const vplShaded* s, const uint32_t* index, int primitive, int planes)
 {
-    const vplRaster* r = w->stage->raster;
+    const vplRaster* r = w->raster;
     vplClipVertex in[3], out[VPL_MAX_CLIPPED];
     for (int i = 0; i < 3; i++) {
         const uint32_t v = index[i];
@@ -124,14 +123,22 @@ void vplAssembleChunk(void* data, int chunkIndex, int worker)
     const vplTriangleStage* stage = data;
     const vplRaster* r = stage->raster;
     vplChunk* chunk = &stage->chunks[chunkIndex];
-    Writer w = {stage, chunk, stage->counts + (size_t)chunkIndex * (size_t)stage->tileCount,
-                chunk->firstClipped, chunk->firstClipped / VPL_MAX_PIECES * VPL_MAX_CLIPPED};
+    vplTriangleRef* refs = r->refs + chunk->firstRef;
+    Writer w = {.raster = r,
+                .next = refs,
+                .counts = stage->counts + (size_t)chunkIndex * (size_t)stage->tileCount,
+                .tilesX = r->tilesX,
+                .tilesY = r->tilesY,
+                .width = r->framebuffer.width,
+                .height = r->framebuffer.height,
+                .clipped = chunk->firstClipped,
+                .extras = chunk->firstClipped / VPL_MAX_PIECES * VPL_MAX_CLIPPED};
     const int end = chunk->first + chunk->count;
     for (int i = chunk->first, mesh = 0, partEnd; i < end;) {
         partEnd = meshPart(r, i, end, &mesh);
         vplShaded* s = &r->shaded[mesh];
         if (i == s->firstTriangle) {
-            s->firstRef = chunk->firstRef + chunk->refCount;
+            s->firstRef = (int)(w.next - r->refs);
         }
         for (; i < partEnd; i++) {
             const uint32_t* index = s->mesh.indices + 3 * (size_t)(i - s->firstTriangle);
@@ -144,4 +151,5 @@ void vplAssembleChunk(void* data, int chunkIndex, int worker)
             }
         }
     }
+    chunk->refCount = (int)(w.next - refs);
 }

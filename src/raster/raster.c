@@ -64,8 +64,10 @@ static void freeGeometry(vplRaster* raster)
         shaded->screen = NULL;
         shaded->outcodes = NULL;
     }
-    void** const arrays[] = {(void**)&raster->refs,   (void**)&raster->clipped, (void**)&raster->extraScreen,
-                             (void**)&raster->extras, (void**)&raster->bins,    (void**)&raster->binStart};
+    void** const arrays[] = {(void**)&raster->refs,        (void**)&raster->clipped,
+                             (void**)&raster->extraScreen, (void**)&raster->extras,
+                             (void**)&raster->bins,        (void**)&raster->binStart,
+                             (void**)&raster->passUniforms};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         vplFree(context, *arrays[i]);
         *arrays[i] = NULL;
@@ -102,6 +104,10 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
             context, VPL_INVALID_ARGUMENT,
             "vplPipeline.distanceScale is %g, must be 0 for draws that do more than write the least depth",
             (double)pipeline->distanceScale);
+    }
+    if (pipeline->passes != NULL && !(vplIsPass(pipeline) && pipeline->blend == VPL_BLEND_ADD)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplPipeline.passes is set, but the draw is not an additive pass with depth EQUAL");
     }
     const bool wrongSurface =
         pipeline->surfaceCount < pipeline->varyingCount || pipeline->surfaceCount > VPL_MAX_VARYINGS;

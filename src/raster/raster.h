@@ -89,6 +89,8 @@ typedef struct vplCommand {
     int passesEnd;  // of the first pass in a row: behind the last
     int chainStart; // first pass of this row with the same mesh
     int chainNext;  // next one, or -1
+    int fused;      // of a chain's first: how many passes one call may shade, all or 0;
+    int uniforms;   // theirs begin here in raster->passUniforms
 } vplCommand;
 
 struct vplRaster {
@@ -110,7 +112,8 @@ struct vplRaster {
     int extraStride;
     int* bins;     // indices in refs by tile, ascending within a tile
     int* binStart; // tilesX * tilesY + 1
-    bool keepsOwners, keepsPasses;
+    bool keepsOwners, keepsPasses, hasTasks;
+    const void** passUniforms; // chain by chain
     vplRasterStats stats;
 };
 
@@ -180,11 +183,13 @@ typedef struct vplKeptBlock {
     _Alignas(64) int32_t covered[VPL_LANES];
 } vplKeptBlock;
 
+enum { VPL_COUNTERS = 4 };
+
 // Storage of the tile being drawn by one worker.
 typedef struct vplTileState {
     vplTile tile;
     float* depth;    // the tile's
-    float* farthest; // per block: no depth in it is larger
+    float* farthest; // per block, square by square: no depth in it is larger
     int32_t* owner;  // index of the triangle that wrote depth last, -1: none; NULL where nobody asks
     int* meshStart;  // [shadedCount + 1] into the tile's bin
     char* kept;      // vplKeptBlocks of `keptStride` bytes, at most one per pixel
@@ -194,8 +199,8 @@ typedef struct vplTileState {
     int keptCount;
     size_t keptStride;
     int64_t fragments;
-    _Alignas(64) int32_t fragmentLanes[VPL_LANES]; // fragments by lane
-    _Alignas(64) vplFragments block;               // scratch of the kernel
+    _Alignas(64) int32_t fragmentLanes[VPL_COUNTERS][VPL_LANES]; // fragments by lane
+    _Alignas(64) vplFragments block;                             // scratch of the kernel
 } vplTileState;
 
 // Runs the tiles of several rasters, one after another.
@@ -207,6 +212,8 @@ typedef void vplDrawTileFcn(vplTileState* state, const vplRaster* raster, const 
 
 // Shades the kept blocks of a mesh by all passes of a chain.
 typedef void vplRunPassesFcn(vplTileState* state, const vplRaster* raster, int firstCommand);
+
+bool vplIsPass(const vplPipeline* pipeline);
 
 // Clip-space x, y, w and varyings of vertex `at`, which may be one of the extras.
 static inline void vplFetchVertex(const vplRaster* raster, const vplShaded* s, uint32_t at, float position[3],

@@ -5,10 +5,10 @@
 // A pixel has one owner, so the order in which meshes are taken does not matter, only that of the passes.
 #include "raster/raster.h"
 
-static bool isPass(const vplPipeline* p)
+bool vplIsPass(const vplPipeline* p)
 {
     return p->ownerTest && p->depthCompare == VPL_DEPTH_EQUAL && !p->depthWrite && !p->writesDepth &&
-           p->fragment != NULL && p->cull == VPL_CULL_NONE;
+           (p->fragment != NULL || p->passes != NULL) && p->cull == VPL_CULL_NONE;
 }
 
 // Links the passes from `first` to `end` - 1 mesh by mesh. `last` is scratch, one int per mesh.
@@ -29,29 +29,60 @@ static void linkRow(vplRaster* r, int first, int end, int* last)
     }
 }
 
+// Collects the uniforms of a chain, and asks whether one call may shade all of it.
+static void fuseChain(vplRaster* r, int first, int* used)
+{
+    vplCommand* start = &r->commands[first];
+    const vplPipeline* p = &r->pipelines[start->pipeline];
+    bool alike = p->passes != NULL;
+    start->uniforms = *used;
+    for (int i = first; i >= 0; i = r->commands[i].chainNext) {
+        const vplPipeline* other = &r->pipelines[r->commands[i].pipeline];
+        alike = alike && other->passes == p->passes && other->planeMask == p->planeMask;
+        r->passUniforms[(*used)++] = other->fragmentUniforms;
+    }
+    start->fused = alike ? *used - start->uniforms : 0;
+}
+
+static void findRows(vplRaster* r, int* last)
+{
+    int used = 0;
+    for (int i = 0, end; i < r->commandCount; i = end) {
+        for (end = i; end < r->commandCount && r->commands[end].repeats; end++) {
+        }
+        r->commands[i].passesEnd = end;
+        linkRow(r, i, end, last);
+        for (int k = i; k < end; k++) {
+            if (r->commands[k].chainStart == k) {
+                fuseChain(r, k, &used);
+            }
+        }
+        end = end > i ? end : i + 1;
+    }
+}
+
 vplResult vplFindPasses(vplRaster* raster)
 {
     int* last = vplAlloc(raster->context, (size_t)raster->shadedCount, sizeof *last);
-    if (last == NULL) {
+    raster->passUniforms =
+        vplAlloc(raster->context, (size_t)raster->commandCount, sizeof *raster->passUniforms);
+    if (last == NULL || raster->passUniforms == NULL) {
+        vplFree(raster->context, last);
         return VPL_OUT_OF_MEMORY;
     }
     int epoch = 0;
-    raster->keepsOwners = raster->keepsPasses = false;
+    raster->keepsOwners = raster->keepsPasses = raster->hasTasks = false;
     for (int i = 0; i < raster->commandCount; i++) {
         vplCommand* c = &raster->commands[i];
         const vplPipeline* p = c->shaded < 0 ? NULL : &raster->pipelines[c->pipeline];
-        c->repeats = p != NULL && isPass(p);
+        c->repeats = p != NULL && vplIsPass(p);
         epoch += p != NULL && p->depthWrite;
         c->epoch = epoch;
         raster->keepsOwners |= p != NULL && p->ownerTest;
         raster->keepsPasses |= c->repeats;
+        raster->hasTasks |= p == NULL;
     }
-    for (int i = 0, end; i<raster->commandCount; i = end> i ? end : i + 1) {
-        for (end = i; end < raster->commandCount && raster->commands[end].repeats; end++) {
-        }
-        raster->commands[i].passesEnd = end;
-        linkRow(raster, i, end, last);
-    }
+    findRows(raster, last);
     vplFree(raster->context, last);
     return VPL_SUCCESS;
 }

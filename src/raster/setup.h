@@ -1,172 +1,210 @@
 // SPDX-License-Identifier: MIT
-// A triangle prepared for a tile: edges, depth, perspective-correct interpolation. Included by the tile kernel
-// only, so that it is compiled for each instruction set.
+// Triangles prepared for a tile, 16 at a time, so that the arithmetic of small ones is done side by side. Included
+// by the tile kernel only, so that it is compiled for each instruction set.
 // Based on: Juan Pineda, A Parallel Algorithm for Polygon Rasterization, SIGGRAPH 1988: edge functions. Ours
-// are exact integers, so coverage cannot depend on where a block or a tile starts.
+// are exact integers, so coverage cannot depend on where a block or a tile starts. Doubles hold them: products of
+// 24-bit numbers and sums of a few of them stay below 2^53, and all instruction sets multiply doubles.
 #ifndef VPL_RASTER_SETUP_H
 #define VPL_RASTER_SETUP_H
 
 #include "raster/raster.h"
 
-// Edge i lies opposite corner i; its function is the area at that corner.
-typedef struct Setup {
-    int64_t e[3];       // at the centre of the tile's first pixel, with the bias below
-    int32_t a[3], b[3]; // growth per sub-pixel in x and y
-    double z, zx, zy;   // depth at the tile's first pixel centre, and its growth per pixel
-    _Alignas(64) double laneZ[VPL_LANES];
-    double leastZ, mostZ; // of laneZ
-} Setup;
+enum { BATCH = VPL_LANES };
 
-// Looks up the corners of a triangle; turned so that its area is positive.
-static inline vplTriangle fetchTriangle(const vplRaster* r, const vplShaded* s, int ref)
+// Edge i lies opposite corner i; its function is the area at that corner.
+typedef struct Batch {
+    _Alignas(64) int32_t left[BATCH], right[BATCH], top[BATCH], bottom[BATCH]; // pixel boxes in the tile
+    _Alignas(64) int32_t x[3][BATCH], y[3][BATCH]; // corners, 24.8 fixed point; turned by setUpBatch
+    _Alignas(64) float z[3][BATCH];
+    _Alignas(64) double e[3][BATCH]; // at the centre of the tile's first pixel, with the bias below
+    _Alignas(64) double a[3][BATCH], b[3][BATCH];            // growth per sub-pixel in x and y
+    _Alignas(64) double planeZ[BATCH], zx[BATCH], zy[BATCH]; // depth there, and its growth per pixel
+    _Alignas(64) int32_t x0[BATCH], x1[BATCH], y0[BATCH],
+        y1[BATCH];                         // blocks of the tile that the box touches
+    _Alignas(64) int32_t edge[3][BATCH];   // e / 256, rounded down, at the first block that the box touches
+    _Alignas(64) int32_t clockwise[BATCH]; // as seen, before turning
+    uint32_t vertex[3][BATCH];
+    int32_t primitive[BATCH];
+} Batch;
+
+// Looks up the corners of triangle `ref` for place k.
+static inline void fetchTriangle(const vplRaster* r, const vplShaded* s, int ref, Batch* batch, int k)
 {
     const uint32_t source = r->refs[ref].source;
-    vplTriangle t;
+    const uint32_t* vertex;
+    const vplScreenVertex* screen = s->screen;
+    uint32_t base = 0;
     if (source & (uint32_t)VPL_CLIPPED) {
         const vplClippedTriangle* c = &r->clipped[source & ~(uint32_t)VPL_CLIPPED];
-        t.primitive = c->primitive;
-        for (int i = 0; i < 3; i++) {
-            t.vertex[i] = c->vertex[i];
-            t.v[i] = r->extraScreen[c->vertex[i] - (uint32_t)s->mesh.vertexCount];
-        }
+        vertex = c->vertex;
+        batch->primitive[k] = c->primitive;
+        screen = r->extraScreen;
+        base = (uint32_t)s->mesh.vertexCount;
     } else {
-        t.primitive = (int32_t)source - s->firstTriangle;
-        for (int i = 0; i < 3; i++) {
-            t.vertex[i] = s->mesh.indices[3 * (size_t)t.primitive + (size_t)i];
-            t.v[i] = s->screen[t.vertex[i]];
-        }
+        const int32_t primitive = (int32_t)source - s->firstTriangle;
+        vertex = s->mesh.indices + 3 * (size_t)primitive;
+        batch->primitive[k] = primitive;
     }
-    const int64_t area = (int64_t)(t.v[1].x - t.v[0].x) * (t.v[2].y - t.v[0].y) -
-                         (int64_t)(t.v[2].x - t.v[0].x) * (t.v[1].y - t.v[0].y);
-    t.clockwise = area > 0; // as seen, because y points down
-    if (!t.clockwise) {
-        const vplScreenVertex v = t.v[1];
-        const uint32_t vertex = t.vertex[1];
-        t.v[1] = t.v[2];
-        t.vertex[1] = t.vertex[2];
-        t.v[2] = v;
-        t.vertex[2] = vertex;
+    for (int i = 0; i < 3; i++) {
+        const vplScreenVertex* v = &screen[vertex[i] - base];
+        batch->vertex[i][k] = vertex[i];
+        batch->x[i][k] = v->x;
+        batch->y[i][k] = v->y;
+        batch->z[i][k] = v->z;
     }
-    return t;
 }
 
-static inline void setUp(const vplTriangle* t, const vplTile* tile, Setup* s)
+static inline int32_t least3i(int32_t a, int32_t b, int32_t c)
 {
-    const int64_t px = (int64_t)tile->x * 256 + 128, py = (int64_t)tile->y * 256 + 128;
-    for (int i = 0; i < 3; i++) {
-        const vplScreenVertex* p = &t->v[(i + 1) % 3];
-        const vplScreenVertex* q = &t->v[(i + 2) % 3];
-        const int32_t dx = q->x - p->x, dy = q->y - p->y;
-        s->a[i] = -dy;
-        s->b[i] = dx;
-        s->e[i] = (int64_t)dx * (py - p->y) - (int64_t)dy * (px - p->x);
+    const int32_t ab = a < b ? a : b;
+    return ab < c ? ab : c;
+}
+
+static inline int32_t most3i(int32_t a, int32_t b, int32_t c)
+{
+    const int32_t ab = a > b ? a : b;
+    return ab > c ? ab : c;
+}
+
+// Blocks of the tile that the triangles' pixel boxes touch; see vplBoundTriangle.
+static inline void boundBatch(const vplTile* tile, Batch* t)
+{
+    const int32_t left = tile->x, top = tile->y, right = tile->width - 1, bottom = tile->height - 1;
+    for (int k = 0; k < BATCH; k++) {
+        const int32_t x0 = ((least3i(t->x[0][k], t->x[1][k], t->x[2][k]) + 127) >> 8) - left;
+        const int32_t y0 = ((least3i(t->y[0][k], t->y[1][k], t->y[2][k]) + 127) >> 8) - top;
+        const int32_t x1 = ((most3i(t->x[0][k], t->x[1][k], t->x[2][k]) - 128) >> 8) - left;
+        const int32_t y1 = ((most3i(t->y[0][k], t->y[1][k], t->y[2][k]) - 128) >> 8) - top;
+        t->left[k] = x0 > 0 ? x0 : 0;
+        t->top[k] = y0 > 0 ? y0 : 0;
+        t->right[k] = x1 < right ? x1 : right;
+        t->bottom[k] = y1 < bottom ? y1 : bottom;
+        t->x0[k] = t->left[k] >> 2;
+        t->y0[k] = t->top[k] >> 2;
+        t->x1[k] = t->right[k] >> 2;
+        t->y1[k] = t->bottom[k] >> 2;
     }
-    // Sum of the three edge functions anywhere is the doubled area.
-    const double inverse = 1 / (double)(s->e[0] + s->e[1] + s->e[2]);
-    const double z1 = (double)t->v[1].z - t->v[0].z, z2 = (double)t->v[2].z - t->v[0].z;
-    s->zx = 256 * inverse * (z1 * s->a[1] + z2 * s->a[2]);
-    s->zy = 256 * inverse * (z1 * s->b[1] + z2 * s->b[2]);
-    s->z = t->v[0].z + inverse * (z1 * (double)s->e[1] + z2 * (double)s->e[2]);
+}
+
+// Turns triangles so that their areas are positive with y down: clockwise as seen.
+static inline void turnBatch(Batch* t)
+{
+    for (int k = 0; k < BATCH; k++) {
+        const int32_t x1 = t->x[1][k], x2 = t->x[2][k], y1 = t->y[1][k], y2 = t->y[2][k];
+        const float z1 = t->z[1][k], z2 = t->z[2][k];
+        const double area = (double)(x1 - t->x[0][k]) * (double)(y2 - t->y[0][k]) -
+                            (double)(x2 - t->x[0][k]) * (double)(y1 - t->y[0][k]);
+        const int32_t clockwise = area > 0 ? -1 : 0;
+        t->clockwise[k] = clockwise;
+        t->x[1][k] = clockwise ? x1 : x2;
+        t->x[2][k] = clockwise ? x2 : x1;
+        t->y[1][k] = clockwise ? y1 : y2;
+        t->y[2][k] = clockwise ? y2 : y1;
+        t->z[1][k] = clockwise ? z1 : z2;
+        t->z[2][k] = clockwise ? z2 : z1;
+    }
+    for (int k = 0; k < BATCH; k++) {
+        const uint32_t v1 = t->vertex[1][k], v2 = t->vertex[2][k];
+        t->vertex[1][k] = t->clockwise[k] ? v1 : v2;
+        t->vertex[2][k] = t->clockwise[k] ? v2 : v1;
+    }
+}
+
+// Within a block an edge grows by less than 2^28 pixels' worth, so beyond 2^30 only the sign matters.
+static inline int32_t edgeOf(double e)
+{
+    double v = e * 0x1p-8;
+    v = v < 0x1p30 ? v : 0x1p30;
+    v = v > -0x1p30 ? v : -0x1p30;
+    const int32_t i = (int32_t)v;
+    return i - ((double)i > v ? 1 : 0); // down, not towards 0
+}
+
+static inline void findFirstEdges(Batch* t)
+{
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < BATCH; k++) {
+            const double x = t->x0[k] * VPL_BLOCK_SIDE, y = t->y0[k] * VPL_BLOCK_SIDE;
+            t->edge[i][k] = edgeOf(t->e[i][k] + 256 * (t->a[i][k] * x + t->b[i][k] * y));
+        }
+    }
+}
+
+static inline void setUpBatch(const vplTile* tile, Batch* t)
+{
+    const double px = 256.0 * tile->x + 128, py = 256.0 * tile->y + 128;
+    boundBatch(tile, t);
+    turnBatch(t);
+    for (int i = 0; i < 3; i++) {
+        const int p = (i + 1) % 3, q = (i + 2) % 3;
+        for (int k = 0; k < BATCH; k++) {
+            const double dx = t->x[q][k] - t->x[p][k], dy = t->y[q][k] - t->y[p][k];
+            t->a[i][k] = -dy;
+            t->b[i][k] = dx;
+            t->e[i][k] = dx * (py - t->y[p][k]) - dy * (px - t->x[p][k]);
+        }
+    }
+    for (int k = 0; k < BATCH; k++) {
+        // Sum of the three edge functions anywhere is the doubled area.
+        const double inverse = 1 / (t->e[0][k] + t->e[1][k] + t->e[2][k]);
+        const double z1 = (double)t->z[1][k] - t->z[0][k], z2 = (double)t->z[2][k] - t->z[0][k];
+        t->zx[k] = 256 * inverse * (z1 * t->a[1][k] + z2 * t->a[2][k]);
+        t->zy[k] = 256 * inverse * (z1 * t->b[1][k] + z2 * t->b[2][k]);
+        t->planeZ[k] = t->z[0][k] + inverse * (z1 * t->e[1][k] + z2 * t->e[2][k]);
+    }
+    for (int i = 0; i < 3; i++) { // left and top edges own their centres, others leave them to the neighbour
+        for (int k = 0; k < BATCH; k++) {
+            const double a = t->a[i][k], b = t->b[i][k];
+            const double owned = a > 0 ? 0 : 1, ownedTop = b > 0 ? 0 : 1;
+            t->e[i][k] -= a == 0 ? ownedTop : owned;
+        }
+    }
+    findFirstEdges(t);
+}
+
+// One triangle of a batch.
+typedef struct Setup {
+    double e[3], a[3], b[3];
+    double z, zx, zy;
+    _Alignas(64) double laneZ[VPL_LANES];
+    double leastZ, mostZ;                     // of laneZ
+    _Alignas(64) int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e / 256)
+} Setup;
+
+static inline void setUp(const Batch* t, int k, Setup* s)
+{
+    for (int i = 0; i < 3; i++) {
+        s->e[i] = t->e[i][k];
+        s->a[i] = t->a[i][k];
+        s->b[i] = t->b[i][k];
+        const int32_t a = (int32_t)s->a[i], b = (int32_t)s->b[i];
+        for (int l = 0; l < VPL_LANES; l++) {
+            s->steps[i][l] = a * (l & 3) + b * (l >> 2);
+        }
+    }
+    s->z = t->planeZ[k];
+    s->zx = t->zx[k];
+    s->zy = t->zy[k];
     for (int l = 0; l < VPL_LANES; l++) {
         s->laneZ[l] = s->zx * (l & 3) + s->zy * (l >> 2);
     }
+}
+
+static inline void boundDepth(Setup* s)
+{
     s->leastZ = (s->zx < 0 ? s->laneZ[3] : 0) + (s->zy < 0 ? s->laneZ[12] : 0);
     s->mostZ = (s->zx > 0 ? s->laneZ[3] : 0) + (s->zy > 0 ? s->laneZ[12] : 0);
-    for (int i = 0; i < 3; i++) { // left and top edges own their centres, others leave them to the neighbour
-        s->e[i] -= s->a[i] > 0 || (s->a[i] == 0 && s->b[i] > 0) ? 0 : 1;
-    }
 }
 
-// Perspective-correct interpolation. Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D
-// Homogeneous Coordinates, Graphics Hardware 1997: with corners (X, Y, w) in homogeneous pixels, share i of
-// the point seen at pixel p is proportional to (corner j x corner k) . (p, 1). No corner is divided by its w,
-// and none is snapped: snapping decides coverage only, and moves no surface.
-typedef struct Shares {
-    double x[3], y[3], c[3];                // the three planes over pixel indices; their sum is 1/w
-    _Alignas(64) double lane[3][VPL_LANES]; // growth from lane 0
-    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS],
-        d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
-} Shares;
-
-static inline void crossPlanes(const double p[3][3], Shares* s)
+// For interpolation.
+static inline vplTriangle triangleOf(const Batch* t, int k)
 {
+    vplTriangle triangle = {.primitive = t->primitive[k], .clockwise = t->clockwise[k] != 0};
     for (int i = 0; i < 3; i++) {
-        const double *u = p[(i + 1) % 3], *v = p[(i + 2) % 3];
-        s->x[i] = u[1] * v[2] - u[2] * v[1];
-        s->y[i] = u[2] * v[0] - u[0] * v[2];
-        s->c[i] = u[0] * v[1] - u[1] * v[0];
+        triangle.v[i] = (vplScreenVertex){t->x[i][k], t->y[i][k], t->z[i][k]};
+        triangle.vertex[i] = t->vertex[i][k];
     }
-}
-
-static inline void setUpShares(const vplRaster* r, const vplTriangle* t, const vplShaded* shaded, Shares* s)
-{
-    double p[3][3];
-    float varyings[3][VPL_MAX_VARYINGS];
-    for (int i = 0; i < 3; i++) {
-        float clip[3];
-        vplFetchVertex(r, shaded, t->vertex[i], clip, varyings[i]);
-        p[i][0] = 0.5 * r->framebuffer.width * ((double)clip[2] + clip[0]);
-        p[i][1] = 0.5 * r->framebuffer.height * ((double)clip[2] - clip[1]);
-        p[i][2] = clip[2];
-    }
-    crossPlanes(p, s);
-    double determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
-    if (!(determinant > 0)) {
-        // Only snapping gave it an area: then the snapped corners are the triangle.
-        for (int i = 0; i < 3; i++) {
-            p[i][0] = t->v[i].x / 256.0 * p[i][2];
-            p[i][1] = t->v[i].y / 256.0 * p[i][2];
-        }
-        crossPlanes(p, s);
-        determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
-    }
-    // Scaled so that floats hold the planes whatever the unit of w.
-    const double scale = 1 / determinant;
-    for (int i = 0; i < 3; i++) {
-        s->x[i] *= scale;
-        s->y[i] *= scale;
-        s->c[i] = s->c[i] * scale + 0.5 * (s->x[i] + s->y[i]); // pixel centres
-        for (int l = 0; l < VPL_LANES; l++) {
-            s->lane[i][l] = s->x[i] * (l & 3) + s->y[i] * (l >> 2);
-        }
-    }
-    for (int k = 0; k < shaded->varyingCount; k++) {
-        s->v0[k] = varyings[0][k];
-        s->d1[k] = varyings[1][k] - varyings[0][k];
-        s->d2[k] = varyings[2][k] - varyings[0][k];
-    }
-}
-
-// Shares of the corners in a block, not yet divided by their sum. Clamped at 0: that keeps points of the outline
-// within the triangle, and lanes that are not covered finite.
-static inline void sharesOf(const Shares* s, int x, int y, float share[3][VPL_LANES])
-{
-    for (int i = 0; i < 3; i++) {
-        const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);
-        for (int l = 0; l < VPL_LANES; l++) {
-            const float v = (float)(at + s->lane[i][l]);
-            share[i][l] = v > 0 ? v : 0;
-        }
-    }
-}
-
-static inline void interpolate(const Shares* s, int varyingCount, int x, int y, vplFragments* f)
-{
-    float share[3][VPL_LANES], b1[VPL_LANES], b2[VPL_LANES];
-    sharesOf(s, x, y, share);
-    for (int l = 0; l < VPL_LANES; l++) {
-        const float w = 1 / (share[0][l] + share[1][l] + share[2][l]);
-        f->w[l] = w;
-        b1[l] = share[1][l] * w;
-        b2[l] = share[2][l] * w;
-    }
-    for (int k = 0; k < varyingCount; k++) {
-        // From corner 0, so that what is equal at all corners stays equal in every bit.
-        const float v0 = s->v0[k], d1 = s->d1[k], d2 = s->d2[k];
-        for (int l = 0; l < VPL_LANES; l++) {
-            f->varying[k][l] = v0 + (b1[l] * d1 + b2[l] * d2);
-        }
-    }
+    return triangle;
 }
 
 #endif

@@ -133,6 +133,21 @@ static void loadPlanes(const vplRaster* r, vplTileState* state)
     memset(tile->scratch, 0, f->scratchBytes);
 }
 
+// A tile where nothing is drawn keeps what was there or is cleared, without a way through the tile's storage.
+static void clearTile(const vplRaster* r, const vplTile* tile)
+{
+    const vplFramebuffer* f = &r->framebuffer;
+    for (int k = -1; k < f->planeCount; k++) {
+        const vplPlane* plane = k < 0 ? &f->depth : &f->planes[k];
+        for (int y = 0; plane->pixels && !plane->load && y < tile->height; y++) {
+            float* row = plane->pixels + (size_t)(tile->y + y) * (size_t)f->width + tile->x;
+            for (int x = 0; x < tile->width; x++) {
+                row[x] = plane->clear;
+            }
+        }
+    }
+}
+
 static void runTile(void* data, int number, int worker)
 {
     Run* run = data;
@@ -149,18 +164,23 @@ static void runTile(void* data, int number, int worker)
     tile->y = index / r->tilesX * VPL_TILE_SIDE;
     tile->width = f->width - tile->x < VPL_TILE_SIDE ? f->width - tile->x : VPL_TILE_SIDE;
     tile->height = f->height - tile->y < VPL_TILE_SIDE ? f->height - tile->y : VPL_TILE_SIDE;
+    const int* bin = r->bins + r->binStart[index];
+    const int count = r->binStart[index + 1] - r->binStart[index];
+    if (count == 0 && !r->hasTasks) {
+        clearTile(r, tile);
+        return;
+    }
     state->owner = r->keepsOwners ? state->owner : NULL;
     loadPlanes(r, state);
-    const int* bin = r->bins + r->binStart[index];
-    findMeshes(r, bin, r->binStart[index + 1] - r->binStart[index], state->meshStart);
+    findMeshes(r, bin, count, state->meshStart);
     memset(state->keptEpoch, 0xff, (size_t)r->shadedCount * sizeof(int));
     runCommands(r, state, bin, worker);
     storePlane(r, tile, &f->depth, state->depth);
     for (int k = 0; k < f->planeCount; k++) {
         storePlane(r, tile, &f->planes[k], tile->planes[k]);
     }
-    for (int l = 0; l < VPL_LANES; l++) {
-        state->fragments += state->fragmentLanes[l];
+    for (int i = 0; i < VPL_COUNTERS * VPL_LANES; i++) {
+        state->fragments += state->fragmentLanes[i / VPL_LANES][i % VPL_LANES];
     }
     run->tileFragments[number] = state->fragments;
 }
@@ -199,30 +219,31 @@ static Needs findNeeds(const Run* run)
     return n;
 }
 
-static char* take(char** at, size_t bytes)
+static void* take(char* memory, size_t* at, size_t bytes)
 {
-    char* taken = *at;
+    char* taken = memory != NULL ? memory + *at : NULL;
     *at += roundUp(bytes);
     return taken;
 }
 
-// Lays a worker's state out from `at` on and returns its end. Vectors must not straddle cache lines.
-static char* layOut(const Needs* n, vplTileState* state, char* at)
+// Lays a worker's state out in `memory` (NULL: nowhere) and returns how much it takes. Vectors must not straddle cache lines.
+static size_t layOut(const Needs* n, vplTileState* state, char* memory)
 {
     const size_t plane = VPL_TILE_PIXELS * sizeof(float), perMesh = (n->meshes + 1) * sizeof(int);
-    state->tile.depth = state->depth = (float*)take(&at, plane);
+    size_t at = 0;
+    state->tile.depth = state->depth = take(memory, &at, plane);
     for (size_t k = 0; k < n->planes; k++) {
-        state->tile.planes[k] = (float*)take(&at, plane);
+        state->tile.planes[k] = take(memory, &at, plane);
     }
-    state->owner = (int32_t*)take(&at, n->owners ? plane : 0);
-    state->farthest = (float*)take(&at, VPL_TILE_BLOCKS * VPL_TILE_BLOCKS * sizeof(float));
-    state->tile.scratch = take(&at, n->scratch);
-    state->meshStart = (int*)take(&at, perMesh);
-    state->keptStart = (int*)take(&at, perMesh);
-    state->keptEnd = (int*)take(&at, perMesh);
-    state->keptEpoch = (int*)take(&at, perMesh);
+    state->owner = take(memory, &at, n->owners ? plane : 0);
+    state->farthest = take(memory, &at, VPL_TILE_BLOCKS * VPL_TILE_BLOCKS * sizeof(float));
+    state->tile.scratch = take(memory, &at, n->scratch);
+    state->meshStart = take(memory, &at, perMesh);
+    state->keptStart = take(memory, &at, perMesh);
+    state->keptEnd = take(memory, &at, perMesh);
+    state->keptEpoch = take(memory, &at, perMesh);
     state->keptStride = n->keptStride;
-    state->kept = take(&at, n->kept);
+    state->kept = take(memory, &at, n->kept);
     return at;
 }
 
@@ -232,7 +253,7 @@ static vplResult makeStates(Run* run)
     const size_t workers = (size_t)context->workerCount;
     const Needs needs = findNeeds(run);
     vplTileState sample;
-    const size_t perWorker = (size_t)(layOut(&needs, &sample, NULL) - (char*)NULL);
+    const size_t perWorker = layOut(&needs, &sample, NULL);
     int64_t tiles = 0;
     run->firstTile = vplAlloc(context, (size_t)run->rasterCount + 1, sizeof *run->firstTile);
     for (int i = 0; run->firstTile != NULL && i <= run->rasterCount; i++) {
@@ -246,8 +267,8 @@ static vplResult makeStates(Run* run)
         return VPL_OUT_OF_MEMORY;
     }
     char* at = (char*)roundUp((uintptr_t)run->memory);
-    for (size_t i = 0; i < workers; i++) {
-        at = layOut(&needs, &run->states[i], at);
+    for (size_t i = 0; i < workers; i++, at += perWorker) {
+        layOut(&needs, &run->states[i], at);
     }
     return VPL_SUCCESS;
 }

@@ -6,470 +6,101 @@
 // Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility, SIGGRAPH 1993: a block knows the
 // farthest depth in it, and what lies behind that is not looked at.
 #include "base/isa.h"
-#include "raster/setup.h"
+#include "raster/blocks.h"
 
-#include <math.h>
-#include <string.h>
+enum { SQUARE_SIDE = 4 * VPL_BLOCK_SIDE, SQUARES = VPL_TILE_SIDE / SQUARE_SIDE };
 
-enum { SQUARE_SIDE = 4 * VPL_BLOCK_SIDE };
-
-typedef struct Draw {
-    vplTileState* state;
-    const vplRaster* raster;
-    const vplPipeline* pipeline;
-    const vplShaded* shaded;
-    const vplTriangle* triangle;
-    Shares* shares;                           // of the triangle, once they are needed
-    _Alignas(64) int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e >> 8)
-    int owner;
-    bool hasShares, keep, depthOnly, distances, rejects, tightens;
-} Draw;
-
-// ---- coverage
-
-static inline int32_t clampEdge(int64_t e)
+static inline double depthAt(const Setup* s, int x, int y)
 {
-    // Within a block an edge grows by less than 2^28, so beyond 2^30 only the sign matters.
-    return e > 1 << 30 ? 1 << 30 : e < -(1 << 30) ? -(1 << 30) : (int32_t)e;
+    return s->z + (s->zx * x + s->zy * y);
 }
 
-// Lanes of the block at (x, y) that are inside the triangle and the picture; 0 if there are none.
-static inline int32_t cover(const Draw* d, const Setup* s, int x, int y, int32_t covered[restrict VPL_LANES])
+// Blocks of a square in which all that is there is nearer than the triangle. z: its depths in lane 0 of each.
+static inline uint32_t hiddenBlocks(const Setup* s, const double z[VPL_LANES],
+                                    const float farthest[VPL_LANES])
 {
-    int32_t edge[3];
-    for (int i = 0; i < 3; i++) {
-        edge[i] = clampEdge((s->e[i] + 256 * ((int64_t)s->a[i] * x + (int64_t)s->b[i] * y)) >> 8);
+    uint32_t hidden = 0;
+    for (int i = 0; i < VPL_LANES; i++) {
+        hidden |= (uint32_t)(clampDepth(z[i] + s->leastZ) > farthest[i]) << i;
     }
-    int32_t any = 0;
-    for (int l = 0; l < VPL_LANES; l++) {
-        const int32_t outside =
-            (edge[0] + d->steps[0][l]) | (edge[1] + d->steps[1][l]) | (edge[2] + d->steps[2][l]);
-        covered[l] = ~(outside >> 31);
-        any |= covered[l];
-    }
-    const vplTile* tile = &d->state->tile;
-    if (any && (x + VPL_BLOCK_SIDE > tile->width || y + VPL_BLOCK_SIDE > tile->height)) {
-        any = 0;
-        for (int l = 0; l < VPL_LANES; l++) {
-            covered[l] &= x + (l & 3) < tile->width && y + (l >> 2) < tile->height ? -1 : 0;
-            any |= covered[l];
-        }
-    }
-    return any;
+    return hidden;
 }
 
-// 4 x 4 cells, one bit each.
-typedef struct Cells {
-    uint32_t touched, filled;
-} Cells;
-
-static inline double least3(double a, double b, double c)
+// In blocks that the triangle fills no lane keeps a depth beyond the triangle's.
+static inline void tightenBlocks(const Setup* s, const double z[VPL_LANES], uint32_t filled,
+                                 float farthest[VPL_LANES])
 {
-    const double ab = a < b ? a : b;
-    return ab < c ? ab : c;
-}
-
-// Which cells of `side` pixels from (x, y) on a triangle touches, and which it fills. Doubles hold these integers
-// exactly, and unlike 64-bit integers they have a minimum in every instruction set.
-static inline Cells classify(const Setup* s, int x, int y, int side)
-{
-    double e[3], right[3], down[3], most[3], least[3];
-    for (int i = 0; i < 3; i++) {
-        const double a = 256.0 * s->a[i], b = 256.0 * s->b[i];
-        e[i] = (double)s->e[i] + (a * x + b * y);
-        right[i] = a * side;
-        down[i] = b * side;
-        most[i] = (side - 1) * ((a > 0 ? a : 0) + (b > 0 ? b : 0)); // from a cell's first centre
-        least[i] = (side - 1) * ((a < 0 ? a : 0) + (b < 0 ? b : 0));
+    for (int i = 0; i < VPL_LANES; i++) {
+        const float most = clampDepth(z[i] + s->mostZ), kept = farthest[i];
+        const float least = most < kept ? most : kept;
+        farthest[i] = (filled >> i & 1) != 0 ? least : kept;
     }
-    float highest[VPL_LANES], lowest[VPL_LANES]; // only the sign is of interest
-    for (int l = 0; l < VPL_LANES; l++) {
-        const int column = l & 3, row = l >> 2;
-        const double u = e[0] + (right[0] * column + down[0] * row);
-        const double v = e[1] + (right[1] * column + down[1] * row);
-        const double w = e[2] + (right[2] * column + down[2] * row);
-        highest[l] = (float)least3(u + most[0], v + most[1], w + most[2]);
-        lowest[l] = (float)least3(u + least[0], v + least[1], w + least[2]);
-    }
-    Cells cells = {0, 0};
-    for (int l = 0; l < VPL_LANES; l++) {
-        cells.touched |= (uint32_t)(highest[l] >= 0) << l;
-        cells.filled |= (uint32_t)(lowest[l] >= 0) << l;
-    }
-    return cells;
-}
-
-// ---- blocks
-
-// -1 where a depth passes the test against the one that is there.
-static inline int32_t passes(vplDepthCompare compare, float depth, float old)
-{
-    switch (compare) {
-    case VPL_DEPTH_LESS:
-        return depth < old ? -1 : 0;
-    case VPL_DEPTH_LESS_EQUAL:
-        return depth <= old ? -1 : 0;
-    case VPL_DEPTH_EQUAL:
-        return depth == old ? -1 : 0;
-    case VPL_DEPTH_ALWAYS:
-        break;
-    }
-    return -1;
-}
-
-// Lanes that pass owner and depth test stay covered; 0 if there are none. `compare` is a constant where this is
-// called, so that each test is a loop without branches.
-static inline int32_t testLanes(vplTileState* state, vplDepthCompare compare, bool ownerTest, int owner,
-                                int at)
-{
-    vplFragments* f = &state->block;
-    int32_t covered[VPL_LANES], owners[VPL_LANES], any = 0;
-    float depth[VPL_LANES], old[VPL_LANES];
-    memcpy(covered, f->covered, sizeof covered);
-    memcpy(depth, f->depth, sizeof depth);
-    memcpy(old, state->depth + at, sizeof old);
-    if (ownerTest) {
-        memcpy(owners, state->owner + at, sizeof owners);
-        for (int l = 0; l < VPL_LANES; l++) {
-            covered[l] &= owners[l] == owner ? -1 : 0;
-        }
-    }
-    for (int l = 0; l < VPL_LANES; l++) {
-        covered[l] &= passes(compare, depth[l], old[l]);
-        any |= covered[l];
-    }
-    memcpy(f->covered, covered, sizeof covered);
-    return any;
-}
-
-static inline int32_t testFragments(vplTileState* state, const vplPipeline* p, int owner, int at)
-{
-    switch (p->depthCompare) {
-    case VPL_DEPTH_LESS:
-        return testLanes(state, VPL_DEPTH_LESS, p->ownerTest, owner, at);
-    case VPL_DEPTH_LESS_EQUAL:
-        return testLanes(state, VPL_DEPTH_LESS_EQUAL, p->ownerTest, owner, at);
-    case VPL_DEPTH_EQUAL:
-        return testLanes(state, VPL_DEPTH_EQUAL, p->ownerTest, owner, at);
-    case VPL_DEPTH_ALWAYS:
-        break;
-    }
-    return testLanes(state, VPL_DEPTH_ALWAYS, p->ownerTest, owner, at);
-}
-
-static inline void blendPlane(vplBlend blend, const int32_t covered[VPL_LANES], const float* drawn,
-                              float* plane)
-{
-    float from[VPL_LANES], to[VPL_LANES];
-    memcpy(from, drawn, sizeof from);
-    memcpy(to, plane, sizeof to);
-    for (int l = 0; l < VPL_LANES; l++) {
-        const float kept = to[l], sum = kept + from[l]; // made for all lanes: a choice then, not a branch
-        to[l] = covered[l] ? (blend == VPL_BLEND_ADD ? sum : from[l]) : kept;
-    }
-    memcpy(plane, to, sizeof to);
-}
-
-static inline void blendPlanes(const vplPipeline* p, const vplFragments* f, float* const planes[],
-                               int planeCount)
-{
-    int32_t covered[VPL_LANES];
-    memcpy(covered, f->covered, sizeof covered);
-    for (int k = 0; k < planeCount; k++) {
-        if ((p->planeMask >> k & 1) == 0) {
-            continue;
-        }
-        if (p->blend == VPL_BLEND_ADD) {
-            blendPlane(VPL_BLEND_ADD, covered, f->plane[k], planes[k] + f->element);
-        } else {
-            blendPlane(VPL_BLEND_REPLACE, covered, f->plane[k], planes[k] + f->element);
-        }
-    }
-}
-
-static inline void runFragmentShader(const vplPipeline* p, vplFragments* f, float* const planes[],
-                                     int planeCount)
-{
-    for (int k = 0; p->readsPlanes && k < planeCount; k++) {
-        memcpy(f->plane[k], planes[k] + f->element, sizeof f->plane[k]);
-    }
-    p->fragment(p->fragmentUniforms, f);
-}
-
-static inline void needShares(Draw* d)
-{
-    if (!d->hasShares) {
-        setUpShares(d->raster, d->triangle, d->shaded, d->shares);
-        d->hasShares = true;
-    }
-}
-
-// Interpolates, and runs the surface shader.
-static void makeSurface(Draw* d)
-{
-    vplFragments* f = &d->state->block;
-    if (d->shaded->varyingCount == 0 && !d->pipeline->needsW) {
-        return;
-    }
-    needShares(d);
-    interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
-    if (d->pipeline->surface != NULL) {
-        d->pipeline->surface(d->pipeline->vertexUniforms, f);
-    }
-}
-
-static int keptVaryings(const vplTileState* state)
-{
-    return (int)((state->keptStride - sizeof(vplKeptBlock)) / sizeof(float)) / VPL_LANES - 2;
-}
-
-static void keepBlock(vplTileState* state)
-{
-    const vplFragments* f = &state->block;
-    vplKeptBlock* kept = (vplKeptBlock*)(state->kept + (size_t)state->keptCount++ * state->keptStride);
-    float* to = (float*)(kept + 1);
-    kept->x = f->x;
-    kept->y = f->y;
-    kept->element = f->element;
-    kept->primitive = f->primitive;
-    kept->count = 0;
-    for (int l = 0; l < VPL_LANES; l++) {
-        kept->covered[l] = f->covered[l];
-        kept->count -= f->covered[l];
-    }
-    memcpy(to, f->depth, sizeof f->depth);
-    memcpy(to + VPL_LANES, f->w, sizeof f->w);
-    memcpy(to + 2 * VPL_LANES, f->varying, (size_t)keptVaryings(state) * sizeof f->varying[0]);
-}
-
-static inline float clampDepth(double z)
-{
-    float v = (float)z;
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
-}
-
-// Depth and nothing else. Lanes are copied first, so that the compiler need not ask whether arrays overlap.
-static inline void drawDepth(vplTileState* state, const Setup* s, double z, int at, bool filled)
-{
-    float depth[VPL_LANES];
-    int32_t counts[VPL_LANES], passed[VPL_LANES];
-    memcpy(depth, state->depth + at, sizeof depth);
-    memcpy(counts, state->fragmentLanes, sizeof counts);
-    memcpy(passed, state->block.covered, sizeof passed);
-    for (int l = 0; l < VPL_LANES; l++) {
-        const float v = clampDepth(z + s->laneZ[l]), kept = depth[l];
-        passed[l] = (filled ? -1 : passed[l]) & (v < kept ? -1 : 0);
-        depth[l] = passed[l] ? v : kept;
-        counts[l] -= passed[l];
-    }
-    memcpy(state->depth + at, depth, sizeof depth);
-    memcpy(state->fragmentLanes, counts, sizeof counts);
-}
-
-// Distance from the eye and nothing else. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the
-// Cube Shadow Map"; departs: w is turned into a distance by the texel's own direction.
-static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
-{
-    vplTileState* state = d->state;
-    const float scale = d->pipeline->distanceScale, texel = 2.0f / (float)d->raster->framebuffer.width;
-    const float left = (float)(state->tile.x + x), top = (float)(state->tile.y + y);
-    float depth[VPL_LANES], share[3][VPL_LANES];
-    int32_t counts[VPL_LANES], passed[VPL_LANES];
-    memcpy(depth, state->depth + at, sizeof depth);
-    memcpy(counts, state->fragmentLanes, sizeof counts);
-    memcpy(passed, state->block.covered, sizeof passed);
-    sharesOf(d->shares, state->tile.x + x, state->tile.y + y, share);
-    for (int l = 0; l < VPL_LANES; l++) {
-        const float s = (left + (float)(l & 3) + 0.5f) * texel - 1;
-        const float t = 1 - (top + (float)(l >> 2) + 0.5f) * texel;
-        const float w = 1 / (share[0][l] + share[1][l] + share[2][l]);
-        const float v = w * sqrtf(1 + s * s + t * t) * scale, kept = depth[l];
-        passed[l] = (filled ? -1 : passed[l]) & (v < kept ? -1 : 0);
-        depth[l] = passed[l] ? v : kept;
-        counts[l] -= passed[l];
-    }
-    memcpy(state->depth + at, depth, sizeof depth);
-    memcpy(state->fragmentLanes, counts, sizeof counts);
-}
-
-static inline void countFragments(vplTileState* state)
-{
-    int32_t counts[VPL_LANES];
-    memcpy(counts, state->fragmentLanes, sizeof counts);
-    for (int l = 0; l < VPL_LANES; l++) {
-        counts[l] -= state->block.covered[l];
-    }
-    memcpy(state->fragmentLanes, counts, sizeof counts);
-}
-
-static inline void writeDepth(vplTileState* state, int owner, int at)
-{
-    const vplFragments* f = &state->block;
-    float depth[VPL_LANES];
-    memcpy(depth, state->depth + at, sizeof depth);
-    for (int l = 0; l < VPL_LANES; l++) {
-        const float drawn = f->depth[l], kept = depth[l];
-        depth[l] = f->covered[l] ? drawn : kept;
-    }
-    memcpy(state->depth + at, depth, sizeof depth);
-    if (state->owner != NULL) {
-        int32_t owners[VPL_LANES];
-        memcpy(owners, state->owner + at, sizeof owners);
-        for (int l = 0; l < VPL_LANES; l++) {
-            const int32_t kept = owners[l];
-            owners[l] = f->covered[l] ? owner : kept;
-        }
-        memcpy(state->owner + at, owners, sizeof owners);
-    }
-}
-
-// Depth, owners and planes, as the pipeline says, of the lanes in f->covered.
-static void drawFragments(Draw* d, const Setup* s, double z)
-{
-    vplTileState* state = d->state;
-    const vplPipeline* p = d->pipeline;
-    vplFragments* f = &state->block;
-    const int at = f->element;
-    if (p->writesDepth) {
-        makeSurface(d);
-        runFragmentShader(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
-    } else {
-        for (int l = 0; l < VPL_LANES; l++) {
-            f->depth[l] = clampDepth(z + s->laneZ[l]);
-        }
-    }
-    if (!testFragments(state, p, d->owner, at)) {
-        return;
-    }
-    if (d->keep) {
-        makeSurface(d);
-        keepBlock(state);
-        return;
-    }
-    countFragments(state);
-    if (p->depthWrite) {
-        writeDepth(state, d->owner, at);
-    }
-    if (p->fragment != NULL) {
-        if (!p->writesDepth) {
-            makeSurface(d);
-            runFragmentShader(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
-        }
-        blendPlanes(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
-    }
-}
-
-// `filled`: all lanes are inside the triangle and the picture.
-static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y,
-                                                            bool filled)
-{
-    vplTileState* state = d->state;
-    vplFragments* f = &state->block;
-    const int block = (y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
-    const double z = s->z + (s->zx * x + s->zy * y);
-    if (d->rejects && clampDepth(z + s->leastZ) > state->farthest[block]) {
-        return;
-    }
-    if (!filled && !cover(d, s, x, y, f->covered)) {
-        return;
-    }
-    if (d->tightens && filled) { // no lane keeps a depth beyond the triangle's
-        const float most = clampDepth(z + s->mostZ);
-        state->farthest[block] = most < state->farthest[block] ? most : state->farthest[block];
-    }
-    if (d->distances) {
-        if (filled) {
-            drawDistance(d, x, y, block * VPL_LANES, true);
-        } else {
-            drawDistance(d, x, y, block * VPL_LANES, false);
-        }
-        return;
-    }
-    if (d->depthOnly) {
-        if (filled) {
-            drawDepth(state, s, z, block * VPL_LANES, true);
-        } else {
-            drawDepth(state, s, z, block * VPL_LANES, false);
-        }
-        return;
-    }
-    if (filled) {
-        memset(f->covered, 0xff, sizeof f->covered);
-    }
-    f->x = state->tile.x + x;
-    f->y = state->tile.y + y;
-    f->element = block * VPL_LANES;
-    drawFragments(d, s, z);
-}
-
-// ---- triangles
-
-static inline int minOf(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-static inline int maxOf(int a, int b)
-{
-    return a > b ? a : b;
 }
 
 // The blocks of a square whose bits are set in `within`.
 static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, bool filled)
 {
+    const vplTile* tile = &d->state->tile;
     Cells cells = {0xffff, 0xffff};
     if (!filled) {
         cells = classify(s, x, y, VPL_BLOCK_SIDE);
     }
-    const vplTile* tile = &d->state->tile;
-    for (uint32_t blocks = cells.touched & within; blocks != 0; blocks &= blocks - 1) {
+    cells.touched &= within;
+    if (x + SQUARE_SIDE > tile->width || y + SQUARE_SIDE > tile->height) {
+        cells.filled &= cellsWithin(0, (tile->width - x) / VPL_BLOCK_SIDE - 1, 0,
+                                    (tile->height - y) / VPL_BLOCK_SIDE - 1);
+    }
+    double z[VPL_LANES];
+    for (int i = 0; i < VPL_LANES; i++) {
+        z[i] = depthAt(s, x + (i & 3) * VPL_BLOCK_SIDE, y + (i >> 2) * VPL_BLOCK_SIDE);
+    }
+    float* farthest = d->state->farthest + (y / SQUARE_SIDE * SQUARES + x / SQUARE_SIDE) * VPL_LANES;
+    if (d->rejects) {
+        cells.touched &= ~hiddenBlocks(s, z, farthest);
+    }
+    if (d->tightens) {
+        tightenBlocks(s, z, cells.touched & cells.filled, farthest);
+    }
+    for (uint32_t blocks = cells.touched; blocks != 0; blocks &= blocks - 1) {
         const int i = __builtin_ctz(blocks);
         const int bx = x + (i & 3) * VPL_BLOCK_SIDE, by = y + (i >> 2) * VPL_BLOCK_SIDE;
-        const bool inPicture = bx + VPL_BLOCK_SIDE <= tile->width && by + VPL_BLOCK_SIDE <= tile->height;
-        drawBlock(d, s, bx, by, (cells.filled >> i & 1) && inPicture);
+        if (cells.filled >> i & 1) {
+            drawBlock(d, s, bx, by, z[i], NULL);
+        } else {
+            int32_t edge[3];
+            edgesAt(s, bx, by, edge);
+            drawBlock(d, s, bx, by, z[i], edge);
+        }
     }
-}
-
-// Cells of 4 x 4 between two columns and two rows.
-static inline uint32_t cellsWithin(int x0, int x1, int y0, int y1)
-{
-    x0 = maxOf(x0, 0);
-    y0 = maxOf(y0, 0);
-    x1 = minOf(x1, 3);
-    y1 = minOf(y1, 3);
-    const uint32_t row = (2u << x1) - (1u << x0);
-    const uint32_t rows = (0x1111u << 4 * y0) & (0x1111u >> 4 * (3 - y1));
-    return row * rows;
 }
 
 static void drawTriangle(Draw* d)
 {
-    const vplTriangle* t = d->triangle;
-    const vplTile* tile = &d->state->tile;
-    const vplPixelBox box = vplBoundTriangle(t->v);
-    const int x0 = maxOf(box.x0 - tile->x, 0) / VPL_BLOCK_SIDE,
-              y0 = maxOf(box.y0 - tile->y, 0) / VPL_BLOCK_SIDE;
-    const int x1 = minOf(box.x1 - tile->x, tile->width - 1) / VPL_BLOCK_SIDE,
-              y1 = minOf(box.y1 - tile->y, tile->height - 1) / VPL_BLOCK_SIDE;
+    const Batch* t = d->batch;
+    const int x0 = t->x0[d->place], x1 = t->x1[d->place], y0 = t->y0[d->place], y1 = t->y1[d->place];
     Setup s;
-    setUp(t, tile, &s);
-    for (int i = 0; i < 3; i++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            d->steps[i][l] = s.a[i] * (l & 3) + s.b[i] * (l >> 2);
-        }
-    }
+    setUp(t, d->place, &s);
     if (d->distances) {
         needShares(d);
     }
-    if (x1 - x0 <= 1 && y1 - y0 <= 1) { // small: asking pixels at once is less work
-        for (int y = y0; y <= y1; y++) {
-            for (int x = x0; x <= x1; x++) {
-                drawBlock(d, &s, x * VPL_BLOCK_SIDE, y * VPL_BLOCK_SIDE, false);
+    if (x1 == x0 && y1 == y0) {
+        const int32_t edge[3] = {t->edge[0][d->place], t->edge[1][d->place], t->edge[2][d->place]};
+        const int x = x0 * VPL_BLOCK_SIDE, y = y0 * VPL_BLOCK_SIDE;
+        drawBlock(d, &s, x, y, depthAt(&s, x, y), edge);
+        return;
+    }
+    if (x1 - x0 <= 1 && y1 - y0 <= 1) { // asking pixels at once is less work
+        for (int row = y0; row <= y1; row++) {
+            for (int column = x0; column <= x1; column++) {
+                const int x = column * VPL_BLOCK_SIDE, y = row * VPL_BLOCK_SIDE;
+                int32_t edge[3];
+                edgesAt(&s, x, y, edge);
+                drawBlock(d, &s, x, y, depthAt(&s, x, y), edge);
             }
         }
         return;
     }
+    boundDepth(&s);
     Cells squares = {0xffff, 0};
     if (x1 - x0 >= 4 || y1 - y0 >= 4) {
         squares = classify(&s, 0, 0, SQUARE_SIDE);
@@ -491,26 +122,45 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
     const bool nearer = p->depthCompare == VPL_DEPTH_LESS || p->depthCompare == VPL_DEPTH_LESS_EQUAL;
     const bool byPlane = nearer && !p->writesDepth && p->distanceScale == 0; // depth is the triangle's plane
     Shares shares;
+    Batch batch;
+    Tiny tiny;
+    memset(batch.x, 0, sizeof batch.x); // places that stay empty are computed, too
+    memset(batch.y, 0, sizeof batch.y);
+    memset(batch.z, 0, sizeof batch.z);
+    memset(batch.vertex, 0, sizeof batch.vertex);
     Draw d = {.state = state,
               .raster = raster,
               .pipeline = p,
               .shaded = &raster->shaded[command->shaded],
               .shares = &shares,
+              .batch = &batch,
               .keep = keep,
               .distances = p->distanceScale != 0,
+              .texel = 2.0f / (float)raster->framebuffer.width,
               .rejects = byPlane,
               .tightens = byPlane && p->depthWrite && !p->ownerTest};
-    d.depthOnly = p->fragment == NULL && p->depthCompare == VPL_DEPTH_LESS && p->depthWrite &&
-                  !p->ownerTest && state->owner == NULL;
+    d.depthOnly = p->fragment == NULL && p->distanceScale == 0 && p->depthCompare == VPL_DEPTH_LESS &&
+                  p->depthWrite && !p->ownerTest && state->owner == NULL;
     state->block.scratch = state->tile.scratch;
-    for (int i = 0; i < count; i++) {
-        const vplTriangle triangle = fetchTriangle(raster, d.shaded, list[i]);
-        d.owner = list[i];
-        d.hasShares = false;
-        d.triangle = &triangle;
-        state->block.primitive = triangle.primitive;
-        if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != triangle.clockwise) {
-            drawTriangle(&d);
+    for (int first = 0; first < count; first += BATCH) {
+        const int some = count - first < BATCH ? count - first : BATCH;
+        for (int k = 0; k < some; k++) {
+            fetchTriangle(raster, d.shaded, list[first + k], &batch, k);
+        }
+        setUpBatch(&state->tile, &batch);
+        if (d.depthOnly) {
+            testTiny(&batch, &tiny);
+        }
+        for (int k = 0; k < some; k++) {
+            d.owner = list[first + k];
+            d.place = k;
+            d.hasShares = false;
+            state->block.primitive = batch.primitive[k];
+            if (d.depthOnly && p->cull == VPL_CULL_NONE && isTiny(&batch, k)) {
+                state->fragments += drawTiny(&tiny, k, state->depth);
+            } else if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != (batch.clockwise[k] != 0)) {
+                drawTriangle(&d);
+            }
         }
     }
     if (p->depthWrite && p->depthCompare == VPL_DEPTH_ALWAYS) {
@@ -518,35 +168,4 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
             state->farthest[i] = INFINITY;
         }
     }
-}
-
-vplRunPassesFcn VPL_KERNEL(vplRunPasses);
-
-void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int first)
-{
-    vplFragments* f = &state->block;
-    const int mesh = raster->commands[first].shaded, planeCount = raster->framebuffer.planeCount;
-    const size_t varyings = (size_t)keptVaryings(state);
-    float* planes[VPL_MAX_PLANES];
-    memcpy(planes, state->tile.planes, sizeof planes);
-    int64_t fragments = 0;
-    for (int i = state->keptStart[mesh]; i < state->keptEnd[mesh]; i++) {
-        const vplKeptBlock* kept = (const vplKeptBlock*)(state->kept + (size_t)i * state->keptStride);
-        const float* from = (const float*)(kept + 1);
-        f->x = kept->x;
-        f->y = kept->y;
-        f->element = kept->element;
-        f->primitive = kept->primitive;
-        memcpy(f->covered, kept->covered, sizeof f->covered);
-        memcpy(f->depth, from, sizeof f->depth);
-        memcpy(f->w, from + VPL_LANES, sizeof f->w);
-        memcpy(f->varying, from + 2 * VPL_LANES, varyings * sizeof f->varying[0]);
-        for (int c = first; c >= 0; c = raster->commands[c].chainNext) {
-            const vplPipeline* p = &raster->pipelines[raster->commands[c].pipeline];
-            runFragmentShader(p, f, planes, planeCount);
-            blendPlanes(p, f, planes, planeCount);
-            fragments += kept->count;
-        }
-    }
-    state->fragments += fragments;
 }

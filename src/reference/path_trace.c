@@ -57,6 +57,9 @@ vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* de
     aimCamera(&t->scene);
     vplResult result = vplEmission_Create(geometry, def->emitters, def->emitterCount, &t->scene.emission);
     if (result == VPL_SUCCESS) {
+        result = vplGeometry_PrepareRays(geometry);
+    }
+    if (result == VPL_SUCCESS) {
         t->sums = vplAllocZero(context, (size_t)def->width * (size_t)def->height, sizeof *t->sums);
         t->raysOf = t->sums ? vplAllocZero(context, (size_t)(t->columns * t->rows), sizeof *t->raysOf) : NULL;
         result = t->raysOf ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;

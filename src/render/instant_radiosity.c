@@ -91,6 +91,15 @@ static void freeMaps(vplJob* job, Maps* maps)
     vplFree(job->context, maps->shadows);
 }
 
+// Bounds are found where they cost less than the samples that they save.
+static vplResult boundMap(vplJob* job, vplCubeMap* map, int samples)
+{
+    const vplRenderOptions* o = &job->options;
+    const double lookedUp = (double)o->width * o->height * o->antialias * samples;
+    const bool pays = samples >= VPL_MIN_BOUND_SAMPLES && lookedUp > 6.0 * map->size * map->size;
+    return pays ? vplCubeMap_FindBounds(map) : VPL_SUCCESS;
+}
+
 static vplResult makeMap(vplJob* job, vplVec3 position, int size, const vplShadowDef* shadowDef, Maps* maps,
                          int i)
 {
@@ -100,6 +109,9 @@ static vplResult makeMap(vplJob* job, vplVec3 position, int size, const vplShado
     vplResult result = vplCubeMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps->maps[i]);
     if (result == VPL_SUCCESS) {
         vplJob_AddRaster(job, &maps->maps[i]->stats);
+        result = boundMap(job, maps->maps[i], shadowDef->pcfSamples);
+    }
+    if (result == VPL_SUCCESS) {
         result = vplShadow_Create(maps->maps[i], shadowDef, &maps->shadows[i]);
     }
     return result;
@@ -276,6 +288,9 @@ static vplResult cook(vplJob* job, Ingredients* in)
     vplJob_BeginStage(job, 1);
     result = shade(job, in);
     vplJob_EndStage(job, "shading");
+    if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && in->set != NULL) {
+        result = vplGeometry_PrepareRays(job->geometry);
+    }
     if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && in->set != NULL) {
         vplDrawLights(job->image, job->geometry, &job->view, in->set);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light and what stops it: emitters and virtual lights with shadow maps or shadow rays. The arithmetic of light
 // is the kernels'; here it is only multiplied by visibility.
+#include "geometry/bvh.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 #include "shading/shading.h"
@@ -29,6 +30,8 @@ static void findStarts(const vplGeometry* g, const vplPoints* points, Starts* st
     }
 }
 
+_Static_assert((int)VPL_RAY_PACKET == VPL_LANES, "a block of pixels is a packet of rays");
+
 // Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
 // where that is behind the triangle. Lanes of amount 0 cast no ray.
 static void castShadowRays(const vplShading* shading, const vplPoints* points, const Starts* starts,
@@ -36,6 +39,8 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
 {
     const vplGeometry* g = shading->geometry;
     const vplSurface* plane = points->plane;
+    vplRayPacket packet;
+    packet.active = 0;
     for (int l = 0; l < VPL_LANES; l++) {
         if (!(amount[l] > 0) || points->triangle[l] < 0) {
             continue;
@@ -47,10 +52,12 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
             continue;
         }
         const vplRay ray = vplGeometry_Leave(g, hit, way);
-        ++*rays;
-        if (vplGeometry_IsOccluded(g, &ray, parallel ? INFINITY : 1)) {
-            amount[l] = 0;
-        }
+        vplRayPacket_Set(&packet, l, &ray);
+    }
+    *rays += __builtin_popcount(packet.active);
+    for (uint32_t dark = vplGeometry_AreOccluded(g, &packet, parallel ? INFINITY : 1); dark != 0;
+         dark &= dark - 1) {
+        amount[__builtin_ctz(dark)] = 0;
     }
 }
 

@@ -12,8 +12,7 @@ VPL_KERNEL_TABLE(CULL_PHYSICAL, vplCullFcn, vplCullPhysical);
 VPL_KERNEL_TABLE(SURFACE, vplFragmentFcn, vplShadeSurface);
 VPL_KERNEL_TABLE(GBUFFER, vplFragmentFcn, vplWriteGbuffer);
 VPL_KERNEL_TABLE(DIRECT, vplFragmentFcn, vplShadeDirect);
-VPL_KERNEL_TABLE(ONE_LIGHT, vplFragmentFcn, vplShadeOneLight);
-VPL_KERNEL_TABLE(LIGHT_BATCH, vplFragmentFcn, vplShadeLightBatch);
+VPL_KERNEL_TABLE(LIGHTS, vplPassesFcn, vplShadeLights);
 VPL_KERNEL_TABLE(LIGHT_TILE, vplTileFcn, vplLightTile);
 VPL_KERNEL_TABLE(INTERLEAVED_TILE, vplTileFcn, vplInterleaveTile);
 VPL_KERNEL_TABLE(GATHER_TILE, vplTaskFcn, vplGatherTile);
@@ -23,9 +22,16 @@ VPL_KERNEL_TABLE(RESOLVE_TILE, vplTileFcn, vplResolveTile);
 
 vplShadingKernels vplGetShadingKernels(vplIsa isa)
 {
-    return (vplShadingKernels){SURFACE[isa],     GBUFFER[isa],    DIRECT[isa],           ONE_LIGHT[isa],
-                               LIGHT_BATCH[isa], LIGHT_TILE[isa], INTERLEAVED_TILE[isa], GATHER_TILE[isa],
-                               SHOW_TILE[isa],   FOLD_TILE[isa],  RESOLVE_TILE[isa]};
+    return (vplShadingKernels){.surface = SURFACE[isa],
+                               .gbuffer = GBUFFER[isa],
+                               .direct = DIRECT[isa],
+                               .lights = LIGHTS[isa],
+                               .light = LIGHT_TILE[isa],
+                               .interleaved = INTERLEAVED_TILE[isa],
+                               .gather = GATHER_TILE[isa],
+                               .show = SHOW_TILE[isa],
+                               .fold = FOLD_TILE[isa],
+                               .resolve = RESOLVE_TILE[isa]};
 }
 
 vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting)

@@ -13,6 +13,46 @@
 vplLightKernelFcn VPL_KERNEL(vplLightsDocumented), VPL_KERNEL(vplLightsPhysical);
 vplEmitterKernelFcn VPL_KERNEL(vplEmitterCosine);
 
+// Larger and smaller of two numbers; `a` may be negative, `b` not. Floats that are not negative are ordered as
+// their bits are. From AVX2 on integers are compared: on Zen 4 multiplications, which bound these loops, and float
+// comparisons share two of the four vector units, integer comparisons have all four (physical lights: 6 % faster
+// with AVX-512, 5 % with AVX2; SSE2 has no such instruction and loses 16 %).
+#ifdef __AVX2__
+static inline int32_t bitsOf(float x)
+{
+    int32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static inline float floatOf(int32_t bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static inline float largerOf(float a, float b)
+{
+    return floatOf(bitsOf(a) > bitsOf(b) ? bitsOf(a) : bitsOf(b));
+}
+
+static inline float smallerOf(float a, float b)
+{
+    return floatOf(bitsOf(a) < bitsOf(b) ? bitsOf(a) : bitsOf(b));
+}
+#else
+static inline float largerOf(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static inline float smallerOf(float a, float b)
+{
+    return a < b ? a : b;
+}
+#endif
+
 void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
                                      int count, float inverseBound, float irradiance[restrict 3][VPL_LANES])
 {
@@ -27,8 +67,8 @@ void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const v
             float x = light.px - surface->px[l], y = light.py - surface->py[l], z = light.pz - surface->pz[l];
             float d2 = x * x + y * y + z * z;
             float cosine = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z; // times the distance
-            cosine = cosine > 0 ? cosine : 0;
-            d2 = d2 > FLT_MIN ? d2 : FLT_MIN; // 0/0 becomes 0
+            cosine = largerOf(cosine, 0);
+            d2 = largerOf(d2, FLT_MIN); // 0/0 becomes 0
             cosine = cosine / sqrtf(d2);
             r[l] += light.r * cosine;
             g[l] += light.g * cosine;
@@ -55,11 +95,11 @@ void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vpl
             float here =
                 surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z; // d times the cosine here,
             float there = -(light.nx * x + light.ny * y + light.nz * z);      // and at the light
-            here = here > 0 ? here : 0;
-            there = there > 0 ? there : 0;
-            d2 = d2 > FLT_MIN ? d2 : FLT_MIN;
+            here = largerOf(here, 0);
+            there = largerOf(there, 0);
+            d2 = largerOf(d2, FLT_MIN);
             float inverse = 1 / d2;
-            float bounded = inverse < inverseBound ? inverse : inverseBound;
+            float bounded = smallerOf(inverse, inverseBound);
             // cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is 0, not infinity / infinity.
             float geometry = (here * inverse) * (there * bounded);
             r[l] += light.r * geometry;
@@ -72,31 +112,56 @@ void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vpl
     memcpy(irradiance[2], b, sizeof b);
 }
 
+// Cosine towards an emitter, without its falloff; also the vector to it, its squared length and its length.
+static inline float cosineTo(const vplSurface* surface, int l, const vplEmitterRay* e, bool parallel,
+                             float way[3], float* d2, float* d)
+{
+    way[0] = parallel ? -e->direction.x : e->position.x - surface->px[l];
+    way[1] = parallel ? -e->direction.y : e->position.y - surface->py[l];
+    way[2] = parallel ? -e->direction.z : e->position.z - surface->pz[l];
+    const float square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+    const float c = surface->nx[l] * way[0] + surface->ny[l] * way[1] + surface->nz[l] * way[2];
+    *d2 = square > FLT_MIN ? square : FLT_MIN;
+    *d = sqrtf(*d2);
+    return (c > 0 ? c : 0) / *d;
+}
+
+static inline bool anyPositive(const float cosine[VPL_LANES])
+{
+    int any = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        any |= cosine[l] > 0;
+    }
+    return any;
+}
+
 // Directional: n.l. Point: n.l / d^2. Spot: that times the smooth step of its cone (see vplSpot_Falloff).
 bool VPL_KERNEL(vplEmitterCosine)(const vplSurface* restrict surface, const vplEmitterRay* emitter,
                                   float cosine[restrict VPL_LANES])
 {
     const vplEmitterRay e = *emitter;
-    float largest = 0;
+    float way[3], d2, d;
+    if (e.parallel) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            cosine[l] = cosineTo(surface, l, &e, true, way, &d2, &d);
+        }
+        return anyPositive(cosine);
+    }
+    if (!e.spot) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            const float c = cosineTo(surface, l, &e, false, way, &d2, &d);
+            cosine[l] = e.falloff ? c / d2 : c;
+        }
+        return anyPositive(cosine);
+    }
     for (int l = 0; l < VPL_LANES; l++) {
-        float x = e.position.x - surface->px[l], y = e.position.y - surface->py[l],
-              z = e.position.z - surface->pz[l];
-        x = e.parallel ? -e.direction.x : x;
-        y = e.parallel ? -e.direction.y : y;
-        z = e.parallel ? -e.direction.z : z;
-        float d2 = x * x + y * y + z * z;
-        float c = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z;
-        c = c > 0 ? c : 0;
-        d2 = d2 > FLT_MIN ? d2 : FLT_MIN;
-        float d = sqrtf(d2);
-        c = c / d;
-        c = e.falloff && !e.parallel ? c / d2 : c;
-        float axis = -(e.direction.x * x + e.direction.y * y + e.direction.z * z) / d;
+        float c = cosineTo(surface, l, &e, false, way, &d2, &d);
+        c = e.falloff ? c / d2 : c;
+        const float axis = -(e.direction.x * way[0] + e.direction.y * way[1] + e.direction.z * way[2]) / d;
         float step = (axis - e.cosOuter) * e.inverseRing;
         step = step > 0 ? step : 0;
         step = step < 1 ? step : 1;
-        cosine[l] = e.spot ? c * (step * step * (3 - 2 * step)) : c;
-        largest = cosine[l] > largest ? cosine[l] : largest;
+        cosine[l] = c * (step * step * (3 - 2 * step));
     }
-    return largest > 0;
+    return anyPositive(cosine);
 }

@@ -30,8 +30,7 @@ vplResult vplRecordPasses(const vplShading* shading, vplRaster* raster, void** u
 {
     const vplShadeDef* def = shading->def;
     const vplShadingKernels kernels = vplGetShadingKernels(shading->geometry->context->isa);
-    const bool one = def->accumulation == VPL_ACCUMULATE_MULTIPASS;
-    const int batch = one ? 1 : def->batch;
+    const int batch = def->accumulation == VPL_ACCUMULATE_MULTIPASS ? 1 : def->batch;
     const size_t objects = (size_t)shading->geometry->objectCount;
     const size_t passes = 1 + ((size_t)def->lightCount + (size_t)batch - 1) / (size_t)batch;
     vplPassUniforms* uniforms = vplAlloc(shading->geometry->context, objects * passes, sizeof *uniforms);
@@ -46,21 +45,19 @@ vplResult vplRecordPasses(const vplShading* shading, vplRaster* raster, void** u
         result = vplRaster_TileTask(raster, kernels.fold, NULL);
     }
     vplPipeline equal = vplDefaultPipeline();
-    equal.fragment = one ? kernels.oneLight : kernels.lightBatch;
+    equal.passes = kernels.lights;
     equal.depthCompare = VPL_DEPTH_EQUAL;
     equal.depthWrite = false;
     equal.ownerTest = true;
-    equal.blend = one ? VPL_BLEND_ADD : VPL_BLEND_REPLACE;
-    equal.readsPlanes = !one;
+    equal.blend = VPL_BLEND_ADD;
     equal.planeMask = 7u << VPL_PLANE_IRRADIANCE;
     for (int first = 0; first < def->lightCount && result == VPL_SUCCESS; first += batch) {
         int count = def->lightCount - first < batch ? def->lightCount - first : batch;
         uniforms += objects;
         result = recordPass(shading, raster, equal, uniforms, first, count);
-        bool last = first + count == def->lightCount;
-        if (result == VPL_SUCCESS && (last || (one && (first + 1) % VPL_LIGHT_GROUP == 0))) {
-            result = vplRaster_TileTask(raster, kernels.fold, NULL);
-        }
+    }
+    if (result == VPL_SUCCESS && def->lightCount > 0) {
+        result = vplRaster_TileTask(raster, kernels.fold, NULL);
     }
     return result == VPL_SUCCESS ? vplRaster_TileTask(raster, kernels.resolve, (void*)shading) : result;
 }

@@ -25,7 +25,8 @@ static inline vplPoints pointsOf(const vplPassUniforms* u, const vplFragments* f
     return points;
 }
 
-vplFragmentFcn VPL_KERNEL(vplShadeDirect), VPL_KERNEL(vplShadeOneLight), VPL_KERNEL(vplShadeLightBatch);
+vplFragmentFcn VPL_KERNEL(vplShadeDirect);
+vplPassesFcn VPL_KERNEL(vplShadeLights);
 vplTileFcn VPL_KERNEL(vplFoldTile), VPL_KERNEL(vplResolveTile);
 
 void VPL_KERNEL(vplShadeDirect)(const void* uniforms, vplFragments* f)
@@ -41,40 +42,38 @@ void VPL_KERNEL(vplShadeDirect)(const void* uniforms, vplFragments* f)
     memcpy(f->plane[VPL_PLANE_TRIANGLE], id, sizeof id);
 }
 
-void VPL_KERNEL(vplShadeOneLight)(const void* uniforms, vplFragments* f)
+// A full group of a block moves from its planes to the sums.
+static void foldBlock(vplFragments* f)
 {
-    const vplPassUniforms* u = uniforms;
-    const vplShading* s = u->shading;
-    memset(f->plane, 0, 3 * sizeof f->plane[0]);
-    if (s->def->lightShadows == NULL && !s->def->lightRays) {
-        s->lightKernel((const vplSurface*)f->varying[0], s->def->lights + u->first, 1, s->inverseBound,
-                       f->plane);
-        return;
-    }
     vplTileSums* sums = f->scratch;
-    const vplPoints points = pointsOf(u, f);
-    vplIndirectIrradiance(s, &points, u->first, 1, f->plane, &sums->shadowRays);
+    for (int c = 0; c < 3; c++) {
+        double sum[VPL_LANES];
+        memcpy(sum, sums->irradiance[c] + f->element, sizeof sum);
+        for (int l = 0; l < VPL_LANES; l++) {
+            const float part = f->plane[c][l];
+            sum[l] += f->covered[l] ? (double)part : 0.0;
+            f->plane[c][l] = 0;
+        }
+        memcpy(sums->irradiance[c] + f->element, sum, sizeof sum);
+    }
 }
 
-// Several lights in one pass. The framebuffer's part of the group goes through the kernel as its starting
-// value, and full groups are folded here, so that each light is added in the same order as one by one.
-void VPL_KERNEL(vplShadeLightBatch)(const void* uniforms, vplFragments* f)
+// Passes of one light or several each; passes that follow each other use lights that follow each other (see
+// vplRecordPasses). The framebuffer's part of the group goes through the kernel as its starting value, so that
+// each light is added in the same order however many share a pass, and however many passes a call.
+void VPL_KERNEL(vplShadeLights)(const void* const* uniforms, int count, vplFragments* f)
 {
-    const vplPassUniforms* u = uniforms;
+    const vplPassUniforms *u = uniforms[0], *last = uniforms[count - 1];
     vplTileSums* sums = f->scratch;
     const vplPoints points = pointsOf(u, f);
-    const int end = u->first + u->count;
+    const int end = last->first + last->count;
     for (int first = u->first; first < end;) {
         const int groupEnd = (first / VPL_LIGHT_GROUP + 1) * VPL_LIGHT_GROUP;
         const int next = groupEnd < end ? groupEnd : end;
         vplIndirectIrradiance(u->shading, &points, first, next - first, f->plane, &sums->shadowRays);
         first = next;
-        for (int c = 0; next == groupEnd && c < 3; c++) {
-            for (int l = 0; l < VPL_LANES; l++) {
-                double* sum = &sums->irradiance[c][f->element + l];
-                *sum += f->covered[l] ? (double)f->plane[c][l] : 0.0;
-                f->plane[c][l] = 0;
-            }
+        if (first == groupEnd) {
+            foldBlock(f);
         }
     }
 }

@@ -110,6 +110,16 @@ static float inverseSquare(float distance)
     return distance > 0 ? 1 / (distance * distance) : INFINITY;
 }
 
+// Whether any shadow is found by rays, which want their tree before tasks begin.
+static bool castsRays(const vplShadeDef* def)
+{
+    bool casts = def->lampCount > 0 || (def->lightCount > 0 && def->lightShadows == NULL && def->lightRays);
+    for (int i = 0; i < def->emitterCount; i++) {
+        casts = casts || def->emitters[i].type == VPL_EMITTER_DIRECTIONAL || def->shadows[i].map == NULL;
+    }
+    return casts;
+}
+
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut)
 {
@@ -148,6 +158,9 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     }
     if (result == VPL_SUCCESS && deferred) {
         result = makeColumns(&shading);
+    }
+    if (result == VPL_SUCCESS && def->output == VPL_OUTPUT_RADIANCE && castsRays(def)) {
+        result = vplGeometry_PrepareRays(geometry);
     }
     if (result == VPL_SUCCESS) {
         result = vplRaster_Create(context, &framebuffer, &raster);

@@ -111,11 +111,10 @@ void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, i
 
 // What runs per block or per tile, compiled for an instruction set.
 typedef struct vplShadingKernels {
-    vplFragmentFcn* surface;    // surface shader of all camera passes
-    vplFragmentFcn* gbuffer;    // fragment shaders: the deferred pass,
-    vplFragmentFcn* direct;     // emitters,
-    vplFragmentFcn* oneLight;   // one virtual light,
-    vplFragmentFcn* lightBatch; // several
+    vplFragmentFcn* surface; // surface shader of all camera passes
+    vplFragmentFcn* gbuffer; // fragment shaders: the deferred pass,
+    vplFragmentFcn* direct;  // emitters,
+    vplPassesFcn* lights;    // passes of virtual lights
     vplTileFcn* light; // tile tasks, data is the vplShading: lights the G-buffer and writes the picture,
     vplTileFcn* interleaved; // lights each pixel by the lights of its class,
     vplTaskFcn* gather;      // tasks, data is the vplShading: mixes the classes,

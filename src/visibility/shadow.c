@@ -67,6 +67,11 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
         shadow.def.biasDynamic = 5.6f * shadow.def.biasStatic;
     }
     makeOffsets(&shadow);
+    for (int i = 0; i < def->pcfSamples; i++) {
+        const float x = shadow.offsets[i][0], y = shadow.offsets[i][1];
+        // A hair longer, for the rounding here and where a sample is placed.
+        shadow.reach = fmaxf(shadow.reach, sqrtf(x * x + y * y) * shadow.def.pcfOffset * 1.00001f);
+    }
     *shadowOut = shadow;
     return VPL_SUCCESS;
 }
@@ -82,9 +87,14 @@ float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine)
     return bias[0];
 }
 
+int vplShadow_FactorBlockTold(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
+{
+    return FACTOR[shadow->map->context->isa](shadow, surface, factorOut);
+}
+
 void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
 {
-    FACTOR[shadow->map->context->isa](shadow, surface, factorOut);
+    vplShadow_FactorBlockTold(shadow, surface, factorOut);
 }
 
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal)

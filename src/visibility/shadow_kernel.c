@@ -9,6 +9,7 @@
 // is within reach). A bias of r minus that never shadows the plane by itself.
 #include "base/isa.h"
 #include "visibility/cube_texel.h"
+#include "visibility/gather.h"
 #include "visibility/shadow.h"
 
 static inline float maxOf(float a, float b)
@@ -63,10 +64,9 @@ static void discFrame(const float* restrict lx, const float* restrict ly, const 
     }
 }
 
-// How many samples lie in shadow, by lane.
-static void countShadowed(const vplShadow* shadow, const float* restrict x, const float* restrict y,
-                          const float* restrict z, float axis[6][VPL_LANES], const float* restrict limit,
-                          float* restrict shadowed)
+// How many samples lie in shadow, all lanes sample by sample.
+static void countShadowed(const vplShadow* shadow, const vplShadowPoints* restrict p,
+                          const float axis[6][VPL_LANES], float* restrict shadowed)
 {
     const vplCubeMap* map = shadow->map;
     const float* restrict texels = map->texels;
@@ -79,48 +79,175 @@ static void countShadowed(const vplShadow* shadow, const float* restrict x, cons
         const float u = off * shadow->offsets[s][0], v = off * shadow->offsets[s][1];
         int32_t place[VPL_LANES];
         for (int l = 0; l < VPL_LANES; l++) {
-            float dx = x[l] + (u * axis[0][l] + v * axis[3][l]);
-            float dy = y[l] + (u * axis[1][l] + v * axis[4][l]);
-            float dz = z[l] + (u * axis[2][l] + v * axis[5][l]);
+            float dx = p->x[l] + (u * axis[0][l] + v * axis[3][l]);
+            float dy = p->y[l] + (u * axis[1][l] + v * axis[4][l]);
+            float dz = p->z[l] + (u * axis[2][l] + v * axis[5][l]);
             vplCubeTexel t = vplCubeTexelOf(dx, dy, dz);
             int32_t column = vplTexelIndex(t.s, sizeF, last), row = vplTexelIndex(t.t, sizeF, last);
             place[l] = (t.face * size + row) * size + column;
         }
+        float stored[VPL_LANES];
+        vplGather(texels, place, stored);
         for (int l = 0; l < VPL_LANES; l++) {
-            shadowed[l] += limit[l] > texels[place[l]] * far ? 1.0f : 0.0f;
+            shadowed[l] += p->limit[l] > stored[l] * far ? 1.0f : 0.0f;
+        }
+    }
+}
+
+// The samples' places on the disc, metres; whole vectors of them.
+typedef struct Disc {
+    float u[VPL_MAX_PCF_SAMPLES], v[VPL_MAX_PCF_SAMPLES];
+} Disc;
+
+static void scaleDisc(const vplShadow* shadow, Disc* restrict disc)
+{
+    const float off = shadow->def.pcfOffset;
+    for (int first = 0; first < shadow->def.pcfSamples; first += VPL_LANES) {
+        for (int l = first; l < first + VPL_LANES; l++) {
+            disc->u[l] = off * shadow->offsets[l][0];
+            disc->v[l] = off * shadow->offsets[l][1];
+        }
+    }
+}
+
+// How many samples of one point lie in shadow, 16 at a time.
+static float countPoint(const vplShadow* shadow, const vplShadowPoints* restrict p, int lane,
+                        const float axis[6][VPL_LANES], const Disc* restrict disc)
+{
+    const vplCubeMap* map = shadow->map;
+    const float* restrict texels = map->texels;
+    const int32_t size = map->size, last = size - 1, samples = shadow->def.pcfSamples;
+    const float sizeF = (float)size, far = map->far;
+    const float x = p->x[lane], y = p->y[lane], z = p->z[lane], limit = p->limit[lane];
+    const float ux = axis[0][lane], uy = axis[1][lane], uz = axis[2][lane];
+    const float vx = axis[3][lane], vy = axis[4][lane], vz = axis[5][lane];
+    int32_t count = 0;
+    for (int32_t first = 0; first < samples; first += VPL_LANES) {
+        const float* restrict u = disc->u + first;
+        const float* restrict v = disc->v + first;
+        int32_t place[VPL_LANES];
+        for (int l = 0; l < VPL_LANES; l++) {
+            vplCubeTexel t = vplCubeTexelOf(x + (u[l] * ux + v[l] * vx), y + (u[l] * uy + v[l] * vy),
+                                            z + (u[l] * uz + v[l] * vz));
+            int32_t column = vplTexelIndex(t.s, sizeF, last), row = vplTexelIndex(t.t, sizeF, last);
+            place[l] = (t.face * size + row) * size + column;
+        }
+        float stored[VPL_LANES];
+        vplGather(texels, place, stored);
+        for (int l = 0; l < VPL_LANES; l++) {
+            count += (limit > stored[l] * far) & (first + l < samples);
+        }
+    }
+    return (float)count;
+}
+
+// A point or an axis in the axes of a face. Only signs change, so that sums keep their bits.
+typedef struct InFace {
+    float right, up, major;
+} InFace;
+
+static InFace turn(int32_t face, float x, float y, float z)
+{
+    const bool negative = face & 1;
+    if (face >= 4) {
+        return (InFace){negative ? -x : x, y, negative ? -z : z};
+    }
+    if (face >= 2) {
+        return (InFace){x, negative ? z : -z, negative ? -y : y};
+    }
+    return (InFace){negative ? z : -z, y, negative ? -x : x};
+}
+
+// The same where all samples lie in one face, without finding out for each which one.
+static float countPointInFace(const vplShadow* shadow, const vplShadowPoints* restrict p, int lane,
+                              const float axis[6][VPL_LANES], const Disc* restrict disc)
+{
+    const vplCubeMap* map = shadow->map;
+    const int32_t size = map->size, last = size - 1, samples = shadow->def.pcfSamples, face = p->face[lane];
+    const float* restrict texels = map->texels + (size_t)face * (size_t)size * (size_t)size;
+    const float sizeF = (float)size, far = map->far, limit = p->limit[lane];
+    const InFace at = turn(face, p->x[lane], p->y[lane], p->z[lane]);
+    const InFace alongU = turn(face, axis[0][lane], axis[1][lane], axis[2][lane]);
+    const InFace alongV = turn(face, axis[3][lane], axis[4][lane], axis[5][lane]);
+    int32_t count = 0;
+    for (int32_t first = 0; first < samples; first += VPL_LANES) {
+        const float* restrict u = disc->u + first;
+        const float* restrict v = disc->v + first;
+        int32_t place[VPL_LANES];
+        for (int l = 0; l < VPL_LANES; l++) {
+            float right = at.right + (u[l] * alongU.right + v[l] * alongV.right);
+            float up = at.up + (u[l] * alongU.up + v[l] * alongV.up);
+            float major = at.major + (u[l] * alongU.major + v[l] * alongV.major);
+            int32_t column = vplTexelIndex((right / major + 1) * 0.5f, sizeF, last);
+            int32_t row = vplTexelIndex((1 - up / major) * 0.5f, sizeF, last);
+            place[l] = row * size + column;
+        }
+        float stored[VPL_LANES];
+        vplGather(texels, place, stored);
+        for (int l = 0; l < VPL_LANES; l++) {
+            count += (limit > stored[l] * far) & (first + l < samples);
+        }
+    }
+    return (float)count;
+}
+
+// Counts where the map's bounds do not tell.
+static void countUnknown(const vplShadow* shadow, const vplShadowPoints* p, const float axis[6][VPL_LANES],
+                         const int32_t known[VPL_LANES], float shadowed[VPL_LANES])
+{
+    Disc disc;
+    scaleDisc(shadow, &disc);
+    for (int l = 0; l < VPL_LANES; l++) {
+        if (!known[l]) {
+            shadowed[l] = p->face[l] >= 0 ? countPointInFace(shadow, p, l, axis, &disc)
+                                          : countPoint(shadow, p, l, axis, &disc);
         }
     }
 }
 
 vplShadowFactorFcn VPL_KERNEL(vplShadowFactor);
+extern vplShadowWindowFcn VPL_KERNEL(vplShadowWindow);
 
-void VPL_KERNEL(vplShadowFactor)(const vplShadow* shadow, const vplSurface* surface, float* restrict factor)
+int VPL_KERNEL(vplShadowFactor)(const vplShadow* shadow, const vplSurface* surface, float* restrict factor)
 {
-    const vplVec3 p = shadow->map->position;
-    float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES]; // from the light to the fragment: the document's -l
+    const vplVec3 light = shadow->map->position;
+    vplShadowPoints p;
     float lx[VPL_LANES], ly[VPL_LANES], lz[VPL_LANES], distance[VPL_LANES], cosine[VPL_LANES];
-    float bias[VPL_LANES], limit[VPL_LANES], axis[6][VPL_LANES], shadowed[VPL_LANES];
+    float bias[VPL_LANES], axis[6][VPL_LANES], shadowed[VPL_LANES];
+    int32_t known[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        x[l] = surface->px[l] - p.x;
-        y[l] = surface->py[l] - p.y;
-        z[l] = surface->pz[l] - p.z;
-        distance[l] = sqrtf(x[l] * x[l] + y[l] * y[l] + z[l] * z[l]);
+        const float x = surface->px[l] - light.x, y = surface->py[l] - light.y, z = surface->pz[l] - light.z;
+        distance[l] = sqrtf(x * x + y * y + z * z);
         float inverse = 1 / maxOf(distance[l], 1e-30f); // a fragment in the light itself is not shadowed
-        lx[l] = -x[l] * inverse;
-        ly[l] = -y[l] * inverse;
-        lz[l] = -z[l] * inverse;
+        lx[l] = -x * inverse;
+        ly[l] = -y * inverse;
+        lz[l] = -z * inverse;
         float c = lx[l] * surface->nx[l] + ly[l] * surface->ny[l] + lz[l] * surface->nz[l];
         c = c > 0 ? c : 0;
         cosine[l] = c < 1 ? c : 1;
+        p.x[l] = x;
+        p.y[l] = y;
+        p.z[l] = z;
+        p.inverse[l] = inverse;
     }
     VPL_KERNEL(vplShadowBias)(shadow, distance, cosine, bias);
-    discFrame(lx, ly, lz, axis);
     for (int l = 0; l < VPL_LANES; l++) {
-        limit[l] = distance[l] - bias[l];
+        p.limit[l] = distance[l] - bias[l];
     }
-    countShadowed(shadow, x, y, z, axis, limit, shadowed);
+    int told = 0;
+    if (shadow->map->bounds == NULL || shadow->def.pcfSamples < VPL_MIN_BOUND_SAMPLES) {
+        discFrame(lx, ly, lz, axis);
+        countShadowed(shadow, &p, axis, shadowed);
+    } else {
+        told = VPL_KERNEL(vplShadowWindow)(shadow, &p, known, shadowed);
+        if (told < VPL_LANES) {
+            discFrame(lx, ly, lz, axis);
+            countUnknown(shadow, &p, axis, known, shadowed);
+        }
+    }
     const float samples = (float)shadow->def.pcfSamples;
     for (int l = 0; l < VPL_LANES; l++) {
         factor[l] = shadowed[l] / samples;
     }
+    return told;
 }

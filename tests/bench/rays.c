@@ -1,69 +1,48 @@
 // SPDX-License-Identifier: MIT
-// Rays, measured and checked: bench/rays SCENE [--agree N] [--runs N]
-//   without --agree  millions of rays a second, one thread, for coherent rays (a camera's), diffuse ones (from
-//                    what the camera sees, by the cosine) and shadow rays (from there to one point), through the
-//                    tree, all blocks, and Intel Embree's rtcIntersect1 where it was found at build time
-//   --agree N        that tree and all blocks give the same bits for N rays, and how many they were
-#include "base/context.h"
+// How fast rays are: bench/rays SCENE [--runs N] [--isa NAME] [--all] [--only KIND]
+// Millions of rays per second of processor time, on one thread, medians of alternated runs, and as a share of Intel
+// Embree's (robust scene, built at high quality) where it was found at build time. The last line is the time to build
+// the tree against Embree's at medium quality, on one thread and on all. --all: also without a tree.
+// --only: rays of this number in the table, and no building.
+#include "bench.h"
+#include "embree.h"
 #include "base/clock.h"
-#include "base/rng.h"
-#include "geometry/bvh.h"
 #include "math/sampling.h"
-#include "math/vec.h"
-
-#include <vpl/vpl.h>
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#ifdef HAVE_EMBREE
-#include <embree3/rtcore.h>
-#endif
+enum { SIDE = 512, MOST_RAYS = SIDE * SIDE, MOST_RUNS = 63 };
 
-enum { SIDE = 512, MOST_RAYS = SIDE * SIDE };
+typedef enum Kind { COHERENT, DIFFUSE, RANDOM, RANDOM_ANY, SHADOW, SHADOW_16, KIND_COUNT } Kind;
+
+static const char* const KINDS[KIND_COUNT] = {"coherent",   "diffuse", "random closest",
+                                              "random any", "shadow",  "shadow, 16 at once"};
 
 typedef struct Bench {
     vplContext* context;
+    vplScene* scene;
     vplGeometry* geometry;
     vplBvh *tree, *all;
-    vplTraceClosestFcn* closest;
-    vplTraceAnyFcn* any;
     vplRay* rays;
-    float* limits; // of shadow rays
     int rayCount;
 } Bench;
 
-static void check(vplResult result)
+static float unit(int index, uint32_t stream, int word)
 {
-    if (result != VPL_SUCCESS) {
-        fprintf(stderr, "%s\n", vplResult_GetName(result));
-        exit(1);
-    }
-}
-
-static void say(void* user, vplLogLevel level, const char* message)
-{
-    (void)user;
-    if (level == VPL_LOG_ERROR) {
-        fprintf(stderr, "%s\n", message);
-    }
-}
-
-static float unit(uint64_t index, uint32_t stream, int word)
-{
-    return vplUnitFloat(vplRandomAt(1, stream, index).v[word]);
+    return vplUnitFloat(vplRandomAt(1, stream, (uint64_t)index).v[word]);
 }
 
 // ---- rays to measure
 
-static void makeCameraRays(Bench* b, const vplScene* scene)
+// In blocks of 4 x 4 pixels, as they are shaded.
+static void makeCameraRays(Bench* b)
 {
-    const vplView v = vplView_Create(vplScene_GetCamera(scene, 0), SIDE, SIDE);
+    const vplView v = vplView_Create(vplScene_GetCamera(b->scene, 0), SIDE, SIDE);
     for (int i = 0; i < MOST_RAYS; i++) {
-        float sx = (float)((2 * (i % SIDE + 0.5) / SIDE - 1) / v.scaleX);
-        float sy = (float)((1 - 2 * (i / SIDE + 0.5) / SIDE) / v.scaleY);
+        const int block = i / 16, x = block % (SIDE / 4) * 4 + i % 4, y = block / (SIDE / 4) * 4 + i % 16 / 4;
+        float sx = (float)((2 * (x + 0.5) / SIDE - 1) / v.scaleX);
+        float sy = (float)((1 - 2 * (y + 0.5) / SIDE) / v.scaleY);
         vplVec3 d = vplAdd(v.forward, vplAdd(vplScale(sx, v.right), vplScale(sy, v.up)));
         b->rays[i] = (vplRay){vplAdd(v.eye, vplScale((float)v.near, d)), d, {0, 0}};
     }
@@ -82,294 +61,195 @@ static void followRays(Bench* b, bool shadow)
             continue;
         }
         vplVec3 n = vplDot(hit.normal, b->rays[i].direction) > 0 ? vplNegate(hit.normal) : hit.normal;
-        vplVec3 d = shadow ? vplSub(light, hit.position)
-                           : vplSampleCosineAround(n, unit((uint64_t)i, 0, 0), unit((uint64_t)i, 0, 1));
+        vplVec3 d =
+            shadow ? vplSub(light, hit.position) : vplSampleCosineAround(n, unit(i, 0, 0), unit(i, 0, 1));
         b->rays[count++] = vplGeometry_Leave(b->geometry, &hit, d);
     }
     b->rayCount = count;
 }
 
-static double median(double* values, int count)
+// From anywhere in the bounds to anywhere else.
+static void makeRandomRays(Bench* b)
 {
-    for (int i = 1; i < count; i++) {
-        for (int k = i; k > 0 && values[k - 1] > values[k]; k--) {
-            double swap = values[k];
-            values[k] = values[k - 1];
-            values[k - 1] = swap;
+    const vplVec3 low = b->geometry->boundsMin, size = vplSub(b->geometry->boundsMax, low);
+    for (int i = 0; i < MOST_RAYS; i++) {
+        vplVec3 ends[2];
+        for (uint32_t k = 0; k < 2; k++) {
+            ends[k] = vplVec(low.x + unit(i, k, 0) * size.x, low.y + unit(i, k, 1) * size.y,
+                             low.z + unit(i, k, 2) * size.z);
         }
+        b->rays[i] = (vplRay){ends[0], vplSub(ends[1], ends[0]), {0, 0}};
     }
-    return values[count / 2];
+    b->rayCount = MOST_RAYS;
 }
 
-// Sums hits so that nothing is optimised away, and so that engines can be compared.
-static double traceAll(const Bench* b, const vplBvh* bvh, bool shadow, int rays)
+static void makeRays(Bench* b, Kind kind)
 {
-    double hits = 0;
-    for (int i = 0; i < rays; i++) {
-        if (shadow) {
-            hits += b->any(bvh, &b->rays[i], 1);
-        } else {
-            vplRawHit hit;
-            b->closest(bvh, &b->rays[i], INFINITY, &hit);
-            hits += hit.triangle >= 0;
+    if (kind == RANDOM || kind == RANDOM_ANY) {
+        makeRandomRays(b);
+    } else {
+        makeCameraRays(b);
+        if (kind != COHERENT) {
+            followRays(b, kind != DIFFUSE);
         }
+    }
+}
+
+// ---- engines; each returns the number of hits, so that nothing is optimised away and engines can be compared
+
+static int traceAll(const Bench* b, const vplBvh* bvh, Kind kind, int count)
+{
+    const vplIsa isa = vplContext_GetIsa(b->context);
+    int hits = 0;
+    for (int i = 0; i < count && kind <= RANDOM; i++) {
+        vplRawHit hit;
+        vplGetTraceClosest(isa)(bvh, &b->rays[i], INFINITY, &hit);
+        hits += hit.triangle >= 0;
+    }
+    for (int i = 0; i < count && (kind == RANDOM_ANY || kind == SHADOW); i++) {
+        hits += vplGetTraceAny(isa)(bvh, &b->rays[i], 1);
+    }
+    for (int i = 0; i < count && kind == SHADOW_16; i += VPL_RAY_PACKET) {
+        const int lanes = count - i < VPL_RAY_PACKET ? count - i : VPL_RAY_PACKET;
+        vplRayPacket packet = {0};
+        for (int lane = 0; lane < lanes; lane++) {
+            vplRayPacket_Set(&packet, lane, &b->rays[i + lane]);
+        }
+        hits += __builtin_popcount(vplGetTraceAnyPacket(isa)(bvh, &packet, 1));
     }
     return hits;
 }
 
+// ---- measuring
+
 #ifdef HAVE_EMBREE
-static RTCScene makeEmbree(const Bench* b)
+static EmbreeWay wayOf(Kind kind)
 {
+    return (EmbreeWay){.any = kind >= RANDOM_ANY,
+                       .packets = kind == SHADOW_16,
+                       .coherent = kind == COHERENT || kind >= SHADOW};
+}
+#endif
+
+static void measure(Bench* b, int runs, bool brute, int only)
+{
+#ifdef HAVE_EMBREE
     RTCDevice device = rtcNewDevice("threads=1");
-    RTCScene scene = rtcNewScene(device);
-    RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const vplGeometry* g = b->geometry;
-    float* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                              3 * sizeof(float), (size_t)g->vertexCount);
-    uint32_t* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                3 * sizeof(uint32_t), (size_t)g->triangleCount);
-    memcpy(vertices, g->positions, (size_t)g->vertexCount * sizeof *g->positions);
-    for (int i = 0; i < g->triangleCount; i++) {
-        for (int k = 0; k < 3; k++) {
-            indices[3 * i + k] = g->indices[3 * i + k] + (uint32_t)g->objects[g->owners[i]].firstVertex;
-        }
-    }
-    rtcCommitGeometry(mesh);
-    rtcAttachGeometry(scene, mesh);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-    rtcCommitScene(scene);
-    return scene;
-}
-
-static double traceEmbree(const Bench* b, RTCScene scene, bool shadow, int rays)
-{
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    double hits = 0;
-    for (int i = 0; i < rays; i++) {
-        const vplRay* r = &b->rays[i];
-        struct RTCRayHit q;
-        q.ray = (struct RTCRay){.org_x = r->origin.x,
-                                .org_y = r->origin.y,
-                                .org_z = r->origin.z,
-                                .dir_x = r->direction.x,
-                                .dir_y = r->direction.y,
-                                .dir_z = r->direction.z,
-                                .tnear = 1e-5f,
-                                .tfar = shadow ? 1 : INFINITY,
-                                .mask = ~0u};
-        q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        if (shadow) {
-            rtcOccluded1(scene, &context, &q.ray);
-            hits += q.ray.tfar < 0;
-        } else {
-            rtcIntersect1(scene, &context, &q);
-            hits += q.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-        }
-    }
-    return hits;
-}
+    RTCScene embree = makeEmbree(device, b->geometry, RTC_BUILD_QUALITY_HIGH);
+    rtcCommitScene(embree);
 #endif
-
-static void measure(Bench* b, const vplScene* scene, int runs)
-{
-    static const char* const kinds[] = {"coherent", "diffuse", "shadow"};
-    printf("%-10s %10s %10s %10s   %s\n", "rays", "tree M/s", "all M/s", "Embree M/s",
+    printf("%-20s %10s %10s %10s   %s\n", "rays", "tree M/s", "all M/s", "Embree M/s",
            "tree / Embree (hits)");
-#ifdef HAVE_EMBREE
-    RTCScene embree = makeEmbree(b);
-#endif
-    for (int kind = 0; kind < 3; kind++) {
-        makeCameraRays(b, scene);
-        if (kind > 0) {
-            followRays(b, kind == 2);
+    for (Kind kind = 0; kind < KIND_COUNT; kind++) {
+        if (only >= 0 && (int)kind != only) {
+            continue;
         }
-        double speed[3][32] = {{0}}, hits[3] = {0};
-        const int few = b->all->blockCount <= 1024 ? b->rayCount / (1 + b->all->blockCount / 64) : 0;
+        makeRays(b, kind);
+        double speed[3][MOST_RUNS] = {{0}};
+        int hits[3] = {0};
+        const int few = brute ? b->rayCount / (1 + b->all->blockCount / 64) : 0;
         for (int run = 0; run < runs; run++) {
-            double start = vplClockMs();
-            hits[0] = traceAll(b, b->tree, kind == 2, b->rayCount);
-            speed[0][run] = b->rayCount / (vplClockMs() - start) / 1e3;
-            start = vplClockMs();
-            traceAll(b, b->all, kind == 2, few);
-            speed[1][run] = few / (vplClockMs() - start) / 1e3;
+            double start = vplCpuMs();
+            hits[0] = traceAll(b, b->tree, kind, b->rayCount);
+            speed[0][run] = b->rayCount / (vplCpuMs() - start) / 1e3;
+            start = vplCpuMs();
+            hits[1] = traceAll(b, b->all, kind, few);
+            speed[1][run] = few / (vplCpuMs() - start) / 1e3;
 #ifdef HAVE_EMBREE
-            start = vplClockMs();
-            hits[2] = traceEmbree(b, embree, kind == 2, b->rayCount);
-            speed[2][run] = b->rayCount / (vplClockMs() - start) / 1e3;
+            start = vplCpuMs();
+            hits[2] = traceEmbree(embree, b->rays, b->rayCount, wayOf(kind));
+            speed[2][run] = b->rayCount / (vplCpuMs() - start) / 1e3;
 #endif
         }
         double tree = median(speed[0], runs), peer = median(speed[2], runs);
-        printf("%-10s %10.2f %10.2f %10.2f   %.2f (%.0f, %.0f)\n", kinds[kind], tree, median(speed[1], runs),
+        printf("%-20s %10.2f %10.2f %10.2f   %.2f (%d, %d)\n", KINDS[kind], tree, median(speed[1], runs),
                peer, peer > 0 ? tree / peer : 0, hits[0], hits[2]);
     }
+#ifdef HAVE_EMBREE
+    rtcReleaseScene(embree);
+    rtcReleaseDevice(device);
+#endif
 }
 
-// ---- agreement
-
-static vplVec3 cornerOf(const vplGeometry* g, uint32_t word, int k)
+// One thread by processor time, more by the clock on the wall.
+static void measureBuild(const char* path, int workers, int runs)
 {
-    int triangle = (int)(word % (uint32_t)g->triangleCount);
-    uint32_t index = g->indices[3 * (size_t)triangle + (size_t)k];
-    return g->positions[(uint32_t)g->objects[g->owners[triangle]].firstVertex + index];
-}
-
-static vplVec3 mix(vplVec3 a, vplVec3 b, float t)
-{
-    return vplAdd(vplScale(1 - t, a), vplScale(t, b));
-}
-
-// Ray i: anywhere in the bounds; from one edge to another; along an edge; in the plane of a triangle; along an
-// axis from a corner.
-static vplRay makeTestRay(const vplGeometry* g, uint64_t i)
-{
-    const vplRandom4 a = vplRandomAt(7, 1, i), b = vplRandomAt(7, 2, i);
-    const float s = vplUnitFloat(a.v[0]), t = vplUnitFloat(a.v[1]);
-    vplVec3 from = cornerOf(g, a.v[2], 0), to = cornerOf(g, b.v[2], 0);
-    vplVec3 size = vplSub(g->boundsMax, g->boundsMin);
-    vplRay ray = {vplVec(g->boundsMin.x + s * size.x, g->boundsMin.y + t * size.y,
-                         g->boundsMin.z + vplUnitFloat(a.v[3]) * size.z),
-                  vplSampleSphere(vplUnitFloat(b.v[0]), vplUnitFloat(b.v[1])),
-                  {0, 0}};
-    switch (i % 8) {
-    case 3:
-        ray.origin = mix(from, cornerOf(g, a.v[2], 1), s);
-        ray.direction = vplSub(mix(to, cornerOf(g, b.v[2], 1), t), ray.origin);
-        break;
-    case 4: // at an edge, from anywhere
-        ray.direction = vplSub(mix(to, cornerOf(g, b.v[2], 1), t), ray.origin);
-        break;
-    case 5:
-        ray.direction = vplSub(cornerOf(g, a.v[2], 1), from);
-        ray.origin = vplSub(from, vplScale(s < 0.5f ? 0 : t, ray.direction));
-        break;
-    case 6:
-        ray.origin = mix(from, cornerOf(g, a.v[2], 2), 3 * s - 1);
-        ray.direction = vplSub(mix(from, cornerOf(g, a.v[2], 1), t), ray.origin);
-        break;
-    case 7:
-        ray.origin = from;
-        ray.direction =
-            vplVec(b.v[0] % 3 == 0 ? 1.0f : 0.0f, b.v[0] % 3 == 1 ? -1.0f : 0.0f, b.v[0] % 3 == 2);
-        break;
-    default:
-        break;
+    Bench b = {0};
+    double (*const now)(void) = workers == 1 ? vplCpuMs : vplClockMs;
+    openScene(path, workers, VPL_ISA_AUTO, &b.context, &b.scene);
+    check(vplGeometry_Create(b.scene, &b.geometry));
+    double ms[2][MOST_RUNS] = {{0}};
+#ifdef HAVE_EMBREE
+    char config[64];
+    snprintf(config, sizeof config, "threads=%d", vplContext_GetWorkerCount(b.context));
+    RTCDevice device = rtcNewDevice(config);
+#endif
+    for (int run = 0; run < runs; run++) {
+        double start = now();
+        check(vplBvh_Create(b.geometry, 0, false, &b.tree));
+        ms[0][run] = now() - start;
+        vplBvh_Destroy(b.context, b.tree);
+#ifdef HAVE_EMBREE
+        RTCScene embree = makeEmbree(device, b.geometry, RTC_BUILD_QUALITY_MEDIUM);
+        start = now();
+        rtcCommitScene(embree);
+        ms[1][run] = now() - start;
+        rtcReleaseScene(embree);
+#endif
     }
-    if (!(vplLength(ray.direction) > 0)) {
-        ray.direction = vplVec(0, 0, 1);
-    }
-    return ray;
+#ifdef HAVE_EMBREE
+    rtcReleaseDevice(device);
+#endif
+    double tree = median(ms[0], runs), peer = median(ms[1], runs);
+    printf("build, %d threads: tree %.2f ms, Embree %.2f ms, %.2f of its speed\n",
+           vplContext_GetWorkerCount(b.context), tree, peer, peer / tree);
+    vplGeometry_Destroy(b.geometry);
+    vplScene_Destroy(b.scene);
+    vplContext_Destroy(b.context);
 }
 
-enum { CHUNK = 1024 };
-
-typedef struct Agreement {
-    const Bench* bench;
-    int64_t count;
-    int64_t *hits, *wrong; // per chunk
-} Agreement;
-
-// The closest of all triangles for each of CHUNK rays. Blocks in groups that stay in cache, rays inside.
-static void testAll(const Bench* b, const vplRay* rays, int count, vplRawHit* truth)
+static vplIsa isaOf(const char* name)
 {
-    enum { GROUP = 64 };
-    for (int first = 0; first < b->all->blockCount; first += GROUP) {
-        vplBvh group = *b->all;
-        group.blocks += first;
-        group.blockCount = group.blockCount - first < GROUP ? group.blockCount - first : GROUP;
-        for (int i = 0; i < count; i++) {
-            vplRawHit hit;
-            b->closest(&group, &rays[i], INFINITY, &hit);
-            bool better = hit.t < truth[i].t || (hit.t == truth[i].t && hit.triangle < truth[i].triangle);
-            if (hit.triangle >= 0 && (better || truth[i].triangle < 0)) {
-                truth[i] = hit;
-            }
+    for (vplIsa isa = 0; isa < VPL_ISA_COUNT; isa++) {
+        if (strcmp(name, vplIsa_GetName(isa)) == 0) {
+            return isa;
         }
     }
-}
-
-static void compareChunk(void* data, int chunk, int worker)
-{
-    (void)worker;
-    const Agreement* a = data;
-    const Bench* b = a->bench;
-    const int64_t from = (int64_t)chunk * CHUNK;
-    const int count = a->count - from < CHUNK ? (int)(a->count - from) : CHUNK;
-    vplRay rays[CHUNK];
-    vplRawHit truth[CHUNK];
-    for (int i = 0; i < count; i++) {
-        rays[i] = makeTestRay(b->geometry, (uint64_t)(from + i));
-        truth[i] = (vplRawHit){INFINITY, 0, 0, -1, 0};
-    }
-    testAll(b, rays, count, truth);
-    for (int i = 0; i < count; i++) {
-        vplRawHit hit;
-        b->closest(b->tree, &rays[i], INFINITY, &hit);
-        hit.blocks = truth[i].blocks = 0;
-        // Up to the hit nothing may be, and just beyond it something must.
-        const bool found = truth[i].triangle >= 0,
-                   any = b->any(b->tree, &rays[i], nextafterf(truth[i].t, INFINITY)),
-                   before = b->any(b->tree, &rays[i], truth[i].t);
-        a->hits[chunk] += found;
-        a->wrong[chunk] += memcmp(&hit, &truth[i], sizeof hit) != 0 || any != found || (found && before);
-    }
-}
-
-static int agree(const Bench* b, int64_t count)
-{
-    const int chunks = (int)((count + CHUNK - 1) / CHUNK);
-    Agreement a = {b, count, calloc((size_t)chunks, sizeof(int64_t)),
-                   calloc((size_t)chunks, sizeof(int64_t))};
-    vplParallelFor(b->context, chunks, compareChunk, &a);
-    int64_t hits = 0, wrong = 0;
-    for (int i = 0; i < chunks; i++) {
-        hits += a.hits[i];
-        wrong += a.wrong[i];
-    }
-    printf("%lld rays, %lld hits, %lld differences\n", (long long)count, (long long)hits, (long long)wrong);
-    free(a.hits);
-    free(a.wrong);
-    return wrong != 0;
+    return VPL_ISA_AUTO;
 }
 
 int main(int argc, char** argv)
 {
-    int64_t count = 0;
-    int runs = 5;
-    for (int i = 2; i + 1 < argc; i += 2) {
-        if (strcmp(argv[i], "--agree") == 0) {
-            count = atoll(argv[i + 1]);
-        } else if (strcmp(argv[i], "--runs") == 0) {
-            runs = atoi(argv[i + 1]);
-        }
+    int runs = 7, only = -1;
+    bool brute = false;
+    vplIsa isa = VPL_ISA_AUTO;
+    for (int i = 2; i < argc; i++) {
+        const char* value = i + 1 < argc ? argv[i + 1] : "";
+        brute = brute || strcmp(argv[i], "--all") == 0;
+        runs = strcmp(argv[i], "--runs") == 0 ? atoi(value) : runs;
+        only = strcmp(argv[i], "--only") == 0 ? atoi(value) : only;
+        isa = strcmp(argv[i], "--isa") == 0 ? isaOf(value) : isa;
     }
+    runs = runs < 1 ? 1 : runs > MOST_RUNS ? MOST_RUNS : runs;
     Bench b = {0};
-    vplContextDef def = vplDefaultContextDef();
-    def.log = say;
-    check(vplContext_Create(&def, &b.context));
-    vplScene* scene;
-    check(vplScene_Load(b.context, argc > 1 ? argv[1] : "examples/scenes/room.json", &scene));
-    check(vplGeometry_Create(scene, &b.geometry));
-    double start = vplClockMs();
-    check(vplBvh_Create(b.geometry, 0, &b.tree));
-    printf("%d triangles, tree built in %.1f ms: %d nodes, %d blocks\n", b.geometry->triangleCount,
-           vplClockMs() - start, b.tree->nodeCount, b.tree->blockCount);
-    check(vplBvh_Create(b.geometry, 1 << 30, &b.all));
-    b.closest = vplGetTraceClosest(vplContext_GetIsa(b.context));
-    b.any = vplGetTraceAny(vplContext_GetIsa(b.context));
+    const char* path = argc > 1 ? argv[1] : "examples/scenes/room.json";
+    openScene(path, 0, isa, &b.context, &b.scene);
+    check(vplGeometry_Create(b.scene, &b.geometry));
+    check(vplBvh_Create(b.geometry, 0, false, &b.tree));
+    check(vplBvh_Create(b.geometry, 1 << 30, false, &b.all));
+    printf("%s, %s: %d triangles, %d nodes, %d blocks\n", path, vplIsa_GetName(vplContext_GetIsa(b.context)),
+           b.geometry->triangleCount, b.tree->nodeCount, b.tree->blockCount);
     b.rays = malloc(MOST_RAYS * sizeof *b.rays);
-    int code = 0;
-    if (count > 0) {
-        code = agree(&b, count);
-    } else {
-        measure(&b, scene, runs < 32 ? runs : 32);
-    }
+    measure(&b, runs, brute, only);
     free(b.rays);
     vplBvh_Destroy(b.context, b.tree);
     vplBvh_Destroy(b.context, b.all);
     vplGeometry_Destroy(b.geometry);
-    vplScene_Destroy(scene);
+    vplScene_Destroy(b.scene);
     vplContext_Destroy(b.context);
-    return code;
+    if (only < 0) {
+        measureBuild(path, 1, runs);
+        measureBuild(path, 0, runs);
+    }
+    return 0;
 }

@@ -27,6 +27,7 @@ failed=0
 . "$folder/numbers.sh"
 . "$folder/pictures.sh"
 . "$folder/tradeoff.sh"
+. "$folder/bench.sh"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+// The rasterizer by itself: how fast it fills, and what triangles cost that fill nothing.
+#include "cli/bench.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// ---- whole pictures: triangles that cover all of it, one layer nearer than the other
+
+enum { LAYERS = 8 };
+
+static const uint32_t COVER_INDICES[3] = {0, 1, 2};
+static const vplMesh COVER = {COVER_INDICES, 3, 1};
+
+// The triangle (-1, -1), (3, -1), (-1, 3) at a depth.
+static void coverVertices(const void* uniforms, int first, int count, const vplVertices* out)
+{
+    const float* depth = uniforms;
+    for (int i = 0; i < count; i++) {
+        out->x[i] = first + i == 1 ? 3 : -1;
+        out->y[i] = first + i == 2 ? 3 : -1;
+        out->z[i] = *depth;
+        out->w[i] = 1;
+    }
+}
+
+static void constantFragments(const void* uniforms, vplFragments* f)
+{
+    (void)uniforms;
+    for (int p = 0; p < 4; p++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            f->plane[p][l] = (float)(p + 1);
+        }
+    }
+}
+
+static uint64_t hashFloats(const float* values, size_t count)
+{
+    uint64_t hash = 0;
+    for (size_t i = 0; i < count; i += 97) {
+        uint32_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        hash = (hash ^ bits) * 0x9E3779B97F4A7C15u;
+    }
+    return hash;
+}
+
+// Runs what was recorded, in which `plane` is kept for the hash.
+static vplResult runRaster(vplRaster* raster, const float* plane, size_t count, Outcome* outcome)
+{
+    vplRasterStats stats;
+    vplResult result = vplRaster_Run(raster, NULL, NULL, &stats);
+    if (result == VPL_SUCCESS) {
+        outcome->drawCalls = stats.drawCalls;
+        outcome->fragments = stats.fragments;
+        outcome->triangles = stats.trianglesIn;
+        outcome->hash = hashFloats(plane, count);
+    }
+    return result;
+}
+
+vplResult runFill(Bench* b, const Stage* stage, Outcome* outcome)
+{
+    (void)stage;
+    const int width = b->image->width, height = b->image->height;
+    float depths[LAYERS];
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(width, height);
+    framebuffer.depth.pixels = b->image->pixels; // room for three
+    vplRaster* raster;
+    vplResult result = vplRaster_Create(b->context, &framebuffer, &raster);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplPipeline pipeline = vplDefaultPipeline();
+    pipeline.vertex = coverVertices;
+    for (int i = 0; i < LAYERS && result == VPL_SUCCESS; i++) {
+        depths[i] = (float)(LAYERS - i) / (LAYERS + 1);
+        pipeline.vertexUniforms = &depths[i];
+        result = vplRaster_Draw(raster, &COVER, &pipeline);
+    }
+    if (result == VPL_SUCCESS) {
+        result = runRaster(raster, b->image->pixels, (size_t)width * (size_t)height, outcome);
+    }
+    outcome->work = (double)outcome->fragments;
+    outcome->unit = "fragments";
+    vplRaster_Destroy(raster);
+    return result;
+}
+
+vplResult runAdditiveFill(Bench* b, const Stage* stage, Outcome* outcome)
+{
+    (void)stage;
+    const int width = b->image->width, height = b->image->height;
+    const float depth = 0.5f;
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(width, height);
+    framebuffer.planeCount = 4;
+    framebuffer.planes[0].pixels = b->image->pixels;
+    vplRaster* raster;
+    vplResult result = vplRaster_Create(b->context, &framebuffer, &raster);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplPipeline pipeline = vplDefaultPipeline();
+    pipeline.vertex = coverVertices;
+    pipeline.vertexUniforms = &depth;
+    for (int i = 0; i <= LAYERS && result == VPL_SUCCESS; i++) {
+        result = vplRaster_Draw(raster, &COVER, &pipeline);
+        pipeline.depthCompare = VPL_DEPTH_EQUAL;
+        pipeline.depthWrite = false;
+        pipeline.blend = VPL_BLEND_ADD;
+        pipeline.fragment = constantFragments;
+    }
+    if (result == VPL_SUCCESS) {
+        result = runRaster(raster, b->image->pixels, (size_t)width * (size_t)height, outcome);
+    }
+    outcome->work = (double)outcome->fragments;
+    outcome->unit = "fragments";
+    vplRaster_Destroy(raster);
+    return result;
+}
+
+// ---- small triangles: squares of 2 x 2 pixels, two triangles each
+
+typedef struct Grid {
+    int columns; // of vertices
+    float stepX, stepY;
+} Grid;
+
+// Leaning, so that depth has a slope.
+static void gridVertices(const void* uniforms, int first, int count, const vplVertices* out)
+{
+    const Grid* g = uniforms;
+    for (int i = 0; i < count; i++) {
+        int column = (first + i) % g->columns, row = (first + i) / g->columns;
+        out->x[i] = -1 + g->stepX * (float)column;
+        out->y[i] = 1 - g->stepY * (float)row;
+        out->z[i] = 0.25f + 1e-4f * (float)(column % 8 + row % 4);
+        out->w[i] = 1;
+    }
+}
+
+static void fillGrid(int columns, int rows, uint32_t* indices)
+{
+    for (int y = 0; y + 1 < rows; y++) {
+        for (int x = 0; x + 1 < columns; x++) {
+            uint32_t at = (uint32_t)(y * columns + x), below = at + (uint32_t)columns;
+            const uint32_t corners[6] = {at, below, at + 1, at + 1, below, below + 1};
+            memcpy(indices, corners, sizeof corners);
+            indices += 6;
+        }
+    }
+}
+
+vplResult runSmallTriangles(Bench* b, const Stage* stage, Outcome* outcome)
+{
+    (void)stage;
+    const int width = b->image->width, height = b->image->height;
+    const int columns = width / 2 + 1, rows = height / 2 + 1, triangles = 2 * (columns - 1) * (rows - 1);
+    const Grid grid = {columns, 4.0f / (float)width, 4.0f / (float)height};
+    uint32_t* indices = malloc(3 * (size_t)triangles * sizeof *indices + 1);
+    if (indices == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    fillGrid(columns, rows, indices);
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(width, height);
+    framebuffer.depth.pixels = b->image->pixels;
+    const vplMesh mesh = {indices, columns * rows, triangles};
+    vplPipeline pipeline = vplDefaultPipeline();
+    pipeline.vertex = gridVertices;
+    pipeline.vertexUniforms = &grid;
+    vplRaster* raster = NULL;
+    vplResult result = vplRaster_Create(b->context, &framebuffer, &raster);
+    if (result == VPL_SUCCESS) {
+        result = vplRaster_Draw(raster, &mesh, &pipeline);
+    }
+    if (result == VPL_SUCCESS) {
+        result = runRaster(raster, b->image->pixels, (size_t)width * (size_t)height, outcome);
+    }
+    outcome->work = (double)outcome->triangles;
+    outcome->unit = "triangles";
+    vplRaster_Destroy(raster);
+    free(indices);
+    return result;
+}

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+// A ray against the triangles of a block and against the children of a node: what the ray kernels share. Included
+// by kernels only, so that it is compiled once per instruction set; all give the same bits.
+// Based on: Sven Woop, Carsten Benthin and Ingo Wald, Watertight Ray/Triangle Intersection, JCGT 2013; Thiago
+// Ize, Robust BVH Ray Traversal, JCGT 2013 (rounding of the box test).
+// Departs: a hit must also lie in its triangle's own box, by the very arithmetic that tests nodes. That
+// arithmetic is monotone, so the box of a node is never missed by a ray that meets a box inside: the tree
+// gives the same bits as testing every triangle, for all rays.
+#ifndef VPL_GEOMETRY_RAY_TESTS_H
+#define VPL_GEOMETRY_RAY_TESTS_H
+
+#include "base/isa.h"
+#include "geometry/bvh.h"
+#include "geometry/four.h"
+
+#include <math.h>
+#include <string.h>
+
+// The scalar kernels are the plain loops that the others are compared with.
+#define VPL_PLAIN_scalar 1
+#if defined(__AVX__) && !VPL_JOIN(VPL_PLAIN, VPL_KERNEL_ISA)
+#include <immintrin.h>
+#define VPL_MOVEMASK 1
+#endif
+
+enum { WIDTH = VPL_BVH_WIDTH };
+
+// Bit i of the result: flags[i], which is 0 or -1, is -1. gcc 12 makes eight shifts and three ors of the loop, at
+// the end of every test: the one instruction for it is worth 1.1x of all rays (bench/rays, room and Sponza).
+static inline uint32_t collectBits(const int32_t flags[WIDTH])
+{
+#ifdef VPL_MOVEMASK
+    return (uint32_t)_mm256_movemask_ps(_mm256_loadu_ps((const float*)flags));
+#else
+    uint32_t bits = 0;
+    for (int i = 0; i < WIDTH; i++) {
+        bits |= (uint32_t)(flags[i] & 1) << i;
+    }
+    return bits;
+#endif
+}
+
+// A ray prepared for both tests. The triangle test works in axes (kx, ky, kz) where the ray runs along z.
+typedef struct Prepared {
+    vplFour origin, inverse;   // the last is not used
+    int nearRow[3], farRow[3]; // offsets in bytes of rows of vplBvhNode.planes
+    float sx, sy, sz;
+    int kx, ky, kz;
+    int skipFirst, skipCount;
+} Prepared;
+
+enum { ROW = WIDTH * sizeof(float) };
+
+static inline void setRows(Prepared* p, int axis)
+{
+    p->nearRow[axis] = ROW * (p->inverse[axis] < 0 ? axis + 3 : axis);
+    p->farRow[axis] = ROW * (p->inverse[axis] < 0 ? axis : axis + 3);
+}
+
+// The axis of the largest component. Without branches: those of random rays would be mispredicted.
+static inline int longestAxis(float x, float y, float z)
+{
+    x = fabsf(x);
+    y = fabsf(y);
+    const float most = x > y ? x : y;
+    const int axis = x > y ? 0 : 1;
+    return most > fabsf(z) ? axis : 2;
+}
+
+static inline Prepared prepare(const vplRay* ray)
+{
+    static const int next[4] = {1, 2, 0, 1};
+    Prepared p;
+    const float d[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
+    p.origin = (vplFour){ray->origin.x, ray->origin.y, ray->origin.z, 0};
+    p.kz = longestAxis(d[0], d[1], d[2]);
+    p.kx = next[p.kz];
+    p.ky = next[p.kz + 1];
+    const vplFour shear = (vplFour){d[p.kx], d[p.ky], 1, 1} / vplFour_Of(d[p.kz]);
+    p.sx = shear[0];
+    p.sy = shear[1];
+    p.sz = shear[2];
+    vplFour divisor = {1, 1, 1, 1};
+    for (int k = 0; k < 3; k++) {
+        // Not 1/0: 0 times infinity is no number. A slab that the ray does not leave is made too wide to decide.
+        divisor[k] = fabsf(d[k]) > 0x1p-126f ? d[k] : copysignf(0x1p-126f, d[k]);
+    }
+    p.inverse = 1 / divisor;
+    for (int k = 0; k < 3; k++) {
+        setRows(&p, k);
+    }
+    p.skipFirst = ray->skip.first;
+    p.skipCount = ray->skip.count;
+    return p;
+}
+
+// Edge functions of one triangle again in double where a float came out as exactly 0: rounding never turns a
+// sign, but it can hide one.
+static void edgesInDouble(const float a[2], const float b[2], const float c[2], float* u, float* v, float* w)
+{
+    *u = (float)((double)c[0] * b[1] - (double)c[1] * b[0]);
+    *v = (float)((double)a[0] * c[1] - (double)a[1] * c[0]);
+    *w = (float)((double)b[0] * a[1] - (double)b[1] * a[0]);
+}
+
+// Tests the triangles of a block. Bit i of the result: lane i was hit; without bits the outputs are not set.
+static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vplTriangleBlock* block,
+                                                    float* restrict t, float* restrict b1, float* restrict b2)
+{
+    float x[3][WIDTH], y[3][WIDTH], z[3][WIDTH], u[WIDTH], v[WIDTH], w[WIDTH];
+    int32_t flags[WIDTH];
+    const float ox = r->origin[r->kx], oy = r->origin[r->ky], oz = r->origin[r->kz];
+    const float sx = r->sx, sy = r->sy, sz = r->sz;
+    for (int corner = 0; corner < 3; corner++) {
+        const float* restrict px = block->p[corner][r->kx];
+        const float* restrict py = block->p[corner][r->ky];
+        const float* restrict pz = block->p[corner][r->kz];
+        for (int i = 0; i < WIDTH; i++) {
+            float dz = pz[i] - oz;
+            x[corner][i] = (px[i] - ox) - sx * dz;
+            y[corner][i] = (py[i] - oy) - sy * dz;
+            z[corner][i] = sz * dz;
+        }
+    }
+    for (int i = 0; i < WIDTH; i++) {
+        u[i] = x[2][i] * y[1][i] - y[2][i] * x[1][i];
+        v[i] = x[0][i] * y[2][i] - y[0][i] * x[2][i];
+        w[i] = x[1][i] * y[0][i] - y[1][i] * x[0][i];
+        flags[i] = -((u[i] == 0) | (v[i] == 0) | (w[i] == 0));
+    }
+    for (uint32_t zeros = collectBits(flags); zeros != 0; zeros &= zeros - 1) {
+        const int i = __builtin_ctz(zeros);
+        const float a[2] = {x[0][i], y[0][i]}, b[2] = {x[1][i], y[1][i]}, c[2] = {x[2][i], y[2][i]};
+        edgesInDouble(a, b, c, &u[i], &v[i], &w[i]);
+    }
+    const uint32_t first = (uint32_t)r->skipFirst, count = (uint32_t)r->skipCount;
+    for (int i = 0; i < WIDTH; i++) {
+        float least = u[i] < v[i] ? u[i] : v[i], most = u[i] > v[i] ? u[i] : v[i];
+        least = least < w[i] ? least : w[i];
+        most = most > w[i] ? most : w[i];
+        uint32_t id = (uint32_t)block->id[i]; // unused lanes: beyond all
+        flags[i] = -(((least >= 0) | (most <= 0)) & (id - first >= count) & (id < 0x80000000u));
+    }
+    if (collectBits(flags) == 0) { // most blocks
+        return 0;
+    }
+    for (int i = 0; i < WIDTH; i++) {
+        float det = u[i] + v[i] + w[i];
+        float inverse = 1 / (det != 0 ? det : 1);
+        float distance = (u[i] * z[0][i] + v[i] * z[1][i] + w[i] * z[2][i]) * inverse;
+        t[i] = distance;
+        b1[i] = v[i] * inverse;
+        b2[i] = w[i] * inverse;
+        flags[i] &= -((det != 0) & (distance > 0) & (distance < INFINITY));
+    }
+    return collectBits(flags);
+}
+
+// Where a ray enters a box and where it leaves it: planes minus origin times the inverse of the direction.
+static inline float slabEntry(float x, float y, float z)
+{
+    float t = x > y ? x : y;
+    t = t > z ? t : z;
+    return t > 0 ? t : 0;
+}
+
+// Later by 16 rounding units than the planes say: slabs are off by 6, the corners in the triangle test by 6 more
+// (and by what vplBoundTriangle adds). Without it a ray from afar that the triangle test gives to one side of an
+// edge misses the box of that side: 204 of the 96000 rays of SharedEdgesLetNothingThrough fell through.
+static inline float slabExit(float x, float y, float z)
+{
+    float t = x < y ? x : y;
+    return (t < z ? t : z) * (1 + 0x1p-20f);
+}
+
+static inline const float* rowAt(const vplBvhNode* node, int offset)
+{
+    return (const float*)((const char*)node + offset);
+}
+
+// Entry distances of a node's children. Bit i of the result: child i is met, and before `limit`.
+static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, float limit,
+                                 float* restrict entry)
+{
+    const float* restrict nearX = rowAt(node, r->nearRow[0]);
+    const float* restrict nearY = rowAt(node, r->nearRow[1]);
+    const float* restrict nearZ = rowAt(node, r->nearRow[2]);
+    const float* restrict farX = rowAt(node, r->farRow[0]);
+    const float* restrict farY = rowAt(node, r->farRow[1]);
+    const float* restrict farZ = rowAt(node, r->farRow[2]);
+    const float ox = r->origin[0], oy = r->origin[1], oz = r->origin[2];
+    const float ix = r->inverse[0], iy = r->inverse[1], iz = r->inverse[2];
+    int32_t met[WIDTH];
+    for (int i = 0; i < WIDTH; i++) {
+        float in = slabEntry((nearX[i] - ox) * ix, (nearY[i] - oy) * iy, (nearZ[i] - oz) * iz);
+        float out = slabExit((farX[i] - ox) * ix, (farY[i] - oy) * iy, (farZ[i] - oz) * iz);
+        entry[i] = in;
+        met[i] = -((in <= out) & (in <= limit));
+    }
+    return collectBits(met);
+}
+
+// Moves a hit into its triangle's box, which is that of vplBoundTriangle; +infinity where the ray misses the box.
+static __attribute__((noinline)) float clampToBox(const Prepared* r, const vplTriangleBlock* block, int lane,
+                                                  float t)
+{
+    vplFour corner[3];
+    for (int i = 0; i < 3; i++) {
+        corner[i] = (vplFour){block->p[i][0][lane], block->p[i][1][lane], block->p[i][2][lane], 0};
+    }
+    const vplFour low = vplFour_Min(corner[0], vplFour_Min(corner[1], corner[2]));
+    const vplFour high = vplFour_Max(corner[0], vplFour_Max(corner[1], corner[2]));
+    const vplFour size = high - low, magnitude = vplFour_Max(-low, high);
+    float extent = size[0] > size[1] ? size[0] : size[1];
+    float largest = magnitude[0] > magnitude[1] ? magnitude[0] : magnitude[1];
+    extent = extent > size[2] ? extent : size[2];
+    largest = largest > magnitude[2] ? largest : magnitude[2];
+    const float pad = extent * 0x1p-20f + largest * 0x1p-22f;
+    const vplFour a = (low - pad - r->origin) * r->inverse, b = (high + pad - r->origin) * r->inverse;
+    const vplFour in = vplFour_Min(a, b), out = vplFour_Max(a, b);
+    const float entry = slabEntry(in[0], in[1], in[2]), exit = slabExit(out[0], out[1], out[2]);
+    t = t > entry ? t : entry;
+    t = t < exit ? t : exit;
+    return entry <= exit && t > 0 ? t : INFINITY;
+}
+
+static inline bool hasHitBelow(const Prepared* r, const vplTriangleBlock* block, float limit)
+{
+    float t[WIDTH], b1[WIDTH], b2[WIDTH];
+    for (uint32_t hits = testBlock(r, block, t, b1, b2); hits != 0; hits &= hits - 1) {
+        const int i = __builtin_ctz(hits);
+        if (clampToBox(r, block, i, t[i]) < limit) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether the subtree of `child` has a hit. In the order of the children: to sort by distance costs more than it
+// saves.
+static inline bool hasHitInTree(const Prepared* r, const vplBvh* bvh, int32_t child, float limit)
+{
+    int32_t stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1];
+    int height = 0;
+    for (;;) {
+        if (child >= 0) {
+            const vplBvhNode* node = &bvh->nodes[child];
+            float entry[WIDTH];
+            uint32_t hits = testBoxes(r, node, limit, entry);
+            if (hits != 0) {
+                for (; (hits & (hits - 1)) != 0;) {
+                    const int last = 31 - __builtin_clz(hits);
+                    hits ^= 1u << last;
+                    stack[height++] = node->child[last];
+                }
+                child = node->child[__builtin_ctz(hits)];
+                continue;
+            }
+        } else if (hasHitBelow(r, &bvh->blocks[~child], limit)) {
+            return true;
+        }
+        if (height == 0) {
+            return false;
+        }
+        child = stack[--height];
+    }
+}
+
+#endif

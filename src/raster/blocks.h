@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+// Draws one block of a triangle: depth, owner, planes. Included by the tile kernel only.
+#ifndef VPL_RASTER_BLOCKS_H
+#define VPL_RASTER_BLOCKS_H
+
+#include "raster/coverage.h"
+#include "raster/shaders.h"
+#include "raster/shares.h"
+#include "raster/tiny.h"
+
+#include <math.h>
+
+typedef struct Draw {
+    vplTileState* state;
+    const vplRaster* raster;
+    const vplPipeline* pipeline;
+    const vplShaded* shaded;
+    const Batch* batch;
+    int place, owner; // of the triangle: in its batch, and its name among owners
+    Shares* shares;   // of the triangle, once they are needed
+    float texel;      // of a view of 90 by 90 degrees, whose half is 1
+    bool hasShares, keep, depthOnly, distances, rejects, tightens;
+} Draw;
+
+// -1 where a depth passes the test against the one that is there.
+static inline int32_t passes(vplDepthCompare compare, float depth, float old)
+{
+    switch (compare) {
+    case VPL_DEPTH_LESS:
+        return depth < old ? -1 : 0;
+    case VPL_DEPTH_LESS_EQUAL:
+        return depth <= old ? -1 : 0;
+    case VPL_DEPTH_EQUAL:
+        return depth == old ? -1 : 0;
+    case VPL_DEPTH_ALWAYS:
+        break;
+    }
+    return -1;
+}
+
+// Lanes that pass owner and depth test stay covered; 0 if there are none. `compare` is a constant where this is
+// called, so that each test is a loop without branches.
+static inline int32_t testLanes(vplTileState* state, vplDepthCompare compare, bool ownerTest, int owner,
+                                int at)
+{
+    vplFragments* f = &state->block;
+    int32_t covered[VPL_LANES], owners[VPL_LANES], any = 0;
+    float depth[VPL_LANES], old[VPL_LANES];
+    memcpy(covered, f->covered, sizeof covered);
+    memcpy(depth, f->depth, sizeof depth);
+    memcpy(old, state->depth + at, sizeof old);
+    if (ownerTest) {
+        memcpy(owners, state->owner + at, sizeof owners);
+        for (int l = 0; l < VPL_LANES; l++) {
+            covered[l] &= owners[l] == owner ? -1 : 0;
+        }
+    }
+    for (int l = 0; l < VPL_LANES; l++) {
+        covered[l] &= passes(compare, depth[l], old[l]);
+        any |= covered[l];
+    }
+    memcpy(f->covered, covered, sizeof covered);
+    return any;
+}
+
+static inline int32_t testFragments(vplTileState* state, const vplPipeline* p, int owner, int at)
+{
+    switch (p->depthCompare) {
+    case VPL_DEPTH_LESS:
+        return testLanes(state, VPL_DEPTH_LESS, p->ownerTest, owner, at);
+    case VPL_DEPTH_LESS_EQUAL:
+        return testLanes(state, VPL_DEPTH_LESS_EQUAL, p->ownerTest, owner, at);
+    case VPL_DEPTH_EQUAL:
+        return testLanes(state, VPL_DEPTH_EQUAL, p->ownerTest, owner, at);
+    case VPL_DEPTH_ALWAYS:
+        break;
+    }
+    return testLanes(state, VPL_DEPTH_ALWAYS, p->ownerTest, owner, at);
+}
+
+static inline void needShares(Draw* d)
+{
+    if (!d->hasShares) {
+        const vplTriangle t = triangleOf(d->batch, d->place);
+        setUpShares(d->raster, &t, d->shaded, d->shares);
+        d->hasShares = true;
+    }
+}
+
+// Interpolates, and runs the surface shader.
+static void makeSurface(Draw* d)
+{
+    vplFragments* f = &d->state->block;
+    if (d->shaded->varyingCount == 0 && !d->pipeline->needsW) {
+        return;
+    }
+    needShares(d);
+    interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
+    if (d->pipeline->surface != NULL) {
+        d->pipeline->surface(d->pipeline->vertexUniforms, f);
+    }
+}
+
+static void keepBlock(vplTileState* state)
+{
+    const vplFragments* f = &state->block;
+    vplKeptBlock* kept = (vplKeptBlock*)(state->kept + (size_t)state->keptCount++ * state->keptStride);
+    float* to = (float*)(kept + 1);
+    kept->x = f->x;
+    kept->y = f->y;
+    kept->element = f->element;
+    kept->primitive = f->primitive;
+    kept->count = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        kept->covered[l] = f->covered[l];
+        kept->count -= f->covered[l];
+    }
+    memcpy(to, f->depth, sizeof f->depth);
+    memcpy(to + VPL_LANES, f->w, sizeof f->w);
+    memcpy(to + 2 * VPL_LANES, f->varying, (size_t)keptVaryings(state) * sizeof f->varying[0]);
+}
+
+// Fragments by lane. Neighbouring blocks count in different places: none waits for the one before.
+static inline int32_t* countersOf(vplTileState* state, int at)
+{
+    return state->fragmentLanes[at / VPL_LANES % VPL_COUNTERS];
+}
+
+// Depth and nothing else. Lanes are copied first, so that the compiler need not ask whether arrays overlap.
+static inline void drawDepth(vplTileState* state, const Setup* s, double z, int at, bool filled)
+{
+    int32_t* counts = countersOf(state, at);
+    float depth[VPL_LANES];
+    int32_t covered[VPL_LANES];
+    memcpy(depth, state->depth + at, sizeof depth);
+    memcpy(covered, state->block.covered, sizeof covered);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float v = clampDepth(z + s->laneZ[l]), kept = depth[l];
+        const int32_t passed = (filled ? -1 : covered[l]) & (v < kept ? -1 : 0);
+        depth[l] = passed ? v : kept;
+        counts[l] -= passed;
+    }
+    memcpy(state->depth + at, depth, sizeof depth);
+}
+
+// Distance from the eye and nothing else. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the
+// Cube Shadow Map"; departs: w is turned into a distance by the texel's own direction.
+static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
+{
+    vplTileState* state = d->state;
+    const float scale = d->pipeline->distanceScale, texel = d->texel;
+    const float left = (float)(state->tile.x + x), top = (float)(state->tile.y + y);
+    int32_t* counts = countersOf(state, at);
+    float depth[VPL_LANES], share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES];
+    int32_t covered[VPL_LANES];
+    memcpy(depth, state->depth + at, sizeof depth);
+    memcpy(covered, state->block.covered, sizeof covered);
+    shareOf(d->shares, 0, state->tile.x + x, state->tile.y + y, share0);
+    shareOf(d->shares, 1, state->tile.x + x, state->tile.y + y, share1);
+    shareOf(d->shares, 2, state->tile.x + x, state->tile.y + y, share2);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float s = (left + (float)(l & 3) + 0.5f) * texel - 1;
+        const float t = 1 - (top + (float)(l >> 2) + 0.5f) * texel;
+        const float w = 1 / (share0[l] + share1[l] + share2[l]);
+        const float v = w * sqrtf(1 + s * s + t * t) * scale, kept = depth[l];
+        const int32_t passed = (filled ? -1 : covered[l]) & (v < kept ? -1 : 0);
+        depth[l] = passed ? v : kept;
+        counts[l] -= passed;
+    }
+    memcpy(state->depth + at, depth, sizeof depth);
+}
+
+static inline void writeDepth(vplTileState* state, int owner, int at)
+{
+    const vplFragments* f = &state->block;
+    float depth[VPL_LANES];
+    memcpy(depth, state->depth + at, sizeof depth);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float drawn = f->depth[l], kept = depth[l];
+        depth[l] = f->covered[l] ? drawn : kept;
+    }
+    memcpy(state->depth + at, depth, sizeof depth);
+    if (state->owner != NULL) {
+        int32_t owners[VPL_LANES];
+        memcpy(owners, state->owner + at, sizeof owners);
+        for (int l = 0; l < VPL_LANES; l++) {
+            const int32_t kept = owners[l];
+            owners[l] = f->covered[l] ? owner : kept;
+        }
+        memcpy(state->owner + at, owners, sizeof owners);
+    }
+}
+
+// Depth, owners and planes, as the pipeline says, of the lanes in f->covered.
+static void drawFragments(Draw* d, const Setup* s, double z)
+{
+    vplTileState* state = d->state;
+    const vplPipeline* p = d->pipeline;
+    vplFragments* f = &state->block;
+    const int at = f->element;
+    if (p->writesDepth) {
+        makeSurface(d);
+        runFragmentShader(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
+    } else {
+        for (int l = 0; l < VPL_LANES; l++) {
+            f->depth[l] = clampDepth(z + s->laneZ[l]);
+        }
+    }
+    if (!testFragments(state, p, d->owner, at)) {
+        return;
+    }
+    if (d->keep) {
+        makeSurface(d);
+        keepBlock(state);
+        return;
+    }
+    int32_t* counts = countersOf(state, at);
+    for (int l = 0; l < VPL_LANES; l++) {
+        counts[l] -= f->covered[l];
+    }
+    if (p->depthWrite) {
+        writeDepth(state, d->owner, at);
+    }
+    if (p->fragment != NULL) {
+        if (!p->writesDepth) {
+            makeSurface(d);
+            runFragmentShader(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
+        }
+        blendPlanes(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
+    }
+}
+
+// z: depth in lane 0. `edge`: edge functions there; NULL: all lanes are inside the triangle and the picture.
+static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y, double z,
+                                                            const int32_t edge[3])
+{
+    vplTileState* state = d->state;
+    vplFragments* f = &state->block;
+    const bool filled = edge == NULL;
+    const int block = (y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
+    if (!filled && !cover(&state->tile, s, edge, x, y, f->covered)) {
+        return;
+    }
+    if (d->distances) {
+        if (filled) {
+            drawDistance(d, x, y, block * VPL_LANES, true);
+        } else {
+            drawDistance(d, x, y, block * VPL_LANES, false);
+        }
+        return;
+    }
+    if (d->depthOnly) {
+        if (filled) {
+            drawDepth(state, s, z, block * VPL_LANES, true);
+        } else {
+            drawDepth(state, s, z, block * VPL_LANES, false);
+        }
+        return;
+    }
+    if (filled) {
+        memset(f->covered, 0xff, sizeof f->covered);
+    }
+    f->x = state->tile.x + x;
+    f->y = state->tile.y + y;
+    f->element = block * VPL_LANES;
+    drawFragments(d, s, z);
+}
+
+#endif

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// Perspective-correct interpolation within a triangle. Included by the tile kernel only.
+// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D Homogeneous Coordinates, Graphics Hardware
+// 1997: with corners (X, Y, w) in homogeneous pixels, share i of the point seen at pixel p is proportional to
+// (corner j x corner k) . (p, 1). No corner is divided by its w, and none is snapped: snapping decides coverage
+// only, and moves no surface.
+#ifndef VPL_RASTER_SHARES_H
+#define VPL_RASTER_SHARES_H
+
+#include "raster/raster.h"
+
+typedef struct Shares {
+    double x[3], y[3], c[3];                // the three planes over pixel indices; their sum is 1/w
+    _Alignas(64) double lane[3][VPL_LANES]; // growth from lane 0
+    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS],
+        d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
+} Shares;
+
+static inline void crossPlanes(const double p[3][3], Shares* s)
+{
+    for (int i = 0; i < 3; i++) {
+        const double *u = p[(i + 1) % 3], *v = p[(i + 2) % 3];
+        s->x[i] = u[1] * v[2] - u[2] * v[1];
+        s->y[i] = u[2] * v[0] - u[0] * v[2];
+        s->c[i] = u[0] * v[1] - u[1] * v[0];
+    }
+}
+
+static inline void setUpShares(const vplRaster* r, const vplTriangle* t, const vplShaded* shaded, Shares* s)
+{
+    double p[3][3];
+    float varyings[3][VPL_MAX_VARYINGS];
+    for (int i = 0; i < 3; i++) {
+        float clip[3];
+        vplFetchVertex(r, shaded, t->vertex[i], clip, varyings[i]);
+        p[i][0] = 0.5 * r->framebuffer.width * ((double)clip[2] + clip[0]);
+        p[i][1] = 0.5 * r->framebuffer.height * ((double)clip[2] - clip[1]);
+        p[i][2] = clip[2];
+    }
+    crossPlanes(p, s);
+    double determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
+    if (!(determinant > 0)) {
+        // Only snapping gave it an area: then the snapped corners are the triangle.
+        for (int i = 0; i < 3; i++) {
+            p[i][0] = t->v[i].x / 256.0 * p[i][2];
+            p[i][1] = t->v[i].y / 256.0 * p[i][2];
+        }
+        crossPlanes(p, s);
+        determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
+    }
+    // Scaled so that floats hold the planes whatever the unit of w.
+    const double scale = 1 / determinant;
+    for (int i = 0; i < 3; i++) {
+        s->x[i] *= scale;
+        s->y[i] *= scale;
+        s->c[i] = s->c[i] * scale + 0.5 * (s->x[i] + s->y[i]); // pixel centres
+        for (int l = 0; l < VPL_LANES; l++) {
+            s->lane[i][l] = s->x[i] * (l & 3) + s->y[i] * (l >> 2);
+        }
+    }
+    for (int k = 0; k < shaded->varyingCount; k++) {
+        s->v0[k] = varyings[0][k];
+        s->d1[k] = varyings[1][k] - varyings[0][k];
+        s->d2[k] = varyings[2][k] - varyings[0][k];
+    }
+}
+
+// Shares of the corners in a block, not yet divided by their sum. Clamped at 0: that keeps points of the outline
+// within the triangle, and lanes that are not covered finite.
+static inline void shareOf(const Shares* s, int i, int x, int y, float share[VPL_LANES])
+{
+    const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float v = (float)(at + s->lane[i][l]);
+        share[l] = v > 0 ? v : 0;
+    }
+}
+
+static inline void interpolate(const Shares* s, int varyingCount, int x, int y, vplFragments* f)
+{
+    float share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES], b1[VPL_LANES], b2[VPL_LANES];
+    shareOf(s, 0, x, y, share0);
+    shareOf(s, 1, x, y, share1);
+    shareOf(s, 2, x, y, share2);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float w = 1 / (share0[l] + share1[l] + share2[l]);
+        f->w[l] = w;
+        b1[l] = share1[l] * w;
+        b2[l] = share2[l] * w;
+    }
+    for (int k = 0; k < varyingCount; k++) {
+        // From corner 0, so that what is equal at all corners stays equal in every bit.
+        const float v0 = s->v0[k], d1 = s->d1[k], d2 = s->d2[k];
+        for (int l = 0; l < VPL_LANES; l++) {
+            f->varying[k][l] = v0 + (b1[l] * d1 + b2[l] * d2);
+        }
+    }
+}
+
+#endif

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// What benchmarks of rays share.
+#ifndef VPL_BENCH_H
+#define VPL_BENCH_H
+
+#include "base/context.h"
+#include "base/rng.h"
+#include "geometry/bvh.h"
+#include "math/vec.h"
+
+#include <vpl/vpl.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static inline void check(vplResult result)
+{
+    if (result != VPL_SUCCESS) {
+        fprintf(stderr, "%s\n", vplResult_GetName(result));
+        exit(1);
+    }
+}
+
+static inline void say(void* user, vplLogLevel level, const char* message)
+{
+    (void)user;
+    if (level == VPL_LOG_ERROR) {
+        fprintf(stderr, "%s\n", message);
+    }
+}
+
+// 0 workers: as many as there are processors.
+static inline void openScene(const char* path, int workers, vplIsa isa, vplContext** contextOut,
+                             vplScene** sceneOut)
+{
+    vplContextDef def = vplDefaultContextDef();
+    def.log = say;
+    def.workerCount = workers;
+    def.isa = isa;
+    check(vplContext_Create(&def, contextOut));
+    check(vplScene_Load(*contextOut, path, sceneOut));
+}
+
+static inline double median(double* values, int count)
+{
+    for (int i = 1; i < count; i++) {
+        for (int k = i; k > 0 && values[k - 1] > values[k]; k--) {
+            double swap = values[k];
+            values[k] = values[k - 1];
+            values[k - 1] = swap;
+        }
+    }
+    return values[count / 2];
+}
+
+#endif

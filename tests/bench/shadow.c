@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// Soft shadows with and without the bounds of the cube map, on all points that a camera sees and that face the
+// scene's first point light: `bench/shadow SCENE [WIDTH HEIGHT [SAMPLES]]`. Both give the same bits, or it fails.
+// One thread, runs alternated, medians of processor time.
+#include "base/clock.h"
+#include "visibility/cube_bounds.h"
+#include "visibility/shadow.h"
+
+#include <vpl/vpl.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { RUNS = 11 };
+
+static void check(vplResult result)
+{
+    if (result != VPL_SUCCESS) {
+        fprintf(stderr, "%s\n", vplResult_GetName(result));
+        exit(1);
+    }
+}
+
+static vplVec3 rayThrough(const vplView* v, int x, int y)
+{
+    float sx = (float)((2 * (x + 0.5) / v->width - 1) / v->scaleX);
+    float sy = (float)((1 - 2 * (y + 0.5) / v->height) / v->scaleY);
+    return (vplVec3){v->forward.x + sx * v->right.x + sy * v->up.x,
+                     v->forward.y + sx * v->right.y + sy * v->up.y,
+                     v->forward.z + sx * v->right.z + sy * v->up.z};
+}
+
+// A block of 4 x 4 pixels; false where nothing in it faces the light. Lanes that see nothing lie in the origin.
+static bool findBlock(const vplGeometry* g, const vplView* view, vplVec3 light, int x, int y, vplSurface* s)
+{
+    bool faces = false;
+    memset(s, 0, sizeof *s);
+    for (int l = 0; l < VPL_LANES; l++) {
+        vplRay ray = {view->eye, rayThrough(view, x + (l & 3), y + (l >> 2)), {0, 0}};
+        vplHit hit;
+        if (vplGeometry_ClosestHit(g, &ray, &hit)) {
+            vplVec3 p = hit.position, n = hit.normal;
+            s->px[l] = p.x, s->py[l] = p.y, s->pz[l] = p.z;
+            s->nx[l] = n.x, s->ny[l] = n.y, s->nz[l] = n.z;
+            faces |= (light.x - p.x) * n.x + (light.y - p.y) * n.y + (light.z - p.z) * n.z > 0;
+        }
+    }
+    return faces;
+}
+
+static int compareDoubles(const void* a, const void* b)
+{
+    double x = *(const double*)a, y = *(const double*)b;
+    return (x > y) - (x < y);
+}
+
+typedef struct Counts {
+    int64_t told, blocksTold, same, blocksSame; // without samples; all samples alike
+} Counts;
+
+static double factors(const vplShadow* shadow, const vplSurface* blocks, int count, float* out)
+{
+    double start = vplCpuMs();
+    for (int i = 0; i < count; i++) {
+        vplShadow_FactorBlock(shadow, &blocks[i], out + (size_t)i * VPL_LANES);
+    }
+    return vplCpuMs() - start;
+}
+
+static void count(const vplShadow* shadow, const vplSurface* blocks, int blockCount, Counts* c)
+{
+    for (int i = 0; i < blockCount; i++) {
+        float factor[VPL_LANES];
+        int told = vplShadow_FactorBlockTold(shadow, &blocks[i], factor), same = 0;
+        for (int l = 0; l < VPL_LANES; l++) {
+            same += factor[l] == 0 || factor[l] == 1;
+        }
+        c->told += told;
+        c->blocksTold += told == VPL_LANES;
+        c->same += same;
+        c->blocksSame += same == VPL_LANES;
+    }
+}
+
+static void measure(const vplShadow* shadow, const vplSurface* blocks, int blockCount)
+{
+    vplCubeMap bare = *shadow->map;
+    vplShadow without = *shadow;
+    bare.bounds = NULL;
+    without.map = &bare;
+    const size_t lanes = (size_t)blockCount * VPL_LANES;
+    float *a = calloc(lanes, sizeof *a), *b = calloc(lanes, sizeof *b);
+    double times[2][RUNS];
+    for (int run = 0; run < RUNS; run++) {
+        times[0][run] = factors(&without, blocks, blockCount, a);
+        times[1][run] = factors(shadow, blocks, blockCount, b);
+    }
+    if (memcmp(a, b, lanes * sizeof *a) != 0) {
+        fprintf(stderr, "the bounds changed a shadow\n");
+        exit(1);
+    }
+    qsort(times[0], RUNS, sizeof(double), compareDoubles);
+    qsort(times[1], RUNS, sizeof(double), compareDoubles);
+    Counts c = {0};
+    count(shadow, blocks, blockCount, &c);
+    const double old = times[0][RUNS / 2], new = times[1][RUNS / 2];
+    printf("all samples, ms %30.2f\nbounds first, ms %29.2f\nratio %40.2f\n", old, new, old / new);
+    printf("told without samples: %.1f %% of points, %.1f %% of blocks\n",
+           100.0 * (double)c.told / (double)lanes, 100.0 * (double)c.blocksTold / blockCount);
+    printf("all samples alike:    %.1f %% of points, %.1f %% of blocks\n",
+           100.0 * (double)c.same / (double)lanes, 100.0 * (double)c.blocksSame / blockCount);
+    free(a);
+    free(b);
+}
+
+static void measureBounds(vplCubeMap* map)
+{
+    double times[RUNS];
+    for (int run = 0; run < RUNS; run++) {
+        double start = vplCpuMs();
+        check(vplCubeMap_FindBounds(map));
+        times[run] = vplCpuMs() - start;
+    }
+    qsort(times, RUNS, sizeof(double), compareDoubles);
+    printf("bounds of 6 x %d^2 texels, ms %16.2f\n", map->size, times[RUNS / 2]);
+}
+
+int main(int argc, char** argv)
+{
+    vplContextDef contextDef = vplDefaultContextDef();
+    contextDef.workerCount = 1;
+    vplContext* context;
+    vplScene* scene;
+    vplGeometry* g;
+    check(vplContext_Create(&contextDef, &context));
+    check(vplScene_Load(context, argc > 1 ? argv[1] : "examples/scenes/room.json", &scene));
+    check(vplGeometry_Create(scene, &g));
+    const int width = argc > 3 ? atoi(argv[2]) : 1920, height = argc > 3 ? atoi(argv[3]) : 1080;
+    const vplView view = vplView_Create(vplScene_GetCamera(scene, 0), width, height);
+    vplCubeMapDef mapDef = vplDefaultCubeMapDef();
+    mapDef.position = vplScene_GetEmitter(scene, 0)->position;
+    vplSurface* blocks = malloc((size_t)((width + 3) / 4) * (size_t)((height + 3) / 4) * sizeof *blocks);
+    int blockCount = 0;
+    for (int y = 0; y < height; y += 4) {
+        for (int x = 0; x < width; x += 4) {
+            blockCount += findBlock(g, &view, mapDef.position, x, y, &blocks[blockCount]);
+        }
+    }
+    printf("%d blocks\n", blockCount);
+    vplCubeMap* map;
+    double start = vplCpuMs();
+    check(vplCubeMap_Create(g, &mapDef, NULL, NULL, &map));
+    printf("cube map, ms %33.2f\n", vplCpuMs() - start);
+    measureBounds(map);
+    vplShadowDef shadowDef = vplDefaultShadowDef();
+    shadowDef.pcfSamples = argc > 4 ? atoi(argv[4]) : shadowDef.pcfSamples;
+    vplShadow shadow;
+    check(vplShadow_Create(map, &shadowDef, &shadow));
+    measure(&shadow, blocks, blockCount);
+    free(blocks);
+    vplCubeMap_Destroy(map);
+    vplGeometry_Destroy(g);
+    vplScene_Destroy(scene);
+    vplContext_Destroy(context);
+    return 0;
+}

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// Bounds of cube maps: they hold for every texel, and never change a shadow.
+#include "scenes.h"
+#include "shapes.h"
+
+#include "math/vec.h"
+#include "visibility/cube_bounds.h"
+#include "visibility/shadow.h"
+
+#include <stdlib.h>
+
+static const float FAR = 7;
+
+// Random planes before one another, cut by random lines; noise, holes to infinity, and rough patches.
+static void fillFace(float* texels, int size, uint64_t seed, int kind)
+{
+    double n[4][6]; // a plane, and the line that cuts it
+    for (uint64_t k = 0; k < 24; k++) {
+        n[k / 6][k % 6] = 2 * uniformAt(seed, k) - 1;
+    }
+    for (int j = 0; j < size; j++) {
+        for (int i = 0; i < size; i++) {
+            double s = (2 * i + 1.0) / size - 1, u = 1 - (2 * j + 1.0) / size, inverse = 0;
+            for (int k = 0; k < 4; k++) {
+                double plane = n[k][0] * s + n[k][1] * u + n[k][2] + 1.3;
+                bool shown = kind == 0 || n[k][3] * s + n[k][4] * u + n[k][5] / 2 > 0;
+                inverse = shown && plane > inverse ? plane : inverse;
+            }
+            if (kind == 2) {
+                inverse *= 1 + 0.5 * uniformAt(seed + 1, (uint64_t)(j * size + i));
+            }
+            texels[j * size + i] = (float)(sqrt(1 + s * s + u * u) / inverse / (double)FAR);
+        }
+    }
+}
+
+static vplCubeMap* makeRandomMap(vplContext* context, int size, uint64_t seed)
+{
+    vplGeometry* g = tableRoom(context);
+    vplCubeMapDef def = vplDefaultCubeMapDef();
+    vplCubeMap* map;
+    def.position = (vplVec3){0.25f, 1, -0.5f};
+    def.size = size;
+    def.far = FAR;
+    assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
+    for (int face = 0; face < 6; face++) {
+        fillFace((float*)map->texels + face * size * size, size, seed + (uint64_t)face, face % 3);
+    }
+    vplGeometry_Destroy(g);
+    assert_null(map->bounds);
+    assert_int_equal(vplCubeMap_FindBounds(map), VPL_SUCCESS);
+    return map;
+}
+
+// Distance times the plane's part in a texel's direction: at least 1 behind the plane.
+static double behind(const float plane[3], double s, double u, double distance)
+{
+    double height = (double)plane[0] * s + (double)plane[1] * u + (double)plane[2];
+    return isinf(distance) ? (height >= 0 ? INFINITY : -INFINITY)
+                           : height * distance / sqrt(1 + s * s + u * u);
+}
+
+static void checkWindow(const vplCubeMap* map, int face, int column, int row, int width,
+                        const vplCubeBound* b)
+{
+    const int size = map->size;
+    for (int j = row; j < row + width && j < size; j++) {
+        for (int i = column; i < column + width && i < size; i++) {
+            float stored = map->texels[(face * size + j) * size + i];
+            double s = (2 * i + 1.0) / size - 1, u = 1 - (2 * j + 1.0) / size;
+            double distance = (double)stored * (double)map->far;
+            double first = behind(b->planes[0], s, u, distance),
+                   second = behind(b->planes[1], s, u, distance);
+            assert_true(stored <= b->farthest);
+            assert_true((b->kind == VPL_BOUND_BOTH ? fmax(first, second) : fmin(first, second)) >= 1);
+        }
+    }
+}
+
+static void BoundsHoldForEveryTexel(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(3);
+    const int sizes[] = {1, 2, 7, 15, 16, 17, 33, 64, 100, 257, 1025};
+    int kinds[3] = {0};
+    for (int k = 0; k < 11; k++) {
+        vplCubeMap* map = makeRandomMap(context, sizes[k], (uint64_t)(100 * k));
+        const vplCubeBounds* bounds = map->bounds;
+        for (int level = 0; level < bounds->levelCount; level++) {
+            const int side = bounds->side[level], step = bounds->tile << level;
+            for (int i = 0; i < 6 * side * side; i++) {
+                const vplCubeBound* b = &bounds->bounds[bounds->first[level] + i];
+                checkWindow(map, i / (side * side), i % side * step, i / side % side * step, 2 * step, b);
+                kinds[b->kind]++;
+            }
+        }
+        vplCubeMap_Destroy(map);
+    }
+    assert_true(kinds[VPL_BOUND_ONE] > 100 && kinds[VPL_BOUND_EITHER] > 100 && kinds[VPL_BOUND_BOTH] > 100);
+    closeTestContext(context);
+}
+
+static double pick(uint64_t seed, uint64_t* index)
+{
+    return uniformAt(seed, (*index)++);
+}
+
+// Sixteen points near each other, anywhere, most of them close to what the map has stored in their direction.
+static void randomBlock(const vplCubeMap* map, uint64_t seed, vplSurface* surface)
+{
+    uint64_t at = 0;
+    vplVec3 way = {(float)pick(seed, &at) - 0.5f, (float)pick(seed, &at) - 0.5f,
+                   (float)pick(seed, &at) - 0.5f};
+    if (seed % 5 == 0) { // near an edge of the cube
+        way.y = way.x * (1 + 0.01f * (float)(pick(seed, &at) - 0.5));
+    }
+    const double extent = pow(10, -4 * pick(seed, &at)), how = pick(seed, &at);
+    const double scale = how < 0.8 ? 1 : pow(10, 40 * pick(seed, &at) - 20);
+    const vplVec3 axis = {(float)pick(seed, &at) - 0.5f, (float)pick(seed, &at) - 0.5f,
+                          (float)pick(seed, &at) - 0.5f};
+    const vplVec3 normal = vplNormalize(axis);
+    for (int l = 0; l < VPL_LANES; l++) {
+        vplVec3 d = way;
+        d.x += (float)(0.3 * extent * (pick(seed, &at) - 0.5));
+        d.y += (float)(0.3 * extent * (pick(seed, &at) - 0.5));
+        d.z += (float)(0.3 * extent * (pick(seed, &at) - 0.5));
+        d = vplNormalize(d);
+        float stored = vplCubeMap_Distance(map, d);
+        double r = isfinite(stored) ? (double)stored : 5;
+        r *= scale * (1 + 0.1 * pow(pick(seed, &at), 4) * (how < 0.4 ? 1 : -1));
+        surface->px[l] = map->position.x + (float)r * d.x;
+        surface->py[l] = map->position.y + (float)r * d.y;
+        surface->pz[l] = map->position.z + (float)r * d.z;
+        surface->nx[l] = normal.x;
+        surface->ny[l] = normal.y;
+        surface->nz[l] = normal.z;
+    }
+}
+
+// Compares with all samples taken; counts the points that needed none, and how many of them lie in shadow.
+static void compareShadows(const vplShadow* shadow, const vplSurface* surface, int64_t told[2])
+{
+    vplCubeMap bare = *shadow->map;
+    vplShadow without = *shadow;
+    float wanted[VPL_LANES], factor[VPL_LANES];
+    bare.bounds = NULL;
+    without.map = &bare;
+    vplShadow_FactorBlock(&without, surface, wanted);
+    const int count = vplShadow_FactorBlockTold(shadow, surface, factor);
+    assert_memory_equal(factor, wanted, sizeof factor);
+    if (count == VPL_LANES) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            told[factor[l] > 0]++;
+        }
+    }
+}
+
+static vplShadow makeShadow(const vplCubeMap* map, int variant)
+{
+    static const int samples[] = {8, 16, 17, 64, 256, 16};
+    static const float offsets[] = {0.02f, 0.05f, 0.1f, 0.002f, 1, 0};
+    vplShadowDef def = vplDefaultShadowDef();
+    def.pcfSamples = samples[variant % 6];
+    def.pcfOffset = offsets[variant / 6 % 6];
+    def.biasRule = variant % 7 == 0 ? VPL_BIAS_PAIR : VPL_BIAS_EXACT;
+    if (variant % 14 == 0) {
+        def.biasStatic = def.biasDynamic = 0;
+    }
+    vplShadow shadow;
+    assert_int_equal(vplShadow_Create(map, &def, &shadow), VPL_SUCCESS);
+    return shadow;
+}
+
+static void BoundsNeverChangeAShadowOfRandomMaps(void** state)
+{
+    (void)state;
+    const int sizes[] = {1, 40, 128, 300, 1024};
+    for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+        vplContext* context = openIsaContext(2, (vplIsa)isa);
+        int64_t told[2] = {0, 0};
+        for (int k = 0; k < 5 && context != NULL; k++) {
+            vplCubeMap* map = makeRandomMap(context, sizes[k], (uint64_t)(1000 + 10 * k));
+            for (int i = 0; i < 2000; i++) {
+                vplSurface surface;
+                vplShadow shadow = makeShadow(map, i);
+                randomBlock(map, (uint64_t)i, &surface);
+                compareShadows(&shadow, &surface, told);
+            }
+            vplCubeMap_Destroy(map);
+        }
+        if (context != NULL) {
+            assert_true(told[0] > 20000 && told[1] > 4000);
+            closeTestContext(context);
+        }
+    }
+}
+
+// On surfaces as they are: planes must be told where samples come within a rounding of the limit.
+static void BoundsTellMostOfARoom(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* g = tableRoom(context);
+    vplCubeMapDef def = vplDefaultCubeMapDef();
+    vplCubeMap* map;
+    def.position = (vplVec3){0.3f, 3.5f, 0.2f};
+    assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
+    assert_int_equal(vplCubeMap_FindBounds(map), VPL_SUCCESS);
+    int64_t told[2] = {0, 0}, all = 0;
+    for (int i = 0; i < 6000; i++) {
+        vplHit hit = vplGeometry_SampleTriangle(g, i % g->triangleCount, (float)uniformAt(1, (uint64_t)i),
+                                                (float)uniformAt(2, (uint64_t)i));
+        const vplVec3 n = hit.normal;
+        const vplVec3 a = vplNormalize(vplCross(n, (vplVec3){0.3f, 0.5f, 0.8f})), b = vplCross(n, a);
+        if (!(vplDot(n, vplSub(def.position, hit.position)) > 0)) {
+            continue;
+        }
+        vplSurface s;
+        for (int l = 0; l < VPL_LANES; l++) {
+            vplVec3 p = vplAdd(hit.position, vplAdd(vplScale(0.004f * (float)(l & 3), a),
+                                                    vplScale(0.004f * (float)(l >> 2), b)));
+            s.px[l] = p.x, s.py[l] = p.y, s.pz[l] = p.z;
+            s.nx[l] = n.x, s.ny[l] = n.y, s.nz[l] = n.z;
+        }
+        vplShadow shadow = makeShadow(map, 1 + 12 * (i % 2));
+        compareShadows(&shadow, &s, told);
+        all += VPL_LANES;
+    }
+    assert_true(all > 16 * 1000 && 2 * (told[0] + told[1]) > all);
+    assert_int_equal(vplCubeMap_Redraw(map, g, &def, NULL, NULL), VPL_SUCCESS);
+    assert_null(map->bounds); // they were the old texels'
+    vplCubeMap_Destroy(map);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+TEST_SUITE(bounds, cmocka_unit_test(BoundsHoldForEveryTexel),
+           cmocka_unit_test(BoundsNeverChangeAShadowOfRandomMaps), cmocka_unit_test(BoundsTellMostOfARoom));

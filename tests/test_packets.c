@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+// Rays by sixteens, and the tree that is made when rays are cast: by whomever, with any number of workers, or not
+// at all.
+#include "shapes.h"
+
+#include "base/context.h"
+#include "base/hash.h"
+#include "base/isa.h"
+#include "geometry/ray_tree.h"
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+// ---- packets
+
+enum { TO_A_POINT, PARALLEL, ALONG_AXES, ANYWHERE, ONE_AND_THE_SAME, PACKET_KINDS };
+
+static vplRay makeRay(int kind, int lane, const vplVec3* common, Dice* dice)
+{
+    vplRay ray = {rollVec(dice, 3), rollUnit(dice), {(int)roll(dice, 0, 300), lane % 4 == 0 ? 40 : 0}};
+    if (kind == TO_A_POINT) { // from a patch, as pixels of a block cast them
+        ray.origin = vplAdd(common[0], vplScale(0.1f, ray.origin));
+        ray.direction = vplSub(common[1], ray.origin);
+    } else if (kind == PARALLEL) {
+        ray.direction = common[1];
+    } else if (kind == ALONG_AXES) {
+        float d[3] = {0, 0, 0};
+        d[lane % 3] = lane & 4 ? -2.0f : 1.0f;
+        ray.direction = vplVec(d[0], d[1], d[2]);
+    } else if (kind == ONE_AND_THE_SAME) {
+        ray.origin = common[0];
+        ray.direction = common[1];
+    }
+    return ray;
+}
+
+static void comparePacket(const vplGeometry* g, int kind, Dice* dice, int* hits, int* rays)
+{
+    const vplVec3 common[2] = {rollVec(dice, 2), rollVec(dice, 1)};
+    const float limits[] = {INFINITY, 1, 0.4f};
+    vplRayPacket packet;
+    memset(&packet, 0xCD, sizeof packet); // whatever is in lanes that are not there
+    packet.active = 0;
+    for (int lane = 0; lane < VPL_RAY_PACKET; lane++) {
+        const vplRay ray = makeRay(kind, lane, common, dice);
+        if (roll(dice, 0, 1) < 0.8f) {
+            vplRayPacket_Set(&packet, lane, &ray);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        uint32_t wanted = 0;
+        for (int lane = 0; lane < VPL_RAY_PACKET; lane++) {
+            if (packet.active >> lane & 1) {
+                const vplRay ray = vplRayPacket_Get(&packet, lane);
+                wanted |= (uint32_t)vplGeometry_IsOccluded(g, &ray, limits[k]) << lane;
+            }
+        }
+        const uint32_t found = vplGeometry_AreOccluded(g, &packet, limits[k]);
+        if (found != wanted) {
+            fail_msg("kind %d, limit %g: %04x, wanted %04x", kind, (double)limits[k], found, wanted);
+        }
+        *hits += __builtin_popcount(found);
+        *rays += __builtin_popcount(packet.active);
+    }
+}
+
+// A tree of 1280 triangles, and 20 that are tested without.
+static void SixteenRaysSayWhatEachSaysAlone(void** state)
+{
+    (void)state;
+    for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+        if (!vplHasIsa((vplIsa)isa)) {
+            continue;
+        }
+        vplContext* context = openIsaContext(1, (vplIsa)isa);
+        for (int level = 0; level < 4; level += 3) {
+            Shape ball = icosphere(level);
+            vplScene* scene = sceneOf(context, 0.5f);
+            addShape(scene, &ball, false, NULL);
+            vplGeometry* g = freezeScene(scene);
+            assert_int_equal(vplGeometry_GetBvh(g)->nodes == NULL, level == 0);
+            Dice dice = {11, 0};
+            int hits = 0, rays = 0;
+            for (int i = 0; i < 600; i++) {
+                comparePacket(g, i % PACKET_KINDS, &dice, &hits, &rays);
+            }
+            assert_true(hits > rays / 10 && hits < rays * 9 / 10);
+            const vplRayPacket none = {.active = 0};
+            assert_int_equal(vplGeometry_AreOccluded(g, &none, INFINITY), 0);
+            vplGeometry_Destroy(g);
+            freeShape(&ball);
+        }
+        closeTestContext(context);
+    }
+}
+
+// ---- the tree
+
+static vplGeometry* freezeBall(vplContext* context, int level)
+{
+    Shape ball = icosphere(level);
+    vplScene* scene = sceneOf(context, 0.5f);
+    addShape(scene, &ball, false, NULL);
+    vplGeometry* g = freezeScene(scene);
+    freeShape(&ball);
+    return g;
+}
+
+static uint64_t hashTree(const vplBvh* bvh)
+{
+    uint64_t hash = 0;
+    for (int i = 0; i < bvh->nodeCount; i++) {
+        const vplBvhNode* node = &bvh->nodes[i];
+        hash = vplHashFloats(hash, node->planes[0], 6 * VPL_BVH_WIDTH);
+        hash = vplHashWords(hash, (const uint32_t*)node->child, VPL_BVH_WIDTH);
+        hash = vplHashWords(hash, (const uint32_t*)&node->count, 1);
+    }
+    return vplHashWords(hash, (const uint32_t*)bvh->blocks,
+                        (size_t)bvh->blockCount * sizeof *bvh->blocks / sizeof(uint32_t));
+}
+
+// 20480 triangles are several waves of tasks.
+static void TheTreeIsTheSameForAnyNumberOfWorkers(void** state)
+{
+    (void)state;
+    uint64_t first = 0;
+    for (int workers = 1; workers <= 7; workers += workers == 3 ? 4 : 1) {
+        vplContext* context = openTestContext(workers);
+        vplGeometry* g = freezeBall(context, 5);
+        for (int alone = 0; alone < 2; alone++) {
+            vplBvh* bvh;
+            const vplResult result = vplBvh_Create(g, 0, alone, &bvh);
+            assert_int_equal(result, VPL_SUCCESS);
+            const uint64_t hash = hashTree(bvh);
+            first = first ? first : hash;
+            assert_true(hash == first && bvh->nodeCount > 300);
+            vplBvh_Destroy(context, bvh);
+        }
+        vplGeometry_Destroy(g);
+        closeTestContext(context);
+    }
+}
+
+enum { RAYS = 64 };
+
+typedef struct Crowd {
+    const vplGeometry* geometry;
+    float t[RAYS];
+} Crowd;
+
+static vplRay rayOfCrowd(int index)
+{
+    Dice dice = {(uint64_t)index, 0};
+    return (vplRay){rollVec(&dice, 2), rollUnit(&dice), {0, 0}};
+}
+
+static void castOne(void* data, int index, int worker)
+{
+    (void)worker;
+    Crowd* crowd = data;
+    const vplRay ray = rayOfCrowd(index);
+    vplHit hit;
+    const bool met = vplGeometry_ClosestHit(crowd->geometry, &ray, &hit);
+    const bool any = vplGeometry_IsOccluded(crowd->geometry, &ray, INFINITY);
+    crowd->t[index] = met != any ? -2 : met ? hit.t : -1;
+}
+
+// Nobody prepared rays: the first to come builds the tree, whatever thread it is on.
+static void RaysNeedNoPreparation(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(4);
+    vplGeometry *prepared = freezeBall(context, 4), *g = freezeBall(context, 4);
+    const size_t before = vplContext_GetBytes(context);
+    assert_int_equal(vplGeometry_PrepareRays(prepared), VPL_SUCCESS);
+    const size_t after = vplContext_GetBytes(context);
+    assert_true(after > before + 5120 * sizeof(float[9]));
+    assert_int_equal(vplGeometry_PrepareRays(prepared), VPL_SUCCESS);
+    assert_true(vplContext_GetBytes(context) == after);
+    Crowd wanted = {prepared, {0}}, found = {g, {0}};
+    vplParallelFor(context, RAYS, castOne, &wanted);
+    vplParallelFor(context, RAYS, castOne, &found);
+    assert_memory_equal(wanted.t, found.t, sizeof wanted.t);
+    vplGeometry_Destroy(prepared);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+static void* allocUnlessTold(void* user, void* memory, size_t oldSize, size_t newSize)
+{
+    (void)oldSize;
+    if (newSize == 0) {
+        free(memory);
+        return NULL;
+    }
+    return *(bool*)user ? NULL : realloc(memory, newSize);
+}
+
+static void WithoutMemoryForATreeRaysAreRight(void** state)
+{
+    (void)state;
+    bool empty = false;
+    vplContextDef def = vplDefaultContextDef();
+    def.alloc = allocUnlessTold;
+    def.allocUser = &empty;
+    def.workerCount = 1;
+    vplContext* context;
+    assert_int_equal(vplContext_Create(&def, &context), VPL_SUCCESS);
+    vplGeometry* g = freezeBall(context, 3);
+    Crowd without = {g, {0}}, with = {g, {0}};
+    empty = true;
+    assert_int_equal(vplGeometry_PrepareRays(g), VPL_OUT_OF_MEMORY);
+    vplParallelFor(context, RAYS, castOne, &without);
+    vplRayPacket packet = {.active = 0};
+    for (int lane = 0; lane < VPL_RAY_PACKET; lane++) {
+        const vplRay ray = rayOfCrowd(lane);
+        vplRayPacket_Set(&packet, lane, &ray);
+    }
+    const uint32_t hits = vplGeometry_AreOccluded(g, &packet, INFINITY);
+    assert_true(vplGeometry_GetBvh(g) == NULL);
+    empty = false;
+    assert_int_equal(vplGeometry_PrepareRays(g), VPL_SUCCESS);
+    assert_true(vplGeometry_GetBvh(g)->nodes != NULL);
+    vplParallelFor(context, RAYS, castOne, &with);
+    assert_memory_equal(with.t, without.t, sizeof with.t);
+    assert_int_equal(vplGeometry_AreOccluded(g, &packet, INFINITY), hits);
+    vplGeometry_Destroy(g);
+    vplContext_Destroy(context);
+}
+
+TEST_SUITE(packets, cmocka_unit_test(SixteenRaysSayWhatEachSaysAlone),
+           cmocka_unit_test(TheTreeIsTheSameForAnyNumberOfWorkers), cmocka_unit_test(RaysNeedNoPreparation),
+           cmocka_unit_test(WithoutMemoryForATreeRaysAreRight));
