@@ -88,6 +88,8 @@ vplResult needField(Bench* b);
 vplResult runFill(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runAdditiveFill(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runSmallTriangles(Bench* b, const Stage* stage, Outcome* outcome);
+// Geometry with the tree that rays go through.
+vplResult freezeForRays(vplScene* scene, vplGeometry** geometryOut);
 vplResult runGeometry(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runClosestHits(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runPath(Bench* b, const Stage* stage, Outcome* outcome);

@@ -4,13 +4,26 @@
 
 #include <string.h>
 
+vplResult freezeForRays(vplScene* scene, vplGeometry** geometryOut)
+{
+    vplResult result = vplGeometry_Create(scene, geometryOut);
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_PrepareRays(*geometryOut);
+        if (result != VPL_SUCCESS) {
+            vplGeometry_Destroy(*geometryOut);
+            *geometryOut = NULL;
+        }
+    }
+    return result;
+}
+
 vplResult runGeometry(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
     vplResult result = needField(b);
     vplGeometry* geometry = NULL;
     if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(b->field, &geometry);
+        result = freezeForRays(b->field, &geometry);
     }
     if (result == VPL_SUCCESS) {
         hitPixels(geometry, vplScene_GetCamera(b->field, 0), 16, 16, outcome); // shows that the tree is right

@@ -130,7 +130,7 @@ vplResult needField(Bench* b)
         return VPL_SUCCESS;
     }
     vplResult result = buildField(b->context, 1 << 18, &b->field);
-    return result == VPL_SUCCESS ? vplGeometry_Create(b->field, &b->fieldGeometry) : result;
+    return result == VPL_SUCCESS ? freezeForRays(b->field, &b->fieldGeometry) : result;
 }
 
 static vplResult makeLights(Bench* b)

@@ -31,7 +31,7 @@ static vplResult makeField(Sweep* s, int point)
 {
     vplResult result = buildField(s->bench.context, (int)s->n[point], &s->scenes[point]);
     if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(s->scenes[point], &s->geometries[point]);
+        result = freezeForRays(s->scenes[point], &s->geometries[point]);
     }
     if (result == VPL_SUCCESS) {
         s->n[point] = s->geometries[point]->triangleCount;
@@ -42,7 +42,7 @@ static vplResult makeField(Sweep* s, int point)
 static vplResult buildTree(Sweep* s, int point)
 {
     vplGeometry* geometry;
-    vplResult result = vplGeometry_Create(s->scenes[point], &geometry);
+    vplResult result = freezeForRays(s->scenes[point], &geometry);
     if (result == VPL_SUCCESS) {
         vplGeometry_Destroy(geometry);
     }

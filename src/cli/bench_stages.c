@@ -68,6 +68,7 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
     def.lighting = stage->lighting;
     def.accumulation = stage->accumulation;
     def.batch = stage->batch;
+    def.interleave = 4;
     def.minDistance = 0.2f;
     def.emitters = vplScene_GetEmitter(b->scene, 0);
     def.shadows = &b->shadow;
@@ -160,6 +161,7 @@ static vplResult runToneMap(Bench* b, const Stage* stage, Outcome* outcome)
 #define MULTIPASS  VPL_ACCUMULATE_MULTIPASS
 #define BATCHED    VPL_ACCUMULATE_BATCHED
 #define DEFERRED   VPL_ACCUMULATE_DEFERRED
+#define MIXED      VPL_ACCUMULATE_INTERLEAVED
 
 const Stage STAGES[] = {
     {"particles, N = 3000", runParticles, PHYSICAL, 0, 3000, 1, 0},
@@ -182,6 +184,7 @@ const Stage STAGES[] = {
     {"batched, 198 lights, documented", runShading, DOCUMENTED, BATCHED, 198, 64, 0},
     {"deferred, 198 lights, documented", runShading, DOCUMENTED, DEFERRED, 198, 1, 0},
     {"deferred, 512 lights, documented", runShading, DOCUMENTED, DEFERRED, 512, 1, 0},
+    {"interleaved 4x4, 512 lights, documented", runShading, DOCUMENTED, MIXED, 512, 1, 0},
     {"deferred, 1998 lights, documented", runShading, DOCUMENTED, DEFERRED, 1998, 1, SLOW},
     {"multipass, 18 lights, physical", runShading, PHYSICAL, MULTIPASS, 18, 1, SLOW},
     {"batched, 18 lights, physical", runShading, PHYSICAL, BATCHED, 18, 18, SLOW},

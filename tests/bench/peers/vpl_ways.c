@@ -7,6 +7,7 @@
 static void shade(Room* room, const Row* row, bool direct)
 {
     vplShadeDef def = {.lighting = row->lighting, .accumulation = row->accumulation};
+    def.interleave = 4;
     def.minDistance = MIN_DISTANCE;
     def.emitters = room->emitter;
     def.shadows = &room->shadow;
