@@ -139,7 +139,8 @@ static float leastSquare(const vplCubeTile* t, int first, int count)
 // Most tiles show one plane, and need neither roots nor divisions. With f through three of their corners, no more
 // than m missing, and c, D as above: f must be raised by (|c| - f D) / D = (|c|^2 - (f D)^2) f / ((|c| + f D) f D)
 // at most, where that is positive, and both |c| and f D are at least sqrt(|c|^2 - m). Roundings of |c|^2 and
-// (f D)^2 are below 2^-20 of them, those of f below 2^-22 of its terms. Where nothing is, f = 0 misses NaN: nothing.
+// (f D)^2 are below 2^-20 of them, those of f below 2^-22 of its terms. Where D is infinite and f = 0, NaN is not larger
+// than anything.
 bool VPL_KERNEL(vplFlatTile)(const vplCubeTile* t, vplCubeBound* boundOut)
 {
     const int right = t->width - 1, last = t->height - 1;
@@ -167,7 +168,7 @@ bool VPL_KERNEL(vplFlatTile)(const vplCubeTile* t, vplCubeBound* boundOut)
     const float c2 = 1 + leastSquare(t, t->column, t->width) + leastSquare(t, t->row, t->height);
     const float raised = most * (0.5f * missing / (c2 - missing) + 0x1p-21f);
     const float rounding = (fabsf(slope.column) + fabsf(slope.row)) * (float)t->side + most;
-    toPlane(t, (double)(level + raised + rounding * 0x1p-22f), slope, boundOut->planes[0]);
+    toPlane(t, (double)level + (double)raised + (double)rounding * 0x1p-22, slope, boundOut->planes[0]);
     memcpy(boundOut->planes[1], boundOut->planes[0], sizeof boundOut->planes[0]);
     boundOut->farthest = farthest;
     boundOut->kind = VPL_BOUND_ONE;
