@@ -333,7 +333,7 @@ static void EveryPointOfTheRoomIsLitAsTheTableSays(void** state)
         vplEmitterRay ray = {.position = emitter.position};
         vplShading shading = {.geometry = room,
                               .def = &def,
-                              .emitterKernel = vplGetEmitterKernel(vplContext_GetIsa(context)),
+                              .addEmitters = vplGetAddEmitters(vplContext_GetIsa(context)),
                               .emitters = &ray};
         vplPoints points = {.surface = &surface, .plane = &surface};
         int64_t rays = 0;

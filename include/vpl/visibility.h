@@ -61,8 +61,8 @@ vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const 
                             vplProgressFcn* progress, void* user);
 
 // Finds what the texels of each region have in common, so that for most points one look takes the place of all
-// samples of a soft shadow. Shadows keep their bits. It costs about as much as a sample per texel, and pays where
-// points times samples are more than the texels. On failure the map is as it was.
+// samples of a soft shadow. Shadows keep their bits. It costs about as much as half a sample per texel, and pays
+// where points times samples are more than half the texels. On failure the map is as it was.
 vplResult vplCubeMap_FindBounds(vplCubeMap* map);
 
 // NULL is allowed.

@@ -61,31 +61,13 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
     }
 }
 
-// Multiplies `amount` by what the emitter's shadow leaves of it.
-static void shadowEmitter(const vplShading* s, const vplPoints* points, int index, float amount[VPL_LANES],
-                          int64_t* rays)
+void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,
+                        float amount[VPL_LANES], int64_t* rays)
 {
-    const vplShadow* shadow = &s->def->shadows[index];
-    const vplEmitterRay* emitter = &s->emitters[index];
-    if (emitter->parallel || shadow->map == NULL) {
-        Starts starts;
-        findStarts(s->geometry, points, &starts);
-        castShadowRays(s, points, &starts, emitter->parallel ? emitter->direction : emitter->position,
-                       emitter->parallel, amount, rays);
-        return;
-    }
-    float factor[VPL_LANES];
-    if (s->smooth) { // a shadow belongs to the plane of the triangle, and so does its far side
-        float cosine[VPL_LANES];
-        s->emitterKernel(points->plane, emitter, cosine);
-        for (int l = 0; l < VPL_LANES; l++) {
-            amount[l] = cosine[l] > 0 ? amount[l] : 0;
-        }
-    }
-    vplShadow_FactorBlock(shadow, points->plane, factor);
-    for (int l = 0; l < VPL_LANES; l++) {
-        amount[l] *= 1 - factor[l];
-    }
+    Starts starts;
+    findStarts(shading->geometry, points, &starts);
+    castShadowRays(shading, points, &starts, emitter->parallel ? emitter->direction : emitter->position,
+                   emitter->parallel, amount, rays);
 }
 
 // A virtual light lies on a surface that must not shadow it: rays aim a little above.
@@ -148,22 +130,8 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
                          int64_t* rays)
 {
     const vplShadeDef* def = shading->def;
-    const bool documented = def->lighting == VPL_LIGHTING_DOCUMENTED;
-    const float weight = documented && def->particleCount > 0 ? 1 / (float)def->particleCount : 1;
     memset(irradiance, 0, 3 * sizeof irradiance[0]);
-    for (int i = 0; i < def->emitterCount; i++) {
-        float amount[VPL_LANES];
-        if (!shading->emitterKernel(points->surface, &shading->emitters[i], amount)) {
-            continue;
-        }
-        shadowEmitter(shading, points, i, amount, rays);
-        const vplRgb colour = vplRgbScale(weight, def->emitters[i].intensity);
-        for (int l = 0; l < VPL_LANES; l++) {
-            irradiance[0][l] += colour.r * amount[l];
-            irradiance[1][l] += colour.g * amount[l];
-            irradiance[2][l] += colour.b * amount[l];
-        }
-    }
+    shading->addEmitters(shading, points, irradiance, rays);
     for (int first = 0; first < def->lampCount; first += VPL_LIGHT_GROUP) {
         const int count = def->lampCount - first < VPL_LIGHT_GROUP ? def->lampCount - first : VPL_LIGHT_GROUP;
         float part[3][VPL_LANES] = {{0}};

@@ -6,7 +6,7 @@
 
 VPL_KERNEL_TABLE(DOCUMENTED, vplLightKernelFcn, vplLightsDocumented);
 VPL_KERNEL_TABLE(PHYSICAL, vplLightKernelFcn, vplLightsPhysical);
-VPL_KERNEL_TABLE(EMITTER, vplEmitterKernelFcn, vplEmitterCosine);
+VPL_KERNEL_TABLE(EMITTERS, vplAddEmittersFcn, vplAddEmitters);
 VPL_KERNEL_TABLE(CULL_DOCUMENTED, vplCullFcn, vplCullDocumented);
 VPL_KERNEL_TABLE(CULL_PHYSICAL, vplCullFcn, vplCullPhysical);
 VPL_KERNEL_TABLE(SURFACE, vplFragmentFcn, vplShadeSurface);
@@ -44,9 +44,9 @@ vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting)
     return lighting == VPL_LIGHTING_DOCUMENTED ? DOCUMENTED[isa] : PHYSICAL[isa];
 }
 
-vplEmitterKernelFcn* vplGetEmitterKernel(vplIsa isa)
+vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa)
 {
-    return EMITTER[isa];
+    return EMITTERS[isa];
 }
 
 void vplAccumulateLights(const vplContext* context, vplLighting lighting, float minDistance,

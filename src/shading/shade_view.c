@@ -130,7 +130,7 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     }
     vplShading shading = {.geometry = geometry, .view = view, .def = def, .image = image};
     shading.lightKernel = vplGetLightKernel(context->isa, def->lighting);
-    shading.emitterKernel = vplGetEmitterKernel(context->isa);
+    shading.addEmitters = vplGetAddEmitters(context->isa);
     shading.cull = vplGetCull(context->isa, def->lighting);
     shading.inverseBound = inverseSquare(def->minDistance);
     shading.lampInverseBound = inverseSquare(def->lampMinDistance);

@@ -35,7 +35,15 @@ typedef bool vplEmitterKernelFcn(const vplSurface* restrict surface, const vplEm
 
 vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting);
 vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting);
-vplEmitterKernelFcn* vplGetEmitterKernel(vplIsa isa);
+
+struct vplShading;
+struct vplPoints;
+
+// Adds the irradiance of all emitters, with shadows. Counts the rays it cast.
+typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vplPoints* points,
+                               float irradiance[restrict 3][VPL_LANES], int64_t* rays);
+
+vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa);
 
 // One render of one view.
 typedef struct vplShading {
@@ -44,7 +52,7 @@ typedef struct vplShading {
     const vplShadeDef* def;
     vplImage* image;
     vplLightKernelFcn* lightKernel;
-    vplEmitterKernelFcn* emitterKernel;
+    vplAddEmittersFcn* addEmitters;
     vplCullFcn* cull;
     float* columns[6]; // of the virtual lights, for `cull`; NULL where no light is left out
     float inverseBound, lampInverseBound;
@@ -100,6 +108,10 @@ typedef struct vplFacet {
 
 // `triangle` is an index in geometry->normals.
 vplFacet vplGetFacet(const vplShading* shading, int triangle);
+
+// Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray.
+void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,
+                        float amount[VPL_LANES], int64_t* rays);
 
 // Direct irradiance of all emitters and lamps, with shadows. Counts the rays it cast.
 void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, float irradiance[3][VPL_LANES],

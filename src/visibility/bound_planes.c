@@ -19,14 +19,6 @@ vplTexelArea vplFindArea(int size, int column, int row, int step)
     return a;
 }
 
-// The difference is a linear function, so a corner decides.
-double vplMostAbove(const vplTexelArea* area, const float plane[3], const float base[3])
-{
-    const double s = (double)plane[0] - (double)base[0], u = (double)plane[1] - (double)base[1];
-    return (double)plane[2] - (double)base[2] + vplLarger(s * area->s[0], s * area->s[1]) +
-           vplLarger(u * area->u[0], u * area->u[1]);
-}
-
 void vplAddCandidate(const vplTexelArea* area, const float plane[3], vplCandidates* c)
 {
     const double same =

@@ -5,6 +5,8 @@
 
 #include "visibility/cube_bounds.h"
 
+#include <math.h>
+
 // Not fmax and fmin, which are calls.
 static inline double vplLarger(double a, double b)
 {
@@ -26,8 +28,19 @@ typedef struct vplTexelArea {
 
 vplTexelArea vplFindArea(int size, int column, int row, int step);
 
-// How far `plane` is above `base` at most within an area.
-double vplMostAbove(const vplTexelArea* area, const float plane[3], const float base[3]);
+// How far `plane` is above `base` at most within an area: the difference is a linear function, so a corner decides.
+static inline double vplMostAbove(const vplTexelArea* area, const float plane[3], const float base[3])
+{
+    const double s = (double)plane[0] - (double)base[0], u = (double)plane[1] - (double)base[1];
+    return (double)plane[2] - (double)base[2] + vplLarger(s * area->s[0], s * area->s[1]) +
+           vplLarger(u * area->u[0], u * area->u[1]);
+}
+
+// Everything lies behind a plane in the light itself.
+static inline vplCubeBound vplEmptyBound(void)
+{
+    return (vplCubeBound){{{0, 0, INFINITY}, {0, 0, INFINITY}}, 0, VPL_BOUND_ONE};
+}
 
 // Planes that may bound an area, all different.
 typedef struct vplCandidates {

@@ -49,8 +49,8 @@ typedef struct vplCubeTile {
 
 enum { VPL_MAX_CUBE_TILE = 32 };
 
-// The best single plane of one tile. True if all texels seem to lie in it.
-typedef bool vplTileBoundFcn(const vplCubeTile* tile, vplCubeBound* boundOut);
+// False where the texels of a tile do not lie in one plane: then the bound is undefined.
+typedef bool vplFlatTileFcn(const vplCubeTile* tile, vplCubeBound* boundOut);
 
 enum { VPL_BOUND_CANDIDATES = 6 };
 
@@ -60,8 +60,8 @@ typedef struct vplRaises {
     double one[VPL_BOUND_CANDIDATES], two[VPL_BOUND_CANDIDATES][VPL_BOUND_CANDIDATES];
 } vplRaises;
 
-// The raises of a tile; of two[i][k] those with i < k are set.
-typedef void vplTileRaisesFcn(const vplCubeTile* tile, const float planes[][3], int count,
-                              vplRaises* raisesOut);
+// The raises of a tile; of two[i][k] those with i < k are set. Returns the largest stored distance.
+typedef float vplTileRaisesFcn(const vplCubeTile* tile, const float planes[][3], int count,
+                               vplRaises* raisesOut);
 
 #endif
