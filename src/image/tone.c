@@ -73,24 +73,35 @@ static double luminance(const float* pixel)
 // Rows worked on side by side; what is summed over pixels is summed afterwards, in their order.
 enum { BAND = 64 };
 
+typedef struct Row {
+    double largest;
+    int counted;
+} Row;
+
 typedef struct Reinhard {
     vplImage* image;
     double delta, scale, white;
     int firstRow;
-    double* logs; // of a band; NAN where a pixel does not count
+    double* logs; // of a band; 0 where a pixel does not count
+    Row rows[BAND];
 } Reinhard;
 
 static void findLogs(void* data, int row, int worker)
 {
     (void)worker;
-    const Reinhard* r = data;
+    Reinhard* r = data;
     const int width = r->image->width;
     const float* pixels = r->image->pixels + 3 * (size_t)(r->firstRow + row) * (size_t)width;
+    double* logs = r->logs + (size_t)row * (size_t)width;
+    Row found = {0, 0};
     for (int x = 0; x < width; x++) {
-        const double y = luminance(pixels + 3 * x);
+        const double y = luminance(pixels + 3 * (size_t)x);
         const bool counts = isfinite(y) && y + r->delta > 0;
-        r->logs[(size_t)row * (size_t)width + (size_t)x] = counts ? vplLog1(y + r->delta) : (double)NAN;
+        logs[x] = counts ? vplLog1(y + r->delta) : 0;
+        found.counted += counts;
+        found.largest = counts && y > found.largest ? y : found.largest;
     }
+    r->rows[row] = found;
 }
 
 static void mapRow(void* data, int row, int worker)
@@ -124,14 +135,12 @@ static void sumBand(Reinhard* r, Sums* sums)
     const vplImage* image = r->image;
     const int rows = image->height - r->firstRow < BAND ? image->height - r->firstRow : BAND;
     vplParallelFor(image->context, rows, findLogs, r);
-    const float* pixels = image->pixels + 3 * (size_t)r->firstRow * (size_t)image->width;
+    for (int row = 0; row < rows; row++) {
+        sums->largest = r->rows[row].largest > sums->largest ? r->rows[row].largest : sums->largest;
+        sums->counted += (size_t)r->rows[row].counted;
+    }
     for (size_t i = 0; i < (size_t)rows * (size_t)image->width; i++) {
-        if (!isnan(r->logs[i])) {
-            const double y = luminance(pixels + 3 * i);
-            sums->log += r->logs[i];
-            sums->largest = y > sums->largest ? y : sums->largest;
-            sums->counted++;
-        }
+        sums->log += r->logs[i];
     }
 }
 
