@@ -16,28 +16,17 @@
 #include <math.h>
 #include <string.h>
 
-// The scalar kernels are the plain loops that the others are compared with.
-#define VPL_PLAIN_scalar 1
-#if defined(__AVX__) && !VPL_JOIN(VPL_PLAIN, VPL_KERNEL_ISA)
-#include <immintrin.h>
-#define VPL_MOVEMASK 1
-#endif
-
 enum { WIDTH = VPL_BVH_WIDTH };
 
-// Bit i of the result: flags[i], which is 0 or -1, is -1. gcc 12 makes eight shifts and three ors of the loop, at
-// the end of every test: the one instruction for it is worth 1.1x of all rays (bench/rays, room and Sponza).
+// Bit i of the result: flags[i], which is 0 or -1, is -1.
 static inline uint32_t collectBits(const int32_t flags[WIDTH])
 {
-#ifdef VPL_MOVEMASK
-    return (uint32_t)_mm256_movemask_ps(_mm256_loadu_ps((const float*)flags));
-#else
-    uint32_t bits = 0;
+    static const int32_t place[WIDTH] = {1, 2, 4, 8, 16, 32, 64, 128};
+    int32_t bits = 0;
     for (int i = 0; i < WIDTH; i++) {
-        bits |= (uint32_t)(flags[i] & 1) << i;
+        bits |= flags[i] & place[i];
     }
-    return bits;
-#endif
+    return (uint32_t)bits;
 }
 
 // A ray prepared for both tests. The triangle test works in axes (kx, ky, kz) where the ray runs along z.
