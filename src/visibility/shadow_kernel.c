@@ -110,6 +110,19 @@ static void scaleDisc(const vplShadow* shadow, Disc* restrict disc)
     }
 }
 
+// How many of the first `count` texels are nearer than the limit.
+static inline int32_t countBehind(const float* restrict texels, const int32_t place[VPL_LANES], float far,
+                                  float limit, int32_t count)
+{
+    float stored[VPL_LANES];
+    int32_t behind = 0;
+    vplGather(texels, place, stored);
+    for (int l = 0; l < VPL_LANES; l++) {
+        behind += (limit > stored[l] * far) & (l < count);
+    }
+    return behind;
+}
+
 // How many samples of one point lie in shadow, 16 at a time.
 static float countPoint(const vplShadow* shadow, const vplShadowPoints* restrict p, int lane,
                         const float axis[6][VPL_LANES], const Disc* restrict disc)
@@ -132,11 +145,7 @@ static float countPoint(const vplShadow* shadow, const vplShadowPoints* restrict
             int32_t column = vplTexelIndex(t.s, sizeF, last), row = vplTexelIndex(t.t, sizeF, last);
             place[l] = (t.face * size + row) * size + column;
         }
-        float stored[VPL_LANES];
-        vplGather(texels, place, stored);
-        for (int l = 0; l < VPL_LANES; l++) {
-            count += (limit > stored[l] * far) & (first + l < samples);
-        }
+        count += countBehind(texels, place, far, limit, samples - first);
     }
     return (float)count;
 }
@@ -182,11 +191,7 @@ static float countPointInFace(const vplShadow* shadow, const vplShadowPoints* re
             int32_t row = vplTexelIndex((1 - up / major) * 0.5f, sizeF, last);
             place[l] = row * size + column;
         }
-        float stored[VPL_LANES];
-        vplGather(texels, place, stored);
-        for (int l = 0; l < VPL_LANES; l++) {
-            count += (limit > stored[l] * far) & (first + l < samples);
-        }
+        count += countBehind(texels, place, far, limit, samples - first);
     }
     return (float)count;
 }

@@ -4,6 +4,8 @@
 //   acne     lit by the ray, but more than half shadowed by the map, % of the points that face the light
 //   leak     shadowed by the ray, but less than half by the map
 //   error    mean |s - ray| over the same points: for 16 samples it includes the soft edge itself
+#include "bench.h"
+
 #include <vpl/vpl.h>
 
 #include <math.h>
@@ -17,23 +19,6 @@ typedef struct Point {
     vplVec3 position, normal;
     bool lit; // by the ray
 } Point;
-
-static void check(vplResult result)
-{
-    if (result != VPL_SUCCESS) {
-        fprintf(stderr, "%s\n", vplResult_GetName(result));
-        exit(1);
-    }
-}
-
-static vplVec3 rayThrough(const vplView* v, int x, int y)
-{
-    float sx = (float)((2 * (x + 0.5) / v->width - 1) / v->scaleX);
-    float sy = (float)((1 - 2 * (y + 0.5) / v->height) / v->scaleY);
-    return (vplVec3){v->forward.x + sx * v->right.x + sy * v->up.x,
-                     v->forward.y + sx * v->right.y + sy * v->up.y,
-                     v->forward.z + sx * v->right.z + sy * v->up.z};
-}
 
 // The visible points that face the light.
 static int findPoints(const vplGeometry* g, const vplView* view, vplVec3 light, Point* points)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What benchmarks of rays share.
+// What benchmarks share.
 #ifndef VPL_BENCH_H
 #define VPL_BENCH_H
 
@@ -51,6 +51,16 @@ static inline double median(double* values, int count)
         }
     }
     return values[count / 2];
+}
+
+// Through the centre of a pixel.
+static inline vplVec3 rayThrough(const vplView* v, int x, int y)
+{
+    float sx = (float)((2 * (x + 0.5) / v->width - 1) / v->scaleX);
+    float sy = (float)((1 - 2 * (y + 0.5) / v->height) / v->scaleY);
+    return (vplVec3){v->forward.x + sx * v->right.x + sy * v->up.x,
+                     v->forward.y + sx * v->right.y + sy * v->up.y,
+                     v->forward.z + sx * v->right.z + sy * v->up.z};
 }
 
 #endif

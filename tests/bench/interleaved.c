@@ -2,6 +2,8 @@
 // What interleaved shading is worth: processor and wall-clock time of the indirect light of a scene, alternated with
 // deferred shading of the same lights, pixels times lights, and the error it makes.
 // `bench/interleaved SCENE [LIGHTS [RUNS [WIDTH HEIGHT]]]`; medians; the shadow map and direct light are left out.
+#include "bench.h"
+
 #include "base/clock.h"
 
 #include <vpl/vpl.h>
@@ -97,18 +99,6 @@ static vplResult runOnce(Bench* b, int which, int lights, int run)
     b->cpu[which][run] = processorMs() - cpu;
     b->wall[which][run] = vplClockMs() - wall;
     return result;
-}
-
-static int compareDoubles(const void* a, const void* b)
-{
-    const double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double* values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, compareDoubles);
-    return values[count / 2];
 }
 
 static void print(Bench* b, int lights, int runs)

@@ -2,6 +2,8 @@
 // Soft shadows with and without the bounds of the cube map, on all points that a camera sees and that face the
 // scene's first point light: `bench/shadow SCENE [WIDTH HEIGHT [SAMPLES]]`. Both give the same bits, or it fails.
 // One thread, runs alternated, medians of processor time.
+#include "bench.h"
+
 #include "base/clock.h"
 #include "visibility/cube_bounds.h"
 #include "visibility/shadow.h"
@@ -13,23 +15,6 @@
 #include <string.h>
 
 enum { RUNS = 11 };
-
-static void check(vplResult result)
-{
-    if (result != VPL_SUCCESS) {
-        fprintf(stderr, "%s\n", vplResult_GetName(result));
-        exit(1);
-    }
-}
-
-static vplVec3 rayThrough(const vplView* v, int x, int y)
-{
-    float sx = (float)((2 * (x + 0.5) / v->width - 1) / v->scaleX);
-    float sy = (float)((1 - 2 * (y + 0.5) / v->height) / v->scaleY);
-    return (vplVec3){v->forward.x + sx * v->right.x + sy * v->up.x,
-                     v->forward.y + sx * v->right.y + sy * v->up.y,
-                     v->forward.z + sx * v->right.z + sy * v->up.z};
-}
 
 // A block of 4 x 4 pixels; false where nothing in it faces the light. Lanes that see nothing lie in the origin.
 static bool findBlock(const vplGeometry* g, const vplView* view, vplVec3 light, int x, int y, vplSurface* s)
@@ -47,12 +32,6 @@ static bool findBlock(const vplGeometry* g, const vplView* view, vplVec3 light, 
         }
     }
     return faces;
-}
-
-static int compareDoubles(const void* a, const void* b)
-{
-    double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
 }
 
 typedef struct Counts {
@@ -100,11 +79,9 @@ static void measure(const vplShadow* shadow, const vplSurface* blocks, int block
         fprintf(stderr, "the bounds changed a shadow\n");
         exit(1);
     }
-    qsort(times[0], RUNS, sizeof(double), compareDoubles);
-    qsort(times[1], RUNS, sizeof(double), compareDoubles);
     Counts c = {0};
     count(shadow, blocks, blockCount, &c);
-    const double old = times[0][RUNS / 2], new = times[1][RUNS / 2];
+    const double old = median(times[0], RUNS), new = median(times[1], RUNS);
     printf("all samples, ms %30.2f\nbounds first, ms %29.2f\nratio %40.2f\n", old, new, old / new);
     printf("told without samples: %.1f %% of points, %.1f %% of blocks\n",
            100.0 * (double)c.told / (double)lanes, 100.0 * (double)c.blocksTold / blockCount);
@@ -122,8 +99,7 @@ static void measureBounds(vplCubeMap* map)
         check(vplCubeMap_FindBounds(map));
         times[run] = vplCpuMs() - start;
     }
-    qsort(times, RUNS, sizeof(double), compareDoubles);
-    printf("bounds of 6 x %d^2 texels, ms %16.2f\n", map->size, times[RUNS / 2]);
+    printf("bounds of 6 x %d^2 texels, ms %16.2f\n", map->size, median(times, RUNS));
 }
 
 int main(int argc, char** argv)
