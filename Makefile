@@ -170,7 +170,7 @@ EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
 ROOFLINE := $(foreach part,roofline roofline/loops roofline/work roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
-              $(BUILD)/obj/tests/bench/$(part).o)
+              $(BUILD)/obj/tests/bench/$(part).o) $(BUILD)/obj/src/cli/bench_cover.o
 $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"

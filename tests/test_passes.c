@@ -144,6 +144,48 @@ static void SurfaceShadersRunBeforeFragmentShaders(void** state)
     closeTestContext(context);
 }
 
+static void makeVaryings(const void* uniforms, vplFragments* f)
+{
+    (void)uniforms;
+    for (int l = 0; l < VPL_LANES; l++) {
+        f->varying[0][l] = (float)(f->x + l % 4);
+        f->varying[3][l] = (float)(f->y + l / 4);
+    }
+}
+
+static void placeVertices(const void* uniforms, int first, int count, const vplVertices* out)
+{
+    const ClipVertex* v = (const ClipVertex*)uniforms + first;
+    for (int i = 0; i < count; i++) {
+        out->x[i] = v[i].x;
+        out->y[i] = v[i].y;
+        out->z[i] = v[i].z;
+        out->w[i] = v[i].w;
+    }
+}
+
+// Also where there is nothing to interpolate.
+static void SurfaceShadersMayMakeAllVaryings(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const ClipVertex v[3] = {{-1, -1, 0.5f, 1, {0}}, {3, -1, 0.5f, 1, {0}}, {-1, 3, 0.5f, 1, {0}}};
+    Canvas c = makeCanvas(30, 20, -1);
+    vplPipeline p = vplDefaultPipeline();
+    p.vertex = placeVertices;
+    p.vertexUniforms = v;
+    p.surface = makeVaryings;
+    p.surfaceCount = 4;
+    p.fragment = showSurface;
+    p.planeMask = 3;
+    drawList(context, &c, &p, ascending(), 3, 1);
+    for (int i = 0; i < 30 * 20; i++) {
+        assert_true(c.planes[0][i] == (float)(i % 30) && c.planes[1][i] == (float)(i / 30));
+    }
+    freeCanvas(&c);
+    closeTestContext(context);
+}
+
 // Triangles in one draw, whose hidden blocks are left out, against a draw for each, which knows of none hidden.
 static void HiddenBlocksAreHidden(void** state)
 {
@@ -303,7 +345,8 @@ static void DrawsThatAreNoPassesAreRefused(void** state)
 }
 
 TEST_SUITE(passes, cmocka_unit_test(PassesOverKeptBlocksGiveTheBitsOfDraws),
-           cmocka_unit_test(SurfaceShadersRunBeforeFragmentShaders), cmocka_unit_test(HiddenBlocksAreHidden),
+           cmocka_unit_test(SurfaceShadersRunBeforeFragmentShaders),
+           cmocka_unit_test(SurfaceShadersMayMakeAllVaryings), cmocka_unit_test(HiddenBlocksAreHidden),
            cmocka_unit_test(DepthAloneIsTheDepthOfShadedDraws), cmocka_unit_test(DistancesNeedNoShader),
            cmocka_unit_test(RastersSideBySideGiveTheBitsOfEachAlone),
            cmocka_unit_test(DrawsThatAreNoPassesAreRefused));

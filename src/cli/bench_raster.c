@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rasterizer by itself: how fast it fills, and what triangles cost that fill nothing.
 #include "cli/bench.h"
+#include "cli/bench_cover.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -8,31 +9,6 @@
 // ---- whole pictures: triangles that cover all of it, one layer nearer than the other
 
 enum { LAYERS = 8 };
-
-static const uint32_t COVER_INDICES[3] = {0, 1, 2};
-static const vplMesh COVER = {COVER_INDICES, 3, 1};
-
-// The triangle (-1, -1), (3, -1), (-1, 3) at a depth.
-static void coverVertices(const void* uniforms, int first, int count, const vplVertices* out)
-{
-    const float* depth = uniforms;
-    for (int i = 0; i < count; i++) {
-        out->x[i] = first + i == 1 ? 3 : -1;
-        out->y[i] = first + i == 2 ? 3 : -1;
-        out->z[i] = *depth;
-        out->w[i] = 1;
-    }
-}
-
-static void constantFragments(const void* uniforms, vplFragments* f)
-{
-    (void)uniforms;
-    for (int p = 0; p < 4; p++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            f->plane[p][l] = (float)(p + 1);
-        }
-    }
-}
 
 static uint64_t hashFloats(const float* values, size_t count)
 {
@@ -45,17 +21,23 @@ static uint64_t hashFloats(const float* values, size_t count)
     return hash;
 }
 
-// Runs what was recorded, in which `plane` is kept for the hash.
-static vplResult runRaster(vplRaster* raster, const float* plane, size_t count, Outcome* outcome)
+// The end of a stage: runs what was recorded, unless that failed, and lets go of it. The picture's
+// floats hold its first plane.
+static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Outcome* outcome)
 {
     vplRasterStats stats;
-    vplResult result = vplRaster_Run(raster, NULL, NULL, &stats);
+    if (result == VPL_SUCCESS) {
+        result = vplRaster_Run(raster, NULL, NULL, &stats);
+    }
     if (result == VPL_SUCCESS) {
         outcome->drawCalls = stats.drawCalls;
         outcome->fragments = stats.fragments;
         outcome->triangles = stats.trianglesIn;
-        outcome->hash = hashFloats(plane, count);
+        outcome->hash = hashFloats(b->image->pixels, (size_t)b->image->width * (size_t)b->image->height);
+        outcome->work = (double)outcome->fragments;
+        outcome->unit = "fragments";
     }
+    vplRaster_Destroy(raster);
     return result;
 }
 
@@ -78,13 +60,7 @@ vplResult runFill(Bench* b, const Stage* stage, Outcome* outcome)
         pipeline.vertexUniforms = &depths[i];
         result = vplRaster_Draw(raster, &COVER, &pipeline);
     }
-    if (result == VPL_SUCCESS) {
-        result = runRaster(raster, b->image->pixels, (size_t)width * (size_t)height, outcome);
-    }
-    outcome->work = (double)outcome->fragments;
-    outcome->unit = "fragments";
-    vplRaster_Destroy(raster);
-    return result;
+    return finish(raster, result, b, outcome);
 }
 
 vplResult runAdditiveFill(Bench* b, const Stage* stage, Outcome* outcome)
@@ -108,15 +84,9 @@ vplResult runAdditiveFill(Bench* b, const Stage* stage, Outcome* outcome)
         pipeline.depthCompare = VPL_DEPTH_EQUAL;
         pipeline.depthWrite = false;
         pipeline.blend = VPL_BLEND_ADD;
-        pipeline.fragment = constantFragments;
+        pipeline.fragment = coverFragments;
     }
-    if (result == VPL_SUCCESS) {
-        result = runRaster(raster, b->image->pixels, (size_t)width * (size_t)height, outcome);
-    }
-    outcome->work = (double)outcome->fragments;
-    outcome->unit = "fragments";
-    vplRaster_Destroy(raster);
-    return result;
+    return finish(raster, result, b, outcome);
 }
 
 // ---- small triangles: squares of 2 x 2 pixels, two triangles each
@@ -173,12 +143,9 @@ vplResult runSmallTriangles(Bench* b, const Stage* stage, Outcome* outcome)
     if (result == VPL_SUCCESS) {
         result = vplRaster_Draw(raster, &mesh, &pipeline);
     }
-    if (result == VPL_SUCCESS) {
-        result = runRaster(raster, b->image->pixels, (size_t)width * (size_t)height, outcome);
-    }
+    result = finish(raster, result, b, outcome);
     outcome->work = (double)outcome->triangles;
     outcome->unit = "triangles";
-    vplRaster_Destroy(raster);
     free(indices);
     return result;
 }

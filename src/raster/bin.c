@@ -31,7 +31,6 @@ static vplResult makeChunks(vplTriangleStage* stage)
             return vplFail(r->context, VPL_LIMIT, "more than %d triangles on screen", INT32_MAX);
         }
     }
-    r->trianglesIn = (int)total;
     stage->chunkSize = 4096;
     // The table of counts is chunks * tiles: few, large chunks where there are many of both.
     while (total / stage->chunkSize * stage->tileCount > 1 << 22) {
@@ -43,8 +42,7 @@ static vplResult makeChunks(vplTriangleStage* stage)
         vplAllocZero(r->context, (size_t)stage->chunkCount * (size_t)stage->tileCount, sizeof *stage->counts);
     for (int i = 0; stage->chunks != NULL && i < stage->chunkCount; i++) {
         const int first = i * stage->chunkSize;
-        const int count =
-            r->trianglesIn - first < stage->chunkSize ? r->trianglesIn - first : stage->chunkSize;
+        const int count = (int)total - first < stage->chunkSize ? (int)total - first : stage->chunkSize;
         stage->chunks[i] = (vplChunk){.first = first, .count = count};
     }
     return stage->chunks && stage->counts ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;

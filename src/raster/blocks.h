@@ -81,8 +81,7 @@ static inline int32_t testFragments(vplTileState* state, const vplPipeline* p, i
 static inline void needShares(Draw* d)
 {
     if (!d->hasShares) {
-        const vplTriangle t = triangleOf(d->batch, d->place);
-        setUpShares(d->raster, &t, d->shaded, d->shares);
+        setUpShares(d->raster, d->batch, d->place, d->shaded, d->shares);
         d->hasShares = true;
     }
 }
@@ -91,11 +90,10 @@ static inline void needShares(Draw* d)
 static void makeSurface(Draw* d)
 {
     vplFragments* f = &d->state->block;
-    if (d->shaded->varyingCount == 0 && !d->pipeline->needsW) {
-        return;
+    if (d->shaded->varyingCount > 0 || d->pipeline->needsW) {
+        needShares(d);
+        interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
     }
-    needShares(d);
-    interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
     if (d->pipeline->surface != NULL) {
         d->pipeline->surface(d->pipeline->vertexUniforms, f);
     }
@@ -126,8 +124,9 @@ static inline int32_t* countersOf(vplTileState* state, int at)
     return state->fragmentLanes[at / VPL_LANES % VPL_COUNTERS];
 }
 
-// Depth and nothing else. Lanes are copied first, so that the compiler need not ask whether arrays overlap.
-static inline void drawDepth(vplTileState* state, const Setup* s, double z, int at, bool filled)
+// The end of draws that write depth only: the nearer of two depths stays. `filled`: all lanes are covered. Lanes
+// are copied first, so that the compiler need not ask whether arrays overlap.
+static inline void keepNearer(vplTileState* state, int at, const float drawn[VPL_LANES], bool filled)
 {
     int32_t* counts = countersOf(state, at);
     float depth[VPL_LANES];
@@ -135,7 +134,7 @@ static inline void drawDepth(vplTileState* state, const Setup* s, double z, int 
     memcpy(depth, state->depth + at, sizeof depth);
     memcpy(covered, state->block.covered, sizeof covered);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float v = clampDepth(z + s->laneZ[l]), kept = depth[l];
+        const float v = drawn[l], kept = depth[l];
         const int32_t passed = (filled ? -1 : covered[l]) & (v < kept ? -1 : 0);
         depth[l] = passed ? v : kept;
         counts[l] -= passed;
@@ -143,31 +142,33 @@ static inline void drawDepth(vplTileState* state, const Setup* s, double z, int 
     memcpy(state->depth + at, depth, sizeof depth);
 }
 
-// Distance from the eye and nothing else. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the
-// Cube Shadow Map"; departs: w is turned into a distance by the texel's own direction.
+static inline void drawDepth(vplTileState* state, const Setup* s, double z, int at, bool filled)
+{
+    float drawn[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        drawn[l] = clampDepth(z + s->laneZ[l]);
+    }
+    keepNearer(state, at, drawn, filled);
+}
+
+// Distance from the eye. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow Map";
+// departs: w is turned into a distance by the texel's own direction.
 static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
 {
-    vplTileState* state = d->state;
     const float scale = d->pipeline->distanceScale, texel = d->texel;
-    const float left = (float)(state->tile.x + x), top = (float)(state->tile.y + y);
-    int32_t* counts = countersOf(state, at);
-    float depth[VPL_LANES], share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES];
-    int32_t covered[VPL_LANES];
-    memcpy(depth, state->depth + at, sizeof depth);
-    memcpy(covered, state->block.covered, sizeof covered);
-    shareOf(d->shares, 0, state->tile.x + x, state->tile.y + y, share0);
-    shareOf(d->shares, 1, state->tile.x + x, state->tile.y + y, share1);
-    shareOf(d->shares, 2, state->tile.x + x, state->tile.y + y, share2);
+    x += d->state->tile.x;
+    y += d->state->tile.y;
+    float drawn[VPL_LANES], share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES];
+    shareOf(d->shares, 0, x, y, share0);
+    shareOf(d->shares, 1, x, y, share1);
+    shareOf(d->shares, 2, x, y, share2);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float s = (left + (float)(l & 3) + 0.5f) * texel - 1;
-        const float t = 1 - (top + (float)(l >> 2) + 0.5f) * texel;
+        const float s = ((float)x + (float)(l & 3) + 0.5f) * texel - 1;
+        const float t = 1 - ((float)y + (float)(l >> 2) + 0.5f) * texel;
         const float w = 1 / (share0[l] + share1[l] + share2[l]);
-        const float v = w * sqrtf(1 + s * s + t * t) * scale, kept = depth[l];
-        const int32_t passed = (filled ? -1 : covered[l]) & (v < kept ? -1 : 0);
-        depth[l] = passed ? v : kept;
-        counts[l] -= passed;
+        drawn[l] = w * sqrtf(1 + s * s + t * t) * scale;
     }
-    memcpy(state->depth + at, depth, sizeof depth);
+    keepNearer(d->state, at, drawn, filled);
 }
 
 static inline void writeDepth(vplTileState* state, int owner, int at)

@@ -31,17 +31,9 @@ _Static_assert(VPL_MAX_IMAGE_SIZE / VPL_TILE_SIDE <= 256, "tile numbers are byte
 
 // A piece of a triangle that was cut.
 typedef struct vplClippedTriangle {
-    uint32_t vertex[3]; // as in vplTriangle
+    uint32_t vertex[3]; // where its clip-space position and varyings are: of the mesh, then of the extras
     int32_t primitive;
 } vplClippedTriangle;
-
-// A triangle ready to be drawn.
-typedef struct vplTriangle {
-    vplScreenVertex v[3]; // turned so that the area is > 0 with y down: clockwise as seen
-    uint32_t vertex[3];   // where its clip-space position and varyings are
-    int32_t primitive;
-    bool clockwise; // it was so before turning
-} vplTriangle;
 
 // Pixels whose centres may lie in a triangle: columns x0 to x1, rows y0 to y1; empty if x1 < x0 or y1 < y0. The
 // centre of pixel i lies at 256 i + 128.
@@ -104,7 +96,6 @@ struct vplRaster {
     int commandCount, pipelineCount, shadedCount;
     size_t commandCapacity, pipelineCapacity, shadedCapacity;
 
-    int trianglesIn;      // of all meshes
     vplTriangleRef* refs; // in drawing order, with gaps between the chunks that made them
     vplClippedTriangle* clipped;
     vplScreenVertex* extraScreen; // vertices made by clipping,

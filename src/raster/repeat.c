@@ -63,13 +63,6 @@ static void findRows(vplRaster* r, int* last)
 
 vplResult vplFindPasses(vplRaster* raster)
 {
-    int* last = vplAlloc(raster->context, (size_t)raster->shadedCount, sizeof *last);
-    raster->passUniforms =
-        vplAlloc(raster->context, (size_t)raster->commandCount, sizeof *raster->passUniforms);
-    if (last == NULL || raster->passUniforms == NULL) {
-        vplFree(raster->context, last);
-        return VPL_OUT_OF_MEMORY;
-    }
     int epoch = 0;
     raster->keepsOwners = raster->keepsPasses = raster->hasTasks = false;
     for (int i = 0; i < raster->commandCount; i++) {
@@ -82,7 +75,16 @@ vplResult vplFindPasses(vplRaster* raster)
         raster->keepsPasses |= c->repeats;
         raster->hasTasks |= p == NULL;
     }
-    findRows(raster, last);
+    if (!raster->keepsPasses) {
+        return VPL_SUCCESS;
+    }
+    int* last = vplAlloc(raster->context, (size_t)raster->shadedCount, sizeof *last);
+    raster->passUniforms =
+        vplAlloc(raster->context, (size_t)raster->commandCount, sizeof *raster->passUniforms);
+    const bool enough = last != NULL && raster->passUniforms != NULL;
+    if (enough) {
+        findRows(raster, last);
+    }
     vplFree(raster->context, last);
-    return VPL_SUCCESS;
+    return enough ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
 }

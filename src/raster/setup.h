@@ -19,8 +19,6 @@ typedef struct Batch {
     _Alignas(64) double e[3][BATCH]; // at the centre of the tile's first pixel, with the bias below
     _Alignas(64) double a[3][BATCH], b[3][BATCH];            // growth per sub-pixel in x and y
     _Alignas(64) double planeZ[BATCH], zx[BATCH], zy[BATCH]; // depth there, and its growth per pixel
-    _Alignas(64) int32_t x0[BATCH], x1[BATCH], y0[BATCH],
-        y1[BATCH];                         // blocks of the tile that the box touches
     _Alignas(64) int32_t edge[3][BATCH];   // e / 256, rounded down, at the first block that the box touches
     _Alignas(64) int32_t clockwise[BATCH]; // as seen, before turning
     uint32_t vertex[3][BATCH];
@@ -66,7 +64,7 @@ static inline int32_t most3i(int32_t a, int32_t b, int32_t c)
     return ab > c ? ab : c;
 }
 
-// Blocks of the tile that the triangles' pixel boxes touch; see vplBoundTriangle.
+// The triangles' pixel boxes within the tile; see vplBoundTriangle.
 static inline void boundBatch(const vplTile* tile, Batch* t)
 {
     const int32_t left = tile->x, top = tile->y, right = tile->width - 1, bottom = tile->height - 1;
@@ -79,10 +77,6 @@ static inline void boundBatch(const vplTile* tile, Batch* t)
         t->top[k] = y0 > 0 ? y0 : 0;
         t->right[k] = x1 < right ? x1 : right;
         t->bottom[k] = y1 < bottom ? y1 : bottom;
-        t->x0[k] = t->left[k] >> 2;
-        t->y0[k] = t->top[k] >> 2;
-        t->x1[k] = t->right[k] >> 2;
-        t->y1[k] = t->bottom[k] >> 2;
     }
 }
 
@@ -124,7 +118,7 @@ static inline void findFirstEdges(Batch* t)
 {
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < BATCH; k++) {
-            const double x = t->x0[k] * VPL_BLOCK_SIDE, y = t->y0[k] * VPL_BLOCK_SIDE;
+            const double x = t->left[k] & ~3, y = t->top[k] & ~3;
             t->edge[i][k] = edgeOf(t->e[i][k] + 256 * (t->a[i][k] * x + t->b[i][k] * y));
         }
     }
@@ -194,17 +188,6 @@ static inline void boundDepth(Setup* s)
 {
     s->leastZ = (s->zx < 0 ? s->laneZ[3] : 0) + (s->zy < 0 ? s->laneZ[12] : 0);
     s->mostZ = (s->zx > 0 ? s->laneZ[3] : 0) + (s->zy > 0 ? s->laneZ[12] : 0);
-}
-
-// For interpolation.
-static inline vplTriangle triangleOf(const Batch* t, int k)
-{
-    vplTriangle triangle = {.primitive = t->primitive[k], .clockwise = t->clockwise[k] != 0};
-    for (int i = 0; i < 3; i++) {
-        triangle.v[i] = (vplScreenVertex){t->x[i][k], t->y[i][k], t->z[i][k]};
-        triangle.vertex[i] = t->vertex[i][k];
-    }
-    return triangle;
 }
 
 #endif

@@ -7,7 +7,7 @@
 #ifndef VPL_RASTER_SHARES_H
 #define VPL_RASTER_SHARES_H
 
-#include "raster/raster.h"
+#include "raster/setup.h"
 
 typedef struct Shares {
     double x[3], y[3], c[3];                // the three planes over pixel indices; their sum is 1/w
@@ -26,13 +26,14 @@ static inline void crossPlanes(const double p[3][3], Shares* s)
     }
 }
 
-static inline void setUpShares(const vplRaster* r, const vplTriangle* t, const vplShaded* shaded, Shares* s)
+static inline void setUpShares(const vplRaster* r, const Batch* t, int place, const vplShaded* shaded,
+                               Shares* s)
 {
     double p[3][3];
     float varyings[3][VPL_MAX_VARYINGS];
     for (int i = 0; i < 3; i++) {
         float clip[3];
-        vplFetchVertex(r, shaded, t->vertex[i], clip, varyings[i]);
+        vplFetchVertex(r, shaded, t->vertex[i][place], clip, varyings[i]);
         p[i][0] = 0.5 * r->framebuffer.width * ((double)clip[2] + clip[0]);
         p[i][1] = 0.5 * r->framebuffer.height * ((double)clip[2] - clip[1]);
         p[i][2] = clip[2];
@@ -42,8 +43,8 @@ static inline void setUpShares(const vplRaster* r, const vplTriangle* t, const v
     if (!(determinant > 0)) {
         // Only snapping gave it an area: then the snapped corners are the triangle.
         for (int i = 0; i < 3; i++) {
-            p[i][0] = t->v[i].x / 256.0 * p[i][2];
-            p[i][1] = t->v[i].y / 256.0 * p[i][2];
+            p[i][0] = t->x[i][place] / 256.0 * p[i][2];
+            p[i][1] = t->y[i][place] / 256.0 * p[i][2];
         }
         crossPlanes(p, s);
         determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];

@@ -226,7 +226,8 @@ static void* take(char* memory, size_t* at, size_t bytes)
     return taken;
 }
 
-// Lays a worker's state out in `memory` (NULL: nowhere) and returns how much it takes. Vectors must not straddle cache lines.
+// Lays a worker's state out in `memory` (NULL: nowhere) and returns how much it takes. Vectors must not
+// straddle cache lines, and what vplAlloc returns starts with one.
 static size_t layOut(const Needs* n, vplTileState* state, char* memory)
 {
     const size_t plane = VPL_TILE_PIXELS * sizeof(float), perMesh = (n->meshes + 1) * sizeof(int);
@@ -262,13 +263,12 @@ static vplResult makeStates(Run* run)
     }
     run->states = vplAllocZero(context, workers, sizeof *run->states);
     run->tileFragments = vplAllocZero(context, (size_t)tiles, sizeof *run->tileFragments);
-    run->memory = vplAlloc(context, workers * perWorker + 64, 1);
+    run->memory = vplAlloc(context, workers, perWorker);
     if (!run->firstTile || !run->states || !run->tileFragments || !run->memory) {
         return VPL_OUT_OF_MEMORY;
     }
-    char* at = (char*)roundUp((uintptr_t)run->memory);
-    for (size_t i = 0; i < workers; i++, at += perWorker) {
-        layOut(&needs, &run->states[i], at);
+    for (size_t i = 0; i < workers; i++) {
+        layOut(&needs, &run->states[i], run->memory + i * perWorker);
     }
     return VPL_SUCCESS;
 }

@@ -77,7 +77,8 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
 static void drawTriangle(Draw* d)
 {
     const Batch* t = d->batch;
-    const int x0 = t->x0[d->place], x1 = t->x1[d->place], y0 = t->y0[d->place], y1 = t->y1[d->place];
+    const int x0 = t->left[d->place] / VPL_BLOCK_SIDE, x1 = t->right[d->place] / VPL_BLOCK_SIDE;
+    const int y0 = t->top[d->place] / VPL_BLOCK_SIDE, y1 = t->bottom[d->place] / VPL_BLOCK_SIDE;
     Setup s;
     setUp(t, d->place, &s);
     if (d->distances) {
@@ -148,7 +149,8 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
             fetchTriangle(raster, d.shaded, list[first + k], &batch, k);
         }
         setUpBatch(&state->tile, &batch);
-        if (d.depthOnly) {
+        const bool anyTiny = d.depthOnly && p->cull == VPL_CULL_NONE && hasTiny(&batch, some);
+        if (anyTiny) {
             testTiny(&batch, &tiny);
         }
         for (int k = 0; k < some; k++) {
@@ -156,7 +158,7 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
             d.place = k;
             d.hasShares = false;
             state->block.primitive = batch.primitive[k];
-            if (d.depthOnly && p->cull == VPL_CULL_NONE && isTiny(&batch, k)) {
+            if (anyTiny && isTiny(&batch, k)) {
                 state->fragments += drawTiny(&tiny, k, state->depth);
             } else if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != (batch.clockwise[k] != 0)) {
                 drawTriangle(&d);

@@ -19,6 +19,16 @@ static inline bool isTiny(const Batch* t, int k)
     return t->right[k] - t->left[k] < TINY_SIDE && t->bottom[k] - t->top[k] < TINY_SIDE;
 }
 
+// Whether any of the first `count` triangles is.
+static inline bool hasTiny(const Batch* t, int count)
+{
+    bool any = false;
+    for (int k = 0; k < count; k++) {
+        any |= isTiny(t, k);
+    }
+    return any;
+}
+
 static inline float clampDepth(double z)
 {
     float v = (float)z;

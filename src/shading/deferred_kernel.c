@@ -12,12 +12,7 @@ vplTileFcn VPL_KERNEL(vplLightTile), VPL_KERNEL(vplShowTile);
 void VPL_KERNEL(vplWriteGbuffer)(const void* uniforms, vplFragments* f)
 {
     const vplObjectUniforms* u = uniforms;
-    const int triangle = u->shading->geometry->objects[u->object].firstTriangle + f->primitive;
-    int32_t id[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        id[l] = triangle + 1;
-    }
-    memcpy(f->plane[VPL_PLANE_TRIANGLE], id, sizeof id);
+    vplShowTriangle(u->shading->geometry->objects[u->object].firstTriangle + f->primitive, f);
     memcpy(f->plane[VPL_PLANE_POSITION], f->varying[0], 3 * sizeof f->varying[0]);
     if (u->normals != NULL) {
         memcpy(f->plane[VPL_PLANE_NORMAL], f->varying[VPL_CAMERA_VARYINGS], 3 * sizeof f->varying[0]);

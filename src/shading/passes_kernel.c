@@ -35,11 +35,7 @@ void VPL_KERNEL(vplShadeDirect)(const void* uniforms, vplFragments* f)
     vplTileSums* sums = f->scratch;
     const vplPoints points = pointsOf(u, f);
     vplDirectIrradiance(u->shading, &points, f->plane, &sums->shadowRays);
-    int32_t id[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        id[l] = triangleOf(u, f) + 1;
-    }
-    memcpy(f->plane[VPL_PLANE_TRIANGLE], id, sizeof id);
+    vplShowTriangle(triangleOf(u, f), f);
 }
 
 // A full group of a block moves from its planes to the sums.

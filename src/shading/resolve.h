@@ -8,6 +8,16 @@
 
 #include <string.h>
 
+// What vplReadTriangles reads: one triangle in all lanes.
+static inline void vplShowTriangle(int triangle, vplFragments* f)
+{
+    int32_t id[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        id[l] = triangle + 1;
+    }
+    memcpy(f->plane[VPL_PLANE_TRIANGLE], id, sizeof id);
+}
+
 // Index in geometry->normals of each lane of a block, -1 where nothing is. Returns whether any lane has one.
 static inline bool vplReadTriangles(const vplTile* tile, int element, int triangles[VPL_LANES])
 {

@@ -2,6 +2,7 @@
 // The hot loops at work on one thread, and variants of them with one thing changed.
 #include "work.h"
 
+#include "cli/bench_cover.h"
 #include "geometry/bvh.h"
 #include "shading/shading.h"
 
@@ -102,36 +103,12 @@ static void makeLights(Work* w)
 
 // ---- fill: triangles over all of the picture
 
-static void coverVertices(const void* uniforms, int first, int count, const vplVertices* out)
-{
-    const float* depth = uniforms;
-    for (int i = 0; i < count; i++) {
-        out->x[i] = first + i == 1 ? 3 : -1;
-        out->y[i] = first + i == 2 ? 3 : -1;
-        out->z[i] = *depth;
-        out->w[i] = 1;
-    }
-}
-
-static void constantFragments(const void* uniforms, vplFragments* f)
-{
-    (void)uniforms;
-    for (int p = 0; p < 4; p++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            f->plane[p][l] = (float)(p + 1);
-        }
-    }
-}
-
 // What the planes then hold is what the block held before.
 static void noFragments(const void* uniforms, vplFragments* f)
 {
     (void)uniforms;
     (void)f;
 }
-
-static const uint32_t COVER_INDICES[3] = {0, 1, 2};
-static const vplMesh COVER = {COVER_INDICES, 3, 1};
 
 static void makeFill(Work* w, int kind)
 {
@@ -149,7 +126,7 @@ static void makeFill(Work* w, int kind)
             pipeline.depthCompare = VPL_DEPTH_EQUAL;
             pipeline.depthWrite = false;
             pipeline.blend = VPL_BLEND_ADD;
-            pipeline.fragment = kind == FILL_ADD_IDLE ? noFragments : constantFragments;
+            pipeline.fragment = kind == FILL_ADD_IDLE ? noFragments : coverFragments;
             pipeline.planeMask = kind == FILL_ADD_CHEAP ? 0 : 15;
         }
     }

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Drawing the whole picture as fast as can be: what fills are measured with, here and in bench/roofline.
+#ifndef VPL_CLI_BENCH_COVER_H
+#define VPL_CLI_BENCH_COVER_H
+
+#include <vpl/raster.h>
+
+// One triangle over the whole picture.
+extern const vplMesh COVER;
+
+// Its corners (-1, -1), (3, -1), (-1, 3) at a depth, which is the uniforms: a float.
+void coverVertices(const void* uniforms, int first, int count, const vplVertices* out);
+
+// 1, 2, 3, 4 in planes 0 to 3.
+void coverFragments(const void* uniforms, vplFragments* f);
+
+#endif
