@@ -457,8 +457,8 @@ static void AccumulationsAgreeWithEveryShadow(void** state)
 {
     (void)state;
     static const int workers[] = {1, 2, 3, 7};
-    uint64_t hashes[3];
-    for (int shadows = 0; shadows < 3; shadows++) {
+    uint64_t hashes[1 + VPL_LIGHT_SHADOWS_RAY];
+    for (int shadows = VPL_LIGHT_SHADOWS_NONE; shadows <= VPL_LIGHT_SHADOWS_RAY; shadows++) {
         vplContext* context = openTestContext(1);
         vplScene* scene = zoo(context, 1);
         vplRenderOptions o = zooOptions(shadows);
@@ -475,7 +475,7 @@ static void AccumulationsAgreeWithEveryShadow(void** state)
             }
         }
     }
-    assert_true(hashes[0] != hashes[1] && hashes[1] != hashes[2] && hashes[0] != hashes[2]);
+    assert_true(hashes[1] != hashes[2] && hashes[2] != hashes[3] && hashes[1] != hashes[3]);
 }
 
 static void DoublingEmittersDoublesEveryBit(void** state)

@@ -258,7 +258,7 @@ static uint64_t hashLights(const vplLightSet* set)
 static void LightsDoNotDependOnThreads(void** state)
 {
     (void)state;
-    for (int sampler = 0; sampler < 3; sampler++) {
+    for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
         uint64_t wanted = 0;
         const int workers[] = {1, 2, 3, 7};
         for (int i = 0; i < 4; i++) {
@@ -291,8 +291,9 @@ static void AnyFirstParticlesCoverTheSphere(void** state)
     vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     // Random points: 3 standard deviations of the mean of n unit vectors; the others: better than that by far.
-    const double allowed[3] = {3, 0.7, 0.7};
-    for (int sampler = 0; sampler < 3; sampler++) {
+    const double allowed[] = {
+        [VPL_SAMPLER_RANDOM] = 3, [VPL_SAMPLER_HALTON] = 0.7, [VPL_SAMPLER_HAMMERSLEY] = 0.7};
+    for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
         vplParticleDef def = vplDefaultParticleDef();
         def.particleCount = 1024;
         def.sampler = (vplSampler)sampler;
@@ -339,7 +340,7 @@ static void EmittersShareParticlesByPower(void** state)
     (void)state;
     vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 1);
-    for (int sampler = 0; sampler < 3; sampler++) {
+    for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
         vplParticleDef def = vplDefaultParticleDef();
         def.particleCount = 4000;
         def.reflectivity = 0;

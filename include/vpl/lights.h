@@ -18,9 +18,10 @@ typedef enum vplLighting {
 } vplLighting;
 
 typedef enum vplSampler {
-    VPL_SAMPLER_RANDOM = 0, // counter-based random numbers
-    VPL_SAMPLER_HALTON,     // radical inverses in the primes
-    VPL_SAMPLER_HAMMERSLEY  // i/N and radical inverses
+    VPL_SAMPLER_AUTO = 0,  // Halton where particles' starts are lights (Keller), else random
+    VPL_SAMPLER_RANDOM,    // counter-based random numbers
+    VPL_SAMPLER_HALTON,    // radical inverses in the primes
+    VPL_SAMPLER_HAMMERSLEY // i/N and radical inverses
 } vplSampler;
 
 typedef enum vplBounce {
@@ -28,6 +29,12 @@ typedef enum vplBounce {
     VPL_BOUNCE_REFLECT,  // like a mirror
     VPL_BOUNCE_DIFFUSE   // cosine-distributed
 } vplBounce;
+
+// Whose recipe is followed: what counts as step 0.
+typedef enum vplParticleStart {
+    VPL_START_FIRST_HIT = 0, // Franchi and Ferrante: all N particles are shot, their first hits are step 0
+    VPL_START_EMITTER        // Keller: where the N particles start are lights, too, and are step 0
+} vplParticleStart;
 
 // What stops a particle.
 typedef enum vplParticleGeometry {
@@ -37,21 +44,26 @@ typedef enum vplParticleGeometry {
 
 typedef struct vplVirtualLight {
     vplVec3 position; // metres
-    vplVec3 normal;   // unit; of the surface, on the side the particle came from (documented: as declared)
+    vplVec3
+        normal; // unit; of the surface, on the side the particle came from (documented: as declared); where a
+                // particle leaves a point or comes from a direction, its own direction
     vplRgb light; // documented: the light L the particle carries after attenuation, in the emitter's unit;
-                  // physical: flux in W that the surface sends out if one particle carried all
+                  // physical, and Keller's: flux in W that the surface sends out if one particle carried all
     float weight; // N / floor(rho^k N); the picture also divides by N
     int step;     // k: 0 for the first hit
     int particle; // [0, N)
-    int object;   // where it lies
+    int object;   // where it lies; -1: it is the emitter itself (Keller, step 0 of what is no surface)
 } vplVirtualLight;
 
 typedef struct vplParticleDef {
-    vplLighting lighting;         // default VPL_LIGHTING_PHYSICAL
-    int particleCount;            // N, [0, VPL_MAX_LIGHTS]; default 10
-    double reflectivity;          // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
-    vplSampler sampler;           // default VPL_SAMPLER_RANDOM
-    vplBounce bounce;             // default VPL_BOUNCE_AUTO
+    vplLighting lighting;   // default VPL_LIGHTING_PHYSICAL; documented: rho/pi at every hit
+    vplParticleStart start; // default VPL_START_FIRST_HIT
+    int particleCount;      // N, [0, VPL_MAX_LIGHTS]; default 10
+    int64_t firstParticle;  // index of the first in its sequence, [0, 2^40]: renders in several passes go on
+                            // where the last ended; default 0
+    double reflectivity;    // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
+    vplSampler sampler;     // default VPL_SAMPLER_AUTO
+    vplBounce bounce;       // default VPL_BOUNCE_AUTO
     vplParticleGeometry geometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;             // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
     const vplVec3* directions; // N first directions, unit, instead of the sampler's; NULL (default)
@@ -83,11 +95,12 @@ typedef struct vplLightSet {
     vplContext* context;
 } vplLightSet;
 
-// Shoots particles from the scene's emitters, and for physical lighting also from triangles that emit; all share
-// N by power. Documented lighting knows point emitters only. Each hit leaves a virtual light; the first
+// Shoots particles from the scene's emitters, and for physical lighting or Keller's start also from triangles that
+// emit; all share N by power. Documented lighting of first hits knows point emitters only. Each hit leaves a virtual light; the first
 // floor(rho^k N) go on. A particle that hits nothing leaves no light and is gone; the weights keep the nominal
 // counts.
-// Source: Franchi and Ferrante, Virtual Point Lights, "Particle Simulation".
+// Source: Franchi and Ferrante, Virtual Point Lights, "Particle Simulation"; Keller, Instant Radiosity, 1997,
+// section 4, as they tell it under "Keller's Instant Radiosity".
 vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                                const vplParticleDef* def, vplLightSet** setOut);
 

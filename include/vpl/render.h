@@ -12,7 +12,8 @@ extern "C" {
 typedef enum vplMethod {
     VPL_METHOD_INSTANT_RADIOSITY = 0, // Franchi and Ferrante, Virtual Point Lights
     VPL_METHOD_DIRECT,                // the scene's own lights only
-    VPL_METHOD_PATH                   // path tracing: the truth that the others are judged against
+    VPL_METHOD_PATH,                  // path tracing: the truth that the others are judged against
+    VPL_METHOD_KELLER                 // Keller, Instant Radiosity
 } vplMethod;
 
 // What the picture shows.
@@ -34,10 +35,26 @@ enum { VPL_MAX_SAMPLES = 1 << 24, VPL_MAX_BOUNCES = 1 << 16 };
 
 // Whether light from a virtual light is stopped by what is between.
 typedef enum vplLightShadows {
-    VPL_LIGHT_SHADOWS_NONE = 0, // it is not: as Franchi and Ferrante draw
-    VPL_LIGHT_SHADOWS_MAP,      // a cube shadow map per virtual light, one sample: as Keller draws
-    VPL_LIGHT_SHADOWS_RAY       // a ray per pixel and light: exact
+    VPL_LIGHT_SHADOWS_USUAL = 0, // as the method's document draws: instant radiosity none, Keller's auto
+    VPL_LIGHT_SHADOWS_NONE,      // it is not: as Franchi and Ferrante draw
+    VPL_LIGHT_SHADOWS_MAP,       // a cube shadow map per virtual light, one sample: as Keller draws
+    VPL_LIGHT_SHADOWS_RAY,       // a ray per pixel and light: exact
+    VPL_LIGHT_SHADOWS_AUTO       // map or ray, whichever will be cheaper
 } vplLightShadows;
+
+// Where virtual lights go.
+typedef enum vplLightPlacement {
+    VPL_PLACEMENT_PARTICLES = 0, // where particles land
+    VPL_PLACEMENT_RSM,           // first hits are texels of reflective shadow maps
+    VPL_PLACEMENT_VIEW           // particles, of which those are kept that light what the camera sees
+} vplLightPlacement;
+
+// What becomes of the light that minDistance takes away.
+typedef enum vplCompensation {
+    VPL_COMPENSATION_USUAL = 0, // rays for Keller's method with physical lighting and shadows, else none
+    VPL_COMPENSATION_NONE,      // it is lost
+    VPL_COMPENSATION_RAYS       // short rays from each pixel find it
+} vplCompensation;
 
 // Where in a pixel the path tracer looks.
 typedef enum vplPixel {
@@ -53,10 +70,11 @@ typedef struct vplRenderOptions {
                    // does; [1, 4096]; default 1: the pixel's centre
     int camera;    // index, [0, cameras of the scene); default 0
 
-    int particles;       // N, [0, VPL_MAX_LIGHTS]; default 10
-    double reflectivity; // rho, [0, 1), or negative: the scene's area-weighted mean; default 0.5
-    vplSampler sampler;  // default VPL_SAMPLER_RANDOM
-    vplBounce bounce;    // default VPL_BOUNCE_AUTO
+    int particles;               // N, [0, VPL_MAX_LIGHTS]; default 10
+    double reflectivity;         // rho, [0, 1), or negative: the scene's area-weighted mean; default 0.5
+    vplLightPlacement placement; // default VPL_PLACEMENT_PARTICLES
+    vplSampler sampler;          // default VPL_SAMPLER_AUTO
+    vplBounce bounce;            // default VPL_BOUNCE_AUTO
     vplParticleGeometry particleGeometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;                        // default 0
 
@@ -67,8 +85,13 @@ typedef struct vplRenderOptions {
     float minDistance; // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
                        // (default): the radius of a disc with one light's share of the area
 
+    float
+        cutError; // lightcuts only: a cluster of lights stands for its lights where that errs by at most this
+                  // share of a pixel's light, (0, 1]; default 0.02
+    vplCompensation compensation; // default VPL_COMPENSATION_USUAL
+
     vplLightShadows lightShadows; // of virtual lights; RAY also replaces the emitters' shadow maps; default
-                                  // VPL_LIGHT_SHADOWS_NONE
+                                  // VPL_LIGHT_SHADOWS_USUAL
     int lightMapSize;             // texels along a face of a virtual light's map, [1, VPL_MAX_SHADOW_MAP];
                                   // default 128
     int lampLights;               // lights that stand for area emitters in direct light, with shadow rays,
@@ -78,6 +101,12 @@ typedef struct vplRenderOptions {
     int maxBounces;      // path: reflections before the eye's last, [0, VPL_MAX_BOUNCES]; 0: direct light
                          // only; -1 (default): ended by Russian roulette alone
     vplPixel pixel;      // path: default VPL_PIXEL_AREA
+
+    int passes; // pictures of N particles each, whose mean is the picture, [0, VPL_MAX_PASSES]; 0 (default):
+                // one, or as many as budgetMs or maxError ask for; methods with virtual lights
+    double budgetMs; // ends with the last pass that is expected to fit into so many milliseconds of the wall
+                     // clock; the first is always done; 0 (default): no such end
+    double maxError; // ends when the relative error estimate is not larger; 0 (default): no such end
 
     int shadowMapSize;   // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
     vplShadowDef shadow; // bias and PCF of the emitters' shadows; default vplDefaultShadowDef()
@@ -91,6 +120,9 @@ typedef struct vplRenderOptions {
 } vplRenderOptions;
 
 vplRenderOptions vplDefaultRenderOptions(void);
+
+// Most passes of a render.
+enum { VPL_MAX_PASSES = 1 << 20 };
 
 enum { VPL_MAX_STAGES = 16, VPL_MAX_STEPS_REPORTED = 64 };
 
@@ -111,11 +143,13 @@ typedef struct vplRenderStats {
     int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
     int escaped;                                  // particles that left the scene
     int triangles, objects;
-    float minDistance;    // as used, metres
-    double reflectivity;  // as used
-    double cpuMs;         // processor time of all threads
-    double errorEstimate; // path: expected rmse of the picture, from two independent halves of the samples;
-                          // negative where there is none
+    float minDistance;   // as used, metres
+    double reflectivity; // as used
+    double cpuMs;        // processor time of all threads
+    int passes;          // that the picture is the mean of; path: of up to 32 paths per pixel each
+    double
+        errorEstimate; // expected rmse of the picture, from two independent halves of the samples or passes;
+                       // negative where there is none
     double relativeErrorEstimate; // the same divided by the picture's mean
     size_t peakBytes;             // most memory held by the context during the call
     uint64_t imageHash;           // vplImage_Hash
@@ -126,7 +160,24 @@ typedef struct vplRenderStats {
 vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
                     vplRenderStats* statsOut);
 
-// The virtual lights that vplRender would use; destroy with vplLightSet_Destroy.
+// The same step by step, for windows, deadlines and progressive output: after each step there is a picture of all
+// that was done. Steps give the same bits as one call of vplRender. One step is one pass.
+typedef struct vplRenderer vplRenderer;
+
+vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
+                             vplRenderer** rendererOut);
+
+// Does one pass. *doneOut is set where the options ask for no more; further steps are allowed and make the picture
+// better, where it is made of passes at all. After a failure the renderer can only be destroyed.
+vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
+
+// The picture so far, at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
+vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRenderStats* statsOut);
+
+// NULL is allowed. The scene must outlive the renderer.
+void vplRenderer_Destroy(vplRenderer* renderer);
+
+// The virtual lights that vplRender would use (in its first pass); destroy with vplLightSet_Destroy.
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut);
 
 #ifdef __cplusplus

@@ -36,8 +36,9 @@ vplView vplView_At(const vplView* view, double x, double y);
 // Pixel coordinates of a point (x right, y down, (0, 0) the upper left corner). False behind the near plane.
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);
 
-// Fills out[0 .. set->lightCount).
-void vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out);
+// Fills at most out[0 .. set->lightCount) and returns how many: lights of step 0 that are the emitter itself are
+// left out. Keller's are physical, also with documented attenuation.
+int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out);
 
 // Adds lights[0 .. count) to the irradiance of 16 points, one after another.
 //   documented: E += L (n.l)+                       (Franchi and Ferrante, no distance, isotropic)
@@ -53,7 +54,8 @@ typedef enum vplAccumulation {
     VPL_ACCUMULATE_MULTIPASS = 0, // one pass over the scene per light, depth EQUAL, additive
     VPL_ACCUMULATE_BATCHED,       // one pass per `batch` lights
     VPL_ACCUMULATE_DEFERRED,      // one pass for a G-buffer, then all lights per tile
-    VPL_ACCUMULATE_INTERLEAVED    // every K^2-th light per pixel, then means of neighbours on one surface
+    VPL_ACCUMULATE_INTERLEAVED,   // every K^2-th light per pixel, then means of neighbours on one surface
+    VPL_ACCUMULATE_LIGHTCUTS      // clusters of a light tree, as fine as an error bound asks for
 } vplAccumulation;
 
 // What the picture shows.
@@ -82,6 +84,7 @@ typedef struct vplShadeDef {
     int lightCount;                // 0: no indirect light
     const vplShadow* lightShadows; // one per virtual light; NULL: they cast none, or by rays
     bool lightRays;                // virtual lights cast shadows by rays
+    float cutError;                // lightcuts: see vplRenderOptions
     bool emission;                 // surfaces that emit are seen to
 } vplShadeDef;
 

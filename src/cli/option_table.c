@@ -36,31 +36,48 @@ const Option OPTIONS[] = {
      "samples per pixel of rasterizing methods; default 1"},
     {"--camera", "I", RENDER | TRADEOFF, readInt, AT(render.camera), 0, 1e9, NULL,
      "index of the scene's camera; default 0"},
-    {"--method", "M", SCENE & ~TRADEOFF, readChoice, AT(render.method), 0, 0, "instant-radiosity|direct|path",
-     "instant-radiosity (default), direct: the scene's own lights only, or path: the path-traced reference"},
+    {"--method", "M", SCENE & ~TRADEOFF, readChoice, AT(render.method), 0, 0,
+     "instant-radiosity|direct|path|keller",
+     "instant-radiosity (default), direct: the scene's own lights only, path: the path-traced reference, or "
+     "keller: Instant Radiosity as published"},
     {"--lighting", "L", SCENE, readChoice, AT(render.lighting), 0, 0, "physical|documented",
      "physical (default) or documented: the formulas as printed"},
     {"--particles", "N", SCENE, readInt, AT(render.particles), 0, VPL_MAX_LIGHTS, NULL,
      "particles shot from the light; default 10"},
     {"--reflectivity", "R", SCENE, readReflectivity, 0, 0, 1, NULL,
      "share of particles that go on at each step, [0, 1), or auto: the scene's mean; default 0.5"},
-    {"--sampler", "S", SCENE, readChoice, AT(render.sampler), 0, 0, "random|halton|hammersley",
-     "random (default), halton or hammersley"},
+    {"--sampler", "S", SCENE, readChoice, AT(render.sampler), 0, 0, "auto|random|halton|hammersley",
+     "auto (default): halton for keller, else random; or random, halton or hammersley"},
+    {"--placement", "P", SCENE, readChoice, AT(render.placement), 0, 0, "particles|rsm|view",
+     "where virtual lights go: particles (default): where they land; rsm: first hits are texels of "
+     "reflective "
+     "shadow maps; view: particles, of which those are kept that light what the camera sees"},
     {"--bounce", "B", SCENE, readChoice, AT(render.bounce), 0, 0, "auto|reflect|diffuse",
      "auto (default): reflect for documented lighting, diffuse for physical"},
     {"--seed", "S", SCENE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},
     {"--pipeline", "P", RENDER | INFO | TRADEOFF, readChoice, AT(render.accumulation), 0, 0,
-     "multipass|batched|deferred|interleaved",
-     "how virtual lights are added: multipass, batched or deferred (default), the same bits; or interleaved: "
-     "each pixel meets every K^2-th light, and neighbours share"},
+     "multipass|batched|deferred|interleaved|lightcuts",
+     "how virtual lights are added: multipass, batched or deferred (default), the same bits; interleaved: "
+     "each "
+     "pixel meets every K^2-th light, and neighbours share; or lightcuts: clusters of lights, within an "
+     "error"},
     {"--batch", "M", RENDER | INFO | TRADEOFF, readInt, AT(render.batch), 1, VPL_MAX_LIGHTS, NULL,
      "virtual lights per pass of --pipeline batched; default 64"},
     {"--interleave", "K", RENDER | INFO | TRADEOFF, readInt, AT(render.interleave), 1, VPL_MAX_INTERLEAVE,
      NULL, "side of the square of pixels that share the lights of --pipeline interleaved; default 4"},
+    {"--cut-error", "E", RENDER | INFO | TRADEOFF, readFloat, AT(render.cutError), 1e-6, 1, NULL,
+     "error of a cluster of --pipeline lightcuts, as a share of the pixel's light; default 0.02"},
     {"--min-distance", "D", RENDER | TRADEOFF, readFloatOrAuto, AT(render.minDistance), 0, 1e15, NULL,
      "metres: cos cos / d^2 is bounded as cos cos / max(d^2, D^2); 0: unbounded; default auto"},
     {"--light-shadows", "V", RENDER | INFO | TRADEOFF, readChoice, AT(render.lightShadows), 0, 0,
-     "none|map|ray", "none (default), map or ray: whether, and how, virtual lights cast shadows"},
+     "usual|none|map|ray|auto",
+     "none, map or ray: whether, and how, virtual lights cast shadows; auto: map or ray, whichever is "
+     "cheaper; "
+     "usual (default): none for instant-radiosity, auto for keller"},
+    {"--compensation", "C", RENDER | INFO | TRADEOFF, readChoice, AT(render.compensation), 0, 0,
+     "usual|none|rays",
+     "what becomes of the light that --min-distance takes away: none: lost; rays: short rays find it; usual "
+     "(default): rays for keller with shadows, else none"},
     {"--light-map", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.lightMapSize), 1, VPL_MAX_SHADOW_MAP,
      NULL, "texels along a face of each virtual light's map, for --light-shadows map; default 128"},
     {"--lamp-lights", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.lampLights), 1, VPL_MAX_LIGHTS, NULL,
@@ -73,6 +90,14 @@ const Option OPTIONS[] = {
      "area (default): --method path averages over each pixel; centre: looks at its centre, as other methods"},
     {"--max-bounces", "N", RENDER | INFO, readInt, AT(render.maxBounces), -1, VPL_MAX_BOUNCES, NULL,
      "diffuse reflections of --method path before the eye's last; -1 (default): as many as it takes"},
+    {"--passes", "N", RENDER, readInt, AT(render.passes), 0, VPL_MAX_PASSES, NULL,
+     "pictures of --particles each, whose mean is the picture; default 1, or as many as --budget and "
+     "--max-error "
+     "ask for"},
+    {"--budget", "MS", RENDER, readDouble, AT(render.budgetMs), 0, 1e12, NULL,
+     "milliseconds: more passes, as long as they fit"},
+    {"--max-error", "E", RENDER, readDouble, AT(render.maxError), 0, 1e9, NULL,
+     "more passes, until the estimated rmse is at most E times the picture's mean"},
     {"--shadow-map", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.shadowMapSize), 1, VPL_MAX_SHADOW_MAP,
      NULL, "texels along a face of the cube shadow map; default 1024"},
     {"--bias", "B", RENDER | TRADEOFF, readBias, 0, 0, 1e15, NULL,

@@ -39,6 +39,7 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     json_object_set_new(root, "patches", json_integer(0));
     json_object_set_new(root, "min_distance", json_real(stats->minDistance));
     json_object_set_new(root, "reflectivity", json_real(stats->reflectivity));
+    json_object_set_new(root, "passes", json_integer(stats->passes));
     if (stats->errorEstimate >= 0) {
         json_object_set_new(root, "error_estimate", json_real(stats->errorEstimate));
         json_object_set_new(root, "relative_error_estimate", json_real(stats->relativeErrorEstimate));

@@ -82,6 +82,7 @@ static Family familyOf(const vplRenderOptions* o)
     case VPL_METHOD_PATH:
         return FAMILY_PATH;
     case VPL_METHOD_INSTANT_RADIOSITY:
+    case VPL_METHOD_KELLER:
         break;
     }
     return o->lightShadows == VPL_LIGHT_SHADOWS_MAP   ? FAMILY_MAP

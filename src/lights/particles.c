@@ -5,12 +5,15 @@
 //
 // Documented: light is attenuated by rho_d/pi at every hit and reflected like by a mirror. Physical: the flux
 // 4 pi I is multiplied by rho_d and leaves in a cosine-distributed direction.
+//
+// Keller's own recipe counts the places where particles start as step 0: N lights on the emitters, of which the
+// first floor(rho N) are shot. Departs: where particles start from a point or a direction, those lights are one, the
+// emitter itself, and are marked so.
 #include <vpl/lights.h>
 
 #include "base/context.h"
 #include "geometry/bvh.h"
-#include "geometry/triangle.h"
-#include "lights/samples.h"
+#include "lights/starts.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 
@@ -27,12 +30,9 @@ vplParticleDef vplDefaultParticleDef(void)
 
 typedef struct Simulation {
     const vplGeometry* geometry;
-    const vplEmitterDef* emitters;
-    int emitterCount;
-    double totalPower;           // sum of the emitters' mean intensities
-    const vplEmission* emission; // physical lighting only
     vplParticleDef def;
-    vplSampleSource samples;
+    vplStarts starts;
+    bool keller; // lights where particles start are step 0
     const int* stepCounts;
     const int* stepStart; // first slot of each step
     int stepCount;
@@ -41,34 +41,6 @@ typedef struct Simulation {
     int* testsOf;           // per particle
     bool* escapedOf;        // per particle
 } Simulation;
-
-static double powerOf(const vplEmitterDef* e)
-{
-    return vplRgbMean(e->intensity);
-}
-
-// The emitter of particle i, and one over the probability that it was chosen.
-static const vplEmitterDef* chooseEmitter(const Simulation* s, int particle, float* inverseProbability)
-{
-    *inverseProbability = 1;
-    if (s->emitterCount == 1 || s->totalPower == 0) {
-        return &s->emitters[0];
-    }
-    double place = (double)vplSampleSource_Emitter(&s->samples, particle) * s->totalPower;
-    int chosen = -1;
-    for (int i = 0; i < s->emitterCount; i++) {
-        double power = powerOf(&s->emitters[i]);
-        if (power > 0) {
-            chosen = i;
-            if (place < power) {
-                break;
-            }
-        }
-        place -= power;
-    }
-    *inverseProbability = (float)(s->totalPower / powerOf(&s->emitters[chosen]));
-    return &s->emitters[chosen];
-}
 
 static vplVec3 reflect(vplVec3 d, vplVec3 n)
 {
@@ -111,77 +83,49 @@ static float shadingFactor(const Simulation* s, const vplHit* hit, vplVec3 direc
     return geometric > 0 && shading > 0 ? shading / geometric : 0;
 }
 
-// The surface that a particle comes from.
-static vplHit sourceOf(const Simulation* s, const vplParticle* p)
+static void leaveLight(Simulation* s, int particle, int step, const vplVirtualLight* light)
 {
-    const vplGeometry* g = s->geometry;
-    const int triangle = s->emission->sources[p->source].triangle;
-    vplHit hit = {.object = -1, .face = VPL_FACE_NONE, .triangle = triangle};
-    if (triangle >= 0) {
-        hit.object = g->owners[triangle];
-        hit.face = vplGeometry_FaceOf(g, triangle);
-    }
-    return hit;
-}
-
-// Where a particle begins and what it carries; `from` is what it leaves. False where nothing emits.
-static bool start(const Simulation* s, int particle, vplRay* ray, vplRgb* light, vplHit* from)
-{
-    float u[4];
-    vplSampleSource_Direction(&s->samples, particle, 0, &u[2], &u[3]);
-    if (s->emission != NULL) {
-        vplParticle p;
-        vplSampleSource_Place(&s->samples, particle, &u[0], &u[1]);
-        if (!vplEmission_SampleParticle(s->emission, vplSampleSource_Emitter(&s->samples, particle), u, &p)) {
-            return false;
-        }
-        *ray = p.ray;
-        *light = p.flux;
-        *from = sourceOf(s, &p);
-    } else {
-        float inverseProbability;
-        const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
-        *light = vplRgbScale(inverseProbability, emitter->intensity);
-        *ray = (vplRay){emitter->position, vplSampleSphere(u[2], u[3]), {0, 0}};
-    }
-    if (s->def.directions != NULL) {
-        ray->direction = s->def.directions[particle];
-    }
-    return true;
+    vplVirtualLight* slot = &s->slots[s->stepStart[step] + particle];
+    *slot = *light;
+    slot->weight = (float)((double)s->def.particleCount / s->stepCounts[step]);
+    slot->step = step;
+    slot->particle = particle;
 }
 
 // Follows one particle to its last step.
 static void followParticle(Simulation* s, int particle)
 {
-    bool documented = s->def.lighting == VPL_LIGHTING_DOCUMENTED;
-    bool mirror = s->def.bounce == VPL_BOUNCE_REFLECT || (s->def.bounce == VPL_BOUNCE_AUTO && documented);
-    float u, v;
-    vplRgb light;
-    vplRay ray;
-    vplHit hit = {.object = -1};
-    const bool started = start(s, particle, &ray, &light, &hit);
+    const bool documented = s->def.lighting == VPL_LIGHTING_DOCUMENTED, asDeclared = documented && !s->keller;
+    const bool mirror =
+        s->def.bounce == VPL_BOUNCE_REFLECT || (s->def.bounce == VPL_BOUNCE_AUTO && asDeclared);
+    vplStart p;
+    const bool started = vplStarts_Get(&s->starts, particle, &p);
     int step = 0;
+    if (started && s->keller) {
+        leaveLight(s, particle, step++,
+                   &(vplVirtualLight){p.ray.origin, p.normal, p.light, .object = p.from.object});
+    }
     for (; started && step < s->stepCount && particle < s->stepCounts[step]; step++) {
         s->raysOf[particle]++;
-        if (!trace(s, particle, &ray, &hit)) {
+        if (!trace(s, particle, &p.ray, &p.from)) {
             s->escapedOf[particle] = true;
             break;
         }
-        const vplVec3 facing = vplDot(ray.direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
-        const vplRgb rho = reflectanceAt(s, &hit);
-        light = vplRgbMul(light, documented ? vplRgbScale((float)(1 / VPL_PI), rho) : rho);
-        if (!documented) {
-            light = vplRgbScale(shadingFactor(s, &hit, ray.direction), light);
+        const vplHit* hit = &p.from;
+        const vplVec3 facing =
+            vplDot(p.ray.direction, hit->normal) > 0 ? vplNegate(hit->normal) : hit->normal;
+        const vplRgb rho = reflectanceAt(s, hit);
+        p.light = vplRgbMul(p.light, documented ? vplRgbScale((float)(1 / VPL_PI), rho) : rho);
+        if (!asDeclared) {
+            p.light = vplRgbScale(shadingFactor(s, hit, p.ray.direction), p.light);
         }
-        s->slots[s->stepStart[step] + particle] = (vplVirtualLight){
-            hit.position, documented ? hit.normal : facing,
-            light,        (float)((double)s->def.particleCount / s->stepCounts[step]),
-            step,         particle,
-            hit.object,
-        };
-        vplSampleSource_Direction(&s->samples, particle, step + 1, &u, &v);
-        vplVec3 onward = mirror ? reflect(ray.direction, hit.normal) : vplSampleCosineAround(facing, u, v);
-        ray = vplGeometry_Leave(s->geometry, &hit, onward);
+        leaveLight(s, particle, step,
+                   &(vplVirtualLight){hit->position, asDeclared ? hit->normal : facing, p.light,
+                                      .object = hit->object});
+        float u, v;
+        vplSampleSource_Direction(&s->starts.samples, particle, step + !s->keller, &u, &v);
+        vplVec3 onward = mirror ? reflect(p.ray.direction, hit->normal) : vplSampleCosineAround(facing, u, v);
+        p.ray = vplGeometry_Leave(s->geometry, hit, onward);
     }
     for (; step < s->stepCount && particle < s->stepCounts[step]; step++) {
         s->slots[s->stepStart[step] + particle].step = -1;
@@ -217,20 +161,27 @@ static void collect(const Simulation* s, vplLightSet* set, int* lightsInStep)
     }
 }
 
+// Franchi and Ferrante's formulas are about point lights.
+static bool needsPoints(const vplParticleDef* def)
+{
+    return def->lighting == VPL_LIGHTING_DOCUMENTED && def->start == VPL_START_FIRST_HIT;
+}
+
 static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
                           const vplParticleDef* def)
 {
     if (def->cookie != PARTICLE_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef was not made by vplDefaultParticleDef");
     }
-    for (int i = 0; def->lighting == VPL_LIGHTING_DOCUMENTED && i < emitterCount; i++) {
+    const bool pointsOnly = needsPoints(def);
+    for (int i = 0; pointsOnly && i < emitterCount; i++) {
         if (emitters[i].type != VPL_EMITTER_POINT) {
             return vplFail(
                 context, VPL_INVALID_ARGUMENT,
                 "light %d is not a point light, and documented lighting knows no others; use physical", i);
         }
     }
-    if (def->lighting == VPL_LIGHTING_DOCUMENTED && emitterCount < 1) {
+    if (pointsOnly && emitterCount < 1) {
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
             "the scene has no emitter to shoot particles from: documented lighting needs a point light");
@@ -286,16 +237,12 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     set->context = context;
     set->stepCount = steps;
     set->particleCount = def->particleCount;
-    Simulation s = {.geometry = geometry, .emitters = emitters, .emitterCount = emitterCount, .def = *def};
-    s.samples = vplSampleSource_Make(def->sampler, def->seed, def->particleCount);
-    for (int i = 0; i < emitterCount; i++) {
-        s.totalPower += powerOf(&emitters[i]);
-    }
+    Simulation s = {.geometry = geometry, .def = *def, .keller = def->start == VPL_START_EMITTER};
     vplEmission* emission = NULL;
-    if (def->lighting == VPL_LIGHTING_PHYSICAL) {
+    if (!needsPoints(def)) {
         result = vplEmission_Create(geometry, emitters, emitterCount, &emission);
-        s.emission = emission;
     }
+    s.starts = vplStarts_Make(geometry, emission, emitters, emitterCount, &s.def);
     if (result == VPL_SUCCESS && emission != NULL && emission->sourceCount == 0 && emitterCount == 0) {
         result = vplFail(context, VPL_INVALID_ARGUMENT,
                          "the scene has no emitter: no light, and no surface that emits");

@@ -22,9 +22,20 @@ static int64_t commonDivisor(int64_t a, int64_t b)
     return a;
 }
 
-vplSampleSource vplSampleSource_Make(vplSampler sampler, uint64_t seed, int count)
+vplSampleSource vplSampleSource_Make(const vplParticleDef* def)
 {
-    vplSampleSource source = {sampler, seed, count, 1};
+    const int count = def->particleCount;
+    const bool keller = def->start == VPL_START_EMITTER;
+    vplSampleSource source = {def->sampler, def->seed, def->firstParticle, count, 1, 0};
+    if (source.sampler == VPL_SAMPLER_AUTO) {
+        source.sampler = keller ? VPL_SAMPLER_HALTON : VPL_SAMPLER_RANDOM;
+    }
+    source.reserved = keller && source.sampler == VPL_SAMPLER_HALTON;
+    if (source.sampler == VPL_SAMPLER_HAMMERSLEY && source.first > 0) {
+        // A set of N points does not go on: another N are the same, shifted.
+        vplRandom4 r = vplRandomAt(source.seed, SHIFT_STREAM, (uint64_t)source.first);
+        source.seed = (uint64_t)r.v[0] << 32 | r.v[1];
+    }
     if (count > 2) {
         source.stride = (int64_t)rint(count * 0.61803398874989484820);
         while (commonDivisor(source.stride, count) != 1) {
@@ -49,44 +60,56 @@ static float shifted(float value, uint64_t seed, int dimension)
 static float coordinate(const vplSampleSource* s, int particle, int dimension)
 {
     if (s->sampler == VPL_SAMPLER_HALTON) {
-        return vplHalton((uint64_t)particle + 1, dimension);
+        return vplHalton((uint64_t)(s->first + particle) + 1, dimension);
     }
     int64_t point = ((int64_t)particle + 1) * s->stride % s->count;
     return dimension == 0 ? (float)((double)point / s->count) : vplHalton((uint64_t)point, dimension - 1);
 }
 
+static void pairOf(const vplSampleSource* s, int particle, int pair, float* u, float* v)
+{
+    *u = shifted(coordinate(s, particle, 2 * pair), s->seed, 2 * pair);
+    *v = shifted(coordinate(s, particle, 2 * pair + 1), s->seed, 2 * pair + 1);
+}
+
 void vplSampleSource_Direction(const vplSampleSource* source, int particle, int step, float* u, float* v)
 {
     // Halton points in primes beyond the 64th need more points than there are particles to look uniform.
-    if (source->sampler == VPL_SAMPLER_RANDOM || 2 * step + 1 >= VPL_PRIME_COUNT) {
-        vplRandom4 r = vplRandomAt(source->seed, (uint32_t)step, (uint64_t)particle);
+    const int pair = step + source->reserved;
+    if (source->sampler == VPL_SAMPLER_RANDOM || 2 * pair + 1 >= VPL_PRIME_COUNT) {
+        vplRandom4 r = vplRandomAt(source->seed, (uint32_t)step, (uint64_t)(source->first + particle));
         *u = vplUnitFloat(r.v[0]);
         *v = vplUnitFloat(r.v[1]);
         return;
     }
-    *u = shifted(coordinate(source, particle, 2 * step), source->seed, 2 * step);
-    *v = shifted(coordinate(source, particle, 2 * step + 1), source->seed, 2 * step + 1);
+    pairOf(source, particle, pair, u, v);
 }
 
 float vplSampleSource_Emitter(const vplSampleSource* source, int particle)
 {
     if (source->sampler == VPL_SAMPLER_RANDOM) {
-        return vplUnitFloat(vplRandomAt(source->seed, EMITTER_STREAM, (uint64_t)particle).v[0]);
+        const uint64_t index = (uint64_t)(source->first + particle);
+        return vplUnitFloat(vplRandomAt(source->seed, EMITTER_STREAM, index).v[0]);
     }
-    double turns = (particle + 0.5) * 0.61803398874989484820;
+    double turns = ((double)(source->first + particle) + 0.5) * 0.61803398874989484820;
     return (float)(turns - floor(turns)) * 0x1.fffffep-1f;
 }
 
 void vplSampleSource_Place(const vplSampleSource* source, int particle, float* u, float* v)
 {
     if (source->sampler == VPL_SAMPLER_RANDOM) {
-        vplRandom4 r = vplRandomAt(source->seed, EMITTER_STREAM, (uint64_t)particle);
+        vplRandom4 r = vplRandomAt(source->seed, EMITTER_STREAM, (uint64_t)(source->first + particle));
         *u = vplUnitFloat(r.v[1]);
         *v = vplUnitFloat(r.v[2]);
         return;
     }
+    if (source->reserved) {
+        pairOf(source, particle, 0, u, v);
+        return;
+    }
     // Powers of 1 over the plastic number.
-    double x = (particle + 0.5) * 0.75487766624669276, y = (particle + 0.5) * 0.56984029099805327;
+    const double i = (double)(source->first + particle) + 0.5;
+    const double x = i * 0.75487766624669276, y = i * 0.56984029099805327;
     *u = shifted((float)(x - floor(x)) * 0x1.fffffep-1f, source->seed, VPL_PRIME_COUNT);
     *v = shifted((float)(y - floor(y)) * 0x1.fffffep-1f, source->seed, VPL_PRIME_COUNT + 1);
 }

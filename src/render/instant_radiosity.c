@@ -1,190 +1,47 @@
 // SPDX-License-Identifier: MIT
 // Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights: simulate particles, render the cube
 // shadow map of the point light, render the scene lit by it with shadows, then add every virtual light.
-// Direct lighting is the same recipe without particles.
+// Alexander Keller, Instant Radiosity, SIGGRAPH 1997: the same with particles that begin as lights on the emitters,
+// and with shadows. Direct lighting is the recipe without particles.
 #include "math/sampling.h"
-#include "render/render.h"
+#include "render/ingredients.h"
 
 #include <math.h>
+#include <string.h>
 
-// Shadow maps from some points.
-typedef struct Maps {
-    vplCubeMap** maps; // NULL where a point needs none
-    vplShadow* shadows;
-    int count;
-} Maps;
+// The parts of a picture.
+typedef enum Part {
+    PART_DIRECT = 1,  // emission, and light from emitters and lamps
+    PART_INDIRECT = 2 // light of virtual lights
+} Part;
 
-typedef struct Ingredients {
-    const vplEmitterDef* emitters;
-    int emitterCount;
-    Maps emitterMaps, lightMaps;
-    vplShadeLight* lamps;
-    int lampCount;
-    float lampMinDistance;
-    vplLightSet* set;
-    vplShadeLight* lights;
-    int lightCount;
-    float minDistance;
-} Ingredients;
+typedef struct Recipe {
+    vplIngredients in;
+    bool progressive; // the picture is a mean of passes
+    vplImage* base;   // progressive: direct light; else all of the picture
+    double* sums[2];  // progressive: of the passes, even and odd
+} Recipe;
 
 static bool needsLights(const vplRenderOptions* o)
 {
     bool shown = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_INDIRECT || o->show == VPL_SHOW_LIGHT ||
-                 o->show == VPL_SHOW_OVERLAY;
+                 o->show == VPL_SHOW_OVERLAY ||
+                 (o->show == VPL_SHOW_DIRECT && o->method == VPL_METHOD_KELLER);
     return shown && o->method != VPL_METHOD_DIRECT;
 }
 
-static bool needsShadows(const vplRenderOptions* o)
+static bool needsDirect(const vplRenderOptions* o)
 {
     return o->show != VPL_SHOW_DEPTH && o->show != VPL_SHOW_NORMALS && o->show != VPL_SHOW_INDIRECT &&
            o->show != VPL_SHOW_LIGHT;
 }
 
-static vplResult simulate(vplJob* job, Ingredients* in)
+static bool isProgressive(const vplRenderOptions* o)
 {
-    const vplRenderOptions* o = &job->options;
-    vplResult result = vplJob_MakeLights(job, &in->set);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    in->lights = vplAlloc(job->context, (size_t)in->set->lightCount, sizeof *in->lights);
-    if (in->lights == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    vplPrepareLights(in->set, o->lighting, in->lights);
-    in->lightCount = in->set->lightCount;
-    in->minDistance = o->minDistance;
-    if (o->minDistance < 0) {
-        // A light stands for its share of all surfaces; nearer than that share's radius it is no point. Half as
-        // much leaves 5 to 35 % more rmse and twice as much takes a few per cent of the light away (room,
-        // room-area, cornell-area; 32 to 2048 particles with shadows by rays; --show indirect).
-        double share = in->lightCount ? vplGeometry_Area(job->geometry) / in->lightCount : 0;
-        in->minDistance = (float)sqrt(share / VPL_PI);
-    }
-    job->stats.minDistance = in->minDistance;
-    if (o->show == VPL_SHOW_LIGHT) {
-        if (o->showLight >= in->lightCount) {
-            return vplFail(job->context, VPL_INVALID_ARGUMENT,
-                           "virtual light %d does not exist, there are %d (from 0)", o->showLight,
-                           in->lightCount);
-        }
-        in->lights[0] = in->lights[o->showLight];
-        in->lightCount = 1;
-    }
-    return VPL_SUCCESS;
+    return needsLights(o) && (o->passes > 1 || o->budgetMs > 0 || o->maxError > 0);
 }
 
-static vplResult allocateMaps(vplJob* job, int count, Maps* maps)
-{
-    maps->count = count;
-    maps->maps = vplAllocZero(job->context, (size_t)count, sizeof *maps->maps);
-    maps->shadows = vplAllocZero(job->context, (size_t)count, sizeof *maps->shadows);
-    return maps->maps && maps->shadows ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-}
-
-static void freeMaps(vplJob* job, Maps* maps)
-{
-    for (int i = 0; maps->maps != NULL && i < maps->count; i++) {
-        vplCubeMap_Destroy(maps->maps[i]);
-    }
-    vplFree(job->context, maps->maps);
-    vplFree(job->context, maps->shadows);
-}
-
-// Bounds are found where they cost less than the samples that they save: a texel's cost 0.5 to 0.8 ns, and 1.5 ns
-// are saved per sample and pixel (bench/shadow: the room, a conference room).
-static vplResult boundMap(vplJob* job, vplCubeMap* map, int samples)
-{
-    const vplRenderOptions* o = &job->options;
-    const double lookedUp = (double)o->width * o->height * o->antialias * samples;
-    const bool pays = samples >= VPL_MIN_BOUND_SAMPLES && lookedUp > 3.0 * map->size * map->size;
-    return pays ? vplCubeMap_FindBounds(map) : VPL_SUCCESS;
-}
-
-static vplResult makeMap(vplJob* job, vplVec3 position, int size, const vplShadowDef* shadowDef, Maps* maps,
-                         int i)
-{
-    vplCubeMapDef def = vplDefaultCubeMapDef();
-    def.position = position;
-    def.size = size;
-    vplResult result = vplCubeMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps->maps[i]);
-    if (result == VPL_SUCCESS) {
-        vplJob_AddRaster(job, &maps->maps[i]->stats);
-        result = boundMap(job, maps->maps[i], shadowDef->pcfSamples);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplShadow_Create(maps->maps[i], shadowDef, &maps->shadows[i]);
-    }
-    return result;
-}
-
-// Point and spot emitters have cube maps; directional ones, and all where rays are asked for, do without.
-static vplResult makeEmitterShadows(vplJob* job, Ingredients* in)
-{
-    const vplRenderOptions* o = &job->options;
-    const bool documented = o->lighting == VPL_LIGHTING_DOCUMENTED;
-    vplShadowDef shadowDef = o->shadow;
-    if (shadowDef.biasRule == VPL_BIAS_AUTO && documented) {
-        shadowDef.biasRule = VPL_BIAS_PAIR;
-    }
-    vplResult result = allocateMaps(job, in->emitterCount, &in->emitterMaps);
-    for (int i = 0; i < in->emitterCount && result == VPL_SUCCESS; i++) {
-        if (documented && in->emitters[i].type != VPL_EMITTER_POINT) {
-            return vplFail(
-                job->context, VPL_INVALID_ARGUMENT,
-                "light %d is not a point light, and documented lighting knows no others; use physical", i);
-        }
-        if (in->emitters[i].type != VPL_EMITTER_DIRECTIONAL && o->lightShadows != VPL_LIGHT_SHADOWS_RAY) {
-            result =
-                makeMap(job, in->emitters[i].position, o->shadowMapSize, &shadowDef, &in->emitterMaps, i);
-        }
-    }
-    return result;
-}
-
-// One small map per virtual light, seen from just above its surface.
-static vplResult makeLightShadows(vplJob* job, Ingredients* in)
-{
-    vplShadowDef shadowDef = vplDefaultShadowDef();
-    shadowDef.pcfSamples = 1;
-    const float lift = vplGeometry_Diagonal(job->geometry) * 0x1p-14f;
-    vplResult result = allocateMaps(job, in->lightCount, &in->lightMaps);
-    for (int i = 0; i < in->lightCount && result == VPL_SUCCESS; i++) {
-        const vplShadeLight* l = &in->lights[i];
-        vplVec3 at = {l->px + lift * l->nx, l->py + lift * l->ny, l->pz + lift * l->nz};
-        result = makeMap(job, at, job->options.lightMapSize, &shadowDef, &in->lightMaps, i);
-    }
-    return result;
-}
-
-static vplResult makeLamps(vplJob* job, Ingredients* in)
-{
-    vplEmission* emission;
-    vplResult result = vplEmission_Create(job->geometry, NULL, 0, &emission);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    double area = 0;
-    if (emission->sourceCount > 0) {
-        const int count = job->options.lampLights;
-        in->lamps = vplAlloc(job->context, (size_t)count, sizeof *in->lamps);
-        in->lampCount = in->lamps ? vplMakeLampLights(emission, count, in->lamps) : 0;
-        result = in->lamps ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-        area = vplEmission_Area(emission);
-        in->lampMinDistance = (float)(0.5 * sqrt(area / count / VPL_PI));
-    }
-    vplEmission_Destroy(emission);
-    return result;
-}
-
-static vplResult makeDirect(vplJob* job, Ingredients* in)
-{
-    vplResult result = makeEmitterShadows(job, in);
-    if (result == VPL_SUCCESS && job->options.lighting == VPL_LIGHTING_PHYSICAL) {
-        result = makeLamps(job, in);
-    }
-    return result;
-}
+// ---- shading
 
 // One look at every pixel at place i of `count`: Hammersley points, so that edges along the axes, too, are cut at
 // as many places as there are samples.
@@ -225,12 +82,12 @@ static vplResult shadeSamples(vplJob* job, const vplShadeDef* def)
     return result;
 }
 
-static vplResult shade(vplJob* job, const Ingredients* in)
+static vplResult shade(vplJob* job, const vplIngredients* in, int parts)
 {
     const vplRenderOptions* o = &job->options;
-    bool indirectOnly = o->show == VPL_SHOW_INDIRECT || o->show == VPL_SHOW_LIGHT;
+    const bool direct = parts & PART_DIRECT && o->show != VPL_SHOW_INDIRECT && o->show != VPL_SHOW_LIGHT;
     vplShadeDef def = {0};
-    def.lighting = o->lighting;
+    def.lighting = vplJob_GetShading(job);
     def.accumulation = o->accumulation;
     def.output = o->show == VPL_SHOW_DEPTH           ? VPL_OUTPUT_DEPTH
                  : o->show == VPL_SHOW_NORMALS       ? VPL_OUTPUT_NORMALS
@@ -238,40 +95,62 @@ static vplResult shade(vplJob* job, const Ingredients* in)
                                                      : VPL_OUTPUT_RADIANCE;
     def.batch = o->batch;
     def.interleave = o->interleave;
+    def.cutError = o->cutError;
     def.minDistance = in->minDistance;
-    def.emitters = in->emitters;
-    def.shadows = in->emitterMaps.shadows;
-    def.emitterCount = in->emitterMaps.shadows ? in->emitterCount : 0;
-    def.lamps = in->lamps;
-    def.lampCount = in->lampCount;
-    def.lampMinDistance = in->lampMinDistance;
-    def.lightShadows = in->lightMaps.shadows;
-    def.lightRays = o->lightShadows == VPL_LIGHT_SHADOWS_RAY;
     def.particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles;
-    def.lights = in->lights;
-    def.lightCount = in->lightCount;
-    def.emission = !indirectOnly;
+    if (direct) {
+        def.emitters = in->emitters;
+        def.shadows = in->emitterMaps.shadows;
+        def.emitterCount = in->emitterMaps.shadows ? in->emitterCount : 0;
+        def.lamps = in->lamps;
+        def.lampCount = in->lampCount;
+        def.lampMinDistance = in->lampMinDistance;
+        def.emission = true;
+    }
+    if (parts & PART_INDIRECT) {
+        def.lightShadows = in->lightMaps.shadows;
+        def.lightRays = in->lightShadows == VPL_LIGHT_SHADOWS_RAY;
+        def.lights = in->lights;
+        def.lightCount = in->lightCount;
+    }
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
-    return result == VPL_SUCCESS ? shadeSamples(job, &def) : result;
+    vplJob_BeginStage(job, 1);
+    if (result == VPL_SUCCESS) {
+        result = shadeSamples(job, &def);
+    }
+    vplJob_EndStage(job, "shading");
+    return result;
 }
 
-static vplResult cook(vplJob* job, Ingredients* in)
+static vplResult overlay(vplJob* job, const vplLightSet* set)
+{
+    vplResult result = vplGeometry_PrepareRays(job->geometry);
+    if (result == VPL_SUCCESS) {
+        vplDrawLights(job->image, job->geometry, &job->view, set);
+    }
+    return result;
+}
+
+// ---- the recipe
+
+static vplResult cook(vplJob* job, vplIngredients* in, int parts)
 {
     const vplRenderOptions* o = &job->options;
     vplResult result = VPL_SUCCESS;
-    if (needsLights(o)) {
+    if (parts & PART_INDIRECT && needsLights(o)) {
         vplJob_BeginStage(job, 0.05);
-        result = simulate(job, in);
+        result = vplMakeVirtualLights(job, in);
         vplJob_EndStage(job, "particles");
     }
-    if (result == VPL_SUCCESS && needsShadows(o)) {
+    if (result == VPL_SUCCESS && parts & PART_DIRECT && needsDirect(o)) {
         vplJob_BeginStage(job, 0.15);
-        result = makeDirect(job, in);
+        result = vplMakeDirectLight(job, in);
         vplJob_EndStage(job, "shadow map");
     }
-    if (result == VPL_SUCCESS && in->lightCount > 0 && o->lightShadows == VPL_LIGHT_SHADOWS_MAP) {
+    if (result == VPL_SUCCESS && parts & PART_INDIRECT && in->lightCount > 0 &&
+        in->lightShadows == VPL_LIGHT_SHADOWS_MAP) {
         vplJob_BeginStage(job, 0.4);
-        result = makeLightShadows(job, in);
+        result = vplMakeLightShadows(job, in);
         vplJob_EndStage(job, "light shadow maps");
     }
     if (result != VPL_SUCCESS) {
@@ -286,28 +165,125 @@ static vplResult cook(vplJob* job, Ingredients* in)
             return vplUnfoldCubeMap(in->emitterMaps.maps[0], &job->image);
         }
     }
-    vplJob_BeginStage(job, 1);
-    result = shade(job, in);
-    vplJob_EndStage(job, "shading");
-    if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && in->set != NULL) {
-        result = vplGeometry_PrepareRays(job->geometry);
+    return shade(job, in, parts);
+}
+
+static vplResult begin(vplJob* job)
+{
+    Recipe* r = job->state = vplAllocZero(job->context, 1, sizeof *r);
+    if (r == NULL) {
+        return VPL_OUT_OF_MEMORY;
     }
-    if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && in->set != NULL) {
-        vplDrawLights(job->image, job->geometry, &job->view, in->set);
+    r->in.emitterCount = vplScene_GetEmitterCount(job->scene);
+    r->in.emitters = r->in.emitterCount ? vplScene_GetEmitter(job->scene, 0) : NULL;
+    r->progressive = isProgressive(&job->options);
+    return VPL_SUCCESS;
+}
+
+static void takeImage(vplJob* job, vplImage** to)
+{
+    vplImage_Destroy(*to);
+    *to = job->image;
+    job->image = NULL;
+}
+
+// Direct light once, then virtual lights: those of each pass make a picture, and the passes' mean counts.
+static vplResult addPass(vplJob* job, Recipe* r)
+{
+    const size_t values = 3 * (size_t)job->options.width * (size_t)job->options.height;
+    vplResult result = VPL_SUCCESS;
+    if (job->stepsDone == 0) {
+        result = cook(job, &r->in, PART_DIRECT);
+        takeImage(job, &r->base);
+        for (int half = 0; half < 2 && result == VPL_SUCCESS; half++) {
+            r->sums[half] = vplAllocZero(job->context, values, sizeof(double));
+            result = r->sums[half] ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+        }
+    }
+    if (result == VPL_SUCCESS) {
+        result = cook(job, &r->in, PART_INDIRECT);
+    }
+    double* sums = r->sums[job->stepsDone % 2];
+    for (size_t k = 0; k < values && result == VPL_SUCCESS; k++) {
+        sums[k] += (double)job->image->pixels[k];
+    }
+    vplImage_Destroy(job->image);
+    job->image = NULL;
+    return result;
+}
+
+static vplResult step(vplJob* job, bool* doneOut)
+{
+    const vplRenderOptions* o = &job->options;
+    Recipe* r = job->state;
+    vplResult result;
+    if (r->progressive) {
+        *doneOut = o->passes > 0 && job->stepsDone + 1 >= o->passes;
+        return addPass(job, r);
+    }
+    result = cook(job, &r->in, PART_DIRECT | PART_INDIRECT);
+    if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && r->in.set != NULL) {
+        result = overlay(job, r->in.set);
+    }
+    takeImage(job, &r->base);
+    *doneOut = true;
+    return result;
+}
+
+// The two halves of the passes differ by their errors: half of that is expected in their mean. What both have in
+// common (the direct light's error, light lost or moved by the accumulation) is not in it.
+static void estimateError(vplJob* job, const Recipe* r)
+{
+    const size_t values = 3 * (size_t)job->image->width * (size_t)job->image->height;
+    const int odd = job->stepsDone / 2, even = job->stepsDone - odd;
+    double squares = 0, sum = 0;
+    for (size_t k = 0; k < values && odd > 0; k++) {
+        const double half = 0.5 * (r->sums[0][k] / even - r->sums[1][k] / odd);
+        squares += half * half;
+        sum += (double)job->image->pixels[k];
+    }
+    if (odd > 0) {
+        job->stats.errorEstimate = sqrt(squares / (double)values);
+        job->stats.relativeErrorEstimate = sum > 0 ? job->stats.errorEstimate * (double)values / sum : 0;
+    }
+}
+
+static vplResult resolve(vplJob* job)
+{
+    Recipe* r = job->state;
+    if (job->last && !r->progressive) {
+        job->image = r->base;
+        r->base = NULL;
+        return VPL_SUCCESS;
+    }
+    vplResult result = vplImage_Create(job->context, r->base->width, r->base->height, &job->image);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    const size_t values = 3 * (size_t)r->base->width * (size_t)r->base->height;
+    for (size_t k = 0; k < values; k++) {
+        const double mean = r->progressive ? (r->sums[0][k] + r->sums[1][k]) / job->stepsDone : 0;
+        job->image->pixels[k] = (float)((double)r->base->pixels[k] + mean);
+    }
+    if (r->progressive) {
+        estimateError(job, r);
+        if (job->options.show == VPL_SHOW_OVERLAY) {
+            result = overlay(job, r->in.set);
+        }
     }
     return result;
 }
 
-vplResult vplRenderInstantRadiosity(vplJob* job)
+static void end(vplJob* job)
 {
-    Ingredients in = {0};
-    in.emitterCount = vplScene_GetEmitterCount(job->scene);
-    in.emitters = in.emitterCount ? vplScene_GetEmitter(job->scene, 0) : NULL;
-    vplResult result = cook(job, &in);
-    freeMaps(job, &in.emitterMaps);
-    freeMaps(job, &in.lightMaps);
-    vplFree(job->context, in.lamps);
-    vplFree(job->context, in.lights);
-    vplLightSet_Destroy(in.set);
-    return result;
+    Recipe* r = job->state;
+    if (r != NULL) {
+        vplFreeIngredients(job, &r->in);
+        vplImage_Destroy(r->base);
+        vplFree(job->context, r->sums[0]);
+        vplFree(job->context, r->sums[1]);
+        vplFree(job->context, r);
+    }
 }
+
+const vplMethodFcns vplVirtualLightMethod = {begin, step, resolve, end};

@@ -16,6 +16,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.accumulation = VPL_ACCUMULATE_DEFERRED;
     o.batch = 64;
     o.interleave = 4;
+    o.cutError = 0.02f;
     o.minDistance = -1;
     o.lightMapSize = 128;
     o.lampLights = 64;
@@ -50,7 +51,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         const char* name;
         int value, low, high;
     } ints[] = {
-        {"method", (int)o->method, 0, VPL_METHOD_PATH},
+        {"method", (int)o->method, 0, VPL_METHOD_KELLER},
         {"lighting", (int)o->lighting, 0, VPL_LIGHTING_DOCUMENTED},
         {"width", o->width, 1, VPL_MAX_IMAGE_SIZE},
         {"height", o->height, 1, VPL_MAX_IMAGE_SIZE},
@@ -59,11 +60,14 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"particles", o->particles, 0, VPL_MAX_LIGHTS},
         {"sampler", (int)o->sampler, 0, VPL_SAMPLER_HAMMERSLEY},
         {"bounce", (int)o->bounce, 0, VPL_BOUNCE_DIFFUSE},
-        {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_INTERLEAVED},
+        {"placement", (int)o->placement, 0, VPL_PLACEMENT_VIEW},
+        {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_LIGHTCUTS},
         {"batch", o->batch, 1, VPL_MAX_LIGHTS},
         {"interleave", o->interleave, 1, VPL_MAX_INTERLEAVE},
         {"particleGeometry", (int)o->particleGeometry, 0, VPL_PARTICLE_GEOMETRY_OBB},
-        {"lightShadows", (int)o->lightShadows, 0, VPL_LIGHT_SHADOWS_RAY},
+        {"lightShadows", (int)o->lightShadows, 0, VPL_LIGHT_SHADOWS_AUTO},
+        {"compensation", (int)o->compensation, 0, VPL_COMPENSATION_RAYS},
+        {"passes", o->passes, 0, VPL_MAX_PASSES},
         {"lightMapSize", o->lightMapSize, 1, VPL_MAX_SHADOW_MAP},
         {"lampLights", o->lampLights, 1, VPL_MAX_LIGHTS},
         {"samplesPerPixel", o->samplesPerPixel, 1, VPL_MAX_SAMPLES},
@@ -84,6 +88,15 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplRenderOptions.reflectivity is %g, must be in [0, 1) or negative for automatic",
                        o->reflectivity);
+    }
+    if (!(o->cutError > 0 && o->cutError <= 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.cutError is %g, must be in (0, 1]",
+                       (double)o->cutError);
+    }
+    if (!(o->budgetMs >= 0 && o->maxError >= 0)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.budgetMs and maxError are %g and %g, must be at least 0",
+                       o->budgetMs, o->maxError);
     }
     if (!isfinite(o->minDistance)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.minDistance is %g, must be finite",

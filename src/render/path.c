@@ -27,42 +27,18 @@ static vplResult describe(vplJob* job, vplPathDef* def)
     return VPL_SUCCESS;
 }
 
-// Samples per pixel between two looks at the clock, large enough that threads seldom wait for each other.
-enum { PASS = 32 };
+typedef struct PathState {
+    vplPathTracer* tracer;
+    int done; // samples per pixel
+} PathState;
 
-static vplResult trace(vplJob* job, vplPathTracer* tracer)
-{
-    const int samples = job->options.samplesPerPixel;
-    vplResult result = VPL_SUCCESS;
-    for (int done = 0; done < samples && result == VPL_SUCCESS; done += PASS) {
-        int now = samples - done < PASS ? samples - done : PASS;
-        result = vplPathTracer_Pass(tracer, now, vplJob_GetProgress(job), job, (double)done / samples,
-                                    (double)(done + now) / samples);
-    }
-    return result;
-}
-
-static vplResult resolve(vplJob* job, const vplPathTracer* tracer)
-{
-    vplResult result = vplImage_Create(job->context, job->options.width, job->options.height, &job->image);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplPathStats stats;
-    vplPathTracer_Resolve(tracer, job->image, &stats);
-    job->stats.rays = stats.rays;
-    job->stats.errorEstimate = stats.errorEstimate;
-    job->stats.relativeErrorEstimate = stats.relativeErrorEstimate;
-    if (stats.errorEstimate >= 0) {
-        vplLog(job->context, VPL_LOG_INFO, "remaining error about %.3g W/(m^2 sr), %.3g %% of the mean",
-               stats.errorEstimate, 100 * stats.relativeErrorEstimate);
-    }
-    return VPL_SUCCESS;
-}
-
-vplResult vplRenderPath(vplJob* job)
+static vplResult begin(vplJob* job)
 {
     const vplRenderOptions* o = &job->options;
+    PathState* state = job->state = vplAllocZero(job->context, 1, sizeof *state);
+    if (state == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
     vplPathDef def = vplDefaultPathDef();
     def.camera = vplScene_GetCamera(job->scene, o->camera);
     def.emitterCount = vplScene_GetEmitterCount(job->scene);
@@ -70,19 +46,45 @@ vplResult vplRenderPath(vplJob* job)
     def.width = o->width;
     def.height = o->height;
     def.seed = o->seed;
-    vplPathTracer* tracer = NULL;
     vplResult result = describe(job, &def);
+    return result == VPL_SUCCESS ? vplPathTracer_Create(job->geometry, &def, &state->tracer) : result;
+}
+
+static vplResult step(vplJob* job, bool* doneOut)
+{
+    PathState* state = job->state;
+    const int left = job->options.samplesPerPixel - state->done;
+    const int now = left > 0 && left < VPL_PATH_PASS ? left : VPL_PATH_PASS;
     vplJob_BeginStage(job, 1);
-    if (result == VPL_SUCCESS) {
-        result = vplPathTracer_Create(job->geometry, &def, &tracer);
-    }
-    if (result == VPL_SUCCESS) {
-        result = trace(job, tracer);
-    }
-    if (result == VPL_SUCCESS) {
-        result = resolve(job, tracer);
-    }
+    vplResult result = vplPathTracer_Pass(state->tracer, now, vplJob_GetProgress(job), job, 0, 1);
     vplJob_EndStage(job, "paths");
-    vplPathTracer_Destroy(tracer);
+    state->done += now;
+    *doneOut = state->done >= job->options.samplesPerPixel;
     return result;
 }
+
+static vplResult resolve(vplJob* job)
+{
+    const PathState* state = job->state;
+    vplResult result = vplImage_Create(job->context, job->options.width, job->options.height, &job->image);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplPathStats stats;
+    vplPathTracer_Resolve(state->tracer, job->image, &stats);
+    job->stats.rays = stats.rays;
+    job->stats.errorEstimate = stats.errorEstimate;
+    job->stats.relativeErrorEstimate = stats.relativeErrorEstimate;
+    return VPL_SUCCESS;
+}
+
+static void end(vplJob* job)
+{
+    PathState* state = job->state;
+    if (state != NULL) {
+        vplPathTracer_Destroy(state->tracer);
+        vplFree(job->context, state);
+    }
+}
+
+const vplMethodFcns vplPathMethod = {begin, step, resolve, end};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checks, freezes the scene, calls the method, fills in what all methods report.
+// Checks, freezes the scene, counts and times what methods do.
 #include "render/render.h"
 #include "base/clock.h"
 
@@ -14,8 +14,16 @@ void vplJob_BeginStage(vplJob* job, double to)
 
 void vplJob_EndStage(vplJob* job, const char* name)
 {
-    if (job->stats.stageCount < VPL_MAX_STAGES) {
-        job->stats.stages[job->stats.stageCount++] = (vplStage){name, vplClockMs() - job->stageStart};
+    const double ms = vplClockMs() - job->stageStart;
+    vplRenderStats* stats = &job->stats;
+    for (int i = 0; i < stats->stageCount; i++) {
+        if (strcmp(stats->stages[i].name, name) == 0) {
+            stats->stages[i].ms += ms;
+            return;
+        }
+    }
+    if (stats->stageCount < VPL_MAX_STAGES) {
+        stats->stages[stats->stageCount++] = (vplStage){name, ms};
     }
 }
 
@@ -23,7 +31,7 @@ bool vplJob_Progress(void* job, double fraction)
 {
     const vplJob* j = job;
     double done = j->progressFrom + (j->progressTo - j->progressFrom) * fraction;
-    return j->options.progress(j->options.progressUser, done);
+    return j->options.progress(j->options.progressUser, j->stepFrom + (j->stepTo - j->stepFrom) * done);
 }
 
 vplProgressFcn* vplJob_GetProgress(const vplJob* job)
@@ -37,14 +45,25 @@ void vplJob_AddRaster(vplJob* job, const vplRasterStats* stats)
     job->stats.fragments += stats->fragments;
 }
 
+vplLighting vplJob_GetShading(const vplJob* job)
+{
+    return job->options.method == VPL_METHOD_KELLER ? VPL_LIGHTING_PHYSICAL : job->options.lighting;
+}
+
 vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
 {
     const vplRenderOptions* o = &job->options;
     const vplScene* scene = job->scene;
     vplParticleDef def = vplDefaultParticleDef();
+    const bool keller = o->method == VPL_METHOD_KELLER;
     def.lighting = o->lighting;
+    def.start = keller ? VPL_START_EMITTER : VPL_START_FIRST_HIT;
     def.particleCount = o->particles;
+    def.firstParticle = (int64_t)job->stepsDone * o->particles;
     def.reflectivity = o->reflectivity >= 0 ? o->reflectivity : vplGeometry_MeanReflectance(job->geometry);
+    if (keller && o->show == VPL_SHOW_DIRECT) {
+        def.reflectivity = 0; // the lights on the emitters are all there is
+    }
     def.sampler = o->sampler;
     def.bounce = o->bounce;
     def.geometry = o->particleGeometry;
@@ -60,19 +79,19 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     const vplLightSet* set = *setOut;
     vplRenderStats* stats = &job->stats;
     stats->reflectivity = def.reflectivity;
-    stats->virtualLights = set->lightCount;
-    stats->escaped = set->escaped;
-    stats->rays = set->rays;
-    stats->rayObjectTests = set->rayObjectTests;
+    stats->virtualLights += set->lightCount;
+    stats->escaped += set->escaped;
+    stats->rays += set->rays;
+    stats->rayObjectTests += set->rayObjectTests;
     stats->stepCount = set->stepCount < VPL_MAX_STEPS_REPORTED ? set->stepCount : VPL_MAX_STEPS_REPORTED;
     for (int i = 0; i < stats->stepCount; i++) {
-        stats->particlesPerStep[i] = set->stepCounts[i];
-        stats->lightsPerStep[i] = set->lightsInStep[i];
+        stats->particlesPerStep[i] += set->stepCounts[i];
+        stats->lightsPerStep[i] += set->lightsInStep[i];
     }
     return VPL_SUCCESS;
 }
 
-static vplResult beginJob(const vplScene* scene, const vplRenderOptions* options, vplJob* job)
+vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, vplJob* job)
 {
     vplResult result = vplCheckOptions(scene, options);
     if (result != VPL_SUCCESS) {
@@ -82,6 +101,7 @@ static vplResult beginJob(const vplScene* scene, const vplRenderOptions* options
     job->context = vplScene_GetContext(scene);
     job->scene = scene;
     job->options = *options;
+    job->stepTo = 1;
     job->stats.errorEstimate = job->stats.relativeErrorEstimate = -1;
     vplContext_ResetPeakBytes(job->context);
     vplJob_BeginStage(job, 0);
@@ -91,38 +111,10 @@ static vplResult beginJob(const vplScene* scene, const vplRenderOptions* options
     return result;
 }
 
-vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
-                    vplRenderStats* statsOut)
-{
-    vplJob job;
-    double start = vplClockMs(), cpuStart = vplCpuMs();
-    vplResult result = beginJob(scene, options, &job);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    result = options->method == VPL_METHOD_PATH ? vplRenderPath(&job) : vplRenderInstantRadiosity(&job);
-    job.stats.triangles = job.geometry->triangleCount;
-    job.stats.objects = job.geometry->objectCount;
-    vplGeometry_Destroy(job.geometry);
-    if (result != VPL_SUCCESS) {
-        vplImage_Destroy(job.image);
-        return result;
-    }
-    job.stats.totalMs = vplClockMs() - start;
-    job.stats.cpuMs = vplCpuMs() - cpuStart;
-    job.stats.peakBytes = vplContext_GetPeakBytes(job.context);
-    if (statsOut != NULL) {
-        job.stats.imageHash = vplImage_Hash(job.image);
-        *statsOut = job.stats;
-    }
-    *imageOut = job.image;
-    return VPL_SUCCESS;
-}
-
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)
 {
     vplJob job;
-    vplResult result = beginJob(scene, options, &job);
+    vplResult result = vplJob_Begin(scene, options, &job);
     if (result == VPL_SUCCESS) {
         result = vplJob_MakeLights(&job, setOut);
         vplGeometry_Destroy(job.geometry);

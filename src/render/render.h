@@ -16,11 +16,34 @@ typedef struct vplJob {
     vplView view;
     vplImage* image;
     vplRenderStats stats;
-    double progressFrom, progressTo; // share of the whole that the running stage has
+    double stepFrom, stepTo;         // share of the whole that the running step has
+    double progressFrom, progressTo; // share of the step that the running stage has
     double stageStart;
+    int stepsDone;
+    bool last;   // no more steps follow: what they would need may be given away
+    void* state; // the method's own
 } vplJob;
 
+// A method, step by step.
+typedef struct vplMethodFcns {
+    vplResult (*begin)(vplJob* job);               // what all steps share
+    vplResult (*step)(vplJob* job, bool* doneOut); // done: the options name a count, and it is reached
+    vplResult (*resolve)(vplJob* job);             // job->image, a new one, and the error estimates
+    void (*end)(vplJob* job);                      // after begin, whether it succeeded or not
+} vplMethodFcns;
+
+// Paths per pixel in a step, large enough that threads seldom wait for each other.
+enum { VPL_PATH_PASS = 32 };
+
+extern const vplMethodFcns vplVirtualLightMethod, vplPathMethod;
+
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
+
+// Freezes the scene. job->geometry is there afterwards unless it fails.
+vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, vplJob* job);
+
+// Formulas of shading: Keller's lights are physical ones, also where particles lose light as printed.
+vplLighting vplJob_GetShading(const vplJob* job);
 
 // Times one stage and gives it a share of the progress, up to fraction `to`.
 void vplJob_BeginStage(vplJob* job, double to);
@@ -32,12 +55,8 @@ vplProgressFcn* vplJob_GetProgress(const vplJob* job);
 
 void vplJob_AddRaster(vplJob* job, const vplRasterStats* stats);
 
-// The particle simulation as the options ask for it.
+// The virtual lights as the options ask for them, of pass job->stepsDone.
 vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut);
-
-// Methods.
-vplResult vplRenderInstantRadiosity(vplJob* job);
-vplResult vplRenderPath(vplJob* job);
 
 // Draws the lights over the picture.
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set);

@@ -57,15 +57,20 @@ void vplAccumulateLights(const vplContext* context, vplLighting lighting, float 
     vplGetLightKernel(context->isa, lighting)(surface, lights, count, inverseBound, irradiance);
 }
 
-void vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out)
+int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out)
 {
     // A virtual light of flux P emits P/pi cos; the 1/pi is taken into the colour once.
     const float scale = lighting == VPL_LIGHTING_PHYSICAL ? (float)(1 / VPL_PI) : 1;
+    int count = 0;
     for (int i = 0; i < set->lightCount; i++) {
         const vplVirtualLight* v = &set->lights[i];
+        if (v->object < 0) {
+            continue;
+        }
         const float factor = scale * (v->weight / (float)set->particleCount);
-        out[i] = (vplShadeLight){v->position.x,       v->position.y,       v->position.z,
-                                 v->normal.x,         v->normal.y,         v->normal.z,
-                                 factor * v->light.r, factor * v->light.g, factor * v->light.b};
+        out[count++] = (vplShadeLight){v->position.x,       v->position.y,       v->position.z,
+                                       v->normal.x,         v->normal.y,         v->normal.z,
+                                       factor * v->light.r, factor * v->light.g, factor * v->light.b};
     }
+    return count;
 }

@@ -48,7 +48,7 @@ for name in setting family sweeps on_front seed method particles reflectivity sa
     check "TradeoffHas_$name" test -n "$(column "$csv" $name)"
 done
 equals TradeoffSeeds "1 2" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
-equals TradeoffSamplers "halton hammersley random" "$(column "$csv" sampler | sort -u | tr '\n' ' ' | sed 's/ $//')"
+equals TradeoffSamplers "auto halton hammersley random" "$(column "$csv" sampler | sort -u | tr '\n' ' ' | sed 's/ $//')"
 for name in setting seed image_hash error rmse relmse energy_ratio virtual_lights command; do
     equals "TradeoffRepeats_$name" "$(column "$csv" $name | cksum)" "$(column "$out/u/tradeoff.csv" $name | cksum)"
 done

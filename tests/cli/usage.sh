@@ -55,7 +55,7 @@ wrong "--seed is \"-1\"" lights "$room" --seed -1
 wrong "--seed is \"18446744073709551616\"" lights "$room" --seed 18446744073709551616
 wrong "--threads is \"1025\"" lights "$room" --threads 1025
 wrong "--threads is \"1,2\"" lights "$room" --threads 1,2
-wrong "--sampler is \"sobol\", must be one of random|halton|hammersley" lights "$room" --sampler sobol
+wrong "--sampler is \"sobol\", must be one of auto|random|halton|hammersley" lights "$room" --sampler sobol
 wrong "--method is \"\"" lights "$room" --method=
 wrong "--method is \"photon\"" render "$room" -o "$png" --method photon
 wrong "--lighting is \"physica\"" render "$room" -o "$png" --lighting physica

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// Emitters share the particles by power. Documented lighting of a point light: its intensity, uniform directions.
+// Otherwise whatever emits, as vplEmission_SampleParticle says.
+#include "lights/starts.h"
+
+#include "geometry/triangle.h"
+#include "math/sampling.h"
+#include "math/vec.h"
+
+static double powerOf(const vplEmitterDef* e)
+{
+    return vplRgbMean(e->intensity);
+}
+
+vplStarts vplStarts_Make(const vplGeometry* geometry, const vplEmission* emission,
+                         const vplEmitterDef* emitters, int emitterCount, const vplParticleDef* def)
+{
+    vplStarts s = {geometry, def, emitters, emitterCount, 0, emission, {0}};
+    s.samples = vplSampleSource_Make(def);
+    for (int i = 0; i < emitterCount; i++) {
+        s.totalPower += powerOf(&emitters[i]);
+    }
+    return s;
+}
+
+// The emitter of particle i, and one over the probability that it was chosen.
+static const vplEmitterDef* chooseEmitter(const vplStarts* s, int particle, float* inverseProbability)
+{
+    *inverseProbability = 1;
+    if (s->emitterCount == 1 || s->totalPower == 0) {
+        return &s->emitters[0];
+    }
+    double place = (double)vplSampleSource_Emitter(&s->samples, particle) * s->totalPower;
+    int chosen = -1;
+    for (int i = 0; i < s->emitterCount; i++) {
+        double power = powerOf(&s->emitters[i]);
+        if (power > 0) {
+            chosen = i;
+            if (place < power) {
+                break;
+            }
+        }
+        place -= power;
+    }
+    *inverseProbability = (float)(s->totalPower / powerOf(&s->emitters[chosen]));
+    return &s->emitters[chosen];
+}
+
+// The surface that a particle comes from.
+static vplHit sourceOf(const vplStarts* s, const vplParticle* p)
+{
+    const vplGeometry* g = s->geometry;
+    const int triangle = s->emission->sources[p->source].triangle;
+    vplHit hit = {.object = -1, .face = VPL_FACE_NONE, .triangle = triangle};
+    if (triangle >= 0) {
+        hit.object = g->owners[triangle];
+        hit.face = vplGeometry_FaceOf(g, triangle);
+    }
+    return hit;
+}
+
+bool vplStarts_Get(const vplStarts* s, int particle, vplStart* out)
+{
+    float u[4];
+    vplSampleSource_Direction(&s->samples, particle, 0, &u[2], &u[3]);
+    if (s->emission != NULL) {
+        vplParticle p;
+        vplSampleSource_Place(&s->samples, particle, &u[0], &u[1]);
+        if (!vplEmission_SampleParticle(s->emission, vplSampleSource_Emitter(&s->samples, particle), u, &p)) {
+            return false;
+        }
+        *out = (vplStart){p.ray, p.normal, p.flux, sourceOf(s, &p)};
+    } else {
+        float inverseProbability;
+        const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
+        const vplVec3 direction = vplSampleSphere(u[2], u[3]);
+        *out = (vplStart){{emitter->position, direction, {0, 0}},
+                          direction,
+                          vplRgbScale(inverseProbability, emitter->intensity),
+                          {.object = -1, .face = VPL_FACE_NONE, .triangle = -1}};
+    }
+    if (s->def->directions != NULL) {
+        out->ray.direction = s->def->directions[particle];
+    }
+    return true;
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// What a picture with virtual lights is made of. Everything is made only where the options ask for it.
+#ifndef VPL_RENDER_INGREDIENTS_H
+#define VPL_RENDER_INGREDIENTS_H
+
+#include "render/render.h"
+
+// Shadow maps from some points.
+typedef struct vplMaps {
+    vplCubeMap** maps; // NULL where a point needs none
+    vplShadow* shadows;
+    int count;
+} vplMaps;
+
+typedef struct vplIngredients {
+    const vplEmitterDef* emitters;
+    int emitterCount;
+    vplMaps emitterMaps;
+    vplShadeLight* lamps;
+    int lampCount;
+    float lampMinDistance;
+    // of one pass
+    vplLightSet* set;
+    vplShadeLight* lights;
+    int lightCount;
+    float minDistance;
+    vplLightShadows lightShadows; // none, map or ray
+    vplMaps lightMaps;
+} vplIngredients;
+
+// Shadow maps of emitters and lights that stand for lamps: what direct light needs.
+vplResult vplMakeDirectLight(vplJob* job, vplIngredients* in);
+
+// Virtual lights of pass job->stepsDone, without their shadows. Those of the last pass are gone.
+vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in);
+
+// Maps of the virtual lights.
+vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in);
+
+void vplFreeVirtualLights(vplJob* job, vplIngredients* in);
+void vplFreeIngredients(vplJob* job, vplIngredients* in);
+
+#endif

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// A render as a loop of steps, and when it ends: a count, a time or an error estimate.
+#include "base/clock.h"
+#include "render/render.h"
+
+struct vplRenderer {
+    vplJob job;
+    const vplMethodFcns* method;
+    double start, cpuStart; // ms
+    double stepMs;          // of all steps
+};
+
+vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
+                             vplRenderer** rendererOut)
+{
+    vplJob job = {0};
+    const double start = vplClockMs(), cpuStart = vplCpuMs();
+    vplResult result = vplJob_Begin(scene, options, &job);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplRenderer* r = vplAllocZero(job.context, 1, sizeof *r);
+    if (r == NULL) {
+        vplGeometry_Destroy(job.geometry);
+        return VPL_OUT_OF_MEMORY;
+    }
+    r->job = job;
+    r->method = options->method == VPL_METHOD_PATH ? &vplPathMethod : &vplVirtualLightMethod;
+    r->start = start;
+    r->cpuStart = cpuStart;
+    r->job.stats.triangles = job.geometry->triangleCount;
+    r->job.stats.objects = job.geometry->objectCount;
+    result = r->method->begin(&r->job);
+    if (result != VPL_SUCCESS) {
+        vplRenderer_Destroy(r);
+        return result;
+    }
+    *rendererOut = r;
+    return VPL_SUCCESS;
+}
+
+// The share of the whole that is done, as far as it can be told.
+static double shareDone(const vplRenderer* r)
+{
+    const vplRenderOptions* o = &r->job.options;
+    const int count =
+        o->method == VPL_METHOD_PATH ? (o->samplesPerPixel + VPL_PATH_PASS - 1) / VPL_PATH_PASS : o->passes;
+    double share = 0;
+    if (count > 0) {
+        share = (double)r->job.stepsDone / count;
+    } else if (o->maxError > 0) {
+        share = r->job.stepsDone / (r->job.stepsDone + 4.0);
+    } else if (o->budgetMs <= 0) {
+        share = r->job.stepsDone;
+    }
+    if (o->budgetMs > 0) {
+        const double spent = (vplClockMs() - r->start) / o->budgetMs;
+        share = spent > share ? spent : share;
+    }
+    return share < 1 ? share : 1;
+}
+
+static bool isTimeUp(const vplRenderer* r)
+{
+    const double budget = r->job.options.budgetMs;
+    return budget > 0 && vplClockMs() - r->start + r->stepMs / r->job.stepsDone > budget;
+}
+
+static vplResult checkError(vplRenderer* r, bool* doneOut)
+{
+    vplJob* job = &r->job;
+    vplResult result = r->method->resolve(job);
+    vplImage_Destroy(job->image);
+    job->image = NULL;
+    const double error = job->stats.relativeErrorEstimate;
+    *doneOut = *doneOut || (error >= 0 && error <= job->options.maxError);
+    return result;
+}
+
+vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
+{
+    vplJob* job = &r->job;
+    const double begin = vplClockMs();
+    bool done = false;
+    job->stepFrom = shareDone(r);
+    job->stepsDone++; // for the share at the end of this step
+    job->stepTo = shareDone(r);
+    job->stepsDone--;
+    job->progressTo = 0;
+    vplResult result = r->method->step(job, &done);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    r->stepMs += vplClockMs() - begin;
+    job->stepsDone++;
+    if (!done && job->options.maxError > 0) {
+        result = checkError(r, &done);
+    }
+    *doneOut = done || isTimeUp(r);
+    return result;
+}
+
+vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
+{
+    vplJob* job = &r->job;
+    if (job->stepsDone == 0) {
+        return vplFail(job->context, VPL_INVALID_ARGUMENT, "a renderer has no picture before its first step");
+    }
+    vplResult result = r->method->resolve(job);
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(job->image);
+        job->image = NULL;
+        return result;
+    }
+    if (statsOut != NULL) {
+        vplRenderStats* stats = &job->stats;
+        stats->passes = job->stepsDone;
+        stats->totalMs = vplClockMs() - r->start;
+        stats->cpuMs = vplCpuMs() - r->cpuStart;
+        stats->peakBytes = vplContext_GetPeakBytes(job->context);
+        stats->imageHash = vplImage_Hash(job->image);
+        *statsOut = *stats;
+    }
+    *imageOut = job->image;
+    job->image = NULL;
+    return VPL_SUCCESS;
+}
+
+void vplRenderer_Destroy(vplRenderer* r)
+{
+    if (r != NULL) {
+        vplContext* context = r->job.context;
+        r->method->end(&r->job);
+        vplImage_Destroy(r->job.image);
+        vplGeometry_Destroy(r->job.geometry);
+        vplFree(context, r);
+    }
+}
+
+vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
+                    vplRenderStats* statsOut)
+{
+    vplRenderer* r;
+    vplResult result = vplRenderer_Create(scene, options, &r);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    for (bool done = false; !done && result == VPL_SUCCESS;) {
+        result = vplRenderer_Step(r, &done);
+    }
+    r->job.last = true;
+    if (result == VPL_SUCCESS) {
+        result = vplRenderer_GetImage(r, imageOut, statsOut);
+    }
+    const vplRenderStats* stats = &r->job.stats;
+    if (result == VPL_SUCCESS && stats->errorEstimate >= 0) {
+        vplLog(r->job.context, VPL_LOG_INFO, "remaining error about %.3g W/(m^2 sr), %.3g %% of the mean",
+               stats->errorEstimate, 100 * stats->relativeErrorEstimate);
+    }
+    vplRenderer_Destroy(r);
+    return result;
+}
