@@ -18,17 +18,12 @@
     X(hits)                                                                                                  \
     X(image)                                                                                                 \
     X(interleaved)                                                                                           \
+    X(keller)                                                                                                \
     X(lights)                                                                                                \
     X(math)                                                                                                  \
     X(memory)                                                                                                \
-    X(metrics)                                                                                               \
-    X(obj)                                                                                                   \
-    X(objParts)                                                                                              \
-    X(objScene)                                                                                              \
-    X(rays)                                                                                                  \
-    X(packets)                                                                                               \
-    X(path)                                                                                                  \
-    X(passes) X(raster) X(rasterTruth) X(render) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
+    X(metrics) X(obj) X(objParts) X(objScene) X(rays) X(packets) X(path) X(passes) X(raster) X(rasterTruth)  \
+        X(render) X(renderer) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,

@@ -54,9 +54,14 @@ vplScene* sceneOf(vplContext* context, float rho)
     return scene;
 }
 
-vplGeometry* closedCube(vplContext* context, float rho)
+vplScene* closedCubeScene(vplContext* context, float rho, float emission)
 {
     vplScene* scene = sceneOf(context, rho);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    int wall;
+    material.diffuse = (vplRgb){rho, rho, rho};
+    material.emission = (vplRgb){emission, 0.5f * emission, 0.25f * emission};
+    assert_int_equal(vplScene_AddMaterial(scene, &material, &wall), VPL_SUCCESS);
     for (int face = 0; face < 6; face++) {
         float side = face & 1 ? -1 : 1; // the wall at `side` on axis face / 2, turned towards the middle
         double rotate[3] = {0, 0, 0};
@@ -72,10 +77,16 @@ vplGeometry* closedCube(vplContext* context, float rho)
             rotate[1] = side > 0 ? VPL_PI : 0;
         }
         vplObjectDef object = vplDefaultObjectDef();
+        object.material = wall;
         object.transform = vplMat4_FromParts(place, rotate, (vplVec3){2, 2, 1});
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
     }
-    return freeze(scene);
+    return scene;
+}
+
+vplGeometry* closedCube(vplContext* context, float rho)
+{
+    return freeze(closedCubeScene(context, rho, 0));
 }
 
 vplGeometry* floorQuad(vplContext* context, vplVec3 centre, float size, float rho)

@@ -11,7 +11,9 @@ vplGeometry* tableRoom(vplContext* context);
 // A scene with one material of reflectance rho.
 vplScene* sceneOf(vplContext* context, float rho);
 
-// The cube [-1, 1]^3 seen from inside: six quads facing inwards, all of reflectance rho.
+// The cube [-1, 1]^3 seen from inside: six quads facing inwards, all of reflectance rho. Emission: of red, half as much
+// green, a quarter blue.
+vplScene* closedCubeScene(vplContext* context, float rho, float emission);
 vplGeometry* closedCube(vplContext* context, float rho);
 
 // A quad of the given size around `centre`, its front towards +y, of reflectance rho.

@@ -49,7 +49,7 @@ typedef struct vplVirtualLight {
                 // particle leaves a point or comes from a direction, its own direction
     vplRgb light; // documented: the light L the particle carries after attenuation, in the emitter's unit;
                   // physical, and Keller's: flux in W that the surface sends out if one particle carried all
-    float weight; // N / floor(rho^k N); the picture also divides by N
+    float weight; // N / floor(rho^k N), in a pass rho^-k; the picture also divides by N
     int step;     // k: 0 for the first hit
     int particle; // [0, N)
     int object;   // where it lies; -1: it is the emitter itself (Keller, step 0 of what is no surface)
@@ -59,11 +59,13 @@ typedef struct vplParticleDef {
     vplLighting lighting;   // default VPL_LIGHTING_PHYSICAL; documented: rho/pi at every hit
     vplParticleStart start; // default VPL_START_FIRST_HIT
     int particleCount;      // N, [0, VPL_MAX_LIGHTS]; default 10
-    int64_t firstParticle;  // index of the first in its sequence, [0, 2^40]: renders in several passes go on
-                            // where the last ended; default 0
-    double reflectivity;    // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
-    vplSampler sampler;     // default VPL_SAMPLER_AUTO
-    vplBounce bounce;       // default VPL_BOUNCE_AUTO
+    bool pass; // one of several passes that are one long walk: step k gets floor(rho^k (firstParticle + N)) -
+               // floor(rho^k firstParticle) particles of weight rho^-k, so that the passes' mean lacks no
+               // step; default false
+    int64_t firstParticle;        // index of the first in its sequence, [0, 2^40]; default 0
+    double reflectivity;          // rho, [0, 1); the first floor(rho^k N) particles reach step k; default 0.5
+    vplSampler sampler;           // default VPL_SAMPLER_AUTO
+    vplBounce bounce;             // default VPL_BOUNCE_AUTO
     vplParticleGeometry geometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;             // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
     const vplVec3* directions; // N first directions, unit, instead of the sampler's; NULL (default)

@@ -4,7 +4,10 @@
 // (k + 1) 2^-51 of the true value relative to it, so a product that near to an integer is that integer. Decimals of few
 // digits cannot come that near to an integer otherwise; far out (k > 64) the band could hold one, so plain
 // floor takes over.
-#include <vpl/lights.h>
+//
+// Passes of one long walk: pass after pass, the counts of all particles so far are floor(rho^k (first + N)), and a pass
+// gets what that grows by. So even steps that a pass of N particles would never reach get their share now and then.
+#include "lights/counts.h"
 
 #include "base/context.h"
 
@@ -22,6 +25,12 @@ static int64_t countAt(double w, int step)
 vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts,
                             int capacity, int* stepsOut, int64_t* totalOut)
 {
+    return vplCountPass(context, 0, particleCount, reflectivity, counts, capacity, stepsOut, totalOut);
+}
+
+vplResult vplCountPass(vplContext* context, int64_t firstParticle, int particleCount, double reflectivity,
+                       int* counts, int capacity, int* stepsOut, int64_t* totalOut)
+{
     if (particleCount < 0 || particleCount > VPL_MAX_LIGHTS) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "particle count is %d, must be in [0, %d]",
                        particleCount, VPL_MAX_LIGHTS);
@@ -29,10 +38,11 @@ vplResult vplCountParticles(vplContext* context, int particleCount, double refle
     if (!(reflectivity >= 0 && reflectivity < 1)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "reflectivity is %g, must be in [0, 1)", reflectivity);
     }
-    double w = particleCount;
-    int64_t total = 0;
+    double before = (double)firstParticle, after = (double)(firstParticle + particleCount);
+    int64_t total = 0, count = particleCount;
     int step = 0;
-    for (int64_t count = particleCount; count > 0; count = countAt(w, step)) {
+    for (int64_t reached = firstParticle + particleCount; particleCount > 0 && reached > 0;
+         reached = countAt(after, step), count = reached - countAt(before, step)) {
         if (step >= VPL_MAX_STEPS) {
             return vplFail(context, VPL_LIMIT, "reflectivity %.17g needs more than %d steps", reflectivity,
                            VPL_MAX_STEPS);
@@ -47,7 +57,8 @@ vplResult vplCountParticles(vplContext* context, int particleCount, double refle
             counts[step] = (int)count;
         }
         step++;
-        w *= reflectivity;
+        before *= reflectivity;
+        after *= reflectivity;
     }
     *stepsOut = step;
     *totalOut = total;

@@ -13,6 +13,7 @@
 
 #include "base/context.h"
 #include "geometry/bvh.h"
+#include "lights/counts.h"
 #include "lights/starts.h"
 #include "math/sampling.h"
 #include "math/vec.h"
@@ -34,7 +35,9 @@ typedef struct Simulation {
     vplStarts starts;
     bool keller; // lights where particles start are step 0
     const int* stepCounts;
-    const int* stepStart; // first slot of each step
+    const int* stepStart;  // first slot of each step
+    const int* reach;      // per step: how many particles get there, to leave a light or to go on
+    const double* weights; // per step
     int stepCount;
     vplVirtualLight* slots; // one per step and particle; step -1 where nothing was hit
     int* raysOf;            // per particle
@@ -85,9 +88,12 @@ static float shadingFactor(const Simulation* s, const vplHit* hit, vplVec3 direc
 
 static void leaveLight(Simulation* s, int particle, int step, const vplVirtualLight* light)
 {
+    if (particle >= s->stepCounts[step]) {
+        return; // only later steps have a place for it
+    }
     vplVirtualLight* slot = &s->slots[s->stepStart[step] + particle];
     *slot = *light;
-    slot->weight = (float)((double)s->def.particleCount / s->stepCounts[step]);
+    slot->weight = (float)s->weights[step];
     slot->step = step;
     slot->particle = particle;
 }
@@ -105,7 +111,7 @@ static void followParticle(Simulation* s, int particle)
         leaveLight(s, particle, step++,
                    &(vplVirtualLight){p.ray.origin, p.normal, p.light, .object = p.from.object});
     }
-    for (; started && step < s->stepCount && particle < s->stepCounts[step]; step++) {
+    for (; started && step < s->stepCount && particle < s->reach[step]; step++) {
         s->raysOf[particle]++;
         if (!trace(s, particle, &p.ray, &p.from)) {
             s->escapedOf[particle] = true;
@@ -127,8 +133,10 @@ static void followParticle(Simulation* s, int particle)
         vplVec3 onward = mirror ? reflect(p.ray.direction, hit->normal) : vplSampleCosineAround(facing, u, v);
         p.ray = vplGeometry_Leave(s->geometry, hit, onward);
     }
-    for (; step < s->stepCount && particle < s->stepCounts[step]; step++) {
-        s->slots[s->stepStart[step] + particle].step = -1;
+    for (; step < s->stepCount && particle < s->reach[step]; step++) {
+        if (particle < s->stepCounts[step]) {
+            s->slots[s->stepStart[step] + particle].step = -1;
+        }
     }
 }
 
@@ -170,6 +178,11 @@ static bool needsPoints(const vplParticleDef* def)
 static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
                           const vplParticleDef* def)
 {
+    if (def->firstParticle < 0 || def->firstParticle > (INT64_C(1) << 40)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplParticleDef.firstParticle is %lld, must be in [0, 2^40]",
+                       (long long)def->firstParticle);
+    }
     if (def->cookie != PARTICLE_COOKIE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef was not made by vplDefaultParticleDef");
     }
@@ -199,7 +212,8 @@ static vplResult allocate(Simulation* s, vplLightSet* set, int64_t total, int** 
     vplContext* context = set->context;
     size_t particles = (size_t)s->def.particleCount, steps = (size_t)set->stepCount;
     int* counts = vplAlloc(context, steps, sizeof(int));
-    int* starts = vplAlloc(context, steps, sizeof(int));
+    int* starts = vplAlloc(context, 2 * steps, sizeof(int));
+    double* weights = vplAlloc(context, steps, sizeof *weights);
     *lightsInStep = vplAllocZero(context, steps, sizeof(int));
     s->slots = vplAlloc(context, (size_t)total, sizeof *s->slots);
     s->raysOf = vplAllocZero(context, particles, sizeof *s->raysOf);
@@ -207,15 +221,25 @@ static vplResult allocate(Simulation* s, vplLightSet* set, int64_t total, int** 
     s->escapedOf = vplAllocZero(context, particles, sizeof *s->escapedOf);
     set->stepCounts = s->stepCounts = counts;
     s->stepStart = starts;
+    s->weights = weights;
     set->lightsInStep = *lightsInStep;
     set->lights = s->slots;
-    if (!counts || !starts || !*lightsInStep || !s->slots || !s->raysOf || !s->testsOf || !s->escapedOf) {
+    if (!counts || !starts || !weights || !*lightsInStep || !s->slots || !s->raysOf || !s->testsOf ||
+        !s->escapedOf) {
         return VPL_OUT_OF_MEMORY;
     }
-    vplResult result = vplCountParticles(context, s->def.particleCount, s->def.reflectivity, counts,
-                                         set->stepCount, &set->stepCount, &total);
+    vplResult result = vplCountPass(context, s->def.pass ? s->def.firstParticle : 0, s->def.particleCount,
+                                    s->def.reflectivity, counts, set->stepCount, &set->stepCount, &total);
+    double weight = 1;
     for (int i = 0, at = 0; i < set->stepCount; at += counts[i], i++) {
         starts[i] = at;
+        weights[i] = s->def.pass ? weight : (double)s->def.particleCount / counts[i];
+        weight /= s->def.reflectivity;
+    }
+    s->reach = starts + set->stepCount;
+    for (int i = set->stepCount - 1, most = 0; i >= 0; i--) {
+        most = counts[i] > most ? counts[i] : most;
+        starts[set->stepCount + i] = most;
     }
     return result;
 }
@@ -228,7 +252,8 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     int64_t total;
     vplResult result = checkDef(context, emitters, emitterCount, def);
     if (result == VPL_SUCCESS) {
-        result = vplCountParticles(context, def->particleCount, def->reflectivity, NULL, 0, &steps, &total);
+        result = vplCountPass(context, def->pass ? def->firstParticle : 0, def->particleCount,
+                              def->reflectivity, NULL, 0, &steps, &total);
     }
     vplLightSet* set = result == VPL_SUCCESS ? vplAllocZero(context, 1, sizeof *set) : NULL;
     if (set == NULL) {
@@ -264,6 +289,7 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     }
     vplEmission_Destroy(emission);
     vplFree(context, (int*)s.stepStart);
+    vplFree(context, (double*)s.weights);
     vplFree(context, s.raysOf);
     vplFree(context, s.testsOf);
     vplFree(context, s.escapedOf);

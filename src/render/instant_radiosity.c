@@ -17,9 +17,8 @@ typedef enum Part {
 
 typedef struct Recipe {
     vplIngredients in;
-    bool progressive; // the picture is a mean of passes
-    vplImage* base;   // progressive: direct light; else all of the picture
-    double* sums[2];  // progressive: of the passes, even and odd
+    vplImage* base;  // progressive: direct light; else all of the picture
+    double* sums[2]; // progressive: of the passes, even and odd
 } Recipe;
 
 static bool needsLights(const vplRenderOptions* o)
@@ -176,7 +175,7 @@ static vplResult begin(vplJob* job)
     }
     r->in.emitterCount = vplScene_GetEmitterCount(job->scene);
     r->in.emitters = r->in.emitterCount ? vplScene_GetEmitter(job->scene, 0) : NULL;
-    r->progressive = isProgressive(&job->options);
+    job->progressive = isProgressive(&job->options);
     return VPL_SUCCESS;
 }
 
@@ -217,7 +216,7 @@ static vplResult step(vplJob* job, bool* doneOut)
     const vplRenderOptions* o = &job->options;
     Recipe* r = job->state;
     vplResult result;
-    if (r->progressive) {
+    if (job->progressive) {
         *doneOut = o->passes > 0 && job->stepsDone + 1 >= o->passes;
         return addPass(job, r);
     }
@@ -251,7 +250,7 @@ static void estimateError(vplJob* job, const Recipe* r)
 static vplResult resolve(vplJob* job)
 {
     Recipe* r = job->state;
-    if (job->last && !r->progressive) {
+    if (job->last && !job->progressive) {
         job->image = r->base;
         r->base = NULL;
         return VPL_SUCCESS;
@@ -262,10 +261,10 @@ static vplResult resolve(vplJob* job)
     }
     const size_t values = 3 * (size_t)r->base->width * (size_t)r->base->height;
     for (size_t k = 0; k < values; k++) {
-        const double mean = r->progressive ? (r->sums[0][k] + r->sums[1][k]) / job->stepsDone : 0;
+        const double mean = job->progressive ? (r->sums[0][k] + r->sums[1][k]) / job->stepsDone : 0;
         job->image->pixels[k] = (float)((double)r->base->pixels[k] + mean);
     }
-    if (r->progressive) {
+    if (job->progressive) {
         estimateError(job, r);
         if (job->options.show == VPL_SHOW_OVERLAY) {
             result = overlay(job, r->in.set);

@@ -59,6 +59,7 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     def.lighting = o->lighting;
     def.start = keller ? VPL_START_EMITTER : VPL_START_FIRST_HIT;
     def.particleCount = o->particles;
+    def.pass = job->progressive;
     def.firstParticle = (int64_t)job->stepsDone * o->particles;
     def.reflectivity = o->reflectivity >= 0 ? o->reflectivity : vplGeometry_MeanReflectance(job->geometry);
     if (keller && o->show == VPL_SHOW_DIRECT) {

@@ -20,8 +20,9 @@ typedef struct vplJob {
     double progressFrom, progressTo; // share of the step that the running stage has
     double stageStart;
     int stepsDone;
-    bool last;   // no more steps follow: what they would need may be given away
-    void* state; // the method's own
+    bool progressive; // the picture is a mean of passes
+    bool last;        // no more steps follow: what they would need may be given away
+    void* state;      // the method's own
 } vplJob;
 
 // A method, step by step.

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: MIT
+// Keller's Instant Radiosity against tables and closed forms: counts, weights, what closed rooms glow with, and how
+// emitters share the particles.
+#include "shapes.h"
+
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+static int addGlow(vplScene* scene, float rho, float emission)
+{
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = (vplRgb){rho, rho, rho};
+    material.emission = (vplRgb){emission, 0.5f * emission, 0.25f * emission};
+    int index;
+    assert_int_equal(vplScene_AddMaterial(scene, &material, &index), VPL_SUCCESS);
+    return index;
+}
+
+// A one-sided lamp that looks down.
+static void addLamp(vplScene* scene, vplVec3 centre, float size, float emission)
+{
+    vplObjectDef object = vplDefaultObjectDef();
+    object.material = addGlow(scene, 0.5f, emission);
+    object.transform = vplMat4_FromParts(centre, (double[3]){VPL_PI / 2, 0, 0}, vplVec(size, size, 1));
+    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+}
+
+static void addCamera(vplScene* scene)
+{
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = vplVec(0.1f, -0.2f, 0.9f);
+    camera.target = vplVec(0, -0.3f, -1);
+    camera.fovY = 1.2;
+    camera.near = 0.01;
+    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
+}
+
+// The cube [-1, 1]^3 with a lamp of half its width below its ceiling.
+static vplScene* lampRoom(vplContext* context, float rho)
+{
+    vplScene* scene = closedCubeScene(context, rho, 0);
+    addLamp(scene, vplVec(0, 0.99f, 0), 1, 3);
+    addCamera(scene);
+    return scene;
+}
+
+static vplParticleDef kellerDef(int count, double reflectivity)
+{
+    vplParticleDef def = vplDefaultParticleDef();
+    def.start = VPL_START_EMITTER;
+    def.particleCount = count;
+    def.reflectivity = reflectivity;
+    return def;
+}
+
+static vplLightSet* simulate(const vplGeometry* geometry, vplParticleDef def)
+{
+    vplLightSet* set;
+    assert_int_equal(vplSimulateParticles(geometry, NULL, 0, &def, &set), VPL_SUCCESS);
+    return set;
+}
+
+// counts_totals.csv: N lights on the emitter, then floor(rho N), floor(rho^2 N) and so on, each after one more ray:
+// 10 particles at rho = 0.5 leave 18 lights by 8 rays.
+static void CountsAndRaysAreThoseOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* room = freezeScene(lampRoom(context, 0.5f));
+    Table t = loadTable("counts_totals.csv");
+    int checked = 0;
+    for (int row = 0; row < t.rows; row++) {
+        if (number(&t, row, "total_sum_k>=0") > 3000) {
+            continue;
+        }
+        const int n = (int)number(&t, row, "N");
+        vplLightSet* set = simulate(room, kellerDef(n, number(&t, row, "rho")));
+        assert_int_equal(set->stepCount, (int)number(&t, row, "steps"));
+        assert_int_equal(set->rays, (int64_t)number(&t, row, "keller_rays_sum_k>=1"));
+        assert_int_equal(set->lightCount + set->escaped, (int64_t)number(&t, row, "total_sum_k>=0"));
+        assert_int_equal(set->escaped, 0);
+        for (int i = 0; i < set->lightCount; i++) {
+            const vplVirtualLight* v = &set->lights[i];
+            const bool onLamp =
+                v->object == 6 && fabsf(v->position.y - 0.99f) < 1e-6f && v->normal.y < -0.999f;
+            assert_true(v->step > 0 || onLamp);
+        }
+        vplLightSet_Destroy(set);
+        checked++;
+    }
+    assert_true(checked > 100);
+    freeTable(&t);
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// vpl_weights.csv: N/M_k, and the lights of step k carry the lamp's power times rho^k (documented: (rho/pi)^k).
+static void FluxOfEachStepIsThatOfTheTable(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Table t = loadTable("vpl_weights.csv");
+    for (int row = 0; row < 2 * t.rows; row++) {
+        const int r = row / 2, documented = row % 2, k = (int)number(&t, r, "k");
+        const float rho = (float)number(&t, r, "rho");
+        vplGeometry* cube = freezeScene(closedCubeScene(context, rho, 3));
+        vplParticleDef def = kellerDef((int)number(&t, r, "N"), number(&t, r, "rho"));
+        def.lighting = documented ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
+        vplLightSet* set = simulate(cube, def);
+        double flux = 0;
+        for (int i = 0; i < set->lightCount; i++) {
+            const vplVirtualLight* v = &set->lights[i];
+            flux += v->step == k ? (double)v->light.r * (double)v->weight / def.particleCount : 0;
+            if (v->step == k) {
+                assertNear((double)v->weight, number(&t, r, "N/M_k"), 1e-6 * number(&t, r, "N/M_k"), "weight",
+                           r);
+            }
+        }
+        const double wanted = 3 * VPL_PI * 24 * pow((double)rho / (documented ? VPL_PI : 1), k);
+        assertNear(flux, wanted, 1e-5 * wanted, "flux", r);
+        assert_int_equal(set->lightsInStep[k], (int)number(&t, r, "M_k"));
+        vplLightSet_Destroy(set);
+        vplGeometry_Destroy(cube);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// A sphere of radius 1 that glows inwards with radiance 1.
+static vplGeometry* glowingSphere(vplContext* context, float rho)
+{
+    vplScene* scene;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    addGlow(scene, rho, 1);
+    Shape shape = icosphere(4);
+    for (int i = 0; i < shape.triangleCount; i++) {
+        vplVec3* corners = shape.corners + 3 * i;
+        const vplVec3 first = corners[0];
+        corners[0] = corners[1];
+        corners[1] = first;
+    }
+    addShape(scene, &shape, false, NULL);
+    freeShape(&shape);
+    return freezeScene(scene);
+}
+
+// The red irradiance at a point of the unit sphere, of lights moved onto it: each gives a quarter of its intensity.
+static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
+{
+    const vplVec3 at = vplNormalize(vplVec(0.3f, -0.5f, 0.8f));
+    vplSurface surface;
+    for (int l = 0; l < VPL_LANES; l++) {
+        surface.px[l] = at.x, surface.py[l] = at.y, surface.pz[l] = at.z;
+        surface.nx[l] = -at.x, surface.ny[l] = -at.y, surface.nz[l] = -at.z;
+    }
+    vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
+    assert_non_null(lights);
+    assert_int_equal(vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights), set->lightCount);
+    double sum = 0;
+    for (int i = 0; i < set->lightCount; i++) {
+        const vplVec3 d = vplNormalize(set->lights[i].position);
+        float e[3][VPL_LANES] = {{0}};
+        lights[i] = (vplShadeLight){d.x, d.y, d.z, -d.x, -d.y, -d.z, lights[i].r, lights[i].g, lights[i].b};
+        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &surface, &lights[i], 1, e);
+        sum += (double)e[0][0];
+    }
+    free(lights);
+    return sum;
+}
+
+// estimator_factors.csv, "Keller furnace": walls that emit Le and reflect rho glow with Le / (1 - rho); as printed,
+// with Le (1 + rho / (1 - rho/pi)). On a sphere any light gives any point the same, so that the sum is exact but for
+// the steps that floor(rho^j N) = 0 cuts off.
+static void ClosedRoomsGlowAsTheFormulasSay(void** state)
+{
+    (void)state;
+    static const struct {
+        float rho;
+        int particles;
+    } cases[] = {{0.1f, 100}, {0.5f, 1 << 16}, {0.9f, 20000}};
+    for (int i = 0; i < 6; i++) {
+        const double rho = (double)cases[i / 2].rho;
+        const bool documented = i % 2;
+        vplContext* context = openTestContext(2);
+        vplGeometry* sphere = glowingSphere(context, cases[i / 2].rho);
+        vplParticleDef def = kellerDef(cases[i / 2].particles, rho);
+        def.lighting = documented ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
+        vplLightSet* set = simulate(sphere, def);
+        const double share = vplGeometry_Area(sphere) / (4 * VPL_PI); // flat triangles are a little smaller
+        const double kept = documented ? rho / VPL_PI : rho;
+        const double wanted = 1 + rho * share * (1 - pow(kept, set->stepCount)) / (1 - kept);
+        assertNear(1 + rho / VPL_PI * irradianceOnSphere(context, set), wanted, 2e-5 * wanted, "glow", i);
+        const double limit = documented ? 1 + rho / (1 - rho / VPL_PI) : 1 / (1 - rho);
+        assertNear(wanted, limit, (1 - share + pow(kept, set->stepCount)) * limit, "limit", i);
+        vplLightSet_Destroy(set);
+        vplGeometry_Destroy(sphere);
+        closeTestContext(context);
+    }
+}
+
+// Lamp, point, spot and sun get particles by power. Where they start from no surface, the light is the emitter.
+static void EmittersOfAllKindsShareByPower(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = lampRoom(context, 0.5f);
+    vplEmitterDef emitters[3];
+    for (int i = 0; i < 3; i++) {
+        emitters[i] = vplDefaultEmitterDef();
+        emitters[i].type =
+            (vplEmitterType[]){VPL_EMITTER_POINT, VPL_EMITTER_SPOT, VPL_EMITTER_DIRECTIONAL}[i];
+        emitters[i].intensity = (vplRgb){1, 1, 1};
+        emitters[i].direction = vplVec(0.1f, -1, 0.2f);
+    }
+    vplGeometry* room = freezeScene(scene);
+    vplEmission* emission;
+    assert_int_equal(vplEmission_Create(room, emitters, 3, &emission), VPL_SUCCESS);
+    for (int sampler = VPL_SAMPLER_AUTO; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
+        enum { N = 4000 };
+        vplParticleDef def = kellerDef(N, 0);
+        def.sampler = (vplSampler)sampler;
+        vplLightSet* set;
+        assert_int_equal(vplSimulateParticles(room, emitters, 3, &def, &set), VPL_SUCCESS);
+        assert_int_equal(set->lightCount, N);
+        assert_int_equal(set->rays, 0);
+        int onLamp = 0, atPoint = 0;
+        for (int i = 0; i < N; i++) {
+            onLamp += set->lights[i].object == 6;
+            atPoint += set->lights[i].object < 0 && vplLength(set->lights[i].position) == 0;
+        }
+        const double* sums = emission->cumulative;
+        const double total = sums[emission->sourceCount], slack = sampler == VPL_SAMPLER_RANDOM ? 100 : 3;
+        assertNear(onLamp, N * (total - sums[3]) / total, slack, "on the lamp", sampler);
+        assertNear(atPoint, N * sums[2] / total, slack, "at point and spot", sampler); // both at the origin
+        vplShadeLight lights[N];
+        assert_int_equal(vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights), onLamp);
+        vplLightSet_Destroy(set);
+    }
+    vplEmission_Destroy(emission);
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// Passes go on where the last ended: two of N particles are the first 2 N of the sequence.
+static void LaterPassesGoOnWithTheSequence(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* room = freezeScene(lampRoom(context, 0.5f));
+    for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
+        enum { N = 50 };
+        vplParticleDef def = kellerDef(2 * N, 0);
+        def.sampler = (vplSampler)sampler;
+        vplLightSet* all = simulate(room, def);
+        def.particleCount = N;
+        def.firstParticle = N;
+        vplLightSet* second = simulate(room, def);
+        int same = 0;
+        for (int i = 0; i < N; i++) {
+            same += memcmp(&all->lights[N + i].position, &second->lights[i].position, sizeof(vplVec3)) == 0;
+        }
+        // Hammersley points are a set of N: another N are shifted.
+        assert_int_equal(same, sampler == VPL_SAMPLER_HAMMERSLEY ? 0 : N);
+        vplLightSet_Destroy(all);
+        vplLightSet_Destroy(second);
+    }
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// Passes of a walk: their counts add up to floor(rho^k P N), steps that no single pass of N would reach included, and
+// lights of step k weigh rho^-k, so that they carry power rho^k in the mean.
+static void PassesAddUpToOneWalk(void** state)
+{
+    (void)state;
+    enum { PASSES = 64, N = 7 };
+    vplContext* context = openTestContext(2);
+    vplGeometry* cube = freezeScene(closedCubeScene(context, 0.7f, 3));
+    int counts[64], steps, sums[64] = {0};
+    int64_t total;
+    double flux[64] = {0};
+    assert_int_equal(vplCountParticles(context, PASSES * N, 0.7, counts, 64, &steps, &total), VPL_SUCCESS);
+    for (int pass = 0; pass < PASSES; pass++) {
+        vplParticleDef def = kellerDef(N, 0.7);
+        def.pass = true;
+        def.firstParticle = pass * N;
+        vplLightSet* set = simulate(cube, def);
+        for (int i = 0; i < set->lightCount; i++) {
+            const vplVirtualLight* v = &set->lights[i];
+            assertNear((double)v->weight, pow(0.7, -v->step), 1e-6 * pow(0.7, -v->step), "weight", v->step);
+            flux[v->step] += (double)v->weight * (double)v->light.r / (N * PASSES);
+            sums[v->step]++;
+        }
+        vplLightSet_Destroy(set);
+    }
+    for (int k = 0; k < steps; k++) {
+        assert_int_equal(sums[k], counts[k]);
+        const double wanted = 3 * VPL_PI * 24 * pow(0.7, k);
+        assertNear(flux[k], wanted * counts[k] / (PASSES * N * pow(0.7, k)), 1e-4 * wanted, "flux", k);
+    }
+    vplParticleDef def = kellerDef(N, 0.7);
+    def.firstParticle = -1;
+    vplLightSet* set = NULL;
+    assert_int_equal(vplSimulateParticles(cube, NULL, 0, &def, &set), VPL_INVALID_ARGUMENT);
+    assert_null(set);
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+static vplRenderOptions smallOptions(void)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_KELLER;
+    o.width = 37;
+    o.height = 29;
+    o.shadowMapSize = 64;
+    return o;
+}
+
+// With no particle shot, a point light's picture is its direct light bit for bit: N lights at one place are one.
+static void PointEmittersAreDrawnAsThemselves(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    o.reflectivity = 0;
+    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    vplImage* keller = renderScene(scene, &o, NULL);
+    o.method = VPL_METHOD_DIRECT;
+    vplImage* direct = renderScene(scene, &o, NULL);
+    assert_true(vplImage_Hash(keller) == vplImage_Hash(direct));
+    vplImage_Destroy(keller);
+    vplImage_Destroy(direct);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// Direct and indirect light are parts of the picture.
+static void PartsAddUp(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = lampRoom(context, 0.7f);
+    vplRenderOptions o = smallOptions();
+    o.particles = 40;
+    o.compensation = VPL_COMPENSATION_NONE;
+    o.minDistance = 0.1f;
+    vplImage* images[3];
+    static const vplShow shows[3] = {VPL_SHOW_PICTURE, VPL_SHOW_DIRECT, VPL_SHOW_INDIRECT};
+    for (int i = 0; i < 3; i++) {
+        o.show = shows[i];
+        images[i] = renderScene(scene, &o, NULL);
+    }
+    for (int k = 0; k < 3 * 37 * 29; k++) {
+        const float sum = images[1]->pixels[k] + images[2]->pixels[k];
+        assertNear((double)images[0]->pixels[k], (double)sum, 2e-6 * (double)sum, "sum", k);
+        assert_true(images[1]->pixels[k] >= 0 && images[2]->pixels[k] > 0);
+    }
+    for (int i = 0; i < 3; i++) {
+        vplImage_Destroy(images[i]);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// X031, X036: no particles, one particle, a black room, a lamp that lights nothing.
+static void OddRoomsGiveFinitePictures(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    for (int i = 0; i < 4; i++) {
+        vplScene* scene = lampRoom(context, i == 2 ? 0.0f : 0.9f);
+        if (i == 3) {
+            addLamp(scene, vplVec(0, -50, 0), 1, 1e6f); // outside, looks away: takes all particles
+        }
+        vplRenderOptions o = smallOptions();
+        o.particles = i == 0 ? 0 : i == 1 ? 1 : 20;
+        vplRenderStats stats;
+        vplImage* image = renderScene(scene, &o, &stats);
+        for (int k = 0; k < 3 * 37 * 29; k++) {
+            assert_true(isfinite(image->pixels[k]) && image->pixels[k] >= 0);
+        }
+        assert_int_equal(stats.escaped > 0, i == 3);
+        vplImage_Destroy(image);
+        vplScene_Destroy(scene);
+    }
+    closeTestContext(context);
+}
+
+TEST_SUITE(keller, cmocka_unit_test(CountsAndRaysAreThoseOfTheTable),
+           cmocka_unit_test(FluxOfEachStepIsThatOfTheTable),
+           cmocka_unit_test(ClosedRoomsGlowAsTheFormulasSay),
+           cmocka_unit_test(EmittersOfAllKindsShareByPower), cmocka_unit_test(LaterPassesGoOnWithTheSequence),
+           cmocka_unit_test(PassesAddUpToOneWalk), cmocka_unit_test(PointEmittersAreDrawnAsThemselves),
+           cmocka_unit_test(PartsAddUp), cmocka_unit_test(OddRoomsGiveFinitePictures));

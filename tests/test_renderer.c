@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// Renders step by step: the same bits as one call, pictures at any time, and three ways to end.
+#include "scenes.h"
+
+static vplRenderOptions progressiveOptions(void)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_KELLER;
+    o.width = 41;
+    o.height = 31;
+    o.shadowMapSize = 64;
+    o.particles = 20;
+    o.compensation = VPL_COMPENSATION_NONE;
+    return o;
+}
+
+// Steps until done, looking at the picture after every `look`-th step.
+static uint64_t hashOfSteps(const vplScene* scene, const vplRenderOptions* o, int look, int* stepsOut)
+{
+    vplRenderer* r;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    vplImage* image = NULL;
+    int steps = 0;
+    for (bool done = false; !done;) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        if (++steps % look == 0) {
+            vplImage_Destroy(image);
+            assert_int_equal(vplRenderer_GetImage(r, &image, NULL), VPL_SUCCESS);
+            for (int k = 0; k < 3 * image->width * image->height; k++) {
+                assert_true(isfinite(image->pixels[k]));
+            }
+        }
+    }
+    vplImage_Destroy(image);
+    vplRenderStats stats;
+    assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+    assert_int_equal(stats.passes, steps);
+    uint64_t hash = vplImage_Hash(image);
+    assert_true(hash == stats.imageHash);
+    vplImage_Destroy(image);
+    vplRenderer_Destroy(r);
+    *stepsOut = steps;
+    return hash;
+}
+
+// Every method, with one pass and with several; pictures taken on the way change nothing.
+static void StepsGiveTheBitsOfOneCall(void** state)
+{
+    (void)state;
+    static const vplMethod methods[] = {VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_KELLER, VPL_METHOD_PATH,
+                                        VPL_METHOD_DIRECT};
+    for (int i = 0; i < 16; i++) {
+        vplContext* context = openTestContext(1 + i % 3);
+        vplScene* scene = loadScene(context, "room.json");
+        vplRenderOptions o = progressiveOptions();
+        o.method = methods[i % 4];
+        o.passes = i / 4 % 2 ? 5 : 0;
+        o.samplesPerPixel = i / 4 % 2 ? 70 : 20;
+        vplRenderStats stats;
+        vplImage_Destroy(renderScene(scene, &o, &stats));
+        int steps;
+        assert_true(hashOfSteps(scene, &o, i / 8 ? 1 : 100, &steps) == stats.imageHash);
+        const int several = o.method == VPL_METHOD_PATH ? 3 : o.method == VPL_METHOD_DIRECT ? 1 : 5;
+        assert_int_equal(steps, i / 4 % 2 ? several : 1);
+        assert_int_equal(stats.passes, steps);
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+}
+
+static vplImage* truthOf(const vplScene* scene, const vplRenderOptions* like)
+{
+    vplRenderOptions o = *like;
+    o.method = VPL_METHOD_PATH;
+    o.pixel = VPL_PIXEL_CENTRE;
+    o.samplesPerPixel = 1024;
+    o.passes = 0;
+    return renderScene(scene, &o, NULL);
+}
+
+// The error falls with the passes, and what is estimated from their halves is of its size.
+static void MorePassesAreBetterAndSaySo(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = progressiveOptions();
+    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.reflectivity = -1;
+    vplImage* truth = truthOf(scene, &o);
+    double before = INFINITY;
+    for (o.passes = 2; o.passes <= 128; o.passes *= 8) {
+        vplRenderStats stats;
+        vplComparison m;
+        vplImage* image = renderScene(scene, &o, &stats);
+        assert_int_equal(vplImage_Compare(image, truth, &m), VPL_SUCCESS);
+        assert_true(m.rmse < 0.7 * before); // light that is cut off near surfaces keeps it from 0.35
+        before = m.rmse;
+        // Low-discrepancy halves differ by more than their mean is wrong; light cut off and steps left out are not seen.
+        assert_true(stats.errorEstimate > 0.3 * m.rmse && stats.errorEstimate < 3 * m.rmse);
+        vplImage_Destroy(image);
+    }
+    vplImage_Destroy(truth);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static void AnErrorOrATimeEndsIt(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = progressiveOptions();
+    vplRenderStats stats;
+    o.maxError = 0.08;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    assert_true(stats.passes > 2 && stats.relativeErrorEstimate <= 0.08);
+    const int enough = stats.passes;
+    o.maxError = 0;
+    o.passes = enough - 1; // one less is not enough
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    assert_true(stats.relativeErrorEstimate > 0.08);
+    o.maxError = 0.08; // whatever comes first
+    o.passes = enough + 10;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    assert_int_equal(stats.passes, enough);
+    o.maxError = o.passes = 0;
+    o.budgetMs = 1e-6; // the first pass is always done
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    assert_int_equal(stats.passes, 1);
+    o.budgetMs = 300;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    assert_true(stats.passes > 1);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// A path traced picture ends by its error, too.
+static void PathsEndByTheirError(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = progressiveOptions();
+    o.method = VPL_METHOD_PATH;
+    o.samplesPerPixel = 4096;
+    o.maxError = 0.05;
+    vplRenderStats stats;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    assert_true(stats.relativeErrorEstimate <= 0.05 && stats.passes < 128);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static bool stopAtHalf(void* user, double fraction)
+{
+    *(double*)user = fraction;
+    return fraction < 0.5;
+}
+
+static void StepsAreCancelledAndNeedAFirst(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = progressiveOptions();
+    vplRenderer* r;
+    vplImage* image = NULL;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_GetImage(r, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "before its first step"));
+    vplRenderer_Destroy(r);
+    vplRenderer_Destroy(NULL);
+    double last = 0;
+    o.passes = 10;
+    o.progress = stopAtHalf;
+    o.progressUser = &last;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_CANCELLED);
+    assert_true(last >= 0.5 && last < 0.62);
+    assert_null(image);
+    o.passes = VPL_MAX_PASSES + 1;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    o.passes = 0;
+    o.budgetMs = NAN;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+TEST_SUITE(renderer, cmocka_unit_test(StepsGiveTheBitsOfOneCall),
+           cmocka_unit_test(MorePassesAreBetterAndSaySo), cmocka_unit_test(AnErrorOrATimeEndsIt),
+           cmocka_unit_test(PathsEndByTheirError), cmocka_unit_test(StepsAreCancelledAndNeedAFirst));
