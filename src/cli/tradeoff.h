@@ -7,7 +7,7 @@
 #include "cli/tradeoff_math.h"
 #include "cli/tradeoff_text.h"
 
-enum { MAX_SETTINGS = 256, MAX_SWEEPS = 32, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
+enum { MAX_SETTINGS = 256, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
 
 // What is told apart by colour: methods that converge, or do not, in ways of their own.
 typedef enum Family {
@@ -15,6 +15,7 @@ typedef enum Family {
     FAMILY_UNSHADOWED, // instant radiosity, virtual lights shine through walls
     FAMILY_MAP,        // with a shadow map per virtual light
     FAMILY_RAY,        // with a ray per pixel and virtual light
+    FAMILY_KELLER,     // Keller's method, whatever its shadows
     FAMILY_PATH,
     FAMILY_COUNT
 } Family;
@@ -44,7 +45,7 @@ typedef struct Run {
 typedef struct Setting {
     char change[128];    // words that differ from the base; empty for the base itself
     Arguments arguments; // the base with the change
-    unsigned sweeps;     // bit i: belongs to SWEEPS[i]
+    uint64_t sweeps;     // bit i: belongs to SWEEPS[i]
     Family family;
     double work; // foreseen, in units that only compare settings of one family and pipeline
     Run* runs;

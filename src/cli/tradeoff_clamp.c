@@ -22,9 +22,9 @@ static double distanceOf(const Setting* s)
 
 static void findPoints(const Tradeoff* t, Clamp* clamp)
 {
-    unsigned bits = 0;
+    uint64_t bits = 0;
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        bits |= strcmp(SWEEPS[i].name, "min-distance") == 0 ? 1u << i : 0;
+        bits |= strcmp(SWEEPS[i].name, "min-distance") == 0 ? UINT64_C(1) << i : 0;
     }
     for (int i = 0; i < t->settingCount && clamp->count < MAX_POINTS; i++) {
         const Setting* s = &t->settings[i];

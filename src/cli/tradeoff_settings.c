@@ -16,6 +16,9 @@ const Sweep SWEEPS[] = {
     {"frontier", "--light-shadows none --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows map --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows ray --particles", PARTICLES, NULL},
+    {"frontier", "--method keller --particles", PARTICLES, NULL},
+    {"frontier", "--method keller --pipeline interleaved --particles", PARTICLES, NULL},
+    {"frontier", "--method keller --pipeline interleaved --interleave 16 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows none --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows map --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows ray --min-distance @0.03 --particles", PARTICLES, NULL},
@@ -24,6 +27,9 @@ const Sweep SWEEPS[] = {
     {"direct", "--method", "direct", NULL},
     {"particles", "--particles", PARTICLES, "Particles"},
     {"light-shadows", "--light-shadows", "none map ray", "Shadows of virtual lights"},
+    {"interleave", "--pipeline interleaved --interleave", "2 4 8 16",
+     "Lights that neighbouring pixels share"},
+    {"interleave", "--light-shadows ray --pipeline interleaved --interleave", "2 4 8 16", NULL},
     {"min-distance", "--min-distance", DISTANCES, "Clamp of near virtual lights"},
     {"min-distance", "--light-shadows map --min-distance", DISTANCES, NULL},
     {"sampler", "--sampler", "random halton hammersley", "Where particles go"},
@@ -42,9 +48,12 @@ const int SWEEP_COUNT = sizeof SWEEPS / sizeof *SWEEPS;
 
 _Static_assert(sizeof SWEEPS / sizeof *SWEEPS <= MAX_SWEEPS, "a sweep is a bit of Setting.sweeps");
 
-const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only", "virtual lights without shadows",
+const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
+                                                "virtual lights without shadows",
                                                 "virtual lights with shadow maps",
-                                                "virtual lights with shadow rays", "path tracing"};
+                                                "virtual lights with shadow rays",
+                                                "Keller's method",
+                                                "path tracing"};
 
 // True if `name` is one of the words in "a,b,c"; NULL names all.
 static bool isListed(const char* list, const char* name)
@@ -81,8 +90,9 @@ static Family familyOf(const vplRenderOptions* o)
         return FAMILY_DIRECT;
     case VPL_METHOD_PATH:
         return FAMILY_PATH;
-    case VPL_METHOD_INSTANT_RADIOSITY:
     case VPL_METHOD_KELLER:
+        return FAMILY_KELLER;
+    case VPL_METHOD_INSTANT_RADIOSITY:
         break;
     }
     return o->lightShadows == VPL_LIGHT_SHADOWS_MAP   ? FAMILY_MAP
@@ -126,7 +136,7 @@ void writeCommand(const Setting* s, char* words, size_t size)
 // copy says only what matters.
 static void forgetUnused(vplRenderOptions* o)
 {
-    if (o->method == VPL_METHOD_INSTANT_RADIOSITY) {
+    if (o->method == VPL_METHOD_INSTANT_RADIOSITY || o->method == VPL_METHOD_KELLER) {
         return;
     }
     vplRenderOptions plain = vplDefaultRenderOptions();
@@ -145,7 +155,7 @@ static void forgetUnused(vplRenderOptions* o)
 }
 
 // Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too.
-static bool addSetting(Tradeoff* t, const char* words, unsigned sweep)
+static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
 {
     Setting s = {.arguments = *t->arguments, .sweeps = sweep};
     if (!changeArguments(words, &s.arguments)) {
@@ -203,7 +213,7 @@ static bool addSweep(Tradeoff* t, int index)
     for (const char* at = sweep->values; sscanf(at, " %31s%n", value, &length) == 1; at += length) {
         snprintf(pattern, sizeof pattern, "%s %s", sweep->words, value);
         expandLengths(t, pattern, words, sizeof words);
-        if (!addSetting(t, words, 1u << index)) {
+        if (!addSetting(t, words, UINT64_C(1) << index)) {
             return false;
         }
     }
@@ -212,10 +222,10 @@ static bool addSweep(Tradeoff* t, int index)
 
 bool listSettings(Tradeoff* t)
 {
-    unsigned knobs = 0;
+    uint64_t knobs = 0;
     for (int i = 0; i < SWEEP_COUNT; i++) {
         bool chosen = isListed(t->arguments->sweeps, SWEEPS[i].name);
-        knobs |= chosen && SWEEPS[i].meaning != NULL ? 1u << i : 0;
+        knobs |= chosen && SWEEPS[i].meaning != NULL ? UINT64_C(1) << i : 0;
     }
     if (!checkSweepNames(t->arguments->sweeps) || !addSetting(t, "", knobs)) {
         return false;

@@ -80,7 +80,7 @@ double findFloor(const Tradeoff* t, Family family)
     int count = 0;
     for (int i = 0; i < t->settingCount; i++) { // particles stand in ascending order
         const Setting* s = &t->settings[i];
-        // The first rows of SWEEPS are particles for none, map and ray, in the order of the families.
+        // The first rows of SWEEPS are particles for none, map, ray and Keller, in the order of the families.
         if (isMeasured(s) && s->family == family && (s->sweeps >> (family - FAMILY_UNSHADOWED) & 1) != 0) {
             work[count] = s->work;
             error[count++] = s->error;
