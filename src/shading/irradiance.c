@@ -156,3 +156,25 @@ void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, i
                     shading->inverseBound, irradiance, rays);
     }
 }
+
+void vplAllLightsIrradiance(const vplShading* shading, const vplPoints* points,
+                            float irradiance[3][VPL_LANES], int64_t* rays)
+{
+    double sums[3][VPL_LANES] = {{0}};
+    const int lightCount = shading->def->lightCount;
+    for (int first = 0; first < lightCount; first += VPL_LIGHT_GROUP) {
+        const int count = lightCount - first < VPL_LIGHT_GROUP ? lightCount - first : VPL_LIGHT_GROUP;
+        float part[3][VPL_LANES] = {{0}};
+        vplIndirectIrradiance(shading, points, first, count, part, rays);
+        for (int c = 0; c < 3; c++) {
+            for (int l = 0; l < VPL_LANES; l++) {
+                sums[c][l] += (double)part[c][l];
+            }
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            irradiance[c][l] = (float)sums[c][l];
+        }
+    }
+}

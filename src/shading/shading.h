@@ -121,6 +121,11 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
                            float irradiance[3][VPL_LANES], int64_t* rays);
 
+// Irradiance of all virtual lights, with the shadows that were asked for, however the pipeline finds it. It sets
+// `irradiance`, it does not add to it.
+void vplAllLightsIrradiance(const vplShading* shading, const vplPoints* points,
+                            float irradiance[3][VPL_LANES], int64_t* rays);
+
 // What runs per block or per tile, compiled for an instruction set.
 typedef struct vplShadingKernels {
     vplFragmentFcn* surface; // surface shader of all camera passes
