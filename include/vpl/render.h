@@ -138,6 +138,9 @@ typedef struct vplRenderStats {
     int64_t drawCalls, fragments;
     int64_t rays, rayObjectTests;
     int virtualLights;
+    int64_t lightEvaluations; // lightcuts: pairs of a pixel and a virtual light that were evaluated
+    int64_t cutPixels;        // lightcuts: pixels that show something, of all passes and samples
+    int largestCut;           // lightcuts: most virtual lights evaluated for one pixel
     int stepCount;                                // steps of the particle simulation
     int particlesPerStep[VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted
     int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
