@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The light tree of a render, and the memory of its cuts.
 #include "shading/lightcuts.h"
-#include <stdlib.h>
-double KB = 1, KZ = 1e-9;
 __attribute__((constructor)) static void knobs(void)
 {
     if (getenv("KB"))

@@ -6,14 +6,14 @@
 #include "shading/shading.h"
 
 // Clusters a cut may hold. Where that is not enough the worst cluster is summed light by light, so that the error
-// stays within its bound.
-enum { VPL_CUT_CAPACITY = 4096 };
+// stays within its bound. No cut of the scenes in bench/lightcuts holds half as many.
+enum { VPL_CUT_CAPACITY = 16384 };
 
 // A cluster of the cut: its representative stands for all of its lights.
 typedef struct vplCutEntry {
-    _Alignas(64) float gives[VPL_LANES]; // the representative, of intensity 1
-    float bound[VPL_LANES];              // largest error of the cluster, r + g + b
-    float spread[VPL_LANES];             // variance of its error as its parent's halves differ
+    float gives[VPL_LANES]; // the representative, of intensity 1
+    float open[VPL_LANES];  // the same if nothing were between
+    float bound[VPL_LANES]; // largest error of the cluster, r + g + b
     vplCluster cluster;
 } vplCutEntry;
 
