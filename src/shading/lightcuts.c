@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The light tree of a render, and the memory of its cuts.
 #include "shading/lightcuts.h"
-__attribute__((constructor)) static void knobs(void)
-{
-    if (getenv("KB"))
-        KB = atof(getenv("KB"));
-    if (getenv("KZ"))
-        KZ = atof(getenv("KZ"));
-}
 
 // The tree takes less than a tenth of the time that a picture does: it asks whether to go on, and reports no progress.
 typedef struct Asked {
