@@ -18,6 +18,7 @@
     X(hits)                                                                                                  \
     X(image)                                                                                                 \
     X(interleaved)                                                                                           \
+    X(lightcuts)                                                                                             \
     X(lights)                                                                                                \
     X(math)                                                                                                  \
     X(memory)                                                                                                \

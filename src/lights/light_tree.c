@@ -5,6 +5,7 @@
 // clusters whose size and cone are smallest.
 #include "lights/light_tree.h"
 #include "base/context.h"
+#include "base/hash.h"
 #include "base/rng.h"
 #include "math/vec.h"
 
@@ -30,6 +31,7 @@ typedef struct Range {
 typedef struct Build {
     vplLightTree* tree;
     float turn;    // metres per unit of a normal
+    uint64_t seed; // of representatives
     Range* ranges; // halves come after what they are halves of
     size_t capacity;
     int rangeCount;
@@ -128,8 +130,9 @@ static void halve(const Build* b, vplCluster c, int depth)
 
 // Intensity, and a representative: that of one of the halves, with a probability that is its share of the
 // intensity, so that what a cluster is expected to give is what its lights give.
-static void merge(const vplLightTree* tree, vplCluster c)
+static void merge(const Build* b, vplCluster c)
 {
+    const vplLightTree* tree = b->tree;
     vplLightNode* node = &tree->nodes[c.node];
     vplCluster halves[2];
     vplLightTree_Halves(tree, c, halves);
@@ -145,7 +148,7 @@ static void merge(const vplLightTree* tree, vplCluster c)
         node->rgb[k] = rgb[0][k] + rgb[1][k];
     }
     node->intensity = intensity[0] + intensity[1];
-    const float dice = vplUnitFloat(vplRandomAt(0, STREAM, (uint64_t)c.node).v[0]);
+    const float dice = vplUnitFloat(vplRandomAt(b->seed, STREAM, (uint64_t)c.node).v[0]);
     const int chosen = dice * node->intensity < intensity[0] ? 0 : 1;
     node->representative = vplLightTree_Representative(tree, halves[chosen]);
 }
@@ -161,7 +164,7 @@ static void buildSubtree(const Build* b, vplCluster c, int depth)
     vplLightTree_Halves(b->tree, c, halves);
     buildSubtree(b, halves[0], depth + 1);
     buildSubtree(b, halves[1], depth + 1);
-    merge(b->tree, c);
+    merge(b, c);
 }
 
 static void subtreeTask(void* data, int task, int worker)
@@ -217,19 +220,31 @@ static float diagonalOf(const vplShadeLight* lights, int count)
     return vplLength(vplSub(high, low));
 }
 
+// Other lights draw other representatives, so that errors of pictures by several passes do not agree.
+static uint64_t seedOf(const vplShadeLight* lights, int count)
+{
+    const int step = count / 64 + 1;
+    uint64_t seed = 0;
+    for (int i = 0; i < count; i += step) {
+        seed = vplHashFloats(seed, &lights[i].px, 3);
+    }
+    return seed;
+}
+
 static vplResult build(vplLightTree* tree, const vplShadeLight* lights, vplProgressFcn* progress, void* user)
 {
     for (int i = 0; i < tree->lightCount; i++) {
         tree->lights[i] = (vplTreeLight){lights[i], i};
     }
     Build b = {.tree = tree, .turn = TURN * diagonalOf(lights, tree->lightCount)};
+    b.seed = seedOf(lights, tree->lightCount);
     vplResult result = buildTop(&b);
     if (result == VPL_SUCCESS) {
         result = vplParallelForProgress(tree->context, b.rangeCount, subtreeTask, &b, progress, user, 0, 1);
     }
     for (int i = b.rangeCount - 1; i >= 0 && result == VPL_SUCCESS; i--) {
         if (b.ranges[i].halved) {
-            merge(tree, b.ranges[i].cluster);
+            merge(&b, b.ranges[i].cluster);
         }
     }
     vplFree(tree->context, b.ranges);
