@@ -477,10 +477,12 @@ static void NoPixelErrsByMoreThanAsked(void** state)
     vplContext* context = openTestContext(2);
     for (int k = 0; k < 12; k++) {
         const vplLightShadows shadows = (vplLightShadows)(1 + k / 2 % 3);
-        vplRenderOptions o = optionsOf(shadows == VPL_LIGHT_SHADOWS_MAP ? 200 : 2000, shadows), plain;
+        vplRenderOptions o = optionsOf(shadows == VPL_LIGHT_SHADOWS_MAP ? 80 : 2000, shadows), plain;
         o.method = k % 2 ? VPL_METHOD_KELLER : VPL_METHOD_INSTANT_RADIOSITY;
         o.lighting = k >= 6 && k % 2 == 0 ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
         vplScene* scene = openScene(context, SCENES[k % 2]);
+        o.width = 40;
+        o.height = 30;
         o.show = VPL_SHOW_INDIRECT;
         plain = o;
         plain.accumulation = VPL_ACCUMULATE_DEFERRED;
