@@ -19,11 +19,13 @@
     X(image)                                                                                                 \
     X(interleaved)                                                                                           \
     X(keller)                                                                                                \
+    X(lightcuts)                                                                                             \
     X(lights)                                                                                                \
     X(math)                                                                                                  \
     X(memory)                                                                                                \
-    X(metrics) X(obj) X(objParts) X(objScene) X(rays) X(packets) X(path) X(passes) X(raster) X(rasterTruth)  \
-        X(render) X(renderer) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
+    X(metrics)                                                                                               \
+    X(obj) X(objParts) X(objScene) X(rays) X(packets) X(path) X(passes) X(raster) X(rasterTruth) X(render)   \
+        X(renderer) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,

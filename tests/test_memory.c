@@ -208,6 +208,36 @@ static vplResult renderBall(vplContext* context, const char* path, int variant)
     return result;
 }
 
+// Variants: two lights, and so many that the top of their tree is built before its parts.
+static vplResult renderCuts(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.width = options.height = 4;
+    options.particles = variant ? 2000 : 1;
+    options.shadowMapSize = 2;
+    options.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
+    options.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplRender(scene, &options, &image, NULL);
+    }
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfLightcutsIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(renderCuts, "png", variant, false);
+        failEveryAllocation(renderCuts, "png", variant, true);
+    }
+}
+
 static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** state)
 {
     (void)state;
@@ -386,6 +416,7 @@ static void EveryFailedAllocationOfAnEncodedPngIsReported(void** state)
 TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReported),
            cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),

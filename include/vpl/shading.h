@@ -91,6 +91,9 @@ typedef struct vplShadeDef {
 typedef struct vplShadeStats {
     vplRasterStats raster;
     int64_t shadowRays;
+    int64_t lightEvaluations; // lightcuts: pairs of a pixel and a virtual light that were evaluated
+    int64_t cutPixels;        // lightcuts: pixels that show something
+    int largestCut;           // lightcuts: most virtual lights evaluated for one pixel
 } vplShadeStats;
 
 // Draws the geometry into `image`, which has the view's size.

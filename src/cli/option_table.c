@@ -66,7 +66,9 @@ const Option OPTIONS[] = {
     {"--interleave", "K", RENDER | INFO | TRADEOFF, readInt, AT(render.interleave), 1, VPL_MAX_INTERLEAVE,
      NULL, "side of the square of pixels that share the lights of --pipeline interleaved; default 4"},
     {"--cut-error", "E", RENDER | INFO | TRADEOFF, readFloat, AT(render.cutError), 1e-6, 1, NULL,
-     "error of a cluster of --pipeline lightcuts, as a share of the pixel's light; default 0.02"},
+     "error of --pipeline lightcuts as a share of the pixel's light: clusters err by an eighth of it at "
+     "most; "
+     "default 0.02"},
     {"--min-distance", "D", RENDER | TRADEOFF, readFloatOrAuto, AT(render.minDistance), 0, 1e15, NULL,
      "metres: cos cos / d^2 is bounded as cos cos / max(d^2, D^2); 0: unbounded; default auto"},
     {"--light-shadows", "V", RENDER | INFO | TRADEOFF, readChoice, AT(render.lightShadows), 0, 0,

@@ -29,6 +29,12 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     json_object_set_new(root, "draw_calls", json_integer(stats->drawCalls));
     json_object_set_new(root, "fragments", json_integer(stats->fragments));
     json_object_set_new(root, "virtual_lights", json_integer(stats->virtualLights));
+    if (stats->cutPixels > 0) {
+        json_object_set_new(root, "light_evaluations", json_integer(stats->lightEvaluations));
+        json_object_set_new(root, "light_evaluations_per_pixel",
+                            json_real((double)stats->lightEvaluations / (double)stats->cutPixels));
+        json_object_set_new(root, "largest_cut", json_integer(stats->largestCut));
+    }
     json_object_set_new(root, "lights_per_step", intArray(stats->particlesPerStep, stats->stepCount));
     json_object_set_new(root, "lights_left_per_step", intArray(stats->lightsPerStep, stats->stepCount));
     json_object_set_new(root, "escaped", json_integer(stats->escaped));

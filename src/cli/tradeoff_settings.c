@@ -38,6 +38,8 @@ const Sweep SWEEPS[] = {
     {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
     {"bias", "--bias", "auto 0 @0.001 @0.003 @0.01", "Shadow bias"},
     {"pipeline", "--pipeline", "deferred batched multipass", "How virtual lights are added up"},
+    {"cut-error", "--pipeline lightcuts --light-shadows ray --particles 10000 --cut-error",
+     "0.005 0.01 0.02 0.05 0.1 0.2", "Error of lightcuts"},
     {"lamp-lights", "--lamp-lights", "4 16 64 256", "Lights that stand for lamps"},
     {"lamp-lights", "--lamp-lights 16 --particles", "300 1000 3000", NULL},
     {"light-map", "--light-shadows map --light-map", "32 64 128 256", "Size of virtual lights' maps"},

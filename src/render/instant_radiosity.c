@@ -53,6 +53,10 @@ static vplResult shadeSample(vplJob* job, const vplShadeDef* def, int i, int cou
         vplShadeView(job->geometry, &view, def, vplJob_GetProgress(job), job, job->image, &stats);
     vplJob_AddRaster(job, &stats.raster);
     job->stats.rays += stats.shadowRays;
+    job->stats.lightEvaluations += stats.lightEvaluations;
+    job->stats.cutPixels += stats.cutPixels;
+    job->stats.largestCut =
+        stats.largestCut > job->stats.largestCut ? stats.largestCut : job->stats.largestCut;
     return result;
 }
 

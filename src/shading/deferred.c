@@ -20,6 +20,8 @@ vplResult vplRecordDeferred(const vplShading* shading, vplRaster* raster)
         return result;
     }
     const bool light = shading->def->output == VPL_OUTPUT_RADIANCE;
-    vplTileFcn* lights = shading->interleave != NULL ? kernels.interleaved : kernels.light;
+    vplTileFcn* lights = shading->interleave != NULL  ? kernels.interleaved
+                         : shading->lightcuts != NULL ? kernels.cut
+                                                      : kernels.light;
     return vplRaster_TileTask(raster, light ? lights : kernels.show, (void*)shading);
 }

@@ -8,13 +8,9 @@
 
 #include <string.h>
 
-// Where rays leave a block, the same for all its lights.
-typedef struct Starts {
-    vplHit hit[VPL_LANES]; // of lanes that show a triangle
-} Starts;
-
-static void findStarts(const vplGeometry* g, const vplPoints* points, Starts* starts)
+void vplFindRayStarts(const vplShading* shading, const vplPoints* points, vplRayStarts* starts)
 {
+    const vplGeometry* g = shading->geometry;
     const vplSurface* s = points->surface;
     for (int l = 0; l < VPL_LANES; l++) {
         const int triangle = points->triangle[l];
@@ -34,7 +30,7 @@ _Static_assert((int)VPL_RAY_PACKET == VPL_LANES, "a block of pixels is a packet 
 
 // Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
 // where that is behind the triangle. Lanes of amount 0 cast no ray.
-static void castShadowRays(const vplShading* shading, const vplPoints* points, const Starts* starts,
+static void castShadowRays(const vplShading* shading, const vplPoints* points, const vplRayStarts* starts,
                            vplVec3 target, bool parallel, float amount[VPL_LANES], int64_t* rays)
 {
     const vplGeometry* g = shading->geometry;
@@ -64,8 +60,8 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
 void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,
                         float amount[VPL_LANES], int64_t* rays)
 {
-    Starts starts;
-    findStarts(shading->geometry, points, &starts);
+    vplRayStarts starts;
+    vplFindRayStarts(shading, points, &starts);
     castShadowRays(shading, points, &starts, emitter->parallel ? emitter->direction : emitter->position,
                    emitter->parallel, amount, rays);
 }
@@ -93,30 +89,42 @@ static void shadowByMap(const vplShading* s, const vplPoints* points, const vplS
     }
 }
 
+bool vplLightVisibly(const vplShading* s, const vplPoints* points, const vplRayStarts* starts,
+                     const vplShadow* map, const vplShadeLight* light, float inverseBound,
+                     float part[3][VPL_LANES], float visible[VPL_LANES], int64_t* rays)
+{
+    memset(part, 0, 3 * sizeof part[0]);
+    s->lightKernel(points->surface, light, 1, inverseBound, part);
+    int lit = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        visible[l] = part[0][l] + part[1][l] + part[2][l] > 0 ? 1.0f : 0.0f;
+        lit |= visible[l] > 0;
+    }
+    if (!lit) {
+        return false;
+    }
+    if (starts != NULL) {
+        castShadowRays(s, points, starts, aimAt(light), false, visible, rays);
+    } else if (map != NULL) {
+        shadowByMap(s, points, light, map, visible);
+    }
+    return true;
+}
+
 // Adds one light after another, each with a ray or a map of its own.
 static void addShadowed(const vplShading* s, const vplPoints* points, const vplShadeLight* lights,
                         const vplShadow* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
                         int64_t* rays)
 {
-    Starts starts;
+    vplRayStarts starts;
     if (maps == NULL) {
-        findStarts(s->geometry, points, &starts);
+        vplFindRayStarts(s, points, &starts);
     }
     for (int i = 0; i < count; i++) {
-        float part[3][VPL_LANES] = {{0}}, visible[VPL_LANES];
-        s->lightKernel(points->surface, &lights[i], 1, inverseBound, part);
-        int lit = 0;
-        for (int l = 0; l < VPL_LANES; l++) {
-            visible[l] = part[0][l] + part[1][l] + part[2][l] > 0 ? 1.0f : 0.0f;
-            lit |= visible[l] > 0;
-        }
-        if (!lit) {
+        float part[3][VPL_LANES], visible[VPL_LANES];
+        if (!vplLightVisibly(s, points, maps ? NULL : &starts, maps ? &maps[i] : NULL, &lights[i],
+                             inverseBound, part, visible, rays)) {
             continue;
-        }
-        if (maps == NULL) {
-            castShadowRays(s, points, &starts, aimAt(&lights[i]), false, visible, rays);
-        } else {
-            shadowByMap(s, points, &lights[i], &maps[i], visible);
         }
         for (int c = 0; c < 3; c++) {
             for (int l = 0; l < VPL_LANES; l++) {
@@ -154,5 +162,38 @@ void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, i
     } else {
         addShadowed(shading, points, lights, def->lightShadows ? def->lightShadows + first : NULL, count,
                     shading->inverseBound, irradiance, rays);
+    }
+}
+
+static void addAllLights(const vplShading* shading, const vplPoints* points, double sums[3][VPL_LANES],
+                         int64_t* rays)
+{
+    const int lightCount = shading->def->lightCount;
+    for (int first = 0; first < lightCount; first += VPL_LIGHT_GROUP) {
+        const int count = lightCount - first < VPL_LIGHT_GROUP ? lightCount - first : VPL_LIGHT_GROUP;
+        float part[3][VPL_LANES] = {{0}};
+        vplIndirectIrradiance(shading, points, first, count, part, rays);
+        for (int c = 0; c < 3; c++) {
+            for (int l = 0; l < VPL_LANES; l++) {
+                sums[c][l] += (double)part[c][l];
+            }
+        }
+    }
+}
+
+void vplAllLightsIrradiance(const vplShading* shading, const vplPoints* points,
+                            float irradiance[3][VPL_LANES], int64_t* rays)
+{
+    double sums[3][VPL_LANES] = {{0}};
+    if (shading->lightcuts != NULL) {
+        const float besides[VPL_LANES] = {0};
+        shading->addCut(shading, points, besides, sums, rays);
+    } else {
+        addAllLights(shading, points, sums, rays);
+    }
+    for (int c = 0; c < 3; c++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            irradiance[c][l] = (float)sums[c][l];
+        }
     }
 }

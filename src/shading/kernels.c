@@ -9,12 +9,16 @@ VPL_KERNEL_TABLE(PHYSICAL, vplLightKernelFcn, vplLightsPhysical);
 VPL_KERNEL_TABLE(EMITTERS, vplAddEmittersFcn, vplAddEmitters);
 VPL_KERNEL_TABLE(CULL_DOCUMENTED, vplCullFcn, vplCullDocumented);
 VPL_KERNEL_TABLE(CULL_PHYSICAL, vplCullFcn, vplCullPhysical);
+VPL_KERNEL_TABLE(BOUND_DOCUMENTED, vplClusterBoundFcn, vplClusterBoundDocumented);
+VPL_KERNEL_TABLE(BOUND_PHYSICAL, vplClusterBoundFcn, vplClusterBoundPhysical);
+VPL_KERNEL_TABLE(CUT, vplCutFcn, vplAddCut);
 VPL_KERNEL_TABLE(SURFACE, vplFragmentFcn, vplShadeSurface);
 VPL_KERNEL_TABLE(GBUFFER, vplFragmentFcn, vplWriteGbuffer);
 VPL_KERNEL_TABLE(DIRECT, vplFragmentFcn, vplShadeDirect);
 VPL_KERNEL_TABLE(LIGHTS, vplPassesFcn, vplShadeLights);
 VPL_KERNEL_TABLE(LIGHT_TILE, vplTileFcn, vplLightTile);
 VPL_KERNEL_TABLE(INTERLEAVED_TILE, vplTileFcn, vplInterleaveTile);
+VPL_KERNEL_TABLE(CUT_TILE, vplTileFcn, vplCutTile);
 VPL_KERNEL_TABLE(GATHER_TILE, vplTaskFcn, vplGatherTile);
 VPL_KERNEL_TABLE(SHOW_TILE, vplTileFcn, vplShowTile);
 VPL_KERNEL_TABLE(FOLD_TILE, vplTileFcn, vplFoldTile);
@@ -28,6 +32,7 @@ vplShadingKernels vplGetShadingKernels(vplIsa isa)
                                .lights = LIGHTS[isa],
                                .light = LIGHT_TILE[isa],
                                .interleaved = INTERLEAVED_TILE[isa],
+                               .cut = CUT_TILE[isa],
                                .gather = GATHER_TILE[isa],
                                .show = SHOW_TILE[isa],
                                .fold = FOLD_TILE[isa],
@@ -42,6 +47,16 @@ vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting)
 vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting)
 {
     return lighting == VPL_LIGHTING_DOCUMENTED ? DOCUMENTED[isa] : PHYSICAL[isa];
+}
+
+vplClusterBoundFcn* vplGetClusterBound(vplIsa isa, vplLighting lighting)
+{
+    return lighting == VPL_LIGHTING_DOCUMENTED ? BOUND_DOCUMENTED[isa] : BOUND_PHYSICAL[isa];
+}
+
+vplCutFcn* vplGetCut(vplIsa isa)
+{
+    return CUT[isa];
 }
 
 vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa)

@@ -27,6 +27,10 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.interleave is %d, must be in [1, %d]",
                        def->interleave, VPL_MAX_INTERLEAVE);
     }
+    if (def->accumulation == VPL_ACCUMULATE_LIGHTCUTS && !(def->cutError > 0 && def->cutError <= 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.cutError is %g, must be in (0, 1]",
+                       (double)def->cutError);
+    }
     if (!(def->lampMinDistance >= 0 && isfinite(def->lampMinDistance))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplShadeDef.lampMinDistance is %g, must be finite and >= 0",
@@ -132,6 +136,8 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     shading.lightKernel = vplGetLightKernel(context->isa, def->lighting);
     shading.addEmitters = vplGetAddEmitters(context->isa);
     shading.cull = vplGetCull(context->isa, def->lighting);
+    shading.clusterBound = vplGetClusterBound(context->isa, def->lighting);
+    shading.addCut = vplGetCut(context->isa);
     shading.inverseBound = inverseSquare(def->minDistance);
     shading.lampInverseBound = inverseSquare(def->lampMinDistance);
     shading.smooth = geometry->shadingNormals != NULL;
@@ -140,6 +146,8 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     bool deferred = def->accumulation >= VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
     bool interleaved = def->accumulation == VPL_ACCUMULATE_INTERLEAVED && def->interleave > 1 &&
                        def->lightCount > 0 && def->output == VPL_OUTPUT_RADIANCE;
+    const bool cuts = def->accumulation == VPL_ACCUMULATE_LIGHTCUTS && def->lightCount > 0 &&
+                      def->output == VPL_OUTPUT_RADIANCE;
     vplFramebuffer framebuffer = vplDefaultFramebuffer(view->width, view->height);
     framebuffer.planeCount = deferred ? VPL_PLANE_POSITION + 3 : VPL_PLANE_TRIANGLE + 1;
     framebuffer.scratchBytes = deferred ? offsetof(vplTileSums, irradiance) : sizeof(vplTileSums);
@@ -156,7 +164,10 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     if (result == VPL_SUCCESS && interleaved) {
         result = vplOpenInterleave(&shading, &framebuffer);
     }
-    if (result == VPL_SUCCESS && deferred) {
+    if (result == VPL_SUCCESS && cuts) {
+        result = vplOpenLightcuts(&shading, progress, user);
+    }
+    if (result == VPL_SUCCESS && deferred && !cuts) {
         result = makeColumns(&shading);
     }
     if (result == VPL_SUCCESS && def->output == VPL_OUTPUT_RADIANCE && castsRays(def)) {
@@ -175,11 +186,15 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     if (result == VPL_SUCCESS && interleaved) {
         result = vplGatherInterleaved(&shading, progress, user);
     }
+    if (cuts) {
+        vplCountLightcuts(&shading, &stats);
+    }
     if (result == VPL_SUCCESS && statsOut != NULL) {
         *statsOut = stats;
     }
     vplRaster_Destroy(raster);
     vplCloseInterleave(&shading);
+    vplCloseLightcuts(&shading);
     vplFree(context, uniforms);
     vplFree(context, shading.columns[0]);
     vplFree(context, shading.emitters);

@@ -6,6 +6,7 @@
 #include <vpl/shading.h>
 
 #include "base/context.h"
+#include "lights/light_tree.h"
 
 // Adds lights to irradiance, one after another. inverseBound is 1 / minDistance^2, infinity for no bound.
 typedef void vplLightKernelFcn(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
@@ -33,7 +34,12 @@ typedef struct vplEmitterRay {
 typedef bool vplEmitterKernelFcn(const vplSurface* restrict surface, const vplEmitterRay* emitter,
                                  float cosine[restrict VPL_LANES]);
 
+// Not less than what a light of the node, of intensity 1, gives to each point; 0 where all give nothing.
+typedef void vplClusterBoundFcn(const vplSurface* restrict surface, const vplLightNode* restrict node,
+                                float inverseBound, float bound[restrict VPL_LANES]);
+
 vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting);
+vplClusterBoundFcn* vplGetClusterBound(vplIsa isa, vplLighting lighting);
 vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting);
 
 struct vplShading;
@@ -45,6 +51,14 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
 
 vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa);
 
+// Adds the irradiance of all virtual lights by clusters. `besides` is what else the points receive, r + g + b: it
+// counts where an error is a share of a pixel's light.
+typedef void vplCutFcn(const struct vplShading* shading, const struct vplPoints* points,
+                       const float besides[restrict VPL_LANES], double sums[restrict 3][VPL_LANES],
+                       int64_t* rays);
+
+vplCutFcn* vplGetCut(vplIsa isa);
+
 // One render of one view.
 typedef struct vplShading {
     const vplGeometry* geometry;
@@ -54,6 +68,8 @@ typedef struct vplShading {
     vplLightKernelFcn* lightKernel;
     vplAddEmittersFcn* addEmitters;
     vplCullFcn* cull;
+    vplClusterBoundFcn* clusterBound;
+    vplCutFcn* addCut;
     float* columns[6]; // of the virtual lights, for `cull`; NULL where no light is left out
     float inverseBound, lampInverseBound;
     bool smooth;                       // some object has shading normals
@@ -62,6 +78,7 @@ typedef struct vplShading {
     vplEmitterRay* emitters;           // one per emitter
     int64_t* shadowRays;               // counted atomically: sums of integers do not depend on the order
     struct vplInterleave* interleave;  // NULL: every pixel meets every light
+    struct vplLightcuts* lightcuts;    // NULL: every pixel meets every light
 } vplShading;
 
 // What a block of pixels shows.
@@ -109,6 +126,19 @@ typedef struct vplFacet {
 // `triangle` is an index in geometry->normals.
 vplFacet vplGetFacet(const vplShading* shading, int triangle);
 
+// Where rays leave a block, the same for all its lights.
+typedef struct vplRayStarts {
+    vplHit hit[VPL_LANES]; // of lanes that show a triangle
+} vplRayStarts;
+
+void vplFindRayStarts(const vplShading* shading, const vplPoints* points, vplRayStarts* starts);
+
+// What one virtual light or lamp gives to the lanes, and which of it arrives, [0, 1]: by rays where there are starts,
+// else by the map, else all of it. False where no lane is lit; then neither is complete.
+bool vplLightVisibly(const vplShading* shading, const vplPoints* points, const vplRayStarts* starts,
+                     const vplShadow* map, const vplShadeLight* light, float inverseBound,
+                     float part[3][VPL_LANES], float visible[VPL_LANES], int64_t* rays);
+
 // Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray.
 void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,
                         float amount[VPL_LANES], int64_t* rays);
@@ -121,6 +151,11 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
                            float irradiance[3][VPL_LANES], int64_t* rays);
 
+// Irradiance of all virtual lights, with the shadows that were asked for, however the pipeline finds it. It sets
+// `irradiance`, it does not add to it.
+void vplAllLightsIrradiance(const vplShading* shading, const vplPoints* points,
+                            float irradiance[3][VPL_LANES], int64_t* rays);
+
 // What runs per block or per tile, compiled for an instruction set.
 typedef struct vplShadingKernels {
     vplFragmentFcn* surface; // surface shader of all camera passes
@@ -129,6 +164,7 @@ typedef struct vplShadingKernels {
     vplPassesFcn* lights;    // passes of virtual lights
     vplTileFcn* light; // tile tasks, data is the vplShading: lights the G-buffer and writes the picture,
     vplTileFcn* interleaved; // lights each pixel by the lights of its class,
+    vplTileFcn* cut;         // lights each block by clusters of lights,
     vplTaskFcn* gather;      // tasks, data is the vplShading: mixes the classes,
     vplTileFcn* show;        // shows depth, normals or shadow factor instead,
     vplTileFcn* fold;        // moves a finished group of lights from the planes to the sums,
@@ -153,6 +189,11 @@ vplResult vplRecordDeferred(const vplShading* shading, vplRaster* raster);
 vplResult vplOpenInterleave(vplShading* shading, vplFramebuffer* framebuffer);
 vplResult vplGatherInterleaved(const vplShading* shading, vplProgressFcn* progress, void* user);
 void vplCloseInterleave(vplShading* shading);
+
+// Lightcuts: makes the tree and what each worker needs. Then, after the tiles, what it took.
+vplResult vplOpenLightcuts(vplShading* shading, vplProgressFcn* progress, void* user);
+void vplCountLightcuts(const vplShading* shading, vplShadeStats* stats);
+void vplCloseLightcuts(vplShading* shading);
 
 // A pipeline set up for the camera; the fragment shader is the caller's.
 vplPipeline vplCameraPipeline(const vplShading* shading, int object);

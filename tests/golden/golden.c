@@ -107,6 +107,13 @@ static void shadowFactor(vplRenderOptions* o)
     o->show = VPL_SHOW_SHADOW_FACTOR;
 }
 
+static void lightcuts(vplRenderOptions* o)
+{
+    o->accumulation = VPL_ACCUMULATE_LIGHTCUTS;
+    o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o->particles = 3000;
+}
+
 static void indirect(vplRenderOptions* o)
 {
     o->show = VPL_SHOW_INDIRECT;
@@ -146,6 +153,7 @@ static const Case CASES[] = {
     {"room-many-lights", "closed-room", 1, manyLights},
     {"room-many-lights-batched", "room", 1, manyLightsBatched},
     {"interleaved-room", "room", 1, interleaved},
+    {"lightcuts-room", "room", 1, lightcuts},
     {"room-unbounded", "room", 1, unbounded},
     {"hard-shadow", "room", 2, hardShadow},
     {"acne", "room", 2, acne},
