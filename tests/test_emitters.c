@@ -195,27 +195,22 @@ static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplSh
 {
     vplShadeDef def = {
         .lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .batch = 1};
-    vplCubeMap* cube = NULL;
-    vplShadow shadow;
+    vplHalfMaps* maps = NULL;
     if (map) {
-        vplCubeMapDef mapDef = vplDefaultCubeMapDef();
-        mapDef.position = vplVec(light->px, light->py, light->pz);
-        mapDef.size = 256;
-        vplShadowDef shadowDef = vplDefaultShadowDef();
-        shadowDef.pcfSamples = 1;
-        assert_int_equal(vplCubeMap_Create(g, &mapDef, NULL, NULL, &cube), VPL_SUCCESS);
-        assert_int_equal(vplShadow_Create(cube, &shadowDef, &shadow), VPL_SUCCESS);
+        const vplHalfMapPlace place = {{light->px, light->py, light->pz}, {light->nx, light->ny, light->nz}};
+        assert_int_equal(vplHalfMaps_Create(g->context, 256, 1, &maps), VPL_SUCCESS);
+        assert_int_equal(vplHalfMaps_Draw(maps, g, &place, 1, NULL, NULL), VPL_SUCCESS);
     }
     def.lights = light;
     def.lightCount = 1;
     def.lightRays = !map;
-    def.lightShadows = map ? &shadow : NULL;
+    def.lightShadows = map ? maps->maps : NULL;
     vplImage* image;
     assert_int_equal(vplImage_Create(g->context, view->width, view->height, &image), VPL_SUCCESS);
     if (vplShadeView(g, view, &def, NULL, NULL, image, NULL) != VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
-    vplCubeMap_Destroy(cube);
+    vplHalfMaps_Destroy(maps);
     return image;
 }
 

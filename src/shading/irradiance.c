@@ -5,6 +5,7 @@
 #include "geometry/triangle.h"
 #include "math/vec.h"
 #include "shading/shading.h"
+#include "visibility/half_map.h"
 
 #include <string.h>
 
@@ -70,32 +71,14 @@ void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, cons
                    emitter->parallel, amount, rays);
 }
 
-// A virtual light lies on a surface that must not shadow it: rays aim a little above.
 static vplVec3 aimAt(const vplShadeLight* light)
 {
-    const float x = light->px, y = light->py, z = light->pz;
-    float largest = fmaxf(fabsf(x), fmaxf(fabsf(y), fabsf(z))) * 0x1p-18f;
-    return vplVec(x + largest * light->nx, y + largest * light->ny, z + largest * light->nz);
-}
-
-// What is left of the lanes of `visible` by a light's map. A map lets light through what it meets first, also
-// from behind: where normals are interpolated the triangle itself says on which side the light is.
-static void shadowByMap(const vplShading* s, const vplPoints* points, const vplShadeLight* light,
-                        const vplShadow* map, float visible[VPL_LANES])
-{
-    const vplSurface* p = points->plane;
-    float factor[VPL_LANES];
-    vplShadow_FactorBlock(map, p, factor);
-    for (int l = 0; l < VPL_LANES; l++) {
-        const vplVec3 way = vplVec(light->px - p->px[l], light->py - p->py[l], light->pz - p->pz[l]);
-        const bool behind = s->smooth && !(vplDot(way, vplVec(p->nx[l], p->ny[l], p->nz[l])) > 0);
-        visible[l] *= behind ? 0 : 1 - factor[l];
-    }
+    return vplLightEye(vplVec(light->px, light->py, light->pz), vplVec(light->nx, light->ny, light->nz));
 }
 
 // Adds one light after another, each with a ray or a map of its own.
 static void addShadowed(const vplShading* s, const vplPoints* points, const vplShadeLight* lights,
-                        const vplShadow* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
+                        const vplHalfMap* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
                         int64_t* rays)
 {
     Starts starts;
@@ -116,7 +99,11 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
         if (maps == NULL) {
             castShadowRays(s, points, &starts, aimAt(&lights[i]), false, visible, rays);
         } else {
-            shadowByMap(s, points, &lights[i], &maps[i], visible);
+            float factor[VPL_LANES];
+            vplHalfMap_FactorBlock(&maps[i], points->plane, factor);
+            for (int l = 0; l < VPL_LANES; l++) {
+                visible[l] *= 1 - factor[l];
+            }
         }
         for (int c = 0; c < 3; c++) {
             for (int l = 0; l < VPL_LANES; l++) {
