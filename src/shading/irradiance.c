@@ -34,9 +34,10 @@ static void findStarts(const vplGeometry* g, const vplPoints* points, Starts* st
 _Static_assert((int)VPL_RAY_PACKET == VPL_LANES, "a block of pixels is a packet of rays");
 
 // Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
-// where that is behind the triangle. Lanes of amount 0 cast no ray.
+// where that is behind the triangle. `normal`: of the surface that the target lies on; 0: none. Lanes of amount 0 cast no ray.
 static void castShadowRays(const vplShading* shading, const vplPoints* points, const Starts* starts,
-                           vplVec3 target, bool parallel, float amount[VPL_LANES], int64_t* rays)
+                           vplVec3 target, vplVec3 normal, bool parallel, float amount[VPL_LANES],
+                           int64_t* rays)
 {
     const vplGeometry* g = shading->geometry;
     const vplSurface* plane = points->plane;
@@ -47,7 +48,8 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
             continue;
         }
         const vplHit* hit = &starts->hit[l];
-        const vplVec3 way = parallel ? vplNegate(target) : vplSub(target, hit->position);
+        const vplVec3 way =
+            parallel ? vplNegate(target) : vplSub(vplLightAim(target, normal, hit->position), hit->position);
         if (!(vplDot(way, vplVec(plane->nx[l], plane->ny[l], plane->nz[l])) > 0)) {
             amount[l] = 0;
             continue;
@@ -68,12 +70,7 @@ void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, cons
     Starts starts;
     findStarts(shading->geometry, points, &starts);
     castShadowRays(shading, points, &starts, emitter->parallel ? emitter->direction : emitter->position,
-                   emitter->parallel, amount, rays);
-}
-
-static vplVec3 aimAt(const vplShadeLight* light)
-{
-    return vplLightEye(vplVec(light->px, light->py, light->pz), vplVec(light->nx, light->ny, light->nz));
+                   vplVec(0, 0, 0), emitter->parallel, amount, rays);
 }
 
 // Adds one light after another, each with a ray or a map of its own.
@@ -97,7 +94,9 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
             continue;
         }
         if (maps == NULL) {
-            castShadowRays(s, points, &starts, aimAt(&lights[i]), false, visible, rays);
+            const vplShadeLight* light = &lights[i];
+            castShadowRays(s, points, &starts, vplVec(light->px, light->py, light->pz),
+                           vplVec(light->nx, light->ny, light->nz), false, visible, rays);
         } else {
             float factor[VPL_LANES];
             vplHalfMap_FactorBlock(&maps[i], points->plane, factor);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The shadow of 16 fragments by the map of a half space. Compiled once per instruction set; all give the same bits.
 //
-// The bias is none: what a texel stores (1/t along its centre) is compared with the fragment's own plane there, and
-// with the fragment itself. On a plane the first is what the map holds, so that it never shadows itself at any angle;
-// the larger of both keeps a wall that meets the plane within the texel from shadowing it.
+// What a texel stores (1/t along its centre) is compared with the fragment's own plane there, and with the fragment
+// itself, whichever is nearer: a plane never shadows itself at any angle.
 #include "base/isa.h"
 #include "visibility/gather.h"
 #include "visibility/half_map.h"
@@ -21,6 +20,7 @@ void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surfa
     const vplVec3 o = map->position, r = map->right, u = map->up, f = map->forward;
     const int32_t size = map->size, last = size - 1;
     const float half = 0.5f * (float)size, scale = 1 / (float)size;
+    const float tolerated = 1 + vplHalfMap_Tolerance(size);
     float limit[VPL_LANES], stored[VPL_LANES];
     int32_t place[VPL_LANES], lit[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
@@ -41,7 +41,7 @@ void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surfa
         const float nx = mx * r.x + my * r.y + mz * r.z, ny = mx * u.x + my * u.y + mz * u.z;
         const float nz = mx * f.x + my * f.y + mz * f.z;
         const float plane = (nx * cx + ny * cy + nz * cz) / (facing < 0 ? facing : -1e-30f);
-        limit[l] = larger(inverse, plane) * (1 + VPL_HALF_MAP_SLACK);
+        limit[l] = larger(inverse, plane) * tolerated;
         lit[l] = (facing < 0) & (z > 0);
     }
     vplGather(map->texels, place, stored);

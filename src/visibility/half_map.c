@@ -83,7 +83,7 @@ vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const
     vplHalfMap* list = (vplHalfMap*)maps->maps;
     for (int i = 0; i < count; i++) {
         vplHalfMap* map = &list[i];
-        map->position = vplLightEye(places[i].position, places[i].normal);
+        map->position = vplLightAim(places[i].position, places[i].normal, places[i].position);
         map->forward = places[i].normal;
         vplFrame(map->forward, &map->right, &map->up);
         map->size = maps->size;

@@ -40,8 +40,8 @@ static void makeLights(Bench* b)
     def.sampler = VPL_SAMPLER_HALTON;
     vplLightSet* set;
     const int emitters = vplScene_GetEmitterCount(b->scene);
-    check(vplSimulateParticles(b->geometry, emitters ? vplScene_GetEmitter(b->scene, 0) : NULL, emitters, &def,
-                               &set));
+    check(vplSimulateParticles(b->geometry, emitters ? vplScene_GetEmitter(b->scene, 0) : NULL, emitters,
+                               &def, &set));
     vplShadeLight* all = malloc((size_t)set->lightCount * sizeof *all);
     const int count = vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, all);
     b->lightCount = count < MOST_LIGHTS ? count : MOST_LIGHTS;
@@ -64,8 +64,8 @@ static void placesOf(const Bench* b, int count, vplHalfMapPlace* places)
 // ---- cost
 
 // Without shadows (maps NULL, no rays), by rays, or by maps.
-static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int lights, const vplHalfMaps* maps,
-                      bool rays)
+static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int lights,
+                      const vplHalfMaps* maps, bool rays)
 {
     vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.2f};
     def.accumulation = VPL_ACCUMULATE_DEFERRED;
@@ -149,13 +149,10 @@ typedef struct Agreement {
     int64_t pairs, acne, leaks, outside, texelWrong;
 } Agreement;
 
-static vplVec3 towards(vplVec3 from, vplVec3 to, float t)
+static bool isDark(const vplGeometry* g, const vplHit* hit, const vplShadeLight* light)
 {
-    return vplAdd(from, vplScale(t, vplSub(to, from)));
-}
-
-static bool isDark(const vplGeometry* g, const vplHit* hit, vplVec3 eye)
-{
+    const vplVec3 eye = vplLightAim(vplVec(light->px, light->py, light->pz),
+                                    vplVec(light->nx, light->ny, light->nz), hit->position);
     const vplRay ray = vplGeometry_Leave(g, hit, vplSub(eye, hit->position));
     return vplGeometry_IsOccluded(g, &ray, 1);
 }
@@ -166,30 +163,35 @@ static bool isDarkBetween(const vplGeometry* g, vplVec3 eye, vplVec3 to)
     return vplGeometry_IsOccluded(g, &ray, 1);
 }
 
-// Whether rays from the eye to the rim of the band around the point say the same as the point's own.
+// Whether all rays from the eye say the same as the point's own: to its plane within the footprint around it, and to
+// places nearer to the eye by the band.
 static bool isSure(const vplGeometry* g, const vplHalfMap* map, vplVec3 point, vplVec3 normal, bool dark)
 {
+    enum { RIM = 8, RINGS = 2 };
     float footprint;
     const float band = vplHalfMap_Band(map, point, normal, &footprint);
     const vplVec3 way = vplSub(point, map->position);
     const float distance = vplLength(way);
-    if (!(band < distance)) {
-        return false;
-    }
+    bool same = band < distance;
     vplVec3 t, u;
     vplFrame(vplScale(1 / distance, way), &t, &u);
-    const vplVec3 near = towards(point, map->position, band / distance);
-    bool same = isDarkBetween(g, map->position, near) == dark;
-    static const float ring[8][2] = {{1, 0}, {0.7f, 0.7f}, {0, 1}, {-0.7f, 0.7f}, {-1, 0}, {-0.7f, -0.7f}, {0, -1}, {0.7f, -0.7f}};
-    for (int i = 0; i < 16 && same; i++) {
-        const float size = footprint * (i < 8 ? 1.0f : 0.5f);
-        const vplVec3 rim = vplAdd(near, vplAdd(vplScale(size * ring[i % 8][0], t), vplScale(size * ring[i % 8][1], u)));
-        same = isDarkBetween(g, map->position, rim) == dark;
+    for (int i = 0; i < RIM * RINGS && same; i++) {
+        const double angle = (i % RIM + 0.5 * (double)(i / RIM)) * (2 * VPL_PI / RIM);
+        const float size = footprint * (float)(i / RIM + 1) / RINGS;
+        const vplVec3 side =
+            vplAdd(vplScale(size * (float)cos(angle), t), vplScale(size * (float)sin(angle), u));
+        const vplVec3 rim = vplAdd(way, side);
+        const float plane = vplDot(way, normal) / vplDot(rim, normal);
+        const float reach = plane > 0 && plane < 1 ? plane : 1;
+        const vplVec3 far = vplScale(reach * (1 - 0x1p-14f), rim), near = vplScale(1 - band / distance, rim);
+        same = isDarkBetween(g, map->position, vplAdd(map->position, far)) == dark &&
+               isDarkBetween(g, map->position, vplAdd(map->position, near)) == dark;
     }
     return same;
 }
 
-static void addPair(const Bench* b, const vplHalfMap* map, const vplHit* hit, vplVec3 normal, Agreement* a)
+static void addPair(const Bench* b, const vplShadeLight* light, const vplHalfMap* map, const vplHit* hit,
+                    vplVec3 normal, Agreement* a)
 {
     vplSurface s;
     float factor[VPL_LANES];
@@ -206,7 +208,7 @@ static void addPair(const Bench* b, const vplHalfMap* map, const vplHit* hit, vp
         return;
     }
     vplHalfMap_FactorBlock(map, &s, factor);
-    const bool dark = isDark(b->geometry, hit, map->position), darkMap = factor[0] > 0;
+    const bool dark = isDark(b->geometry, hit, light), darkMap = factor[0] > 0;
     a->pairs++;
     if (dark != darkMap) {
         a->acne += darkMap;
@@ -234,11 +236,12 @@ static void printAgreement(const Bench* b, const char* name)
             }
             const vplVec3 n = vplDot(hit.normal, ray.direction) < 0 ? hit.normal : vplNegate(hit.normal);
             for (int l = 0; l < lights; l++) {
-                addPair(b, &maps->maps[l], &hit, n, &a);
+                addPair(b, &b->lights[l], &maps->maps[l], &hit, n, &a);
             }
         }
         const double share = 100.0 / (double)(a.pairs > 0 ? a.pairs : 1);
-        printf("%-16s map %4d: %8lld pairs, dark in the map only %.3f %%, in the ray only %.3f %%, outside the band "
+        printf("%-16s map %4d: %8lld pairs, dark in the map only %.3f %%, in the ray only %.3f %%, outside "
+               "the band "
                "%.4f %%\n",
                name, mapSizes[k], (long long)a.pairs, (double)a.acne * share, (double)a.leaks * share,
                (double)a.outside * share);
