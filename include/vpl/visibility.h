@@ -131,7 +131,8 @@ typedef struct vplHalfMap {
     vplVec3 right, up, forward; // right-handed, unit; forward is the surface's normal
     int size;                   // texels along a side
     const float*
-        texels; // [row: v][column: u]: 1 / (|x| + |y| + z) of the nearest surface; 0 where nothing is
+        texels; // 1 / (|x| + |y| + z) of the nearest surface, 1/metres; 0 where nothing is; in blocks of
+                // 4 x 4 of columns (u) and rows (v)
     vplContext* context;
 } vplHalfMap;
 

@@ -18,7 +18,7 @@ void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surfa
                                   float factor[restrict VPL_LANES])
 {
     const vplVec3 o = map->position, r = map->right, u = map->up, f = map->forward;
-    const int32_t size = map->size, last = size - 1;
+    const int32_t size = map->size, last = size - 1, blocks = vplHalfMap_Blocks(size);
     const float half = 0.5f * (float)size, scale = 1 / (float)size;
     const float tolerated = 1 + vplHalfMap_Tolerance(size);
     float limit[VPL_LANES], stored[VPL_LANES];
@@ -34,7 +34,7 @@ void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surfa
                 row = (int32_t)(((x - y) * inverse + 1) * half);
         column = column < last ? column : last;
         row = row < last ? row : last;
-        place[l] = row * size + column;
+        place[l] = vplHalfMap_Place(blocks, column, row);
         // The texel's centre, and 1/t of the fragment's plane there.
         const float cu = (float)(2 * column + 1) * scale - 1, cv = (float)(2 * row + 1) * scale - 1;
         const float cx = 0.5f * (cu + cv), cy = 0.5f * (cu - cv), cz = 1 - fabsf(cx) - fabsf(cy);

@@ -12,8 +12,8 @@ VPL_KERNEL_TABLE(FACTOR, vplHalfMapFactorFcn, vplHalfMapFactor);
 
 static size_t texelsOf(int size)
 {
-    // Whole cache lines, so that no two maps share one.
-    return ((size_t)size * (size_t)size + VPL_HALF_MAP_PAD + 15) & ~(size_t)15;
+    const size_t blocks = (size_t)vplHalfMap_Blocks(size);
+    return blocks * blocks * VPL_LANES;
 }
 
 size_t vplHalfMaps_BytesPerMap(int size)

@@ -10,10 +10,19 @@
 
 #include <math.h>
 
-// Texels behind a map's last, so that 16 can always be loaded.
-enum { VPL_HALF_MAP_PAD = VPL_LANES };
+// Blocks of 4 x 4 texels along a side.
+static inline int32_t vplHalfMap_Blocks(int32_t size)
+{
+    return (size + VPL_BLOCK_SIDE - 1) / VPL_BLOCK_SIDE;
+}
 
-// Draws all triangles of a tree into a map that was cleared.
+// Where a texel is.
+static inline int32_t vplHalfMap_Place(int32_t blocks, int32_t column, int32_t row)
+{
+    return ((row >> 2) * blocks + (column >> 2)) * VPL_LANES + (row & 3) * VPL_BLOCK_SIDE + (column & 3);
+}
+
+// Draws all triangles of a tree into a map of zeros.
 typedef void vplDrawHalfMapFcn(const vplBvh* bvh, const vplHalfMap* map, float* texels);
 
 typedef void vplHalfMapFactorFcn(const vplHalfMap* map, const vplSurface* surface,

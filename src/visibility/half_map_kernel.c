@@ -44,61 +44,60 @@ typedef struct Filling {
     float right, up;      // signs of the quadrant
 } Filling;
 
-// False where the triangle is seen from its edge: then it hides nothing.
-static inline bool setUp(const vplVec3 corner[3], float right, float up, Filling* f)
+// Returns whether it may be seen: from its edge a triangle hides nothing.
+static inline int32_t setUp(vplVec3 p0, vplVec3 p1, vplVec3 p2, float right, float up, Filling* f)
 {
-    const vplVec3 n = vplCross(vplSub(corner[1], corner[0]), vplSub(corner[2], corner[0]));
-    const float x = n.x * corner[0].x, y = n.y * corner[0].y, z = n.z * corner[0].z;
-    const float k = x + y + z;
-    if (!(fabsf(k) > 0x1p-20f * (fabsf(x) + fabsf(y) + fabsf(z)))) {
-        return false;
-    }
-    const float sign = k > 0 ? 1 : -1, inverse = 1 / k;
-    f->near = linearOf(vplVec(n.x * inverse, n.y * inverse, n.z * inverse), right, up);
-    for (int i = 0; i < 3; i++) {
-        f->edge[i] = linearOf(vplScale(sign, edgeOf(corner[i], corner[(i + 1) % 3])), right, up);
-    }
+    const vplVec3 n = vplCross(vplSub(p1, p0), vplSub(p2, p0));
+    const float x = n.x * p0.x, y = n.y * p0.y, z = n.z * p0.z, k = x + y + z;
+    const float sign = k > 0 ? 1.0f : -1.0f, inverse = 1 / k;
+    f->near = linearOf(vplScale(inverse, n), right, up);
+    f->edge[0] = linearOf(vplScale(sign, edgeOf(p0, p1)), right, up);
+    f->edge[1] = linearOf(vplScale(sign, edgeOf(p1, p2)), right, up);
+    f->edge[2] = linearOf(vplScale(sign, edgeOf(p2, p0)), right, up);
     f->right = right;
     f->up = up;
-    return isfinite(inverse);
+    return (fabsf(k) > 0x1p-20f * (fabsf(x) + fabsf(y) + fabsf(z))) & (fabsf(inverse) < INFINITY);
 }
 
-// `whole`: the triangle may reach into other quadrants, whose texels are not meant.
-static inline void fillRow(const Filling* restrict f, float v, float scale, int32_t first, int32_t last,
-                           bool whole, float* restrict row)
+enum { SIDE = VPL_BLOCK_SIDE };
+
+// One row of blocks. `whole`: the triangle may reach into other quadrants, whose texels are not meant.
+static inline void fillRow(const Filling* restrict f, int32_t row, float scale, int32_t first, int32_t last,
+                           bool whole, float* restrict texels)
 {
-    const float e0 = f->edge[0].c + f->edge[0].cv * v, e1 = f->edge[1].c + f->edge[1].cv * v;
-    const float e2 = f->edge[2].c + f->edge[2].cv * v, near = f->near.c + f->near.cv * v;
     const float u0 = f->edge[0].cu, u1 = f->edge[1].cu, u2 = f->edge[2].cu, nearU = f->near.cu;
     const float right = whole ? f->right : 0, up = whole ? f->up : 0;
-    for (int32_t i = first; i <= last; i += VPL_LANES) {
+    float v[VPL_LANES], e0[VPL_LANES], e1[VPL_LANES], e2[VPL_LANES], near[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        v[l] = (float)(2 * (SIDE * row + l / SIDE) + 1) * scale - 1;
+        e0[l] = f->edge[0].c + f->edge[0].cv * v[l];
+        e1[l] = f->edge[1].c + f->edge[1].cv * v[l];
+        e2[l] = f->edge[2].c + f->edge[2].cv * v[l];
+        near[l] = f->near.c + f->near.cv * v[l];
+    }
+    for (int32_t i = first; i <= last; i++) {
         float old[VPL_LANES], now[VPL_LANES];
-        memcpy(old, row + i, sizeof old);
+        memcpy(old, texels + (size_t)i * VPL_LANES, sizeof old);
         for (int l = 0; l < VPL_LANES; l++) {
-            const float u = (float)(2 * (i + l) + 1) * scale - 1;
-            const float a = e0 + u0 * u, b = e1 + u1 * u, c = e2 + u2 * u;
-            const float p = right * (u + v), q = up * (u - v), value = near + nearU * u;
+            const float u = (float)(2 * (SIDE * i + l % SIDE) + 1) * scale - 1;
+            const float a = e0[l] + u0 * u, b = e1[l] + u1 * u, c = e2[l] + u2 * u;
+            const float p = right * (u + v[l]), q = up * (u - v[l]), value = near[l] + nearU * u;
             const float ab = a < b ? a : b, pq = p < q ? p : q;
             const float abc = ab < c ? ab : c;
             const float before = old[l];
             const float nearer = value > before ? value : before;
-            now[l] = (abc >= 0) & (pq >= 0) & (i + l <= last) ? nearer : before;
+            now[l] = (abc >= 0) & (pq >= 0) ? nearer : before;
         }
-        memcpy(row + i, now, sizeof now);
+        memcpy(texels + (size_t)i * VPL_LANES, now, sizeof now);
     }
 }
 
-static inline void fill(const vplHalfMap* map, const vplVec3 corner[3], float right, float up, Texels box,
-                        bool whole, float* texels)
+static inline void fill(const vplHalfMap* map, const Filling* f, Texels box, bool whole, float* texels)
 {
-    Filling f;
-    if (box.i0 > box.i1 || box.j0 > box.j1 || !setUp(corner, right, up, &f)) {
-        return;
-    }
     const float scale = 1 / (float)map->size;
-    for (int32_t j = box.j0; j <= box.j1; j++) {
-        fillRow(&f, (float)(2 * j + 1) * scale - 1, scale, box.i0, box.i1, whole,
-                texels + (size_t)j * (size_t)map->size);
+    const size_t stride = (size_t)vplHalfMap_Blocks(map->size) * VPL_LANES;
+    for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
+        fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, whole, texels + (size_t)row * stride);
     }
 }
 
@@ -152,10 +151,19 @@ static Texels boundsOf(double (*points)[3], int count, int size)
                     (int32_t)((low[1] + 1) * half + least), (int32_t)((high[1] + 1) * half + most) - 1};
 }
 
+static bool reaches(const vplVec3 corner[3], float right, float up)
+{
+    return (corner[0].x * right > 0 || corner[1].x * right > 0 || corner[2].x * right > 0) &&
+           (corner[0].y * up > 0 || corner[1].y * up > 0 || corner[2].y * up > 0);
+}
+
 static void fillCut(const vplHalfMap* map, const vplVec3 corner[3], float* texels)
 {
     for (int quadrant = 0; quadrant < 4; quadrant++) {
-        const double right = quadrant & 1 ? -1 : 1, up = quadrant & 2 ? -1 : 1;
+        const float right = quadrant & 1 ? -1 : 1, up = quadrant & 2 ? -1 : 1;
+        if (!reaches(corner, right, up)) {
+            continue;
+        }
         double points[MAX_CUT][3];
         for (int i = 0; i < 3; i++) {
             points[i][0] = (double)corner[i].x;
@@ -163,10 +171,13 @@ static void fillCut(const vplHalfMap* map, const vplVec3 corner[3], float* texel
             points[i][2] = (double)corner[i].z;
         }
         int count = cut(points, 3, (const double[]){0, 0, 1});
-        count = count > 0 ? cut(points, count, (const double[]){right, 0, 0}) : 0;
-        count = count > 0 ? cut(points, count, (const double[]){0, up, 0}) : 0;
-        if (count > 0) {
-            fill(map, corner, (float)right, (float)up, boundsOf(points, count, map->size), true, texels);
+        count = count > 0 ? cut(points, count, (const double[]){(double)right, 0, 0}) : 0;
+        count = count > 0 ? cut(points, count, (const double[]){0, (double)up, 0}) : 0;
+        Filling f;
+        const Texels box = boundsOf(points, count, map->size);
+        if (count > 0 && box.i0 <= box.i1 && box.j0 <= box.j1 &&
+            setUp(corner[0], corner[1], corner[2], right, up, &f)) {
+            fill(map, &f, box, true, texels);
         }
     }
 }
@@ -241,24 +252,52 @@ static void bound(const vplHalfMap* map, const Sixteen* restrict s, int32_t box[
     }
 }
 
+static inline vplVec3 cornerOf(const Sixteen* s, int k, int l)
+{
+    return vplVec(s->x[k][l], s->y[k][l], s->z[k][l]);
+}
+
+// The numbers of a Filling, side by side.
+typedef struct Fillings {
+    float edge[3][3][VPL_LANES], near[3][VPL_LANES];
+} Fillings;
+
+static void setUpAll(const Sixteen* restrict s, int32_t kind[restrict VPL_LANES], Fillings* restrict all)
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        Filling f;
+        const vplVec3 p0 = cornerOf(s, 0, l), p1 = cornerOf(s, 1, l), p2 = cornerOf(s, 2, l);
+        const int32_t was = kind[l];
+        const int32_t seen = setUp(p0, p1, p2, p0.x >= 0 ? 1.0f : -1.0f, p0.y >= 0 ? 1.0f : -1.0f, &f);
+        for (int e = 0; e < 3; e++) {
+            all->edge[e][0][l] = f.edge[e].c;
+            all->edge[e][1][l] = f.edge[e].cu;
+            all->edge[e][2][l] = f.edge[e].cv;
+        }
+        all->near[0][l] = f.near.c;
+        all->near[1][l] = f.near.cu;
+        all->near[2][l] = f.near.cv;
+        kind[l] = (was == INSIDE) & !seen ? UNSEEN : was;
+    }
+}
+
 static void draw(const vplHalfMap* map, Sixteen* s, float* texels)
 {
     int32_t box[4][VPL_LANES], kind[VPL_LANES];
+    Fillings all;
     turn(map, s);
     bound(map, s, box, kind);
+    setUpAll(s, kind, &all);
     for (int l = 0; l < VPL_LANES; l++) {
-        if (kind[l] == UNSEEN) {
-            continue;
-        }
-        vplVec3 corner[3];
-        for (int k = 0; k < 3; k++) {
-            corner[k] = vplVec(s->x[k][l], s->y[k][l], s->z[k][l]);
-        }
         if (kind[l] == CROSSING) {
+            const vplVec3 corner[3] = {cornerOf(s, 0, l), cornerOf(s, 1, l), cornerOf(s, 2, l)};
             fillCut(map, corner, texels);
-        } else {
-            fill(map, corner, corner[0].x >= 0 ? 1 : -1, corner[0].y >= 0 ? 1 : -1,
-                 (Texels){box[0][l], box[1][l], box[2][l], box[3][l]}, false, texels);
+        } else if (kind[l] == INSIDE) {
+            Filling f = {.near = {all.near[0][l], all.near[1][l], all.near[2][l]}};
+            for (int e = 0; e < 3; e++) {
+                f.edge[e] = (Linear){all.edge[e][0][l], all.edge[e][1][l], all.edge[e][2][l]};
+            }
+            fill(map, &f, (Texels){box[0][l], box[1][l], box[2][l], box[3][l]}, false, texels);
         }
     }
 }
