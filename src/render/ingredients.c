@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/ingredients.h"
+#include "render/choose_shadows.h"
 
 #include <math.h>
 
@@ -186,8 +186,9 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
             job->options.method == VPL_METHOD_KELLER ? VPL_LIGHT_SHADOWS_AUTO : VPL_LIGHT_SHADOWS_NONE;
     }
     if (in->lightShadows == VPL_LIGHT_SHADOWS_AUTO) {
-        in->lightShadows = VPL_LIGHT_SHADOWS_RAY;
+        in->lightShadows = vplChooseLightShadows(job, in);
     }
+    job->stats.lightShadows = in->lightShadows;
     return VPL_SUCCESS;
 }
 

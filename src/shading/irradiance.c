@@ -33,10 +33,10 @@ static void findStarts(const vplGeometry* g, const vplPoints* points, Starts* st
 
 _Static_assert((int)VPL_RAY_PACKET == VPL_LANES, "a block of pixels is a packet of rays");
 
-// Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
-// where that is behind the triangle. `normal`: of the surface that the target lies on; 0: none. Lanes of amount 0 cast no ray.
+// Sets amount to 0 where something is on the way from the point, of no more than 1 (parallel: any) time its length, and
+// where that leads behind the triangle. Lanes of amount 0 cast no ray.
 static void castShadowRays(const vplShading* shading, const vplPoints* points, const Starts* starts,
-                           vplVec3 target, vplVec3 normal, bool parallel, float amount[VPL_LANES],
+                           const vplVec3 way[VPL_LANES], bool parallel, float amount[VPL_LANES],
                            int64_t* rays)
 {
     const vplGeometry* g = shading->geometry;
@@ -47,14 +47,11 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
         if (!(amount[l] > 0) || points->triangle[l] < 0) {
             continue;
         }
-        const vplHit* hit = &starts->hit[l];
-        const vplVec3 way =
-            parallel ? vplNegate(target) : vplSub(vplLightAim(target, normal, hit->position), hit->position);
-        if (!(vplDot(way, vplVec(plane->nx[l], plane->ny[l], plane->nz[l])) > 0)) {
+        if (!(vplDot(way[l], vplVec(plane->nx[l], plane->ny[l], plane->nz[l])) > 0)) {
             amount[l] = 0;
             continue;
         }
-        const vplRay ray = vplGeometry_Leave(g, hit, way);
+        const vplRay ray = vplGeometry_Leave(g, &starts->hit[l], way[l]);
         vplRayPacket_Set(&packet, l, &ray);
     }
     *rays += __builtin_popcount(packet.active);
@@ -69,8 +66,26 @@ void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, cons
 {
     Starts starts;
     findStarts(shading->geometry, points, &starts);
-    castShadowRays(shading, points, &starts, emitter->parallel ? emitter->direction : emitter->position,
-                   vplVec(0, 0, 0), emitter->parallel, amount, rays);
+    vplVec3 way[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        const bool asks = amount[l] > 0 && points->triangle[l] >= 0;
+        way[l] = emitter->parallel ? vplNegate(emitter->direction)
+                 : asks            ? vplSub(emitter->position, starts.hit[l].position)
+                                   : vplVec(0, 0, 0);
+    }
+    castShadowRays(shading, points, &starts, way, emitter->parallel, amount, rays);
+}
+
+static void castLightRays(const vplShading* shading, const vplPoints* points, const Starts* starts,
+                          const vplShadeLight* light, float visible[VPL_LANES], int64_t* rays)
+{
+    const vplVec3 place = {light->px, light->py, light->pz}, normal = {light->nx, light->ny, light->nz};
+    vplVec3 way[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        const bool asks = visible[l] > 0 && points->triangle[l] >= 0;
+        way[l] = asks ? vplLightWay(place, normal, starts->hit[l].position) : vplVec(0, 0, 0);
+    }
+    castShadowRays(shading, points, starts, way, false, visible, rays);
 }
 
 // Adds one light after another, each with a ray or a map of its own.
@@ -94,9 +109,7 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
             continue;
         }
         if (maps == NULL) {
-            const vplShadeLight* light = &lights[i];
-            castShadowRays(s, points, &starts, vplVec(light->px, light->py, light->pz),
-                           vplVec(light->nx, light->ny, light->nz), false, visible, rays);
+            castLightRays(s, points, &starts, &lights[i], visible, rays);
         } else {
             float factor[VPL_LANES];
             vplHalfMap_FactorBlock(&maps[i], points->plane, factor);

@@ -83,7 +83,8 @@ vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const
     vplHalfMap* list = (vplHalfMap*)maps->maps;
     for (int i = 0; i < count; i++) {
         vplHalfMap* map = &list[i];
-        map->position = vplLightAim(places[i].position, places[i].normal, places[i].position);
+        const float lift = vplLightLift(vplLargestOf(places[i].position));
+        map->position = vplAdd(places[i].position, vplScale(lift, places[i].normal));
         map->forward = places[i].normal;
         vplFrame(map->forward, &map->right, &map->up);
         map->size = maps->size;
@@ -92,6 +93,31 @@ vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const
     }
     Drawing drawing = {maps, vplGeometry_GetBvh(geometry)};
     return vplParallelForProgress(maps->context, count, drawMap, &drawing, progress, user, 0, 1);
+}
+
+int64_t vplHalfMap_TrianglesAbove(const vplGeometry* geometry, const vplHalfMapPlace* place)
+{
+    const vplBvh* bvh = vplGeometry_GetBvh(geometry);
+    if (bvh == NULL || bvh->nodes == NULL) {
+        return geometry->triangleCount;
+    }
+    int32_t stack[VPL_BVH_DEPTH * VPL_BVH_WIDTH];
+    int64_t blocks = 0;
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const vplBvhNode* node = &bvh->nodes[stack[--depth]];
+        for (uint32_t above = vplChildrenAbove(node, place->position, place->normal); above != 0;
+             above &= above - 1) {
+            const int32_t child = node->child[__builtin_ctz(above)];
+            if (child >= 0) {
+                stack[depth++] = child;
+            } else {
+                blocks++;
+            }
+        }
+    }
+    return blocks * geometry->triangleCount / (bvh->blockCount > 0 ? bvh->blockCount : 1);
 }
 
 void vplHalfMap_FactorBlock(const vplHalfMap* map, const vplSurface* surface, float factorOut[VPL_LANES])

@@ -28,6 +28,22 @@ typedef void vplDrawHalfMapFcn(const vplBvh* bvh, const vplHalfMap* map, float* 
 typedef void vplHalfMapFactorFcn(const vplHalfMap* map, const vplSurface* surface,
                                  float factor[restrict VPL_LANES]);
 
+// Bit i: some of child i lies above a plane.
+static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVec3 n)
+{
+    uint32_t above = 0;
+    for (int i = 0; i < node->count; i++) {
+        const float x = (node->planes[n.x > 0 ? 3 : 0][i] - o.x) * n.x;
+        const float y = (node->planes[n.y > 0 ? 4 : 1][i] - o.y) * n.y;
+        const float z = (node->planes[n.z > 0 ? 5 : 2][i] - o.z) * n.z;
+        above |= (uint32_t)(x + y + z > 0) << i;
+    }
+    return above;
+}
+
+// How many triangles a light's map draws: those in blocks of the tree that reach above its plane.
+int64_t vplHalfMap_TrianglesAbove(const vplGeometry* geometry, const vplHalfMapPlace* place);
+
 // A fragment is shadowed by what is nearer than itself by more than this share of its distance, which is a texel's
 // footprint (see below), and than its own plane by as much. With half as much, corners darken more than contacts gain;
 // with one and a half times as much it is the other way round (bench/crossover; 128 texels; pairs dark in the map only +
@@ -62,13 +78,22 @@ static inline float vplLargestOf(vplVec3 p)
     return fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
 }
 
-// A virtual light lies on a surface that must not shadow it: a ray from `from` aims above it by 64 units in the last
-// place of the largest coordinate at either end. The light's end alone does not do: in a Cornell box whose floor is at
-// 0, lights near the origin were hidden from the ceiling by the floor they lie on (0.46 % of all pairs).
-static inline vplVec3 vplLightAim(vplVec3 p, vplVec3 n, vplVec3 from)
+// 64 units in the last place of a coordinate: further than surfaces are from where they should be.
+static inline float vplLightLift(float largest)
 {
-    const float lift = fmaxf(vplLargestOf(p), vplLargestOf(from)) * 0x1p-18f;
-    return vplVec(p.x + lift * n.x, p.y + lift * n.y, p.z + lift * n.z);
+    return largest * 0x1p-18f;
+}
+
+// A ray from a point to a virtual light, which lies on a surface and maybe in a corner, and neither must shadow it: it
+// aims above the surface and ends before the light, by the rounding of the larger end. The light's own coordinates do
+// not do: in a Cornell box whose floor is at 0, lights near the origin were hidden from the ceiling by the floor that
+// they lie on (0.46 % of all pairs), and those on an edge of a room by the other wall.
+static inline vplVec3 vplLightWay(vplVec3 light, vplVec3 n, vplVec3 from)
+{
+    const float lift = vplLightLift(fmaxf(vplLargestOf(light), vplLargestOf(from)));
+    const vplVec3 way = vplSub(vplAdd(light, vplScale(lift, n)), from);
+    const float length = fmaxf(vplLargestOf(way), 2 * lift);
+    return length > 0 ? vplScale(1 - lift / length, way) : way;
 }
 
 #endif

@@ -323,20 +323,6 @@ static void drawBlocks(const vplHalfMap* map, const vplTriangleBlock* first, con
     draw(map, &s, texels);
 }
 
-// Bit i: some of child i lies above the light's plane.
-static uint32_t childrenAbove(const vplHalfMap* map, const vplBvhNode* node)
-{
-    const vplVec3 o = map->position, n = map->forward;
-    uint32_t above = 0;
-    for (int i = 0; i < node->count; i++) {
-        const float x = (node->planes[n.x > 0 ? 3 : 0][i] - o.x) * n.x;
-        const float y = (node->planes[n.y > 0 ? 4 : 1][i] - o.y) * n.y;
-        const float z = (node->planes[n.z > 0 ? 5 : 2][i] - o.z) * n.z;
-        above |= (uint32_t)(x + y + z > 0) << i;
-    }
-    return above;
-}
-
 void VPL_KERNEL(vplDrawHalfMap)(const vplBvh* bvh, const vplHalfMap* map, float* texels)
 {
     const vplTriangleBlock* waiting = NULL;
@@ -352,7 +338,8 @@ void VPL_KERNEL(vplDrawHalfMap)(const vplBvh* bvh, const vplHalfMap* map, float*
         const int32_t at = stack[--depth];
         if (at >= 0) {
             const vplBvhNode* node = &bvh->nodes[at];
-            for (uint32_t above = childrenAbove(map, node); above != 0; above &= above - 1) {
+            for (uint32_t above = vplChildrenAbove(node, map->position, map->forward); above != 0;
+                 above &= above - 1) {
                 stack[depth++] = node->child[__builtin_ctz(above)];
             }
         } else if (waiting == NULL) {
