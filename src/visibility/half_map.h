@@ -51,7 +51,7 @@ int64_t vplHalfMap_TrianglesAbove(const vplGeometry* geometry, const vplHalfMapP
 // 5.72 + 3.82, 3.73 + 4.06, 2.96 + 4.38, 2.31 + 4.87; Sponza 5.37 + 4.29, 3.43 + 4.82, 2.39 + 5.30, 1.91 + 5.82).
 static inline float vplHalfMap_Tolerance(int size)
 {
-    return 1.41421356f / (float)size + 0x1p-16f; // and rounding
+    return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
 }
 
 // The answers of a map and of rays are equal but in a band. A texel's centre looks past a fragment at distance r
@@ -70,7 +70,7 @@ static inline float vplHalfMap_Band(const vplHalfMap* map, vplVec3 point, vplVec
     const float cosA = r / sqrtf(r * r + f * f), sinA = f / r * cosA;
     const float turned = sinT * cosA <= cosT * sinA ? 1 : cosT * cosA + sinT * sinA;
     *footprintOut = f;
-    return 2 * f + r * (1 - cosT / turned) + r * 0x1p-16f;
+    return 2.5f * f + r * (1 - cosT / turned) + r * 0x1p-16f;
 }
 
 static inline float vplLargestOf(vplVec3 p)
