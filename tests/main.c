@@ -8,24 +8,41 @@
 #include <string.h>
 
 // One line per test file.
-#define ALL_SUITES(X)                                                                                        \
-    X(bench)                                                                                                 \
-    X(bounds)                                                                                                \
-    X(emitters)                                                                                              \
-    X(emission)                                                                                              \
-    X(exr)                                                                                                   \
-    X(geometry)                                                                                              \
-    X(hits)                                                                                                  \
-    X(image)                                                                                                 \
-    X(interleaved)                                                                                           \
-    X(keller)                                                                                                \
-    X(lightcuts)                                                                                             \
-    X(lights)                                                                                                \
-    X(math)                                                                                                  \
-    X(memory)                                                                                                \
-    X(metrics)                                                                                               \
-    X(obj) X(objParts) X(objScene) X(rays) X(packets) X(path) X(passes) X(raster) X(rasterTruth) X(render)   \
-        X(renderer) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
+// clang-format off
+#define ALL_SUITES(X) \
+    X(bench) \
+    X(bounds) \
+    X(emission) \
+    X(emitters) \
+    X(exr) \
+    X(geometry) \
+    X(halfMaps) \
+    X(hits) \
+    X(image) \
+    X(interleaved) \
+    X(keller) \
+    X(lightcuts) \
+    X(lights) \
+    X(math) \
+    X(memory) \
+    X(metrics) \
+    X(obj) \
+    X(objParts) \
+    X(objScene) \
+    X(packets) \
+    X(passes) \
+    X(path) \
+    X(raster) \
+    X(rasterTruth) \
+    X(rays) \
+    X(render) \
+    X(renderer) \
+    X(scene) \
+    X(sceneChecks) \
+    X(shading) \
+    X(tradeoff) \
+    X(visibility)
+// clang-format on
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,

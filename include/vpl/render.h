@@ -148,10 +148,13 @@ typedef struct vplRenderStats {
     int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
     int escaped;                                  // particles that left the scene
     int triangles, objects;
-    float minDistance;   // as used, metres
-    double reflectivity; // as used
-    double cpuMs;        // processor time of all threads
-    int passes;          // that the picture is the mean of; path: of up to 32 paths per pixel each
+    float minDistance;            // as used, metres
+    double reflectivity;          // as used
+    double cpuMs;                 // processor time of all threads
+    vplLightShadows lightShadows; // as used: none, map or ray
+    double shadowMapEstimateMs;   // where they were chosen by cost: what maps and
+    double shadowRayEstimateMs; // rays were expected to take, ms of one core of the machine that was measured
+    int passes;                 // that the picture is the mean of; path: of up to 32 paths per pixel each
     double
         errorEstimate; // expected rmse of the picture, from two independent halves of the samples or passes;
                        // negative where there is none

@@ -78,14 +78,14 @@ typedef struct vplShadeDef {
     int emitterCount;           // 0: no direct light
     const vplShadeLight* lamps; // direct light of area emitters, always with shadow rays; physical only
     int lampCount;
-    float lampMinDistance;         // as minDistance
-    int particleCount;             // N, by which documented direct light is divided (0 counts as 1)
-    const vplShadeLight* lights;   // virtual lights
-    int lightCount;                // 0: no indirect light
-    const vplShadow* lightShadows; // one per virtual light; NULL: they cast none, or by rays
-    bool lightRays;                // virtual lights cast shadows by rays
-    float cutError;                // lightcuts: see vplRenderOptions
-    bool emission;                 // surfaces that emit are seen to
+    float lampMinDistance;          // as minDistance
+    int particleCount;              // N, by which documented direct light is divided (0 counts as 1)
+    const vplShadeLight* lights;    // virtual lights
+    int lightCount;                 // 0: no indirect light
+    const vplHalfMap* lightShadows; // one per virtual light; NULL: they cast none, or by rays
+    bool lightRays;                 // virtual lights cast shadows by rays
+    float cutError;                 // lightcuts: see vplRenderOptions
+    bool emission;                  // surfaces that emit are seen to
 } vplShadeDef;
 
 typedef struct vplShadeStats {

@@ -118,6 +118,53 @@ typedef struct vplSurface {
 
 void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES]);
 
+// ---- many small maps: what virtual lights, which shine to one side of their surface only, see of a scene
+
+// The half space above a surface, as an octahedron's upper half seen from straight above and turned by 45 degrees:
+// the direction (x, y, z) in the frame below meets (u, v) = (x + y, x - y) / (|x| + |y| + z) in [-1, 1]^2. Straight
+// edges stay straight but for kinks where x or y is 0, and one square with as many texels as one face of a cube map,
+// a third of the half cube's, sees all there is to see.
+// Source: Cyril Crassin and others, and before them Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003
+// (the octahedron).
+typedef struct vplHalfMap {
+    vplVec3 position;           // metres; a hair above the surface
+    vplVec3 right, up, forward; // right-handed, unit; forward is the surface's normal
+    int size;                   // texels along a side
+    const float*
+        texels; // 1 / (|x| + |y| + z) of the nearest surface, 1/metres; 0 where nothing is; in blocks of
+                // 4 x 4 of columns (u) and rows (v)
+    vplContext* context;
+} vplHalfMap;
+
+// Read only.
+typedef struct vplHalfMaps {
+    const vplHalfMap* maps;
+    int count, capacity, size;
+    float* texels;
+    vplContext* context;
+} vplHalfMaps;
+
+typedef struct vplHalfMapPlace {
+    vplVec3 position; // metres; on a surface, which does not shadow it
+    vplVec3 normal;   // unit
+} vplHalfMapPlace;
+
+// Room for `capacity` maps with `size` texels a side, [1, VPL_MAX_SHADOW_MAP].
+vplResult vplHalfMaps_Create(vplContext* context, int size, int capacity, vplHalfMaps** mapsOut);
+
+// Memory per map.
+size_t vplHalfMaps_BytesPerMap(int size);
+
+// Draws what is seen from `count` places, at most the capacity, side by side; those of before are gone.
+vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const vplHalfMapPlace* places,
+                           int count, vplProgressFcn* progress, void* user);
+
+// NULL is allowed.
+void vplHalfMaps_Destroy(vplHalfMaps* maps);
+
+// 1 where something nearer to the place hides it from a point, and where one lies behind the other's surface; else 0.
+void vplHalfMap_FactorBlock(const vplHalfMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -98,9 +98,9 @@ static void countDraws(const vplRenderOptions* o, Info* info)
         o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
     const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? info->virtualLights : 0;
     const int64_t size = o->shadowMapSize, lightSize = o->lightMapSize;
-    info->drawCalls = info->objects * (6 * (maps + lightMaps) + (1 + passes) * o->antialias);
+    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias);
     info->shadowMapBytes =
-        6 * (maps * size * size + lightMaps * lightSize * lightSize) * (int64_t)sizeof(float);
+        (6 * maps * size * size + lightMaps * lightSize * lightSize) * (int64_t)sizeof(float);
     const int64_t lamps = info->lampTriangles > 0 ? o->lampLights : 0;
     info->lightBytes = info->virtualLights * (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight)) +
                        lamps * (int64_t)sizeof(vplShadeLight);

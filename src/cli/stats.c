@@ -44,6 +44,15 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     json_object_set_new(root, "triangles", json_integer(stats->triangles));
     json_object_set_new(root, "patches", json_integer(0));
     json_object_set_new(root, "min_distance", json_real(stats->minDistance));
+    static const char* const shadows[] = {"", "none", "map", "ray"};
+    if (stats->lightShadows != VPL_LIGHT_SHADOWS_USUAL) {
+        json_object_set_new(root, "light_shadows", json_string(shadows[stats->lightShadows]));
+    }
+    if (stats->shadowRayEstimateMs > 0) {
+        json_object_set_new(
+            root, "light_shadows_expected_ms",
+            json_pack("{s:f, s:f}", "map", stats->shadowMapEstimateMs, "ray", stats->shadowRayEstimateMs));
+    }
     json_object_set_new(root, "reflectivity", json_real(stats->reflectivity));
     json_object_set_new(root, "passes", json_integer(stats->passes));
     if (stats->errorEstimate >= 0) {

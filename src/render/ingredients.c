@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/ingredients.h"
+#include "render/choose_shadows.h"
 
 #include <math.h>
 
@@ -74,18 +74,27 @@ static vplResult makeEmitterShadows(vplJob* job, vplIngredients* in)
     return result;
 }
 
-// One small map per virtual light, seen from just above its surface.
-vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in)
+int vplLightBatch(const vplJob* job, const vplIngredients* in)
 {
-    vplShadowDef shadowDef = vplDefaultShadowDef();
-    shadowDef.pcfSamples = 1;
-    const float lift = vplGeometry_Diagonal(job->geometry) * 0x1p-14f;
-    vplResult result = allocateMaps(job, in->lightCount, &in->lightMaps);
-    for (int i = 0; i < in->lightCount && result == VPL_SUCCESS; i++) {
-        const vplShadeLight* l = &in->lights[i];
-        vplVec3 at = {l->px + lift * l->nx, l->py + lift * l->ny, l->pz + lift * l->nz};
-        result = makeMap(job, at, job->options.lightMapSize, &shadowDef, &in->lightMaps, i);
+    const size_t room = VPL_LIGHT_MAP_BYTES / vplHalfMaps_BytesPerMap(job->options.lightMapSize);
+    return room >= (size_t)in->lightCount ? in->lightCount : room > 0 ? (int)room : 1;
+}
+
+vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in, int first, int count)
+{
+    vplHalfMapPlace* places = vplAlloc(job->context, (size_t)count, sizeof *places);
+    vplResult result = places ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    if (result == VPL_SUCCESS && in->lightMaps == NULL) {
+        result = vplHalfMaps_Create(job->context, job->options.lightMapSize, count, &in->lightMaps);
     }
+    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+        const vplShadeLight* l = &in->lights[first + i];
+        places[i] = (vplHalfMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplHalfMaps_Draw(in->lightMaps, job->geometry, places, count, vplJob_GetProgress(job), job);
+    }
+    vplFree(job->context, places);
     return result;
 }
 
@@ -177,14 +186,16 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
             job->options.method == VPL_METHOD_KELLER ? VPL_LIGHT_SHADOWS_AUTO : VPL_LIGHT_SHADOWS_NONE;
     }
     if (in->lightShadows == VPL_LIGHT_SHADOWS_AUTO) {
-        in->lightShadows = VPL_LIGHT_SHADOWS_RAY;
+        in->lightShadows = vplChooseLightShadows(job, in);
     }
+    job->stats.lightShadows = in->lightShadows;
     return VPL_SUCCESS;
 }
 
 void vplFreeVirtualLights(vplJob* job, vplIngredients* in)
 {
-    freeMaps(job, &in->lightMaps);
+    vplHalfMaps_Destroy(in->lightMaps);
+    in->lightMaps = NULL;
     vplFree(job->context, in->lights);
     vplLightSet_Destroy(in->set);
     in->lights = NULL;

@@ -25,7 +25,7 @@ typedef struct vplIngredients {
     int lightCount;
     float minDistance;
     vplLightShadows lightShadows; // none, map or ray
-    vplMaps lightMaps;
+    vplHalfMaps* lightMaps;       // NULL where there are none; room for a batch of the lights
 } vplIngredients;
 
 // Shadow maps of emitters and lights that stand for lamps: what direct light needs.
@@ -34,8 +34,14 @@ vplResult vplMakeDirectLight(vplJob* job, vplIngredients* in);
 // Virtual lights of pass job->stepsDone, without their shadows. Those of the last pass are gone.
 vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in);
 
-// Maps of the virtual lights.
-vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in);
+// Most memory that maps of virtual lights take; more lights are added batch by batch.
+#define VPL_LIGHT_MAP_BYTES ((size_t)256 << 20)
+
+// How many of the virtual lights have maps at the same time: all, if there is room. At least 1.
+int vplLightBatch(const vplJob* job, const vplIngredients* in);
+
+// Maps of virtual lights first .. first + count - 1, at most a batch.
+vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in, int first, int count);
 
 void vplFreeVirtualLights(vplJob* job, vplIngredients* in);
 void vplFreeIngredients(vplJob* job, vplIngredients* in);

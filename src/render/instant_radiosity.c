@@ -85,7 +85,8 @@ static vplResult shadeSamples(vplJob* job, const vplShadeDef* def)
     return result;
 }
 
-static vplResult shade(vplJob* job, const vplIngredients* in, int parts)
+// With virtual lights first .. first + count - 1.
+static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int first, int count)
 {
     const vplRenderOptions* o = &job->options;
     const bool direct = parts & PART_DIRECT && o->show != VPL_SHOW_INDIRECT && o->show != VPL_SHOW_LIGHT;
@@ -111,17 +112,46 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts)
         def.emission = true;
     }
     if (parts & PART_INDIRECT) {
-        def.lightShadows = in->lightMaps.shadows;
+        def.lightShadows = in->lightMaps ? in->lightMaps->maps : NULL;
         def.lightRays = in->lightShadows == VPL_LIGHT_SHADOWS_RAY;
-        def.lights = in->lights;
-        def.lightCount = in->lightCount;
+        def.lights = in->lights ? in->lights + first : NULL;
+        def.lightCount = count;
     }
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
-    vplJob_BeginStage(job, 1);
+    vplJob_BeginStage(job, 0.1 + 0.9 * (in->lightCount ? (first + count) / (double)in->lightCount : 1));
     if (result == VPL_SUCCESS) {
         result = shadeSamples(job, &def);
     }
     vplJob_EndStage(job, "shading");
+    return result;
+}
+
+// Virtual lights whose maps fit into memory at the same time, with the direct light, then more of them: each batch
+// makes a picture, and their sum counts.
+static vplResult shadeBatches(vplJob* job, vplIngredients* in, int parts)
+{
+    const int batch = vplLightBatch(job, in);
+    vplImage* sum = NULL;
+    vplResult result = VPL_SUCCESS;
+    for (int first = 0; first < in->lightCount && result == VPL_SUCCESS; first += batch) {
+        const int count = in->lightCount - first < batch ? in->lightCount - first : batch;
+        vplJob_BeginStage(job, 0.1 + 0.9 * (first + 0.4 * count) / in->lightCount);
+        result = vplMakeLightShadows(job, in, first, count);
+        vplJob_EndStage(job, "light shadow maps");
+        if (result == VPL_SUCCESS) {
+            result = shade(job, in, first == 0 ? parts : PART_INDIRECT, first, count);
+        }
+        if (result == VPL_SUCCESS && sum != NULL) {
+            const size_t values = 3 * (size_t)sum->width * (size_t)sum->height;
+            for (size_t k = 0; k < values; k++) {
+                job->image->pixels[k] += sum->pixels[k];
+            }
+        }
+        vplImage_Destroy(sum);
+        sum = job->image;
+        job->image = NULL;
+    }
+    job->image = sum;
     return result;
 }
 
@@ -150,12 +180,6 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
         result = vplMakeDirectLight(job, in);
         vplJob_EndStage(job, "shadow map");
     }
-    if (result == VPL_SUCCESS && parts & PART_INDIRECT && in->lightCount > 0 &&
-        in->lightShadows == VPL_LIGHT_SHADOWS_MAP) {
-        vplJob_BeginStage(job, 0.4);
-        result = vplMakeLightShadows(job, in);
-        vplJob_EndStage(job, "light shadow maps");
-    }
     if (result != VPL_SUCCESS) {
         return result;
     }
@@ -168,7 +192,9 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
             return vplUnfoldCubeMap(in->emitterMaps.maps[0], &job->image);
         }
     }
-    return shade(job, in, parts);
+    const bool maps =
+        parts & PART_INDIRECT && in->lightCount > 0 && in->lightShadows == VPL_LIGHT_SHADOWS_MAP;
+    return maps ? shadeBatches(job, in, parts) : shade(job, in, parts, 0, in->lightCount);
 }
 
 static vplResult begin(vplJob* job)

@@ -34,7 +34,7 @@ typedef struct vplGatherRoom {
 typedef struct vplInterleave {
     vplShadeDef def; // with the lights in the order of their classes
     vplShadeLight* lights;
-    vplShadow* shadows;   // NULL where lights have no maps
+    vplHalfMap* shadows;  // NULL where lights have no maps
     float* planes;        // VPL_GATHER_PLANES of pixelCount values
     vplGatherRoom* rooms; // one per worker
     size_t pixelCount;

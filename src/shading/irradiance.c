@@ -5,6 +5,7 @@
 #include "geometry/triangle.h"
 #include "math/vec.h"
 #include "shading/shading.h"
+#include "visibility/half_map.h"
 
 #include <string.h>
 
@@ -28,10 +29,11 @@ void vplFindRayStarts(const vplShading* shading, const vplPoints* points, vplRay
 
 _Static_assert((int)VPL_RAY_PACKET == VPL_LANES, "a block of pixels is a packet of rays");
 
-// Sets amount to 0 where something is between the point and `target` (parallel: in the direction -target), and
-// where that is behind the triangle. Lanes of amount 0 cast no ray.
+// Sets amount to 0 where something is on the way from the point, of no more than 1 (parallel: any) time its length, and
+// where that leads behind the triangle. Lanes of amount 0 cast no ray.
 static void castShadowRays(const vplShading* shading, const vplPoints* points, const vplRayStarts* starts,
-                           vplVec3 target, bool parallel, float amount[VPL_LANES], int64_t* rays)
+                           const vplVec3 way[VPL_LANES], bool parallel, float amount[VPL_LANES],
+                           int64_t* rays)
 {
     const vplGeometry* g = shading->geometry;
     const vplSurface* plane = points->plane;
@@ -41,13 +43,11 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
         if (!(amount[l] > 0) || points->triangle[l] < 0) {
             continue;
         }
-        const vplHit* hit = &starts->hit[l];
-        const vplVec3 way = parallel ? vplNegate(target) : vplSub(target, hit->position);
-        if (!(vplDot(way, vplVec(plane->nx[l], plane->ny[l], plane->nz[l])) > 0)) {
+        if (!(vplDot(way[l], vplVec(plane->nx[l], plane->ny[l], plane->nz[l])) > 0)) {
             amount[l] = 0;
             continue;
         }
-        const vplRay ray = vplGeometry_Leave(g, hit, way);
+        const vplRay ray = vplGeometry_Leave(g, &starts->hit[l], way[l]);
         vplRayPacket_Set(&packet, l, &ray);
     }
     *rays += __builtin_popcount(packet.active);
@@ -62,35 +62,30 @@ void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, cons
 {
     vplRayStarts starts;
     vplFindRayStarts(shading, points, &starts);
-    castShadowRays(shading, points, &starts, emitter->parallel ? emitter->direction : emitter->position,
-                   emitter->parallel, amount, rays);
-}
-
-// A virtual light lies on a surface that must not shadow it: rays aim a little above.
-static vplVec3 aimAt(const vplShadeLight* light)
-{
-    const float x = light->px, y = light->py, z = light->pz;
-    float largest = fmaxf(fabsf(x), fmaxf(fabsf(y), fabsf(z))) * 0x1p-18f;
-    return vplVec(x + largest * light->nx, y + largest * light->ny, z + largest * light->nz);
-}
-
-// What is left of the lanes of `visible` by a light's map. A map lets light through what it meets first, also
-// from behind: where normals are interpolated the triangle itself says on which side the light is.
-static void shadowByMap(const vplShading* s, const vplPoints* points, const vplShadeLight* light,
-                        const vplShadow* map, float visible[VPL_LANES])
-{
-    const vplSurface* p = points->plane;
-    float factor[VPL_LANES];
-    vplShadow_FactorBlock(map, p, factor);
+    vplVec3 way[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        const vplVec3 way = vplVec(light->px - p->px[l], light->py - p->py[l], light->pz - p->pz[l]);
-        const bool behind = s->smooth && !(vplDot(way, vplVec(p->nx[l], p->ny[l], p->nz[l])) > 0);
-        visible[l] *= behind ? 0 : 1 - factor[l];
+        const bool asks = amount[l] > 0 && points->triangle[l] >= 0;
+        way[l] = emitter->parallel ? vplNegate(emitter->direction)
+                 : asks            ? vplSub(emitter->position, starts.hit[l].position)
+                                   : vplVec(0, 0, 0);
     }
+    castShadowRays(shading, points, &starts, way, emitter->parallel, amount, rays);
+}
+
+static void castLightRays(const vplShading* shading, const vplPoints* points, const vplRayStarts* starts,
+                          const vplShadeLight* light, float visible[VPL_LANES], int64_t* rays)
+{
+    const vplVec3 place = {light->px, light->py, light->pz}, normal = {light->nx, light->ny, light->nz};
+    vplVec3 way[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        const bool asks = visible[l] > 0 && points->triangle[l] >= 0;
+        way[l] = asks ? vplLightWay(place, normal, starts->hit[l].position) : vplVec(0, 0, 0);
+    }
+    castShadowRays(shading, points, starts, way, false, visible, rays);
 }
 
 bool vplLightVisibly(const vplShading* s, const vplPoints* points, const vplRayStarts* starts,
-                     const vplShadow* map, const vplShadeLight* light, float inverseBound,
+                     const vplHalfMap* map, const vplShadeLight* light, float inverseBound,
                      float part[3][VPL_LANES], float visible[VPL_LANES], int64_t* rays)
 {
     memset(part, 0, 3 * sizeof part[0]);
@@ -104,16 +99,20 @@ bool vplLightVisibly(const vplShading* s, const vplPoints* points, const vplRayS
         return false;
     }
     if (starts != NULL) {
-        castShadowRays(s, points, starts, aimAt(light), false, visible, rays);
+        castLightRays(s, points, starts, light, visible, rays);
     } else if (map != NULL) {
-        shadowByMap(s, points, light, map, visible);
+        float factor[VPL_LANES];
+        vplHalfMap_FactorBlock(map, points->plane, factor);
+        for (int l = 0; l < VPL_LANES; l++) {
+            visible[l] *= 1 - factor[l];
+        }
     }
     return true;
 }
 
 // Adds one light after another, each with a ray or a map of its own.
 static void addShadowed(const vplShading* s, const vplPoints* points, const vplShadeLight* lights,
-                        const vplShadow* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
+                        const vplHalfMap* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
                         int64_t* rays)
 {
     vplRayStarts starts;

@@ -136,7 +136,7 @@ void vplFindRayStarts(const vplShading* shading, const vplPoints* points, vplRay
 // What one virtual light or lamp gives to the lanes, and which of it arrives, [0, 1]: by rays where there are starts,
 // else by the map, else all of it. False where no lane is lit; then neither is complete.
 bool vplLightVisibly(const vplShading* shading, const vplPoints* points, const vplRayStarts* starts,
-                     const vplShadow* map, const vplShadeLight* light, float inverseBound,
+                     const vplHalfMap* map, const vplShadeLight* light, float inverseBound,
                      float part[3][VPL_LANES], float visible[VPL_LANES], int64_t* rays);
 
 // Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray.

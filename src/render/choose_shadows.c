@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "render/choose_shadows.h"
+#include "math/vec.h"
+#include "visibility/half_map.h"
+
+#include <math.h>
+
+// Nanoseconds of one core of an AMD EPYC (Zen 4, AVX-512), fitted to `bench/crossover` over room, cornell-area,
+// sibenik-spot, conference-spot and sponza-sun with 64 to 1280 x 720 pixels, 16 to 1024 lights and maps of 64, 128
+// and 256 texels. What counts is their ratio, and they are the same everywhere: a picture must not depend on them.
+static const double DRAW_TRIANGLE = 20; // a triangle above the light's plane
+static const double DRAW_TEXEL = 0.6;   // a texel, by the room's few triangles,
+static const double DRAW_LAYER = 1.0;   // and by each power of two of them
+static const double LOOK_PIXEL = 2;     // a pixel and a light,
+static const double LOOK_FACING = 7;    // that face each other
+static const double RAY_PIXEL = 2;
+static const double RAY_FACING = 10; // a ray,
+static const double RAY_DEPTH = 6;   // and each power of two of triangles
+
+// Straight between powers of two: exact everywhere, which libraries' logarithms are not.
+static double log2Of(double x)
+{
+    int exponent;
+    const double mantissa = frexp(x, &exponent); // [1/2, 1)
+    return x > 1 ? exponent - 1 + (2 * mantissa - 1) : 0;
+}
+
+vplShadowCosts vplEstimateShadows(const vplShadowLoad* load)
+{
+    const double texels = load->mapSize * load->mapSize, pairs = load->lights * load->pixels;
+    const double draw = DRAW_TRIANGLE * load->trianglesAbove +
+                        (DRAW_TEXEL + DRAW_LAYER * log2Of(load->trianglesAbove)) * texels;
+    const double look = LOOK_PIXEL + LOOK_FACING * load->facing;
+    const double ray = RAY_PIXEL + load->facing * (RAY_FACING + RAY_DEPTH * log2Of(load->triangles));
+    return (vplShadowCosts){1e-6 * (load->lights * draw + pairs * look), 1e-6 * pairs * ray};
+}
+
+enum { LOOKS = 8, SOME_LIGHTS = 8 }; // 8 x 8 pixels; of the lights, counted from the first to the last
+
+static vplVec3 through(const vplView* v, int x, int y)
+{
+    const float sx = (float)((2 * (x + 0.5) / LOOKS - 1) / v->scaleX);
+    const float sy = (float)((1 - 2 * (y + 0.5) / LOOKS) / v->scaleY);
+    return vplAdd(v->forward, vplAdd(vplScale(sx, v->right), vplScale(sy, v->up)));
+}
+
+static int countFacing(const vplHit* hit, vplVec3 from, const vplShadeLight* lights, int count)
+{
+    const vplVec3 n = vplDot(hit->normal, from) < 0 ? hit->normal : vplNegate(hit->normal);
+    int facing = 0;
+    for (int i = 0; i < count; i++) {
+        const vplShadeLight* l = &lights[i];
+        const vplVec3 way = vplSub(vplVec(l->px, l->py, l->pz), hit->position);
+        facing += vplDot(way, n) > 0 && vplDot(way, vplVec(l->nx, l->ny, l->nz)) < 0;
+    }
+    return facing;
+}
+
+vplShadowLoad vplMeasureShadowLoad(const vplGeometry* geometry, const vplView* view, double pixels,
+                                   const vplShadeLight* lights, int lightCount, int mapSize)
+{
+    vplShadowLoad load = {lightCount, pixels, 0, 0, geometry->triangleCount, mapSize};
+    vplShadeLight some[LOOKS * LOOKS];
+    const int count = lightCount < LOOKS * LOOKS ? lightCount : LOOKS * LOOKS;
+    for (int i = 0; i < count; i++) {
+        some[i] = lights[(int64_t)i * lightCount / count];
+    }
+    int64_t facing = 0;
+    for (int i = 0; i < LOOKS * LOOKS; i++) {
+        const vplRay ray = {view->eye, through(view, i % LOOKS, i / LOOKS), {0, 0}};
+        vplHit hit;
+        if (vplGeometry_ClosestHit(geometry, &ray, &hit)) {
+            facing += countFacing(&hit, ray.direction, some, count);
+        }
+    }
+    const int seen = count < SOME_LIGHTS ? count : SOME_LIGHTS;
+    for (int i = 0; i < seen; i++) {
+        const vplShadeLight* l = &some[(int64_t)i * count / seen];
+        const vplHalfMapPlace place = {{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+        load.trianglesAbove += (double)vplHalfMap_TrianglesAbove(geometry, &place) / seen;
+    }
+    load.facing = count > 0 ? (double)facing / count / (LOOKS * LOOKS) : 0;
+    return load;
+}
+
+vplLightShadows vplChooseLightShadows(vplJob* job, const vplIngredients* in)
+{
+    const vplRenderOptions* o = &job->options;
+    if (o->accumulation == VPL_ACCUMULATE_LIGHTCUTS || in->lightCount == 0) {
+        return VPL_LIGHT_SHADOWS_RAY; // a pixel asks about few of the lights, and nobody knows which
+    }
+    const int side = o->accumulation == VPL_ACCUMULATE_INTERLEAVED ? o->interleave : 1;
+    const double pixels = (double)o->width * o->height * o->antialias / side / side;
+    const vplShadowLoad load =
+        vplMeasureShadowLoad(job->geometry, &job->view, pixels, in->lights, in->lightCount, o->lightMapSize);
+    const vplShadowCosts costs = vplEstimateShadows(&load);
+    const bool map = costs.mapMs < costs.rayMs;
+    job->stats.shadowMapEstimateMs = costs.mapMs;
+    job->stats.shadowRayEstimateMs = costs.rayMs;
+    vplLog(job->context, VPL_LOG_INFO,
+           "virtual lights cast shadows by %s: %d lights, %.0f pixels of which %.0f %% face a light, %.0f "
+           "triangles "
+           "above it; maps about %.3g ms, rays %.3g ms",
+           map ? "maps" : "rays", in->lightCount, pixels, 100 * load.facing, load.trianglesAbove, costs.mapMs,
+           costs.rayMs);
+    return map ? VPL_LIGHT_SHADOWS_MAP : VPL_LIGHT_SHADOWS_RAY;
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Where maps and rays must agree on shadows of virtual lights: shared by a benchmark and a test.
+#ifndef VPL_BAND_H
+#define VPL_BAND_H
+
+#include "math/scalar.h"
+#include "visibility/half_map.h"
+
+#include <vpl/lights.h>
+
+// By the ray that shading casts.
+static inline bool isDark(const vplGeometry* g, const vplHit* hit, const vplShadeLight* l)
+{
+    const vplVec3 way = vplLightWay(vplVec(l->px, l->py, l->pz), vplVec(l->nx, l->ny, l->nz), hit->position);
+    const vplRay ray = vplGeometry_Leave(g, hit, way);
+    return vplGeometry_IsOccluded(g, &ray, 1);
+}
+
+static inline bool isDarkBetween(const vplGeometry* g, vplVec3 eye, vplVec3 to)
+{
+    const vplRay ray = {eye, vplSub(to, eye), {0, 0}};
+    return vplGeometry_IsOccluded(g, &ray, 1);
+}
+
+// Whether all rays from the eye say the same as the point's own: to its plane within the footprint around it, and to
+// places nearer to the eye by the band.
+static inline bool isSure(const vplGeometry* g, const vplHalfMap* map, vplVec3 point, vplVec3 normal,
+                          bool dark)
+{
+    enum { RIM = 8, RINGS = 2 };
+    float footprint;
+    const float band = vplHalfMap_Band(map, point, normal, &footprint);
+    const vplVec3 way = vplSub(point, map->position);
+    const float distance = vplLength(way);
+    bool same = band < distance;
+    vplVec3 t, u;
+    vplFrame(vplScale(1 / distance, way), &t, &u);
+    for (int i = 0; i < RIM * RINGS && same; i++) {
+        const double angle = (i % RIM + 0.5 * (double)(i / RIM)) * (2 * VPL_PI / RIM);
+        const float size = footprint * (float)(i / RIM + 1) / RINGS;
+        const vplVec3 side =
+            vplAdd(vplScale(size * (float)cos(angle), t), vplScale(size * (float)sin(angle), u));
+        const vplVec3 rim = vplAdd(way, side);
+        const float plane = vplDot(way, normal) / vplDot(rim, normal);
+        const float reach = plane > 0 && plane < 1 ? plane : 1;
+        const vplVec3 far = vplScale(reach * (1 - 0x1p-14f), rim), near = vplScale(1 - band / distance, rim);
+        same = isDarkBetween(g, map->position, vplAdd(map->position, far)) == dark &&
+               isDarkBetween(g, map->position, vplAdd(map->position, near)) == dark;
+    }
+    return same;
+}
+
+#endif

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Shadows of virtual lights by maps and by rays: what they cost and where they disagree.
+// `bench/crossover [--quick] [SCENE...]`: for each scene, picture size and number of lights the processor time of
+// shading with rays, and of drawing and shading with maps of 64 and 128 texels, alternated in one run. Without shadows the
+// same lights take what is said as `none`. Rays that would take more than MOST_MS are not cast (-).
+// Then points that the camera sees times lights: the share where the answers differ, and how much of that lies outside
+// the band that half_map.h states.
+#include "band.h"
+#include "bench.h"
+
+#include "render/choose_shadows.h"
+
+#include <string.h>
+#include <time.h>
+
+enum { MOST_LIGHTS = 1024, RUNS = 3, MAP_SIZES = 3 };
+static const int mapSizes[MAP_SIZES] = {64, 128, 256};
+static const double MOST_MS = 12000;
+
+typedef struct Bench {
+    vplContext* context;
+    vplScene* scene;
+    vplGeometry* geometry;
+    vplShadeLight lights[MOST_LIGHTS];
+    int lightCount;
+} Bench;
+
+static double processorMs(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+// Lights of all steps, evenly chosen.
+static void makeLights(Bench* b)
+{
+    vplParticleDef def = vplDefaultParticleDef();
+    def.particleCount = 4 * MOST_LIGHTS;
+    def.sampler = VPL_SAMPLER_HALTON;
+    vplLightSet* set;
+    const int emitters = vplScene_GetEmitterCount(b->scene);
+    check(vplSimulateParticles(b->geometry, emitters ? vplScene_GetEmitter(b->scene, 0) : NULL, emitters,
+                               &def, &set));
+    vplShadeLight* all = malloc((size_t)set->lightCount * sizeof *all);
+    const int count = vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, all);
+    b->lightCount = count < MOST_LIGHTS ? count : MOST_LIGHTS;
+    // A stride that is odd, so that the first few, too, are of everywhere.
+    for (int i = 0; i < b->lightCount; i++) {
+        b->lights[i] = all[(int64_t)i * 619 % b->lightCount * count / b->lightCount];
+    }
+    free(all);
+    vplLightSet_Destroy(set);
+}
+
+static void placesOf(const Bench* b, int count, vplHalfMapPlace* places)
+{
+    for (int i = 0; i < count; i++) {
+        const vplShadeLight* l = &b->lights[i];
+        places[i] = (vplHalfMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+    }
+}
+
+// ---- cost
+
+// Without shadows (maps NULL, no rays), by rays, or by maps.
+static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int lights,
+                      const vplHalfMaps* maps, bool rays)
+{
+    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.2f};
+    def.accumulation = VPL_ACCUMULATE_DEFERRED;
+    def.lights = b->lights;
+    def.lightCount = lights;
+    def.lightRays = rays;
+    def.lightShadows = maps ? maps->maps : NULL;
+    const double start = processorMs();
+    check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
+    return processorMs() - start;
+}
+
+typedef struct Cell {
+    double none, ray, draw[MAP_SIZES], look[MAP_SIZES];
+} Cell;
+
+static Cell measure(const Bench* b, int width, int height, int lights, int runs)
+{
+    const vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), width, height);
+    vplImage* image;
+    check(vplImage_Create(b->context, width, height, &image));
+    vplHalfMapPlace* places = malloc((size_t)lights * sizeof *places);
+    placesOf(b, lights, places);
+    double none[RUNS], ray[RUNS], draw[MAP_SIZES][RUNS], look[MAP_SIZES][RUNS];
+    bool casts = true;
+    for (int run = 0; run < runs; run++) {
+        none[run] = shadeMs(b, &view, image, lights, NULL, false);
+        if (run == 0 && lights > 16) {
+            casts = shadeMs(b, &view, image, 16, NULL, true) * lights / 16 * runs < MOST_MS;
+        }
+        ray[run] = casts ? shadeMs(b, &view, image, lights, NULL, true) : INFINITY;
+        for (int k = 0; k < MAP_SIZES; k++) {
+            vplHalfMaps* maps;
+            check(vplHalfMaps_Create(b->context, mapSizes[k], lights, &maps));
+            const double start = processorMs();
+            check(vplHalfMaps_Draw(maps, b->geometry, places, lights, NULL, NULL));
+            draw[k][run] = processorMs() - start;
+            look[k][run] = shadeMs(b, &view, image, lights, maps, false);
+            vplHalfMaps_Destroy(maps);
+        }
+    }
+    Cell cell = {.none = median(none, runs), .ray = median(ray, runs)};
+    for (int k = 0; k < MAP_SIZES; k++) {
+        cell.draw[k] = median(draw[k], runs);
+        cell.look[k] = median(look[k], runs);
+    }
+    free(places);
+    vplImage_Destroy(image);
+    return cell;
+}
+
+static void printCosts(const Bench* b, const char* name, bool quick)
+{
+    static const int sizes[][2] = {{64, 64}, {128, 128}, {256, 256}, {640, 360}, {1280, 720}};
+    static const int counts[] = {16, 64, 256, 1024};
+    for (int s = 0; s < (quick ? 4 : 5); s++) {
+        for (int c = 0; c < (quick ? 2 : 4) && counts[c] <= b->lightCount; c++) {
+            const int width = sizes[s][0], height = sizes[s][1], lights = counts[c];
+            const Cell cell = measure(b, width, height, lights, quick || lights > 64 ? 1 : RUNS);
+            printf("%-16s %4dx%-4d %5d %9.1f", name, width, height, lights, cell.none);
+            if (isinf(cell.ray)) {
+                printf(" %9s", "-");
+            } else {
+                printf(" %9.1f", cell.ray);
+            }
+            for (int k = 0; k < MAP_SIZES; k++) {
+                const double map = cell.draw[k] + cell.look[k];
+                printf(" | %8.1f %8.1f %6.2f", cell.draw[k], cell.look[k], cell.ray / map);
+            }
+            printf("\n");
+            fflush(stdout);
+        }
+    }
+}
+
+// ---- agreement
+
+enum { POINTS_X = 80, POINTS_Y = 45, AGREEMENT_LIGHTS = 64 };
+
+typedef struct Agreement {
+    int64_t pairs, acne, leaks, outside, texelWrong;
+} Agreement;
+
+static void addPair(const Bench* b, const vplShadeLight* light, const vplHalfMap* map, const vplHit* hit,
+                    vplVec3 normal, Agreement* a)
+{
+    vplSurface s;
+    float factor[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        s.px[l] = hit->position.x;
+        s.py[l] = hit->position.y;
+        s.pz[l] = hit->position.z;
+        s.nx[l] = normal.x;
+        s.ny[l] = normal.y;
+        s.nz[l] = normal.z;
+    }
+    const vplVec3 way = vplSub(map->position, hit->position);
+    if (!(vplDot(way, normal) > 0 && vplDot(way, map->forward) < 0)) {
+        return;
+    }
+    vplHalfMap_FactorBlock(map, &s, factor);
+    const bool dark = isDark(b->geometry, hit, light), darkMap = factor[0] > 0;
+    a->pairs++;
+    if (dark != darkMap) {
+        a->acne += darkMap;
+        a->leaks += dark;
+        a->outside += isSure(b->geometry, map, hit->position, normal, dark);
+    }
+}
+
+static void printAgreement(const Bench* b, const char* name)
+{
+    const vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), POINTS_X, POINTS_Y);
+    const int lights = b->lightCount < AGREEMENT_LIGHTS ? b->lightCount : AGREEMENT_LIGHTS;
+    vplHalfMapPlace places[AGREEMENT_LIGHTS];
+    placesOf(b, lights, places);
+    for (int k = 0; k < MAP_SIZES; k++) {
+        Agreement a = {0};
+        vplHalfMaps* maps;
+        check(vplHalfMaps_Create(b->context, mapSizes[k], lights, &maps));
+        check(vplHalfMaps_Draw(maps, b->geometry, places, lights, NULL, NULL));
+        for (int i = 0; i < POINTS_X * POINTS_Y; i++) {
+            const vplRay ray = {view.eye, rayThrough(&view, i % POINTS_X, i / POINTS_X), {0, 0}};
+            vplHit hit;
+            if (!vplGeometry_ClosestHit(b->geometry, &ray, &hit)) {
+                continue;
+            }
+            const vplVec3 n = vplDot(hit.normal, ray.direction) < 0 ? hit.normal : vplNegate(hit.normal);
+            for (int l = 0; l < lights; l++) {
+                addPair(b, &b->lights[l], &maps->maps[l], &hit, n, &a);
+            }
+        }
+        const double share = 100.0 / (double)(a.pairs > 0 ? a.pairs : 1);
+        printf("%-16s map %4d: %8lld pairs, dark in the map only %.3f %%, in the ray only %.3f %%, outside "
+               "the band "
+               "%.4f %%\n",
+               name, mapSizes[k], (long long)a.pairs, (double)a.acne * share, (double)a.leaks * share,
+               (double)a.outside * share);
+        vplHalfMaps_Destroy(maps);
+    }
+}
+
+int main(int argc, char** argv)
+{
+    static Bench b;
+    bool quick = false, costs = true;
+    printf("%-16s %9s %5s %9s %9s", "scene", "size", "lights", "none", "ray");
+    for (int k = 0; k < MAP_SIZES; k++) {
+        printf(" | draw%4d   + shade ray/map", mapSizes[k]);
+    }
+    printf("\n");
+    for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--quick") == 0) {
+            quick = true;
+            continue;
+        }
+        if (strcmp(argv[i], "--agree") == 0) {
+            costs = false;
+            continue;
+        }
+        const char* slash = strrchr(argv[i], '/');
+        char name[17];
+        snprintf(name, sizeof name, "%s", slash ? slash + 1 : argv[i]);
+        openScene(argv[i], 1, VPL_ISA_AUTO, &b.context, &b.scene);
+        check(vplGeometry_Create(b.scene, &b.geometry));
+        check(vplGeometry_PrepareRays(b.geometry));
+        makeLights(&b);
+        if (costs) {
+            printCosts(&b, name, quick);
+        }
+        printAgreement(&b, name);
+        vplGeometry_Destroy(b.geometry);
+        vplScene_Destroy(b.scene);
+        vplContext_Destroy(b.context);
+    }
+    return 0;
+}

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: MIT
+// Shadow maps of half spaces: what a texel holds, where they agree with rays, and what they do at extremes.
+#include "bench/band.h"
+#include "shapes.h"
+
+#include "base/hash.h"
+#include "base/rng.h"
+#include "math/vec.h"
+
+static vplHalfMaps* drawMaps(const vplGeometry* g, int size, const vplHalfMapPlace* places, int count)
+{
+    vplHalfMaps* maps;
+    assert_int_equal(vplHalfMaps_Create(g->context, size, count, &maps), VPL_SUCCESS);
+    assert_int_equal(vplHalfMaps_Draw(maps, g, places, count, NULL, NULL), VPL_SUCCESS);
+    return maps;
+}
+
+static float factorAt(const vplHalfMap* map, vplVec3 p, vplVec3 n)
+{
+    vplSurface s;
+    float factor[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        s.px[l] = p.x;
+        s.py[l] = p.y;
+        s.pz[l] = p.z;
+        s.nx[l] = n.x;
+        s.ny[l] = n.y;
+        s.nz[l] = n.z;
+    }
+    vplHalfMap_FactorBlock(map, &s, factor);
+    return factor[0];
+}
+
+// The room's objects, and a ball of 1,280 triangles in a box of 972.
+static vplGeometry* clutter(vplContext* context, int which)
+{
+    if (which == 0) {
+        return tableRoom(context);
+    }
+    vplScene* scene = sceneOf(context, 0.5f);
+    Shape ball = icosphere(3), box = gridBox(9);
+    const double turned[3] = {0.3, 0.7, 0.1};
+    placeShape(&ball, 0.35f, turned, vplVec(0.2f, -0.3f, 0.1f));
+    addShape(scene, &ball, false, NULL);
+    addShape(scene, &box, false, NULL);
+    freeShape(&ball);
+    freeShape(&box);
+    return freezeScene(scene);
+}
+
+// A place on some triangle, on the side that a random point in the bounds sees.
+static vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)
+{
+    for (;;) {
+        const vplVec3 size = vplSub(g->boundsMax, g->boundsMin);
+        const vplVec3 from = {g->boundsMin.x + roll(dice, 0.01f, 0.99f) * size.x,
+                              g->boundsMin.y + roll(dice, 0.01f, 0.99f) * size.y,
+                              g->boundsMin.z + roll(dice, 0.01f, 0.99f) * size.z};
+        const vplRay ray = {from, rollUnit(dice), {0, 0}};
+        if (vplGeometry_ClosestHit(g, &ray, hitOut)) {
+            const vplVec3 n = hitOut->normal;
+            return (vplHalfMapPlace){hitOut->position, vplDot(n, ray.direction) < 0 ? n : vplNegate(n)};
+        }
+    }
+}
+
+// Where a texel's centre looks.
+static vplVec3 directionOf(const vplHalfMap* map, int column, int row)
+{
+    const float u = (float)(2 * column + 1) / (float)map->size - 1;
+    const float v = (float)(2 * row + 1) / (float)map->size - 1;
+    const float p = 0.5f * (u + v), q = 0.5f * (u - v);
+    return vplAdd(vplAdd(vplScale(p, map->right), vplScale(q, map->up)),
+                  vplScale(1 - fabsf(p) - fabsf(q), map->forward));
+}
+
+static float hitAlong(const vplGeometry* g, const vplHalfMap* map, vplVec3 direction)
+{
+    const vplRay ray = {map->position, direction, {0, 0}};
+    vplHit hit;
+    return vplGeometry_ClosestHit(g, &ray, &hit) ? 1 / hit.t : 0;
+}
+
+// Whether the ray, or one a hair beside it, meets something there: edges go to either side.
+static bool holdsRay(const vplGeometry* g, const vplHalfMap* map, vplVec3 d, float stored)
+{
+    for (int i = 0; i < 9; i++) {
+        const float a = 2e-6f * (float)(i % 3 - 1), b = 2e-6f * (float)(i / 3 - 1);
+        const vplVec3 beside = vplAdd(d, vplAdd(vplScale(a, map->right), vplScale(b, map->up)));
+        const float wanted = hitAlong(g, map, i == 4 ? d : beside);
+        if (fabsf(stored - wanted) <= 1e-4f * wanted) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    for (int which = 0; which < 2; which++) {
+        vplGeometry* g = clutter(context, which);
+        Dice dice = {7, 0};
+        for (int light = 0; light < 40; light++) {
+            vplHit hit;
+            const vplHalfMapPlace place = rollPlace(g, &dice, &hit);
+            const int size = 1 + light; // whole blocks and parts of them
+            vplHalfMaps* maps = drawMaps(g, size, &place, 1);
+            const vplHalfMap* map = &maps->maps[0];
+            for (int i = 0; i < size * size; i++) {
+                const vplVec3 d = directionOf(map, i % size, i / size);
+                const float stored =
+                    map->texels[vplHalfMap_Place(vplHalfMap_Blocks(size), i % size, i / size)];
+                // Along the horizon the light's own surface is met or not, as rounding wants.
+                if (vplDot(d, map->forward) > 1e-3f && !holdsRay(g, map, d, stored)) {
+                    fail_msg("scene %d, light %d, texel %d of %d^2: 1/t is %.9g, a ray's %.9g", which, light,
+                             i, size, (double)stored, (double)hitAlong(g, map, d));
+                }
+            }
+            vplHalfMaps_Destroy(maps);
+        }
+        vplGeometry_Destroy(g);
+    }
+    closeTestContext(context);
+}
+
+static void MapsAndRaysAgreeOutsideTheBand(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    for (int which = 0; which < 2; which++) {
+        vplGeometry* g = clutter(context, which);
+        Dice dice = {11, 0};
+        int pairs = 0, dark = 0, apart = 0;
+        for (int light = 0; light < 60; light++) {
+            vplHit on, hit;
+            const vplHalfMapPlace place = rollPlace(g, &dice, &on);
+            const vplShadeLight shade = {place.position.x,
+                                         place.position.y,
+                                         place.position.z,
+                                         place.normal.x,
+                                         place.normal.y,
+                                         place.normal.z,
+                                         1,
+                                         1,
+                                         1};
+            vplHalfMaps* maps = drawMaps(g, 16 << light % 4, &place, 1);
+            const vplHalfMap* map = &maps->maps[0];
+            for (int i = 0; i < 300; i++) {
+                const vplHalfMapPlace at = rollPlace(g, &dice, &hit);
+                const vplVec3 way = vplSub(map->position, at.position);
+                if (!(vplDot(way, at.normal) > 0 && vplDot(way, map->forward) < 0)) {
+                    assert_true(factorAt(map, at.position, at.normal) == 1); // light falls from nowhere
+                    continue;
+                }
+                const bool shadowed = isDark(g, &hit, &shade);
+                const bool differs = shadowed != (factorAt(map, at.position, at.normal) > 0);
+                pairs++;
+                dark += shadowed;
+                apart += differs;
+                if (differs && isSure(g, map, at.position, at.normal, shadowed)) {
+                    fail_msg("scene %d, light %d, point %d: the ray says %d", which, light, i, shadowed);
+                }
+            }
+            vplHalfMaps_Destroy(maps);
+        }
+        printf("# %d pairs, %d dark, %d within the band\n", pairs, dark, apart);
+        assert_true(dark > 500 && pairs > dark + 500);
+        assert_true(apart > 0 && apart < pairs / 20);
+        vplGeometry_Destroy(g);
+    }
+    closeTestContext(context);
+}
+
+// Also where light grazes it, and with one texel for all directions.
+static void APlaneNeverShadowsItself(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
+    Dice dice = {3, 0};
+    for (int i = 0; i < 2000; i++) {
+        const float high = 0.25f + 4 * powf(10, roll(&dice, -5, 0));
+        const vplHalfMapPlace place = {vplVec(3 + roll(&dice, -4, 4), high, -2 + roll(&dice, -4, 4)),
+                                       vplNormalize(vplAdd(vplVec(0, -1.01f, 0), rollUnit(&dice)))};
+        vplHalfMaps* maps = drawMaps(g, 1 + i % 33, &place, 1);
+        for (int k = 0; k < 20; k++) {
+            const vplVec3 p = vplVec(3 + roll(&dice, -4.9f, 4.9f), 0.25f, -2 + roll(&dice, -4.9f, 4.9f));
+            if (vplDot(vplSub(p, maps->maps[0].position), place.normal) > 0) {
+                assert_true(factorAt(&maps->maps[0], p, vplVec(0, 1, 0)) == 0);
+            }
+        }
+        vplHalfMaps_Destroy(maps);
+    }
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// Nothing in a convex room hides one wall from another: not the surface that a light lies on, nor those that meet it
+// in an edge or a corner, wherever the room is.
+static void LightsOnWallsEdgesAndCornersSeeTheWholeRoom(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    static const vplVec3 offsets[] = {{0, 0, 0}, {1, 1, 1}, {-1, 1, 0}, {300, -20, 7}};
+    for (int o = 0; o < 4; o++) {
+        vplScene* scene = sceneOf(context, 0.5f);
+        Shape box = gridBox(3);
+        placeShape(&box, 1, (const double[]){0, 0, 0}, offsets[o]);
+        addShape(scene, &box, false, NULL);
+        freeShape(&box);
+        vplGeometry* g = freezeScene(scene);
+        Dice dice = {5, 0};
+        for (int light = 0; light < 300; light++) {
+            vplVec3 at = rollVec(&dice, 1), n = {0, light & 1 ? 1 : -1, 0};
+            at.y = -n.y;
+            at.x = light % 3 ? at.x : at.x > 0 ? 1 : -1; // on an edge
+            at.z = light % 6 ? at.z : at.z > 0 ? 1 : -1; // in a corner
+            const vplHalfMapPlace place = {vplAdd(at, offsets[o]), n};
+            const vplShadeLight shade = {
+                place.position.x, place.position.y, place.position.z, n.x, n.y, n.z, 1, 1, 1};
+            vplHalfMaps* maps = drawMaps(g, 64, &place, 1);
+            for (int k = 0; k < 40; k++) {
+                vplHit hit;
+                const vplHalfMapPlace p = rollPlace(g, &dice, &hit);
+                const vplVec3 local = vplSub(p.position, offsets[o]),
+                              way = vplSub(place.position, p.position);
+                // Two coordinates near 1: by an edge, where the map is in its band. A light in the point's own plane
+                // lights nothing.
+                float band, footprint;
+                band = vplHalfMap_Band(&maps->maps[0], p.position, p.normal, &footprint);
+                const int close =
+                    (fabsf(local.x) > 1 - band) + (fabsf(local.y) > 1 - band) + (fabsf(local.z) > 1 - band);
+                if (vplDot(way, p.normal) > 1e-3f && vplDot(way, n) < -1e-3f) {
+                    assert_false(isDark(g, &hit, &shade));
+                    assert_true(close > 1 || factorAt(&maps->maps[0], p.position, p.normal) == 0);
+                }
+            }
+            vplHalfMaps_Destroy(maps);
+        }
+        vplGeometry_Destroy(g);
+    }
+    closeTestContext(context);
+}
+
+static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
+    const vplHalfMapPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0)};
+    vplHalfMaps* maps = drawMaps(g, 5, &place, 1);
+    for (int i = 0; i < 25; i++) {
+        assert_true(maps->maps[0].texels[vplHalfMap_Place(2, i % 5, i / 5)] == 0);
+    }
+    Dice dice = {1, 0};
+    for (int i = 0; i < 100; i++) {
+        const vplVec3 p = vplVec(roll(&dice, -9, 9), roll(&dice, 0.1f, 9), roll(&dice, -9, 9));
+        assert_true(factorAt(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
+        assert_true(factorAt(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
+    }
+    // The light itself: no number that is none.
+    const float self = factorAt(&maps->maps[0], maps->maps[0].position, vplVec(0, -1, 0));
+    assert_true(self == 0 || self == 1);
+    vplHalfMaps_Destroy(maps);
+    vplGeometry_Destroy(g);
+    // Nothing at all.
+    g = freezeScene(sceneOf(context, 0.5f));
+    maps = drawMaps(g, 1, &place, 1);
+    assert_true(maps->maps[0].texels[0] == 0);
+    vplHalfMaps_Destroy(maps);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// One texel looks straight up.
+static void AMapOfOneTexelKnowsWhatIsStraightAbove(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    for (int side = -1; side <= 1; side += 2) {
+        vplGeometry* g = floorQuad(context, vplVec(0, 1, 0), 0.5f, 0.5f);
+        const vplHalfMapPlace place = {vplVec(0, (float)(1 - side), 0), vplVec(0, (float)side, 0)};
+        vplHalfMaps* maps = drawMaps(g, 1, &place, 1);
+        assert_true(fabsf(maps->maps[0].texels[0] - 1) < 1e-5f);
+        const vplVec3 n = vplVec(0, (float)-side, 0);
+        assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 + 30 * side), 0), n) == 1);
+        assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 - 0.5f * (float)side), 0), n) == 0);
+        vplHalfMaps_Destroy(maps);
+        vplGeometry_Destroy(g);
+    }
+    closeTestContext(context);
+}
+
+static uint64_t hashOf(vplContext* context)
+{
+    vplGeometry* g = clutter(context, 1);
+    Dice dice = {9, 0};
+    vplHalfMapPlace places[9];
+    vplHit hit;
+    for (int i = 0; i < 9; i++) {
+        places[i] = rollPlace(g, &dice, &hit);
+    }
+    vplHalfMaps* maps = drawMaps(g, 36, places, 9);
+    uint64_t hash = vplHashFloats(0, maps->texels, (size_t)9 * 36 * 36);
+    for (int i = 0; i < 9 * 500; i++) {
+        const vplHalfMapPlace at = rollPlace(g, &dice, &hit);
+        const float factor = factorAt(&maps->maps[i % 9], at.position, at.normal);
+        hash = vplHashFloats(hash, &factor, 1);
+    }
+    vplHalfMaps_Destroy(maps);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+    return hash;
+}
+
+static void MapsHaveTheSameBitsEverywhere(void** state)
+{
+    (void)state;
+    const uint64_t wanted = hashOf(openTestContext(1));
+    for (int workers = 2; workers < 8; workers += workers == 3 ? 4 : 1) {
+        assert_true(hashOf(openTestContext(workers)) == wanted);
+    }
+    for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+        vplContext* context = openIsaContext(2, (vplIsa)isa);
+        assert_true(context == NULL || hashOf(context) == wanted);
+    }
+}
+
+static bool refuse(void* user, double fraction)
+{
+    (void)fraction;
+    return ++*(int*)user < 3;
+}
+
+static void MapsCanBeRefusedAndCancelled(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = closedCube(context, 0.5f);
+    vplHalfMaps* maps = NULL;
+    assert_int_equal(vplHalfMaps_Create(context, 0, 1, &maps), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "0 texels"));
+    assert_int_equal(vplHalfMaps_Create(context, VPL_MAX_SHADOW_MAP + 1, 1, &maps), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplHalfMaps_Create(context, 8, -1, &maps), VPL_INVALID_ARGUMENT);
+    assert_null(maps);
+    assert_int_equal(vplHalfMaps_Create(context, 8, 8, &maps), VPL_SUCCESS);
+    vplHalfMapPlace places[9];
+    for (int i = 0; i < 9; i++) {
+        places[i] = (vplHalfMapPlace){vplVec(0, -1, 0), vplVec(0, 1, 0)};
+    }
+    assert_int_equal(vplHalfMaps_Draw(maps, g, places, 9, NULL, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "room for 8"));
+    int asked = 0;
+    assert_int_equal(vplHalfMaps_Draw(maps, g, places, 8, refuse, &asked), VPL_CANCELLED);
+    assert_true(asked == 3);
+    assert_int_equal(vplHalfMaps_Draw(maps, g, places, 0, NULL, NULL), VPL_SUCCESS);
+    vplHalfMaps_Destroy(maps);
+    vplHalfMaps_Destroy(NULL);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+TEST_SUITE(halfMaps, cmocka_unit_test(EachTexelHoldsWhatARayThroughItsCentreMeets),
+           cmocka_unit_test(MapsAndRaysAgreeOutsideTheBand), cmocka_unit_test(APlaneNeverShadowsItself),
+           cmocka_unit_test(LightsOnWallsEdgesAndCornersSeeTheWholeRoom),
+           cmocka_unit_test(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot),
+           cmocka_unit_test(AMapOfOneTexelKnowsWhatIsStraightAbove),
+           cmocka_unit_test(MapsHaveTheSameBitsEverywhere), cmocka_unit_test(MapsCanBeRefusedAndCancelled));
