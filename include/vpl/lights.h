@@ -49,8 +49,10 @@ typedef struct vplVirtualLight {
                 // particle leaves a point or comes from a direction, its own direction
     vplRgb light; // documented: the light L the particle carries after attenuation, in the emitter's unit;
                   // physical, and Keller's: flux in W that the surface sends out if one particle carried all
-    float weight; // N / floor(rho^k N); the picture also divides by N
-    int step;     // k: 0 for the first hit
+    float
+        weight; // N / floor(rho^k N), of a light that was chosen divided by its probability; the picture also
+                // divides by N
+    int step;   // k: 0 for the first hit
     int particle; // [0, N)
     int object;   // where it lies; -1: it is the emitter itself (Keller, step 0 of what is no surface)
 } vplVirtualLight;
@@ -106,6 +108,50 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
 
 // NULL is allowed.
 void vplLightSet_Destroy(vplLightSet* set);
+
+// ---- lights for what a camera sees
+
+// Lights are candidates first; each is judged by what it gives to some points that the camera sees.
+typedef struct vplPlacementDef {
+    vplLighting lighting; // formulas by which the lights will light; default VPL_LIGHTING_PHYSICAL
+    vplCameraDef camera;  // default vplDefaultCameraDef()
+    int width, height;    // pixels; only their ratio counts; default 1280 x 720
+    int pointCount; // S, points that the camera sees, [1, 2^20], rounded up to 16 per cell of a grid; default
+                    // 256
+    int oversampling; // F: candidates come from F N particles, [1, 4096]; fewer where F N particles would leave
+                      // more than 2^22 candidates; default 32
+    float minDistance;        // bound of the geometry term while judging, metres, >= 0; default 0
+    bool shadows;             // the lights will cast shadows; default true
+    float fluxShare;          // share of the probabilities that goes by flux alone, (0, 1]; default 0.1
+    uint64_t seed;            // default 0
+    int64_t index;            // another number, another choice: of a pass; default 0
+    vplProgressFcn* progress; // default NULL
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultPlacementDef
+} vplPlacementDef;
+
+vplPlacementDef vplDefaultPlacementDef(void);
+
+// What each light of the set gives to the camera's points: the root of the mean square of what they reflect of it,
+// in W/m^2 (documented: in the emitter's unit), of light that comes through the bound and past what is between.
+// Only an estimate: a light that reaches other places only gets 0. *raysOut (may be NULL) is the rays that were cast.
+vplResult vplMeasureLights(const vplGeometry* geometry, const vplLightSet* set, const vplPlacementDef* def,
+                           float* contributionsOut, int64_t* raysOut);
+
+// Chooses `count` of the candidates, give or take one: each with probability p = min(1, t q), where q mixes its
+// share of all contributions and, by def->fluxShare, of all flux; t makes the sum of p `count`. Weights are divided
+// by p, so that the mean over all choices is the light of all candidates. Neighbours share: of lights that are near
+// to each other every 1/p-th is taken. What has no flux is never chosen, nor are lights that are the emitter itself.
+// Source: Georgiev and Slusallek, Simple and Robust Iterative Importance Sampling of Virtual Point Lights,
+// Eurographics 2010; Segovia, Iehl, Mitanchey and Peroche, Bidirectional Instant Radiosity, EGSR 2006.
+vplResult vplChooseLights(const vplLightSet* candidates, const float* contributions, double count,
+                          const vplPlacementDef* def, vplLightSet** setOut);
+
+// Both: simulates F N particles and leaves about as many lights as N would. The set's N is that of all candidates.
+vplResult vplPlaceLights(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
+                         const vplParticleDef* particles, const vplPlacementDef* def, vplLightSet** setOut);
+
+// ----
 
 // A virtual light as the kernel wants it.
 typedef struct vplShadeLight {
