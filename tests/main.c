@@ -28,7 +28,9 @@
     X(rays)                                                                                                  \
     X(packets)                                                                                               \
     X(path)                                                                                                  \
-    X(passes) X(raster) X(rasterTruth) X(render) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
+    X(passes)                                                                                                \
+    X(placement)                                                                                             \
+    X(raster) X(rasterTruth) X(render) X(rsm) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,

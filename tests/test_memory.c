@@ -216,6 +216,35 @@ static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** s
     }
 }
 
+// Variants: placements.
+static vplResult placeLights(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplImage* image = NULL;
+    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
+    options.placement = (vplLightPlacement)variant;
+    options.rsmSize = 4;
+    options.particles = 3;
+    options.width = options.height = 4;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplRender(scene, &options, &image, NULL);
+    }
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfAPlacementIsReported(void** state)
+{
+    (void)state;
+    for (int variant = VPL_PLACEMENT_RSM; variant <= VPL_PLACEMENT_VIEW; variant++) {
+        failEveryAllocation(placeLights, "png", variant, false);
+        failEveryAllocation(placeLights, "png", variant, true);
+    }
+}
+
 // Only the geometry of a mesh, and its tree.
 static vplResult freezeBall(vplContext* context, const char* path, int variant)
 {
@@ -387,6 +416,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),

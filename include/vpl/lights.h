@@ -42,6 +42,60 @@ typedef enum vplParticleGeometry {
     VPL_PARTICLE_GEOMETRY_OBB        // objects' oriented bounding boxes (Franchi and Ferrante, "Improving")
 } vplParticleGeometry;
 
+// ---- reflective shadow maps
+
+typedef struct vplReflectiveMapDef {
+    vplEmitterDef emitter; // as in a scene; default vplDefaultEmitterDef()
+    int size;              // texels along a side, [1, VPL_MAX_SHADOW_MAP]; default 256
+    uint32_t cookie;       // set by vplDefaultReflectiveMapDef
+} vplReflectiveMapDef;
+
+vplReflectiveMapDef vplDefaultReflectiveMapDef(void);
+
+// The surfaces that an emitter lights first. Planes of one value per texel, [face][row from the top][column]; all
+// 0, and distance +infinity, where nothing is. Faces: a point emitter has the six of a cube map; a spot's one fits
+// its outer angle; a directional emitter's one is a parallel view of all geometry. Read only.
+typedef struct vplReflectiveMap {
+    vplEmitterDef emitter;
+    int size, faceCount;
+    const float* distance; // metres from the emitter; directional: from where its view begins
+    const float*
+        position[3]; // x, y, z, metres: where the texel's centre meets the triangle's plane; at an edge up to
+                     // 1/256 texel outside of it
+    const float* normal[3]; // unit, interpolated on smooth objects, on the side that is lit
+    const float* albedo[3]; // diffuse reflectance, [0, 1]
+    const float*
+        flux[3]; // W: incident, what the emitter sends through the texel; it leaves times albedo. All texels
+                 // that meet something: the emitter's power as far as it meets something
+    const int32_t* triangle; // index in the geometry, -1 where nothing is
+    vplVec3 right[6], up[6],
+        forward[6];   // of each face: unit; right, up and forward are left-handed, as a cube's
+    double extent[2]; // tangents of half the view, across and up; directional: half its size, metres
+    vplVec3 origin;   // the emitter; directional: the middle of where the view begins
+    vplRasterStats stats;
+    vplContext* context;
+} vplReflectiveMap;
+
+// Draws every object once per face. Solid angles are exact and a spot's falloff is taken at texels' centres, so a
+// closed room gets a point emitter's power to rounding and a spot's with up to 1/size^2 missing; at silhouettes texels
+// are in or out. Source: Dachsbacher and Stamminger, Reflective Shadow Maps, I3D 2005. Departs: flux is what
+// arrives, so that it adds up whatever the colours.
+vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflectiveMapDef* def,
+                                  vplProgressFcn* progress, void* user, vplReflectiveMap** mapOut);
+
+// NULL is allowed.
+void vplReflectiveMap_Destroy(vplReflectiveMap* map);
+
+// Index of the texel that a ray of the emitter goes through; -1 where its view does not reach.
+int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray);
+
+// The hit of the ray through a texel's centre, inside of its triangle, and that ray's unit direction; false where
+// nothing is.
+bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
+                             vplHit* hitOut, vplVec3* directionOut);
+
+// ---- particles
+
 typedef struct vplVirtualLight {
     vplVec3 position; // metres
     vplVec3
@@ -69,7 +123,10 @@ typedef struct vplParticleDef {
     vplParticleGeometry geometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;             // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
     const vplVec3* directions; // N first directions, unit, instead of the sampler's; NULL (default)
-    vplProgressFcn* progress;  // default NULL
+    const vplReflectiveMap* const*
+        maps; // one per emitter, where its particles' first hits are looked up instead of cast; an entry may be
+              // NULL: cast; with exact geometry only; NULL (default)
+    vplProgressFcn* progress; // default NULL
     void* progressUser;
     uint32_t cookie; // set by vplDefaultParticleDef
 } vplParticleDef;

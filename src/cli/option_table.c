@@ -52,6 +52,8 @@ const Option OPTIONS[] = {
      "where virtual lights go: particles (default): where they land; rsm: first hits are texels of "
      "reflective "
      "shadow maps; view: particles, of which those are kept that light what the camera sees"},
+    {"--rsm-size", "N", SCENE, readInt, AT(render.rsmSize), 1, VPL_MAX_SHADOW_MAP, NULL,
+     "texels along a side of a reflective shadow map, for --placement rsm; default 256"},
     {"--bounce", "B", SCENE, readChoice, AT(render.bounce), 0, 0, "auto|reflect|diffuse",
      "auto (default): reflect for documented lighting, diffuse for physical"},
     {"--seed", "S", SCENE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},

@@ -28,14 +28,46 @@ static vplResult placeByView(vplJob* job, const vplEmitterDef* emitters, int emi
     return vplPlaceLights(job->geometry, emitters, emitterCount, particles, &def, setOut);
 }
 
+// Maps of all emitters that particles start from; those of no power need none.
+static vplResult placeByMaps(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
+                             const vplParticleDef* particles, vplLightSet** setOut)
+{
+    vplContext* context = job->context;
+    vplReflectiveMap** maps = vplAllocZero(context, (size_t)emitterCount, sizeof *maps);
+    vplResult result = maps ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    for (int i = 0; i < emitterCount && result == VPL_SUCCESS; i++) {
+        const vplRgb intensity = emitters[i].intensity;
+        if (intensity.r > 0 || intensity.g > 0 || intensity.b > 0) {
+            vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+            def.emitter = emitters[i];
+            def.size = job->options.rsmSize;
+            result = vplReflectiveMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps[i]);
+        }
+        if (result == VPL_SUCCESS && maps[i] != NULL) {
+            vplJob_AddRaster(job, &maps[i]->stats);
+        }
+    }
+    if (result == VPL_SUCCESS) {
+        vplParticleDef def = *particles;
+        def.maps = (const vplReflectiveMap* const*)maps;
+        result = vplSimulateParticles(job->geometry, emitters, emitterCount, &def, setOut);
+    }
+    for (int i = 0; maps != NULL && i < emitterCount; i++) {
+        vplReflectiveMap_Destroy(maps[i]);
+    }
+    vplFree(context, maps);
+    return result;
+}
+
 vplResult vplJob_PlaceLights(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
                              const vplParticleDef* particles, vplLightSet** setOut)
 {
     switch (job->options.placement) {
     case VPL_PLACEMENT_VIEW:
         return placeByView(job, emitters, emitterCount, particles, setOut);
-    case VPL_PLACEMENT_PARTICLES:
     case VPL_PLACEMENT_RSM:
+        return placeByMaps(job, emitters, emitterCount, particles, setOut);
+    case VPL_PLACEMENT_PARTICLES:
         break;
     }
     return vplSimulateParticles(job->geometry, emitters, emitterCount, particles, setOut);
