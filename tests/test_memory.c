@@ -216,22 +216,31 @@ static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** s
     }
 }
 
-// Variants: placements.
+// Variants: placements. The view's is called by itself: with few candidates and few points.
 static vplResult placeLights(vplContext* context, const char* path, int variant)
 {
     (void)path;
     vplScene* scene = NULL;
-    vplImage* image = NULL;
+    vplGeometry* geometry = NULL;
+    vplLightSet* set = NULL;
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
-    options.placement = (vplLightPlacement)variant;
+    vplParticleDef particles = vplDefaultParticleDef();
+    vplPlacementDef def = vplDefaultPlacementDef();
+    options.placement = VPL_PLACEMENT_RSM;
     options.rsmSize = 4;
-    options.particles = 3;
-    options.width = options.height = 4;
+    def.oversampling = 2;
+    def.pointCount = 1;
     vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplRender(scene, &options, &image, NULL);
+    if (result == VPL_SUCCESS && variant == VPL_PLACEMENT_RSM) {
+        result = vplMakeLights(scene, &options, &set);
+    } else if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+        if (result == VPL_SUCCESS) {
+            result = vplPlaceLights(geometry, vplScene_GetEmitter(scene, 0), 1, &particles, &def, &set);
+        }
     }
-    vplImage_Destroy(image);
+    vplLightSet_Destroy(set);
+    vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
     return result;
 }

@@ -47,7 +47,8 @@ const Option OPTIONS[] = {
     {"--reflectivity", "R", SCENE, readReflectivity, 0, 0, 1, NULL,
      "share of particles that go on at each step, [0, 1), or auto: the scene's mean; default 0.5"},
     {"--sampler", "S", SCENE, readChoice, AT(render.sampler), 0, 0, "auto|random|halton|hammersley",
-     "auto (default): halton for keller, else random; or random, halton or hammersley"},
+     "auto (default): halton for keller and for --placement view, else random; or random, halton or "
+     "hammersley"},
     {"--placement", "P", SCENE, readChoice, AT(render.placement), 0, 0, "particles|rsm|view",
      "where virtual lights go: particles (default): where they land; rsm: first hits are texels of "
      "reflective "
