@@ -32,11 +32,13 @@
     X(packets) \
     X(passes) \
     X(path) \
+    X(placement) \
     X(raster) \
     X(rasterTruth) \
     X(rays) \
     X(render) \
     X(renderer) \
+    X(rsm) \
     X(scene) \
     X(sceneChecks) \
     X(shading) \

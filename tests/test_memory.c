@@ -246,6 +246,44 @@ static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** s
     }
 }
 
+// Variants: placements. The view's is called by itself: with few candidates and few points.
+static vplResult placeLights(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    vplLightSet* set = NULL;
+    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
+    vplParticleDef particles = vplDefaultParticleDef();
+    vplPlacementDef def = vplDefaultPlacementDef();
+    options.placement = VPL_PLACEMENT_RSM;
+    options.rsmSize = 4;
+    def.oversampling = 2;
+    def.pointCount = 1;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS && variant == VPL_PLACEMENT_RSM) {
+        result = vplMakeLights(scene, &options, &set);
+    } else if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+        if (result == VPL_SUCCESS) {
+            result = vplPlaceLights(geometry, vplScene_GetEmitter(scene, 0), 1, &particles, &def, &set);
+        }
+    }
+    vplLightSet_Destroy(set);
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfAPlacementIsReported(void** state)
+{
+    (void)state;
+    for (int variant = VPL_PLACEMENT_RSM; variant <= VPL_PLACEMENT_VIEW; variant++) {
+        failEveryAllocation(placeLights, "png", variant, false);
+        failEveryAllocation(placeLights, "png", variant, true);
+    }
+}
+
 // Only the geometry of a mesh, and its tree.
 static vplResult freezeBall(vplContext* context, const char* path, int variant)
 {
@@ -418,6 +456,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),

@@ -42,6 +42,60 @@ typedef enum vplParticleGeometry {
     VPL_PARTICLE_GEOMETRY_OBB        // objects' oriented bounding boxes (Franchi and Ferrante, "Improving")
 } vplParticleGeometry;
 
+// ---- reflective shadow maps
+
+typedef struct vplReflectiveMapDef {
+    vplEmitterDef emitter; // as in a scene; default vplDefaultEmitterDef()
+    int size;              // texels along a side, [1, VPL_MAX_SHADOW_MAP]; default 256
+    uint32_t cookie;       // set by vplDefaultReflectiveMapDef
+} vplReflectiveMapDef;
+
+vplReflectiveMapDef vplDefaultReflectiveMapDef(void);
+
+// The surfaces that an emitter lights first. Planes of one value per texel, [face][row from the top][column]; all
+// 0, and distance +infinity, where nothing is. Faces: a point emitter has the six of a cube map; a spot's one fits
+// its outer angle; a directional emitter's one is a parallel view of all geometry. Read only.
+typedef struct vplReflectiveMap {
+    vplEmitterDef emitter;
+    int size, faceCount;
+    const float* distance; // metres from the emitter; directional: from where its view begins
+    const float*
+        position[3]; // x, y, z, metres: where the texel's centre meets the triangle's plane; at an edge up to
+                     // 1/256 texel outside of it
+    const float* normal[3]; // unit, interpolated on smooth objects, on the side that is lit
+    const float* albedo[3]; // diffuse reflectance, [0, 1]
+    const float*
+        flux[3]; // W: incident, what the emitter sends through the texel; it leaves times albedo. All texels
+                 // that meet something: the emitter's power as far as it meets something
+    const int32_t* triangle; // index in the geometry, -1 where nothing is
+    vplVec3 right[6], up[6],
+        forward[6];   // of each face: unit; right, up and forward are left-handed, as a cube's
+    double extent[2]; // tangents of half the view, across and up; directional: half its size, metres
+    vplVec3 origin;   // the emitter; directional: the middle of where the view begins
+    vplRasterStats stats;
+    vplContext* context;
+} vplReflectiveMap;
+
+// Draws every object once per face. Solid angles are exact and a spot's falloff is taken at texels' centres, so a
+// closed room gets a point emitter's power to rounding and a spot's with up to 1/size^2 missing; at silhouettes texels
+// are in or out. Source: Dachsbacher and Stamminger, Reflective Shadow Maps, I3D 2005. Departs: flux is what
+// arrives, so that it adds up whatever the colours.
+vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflectiveMapDef* def,
+                                  vplProgressFcn* progress, void* user, vplReflectiveMap** mapOut);
+
+// NULL is allowed.
+void vplReflectiveMap_Destroy(vplReflectiveMap* map);
+
+// Index of the texel that a ray of the emitter goes through; -1 where its view does not reach.
+int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray);
+
+// The hit of the ray through a texel's centre, inside of its triangle, and that ray's unit direction; false where
+// nothing is.
+bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
+                             vplHit* hitOut, vplVec3* directionOut);
+
+// ---- particles
+
 typedef struct vplVirtualLight {
     vplVec3 position; // metres
     vplVec3
@@ -49,7 +103,9 @@ typedef struct vplVirtualLight {
                 // particle leaves a point or comes from a direction, its own direction
     vplRgb light; // documented: the light L the particle carries after attenuation, in the emitter's unit;
                   // physical, and Keller's: flux in W that the surface sends out if one particle carried all
-    float weight; // N / floor(rho^k N), in a pass rho^-k; the picture also divides by N
+    float
+        weight; // N / floor(rho^k N), in a pass rho^-k; of a light that was chosen divided by its probability; the
+                // picture also divides by N
     int step;     // k: 0 for the first hit
     int particle; // [0, N)
     int object;   // where it lies; -1: it is the emitter itself (Keller, step 0 of what is no surface)
@@ -69,7 +125,10 @@ typedef struct vplParticleDef {
     vplParticleGeometry geometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;             // default 0; shifts the low-discrepancy samplers, 0 leaves them as published
     const vplVec3* directions; // N first directions, unit, instead of the sampler's; NULL (default)
-    vplProgressFcn* progress;  // default NULL
+    const vplReflectiveMap* const*
+        maps; // one per emitter, where its particles' first hits are looked up instead of cast; an entry may be
+              // NULL: cast; with exact geometry only; NULL (default)
+    vplProgressFcn* progress; // default NULL
     void* progressUser;
     uint32_t cookie; // set by vplDefaultParticleDef
 } vplParticleDef;
@@ -108,6 +167,50 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
 
 // NULL is allowed.
 void vplLightSet_Destroy(vplLightSet* set);
+
+// ---- lights for what a camera sees
+
+// Lights are candidates first; each is judged by what it gives to some points that the camera sees.
+typedef struct vplPlacementDef {
+    vplLighting lighting; // formulas by which the lights will light; default VPL_LIGHTING_PHYSICAL
+    vplCameraDef camera;  // default vplDefaultCameraDef()
+    int width, height;    // pixels; only their ratio counts; default 1280 x 720
+    int pointCount; // S, points that the camera sees, [1, 2^20], rounded up to 16 per cell of a grid; default
+                    // 256
+    int oversampling; // F: candidates come from F N particles, [1, 4096]; fewer where F N particles would leave
+                      // more than 2^22 candidates; default 32
+    float minDistance;        // bound of the geometry term while judging, metres, >= 0; default 0
+    bool shadows;             // the lights will cast shadows; default true
+    float fluxShare;          // share of the probabilities that goes by flux alone, (0, 1]; default 0.1
+    uint64_t seed;            // default 0
+    int64_t index;            // another number, another choice: of a pass; default 0
+    vplProgressFcn* progress; // default NULL
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultPlacementDef
+} vplPlacementDef;
+
+vplPlacementDef vplDefaultPlacementDef(void);
+
+// What each light of the set gives to the camera's points: the root of the mean square of what they reflect of it,
+// in W/m^2 (documented: in the emitter's unit), of light that comes through the bound and past what is between.
+// Only an estimate: a light that reaches other places only gets 0. *raysOut (may be NULL) is the rays that were cast.
+vplResult vplMeasureLights(const vplGeometry* geometry, const vplLightSet* set, const vplPlacementDef* def,
+                           float* contributionsOut, int64_t* raysOut);
+
+// Chooses `count` of the candidates, give or take one: each with probability p = min(1, t q), where q mixes its
+// share of all contributions and, by def->fluxShare, of all flux; t makes the sum of p `count`. Weights are divided
+// by p, so that the mean over all choices is the light of all candidates. Neighbours share: of lights that are near
+// to each other every 1/p-th is taken. What has no flux is never chosen, nor are lights that are the emitter itself.
+// Source: Georgiev and Slusallek, Simple and Robust Iterative Importance Sampling of Virtual Point Lights,
+// Eurographics 2010; Segovia, Iehl, Mitanchey and Peroche, Bidirectional Instant Radiosity, EGSR 2006.
+vplResult vplChooseLights(const vplLightSet* candidates, const float* contributions, double count,
+                          const vplPlacementDef* def, vplLightSet** setOut);
+
+// Both: simulates F N particles and leaves about as many lights as N would. The set's N is that of all candidates.
+vplResult vplPlaceLights(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
+                         const vplParticleDef* particles, const vplPlacementDef* def, vplLightSet** setOut);
+
+// ----
 
 // A virtual light as the kernel wants it.
 typedef struct vplShadeLight {

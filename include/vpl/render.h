@@ -73,8 +73,10 @@ typedef struct vplRenderOptions {
     int particles;               // N, [0, VPL_MAX_LIGHTS]; default 10
     double reflectivity;         // rho, [0, 1), or negative: the scene's area-weighted mean; default 0.5
     vplLightPlacement placement; // default VPL_PLACEMENT_PARTICLES
-    vplSampler sampler;          // default VPL_SAMPLER_AUTO
-    vplBounce bounce;            // default VPL_BOUNCE_AUTO
+    int rsmSize;        // texels along a side of a reflective shadow map, [1, VPL_MAX_SHADOW_MAP]; default
+                        // 256; VPL_PLACEMENT_RSM only
+    vplSampler sampler; // default VPL_SAMPLER_AUTO
+    vplBounce bounce;   // default VPL_BOUNCE_AUTO
     vplParticleGeometry particleGeometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;                        // default 0
 

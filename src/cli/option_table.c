@@ -47,11 +47,14 @@ const Option OPTIONS[] = {
     {"--reflectivity", "R", SCENE, readReflectivity, 0, 0, 1, NULL,
      "share of particles that go on at each step, [0, 1), or auto: the scene's mean; default 0.5"},
     {"--sampler", "S", SCENE, readChoice, AT(render.sampler), 0, 0, "auto|random|halton|hammersley",
-     "auto (default): halton for keller, else random; or random, halton or hammersley"},
+     "auto (default): halton for keller and for --placement view, else random; or random, halton or "
+     "hammersley"},
     {"--placement", "P", SCENE, readChoice, AT(render.placement), 0, 0, "particles|rsm|view",
      "where virtual lights go: particles (default): where they land; rsm: first hits are texels of "
      "reflective "
      "shadow maps; view: particles, of which those are kept that light what the camera sees"},
+    {"--rsm-size", "N", SCENE, readInt, AT(render.rsmSize), 1, VPL_MAX_SHADOW_MAP, NULL,
+     "texels along a side of a reflective shadow map, for --placement rsm; default 256"},
     {"--bounce", "B", SCENE, readChoice, AT(render.bounce), 0, 0, "auto|reflect|diffuse",
      "auto (default): reflect for documented lighting, diffuse for physical"},
     {"--seed", "S", SCENE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},

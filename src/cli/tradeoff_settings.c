@@ -33,6 +33,7 @@ const Sweep SWEEPS[] = {
     {"min-distance", "--min-distance", DISTANCES, "Clamp of near virtual lights"},
     {"min-distance", "--light-shadows map --min-distance", DISTANCES, NULL},
     {"sampler", "--sampler", "random halton hammersley", "Where particles go"},
+    {"placement", "--light-shadows ray --placement", "particles rsm view", "Where lights go"},
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
     {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
     {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},

@@ -41,6 +41,13 @@ int vplGeometry_FaceOf(const vplGeometry* g, int triangle)
 
 vplVec3 vplGeometry_Inside(const vplGeometry* g, int triangle, vplVec3 point)
 {
+    float u, v;
+    return vplGeometry_InsideAt(g, triangle, point, &u, &v);
+}
+
+vplVec3 vplGeometry_InsideAt(const vplGeometry* g, int triangle, vplVec3 point, float* weight1,
+                             float* weight2)
+{
     // Raster coverage is snapped to 1/256 pixel, so a triangle's pixel centre may lie that far outside of it.
     const double inset = 0x1p-16;
     const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
@@ -57,10 +64,13 @@ vplVec3 vplGeometry_Inside(const vplGeometry* g, int triangle, vplVec3 point)
         wv += w[i] * v[i];
     }
     const double area = uu * vv - uv * uv;
+    *weight1 = *weight2 = 0;
     if (!(area > 0)) {
         return point;
     }
     double b = (vv * wu - uv * wv) / area, c = (uu * wv - uv * wu) / area, rest = 1 - b - c;
+    *weight1 = (float)b;
+    *weight2 = (float)c;
     if (b >= inset && c >= inset && rest >= inset) {
         return point;
     }
@@ -70,6 +80,8 @@ vplVec3 vplGeometry_Inside(const vplGeometry* g, int triangle, vplVec3 point)
     const double sum = b + c + rest;
     b /= sum;
     c /= sum;
+    *weight1 = (float)b;
+    *weight2 = (float)c;
     return vplVec((float)(a[0] + b * u[0] + c * v[0]), (float)(a[1] + b * u[1] + c * v[1]),
                   (float)(a[2] + b * u[2] + c * v[2]));
 }

@@ -37,4 +37,8 @@ int vplGeometry_FaceOf(const vplGeometry* geometry, int triangle);
 // from pixels, which may lie beyond an edge and then behind the surface that meets it there.
 vplVec3 vplGeometry_Inside(const vplGeometry* geometry, int triangle, vplVec3 point);
 
+// The same with the weights of corners 1 and 2.
+vplVec3 vplGeometry_InsideAt(const vplGeometry* geometry, int triangle, vplVec3 point, float* weight1Out,
+                             float* weight2Out);
+
 #endif

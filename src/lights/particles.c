@@ -65,6 +65,20 @@ static bool trace(Simulation* s, int particle, const vplRay* ray, vplHit* hit)
     return vplGeometry_ClosestBox(s->geometry, ray, from.object >= 0 ? &from : NULL, hit);
 }
 
+// The first surface of a particle that leaves an emitter with a map: where the texel's centre is, and the particle
+// comes from there.
+static bool lookUp(Simulation* s, const vplReflectiveMap* map, vplRay* ray, vplHit* hit)
+{
+    const int64_t texel = vplReflectiveMap_Find(map, ray);
+    return texel >= 0 && vplReflectiveMap_GetHit(map, s->geometry, texel, hit, &ray->direction);
+}
+
+// The map that takes the place of a particle's first ray, or NULL.
+static const vplReflectiveMap* mapOf(const Simulation* s, const vplStart* p)
+{
+    return s->def.maps != NULL && p->emitter >= 0 ? s->def.maps[p->emitter] : NULL;
+}
+
 // A bounding box has no colour of its own: it reflects as its object does in the mean.
 static vplRgb reflectanceAt(const Simulation* s, const vplHit* hit)
 {
@@ -112,8 +126,9 @@ static void followParticle(Simulation* s, int particle)
                    &(vplVirtualLight){p.ray.origin, p.normal, p.light, .object = p.from.object});
     }
     for (; started && step < s->stepCount && particle < s->reach[step]; step++) {
-        s->raysOf[particle]++;
-        if (!trace(s, particle, &p.ray, &p.from)) {
+        const vplReflectiveMap* map = step == s->keller ? mapOf(s, &p) : NULL;
+        s->raysOf[particle] += map == NULL;
+        if (map ? !lookUp(s, map, &p.ray, &p.from) : !trace(s, particle, &p.ray, &p.from)) {
             s->escapedOf[particle] = true;
             break;
         }
@@ -198,6 +213,11 @@ static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitte
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
             "the scene has no emitter to shoot particles from: documented lighting needs a point light");
+    }
+    if (def->maps != NULL && def->geometry != VPL_PARTICLE_GEOMETRY_EXACT) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "reflective shadow maps show triangles, not bounding boxes: use exact particle geometry");
     }
     for (int i = 0; def->directions != NULL && i < def->particleCount; i++) {
         if (!vplIsFiniteVec(def->directions[i])) {

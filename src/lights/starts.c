@@ -69,7 +69,7 @@ bool vplStarts_Get(const vplStarts* s, int particle, vplStart* out)
         if (!vplEmission_SampleParticle(s->emission, vplSampleSource_Emitter(&s->samples, particle), u, &p)) {
             return false;
         }
-        *out = (vplStart){p.ray, p.normal, p.flux, sourceOf(s, &p)};
+        *out = (vplStart){p.ray, p.normal, p.flux, sourceOf(s, &p), s->emission->sources[p.source].emitter};
     } else {
         float inverseProbability;
         const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
@@ -77,7 +77,8 @@ bool vplStarts_Get(const vplStarts* s, int particle, vplStart* out)
         *out = (vplStart){{emitter->position, direction, {0, 0}},
                           direction,
                           vplRgbScale(inverseProbability, emitter->intensity),
-                          {.object = -1, .face = VPL_FACE_NONE, .triangle = -1}};
+                          {.object = -1, .face = VPL_FACE_NONE, .triangle = -1},
+                          (int)(emitter - s->emitters)};
     }
     if (s->def->directions != NULL) {
         out->ray.direction = s->def->directions[particle];

@@ -21,6 +21,7 @@ typedef struct vplStart {
     vplVec3 normal; // of the lamp; of other emitters, the direction
     vplRgb light;   // documented: the emitter's intensity; else flux in W; as if one particle carried all
     vplHit from;    // what it leaves; its object is -1 in free space
+    int emitter;    // index; -1: a triangle that emits
 } vplStart;
 
 vplStarts vplStarts_Make(const vplGeometry* geometry, const vplEmission* emission,

@@ -154,12 +154,12 @@ static vplResult choose(vplJob* job, const vplLightSet* set, vplLightSet* shown)
 // A light stands for its share of all surfaces; nearer than that share's radius it is no point. Half as much leaves
 // 5 to 35 % more rmse and twice as much takes a few per cent of the light away (room, room-area, cornell-area; 32 to
 // 2048 particles with shadows by rays; --show indirect). Later passes make the share smaller.
-static float minDistanceOf(const vplJob* job, const vplLightSet* set)
+float vplJob_MinDistance(const vplJob* job, double lights)
 {
     if (job->options.minDistance >= 0) {
         return job->options.minDistance;
     }
-    const double lights = (double)set->lightCount * (job->stepsDone + 1);
+    lights *= job->stepsDone + 1;
     return lights > 0 ? (float)sqrt(vplGeometry_Area(job->geometry) / lights / VPL_PI) : 0;
 }
 
@@ -179,7 +179,7 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
         return VPL_OUT_OF_MEMORY;
     }
     in->lightCount = vplPrepareLights(&shown, vplJob_GetShading(job), in->lights);
-    in->minDistance = job->stats.minDistance = minDistanceOf(job, in->set);
+    in->minDistance = job->stats.minDistance = vplJob_MinDistance(job, in->set->lightCount);
     in->lightShadows = job->options.lightShadows;
     if (in->lightShadows == VPL_LIGHT_SHADOWS_USUAL) {
         in->lightShadows =

@@ -13,6 +13,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.antialias = 1;
     o.particles = 10;
     o.reflectivity = 0.5;
+    o.rsmSize = 256;
     o.accumulation = VPL_ACCUMULATE_DEFERRED;
     o.batch = 64;
     o.interleave = 4;
@@ -61,6 +62,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"sampler", (int)o->sampler, 0, VPL_SAMPLER_HAMMERSLEY},
         {"bounce", (int)o->bounce, 0, VPL_BOUNCE_DIFFUSE},
         {"placement", (int)o->placement, 0, VPL_PLACEMENT_VIEW},
+        {"rsmSize", o->rsmSize, 1, VPL_MAX_SHADOW_MAP},
         {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_LIGHTCUTS},
         {"batch", o->batch, 1, VPL_MAX_LIGHTS},
         {"interleave", o->interleave, 1, VPL_MAX_INTERLEAVE},

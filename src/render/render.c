@@ -72,8 +72,8 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
     int emitters = vplScene_GetEmitterCount(scene);
-    vplResult result = vplSimulateParticles(job->geometry, emitters ? vplScene_GetEmitter(scene, 0) : NULL,
-                                            emitters, &def, setOut);
+    vplResult result =
+        vplJob_PlaceLights(job, emitters ? vplScene_GetEmitter(scene, 0) : NULL, emitters, &def, setOut);
     if (result != VPL_SUCCESS) {
         return result;
     }

@@ -59,6 +59,13 @@ void vplJob_AddRaster(vplJob* job, const vplRasterStats* stats);
 // The virtual lights as the options ask for them, of pass job->stepsDone.
 vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut);
 
+// The lights of such particles, placed as the options say.
+vplResult vplJob_PlaceLights(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
+                             const vplParticleDef* particles, vplLightSet** setOut);
+
+// The bound of the geometry term for so many lights a pass, metres.
+float vplJob_MinDistance(const vplJob* job, double lights);
+
 // Draws the lights over the picture.
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set);
 

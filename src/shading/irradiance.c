@@ -79,7 +79,7 @@ static void castLightRays(const vplShading* shading, const vplPoints* points, co
     vplVec3 way[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
         const bool asks = visible[l] > 0 && points->triangle[l] >= 0;
-        way[l] = asks ? vplLightWay(place, normal, starts->hit[l].position) : vplVec(0, 0, 0);
+        way[l] = asks ? vplWayToLight(place, normal, starts->hit[l].position) : vplVec(0, 0, 0);
     }
     castShadowRays(shading, points, starts, way, false, visible, rays);
 }

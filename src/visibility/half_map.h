@@ -88,7 +88,7 @@ static inline float vplLightLift(float largest)
 // aims above the surface and ends before the light, by the rounding of the larger end. The light's own coordinates do
 // not do: in a Cornell box whose floor is at 0, lights near the origin were hidden from the ceiling by the floor that
 // they lie on (0.46 % of all pairs), and those on an edge of a room by the other wall.
-static inline vplVec3 vplLightWay(vplVec3 light, vplVec3 n, vplVec3 from)
+static inline vplVec3 vplWayToLight(vplVec3 light, vplVec3 n, vplVec3 from)
 {
     const float lift = vplLightLift(fmaxf(vplLargestOf(light), vplLargestOf(from)));
     const vplVec3 way = vplSub(vplAdd(light, vplScale(lift, n)), from);

@@ -132,6 +132,20 @@ static void overlay(vplRenderOptions* o)
     o->particles = 60;
 }
 
+static void viewPlacement(vplRenderOptions* o)
+{
+    o->placement = VPL_PLACEMENT_VIEW;
+    o->particles = 100;
+    o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
+}
+
+static void rsmPlacement(vplRenderOptions* o)
+{
+    o->placement = VPL_PLACEMENT_RSM;
+    o->rsmSize = 64;
+    o->particles = 100;
+}
+
 static void paths(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_PATH;
@@ -165,6 +179,8 @@ static const Case CASES[] = {
     {"indirect", "closed-room", 1, indirect},
     {"light-4", "closed-room", 2, oneLight},
     {"overlay", "room", 0, overlay},
+    {"placement-view", "flat", 3, viewPlacement},
+    {"placement-rsm", "room", 1, rsmPlacement},
     {"path-area", "room-area", 1, paths},
     {"path-point", "closed-room", 1, paths},
     {"path-bounce-2", "room", 3, secondBounce},

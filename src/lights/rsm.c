@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Based on: Carsten Dachsbacher and Marc Stamminger, Reflective Shadow Maps, I3D 2005: the scene seen from the light,
+// each texel with position, normal and flux. Departs: a point light has the six faces of a cube; flux is what
+// arrives, and the reflectance is beside it; which triangle it is is kept, too, so that particles can go on from there.
+#include "lights/rsm.h"
+
+#include "base/context.h"
+#include "base/isa.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+VPL_KERNEL_TABLE(WRITE, vplFragmentFcn, vplWriteReflective);
+
+enum { RSM_COOKIE = 0x56504c62, VALUES = 13 }; // planes of the map: 12 of floats and the triangles
+
+vplReflectiveMapDef vplDefaultReflectiveMapDef(void)
+{
+    return (vplReflectiveMapDef){vplDefaultEmitterDef(), 256, RSM_COOKIE};
+}
+
+// ---- the view
+
+typedef struct Reach {
+    float near, far; // metres
+} Reach;
+
+static Reach aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
+{
+    const vplEmitterDef* e = &map->emitter;
+    map->origin = e->position;
+    map->extent[0] = map->extent[1] = 1;
+    if (e->type == VPL_EMITTER_SPOT) {
+        double sine, cosine;
+        vplSinCos(e->outerAngle, &sine, &cosine);
+        map->extent[0] = map->extent[1] = sine / cosine;
+        map->forward[0] = vplNormalize(e->direction);
+        vplFrame(map->forward[0], &map->right[0], &map->up[0]);
+        map->right[0] = vplNegate(map->right[0]); // a frame is right-handed
+    } else {
+        for (int i = 0; i < 6; i++) {
+            const vplCubeFrame frame = vplCube_GetFrame(i);
+            map->right[i] = frame.right;
+            map->up[i] = frame.up;
+            map->forward[i] = frame.forward;
+        }
+    }
+    float far = 0;
+    for (int i = 0; i < g->vertexCount; i++) {
+        far = fmaxf(far, vplLength(vplSub(g->positions[i], map->origin)));
+    }
+    far = far > 0 ? far * 1.0001f : 1;
+    return (Reach){far * 0x1p-20f, far};
+}
+
+// The box around all vertices, along the light and across. A hair wider, so that its edges are within the view.
+static Reach aimParallel(vplReflectiveMap* map, const vplGeometry* g)
+{
+    map->forward[0] = vplNormalize(map->emitter.direction);
+    vplFrame(map->forward[0], &map->right[0], &map->up[0]);
+    map->right[0] = vplNegate(map->right[0]);
+    const vplVec3 axes[3] = {map->right[0], map->up[0], map->forward[0]};
+    const vplVec3 centre = vplScale(0.5f, vplAdd(g->boundsMin, g->boundsMax));
+    double middle[3], half[3], largest = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < g->vertexCount; i++) {
+            const double at = (double)vplDot(axes[k], vplSub(g->positions[i], centre));
+            low = at < low ? at : low;
+            high = at > high ? at : high;
+        }
+        middle[k] = g->vertexCount > 0 ? 0.5 * (low + high) : 0;
+        half[k] = g->vertexCount > 0 ? 0.5 * (high - low) : 0;
+        largest = half[k] > largest ? half[k] : largest;
+    }
+    for (int k = 0; k < 3; k++) { // what is seen edge-on has no width of its own
+        half[k] += (largest > 0 ? largest : 1) * 0x1p-16;
+    }
+    map->extent[0] = half[0];
+    map->extent[1] = half[1];
+    map->origin = vplAdd(centre, vplAdd(vplScale((float)middle[0], axes[0]),
+                                        vplAdd(vplScale((float)middle[1], axes[1]),
+                                               vplScale((float)(middle[2] - half[2]), axes[2]))));
+    return (Reach){0, (float)(2 * half[2])};
+}
+
+static void shadeVertices(const void* uniforms, int first, int count, const vplVertices* out)
+{
+    const vplRsmUniforms* u = uniforms;
+    const vplReflectiveMap* m = u->map;
+    const bool parallel = m->emitter.type == VPL_EMITTER_DIRECTIONAL;
+    const float acrossScale = (float)(1 / m->extent[0]), upScale = (float)(1 / m->extent[1]);
+    for (int i = 0; i < count; i++) {
+        const vplVec3 at = u->positions[first + i], p = vplSub(at, m->origin);
+        const float depth = vplDot(m->forward[u->face], p);
+        out->x[i] = acrossScale * vplDot(m->right[u->face], p);
+        out->y[i] = upScale * vplDot(m->up[u->face], p);
+        out->w[i] = parallel ? 1 : depth;
+        out->z[i] = parallel ? depth * u->inverseFar : depth - u->near; // no far plane: everything counts
+        out->varying[0][i] = at.x;
+        out->varying[1][i] = at.y;
+        out->varying[2][i] = at.z;
+    }
+    for (int i = 0; u->normals != NULL && i < count; i++) {
+        out->varying[3][i] = u->normals[first + i].x;
+        out->varying[4][i] = u->normals[first + i].y;
+        out->varying[5][i] = u->normals[first + i].z;
+    }
+}
+
+// ---- drawing
+
+static vplResult recordFace(const vplReflectiveMap* map, const vplGeometry* g, Reach reach, int face,
+                            vplRsmUniforms* uniforms, const vplMesh* meshes, vplRaster** rasterOut)
+{
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(map->size, map->size);
+    const size_t first = (size_t)face * (size_t)map->size * (size_t)map->size;
+    framebuffer.depth.clear = INFINITY;
+    framebuffer.planeCount = VPL_RSM_PLANES;
+    framebuffer.planes[VPL_RSM_TRIANGLE].pixels = (float*)map->triangle + first;
+    for (int k = 0; k < 3; k++) {
+        framebuffer.planes[VPL_RSM_POSITION + k].pixels = (float*)map->position[k] + first;
+        framebuffer.planes[VPL_RSM_NORMAL + k].pixels = (float*)map->normal[k] + first;
+    }
+    vplResult result = vplRaster_Create(g->context, &framebuffer, rasterOut);
+    for (int i = 0; i < g->objectCount && result == VPL_SUCCESS; i++) {
+        const vplGeometryObject* o = &g->objects[i];
+        vplRsmUniforms* u = &uniforms[face * g->objectCount + i];
+        *u = (vplRsmUniforms){map,
+                              face,
+                              reach.near,
+                              1 / reach.far,
+                              g->positions + o->firstVertex,
+                              o->smooth ? g->shadingNormals + o->firstVertex : NULL,
+                              o->firstTriangle};
+        vplPipeline pipeline = vplDefaultPipeline();
+        pipeline.vertex = shadeVertices;
+        pipeline.vertexUniforms = pipeline.fragmentUniforms = u;
+        pipeline.varyingCount = o->smooth ? 6 : 3;
+        pipeline.fragment = WRITE[g->context->isa];
+        pipeline.writesDepth = pipeline.needsW = map->emitter.type != VPL_EMITTER_DIRECTIONAL;
+        result = vplRaster_Draw(*rasterOut, &meshes[i], &pipeline);
+    }
+    return result;
+}
+
+static void addStats(vplRasterStats* sum, const vplRasterStats* stats)
+{
+    sum->drawCalls += stats->drawCalls;
+    sum->fragments += stats->fragments;
+    sum->trianglesIn += stats->trianglesIn;
+    sum->trianglesBinned += stats->trianglesBinned;
+    sum->vertexMs += stats->vertexMs;
+    sum->tilesMs += stats->tilesMs;
+}
+
+static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFcn* progress, void* user)
+{
+    vplContext* context = g->context;
+    const size_t objects = (size_t)g->objectCount;
+    const Reach reach =
+        map->emitter.type == VPL_EMITTER_DIRECTIONAL ? aimParallel(map, g) : aimPerspective(map, g);
+    vplRsmUniforms* uniforms = vplAlloc(context, objects * (size_t)map->faceCount, sizeof *uniforms);
+    vplMesh* meshes = vplAlloc(context, objects, sizeof *meshes);
+    vplRaster* rasters[6] = {NULL};
+    vplRasterStats stats[6];
+    vplResult result = uniforms && meshes ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    for (int i = 0; result == VPL_SUCCESS && i < g->objectCount; i++) {
+        const vplGeometryObject* o = &g->objects[i];
+        meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+    }
+    for (int face = 0; face < map->faceCount && result == VPL_SUCCESS; face++) {
+        result = recordFace(map, g, reach, face, uniforms, meshes, &rasters[face]);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplRaster_RunAll(rasters, map->faceCount, progress, user, stats);
+    }
+    for (int face = 0; face < map->faceCount; face++) {
+        if (result == VPL_SUCCESS) {
+            addStats(&map->stats, &stats[face]);
+        }
+        vplRaster_Destroy(rasters[face]);
+    }
+    vplFree(context, meshes);
+    vplFree(context, uniforms);
+    return result;
+}
+
+// ---- the map
+
+// All planes lie in one block, the triangles first.
+static bool allocate(vplReflectiveMap* map)
+{
+    const size_t texels = (size_t)map->faceCount * (size_t)map->size * (size_t)map->size;
+    float* block = vplAlloc(map->context, VALUES * texels, sizeof *block);
+    map->triangle = (int32_t*)block;
+    for (int k = 0; block != NULL && k < 3; k++) {
+        map->position[k] = block + (1 + (size_t)k) * texels;
+        map->normal[k] = block + (4 + (size_t)k) * texels;
+        map->albedo[k] = block + (7 + (size_t)k) * texels;
+        map->flux[k] = block + (10 + (size_t)k) * texels;
+    }
+    map->distance = block ? vplAlloc(map->context, texels, sizeof *block) : NULL;
+    return map->distance != NULL;
+}
+
+vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflectiveMapDef* def,
+                                  vplProgressFcn* progress, void* user, vplReflectiveMap** mapOut)
+{
+    vplContext* context = geometry->context;
+    if (def->cookie != RSM_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplReflectiveMapDef was not made by vplDefaultReflectiveMapDef");
+    }
+    if (def->size < 1 || def->size > VPL_MAX_SHADOW_MAP) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplReflectiveMapDef.size is %d, must be in [1, %d]",
+                       def->size, VPL_MAX_SHADOW_MAP);
+    }
+    vplReflectiveMap* map = vplAllocZero(context, 1, sizeof *map);
+    if (map == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    map->context = context;
+    map->emitter = def->emitter;
+    map->size = def->size;
+    map->faceCount = def->emitter.type == VPL_EMITTER_POINT ? 6 : 1;
+    vplResult result = allocate(map) ? draw(map, geometry, progress, user) : VPL_OUT_OF_MEMORY;
+    if (result == VPL_SUCCESS) {
+        result = vplReflectiveMap_Finish(map, geometry);
+    }
+    if (result != VPL_SUCCESS) {
+        vplReflectiveMap_Destroy(map);
+        return result;
+    }
+    *mapOut = map;
+    return VPL_SUCCESS;
+}
+
+void vplReflectiveMap_Destroy(vplReflectiveMap* map)
+{
+    if (map != NULL) {
+        vplFree(map->context, (void*)map->triangle);
+        vplFree(map->context, (void*)map->distance);
+        vplFree(map->context, map);
+    }
+}

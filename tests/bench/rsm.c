@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// Reflective shadow maps against rays: build/bench/rsm SCENE...: what a map costs, what a particle's first flight
+// costs either way, from how many particles on the map pays, and how far the picture moves. Processor time, medians.
+#include "bench.h"
+
+#include "base/clock.h"
+
+enum { PARTICLES = 100000, RUNS = 5, SIDE = 96, SHOWN = 300 };
+
+typedef struct Bench {
+    const vplScene* scene;
+    const vplGeometry* geometry;
+    const vplEmitterDef* emitters;
+    int emitterCount;
+} Bench;
+
+// Maps of all emitters.
+static void drawMaps(const Bench* b, int size, vplReflectiveMap** maps)
+{
+    for (int i = 0; i < b->emitterCount; i++) {
+        vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+        def.emitter = b->emitters[i];
+        def.size = size;
+        check(vplReflectiveMap_Create(b->geometry, &def, NULL, NULL, &maps[i]));
+    }
+}
+
+static void destroyMaps(const Bench* b, vplReflectiveMap** maps)
+{
+    for (int i = 0; i < b->emitterCount; i++) {
+        vplReflectiveMap_Destroy(maps[i]);
+    }
+}
+
+// Milliseconds of first flights only.
+static double simulate(const Bench* b, vplReflectiveMap** maps)
+{
+    vplParticleDef def = vplDefaultParticleDef();
+    vplLightSet* set;
+    def.particleCount = PARTICLES;
+    def.reflectivity = 0;
+    def.maps = (const vplReflectiveMap* const*)maps;
+    const double start = vplCpuMs();
+    check(vplSimulateParticles(b->geometry, b->emitters, b->emitterCount, &def, &set));
+    const double ms = vplCpuMs() - start;
+    vplLightSet_Destroy(set);
+    return ms;
+}
+
+// Indirect light without shadows; size 0: by rays.
+static vplImage* picture(const Bench* b, int size, uint64_t seed)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    vplImage* image;
+    o.width = o.height = SIDE;
+    o.particles = SHOWN;
+    o.sampler = VPL_SAMPLER_HALTON;
+    o.seed = seed;
+    o.show = VPL_SHOW_INDIRECT;
+    o.lightShadows = VPL_LIGHT_SHADOWS_NONE;
+    o.placement = size > 0 ? VPL_PLACEMENT_RSM : VPL_PLACEMENT_PARTICLES;
+    o.rsmSize = size > 0 ? size : o.rsmSize;
+    check(vplRender(b->scene, &o, &image, NULL));
+    return image;
+}
+
+static double difference(vplImage* a, vplImage* b)
+{
+    vplComparison c;
+    check(vplImage_Compare(a, b, &c));
+    return c.relativeRmse;
+}
+
+static void measure(const Bench* b, const char* name)
+{
+    vplReflectiveMap** maps = calloc((size_t)b->emitterCount, sizeof *maps);
+    double draws[RUNS], looks[RUNS], rays[RUNS];
+    vplImage *cast = picture(b, 0, 1), *other = picture(b, 0, 2);
+    printf("%s: %d triangles, %d emitters; pictures of two seeds differ by %.4f\n", name,
+           b->geometry->triangleCount, b->emitterCount, difference(other, cast));
+    printf("%6s %9s %12s %12s %10s %10s\n", "size", "map ms", "ray ns", "look-up ns", "pays at N",
+           "difference");
+    for (int size = 16; size <= 1024; size *= 4) {
+        for (int run = 0; run < RUNS; run++) {
+            const double start = vplCpuMs();
+            drawMaps(b, size, maps);
+            draws[run] = vplCpuMs() - start;
+            looks[run] = simulate(b, maps);
+            destroyMaps(b, maps);
+            rays[run] = simulate(b, NULL);
+        }
+        const double map = median(draws, RUNS), look = median(looks, RUNS) / PARTICLES,
+                     ray = median(rays, RUNS) / PARTICLES;
+        vplImage* moved = picture(b, size, 1);
+        printf("%6d %9.2f %12.0f %12.0f %10.0f %10.4f\n", size, map, 1e6 * ray, 1e6 * look,
+               ray > look ? map / (ray - look) : INFINITY, difference(moved, cast));
+        vplImage_Destroy(moved);
+    }
+    vplImage_Destroy(cast);
+    vplImage_Destroy(other);
+    free(maps);
+}
+
+int main(int count, char** words)
+{
+    for (int i = 1; i < count; i++) {
+        vplContext* context;
+        vplScene* scene;
+        vplGeometry* geometry;
+        openScene(words[i], 1, VPL_ISA_AUTO, &context, &scene);
+        check(vplGeometry_Create(scene, &geometry));
+        check(vplGeometry_PrepareRays(geometry));
+        Bench b = {scene, geometry, NULL, vplScene_GetEmitterCount(scene)};
+        if (b.emitterCount > 0) {
+            b.emitters = vplScene_GetEmitter(scene, 0);
+            measure(&b, words[i]);
+        } else {
+            printf("%s has no emitter that could have a map\n", words[i]);
+        }
+        vplGeometry_Destroy(geometry);
+        vplScene_Destroy(scene);
+        vplContext_Destroy(context);
+    }
+    return 0;
+}

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: MIT
+// Reflective shadow maps: all the light is in them, and it is where it arrives.
+#include "shapes.h"
+
+#include "geometry/emission.h"
+#include "geometry/triangle.h"
+#include "math/vec.h"
+
+static vplReflectiveMap* mapOf(const vplGeometry* g, const vplEmitterDef* emitter, int size)
+{
+    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+    vplReflectiveMap* map = NULL;
+    def.emitter = *emitter;
+    def.size = size;
+    if (vplReflectiveMap_Create(g, &def, NULL, NULL, &map) != VPL_SUCCESS) {
+        fail_msg("%s", takeMessage());
+    }
+    return map;
+}
+
+static size_t texelsOf(const vplReflectiveMap* map)
+{
+    return (size_t)map->faceCount * (size_t)map->size * (size_t)map->size;
+}
+
+static double fluxOf(const vplReflectiveMap* map)
+{
+    double sum = 0;
+    for (size_t i = 0; i < texelsOf(map); i++) {
+        sum += (double)map->flux[1][i];
+    }
+    return sum;
+}
+
+static vplEmitterDef emitterOf(vplEmitterType type, vplVec3 position, vplVec3 direction)
+{
+    vplEmitterDef e = vplDefaultEmitterDef();
+    e.type = type;
+    e.position = position;
+    e.direction = direction;
+    e.intensity = (vplRgb){1, 2, 3};
+    return e;
+}
+
+// One texel a face is enough: solid angles are exact.
+static void APointInAClosedCubeSends4PiI(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    const vplEmitterDef e = emitterOf(VPL_EMITTER_POINT, vplVec(0.3f, -0.2f, 0.55f), vplVec(0, -1, 0));
+    for (int size = 1; size <= 130; size += 1 + size / 2) {
+        vplReflectiveMap* map = mapOf(cube, &e, size);
+        assert_int_equal(map->faceCount, 6);
+        assertNear(fluxOf(map), 8 * VPL_PI, 1e-5, "flux", size);
+        for (size_t i = 0; i < texelsOf(map); i++) { // of a cube's texels the one at a corner is smallest
+            const double share = (double)map->flux[1][i] * size * size / (8 * VPL_PI / 6);
+            assert_true(share > 0.36 && share < 1.92);
+            assert_true(map->albedo[2][i] == 0.5f && map->triangle[i] >= 0);
+        }
+        vplReflectiveMap_Destroy(map);
+    }
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+// The falloff is taken at texels' centres: the error falls with their number.
+static void ASpotSendsItsPower(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    vplEmitterDef e = emitterOf(VPL_EMITTER_SPOT, vplVec(0.1f, 0.4f, -0.3f), vplVec(0.3f, -1, 0.2f));
+    for (int k = 0; k < 3; k++) {
+        e.innerAngle = k == 0 ? 0.2 : k == 1 ? 0.9 : 0;
+        e.outerAngle = k == 0 ? 0.5 : k == 1 ? 1.3 : 0.02;
+        const double wanted = 2 * vplSpot_SolidAngle(&e);
+        for (int size = 16; size <= 256; size *= 4) {
+            vplReflectiveMap* map = mapOf(cube, &e, size);
+            assert_int_equal(map->faceCount, 1);
+            assertNear(fluxOf(map) / wanted, 1, 1.0 / size / size + 1e-6, "flux", size);
+            vplReflectiveMap_Destroy(map);
+        }
+    }
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+// E times the area seen along the light.
+static void TheSunSendsWhatTheFloorMeets(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplGeometry* floor = floorQuad(context, vplVec(100, 3, -50), 10, 0.5f);
+    for (int size = 1; size <= 256; size *= 4) {
+        vplEmitterDef e = emitterOf(VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(0, -2, 0));
+        vplReflectiveMap* map = mapOf(floor, &e, size);
+        assertNear(fluxOf(map), 200, 0.01, "flux", size); // the view is 2^-16 wider on each side
+        vplReflectiveMap_Destroy(map);
+        e.direction = vplVec(1, -1, 1); // a rhombus in a rectangle: texels at its edges are in or out
+        map = mapOf(floor, &e, size);
+        if (size >= 16) {
+            assertNear(fluxOf(map) / (200 / sqrt(3)), 1, 1.0 / size, "slanted flux", size);
+        }
+        vplReflectiveMap_Destroy(map);
+    }
+    vplEmitterDef along = emitterOf(VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(1, 0, 0));
+    vplReflectiveMap* map = mapOf(floor, &along, 16); // edge-on
+    assertNear(fluxOf(map), 0, 0.01, "flux", 0);
+    vplReflectiveMap_Destroy(map);
+    vplGeometry_Destroy(floor);
+    closeTestContext(context);
+}
+
+static vplEmitterDef someEmitter(int k)
+{
+    vplEmitterDef e = emitterOf((vplEmitterType)k, vplVec(0.4f, 4.1f, 1.2f), vplVec(-0.3f, -1, -0.2f));
+    e.outerAngle = 1.1;
+    return e;
+}
+
+// Each texel's point is on its triangle's plane, in the direction of its centre, and the first that a ray meets;
+// its normal faces the emitter.
+static void TexelsAreWhereRaysLand(void** state)
+{
+    (void)state;
+    enum { SIZE = 40 };
+    vplContext* context = openTestContext(2);
+    vplGeometry* room = tableRoom(context);
+    for (int k = 0; k < 3; k++) {
+        const vplEmitterDef e = someEmitter(k);
+        vplReflectiveMap* map = mapOf(room, &e, SIZE);
+        int filled = 0, other = 0;
+        for (size_t i = 0; i < texelsOf(map); i++) {
+            vplHit hit, met;
+            vplVec3 way;
+            if (!vplReflectiveMap_GetHit(map, room, (int64_t)i, &hit, &way)) {
+                assert_true(map->triangle[i] == -1 && map->distance[i] == INFINITY && map->flux[0][i] == 0);
+                continue;
+            }
+            const vplVec3 at = {map->position[0][i], map->position[1][i], map->position[2][i]};
+            const vplVec3 normal = {map->normal[0][i], map->normal[1][i], map->normal[2][i]};
+            const vplVec3 corner = vplGeometry_Corners(room, map->triangle[i]).corner[0];
+            assertNear((double)vplDot(vplSub(at, corner), hit.normal), 0, 4e-6, "plane", (int)i);
+            assertNear((double)vplLength(vplSub(at, hit.position)), 0, 0.01, "inside", (int)i);
+            assert_true(vplDot(normal, way) <= 0 && fabsf(vplLength(normal) - 1) < 1e-6f);
+            const bool sun = k == VPL_EMITTER_DIRECTIONAL;
+            const vplRay ray = {sun ? vplSub(at, vplScale(map->distance[i] + 1, way)) : e.position,
+                                sun ? way : vplNormalize(vplSub(at, e.position)),
+                                {0, 0}};
+            assert_int_equal(vplReflectiveMap_Find(map, &ray), (int64_t)i);
+            filled++;
+            assert_true(vplGeometry_ClosestHit(room, &ray, &met));
+            other += met.object != hit.object || // quads and boxes: an edge between triangles does not count
+                     fabsf(met.t - map->distance[i] - (sun ? 1.0f : 0.0f)) > 1e-5f;
+        }
+        assert_true(filled > SIZE * SIZE / 2);
+        assert_true(other <= filled / 500); // where a texel's centre is on an edge
+        vplReflectiveMap_Destroy(map);
+    }
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// Particles of a map are those of rays, moved by a texel's footprint at most, as seen from the emitter.
+static void ParticlesMoveByATexelAtMost(void** state)
+{
+    (void)state;
+    enum { SIZE = 64, COUNT = 3000 };
+    vplContext* context = openTestContext(2);
+    vplGeometry* room = tableRoom(context);
+    for (int k = 0; k < 3; k++) {
+        for (int keller = 0; keller < 2; keller++) {
+            const vplEmitterDef e = someEmitter(k);
+            vplReflectiveMap* map = mapOf(room, &e, SIZE);
+            const vplReflectiveMap* const maps[] = {map};
+            vplParticleDef def = vplDefaultParticleDef();
+            vplLightSet *cast, *lookedUp;
+            def.particleCount = COUNT;
+            def.start = keller ? VPL_START_EMITTER : VPL_START_FIRST_HIT;
+            assert_int_equal(vplSimulateParticles(room, &e, 1, &def, &cast), VPL_SUCCESS);
+            def.maps = maps;
+            assert_int_equal(vplSimulateParticles(room, &e, 1, &def, &lookedUp), VPL_SUCCESS);
+            assert_true(lookedUp->rays < cast->rays - cast->stepCounts[keller] / 2);
+            int compared = 0;
+            for (int i = 0, j = 0; i < cast->lightCount && j < lookedUp->lightCount;) {
+                const vplVirtualLight *a = &cast->lights[i], *b = &lookedUp->lights[j];
+                if (a->step != b->step || a->particle != b->particle) {
+                    *(a->step < b->step || (a->step == b->step && a->particle < b->particle) ? &i : &j) += 1;
+                    continue;
+                }
+                i++;
+                j++;
+                if (a->step != keller || a->object != b->object) {
+                    continue;
+                }
+                vplVec3 apart = vplSub(a->position, b->position);
+                double most = 1.01 * 2 * hypot(map->extent[0], map->extent[1]) / SIZE / 2;
+                if (k == VPL_EMITTER_DIRECTIONAL) {
+                    const vplVec3 n = map->forward[0];
+                    apart = vplSub(apart, vplScale(vplDot(apart, n), n));
+                } else {
+                    apart = vplSub(vplNormalize(vplSub(a->position, e.position)),
+                                   vplNormalize(vplSub(b->position, e.position)));
+                }
+                assertNear((double)vplLength(apart), 0, most, "distance", a->particle);
+                assert_true(a->light.r == b->light.r && a->weight == b->weight);
+                compared++;
+            }
+            assert_true(compared > cast->lightsInStep[keller] * 9 / 10);
+            vplLightSet_Destroy(cast);
+            vplLightSet_Destroy(lookedUp);
+            vplReflectiveMap_Destroy(map);
+        }
+    }
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
+// On a smooth ball, normals are those of the ball, towards the emitter, and so are particles' shading normals.
+static void SmoothObjectsHaveTheirNormals(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = sceneOf(context, 0.5f);
+    Shape ball = icosphere(2);
+    addShape(scene, &ball, true, NULL);
+    vplGeometry* geometry = freezeScene(scene);
+    const vplEmitterDef e = emitterOf(VPL_EMITTER_POINT, vplVec(1.5f, 0.5f, 0), vplVec(0, -1, 0));
+    vplReflectiveMap* map = mapOf(geometry, &e, 50);
+    int seen = 0;
+    for (size_t i = 0; i < texelsOf(map); i++) {
+        vplHit hit;
+        vplVec3 way;
+        if (vplReflectiveMap_GetHit(map, geometry, (int64_t)i, &hit, &way)) {
+            const vplVec3 at = vplNormalize(hit.position);
+            const vplVec3 normal = {map->normal[0][i], map->normal[1][i], map->normal[2][i]};
+            const vplVec3 shading = vplGeometry_ShadingNormal(geometry, &hit);
+            assert_true(vplDot(at, normal) > 0.999f);
+            assertNear((double)vplLength(vplSub(normal, shading)), 0, 1e-3, "normal", (int)i);
+            seen++;
+        }
+    }
+    assert_true(seen > 500);
+    vplReflectiveMap_Destroy(map);
+    vplGeometry_Destroy(geometry);
+    freeShape(&ball);
+    closeTestContext(context);
+}
+
+static void AnEmptySceneGivesAnEmptyMap(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = sceneOf(context, 0.5f);
+    vplGeometry* nothing;
+    assert_int_equal(vplGeometry_Create(scene, &nothing), VPL_SUCCESS);
+    for (int k = 0; k < 3; k++) {
+        const vplEmitterDef e = someEmitter(k);
+        vplReflectiveMap* map = mapOf(nothing, &e, 5);
+        for (size_t i = 0; i < texelsOf(map); i++) {
+            assert_true(map->triangle[i] == -1 && map->distance[i] == INFINITY && map->position[0][i] == 0);
+        }
+        assert_true(fluxOf(map) == 0);
+        vplReflectiveMap_Destroy(map);
+    }
+    vplGeometry_Destroy(nothing);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// An emitter on a wall of a closed cube, and a hair in front of it: at most all of its power arrives, at least half
+// does, and everything is finite.
+static void AnEmitterMayTouchASurface(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    const float heights[] = {-1, -0.9999999f, -0.999f};
+    for (int i = 0; i < 3; i++) {
+        const vplEmitterDef e =
+            emitterOf(VPL_EMITTER_POINT, vplVec(0.1f, heights[i], 0.2f), vplVec(0, -1, 0));
+        vplReflectiveMap* map = mapOf(cube, &e, 32);
+        const double share = fluxOf(map) / (8 * VPL_PI);
+        assert_true(share >= 0.5 - 1e-6 && share <= 1 + 1e-6);
+        for (size_t k = 0; k < texelsOf(map); k++) {
+            assert_true(isfinite(map->position[1][k]) && isfinite(map->normal[1][k]) &&
+                        isfinite(map->flux[1][k]));
+            assert_true(map->distance[k] >= 0);
+        }
+        vplReflectiveMap_Destroy(map);
+    }
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+static void MapsDoNotDependOnThreadsOrIsa(void** state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        uint64_t wanted = 0;
+        for (int i = 0; i < 8; i++) {
+            const int workers[] = {1, 2, 3, 7};
+            vplContext* context =
+                i < 4 ? openTestContext(workers[i]) : openIsaContext(2, (vplIsa)(VPL_ISA_SCALAR + i - 4));
+            if (context == NULL) {
+                continue;
+            }
+            vplGeometry* room = tableRoom(context);
+            const vplEmitterDef e = someEmitter(k);
+            vplReflectiveMap* map = mapOf(room, &e, 77);
+            uint64_t hash = 0;
+            const float* const planes[] = {map->distance,    map->position[0], map->position[1],
+                                           map->position[2], map->normal[0],   map->normal[1],
+                                           map->normal[2],   map->albedo[0],   map->flux[0],
+                                           map->flux[1],     map->flux[2]};
+            for (size_t p = 0; p < sizeof planes / sizeof *planes; p++) {
+                for (size_t t = 0; t < texelsOf(map); t++) {
+                    uint32_t bits;
+                    memcpy(&bits, &planes[p][t], sizeof bits);
+                    hash = (hash ^ bits ^ (uint64_t)(uint32_t)map->triangle[t] << 32) * 0x9E3779B97F4A7C15u;
+                    hash ^= hash >> 29;
+                }
+            }
+            wanted = i == 0 ? hash : wanted;
+            assert_true(hash == wanted);
+            vplReflectiveMap_Destroy(map);
+            vplGeometry_Destroy(room);
+            closeTestContext(context);
+        }
+    }
+}
+
+static void BadMapsAreRefused(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+    vplReflectiveMap* map = NULL;
+    def.size = 0;
+    assert_int_equal(vplReflectiveMap_Create(cube, &def, NULL, NULL, &map), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "size is 0"));
+    def = (vplReflectiveMapDef){.size = 4};
+    assert_int_equal(vplReflectiveMap_Create(cube, &def, NULL, NULL, &map), VPL_INVALID_ARGUMENT);
+    assert_null(map);
+    const vplReflectiveMap* const none[] = {NULL}; // no map for the only emitter: rays
+    vplParticleDef particles = vplDefaultParticleDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    vplLightSet* set = NULL;
+    particles.maps = none;
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &particles, &set), VPL_SUCCESS);
+    assert_int_equal(set->rays, 18);
+    vplLightSet_Destroy(set);
+    particles.geometry = VPL_PARTICLE_GEOMETRY_OBB;
+    assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &particles, &set), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "bounding boxes"));
+    vplGeometry_Destroy(cube);
+    closeTestContext(context);
+}
+
+TEST_SUITE(rsm, cmocka_unit_test(APointInAClosedCubeSends4PiI), cmocka_unit_test(ASpotSendsItsPower),
+           cmocka_unit_test(TheSunSendsWhatTheFloorMeets), cmocka_unit_test(TexelsAreWhereRaysLand),
+           cmocka_unit_test(ParticlesMoveByATexelAtMost), cmocka_unit_test(SmoothObjectsHaveTheirNormals),
+           cmocka_unit_test(AnEmptySceneGivesAnEmptyMap), cmocka_unit_test(AnEmitterMayTouchASurface),
+           cmocka_unit_test(MapsDoNotDependOnThreadsOrIsa), cmocka_unit_test(BadMapsAreRefused));
