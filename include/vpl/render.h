@@ -87,11 +87,11 @@ typedef struct vplRenderOptions {
     float minDistance; // bound of cos cos / max(d^2, D^2), metres, >= 0; 0: unbounded; negative
                        // (default): the radius of a disc with one light's share of the area
 
-    float
-        cutError; // lightcuts only: error of a pixel as a share of its light, r + g + b, (0, 1]; default 0.02.
-        // Guaranteed: no cluster errs by more than an eighth of it, whatever is hidden. Measured: nor do
-        // all together by more than it. Where less than a sixteenth of the virtual lights' light gets
-        // through, the share is of that sixteenth. Walter et al., Lightcuts, SIGGRAPH 2005
+    // Lightcuts only: error of a pixel as a share of its light (r + g + b), (0, 1]; default 0.02. Guaranteed: no
+    // cluster of lights errs by more than an eighth of it, whatever is hidden. Measured: nor do all together by more
+    // than it. Where less than a sixteenth of the virtual lights' light gets through, the share is of that
+    // sixteenth. Source: Walter et al., Lightcuts, SIGGRAPH 2005.
+    float cutError;
     vplCompensation compensation; // default VPL_COMPENSATION_USUAL
 
     vplLightShadows lightShadows; // of virtual lights; RAY also replaces the emitters' shadow maps; default

@@ -8,8 +8,8 @@
 
 // A cluster may err by this share of the error that was asked for. The clusters' errors have the mean 0 and nearly
 // cancel, but not quite: with a whole share, as in the paper, pixels are off by up to 3.7 times what was asked for, with
-// a quarter by 1.35 times, with an eighth by 0.8 times (room, room-area, sponza-sun; 1,000 to 100,000 lights with
-// shadows by rays; largest of all pixels).
+// a quarter by 1.35 times, with an eighth by 0.95 times (bench/lightcuts: room, room-area, sponza-sun; 1,000 to 100,000
+// particles; largest of all pixels).
 static const double SHARE = 1.0 / 8;
 // Where nearly all lights are hidden, an error counts as a share of this part of what they would give if they were
 // not: a pixel that no light reaches at all would need all of a million lights to know. With a sixteenth, the largest
