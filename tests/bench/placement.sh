@@ -24,7 +24,7 @@ measure() {
         echo "$(value relative_rmse "$scratch/a.pfm" "$truth-1.pfm") $(value relative_rmse "$scratch/a.pfm" "$truth-2.pfm") \
             $(sed -n 's/.*"cpu_ms": \([0-9.e+]*\).*/\1/p' "$scratch/stats.json")" >>"$scratch/rows"
     done
-    error=$(awk -v noise="$noise" '{s += ($1 * $1 + $2 * $2) / 2 - noise * noise / 2} END {print s > 0 ? sqrt(s / NR) : 0}' "$scratch/rows")
+    error=$(awk -v noise="$noise" '{s += ($1 * $1 + $2 * $2) / 2 - noise * noise / 2} END {print (s > 0 ? sqrt(s / NR) : 0)}' "$scratch/rows")
     ms=$(awk '{print $3}' "$scratch/rows" | sort -g | awk '{a[NR] = $1} END {print a[int((NR + 1) / 2)]}')
 }
 
