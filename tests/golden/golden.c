@@ -58,6 +58,15 @@ static void interleaved(vplRenderOptions* o)
     o->accumulation = VPL_ACCUMULATE_INTERLEAVED;
 }
 
+static void lightMaps(vplRenderOptions* o)
+{
+    o->particles = 200;
+    o->sampler = VPL_SAMPLER_HALTON;
+    o->reflectivity = -1;
+    o->lightShadows = VPL_LIGHT_SHADOWS_MAP;
+    o->show = VPL_SHOW_INDIRECT;
+}
+
 static void unbounded(vplRenderOptions* o)
 {
     o->particles = 200;
@@ -147,6 +156,7 @@ static const Case CASES[] = {
     {"room-many-lights-batched", "room", 1, manyLightsBatched},
     {"interleaved-room", "room", 1, interleaved},
     {"room-unbounded", "room", 1, unbounded},
+    {"room-light-maps", "room", 1, lightMaps},
     {"hard-shadow", "room", 2, hardShadow},
     {"acne", "room", 2, acne},
     {"soft-shadow", "room", 2, softShadow},
