@@ -131,7 +131,7 @@ static void AutoRendersWhatItSaysItChose(void** state)
     }
 }
 
-// Maps of 4096 x 4096 texels: three fit into what is allowed.
+// Maps of 2048 x 2048 texels: three fit into what is allowed.
 static void LightsWhoseMapsDoNotFitAreAddedInBatches(void** state)
 {
     (void)state;
@@ -141,8 +141,8 @@ static void LightsWhoseMapsDoNotFitAreAddedInBatches(void** state)
     vplRenderStats stats;
     o.width = 24;
     o.height = 16;
-    o.particles = 4;
-    o.lightMapSize = 4096;
+    o.particles = 8;
+    o.lightMapSize = 2048;
     o.lightShadows = VPL_LIGHT_SHADOWS_MAP;
     vplImage* all = renderScene(scene, &o, &stats);
     assert_true(stats.virtualLights > 2 * 3 && stats.peakBytes <= VPL_LIGHT_MAP_BYTES + ((size_t)64 << 20));
