@@ -55,7 +55,7 @@ static void TheRuleTurnsOnce(void** state)
 }
 
 // Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter longer, the rule
-// finds the cheaper in 95 % of the cells, and what it takes is never more than 1.6 times as dear.
+// finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as dear.
 static void TheRuleAgreesWithTheMeasuredTable(void** state)
 {
     (void)state;
@@ -73,7 +73,7 @@ static void TheRuleAgreesWithTheMeasuredTable(void** state)
             right += agrees;
         }
         const double ratio = map > ray ? map / ray : ray / map;
-        if (!agrees && ratio > 1.6) {
+        if (!agrees && ratio > 1.4) {
             fail_msg("row %d: maps %g ms, rays %g ms, expected %g and %g", i, map, ray, costs.mapMs,
                      costs.rayMs);
         }

@@ -4,7 +4,7 @@
 // shading with rays, and of drawing and shading with maps of 64 and 128 texels, alternated in one run. Without shadows the
 // same lights take what is said as `none`. Rays that would take more than MOST_MS are not cast (-).
 // Then points that the camera sees times lights: the share where the answers differ, and how much of that lies outside
-// the band that half_map.h states.
+// the band that vplHalfMap_FactorBlock states.
 #include "band.h"
 #include "bench.h"
 
@@ -159,7 +159,7 @@ static void printCosts(const Bench* b, const char* name, bool quick)
     printf("%-16s %.0f triangles, %.0f above a light, %.3f of pixels and lights face each other\n", name,
            load.triangles, load.trianglesAbove, load.facing);
     for (int s = 0; s < (quick ? 4 : 5); s++) {
-        for (int c = 0; c < (quick ? 2 : 4) && counts[c] <= b->lightCount; c++) {
+        for (int c = 0; c < (quick ? 2 : s < 3 ? 4 : 3) && counts[c] <= b->lightCount; c++) {
             const int width = sizes[s][0], height = sizes[s][1], lights = counts[c];
             const Cell cell = measure(b, width, height, lights, quick || lights > 64 ? 1 : RUNS);
             load.pixels = (double)width * height;
