@@ -12,9 +12,25 @@
     X(bench)                                                                                                 \
     X(bounds)                                                                                                \
     X(chooseShadows)                                                                                         \
-    X(emitters) X(emission) X(exr) X(geometry) X(halfMaps) X(hits) X(image) X(interleaved) X(lights) X(math) \
-        X(memory) X(metrics) X(obj) X(objParts) X(objScene) X(rays) X(packets) X(path) X(passes) X(raster)   \
-            X(rasterTruth) X(render) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
+    X(emitters)                                                                                              \
+    X(emission)                                                                                              \
+    X(exr)                                                                                                   \
+    X(geometry)                                                                                              \
+    X(halfMaps)                                                                                              \
+    X(hits)                                                                                                  \
+    X(image)                                                                                                 \
+    X(interleaved)                                                                                           \
+    X(lights)                                                                                                \
+    X(math)                                                                                                  \
+    X(memory)                                                                                                \
+    X(metrics)                                                                                               \
+    X(obj)                                                                                                   \
+    X(objParts)                                                                                              \
+    X(objScene)                                                                                              \
+    X(rays)                                                                                                  \
+    X(packets)                                                                                               \
+    X(path)                                                                                                  \
+    X(passes) X(raster) X(rasterTruth) X(render) X(scene) X(sceneChecks) X(shading) X(tradeoff) X(visibility)
 
 #define DECLARE(name) extern const Suite name##Suite;
 #define LIST(name)    &name##Suite,
