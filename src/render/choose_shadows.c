@@ -14,7 +14,7 @@ static const double DRAW_TEXEL = 0.4;   // a texel, and again for each power of 
 static const double LOOK_PIXEL = 2.3;   // a pixel and a light,
 static const double LOOK_FACING = 8.5;  // that face each other
 static const double RAY_PIXEL = 1;
-static const double RAY_FACING = 65; // a ray,
+static const double RAY_FACING = 50; // a ray,
 static const double RAY_DEPTH = 4;   // and each power of two of the scene's triangles
 
 // Straight between powers of two: exact everywhere, which libraries' logarithms are not.
