@@ -12,6 +12,7 @@
 #define ALL_SUITES(X) \
     X(bench) \
     X(bounds) \
+    X(chooseShadows) \
     X(emission) \
     X(emitters) \
     X(exr) \

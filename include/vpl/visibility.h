@@ -122,10 +122,9 @@ void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, f
 
 // The half space above a surface, as an octahedron's upper half seen from straight above and turned by 45 degrees:
 // the direction (x, y, z) in the frame below meets (u, v) = (x + y, x - y) / (|x| + |y| + z) in [-1, 1]^2. Straight
-// edges stay straight but for kinks where x or y is 0, and one square with as many texels as one face of a cube map,
-// a third of the half cube's, sees all there is to see.
-// Source: Cyril Crassin and others, and before them Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003
-// (the octahedron).
+// edges stay straight but for kinks where x or y is 0, and one square sees what a half cube sees with three.
+// Source: Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003 (the octahedron); Zina
+// Cigolle and others, A Survey of Efficient Representations for Independent Unit Vectors, JCGT 2014 (its half).
 typedef struct vplHalfMap {
     vplVec3 position;           // metres; a hair above the surface
     vplVec3 right, up, forward; // right-handed, unit; forward is the surface's normal
@@ -163,6 +162,11 @@ vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const
 void vplHalfMaps_Destroy(vplHalfMaps* maps);
 
 // 1 where something nearer to the place hides it from a point, and where one lies behind the other's surface; else 0.
+// A ray says the same except within a band. A texel's centre looks past a point at distance r, in the direction (x, y,
+// z), by at most the footprint f = sqrt(2) (|x| + |y| + z) / size; along the point's plane, at the angle T to the light,
+// it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r, as in VPL_BIAS_EXACT; 1.5 f are tolerated. So
+// the answers are equal where all that blocks the way is further than 2.5 f + b from the point, and blocks or frees all
+// ways to the point's plane within f around it alike.
 void vplHalfMap_FactorBlock(const vplHalfMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
 
 #ifdef __cplusplus

@@ -84,7 +84,7 @@ const Option OPTIONS[] = {
      "what becomes of the light that --min-distance takes away: none: lost; rays: short rays find it; usual "
      "(default): rays for keller with shadows, else none"},
     {"--light-map", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.lightMapSize), 1, VPL_MAX_SHADOW_MAP,
-     NULL, "texels along a face of each virtual light's map, for --light-shadows map; default 128"},
+     NULL, "texels along the side of each virtual light's map, for --light-shadows map; default 256"},
     {"--lamp-lights", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.lampLights), 1, VPL_MAX_LIGHTS, NULL,
      "lights that stand for area emitters in direct light, with shadow rays; default 64"},
     {"--particle-geometry", "G", SCENE, readChoice, AT(render.particleGeometry), 0, 0, "exact|obb",

@@ -43,7 +43,7 @@ const Sweep SWEEPS[] = {
      "0.005 0.01 0.02 0.05 0.1 0.2", "Error of lightcuts"},
     {"lamp-lights", "--lamp-lights", "4 16 64 256", "Lights that stand for lamps"},
     {"lamp-lights", "--lamp-lights 16 --particles", "300 1000 3000", NULL},
-    {"light-map", "--light-shadows map --light-map", "32 64 128 256", "Size of virtual lights' maps"},
+    {"light-map", "--light-shadows map --light-map", "32 64 128 256 512", "Size of virtual lights' maps"},
     {"particle-geometry", "--particle-geometry", "exact obb", "What stops a particle"},
 };
 

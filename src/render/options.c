@@ -19,7 +19,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.interleave = 4;
     o.cutError = 0.02f;
     o.minDistance = -1;
-    o.lightMapSize = 128;
+    o.lightMapSize = 256;
     o.lampLights = 64;
     o.samplesPerPixel = 64;
     o.maxBounces = -1;

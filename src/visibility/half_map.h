@@ -44,22 +44,17 @@ static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVe
 // How many triangles a light's map draws: those in blocks of the tree that reach above its plane.
 int64_t vplHalfMap_TrianglesAbove(const vplGeometry* geometry, const vplHalfMapPlace* place);
 
-// A fragment is shadowed by what is nearer than itself by more than this share of its distance, which is a texel's
-// footprint (see below), and than its own plane by as much. With half as much, corners darken more than contacts gain;
-// with one and a half times as much it is the other way round (bench/crossover; 128 texels; pairs dark in the map only +
-// in the ray only, in %, for 0, 1/2, 1, 3/2: room 0.51 + 0.20, 0.38 + 0.20, 0.30 + 0.20, 0.26 + 0.20; Sibenik
-// 5.72 + 3.82, 3.73 + 4.06, 2.96 + 4.38, 2.31 + 4.87; Sponza 5.37 + 4.29, 3.43 + 4.82, 2.39 + 5.30, 1.91 + 5.82).
+// What is nearer to the light than a fragment and its plane by less than this share of the distance, one and a half
+// footprints, does not shadow it: walls that meet in a corner. Pairs dark in the map only + in the ray only, in %, for
+// 0, 1/2, 1, 3/2, 2 footprints (bench/crossover, 128 texels): room 0.51 + 0.20, 0.38 + 0.20, 0.30 + 0.20, 0.26 + 0.20,
+// 0.23 + 0.20; Sibenik 5.72 + 3.82, 3.73 + 4.06, 2.96 + 4.38, 2.31 + 4.87, 1.90 + 5.50; Sponza 5.37 + 4.29,
+// 3.43 + 4.82, 2.39 + 5.30, 1.91 + 5.82, 1.62 + 6.40.
 static inline float vplHalfMap_Tolerance(int size)
 {
     return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
 }
 
-// The answers of a map and of rays are equal but in a band. A texel's centre looks past a fragment at distance r
-// (w = |x| + |y| + z in the map's frame) by at most the footprint f = sqrt(2) w / size; along the fragment's plane, at
-// the angle T to the light, it is nearer by at most the bias of VPL_BIAS_EXACT, r (1 - cos T / cos(T - a)) with
-// tan a = f / r; and another f is the tolerance. So where all that blocks the way to the fragment is further from it
-// than 2 f + bias, and blocks or frees all ways to its plane within the footprint f alike, the map says what the ray
-// says. Returns 2 f + bias, metres.
+// The band of vplHalfMap_FactorBlock, 2.5 f + b, metres, and f.
 static inline float vplHalfMap_Band(const vplHalfMap* map, vplVec3 point, vplVec3 normal, float* footprintOut)
 {
     const vplVec3 way = vplSub(point, map->position);

@@ -58,6 +58,15 @@ static void interleaved(vplRenderOptions* o)
     o->accumulation = VPL_ACCUMULATE_INTERLEAVED;
 }
 
+static void lightMaps(vplRenderOptions* o)
+{
+    o->particles = 200;
+    o->sampler = VPL_SAMPLER_HALTON;
+    o->reflectivity = -1;
+    o->lightShadows = VPL_LIGHT_SHADOWS_MAP;
+    o->show = VPL_SHOW_INDIRECT;
+}
+
 static void unbounded(vplRenderOptions* o)
 {
     o->particles = 200;
@@ -169,6 +178,7 @@ static const Case CASES[] = {
     {"interleaved-room", "room", 1, interleaved},
     {"lightcuts-room", "room", 1, lightcuts},
     {"room-unbounded", "room", 1, unbounded},
+    {"room-light-maps", "room", 1, lightMaps},
     {"hard-shadow", "room", 2, hardShadow},
     {"acne", "room", 2, acne},
     {"soft-shadow", "room", 2, softShadow},

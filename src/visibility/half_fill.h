@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// One triangle in the shadow map of a half space. Included by the kernel that draws them.
+// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, Graphics Hardware
+// 1997: inside is where three planes through the eye say so, so that nothing is clipped. The planes are Pluecker's
+// (as in Embree): they are exact negatives for both triangles at an edge, and no texel between them is lost.
+//
+// A texel at (u, v) in [-1, 1]^2 looks along d = (p, q, 1 - |p| - |q|), p = (u + v) / 2, q = (u - v) / 2, in the
+// light's frame; where p and q keep their signs d is linear in u and v. A point t d lies on a triangle's plane where
+// 1/t = n.d / n.corner, which is linear, too, and the nearest is the largest.
+#ifndef VPL_VISIBILITY_HALF_FILL_H
+#define VPL_VISIBILITY_HALF_FILL_H
+
+#include "visibility/half_map.h"
+
+#include <string.h>
+
+// ---- one triangle
+
+// A function c + u cu + v cv of the texels of one quadrant.
+typedef struct Linear {
+    float c, cu, cv;
+} Linear;
+
+// e.d where p has the sign of `right` and q that of `up`.
+static inline Linear linearOf(vplVec3 e, float right, float up)
+{
+    const float p = e.x - right * e.z, q = e.y - up * e.z;
+    return (Linear){e.z, 0.5f * (p + q), 0.5f * (p - q)};
+}
+
+// Twice a x b.
+static inline vplVec3 edgeOf(vplVec3 a, vplVec3 b)
+{
+    return vplCross(vplSub(a, b), vplAdd(a, b));
+}
+
+// Columns i0 to i1 and rows j0 to j1.
+typedef struct Texels {
+    int32_t i0, i1, j0, j1;
+} Texels;
+
+typedef struct Filling {
+    Linear edge[3], near; // near: 1/t
+    float right, up;      // signs of the quadrant
+} Filling;
+
+// Returns whether it may be seen: from its edge a triangle hides nothing.
+static inline int32_t setUp(vplVec3 p0, vplVec3 p1, vplVec3 p2, float right, float up, Filling* f)
+{
+    const vplVec3 n = vplCross(vplSub(p1, p0), vplSub(p2, p0));
+    const float x = n.x * p0.x, y = n.y * p0.y, z = n.z * p0.z, k = x + y + z;
+    const float sign = k > 0 ? 1.0f : -1.0f, inverse = 1 / k;
+    f->near = linearOf(vplScale(inverse, n), right, up);
+    f->edge[0] = linearOf(vplScale(sign, edgeOf(p0, p1)), right, up);
+    f->edge[1] = linearOf(vplScale(sign, edgeOf(p1, p2)), right, up);
+    f->edge[2] = linearOf(vplScale(sign, edgeOf(p2, p0)), right, up);
+    f->right = right;
+    f->up = up;
+    return (fabsf(k) > 0x1p-20f * (fabsf(x) + fabsf(y) + fabsf(z))) & (fabsf(inverse) < INFINITY);
+}
+
+enum { SIDE = VPL_BLOCK_SIDE };
+
+// One row of blocks. `whole`: the triangle may reach into other quadrants, whose texels are not meant.
+static inline void fillRow(const Filling* restrict f, int32_t row, float scale, int32_t first, int32_t last,
+                           bool whole, float* restrict texels)
+{
+    const float u0 = f->edge[0].cu, u1 = f->edge[1].cu, u2 = f->edge[2].cu, nearU = f->near.cu;
+    const float right = whole ? f->right : 0, up = whole ? f->up : 0;
+    float v[VPL_LANES], e0[VPL_LANES], e1[VPL_LANES], e2[VPL_LANES], near[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        v[l] = (float)(2 * (SIDE * row + l / SIDE) + 1) * scale - 1;
+        e0[l] = f->edge[0].c + f->edge[0].cv * v[l];
+        e1[l] = f->edge[1].c + f->edge[1].cv * v[l];
+        e2[l] = f->edge[2].c + f->edge[2].cv * v[l];
+        near[l] = f->near.c + f->near.cv * v[l];
+    }
+    for (int32_t i = first; i <= last; i++) {
+        float old[VPL_LANES], now[VPL_LANES];
+        memcpy(old, texels + (size_t)i * VPL_LANES, sizeof old);
+        for (int l = 0; l < VPL_LANES; l++) {
+            const float u = (float)(2 * (SIDE * i + l % SIDE) + 1) * scale - 1;
+            const float a = e0[l] + u0 * u, b = e1[l] + u1 * u, c = e2[l] + u2 * u;
+            const float p = right * (u + v[l]), q = up * (u - v[l]), value = near[l] + nearU * u;
+            const float ab = a < b ? a : b, pq = p < q ? p : q;
+            const float abc = ab < c ? ab : c;
+            const float before = old[l];
+            const float nearer = value > before ? value : before;
+            now[l] = (abc >= 0) & (pq >= 0) ? nearer : before;
+        }
+        memcpy(texels + (size_t)i * VPL_LANES, now, sizeof now);
+    }
+}
+
+static inline void fill(const vplHalfMap* map, const Filling* f, Texels box, bool whole, float* texels)
+{
+    const float scale = 1 / (float)map->size;
+    const size_t stride = (size_t)vplHalfMap_Blocks(map->size) * VPL_LANES;
+    for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
+        fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, whole, texels + (size_t)row * stride);
+    }
+}
+
+// ---- triangles that cross the horizon or the axes: cut for their bounds, then filled whole
+
+enum { MAX_CUT = 6 };
+
+// Cuts a polygon down to where side . point >= 0.
+static int cut(double (*restrict points)[3], int count, const double side[3])
+{
+    double from[MAX_CUT][3];
+    int kept = 0;
+    memcpy(from, points, (size_t)count * sizeof *from);
+    for (int i = 0; i < count; i++) {
+        const double *a = from[i], *b = from[(i + 1) % count];
+        const double da = side[0] * a[0] + side[1] * a[1] + side[2] * a[2];
+        const double db = side[0] * b[0] + side[1] * b[1] + side[2] * b[2];
+        if (da >= 0) {
+            memcpy(points[kept++], a, sizeof from[0]);
+        }
+        if ((da >= 0) != (db >= 0)) {
+            const double t = da / (da - db);
+            for (int k = 0; k < 3; k++) {
+                points[kept][k] = a[k] + t * (b[k] - a[k]);
+            }
+            kept++;
+        }
+    }
+    return kept;
+}
+
+// Bounds are wider by this much of a texel, which covers the rounding of projected corners.
+static const float MARGIN = 0x1p-9f;
+
+static Texels boundsOf(double (*points)[3], int count, int size)
+{
+    double low[2] = {2, 2}, high[2] = {-2, -2};
+    for (int i = 0; i < count; i++) {
+        const double x = points[i][0], y = points[i][1], w = fabs(x) + fabs(y) + fabs(points[i][2]);
+        if (!(w > 0)) { // the eye itself: in every direction
+            return (Texels){0, size - 1, 0, size - 1};
+        }
+        const double at[2] = {(x + y) / w, (x - y) / w};
+        for (int k = 0; k < 2; k++) {
+            low[k] = at[k] < low[k] ? at[k] : low[k];
+            high[k] = at[k] > high[k] ? at[k] : high[k];
+        }
+    }
+    const double half = 0.5 * size, least = 0.5 - (double)MARGIN, most = 0.5 + (double)MARGIN;
+    return (Texels){(int32_t)((low[0] + 1) * half + least), (int32_t)((high[0] + 1) * half + most) - 1,
+                    (int32_t)((low[1] + 1) * half + least), (int32_t)((high[1] + 1) * half + most) - 1};
+}
+
+static bool reaches(const vplVec3 corner[3], float right, float up)
+{
+    return (corner[0].x * right > 0 || corner[1].x * right > 0 || corner[2].x * right > 0) &&
+           (corner[0].y * up > 0 || corner[1].y * up > 0 || corner[2].y * up > 0);
+}
+
+static void fillCut(const vplHalfMap* map, const vplVec3 corner[3], float* texels)
+{
+    for (int quadrant = 0; quadrant < 4; quadrant++) {
+        const float right = quadrant & 1 ? -1 : 1, up = quadrant & 2 ? -1 : 1;
+        if (!reaches(corner, right, up)) {
+            continue;
+        }
+        double points[MAX_CUT][3];
+        for (int i = 0; i < 3; i++) {
+            points[i][0] = (double)corner[i].x;
+            points[i][1] = (double)corner[i].y;
+            points[i][2] = (double)corner[i].z;
+        }
+        int count = cut(points, 3, (const double[]){0, 0, 1});
+        count = count > 0 ? cut(points, count, (const double[]){(double)right, 0, 0}) : 0;
+        count = count > 0 ? cut(points, count, (const double[]){0, (double)up, 0}) : 0;
+        Filling f;
+        const Texels box = boundsOf(points, count, map->size);
+        if (count > 0 && box.i0 <= box.i1 && box.j0 <= box.j1 &&
+            setUp(corner[0], corner[1], corner[2], right, up, &f)) {
+            fill(map, &f, box, true, texels);
+        }
+    }
+}
+
+#endif

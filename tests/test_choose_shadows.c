@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Whether virtual lights take maps or rays: the rule, what it is asked with, and that pictures are those of what it
+// chose. Lights whose maps do not fit into memory at the same time.
+#include "scenes.h"
+
+#include "render/choose_shadows.h"
+
+static const vplShadowLoad plain = {64, 1e5, 0.4, 1e4, 2e4, 128};
+
+static void CostsGrowWithWhatTheyDependOn(void** state)
+{
+    (void)state;
+    const size_t fields[] = {offsetof(vplShadowLoad, lights),         offsetof(vplShadowLoad, pixels),
+                             offsetof(vplShadowLoad, facing),         offsetof(vplShadowLoad, triangles),
+                             offsetof(vplShadowLoad, trianglesAbove), offsetof(vplShadowLoad, mapSize)};
+    for (int field = 0; field < 6; field++) {
+        vplShadowLoad load = plain;
+        vplShadowCosts before = vplEstimateShadows(&load);
+        for (int step = 0; step < 20; step++) {
+            double value;
+            memcpy(&value, (char*)&load + fields[field], sizeof value);
+            value *= 1.1;
+            memcpy((char*)&load + fields[field], &value, sizeof value);
+            const vplShadowCosts after = vplEstimateShadows(&load);
+            const bool forMaps = field != 3, forRays = field < 4;
+            assert_true(forMaps ? after.mapMs > before.mapMs : after.mapMs == before.mapMs);
+            assert_true(forRays ? after.rayMs > before.rayMs : after.rayMs == before.rayMs);
+            before = after;
+        }
+    }
+}
+
+// More pixels speak for maps, more triangles above the lights against them.
+static void TheRuleTurnsOnce(void** state)
+{
+    (void)state;
+    for (int lights = 1; lights < 5000; lights *= 7) {
+        vplShadowLoad load = plain;
+        load.lights = lights;
+        int turns = 0;
+        bool map = false;
+        for (load.pixels = 1; load.pixels < 1e8; load.pixels *= 1.5) {
+            const vplShadowCosts costs = vplEstimateShadows(&load);
+            turns += map != (costs.mapMs < costs.rayMs);
+            map = costs.mapMs < costs.rayMs;
+        }
+        assert_true(turns == 1 && map);
+        for (load.pixels = 3e5, turns = 0; load.trianglesAbove < 1e7; load.trianglesAbove *= 1.5) {
+            const vplShadowCosts costs = vplEstimateShadows(&load);
+            turns += map != (costs.mapMs < costs.rayMs);
+            map = costs.mapMs < costs.rayMs;
+        }
+        assert_true(turns == 1 && !map);
+    }
+}
+
+// Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter longer, the rule
+// finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as dear.
+static void TheRuleAgreesWithTheMeasuredTable(void** state)
+{
+    (void)state;
+    Table t = loadTable("crossover.csv");
+    int clear = 0, right = 0;
+    for (int i = 0; i < t.rows; i++) {
+        const vplShadowLoad load = {number(&t, i, "lights"),    number(&t, i, "pixels"),
+                                    number(&t, i, "facing"),    number(&t, i, "above"),
+                                    number(&t, i, "triangles"), number(&t, i, "size")};
+        const double map = number(&t, i, "map_ms"), ray = number(&t, i, "ray_ms");
+        const vplShadowCosts costs = vplEstimateShadows(&load);
+        const bool agrees = (costs.mapMs < costs.rayMs) == (map < ray);
+        if (map > 1.25 * ray || ray > 1.25 * map) {
+            clear++;
+            right += agrees;
+        }
+        const double ratio = map > ray ? map / ray : ray / map;
+        if (!agrees && ratio > 1.4) {
+            fail_msg("row %d: maps %g ms, rays %g ms, expected %g and %g", i, map, ray, costs.mapMs,
+                     costs.rayMs);
+        }
+    }
+    printf("# %d of %d cells\n", right, clear);
+    assert_true(clear > 150 && right >= 0.95 * clear);
+    freeTable(&t);
+}
+
+static vplRenderOptions autoOptions(void)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.particles = 20;
+    o.lightMapSize = 64;
+    o.lightShadows = VPL_LIGHT_SHADOWS_AUTO;
+    return o;
+}
+
+static void AutoRendersWhatItSaysItChose(void** state)
+{
+    (void)state;
+    static const struct {
+        int width, interleave;
+        vplAccumulation accumulation;
+        vplLightShadows wanted;
+    } cases[] = {{128, 4, VPL_ACCUMULATE_DEFERRED, VPL_LIGHT_SHADOWS_MAP},
+                 {4, 4, VPL_ACCUMULATE_DEFERRED, VPL_LIGHT_SHADOWS_RAY},
+                 {128, 16, VPL_ACCUMULATE_INTERLEAVED, VPL_LIGHT_SHADOWS_RAY}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        vplContext* context = openTestContext(2);
+        vplScene* scene = loadScene(context, "room.json");
+        vplRenderOptions o = autoOptions();
+        vplRenderStats chosen, named;
+        o.width = o.height = cases[i].width;
+        o.accumulation = cases[i].accumulation;
+        o.interleave = cases[i].interleave;
+        vplImage_Destroy(renderScene(scene, &o, &chosen));
+        assert_int_equal(chosen.lightShadows, cases[i].wanted);
+        assert_true((chosen.shadowMapEstimateMs < chosen.shadowRayEstimateMs) ==
+                    (cases[i].wanted == VPL_LIGHT_SHADOWS_MAP));
+        o.lightShadows = cases[i].wanted;
+        if (o.lightShadows == VPL_LIGHT_SHADOWS_MAP) {
+            vplImage_Destroy(renderScene(scene, &o, &named));
+            assert_true(named.imageHash == chosen.imageHash);
+            assert_true(named.lightShadows == cases[i].wanted && named.shadowRayEstimateMs == 0);
+        } else { // RAY alone also replaces the emitter's map: indirect light is the same
+            o.show = VPL_SHOW_INDIRECT;
+            vplImage_Destroy(renderScene(scene, &o, &named));
+            o.lightShadows = VPL_LIGHT_SHADOWS_AUTO;
+            vplImage_Destroy(renderScene(scene, &o, &chosen));
+            assert_true(named.imageHash == chosen.imageHash);
+        }
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+}
+
+// Maps of 2048 x 2048 texels: three fit into what is allowed.
+static void LightsWhoseMapsDoNotFitAreAddedInBatches(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = autoOptions();
+    vplRenderStats stats;
+    o.width = 24;
+    o.height = 16;
+    o.particles = 8;
+    o.lightMapSize = 2048;
+    o.lightShadows = VPL_LIGHT_SHADOWS_MAP;
+    vplImage* all = renderScene(scene, &o, &stats);
+    assert_true(stats.virtualLights > 2 * 3 && stats.peakBytes <= VPL_LIGHT_MAP_BYTES + ((size_t)64 << 20));
+    o.show = VPL_SHOW_DIRECT;
+    vplImage* direct = renderScene(scene, &o, NULL);
+    vplImage* sum = direct;
+    o.show = VPL_SHOW_LIGHT;
+    o.minDistance = stats.minDistance;
+    for (o.showLight = 0; o.showLight < stats.virtualLights; o.showLight++) {
+        vplImage* one = renderScene(scene, &o, NULL);
+        for (int k = 0; k < 3 * o.width * o.height; k++) {
+            sum->pixels[k] += one->pixels[k];
+        }
+        vplImage_Destroy(one);
+    }
+    for (int k = 0; k < 3 * o.width * o.height; k++) {
+        assert_true(fabsf(sum->pixels[k] - all->pixels[k]) <= 1e-5f * all->pixels[k]);
+    }
+    vplImage_Destroy(all);
+    vplImage_Destroy(sum);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+TEST_SUITE(chooseShadows, cmocka_unit_test(CostsGrowWithWhatTheyDependOn), cmocka_unit_test(TheRuleTurnsOnce),
+           cmocka_unit_test(TheRuleAgreesWithTheMeasuredTable),
+           cmocka_unit_test(AutoRendersWhatItSaysItChose),
+           cmocka_unit_test(LightsWhoseMapsDoNotFitAreAddedInBatches));
