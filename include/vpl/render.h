@@ -144,6 +144,8 @@ typedef struct vplRenderStats {
     int escaped;                                  // particles that left the scene
     int triangles, objects;
     float minDistance;   // as used, metres
+    double clampLoss;    // share of the virtual lights' light that minDistance takes away, or would without
+                         // compensation; an estimate from some pixels; negative where there is none
     double reflectivity; // as used
     double cpuMs;        // processor time of all threads
     int passes;          // that the picture is the mean of; path: of up to 32 paths per pixel each

@@ -121,10 +121,22 @@ vplResult vplMakeDirectLight(vplJob* job, vplIngredients* in)
 
 // ---- virtual lights
 
-// The lights of the set that are shown: all, or one, or all but those on the emitters.
-static vplResult choose(vplJob* job, const vplLightSet* set, vplLightSet* shown)
+// Of step 0; points and directions are no surfaces.
+static int lightsOnLamps(const vplLightSet* set)
+{
+    int count = 0;
+    for (int i = 0; i < set->lightsInStep[0]; i++) {
+        count += set->lights[i].object >= 0;
+    }
+    return count;
+}
+
+// The lights of the set that are shown: all, or one, or all but those on the emitters. These must be kept where rays
+// meet what they light.
+static vplResult choose(vplJob* job, const vplLightSet* set, vplLightSet* shown, int* firstShown)
 {
     const vplRenderOptions* o = &job->options;
+    *firstShown = 0;
     *shown = *set;
     if (o->show == VPL_SHOW_LIGHT) {
         if (o->showLight >= set->lightCount) {
@@ -136,6 +148,10 @@ static vplResult choose(vplJob* job, const vplLightSet* set, vplLightSet* shown)
         shown->lightCount = 1;
     }
     if (o->show == VPL_SHOW_INDIRECT && o->method == VPL_METHOD_KELLER && set->stepCount > 0) {
+        if (vplCompensates(job)) {
+            *firstShown = lightsOnLamps(set);
+            return VPL_SUCCESS;
+        }
         shown->lights += set->lightsInStep[0];
         shown->lightCount -= set->lightsInStep[0];
     }
@@ -160,7 +176,7 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
     vplLightSet shown;
     vplResult result = vplJob_MakeLights(job, &in->set);
     if (result == VPL_SUCCESS) {
-        result = choose(job, in->set, &shown);
+        result = choose(job, in->set, &shown, &in->firstShown);
     }
     if (result != VPL_SUCCESS) {
         return result;

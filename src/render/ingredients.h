@@ -23,6 +23,7 @@ typedef struct vplIngredients {
     vplLightSet* set;
     vplShadeLight* lights;
     int lightCount;
+    int firstShown; // Keller's --show indirect: lights before this one light only what compensation meets
     float minDistance;
     vplLightShadows lightShadows; // none, map or ray
     vplMaps lightMaps;
@@ -36,6 +37,15 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in);
 
 // Maps of the virtual lights.
 vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in);
+
+// Whether light that the bound takes away is found by rays.
+bool vplCompensates(const vplJob* job);
+
+// How, for lights and shadows that are there.
+vplCompensationDef vplMakeCompensation(const vplJob* job, const vplIngredients* in);
+
+// Adds a pass to the loss by the bound that statistics tell.
+vplResult vplEstimateLoss(vplJob* job, const vplIngredients* in, const vplShadeDef* shown);
 
 void vplFreeVirtualLights(vplJob* job, vplIngredients* in);
 void vplFreeIngredients(vplJob* job, vplIngredients* in);

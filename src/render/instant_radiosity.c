@@ -45,13 +45,20 @@ static bool isProgressive(const vplRenderOptions* o)
 
 // One look at every pixel at place i of `count`: Hammersley points, so that edges along the axes, too, are cut at
 // as many places as there are samples.
-static vplResult shadeSample(vplJob* job, const vplShadeDef* def, int i, int count)
+static vplResult shadeSample(vplJob* job, const vplShadeDef* plain, int i, int count)
 {
+    vplShadeDef def = *plain;
+    vplCompensationDef compensation;
+    if (def.compensation != NULL) { // short rays of all looks and passes are one sequence
+        compensation = *def.compensation;
+        compensation.firstRay = (uint32_t)(job->stepsDone * count + i) * (uint32_t)compensation.rayCount;
+        def.compensation = &compensation;
+    }
     double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
     vplView view = vplView_At(&job->view, (i + 0.5) / count, y - floor(y));
     vplShadeStats stats = {0};
     vplResult result =
-        vplShadeView(job->geometry, &view, def, vplJob_GetProgress(job), job, job->image, &stats);
+        vplShadeView(job->geometry, &view, &def, vplJob_GetProgress(job), job, job->image, &stats);
     vplJob_AddRaster(job, &stats.raster);
     job->stats.rays += stats.shadowRays;
     return result;
@@ -108,10 +115,15 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts)
         def.emission = true;
     }
     if (parts & PART_INDIRECT) {
-        def.lightShadows = in->lightMaps.shadows;
+        def.lightShadows = in->lightMaps.shadows ? in->lightMaps.shadows + in->firstShown : NULL;
         def.lightRays = in->lightShadows == VPL_LIGHT_SHADOWS_RAY;
-        def.lights = in->lights;
-        def.lightCount = in->lightCount;
+        def.lights = in->lights + in->firstShown;
+        def.lightCount = in->lightCount - in->firstShown;
+    }
+    const bool virtualLights = def.lightCount > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
+    const vplCompensationDef compensation = vplMakeCompensation(job, in);
+    if (virtualLights && vplCompensates(job)) {
+        def.compensation = &compensation;
     }
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
     vplJob_BeginStage(job, 1);
@@ -119,6 +131,12 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts)
         result = shadeSamples(job, &def);
     }
     vplJob_EndStage(job, "shading");
+    const bool known = o->show != VPL_SHOW_LIGHT && (needsDirect(o) || vplCompensates(job));
+    if (result == VPL_SUCCESS && virtualLights && known && def.lighting == VPL_LIGHTING_PHYSICAL) {
+        vplJob_BeginStage(job, 1);
+        result = vplEstimateLoss(job, in, &def);
+        vplJob_EndStage(job, "clamp loss");
+    }
     return result;
 }
 
@@ -142,7 +160,8 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
         result = vplMakeVirtualLights(job, in);
         vplJob_EndStage(job, "particles");
     }
-    if (result == VPL_SUCCESS && parts & PART_DIRECT && needsDirect(o)) {
+    if (result == VPL_SUCCESS && parts & PART_DIRECT &&
+        (needsDirect(o) || vplCompensates(job))) {
         vplJob_BeginStage(job, 0.15);
         result = vplMakeDirectLight(job, in);
         vplJob_EndStage(job, "shadow map");

@@ -13,20 +13,22 @@ typedef struct Starts {
     vplHit hit[VPL_LANES]; // of lanes that show a triangle
 } Starts;
 
+vplHit vplStartOf(const vplGeometry* g, int triangle, vplVec3 seen)
+{
+    return (vplHit){.object = g->owners[triangle],
+                    .face = vplGeometry_FaceOf(g, triangle),
+                    .triangle = triangle,
+                    .position = vplGeometry_Inside(g, triangle, seen),
+                    .normal = g->normals[triangle]};
+}
+
 static void findStarts(const vplGeometry* g, const vplPoints* points, Starts* starts)
 {
     const vplSurface* s = points->surface;
     for (int l = 0; l < VPL_LANES; l++) {
-        const int triangle = points->triangle[l];
-        if (triangle < 0) {
-            continue;
+        if (points->triangle[l] >= 0) {
+            starts->hit[l] = vplStartOf(g, points->triangle[l], vplVec(s->px[l], s->py[l], s->pz[l]));
         }
-        const vplVec3 seen = vplVec(s->px[l], s->py[l], s->pz[l]);
-        starts->hit[l] = (vplHit){.object = g->owners[triangle],
-                                  .face = vplGeometry_FaceOf(g, triangle),
-                                  .triangle = triangle,
-                                  .position = vplGeometry_Inside(g, triangle, seen),
-                                  .normal = g->normals[triangle]};
     }
 }
 
@@ -70,8 +72,7 @@ void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, cons
                    emitter->parallel, amount, rays);
 }
 
-// A virtual light lies on a surface that must not shadow it: rays aim a little above.
-static vplVec3 aimAt(const vplShadeLight* light)
+vplVec3 vplAimAt(const vplShadeLight* light)
 {
     const float x = light->px, y = light->py, z = light->pz;
     float largest = fmaxf(fabsf(x), fmaxf(fabsf(y), fabsf(z))) * 0x1p-18f;
@@ -114,7 +115,7 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const vplS
             continue;
         }
         if (maps == NULL) {
-            castShadowRays(s, points, &starts, aimAt(&lights[i]), false, visible, rays);
+            castShadowRays(s, points, &starts, vplAimAt(&lights[i]), false, visible, rays);
         } else {
             shadowByMap(s, points, &lights[i], &maps[i], visible);
         }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "base/isa.h"
-#include "shading/shading.h"
+#include "shading/compensation.h"
 
 #include <math.h>
 
 VPL_KERNEL_TABLE(DOCUMENTED, vplLightKernelFcn, vplLightsDocumented);
 VPL_KERNEL_TABLE(PHYSICAL, vplLightKernelFcn, vplLightsPhysical);
+VPL_KERNEL_TABLE(POINT, vplPointKernelFcn, vplLightsOfPoint);
 VPL_KERNEL_TABLE(EMITTERS, vplAddEmittersFcn, vplAddEmitters);
 VPL_KERNEL_TABLE(CULL_DOCUMENTED, vplCullFcn, vplCullDocumented);
 VPL_KERNEL_TABLE(CULL_PHYSICAL, vplCullFcn, vplCullPhysical);
@@ -42,6 +43,11 @@ vplCullFcn* vplGetCull(vplIsa isa, vplLighting lighting)
 vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting)
 {
     return lighting == VPL_LIGHTING_DOCUMENTED ? DOCUMENTED[isa] : PHYSICAL[isa];
+}
+
+vplPointKernelFcn* vplGetPointKernel(vplIsa isa)
+{
+    return POINT[isa];
 }
 
 vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa)
