@@ -11,6 +11,7 @@
 #define ALL_SUITES(X)                                                                                        \
     X(bench)                                                                                                 \
     X(bounds)                                                                                                \
+    X(compensation)                                                                                          \
     X(emitters)                                                                                              \
     X(emission)                                                                                              \
     X(exr)                                                                                                   \

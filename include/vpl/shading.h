@@ -74,8 +74,9 @@ typedef enum vplShadeOutput {
 // what the picture shows, so all are named here once more.
 // Source: Kollig and Keller, Illumination in the Presence of Weak Singularities, MCQMC 2004.
 typedef struct vplCompensationDef {
-    int rayCount;      // per point, [1, VPL_MAX_NEAR_RAYS]
-    int hitLights;     // virtual lights that light a hit, chosen by chance, [1, VPL_MAX_LIGHTS]
+    int rayCount;  // per point, [1, VPL_MAX_NEAR_RAYS]
+    int hitLights; // virtual lights that light a hit, chosen by chance, [1, VPL_MAX_LIGHTS]: so few that each
+                   // stands for a disc of radius minDistance, or more
     uint32_t firstRay; // index of a point's first ray in its sequence: renders in several passes go on
     uint64_t seed;
     const vplEmitterDef* emitters; // as in vplShadeDef
@@ -87,9 +88,12 @@ typedef struct vplCompensationDef {
     const vplShadeLight* lights;
     const vplShadow* lightShadows;
     int lightCount;
-    float reflection;    // multiplies reflectances: 1; for lights that lost light as documented 1/pi
-    bool lampsAreLights; // surfaces that emit are met as such: some of the lights lie on them
-    bool seesEmission;   // also by the first ray: the picture shows these lights
+    float reflection; // multiplies reflectances: 1; for lights that lost light as documented 1/pi
+    int lampLights;   // the first of `lights`, which lie on surfaces that emit and stand for their emission
+    float
+        lightLampDistance; // metres, (0, minDistance]: within it that emission is found by rays, beyond by those
+                           // lights themselves; lamps are small and their lights close together
+    bool seesEmission;     // also by the first ray: the picture shows these lights
     bool seesReflection; // the picture shows lights of reflected light
 } vplCompensationDef;
 
@@ -105,14 +109,14 @@ typedef struct vplShadeDef {
     int emitterCount;           // 0: no direct light
     const vplShadeLight* lamps; // direct light of area emitters, always with shadow rays; physical only
     int lampCount;
-    float lampMinDistance;         // as minDistance
-    int particleCount;             // N, by which documented direct light is divided (0 counts as 1)
-    const vplShadeLight* lights;   // virtual lights
-    int lightCount;                // 0: no indirect light
-    const vplShadow* lightShadows; // one per virtual light; NULL: they cast none, or by rays
-    bool lightRays;                // virtual lights cast shadows by rays
-    float cutError;                // lightcuts: see vplRenderOptions
-    bool emission;                 // surfaces that emit are seen to
+    float lampMinDistance;                  // as minDistance
+    int particleCount;                      // N, by which documented direct light is divided (0 counts as 1)
+    const vplShadeLight* lights;            // virtual lights
+    int lightCount;                         // 0: no indirect light
+    const vplShadow* lightShadows;          // one per virtual light; NULL: they cast none, or by rays
+    bool lightRays;                         // virtual lights cast shadows by rays
+    float cutError;                         // lightcuts: see vplRenderOptions
+    bool emission;                          // surfaces that emit are seen to
     const vplCompensationDef* compensation; // physical only; NULL: what minDistance takes away is lost
 } vplShadeDef;
 
@@ -128,8 +132,9 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
 // What the bound takes away, and all light of virtual lights with it: sums over some points that the view shows, so
 // that their ratio is the share that is lost.
 typedef struct vplClampLoss {
-    double lost, all; // mean over the channels of the light reflected to the eye, in units that the number of points
-                      // and their choice decide
+    double lost,
+        all; // mean over the channels of the light reflected to the eye, in units that the number of points
+             // and their choice decide
 } vplClampLoss;
 
 // Estimates the loss from `pointCount` pixels, evenly spread. def->compensation says how rays are cast, whether the

@@ -23,6 +23,7 @@ typedef struct vplIngredients {
     vplLightSet* set;
     vplShadeLight* lights;
     int lightCount;
+    int lampLights; // the first lights, if they lie on lamps
     int firstShown; // Keller's --show indirect: lights before this one light only what compensation meets
     float minDistance;
     vplLightShadows lightShadows; // none, map or ray
@@ -37,6 +38,9 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in);
 
 // Maps of the virtual lights.
 vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in);
+
+// Lights of step 0 that lie on surfaces: Keller's, which stand for their emission.
+int vplCountLampLights(const vplLightSet* set);
 
 // Whether light that the bound takes away is found by rays.
 bool vplCompensates(const vplJob* job);

@@ -160,8 +160,7 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
         result = vplMakeVirtualLights(job, in);
         vplJob_EndStage(job, "particles");
     }
-    if (result == VPL_SUCCESS && parts & PART_DIRECT &&
-        (needsDirect(o) || vplCompensates(job))) {
+    if (result == VPL_SUCCESS && parts & PART_DIRECT && (needsDirect(o) || vplCompensates(job))) {
         vplJob_BeginStage(job, 0.15);
         result = vplMakeDirectLight(job, in);
         vplJob_EndStage(job, "shadow map");

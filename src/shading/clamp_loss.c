@@ -15,8 +15,8 @@ static bool lookAt(const vplGeometry* g, const vplView* view, double x, double y
 {
     const double across = (2 * x / view->width - 1) / view->scaleX;
     const double upward = (1 - 2 * y / view->height) / view->scaleY;
-    const vplVec3 d = vplAdd(view->forward, vplAdd(vplScale((float)across, view->right),
-                                                   vplScale((float)upward, view->up)));
+    const vplVec3 d = vplAdd(view->forward,
+                             vplAdd(vplScale((float)across, view->right), vplScale((float)upward, view->up)));
     const vplRay ray = {vplAdd(view->eye, vplScale((float)view->near, d)), d, {0, 0}};
     if (!vplGeometry_ClosestHit(g, &ray, &p->hit) || (double)p->hit.t > view->far - view->near) {
         return false;
@@ -46,7 +46,8 @@ static void setLane(const vplLitPoint* p, int l, vplSurface* surface, vplSurface
 static void addBlock(const vplShading* s, int first, int count, vplClampLoss* sum)
 {
     const vplGeometry* g = s->geometry;
-    const vplLightChoice all = {s->def->lights, s->def->lightShadows, s->def->lightCount, CHOSEN_LIGHTS};
+    const vplLightChoice all = {
+        s->def->lights, s->def->lightShadows, s->def->lightCount, CHOSEN_LIGHTS, 0, 0};
     vplLitPoint at[VPL_LANES];
     vplSurface surface, plane;
     vplPoints points = {.surface = &surface, .plane = &plane};

@@ -23,14 +23,21 @@ enum { MAX_BOUNCES = 1024 };
 // Sixteen walks, one per point of a block.
 typedef struct Walk {
     vplLitPoint at[VPL_LANES];
-    float weight[3][VPL_LANES];   // of the radiance that leaves `at`
-    float vicinity[VPL_LANES];    // 1 - d^2/D^2 of the last ray
-    uint32_t active;              // bit per lane
+    float weight[3][VPL_LANES]; // of the radiance that leaves `at`
+    float vicinity[VPL_LANES];  // 1 - d^2/D^2 of the last ray,
+    float emissive[VPL_LANES];  // and the same for what lights on lamps stand for
+    uint32_t active;            // bit per lane
 } Walk;
 
 static inline vplRgb diffuseOf(const vplGeometry* g, int triangle)
 {
     return g->materials[g->triangleMaterials[triangle]].diffuse;
+}
+
+static float shareWithin(float distance, float t)
+{
+    const float nearer = t / distance;
+    return nearer < 1 ? 1 - nearer * nearer : 0;
 }
 
 // The next surface of each walk, if it is nearer than D; other walks end.
@@ -61,14 +68,14 @@ static void castShortRays(const vplShading* s, Walk* w, int64_t* rays)
         if (!vplClosestHitWithin(g, &ray, near->distance, &hit)) {
             continue;
         }
-        const float nearer = hit.t / near->distance;
         const bool behind = vplDot(ray.direction, hit.normal) > 0;
         const vplVec3 shading = vplGeometry_ShadingNormal(g, &hit);
         p->hit = hit;
         p->plane = behind ? vplNegate(hit.normal) : hit.normal;
         p->shading = behind ? vplNegate(shading) : shading;
         p->bounce++;
-        w->vicinity[l] = nearer < 1 ? 1 - nearer * nearer : 0;
+        w->vicinity[l] = shareWithin(near->distance, hit.t);
+        w->emissive[l] = shareWithin(near->lampDistance, hit.t);
         w->active |= w->vicinity[l] > 0 ? 1u << l : 0;
     }
 }
@@ -81,9 +88,9 @@ static void addEmission(const vplShading* s, const Walk* w, double sums[3][VPL_L
         const vplHit* hit = &w->at[l].hit;
         const vplRgb e = g->materials[g->triangleMaterials[hit->triangle]].emission;
         if (vplDot(w->at[l].plane, hit->normal) > 0) { // the front
-            sums[0][l] += (double)(w->weight[0][l] * e.r);
-            sums[1][l] += (double)(w->weight[1][l] * e.g);
-            sums[2][l] += (double)(w->weight[2][l] * e.b);
+            sums[0][l] += (double)(w->weight[0][l] * w->emissive[l] * e.r);
+            sums[1][l] += (double)(w->weight[1][l] * w->emissive[l] * e.g);
+            sums[2][l] += (double)(w->weight[2][l] * w->emissive[l] * e.b);
         }
     }
 }
@@ -122,7 +129,8 @@ static void addReflection(const vplShading* s, Walk* w, double sums[3][VPL_LANES
 {
     const vplNearLight* near = s->nearLight;
     const vplCompensationDef* def = near->def;
-    const vplLightChoice all = {def->lights, def->lightShadows, def->lightCount, def->hitLights};
+    const vplLightChoice all = {def->lights,    def->lightShadows, def->lightCount,
+                                def->hitLights, def->lampLights,   0};
     vplSurface surface, plane;
     vplPoints points;
     float direct[3][VPL_LANES];
@@ -135,7 +143,7 @@ static void addReflection(const vplShading* s, Walk* w, double sums[3][VPL_LANES
         float indirect[3];
         vplLightPoint(s, near, &all, &w->at[l], indirect, rays);
         for (int c = 0; c < 3; c++) {
-            w->weight[c][l] *= factor[c];
+            w->weight[c][l] *= w->vicinity[l] * factor[c];
             sums[c][l] += (double)(w->weight[c][l] * (direct[c][l] + indirect[c])) / VPL_PI;
         }
     }
@@ -169,13 +177,7 @@ static void walk(const vplShading* s, Walk* w, double sums[3][VPL_LANES], int64_
         if (w->active == 0) {
             return;
         }
-        for (uint32_t left = w->active; left != 0; left &= left - 1) {
-            const int l = __builtin_ctz(left);
-            for (int c = 0; c < 3; c++) {
-                w->weight[c][l] *= w->vicinity[l];
-            }
-        }
-        if (def->lampsAreLights && (bounce > 0 || def->seesEmission)) {
+        if (def->lampLights > 0 && (bounce > 0 || def->seesEmission)) {
             addEmission(s, w, sums);
         }
         if (!def->seesReflection) {
@@ -183,6 +185,25 @@ static void walk(const vplShading* s, Walk* w, double sums[3][VPL_LANES], int64_
         }
         addReflection(s, w, sums, rays);
         endByChance(s, w);
+    }
+}
+
+// What the bound takes from lights on lamps that are farther than their own bound: short rays would seldom meet a
+// lamp, and then much light (cornell-area, 512 lights, D = 1 m, 4 rays: relmse 0.066 instead of 0.011).
+static void addLamps(const vplShading* s, Walk* start, float irradiance[3][VPL_LANES], int64_t* rays)
+{
+    const vplCompensationDef* def = s->nearLight->def;
+    const int chosen = def->hitLights > def->rayCount ? def->hitLights : def->rayCount;
+    const vplLightChoice lamps = {def->lights, def->lightShadows, def->lampLights,
+                                  chosen,      def->lampLights,   s->inverseBound};
+    for (uint32_t left = start->active; left != 0; left &= left - 1) {
+        const int l = __builtin_ctz(left);
+        float part[3];
+        start->at[l].ray = def->firstRay;
+        vplLightPoint(s, s->nearLight, &lamps, &start->at[l], part, rays);
+        for (int c = 0; c < 3; c++) {
+            irradiance[c][l] += part[c];
+        }
     }
 }
 
@@ -207,6 +228,9 @@ void vplAddNearLight(const vplShading* shading, const vplPoints* points, const u
         }
     }
     double sums[3][VPL_LANES] = {{0}};
+    if (def->seesEmission && def->lampLights > 0) {
+        addLamps(shading, &start, irradiance, rays);
+    }
     for (int i = 0; i < def->rayCount; i++) {
         Walk w = start;
         for (int l = 0; l < VPL_LANES; l++) {

@@ -11,9 +11,11 @@ typedef struct vplLightLanes {
     _Alignas(64) float at[6][VPL_LANES];
 } vplLightLanes;
 
-// What one point, with its normal, receives from each per unit of intensity: the arithmetic of vplLightsPhysical.
+// What one point, with its normal, receives from each per unit of intensity: the arithmetic of vplLightsPhysical,
+// with a bound for each light, and without the part up to `taken` of 1/d^2.
 typedef void vplPointKernelFcn(const vplLightLanes* restrict lights, const float point[restrict 6],
-                               float inverseBound, float geometry[restrict VPL_LANES]);
+                               const float inverseBound[restrict VPL_LANES], float taken,
+                               float geometry[restrict VPL_LANES]);
 
 vplPointKernelFcn* vplGetPointKernel(vplIsa isa);
 
@@ -24,7 +26,8 @@ typedef struct vplNearLight {
     vplShadeDef hitsDef;
     vplPointKernelFcn* kernel;
     vplSobol sobol;
-    float distance; // D, metres; 0 where nothing is clamped
+    float distance;                       // D, metres
+    float lampDistance, lampInverseBound; // the smaller one of lights on lamps
 } vplNearLight;
 
 // A point to be lit, and the numbers that its choices are drawn with.
@@ -39,6 +42,8 @@ typedef struct vplLightChoice {
     const vplShadeLight* lights;
     const vplShadow* shadows; // NULL: none, or by rays
     int count, chosen;
+    int lampCount; // the first of them lie on lamps
+    float taken;   // as the kernel's
 } vplLightChoice;
 
 // Irradiance of `chosen` of the lights, one from each of as many equal parts of the list, count / chosen times as

@@ -21,8 +21,7 @@ static void chooseLights(const vplNearLight* near, const vplLightChoice* from, c
         const vplRandom4 r = vplPhilox(counter, (uint32_t)seed, (uint32_t)(seed >> 32));
         for (int i = l; i < l + 4 && i < count; i++) {
             const double place = first + i + (double)vplUnitFloat(r.v[i - l]);
-            indices[i] = from->count <= from->chosen ? first + i
-                                                     : (int)(place * from->count / from->chosen);
+            indices[i] = from->count <= from->chosen ? first + i : (int)(place * from->count / from->chosen);
         }
     }
 }
@@ -89,10 +88,14 @@ void vplLightPoint(const vplShading* shading, const vplNearLight* near, const vp
         const int count = total - first < VPL_LANES ? total - first : VPL_LANES;
         int indices[VPL_LANES];
         vplLightLanes lanes;
-        float amount[VPL_LANES];
+        float amount[VPL_LANES], bounds[VPL_LANES];
         chooseLights(near, from, point, first, count, indices);
         loadLights(from->lights, indices, count, &lanes);
-        near->kernel(&lanes, at, shading->inverseBound, amount);
+        for (int l = 0; l < VPL_LANES; l++) {
+            bounds[l] =
+                l < count && indices[l] < from->lampCount ? near->lampInverseBound : shading->inverseBound;
+        }
+        near->kernel(&lanes, at, bounds, from->taken, amount);
         for (int l = count; l < VPL_LANES; l++) {
             amount[l] = 0;
         }

@@ -2,6 +2,8 @@
 // What compensation needs beside a render's own things.
 #include "shading/compensation.h"
 
+#include <math.h>
+
 vplResult vplOpenNearLight(vplShading* shading)
 {
     const vplShadeDef* outer = shading->def;
@@ -19,6 +21,8 @@ vplResult vplOpenNearLight(vplShading* shading)
     near->kernel = vplGetPointKernel(context->isa);
     near->sobol = vplSobol_Make();
     near->distance = outer->minDistance;
+    near->lampDistance = fminf(def->lightLampDistance, outer->minDistance);
+    near->lampInverseBound = vplInverseSquare(near->lampDistance);
     near->hitsDef = (vplShadeDef){.lighting = VPL_LIGHTING_PHYSICAL,
                                   .emitters = def->emitters,
                                   .shadows = def->shadows,

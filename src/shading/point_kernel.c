@@ -9,10 +9,13 @@
 vplPointKernelFcn VPL_KERNEL(vplLightsOfPoint);
 
 void VPL_KERNEL(vplLightsOfPoint)(const vplLightLanes* restrict lights, const float point[restrict 6],
-                                  float inverseBound, float geometry[restrict VPL_LANES])
+                                  const float inverseBound[restrict VPL_LANES], float taken,
+                                  float geometry[restrict VPL_LANES])
 {
     vplLightLanes lanes;
+    float bounds[VPL_LANES];
     memcpy(&lanes, lights, sizeof lanes);
+    memcpy(bounds, inverseBound, sizeof bounds);
     for (int l = 0; l < VPL_LANES; l++) {
         const float x = lanes.at[0][l] - point[0], y = lanes.at[1][l] - point[1],
                     z = lanes.at[2][l] - point[2];
@@ -22,7 +25,8 @@ void VPL_KERNEL(vplLightsOfPoint)(const vplLightLanes* restrict lights, const fl
         here = here > 0 ? here : 0;
         there = there > 0 ? there : 0;
         const float inverse = 1 / (square > FLT_MIN ? square : FLT_MIN);
-        const float bounded = inverse < inverseBound ? inverse : inverseBound;
-        geometry[l] = (here * inverse) * (there * bounded);
+        const float bounded = inverse < bounds[l] ? inverse : bounds[l];
+        const float left = bounded - taken;
+        geometry[l] = (here * inverse) * (there * (left > 0 ? left : 0));
     }
 }

@@ -35,9 +35,10 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
     if (def->compensation != NULL &&
         (def->compensation->rayCount < 1 || def->compensation->rayCount > VPL_MAX_NEAR_RAYS ||
          def->compensation->hitLights < 1)) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
-                       def->compensation->rayCount, def->compensation->hitLights, VPL_MAX_NEAR_RAYS);
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
+            def->compensation->rayCount, def->compensation->hitLights, VPL_MAX_NEAR_RAYS);
     }
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR && (def->emitterCount < 1 || def->shadows[0].map == NULL)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter with a shadow map");
@@ -45,7 +46,7 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
     return VPL_SUCCESS;
 }
 
-static float inverseSquare(float distance)
+float vplInverseSquare(float distance)
 {
     return distance > 0 ? 1 / (distance * distance) : INFINITY;
 }
@@ -59,8 +60,8 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                         .lightKernel = vplGetLightKernel(isa, def->lighting),
                         .addEmitters = vplGetAddEmitters(isa),
                         .cull = vplGetCull(isa, def->lighting),
-                        .inverseBound = inverseSquare(def->minDistance),
-                        .lampInverseBound = inverseSquare(def->lampMinDistance),
+                        .inverseBound = vplInverseSquare(def->minDistance),
+                        .lampInverseBound = vplInverseSquare(def->lampMinDistance),
                         .smooth = geometry->shadingNormals != NULL};
 }
 
@@ -134,7 +135,8 @@ static vplResult makeColumns(vplShading* s)
 // Whether any shadow is found by rays, which want their tree before tasks begin.
 static bool castsRays(const vplShadeDef* def)
 {
-    bool casts = def->lampCount > 0 || def->compensation != NULL || (def->lightCount > 0 && def->lightShadows == NULL && def->lightRays);
+    bool casts = def->lampCount > 0 || def->compensation != NULL ||
+                 (def->lightCount > 0 && def->lightShadows == NULL && def->lightRays);
     for (int i = 0; i < def->emitterCount; i++) {
         casts = casts || def->emitters[i].type == VPL_EMITTER_DIRECTIONAL || def->shadows[i].map == NULL;
     }

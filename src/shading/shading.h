@@ -150,6 +150,9 @@ static inline void vplAddNearLightOfBlock(const vplShading* s, const vplPoints* 
 vplResult vplOpenNearLight(vplShading* shading);
 void vplCloseNearLight(vplShading* shading);
 
+// Of a distance, as kernels want bounds: infinity for 0.
+float vplInverseSquare(float distance);
+
 // What all stages of a render share; images, objects and emitters are not there yet.
 vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def);
 
