@@ -91,8 +91,7 @@ static void PlaneGetsBackWhatTheBoundTakes(void** state)
                                    .reflection = 1,
                                    .lampLights = SIDE * SIDE,
                                    .lightLampDistance = distance,
-                                   .seesEmission = true,
-                                   .seesReflection = true};
+                                   .seesEmission = true};
         const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                                  .minDistance = distance,
                                  .lights = lights,
@@ -331,9 +330,10 @@ static void EveryKindOfLightIsGivenBack(void** state)
     for (int i = 0; i < 5; i++) {
         vplScene* scene = loadExample(context, cases[i].scene);
         const double truth = pathMean(scene);
-        vplRenderOptions o = kellerOptions(32, 1000, 1.5f);
+        vplRenderOptions o = kellerOptions(32, 500, 1.5f);
         o.method = cases[i].method;
         o.lightShadows = cases[i].shadows;
+        o.lightMapSize = 48;
         o.accumulation = cases[i].accumulation;
         o.compensation = VPL_COMPENSATION_RAYS;
         o.sampler = VPL_SAMPLER_HALTON;

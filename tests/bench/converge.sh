@@ -40,15 +40,17 @@ for scene; do
         bound=$(echo "$with" | cut -d' ' -f5)
         without=$(measure "$scene" "$count" --compensation none --min-distance "$bound")
         auto=$(measure "$scene" "$count" --compensation none)
-        echo "$count $with $without $auto"
+        echo "$count $with $without $auto" >>"$scratch/table"
+        tail -n 2 "$scratch/table" | awk '
+            { worse = NR == 2 && $2 + 0 > last; last = $2 + 0 }
+            END { printf "%7d  %10.3g %8.3g %8.4f  %10.3g %8.3g %8.4f %8.4f  %10.3g %8.3g%s\n", $1, $2, $3, $4, $7, $8,
+                      1 - $9, $10, $12, $13, worse ? "  worse than half as many" : "" }'
         count=$((count * 2))
-    done | awk '
-        { printf "%7d  %10.3g %8.3g %8.4f  %10.3g %8.3g %8.4f %8.4f  %10.3g %8.3g%s\n", $1, $2, $3, $4, $7, $8, 1 - $9,
-              $10, $12, $13, n > 0 && $2 > last ? "  worse than half as many" : ""
-          fflush(); last = $2; n++
-          split($2 " " $7 " " $12, y)
-          x = log($1); sx += x; sxx += x * x
+    done
+    awk '
+        { n++; x = log($1); sx += x; sxx += x * x; y[1] = $2; y[2] = $7; y[3] = $12
           for (i = 1; i <= 3; i++) { sy[i] += log(y[i]); sxy[i] += x * log(y[i]) } }
-        END { for (i = 1; i <= 3; i++) e[i] = (n * sxy[i] - sx * sy[i]) / (n * sxx - sx * sx)
-              printf "exponent  %9.2f %28.2f %38.2f\n", e[1], e[2], e[3] }'
+        END { for (i = 1; i <= 3; i++) e[i] = n > 1 ? (n * sxy[i] - sx * sy[i]) / (n * sxx - sx * sx) : 0
+              printf "exponent %10.2f %30.2f %39.2f\n", e[1], e[2], e[3] }' "$scratch/table"
+    rm "$scratch/table"
 done
