@@ -13,6 +13,7 @@
     X(bench) \
     X(bounds) \
     X(chooseShadows) \
+    X(compensation) \
     X(emission) \
     X(emitters) \
     X(exr) \

@@ -449,6 +449,7 @@ static vplRenderOptions optionsOf(int particles, vplLightShadows shadows)
     o.lightMapSize = 16;
     o.lampLights = 4;
     o.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
+    o.compensation = VPL_COMPENSATION_NONE; // its rays depend on how lights are added up
     return o;
 }
 

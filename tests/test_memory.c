@@ -137,6 +137,16 @@ static void EveryFailedAllocationOfARenderIsReported(void** state)
     }
 }
 
+static vplResult compensateAndWrite(vplContext* context, const char* path, int variant)
+{
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.width = options.height = 20;
+    options.method = VPL_METHOD_KELLER;
+    options.particles = 5;
+    options.accumulation = variant ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    return renderFile(context, "examples/scenes/room-area.json", &options, NULL, path);
+}
+
 static vplResult pathAndWrite(vplContext* context, const char* path, int variant)
 {
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
@@ -144,6 +154,14 @@ static vplResult pathAndWrite(vplContext* context, const char* path, int variant
     options.samplesPerPixel = 2;
     return renderFile(context, variant ? "examples/scenes/room-area.json" : "examples/scenes/room.json",
                       &options, NULL, path);
+}
+
+static void EveryFailedAllocationOfCompensationIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(compensateAndWrite, "png", variant, false);
+    }
 }
 
 static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
@@ -455,6 +473,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),

@@ -151,9 +151,11 @@ typedef struct vplRenderStats {
     int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
     int escaped;                                  // particles that left the scene
     int triangles, objects;
-    float minDistance;            // as used, metres
-    double reflectivity;          // as used
-    double cpuMs;                 // processor time of all threads
+    float minDistance;   // as used, metres
+    double clampLoss;    // share of the virtual lights' light that minDistance takes away, or would without
+                         // compensation; an estimate from some pixels; negative where there is none
+    double reflectivity; // as used
+    double cpuMs;        // processor time of all threads
     vplLightShadows lightShadows; // as used: none, map or ray
     double shadowMapEstimateMs;   // where they were chosen by cost: what maps and
     double shadowRayEstimateMs; // rays were expected to take, ms of one core of the machine that was measured

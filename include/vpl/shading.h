@@ -18,6 +18,9 @@ enum { VPL_LIGHT_GROUP = 64 };
 // Largest side of the square of pixels that share the virtual lights of interleaved shading.
 enum { VPL_MAX_INTERLEAVE = 16 };
 
+// Most short rays per point of a compensation.
+enum { VPL_MAX_NEAR_RAYS = 1 << 20 };
+
 // A camera at work.
 typedef struct vplView {
     vplVec3 eye, right, up, forward; // right-handed, unit
@@ -66,6 +69,34 @@ typedef enum vplShadeOutput {
     VPL_OUTPUT_SHADOW_FACTOR // s of the first emitter, [0, 1]
 } vplShadeOutput;
 
+// The light that minDistance takes away, found again by rays of that length from each point. Where a ray meets a
+// surface, light is reflected that the surface has from emitters, lamps and virtual lights; that may be more than
+// what the picture shows, so all are named here once more.
+// Source: Kollig and Keller, Illumination in the Presence of Weak Singularities, MCQMC 2004.
+typedef struct vplCompensationDef {
+    int rayCount;  // per point, [1, VPL_MAX_NEAR_RAYS]
+    int hitLights; // virtual lights that light a hit, chosen by chance, [1, VPL_MAX_LIGHTS]: so few that each
+                   // stands for a disc of radius minDistance, or more
+    uint32_t firstRay; // index of a point's first ray in its sequence: renders in several passes go on
+    uint64_t seed;
+    const vplEmitterDef* emitters; // as in vplShadeDef
+    const vplShadow* shadows;
+    int emitterCount;
+    const vplShadeLight* lamps;
+    int lampCount;
+    float lampMinDistance;
+    const vplShadeLight* lights;
+    int lightCount;
+    bool lightRays;   // they cast shadows: by rays, also where the picture's come from maps
+    float reflection; // multiplies reflectances: 1; for lights that lost light as documented 1/pi
+    int lampLights;   // the first of `lights`, which lie on surfaces that emit and stand for their emission
+    float
+        lightLampDistance; // metres, (0, minDistance]: within it that emission is found by rays, beyond by those
+                           // lights themselves; lamps are small and their lights close together
+    bool seesEmission;     // also by the first ray: the picture shows these lights
+    bool seesReflection; // the picture shows lights of reflected light
+} vplCompensationDef;
+
 typedef struct vplShadeDef {
     vplLighting lighting;
     vplAccumulation accumulation;
@@ -78,14 +109,15 @@ typedef struct vplShadeDef {
     int emitterCount;           // 0: no direct light
     const vplShadeLight* lamps; // direct light of area emitters, always with shadow rays; physical only
     int lampCount;
-    float lampMinDistance;          // as minDistance
-    int particleCount;              // N, by which documented direct light is divided (0 counts as 1)
-    const vplShadeLight* lights;    // virtual lights
-    int lightCount;                 // 0: no indirect light
-    const vplHalfMap* lightShadows; // one per virtual light; NULL: they cast none, or by rays
-    bool lightRays;                 // virtual lights cast shadows by rays
-    float cutError;                 // lightcuts: see vplRenderOptions
-    bool emission;                  // surfaces that emit are seen to
+    float lampMinDistance;                  // as minDistance
+    int particleCount;                      // N, by which documented direct light is divided (0 counts as 1)
+    const vplShadeLight* lights;            // virtual lights
+    int lightCount;                         // 0: no indirect light
+    const vplHalfMap* lightShadows;         // one per virtual light; NULL: they cast none, or by rays
+    bool lightRays;                         // virtual lights cast shadows by rays
+    float cutError;                         // lightcuts: see vplRenderOptions
+    bool emission;                          // surfaces that emit are seen to
+    const vplCompensationDef* compensation; // physical only; NULL: what minDistance takes away is lost
 } vplShadeDef;
 
 typedef struct vplShadeStats {
@@ -99,6 +131,19 @@ typedef struct vplShadeStats {
 // Draws the geometry into `image`, which has the view's size.
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut);
+
+// What the bound takes away, and all light of virtual lights with it: sums over some points that the view shows, so
+// that their ratio is the share that is lost.
+typedef struct vplClampLoss {
+    double lost,
+        all; // mean over the channels of the light reflected to the eye, in units that the number of points
+             // and their choice decide
+} vplClampLoss;
+
+// Estimates the loss from `pointCount` pixels, evenly spread. def->compensation says how rays are cast, whether the
+// picture was compensated or not.
+vplResult vplEstimateClampLoss(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
+                               int pointCount, vplClampLoss* lossOut);
 
 #ifdef __cplusplus
 }

@@ -71,6 +71,10 @@ static int renderScene(const Arguments* a, vplContext* context, const vplScene* 
         }
         complain("%d virtual lights, %lld draw calls, hash %016llx", stats.virtualLights,
                  (long long)stats.drawCalls, (unsigned long long)stats.imageHash);
+        if (stats.clampLoss >= 0) {
+            complain("the bound at %g m takes about %.3g %% of the virtual lights' light away",
+                     (double)stats.minDistance, 100 * stats.clampLoss);
+        }
     }
     code = writePicture(a, image);
     if (code == EXIT_DONE && a->stats != NULL) {

@@ -36,8 +36,8 @@ static const Topic TOPICS[] = {
      "tradeoff.csv (every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options\n"
      "given here change the base that the sweeps start from: " TRADEOFF_BASE ".\n"
      "Physical lighting only: the documented formulas have no truth to compare with.\n"
-     "Sweeps: frontier, path, direct, particles, light-shadows, min-distance, sampler, reflectivity,\n"
-     "shadow-map, pcf, bias, pipeline, particle-geometry."},
+     "Sweeps: frontier, path, direct, particles, light-shadows, min-distance, compensation, sampler,\n"
+     "reflectivity, shadow-map, pcf, bias, pipeline, particle-geometry."},
     {"bench", "vpl bench [options]", "times every stage",
      "Times the stages on the built-in room: medians of the wall clock and of processor time, counts, "
      "hashes,\n"

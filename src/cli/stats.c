@@ -55,6 +55,9 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     }
     json_object_set_new(root, "reflectivity", json_real(stats->reflectivity));
     json_object_set_new(root, "passes", json_integer(stats->passes));
+    if (stats->clampLoss >= 0) {
+        json_object_set_new(root, "clamp_loss", json_real(stats->clampLoss));
+    }
     if (stats->errorEstimate >= 0) {
         json_object_set_new(root, "error_estimate", json_real(stats->errorEstimate));
         json_object_set_new(root, "relative_error_estimate", json_real(stats->relativeErrorEstimate));

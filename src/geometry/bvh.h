@@ -125,6 +125,9 @@ vplTraceAnyFcn* vplGetTraceAny(vplIsa isa);
 // vplGeometry_ClosestHit that also adds to *tests (may be NULL): objects where all are tested, else blocks.
 bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests);
 
+// vplGeometry_ClosestHit of what is nearer than tMax, in units of the direction.
+bool vplClosestHitWithin(const vplGeometry* geometry, const vplRay* ray, float tMax, vplHit* hitOut);
+
 // vplGeometry_IsOccluded for each ray of a packet: bit i of the result is ray i.
 uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax);
 

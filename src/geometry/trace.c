@@ -25,6 +25,25 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
     hit->t = raw->t;
 }
 
+// Where a triangle that was found is hit: by the formula of its object's own shape, where that has one.
+static vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vplRawHit* raw)
+{
+    const int index = geometry->owners[raw->triangle], face = vplGeometry_FaceOf(geometry, raw->triangle);
+    const vplGeometryObject* object = &geometry->objects[index];
+    vplHit hit = {0};
+    const double side = object->type == VPL_OBJECT_QUAD ? 0 : face & 1 ? -0.5 : 0.5;
+    const bool exact = face != VPL_FACE_NONE && vplRay_HitFace(ray, &object->placement, face, side, &hit);
+    hit.object = index;
+    if (!exact) {
+        hitTriangle(geometry, raw, &hit);
+    }
+    hit.face = face;
+    hit.triangle = raw->triangle;
+    hit.u = raw->b1;
+    hit.v = raw->b2;
+    return hit;
+}
+
 bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests)
 {
     vplRawHit raw;
@@ -44,20 +63,23 @@ bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOu
     if (raw.triangle < 0) {
         return false;
     }
-    const int index = geometry->owners[raw.triangle], face = vplGeometry_FaceOf(geometry, raw.triangle);
-    const vplGeometryObject* object = &geometry->objects[index];
-    vplHit hit = {0};
-    const double side = object->type == VPL_OBJECT_QUAD ? 0 : face & 1 ? -0.5 : 0.5;
-    const bool exact = face != VPL_FACE_NONE && vplRay_HitFace(ray, &object->placement, face, side, &hit);
-    hit.object = index;
-    if (!exact) {
-        hitTriangle(geometry, &raw, &hit);
+    *hitOut = finishHit(geometry, ray, &raw);
+    return true;
+}
+
+bool vplClosestHitWithin(const vplGeometry* geometry, const vplRay* ray, float tMax, vplHit* hitOut)
+{
+    vplRawHit raw;
+    const vplBvh* tree = vplGeometry_GetBvh(geometry);
+    if (tree != NULL) {
+        vplGetTraceClosest(geometry->context->isa)(tree, ray, tMax, &raw);
+    } else {
+        vplClosestOfTriangles(geometry, ray, &raw);
     }
-    hit.face = face;
-    hit.triangle = raw.triangle;
-    hit.u = raw.b1;
-    hit.v = raw.b2;
-    *hitOut = hit;
+    if (raw.triangle < 0 || !(raw.t < tMax)) {
+        return false;
+    }
+    *hitOut = finishHit(geometry, ray, &raw);
     return true;
 }
 

@@ -23,6 +23,8 @@ typedef struct vplIngredients {
     vplLightSet* set;
     vplShadeLight* lights;
     int lightCount;
+    int lampLights; // the first lights, if they lie on lamps
+    int firstShown; // Keller's --show indirect: lights before this one light only what compensation meets
     float minDistance;
     vplLightShadows lightShadows; // none, map or ray
     vplHalfMaps* lightMaps;       // NULL where there are none; room for a batch of the lights
@@ -44,6 +46,18 @@ int vplLightBatch(const vplJob* job, const vplIngredients* in);
 
 // Maps of virtual lights first .. first + count - 1, at most a batch.
 vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in, int first, int count);
+
+// Lights of step 0 that lie on surfaces: Keller's, which stand for their emission.
+int vplCountLampLights(const vplLightSet* set);
+
+// Whether light that the bound takes away is found by rays.
+bool vplCompensates(const vplJob* job);
+
+// How, for lights and shadows that are there.
+vplCompensationDef vplMakeCompensation(const vplJob* job, const vplIngredients* in);
+
+// Adds a pass to the loss by the bound that statistics tell.
+vplResult vplEstimateLoss(vplJob* job, const vplIngredients* in, const vplShadeDef* shown);
 
 void vplFreeVirtualLights(vplJob* job, vplIngredients* in);
 void vplFreeIngredients(vplJob* job, vplIngredients* in);

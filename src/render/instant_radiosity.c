@@ -44,13 +44,20 @@ static bool isProgressive(const vplRenderOptions* o)
 
 // One look at every pixel at place i of `count`: Hammersley points, so that edges along the axes, too, are cut at
 // as many places as there are samples.
-static vplResult shadeSample(vplJob* job, const vplShadeDef* def, int i, int count)
+static vplResult shadeSample(vplJob* job, const vplShadeDef* plain, int i, int count)
 {
+    vplShadeDef def = *plain;
+    vplCompensationDef compensation;
+    if (def.compensation != NULL) { // short rays of all looks and passes are one sequence
+        compensation = *def.compensation;
+        compensation.firstRay = (uint32_t)(job->stepsDone * count + i) * (uint32_t)compensation.rayCount;
+        def.compensation = &compensation;
+    }
     double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
     vplView view = vplView_At(&job->view, (i + 0.5) / count, y - floor(y));
     vplShadeStats stats = {0};
     vplResult result =
-        vplShadeView(job->geometry, &view, def, vplJob_GetProgress(job), job, job->image, &stats);
+        vplShadeView(job->geometry, &view, &def, vplJob_GetProgress(job), job, job->image, &stats);
     vplJob_AddRaster(job, &stats.raster);
     job->stats.rays += stats.shadowRays;
     job->stats.lightEvaluations += stats.lightEvaluations;
@@ -114,15 +121,28 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
     if (parts & PART_INDIRECT) {
         def.lightShadows = in->lightMaps ? in->lightMaps->maps : NULL;
         def.lightRays = in->lightShadows == VPL_LIGHT_SHADOWS_RAY;
-        def.lights = in->lights ? in->lights + first : NULL;
+        def.lights = in->lights ? in->lights + in->firstShown + first : NULL;
         def.lightCount = count;
     }
+    // Of all lights at once, whatever batch is shown.
+    const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
+    const vplCompensationDef compensation = vplMakeCompensation(job, in);
+    if (near && vplCompensates(job)) {
+        def.compensation = &compensation;
+    }
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
-    vplJob_BeginStage(job, 0.1 + 0.9 * (in->lightCount ? (first + count) / (double)in->lightCount : 1));
+    vplJob_BeginStage(
+        job, 0.1 + 0.9 * (count > 0 ? (first + count) / (double)(in->lightCount - in->firstShown) : 1));
     if (result == VPL_SUCCESS) {
         result = shadeSamples(job, &def);
     }
     vplJob_EndStage(job, "shading");
+    const bool known = o->show != VPL_SHOW_LIGHT && (needsDirect(o) || vplCompensates(job));
+    if (result == VPL_SUCCESS && near && known && def.lighting == VPL_LIGHTING_PHYSICAL) {
+        vplJob_BeginStage(job, 1);
+        result = vplEstimateLoss(job, in, &def);
+        vplJob_EndStage(job, "clamp loss");
+    }
     return result;
 }
 
@@ -130,12 +150,12 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
 // makes a picture, and their sum counts.
 static vplResult shadeBatches(vplJob* job, vplIngredients* in, int parts)
 {
-    const int batch = vplLightBatch(job, in);
+    const int batch = vplLightBatch(job, in), total = in->lightCount - in->firstShown;
     vplImage* sum = NULL;
     vplResult result = VPL_SUCCESS;
-    for (int first = 0; first < in->lightCount && result == VPL_SUCCESS; first += batch) {
-        const int count = in->lightCount - first < batch ? in->lightCount - first : batch;
-        vplJob_BeginStage(job, 0.1 + 0.9 * (first + 0.4 * count) / in->lightCount);
+    for (int first = 0; first < total && result == VPL_SUCCESS; first += batch) {
+        const int count = total - first < batch ? total - first : batch;
+        vplJob_BeginStage(job, 0.1 + 0.9 * (first + 0.4 * count) / total);
         result = vplMakeLightShadows(job, in, first, count);
         vplJob_EndStage(job, "light shadow maps");
         if (result == VPL_SUCCESS) {
@@ -175,7 +195,7 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
         result = vplMakeVirtualLights(job, in);
         vplJob_EndStage(job, "particles");
     }
-    if (result == VPL_SUCCESS && parts & PART_DIRECT && needsDirect(o)) {
+    if (result == VPL_SUCCESS && parts & PART_DIRECT && (needsDirect(o) || vplCompensates(job))) {
         vplJob_BeginStage(job, 0.15);
         result = vplMakeDirectLight(job, in);
         vplJob_EndStage(job, "shadow map");
@@ -193,8 +213,8 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
         }
     }
     const bool maps =
-        parts & PART_INDIRECT && in->lightCount > 0 && in->lightShadows == VPL_LIGHT_SHADOWS_MAP;
-    return maps ? shadeBatches(job, in, parts) : shade(job, in, parts, 0, in->lightCount);
+        parts & PART_INDIRECT && in->lightCount > in->firstShown && in->lightShadows == VPL_LIGHT_SHADOWS_MAP;
+    return maps ? shadeBatches(job, in, parts) : shade(job, in, parts, 0, in->lightCount - in->firstShown);
 }
 
 static vplResult begin(vplJob* job)

@@ -103,6 +103,7 @@ vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, v
     job->scene = scene;
     job->options = *options;
     job->stepTo = 1;
+    job->stats.clampLoss = -1;
     job->stats.errorEstimate = job->stats.relativeErrorEstimate = -1;
     vplContext_ResetPeakBytes(job->context);
     vplJob_BeginStage(job, 0);

@@ -19,6 +19,7 @@ typedef struct vplJob {
     double stepFrom, stepTo;         // share of the whole that the running step has
     double progressFrom, progressTo; // share of the step that the running stage has
     double stageStart;
+    vplClampLoss loss; // of all passes
     int stepsDone;
     bool progressive; // the picture is a mean of passes
     bool last;        // no more steps follow: what they would need may be given away

@@ -135,7 +135,7 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
     }
     memset(b->sums, 0, sizeof b->sums);
     b->points.surface = b->points.plane = &b->surface;
-    if (s->def->lightShadows == NULL && !s->def->lightRays) {
+    if (s->def->lightShadows == NULL && !s->def->lightRays && s->nearLight == NULL) {
         return;
     }
     const int32_t* triangles = (const int32_t*)tile->planes[VPL_PLANE_TRIANGLE];
@@ -147,6 +147,27 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
         memcpy(&b->plane, &b->surface, 3 * sizeof b->surface.px);
         vplReadFacets(s, b->points.triangle, &b->plane, smooth);
         b->points.plane = &b->plane;
+    }
+}
+
+// What short rays find is gathered with the light of the class, which it is part of.
+static void addNearLight(const vplShading* s, const vplTile* tile, const int* elements, vplBlock* b,
+                         int64_t* rays)
+{
+    uint32_t pixels[VPL_LANES];
+    float part[3][VPL_LANES] = {{0}};
+    const int side = s->interleave->side;
+    for (int l = 0; l < VPL_LANES; l++) {
+        const int block = elements[l] / VPL_LANES, lane = elements[l] % VPL_LANES;
+        const int x = tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE + lane % VPL_BLOCK_SIDE;
+        const int y = tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE + lane / VPL_BLOCK_SIDE;
+        pixels[l] = (uint32_t)y << 16 | (uint32_t)x;
+    }
+    vplAddNearLight(s, &b->points, pixels, part, rays);
+    for (int c = 0; c < 3; c++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            b->sums[c][l] += (double)part[c][l] / (side * side);
+        }
     }
 }
 
@@ -177,6 +198,9 @@ static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int 
     for (int i = 0; i < chunks; i++) {
         const int left = count - i * VPL_LANES;
         collect(s, tile, r, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, &blocks[i]);
+        if (s->nearLight != NULL) {
+            addNearLight(s, tile, elements + i * VPL_LANES, &blocks[i], &tileSums->shadowRays);
+        }
     }
     vplAddLights(s, blocks, all, chunks, s->columns[0] != NULL ? &r->bounds : NULL, first, end - first,
                  &tileSums->shadowRays);

@@ -9,21 +9,23 @@
 
 #include <string.h>
 
+vplHit vplStartOf(const vplGeometry* g, int triangle, vplVec3 seen)
+{
+    return (vplHit){.object = g->owners[triangle],
+                    .face = vplGeometry_FaceOf(g, triangle),
+                    .triangle = triangle,
+                    .position = vplGeometry_Inside(g, triangle, seen),
+                    .normal = g->normals[triangle]};
+}
+
 void vplFindRayStarts(const vplShading* shading, const vplPoints* points, vplRayStarts* starts)
 {
     const vplGeometry* g = shading->geometry;
     const vplSurface* s = points->surface;
     for (int l = 0; l < VPL_LANES; l++) {
-        const int triangle = points->triangle[l];
-        if (triangle < 0) {
-            continue;
+        if (points->triangle[l] >= 0) {
+            starts->hit[l] = vplStartOf(g, points->triangle[l], vplVec(s->px[l], s->py[l], s->pz[l]));
         }
-        const vplVec3 seen = vplVec(s->px[l], s->py[l], s->pz[l]);
-        starts->hit[l] = (vplHit){.object = g->owners[triangle],
-                                  .face = vplGeometry_FaceOf(g, triangle),
-                                  .triangle = triangle,
-                                  .position = vplGeometry_Inside(g, triangle, seen),
-                                  .normal = g->normals[triangle]};
     }
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "base/isa.h"
-#include "shading/shading.h"
+#include "shading/compensation.h"
 
 #include <math.h>
 
 VPL_KERNEL_TABLE(DOCUMENTED, vplLightKernelFcn, vplLightsDocumented);
 VPL_KERNEL_TABLE(PHYSICAL, vplLightKernelFcn, vplLightsPhysical);
+VPL_KERNEL_TABLE(POINT, vplPointKernelFcn, vplLightsOfPoint);
 VPL_KERNEL_TABLE(EMITTERS, vplAddEmittersFcn, vplAddEmitters);
 VPL_KERNEL_TABLE(CULL_DOCUMENTED, vplCullFcn, vplCullDocumented);
 VPL_KERNEL_TABLE(CULL_PHYSICAL, vplCullFcn, vplCullPhysical);
@@ -57,6 +58,11 @@ vplClusterBoundFcn* vplGetClusterBound(vplIsa isa, vplLighting lighting)
 vplCutFcn* vplGetCut(vplIsa isa)
 {
     return CUT[isa];
+}
+
+vplPointKernelFcn* vplGetPointKernel(vplIsa isa)
+{
+    return POINT[isa];
 }
 
 vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa)

@@ -35,6 +35,7 @@ void VPL_KERNEL(vplShadeDirect)(const void* uniforms, vplFragments* f)
     vplTileSums* sums = f->scratch;
     const vplPoints points = pointsOf(u, f);
     vplDirectIrradiance(u->shading, &points, f->plane, &sums->shadowRays);
+    vplAddNearLightOfBlock(u->shading, &points, f->x, f->y, f->plane, &sums->shadowRays);
     vplShowTriangle(triangleOf(u, f), f);
 }
 

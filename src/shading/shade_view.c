@@ -36,10 +36,39 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
                        "vplShadeDef.lampMinDistance is %g, must be finite and >= 0",
                        (double)def->lampMinDistance);
     }
+    if (def->compensation != NULL &&
+        (def->compensation->rayCount < 1 || def->compensation->rayCount > VPL_MAX_NEAR_RAYS ||
+         def->compensation->hitLights < 1)) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
+            def->compensation->rayCount, def->compensation->hitLights, VPL_MAX_NEAR_RAYS);
+    }
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR && (def->emitterCount < 1 || def->shadows[0].map == NULL)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter with a shadow map");
     }
     return VPL_SUCCESS;
+}
+
+float vplInverseSquare(float distance)
+{
+    return distance > 0 ? 1 / (distance * distance) : INFINITY;
+}
+
+vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def)
+{
+    const vplIsa isa = geometry->context->isa;
+    return (vplShading){.geometry = geometry,
+                        .view = view,
+                        .def = def,
+                        .lightKernel = vplGetLightKernel(isa, def->lighting),
+                        .clusterBound = vplGetClusterBound(isa, def->lighting),
+                        .addCut = vplGetCut(isa),
+                        .addEmitters = vplGetAddEmitters(isa),
+                        .cull = vplGetCull(isa, def->lighting),
+                        .inverseBound = vplInverseSquare(def->minDistance),
+                        .lampInverseBound = vplInverseSquare(def->lampMinDistance),
+                        .smooth = geometry->shadingNormals != NULL};
 }
 
 static vplResult makeObjects(vplShading* s)
@@ -60,7 +89,7 @@ static vplResult makeObjects(vplShading* s)
     return VPL_SUCCESS;
 }
 
-static vplResult makeEmitters(vplShading* s)
+vplResult vplMakeEmitterRays(vplShading* s)
 {
     const vplShadeDef* def = s->def;
     s->emitters = vplAlloc(s->geometry->context, (size_t)def->emitterCount, sizeof *s->emitters);
@@ -109,15 +138,11 @@ static vplResult makeColumns(vplShading* s)
     return VPL_SUCCESS;
 }
 
-static float inverseSquare(float distance)
-{
-    return distance > 0 ? 1 / (distance * distance) : INFINITY;
-}
-
 // Whether any shadow is found by rays, which want their tree before tasks begin.
 static bool castsRays(const vplShadeDef* def)
 {
-    bool casts = def->lampCount > 0 || (def->lightCount > 0 && def->lightShadows == NULL && def->lightRays);
+    bool casts = def->lampCount > 0 || def->compensation != NULL ||
+                 (def->lightCount > 0 && def->lightShadows == NULL && def->lightRays);
     for (int i = 0; i < def->emitterCount; i++) {
         casts = casts || def->emitters[i].type == VPL_EMITTER_DIRECTIONAL || def->shadows[i].map == NULL;
     }
@@ -132,15 +157,8 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     if (result != VPL_SUCCESS) {
         return result;
     }
-    vplShading shading = {.geometry = geometry, .view = view, .def = def, .image = image};
-    shading.lightKernel = vplGetLightKernel(context->isa, def->lighting);
-    shading.addEmitters = vplGetAddEmitters(context->isa);
-    shading.cull = vplGetCull(context->isa, def->lighting);
-    shading.clusterBound = vplGetClusterBound(context->isa, def->lighting);
-    shading.addCut = vplGetCut(context->isa);
-    shading.inverseBound = inverseSquare(def->minDistance);
-    shading.lampInverseBound = inverseSquare(def->lampMinDistance);
-    shading.smooth = geometry->shadingNormals != NULL;
+    vplShading shading = vplShading_Make(geometry, view, def);
+    shading.image = image;
     vplShadeStats stats = {0};
     shading.shadowRays = &stats.shadowRays;
     bool deferred = def->accumulation >= VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
@@ -159,7 +177,10 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     void* uniforms = NULL;
     result = makeObjects(&shading);
     if (result == VPL_SUCCESS) {
-        result = makeEmitters(&shading);
+        result = vplMakeEmitterRays(&shading);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplOpenNearLight(&shading);
     }
     if (result == VPL_SUCCESS && interleaved) {
         result = vplOpenInterleave(&shading, &framebuffer);
@@ -195,6 +216,7 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     vplRaster_Destroy(raster);
     vplCloseInterleave(&shading);
     vplCloseLightcuts(&shading);
+    vplCloseNearLight(&shading);
     vplFree(context, uniforms);
     vplFree(context, shading.columns[0]);
     vplFree(context, shading.emitters);

@@ -79,6 +79,7 @@ typedef struct vplShading {
     int64_t* shadowRays;               // counted atomically: sums of integers do not depend on the order
     struct vplInterleave* interleave;  // NULL: every pixel meets every light
     struct vplLightcuts* lightcuts;    // NULL: every pixel meets every light
+    struct vplNearLight* nearLight;    // NULL: what the bound takes away is lost
 } vplShading;
 
 // What a block of pixels shows.
@@ -143,6 +144,12 @@ bool vplLightVisibly(const vplShading* shading, const vplPoints* points, const v
 void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,
                         float amount[VPL_LANES], int64_t* rays);
 
+// A place that pixels show, as rays leave it.
+vplHit vplStartOf(const vplGeometry* g, int triangle, vplVec3 seen);
+
+// A virtual light lies on a surface that must not shadow it: rays aim a little above.
+vplVec3 vplAimAt(const vplShadeLight* light);
+
 // Direct irradiance of all emitters and lamps, with shadows. Counts the rays it cast.
 void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, float irradiance[3][VPL_LANES],
                          int64_t* rays);
@@ -155,6 +162,36 @@ void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, i
 // `irradiance`, it does not add to it.
 void vplAllLightsIrradiance(const vplShading* shading, const vplPoints* points,
                             float irradiance[3][VPL_LANES], int64_t* rays);
+// Adds what the bound takes from virtual lights, by the short rays of def->compensation. `pixels` are different
+// numbers for different pixels.
+void vplAddNearLight(const vplShading* shading, const vplPoints* points, const uint32_t pixels[VPL_LANES],
+                     float irradiance[3][VPL_LANES], int64_t* rays);
+
+// The same for the block of 4 x 4 pixels from (x, y) on, where there is anything to add.
+static inline void vplAddNearLightOfBlock(const vplShading* s, const vplPoints* points, int x, int y,
+                                          float irradiance[3][VPL_LANES], int64_t* rays)
+{
+    uint32_t pixels[VPL_LANES];
+    if (s->nearLight != NULL) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            pixels[l] = (uint32_t)(y + l / VPL_BLOCK_SIDE) << 16 | (uint32_t)(x + l % VPL_BLOCK_SIDE);
+        }
+        vplAddNearLight(s, points, pixels, irradiance, rays);
+    }
+}
+
+// Makes and frees shading->nearLight, as def->compensation says.
+vplResult vplOpenNearLight(vplShading* shading);
+void vplCloseNearLight(vplShading* shading);
+
+// Of a distance, as kernels want bounds: infinity for 0.
+float vplInverseSquare(float distance);
+
+// What all stages of a render share; images, objects and emitters are not there yet.
+vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def);
+
+// The emitters of shading->def for their kernel.
+vplResult vplMakeEmitterRays(vplShading* shading);
 
 // What runs per block or per tile, compiled for an instruction set.
 typedef struct vplShadingKernels {

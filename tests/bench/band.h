@@ -11,7 +11,8 @@
 // By the ray that shading casts.
 static inline bool isDark(const vplGeometry* g, const vplHit* hit, const vplShadeLight* l)
 {
-    const vplVec3 way = vplWayToLight(vplVec(l->px, l->py, l->pz), vplVec(l->nx, l->ny, l->nz), hit->position);
+    const vplVec3 way =
+        vplWayToLight(vplVec(l->px, l->py, l->pz), vplVec(l->nx, l->ny, l->nz), hit->position);
     const vplRay ray = vplGeometry_Leave(g, hit, way);
     return vplGeometry_IsOccluded(g, &ray, 1);
 }

@@ -97,6 +97,7 @@ int main(int count, char** words)
     b.options.method =
         count > 2 && strcmp(words[2], "keller") == 0 ? VPL_METHOD_KELLER : VPL_METHOD_INSTANT_RADIOSITY;
     b.options.sampler = VPL_SAMPLER_HALTON;
+    b.options.compensation = VPL_COMPENSATION_NONE;
     b.options.width = count > 4 ? atoi(words[3]) : 160;
     b.options.height = count > 4 ? atoi(words[4]) : 120;
     b.options.cutError = count > 7 ? (float)atof(words[7]) : b.options.cutError;

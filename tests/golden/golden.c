@@ -169,6 +169,13 @@ static void secondBounce(vplRenderOptions* o)
     o->seed = 7;
 }
 
+static void compensated(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_KELLER;
+    o->particles = 100;
+    o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
+}
+
 static const Case CASES[] = {
     {"room-physical", "room", 1, defaults},
     {"room-documented", "closed-room", 0, documented},
@@ -191,6 +198,7 @@ static const Case CASES[] = {
     {"overlay", "room", 0, overlay},
     {"placement-view", "flat", 3, viewPlacement},
     {"placement-rsm", "room", 1, rsmPlacement},
+    {"compensated-area", "room-area", 1, compensated},
     {"path-area", "room-area", 1, paths},
     {"path-point", "closed-room", 1, paths},
     {"path-bounce-2", "room", 3, secondBounce},

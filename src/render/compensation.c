@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Whether, and with how many rays, a picture gets back what the bound of near virtual lights takes away.
+#include "geometry/triangle.h"
+#include "math/scalar.h"
+#include "render/ingredients.h"
+
+#include <math.h>
+
+int vplCountLampLights(const vplLightSet* set)
+{
+    int count = 0;
+    for (int i = 0; set->stepCount > 0 && i < set->lightsInStep[0]; i++) {
+        count += set->lights[i].object >= 0;
+    }
+    return count;
+}
+
+bool vplCompensates(const vplJob* job)
+{
+    const vplRenderOptions* o = &job->options;
+    const bool keller = o->method == VPL_METHOD_KELLER;
+    const bool usual =
+        keller && o->lighting == VPL_LIGHTING_PHYSICAL && o->lightShadows != VPL_LIGHT_SHADOWS_NONE;
+    const bool wanted =
+        o->compensation == VPL_COMPENSATION_RAYS || (o->compensation == VPL_COMPENSATION_USUAL && usual);
+    const bool shown = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_INDIRECT ||
+                       o->show == VPL_SHOW_OVERLAY || (o->show == VPL_SHOW_DIRECT && keller);
+    return wanted && shown && o->minDistance != 0 && o->method != VPL_METHOD_DIRECT &&
+           vplJob_GetShading(job) == VPL_LIGHTING_PHYSICAL;
+}
+
+// What a pixel-light costs in shadow rays: without one, a fraction of a nanosecond of a vector.
+static double workOf(const vplJob* job, const vplIngredients* in)
+{
+    const vplRenderOptions* o = &job->options;
+    const double classes = o->accumulation == VPL_ACCUMULATE_INTERLEAVED ? o->interleave * o->interleave : 1;
+    const double most = o->accumulation == VPL_ACCUMULATE_LIGHTCUTS ? 2048 : INFINITY;
+    const double each = in->lightShadows == VPL_LIGHT_SHADOWS_NONE ? 1.0 / 32 : 1;
+    return fmin(in->lightCount / classes, most) * each;
+}
+
+// A ray for every so many lights that a pixel meets, so that the error of both falls alike: TABLE2
+enum { LIGHTS_PER_RAY = 48, MIN_RAYS = 2, MAX_RAYS = 4096 };
+
+static int raysOf(const vplJob* job, const vplIngredients* in)
+{
+    return (int)fmin(fmax(ceil(workOf(job, in) / LIGHTS_PER_RAY), MIN_RAYS), MAX_RAYS);
+}
+
+// Few lights are enough for what a ray meets, if each of them is bounded like so few: where D is the radius of a light's
+// share of all surfaces, and on lamps with half of the chosen lights.
+enum { MIN_HIT_LIGHTS = 16 };
+
+static int hitLightsOf(const vplJob* job, const vplIngredients* in)
+{
+    const double distance = (double)in->minDistance;
+    const double shares = vplGeometry_Area(job->geometry) / (VPL_PI * distance * distance);
+    return (int)fmax(MIN_HIT_LIGHTS, fmin(ceil(shares), in->lightCount));
+}
+
+static float lampDistance(const vplGeometry* g)
+{
+    double area = 0;
+    for (int i = 0; i < g->triangleCount; i++) {
+        const vplRgb e = g->materials[g->triangleMaterials[i]].emission;
+        area += e.r + e.g + e.b > 0 ? vplGeometry_TriangleArea(g, i) : 0;
+    }
+    return (float)sqrt(area / (0.5 * MIN_HIT_LIGHTS * VPL_PI));
+}
+
+vplCompensationDef vplMakeCompensation(const vplJob* job, const vplIngredients* in)
+{
+    const vplRenderOptions* o = &job->options;
+    const bool keller = o->method == VPL_METHOD_KELLER;
+    vplCompensationDef def = {.rayCount = raysOf(job, in),
+                              .hitLights = hitLightsOf(job, in),
+                              .seed = o->seed,
+                              .emitters = in->emitters,
+                              .shadows = in->emitterMaps.shadows,
+                              .emitterCount = in->emitterMaps.shadows ? in->emitterCount : 0,
+                              .lamps = in->lamps,
+                              .lampCount = in->lampCount,
+                              .lampMinDistance = in->lampMinDistance,
+                              .lights = in->lights,
+                              .lightCount = in->lightCount,
+                              .lightRays = in->lightShadows != VPL_LIGHT_SHADOWS_NONE,
+                              .reflection = 1,
+                              .lampLights = in->lampLights,
+                              .lightLampDistance = in->lampLights > 0 ? lampDistance(job->geometry) : 0};
+    if (o->lighting == VPL_LIGHTING_DOCUMENTED) {
+        def.reflection = (float)(1 / VPL_PI);
+    }
+    def.seesEmission = o->show != VPL_SHOW_INDIRECT;
+    def.seesReflection = !(keller && o->show == VPL_SHOW_DIRECT);
+    return def;
+}
+
+// Nearly a hundred rays are cast per point, and they should not take more than a hundredth of the picture's time.
+enum { POINT_SHARE = 8000, MIN_POINTS = 64, MAX_POINTS = 1024, POINT_RAYS = 4 };
+
+static int pointsToAsk(const vplJob* job, const vplIngredients* in)
+{
+    const vplRenderOptions* o = &job->options;
+    const double work = (double)o->width * o->height * o->antialias * workOf(job, in);
+    return (int)fmin(fmax(work / POINT_SHARE, MIN_POINTS), MAX_POINTS);
+}
+
+vplResult vplEstimateLoss(vplJob* job, const vplIngredients* in, const vplShadeDef* shown)
+{
+    vplShadeDef def = *shown;
+    vplCompensationDef compensation = vplMakeCompensation(job, in);
+    vplClampLoss loss = {0, 0};
+    compensation.rayCount = POINT_RAYS;
+    compensation.firstRay = (uint32_t)job->stepsDone * MAX_POINTS;
+    def.compensation = &compensation;
+    const vplResult result =
+        vplEstimateClampLoss(job->geometry, &job->view, &def, pointsToAsk(job, in), &loss);
+    job->loss.lost += loss.lost;
+    job->loss.all += loss.all;
+    job->stats.clampLoss = job->loss.all > 0 ? job->loss.lost / job->loss.all : 0;
+    return result;
+}

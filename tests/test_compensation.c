@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: MIT
+// What the bound of near virtual lights takes away, and whether short rays bring back exactly that.
+#include "shapes.h"
+
+#include "shading/compensation.h"
+
+#include <stdlib.h>
+
+// ---- a plane of radiance 1 over a receiver: closed forms
+
+enum { SIDE = 96, PLANE_RAYS = 1024 };
+
+// The plane at height h that faces down, and under it a floor that reflects nothing.
+static vplGeometry* planeOver(vplContext* context, float h, float size)
+{
+    vplScene* scene;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = (vplRgb){0, 0, 0};
+    assert_int_equal(vplScene_AddMaterial(scene, &material, NULL), VPL_SUCCESS);
+    material.emission = (vplRgb){1, 1, 1};
+    assert_int_equal(vplScene_AddMaterial(scene, &material, NULL), VPL_SUCCESS);
+    for (int i = 0; i < 2; i++) {
+        vplObjectDef object = vplDefaultObjectDef();
+        object.material = i;
+        object.transform =
+            vplMat4_FromParts((vplVec3){0, i ? h : 0, 0}, (double[3]){(i ? 1 : -1) * VPL_PI / 2, 0, 0},
+                              (vplVec3){i ? size : 1, i ? size : 1, 1});
+        assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+    }
+    return freezeScene(scene);
+}
+
+// Lights that stand for the plane within 2 D of the receiver.
+static vplShadeLight* gridOver(float h, float distance)
+{
+    vplShadeLight* lights = malloc(SIDE * SIDE * sizeof *lights);
+    const float cell = 4 * distance / SIDE, intensity = cell * cell;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float x = ((float)(i % SIDE) + 0.5f) * cell - 2 * distance;
+        const float z = ((float)(i / SIDE) + 0.5f) * cell - 2 * distance;
+        lights[i] = (vplShadeLight){x, h, z, 0, -1, 0, intensity, intensity, intensity};
+    }
+    return lights;
+}
+
+// E / pi that compensation adds to the receiver, mean over 16 points of one place.
+static double givenBack(const vplGeometry* g, const vplShadeDef* def)
+{
+    vplView view = {.width = 1, .height = 1};
+    vplShading shading = vplShading_Make(g, &view, def);
+    vplSurface surface;
+    vplPoints points = {.surface = &surface, .plane = &surface};
+    uint32_t pixels[VPL_LANES];
+    float irradiance[3][VPL_LANES] = {{0}};
+    int64_t rays = 0;
+    double sum = 0;
+    memset(&surface, 0, sizeof surface);
+    for (int l = 0; l < VPL_LANES; l++) {
+        surface.ny[l] = 1;
+        points.triangle[l] = 0;
+        pixels[l] = (uint32_t)l;
+    }
+    assert_int_equal(vplGeometry_PrepareRays(g), VPL_SUCCESS);
+    assert_int_equal(vplOpenNearLight(&shading), VPL_SUCCESS);
+    vplAddNearLight(&shading, &points, pixels, irradiance, &rays);
+    vplCloseNearLight(&shading);
+    for (int l = 0; l < VPL_LANES; l++) {
+        assert_true(irradiance[0][l] == irradiance[1][l] && irradiance[1][l] == irradiance[2][l]);
+        sum += (double)irradiance[0][l] / VPL_LANES / VPL_PI;
+    }
+    return sum;
+}
+
+// Of a plane at height h the bound keeps (h^2/c)(1 + ln(c/h^2)). Rays alone give back the rest, and so do rays within a
+// fifth of D with the lights beyond.
+static void PlaneGetsBackWhatTheBoundTakes(void** state)
+{
+    (void)state;
+    Table t = loadTable("vpl_clamp_plane.csv");
+    vplContext* context = openTestContext(1);
+    for (int row = 0; row < t.rows; row++) {
+        const double c = number(&t, row, "c"), lost = 1 - number(&t, row, "fraction_kept_r2clamp");
+        const float h = (float)number(&t, row, "h"), distance = (float)sqrt(c);
+        vplGeometry* g = planeOver(context, h, 8 * distance);
+        vplShadeLight* lights = gridOver(h, distance);
+        vplCompensationDef near = {.rayCount = PLANE_RAYS,
+                                   .hitLights = SIDE * SIDE,
+                                   .lights = lights,
+                                   .lightCount = SIDE * SIDE,
+                                   .reflection = 1,
+                                   .lampLights = SIDE * SIDE,
+                                   .lightLampDistance = distance,
+                                   .seesEmission = true};
+        const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
+                                 .minDistance = distance,
+                                 .lights = lights,
+                                 .lightCount = SIDE * SIDE,
+                                 .compensation = &near};
+        assertNear(givenBack(g, &def), lost, 1e-3, "by rays alone", row);
+        near.lightLampDistance = 0.2f * distance; // the cells of the grid measure D / 24
+        assertNear(givenBack(g, &def), lost, 4e-3, "by rays and lights", row);
+        free(lights);
+        vplGeometry_Destroy(g);
+    }
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// ---- a closed room whose walls all reflect and emit alike: everything is E / (1 - rho)
+
+static vplScene* furnace(vplContext* context, float rho, vplVec3 eye, vplVec3 target, double fovY)
+{
+    vplScene* scene;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = (vplRgb){rho, rho, rho};
+    material.emission = (vplRgb){1, 1, 1};
+    assert_int_equal(vplScene_AddMaterial(scene, &material, NULL), VPL_SUCCESS);
+    for (int face = 0; face < 6; face++) {
+        static const vplVec3 places[6] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                          {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+        static const double turns[6][2] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}, {0, 2}, {0, 0}}; // about x, y
+        vplObjectDef def = vplDefaultObjectDef();
+        const double rotate[3] = {turns[face][0] * VPL_PI / 2, turns[face][1] * VPL_PI / 2, 0};
+        def.transform = vplMat4_FromParts(places[face], rotate, (vplVec3){2, 2, 1});
+        assert_int_equal(vplScene_AddObject(scene, &def, NULL), VPL_SUCCESS);
+    }
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = eye;
+    camera.target = target;
+    camera.near = 1e-3;
+    camera.fovY = fovY;
+    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
+    return scene;
+}
+
+static vplRenderOptions kellerOptions(int size, int particles, float distance)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_KELLER;
+    o.width = o.height = size;
+    o.particles = particles;
+    o.reflectivity = -1;
+    o.minDistance = distance;
+    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    return o;
+}
+
+static double meanOf(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* stats)
+{
+    vplImage* image = renderScene(scene, options, stats);
+    double sum = 0;
+    const int count = 3 * image->width * image->height;
+    for (int i = 0; i < count; i++) {
+        assert_true(isfinite(image->pixels[i]) && image->pixels[i] >= 0);
+        sum += (double)image->pixels[i];
+    }
+    vplImage_Destroy(image);
+    return sum / count;
+}
+
+static void FurnaceIsRightWhateverTheBound(void** state)
+{
+    (void)state;
+    static const float distances[] = {0.25f, 0.5f, 2, 100};
+    vplContext* context = openTestContext(2);
+    vplScene* middle =
+        furnace(context, 0.5f, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
+    vplScene* corner = furnace(context, 0.5f, (vplVec3){0.5f, 0.5f, 0.5f}, (vplVec3){1, 1, 1}, VPL_PI / 6);
+    for (int i = 0; i < 4; i++) {
+        vplRenderOptions o = kellerOptions(24, 2000, distances[i]);
+        assertNear(meanOf(middle, &o, NULL), 2, 0.02, "middle", i);
+        assertNear(meanOf(corner, &o, NULL), 2, 0.04, "corner", i);
+        o.compensation = VPL_COMPENSATION_NONE;
+        assert_true(meanOf(corner, &o, NULL) < 1.9);
+    }
+    vplScene_Destroy(middle);
+    vplScene_Destroy(corner);
+    closeTestContext(context);
+}
+
+static void LossIsWhatCompensationAdds(void** state)
+{
+    (void)state;
+    static const float distances[] = {0.3f, 1};
+    vplContext* context = openTestContext(2);
+    vplScene* scene =
+        furnace(context, 0.5f, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
+    for (int i = 0; i < 2; i++) {
+        vplRenderStats with, without;
+        vplRenderOptions o = kellerOptions(64, 2000, distances[i]);
+        meanOf(scene, &o, &with);
+        o.compensation = VPL_COMPENSATION_NONE;
+        const double lost = 2 - meanOf(scene, &o, &without); // of 1 that virtual lights bring
+        assertNear(without.clampLoss, lost, 0.03 + 0.05 * lost, "estimated without", i);
+        assertNear(with.clampLoss, lost, 0.03 + 0.05 * lost, "estimated with", i);
+        o.show = VPL_SHOW_LIGHT;
+        meanOf(scene, &o, &without);
+        assert_true(without.clampLoss < 0);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// X: walls that lose nothing and a bound beyond all light: nothing but the limit ends a walk.
+static void WhiteWallsAndAnEndlessBoundEnd(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = furnace(context, 1, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
+    vplRenderOptions o = kellerOptions(2, 10, 1e15f);
+    o.reflectivity = 0.5;
+    const double mean = meanOf(scene, &o, NULL);
+    assert_true(mean > 900 && mean < 1100); // a bounce, one more emission
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// ---- a room
+
+static vplScene* loadExample(vplContext* context, const char* name)
+{
+    char path[128];
+    vplScene* scene;
+    snprintf(path, sizeof path, "examples/scenes/%s.json", name);
+    assert_int_equal(vplScene_Load(context, path, &scene), VPL_SUCCESS);
+    return scene;
+}
+
+static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* options)
+{
+    vplRenderStats stats;
+    vplImage_Destroy(renderScene(scene, options, &stats));
+    return stats.imageHash;
+}
+
+static uint64_t hashWith(vplContext* context, const vplRenderOptions* options)
+{
+    vplScene* scene = loadExample(context, "room-area");
+    const uint64_t hash = hashOf(scene, options);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return hash;
+}
+
+static void ThreadsAndInstructionSetsGiveTheSameBits(void** state)
+{
+    (void)state;
+    static const int threads[] = {2, 3, 7};
+    for (int pipeline = 0; pipeline < 2; pipeline++) {
+        vplRenderOptions o = kellerOptions(50, 30, -1);
+        o.accumulation = pipeline ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+        o.passes = 2;
+        const uint64_t wanted = hashWith(openTestContext(1), &o);
+        for (int i = 0; i < 3; i++) {
+            assert_true(hashWith(openTestContext(threads[i]), &o) == wanted);
+        }
+        for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+            vplContext* context = openIsaContext(2, (vplIsa)isa);
+            assert_true(context == NULL || hashWith(context, &o) == wanted);
+        }
+        o.compensation = VPL_COMPENSATION_NONE;
+        assert_true(hashWith(openTestContext(1), &o) != wanted);
+    }
+}
+
+static void PipelinesGiveTheSameBits(void** state)
+{
+    (void)state;
+    static const char* const scenes[] = {"room", "room-area"};
+    vplContext* context = openTestContext(2);
+    for (int i = 0; i < 2; i++) {
+        vplScene* scene = loadExample(context, scenes[i]);
+        vplRenderOptions o = kellerOptions(50, 70, -1);
+        const uint64_t wanted = hashOf(scene, &o);
+        o.accumulation = VPL_ACCUMULATE_MULTIPASS;
+        assert_true(hashOf(scene, &o) == wanted);
+        o.accumulation = VPL_ACCUMULATE_BATCHED;
+        assert_true(hashOf(scene, &o) == wanted);
+        vplScene_Destroy(scene);
+    }
+    closeTestContext(context);
+}
+
+// Direct light of lamps and the rest are found by different rays, and must still be parts of one picture.
+static void PartsAddUpOnAverage(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadExample(context, "room-area");
+    vplRenderOptions o = kellerOptions(48, 300, 1);
+    const double picture = meanOf(scene, &o, NULL);
+    o.show = VPL_SHOW_DIRECT;
+    double parts = meanOf(scene, &o, NULL);
+    o.show = VPL_SHOW_INDIRECT;
+    parts += meanOf(scene, &o, NULL);
+    assertNear(parts, picture, 0.005 * picture, "direct + indirect", 0);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static double pathMean(const vplScene* scene)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_PATH;
+    o.pixel = VPL_PIXEL_CENTRE;
+    o.width = o.height = 32;
+    o.samplesPerPixel = 256;
+    return meanOf(scene, &o, NULL);
+}
+
+// Instant radiosity with its lamps and shadow maps, Keller's with a point light, shadows by maps, interleaving.
+static void EveryKindOfLightIsGivenBack(void** state)
+{
+    (void)state;
+    static const struct {
+        const char* scene;
+        vplMethod method;
+        vplLightShadows shadows;
+        vplAccumulation accumulation;
+    } cases[] = {
+        {"room", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
+        {"room-area", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
+        {"room", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
+        {"room-area", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_MAP, VPL_ACCUMULATE_DEFERRED},
+        {"room-area", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_INTERLEAVED},
+    };
+    vplContext* context = openTestContext(2);
+    for (int i = 0; i < 5; i++) {
+        vplScene* scene = loadExample(context, cases[i].scene);
+        const double truth = pathMean(scene);
+        vplRenderOptions o = kellerOptions(32, 500, 1.5f);
+        o.method = cases[i].method;
+        o.lightShadows = cases[i].shadows;
+        o.lightMapSize = 48;
+        o.accumulation = cases[i].accumulation;
+        o.compensation = VPL_COMPENSATION_RAYS;
+        o.sampler = VPL_SAMPLER_HALTON;
+        assertNear(meanOf(scene, &o, NULL), truth, 0.01 * truth, cases[i].scene, i);
+        o.compensation = VPL_COMPENSATION_NONE;
+        assert_true(meanOf(scene, &o, NULL) < 0.985 * truth);
+        vplScene_Destroy(scene);
+    }
+    closeTestContext(context);
+}
+
+// Where rays bring nearly all light, more passes with the same rays would not help.
+static void PassesCastOtherRays(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene =
+        furnace(context, 0.5f, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
+    double errors[2];
+    for (int i = 0; i < 2; i++) {
+        vplRenderOptions o = kellerOptions(16, 10, 100);
+        o.passes = i ? 32 : 2;
+        vplImage* image = renderScene(scene, &o, NULL);
+        errors[i] = 0;
+        for (int k = 0; k < 3 * 16 * 16; k++) {
+            errors[i] += ((double)image->pixels[k] - 2) * ((double)image->pixels[k] - 2);
+        }
+        vplImage_Destroy(image);
+    }
+    assert_true(errors[1] < errors[0] / 8);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+TEST_SUITE(compensation, cmocka_unit_test(PlaneGetsBackWhatTheBoundTakes),
+           cmocka_unit_test(FurnaceIsRightWhateverTheBound), cmocka_unit_test(LossIsWhatCompensationAdds),
+           cmocka_unit_test(WhiteWallsAndAnEndlessBoundEnd),
+           cmocka_unit_test(ThreadsAndInstructionSetsGiveTheSameBits),
+           cmocka_unit_test(PipelinesGiveTheSameBits), cmocka_unit_test(PartsAddUpOnAverage),
+           cmocka_unit_test(EveryKindOfLightIsGivenBack), cmocka_unit_test(PassesCastOtherRays));
