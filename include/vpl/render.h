@@ -140,10 +140,12 @@ typedef struct vplRenderStats {
     int64_t drawCalls, fragments;
     int64_t rays, rayObjectTests;
     int virtualLights;
-    int stepCount;                                // steps of the particle simulation
-    int particlesPerStep[VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted
-    int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
-    int escaped;                                  // particles that left the scene
+    int stepCount; // steps of the particle simulation
+    int particlesPerStep
+        [VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted; of all
+                                  // candidates where lights are chosen
+    int lightsPerStep[VPL_MAX_STEPS_REPORTED]; // lights that were really left
+    int escaped;                               // particles that left the scene
     int triangles, objects;
     float minDistance;   // as used, metres
     double reflectivity; // as used
