@@ -147,9 +147,11 @@ typedef struct vplRenderStats {
     int64_t cutPixels;        // lightcuts: pixels that show something, of all passes and samples
     int largestCut;           // lightcuts: most virtual lights evaluated for one pixel
     int stepCount;            // steps of the particle simulation
-    int particlesPerStep[VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted
-    int lightsPerStep[VPL_MAX_STEPS_REPORTED];    // lights that were really left
-    int escaped;                                  // particles that left the scene
+    int particlesPerStep
+        [VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted; of all
+                                  // candidates where lights are chosen
+    int lightsPerStep[VPL_MAX_STEPS_REPORTED]; // lights that were really left
+    int escaped;                               // particles that left the scene
     int triangles, objects;
     float minDistance;   // as used, metres
     double clampLoss;    // share of the virtual lights' light that minDistance takes away, or would without

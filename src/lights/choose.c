@@ -2,8 +2,9 @@
 // Some lights of many, each with a probability of its own and its weight divided by that: unbiased, whatever the
 // contributions are worth.
 // Based on: Georgiev and Slusallek, Eurographics 2010, who accept each light by itself. Departs: systematic sampling
-// along a curve that fills space, so that the number is fixed and each region keeps its share of lights: half the
-// error of accepting each by itself (see README); lights beyond probability 1 are kept as they are, not doubled.
+// along a curve that fills space, so that the number is fixed and each region keeps its share of lights: 0.75 (room)
+// and 0.91 (sponza-sun) of the error that the particles' own order leaves. Lights beyond probability 1 are kept as
+// they are, not doubled.
 #include "lights/placement.h"
 
 #include "base/context.h"

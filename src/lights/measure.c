@@ -3,7 +3,7 @@
 // Eurographics 2010: a light is worth what it gives to points that the camera sees. Departs: the points are few and
 // the same for all lights, so that light by light sixteen shadow rays go as one packet; a light's worth is the root
 // of its mean square, because the error of a picture is: the least error for a number of independently chosen
-// lights has probabilities like that.
+// lights has probabilities like that (0.84 of the error that the mean leaves; room, sponza-sun).
 #include "lights/placement.h"
 
 #include "base/context.h"

@@ -10,6 +10,8 @@
 
 enum { PLACEMENT_COOKIE = 0x56504c61, MAX_CANDIDATES = 1 << 22 };
 
+// Errors of 300 particles in room and sponza-sun with 64 points: 0.067, 0.065; 256: 0.052, 0.048; 1024: 0.044, 0.043.
+// With 2 %, 10 % and 30 % by flux: 0.057, 0.052, 0.053 and 0.051, 0.048, 0.054.
 vplPlacementDef vplDefaultPlacementDef(void)
 {
     vplPlacementDef def = {0};

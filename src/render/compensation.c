@@ -19,8 +19,8 @@ bool vplCompensates(const vplJob* job)
 {
     const vplRenderOptions* o = &job->options;
     const bool keller = o->method == VPL_METHOD_KELLER;
-    const bool usual =
-        keller && o->lighting == VPL_LIGHTING_PHYSICAL && o->lightShadows != VPL_LIGHT_SHADOWS_NONE;
+    const bool usual = keller && o->lighting == VPL_LIGHTING_PHYSICAL &&
+                       vplJob_GetLightShadows(job) != VPL_LIGHT_SHADOWS_NONE;
     const bool wanted =
         o->compensation == VPL_COMPENSATION_RAYS || (o->compensation == VPL_COMPENSATION_USUAL && usual);
     const bool shown = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_INDIRECT ||

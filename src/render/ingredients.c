@@ -197,11 +197,7 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
     }
     in->lightCount = vplPrepareLights(&shown, vplJob_GetShading(job), in->lights);
     in->minDistance = job->stats.minDistance = vplJob_MinDistance(job, in->set->lightCount);
-    in->lightShadows = job->options.lightShadows;
-    if (in->lightShadows == VPL_LIGHT_SHADOWS_USUAL) {
-        in->lightShadows =
-            job->options.method == VPL_METHOD_KELLER ? VPL_LIGHT_SHADOWS_AUTO : VPL_LIGHT_SHADOWS_NONE;
-    }
+    in->lightShadows = vplJob_GetLightShadows(job);
     if (in->lightShadows == VPL_LIGHT_SHADOWS_AUTO) {
         in->lightShadows = vplChooseLightShadows(job, in);
     }

@@ -29,8 +29,7 @@ static vplResult placeByView(vplJob* job, const vplEmitterDef* emitters, int emi
     def.height = o->height;
     def.oversampling = oversamplingFor(o);
     def.minDistance = vplJob_MinDistance(job, (double)lights);
-    def.shadows = o->lightShadows != VPL_LIGHT_SHADOWS_NONE &&
-                  (o->lightShadows != VPL_LIGHT_SHADOWS_USUAL || o->method == VPL_METHOD_KELLER);
+    def.shadows = vplJob_GetLightShadows(job) != VPL_LIGHT_SHADOWS_NONE;
     def.seed = o->seed;
     def.index = job->stepsDone;
     def.progress = particles->progress;

@@ -45,6 +45,14 @@ void vplJob_AddRaster(vplJob* job, const vplRasterStats* stats)
     job->stats.fragments += stats->fragments;
 }
 
+vplLightShadows vplJob_GetLightShadows(const vplJob* job)
+{
+    const vplRenderOptions* o = &job->options;
+    return o->lightShadows != VPL_LIGHT_SHADOWS_USUAL ? o->lightShadows
+           : o->method == VPL_METHOD_KELLER           ? VPL_LIGHT_SHADOWS_AUTO
+                                                      : VPL_LIGHT_SHADOWS_NONE;
+}
+
 vplLighting vplJob_GetShading(const vplJob* job)
 {
     return job->options.method == VPL_METHOD_KELLER ? VPL_LIGHTING_PHYSICAL : job->options.lighting;

@@ -47,6 +47,9 @@ vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, v
 // Formulas of shading: Keller's lights are physical ones, also where particles lose light as printed.
 vplLighting vplJob_GetShading(const vplJob* job);
 
+// The usual shadows replaced by those of the method: none, map, ray or auto.
+vplLightShadows vplJob_GetLightShadows(const vplJob* job);
+
 // Times one stage and gives it a share of the progress, up to fraction `to`.
 void vplJob_BeginStage(vplJob* job, double to);
 void vplJob_EndStage(vplJob* job, const char* name);
