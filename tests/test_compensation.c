@@ -330,7 +330,7 @@ static void EveryKindOfLightIsGivenBack(void** state)
     for (int i = 0; i < 5; i++) {
         vplScene* scene = loadExample(context, cases[i].scene);
         const double truth = pathMean(scene);
-        vplRenderOptions o = kellerOptions(32, 500, 1.5f);
+        vplRenderOptions o = kellerOptions(32, cases[i].shadows == VPL_LIGHT_SHADOWS_MAP ? 500 : 1000, 1.5f);
         o.method = cases[i].method;
         o.lightShadows = cases[i].shadows;
         o.lightMapSize = 48;

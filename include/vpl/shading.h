@@ -89,11 +89,11 @@ typedef struct vplCompensationDef {
     int lightCount;
     bool lightRays;   // they cast shadows: by rays, also where the picture's come from maps
     float reflection; // multiplies reflectances: 1; for lights that lost light as documented 1/pi
-    int lampLights;   // the first of `lights`, which lie on surfaces that emit and stand for their emission
-    float
-        lightLampDistance; // metres, (0, minDistance]: within it that emission is found by rays, beyond by those
-                           // lights themselves; lamps are small and their lights close together
-    bool seesEmission;     // also by the first ray: the picture shows these lights
+    // The first lights of the list lie on surfaces that emit and stand for their emission. Within lightLampDistance,
+    // metres, (0, minDistance], rays find that emission; beyond it these lights themselves do.
+    int lampLights;
+    float lightLampDistance;
+    bool seesEmission;   // also by the first ray: the picture shows these lights
     bool seesReflection; // the picture shows lights of reflected light
 } vplCompensationDef;
 
