@@ -75,8 +75,8 @@ typedef enum vplShadeOutput {
 // Source: Kollig and Keller, Illumination in the Presence of Weak Singularities, MCQMC 2004.
 typedef struct vplCompensationDef {
     int rayCount;  // per point, [1, VPL_MAX_NEAR_RAYS]
-    int hitLights; // virtual lights that light a hit, chosen by chance, [1, VPL_MAX_LIGHTS]: so few that each
-                   // stands for a disc of radius minDistance, or more
+    int hitLights; // virtual lights that light a hit, chosen by chance, [1, VPL_MAX_LIGHTS]: enough that
+                   // each stands for a disc of radius minDistance, or less; fewer are as right and noisier
     uint32_t firstRay; // index of a point's first ray in its sequence: renders in several passes go on
     uint64_t seed;
     const vplEmitterDef* emitters; // as in vplShadeDef
