@@ -21,14 +21,25 @@ typedef struct Line {
     vplMethod method;
     int amount; // particles, or paths per pixel
     int interleave, passes;
+    vplCompensation compensation;
 } Line;
 
 static const Line LINES[] = {
-    {VPL_METHOD_KELLER, 300, 4, 0},     {VPL_METHOD_KELLER, 1000, 16, 0},  {VPL_METHOD_KELLER, 4000, 16, 0},
-    {VPL_METHOD_KELLER, 16000, 16, 0},  {VPL_METHOD_KELLER, 64000, 16, 0}, {VPL_METHOD_KELLER, 16000, 16, 4},
-    {VPL_METHOD_KELLER, 16000, 16, 16}, {VPL_METHOD_KELLER, 16000, 8, 0},  {VPL_METHOD_PATH, 1, 0, 0},
-    {VPL_METHOD_PATH, 4, 0, 0},         {VPL_METHOD_PATH, 16, 0, 0},       {VPL_METHOD_PATH, 64, 0, 0},
-    {VPL_METHOD_PATH, 256, 0, 0},
+    {VPL_METHOD_KELLER, 1000, 16, 0, VPL_COMPENSATION_NONE},
+    {VPL_METHOD_KELLER, 4000, 16, 0, VPL_COMPENSATION_NONE},
+    {VPL_METHOD_KELLER, 1000, 16, 0, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_KELLER, 4000, 16, 0, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_KELLER, 16000, 16, 0, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_KELLER, 64000, 16, 0, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_KELLER, 64000, 16, 2, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_KELLER, 16000, 8, 0, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_KELLER, 300, 4, 0, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_KELLER, 300, 1, 0, VPL_COMPENSATION_RAYS},
+    {VPL_METHOD_PATH, 1, 0, 0, VPL_COMPENSATION_NONE},
+    {VPL_METHOD_PATH, 4, 0, 0, VPL_COMPENSATION_NONE},
+    {VPL_METHOD_PATH, 16, 0, 0, VPL_COMPENSATION_NONE},
+    {VPL_METHOD_PATH, 64, 0, 0, VPL_COMPENSATION_NONE},
+    {VPL_METHOD_PATH, 256, 0, 0, VPL_COMPENSATION_NONE},
 };
 
 static Truth findTruth(const vplScene* scene, const char* path, const char* folder, int size, int spp)
@@ -107,6 +118,7 @@ static void measure(const vplScene* scene, const Truth* truth, const Line* line,
     o.accumulation = VPL_ACCUMULATE_INTERLEAVED;
     o.interleave = line->interleave > 0 ? line->interleave : 1;
     o.passes = line->passes;
+    o.compensation = line->compensation;
     double wall[RUNS], cpu[RUNS], errors[RUNS], rms[RUNS], largest[RUNS];
     vplRenderStats stats;
     for (int i = 0; i < RUNS; i++) {
@@ -120,9 +132,10 @@ static void measure(const vplScene* scene, const Truth* truth, const Line* line,
         vplImage_Destroy(image);
     }
     if (line->method == VPL_METHOD_PATH) {
-        printf("path tracing, %6d per pixel          ", line->amount);
+        printf("path tracing, %4d per pixel                      ", line->amount);
     } else {
-        printf("keller %6d, interleaved %2d, %2d passes", line->amount, line->interleave, stats.passes);
+        printf("keller %6d, interleaved %2d, %d passes, %s", line->amount, line->interleave, stats.passes,
+               line->compensation == VPL_COMPENSATION_RAYS ? "short rays" : "clamped   ");
     }
     printf(" %8.3f %8.3f %8.2f %8.2f %8.2f\n", 1e-3 * median(wall, RUNS), 1e-3 * median(cpu, RUNS),
            100 * median(errors, RUNS), 100 * median(rms, RUNS), 100 * median(largest, RUNS));
@@ -140,8 +153,8 @@ int main(int count, char** words)
     vplScene* scene;
     openScene(words[1], 2, VPL_ISA_AUTO, &context, &scene);
     Truth truth = findTruth(scene, words[1], words[2], size, spp);
-    printf("%s, %dx%d, medians of %d seeds            s    cpu s  error %% region %% largest %%\n", words[1],
-           size, size, RUNS);
+    printf("%s, %dx%d, medians of %d seeds                     s    cpu s  error %% region %% largest %%\n",
+           words[1], size, size, RUNS);
     for (size_t i = 0; i < sizeof LINES / sizeof *LINES; i++) {
         measure(scene, &truth, &LINES[i], size);
     }

@@ -123,6 +123,22 @@ static void lightcuts(vplRenderOptions* o)
     o->particles = 3000;
 }
 
+static void kellerDocumented(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_KELLER;
+    o->lighting = VPL_LIGHTING_DOCUMENTED;
+    o->particles = 60;
+}
+
+static void kellerPasses(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_KELLER;
+    o->reflectivity = -1;
+    o->particles = 300;
+    o->passes = 3;
+    o->accumulation = VPL_ACCUMULATE_INTERLEAVED;
+}
+
 static void indirect(vplRenderOptions* o)
 {
     o->show = VPL_SHOW_INDIRECT;
@@ -198,6 +214,8 @@ static const Case CASES[] = {
     {"overlay", "room", 0, overlay},
     {"placement-view", "flat", 3, viewPlacement},
     {"placement-rsm", "room", 1, rsmPlacement},
+    {"keller-documented", "room-area", 1, kellerDocumented},
+    {"keller-passes", "room", 1, kellerPasses},
     {"compensated-area", "room-area", 1, compensated},
     {"path-area", "room-area", 1, paths},
     {"path-point", "closed-room", 1, paths},
