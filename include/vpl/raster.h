@@ -148,6 +148,9 @@ typedef struct vplRasterStats {
     double vertexMs, tilesMs; // time of the vertex stage (with clipping and binning) and of the tiles
 } vplRasterStats;
 
+// Adds the statistics of another run.
+void vplRasterStats_Add(vplRasterStats* sum, const vplRasterStats* stats);
+
 // A recorded list of draws on one framebuffer.
 typedef struct vplRaster vplRaster;
 

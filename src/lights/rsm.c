@@ -143,16 +143,6 @@ static vplResult recordFace(const vplReflectiveMap* map, const vplGeometry* g, R
     return result;
 }
 
-static void addStats(vplRasterStats* sum, const vplRasterStats* stats)
-{
-    sum->drawCalls += stats->drawCalls;
-    sum->fragments += stats->fragments;
-    sum->trianglesIn += stats->trianglesIn;
-    sum->trianglesBinned += stats->trianglesBinned;
-    sum->vertexMs += stats->vertexMs;
-    sum->tilesMs += stats->tilesMs;
-}
-
 static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFcn* progress, void* user)
 {
     vplContext* context = g->context;
@@ -176,7 +166,7 @@ static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFc
     }
     for (int face = 0; face < map->faceCount; face++) {
         if (result == VPL_SUCCESS) {
-            addStats(&map->stats, &stats[face]);
+            vplRasterStats_Add(&map->stats, &stats[face]);
         }
         vplRaster_Destroy(rasters[face]);
     }

@@ -246,3 +246,13 @@ vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user,
 {
     return vplRaster_RunAll(&raster, 1, progress, user, statsOut);
 }
+
+void vplRasterStats_Add(vplRasterStats* sum, const vplRasterStats* stats)
+{
+    sum->drawCalls += stats->drawCalls;
+    sum->fragments += stats->fragments;
+    sum->trianglesIn += stats->trianglesIn;
+    sum->trianglesBinned += stats->trianglesBinned;
+    sum->vertexMs += stats->vertexMs;
+    sum->tilesMs += stats->tilesMs;
+}

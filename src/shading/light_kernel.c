@@ -4,6 +4,7 @@
 // Based on: Franchi and Ferrante, Virtual Point Lights (documented); Alexander Keller, Instant Radiosity,
 // SIGGRAPH 1997 (physical), with the geometry term bounded as r^2 -> max(r^2, c).
 #include "base/isa.h"
+#include "lights/light_term.h"
 #include "shading/shading.h"
 
 #include <float.h>
@@ -12,46 +13,6 @@
 
 vplLightKernelFcn VPL_KERNEL(vplLightsDocumented), VPL_KERNEL(vplLightsPhysical);
 vplEmitterKernelFcn VPL_KERNEL(vplEmitterCosine);
-
-// Larger and smaller of two numbers; `a` may be negative, `b` not. Floats that are not negative are ordered as
-// their bits are. From AVX2 on integers are compared: on Zen 4 multiplications, which bound these loops, and float
-// comparisons share two of the four vector units, integer comparisons have all four (physical lights: 6 % faster
-// with AVX-512, 5 % with AVX2; SSE2 has no such instruction and loses 16 %).
-#ifdef __AVX2__
-static inline int32_t bitsOf(float x)
-{
-    int32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
-static inline float floatOf(int32_t bits)
-{
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static inline float largerOf(float a, float b)
-{
-    return floatOf(bitsOf(a) > bitsOf(b) ? bitsOf(a) : bitsOf(b));
-}
-
-static inline float smallerOf(float a, float b)
-{
-    return floatOf(bitsOf(a) < bitsOf(b) ? bitsOf(a) : bitsOf(b));
-}
-#else
-static inline float largerOf(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline float smallerOf(float a, float b)
-{
-    return a < b ? a : b;
-}
-#endif
 
 void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const vplShadeLight* restrict lights,
                                      int count, float inverseBound, float irradiance[restrict 3][VPL_LANES])
@@ -65,11 +26,7 @@ void VPL_KERNEL(vplLightsDocumented)(const vplSurface* restrict surface, const v
         const vplShadeLight light = lights[i];
         for (int l = 0; l < VPL_LANES; l++) {
             float x = light.px - surface->px[l], y = light.py - surface->py[l], z = light.pz - surface->pz[l];
-            float d2 = x * x + y * y + z * z;
-            float cosine = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z; // times the distance
-            cosine = largerOf(cosine, 0);
-            d2 = largerOf(d2, FLT_MIN); // 0/0 becomes 0
-            cosine = cosine / sqrtf(d2);
+            float cosine = vplDocumentedCosine(x, y, z, surface->nx[l], surface->ny[l], surface->nz[l]);
             r[l] += light.r * cosine;
             g[l] += light.g * cosine;
             b[l] += light.b * cosine;
@@ -91,17 +48,9 @@ void VPL_KERNEL(vplLightsPhysical)(const vplSurface* restrict surface, const vpl
         const vplShadeLight light = lights[i];
         for (int l = 0; l < VPL_LANES; l++) {
             float x = light.px - surface->px[l], y = light.py - surface->py[l], z = light.pz - surface->pz[l];
-            float d2 = x * x + y * y + z * z;
-            float here =
-                surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z; // d times the cosine here,
-            float there = -(light.nx * x + light.ny * y + light.nz * z);      // and at the light
-            here = largerOf(here, 0);
-            there = largerOf(there, 0);
-            d2 = largerOf(d2, FLT_MIN);
-            float inverse = 1 / d2;
-            float bounded = smallerOf(inverse, inverseBound);
-            // cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is 0, not infinity / infinity.
-            float geometry = (here * inverse) * (there * bounded);
+            float geometry = vplBoundedGeometry(vplLightTermOf(x, y, z, surface->nx[l], surface->ny[l],
+                                                               surface->nz[l], light.nx, light.ny, light.nz),
+                                                inverseBound);
             r[l] += light.r * geometry;
             g[l] += light.g * geometry;
             b[l] += light.b * geometry;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Sixteen virtual lights for one point, where points are too few and far between to fill vectors.
 #include "base/isa.h"
+#include "lights/light_term.h"
 #include "shading/compensation.h"
-
-#include <float.h>
-#include <string.h>
 
 vplPointKernelFcn VPL_KERNEL(vplLightsOfPoint);
 
@@ -19,14 +17,9 @@ void VPL_KERNEL(vplLightsOfPoint)(const vplLightLanes* restrict lights, const fl
     for (int l = 0; l < VPL_LANES; l++) {
         const float x = lanes.at[0][l] - point[0], y = lanes.at[1][l] - point[1],
                     z = lanes.at[2][l] - point[2];
-        const float square = x * x + y * y + z * z;
-        float here = point[3] * x + point[4] * y + point[5] * z;
-        float there = -(lanes.at[3][l] * x + lanes.at[4][l] * y + lanes.at[5][l] * z);
-        here = here > 0 ? here : 0;
-        there = there > 0 ? there : 0;
-        const float inverse = 1 / (square > FLT_MIN ? square : FLT_MIN);
-        const float bounded = inverse < bounds[l] ? inverse : bounds[l];
-        const float left = bounded - taken;
-        geometry[l] = (here * inverse) * (there * (left > 0 ? left : 0));
+        const vplLightTerm t = vplLightTermOf(x, y, z, point[3], point[4], point[5], lanes.at[3][l],
+                                              lanes.at[4][l], lanes.at[5][l]);
+        const float left = vplSmallerOf(t.inverse, bounds[l]) - taken;
+        geometry[l] = (t.here * t.inverse) * (t.there * vplLargerOf(left, 0));
     }
 }

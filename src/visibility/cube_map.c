@@ -92,16 +92,6 @@ static vplResult recordFace(Faces* f, const vplGeometry* g, const vplCubeMap* ma
     return result;
 }
 
-static void addStats(vplRasterStats* sum, const vplRasterStats* stats)
-{
-    sum->drawCalls += stats->drawCalls;
-    sum->fragments += stats->fragments;
-    sum->trianglesIn += stats->trianglesIn;
-    sum->trianglesBinned += stats->trianglesBinned;
-    sum->vertexMs += stats->vertexMs;
-    sum->tilesMs += stats->tilesMs;
-}
-
 static vplResult drawFaces(const vplGeometry* g, vplCubeMap* map, vplProgressFcn* progress, void* user)
 {
     vplContext* context = g->context;
@@ -123,7 +113,7 @@ static vplResult drawFaces(const vplGeometry* g, vplCubeMap* map, vplProgressFcn
     memset(&map->stats, 0, sizeof map->stats);
     for (int face = 0; face < 6; face++) {
         if (result == VPL_SUCCESS) {
-            addStats(&map->stats, &stats[face]);
+            vplRasterStats_Add(&map->stats, &stats[face]);
         }
         vplRaster_Destroy(f.rasters[face]);
     }
