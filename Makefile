@@ -97,6 +97,8 @@ bench: all
 	$(BUILD)/bench/rays examples/scenes/room.json
 	$(BUILD)/bench/interleaved examples/scenes/room.json
 	$(BUILD)/bench/crossover --quick examples/scenes/room.json
+	$(BUILD)/bench/lightcuts examples/scenes/room.json
+	$(BUILD)/bench/rsm examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling
