@@ -368,9 +368,42 @@ static void PassesCastOtherRays(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(compensation, cmocka_unit_test(PlaneGetsBackWhatTheBoundTakes),
-           cmocka_unit_test(FurnaceIsRightWhateverTheBound), cmocka_unit_test(LossIsWhatCompensationAdds),
-           cmocka_unit_test(WhiteWallsAndAnEndlessBoundEnd),
+// From inside a unit sphere cosine-distributed rays go 2 cos, whose square is uniform in [0, 4]: the mean of
+// max(0, 1 - d^2/D^2) is D^2/8 up to D = 2. Where nothing is seen, everything is near.
+static void NearDistanceOfASphereIsThatOfItsChords(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Shape shape = icosphere(4);
+    vplScene* scene = sceneOf(context, 0.5f);
+    addShape(scene, &shape, false, NULL);
+    freeShape(&shape);
+    vplGeometry* sphere = freezeScene(scene);
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = vplVec(0, 0, 0);
+    camera.target = vplVec(0, 0, -1);
+    camera.fovY = 1;
+    camera.near = 0.01;
+    vplView view = vplView_Create(&camera, 100, 100);
+    static const double shares[] = {0.02, 0.1, 0.2, 0.45};
+    for (int i = 0; i < 4; i++) {
+        float distance;
+        assert_int_equal(vplFindNearDistance(sphere, &view, shares[i], &distance), VPL_SUCCESS);
+        assertNear((double)distance, sqrt(8 * shares[i]), 0.02 * sqrt(8 * shares[i]), "distance", i);
+    }
+    float distance;
+    camera.eye = vplVec(0, 0, -9); // looks away
+    camera.target = vplVec(0, 0, -10);
+    view = vplView_Create(&camera, 100, 100);
+    assert_int_equal(vplFindNearDistance(sphere, &view, 0.2, &distance), VPL_SUCCESS);
+    assertNear((double)distance, (double)vplGeometry_Diagonal(sphere), 1e-6, "diagonal", 0);
+    vplGeometry_Destroy(sphere);
+    closeTestContext(context);
+}
+
+TEST_SUITE(compensation, cmocka_unit_test(NearDistanceOfASphereIsThatOfItsChords),
+           cmocka_unit_test(PlaneGetsBackWhatTheBoundTakes), cmocka_unit_test(FurnaceIsRightWhateverTheBound),
+           cmocka_unit_test(LossIsWhatCompensationAdds), cmocka_unit_test(WhiteWallsAndAnEndlessBoundEnd),
            cmocka_unit_test(ThreadsAndInstructionSetsGiveTheSameBits),
            cmocka_unit_test(PipelinesGiveTheSameBits), cmocka_unit_test(PartsAddUpOnAverage),
            cmocka_unit_test(EveryKindOfLightIsGivenBack), cmocka_unit_test(PassesCastOtherRays));

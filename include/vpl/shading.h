@@ -132,6 +132,12 @@ typedef struct vplShadeStats {
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut);
 
+// The distance D, metres, for which the mean of max(0, 1 - d^2 / D^2) over what surfaces in view see at distances d
+// (2048 cosine-distributed rays) is `share`, (0, 1): the bound D then takes about that share of the light of virtual
+// lights. The geometry's diagonal where there is no such D.
+vplResult vplFindNearDistance(const vplGeometry* geometry, const vplView* view, double share,
+                              float* distanceOut);
+
 // What the bound takes away, and all light of virtual lights with it: sums over some points that the view shows, so
 // that their ratio is the share that is lost.
 typedef struct vplClampLoss {

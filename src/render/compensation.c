@@ -29,6 +29,19 @@ bool vplCompensates(const vplJob* job)
            vplJob_GetShading(job) == VPL_LIGHTING_PHYSICAL;
 }
 
+// The share of what surfaces see that is near. Squared error times processor time for bounds around that
+// (interleaved 4, 4096 particles, 128x128): room 0.23 at 0.5 m, 0.16 at 1 m, 0.14 at 1.8 m; room-area and cornell-area
+// have their best at 0.14 sqrt(area), which is the same; sponza-sun 12 at 1 m, 9 at 2 m, 8 at 16 m, but there nearly all
+// light comes by short rays, and what was smooth is speckled.
+#define NEAR_SHARE 0.2
+
+vplResult vplJob_FindNear(vplJob* job)
+{
+    const bool wanted = job->nearDistance == 0 && job->options.minDistance < 0 && vplCompensates(job);
+    return wanted ? vplFindNearDistance(job->geometry, &job->view, NEAR_SHARE, &job->nearDistance)
+                  : VPL_SUCCESS;
+}
+
 // What a pixel-light costs in shadow rays: without one, a fraction of a nanosecond of a vector.
 static double workOf(const vplJob* job, const vplIngredients* in)
 {

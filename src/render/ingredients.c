@@ -165,12 +165,9 @@ static vplResult choose(vplJob* job, vplIngredients* in, vplLightSet* shown)
 // 5 to 35 % more rmse and twice as much takes a few per cent of the light away (room, room-area, cornell-area; 32 to
 // 2048 particles with shadows by rays; --show indirect). Later passes make the share smaller.
 //
-// Where rays find the light that is taken away, the bound need not fall with the number of lights: near corners the share's
-// radius keeps the noise of the nearest lights as it is, and relmse falls like N^-0.34 and N^-0.47 (room-area and
-// cornell-area, 64 to 4096 particles); with a fixed bound and as many more rays like N^-1.07 and N^-0.92. With 2048
-// particles, the square of the relative error times processor time was, by D / sqrt(area): 0.018 0.84 and 3.4, 0.037
-// 0.40 and 1.9, 0.07 0.22 and 1.3, 0.147 0.17 and 1.0 (64 rays, 16 lights per hit).
-#define NEAR_SHARE 0.14
+// Where rays find the light that is taken away, the bound need not fall with the number of lights, and the square of
+// the error does so the faster, like 1/N instead of 1/sqrt(N): near corners a bound that falls like 1/sqrt(N) keeps the
+// noise of the nearest lights as it is.
 float vplJob_MinDistance(const vplJob* job, double lights)
 {
     if (job->options.minDistance >= 0) {
@@ -179,7 +176,7 @@ float vplJob_MinDistance(const vplJob* job, double lights)
     lights *= job->stepsDone + 1;
     const double area = vplGeometry_Area(job->geometry);
     const double share = lights > 0 ? sqrt(area / lights / VPL_PI) : 0;
-    return (float)(lights > 0 && vplCompensates(job) ? fmax(share, NEAR_SHARE * sqrt(area)) : share);
+    return (float)(lights > 0 && vplCompensates(job) ? fmax(share, (double)job->nearDistance) : share);
 }
 
 vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)

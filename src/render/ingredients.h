@@ -53,6 +53,9 @@ int vplCountLampLights(const vplLightSet* set);
 // Whether light that the bound takes away is found by rays.
 bool vplCompensates(const vplJob* job);
 
+// Finds job->nearDistance, once, where the automatic bound of compensated lights wants it.
+vplResult vplJob_FindNear(vplJob* job);
+
 // How, for lights and shadows that are there.
 vplCompensationDef vplMakeCompensation(const vplJob* job, const vplIngredients* in);
 

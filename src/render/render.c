@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Checks, freezes the scene, counts and times what methods do.
-#include "render/render.h"
 #include "base/clock.h"
+#include "render/ingredients.h"
 
 #include <string.h>
 
@@ -80,8 +80,11 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
     int emitters = vplScene_GetEmitterCount(scene);
-    vplResult result =
-        vplJob_PlaceLights(job, emitters ? vplScene_GetEmitter(scene, 0) : NULL, emitters, &def, setOut);
+    vplResult result = vplJob_FindNear(job);
+    if (result == VPL_SUCCESS) {
+        result =
+            vplJob_PlaceLights(job, emitters ? vplScene_GetEmitter(scene, 0) : NULL, emitters, &def, setOut);
+    }
     if (result != VPL_SUCCESS) {
         return result;
     }

@@ -21,9 +21,10 @@ typedef struct vplJob {
     double stageStart;
     vplClampLoss loss; // of all passes
     int stepsDone;
-    bool progressive; // the picture is a mean of passes
-    bool last;        // no more steps follow: what they would need may be given away
-    void* state;      // the method's own
+    bool progressive;   // the picture is a mean of passes
+    bool last;          // no more steps follow: what they would need may be given away
+    float nearDistance; // see vplJob_FindNear; 0: not asked for yet
+    void* state;        // the method's own
 } vplJob;
 
 // A method, step by step.

@@ -9,8 +9,7 @@
 
 enum { CHOSEN_LIGHTS = 64 };
 
-// The place that the view shows at pixel coordinates (x, y); false where there is none.
-static bool lookAt(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* p)
+bool vplLookAt(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* p)
 {
     const double across = (2 * x / view->width - 1) / view->scaleX;
     const double upward = (1 - 2 * y / view->height) / view->scaleY;
@@ -61,8 +60,8 @@ static void addBlock(const vplShading* s, int first, int count, vplClampLoss* su
         points.triangle[l] = -1;
         pixels[l] = (uint32_t)i;
         at[l] = (vplLitPoint){.pixel = pixels[l]};
-        if (l < count && lookAt(g, s->view, (double)vplHalton(i + 1, 0) * s->view->width,
-                                (double)vplHalton(i + 1, 1) * s->view->height, &at[l])) {
+        if (l < count && vplLookAt(g, s->view, (double)vplHalton(i + 1, 0) * s->view->width,
+                                   (double)vplHalton(i + 1, 1) * s->view->height, &at[l])) {
             points.triangle[l] = at[l].hit.triangle;
             setLane(&at[l], l, &surface, &plane);
         }

@@ -37,6 +37,9 @@ typedef struct vplLitPoint {
     uint32_t pixel, ray, bounce;
 } vplLitPoint;
 
+// The place that the view shows at pixel coordinates (x, y); false where there is none.
+bool vplLookAt(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* p);
+
 // Some virtual lights for a point to choose from.
 typedef struct vplLightChoice {
     const vplShadeLight* lights;
