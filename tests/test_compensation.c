@@ -2,6 +2,7 @@
 // What the bound of near virtual lights takes away, and whether short rays bring back exactly that.
 #include "shapes.h"
 
+#include "math/vec.h"
 #include "shading/compensation.h"
 
 #include <stdlib.h>
