@@ -75,7 +75,8 @@ static vplResult describeGeometry(const vplScene* scene, Info* info)
 
 static const char* findProblem(const Info* info, const vplRenderOptions* o)
 {
-    const bool documented = o->lighting == VPL_LIGHTING_DOCUMENTED;
+    const bool keller = o->method == VPL_METHOD_KELLER;
+    const bool documented = o->lighting == VPL_LIGHTING_DOCUMENTED && !keller;
     if (documented && o->method == VPL_METHOD_PATH) {
         return "the path tracer knows physical lighting only";
     }
@@ -83,9 +84,13 @@ static const char* findProblem(const Info* info, const vplRenderOptions* o)
         return "documented lighting knows point lights only";
     }
     const bool shines = info->emitters > 0 || (info->lampTriangles > 0 && !documented);
-    return !shines && o->method == VPL_METHOD_INSTANT_RADIOSITY ? "there is no light to shoot particles from"
-                                                                : NULL;
+    return !shines && (keller || o->method == VPL_METHOD_INSTANT_RADIOSITY)
+               ? "there is no light to shoot particles from"
+               : NULL;
 }
+
+// Of a light in the tree of lightcuts.
+enum { LIGHT_TREE_BYTES = 104 };
 
 // Draws and shadow maps of the rasterizing methods: directional emitters, and all where rays are asked for, have
 // no map.
@@ -99,11 +104,13 @@ static void countDraws(const vplRenderOptions* o, Info* info)
     const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? info->virtualLights : 0;
     const int64_t size = o->shadowMapSize, lightSize = o->lightMapSize;
     info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias);
-    info->shadowMapBytes =
-        (6 * maps * size * size + lightMaps * lightSize * lightSize) * (int64_t)sizeof(float);
-    const int64_t lamps = info->lampTriangles > 0 ? o->lampLights : 0;
-    info->lightBytes = info->virtualLights * (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight)) +
-                       lamps * (int64_t)sizeof(vplShadeLight);
+    const int64_t lightMapBytes = lightMaps * lightSize * lightSize * (int64_t)sizeof(float);
+    info->shadowMapBytes = 6 * maps * size * size * (int64_t)sizeof(float) +
+                           (lightMapBytes < VPL_LIGHT_MAP_BYTES ? lightMapBytes : VPL_LIGHT_MAP_BYTES);
+    const int64_t lamps = info->lampTriangles > 0 && o->method != VPL_METHOD_KELLER ? o->lampLights : 0;
+    const int64_t each = (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight)) +
+                         (o->accumulation == VPL_ACCUMULATE_LIGHTCUTS ? LIGHT_TREE_BYTES : 0);
+    info->lightBytes = info->virtualLights * each + lamps * (int64_t)sizeof(vplShadeLight);
 }
 
 static vplResult describeRender(vplContext* context, const Arguments* a, Info* info)
@@ -113,7 +120,7 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
     writeNamedOption("--method", a, info->method, sizeof info->method);
     writeNamedOption("--pipeline", a, info->pipeline, sizeof info->pipeline);
     info->reflectivity = o->reflectivity >= 0 ? o->reflectivity : info->reflectance;
-    if (o->method == VPL_METHOD_INSTANT_RADIOSITY) {
+    if (o->method == VPL_METHOD_INSTANT_RADIOSITY || o->method == VPL_METHOD_KELLER) {
         vplResult result =
             vplCountParticles(context, o->particles, info->reflectivity, info->particlesPerStep,
                               VPL_MAX_STEPS_REPORTED, &info->steps, &info->virtualLights);

@@ -76,7 +76,7 @@ static vplResult makeEmitterShadows(vplJob* job, vplIngredients* in)
 
 int vplLightBatch(const vplJob* job, const vplIngredients* in)
 {
-    const size_t room = VPL_LIGHT_MAP_BYTES / vplHalfMaps_BytesPerMap(job->options.lightMapSize);
+    const size_t room = (size_t)VPL_LIGHT_MAP_BYTES / vplHalfMaps_BytesPerMap(job->options.lightMapSize);
     return room >= (size_t)in->lightCount ? in->lightCount : room > 0 ? (int)room : 1;
 }
 

@@ -36,11 +36,6 @@ vplResult vplMakeDirectLight(vplJob* job, vplIngredients* in);
 // Virtual lights of pass job->stepsDone, without their shadows. Those of the last pass are gone.
 vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in);
 
-// Most memory that maps of virtual lights take; more lights are added batch by batch. With 256 MB 900 lights in the room
-// took 1.5 times as much time at 640x360, because new pages cost more than maps of few triangles; with 64 and 16 MB the
-// same: then a batch costs another look at the scene.
-#define VPL_LIGHT_MAP_BYTES ((size_t)32 << 20)
-
 // How many of the virtual lights have maps at the same time: all, if there is room. At least 1.
 int vplLightBatch(const vplJob* job, const vplIngredients* in);
 
