@@ -97,11 +97,13 @@ enum { LIGHT_TREE_BYTES = 104 };
 static void countDraws(const vplRenderOptions* o, Info* info)
 {
     const int64_t perPass = o->accumulation == VPL_ACCUMULATE_BATCHED ? o->batch : 1;
-    const int64_t passes =
-        o->accumulation >= VPL_ACCUMULATE_DEFERRED ? 0 : (info->virtualLights + perPass - 1) / perPass;
+    // Keller's lights of step 0 are drawn where they lie on lamps; elsewhere they are the emitter itself.
+    const bool asEmitters = o->method == VPL_METHOD_KELLER && info->lampTriangles == 0;
+    const int64_t drawn = info->virtualLights - (asEmitters ? info->particlesPerStep[0] : 0);
+    const int64_t passes = o->accumulation >= VPL_ACCUMULATE_DEFERRED ? 0 : (drawn + perPass - 1) / perPass;
     const int64_t maps =
         o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
-    const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? info->virtualLights : 0;
+    const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? drawn : 0;
     const int64_t size = o->shadowMapSize, lightSize = o->lightMapSize;
     info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias);
     const int64_t lightMapBytes = lightMaps * lightSize * lightSize * (int64_t)sizeof(float);

@@ -41,9 +41,10 @@ done
 check ImageHashHas16Digits grep -qE '"image_hash": "[0-9a-f]{16}"' "$s"
 
 # info foretells what --stats reports afterwards.
-for pipeline in multipass "batched --batch 7" deferred interleaved; do
+for pipeline in multipass "batched --batch 7" deferred interleaved lightcuts; do
     for method in instant-radiosity direct path "instant-radiosity --antialias 3" \
-        "instant-radiosity --light-shadows map --light-map 8" "instant-radiosity --light-shadows ray"; do
+        "instant-radiosity --light-shadows map --light-map 8" "instant-radiosity --light-shadows ray" keller \
+        "keller --light-shadows ray"; do
         words="$counted --shadow-map 16 --pipeline $pipeline --method $method"
         stats "Foretold: $method $pipeline" "$closed" $words --size 16x12
         succeeds "Info: $method $pipeline" "$vpl" info "$closed" --json $words
@@ -52,6 +53,13 @@ for pipeline in multipass "batched --batch 7" deferred interleaved; do
         done
     done
 done
+# Passes end by a count, an error or a time.
+stats PassesAreCounted "$closed" $counted --method keller --size 16x12 --passes 3
+equals ThreePasses 3 "$(field "$s" passes)"
+stats PassesEndByTheirError "$closed" $counted --method keller --size 16x12 --max-error 0.2
+check ErrorIsReached awk "BEGIN { exit !($(field "$s" relative_error_estimate) <= 0.2) }"
+stats PassesEndByTheClock "$closed" $counted --method keller --size 16x12 --budget 0.001
+equals TheFirstPassIsAlwaysDone 1 "$(field "$s" passes)"
 succeeds InfoText "$vpl" info "$room" --size 1920x1080 --shadow-map 512
 check InfoCountsObjects grep -qE '^ +objects +7 \(5 quads, 2 boxes, 0 meshes\)$' "$scratch/stdout"
 check InfoCountsTriangles grep -qE '^ +triangles +34$' "$scratch/stdout"

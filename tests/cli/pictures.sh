@@ -41,6 +41,13 @@ for isa in scalar sse2 avx2 avx512; do
     *) equals "SameBits_interleaved_$isa" "$shared" "$found" ;;
     esac
 done
+for way in "--method keller" "--method keller --light-shadows ray --passes 3" "--pipeline lightcuts --light-shadows ray" \
+    "--method keller --placement view --pipeline interleaved" "--placement rsm --rsm-size 32 --light-shadows map"; do
+    once=$(hash_of $way)
+    check "HashIsThere: $way" test ${#once} -eq 18
+    equals "SameBitsOnThreeThreads: $way" "$once" "$(hash_of $way --threads 3 --isa sse2)"
+    equals "SameBitsOnOneThread: $way" "$once" "$(hash_of $way --threads 1 --isa scalar)"
+done
 equals BatchSizeChangesNothing "$(hash_of --pipeline batched --batch 1)" "$(hash_of --pipeline batched --batch 99)"
 other=$(hash_of --seed 1)
 check AnotherSeedIsAnotherPicture test "$other" != "$(hash_of --seed 2)"
