@@ -718,7 +718,40 @@ static void CutsCanBeCancelledAndWrongErrorsAreRefused(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(lightcuts, cmocka_unit_test(EveryClusterHoldsItsLights),
+// Light that the bound takes away comes back in cuts, too: by the same short rays as in deferred shading.
+static void CompensatedCutsKeepTheLight(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_KELLER;
+    o.width = 48;
+    o.height = 36;
+    o.shadowMapSize = 64;
+    o.particles = 300;
+    o.minDistance = 3; // nearly all that virtual lights give
+    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.show = VPL_SHOW_INDIRECT;
+    vplImage* deferred = renderScene(scene, &o, NULL);
+    o.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
+    vplImage* cut = renderScene(scene, &o, NULL);
+    o.compensation = VPL_COMPENSATION_NONE;
+    vplImage* clamped = renderScene(scene, &o, NULL);
+    vplComparison same, less;
+    assert_int_equal(vplImage_Compare(cut, deferred, &same), VPL_SUCCESS);
+    assert_int_equal(vplImage_Compare(clamped, deferred, &less), VPL_SUCCESS);
+    assertNear(same.energyRatio, 1, 0.005, "energy", 0);
+    assert_true(less.energyRatio < 0.8);
+    vplImage_Destroy(deferred);
+    vplImage_Destroy(cut);
+    vplImage_Destroy(clamped);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+TEST_SUITE(lightcuts, cmocka_unit_test(CompensatedCutsKeepTheLight),
+           cmocka_unit_test(EveryClusterHoldsItsLights),
            cmocka_unit_test(TreesAreTheSameForAnyNumberOfWorkers),
            cmocka_unit_test(RepresentativesAreDrawnByIntensity),
            cmocka_unit_test(NoLightGivesMoreThanTheBoundOfItsCluster),

@@ -27,17 +27,6 @@ static inline int blockOf(int firstBlock, int i)
     return firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE;
 }
 
-// Light that is found once per pixel, whatever becomes of virtual lights.
-static void lightBlock(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
-{
-    vplTileSums* tileSums = tile->scratch;
-    _Alignas(64) float part[3][VPL_LANES];
-    vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
-    vplAddNearLightOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
-                           tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part, &tileSums->shadowRays);
-    vplStartSums(b, part);
-}
-
 static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplSeen* seen,
                         vplBlock blocks[SQUARE_BLOCKS])
 {
@@ -46,7 +35,7 @@ static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplS
     for (int i = 0; i < SQUARE_BLOCKS; i++) {
         vplBlock* b = &blocks[i];
         if (vplReadBlock(s, tile, blockOf(firstBlock, i) * VPL_LANES, seen, b)) {
-            lightBlock(s, tile, blockOf(firstBlock, i), b);
+            vplLightOnce(s, tile, blockOf(firstBlock, i), b);
             lit[litCount++] = i;
         }
     }

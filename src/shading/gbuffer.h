@@ -146,6 +146,17 @@ static inline void vplStartSums(vplBlock* b, float part[3][VPL_LANES])
     }
 }
 
+// Begins a block's sums with light that is found once per pixel, whatever becomes of virtual lights.
+static inline void vplLightOnce(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
+{
+    vplTileSums* tileSums = tile->scratch;
+    _Alignas(64) float part[3][VPL_LANES];
+    vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
+    vplAddNearLightOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
+                           tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part, &tileSums->shadowRays);
+    vplStartSums(b, part);
+}
+
 static inline void vplAddGroup(vplBlock* b, float part[3][VPL_LANES])
 {
     for (int c = 0; c < 3; c++) {

@@ -280,11 +280,10 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
         }
         vplBlock b;
         if (vplReadBlock(s, tile, block * VPL_LANES, &seen, &b)) {
-            _Alignas(64) float part[3][VPL_LANES], besides[VPL_LANES];
-            vplDirectIrradiance(s, &b.points, part, &tileSums->shadowRays);
-            vplStartSums(&b, part);
+            _Alignas(64) float besides[VPL_LANES];
+            vplLightOnce(s, tile, block, &b);
             for (int l = 0; l < VPL_LANES; l++) {
-                besides[l] = part[0][l] + part[1][l] + part[2][l];
+                besides[l] = (float)(b.sums[0][l] + b.sums[1][l] + b.sums[2][l]);
             }
             s->addCut(s, &b.points, besides, b.sums, &tileSums->shadowRays);
         }
