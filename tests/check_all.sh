@@ -5,7 +5,9 @@ jobs=$(nproc)
 RUNNER=
 EXCLUDE=
 # Long statistics, which have nothing new to say where the bits are the same; one configuration runs all.
-LONG="-memory -AllWaysOfFindingLight -ErrorEstimatePredicts -MatchesTheTable -FurnaceGlows -EnergyIsThatOfPath"
+STATISTICS="-AllWaysOfFindingLight -ErrorEstimatePredicts -EveryKindOfLightIsGivenBack -LossIsWhatCompensation
+    -MorePassesAreBetter -FurnaceIsRight -PicturesAreThoseOfPlain -NoPixelErrs -TenfoldLights"
+LONG="-memory -MatchesTheTable -FurnaceGlows -EnergyIsThatOfPath $STATISTICS"
 
 # check NAME: the tests of a configuration that was built.
 check() {
@@ -50,7 +52,7 @@ if command -v clang >/dev/null 2>&1; then
     # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor.
     run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g -O1 -DVPL_TEST_PTHREADS"
 fi
-EXCLUDE="-AllWaysOfFindingLight -ErrorEstimatePredicts" # allocation failures are for the address sanitizer
+EXCLUDE=$STATISTICS # allocation failures are for the address sanitizer
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
 if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
     [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
