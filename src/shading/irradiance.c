@@ -165,36 +165,3 @@ void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, i
                     shading->inverseBound, irradiance, rays);
     }
 }
-
-static void addAllLights(const vplShading* shading, const vplPoints* points, double sums[3][VPL_LANES],
-                         int64_t* rays)
-{
-    const int lightCount = shading->def->lightCount;
-    for (int first = 0; first < lightCount; first += VPL_LIGHT_GROUP) {
-        const int count = lightCount - first < VPL_LIGHT_GROUP ? lightCount - first : VPL_LIGHT_GROUP;
-        float part[3][VPL_LANES] = {{0}};
-        vplIndirectIrradiance(shading, points, first, count, part, rays);
-        for (int c = 0; c < 3; c++) {
-            for (int l = 0; l < VPL_LANES; l++) {
-                sums[c][l] += (double)part[c][l];
-            }
-        }
-    }
-}
-
-void vplAllLightsIrradiance(const vplShading* shading, const vplPoints* points,
-                            float irradiance[3][VPL_LANES], int64_t* rays)
-{
-    double sums[3][VPL_LANES] = {{0}};
-    if (shading->lightcuts != NULL) {
-        const float besides[VPL_LANES] = {0};
-        shading->addCut(shading, points, besides, sums, rays);
-    } else {
-        addAllLights(shading, points, sums, rays);
-    }
-    for (int c = 0; c < 3; c++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            irradiance[c][l] = (float)sums[c][l];
-        }
-    }
-}

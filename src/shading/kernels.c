@@ -12,7 +12,6 @@ VPL_KERNEL_TABLE(CULL_DOCUMENTED, vplCullFcn, vplCullDocumented);
 VPL_KERNEL_TABLE(CULL_PHYSICAL, vplCullFcn, vplCullPhysical);
 VPL_KERNEL_TABLE(BOUND_DOCUMENTED, vplClusterBoundFcn, vplClusterBoundDocumented);
 VPL_KERNEL_TABLE(BOUND_PHYSICAL, vplClusterBoundFcn, vplClusterBoundPhysical);
-VPL_KERNEL_TABLE(CUT, vplCutFcn, vplAddCut);
 VPL_KERNEL_TABLE(SURFACE, vplFragmentFcn, vplShadeSurface);
 VPL_KERNEL_TABLE(GBUFFER, vplFragmentFcn, vplWriteGbuffer);
 VPL_KERNEL_TABLE(DIRECT, vplFragmentFcn, vplShadeDirect);
@@ -53,11 +52,6 @@ vplLightKernelFcn* vplGetLightKernel(vplIsa isa, vplLighting lighting)
 vplClusterBoundFcn* vplGetClusterBound(vplIsa isa, vplLighting lighting)
 {
     return lighting == VPL_LIGHTING_DOCUMENTED ? BOUND_DOCUMENTED[isa] : BOUND_PHYSICAL[isa];
-}
-
-vplCutFcn* vplGetCut(vplIsa isa)
-{
-    return CUT[isa];
 }
 
 vplPointKernelFcn* vplGetPointKernel(vplIsa isa)

@@ -25,49 +25,30 @@ vplResult vplOpenLightcuts(vplShading* shading, vplProgressFcn* progress, void* 
         return VPL_OUT_OF_MEMORY;
     }
     shading->lightcuts = lightcuts;
-    lightcuts->cutCount = context->workerCount;
-    lightcuts->cuts = vplAlloc(context, (size_t)lightcuts->cutCount, sizeof *lightcuts->cuts);
-    if (lightcuts->cuts == NULL) {
+    lightcuts->workerCount = context->workerCount;
+    lightcuts->workers = vplAlloc(context, (size_t)lightcuts->workerCount, sizeof *lightcuts->workers);
+    if (lightcuts->workers == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    for (int i = 0; i < lightcuts->cutCount; i++) {
-        lightcuts->cuts[i].taken = false;
+    for (int i = 0; i < lightcuts->workerCount; i++) {
+        vplCutWorker* worker = &lightcuts->workers[i];
+        worker->evaluations = worker->pixels = worker->largest = 0;
         for (int k = 0; k < VPL_CUT_CAPACITY; k++) {
-            lightcuts->cuts[i].places[k] = k;
+            worker->cut.places[k] = k;
         }
     }
     return vplLightTree_Create(context, def->lights, def->lightCount, progress ? askOnly : NULL, &asked,
                                &lightcuts->tree);
 }
 
-vplCut* vplTakeCut(vplLightcuts* lightcuts)
-{
-    for (int i = 0;; i = (i + 1) % lightcuts->cutCount) {
-        if (!__atomic_test_and_set(&lightcuts->cuts[i].taken, __ATOMIC_ACQUIRE)) {
-            return &lightcuts->cuts[i];
-        }
-    }
-}
-
-void vplReturnCut(vplLightcuts* lightcuts, vplCut* cut, int pixels)
-{
-    __atomic_fetch_add(&lightcuts->evaluations, (int64_t)cut->evaluations * pixels, __ATOMIC_RELAXED);
-    __atomic_fetch_add(&lightcuts->pixels, pixels, __ATOMIC_RELAXED);
-    int largest = __atomic_load_n(&lightcuts->largest, __ATOMIC_RELAXED);
-    while (cut->evaluations > largest &&
-           !__atomic_compare_exchange_n(&lightcuts->largest, &largest, cut->evaluations, false,
-                                        __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-    }
-    __atomic_clear(&cut->taken, __ATOMIC_RELEASE);
-}
-
 void vplCountLightcuts(const vplShading* shading, vplShadeStats* stats)
 {
     const vplLightcuts* lightcuts = shading->lightcuts;
-    if (lightcuts != NULL) {
-        stats->lightEvaluations = lightcuts->evaluations;
-        stats->cutPixels = lightcuts->pixels;
-        stats->largestCut = lightcuts->largest;
+    for (int i = 0; lightcuts != NULL && lightcuts->workers != NULL && i < lightcuts->workerCount; i++) {
+        const vplCutWorker* worker = &lightcuts->workers[i];
+        stats->lightEvaluations += worker->evaluations;
+        stats->cutPixels += worker->pixels;
+        stats->largestCut = worker->largest > stats->largestCut ? worker->largest : stats->largestCut;
     }
 }
 
@@ -76,7 +57,7 @@ void vplCloseLightcuts(vplShading* shading)
     vplContext* context = shading->geometry->context;
     if (shading->lightcuts != NULL) {
         vplLightTree_Destroy(shading->lightcuts->tree);
-        vplFree(context, shading->lightcuts->cuts);
+        vplFree(context, shading->lightcuts->workers);
         vplFree(context, shading->lightcuts);
     }
 }

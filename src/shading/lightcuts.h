@@ -24,19 +24,19 @@ typedef struct vplCut {
     int places[VPL_CUT_CAPACITY]; // of the entry that belongs to a key
     int count;
     int evaluations;
-    bool taken; // by a worker
 } vplCut;
+
+// What a worker needs for one cut after another, and what they came to.
+typedef struct vplCutWorker {
+    vplCut cut;
+    int64_t evaluations, pixels;
+    int largest;
+} vplCutWorker;
 
 typedef struct vplLightcuts {
     vplLightTree* tree;
-    vplCut* cuts; // one per worker
-    int cutCount;
-    int64_t evaluations, pixels; // counted atomically
-    int largest;
+    vplCutWorker* workers;
+    int workerCount;
 } vplLightcuts;
-
-// A cut that no other worker uses. Which one it is changes nothing.
-vplCut* vplTakeCut(vplLightcuts* lightcuts);
-void vplReturnCut(vplLightcuts* lightcuts, vplCut* cut, int pixels);
 
 #endif

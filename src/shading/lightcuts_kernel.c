@@ -16,7 +16,6 @@ static const double SHARE = 1.0 / 8;
 // cut of a million in the room is 10,733 lights, with a thirty-second 124,833.
 static const double DARK = 1.0 / 16;
 
-vplCutFcn VPL_KERNEL(vplAddCut);
 vplTileFcn VPL_KERNEL(vplCutTile);
 
 // What the steps of one cut share.
@@ -230,19 +229,27 @@ static void refine(Work* w)
     }
 }
 
-void VPL_KERNEL(vplAddCut)(const vplShading* s, const vplPoints* points,
-                           const float besides[restrict VPL_LANES], double sums[restrict 3][VPL_LANES],
-                           int64_t* rays)
+// Adds the light of all clusters to a block whose sums hold what else it receives: that counts where an error is a
+// share of a pixel's light.
+static void addCut(const vplShading* s, vplCutWorker* worker, vplBlock* b, int64_t* rays)
 {
+    const vplPoints* points = &b->points;
     const vplLightTree* tree = s->lightcuts->tree;
     vplRayStarts starts;
     const bool casts = s->def->lightShadows == NULL && s->def->lightRays;
     if (casts) {
         vplFindRayStarts(s, points, &starts);
     }
-    Work w = {
-        .shading = s, .points = points, .starts = casts ? &starts : NULL, .besides = besides, .rays = rays};
-    w.cut = vplTakeCut(s->lightcuts);
+    float besides[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        besides[l] = (float)(b->sums[0][l] + b->sums[1][l] + b->sums[2][l]);
+    }
+    Work w = {.shading = s,
+              .points = points,
+              .starts = casts ? &starts : NULL,
+              .besides = besides,
+              .cut = &worker->cut,
+              .rays = rays};
     w.cut->count = w.cut->evaluations = 0;
     const vplCluster root = vplLightTree_Root(tree);
     Gift gift;
@@ -255,21 +262,21 @@ void VPL_KERNEL(vplAddCut)(const vplShading* s, const vplPoints* points,
             addScaled(w.sums[c], tree->nodes[e->cluster.node].rgb[c], e->gives);
         }
     }
-    int pixels = 0;
     for (int l = 0; l < VPL_LANES; l++) {
-        pixels += points->triangle[l] >= 0;
+        const bool shown = points->triangle[l] >= 0;
+        worker->pixels += shown;
+        worker->evaluations += shown ? w.cut->evaluations : 0;
     }
-    vplReturnCut(s->lightcuts, w.cut, pixels);
+    worker->largest = w.cut->evaluations > worker->largest ? w.cut->evaluations : worker->largest;
     for (int c = 0; c < 3; c++) {
         for (int l = 0; l < VPL_LANES; l++) {
-            sums[c][l] += w.sums[c][l];
+            b->sums[c][l] += w.sums[c][l];
         }
     }
 }
 
 void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
 {
-    (void)worker;
     const vplShading* s = data;
     vplTileSums* tileSums = tile->scratch;
     vplSeen seen = {.triangle = -1};
@@ -280,12 +287,8 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
         }
         vplBlock b;
         if (vplReadBlock(s, tile, block * VPL_LANES, &seen, &b)) {
-            _Alignas(64) float besides[VPL_LANES];
             vplLightOnce(s, tile, block, &b);
-            for (int l = 0; l < VPL_LANES; l++) {
-                besides[l] = (float)(b.sums[0][l] + b.sums[1][l] + b.sums[2][l]);
-            }
-            s->addCut(s, &b.points, besides, b.sums, &tileSums->shadowRays);
+            addCut(s, &s->lightcuts->workers[worker], &b, &tileSums->shadowRays);
         }
         vplWriteLit(s, tile, block, &b);
     }

@@ -63,7 +63,6 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                         .def = def,
                         .lightKernel = vplGetLightKernel(isa, def->lighting),
                         .clusterBound = vplGetClusterBound(isa, def->lighting),
-                        .addCut = vplGetCut(isa),
                         .addEmitters = vplGetAddEmitters(isa),
                         .cull = vplGetCull(isa, def->lighting),
                         .inverseBound = vplInverseSquare(def->minDistance),

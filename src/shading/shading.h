@@ -51,14 +51,6 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
 
 vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa);
 
-// Adds the irradiance of all virtual lights by clusters. `besides` is what else the points receive, r + g + b: it
-// counts where an error is a share of a pixel's light.
-typedef void vplCutFcn(const struct vplShading* shading, const struct vplPoints* points,
-                       const float besides[restrict VPL_LANES], double sums[restrict 3][VPL_LANES],
-                       int64_t* rays);
-
-vplCutFcn* vplGetCut(vplIsa isa);
-
 // One render of one view.
 typedef struct vplShading {
     const vplGeometry* geometry;
@@ -69,7 +61,6 @@ typedef struct vplShading {
     vplAddEmittersFcn* addEmitters;
     vplCullFcn* cull;
     vplClusterBoundFcn* clusterBound;
-    vplCutFcn* addCut;
     float* columns[6]; // of the virtual lights, for `cull`; NULL where no light is left out
     float inverseBound, lampInverseBound;
     bool smooth;                       // some object has shading normals
@@ -158,10 +149,6 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,
                            float irradiance[3][VPL_LANES], int64_t* rays);
 
-// Irradiance of all virtual lights, with the shadows that were asked for, however the pipeline finds it. It sets
-// `irradiance`, it does not add to it.
-void vplAllLightsIrradiance(const vplShading* shading, const vplPoints* points,
-                            float irradiance[3][VPL_LANES], int64_t* rays);
 // Adds what the bound takes from virtual lights, by the short rays of def->compensation. `pixels` are different
 // numbers for different pixels.
 void vplAddNearLight(const vplShading* shading, const vplPoints* points, const uint32_t pixels[VPL_LANES],
