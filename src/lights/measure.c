@@ -8,6 +8,7 @@
 
 #include "base/context.h"
 #include "base/isa.h"
+#include "lights/prepare.h"
 #include "math/vec.h"
 #include "visibility/half_map.h"
 
@@ -29,15 +30,6 @@ typedef struct Measuring {
     float* contributions; // per light
     int* rays;            // per chunk
 } Measuring;
-
-// As vplPrepareLights does.
-static vplShadeLight prepare(const Measuring* m, const vplVirtualLight* v)
-{
-    const float scale = m->def->lighting == VPL_LIGHTING_PHYSICAL ? (float)(1 / VPL_PI) : 1;
-    const vplRgb shown = vplRgbScale(scale * (v->weight / (float)m->set->particleCount), v->light);
-    return (vplShadeLight){v->position.x, v->position.y, v->position.z, v->normal.x, v->normal.y,
-                           v->normal.z,   shown.r,       shown.g,       shown.b};
-}
 
 // Sets what does not arrive to 0.
 static void castShadows(const Measuring* m, const vplSeenBlock* b, const vplShadeLight* light,
@@ -67,7 +59,7 @@ static void castShadows(const Measuring* m, const vplSeenBlock* b, const vplShad
 
 static float measure(const Measuring* m, const vplVirtualLight* v, int* rays)
 {
-    const vplShadeLight light = prepare(m, v);
+    const vplShadeLight light = vplPrepareLight(v, m->set->particleCount, m->def->lighting);
     double squares = 0;
     for (int i = 0; i < m->blockCount && v->object >= 0; i++) {
         float reflected[VPL_LANES];

@@ -8,6 +8,7 @@
 #include "base/isa.h"
 #include "math/scalar.h"
 #include "math/vec.h"
+#include "visibility/drawing.h"
 
 VPL_KERNEL_TABLE(WRITE, vplFragmentFcn, vplWriteReflective);
 
@@ -44,11 +45,7 @@ static Reach aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
             map->forward[i] = frame.forward;
         }
     }
-    float far = 0;
-    for (int i = 0; i < g->vertexCount; i++) {
-        far = fmaxf(far, vplLength(vplSub(g->positions[i], map->origin)));
-    }
-    far = far > 0 ? far * 1.0001f : 1;
+    const float far = vplFarthestVertex(g, map->origin);
     return (Reach){far * 0x1p-20f, far};
 }
 
@@ -155,8 +152,7 @@ static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFc
     vplRasterStats stats[6];
     vplResult result = uniforms && meshes ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     for (int i = 0; result == VPL_SUCCESS && i < g->objectCount; i++) {
-        const vplGeometryObject* o = &g->objects[i];
-        meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+        meshes[i] = vplMeshOfObject(g, i);
     }
     for (int face = 0; face < map->faceCount && result == VPL_SUCCESS; face++) {
         result = recordFace(map, g, reach, face, uniforms, meshes, &rasters[face]);

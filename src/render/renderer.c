@@ -39,19 +39,19 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     return VPL_SUCCESS;
 }
 
-// The share of the whole that is done, as far as it can be told.
-static double shareDone(const vplRenderer* r)
+// The share of the whole that so many steps are, as far as it can be told.
+static double shareOf(const vplRenderer* r, int steps)
 {
     const vplRenderOptions* o = &r->job.options;
     const int count =
         o->method == VPL_METHOD_PATH ? (o->samplesPerPixel + VPL_PATH_PASS - 1) / VPL_PATH_PASS : o->passes;
     double share = 0;
     if (count > 0) {
-        share = (double)r->job.stepsDone / count;
+        share = (double)steps / count;
     } else if (o->maxError > 0) {
-        share = r->job.stepsDone / (r->job.stepsDone + 4.0);
+        share = steps / (steps + 4.0);
     } else if (o->budgetMs <= 0) {
-        share = r->job.stepsDone;
+        share = steps;
     }
     if (o->budgetMs > 0) {
         const double spent = (vplClockMs() - r->start) / o->budgetMs;
@@ -82,10 +82,8 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
     vplJob* job = &r->job;
     const double begin = vplClockMs();
     bool done = false;
-    job->stepFrom = shareDone(r);
-    job->stepsDone++; // for the share at the end of this step
-    job->stepTo = shareDone(r);
-    job->stepsDone--;
+    job->stepFrom = shareOf(r, job->stepsDone);
+    job->stepTo = shareOf(r, job->stepsDone + 1);
     job->progressTo = 0;
     vplResult result = r->method->step(job, &done);
     if (result != VPL_SUCCESS) {

@@ -7,6 +7,7 @@
 // kernel's differences light - point lie between those of the box, because rounding is monotone, and its sums of three
 // products are off by at most 2^-22 of the sum of their sizes, for which SLACK is four times enough.
 #include "base/isa.h"
+#include "math/scalar.h"
 #include "shading/shading.h"
 
 #include <float.h>
@@ -16,33 +17,23 @@ vplClusterBoundFcn VPL_KERNEL(vplClusterBoundDocumented), VPL_KERNEL(vplClusterB
 
 static const float SLACK = 1e-6f;
 
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-static inline float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
 // Largest cosine of the angle between an axis and the vectors to (or from) a box: at most `along` of them goes along
 // the axis; they begin at the distance `across` +- radius from it.
 static inline float largestCosine(float along, float across2, float distance2, float radius)
 {
     const float slack = 4 * SLACK * distance2;
-    const float near = larger(sqrtf(larger(across2 - slack, 0)) - radius, 0);
-    const float far = sqrtf(larger(across2, 0) + slack) + radius;
+    const float near = vplMaxf(sqrtf(vplMaxf(across2 - slack, 0)) - radius, 0);
+    const float far = sqrtf(vplMaxf(across2, 0) + slack) + radius;
     const float across = along > 0 ? near : far;
-    return along / sqrtf(larger(along * along + across * across, FLT_MIN));
+    return along / sqrtf(vplMaxf(along * along + across * across, FLT_MIN));
 }
 
 // Largest cosine to any axis within a cone around the one that `cosine` is the largest cosine to.
 static inline float widen(float cosine, float coneCosine, float coneSine)
 {
-    const float c = smaller(cosine + SLACK, 1), sine = sqrtf(larger(1 - c * c, 0));
+    const float c = vplMinf(cosine + SLACK, 1), sine = sqrtf(vplMaxf(1 - c * c, 0));
     const float widened = c * coneCosine + sine * coneSine + 2 * SLACK;
-    return smaller(c >= coneCosine ? 1 : larger(widened, 0), 1);
+    return vplMinf(c >= coneCosine ? 1 : vplMaxf(widened, 0), 1);
 }
 
 static inline __attribute__((always_inline)) void findBound(const vplSurface* restrict s,
@@ -53,17 +44,17 @@ static inline __attribute__((always_inline)) void findBound(const vplSurface* re
     const vplLightNode n = *node;
     const float sx = n.high[0] - n.low[0], sy = n.high[1] - n.low[1], sz = n.high[2] - n.low[2];
     const float radius = 0.5f * (1 + SLACK) * sqrtf(sx * sx + sy * sy + sz * sz);
-    const float coneSine = sqrtf(larger(1 - n.cosine * n.cosine, 0)) + SLACK;
+    const float coneSine = sqrtf(vplMaxf(1 - n.cosine * n.cosine, 0)) + SLACK;
     for (int l = 0; l < VPL_LANES; l++) {
         const float lx = n.low[0] - s->px[l], ly = n.low[1] - s->py[l], lz = n.low[2] - s->pz[l];
         const float hx = n.high[0] - s->px[l], hy = n.high[1] - s->py[l], hz = n.high[2] - s->pz[l];
         const float nx = s->nx[l], ny = s->ny[l], nz = s->nz[l];
-        const float slack = SLACK * (larger(fabsf(lx), fabsf(hx)) + larger(fabsf(ly), fabsf(hy)) +
-                                     larger(fabsf(lz), fabsf(hz)));
+        const float slack = SLACK * (vplMaxf(fabsf(lx), fabsf(hx)) + vplMaxf(fabsf(ly), fabsf(hy)) +
+                                     vplMaxf(fabsf(lz), fabsf(hz)));
         const float cx = 0.5f * (lx + hx), cy = 0.5f * (ly + hy), cz = 0.5f * (lz + hz);
         const float distance2 = cx * cx + cy * cy + cz * cz;
         const float along =
-            slack + larger(nx * lx, nx * hx) + larger(ny * ly, ny * hy) + larger(nz * lz, nz * hz);
+            slack + vplMaxf(nx * lx, nx * hx) + vplMaxf(ny * ly, ny * hy) + vplMaxf(nz * lz, nz * hz);
         const float middle = nx * cx + ny * cy + nz * cz;
         float here = largestCosine(along, distance2 - middle * middle, distance2, radius);
         here = along > 0 ? here + SLACK : 0;
@@ -71,15 +62,15 @@ static inline __attribute__((always_inline)) void findBound(const vplSurface* re
             bound[l] = here;
             continue;
         }
-        const float back = slack - smaller(n.axis[0] * lx, n.axis[0] * hx) -
-                           smaller(n.axis[1] * ly, n.axis[1] * hy) - smaller(n.axis[2] * lz, n.axis[2] * hz);
+        const float back = slack - vplMinf(n.axis[0] * lx, n.axis[0] * hx) -
+                           vplMinf(n.axis[1] * ly, n.axis[1] * hy) - vplMinf(n.axis[2] * lz, n.axis[2] * hz);
         const float axis = n.axis[0] * cx + n.axis[1] * cy + n.axis[2] * cz;
         const float there =
             widen(largestCosine(back, distance2 - axis * axis, distance2, radius), n.cosine, coneSine);
-        const float dx = larger(larger(lx, -hx), 0), dy = larger(larger(ly, -hy), 0),
-                    dz = larger(larger(lz, -hz), 0);
-        const float inverse = 1 / larger(dx * dx + dy * dy + dz * dz, FLT_MIN);
-        bound[l] = (1 + 8 * SLACK) * here * there * smaller(inverse, inverseBound);
+        const float dx = vplMaxf(vplMaxf(lx, -hx), 0), dy = vplMaxf(vplMaxf(ly, -hy), 0),
+                    dz = vplMaxf(vplMaxf(lz, -hz), 0);
+        const float inverse = 1 / vplMaxf(dx * dx + dy * dy + dz * dz, FLT_MIN);
+        bound[l] = (1 + 8 * SLACK) * here * there * vplMinf(inverse, inverseBound);
     }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "base/isa.h"
+#include "lights/prepare.h"
 #include "shading/compensation.h"
 
 #include <math.h>
@@ -74,18 +75,11 @@ void vplAccumulateLights(const vplContext* context, vplLighting lighting, float 
 
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out)
 {
-    // A virtual light of flux P emits P/pi cos; the 1/pi is taken into the colour once.
-    const float scale = lighting == VPL_LIGHTING_PHYSICAL ? (float)(1 / VPL_PI) : 1;
     int count = 0;
     for (int i = 0; i < set->lightCount; i++) {
-        const vplVirtualLight* v = &set->lights[i];
-        if (v->object < 0) {
-            continue;
+        if (set->lights[i].object >= 0) {
+            out[count++] = vplPrepareLight(&set->lights[i], set->particleCount, lighting);
         }
-        const float factor = scale * (v->weight / (float)set->particleCount);
-        out[count++] = (vplShadeLight){v->position.x,       v->position.y,       v->position.z,
-                                       v->normal.x,         v->normal.y,         v->normal.z,
-                                       factor * v->light.r, factor * v->light.g, factor * v->light.b};
     }
     return count;
 }

@@ -3,6 +3,7 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "shading/shading.h"
+#include "visibility/drawing.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -81,7 +82,7 @@ static vplResult makeObjects(vplShading* s)
     }
     for (int i = 0; i < g->objectCount; i++) {
         const vplGeometryObject* o = &g->objects[i];
-        s->meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+        s->meshes[i] = vplMeshOfObject(g, i);
         s->objects[i] = (vplObjectUniforms){s, g->positions + o->firstVertex,
                                             o->smooth ? g->shadingNormals + o->firstVertex : NULL, i};
     }

@@ -5,6 +5,7 @@
 #include "base/context.h"
 #include "math/vec.h"
 #include "visibility/cube_texel.h"
+#include "visibility/drawing.h"
 #include "visibility/shadow.h"
 
 #include <string.h>
@@ -100,8 +101,7 @@ static vplResult drawFaces(const vplGeometry* g, vplCubeMap* map, vplProgressFcn
                .objects = vplAlloc(context, 6 * count, sizeof *f.objects)};
     vplResult result = f.meshes && f.objects ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     for (int i = 0; result == VPL_SUCCESS && i < g->objectCount; i++) {
-        const vplGeometryObject* o = &g->objects[i];
-        f.meshes[i] = (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+        f.meshes[i] = vplMeshOfObject(g, i);
     }
     for (int face = 0; face < 6 && result == VPL_SUCCESS; face++) {
         result = recordFace(&f, g, map, (float*)map->texels, face);
@@ -120,15 +120,6 @@ static vplResult drawFaces(const vplGeometry* g, vplCubeMap* map, vplProgressFcn
     vplFree(context, f.objects);
     vplFree(context, f.meshes);
     return result;
-}
-
-static float farthestVertex(const vplGeometry* g, vplVec3 from)
-{
-    float farthest = 0;
-    for (int i = 0; i < g->vertexCount; i++) {
-        farthest = fmaxf(farthest, vplLength(vplSub(g->positions[i], from)));
-    }
-    return farthest > 0 ? farthest * 1.0001f : 1;
 }
 
 static vplResult checkDef(const vplContext* context, const vplCubeMapDef* def)
@@ -151,7 +142,7 @@ static vplResult checkDef(const vplContext* context, const vplCubeMapDef* def)
 static void place(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def)
 {
     map->position = def->position;
-    map->far = def->far > 0 ? def->far : farthestVertex(geometry, def->position);
+    map->far = def->far > 0 ? def->far : vplFarthestVertex(geometry, def->position);
     map->near = def->near > 0 ? def->near : map->far * 0x1p-20f;
 }
 

@@ -4,15 +4,11 @@
 // What a texel stores (1/t along its centre) is compared with the fragment's own plane there, and with the fragment
 // itself, whichever is nearer: a plane never shadows itself at any angle.
 #include "base/isa.h"
+#include "math/scalar.h"
 #include "visibility/gather.h"
 #include "visibility/half_map.h"
 
 vplHalfMapFactorFcn VPL_KERNEL(vplHalfMapFactor);
-
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
 
 void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surface,
                                   float factor[restrict VPL_LANES])
@@ -29,7 +25,7 @@ void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surfa
         const float x = dx * r.x + dy * r.y + dz * r.z, y = dx * u.x + dy * u.y + dz * u.z;
         const float z = dx * f.x + dy * f.y + dz * f.z;
         const float facing = dx * mx + dy * my + dz * mz;
-        const float inverse = 1 / larger(fabsf(x) + fabsf(y) + fabsf(z), 1e-30f);
+        const float inverse = 1 / vplMaxf(fabsf(x) + fabsf(y) + fabsf(z), 1e-30f);
         int32_t column = (int32_t)(((x + y) * inverse + 1) * half),
                 row = (int32_t)(((x - y) * inverse + 1) * half);
         column = column < last ? column : last;
@@ -41,7 +37,7 @@ void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surfa
         const float nx = mx * r.x + my * r.y + mz * r.z, ny = mx * u.x + my * u.y + mz * u.z;
         const float nz = mx * f.x + my * f.y + mz * f.z;
         const float plane = (nx * cx + ny * cy + nz * cz) / (facing < 0 ? facing : -1e-30f);
-        limit[l] = larger(inverse, plane) * tolerated;
+        limit[l] = vplMaxf(inverse, plane) * tolerated;
         lit[l] = (facing < 0) & (z > 0);
     }
     vplGather(map->texels, place, stored);

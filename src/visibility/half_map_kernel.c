@@ -2,6 +2,7 @@
 // Draws the shadow map of a half space: down a tree of triangles as far as they lie above the light's plane, sixteen
 // side by side. Compiled once per instruction set; all give the same bits.
 #include "base/isa.h"
+#include "math/scalar.h"
 #include "visibility/half_fill.h"
 
 #include <string.h>
@@ -32,16 +33,6 @@ static void turn(const vplHalfMap* map, Sixteen* restrict s)
     }
 }
 
-static inline float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-static inline float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 // Which texels' centres may lie in each triangle, and how it lies.
 static void bound(const vplHalfMap* map, const Sixteen* restrict s, int32_t box[restrict 4][VPL_LANES],
                   int32_t kind[restrict VPL_LANES])
@@ -51,12 +42,12 @@ static void bound(const vplHalfMap* map, const Sixteen* restrict s, int32_t box[
         float lowU = 2, highU = -2, lowV = 2, highV = -2;
         for (int k = 0; k < 3; k++) {
             const float x = s->x[k][l], y = s->y[k][l], z = s->z[k][l];
-            const float w = larger(fabsf(x) + fabsf(y) + fabsf(z), 1e-37f);
+            const float w = vplMaxf(fabsf(x) + fabsf(y) + fabsf(z), 1e-37f);
             const float inverse = 1 / w, u = (x + y) * inverse, v = (x - y) * inverse;
-            lowU = smaller(lowU, u);
-            highU = larger(highU, u);
-            lowV = smaller(lowV, v);
-            highV = larger(highV, v);
+            lowU = vplMinf(lowU, u);
+            highU = vplMaxf(highU, u);
+            lowV = vplMinf(lowV, v);
+            highV = vplMaxf(highV, v);
         }
         const float x0 = s->x[0][l], x1 = s->x[1][l], x2 = s->x[2][l];
         const float y0 = s->y[0][l], y1 = s->y[1][l], y2 = s->y[2][l];

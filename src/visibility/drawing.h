@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// What drawings of a geometry from somewhere have in common.
+#ifndef VPL_VISIBILITY_DRAWING_H
+#define VPL_VISIBILITY_DRAWING_H
+
+#include "math/vec.h"
+
+#include <vpl/geometry.h>
+#include <vpl/raster.h>
+
+static inline vplMesh vplMeshOfObject(const vplGeometry* g, int object)
+{
+    const vplGeometryObject* o = &g->objects[object];
+    return (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
+}
+
+// A hair farther than any vertex; 1 where there is nothing.
+static inline float vplFarthestVertex(const vplGeometry* g, vplVec3 from)
+{
+    float farthest = 0;
+    for (int i = 0; i < g->vertexCount; i++) {
+        farthest = fmaxf(farthest, vplLength(vplSub(g->positions[i], from)));
+    }
+    return farthest > 0 ? farthest * 1.0001f : 1;
+}
+
+#endif
