@@ -94,6 +94,26 @@ int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray);
 bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                              vplHit* hitOut, vplVec3* directionOut);
 
+// What a texel sees.
+typedef struct vplReflectiveTexel {
+    float distance;   // as in the map
+    vplVec3 position; // metres: where the ray through the texel's centre meets the triangle
+    vplVec3 normal;   // unit, interpolated on smooth objects, on the side that is lit
+    vplRgb albedo;    // diffuse reflectance, [0, 1]
+    vplRgb flux;      // W: incident, what the emitter sends through the texel
+    int triangle;     // index in the geometry
+} vplReflectiveTexel;
+
+// False where nothing is.
+bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
+                               vplReflectiveTexel* texelOut);
+
+// The share in [0, 1] of the emitter's light that something nearer keeps from a point, for 16 points: of the four
+// texels around it, linearly weighted, those that see something nearer than the point's own plane. 0 where the map's
+// view does not reach.
+void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
+                                  float factorOut[VPL_LANES]);
+
 // ---- particles
 
 typedef struct vplVirtualLight {
@@ -209,6 +229,105 @@ vplResult vplChooseLights(const vplLightSet* candidates, const float* contributi
 // Both: simulates F N particles and leaves about as many lights as N would. The set's N is that of all candidates.
 vplResult vplPlaceLights(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                          const vplParticleDef* particles, const vplPlacementDef* def, vplLightSet** setOut);
+
+// ---- lights of SSVP
+
+typedef struct vplRsmSampleDef {
+    int count; // n: samples of all maps together, [0, VPL_MAX_LIGHTS]; each map gets a share by its flux; default 256
+    uint64_t shift;  // 0 (default): the points as published; else they are shifted by chance, modulo 1
+    uint32_t cookie; // set by vplDefaultRsmSampleDef
+} vplRsmSampleDef;
+
+vplRsmSampleDef vplDefaultRsmSampleDef(void);
+
+// First-bounce lights: the texels that the points (k/n, vdc(k)) of the Hammersley sequence fall into, each standing for
+// its n-th part of the map. The set's lights are in the order of the samples, of step 0, with `particle` k; what meets
+// nothing, or no light, leaves none. Entries of `maps` may be NULL: emitters of no power.
+// Source: Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation, section II-A, equation 1.
+vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
+                                  int mapCount, const vplRsmSampleDef* def, vplLightSet** setOut);
+
+// What makes a light far from a cluster: w1 |V - C| + w2 times one of these, n the two unit normals.
+typedef enum vplClusterMetric {
+    VPL_CLUSTER_ONE_MINUS = 0,     // 1 - n.n (the default)
+    VPL_CLUSTER_PRINTED,           // max(n.n, 0), as the document prints it: unlike normals are near
+    VPL_CLUSTER_ONE_MINUS_CLAMPED, // 1 - max(n.n, 0)
+    VPL_CLUSTER_ANGLE              // the angle, radians (Dong et al. 2009)
+} vplClusterMetric;
+
+typedef struct vplClusterDef {
+    int count;               // C, [1, VPL_MAX_LIGHTS]; default 8; no more than there are lights are made
+    vplClusterMetric metric; // default VPL_CLUSTER_ONE_MINUS
+    double w1;               // 1/metres, >= 0; default 0.6
+    double w2;               // >= 0; default 0.4
+    int maxIterations; // [0, 10000]; default 32: the mean minimises no metric of these, and the printed one cycles
+    const int*
+        seeds; // indices of `count` lights that clusters start from; NULL (default): spread over the list
+    const struct vplLightClusters*
+        last;        // where clusters start instead: those of the last frame; NULL (default)
+    uint32_t cookie; // set by vplDefaultClusterDef
+} vplClusterDef;
+
+vplClusterDef vplDefaultClusterDef(void);
+
+typedef struct vplLightCluster {
+    vplVec3 position; // mean of its lights' positions, metres: maybe in mid-air
+    vplVec3 normal;   // unit: of the sum of its lights' normals; where that is 0 the one of before
+    vplRgb flux;      // sum of its lights' flux, W (as weighted: what the picture gets)
+    int lightCount;
+    int nearest; // index of its light nearest to the mean (by the metric), -1 where it has none
+    bool flat;   // all its lights lie on one plane and have its normal: none shines behind it
+} vplLightCluster;
+
+typedef enum vplClusterEnd {
+    VPL_CLUSTERS_CONVERGED = 0, // the last assignment repeated the one before it
+    VPL_CLUSTERS_CYCLE,         // it repeated an earlier one
+    VPL_CLUSTERS_STOPPED        // at maxIterations
+} vplClusterEnd;
+
+// Read only.
+typedef struct vplLightClusters {
+    const vplLightCluster* clusters;
+    int count;
+    const int* of; // of each light: its cluster
+    int lightCount;
+    int iterations; // until the assignment repeated
+    int emptyCount; // clusters without lights: they keep their places
+    vplClusterEnd end;
+    vplContext* context;
+} vplLightClusters;
+
+// K-means in double precision; equal distances go to the lowest index. Lights of object -1 must not be among them.
+// Source: Aranha, Macedo and Apolinario, section II-A, equation 2; Dong et al., Real-time Indirect Illumination with
+// Clustered Visibility, VMV 2009. Departs: the normal term, which as printed keeps equal normals apart.
+vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def,
+                          vplLightClusters** clustersOut);
+
+// NULL is allowed.
+void vplLightClusters_Destroy(vplLightClusters* clusters);
+
+typedef enum vplSecondWeight {
+    VPL_SECOND_WEIGHT_COSINE = 0, // 4 (1 - p^2) / (1 + p^2)^3: what a diffuse light sends there (the default)
+    VPL_SECOND_WEIGHT_PRINTED     // 1: the document gives none
+} vplSecondWeight;
+
+typedef struct vplSecondBounceDef {
+    int count;              // of all clusters together, [0, VPL_MAX_LIGHTS]; default 256
+    vplSecondWeight weight; // default VPL_SECOND_WEIGHT_COSINE
+    uint64_t shift;         // as in vplRsmSampleDef; each cluster's points are shifted besides; default 0
+    uint32_t cookie;        // set by vplDefaultSecondBounceDef
+} vplSecondBounceDef;
+
+vplSecondBounceDef vplDefaultSecondBounceDef(void);
+
+// Second-bounce lights: texels of each cluster's front hemisphere at points of the unit disk, evenly spread (Shirley
+// and Chiu's concentric map, as in Pharr et al.). Each carries its share of what the cluster sends out, times the
+// surface's reflectance. clusters->clusters[i] is what maps->maps[i] sees; the maps must have triangles. Lights are of
+// step 1; their `particle` counts samples. The set's N is that of the samples.
+// Source: Aranha, Macedo and Apolinario, section II-B. Departs: the weight.
+vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClusters* clusters,
+                                  const vplParaboloidMaps* maps, const vplSecondBounceDef* def,
+                                  vplLightSet** setOut);
 
 // ----
 

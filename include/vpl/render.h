@@ -13,7 +13,8 @@ typedef enum vplMethod {
     VPL_METHOD_INSTANT_RADIOSITY = 0, // Franchi and Ferrante, Virtual Point Lights
     VPL_METHOD_DIRECT,                // the scene's own lights only
     VPL_METHOD_PATH,                  // path tracing: the truth that the others are judged against
-    VPL_METHOD_KELLER                 // Keller, Instant Radiosity
+    VPL_METHOD_KELLER,                // Keller, Instant Radiosity
+    VPL_METHOD_SSVP // Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation
 } vplMethod;
 
 // What the picture shows.
@@ -27,7 +28,15 @@ typedef enum vplShow {
     VPL_SHOW_INDIRECT,      // light of all virtual lights only
     VPL_SHOW_LIGHT,         // light of virtual light `showLight` only
     VPL_SHOW_OVERLAY,       // the picture with the virtual lights drawn on it, coloured by step
-    VPL_SHOW_BOUNCE         // path: light after `showBounce` reflections before the eye's last; 0 is direct
+    VPL_SHOW_BOUNCE,        // path: light after `showBounce` reflections before the eye's last; 0 is direct
+    // of SSVP:
+    VPL_SHOW_RSM,         // reflective shadow maps: position, normal, albedo and flux side by side
+    VPL_SHOW_RSM_SAMPLES, // the picture with the first-bounce lights drawn on it
+    VPL_SHOW_CLUSTERS,    // the same with clusters, and each first-bounce light in its cluster's colour
+    VPL_SHOW_PARABOLOID, // the map of cluster `showLight`: position, normal, albedo and distance side by side
+    VPL_SHOW_SECOND_BOUNCE, // the picture with the second-bounce lights drawn on it
+    VPL_SHOW_GATHER,        // indirect irradiance before pixels share it, W/m^2: of every pixel's own lights
+    VPL_SHOW_DENOISED       // after that
 } vplShow;
 
 // Most paths per pixel, and most bounces of a path.
@@ -35,11 +44,13 @@ enum { VPL_MAX_SAMPLES = 1 << 24, VPL_MAX_BOUNCES = 1 << 16 };
 
 // Whether light from a virtual light is stopped by what is between.
 typedef enum vplLightShadows {
-    VPL_LIGHT_SHADOWS_USUAL = 0, // as the method's document draws: instant radiosity none, Keller's auto
-    VPL_LIGHT_SHADOWS_NONE,      // it is not: as Franchi and Ferrante draw
-    VPL_LIGHT_SHADOWS_MAP, // a map of the half space above each virtual light, one sample: as Keller draws
-    VPL_LIGHT_SHADOWS_RAY, // a ray per pixel and light: exact
-    VPL_LIGHT_SHADOWS_AUTO // map or ray, whichever will be cheaper by the measurements of bench/crossover
+    VPL_LIGHT_SHADOWS_USUAL =
+        0, // as the method's document draws: instant radiosity none, Keller's auto, SSVP by the
+           // paraboloid map of a light's cluster
+    VPL_LIGHT_SHADOWS_NONE, // it is not: as Franchi and Ferrante draw
+    VPL_LIGHT_SHADOWS_MAP,  // a map of the half space above each virtual light, one sample: as Keller draws
+    VPL_LIGHT_SHADOWS_RAY,  // a ray per pixel and light: exact
+    VPL_LIGHT_SHADOWS_AUTO  // map or ray, whichever will be cheaper by the measurements of bench/crossover
 } vplLightShadows;
 
 // Where virtual lights go.
@@ -62,6 +73,23 @@ typedef enum vplPixel {
     VPL_PIXEL_CENTRE    // its centre, as all other methods do: for comparing with them
 } vplPixel;
 
+// Whether frames of a sequence have anything to do with each other.
+typedef enum vplCoherence {
+    VPL_COHERENCE_OFF =
+        0, // new sample patterns for each frame, and clusters that start from the frame's own lights
+    VPL_COHERENCE_ON // the same patterns in all frames, and clusters that start from those of the frame before
+} vplCoherence;
+
+// What frames of a sequence hand on to each other: the frozen geometry, large blocks of memory, and for SSVP what the
+// light sees, its lights and clusters, which are kept as they are where it has not moved. Frames are rendered one after
+// another, in any order, with one scene, which must not be changed, and options that may be.
+typedef struct vplHistory vplHistory;
+
+vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut);
+
+// NULL is allowed.
+void vplHistory_Destroy(vplHistory* history);
+
 typedef struct vplRenderOptions {
     vplMethod method;     // default VPL_METHOD_INSTANT_RADIOSITY
     vplLighting lighting; // default VPL_LIGHTING_PHYSICAL
@@ -73,14 +101,14 @@ typedef struct vplRenderOptions {
     int particles;               // N, [0, VPL_MAX_LIGHTS]; default 10
     double reflectivity;         // rho, [0, 1), or negative: the scene's area-weighted mean; default 0.5
     vplLightPlacement placement; // default VPL_PLACEMENT_PARTICLES
-    int rsmSize;        // texels along a side of a reflective shadow map, [1, VPL_MAX_SHADOW_MAP]; default
-                        // 256; VPL_PLACEMENT_RSM only
-    vplSampler sampler; // default VPL_SAMPLER_AUTO
-    vplBounce bounce;   // default VPL_BOUNCE_AUTO
+    int rsmSize; // texels along a side of a reflective shadow map, [0, VPL_MAX_SHADOW_MAP]; 0 (default): 256 for
+                 // VPL_PLACEMENT_RSM, 1024 for SSVP, whose direct light takes its shadows from it
+    vplSampler sampler;                   // default VPL_SAMPLER_AUTO
+    vplBounce bounce;                     // default VPL_BOUNCE_AUTO
     vplParticleGeometry particleGeometry; // default VPL_PARTICLE_GEOMETRY_EXACT
     uint64_t seed;                        // default 0
 
-    vplAccumulation accumulation; // default VPL_ACCUMULATE_DEFERRED
+    vplAccumulation accumulation; // default VPL_ACCUMULATE_USUAL: interleaved for SSVP, else deferred
     int batch;                    // virtual lights per pass, [1, VPL_MAX_LIGHTS]; default 64; batched only
     int interleave;    // K: each pixel meets every K^2-th virtual light, [1, VPL_MAX_INTERLEAVE]; default 4;
                        // interleaved only
@@ -104,8 +132,21 @@ typedef struct vplRenderOptions {
 
     int samplesPerPixel; // path: [1, VPL_MAX_SAMPLES]; default 64
     int maxBounces;      // path: reflections before the eye's last, [0, VPL_MAX_BOUNCES]; 0: direct light
-                         // only; -1 (default): ended by Russian roulette alone
-    vplPixel pixel;      // path: default VPL_PIXEL_AREA
+        // only; -1 (default): ended by Russian roulette alone. SSVP: 0, 1 or 2 (more count as 2)
+    vplPixel pixel; // path: default VPL_PIXEL_AREA
+
+    // SSVP only.
+    int clusters;     // C, [1, VPL_MAX_LIGHTS]; default 8
+    int firstBounce;  // first-bounce lights, samples of the reflective map, [0, VPL_MAX_LIGHTS]; default 256
+    int secondBounce; // second-bounce lights, samples of all paraboloid maps together; default 256
+    int paraboloidSize; // texels along a side of a paraboloid map, [1, VPL_MAX_SHADOW_MAP]; default 256
+    double w1, w2;      // weights of distance, 1/metres, and of the normals; >= 0; default 0.6, 0.4
+    vplClusterMetric clusterMetric; // default VPL_CLUSTER_ONE_MINUS
+    vplSecondWeight secondWeight;   // default VPL_SECOND_WEIGHT_COSINE
+
+    double frame;        // number of the frame that cameras and emitters with a path are posed at; default 0
+    vplHistory* history; // what the frame before hands on, see vplHistory_Create; NULL (default): nothing
+    vplCoherence coherence; // SSVP with a history: default VPL_COHERENCE_ON
 
     int passes; // pictures of N particles each, whose mean is the picture, [0, VPL_MAX_PASSES]; 0 (default):
                 // one, or as many as budgetMs or maxError ask for; methods with virtual lights
@@ -134,7 +175,7 @@ vplRenderOptions vplDefaultRenderOptions(void);
 // Most passes of a render.
 enum { VPL_MAX_PASSES = 1 << 20 };
 
-enum { VPL_MAX_STAGES = 16, VPL_MAX_STEPS_REPORTED = 64 };
+enum { VPL_MAX_STAGES = 24, VPL_MAX_STEPS_REPORTED = 64 };
 
 typedef struct vplStage {
     const char* name; // static
@@ -151,6 +192,8 @@ typedef struct vplRenderStats {
     int64_t lightEvaluations; // lightcuts: pairs of a pixel and a virtual light that were evaluated
     int64_t cutPixels;        // lightcuts: pixels that show something, of all passes and samples
     int largestCut;           // lightcuts: most virtual lights evaluated for one pixel
+    int clusters;             // SSVP: clusters of first-bounce lights
+    int clusterIterations;    // SSVP: of k-means
     int stepCount;            // steps of the particle simulation
     int particlesPerStep
         [VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted; of all

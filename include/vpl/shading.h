@@ -58,15 +58,18 @@ typedef enum vplAccumulation {
     VPL_ACCUMULATE_BATCHED,       // one pass per `batch` lights
     VPL_ACCUMULATE_DEFERRED,      // one pass for a G-buffer, then all lights per tile
     VPL_ACCUMULATE_INTERLEAVED,   // every K^2-th light per pixel, then means of neighbours on one surface
-    VPL_ACCUMULATE_LIGHTCUTS      // clusters of a light tree, as fine as an error bound asks for
+    VPL_ACCUMULATE_LIGHTCUTS,     // clusters of a light tree, as fine as an error bound asks for
+    VPL_ACCUMULATE_USUAL          // vplRender chooses by the method
 } vplAccumulation;
 
 // What the picture shows.
 typedef enum vplShadeOutput {
     VPL_OUTPUT_RADIANCE = 0,
-    VPL_OUTPUT_DEPTH,        // distance along the view axis, metres; 0 where nothing is
-    VPL_OUTPUT_NORMALS,      // unit normals as shaded; 0 where nothing is
-    VPL_OUTPUT_SHADOW_FACTOR // s of the first emitter, [0, 1]
+    VPL_OUTPUT_DEPTH,         // distance along the view axis, metres; 0 where nothing is
+    VPL_OUTPUT_NORMALS,       // unit normals as shaded; 0 where nothing is
+    VPL_OUTPUT_SHADOW_FACTOR, // s of the first emitter, [0, 1]
+    VPL_OUTPUT_GATHER, // interleaved: indirect irradiance of each pixel's own class, K^2 times as bright, W/m^2
+    VPL_OUTPUT_DENOISED // the same after neighbours have shared
 } vplShadeOutput;
 
 // The light that minDistance takes away, found again by rays of that length from each point. Where a ray meets a
@@ -109,12 +112,20 @@ typedef struct vplShadeDef {
     int emitterCount;           // 0: no direct light
     const vplShadeLight* lamps; // direct light of area emitters, always with shadow rays; physical only
     int lampCount;
-    float lampMinDistance;                  // as minDistance
-    int particleCount;                      // N, by which documented direct light is divided (0 counts as 1)
-    const vplShadeLight* lights;            // virtual lights
-    int lightCount;                         // 0: no indirect light
-    const vplHalfMap* lightShadows;         // one per virtual light; NULL: they cast none, or by rays
-    bool lightRays;                         // virtual lights cast shadows by rays
+    float lampMinDistance;          // as minDistance
+    int particleCount;              // N, by which documented direct light is divided (0 counts as 1)
+    const vplShadeLight* lights;    // virtual lights
+    int lightCount;                 // 0: no indirect light
+    const vplHalfMap* lightShadows; // one per virtual light; NULL: they cast none, or by rays
+    bool lightRays;                 // virtual lights cast shadows by rays
+    // Instead of these: lights that share what their clusters see. Lights of one cluster follow each other, or are
+    // slower. Deferred and interleaved only.
+    const int*
+        lightClusters; // one per virtual light: index in clusterShadows, -1: it casts none; NULL: no clusters
+    const vplParaboloidMap* clusterShadows;
+    int clusterCount;
+    // One per emitter: its shadow is taken from what it lights first; NULL, also of an entry: as above.
+    const vplReflectiveMap* const* emitterMaps;
     float cutError;                         // lightcuts: see vplRenderOptions
     bool emission;                          // surfaces that emit are seen to
     const vplCompensationDef* compensation; // physical only; NULL: what minDistance takes away is lost

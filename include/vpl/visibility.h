@@ -169,6 +169,78 @@ void vplHalfMaps_Destroy(vplHalfMaps* maps);
 // ways to the point's plane within f around it alike.
 void vplHalfMap_FactorBlock(const vplHalfMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
 
+// ---- paraboloid maps: what a cluster of virtual lights sees of a scene
+
+// Where a direction of any length, in a map's frame (z along its axis), meets the front hemisphere's map: p = (x, y) /
+// (|d| + z), inside the unit disk where z >= 0. False where z is -|d|, and for the zero vector. It is the stereographic
+// projection: circles stay circles, and an area of the disk stands for 4 / (1 + p^2)^2 times as much solid angle.
+// Source: Wolfgang Heidrich and Hans-Peter Seidel, View-independent Environment Maps, Graphics Hardware 1998.
+bool vplParaboloid_Project(vplVec3 direction, double* x, double* y);
+
+// The unit direction of a point of the map; the inverse.
+vplVec3 vplParaboloid_Unproject(double x, double y);
+
+// What a diffuse light sends through a point of the unit disk, as a multiple of the mean over the disk:
+// 4 (1 - p^2) / (1 + p^2)^3, the cosine times the solid angle. 0 outside of the disk.
+double vplParaboloid_Weight(double x, double y);
+
+// One place and the surfaces that it sees. Hemisphere 0 looks along `forward`, hemisphere 1 (if there are two) back,
+// with z turned round: p = (x, y) / (|d| - z).
+typedef struct vplParaboloidMap {
+    vplVec3 position;           // metres
+    vplVec3 right, up, forward; // right-handed, unit
+    int size;                   // texels along a side; the disk touches the sides of the square
+    int hemispheres;            // 1 or 2
+    const float*
+        texels; // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is
+                // and outside of the disk; [hemisphere] in blocks of 4 x 4 of columns (x) and rows (y)
+    const int32_t* triangles; // in the same order: index in the geometry, -1 where nothing is; NULL: not kept
+    vplContext* context;
+} vplParaboloidMap;
+
+// Read only.
+typedef struct vplParaboloidMaps {
+    const vplParaboloidMap* maps;
+    int count, capacity, size;
+    float* texels;
+    int32_t* triangles; // NULL: not kept
+    vplContext* context;
+} vplParaboloidMaps;
+
+typedef struct vplParaboloidPlace {
+    vplVec3 position; // metres
+    vplVec3 normal;   // unit: the axis
+    int hemispheres;  // 1: nothing behind the plane is asked for; 2
+    bool onSurface;   // it lies on one, which must not hide what it sees: seen from a hair above
+} vplParaboloidPlace;
+
+// Room for `capacity` maps of two hemispheres with `size` texels a side, [1, VPL_MAX_SHADOW_MAP]; with triangles, where
+// surfaces are asked for (vplParaboloidMap_GetHit).
+vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, bool triangles,
+                                   vplParaboloidMaps** mapsOut);
+
+// Draws what is seen from `count` places, at most the capacity, side by side; those of before are gone. One pass over
+// the triangles per hemisphere. Edges are not straightened: whether a texel's centre lies in a triangle is decided in
+// space, by the planes through its edges and the eye, so that there is no distortion to bound. The document's
+// rasterizer draws them straight, up to 169 of 512 texels off (EXTREMES.md).
+vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geometry,
+                                 const vplParaboloidPlace* places, int count, vplProgressFcn* progress,
+                                 void* user);
+
+// NULL is allowed.
+void vplParaboloidMaps_Destroy(vplParaboloidMaps* maps);
+
+// What texel (column, row) of a hemisphere sees: the hit of the ray through its centre, and that ray's unit direction
+// in the world. False where nothing is and outside of the disk. The map must have triangles.
+bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry, int hemisphere,
+                             int column, int row, vplHit* hitOut, vplVec3* directionOut);
+
+// The share in [0, 1] of the light from the map's place that does not reach a point, for 16 points: of the four texels
+// around it, linearly weighted, those that see something nearer than the point's own plane. Points in a hemisphere that
+// was not drawn: 1.
+void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
+                                  float factorOut[VPL_LANES]);
+
 #ifdef __cplusplus
 }
 #endif

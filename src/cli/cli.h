@@ -40,7 +40,7 @@ typedef struct Arguments {
     double seconds; // --time
     int referenceSpp;
     bool json, quiet, verbose, help;
-    bool sizeGiven;
+    bool sizeGiven, tonemapGiven;
 } Arguments;
 
 // Fills `arguments`, or prints one sentence to stderr and returns false.

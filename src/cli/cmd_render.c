@@ -42,6 +42,9 @@ static int writePicture(const Arguments* a, vplImage* image)
     vplShow show = a->render.show;
     bool metres = show == VPL_SHOW_DEPTH || show == VPL_SHOW_SHADOW_MAP;
     vplWriteOptions options = a->write;
+    if (!a->tonemapGiven && a->render.method == VPL_METHOD_SSVP) {
+        options.tonemap = VPL_TONEMAP_REINHARD;
+    }
     if (endsWithPng(a->output) && (metres || show == VPL_SHOW_NORMALS)) {
         prepareForEyes(image, show);
     }

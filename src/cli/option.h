@@ -34,7 +34,7 @@ bool writeOption(const Option* option, const Arguments* arguments, char* text, s
 // The same by the option's name.
 void writeNamedOption(const char* name, const Arguments* arguments, char* text, size_t size);
 
-ReadFcn readInt, readSeed, readFloat, readDouble, readFloatOrAuto, readReflectivity, readBias, readBiasSlope,
-    readFlag, readText, readChoice, readShow, readSize, readThreads, readRegion, readGrid;
+ReadFcn readInt, readSeed, readFloat, readDouble, readFloatOrAuto, readReflectivity, readTonemap, readBias,
+    readBiasSlope, readFlag, readText, readChoice, readShow, readSize, readThreads, readRegion, readGrid;
 
 #endif

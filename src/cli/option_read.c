@@ -167,6 +167,12 @@ bool readChoice(const Option* o, const char* value, Arguments* a)
     return true;
 }
 
+bool readTonemap(const Option* o, const char* value, Arguments* a)
+{
+    a->tonemapGiven = readChoice(o, value, a);
+    return a->tonemapGiven;
+}
+
 // The K of "light:K": >= 0 and at most `most`, else -1.
 static int readIndex(const char* value, const char* prefix, long most)
 {
@@ -187,8 +193,10 @@ bool readShow(const Option* o, const char* value, Arguments* a)
     } indexed[] = {
         {"light:", "a virtual light", VPL_SHOW_LIGHT, VPL_MAX_LIGHTS, offsetof(Arguments, render.showLight)},
         {"bounce:", "a bounce", VPL_SHOW_BOUNCE, VPL_MAX_BOUNCES, offsetof(Arguments, render.showBounce)},
+        {"paraboloid:", "a cluster", VPL_SHOW_PARABOLOID, VPL_MAX_LIGHTS,
+         offsetof(Arguments, render.showLight)},
     };
-    for (int i = 0; i < 2; i++) {
+    for (size_t i = 0; i < sizeof indexed / sizeof *indexed; i++) {
         if (strncmp(value, indexed[i].prefix, strlen(indexed[i].prefix)) == 0) {
             int index = readIndex(value, indexed[i].prefix, indexed[i].most);
             if (index < 0) {

@@ -37,9 +37,9 @@ const Option OPTIONS[] = {
     {"--camera", "I", RENDER | TRADEOFF, readInt, AT(render.camera), 0, 1e9, NULL,
      "index of the scene's camera; default 0"},
     {"--method", "M", SCENE & ~TRADEOFF, readChoice, AT(render.method), 0, 0,
-     "instant-radiosity|direct|path|keller",
-     "instant-radiosity (default), direct: the scene's own lights only, path: the path-traced reference, or "
-     "keller: Instant Radiosity as published"},
+     "instant-radiosity|direct|path|keller|ssvp",
+     "instant-radiosity (default), direct: the scene's own lights only, path: the path-traced reference, "
+     "keller: Instant Radiosity as published, or ssvp: screen-space virtual point light propagation"},
     {"--lighting", "L", SCENE, readChoice, AT(render.lighting), 0, 0, "physical|documented",
      "physical (default) or documented: the formulas as printed"},
     {"--particles", "N", SCENE, readInt, AT(render.particles), 0, VPL_MAX_LIGHTS, NULL,
@@ -53,14 +53,40 @@ const Option OPTIONS[] = {
      "where virtual lights go: particles (default): where they land; rsm: first hits are texels of "
      "reflective "
      "shadow maps; view: particles, of which those are kept that light what the camera sees"},
-    {"--rsm-size", "N", SCENE, readInt, AT(render.rsmSize), 1, VPL_MAX_SHADOW_MAP, NULL,
-     "texels along a side of a reflective shadow map, for --placement rsm; default 256"},
+    {"--rsm-size", "N", SCENE, readInt, AT(render.rsmSize), 0, VPL_MAX_SHADOW_MAP, NULL,
+     "texels along a side of a reflective shadow map; default 0: 256 for --placement rsm, 1024 for --method "
+     "ssvp"},
+    {"--clusters", "C", SCENE, readInt, AT(render.clusters), 1, VPL_MAX_LIGHTS, NULL,
+     "clusters of first-bounce lights, each with a paraboloid map; ssvp; default 8"},
+    {"--first-bounce", "N", SCENE, readInt, AT(render.firstBounce), 0, VPL_MAX_LIGHTS, NULL,
+     "lights of the first bounce, samples of the reflective shadow map; ssvp; default 256"},
+    {"--second-bounce", "N", SCENE, readInt, AT(render.secondBounce), 0, VPL_MAX_LIGHTS, NULL,
+     "lights of the second bounce, samples of all paraboloid maps; ssvp; default 256"},
+    {"--paraboloid", "N", SCENE, readInt, AT(render.paraboloidSize), 1, VPL_MAX_SHADOW_MAP, NULL,
+     "texels along the side of a paraboloid map; ssvp; default 256"},
+    {"--w1", "W", SCENE, readDouble, AT(render.w1), 0, 1e15, NULL,
+     "weight of the distance between a light and a cluster, 1/metres; ssvp; default 0.6"},
+    {"--w2", "W", SCENE, readDouble, AT(render.w2), 0, 1e15, NULL,
+     "weight of the angle between their normals; ssvp; default 0.4"},
+    {"--cluster-metric", "M", SCENE, readChoice, AT(render.clusterMetric), 0, 0,
+     "one-minus|printed|one-minus-clamped|angle",
+     "term of the normals n, m: one-minus (default): 1 - n.m; printed: max(n.m, 0), as in the document; "
+     "one-minus-clamped: 1 - max(n.m, 0); angle: between them, radians; ssvp"},
+    {"--second-weight", "W", SCENE, readChoice, AT(render.secondWeight), 0, 0, "cosine|printed",
+     "cosine (default): second-bounce lights carry what a diffuse cluster sends to them; printed: all the "
+     "same; ssvp"},
+    {"--coherence", "C", RENDER, readChoice, AT(render.coherence), 0, 0, "off|on",
+     "on (default): frames of a sequence keep sample patterns and clusters of the frame before; off: new "
+     "ones; "
+     "ssvp"},
     {"--bounce", "B", SCENE, readChoice, AT(render.bounce), 0, 0, "auto|reflect|diffuse",
      "auto (default): reflect for documented lighting, diffuse for physical"},
     {"--seed", "S", SCENE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},
     {"--pipeline", "P", RENDER | INFO | TRADEOFF, readChoice, AT(render.accumulation), 0, 0,
-     "multipass|batched|deferred|interleaved|lightcuts",
-     "how virtual lights are added: multipass, batched or deferred (default), the same bits; interleaved: "
+     "multipass|batched|deferred|interleaved|lightcuts|usual",
+     "how virtual lights are added: usual (default): interleaved for ssvp, else deferred; multipass, batched "
+     "or "
+     "deferred, the same bits; interleaved: "
      "each "
      "pixel meets every K^2-th light, and neighbours share; or lightcuts: clusters of lights, within an "
      "error"},
@@ -78,7 +104,8 @@ const Option OPTIONS[] = {
      "usual|none|map|ray|auto",
      "none, map or ray: whether, and how, virtual lights cast shadows; auto: map or ray, whichever is "
      "cheaper; "
-     "usual (default): none for instant-radiosity, auto for keller"},
+     "usual (default): none for instant-radiosity, auto for keller, and for ssvp by their clusters' "
+     "paraboloid maps"},
     {"--compensation", "C", RENDER | INFO | TRADEOFF, readChoice, AT(render.compensation), 0, 0,
      "usual|none|rays",
      "what becomes of the light that --min-distance takes away: none: lost; rays: short rays find it; usual "
@@ -94,7 +121,9 @@ const Option OPTIONS[] = {
     {"--pixel", "P", RENDER, readChoice, AT(render.pixel), 0, 0, "area|centre",
      "area (default): --method path averages over each pixel; centre: looks at its centre, as other methods"},
     {"--max-bounces", "N", RENDER | INFO, readInt, AT(render.maxBounces), -1, VPL_MAX_BOUNCES, NULL,
-     "diffuse reflections of --method path before the eye's last; -1 (default): as many as it takes"},
+     "diffuse reflections before the eye's last, of --method path and (up to 2) of ssvp; -1 (default): as "
+     "many as it "
+     "takes"},
     {"--passes", "N", RENDER, readInt, AT(render.passes), 0, VPL_MAX_PASSES, NULL,
      "pictures of --particles each, whose mean is the picture; default 1, or as many as --budget and "
      "--max-error "
@@ -114,13 +143,17 @@ const Option OPTIONS[] = {
     {"--pcf-offset", "O", RENDER | TRADEOFF, readFloatOrAuto, AT(render.shadow.pcfOffset), 0, 1e15, NULL,
      "radius of the disc of samples in metres, or auto (default)"},
     {"--show", "WHAT", RENDER, readShow, 0, 0, 0,
-     "picture|depth|normals|shadow-map|shadow-factor|direct|indirect|light:K|overlay|bounce:K",
+     "picture|depth|normals|shadow-map|shadow-factor|direct|indirect|light:K|overlay|bounce:K|rsm|rsm-"
+     "samples|"
+     "clusters|paraboloid:C|second-bounce|gather|denoised",
      "picture (default), depth, normals, shadow-map, shadow-factor, direct, indirect, light:K (K as in vpl "
-     "lights), overlay, bounce:K (--method path: light after K reflections, 0 is direct)"},
+     "lights), overlay, bounce:K (--method path: light after K reflections, 0 is direct); of ssvp: rsm, "
+     "rsm-samples, "
+     "clusters, paraboloid:C (cluster C's map), second-bounce, gather, denoised"},
     {"--exposure", "EV", RENDER | TRADEOFF, readFloat, AT(write.exposure), -64, 64, NULL,
      "stops, PNG only: pixels times 2^EV; default 0"},
-    {"--tonemap", "T", RENDER, readChoice, AT(write.tonemap), 0, 0, "none|reinhard",
-     "none (default) or reinhard, PNG only"},
+    {"--tonemap", "T", RENDER, readTonemap, AT(write.tonemap), 0, 0, "none|reinhard",
+     "none or reinhard, PNG only; default: reinhard for ssvp, else none"},
     {"--stats", "FILE", RENDER, readText, AT(stats), 0, 0, NULL, "write statistics as JSON"},
     {"--heatmap", "FILE", COMPARE, readText, AT(heatmap), 0, 0, NULL, "write a picture of the differences"},
     {"--heatmap-of", "WHAT", COMPARE, readChoice, AT(heat.of), 0, 0, "difference|relative|ssim|flip",

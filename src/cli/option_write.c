@@ -51,8 +51,10 @@ bool writeOption(const Option* o, const Arguments* a, char* text, size_t size)
     const char* field = (const char*)a + o->offset;
     int whole;
     float single;
+    double wide;
     memcpy(&whole, field, sizeof whole);
     memcpy(&single, field, sizeof single);
+    memcpy(&wide, field, sizeof wide);
     text[0] = 0;
     if (o->read == readSize) {
         snprintf(text, size, "%dx%d", a->render.width, a->render.height);
@@ -69,6 +71,8 @@ bool writeOption(const Option* o, const Arguments* a, char* text, size_t size)
         return false; // not of the picture
     } else if (o->read == readInt) {
         snprintf(text, size, "%d", whole);
+    } else if (o->read == readDouble) {
+        writeDouble(wide, text, size);
     } else if (o->read == readChoice) {
         writeChoice(o->choices, whole, text, size);
     } else if (o->read == readFloatOrAuto && single < 0) {

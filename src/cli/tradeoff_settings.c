@@ -99,6 +99,8 @@ static Family familyOf(const vplRenderOptions* o)
         return FAMILY_PATH;
     case VPL_METHOD_KELLER:
         return FAMILY_KELLER;
+    case VPL_METHOD_SSVP:
+        return FAMILY_MAP;
     case VPL_METHOD_INSTANT_RADIOSITY:
         break;
     }

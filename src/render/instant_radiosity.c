@@ -223,8 +223,8 @@ static vplResult begin(vplJob* job)
     if (r == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    r->in.emitterCount = vplScene_GetEmitterCount(job->scene);
-    r->in.emitters = r->in.emitterCount ? vplScene_GetEmitter(job->scene, 0) : NULL;
+    r->in.emitterCount = job->emitterCount;
+    r->in.emitters = job->emitters;
     job->progressive = isProgressive(&job->options);
     return VPL_SUCCESS;
 }

@@ -13,8 +13,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.antialias = 1;
     o.particles = 10;
     o.reflectivity = 0.5;
-    o.rsmSize = 256;
-    o.accumulation = VPL_ACCUMULATE_DEFERRED;
+    o.accumulation = VPL_ACCUMULATE_USUAL;
     o.batch = 64;
     o.interleave = 4;
     o.cutError = 0.02f;
@@ -25,6 +24,12 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.maxBounces = -1;
     o.shadowMapSize = 1024;
     o.shadow = vplDefaultShadowDef();
+    o.clusters = 8;
+    o.firstBounce = o.secondBounce = 256;
+    o.paraboloidSize = 256;
+    o.w1 = 0.6;
+    o.w2 = 0.4;
+    o.coherence = VPL_COHERENCE_ON;
     o.cookie = OPTIONS_COOKIE;
     return o;
 }
@@ -52,7 +57,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         const char* name;
         int value, low, high;
     } ints[] = {
-        {"method", (int)o->method, 0, VPL_METHOD_KELLER},
+        {"method", (int)o->method, 0, VPL_METHOD_SSVP},
         {"lighting", (int)o->lighting, 0, VPL_LIGHTING_DOCUMENTED},
         {"width", o->width, 1, VPL_MAX_IMAGE_SIZE},
         {"height", o->height, 1, VPL_MAX_IMAGE_SIZE},
@@ -62,8 +67,8 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"sampler", (int)o->sampler, 0, VPL_SAMPLER_HAMMERSLEY},
         {"bounce", (int)o->bounce, 0, VPL_BOUNCE_DIFFUSE},
         {"placement", (int)o->placement, 0, VPL_PLACEMENT_VIEW},
-        {"rsmSize", o->rsmSize, 1, VPL_MAX_SHADOW_MAP},
-        {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_LIGHTCUTS},
+        {"rsmSize", o->rsmSize, 0, VPL_MAX_SHADOW_MAP},
+        {"accumulation", (int)o->accumulation, 0, VPL_ACCUMULATE_USUAL},
         {"batch", o->batch, 1, VPL_MAX_LIGHTS},
         {"interleave", o->interleave, 1, VPL_MAX_INTERLEAVE},
         {"particleGeometry", (int)o->particleGeometry, 0, VPL_PARTICLE_GEOMETRY_OBB},
@@ -77,7 +82,14 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"pixel", (int)o->pixel, 0, VPL_PIXEL_CENTRE},
         {"showBounce", o->showBounce, 0, VPL_MAX_BOUNCES},
         {"shadowMapSize", o->shadowMapSize, 1, VPL_MAX_SHADOW_MAP},
-        {"show", (int)o->show, 0, VPL_SHOW_BOUNCE},
+        {"show", (int)o->show, 0, VPL_SHOW_DENOISED},
+        {"clusters", o->clusters, 1, VPL_MAX_LIGHTS},
+        {"firstBounce", o->firstBounce, 0, VPL_MAX_LIGHTS},
+        {"secondBounce", o->secondBounce, 0, VPL_MAX_LIGHTS},
+        {"paraboloidSize", o->paraboloidSize, 1, VPL_MAX_SHADOW_MAP},
+        {"clusterMetric", (int)o->clusterMetric, 0, VPL_CLUSTER_ANGLE},
+        {"coherence", (int)o->coherence, 0, VPL_COHERENCE_ON},
+        {"secondWeight", (int)o->secondWeight, 0, VPL_SECOND_WEIGHT_PRINTED},
         {"showLight", o->showLight, 0, VPL_MAX_LIGHTS},
     };
     for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) {
@@ -99,6 +111,15 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplRenderOptions.budgetMs and maxError are %g and %g, must be at least 0",
                        o->budgetMs, o->maxError);
+    }
+    if (!(o->w1 >= 0 && o->w2 >= 0 && isfinite(o->w1) && isfinite(o->w2))) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.w1 and w2 are %g and %g, must be finite and at least 0", o->w1,
+                       o->w2);
+    }
+    if (!isfinite(o->frame)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.frame is %g, must be finite",
+                       o->frame);
     }
     if (!isfinite(o->minDistance)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.minDistance is %g, must be finite",

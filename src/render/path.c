@@ -41,8 +41,8 @@ static vplResult begin(vplJob* job)
     }
     vplPathDef def = vplDefaultPathDef();
     def.camera = vplScene_GetCamera(job->scene, o->camera);
-    def.emitterCount = vplScene_GetEmitterCount(job->scene);
-    def.emitters = def.emitterCount ? vplScene_GetEmitter(job->scene, 0) : NULL;
+    def.emitterCount = job->emitterCount;
+    def.emitters = job->emitters;
     def.width = o->width;
     def.height = o->height;
     def.seed = o->seed;

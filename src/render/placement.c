@@ -53,7 +53,7 @@ static vplResult placeByMaps(vplJob* job, const vplEmitterDef* emitters, int emi
         if (intensity.r > 0 || intensity.g > 0 || intensity.b > 0) {
             vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
             def.emitter = emitters[i];
-            def.size = job->options.rsmSize;
+            def.size = job->options.rsmSize > 0 ? job->options.rsmSize : 256;
             result = vplReflectiveMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps[i]);
         }
         if (result == VPL_SUCCESS && maps[i] != NULL) {

@@ -61,7 +61,6 @@ vplLighting vplJob_GetShading(const vplJob* job)
 vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
 {
     const vplRenderOptions* o = &job->options;
-    const vplScene* scene = job->scene;
     vplParticleDef def = vplDefaultParticleDef();
     const bool keller = o->method == VPL_METHOD_KELLER;
     def.lighting = o->lighting;
@@ -79,11 +78,9 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     def.seed = o->seed;
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
-    int emitters = vplScene_GetEmitterCount(scene);
     vplResult result = vplJob_FindNear(job);
     if (result == VPL_SUCCESS) {
-        result =
-            vplJob_PlaceLights(job, emitters ? vplScene_GetEmitter(scene, 0) : NULL, emitters, &def, setOut);
+        result = vplJob_PlaceLights(job, job->emitters, job->emitterCount, &def, setOut);
     }
     if (result != VPL_SUCCESS) {
         return result;
@@ -103,25 +100,57 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     return VPL_SUCCESS;
 }
 
+// What the method's document uses.
+static void chooseUsual(vplRenderOptions* o)
+{
+    const bool ssvp = o->method == VPL_METHOD_SSVP;
+    if (o->accumulation == VPL_ACCUMULATE_USUAL) {
+        o->accumulation = ssvp ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    }
+    if (o->rsmSize == 0) {
+        o->rsmSize = ssvp ? 1024 : 256;
+    }
+}
+
+static vplResult poseEmitters(vplJob* job)
+{
+    job->emitterCount = vplScene_GetEmitterCount(job->scene);
+    job->emitters = vplAlloc(job->context, (size_t)job->emitterCount, sizeof *job->emitters);
+    for (int i = 0; job->emitters != NULL && i < job->emitterCount; i++) {
+        job->emitters[i] = *vplScene_GetEmitter(job->scene, i);
+    }
+    return job->emitters != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
 vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, vplJob* job)
 {
+    memset(job, 0, sizeof *job);
+    job->context = vplScene_GetContext(scene);
     vplResult result = vplCheckOptions(scene, options);
     if (result != VPL_SUCCESS) {
         return result;
     }
-    memset(job, 0, sizeof *job);
-    job->context = vplScene_GetContext(scene);
     job->scene = scene;
     job->options = *options;
     job->stepTo = 1;
     job->stats.clampLoss = -1;
     job->stats.errorEstimate = job->stats.relativeErrorEstimate = -1;
+    chooseUsual(&job->options);
     vplContext_ResetPeakBytes(job->context);
     vplJob_BeginStage(job, 0);
     result = vplGeometry_Create(scene, &job->geometry);
+    if (result == VPL_SUCCESS) {
+        result = poseEmitters(job);
+    }
     vplJob_EndStage(job, "geometry");
     job->view = vplView_Create(vplScene_GetCamera(scene, options->camera), options->width, options->height);
     return result;
+}
+
+void vplJob_End(vplJob* job)
+{
+    vplFree(job->context, job->emitters);
+    vplGeometry_Destroy(job->geometry);
 }
 
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)
@@ -130,7 +159,7 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
     vplResult result = vplJob_Begin(scene, options, &job);
     if (result == VPL_SUCCESS) {
         result = vplJob_MakeLights(&job, setOut);
-        vplGeometry_Destroy(job.geometry);
     }
+    vplJob_End(&job);
     return result;
 }

@@ -14,6 +14,8 @@ typedef struct vplJob {
     vplRenderOptions options;
     vplGeometry* geometry;
     vplView view;
+    vplEmitterDef* emitters; // of the scene, posed; NULL where there are none
+    int emitterCount;
     vplImage* image;
     vplRenderStats stats;
     double stepFrom, stepTo;         // share of the whole that the running step has
@@ -42,8 +44,10 @@ extern const vplMethodFcns vplVirtualLightMethod, vplPathMethod;
 
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
 
-// Freezes the scene. job->geometry is there afterwards unless it fails.
+// Freezes the scene, poses what has a path and replaces options that are usual or automatic by those of the method.
+// vplJob_End follows, whether it succeeded or not.
 vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, vplJob* job);
+void vplJob_End(vplJob* job);
 
 // Formulas of shading: Keller's lights are physical ones, also where particles lose light as printed.
 vplLighting vplJob_GetShading(const vplJob* job);

@@ -16,13 +16,10 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     vplJob job = {0};
     const double start = vplClockMs(), cpuStart = vplCpuMs();
     vplResult result = vplJob_Begin(scene, options, &job);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplRenderer* r = vplAllocZero(job.context, 1, sizeof *r);
+    vplRenderer* r = result == VPL_SUCCESS ? vplAllocZero(job.context, 1, sizeof *r) : NULL;
     if (r == NULL) {
-        vplGeometry_Destroy(job.geometry);
-        return VPL_OUT_OF_MEMORY;
+        vplJob_End(&job);
+        return result == VPL_SUCCESS ? VPL_OUT_OF_MEMORY : result;
     }
     r->job = job;
     r->method = options->method == VPL_METHOD_PATH ? &vplPathMethod : &vplVirtualLightMethod;
@@ -130,7 +127,7 @@ void vplRenderer_Destroy(vplRenderer* r)
         vplContext* context = r->job.context;
         r->method->end(&r->job);
         vplImage_Destroy(r->job.image);
-        vplGeometry_Destroy(r->job.geometry);
+        vplJob_End(&r->job);
         vplFree(context, r);
     }
 }
