@@ -47,10 +47,11 @@ typedef enum vplLightShadows {
     VPL_LIGHT_SHADOWS_USUAL =
         0, // as the method's document draws: instant radiosity none, Keller's auto, SSVP by the
            // paraboloid map of a light's cluster
-    VPL_LIGHT_SHADOWS_NONE, // it is not: as Franchi and Ferrante draw
-    VPL_LIGHT_SHADOWS_MAP,  // a map of the half space above each virtual light, one sample: as Keller draws
-    VPL_LIGHT_SHADOWS_RAY,  // a ray per pixel and light: exact
-    VPL_LIGHT_SHADOWS_AUTO  // map or ray, whichever will be cheaper by the measurements of bench/crossover
+    VPL_LIGHT_SHADOWS_NONE,   // it is not: as Franchi and Ferrante draw
+    VPL_LIGHT_SHADOWS_MAP,    // a map of the half space above each virtual light, one sample: as Keller draws
+    VPL_LIGHT_SHADOWS_RAY,    // a ray per pixel and light: exact
+    VPL_LIGHT_SHADOWS_AUTO,   // map or ray, whichever will be cheaper by the measurements of bench/crossover
+    VPL_LIGHT_SHADOWS_CLUSTER // SSVP: by the paraboloid map of the light's cluster
 } vplLightShadows;
 
 // Where virtual lights go.
@@ -72,6 +73,12 @@ typedef enum vplPixel {
     VPL_PIXEL_AREA = 0, // everywhere: the pixel is the mean over its square, edges are smooth
     VPL_PIXEL_CENTRE    // its centre, as all other methods do: for comparing with them
 } vplPixel;
+
+// Where a cluster looks from.
+typedef enum vplClusterPlace {
+    VPL_CLUSTER_PLACE_MEMBER = 0, // from its light that is nearest to the mean: on a surface
+    VPL_CLUSTER_PLACE_MEAN // from the mean, as the document has it: maybe in mid-air or inside of something
+} vplClusterPlace;
 
 // Whether frames of a sequence have anything to do with each other.
 typedef enum vplCoherence {
@@ -142,6 +149,7 @@ typedef struct vplRenderOptions {
     int paraboloidSize; // texels along a side of a paraboloid map, [1, VPL_MAX_SHADOW_MAP]; default 256
     double w1, w2;      // weights of distance, 1/metres, and of the normals; >= 0; default 0.6, 0.4
     vplClusterMetric clusterMetric; // default VPL_CLUSTER_ONE_MINUS
+    vplClusterPlace clusterPlace;   // default VPL_CLUSTER_PLACE_MEMBER
     vplSecondWeight secondWeight;   // default VPL_SECOND_WEIGHT_COSINE
 
     double frame;        // number of the frame that cameras and emitters with a path are posed at; default 0
@@ -206,7 +214,7 @@ typedef struct vplRenderStats {
                          // compensation; an estimate from some pixels; negative where there is none
     double reflectivity; // as used
     double cpuMs;        // processor time of all threads
-    vplLightShadows lightShadows; // as used: none, map or ray
+    vplLightShadows lightShadows; // as used: none, map, ray or cluster
     double shadowMapEstimateMs;   // where they were chosen by cost: what maps and
     double shadowRayEstimateMs; // rays were expected to take, ms of one core of the machine that was measured
     int passes;                 // that the picture is the mean of; path: of up to 32 paths per pixel each

@@ -72,6 +72,9 @@ const Option OPTIONS[] = {
      "one-minus|printed|one-minus-clamped|angle",
      "term of the normals n, m: one-minus (default): 1 - n.m; printed: max(n.m, 0), as in the document; "
      "one-minus-clamped: 1 - max(n.m, 0); angle: between them, radians; ssvp"},
+    {"--cluster-place", "P", SCENE, readChoice, AT(render.clusterPlace), 0, 0, "member|mean",
+     "where a cluster looks from: member (default): its light nearest to the mean; mean: maybe in mid-air; "
+     "ssvp"},
     {"--second-weight", "W", SCENE, readChoice, AT(render.secondWeight), 0, 0, "cosine|printed",
      "cosine (default): second-bounce lights carry what a diffuse cluster sends to them; printed: all the "
      "same; ssvp"},
@@ -101,7 +104,7 @@ const Option OPTIONS[] = {
     {"--min-distance", "D", RENDER | TRADEOFF, readFloatOrAuto, AT(render.minDistance), 0, 1e15, NULL,
      "metres: cos cos / d^2 is bounded as cos cos / max(d^2, D^2); 0: unbounded; default auto"},
     {"--light-shadows", "V", RENDER | INFO | TRADEOFF, readChoice, AT(render.lightShadows), 0, 0,
-     "usual|none|map|ray|auto",
+     "usual|none|map|ray|auto|cluster",
      "none, map or ray: whether, and how, virtual lights cast shadows; auto: map or ray, whichever is "
      "cheaper; "
      "usual (default): none for instant-radiosity, auto for keller, and for ssvp by their clusters' "

@@ -110,7 +110,7 @@ void vplColourBar_Draw(vplImage* image, int top, int height, float largest, vplC
     }
 }
 
-void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour)
+static void drawMark(vplImage* image, float x, float y, float radius, bool square, vplRgb colour)
 {
     if (!(fabsf(x) < 1e6f && fabsf(y) < 1e6f)) {
         return;
@@ -120,12 +120,22 @@ void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour)
     for (int j = vplMaxi(y0, 0); j <= vplMini(y1, image->height - 1); j++) {
         for (int i = vplMaxi(x0, 0); i <= vplMini(x1, image->width - 1); i++) {
             float dx = (float)i + 0.5f - x, dy = (float)j + 0.5f - y;
-            float d = sqrtf(dx * dx + dy * dy);
+            float d = square ? vplMaxf(fabsf(dx), fabsf(dy)) : sqrtf(dx * dx + dy * dy);
             if (d <= radius) {
                 setPixel(image, i, j, d > radius - 1 && radius > 2 ? (vplRgb){0, 0, 0} : colour);
             }
         }
     }
+}
+
+void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour)
+{
+    drawMark(image, x, y, radius, false, colour);
+}
+
+void vplDrawSquare(vplImage* image, float x, float y, float half, vplRgb colour)
+{
+    drawMark(image, x, y, half, true, colour);
 }
 
 void vplDrawLine(vplImage* image, float x0, float y0, float x1, float y1, vplRgb colour)

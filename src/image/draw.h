@@ -25,6 +25,9 @@ void vplDrawText(vplImage* image, int x, int y, int zoom, vplRgb colour, const c
 // A filled disc with a dark rim, clipped to the picture.
 void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour);
 
+// A filled square with a dark rim, clipped to the picture.
+void vplDrawSquare(vplImage* image, float x, float y, float half, vplRgb colour);
+
 // A line one pixel wide, clipped to the picture.
 void vplDrawLine(vplImage* image, float x0, float y0, float x1, float y1, vplRgb colour);
 

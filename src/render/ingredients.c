@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "render/choose_shadows.h"
+#include "render/ssvp.h"
 
 #include <math.h>
 
@@ -66,7 +67,8 @@ static vplResult makeEmitterShadows(vplJob* job, vplIngredients* in)
                 job->context, VPL_INVALID_ARGUMENT,
                 "light %d is not a point light, and documented lighting knows no others; use physical", i);
         }
-        if (in->emitters[i].type != VPL_EMITTER_DIRECTIONAL && o->lightShadows != VPL_LIGHT_SHADOWS_RAY) {
+        if (in->ssvp == NULL && in->emitters[i].type != VPL_EMITTER_DIRECTIONAL &&
+            o->lightShadows != VPL_LIGHT_SHADOWS_RAY) {
             result =
                 makeMap(job, in->emitters[i].position, o->shadowMapSize, &shadowDef, &in->emitterMaps, i);
         }
@@ -179,11 +181,54 @@ float vplJob_MinDistance(const vplJob* job, double lights)
     return (float)(lights > 0 && vplCompensates(job) ? fmax(share, (double)job->nearDistance) : share);
 }
 
+// Lights of one cluster follow each other, in the order that they had. `first` is the set's index of the first light.
+static vplResult sortByCluster(vplJob* job, vplIngredients* in, int first)
+{
+    const vplSsvpLights* l = in->ssvp->lights;
+    const size_t count = (size_t)in->lightCount;
+    vplShadeLight* sorted = vplAlloc(job->context, count, sizeof *sorted);
+    int* starts = vplAllocZero(job->context, (size_t)l->shadowCount + 1, sizeof *starts);
+    in->lightClusters = vplAlloc(job->context, count, sizeof *in->lightClusters);
+    if (sorted == NULL || starts == NULL || in->lightClusters == NULL) {
+        vplFree(job->context, sorted);
+        vplFree(job->context, starts);
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int i = 0; i < in->lightCount; i++) {
+        starts[l->clusterOf[first + i] + 1]++;
+    }
+    for (int i = 0; i < l->shadowCount; i++) {
+        starts[i + 1] += starts[i];
+    }
+    for (int i = 0; i < in->lightCount; i++) {
+        const int cluster = l->clusterOf[first + i], at = starts[cluster]++;
+        sorted[at] = in->lights[i];
+        in->lightClusters[at] = cluster;
+    }
+    vplFree(job->context, starts);
+    vplFree(job->context, in->lights);
+    in->lights = sorted;
+    return VPL_SUCCESS;
+}
+
+static vplResult makeSet(vplJob* job, vplIngredients* in)
+{
+    if (in->ssvp == NULL) {
+        return vplJob_MakeLights(job, &in->set);
+    }
+    vplResult result = vplSsvp_MakeLights(job, in->ssvp);
+    if (result == VPL_SUCCESS) {
+        in->set = in->ssvp->lights->set;
+        vplJob_CountLights(job, in->set);
+    }
+    return result;
+}
+
 vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
 {
     vplFreeVirtualLights(job, in);
     vplLightSet shown;
-    vplResult result = vplJob_MakeLights(job, &in->set);
+    vplResult result = makeSet(job, in);
     if (result == VPL_SUCCESS) {
         result = choose(job, in, &shown);
     }
@@ -195,13 +240,16 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
         return VPL_OUT_OF_MEMORY;
     }
     in->lightCount = vplPrepareLights(&shown, vplJob_GetShading(job), in->lights);
+    if (in->ssvp != NULL && in->ssvp->lights->clusterOf != NULL) {
+        result = sortByCluster(job, in, (int)(shown.lights - in->set->lights));
+    }
     in->minDistance = job->stats.minDistance = vplJob_MinDistance(job, in->set->lightCount);
     in->lightShadows = vplJob_GetLightShadows(job);
     if (in->lightShadows == VPL_LIGHT_SHADOWS_AUTO) {
         in->lightShadows = vplChooseLightShadows(job, in);
     }
     job->stats.lightShadows = in->lightShadows;
-    return VPL_SUCCESS;
+    return result;
 }
 
 void vplFreeVirtualLights(vplJob* job, vplIngredients* in)
@@ -209,8 +257,12 @@ void vplFreeVirtualLights(vplJob* job, vplIngredients* in)
     vplHalfMaps_Destroy(in->lightMaps);
     in->lightMaps = NULL;
     vplFree(job->context, in->lights);
-    vplLightSet_Destroy(in->set);
+    vplFree(job->context, in->lightClusters);
+    if (in->ssvp == NULL) {
+        vplLightSet_Destroy(in->set);
+    }
     in->lights = NULL;
+    in->lightClusters = NULL;
     in->set = NULL;
     in->lightCount = 0;
 }
@@ -218,6 +270,7 @@ void vplFreeVirtualLights(vplJob* job, vplIngredients* in)
 void vplFreeIngredients(vplJob* job, vplIngredients* in)
 {
     vplFreeVirtualLights(job, in);
+    vplSsvp_End(job, in->ssvp);
     freeMaps(job, &in->emitterMaps);
     vplFree(job->context, in->lamps);
 }

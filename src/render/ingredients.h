@@ -28,6 +28,8 @@ typedef struct vplIngredients {
     float minDistance;
     vplLightShadows lightShadows; // none, map or ray
     vplHalfMaps* lightMaps;       // NULL where there are none; room for a batch of the lights
+    struct vplSsvpState* ssvp;    // NULL but for SSVP; then it owns `set`
+    int* lightClusters; // of each of `lights`, which are in the order of clusters; NULL: without clusters
 } vplIngredients;
 
 // Shadow maps of emitters and lights that stand for lamps: what direct light needs.

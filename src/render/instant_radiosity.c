@@ -4,7 +4,7 @@
 // Alexander Keller, Instant Radiosity, SIGGRAPH 1997: the same with particles that begin as lights on the emitters,
 // and with shadows. Direct lighting is the recipe without particles.
 #include "math/sampling.h"
-#include "render/ingredients.h"
+#include "render/ssvp.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,23 +21,49 @@ typedef struct Recipe {
     double* sums[2]; // progressive: of the passes, even and odd
 } Recipe;
 
-static bool needsLights(const vplRenderOptions* o)
+bool vplNeedsLights(const vplRenderOptions* o)
 {
-    bool shown = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_INDIRECT || o->show == VPL_SHOW_LIGHT ||
-                 o->show == VPL_SHOW_OVERLAY ||
-                 (o->show == VPL_SHOW_DIRECT && o->method == VPL_METHOD_KELLER);
-    return shown && o->method != VPL_METHOD_DIRECT;
+    switch (o->show) {
+    case VPL_SHOW_PICTURE:
+    case VPL_SHOW_INDIRECT:
+    case VPL_SHOW_LIGHT:
+    case VPL_SHOW_OVERLAY:
+        return o->method != VPL_METHOD_DIRECT && (o->method != VPL_METHOD_SSVP || o->maxBounces != 0);
+    case VPL_SHOW_DIRECT:
+        return o->method == VPL_METHOD_KELLER;
+    case VPL_SHOW_RSM_SAMPLES:
+    case VPL_SHOW_CLUSTERS:
+    case VPL_SHOW_PARABOLOID:
+    case VPL_SHOW_SECOND_BOUNCE:
+    case VPL_SHOW_GATHER:
+    case VPL_SHOW_DENOISED:
+        return o->maxBounces != 0;
+    default:
+        return false;
+    }
 }
 
-static bool needsDirect(const vplRenderOptions* o)
+bool vplNeedsDirect(const vplRenderOptions* o)
 {
-    return o->show != VPL_SHOW_DEPTH && o->show != VPL_SHOW_NORMALS && o->show != VPL_SHOW_INDIRECT &&
-           o->show != VPL_SHOW_LIGHT;
+    switch (o->show) {
+    case VPL_SHOW_DEPTH:
+    case VPL_SHOW_NORMALS:
+    case VPL_SHOW_INDIRECT:
+    case VPL_SHOW_LIGHT:
+    case VPL_SHOW_RSM:
+    case VPL_SHOW_PARABOLOID:
+    case VPL_SHOW_GATHER:
+    case VPL_SHOW_DENOISED:
+        return false;
+    default:
+        return true;
+    }
 }
 
 static bool isProgressive(const vplRenderOptions* o)
 {
-    return needsLights(o) && (o->passes > 1 || o->budgetMs > 0 || o->maxError > 0);
+    return o->show <= VPL_SHOW_OVERLAY && vplNeedsLights(o) &&
+           (o->passes > 1 || o->budgetMs > 0 || o->maxError > 0);
 }
 
 // ---- shading
@@ -92,17 +118,33 @@ static vplResult shadeSamples(vplJob* job, const vplShadeDef* def)
     return result;
 }
 
+// What SSVP's maps and clusters see; `first` as in shade, -1: without virtual lights.
+static void addSsvp(const vplIngredients* in, int first, vplShadeDef* def)
+{
+    const vplSsvpState* state = in->ssvp;
+    if (in->lightShadows != VPL_LIGHT_SHADOWS_RAY) {
+        def->emitterMaps = (const vplReflectiveMap* const*)state->maps;
+    }
+    if (first >= 0 && in->lightClusters != NULL) {
+        def->lightClusters = in->lightClusters + first;
+        def->clusterShadows = state->lights->shadows;
+        def->clusterCount = state->lights->shadowCount;
+    }
+}
+
 // With virtual lights first .. first + count - 1.
 static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int first, int count)
 {
     const vplRenderOptions* o = &job->options;
-    const bool direct = parts & PART_DIRECT && o->show != VPL_SHOW_INDIRECT && o->show != VPL_SHOW_LIGHT;
+    const bool direct = parts & PART_DIRECT && vplNeedsDirect(o);
     vplShadeDef def = {0};
     def.lighting = vplJob_GetShading(job);
     def.accumulation = o->accumulation;
     def.output = o->show == VPL_SHOW_DEPTH           ? VPL_OUTPUT_DEPTH
                  : o->show == VPL_SHOW_NORMALS       ? VPL_OUTPUT_NORMALS
                  : o->show == VPL_SHOW_SHADOW_FACTOR ? VPL_OUTPUT_SHADOW_FACTOR
+                 : o->show == VPL_SHOW_GATHER        ? VPL_OUTPUT_GATHER
+                 : o->show == VPL_SHOW_DENOISED      ? VPL_OUTPUT_DENOISED
                                                      : VPL_OUTPUT_RADIANCE;
     def.batch = o->batch;
     def.interleave = o->interleave;
@@ -124,6 +166,9 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
         def.lights = in->lights ? in->lights + in->firstShown + first : NULL;
         def.lightCount = count;
     }
+    if (in->ssvp != NULL) {
+        addSsvp(in, parts & PART_INDIRECT ? first : -1, &def);
+    }
     // Of all lights at once, whatever batch is shown.
     const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
     const vplCompensationDef compensation = vplMakeCompensation(job, in);
@@ -137,7 +182,7 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
         result = shadeSamples(job, &def);
     }
     vplJob_EndStage(job, "shading");
-    const bool known = o->show != VPL_SHOW_LIGHT && (needsDirect(o) || vplCompensates(job));
+    const bool known = o->show != VPL_SHOW_LIGHT && (vplNeedsDirect(o) || vplCompensates(job));
     if (result == VPL_SUCCESS && near && known && def.lighting == VPL_LIGHTING_PHYSICAL) {
         vplJob_BeginStage(job, 1);
         result = vplEstimateLoss(job, in, &def);
@@ -190,18 +235,24 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
 {
     const vplRenderOptions* o = &job->options;
     vplResult result = VPL_SUCCESS;
-    if (parts & PART_INDIRECT && needsLights(o)) {
+    if (o->method == VPL_METHOD_SSVP && in->ssvp == NULL) {
+        result = vplSsvp_Begin(job, &in->ssvp);
+    }
+    if (result == VPL_SUCCESS && parts & PART_INDIRECT && vplNeedsLights(o)) {
         vplJob_BeginStage(job, 0.05);
         result = vplMakeVirtualLights(job, in);
         vplJob_EndStage(job, "particles");
     }
-    if (result == VPL_SUCCESS && parts & PART_DIRECT && (needsDirect(o) || vplCompensates(job))) {
+    if (result == VPL_SUCCESS && parts & PART_DIRECT && (vplNeedsDirect(o) || vplCompensates(job))) {
         vplJob_BeginStage(job, 0.15);
         result = vplMakeDirectLight(job, in);
         vplJob_EndStage(job, "shadow map");
     }
     if (result != VPL_SUCCESS) {
         return result;
+    }
+    if (o->show == VPL_SHOW_RSM || o->show == VPL_SHOW_PARABOLOID) {
+        return vplSsvp_ShowMap(job, in->ssvp);
     }
     if (o->show == VPL_SHOW_SHADOW_MAP || o->show == VPL_SHOW_SHADOW_FACTOR) {
         if (in->emitterCount == 0 || in->emitterMaps.maps[0] == NULL) {
@@ -273,6 +324,9 @@ static vplResult step(vplJob* job, bool* doneOut)
     result = cook(job, &r->in, PART_DIRECT | PART_INDIRECT);
     if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && r->in.set != NULL) {
         result = overlay(job, r->in.set);
+    }
+    if (result == VPL_SUCCESS && r->in.ssvp != NULL) {
+        result = vplSsvp_ShowLights(job, r->in.ssvp);
     }
     takeImage(job, &r->base);
     *doneOut = true;

@@ -72,7 +72,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"batch", o->batch, 1, VPL_MAX_LIGHTS},
         {"interleave", o->interleave, 1, VPL_MAX_INTERLEAVE},
         {"particleGeometry", (int)o->particleGeometry, 0, VPL_PARTICLE_GEOMETRY_OBB},
-        {"lightShadows", (int)o->lightShadows, 0, VPL_LIGHT_SHADOWS_AUTO},
+        {"lightShadows", (int)o->lightShadows, 0, VPL_LIGHT_SHADOWS_CLUSTER},
         {"compensation", (int)o->compensation, 0, VPL_COMPENSATION_RAYS},
         {"passes", o->passes, 0, VPL_MAX_PASSES},
         {"lightMapSize", o->lightMapSize, 1, VPL_MAX_SHADOW_MAP},
@@ -89,6 +89,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"paraboloidSize", o->paraboloidSize, 1, VPL_MAX_SHADOW_MAP},
         {"clusterMetric", (int)o->clusterMetric, 0, VPL_CLUSTER_ANGLE},
         {"coherence", (int)o->coherence, 0, VPL_COHERENCE_ON},
+        {"clusterPlace", (int)o->clusterPlace, 0, VPL_CLUSTER_PLACE_MEAN},
         {"secondWeight", (int)o->secondWeight, 0, VPL_SECOND_WEIGHT_PRINTED},
         {"showLight", o->showLight, 0, VPL_MAX_LIGHTS},
     };
@@ -111,6 +112,9 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplRenderOptions.budgetMs and maxError are %g and %g, must be at least 0",
                        o->budgetMs, o->maxError);
+    }
+    if (o->lightShadows == VPL_LIGHT_SHADOWS_CLUSTER && o->method != VPL_METHOD_SSVP) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "only SSVP's lights have clusters to cast shadows by");
     }
     if (!(o->w1 >= 0 && o->w2 >= 0 && isfinite(o->w1) && isfinite(o->w2))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,

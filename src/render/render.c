@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Checks, freezes the scene, counts and times what methods do.
 #include "base/clock.h"
-#include "render/ingredients.h"
+#include "render/ssvp.h"
 
 #include <string.h>
 
@@ -50,12 +50,27 @@ vplLightShadows vplJob_GetLightShadows(const vplJob* job)
     const vplRenderOptions* o = &job->options;
     return o->lightShadows != VPL_LIGHT_SHADOWS_USUAL ? o->lightShadows
            : o->method == VPL_METHOD_KELLER           ? VPL_LIGHT_SHADOWS_AUTO
+           : o->method == VPL_METHOD_SSVP             ? VPL_LIGHT_SHADOWS_CLUSTER
                                                       : VPL_LIGHT_SHADOWS_NONE;
 }
 
 vplLighting vplJob_GetShading(const vplJob* job)
 {
     return job->options.method == VPL_METHOD_KELLER ? VPL_LIGHTING_PHYSICAL : job->options.lighting;
+}
+
+void vplJob_CountLights(vplJob* job, const vplLightSet* set)
+{
+    vplRenderStats* stats = &job->stats;
+    stats->virtualLights += set->lightCount;
+    stats->escaped += set->escaped;
+    stats->rays += set->rays;
+    stats->rayObjectTests += set->rayObjectTests;
+    stats->stepCount = set->stepCount < VPL_MAX_STEPS_REPORTED ? set->stepCount : VPL_MAX_STEPS_REPORTED;
+    for (int i = 0; i < stats->stepCount; i++) {
+        stats->particlesPerStep[i] += set->stepCounts[i];
+        stats->lightsPerStep[i] += set->lightsInStep[i];
+    }
 }
 
 vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
@@ -85,18 +100,8 @@ vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
     if (result != VPL_SUCCESS) {
         return result;
     }
-    const vplLightSet* set = *setOut;
-    vplRenderStats* stats = &job->stats;
-    stats->reflectivity = def.reflectivity;
-    stats->virtualLights += set->lightCount;
-    stats->escaped += set->escaped;
-    stats->rays += set->rays;
-    stats->rayObjectTests += set->rayObjectTests;
-    stats->stepCount = set->stepCount < VPL_MAX_STEPS_REPORTED ? set->stepCount : VPL_MAX_STEPS_REPORTED;
-    for (int i = 0; i < stats->stepCount; i++) {
-        stats->particlesPerStep[i] += set->stepCounts[i];
-        stats->lightsPerStep[i] += set->lightsInStep[i];
-    }
+    job->stats.reflectivity = def.reflectivity;
+    vplJob_CountLights(job, *setOut);
     return VPL_SUCCESS;
 }
 
@@ -158,7 +163,8 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
     vplJob job;
     vplResult result = vplJob_Begin(scene, options, &job);
     if (result == VPL_SUCCESS) {
-        result = vplJob_MakeLights(&job, setOut);
+        result = options->method == VPL_METHOD_SSVP ? vplSsvp_TakeLights(&job, setOut)
+                                                    : vplJob_MakeLights(&job, setOut);
     }
     vplJob_End(&job);
     return result;

@@ -44,6 +44,10 @@ extern const vplMethodFcns vplVirtualLightMethod, vplPathMethod;
 
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
 
+// Whether the picture asks for virtual lights, and whether it does for what light comes without them.
+bool vplNeedsLights(const vplRenderOptions* options);
+bool vplNeedsDirect(const vplRenderOptions* options);
+
 // Freezes the scene, poses what has a path and replaces options that are usual or automatic by those of the method.
 // vplJob_End follows, whether it succeeded or not.
 vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, vplJob* job);
@@ -52,7 +56,7 @@ void vplJob_End(vplJob* job);
 // Formulas of shading: Keller's lights are physical ones, also where particles lose light as printed.
 vplLighting vplJob_GetShading(const vplJob* job);
 
-// The usual shadows replaced by those of the method: none, map, ray or auto.
+// The usual shadows replaced by those of the method: none, map, ray, auto or cluster.
 vplLightShadows vplJob_GetLightShadows(const vplJob* job);
 
 // Times one stage and gives it a share of the progress, up to fraction `to`.
@@ -68,12 +72,18 @@ void vplJob_AddRaster(vplJob* job, const vplRasterStats* stats);
 // The virtual lights as the options ask for them, of pass job->stepsDone.
 vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut);
 
+// Adds the lights to the statistics.
+void vplJob_CountLights(vplJob* job, const vplLightSet* set);
+
 // The lights of such particles, placed as the options say.
 vplResult vplJob_PlaceLights(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
                              const vplParticleDef* particles, vplLightSet** setOut);
 
 // The bound of the geometry term for so many lights a pass, metres.
 float vplJob_MinDistance(const vplJob* job, double lights);
+
+// Whether something is between the eye and a point of the view.
+bool vplView_IsHidden(const vplView* view, const vplGeometry* geometry, vplVec3 position);
 
 // Draws the lights over the picture.
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set);

@@ -30,6 +30,14 @@ vplResult vplUnfoldCubeMap(const vplCubeMap* map, vplImage** imageOut)
     return VPL_SUCCESS;
 }
 
+bool vplView_IsHidden(const vplView* view, const vplGeometry* geometry, vplVec3 position)
+{
+    const vplVec3 way = vplSub(position, view->eye);
+    const float begin = (float)view->near / vplDot(view->forward, way); // where the view begins
+    const vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way), {0, 0}};
+    return vplGeometry_IsOccluded(geometry, &ray, 0.9999f);
+}
+
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set)
 {
     static const vplRgb colours[4] = {
@@ -41,11 +49,7 @@ void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* 
         if (!vplView_Project(view, light->position, &x, &y)) {
             continue;
         }
-        // Lights that the camera cannot see are drawn small. Its view begins at the near plane.
-        vplVec3 way = vplSub(light->position, view->eye);
-        float begin = (float)view->near / vplDot(view->forward, way);
-        vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way), {0, 0}};
-        bool hidden = vplGeometry_IsOccluded(geometry, &ray, 0.9999f);
+        const bool hidden = vplView_IsHidden(view, geometry, light->position); // is drawn small
         vplDrawDisc(image, x, y, hidden ? 0.5f * radius : radius, colours[light->step < 3 ? light->step : 3]);
     }
 }

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// What SSVP makes before it shades, stage by stage.
+#ifndef VPL_RENDER_SSVP_H
+#define VPL_RENDER_SSVP_H
+
+#include "render/ingredients.h"
+
+// What all of it depends on besides the scene: where two are equal byte for byte, so is the rest.
+typedef struct vplSsvpKey {
+    int clusters, firstBounce, secondBounce, paraboloidSize, rsmSize, maxBounces;
+    int clusterMetric, clusterPlace, secondWeight, lightShadows;
+    double w1, w2;
+    uint64_t shift;
+} vplSsvpKey;
+
+// One bounce: lights, and the clusters that see for them.
+typedef struct vplSsvpBounce {
+    vplLightSet* lights;
+    vplLightClusters* clusters;
+    vplParaboloidMaps* maps; // one per cluster; NULL where nobody looks
+} vplSsvpBounce;
+
+// All lights and what sees for them.
+typedef struct vplSsvpLights {
+    vplSsvpKey key;
+    vplSsvpBounce bounce[2];
+    vplLightSet* set; // both bounces, in their order
+    int* clusterOf;   // of each light: index in `shadows`
+    vplParaboloidMap* shadows;
+    int shadowCount; // 0 where lights do not see by clusters
+    vplContext* context;
+} vplSsvpLights;
+
+typedef struct vplSsvpState {
+    vplEmitterDef* emitters; // that the maps were drawn for
+    int emitterCount, rsmSize;
+    vplReflectiveMap** maps; // one per emitter; NULL where it has no power or nobody looks
+    vplSsvpLights* lights;   // NULL before vplSsvp_MakeLights
+    vplContext* context;
+} vplSsvpState;
+
+// Reflective maps of all emitters, unless those of the last frame do. Once per job.
+vplResult vplSsvp_Begin(vplJob* job, vplSsvpState** stateOut);
+
+// The lights of both bounces and what their clusters see, unless they are there.
+vplResult vplSsvp_MakeLights(vplJob* job, vplSsvpState* state);
+
+// The lights alone, for who destroys them.
+vplResult vplSsvp_TakeLights(vplJob* job, vplLightSet** setOut);
+
+// NULL is allowed.
+void vplSsvp_Destroy(vplSsvpState* state);
+
+// Gives the state to the next frame, or destroys it.
+void vplSsvp_End(vplJob* job, vplSsvpState* state);
+
+// The stages for eyes: a map as job->image.
+vplResult vplSsvp_ShowMap(vplJob* job, const vplSsvpState* state);
+
+// The same: squares on job->image, red for first-bounce lights, green for clusters, blue for second-bounce lights.
+vplResult vplSsvp_ShowLights(vplJob* job, const vplSsvpState* state);
+
+#endif
