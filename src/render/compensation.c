@@ -134,6 +134,8 @@ vplResult vplEstimateLoss(vplJob* job, const vplIngredients* in, const vplShadeD
     compensation.hitLights = MIN_HIT_LIGHTS;
     compensation.firstRay = (uint32_t)job->stepsDone * MAX_POINTS;
     def.compensation = &compensation;
+    def.lightRays = def.lightRays || def.lightClusters != NULL;
+    def.lightClusters = NULL;
     const vplResult result =
         vplEstimateClampLoss(job->geometry, &job->view, &def, pointsToAsk(job, in), &loss);
     job->loss.lost += loss.lost;

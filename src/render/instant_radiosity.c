@@ -171,8 +171,9 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
     }
     // Of all lights at once, whatever batch is shown.
     const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
-    const vplCompensationDef compensation = vplMakeCompensation(job, in);
+    vplCompensationDef compensation;
     if (near && vplCompensates(job)) {
+        compensation = vplMakeCompensation(job, in);
         def.compensation = &compensation;
     }
     vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
@@ -182,7 +183,8 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
         result = shadeSamples(job, &def);
     }
     vplJob_EndStage(job, "shading");
-    const bool known = o->show != VPL_SHOW_LIGHT && (vplNeedsDirect(o) || vplCompensates(job));
+    const bool known = o->show != VPL_SHOW_LIGHT && o->history == NULL && // frames have no time for it
+                       (vplNeedsDirect(o) || vplCompensates(job));
     if (result == VPL_SUCCESS && near && known && def.lighting == VPL_LIGHTING_PHYSICAL) {
         vplJob_BeginStage(job, 1);
         result = vplEstimateLoss(job, in, &def);
