@@ -80,6 +80,9 @@ static const char* findProblem(const Info* info, const vplRenderOptions* o)
     if (documented && o->method == VPL_METHOD_PATH) {
         return "the path tracer knows physical lighting only";
     }
+    if (documented && o->method == VPL_METHOD_SSVP) {
+        return "ssvp knows physical lighting only";
+    }
     if (documented && info->emittersOfType[SPOTS] + info->emittersOfType[DIRECTIONALS] > 0) {
         return "documented lighting knows point lights only";
     }
@@ -115,12 +118,39 @@ static void countDraws(const vplRenderOptions* o, Info* info)
     info->lightBytes = info->virtualLights * each + lamps * (int64_t)sizeof(vplShadeLight);
 }
 
+// SSVP draws every object once per face of its reflective maps and once for the camera; what paraboloid maps draw is
+// not counted as draws. Lights that meet nothing are left out later, and flat clusters need one hemisphere.
+static void countSsvp(const vplRenderOptions* o, Info* info)
+{
+    const bool clusters =
+        o->lightShadows == VPL_LIGHT_SHADOWS_USUAL || o->lightShadows == VPL_LIGHT_SHADOWS_CLUSTER;
+    const int bounces = o->maxBounces < 0 || o->maxBounces > 2 ? 2 : o->maxBounces;
+    const int lights[2] = {bounces > 0 ? o->firstBounce : 0, bounces > 1 ? o->secondBounce : 0};
+    const int64_t faces = info->emitters + 5 * info->emittersOfType[POINTS];
+    const int64_t rsm = o->rsmSize > 0 ? o->rsmSize : 1024, map = o->paraboloidSize;
+    int64_t texels = faces * rsm * rsm * 2; // distance and triangle
+    for (int i = 0; i < 2; i++) {
+        const int64_t count = lights[i] < o->clusters ? lights[i] : o->clusters;
+        const bool sampled = i == 0 && lights[1] > 0;
+        info->steps += lights[i] > 0;
+        info->particlesPerStep[i] = lights[i];
+        info->virtualLights += lights[i];
+        texels += clusters || sampled ? count * 2 * map * map * (sampled ? 2 : 1) : 0;
+    }
+    info->drawCalls = info->objects * (faces + o->antialias);
+    info->shadowMapBytes = texels * (int64_t)sizeof(float);
+    info->lightBytes = info->virtualLights * (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight));
+}
+
 static vplResult describeRender(vplContext* context, const Arguments* a, Info* info)
 {
     const vplRenderOptions* o = &a->render;
     info->arguments = a;
     writeNamedOption("--method", a, info->method, sizeof info->method);
     writeNamedOption("--pipeline", a, info->pipeline, sizeof info->pipeline);
+    if (o->accumulation == VPL_ACCUMULATE_USUAL) {
+        strcpy(info->pipeline, o->method == VPL_METHOD_SSVP ? "interleaved" : "deferred");
+    }
     info->reflectivity = o->reflectivity >= 0 ? o->reflectivity : info->reflectance;
     if (o->method == VPL_METHOD_INSTANT_RADIOSITY || o->method == VPL_METHOD_KELLER) {
         vplResult result =
@@ -130,7 +160,9 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
             return result;
         }
     }
-    if (o->method != VPL_METHOD_PATH) {
+    if (o->method == VPL_METHOD_SSVP) {
+        countSsvp(o, info);
+    } else if (o->method != VPL_METHOD_PATH) {
         countDraws(o, info);
     }
     info->pictureBytes = 3 * (int64_t)sizeof(float) * o->width * o->height;
