@@ -16,6 +16,7 @@ typedef enum Family {
     FAMILY_MAP,        // with a shadow map per virtual light
     FAMILY_RAY,        // with a ray per pixel and virtual light
     FAMILY_KELLER,     // Keller's method, whatever its shadows
+    FAMILY_SSVP,
     FAMILY_PATH,
     FAMILY_COUNT
 } Family;

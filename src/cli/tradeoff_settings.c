@@ -19,6 +19,8 @@ const Sweep SWEEPS[] = {
     {"frontier", "--method keller --particles", PARTICLES, NULL},
     {"frontier", "--method keller --pipeline interleaved --particles", PARTICLES, NULL},
     {"frontier", "--method keller --pipeline interleaved --interleave 16 --particles", PARTICLES, NULL},
+    {"frontier", "--method ssvp --clusters", "4 8 16 32 64", NULL},
+    {"frontier", "--method ssvp --clusters 32 --first-bounce 1024 --second-bounce", "1024 4096", NULL},
     {"frontier", "--light-shadows none --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows map --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows ray --min-distance @0.03 --particles", PARTICLES, NULL},
@@ -38,6 +40,18 @@ const Sweep SWEEPS[] = {
     {"passes", "--method keller --pipeline interleaved --interleave 16 --passes", "1 2 4 8", "Passes"},
     {"sampler", "--sampler", "random halton hammersley", "Where particles go"},
     {"placement", "--light-shadows ray --placement", "particles rsm view", "Where lights go"},
+    {"clusters", "--method ssvp --clusters", "4 8 16 32 64 256", "SSVP: clusters that lights see by"},
+    {"bounces", "--method ssvp --max-bounces", "0 1 2", "SSVP: bounces"},
+    {"first-bounce", "--method ssvp --first-bounce", "64 256 1024", "SSVP: first-bounce lights"},
+    {"second-bounce", "--method ssvp --second-bounce", "64 256 1024", "SSVP: second-bounce lights"},
+    {"second-weight", "--method ssvp --second-weight", "cosine printed", "SSVP: weight of the second bounce"},
+    {"cluster-metric", "--method ssvp --cluster-metric", "one-minus printed one-minus-clamped angle",
+     "SSVP: what makes a light far from a cluster"},
+    {"cluster-place", "--method ssvp --cluster-place", "member mean", "SSVP: where clusters look from"},
+    {"paraboloid", "--method ssvp --paraboloid", "64 128 256 512", "SSVP: size of paraboloid maps"},
+    {"rsm-size", "--method ssvp --rsm-size", "256 512 1024 2048", "SSVP: size of the reflective map"},
+    {"ssvp-interleave", "--method ssvp --interleave", "1 2 4 8",
+     "SSVP: lights that neighbouring pixels share"},
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
     {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
     {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
@@ -60,6 +74,7 @@ const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
                                                 "virtual lights with shadow maps",
                                                 "virtual lights with shadow rays",
                                                 "Keller's method",
+                                                "SSVP",
                                                 "path tracing"};
 
 // True if `name` is one of the words in "a,b,c"; NULL names all.
@@ -100,7 +115,7 @@ static Family familyOf(const vplRenderOptions* o)
     case VPL_METHOD_KELLER:
         return FAMILY_KELLER;
     case VPL_METHOD_SSVP:
-        return FAMILY_MAP;
+        return FAMILY_SSVP;
     case VPL_METHOD_INSTANT_RADIOSITY:
         break;
     }
@@ -115,6 +130,7 @@ static double workOf(const vplRenderOptions* o)
     double reflectivity = o->reflectivity >= 0 ? o->reflectivity : 0.7;
     return o->method == VPL_METHOD_PATH     ? o->samplesPerPixel
            : o->method == VPL_METHOD_DIRECT ? 1
+           : o->method == VPL_METHOD_SSVP   ? 200 + o->firstBounce + o->secondBounce + 8 * o->clusters
                                             : 50 + o->particles / (1 - reflectivity);
 }
 
@@ -141,10 +157,29 @@ void writeCommand(const Setting* s, char* words, size_t size)
     writeDifference(&plain, &s->arguments, words, size);
 }
 
+// The same for SSVP, which has samples of maps instead of particles.
+static void forgetParticles(vplRenderOptions* o)
+{
+    const vplRenderOptions plain = vplDefaultRenderOptions();
+    o->lighting = plain.lighting;
+    o->particles = plain.particles;
+    o->reflectivity = plain.reflectivity;
+    o->sampler = plain.sampler;
+    o->bounce = plain.bounce;
+    o->placement = plain.placement;
+    o->particleGeometry = plain.particleGeometry;
+    o->shadowMapSize = plain.shadowMapSize;
+    o->shadow = plain.shadow;
+}
+
 // Options that the method never looks at go back to their defaults: equal settings look equal, and a command to
 // copy says only what matters.
 static void forgetUnused(vplRenderOptions* o)
 {
+    if (o->method == VPL_METHOD_SSVP) {
+        forgetParticles(o);
+        return;
+    }
     if (o->method == VPL_METHOD_INSTANT_RADIOSITY || o->method == VPL_METHOD_KELLER) {
         return;
     }
@@ -185,7 +220,7 @@ static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
         return false;
     }
     s.family = familyOf(&s.arguments.render);
-    if (s.family == FAMILY_DIRECT || s.family == FAMILY_PATH) {
+    if (s.family == FAMILY_DIRECT || s.family == FAMILY_PATH || s.family == FAMILY_SSVP) {
         snprintf(s.change, sizeof s.change, "%s", words); // what it does not use is no difference
     } else {
         writeDifference(t->arguments, &s.arguments, s.change, sizeof s.change);
