@@ -44,6 +44,7 @@
     X(scene) \
     X(sceneChecks) \
     X(shading) \
+    X(ssvp) \
     X(tradeoff) \
     X(visibility)
 // clang-format on

@@ -1,0 +1,475 @@
+// SPDX-License-Identifier: MIT
+// SSVP as a whole: what it must converge to, what its toggles leave, and what happens at its extremes. The stages have
+// suites of their own: rsm, clusters, paraboloid, secondBounce, interleaved.
+#include "scenes.h"
+#include "shapes.h"
+
+#include "math/vec.h"
+
+// ---- scenes
+
+static void aim(vplScene* scene, vplVec3 eye, vplVec3 target)
+{
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = eye;
+    camera.target = target;
+    camera.fovY = 1.2;
+    camera.near = 0.01;
+    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
+}
+
+static void addEmitter(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3 direction,
+                       float intensity)
+{
+    vplEmitterDef emitter = vplDefaultEmitterDef();
+    emitter.type = type;
+    emitter.position = position;
+    emitter.direction = direction;
+    emitter.intensity = (vplRgb){intensity, intensity, intensity};
+    assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
+}
+
+static int addMaterial(vplScene* scene, vplRgb diffuse, float emission)
+{
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = diffuse;
+    material.emission = (vplRgb){emission, emission, emission};
+    int index;
+    assert_int_equal(vplScene_AddMaterial(scene, &material, &index), VPL_SUCCESS);
+    return index;
+}
+
+static void addThing(vplScene* scene, vplObjectType type, int material, vplVec3 place, double turnX,
+                     double turnY, vplVec3 size)
+{
+    vplObjectDef object = vplDefaultObjectDef();
+    object.type = type;
+    object.material = material;
+    object.transform = vplMat4_FromParts(place, (double[3]){turnX, turnY, 0}, size);
+    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+}
+
+static void addBox(vplScene* scene)
+{
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.25f, -0.7f, -0.2f), 0, 0.5, vplVec(0.5f, 0.6f, 0.5f));
+}
+
+// A spot that shines at a wall of the closed cube [-1, 1]^3, in which a box stands.
+static vplScene* spotRoom(vplContext* context, float rho)
+{
+    vplScene* scene = closedCubeScene(context, rho, 0);
+    addBox(scene);
+    aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
+    addEmitter(scene, VPL_EMITTER_SPOT, vplVec(0.5f, 0.4f, 0.3f), vplVec(-1, -0.3f, -0.6f), 10);
+    return scene;
+}
+
+// A box on a floor between a red and a white wall: also the sun reaches it.
+static vplScene* corner(vplContext* context, vplEmitterType type)
+{
+    vplScene* scene = sceneOf(context, 0.7f);
+    const int red = addMaterial(scene, (vplRgb){0.8f, 0.1f, 0.1f}, 0);
+    const vplVec3 size = {2, 2, 1};
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, -1, 0), -VPL_PI / 2, 0, size);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, -1), 0, 0, size);
+    addThing(scene, VPL_OBJECT_QUAD, red, vplVec(-1, 0, 0), 0, VPL_PI / 2, size);
+    addBox(scene);
+    aim(scene, vplVec(1.5f, 0.8f, 2), vplVec(0, -0.4f, 0));
+    addEmitter(scene, type, vplVec(0.5f, 0.7f, 0.6f), vplVec(-1, -0.9f, -0.8f), 10);
+    return scene;
+}
+
+static vplRenderOptions ssvpOptions(int size)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_SSVP;
+    o.width = o.height = size;
+    o.rsmSize = 256;
+    return o;
+}
+
+static double meanOf(const vplImage* image)
+{
+    const size_t values = 3 * (size_t)image->width * (size_t)image->height;
+    double sum = 0;
+    for (size_t i = 0; i < values; i++) {
+        assert_true(isfinite(image->pixels[i]));
+        sum += (double)image->pixels[i];
+    }
+    return sum / (double)values;
+}
+
+// Root of the mean square of the difference, as a share of the second picture's mean.
+static double differenceOf(const vplImage* a, const vplImage* b)
+{
+    const size_t values = 3 * (size_t)a->width * (size_t)a->height;
+    double squares = 0;
+    for (size_t i = 0; i < values; i++) {
+        const double d = (double)a->pixels[i] - (double)b->pixels[i];
+        squares += d * d;
+    }
+    const double mean = meanOf(b);
+    return sqrt(squares / (double)values) / mean;
+}
+
+static double meanOfRender(const vplScene* scene, const vplRenderOptions* o)
+{
+    vplImage* image = renderScene(scene, o, NULL);
+    const double mean = meanOf(image);
+    vplImage_Destroy(image);
+    return mean;
+}
+
+// ---- limits
+
+// Renders with such shadows of virtual lights.
+static vplImage* renderWith(const vplScene* scene, vplRenderOptions o, vplLightShadows shadows)
+{
+    o.lightShadows = shadows;
+    return renderScene(scene, &o, NULL);
+}
+
+// The document: "for the hypothetical scenario where we have as many clusters as VPLs ... the technique is
+// indistinguishable from the original Instant Radiosity". Each light then sees by a map of its own, and what is left is
+// how maps and rays differ at the edges of shadows: the same as with Keller's map per light.
+static void AsManyClustersAsLightsAreInstantRadiosity(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(64);
+    o.show = VPL_SHOW_INDIRECT;
+    o.accumulation = VPL_ACCUMULATE_DEFERRED;
+    o.firstBounce = o.secondBounce = o.clusters = 128;
+    o.paraboloidSize = o.lightMapSize = 512;
+    vplImage* rays = renderWith(scene, o, VPL_LIGHT_SHADOWS_RAY);
+    vplImage* clusters = renderWith(scene, o, VPL_LIGHT_SHADOWS_CLUSTER);
+    vplImage* maps = renderWith(scene, o, VPL_LIGHT_SHADOWS_MAP);
+    vplImage* none = renderWith(scene, o, VPL_LIGHT_SHADOWS_NONE);
+    assertNear(meanOf(clusters) / meanOf(rays), 1, 0.01, "energy", 0);
+    assertNear(differenceOf(clusters, rays), 0, 0.02, "clusters and rays", 0);
+    assertNear(differenceOf(clusters, maps), 0, 0.02, "clusters and maps", 0);
+    assert_true(differenceOf(none, rays) > 0.1); // shadows matter here
+    o.clusters = 8;
+    vplImage* few = renderWith(scene, o, VPL_LIGHT_SHADOWS_CLUSTER);
+    assert_true(differenceOf(few, rays) > 2 * differenceOf(clusters, rays)); // and so does their number
+    vplImage* all[5] = {rays, clusters, maps, none, few};
+    for (int i = 0; i < 5; i++) {
+        vplImage_Destroy(all[i]);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// Light of one and of two bounces is that of the path tracer, which knows no maps, clusters or virtual lights.
+static void EachBounceHasTheLightOfPaths(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    const vplEmitterType types[3] = {VPL_EMITTER_SPOT, VPL_EMITTER_POINT, VPL_EMITTER_DIRECTIONAL};
+    for (int k = 0; k < 3; k++) {
+        vplScene* scene = corner(context, types[k]);
+        for (int bounces = 1; bounces <= 2; bounces++) {
+            vplRenderOptions o = ssvpOptions(32);
+            o.firstBounce = o.secondBounce = 2048;
+            o.clusters = 64;
+            o.minDistance = 0.02f;
+            o.maxBounces = bounces;
+            o.show = VPL_SHOW_INDIRECT;
+            o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+            const double found = meanOfRender(scene, &o);
+            o = vplDefaultRenderOptions();
+            o.width = o.height = 32;
+            o.method = VPL_METHOD_PATH;
+            o.pixel = VPL_PIXEL_CENTRE;
+            o.samplesPerPixel = 512;
+            o.maxBounces = bounces;
+            o.show = VPL_SHOW_INDIRECT;
+            assertNear(found / meanOfRender(scene, &o), 1, 0.02, "energy", 10 * k + bounces);
+        }
+        vplScene_Destroy(scene);
+    }
+    closeTestContext(context);
+}
+
+// The weight that the document leaves out: without it light near the rim of each map counts as much as that along the
+// axis, where it is eight times as bright.
+static void PrintedWeightsMoveTheSecondBounce(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(32);
+    o.show = VPL_SHOW_INDIRECT;
+    vplImage* right = renderScene(scene, &o, NULL);
+    o.secondWeight = VPL_SECOND_WEIGHT_PRINTED;
+    vplImage* printed = renderScene(scene, &o, NULL);
+    assert_true(differenceOf(printed, right) > 0.01);
+    vplImage_Destroy(right);
+    vplImage_Destroy(printed);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// ---- toggles
+
+static void BouncesAreToggled(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(48);
+    vplRenderStats stats[4];
+    vplImage* pictures[4];
+    for (int bounces = 0; bounces <= 3; bounces++) {
+        o.maxBounces = bounces;
+        pictures[bounces] = renderScene(scene, &o, &stats[bounces]);
+    }
+    assert_int_equal(stats[0].virtualLights, 0);
+    assert_true(stats[1].virtualLights > 150);
+    assert_true(stats[2].virtualLights > stats[1].virtualLights + 150);
+    assert_true(stats[3].imageHash == stats[2].imageHash);
+    assert_true(meanOf(pictures[0]) < meanOf(pictures[1]));
+    assert_true(meanOf(pictures[1]) < meanOf(pictures[2]));
+    vplRenderStats other;
+    o.maxBounces = 2;
+    o.secondBounce = 0;
+    vplImage_Destroy(renderScene(scene, &o, &other));
+    assert_true(other.imageHash == stats[1].imageHash);
+    o.maxBounces = -1;
+    o.show = VPL_SHOW_DIRECT;
+    vplImage_Destroy(renderScene(scene, &o, &other));
+    assert_true(other.imageHash == stats[0].imageHash);
+    for (int i = 0; i < 4; i++) {
+        vplImage_Destroy(pictures[i]);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// Every stage can be looked at; what is not there is a sentence.
+static void EveryStageIsShown(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(48);
+    vplRenderStats plain, stats;
+    vplImage_Destroy(renderScene(scene, &o, &plain));
+    for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_DENOISED; show++) {
+        o.show = (vplShow)show;
+        assert_true(meanOf(renderScene(scene, &o, &stats)) > 0);
+        assert_true(stats.imageHash != plain.imageHash);
+    }
+    o.show = VPL_SHOW_PARABOLOID;
+    o.showLight = 8;
+    vplImage* image = NULL;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "cluster 8 does not exist, there are 8"));
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static void BitsDependOnNeitherThreadsNorInstructions(void** state)
+{
+    (void)state;
+    static const int workers[4] = {1, 2, 3, 7};
+    uint64_t first = 0;
+    for (int i = 0; i < 4 + VPL_ISA_COUNT; i++) {
+        vplContext* context = i < 4 ? openTestContext(workers[i]) : openIsaContext(2, (vplIsa)(i - 4));
+        if (context == NULL) {
+            continue;
+        }
+        vplScene* scene = spotRoom(context, 0.6f);
+        const vplRenderOptions o = ssvpOptions(80);
+        vplRenderStats stats;
+        vplImage_Destroy(renderScene(scene, &o, &stats));
+        first = i == 0 ? stats.imageHash : first;
+        assert_true(stats.imageHash == first);
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+}
+
+// ---- frames
+
+static uint64_t hashOfFrame(vplScene* scene, vplRenderOptions o, vplHistory* history, double frame)
+{
+    vplRenderStats stats;
+    o.history = history;
+    o.frame = frame;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    return stats.imageHash;
+}
+
+// Where the light stands still, so do its lights and clusters; where patterns are new for each frame, they do not.
+static void StillLightsKeepTheirBits(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(32);
+    vplHistory* history;
+    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
+    const uint64_t alone = hashOfFrame(scene, o, NULL, 0);
+    assert_true(hashOfFrame(scene, o, history, 0) == alone);
+    assert_true(hashOfFrame(scene, o, history, 1) == alone);
+    o.coherence = VPL_COHERENCE_OFF;
+    assert_true(hashOfFrame(scene, o, history, 2) != alone);
+    assert_true(hashOfFrame(scene, o, history, 2) == hashOfFrame(scene, o, NULL, 2));
+    o.coherence = VPL_COHERENCE_ON;
+    o.clusters = 5; // changes what is kept
+    const uint64_t five = hashOfFrame(scene, o, NULL, 0);
+    vplHistory_Destroy(history);
+    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
+    assert_true(hashOfFrame(scene, o, history, 0) == five);
+    vplHistory_Destroy(history);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// ---- extremes
+
+static void assertFinite(const vplScene* scene, vplRenderOptions o)
+{
+    vplImage* image = renderScene(scene, &o, NULL);
+    assert_true(meanOf(image) >= 0);
+    vplImage_Destroy(image);
+}
+
+// X092, X105: fewer lights than clusters, and one; a map of one texel.
+static void FewerLightsThanClustersAndMapsOfOneTexel(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(32);
+    const int counts[4] = {0, 1, 2, 7};
+    for (int i = 0; i < 4; i++) {
+        o.firstBounce = o.secondBounce = counts[i];
+        o.clusters = 32;
+        assertFinite(scene, o);
+    }
+    o = ssvpOptions(32);
+    o.rsmSize = 1;
+    assertFinite(scene, o);
+    o.paraboloidSize = 1;
+    assertFinite(scene, o);
+    o.interleave = 16;
+    assertFinite(scene, o);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// X108: the cube's walls facing each other, and a ball from within: centroids hang in mid-air, normals cancel.
+static void CentroidsInMidAirLightTheBallTheyAreIn(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    Shape ball = icosphere(3);
+    const vplMat4 identity = vplMat4_Identity();
+    addShape(scene, &ball, false, &identity);
+    freeShape(&ball);
+    aim(scene, vplVec(0.2f, 0.1f, 0.3f), vplVec(0, 0, -1));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.1f, 0.2f, 0), vplVec(0, -1, 0), 1);
+    for (int place = 0; place <= 1; place++) {
+        vplRenderOptions o = ssvpOptions(32);
+        o.show = VPL_SHOW_INDIRECT;
+        o.clusters = 2;
+        o.clusterPlace = (vplClusterPlace)place;
+        vplImage* clusters = renderScene(scene, &o, NULL);
+        o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+        vplImage* rays = renderScene(scene, &o, NULL);
+        assert_true(meanOf(clusters) > 0.9 * meanOf(rays)); // nothing is in the way inside a ball
+        vplImage_Destroy(clusters);
+        vplImage_Destroy(rays);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+static void BlackScenesAndLightsThatSeeNothingStayBlack(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* black = spotRoom(context, 0);
+    vplRenderOptions o = ssvpOptions(32);
+    o.show = VPL_SHOW_INDIRECT;
+    assertNear(meanOfRender(black, &o), 0, 0, "black walls", 0);
+    vplScene_Destroy(black);
+    vplScene* dark = closedCubeScene(context, 0.5f, 0);
+    aim(dark, vplVec(0, 0, 0.9f), vplVec(0, 0, -1));
+    assertNear(meanOfRender(dark, &o), 0, 0, "no light", 0);
+    addEmitter(dark, VPL_EMITTER_SPOT, vplVec(0, 0, 0), vplVec(0, 1, 0), 0);
+    assertNear(meanOfRender(dark, &o), 0, 0, "light of no power", 0);
+    addEmitter(dark, VPL_EMITTER_SPOT, vplVec(9, 0, 0), vplVec(1, 0, 0), 5);
+    assertNear(meanOfRender(dark, &o), 0, 0, "light that sees nothing", 0);
+    vplScene_Destroy(dark);
+    closeTestContext(context);
+}
+
+// Surfaces that emit have no reflective map: particles take their share of the first bounce.
+static void LampsAreLightsToo(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = closedCubeScene(context, 0.6f, 0);
+    addBox(scene);
+    const int lamp = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 3);
+    addThing(scene, VPL_OBJECT_QUAD, lamp, vplVec(0, 0.99f, 0), VPL_PI / 2, 0, vplVec(1, 1, 1));
+    aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
+    vplRenderOptions o = ssvpOptions(32);
+    o.firstBounce = 4096;
+    o.maxBounces = 1;
+    o.show = VPL_SHOW_INDIRECT;
+    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.minDistance = 0.05f;
+    const double found = meanOfRender(scene, &o);
+    o = vplDefaultRenderOptions();
+    o.width = o.height = 32;
+    o.method = VPL_METHOD_PATH;
+    o.pixel = VPL_PIXEL_CENTRE;
+    o.samplesPerPixel = 1024;
+    o.maxBounces = 1;
+    o.show = VPL_SHOW_INDIRECT;
+    assertNear(found / meanOfRender(scene, &o), 1, 0.03, "energy", 0);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// What SSVP cannot do is said.
+static void WhatIsNotPossibleIsASentence(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = spotRoom(context, 0.5f);
+    vplImage* image = NULL;
+    vplRenderOptions o = ssvpOptions(16);
+    o.lighting = VPL_LIGHTING_DOCUMENTED;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "physical"));
+    o = ssvpOptions(16);
+    o.accumulation = VPL_ACCUMULATE_MULTIPASS;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_true(strlen(takeMessage()) > 0);
+    o = vplDefaultRenderOptions();
+    o.width = o.height = 16;
+    o.lightShadows = VPL_LIGHT_SHADOWS_CLUSTER;
+    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "clusters"));
+    assert_null(image);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+TEST_SUITE(ssvp, cmocka_unit_test(AsManyClustersAsLightsAreInstantRadiosity),
+           cmocka_unit_test(EachBounceHasTheLightOfPaths),
+           cmocka_unit_test(PrintedWeightsMoveTheSecondBounce), cmocka_unit_test(BouncesAreToggled),
+           cmocka_unit_test(EveryStageIsShown), cmocka_unit_test(BitsDependOnNeitherThreadsNorInstructions),
+           cmocka_unit_test(StillLightsKeepTheirBits),
+           cmocka_unit_test(FewerLightsThanClustersAndMapsOfOneTexel),
+           cmocka_unit_test(CentroidsInMidAirLightTheBallTheyAreIn),
+           cmocka_unit_test(BlackScenesAndLightsThatSeeNothingStayBlack), cmocka_unit_test(LampsAreLightsToo),
+           cmocka_unit_test(WhatIsNotPossibleIsASentence));
