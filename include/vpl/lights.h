@@ -52,21 +52,17 @@ typedef struct vplReflectiveMapDef {
 
 vplReflectiveMapDef vplDefaultReflectiveMapDef(void);
 
-// The surfaces that an emitter lights first. Planes of one value per texel, [face][row from the top][column]; all
-// 0, and distance +infinity, where nothing is. Faces: a point emitter has the six of a cube map; a spot's one fits
-// its outer angle; a directional emitter's one is a parallel view of all geometry. Read only.
+// The surfaces that an emitter lights first: per texel how far away they are and which triangle it is; what else there
+// is to know of a texel is found when it is asked for. [face][row from the top][column]. Faces: a point emitter has the
+// six of a cube map; a spot's one fits its outer angle; a directional emitter's one is a parallel view of all geometry.
+// Read only.
 typedef struct vplReflectiveMap {
     vplEmitterDef emitter;
     int size, faceCount;
-    const float* distance; // metres from the emitter; directional: from where its view begins
     const float*
-        position[3]; // x, y, z, metres: where the texel's centre meets the triangle's plane; at an edge up to
-                     // 1/256 texel outside of it
-    const float* normal[3]; // unit, interpolated on smooth objects, on the side that is lit
-    const float* albedo[3]; // diffuse reflectance, [0, 1]
-    const float*
-        flux[3]; // W: incident, what the emitter sends through the texel; it leaves times albedo. All texels
-                 // that meet something: the emitter's power as far as it meets something
+        depth; // of the texel's centre along the face's forward, from `origin` on, in `unit`s; +infinity where
+               // nothing is
+    float unit;              // metres; directional: the length of the view
     const int32_t* triangle; // index in the geometry, -1 where nothing is
     vplVec3 right[6], up[6],
         forward[6];   // of each face: unit; right, up and forward are left-handed, as a cube's
@@ -76,10 +72,7 @@ typedef struct vplReflectiveMap {
     vplContext* context;
 } vplReflectiveMap;
 
-// Draws every object once per face. Solid angles are exact and a spot's falloff is taken at texels' centres, so a
-// closed room gets a point emitter's power to rounding and a spot's with up to 1/size^2 missing; at silhouettes texels
-// are in or out. Source: Dachsbacher and Stamminger, Reflective Shadow Maps, I3D 2005. Departs: flux is what
-// arrives, so that it adds up whatever the colours.
+// Draws every object once per face. Source: Dachsbacher and Stamminger, Reflective Shadow Maps, I3D 2005.
 vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflectiveMapDef* def,
                                   vplProgressFcn* progress, void* user, vplReflectiveMap** mapOut);
 
@@ -96,15 +89,20 @@ bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geo
 
 // What a texel sees.
 typedef struct vplReflectiveTexel {
-    float distance;   // as in the map
-    vplVec3 position; // metres: where the ray through the texel's centre meets the triangle
-    vplVec3 normal;   // unit, interpolated on smooth objects, on the side that is lit
-    vplRgb albedo;    // diffuse reflectance, [0, 1]
-    vplRgb flux;      // W: incident, what the emitter sends through the texel
-    int triangle;     // index in the geometry
+    float distance; // metres from the emitter; directional: from where its view begins
+    vplVec3
+        position; // metres: where the ray through the texel's centre meets the triangle; where that is at an edge
+                  // and up to 1/256 texel outside, a hair inside
+    vplVec3 normal; // unit, interpolated on smooth objects, on the side that is lit
+    vplRgb albedo;  // diffuse reflectance, [0, 1]
+    vplRgb flux;    // W: incident, what the emitter sends through the texel; it leaves times albedo
+    int triangle;   // index in the geometry
 } vplReflectiveTexel;
 
-// False where nothing is.
+// False where nothing is. Solid angles are exact and a spot's falloff is taken at texels' centres, so the flux of all
+// texels of a closed room is a point emitter's power to rounding and a spot's with up to 1/size^2 missing; at
+// silhouettes texels are in or out. Departs from Dachsbacher and Stamminger: flux is what arrives, so that it adds up
+// whatever the colours.
 bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                                vplReflectiveTexel* texelOut);
 

@@ -86,8 +86,10 @@ typedef struct vplPipeline {
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
     float
-        distanceScale;  // not 0: depth is the distance from the eye of a view of 90 by 90 degrees times this,
-                        // instead of z/w; for draws without fragment shader and depthCompare LESS; default 0
+        distanceScale; // not 0: depth is the distance from the eye of a view of 90 by 90 degrees times this,
+                       // instead of z/w; for draws without fragment shader and depthCompare LESS; default 0
+    // Of half the angle of that view. 1 (default): 90 degrees. 0: the distance is that along the view axis.
+    float distanceTangent;
     bool writesDepth;   // the fragment shader replaces depth, and the test uses that; default false
     bool needsW;        // shaders read w; without it only varyings bring w along; default false
     bool readsPlanes;   // the fragment shader sees the framebuffer and blends by itself; default false
@@ -120,7 +122,10 @@ typedef struct vplFramebuffer {
     int width, height; // pixels, [1, VPL_MAX_IMAGE_SIZE]
     vplPlane depth;
     vplPlane planes[VPL_MAX_PLANES];
-    int planeCount;      // [0, VPL_MAX_PLANES]
+    int planeCount; // [0, VPL_MAX_PLANES]
+    // Out, one per pixel: the triangle that wrote depth last, counted through the meshes in the order in which they are
+    // first drawn; -1: none. Not with ownerTest. NULL (default): not asked for.
+    int32_t* triangles;
     size_t scratchBytes; // private memory of a tile, zeroed at its start; for tile tasks
     uint32_t cookie;     // set by vplDefaultFramebuffer
 } vplFramebuffer;

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Based on: Carsten Dachsbacher and Marc Stamminger, Reflective Shadow Maps, I3D 2005: the scene seen from the light,
-// each texel with position, normal and flux. Departs: a point light has the six faces of a cube; flux is what
-// arrives, and the reflectance is beside it; which triangle it is is kept, too, so that particles can go on from there.
-#include "lights/rsm.h"
+// each texel with position, normal and flux. Departs: a point light has the six faces of a cube; only depth and the
+// triangle are drawn, as fast as depth alone, and the rest is found for the texels that are asked for: SSVP asks for
+// 256 of a million (see rsm_texels.c).
+#include <vpl/lights.h>
 
 #include "base/context.h"
-#include "base/isa.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "visibility/drawing.h"
 
-VPL_KERNEL_TABLE(WRITE, vplFragmentFcn, vplWriteReflective);
-
-enum { RSM_COOKIE = 0x56504c62, VALUES = 13 }; // planes of the map: 12 of floats and the triangles
+enum { RSM_COOKIE = 0x56504c62 };
 
 vplReflectiveMapDef vplDefaultReflectiveMapDef(void)
 {
@@ -21,11 +19,8 @@ vplReflectiveMapDef vplDefaultReflectiveMapDef(void)
 
 // ---- the view
 
-typedef struct Reach {
-    float near, far; // metres
-} Reach;
-
-static Reach aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
+// Returns what is nearer than it sees, metres.
+static float aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
 {
     const vplEmitterDef* e = &map->emitter;
     map->origin = e->position;
@@ -45,12 +40,12 @@ static Reach aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
             map->forward[i] = frame.forward;
         }
     }
-    const float far = vplFarthestVertex(g, map->origin);
-    return (Reach){far * 0x1p-20f, far};
+    map->unit = 1;
+    return vplFarthestVertex(g, map->origin) * 0x1p-20f;
 }
 
 // The box around all vertices, along the light and across. A hair wider, so that its edges are within the view.
-static Reach aimParallel(vplReflectiveMap* map, const vplGeometry* g)
+static void aimParallel(vplReflectiveMap* map, const vplGeometry* g)
 {
     map->forward[0] = vplNormalize(map->emitter.direction);
     vplFrame(map->forward[0], &map->right[0], &map->up[0]);
@@ -77,64 +72,55 @@ static Reach aimParallel(vplReflectiveMap* map, const vplGeometry* g)
     map->origin = vplAdd(centre, vplAdd(vplScale((float)middle[0], axes[0]),
                                         vplAdd(vplScale((float)middle[1], axes[1]),
                                                vplScale((float)(middle[2] - half[2]), axes[2]))));
-    return (Reach){0, (float)(2 * half[2])};
+    map->unit = (float)(2 * half[2]);
 }
+
+// One object on one face.
+typedef struct ObjectUniforms {
+    const vplReflectiveMap* map;
+    int face;
+    float near;               // metres; parallel: 0
+    const vplVec3* positions; // of the object's vertices
+} ObjectUniforms;
 
 static void shadeVertices(const void* uniforms, int first, int count, const vplVertices* out)
 {
-    const vplRsmUniforms* u = uniforms;
+    const ObjectUniforms* u = uniforms;
     const vplReflectiveMap* m = u->map;
     const bool parallel = m->emitter.type == VPL_EMITTER_DIRECTIONAL;
     const float acrossScale = (float)(1 / m->extent[0]), upScale = (float)(1 / m->extent[1]);
+    const float inverseFar = 1 / m->unit;
     for (int i = 0; i < count; i++) {
-        const vplVec3 at = u->positions[first + i], p = vplSub(at, m->origin);
+        const vplVec3 p = vplSub(u->positions[first + i], m->origin);
         const float depth = vplDot(m->forward[u->face], p);
         out->x[i] = acrossScale * vplDot(m->right[u->face], p);
         out->y[i] = upScale * vplDot(m->up[u->face], p);
         out->w[i] = parallel ? 1 : depth;
-        out->z[i] = parallel ? depth * u->inverseFar : depth - u->near; // no far plane: everything counts
-        out->varying[0][i] = at.x;
-        out->varying[1][i] = at.y;
-        out->varying[2][i] = at.z;
-    }
-    for (int i = 0; u->normals != NULL && i < count; i++) {
-        out->varying[3][i] = u->normals[first + i].x;
-        out->varying[4][i] = u->normals[first + i].y;
-        out->varying[5][i] = u->normals[first + i].z;
+        out->z[i] = parallel ? depth * inverseFar : depth - u->near; // no far plane: everything counts
     }
 }
 
 // ---- drawing
 
-static vplResult recordFace(const vplReflectiveMap* map, const vplGeometry* g, Reach reach, int face,
-                            vplRsmUniforms* uniforms, const vplMesh* meshes, vplRaster** rasterOut)
+// In parallel views z/w is linear and what is wanted. In others it would crowd where everything is: depths are those
+// along the axis.
+static vplResult recordFace(const vplReflectiveMap* map, const vplGeometry* g, float near, int face,
+                            ObjectUniforms* uniforms, const vplMesh* meshes, vplRaster** rasterOut)
 {
     vplFramebuffer framebuffer = vplDefaultFramebuffer(map->size, map->size);
     const size_t first = (size_t)face * (size_t)map->size * (size_t)map->size;
     framebuffer.depth.clear = INFINITY;
-    framebuffer.planeCount = VPL_RSM_PLANES;
-    framebuffer.planes[VPL_RSM_TRIANGLE].pixels = (float*)map->triangle + first;
-    for (int k = 0; k < 3; k++) {
-        framebuffer.planes[VPL_RSM_POSITION + k].pixels = (float*)map->position[k] + first;
-        framebuffer.planes[VPL_RSM_NORMAL + k].pixels = (float*)map->normal[k] + first;
-    }
+    framebuffer.depth.pixels = (float*)map->depth + first;
+    framebuffer.triangles = (int32_t*)map->triangle + first;
     vplResult result = vplRaster_Create(g->context, &framebuffer, rasterOut);
     for (int i = 0; i < g->objectCount && result == VPL_SUCCESS; i++) {
-        const vplGeometryObject* o = &g->objects[i];
-        vplRsmUniforms* u = &uniforms[face * g->objectCount + i];
-        *u = (vplRsmUniforms){map,
-                              face,
-                              reach.near,
-                              1 / reach.far,
-                              g->positions + o->firstVertex,
-                              o->smooth ? g->shadingNormals + o->firstVertex : NULL,
-                              o->firstTriangle};
+        ObjectUniforms* u = &uniforms[face * g->objectCount + i];
+        *u = (ObjectUniforms){map, face, near, g->positions + g->objects[i].firstVertex};
         vplPipeline pipeline = vplDefaultPipeline();
         pipeline.vertex = shadeVertices;
-        pipeline.vertexUniforms = pipeline.fragmentUniforms = u;
-        pipeline.varyingCount = o->smooth ? 6 : 3;
-        pipeline.fragment = WRITE[g->context->isa];
-        pipeline.writesDepth = pipeline.needsW = map->emitter.type != VPL_EMITTER_DIRECTIONAL;
+        pipeline.vertexUniforms = u;
+        pipeline.distanceScale = map->emitter.type == VPL_EMITTER_DIRECTIONAL ? 0 : 1;
+        pipeline.distanceTangent = 0;
         result = vplRaster_Draw(*rasterOut, &meshes[i], &pipeline);
     }
     return result;
@@ -144,9 +130,13 @@ static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFc
 {
     vplContext* context = g->context;
     const size_t objects = (size_t)g->objectCount;
-    const Reach reach =
-        map->emitter.type == VPL_EMITTER_DIRECTIONAL ? aimParallel(map, g) : aimPerspective(map, g);
-    vplRsmUniforms* uniforms = vplAlloc(context, objects * (size_t)map->faceCount, sizeof *uniforms);
+    float near = 0;
+    if (map->emitter.type == VPL_EMITTER_DIRECTIONAL) {
+        aimParallel(map, g);
+    } else {
+        near = aimPerspective(map, g);
+    }
+    ObjectUniforms* uniforms = vplAlloc(context, objects * (size_t)map->faceCount, sizeof *uniforms);
     vplMesh* meshes = vplAlloc(context, objects, sizeof *meshes);
     vplRaster* rasters[6] = {NULL};
     vplRasterStats stats[6];
@@ -155,7 +145,7 @@ static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFc
         meshes[i] = vplMeshOfObject(g, i);
     }
     for (int face = 0; face < map->faceCount && result == VPL_SUCCESS; face++) {
-        result = recordFace(map, g, reach, face, uniforms, meshes, &rasters[face]);
+        result = recordFace(map, g, near, face, uniforms, meshes, &rasters[face]);
     }
     if (result == VPL_SUCCESS) {
         result = vplRaster_RunAll(rasters, map->faceCount, progress, user, stats);
@@ -172,22 +162,6 @@ static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFc
 }
 
 // ---- the map
-
-// All planes lie in one block, the triangles first.
-static bool allocate(vplReflectiveMap* map)
-{
-    const size_t texels = (size_t)map->faceCount * (size_t)map->size * (size_t)map->size;
-    float* block = vplAlloc(map->context, VALUES * texels, sizeof *block);
-    map->triangle = (int32_t*)block;
-    for (int k = 0; block != NULL && k < 3; k++) {
-        map->position[k] = block + (1 + (size_t)k) * texels;
-        map->normal[k] = block + (4 + (size_t)k) * texels;
-        map->albedo[k] = block + (7 + (size_t)k) * texels;
-        map->flux[k] = block + (10 + (size_t)k) * texels;
-    }
-    map->distance = block ? vplAlloc(map->context, texels, sizeof *block) : NULL;
-    return map->distance != NULL;
-}
 
 vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflectiveMapDef* def,
                                   vplProgressFcn* progress, void* user, vplReflectiveMap** mapOut)
@@ -209,10 +183,10 @@ vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflecti
     map->emitter = def->emitter;
     map->size = def->size;
     map->faceCount = def->emitter.type == VPL_EMITTER_POINT ? 6 : 1;
-    vplResult result = allocate(map) ? draw(map, geometry, progress, user) : VPL_OUT_OF_MEMORY;
-    if (result == VPL_SUCCESS) {
-        result = vplReflectiveMap_Finish(map, geometry);
-    }
+    const size_t texels = (size_t)map->faceCount * (size_t)map->size * (size_t)map->size;
+    map->depth = vplAlloc(context, texels, sizeof *map->depth);
+    map->triangle = map->depth ? vplAlloc(context, texels, sizeof *map->triangle) : NULL;
+    vplResult result = map->triangle ? draw(map, geometry, progress, user) : VPL_OUT_OF_MEMORY;
     if (result != VPL_SUCCESS) {
         vplReflectiveMap_Destroy(map);
         return result;
@@ -225,7 +199,7 @@ void vplReflectiveMap_Destroy(vplReflectiveMap* map)
 {
     if (map != NULL) {
         vplFree(map->context, (void*)map->triangle);
-        vplFree(map->context, (void*)map->distance);
+        vplFree(map->context, (void*)map->depth);
         vplFree(map->context, map);
     }
 }

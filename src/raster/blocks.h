@@ -16,9 +16,9 @@ typedef struct Draw {
     const vplPipeline* pipeline;
     const vplShaded* shaded;
     const Batch* batch;
-    int place, owner; // of the triangle: in its batch, and its name among owners
+    int place, owner; // of the triangle: in its batch, and its name in state->owner
     Shares* shares;   // of the triangle, once they are needed
-    float texel;      // of a view of 90 by 90 degrees, whose half is 1
+    float texel;      // of a view whose half is 1
     bool hasShares, keep, depthOnly, distances, rejects, tightens;
 } Draw;
 
@@ -124,13 +124,34 @@ static inline int32_t* countersOf(vplTileState* state, int at)
     return state->fragmentLanes[at / VPL_LANES % VPL_COUNTERS];
 }
 
+// Owners for keepNearer: the depths are still those of before.
+static inline void keepOwner(vplTileState* state, int owner, int at, const float drawn[VPL_LANES],
+                             bool filled)
+{
+    float depth[VPL_LANES];
+    int32_t covered[VPL_LANES], owners[VPL_LANES];
+    memcpy(depth, state->depth + at, sizeof depth);
+    memcpy(covered, state->block.covered, sizeof covered);
+    memcpy(owners, state->owner + at, sizeof owners);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const int32_t kept = owners[l];
+        const int32_t passed = (filled ? -1 : covered[l]) & (drawn[l] < depth[l] ? -1 : 0);
+        owners[l] = passed ? owner : kept;
+    }
+    memcpy(state->owner + at, owners, sizeof owners);
+}
+
 // The end of draws that write depth only: the nearer of two depths stays. `filled`: all lanes are covered. Lanes
 // are copied first, so that the compiler need not ask whether arrays overlap.
-static inline void keepNearer(vplTileState* state, int at, const float drawn[VPL_LANES], bool filled)
+static inline void keepNearer(vplTileState* state, int owner, int at, const float drawn[VPL_LANES],
+                              bool filled)
 {
     int32_t* counts = countersOf(state, at);
     float depth[VPL_LANES];
     int32_t covered[VPL_LANES];
+    if (state->owner != NULL) {
+        keepOwner(state, owner, at, drawn, filled);
+    }
     memcpy(depth, state->depth + at, sizeof depth);
     memcpy(covered, state->block.covered, sizeof covered);
     for (int l = 0; l < VPL_LANES; l++) {
@@ -142,20 +163,20 @@ static inline void keepNearer(vplTileState* state, int at, const float drawn[VPL
     memcpy(state->depth + at, depth, sizeof depth);
 }
 
-static inline void drawDepth(vplTileState* state, const Setup* s, double z, int at, bool filled)
+static inline void drawDepth(const Draw* d, const Setup* s, double z, int at, bool filled)
 {
     float drawn[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
         drawn[l] = clampDepth(z + s->laneZ[l]);
     }
-    keepNearer(state, at, drawn, filled);
+    keepNearer(d->state, d->owner, at, drawn, filled);
 }
 
 // Distance from the eye. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow Map";
 // departs: w is turned into a distance by the texel's own direction.
 static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
 {
-    const float scale = d->pipeline->distanceScale, texel = d->texel;
+    const float scale = d->pipeline->distanceScale, tangent = d->pipeline->distanceTangent, texel = d->texel;
     x += d->state->tile.x;
     y += d->state->tile.y;
     float drawn[VPL_LANES], share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES];
@@ -163,12 +184,12 @@ static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled
     shareOf(d->shares, 1, x, y, share1);
     shareOf(d->shares, 2, x, y, share2);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float s = ((float)x + (float)(l & 3) + 0.5f) * texel - 1;
-        const float t = 1 - ((float)y + (float)(l >> 2) + 0.5f) * texel;
+        const float s = tangent * (((float)x + (float)(l & 3) + 0.5f) * texel - 1);
+        const float t = tangent * (1 - ((float)y + (float)(l >> 2) + 0.5f) * texel);
         const float w = 1 / (share0[l] + share1[l] + share2[l]);
         drawn[l] = w * sqrtf(1 + s * s + t * t) * scale;
     }
-    keepNearer(d->state, at, drawn, filled);
+    keepNearer(d->state, d->owner, at, drawn, filled);
 }
 
 static inline void writeDepth(vplTileState* state, int owner, int at)
@@ -252,9 +273,9 @@ static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup
     }
     if (d->depthOnly) {
         if (filled) {
-            drawDepth(state, s, z, block * VPL_LANES, true);
+            drawDepth(d, s, z, block * VPL_LANES, true);
         } else {
-            drawDepth(state, s, z, block * VPL_LANES, false);
+            drawDepth(d, s, z, block * VPL_LANES, false);
         }
         return;
     }

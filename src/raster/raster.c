@@ -12,6 +12,7 @@ vplPipeline vplDefaultPipeline(void)
     vplPipeline pipeline = {0};
     pipeline.depthWrite = true;
     pipeline.planeMask = UINT32_MAX;
+    pipeline.distanceTangent = 1;
     pipeline.cookie = PIPELINE_COOKIE;
     return pipeline;
 }
@@ -171,6 +172,10 @@ static vplResult addCommand(vplRaster* raster, vplCommand command)
 vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
 {
     vplResult result = checkDraw(raster->context, mesh, pipeline);
+    if (result == VPL_SUCCESS && pipeline->ownerTest && raster->framebuffer.triangles != NULL) {
+        return vplFail(raster->context, VPL_INVALID_ARGUMENT,
+                       "vplPipeline.ownerTest is set, must not be with vplFramebuffer.triangles");
+    }
     if (result != VPL_SUCCESS) {
         return result;
     }

@@ -181,12 +181,14 @@ typedef struct vplTileState {
     vplTile tile;
     float* depth;    // the tile's
     float* farthest; // per block, square by square: no depth in it is larger
-    int32_t* owner;  // index of the triangle that wrote depth last, -1: none; NULL where nobody asks
-    int* meshStart;  // [shadedCount + 1] into the tile's bin
-    char* kept;      // vplKeptBlocks of `keptStride` bytes, at most one per pixel
-    int* keptStart;  // [shadedCount] first kept block of a mesh,
-    int* keptEnd;    // behind its last,
-    int* keptEpoch;  // and the epoch they were made in, -1: none
+    // The triangle that wrote depth last: index of its ref; where the framebuffer wants triangles, its number among all
+    // meshes'. -1: none. NULL where nobody asks.
+    int32_t* owner;
+    int* meshStart; // [shadedCount + 1] into the tile's bin
+    char* kept;     // vplKeptBlocks of `keptStride` bytes, at most one per pixel
+    int* keptStart; // [shadedCount] first kept block of a mesh,
+    int* keptEnd;   // behind its last,
+    int* keptEpoch; // and the epoch they were made in, -1: none
     int keptCount;
     size_t keptStride;
     int64_t fragments;

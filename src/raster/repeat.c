@@ -64,7 +64,8 @@ static void findRows(vplRaster* r, int* last)
 vplResult vplFindPasses(vplRaster* raster)
 {
     int epoch = 0;
-    raster->keepsOwners = raster->keepsPasses = raster->hasTasks = false;
+    raster->keepsOwners = raster->framebuffer.triangles != NULL;
+    raster->keepsPasses = raster->hasTasks = false;
     for (int i = 0; i < raster->commandCount; i++) {
         vplCommand* c = &raster->commands[i];
         const vplPipeline* p = c->shaded < 0 ? NULL : &raster->pipelines[c->pipeline];

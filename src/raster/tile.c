@@ -146,6 +146,10 @@ static void clearTile(const vplRaster* r, const vplTile* tile)
             }
         }
     }
+    for (int y = 0; f->triangles && y < tile->height; y++) {
+        memset(f->triangles + (size_t)(tile->y + y) * (size_t)f->width + tile->x, 0xff,
+               (size_t)tile->width * sizeof *f->triangles);
+    }
 }
 
 static void runTile(void* data, int number, int worker)
@@ -176,6 +180,9 @@ static void runTile(void* data, int number, int worker)
     memset(state->keptEpoch, 0xff, (size_t)r->shadedCount * sizeof(int));
     runCommands(r, state, bin, worker);
     storePlane(r, tile, &f->depth, state->depth);
+    if (f->triangles != NULL) {
+        storePlane(r, tile, &(vplPlane){.pixels = (float*)f->triangles}, (const float*)state->owner);
+    }
     for (int k = 0; k < f->planeCount; k++) {
         storePlane(r, tile, &f->planes[k], tile->planes[k]);
     }

@@ -141,7 +141,8 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
               .rejects = byPlane,
               .tightens = byPlane && p->depthWrite && !p->ownerTest};
     d.depthOnly = p->fragment == NULL && p->distanceScale == 0 && p->depthCompare == VPL_DEPTH_LESS &&
-                  p->depthWrite && !p->ownerTest && state->owner == NULL;
+                  p->depthWrite && !p->ownerTest;
+    const bool names = raster->framebuffer.triangles != NULL;
     state->block.scratch = state->tile.scratch;
     for (int first = 0; first < count; first += BATCH) {
         const int some = count - first < BATCH ? count - first : BATCH;
@@ -154,12 +155,12 @@ void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const
             testTiny(&batch, &tiny);
         }
         for (int k = 0; k < some; k++) {
-            d.owner = list[first + k];
+            d.owner = names ? d.shaded->firstTriangle + batch.primitive[k] : list[first + k];
             d.place = k;
             d.hasShares = false;
             state->block.primitive = batch.primitive[k];
             if (anyTiny && isTiny(&batch, k)) {
-                state->fragments += drawTiny(&tiny, k, state->depth);
+                state->fragments += drawTiny(&tiny, k, state->depth, state->owner, d.owner);
             } else if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != (batch.clockwise[k] != 0)) {
                 drawTriangle(&d);
             }

@@ -63,8 +63,8 @@ static inline void testTiny(const Batch* t, Tiny* tiny)
     }
 }
 
-// Draws triangle k of the batch, depth only. Returns how many fragments passed.
-static inline int drawTiny(const Tiny* tiny, int k, float* depth)
+// Draws triangle k of the batch, depth and (unless `owners` is NULL) owner only. Returns how many fragments passed.
+static inline int drawTiny(const Tiny* tiny, int k, float* depth, int32_t* owners, int32_t owner)
 {
     int passed = 0;
     for (int i = 0; i < TINY_PIXELS; i++) {
@@ -73,6 +73,9 @@ static inline int drawTiny(const Tiny* tiny, int k, float* depth)
             const float drawn = tiny->depth[i][k], kept = *there;
             *there = drawn < kept ? drawn : kept;
             passed += drawn < kept;
+            if (owners != NULL && drawn < kept) {
+                owners[tiny->element[i][k]] = owner;
+            }
         }
     }
     return passed;
