@@ -13,6 +13,7 @@
     X(bench) \
     X(bounds) \
     X(chooseShadows) \
+    X(clusters) \
     X(compensation) \
     X(emission) \
     X(emitters) \

@@ -247,6 +247,36 @@ static vplResult renderCuts(vplContext* context, const char* path, int variant)
     return result;
 }
 
+static vplResult findClusters(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplVirtualLight lights[20] = {{.weight = 1}};
+    for (int i = 0; i < 20; i++) {
+        lights[i].position.x = (float)(i * i);
+    }
+    const vplLightSet set = {.lights = lights, .lightCount = 20, .particleCount = 20, .context = context};
+    vplClusterDef def = vplDefaultClusterDef();
+    def.count = variant ? 30 : 4;
+    vplLightClusters *clusters = NULL, *next = NULL;
+    vplResult result = vplFindClusters(&set, &def, &clusters);
+    if (result == VPL_SUCCESS) {
+        def.last = clusters;
+        result = vplFindClusters(&set, &def, &next);
+    }
+    vplLightClusters_Destroy(next);
+    vplLightClusters_Destroy(clusters);
+    return result;
+}
+
+static void EveryFailedAllocationOfClustersIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(findClusters, "png", variant, false);
+        failEveryAllocation(findClusters, "png", variant, true);
+    }
+}
+
 static void EveryFailedAllocationOfLightcutsIsReported(void** state)
 {
     (void)state;
@@ -473,6 +503,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),

@@ -260,9 +260,11 @@ typedef struct vplClusterDef {
     double w2;               // >= 0; default 0.4
     int maxIterations; // [0, 10000]; default 32: the mean minimises no metric of these, and the printed one cycles
     const int*
-        seeds; // indices of `count` lights that clusters start from; NULL (default): spread over the list
+        seeds; // indices of `count` lights that clusters start from; NULL (default): lights that are far
+               // from each other, or all lights, in their order, where there are no more than clusters
     const struct vplLightClusters*
-        last;        // where clusters start instead: those of the last frame; NULL (default)
+        last;        // where clusters start instead: those of the last frame that have lights;
+                     // others at lights that are far from them; NULL (default)
     uint32_t cookie; // set by vplDefaultClusterDef
 } vplClusterDef;
 
@@ -274,7 +276,10 @@ typedef struct vplLightCluster {
     vplRgb flux;      // sum of its lights' flux, W (as weighted: what the picture gets)
     int lightCount;
     int nearest; // index of its light nearest to the mean (by the metric), -1 where it has none
-    bool flat;   // all its lights lie on one plane and have its normal: none shines behind it
+    bool
+        flat; // none of its lights shines behind it: all lie within 1e-4 of the diagonal of the box around all
+              // lights (and 4 roundings of float) of the plane through position with this normal, and no
+              // normal differs by more than 1e-4; true where it has none
 } vplLightCluster;
 
 typedef enum vplClusterEnd {
@@ -289,13 +294,14 @@ typedef struct vplLightClusters {
     int count;
     const int* of; // of each light: its cluster
     int lightCount;
-    int iterations; // until the assignment repeated
+    int iterations; // times that clusters moved until the assignment repeated
     int emptyCount; // clusters without lights: they keep their places
     vplClusterEnd end;
     vplContext* context;
 } vplLightClusters;
 
-// K-means in double precision; equal distances go to the lowest index. Lights of object -1 must not be among them.
+// K-means in double precision; equal distances go to the lowest index. Lights of object -1 must not be among them. 256
+// lights take 0.1 ms in 8 clusters, 0.2 ms in 32; the time grows with lights times clusters times iterations.
 // Source: Aranha, Macedo and Apolinario, section II-A, equation 2; Dong et al., Real-time Indirect Illumination with
 // Clustered Visibility, VMV 2009. Departs: the normal term, which as printed keeps equal normals apart.
 vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def,

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// Lloyd's two steps in turn: each light to its nearest cluster, each cluster to the mean of its lights.
+// The mean minimises none of these distances, so that the search may come back to an earlier assignment: it is noticed,
+// and the search ends.
+// A light looks only at clusters that have moved since it looked last, unless its own went away from it: the same
+// answer in less time.
+#include "lights/clusters.h"
+
+#include "base/context.h"
+#include "base/hash.h"
+#include "math/scalar.h"
+
+#include <math.h>
+#include <string.h>
+
+// Fewer pairs of a light and a cluster take less time than waking threads: 0.1 ms.
+static const double FEW_PAIRS = 1 << 15;
+
+// ---- distance
+
+double vplClusterDistance_Below(const vplClusterDistance* distance, const vplClusterPoint* a,
+                                const vplClusterPoint* b, double best)
+{
+    const double dx = a->p[0] - b->p[0], dy = a->p[1] - b->p[1], dz = a->p[2] - b->p[2];
+    const double along = a->n[0] * b->n[0] + a->n[1] * b->n[1] + a->n[2] * b->n[2];
+    const double cosine = along < -1 ? -1 : along > 1 ? 1 : along; // so that no term is below 0
+    double term = 1 - cosine;                                      // no angle is less than that
+    if (distance->metric == VPL_CLUSTER_PRINTED) {
+        term = cosine > 0 ? cosine : 0;
+    } else if (distance->metric == VPL_CLUSTER_ONE_MINUS_CLAMPED) {
+        term = cosine > 0 ? 1 - cosine : 1;
+    }
+    // No root, and no angle, where the square tells that it is too far. 1e-12 is more than all roundings.
+    const double square = distance->w1 * distance->w1 * (dx * dx + dy * dy + dz * dz);
+    const double left = best - distance->w2 * term;
+    if (!(left >= 0 && square <= left * left * (1 + 1e-12))) {
+        return INFINITY;
+    }
+    if (distance->metric == VPL_CLUSTER_ANGLE) {
+        term = vplAcos(cosine);
+    }
+    return distance->w1 * sqrt(dx * dx + dy * dy + dz * dz) + distance->w2 * term;
+}
+
+// ---- each light to its nearest cluster
+
+// Equal distances go to the lowest index.
+static void offer(const vplClusterSearch* s, const vplClusterPoint* point, int cluster, double* best,
+                  int* winner)
+{
+    const double d = vplClusterDistance_Below(&s->distance, point, &s->centres[cluster], *best);
+    if (d < *best || (d == *best && cluster < *winner)) {
+        *best = d;
+        *winner = cluster;
+    }
+}
+
+static void lookAtAll(const vplClusterSearch* s, const vplClusterPoint* point, double* best, int* winner)
+{
+    for (int j = 0; j < s->count; j++) {
+        offer(s, point, j, best, winner);
+    }
+}
+
+// Clusters that stayed are not nearer than they were, and its own was the nearest: unless that went away, only those
+// that moved can win.
+static int findCluster(const vplClusterSearch* s, int light, double* best)
+{
+    const vplClusterPoint* point = &s->points[light];
+    int winner = s->of[light];
+    *best = s->reached[light];
+    if (s->moved[winner]) {
+        const double now = vplClusterDistance_Below(&s->distance, point, &s->centres[winner], INFINITY);
+        const bool away = now > *best;
+        *best = now;
+        if (away) {
+            lookAtAll(s, point, best, &winner);
+            return winner;
+        }
+    }
+    for (int k = 0; k < s->movedCount; k++) {
+        offer(s, point, s->movedList[k], best, &winner);
+    }
+    return winner;
+}
+
+static void assignSome(void* data, int task, int worker)
+{
+    (void)worker;
+    vplClusterSearch* s = data;
+    const int first = task * VPL_CLUSTER_TASK;
+    const int end = vplMini(first + VPL_CLUSTER_TASK, s->lightCount);
+    bool changed = false;
+    for (int i = first; i < end; i++) {
+        int cluster = 0;
+        double best = INFINITY;
+        if (s->first) {
+            lookAtAll(s, &s->points[i], &best, &cluster);
+        } else {
+            cluster = findCluster(s, i, &best);
+        }
+        changed = changed || cluster != s->of[i];
+        s->of[i] = cluster;
+        s->reached[i] = best;
+    }
+    s->changed[task] = changed;
+}
+
+// Whether a light went to another cluster.
+static bool assign(vplClusterSearch* s)
+{
+    if ((double)s->lightCount * s->count < FEW_PAIRS) {
+        for (int i = 0; i < s->taskCount; i++) {
+            assignSome(s, i, 0);
+        }
+    } else {
+        vplParallelFor(s->context, s->taskCount, assignSome, s);
+    }
+    bool changed = false;
+    for (int i = 0; i < s->taskCount; i++) {
+        changed = changed || s->changed[i];
+    }
+    s->first = false;
+    return changed;
+}
+
+// ---- each cluster to the mean of its lights
+
+// Of a sum of unit normals that is next to nothing only roundings are left: they point nowhere.
+static void pointAlong(double n[3], const double sum[3], int count)
+{
+    const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    for (int k = 0; k < 3 && length > 1e-6 * count; k++) {
+        n[k] = sum[k] / length;
+    }
+}
+
+static void update(vplClusterSearch* s)
+{
+    memset(s->tallies, 0, (size_t)s->count * sizeof *s->tallies);
+    for (int i = 0; i < s->lightCount; i++) {
+        vplClusterTally* tally = &s->tallies[s->of[i]];
+        for (int k = 0; k < 3; k++) {
+            tally->sum.p[k] += s->points[i].p[k];
+            tally->sum.n[k] += s->points[i].n[k];
+        }
+        tally->lightCount++;
+    }
+    s->movedCount = 0;
+    for (int j = 0; j < s->count; j++) {
+        const vplClusterTally* tally = &s->tallies[j];
+        vplClusterPoint mean = s->centres[j];
+        for (int k = 0; k < 3 && tally->lightCount > 0; k++) {
+            mean.p[k] = tally->sum.p[k] / tally->lightCount;
+        }
+        pointAlong(mean.n, tally->sum.n, tally->lightCount);
+        s->moved[j] = memcmp(&mean, &s->centres[j], sizeof mean) != 0;
+        s->centres[j] = mean;
+        if (s->moved[j]) {
+            s->movedList[s->movedCount++] = j;
+        }
+    }
+}
+
+// ---- both in turn
+
+static uint64_t hashAssignment(const vplClusterSearch* s)
+{
+    return vplHashWords(0, (const uint32_t*)s->of, (size_t)s->lightCount);
+}
+
+static bool wasThere(const vplClusterSearch* s, int iterations)
+{
+    for (int i = 0; i < iterations; i++) {
+        if (s->hashes[i] == s->hashes[iterations]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+void vplClusterSearch_Run(vplClusterSearch* s, vplLightClusters* clusters)
+{
+    s->first = true;
+    assign(s);
+    s->hashes[0] = hashAssignment(s);
+    clusters->end = VPL_CLUSTERS_STOPPED;
+    while (clusters->end == VPL_CLUSTERS_STOPPED && clusters->iterations < s->maxIterations) {
+        update(s);
+        clusters->iterations++;
+        if (!assign(s)) {
+            clusters->end = VPL_CLUSTERS_CONVERGED;
+            continue;
+        }
+        s->hashes[clusters->iterations] = hashAssignment(s);
+        if (wasThere(s, clusters->iterations)) {
+            clusters->end = VPL_CLUSTERS_CYCLE;
+        }
+    }
+    update(s); // where the last assignment was another one
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// Where clusters start: at lights far from each other. Samples of a reflective map come sorted by a coordinate of the
+// map; starting from every n/C-th of them, the distances of all lights from their clusters add up to more: in the end
+// 1.36 times as much in cornell-spot with 8 clusters, 1.06 in sibenik-spot, 1.05 in sponza-sun, 1.00 in conference-spot
+// and 1.01 in the mean of 200 random rooms; with 32 clusters 1.27, 1.21, 1.09, 1.10 and 1.04.
+// Based on: Gonzalez, Clustering to Minimize the Maximum Intercluster Distance, Theoretical Computer Science 1985.
+// Departs: the first is the light that is nearest to the mean.
+#include "lights/clusters.h"
+
+#include <math.h>
+
+static int findMiddle(const vplClusterSearch* s, const vplClusterDistance* distance)
+{
+    vplClusterPoint mean = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < s->lightCount; i++) {
+        for (int k = 0; k < 3; k++) {
+            mean.p[k] += s->points[i].p[k] / s->lightCount;
+            mean.n[k] += s->points[i].n[k] / s->lightCount;
+        }
+    }
+    int middle = 0;
+    double best = INFINITY;
+    for (int i = 0; i < s->lightCount; i++) {
+        const double d = vplClusterDistance_Below(distance, &s->points[i], &mean, best);
+        if (d < best) {
+            best = d;
+            middle = i;
+        }
+    }
+    return middle;
+}
+
+static int findFarthest(const vplClusterSearch* s)
+{
+    int farthest = 0;
+    for (int i = 1; i < s->lightCount; i++) {
+        farthest = s->reached[i] > s->reached[farthest] ? i : farthest;
+    }
+    return farthest;
+}
+
+static void spreadOut(vplClusterSearch* s, int placed)
+{
+    vplClusterDistance distance = s->distance;
+    if (distance.metric == VPL_CLUSTER_PRINTED) { // by which no light is near to itself
+        distance.metric = VPL_CLUSTER_ONE_MINUS;
+    }
+    if (placed == 0) {
+        s->centres[placed++] = s->points[findMiddle(s, &distance)];
+    }
+    for (int i = 0; i < s->lightCount; i++) {
+        s->reached[i] = INFINITY;
+    }
+    for (int j = 0; j < s->count; j++) {
+        if (j >= placed) {
+            s->centres[j] = s->points[findFarthest(s)];
+        }
+        for (int i = 0; i < s->lightCount; i++) {
+            const double d =
+                vplClusterDistance_Below(&distance, &s->points[i], &s->centres[j], s->reached[i]);
+            s->reached[i] = d < s->reached[i] ? d : s->reached[i];
+        }
+    }
+}
+
+static vplClusterPoint pointOf(const vplLightCluster* c)
+{
+    return (vplClusterPoint){{(double)c->position.x, (double)c->position.y, (double)c->position.z},
+                             {(double)c->normal.x, (double)c->normal.y, (double)c->normal.z}};
+}
+
+void vplClusterSearch_Place(vplClusterSearch* s, const vplClusterDef* def)
+{
+    const vplLightClusters* last = def->last;
+    int placed = 0;
+    for (int j = 0; last != NULL && j < last->count && placed < s->count; j++) {
+        if (last->clusters[j].lightCount > 0) {
+            s->centres[placed++] = pointOf(&last->clusters[j]);
+        }
+    }
+    if (last == NULL &&
+        (def->seeds != NULL || s->count == s->lightCount)) { // as many as lights: each its own
+        for (; placed < s->count; placed++) {
+            s->centres[placed] = s->points[def->seeds != NULL ? def->seeds[placed] : placed];
+        }
+    }
+    if (placed < s->count) {
+        spreadOut(s, placed);
+    }
+}
