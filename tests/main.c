@@ -13,6 +13,7 @@
     X(bench) \
     X(bounds) \
     X(chooseShadows) \
+    X(clusterShadows) \
     X(compensation) \
     X(emission) \
     X(emitters) \
@@ -43,6 +44,7 @@
     X(rsm) \
     X(scene) \
     X(sceneChecks) \
+    X(shadeOutputs) \
     X(shading) \
     X(tradeoff) \
     X(visibility)
