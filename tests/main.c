@@ -13,6 +13,7 @@
     X(bench) \
     X(bounds) \
     X(chooseShadows) \
+    X(clusterShadows) \
     X(clusters) \
     X(compensation) \
     X(emission) \
@@ -44,6 +45,7 @@
     X(rsm) \
     X(scene) \
     X(sceneChecks) \
+    X(shadeOutputs) \
     X(shading) \
     X(ssvp) \
     X(tradeoff) \

@@ -1,94 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Interleaved shading against deferred shading and against its definition, written out pixel by pixel.
-#include "shapes.h"
+#include "stage.h"
 
 #include "math/vec.h"
 
 #include <stdlib.h>
 
 enum { MAX_SIDE = VPL_MAX_INTERLEAVE };
-
-// A step in a floor, a wall behind it, and nothing beyond: normals that differ, and planes that do.
-static vplGeometry* stage(vplContext* context)
-{
-    vplScene* scene = sceneOf(context, 0.5f);
-    const vplVec3 places[3] = {{0, 0, 0}, {0.7f, 0.5f, 0.3f}, {0, 1, -2}},
-                  sizes[3] = {{4, 4, 1}, {1, 1, 1}, {4, 2, 1}};
-    for (int i = 0; i < 3; i++) {
-        vplObjectDef object = vplDefaultObjectDef();
-        const double rotate[3] = {i < 2 ? -VPL_PI / 2 : 0, 0, 0};
-        object.transform = vplMat4_FromParts(places[i], rotate, sizes[i]);
-        assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    }
-    return freezeScene(scene);
-}
-
-static vplView viewOf(vplVec3 eye, int width, int height)
-{
-    vplCameraDef camera = vplDefaultCameraDef();
-    camera.eye = eye;
-    camera.target = vplVec(0, 0.2f, 0);
-    return vplView_Create(&camera, width, height);
-}
-
-static vplShadeLight* rollLights(int count, uint64_t seed)
-{
-    Dice dice = {seed, 0};
-    vplShadeLight* lights = malloc((size_t)count * sizeof *lights);
-    for (int i = 0; i < count; i++) {
-        const vplVec3 p = rollVec(&dice, 2);
-        lights[i] = (vplShadeLight){
-            p.x, 3 + 0.5f * p.y, p.z, 0, -1, 0, roll(&dice, 0, 1), roll(&dice, 0, 1), roll(&dice, 0, 1)};
-    }
-    return lights;
-}
-
-static vplShadeDef defOf(const vplShadeLight* lights, int count, int side)
-{
-    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.3f};
-    def.accumulation = side > 0 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
-    def.interleave = side;
-    def.lights = lights;
-    def.lightCount = count;
-    return def;
-}
-
-static vplImage* shadeStage(const vplGeometry* g, const vplView* view, const vplShadeDef* def)
-{
-    vplImage* image;
-    assert_int_equal(vplImage_Create(g->context, view->width, view->height, &image), VPL_SUCCESS);
-    assert_int_equal(vplShadeView(g, view, def, NULL, NULL, image, NULL), VPL_SUCCESS);
-    return image;
-}
-
-// What a pixel shows: distance along the view axis, the place from the eye, the normal.
-typedef struct Look {
-    double w, p[3], n[3];
-} Look;
-
-static Look* lookAt(const vplGeometry* g, const vplView* view)
-{
-    vplShadeDef def = defOf(NULL, 0, 0);
-    def.output = VPL_OUTPUT_DEPTH;
-    vplImage* depth = shadeStage(g, view, &def);
-    def.output = VPL_OUTPUT_NORMALS;
-    vplImage* normals = shadeStage(g, view, &def);
-    Look* looks = malloc((size_t)(view->width * view->height) * sizeof *looks);
-    for (int i = 0; i < view->width * view->height; i++) {
-        const double x = ((i % view->width + 0.5) / view->width * 2 - 1) / view->scaleX;
-        const double y = (1 - (i / view->width + 0.5) / view->height * 2) / view->scaleY;
-        for (int k = 0; k < 3; k++) {
-            const double f = (double)vplComponent(view->forward, k), r = (double)vplComponent(view->right, k),
-                         u = (double)vplComponent(view->up, k);
-            looks[i].w = (double)depth->pixels[3 * i];
-            looks[i].p[k] = looks[i].w * (f + x * r + y * u);
-            looks[i].n[k] = (double)normals->pixels[3 * i + k];
-        }
-    }
-    vplImage_Destroy(depth);
-    vplImage_Destroy(normals);
-    return looks;
-}
 
 static bool oneSurface(const Look* a, const Look* b)
 {
@@ -111,7 +29,7 @@ static vplImage** classPictures(const vplGeometry* g, const vplView* view, const
         for (int i = c; i < count; i += side * side) {
             own[ownCount++] = lights[i];
         }
-        const vplShadeDef def = defOf(own, ownCount, 0);
+        const vplShadeDef def = stageDef(own, ownCount, 0);
         pictures[c] = shadeStage(g, view, &def);
     }
     free(own);
@@ -140,11 +58,11 @@ static double expected(vplImage** pictures, const Look* looks, int x, int y, int
 
 static void checkDefinition(const vplGeometry* g, int width, int height, int side, int lightCount)
 {
-    const vplView view = viewOf(vplVec(1, 2, 5), width, height);
+    const vplView view = stageView(vplVec(1, 2, 5), width, height);
     vplShadeLight* lights = rollLights(lightCount, (uint64_t)side);
     Look* looks = lookAt(g, &view);
     vplImage** pictures = classPictures(g, &view, lights, lightCount, side);
-    const vplShadeDef def = defOf(lights, lightCount, side);
+    const vplShadeDef def = stageDef(lights, lightCount, side);
     vplImage* image = shadeStage(g, &view, &def);
     int lit = 0;
     for (int i = 0; i < 3 * width * height; i++) {
@@ -185,17 +103,17 @@ static void FarLightsOnAFloorAreThoseOfDeferredShading(void** state)
     enum { COUNT = 9 * 256, WIDTH = 100, HEIGHT = 80 };
     vplContext* context = openTestContext(2);
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 100, 0.5f);
-    const vplView view = viewOf(vplVec(0, 3, 0.5f), WIDTH, HEIGHT);
+    const vplView view = stageView(vplVec(0, 3, 0.5f), WIDTH, HEIGHT);
     vplShadeLight* lights = rollLights(COUNT, 1);
     for (int i = 0; i < COUNT; i++) {
         lights[i].py = 2000 + 100 * lights[i].py;
         lights[i].r *= 1e6f;
     }
-    vplShadeDef def = defOf(lights, COUNT, 0);
+    vplShadeDef def = stageDef(lights, COUNT, 0);
     vplImage* deferred = shadeStage(g, &view, &def);
     static const int sides[] = {2, 3, 4, 8, 16};
     for (int k = 0; k < 5; k++) {
-        def = defOf(lights, COUNT, sides[k]);
+        def = stageDef(lights, COUNT, sides[k]);
         vplImage* image = shadeStage(g, &view, &def);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
             const int x = i / 3 % WIDTH, y = i / 3 / WIDTH, border = sides[k] - 1;
@@ -220,16 +138,16 @@ static void NoLightLeaksOverAnEdge(void** state)
     enum { SIZE = 96, COUNT = 200 };
     vplContext* context = openTestContext(2);
     vplGeometry* g = stage(context);
-    const vplView view = viewOf(vplVec(0, 2, 5), SIZE, SIZE);
+    const vplView view = stageView(vplVec(0, 2, 5), SIZE, SIZE);
     vplShadeLight* lights = rollLights(COUNT, 3);
     for (int i = 0; i < COUNT; i++) {
         lights[i].pz = -2.5f; // behind the wall, above the floor
     }
-    vplShadeDef def = defOf(lights, COUNT, 0);
+    vplShadeDef def = stageDef(lights, COUNT, 0);
     def.output = VPL_OUTPUT_NORMALS;
     vplImage* normals = shadeStage(g, &view, &def);
     for (int side = 2; side <= MAX_SIDE; side *= 2) {
-        def = defOf(lights, COUNT, side);
+        def = stageDef(lights, COUNT, side);
         vplImage* image = shadeStage(g, &view, &def);
         int walls = 0, floors = 0;
         for (int i = 0; i < SIZE * SIZE; i++) {
@@ -364,10 +282,10 @@ static void SizesOfBlocksOutOfRangeAreRefused(void** state)
         assert_true(image == NULL && strstr(takeMessage(), "vplRenderOptions.interleave is ") != NULL);
     }
     vplGeometry* g = stage(context);
-    const vplView view = viewOf(vplVec(0, 2, 5), 4, 4);
+    const vplView view = stageView(vplVec(0, 2, 5), 4, 4);
     assert_int_equal(vplImage_Create(context, 4, 4, &image), VPL_SUCCESS);
     for (int i = 0; i < 3; i++) {
-        vplShadeDef def = defOf(NULL, 0, 4);
+        vplShadeDef def = stageDef(NULL, 0, 4);
         def.interleave = wrong[i];
         assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_INVALID_ARGUMENT);
         assert_true(strstr(takeMessage(), "vplShadeDef.interleave is ") != NULL);

@@ -19,7 +19,7 @@ vplResult vplRecordDeferred(const vplShading* shading, vplRaster* raster)
     if (result != VPL_SUCCESS) {
         return result;
     }
-    const bool light = shading->def->output == VPL_OUTPUT_RADIANCE;
+    const bool light = vplShowsLight(shading->def->output);
     vplTileFcn* lights = shading->interleave != NULL  ? kernels.interleaved
                          : shading->lightcuts != NULL ? kernels.cut
                                                       : kernels.light;

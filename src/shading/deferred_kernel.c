@@ -2,7 +2,7 @@
 // What a tile of the G-buffer shows: light, depth, normals or a shadow factor. Lit in squares of 4 x 4 blocks,
 // whose points, sums and lights stay in the first cache.
 #include "base/isa.h"
-#include "shading/gbuffer.h"
+#include "shading/add_lights.h"
 
 enum { SQUARE = 4, SQUARES = VPL_TILE_BLOCKS / SQUARE, SQUARE_BLOCKS = SQUARE * SQUARE };
 

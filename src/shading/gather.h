@@ -35,6 +35,7 @@ typedef struct vplInterleave {
     vplShadeDef def; // with the lights in the order of their classes
     vplShadeLight* lights;
     vplHalfMap* shadows;  // NULL where lights have no maps
+    int* clusters;        // NULL where lights have no clusters
     float* planes;        // VPL_GATHER_PLANES of pixelCount values
     vplGatherRoom* rooms; // one per worker
     size_t pixelCount;

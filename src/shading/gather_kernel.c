@@ -344,7 +344,9 @@ static void gatherRun(const vplShading* s, const vplGatherRoom* room, const Part
     }
     float* pixels =
         s->image->pixels + 3 * ((size_t)(part->y + row) * (size_t)s->image->width + (size_t)(part->x + x));
-    reflect(s, triangles, uniform, seen, mean);
+    if (!s->irradiance) {
+        reflect(s, triangles, uniform, seen, mean);
+    }
     addToPixels(mean, pixels, part->width - x);
 }
 

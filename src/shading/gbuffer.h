@@ -14,7 +14,11 @@ typedef struct vplBlock {
     vplReflector reflector; // where all lanes show one triangle
     bool same;
     double sums[3][VPL_LANES];
+    int cluster; // whose visibility was asked for last; none: VPL_NO_CLUSTER
+    float visible[VPL_LANES];
 } vplBlock;
+
+enum { VPL_NO_CLUSTER = -2 };
 
 // Normals of the triangles that a block shows, and which of them are smooth.
 static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LANES], vplSurface* plane,
@@ -76,6 +80,7 @@ static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int el
         b->same = true;
         return false;
     }
+    b->cluster = VPL_NO_CLUSTER;
     vplReadPlane(tile, VPL_PLANE_POSITION, element, b->points.triangle, b->surface.px);
     vplReadPlane(tile, VPL_PLANE_POSITION + 1, element, b->points.triangle, b->surface.py);
     vplReadPlane(tile, VPL_PLANE_POSITION + 2, element, b->points.triangle, b->surface.pz);
@@ -150,70 +155,37 @@ static inline void vplStartSums(vplBlock* b, float part[3][VPL_LANES])
 static inline void vplLightOnce(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
 {
     vplTileSums* tileSums = tile->scratch;
-    _Alignas(64) float part[3][VPL_LANES];
-    vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
+    _Alignas(64) float part[3][VPL_LANES] = {{0}};
+    if (!s->irradiance) {
+        vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
+    }
     vplAddNearLightOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
                            tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part, &tileSums->shadowRays);
     vplStartSums(b, part);
 }
 
-static inline void vplAddGroup(vplBlock* b, float part[3][VPL_LANES])
+static inline void vplWriteSums(const vplShading* s, const vplTile* tile, int block,
+                                double sums[3][VPL_LANES])
 {
+    float values[3][VPL_LANES];
     for (int c = 0; c < 3; c++) {
         for (int l = 0; l < VPL_LANES; l++) {
-            b->sums[c][l] += (double)part[c][l];
+            values[c][l] = (float)sums[c][l];
         }
     }
+    vplWriteBlock(s, tile, block, values);
 }
 
-// Virtual lights first .. first + count - 1, without those that face away from all blocks or the other way round.
-static inline void vplAddKeptLights(const vplShading* s, vplBlock* blocks, const int* lit, int litCount,
-                                    const vplBounds* bounds, int first, int count)
-{
-    int32_t keep[VPL_LIGHT_GROUP];
-    vplShadeLight kept[VPL_LIGHT_GROUP];
-    int keptCount = 0;
-    s->cull(bounds, s->columns, first, count, keep);
-    for (int i = 0; i < count; i++) {
-        kept[keptCount] = s->def->lights[first + i];
-        keptCount += keep[i];
-    }
-    for (int i = 0; keptCount > 0 && i < litCount; i++) {
-        _Alignas(64) float part[3][VPL_LANES] = {{0}};
-        s->lightKernel(&blocks[lit[i]].surface, kept, keptCount, s->inverseBound, part);
-        vplAddGroup(&blocks[lit[i]], part);
-    }
-}
-
-static inline void vplAddShadowedLights(const vplShading* s, vplBlock* b, int first, int count, int64_t* rays)
-{
-    _Alignas(64) float part[3][VPL_LANES] = {{0}};
-    vplIndirectIrradiance(s, &b->points, first, count, part, rays);
-    vplAddGroup(b, part);
-}
-
-// Virtual lights first .. first + count - 1, in groups. Without bounds none is left out.
-static inline void vplAddLights(const vplShading* s, vplBlock* blocks, const int* lit, int litCount,
-                                const vplBounds* bounds, int first, int count, int64_t* rays)
-{
-    for (const int end = first + count; first < end; first += VPL_LIGHT_GROUP) {
-        const int group = end - first < VPL_LIGHT_GROUP ? end - first : VPL_LIGHT_GROUP;
-        if (bounds != NULL) {
-            vplAddKeptLights(s, blocks, lit, litCount, bounds, first, group);
-            continue;
-        }
-        for (int i = 0; i < litCount; i++) {
-            vplAddShadowedLights(s, &blocks[lit[i]], first, group, rays);
-        }
-    }
-}
-
-// Sums become radiance and pixels of block `block` of the tile.
+// Sums become radiance, where that is asked for, and pixels of block `block` of the tile.
 static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
 {
     float radiance[3][VPL_LANES] = {{0}};
     if (b->same && b->points.triangle[0] < 0) {
         vplWriteBlock(s, tile, block, radiance);
+        return;
+    }
+    if (s->irradiance) {
+        vplWriteSums(s, tile, block, b->sums);
         return;
     }
     if (b->same) {

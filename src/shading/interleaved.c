@@ -12,7 +12,8 @@
 
 #include <string.h>
 
-// Lights i with equal i mod classCount side by side.
+// Lights i with equal i mod classCount side by side: of lights in the order of their clusters each class has some of
+// every cluster, in that order.
 static vplResult sortLights(vplShading* s, vplInterleave* w)
 {
     vplContext* context = s->geometry->context;
@@ -20,7 +21,9 @@ static vplResult sortLights(vplShading* s, vplInterleave* w)
     const int count = def->lightCount, classCount = w->side * w->side;
     w->lights = vplAlloc(context, (size_t)count, sizeof *w->lights);
     w->shadows = def->lightShadows ? vplAlloc(context, (size_t)count, sizeof *w->shadows) : NULL;
-    if (w->lights == NULL || (def->lightShadows != NULL && w->shadows == NULL)) {
+    w->clusters = def->lightClusters ? vplAlloc(context, (size_t)count, sizeof *w->clusters) : NULL;
+    if (w->lights == NULL || (def->lightShadows != NULL && w->shadows == NULL) ||
+        (def->lightClusters != NULL && w->clusters == NULL)) {
         return VPL_OUT_OF_MEMORY;
     }
     int at = 0;
@@ -30,11 +33,15 @@ static vplResult sortLights(vplShading* s, vplInterleave* w)
             if (w->shadows != NULL) {
                 w->shadows[at] = def->lightShadows[i];
             }
+            if (w->clusters != NULL) {
+                w->clusters[at] = def->lightClusters[i];
+            }
         }
     }
     w->def = *def;
     w->def.lights = w->lights;
     w->def.lightShadows = w->shadows;
+    w->def.lightClusters = w->clusters;
     return VPL_SUCCESS;
 }
 
@@ -68,12 +75,31 @@ vplResult vplOpenInterleave(vplShading* shading, vplFramebuffer* framebuffer)
     return result;
 }
 
+// What pixels have before they share it, in the part of the picture of one task.
+static void showGather(void* data, int task, int worker)
+{
+    (void)worker;
+    const vplShading* s = data;
+    const vplInterleave* w = s->interleave;
+    const int x0 = task % w->tilesX * VPL_GATHER_WIDTH, y0 = task / w->tilesX * VPL_GATHER_HEIGHT;
+    for (int y = y0; y < y0 + VPL_GATHER_HEIGHT && y < s->image->height; y++) {
+        for (int x = x0; x < x0 + VPL_GATHER_WIDTH && x < s->image->width; x++) {
+            const size_t at = (size_t)y * (size_t)s->image->width + (size_t)x;
+            for (int c = 0; c < 3; c++) {
+                s->image->pixels[3 * at + (size_t)c] = vplGatherPlane(w, VPL_GATHER_INDIRECT + c)[at];
+            }
+        }
+    }
+}
+
 vplResult vplGatherInterleaved(const vplShading* shading, vplProgressFcn* progress, void* user)
 {
     const vplInterleave* w = shading->interleave;
     vplContext* context = shading->geometry->context;
-    return vplParallelForProgress(context, w->tilesX * w->tilesY, vplGetShadingKernels(context->isa).gather,
-                                  (void*)shading, progress, user, 1, 1);
+    vplTaskFcn* gather =
+        shading->def->output == VPL_OUTPUT_GATHER ? showGather : vplGetShadingKernels(context->isa).gather;
+    return vplParallelForProgress(context, w->tilesX * w->tilesY, gather, (void*)shading, progress, user, 1,
+                                  1);
 }
 
 void vplCloseInterleave(vplShading* shading)
@@ -83,6 +109,7 @@ void vplCloseInterleave(vplShading* shading)
     if (w != NULL) {
         vplFree(context, w->rooms);
         vplFree(context, w->planes);
+        vplFree(context, w->clusters);
         vplFree(context, w->shadows);
         vplFree(context, w->lights);
         vplFree(context, w);

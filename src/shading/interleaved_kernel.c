@@ -2,8 +2,8 @@
 // The first step of interleaved shading: pixels of one class, collected from a region of the tile, meet the lights
 // of that class 16 at a time.
 #include "base/isa.h"
+#include "shading/add_lights.h"
 #include "shading/gather.h"
-#include "shading/gbuffer.h"
 
 enum {
     SQUARE = 4,     // blocks along a side: what is read and lit directly at once
@@ -41,8 +41,10 @@ static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplSeen*
             storeLanes(tile, VPL_PLANE_INDIRECT + k, element, nothing);
         }
     } else {
-        _Alignas(64) float part[3][VPL_LANES];
-        vplDirectIrradiance(s, &b->points, part, rays);
+        _Alignas(64) float part[3][VPL_LANES] = {{0}};
+        if (!s->irradiance) {
+            vplDirectIrradiance(s, &b->points, part, rays);
+        }
         vplStartSums(b, part);
         const vplSurface* p = &b->surface;
         for (int k = 0; k < 3; k++) {
@@ -135,7 +137,9 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
     }
     memset(b->sums, 0, sizeof b->sums);
     b->points.surface = b->points.plane = &b->surface;
-    if (s->def->lightShadows == NULL && !s->def->lightRays && s->nearLight == NULL) {
+    b->cluster = VPL_NO_CLUSTER;
+    const bool asksPlane = s->smooth && s->def->lightClusters != NULL;
+    if (s->def->lightShadows == NULL && !s->def->lightRays && s->nearLight == NULL && !asksPlane) {
         return;
     }
     const int32_t* triangles = (const int32_t*)tile->planes[VPL_PLANE_TRIANGLE];

@@ -8,17 +8,33 @@
 #include <math.h>
 #include <stddef.h>
 
-static vplResult checkDef(const vplContext* context, const vplView* view, const vplShadeDef* def,
-                          const vplImage* image)
+static vplResult checkClusters(const vplContext* context, const vplShadeDef* def)
 {
-    if (image->width != view->width || image->height != view->height) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view",
-                       image->width, image->height, view->width, view->height);
+    if (def->lightClusters == NULL) {
+        return VPL_SUCCESS;
     }
-    if (!(def->minDistance >= 0 && isfinite(def->minDistance))) {
+    if (def->accumulation != VPL_ACCUMULATE_DEFERRED && def->accumulation != VPL_ACCUMULATE_INTERLEAVED) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplShadeDef.minDistance is %g, must be finite and >= 0", (double)def->minDistance);
+                       "clusters of lights share shadows in deferred and interleaved shading only");
     }
+    if (def->lightShadows != NULL || def->lightRays || def->compensation != NULL) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "lights whose clusters share shadows have no maps or rays of their own, and no compensation");
+    }
+    for (int i = 0; i < def->lightCount; i++) {
+        if (def->lightClusters[i] < -1 || def->lightClusters[i] >= def->clusterCount) {
+            return vplFail(context, VPL_INVALID_ARGUMENT,
+                           "vplShadeDef.lightClusters[%d] is %d, must be in [-1, %d)", i,
+                           def->lightClusters[i], def->clusterCount);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// What belongs to one way of accumulating light.
+static vplResult checkAccumulation(const vplContext* context, const vplShadeDef* def)
+{
     if (def->accumulation == VPL_ACCUMULATE_BATCHED && def->batch < 1) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1",
                        def->batch);
@@ -31,6 +47,20 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
     if (def->accumulation == VPL_ACCUMULATE_LIGHTCUTS && !(def->cutError > 0 && def->cutError <= 1)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.cutError is %g, must be in (0, 1]",
                        (double)def->cutError);
+    }
+    return checkClusters(context, def);
+}
+
+static vplResult checkDef(const vplContext* context, const vplView* view, const vplShadeDef* def,
+                          const vplImage* image)
+{
+    if (image->width != view->width || image->height != view->height) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view",
+                       image->width, image->height, view->width, view->height);
+    }
+    if (!(def->minDistance >= 0 && isfinite(def->minDistance))) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplShadeDef.minDistance is %g, must be finite and >= 0", (double)def->minDistance);
     }
     if (!(def->lampMinDistance >= 0 && isfinite(def->lampMinDistance))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
@@ -48,7 +78,7 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR && (def->emitterCount < 1 || def->shadows[0].map == NULL)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter with a shadow map");
     }
-    return VPL_SUCCESS;
+    return checkAccumulation(context, def);
 }
 
 float vplInverseSquare(float distance)
@@ -68,7 +98,8 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                         .cull = vplGetCull(isa, def->lighting),
                         .inverseBound = vplInverseSquare(def->minDistance),
                         .lampInverseBound = vplInverseSquare(def->lampMinDistance),
-                        .smooth = geometry->shadingNormals != NULL};
+                        .smooth = geometry->shadingNormals != NULL,
+                        .irradiance = def->output == VPL_OUTPUT_GATHER || def->output == VPL_OUTPUT_DENOISED};
 }
 
 static vplResult makeObjects(vplShading* s)
@@ -149,78 +180,115 @@ static bool castsRays(const vplShadeDef* def)
     return casts;
 }
 
-vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
-                       vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut)
+// How a view is shaded.
+typedef struct Way {
+    bool deferred; // from a G-buffer: all but multipass and batched, and all that is not radiance
+    bool interleaved, cuts;
+} Way;
+
+static Way findWay(const vplShadeDef* def)
 {
-    vplContext* context = geometry->context;
-    vplResult result = checkDef(context, view, def, image);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplShading shading = vplShading_Make(geometry, view, def);
-    shading.image = image;
-    vplShadeStats stats = {0};
-    shading.shadowRays = &stats.shadowRays;
-    bool deferred = def->accumulation >= VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE;
-    bool interleaved = def->accumulation == VPL_ACCUMULATE_INTERLEAVED && def->interleave > 1 &&
-                       def->lightCount > 0 && def->output == VPL_OUTPUT_RADIANCE;
-    const bool cuts = def->accumulation == VPL_ACCUMULATE_LIGHTCUTS && def->lightCount > 0 &&
-                      def->output == VPL_OUTPUT_RADIANCE;
+    const bool lit = def->lightCount > 0 && vplShowsLight(def->output);
+    return (Way){.deferred =
+                     def->accumulation >= VPL_ACCUMULATE_DEFERRED || def->output != VPL_OUTPUT_RADIANCE,
+                 .interleaved = lit && def->accumulation == VPL_ACCUMULATE_INTERLEAVED && def->interleave > 1,
+                 .cuts = lit && def->accumulation == VPL_ACCUMULATE_LIGHTCUTS};
+}
+
+static vplFramebuffer framebufferOf(const vplView* view, Way way)
+{
     vplFramebuffer framebuffer = vplDefaultFramebuffer(view->width, view->height);
-    framebuffer.planeCount = deferred ? VPL_PLANE_POSITION + 3 : VPL_PLANE_TRIANGLE + 1;
-    framebuffer.scratchBytes = deferred ? offsetof(vplTileSums, irradiance) : sizeof(vplTileSums);
-    for (int k = 0; deferred && k < 3; k++) {
+    framebuffer.planeCount = way.deferred ? VPL_PLANE_POSITION + 3 : VPL_PLANE_TRIANGLE + 1;
+    framebuffer.scratchBytes = way.deferred ? offsetof(vplTileSums, irradiance) : sizeof(vplTileSums);
+    for (int k = 0; way.deferred && k < 3; k++) {
         framebuffer.planes[VPL_PLANE_NORMAL + k].scratch = true; // the triangle's plane says what is there
         framebuffer.planes[VPL_PLANE_POSITION + k].scratch = true;
     }
+    return framebuffer;
+}
+
+// What a way of shading needs. Interleaved shading replaces shading->def and has planes of its own.
+static vplResult openShading(vplShading* s, Way way, vplFramebuffer* framebuffer, vplProgressFcn* progress,
+                             void* user)
+{
+    vplResult result = makeObjects(s);
+    if (result == VPL_SUCCESS) {
+        result = vplMakeEmitterRays(s);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplOpenNearLight(s);
+    }
+    if (result == VPL_SUCCESS && way.interleaved) {
+        result = vplOpenInterleave(s, framebuffer);
+    }
+    if (result == VPL_SUCCESS && way.cuts) {
+        result = vplOpenLightcuts(s, progress, user);
+    }
+    if (result == VPL_SUCCESS && way.deferred && !way.cuts) {
+        result = makeColumns(s);
+    }
+    if (result == VPL_SUCCESS && vplShowsLight(s->def->output) && castsRays(s->def)) {
+        result = vplGeometry_PrepareRays(s->geometry);
+    }
+    return result;
+}
+
+static void closeShading(vplShading* s)
+{
+    vplContext* context = s->geometry->context;
+    vplCloseInterleave(s);
+    vplCloseLightcuts(s);
+    vplCloseNearLight(s);
+    vplFree(context, s->columns[0]);
+    vplFree(context, s->emitters);
+    vplFree(context, s->objects);
+    vplFree(context, s->meshes);
+}
+
+static vplResult shade(vplShading* s, Way way, const vplFramebuffer* framebuffer, vplProgressFcn* progress,
+                       void* user, vplShadeStats* stats)
+{
+    vplContext* context = s->geometry->context;
     vplRaster* raster = NULL;
     void* uniforms = NULL;
-    result = makeObjects(&shading);
+    vplResult result = vplRaster_Create(context, framebuffer, &raster);
     if (result == VPL_SUCCESS) {
-        result = vplMakeEmitterRays(&shading);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplOpenNearLight(&shading);
-    }
-    if (result == VPL_SUCCESS && interleaved) {
-        result = vplOpenInterleave(&shading, &framebuffer);
-    }
-    if (result == VPL_SUCCESS && cuts) {
-        result = vplOpenLightcuts(&shading, progress, user);
-    }
-    if (result == VPL_SUCCESS && deferred && !cuts) {
-        result = makeColumns(&shading);
-    }
-    if (result == VPL_SUCCESS && def->output == VPL_OUTPUT_RADIANCE && castsRays(def)) {
-        result = vplGeometry_PrepareRays(geometry);
+        result = way.deferred ? vplRecordDeferred(s, raster) : vplRecordPasses(s, raster, &uniforms);
     }
     if (result == VPL_SUCCESS) {
-        result = vplRaster_Create(context, &framebuffer, &raster);
+        result = vplRaster_Run(raster, progress, user, &stats->raster);
     }
+    if (result == VPL_SUCCESS && way.interleaved) {
+        result = vplGatherInterleaved(s, progress, user);
+    }
+    vplRaster_Destroy(raster);
+    vplFree(context, uniforms);
+    return result;
+}
+
+vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
+                       vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut)
+{
+    vplResult result = checkDef(geometry->context, view, def, image);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplShadeStats stats = {0};
+    vplShading shading = vplShading_Make(geometry, view, def);
+    shading.image = image;
+    shading.shadowRays = &stats.shadowRays;
+    const Way way = findWay(def);
+    vplFramebuffer framebuffer = framebufferOf(view, way);
+    result = openShading(&shading, way, &framebuffer, progress, user);
     if (result == VPL_SUCCESS) {
-        result =
-            deferred ? vplRecordDeferred(&shading, raster) : vplRecordPasses(&shading, raster, &uniforms);
+        result = shade(&shading, way, &framebuffer, progress, user, &stats);
     }
-    if (result == VPL_SUCCESS) {
-        result = vplRaster_Run(raster, progress, user, &stats.raster);
-    }
-    if (result == VPL_SUCCESS && interleaved) {
-        result = vplGatherInterleaved(&shading, progress, user);
-    }
-    if (cuts) {
+    if (way.cuts) {
         vplCountLightcuts(&shading, &stats);
     }
     if (result == VPL_SUCCESS && statsOut != NULL) {
         *statsOut = stats;
     }
-    vplRaster_Destroy(raster);
-    vplCloseInterleave(&shading);
-    vplCloseLightcuts(&shading);
-    vplCloseNearLight(&shading);
-    vplFree(context, uniforms);
-    vplFree(context, shading.columns[0]);
-    vplFree(context, shading.emitters);
-    vplFree(context, shading.objects);
-    vplFree(context, shading.meshes);
+    closeShading(&shading);
     return result;
 }

@@ -64,6 +64,7 @@ typedef struct vplShading {
     float* columns[6]; // of the virtual lights, for `cull`; NULL where no light is left out
     float inverseBound, lampInverseBound;
     bool smooth;                       // some object has shading normals
+    bool irradiance;                   // of virtual lights only is shown, as it arrives
     vplMesh* meshes;                   // one per object
     struct vplObjectUniforms* objects; // one per object
     vplEmitterRay* emitters;           // one per emitter
@@ -72,6 +73,12 @@ typedef struct vplShading {
     struct vplLightcuts* lightcuts;    // NULL: every pixel meets every light
     struct vplNearLight* nearLight;    // NULL: what the bound takes away is lost
 } vplShading;
+
+// Whether a picture shows light, not a stage on the way to it.
+static inline bool vplShowsLight(vplShadeOutput output)
+{
+    return output == VPL_OUTPUT_RADIANCE || output == VPL_OUTPUT_GATHER || output == VPL_OUTPUT_DENOISED;
+}
 
 // What a block of pixels shows.
 typedef struct vplPoints {

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+// Lights that share what their clusters see, with maps that are made here texel by texel.
+#include "stage.h"
+
+#include "math/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 131, HEIGHT = 75, COUNT = 300, SIZE = 8, TEXELS = 2 * SIZE * SIZE };
+
+static const float nothing[TEXELS]; // is seen: light reaches everything
+static float wall[TEXELS];          // a millimetre from the place: it reaches nothing
+
+static vplParaboloidMap mapOf(const float* texels, vplVec3 position, int hemispheres)
+{
+    return (vplParaboloidMap){.position = position,
+                              .right = {1, 0, 0},
+                              .up = {0, 0, -1},
+                              .forward = {0, 1, 0},
+                              .size = SIZE,
+                              .hemispheres = hemispheres,
+                              .texels = texels};
+}
+
+typedef struct Setting {
+    vplContext* context;
+    vplGeometry* geometry;
+    vplView view;
+    vplShadeLight* lights;
+    int clusters[COUNT];
+    vplParaboloidMap maps[COUNT];
+} Setting;
+
+// In clusters of 40, of which every other one sees nothing.
+static Setting openSetting(vplContext* context, vplGeometry* geometry)
+{
+    Setting s = {.context = context, .geometry = geometry};
+    s.view = stageView(vplVec(1, 2, 5), WIDTH, HEIGHT);
+    s.lights = rollLights(COUNT, 7);
+    for (int i = 0; i < TEXELS; i++) {
+        wall[i] = 1000;
+    }
+    for (int i = 0; i < COUNT; i++) {
+        s.clusters[i] = i / 40;
+        s.maps[i] = mapOf(i % 2 ? wall : nothing, vplVec(0, 3, 0), 2);
+    }
+    return s;
+}
+
+static Setting openStage(void)
+{
+    vplContext* context = openTestContext(2);
+    return openSetting(context, stage(context));
+}
+
+static void closeSetting(Setting* s)
+{
+    free(s->lights);
+    vplGeometry_Destroy(s->geometry);
+    closeTestContext(s->context);
+}
+
+static vplShadeDef clusteredDef(const Setting* s, int count, int side)
+{
+    vplShadeDef def = stageDef(s->lights, count, side);
+    def.lightClusters = s->clusters;
+    def.clusterShadows = s->maps;
+    def.clusterCount = COUNT;
+    return def;
+}
+
+static uint64_t shadeHash(const Setting* s, const vplShadeDef* def)
+{
+    vplImage* image = shadeStage(s->geometry, &s->view, def);
+    const uint64_t hash = vplImage_Hash(image);
+    vplImage_Destroy(image);
+    return hash;
+}
+
+static void OneClusterThatSeesAllHasTheBitsOfNoShadows(void** state)
+{
+    (void)state;
+    Setting s = openStage();
+    memset(s.clusters, 0, sizeof s.clusters);
+    for (int side = 0; side <= 4; side++) {
+        const vplShadeDef plain = stageDef(s.lights, COUNT, side), shared = clusteredDef(&s, COUNT, side);
+        assert_true(shadeHash(&s, &plain) == shadeHash(&s, &shared));
+    }
+    closeSetting(&s);
+}
+
+// Also where there is no map at all.
+static void LightsWithoutAClusterHaveTheBitsOfNoShadows(void** state)
+{
+    (void)state;
+    Setting s = openStage();
+    memset(s.clusters, 0xff, sizeof s.clusters);
+    for (int side = 0; side <= 4; side++) {
+        const vplShadeDef plain = stageDef(s.lights, COUNT, side);
+        vplShadeDef shared = clusteredDef(&s, COUNT, side);
+        shared.clusterCount = 0;
+        shared.clusterShadows = NULL;
+        assert_true(shadeHash(&s, &plain) == shadeHash(&s, &shared));
+    }
+    closeSetting(&s);
+}
+
+static void InterleavedByOneIsDeferredBitForBit(void** state)
+{
+    (void)state;
+    Setting s = openStage();
+    const vplShadeDef deferred = clusteredDef(&s, COUNT, 0), one = clusteredDef(&s, COUNT, 1);
+    const vplShadeDef plain = stageDef(s.lights, COUNT, 0);
+    assert_true(shadeHash(&s, &deferred) == shadeHash(&s, &one));
+    assert_true(shadeHash(&s, &deferred) != shadeHash(&s, &plain));
+    closeSetting(&s);
+}
+
+// As many clusters as lights, of which every third sees: the bits of these lights alone, as far as they are one group.
+static void ClustersOfOneLightAreMapsOfTheirOwn(void** state)
+{
+    (void)state;
+    enum { FEW = VPL_LIGHT_GROUP };
+    Setting s = openStage();
+    vplShadeLight seen[FEW];
+    int seenCount = 0;
+    for (int i = 0; i < FEW; i++) {
+        s.clusters[i] = i;
+        s.maps[i] = mapOf(i % 3 ? wall : nothing, vplVec(0, 3, 0), 2);
+        seen[seenCount] = s.lights[i];
+        seenCount += i % 3 == 0;
+    }
+    const vplShadeDef shared = clusteredDef(&s, FEW, 0), alone = stageDef(seen, seenCount, 0);
+    assert_true(shadeHash(&s, &shared) == shadeHash(&s, &alone));
+    closeSetting(&s);
+}
+
+// Clusters that come and go in the list, lights without one between them: the sum of those that reach anything.
+static void AnyOrderOfClustersGivesTheSameSum(void** state)
+{
+    (void)state;
+    Setting s = openStage();
+    vplShadeLight seen[COUNT];
+    int seenCount = 0;
+    for (int i = 0; i < COUNT; i++) {
+        s.clusters[i] = i * i % 13 - 1; // -1 has no map
+        seen[seenCount] = s.lights[i];
+        seenCount += s.clusters[i] < 0 || s.clusters[i] % 2 == 0;
+    }
+    const vplShadeDef shared = clusteredDef(&s, COUNT, 0), alone = stageDef(seen, seenCount, 0);
+    vplImage *a = shadeStage(s.geometry, &s.view, &shared), *b = shadeStage(s.geometry, &s.view, &alone);
+    assert_true(seenCount > 50 && seenCount < 250);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        assertNear((double)a->pixels[i], (double)b->pixels[i], 1e-6 * (double)b->pixels[i], "radiance", i);
+    }
+    vplImage_Destroy(a);
+    vplImage_Destroy(b);
+    closeSetting(&s);
+}
+
+// One map that looks up from a metre above the floor: what is below gets nothing, what is above all. Interleaved, each
+// pixel asks for itself: those whose window lies on one side know what neighbours share.
+static void VisibilityIsThatOfEachPoint(void** state)
+{
+    (void)state;
+    Setting s = openStage();
+    memset(s.clusters, 0, sizeof s.clusters);
+    s.maps[0] = mapOf(nothing, vplVec(0, 1, 0), 1);
+    Look* looks = lookAt(s.geometry, &s.view);
+    for (int side = 0; side <= 4; side += 2) {
+        const vplShadeDef plain = stageDef(s.lights, COUNT, side), shared = clusteredDef(&s, COUNT, side);
+        vplImage *a = shadeStage(s.geometry, &s.view, &shared), *b = shadeStage(s.geometry, &s.view, &plain);
+        int dark = 0, bright = 0;
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            const double up = 2 + looks[i].p[1], margin = 0.25; // 4 pixels are 0.2 m
+            const float *own = a->pixels + 3 * i, *all = b->pixels + 3 * i;
+            if (looks[i].w > 0 && up < 1 - margin) {
+                assert_true(own[0] == 0 && own[1] == 0 && own[2] == 0);
+                dark += all[0] > 0;
+            } else if (looks[i].w > 0 && up > 1 + margin) {
+                assert_true(memcmp(own, all, 3 * sizeof *own) == 0);
+                bright += all[0] > 0;
+            }
+        }
+        assert_true(dark > 1000 && bright > 300);
+        vplImage_Destroy(a);
+        vplImage_Destroy(b);
+    }
+    free(looks);
+    closeSetting(&s);
+}
+
+// ---- the same bits
+
+// The stage below a smooth sphere, whose points have two normals.
+static vplGeometry* smoothStage(vplContext* context)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    vplObjectDef object = vplDefaultObjectDef();
+    const double rotate[3] = {-VPL_PI / 2, 0, 0};
+    object.transform = vplMat4_FromParts(vplVec(0, 0, 0), rotate, vplVec(4, 4, 1));
+    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
+    Shape ball = icosphere(2);
+    const double still[3] = {0, 0, 0};
+    const vplMat4 place = vplMat4_FromParts(vplVec(0, 0.8f, 0), still, vplVec(0.7f, 0.7f, 0.7f));
+    addShape(scene, &ball, true, &place);
+    freeShape(&ball);
+    return freezeScene(scene);
+}
+
+static void ThreadsAndInstructionSetsChangeNoBit(void** state)
+{
+    (void)state;
+    static float spots[TEXELS]; // some ways are long, some are short
+    Dice dice = {5, 0};
+    for (int i = 0; i < TEXELS; i++) {
+        spots[i] = roll(&dice, 0, 0.8f);
+    }
+    static const int threads[] = {1, 2, 3, 7};
+    uint64_t expected[2] = {0, 0};
+    for (int k = 0; k < 4 + VPL_ISA_COUNT; k++) {
+        vplContext* context = k < 4 ? openTestContext(threads[k]) : openIsaContext(2, (vplIsa)(k - 4));
+        if (context == NULL) {
+            continue;
+        }
+        Setting s = openSetting(context, smoothStage(context));
+        for (int i = 0; i < COUNT; i++) {
+            s.maps[i].texels = spots;
+        }
+        for (int way = 0; way < 2; way++) {
+            const vplShadeDef def = clusteredDef(&s, COUNT, 4 * way);
+            const uint64_t hash = shadeHash(&s, &def);
+            assert_true(k == 0 || hash == expected[way]);
+            expected[way] = hash;
+        }
+        closeSetting(&s);
+    }
+}
+
+// ---- what is refused
+
+static void WhatClustersCannotDoIsRefused(void** state)
+{
+    (void)state;
+    Setting s = openStage();
+    vplImage* image;
+    assert_int_equal(vplImage_Create(s.context, WIDTH, HEIGHT, &image), VPL_SUCCESS);
+    const vplAccumulation ways[] = {VPL_ACCUMULATE_MULTIPASS, VPL_ACCUMULATE_BATCHED,
+                                    VPL_ACCUMULATE_LIGHTCUTS};
+    for (int i = 0; i < 6; i++) {
+        vplShadeDef def = clusteredDef(&s, COUNT, 0);
+        def.batch = 1;
+        def.cutError = 0.1f;
+        def.accumulation = i < 3 ? ways[i] : VPL_ACCUMULATE_DEFERRED;
+        def.lightRays = i == 3;
+        s.clusters[5] = i == 4 ? -2 : i == 5 ? COUNT : 0;
+        assert_int_equal(vplShadeView(s.geometry, &s.view, &def, NULL, NULL, image, NULL),
+                         VPL_INVALID_ARGUMENT);
+        const char* message = takeMessage();
+        assert_true(strstr(message, i < 3    ? "deferred and interleaved shading only"
+                                    : i == 3 ? "no maps or rays of their own"
+                                    : i == 4 ? "lightClusters[5] is -2, must be in [-1, 300)"
+                                             : "lightClusters[5] is 300, must be in [-1, 300)") != NULL);
+    }
+    vplImage_Destroy(image);
+    closeSetting(&s);
+}
+
+TEST_SUITE(clusterShadows, cmocka_unit_test(OneClusterThatSeesAllHasTheBitsOfNoShadows),
+           cmocka_unit_test(LightsWithoutAClusterHaveTheBitsOfNoShadows),
+           cmocka_unit_test(InterleavedByOneIsDeferredBitForBit),
+           cmocka_unit_test(ClustersOfOneLightAreMapsOfTheirOwn),
+           cmocka_unit_test(AnyOrderOfClustersGivesTheSameSum), cmocka_unit_test(VisibilityIsThatOfEachPoint),
+           cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),
+           cmocka_unit_test(WhatClustersCannotDoIsRefused));

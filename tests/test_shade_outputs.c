@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Indirect irradiance as it is shown before and after neighbours share it.
+#include "stage.h"
+
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+enum { WIDTH = 131, HEIGHT = 75, COUNT = 300 };
+
+typedef struct Setting {
+    vplContext* context;
+    vplGeometry* geometry;
+    vplView view;
+    vplShadeLight* lights;
+    vplEmitterDef sun; // direct light, which none of this shows
+    vplShadow shadow;
+} Setting;
+
+static Setting openSetting(void)
+{
+    Setting s = {.context = openTestContext(2)};
+    s.geometry = stage(s.context); // of reflectance 1/2
+    s.view = stageView(vplVec(1, 2, 5), WIDTH, HEIGHT);
+    s.lights = rollLights(COUNT, 11);
+    s.sun = vplDefaultEmitterDef();
+    s.sun.type = VPL_EMITTER_DIRECTIONAL;
+    s.sun.direction = vplVec(0.1f, -1, -0.2f);
+    s.sun.intensity = (vplRgb){100, 100, 100};
+    return s;
+}
+
+static void closeSetting(Setting* s)
+{
+    free(s->lights);
+    vplGeometry_Destroy(s->geometry);
+    closeTestContext(s->context);
+}
+
+static vplImage* show(const Setting* s, vplAccumulation accumulation, int side, vplShadeOutput output)
+{
+    vplShadeDef def = stageDef(s->lights, COUNT, side);
+    def.accumulation = accumulation;
+    def.output = output;
+    def.batch = 7;
+    def.cutError = 1e-6f; // all lights
+    if (output != VPL_OUTPUT_RADIANCE) {
+        def.emitters = &s->sun;
+        def.shadows = &s->shadow;
+        def.emitterCount = 1;
+        def.emission = true;
+    }
+    return shadeStage(s->geometry, &s->view, &def);
+}
+
+// Returns how many values are not 0.
+static int assertTimes(const vplImage* image, const vplImage* other, double factor)
+{
+    int lit = 0;
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        const double wanted = factor * (double)other->pixels[i];
+        assertNear((double)image->pixels[i], wanted, 2e-6 * wanted, "irradiance", i);
+        lit += wanted > 0;
+    }
+    return lit;
+}
+
+static void DenoisedIrradianceTimesReflectanceIsThePicture(void** state)
+{
+    (void)state;
+    Setting s = openSetting();
+    for (int side = 2; side <= 5; side++) {
+        vplImage* picture = show(&s, VPL_ACCUMULATE_INTERLEAVED, side, VPL_OUTPUT_RADIANCE);
+        vplImage* irradiance = show(&s, VPL_ACCUMULATE_INTERLEAVED, side, VPL_OUTPUT_DENOISED);
+        assert_true(assertTimes(irradiance, picture, VPL_PI / 0.5) > WIDTH * HEIGHT);
+        vplImage_Destroy(picture);
+        vplImage_Destroy(irradiance);
+    }
+    closeSetting(&s);
+}
+
+// Of class c the lights c, c + K^2, ..., K^2 times as bright.
+static void GatheredIrradianceIsThatOfEachPixelsClass(void** state)
+{
+    (void)state;
+    enum { SIDE = 3 };
+    Setting s = openSetting();
+    vplImage* gather = show(&s, VPL_ACCUMULATE_INTERLEAVED, SIDE, VPL_OUTPUT_GATHER);
+    int lit = 0;
+    for (int c = 0; c < SIDE * SIDE; c++) {
+        vplShadeLight own[COUNT];
+        int ownCount = 0;
+        for (int i = c; i < COUNT; i += SIDE * SIDE) {
+            own[ownCount++] = s.lights[i];
+        }
+        vplShadeDef def = stageDef(own, ownCount, 0);
+        def.output = VPL_OUTPUT_DENOISED;
+        vplImage* class = shadeStage(s.geometry, &s.view, &def);
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            if (i / WIDTH % SIDE * SIDE + i % WIDTH % SIDE == c) {
+                const double wanted = SIDE * SIDE * (double)class->pixels[3 * i + 1];
+                assertNear((double)gather->pixels[3 * i + 1], wanted, 1e-6 * wanted, "irradiance", i);
+                lit += wanted > 0;
+            }
+        }
+        vplImage_Destroy(class);
+    }
+    assert_true(lit > WIDTH * HEIGHT / 3);
+    vplImage_Destroy(gather);
+    closeSetting(&s);
+}
+
+// However virtual lights are accumulated, and without light of emitters.
+static void WhereNobodySharesBothAreTheIrradiance(void** state)
+{
+    (void)state;
+    Setting s = openSetting();
+    vplImage* picture = show(&s, VPL_ACCUMULATE_DEFERRED, 1, VPL_OUTPUT_RADIANCE);
+    for (int k = 0; k < 10; k++) {
+        vplImage* irradiance =
+            show(&s, (vplAccumulation)(k / 2), 1, k % 2 ? VPL_OUTPUT_DENOISED : VPL_OUTPUT_GATHER);
+        assert_true(assertTimes(irradiance, picture, VPL_PI / 0.5) > WIDTH * HEIGHT);
+        vplImage_Destroy(irradiance);
+    }
+    vplImage_Destroy(picture);
+    closeSetting(&s);
+}
+
+TEST_SUITE(shadeOutputs, cmocka_unit_test(DenoisedIrradianceTimesReflectanceIsThePicture),
+           cmocka_unit_test(GatheredIrradianceIsThatOfEachPixelsClass),
+           cmocka_unit_test(WhereNobodySharesBothAreTheIrradiance));
