@@ -2,7 +2,7 @@
 // Virtual lights for blocks of the G-buffer, for kernels: group by group, without those that give nothing, and with
 // the visibility of clusters.
 //
-// Lights of one cluster share what their cluster sees (Aranha et al., Soft Shadows and Virtual Point Lights: one
+// Lights of one cluster share what their cluster sees (Aranha et al., SSVP: one
 // paraboloid map per cluster): a run of lights is summed first, then multiplied by visibility once. The sum of a group
 // is (run 0) v0 + (run 1) v1 + ..., in this order, in float; runs begin where the list changes cluster, and where groups
 // begin. So one cluster that sees all has the bits of lights without shadows, and as many clusters as lights have
