@@ -131,4 +131,17 @@ bool vplClosestHitWithin(const vplGeometry* geometry, const vplRay* ray, float t
 // vplGeometry_IsOccluded for each ray of a packet: bit i of the result is ray i.
 uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax);
 
+// Sets to 0 what comes along the packet's rays where one meets something before tMax. Returns how many rays it cast.
+static inline int vplGeometry_Darken(const vplGeometry* geometry, const vplRayPacket* rays, float tMax,
+                                     float amount[VPL_RAY_PACKET])
+{
+    if (rays->active == 0) {
+        return 0;
+    }
+    for (uint32_t dark = vplGeometry_AreOccluded(geometry, rays, tMax); dark != 0; dark &= dark - 1) {
+        amount[__builtin_ctz(dark)] = 0;
+    }
+    return __builtin_popcount(rays->active);
+}
+
 #endif

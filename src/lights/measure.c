@@ -48,13 +48,7 @@ static void castShadows(const Measuring* m, const vplSeenBlock* b, const vplShad
         reflected[l] = vplDot(way, plane) > 0 ? reflected[l] : 0;
         packet.active |= (uint32_t)(reflected[l] > 0) << l;
     }
-    if (packet.active == 0) {
-        return;
-    }
-    *rays += __builtin_popcount(packet.active);
-    for (uint32_t dark = vplGeometry_AreOccluded(m->geometry, &packet, 1); dark != 0; dark &= dark - 1) {
-        reflected[__builtin_ctz(dark)] = 0;
-    }
+    *rays += vplGeometry_Darken(m->geometry, &packet, 1, reflected);
 }
 
 static float measure(const Measuring* m, const vplVirtualLight* v, int* rays)

@@ -52,11 +52,7 @@ static void castShadowRays(const vplShading* shading, const vplPoints* points, c
         const vplRay ray = vplGeometry_Leave(g, &starts->hit[l], way[l]);
         vplRayPacket_Set(&packet, l, &ray);
     }
-    *rays += __builtin_popcount(packet.active);
-    for (uint32_t dark = vplGeometry_AreOccluded(g, &packet, parallel ? INFINITY : 1); dark != 0;
-         dark &= dark - 1) {
-        amount[__builtin_ctz(dark)] = 0;
-    }
+    *rays += vplGeometry_Darken(g, &packet, parallel ? INFINITY : 1, amount);
 }
 
 void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,

@@ -63,10 +63,7 @@ static void castRays(const vplGeometry* g, const vplLitPoint* p, const vplShadeL
         const vplRay ray = vplGeometry_Leave(g, &p->hit, way);
         vplRayPacket_Set(&packet, l, &ray);
     }
-    *rays += __builtin_popcount(packet.active);
-    for (uint32_t dark = vplGeometry_AreOccluded(g, &packet, 1); dark != 0; dark &= dark - 1) {
-        amount[__builtin_ctz(dark)] = 0;
-    }
+    *rays += vplGeometry_Darken(g, &packet, 1, amount);
 }
 
 void vplLightPoint(const vplShading* shading, const vplNearLight* near, const vplLightChoice* from,
