@@ -23,11 +23,12 @@ static size_t texelsOf(const vplReflectiveMap* map)
     return (size_t)map->faceCount * (size_t)map->size * (size_t)map->size;
 }
 
-static double fluxOf(const vplReflectiveMap* map)
+static double fluxOf(const vplReflectiveMap* map, const vplGeometry* g)
 {
     double sum = 0;
     for (size_t i = 0; i < texelsOf(map); i++) {
-        sum += (double)map->flux[1][i];
+        vplReflectiveTexel texel;
+        sum += vplReflectiveMap_GetTexel(map, g, (int64_t)i, &texel) ? (double)texel.flux.g : 0;
     }
     return sum;
 }
@@ -52,11 +53,13 @@ static void APointInAClosedCubeSends4PiI(void** state)
     for (int size = 1; size <= 130; size += 1 + size / 2) {
         vplReflectiveMap* map = mapOf(cube, &e, size);
         assert_int_equal(map->faceCount, 6);
-        assertNear(fluxOf(map), 8 * VPL_PI, 1e-5, "flux", size);
+        assertNear(fluxOf(map, cube), 8 * VPL_PI, 1e-5, "flux", size);
         for (size_t i = 0; i < texelsOf(map); i++) { // of a cube's texels the one at a corner is smallest
-            const double share = (double)map->flux[1][i] * size * size / (8 * VPL_PI / 6);
+            vplReflectiveTexel texel;
+            assert_true(vplReflectiveMap_GetTexel(map, cube, (int64_t)i, &texel));
+            const double share = (double)texel.flux.g * size * size / (8 * VPL_PI / 6);
             assert_true(share > 0.36 && share < 1.92);
-            assert_true(map->albedo[2][i] == 0.5f && map->triangle[i] >= 0);
+            assert_true(texel.albedo.b == 0.5f && texel.triangle == map->triangle[i]);
         }
         vplReflectiveMap_Destroy(map);
     }
@@ -78,7 +81,7 @@ static void ASpotSendsItsPower(void** state)
         for (int size = 16; size <= 256; size *= 4) {
             vplReflectiveMap* map = mapOf(cube, &e, size);
             assert_int_equal(map->faceCount, 1);
-            assertNear(fluxOf(map) / wanted, 1, 1.0 / size / size + 1e-6, "flux", size);
+            assertNear(fluxOf(map, cube) / wanted, 1, 1.0 / size / size + 1e-6, "flux", size);
             vplReflectiveMap_Destroy(map);
         }
     }
@@ -95,18 +98,18 @@ static void TheSunSendsWhatTheFloorMeets(void** state)
     for (int size = 1; size <= 256; size *= 4) {
         vplEmitterDef e = emitterOf(VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(0, -2, 0));
         vplReflectiveMap* map = mapOf(floor, &e, size);
-        assertNear(fluxOf(map), 200, 0.01, "flux", size); // the view is 2^-16 wider on each side
+        assertNear(fluxOf(map, floor), 200, 0.01, "flux", size); // the view is 2^-16 wider on each side
         vplReflectiveMap_Destroy(map);
         e.direction = vplVec(1, -1, 1); // a rhombus in a rectangle: texels at its edges are in or out
         map = mapOf(floor, &e, size);
         if (size >= 16) {
-            assertNear(fluxOf(map) / (200 / sqrt(3)), 1, 1.0 / size, "slanted flux", size);
+            assertNear(fluxOf(map, floor) / (200 / sqrt(3)), 1, 1.0 / size, "slanted flux", size);
         }
         vplReflectiveMap_Destroy(map);
     }
     vplEmitterDef along = emitterOf(VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(1, 0, 0));
     vplReflectiveMap* map = mapOf(floor, &along, 16); // edge-on
-    assertNear(fluxOf(map), 0, 0.01, "flux", 0);
+    assertNear(fluxOf(map, floor), 0, 0.01, "flux", 0);
     vplReflectiveMap_Destroy(map);
     vplGeometry_Destroy(floor);
     closeTestContext(context);
@@ -134,25 +137,29 @@ static void TexelsAreWhereRaysLand(void** state)
         for (size_t i = 0; i < texelsOf(map); i++) {
             vplHit hit, met;
             vplVec3 way;
-            if (!vplReflectiveMap_GetHit(map, room, (int64_t)i, &hit, &way)) {
-                assert_true(map->triangle[i] == -1 && map->distance[i] == INFINITY && map->flux[0][i] == 0);
+            vplReflectiveTexel texel;
+            const bool seen = vplReflectiveMap_GetHit(map, room, (int64_t)i, &hit, &way);
+            assert_true(seen == vplReflectiveMap_GetTexel(map, room, (int64_t)i, &texel));
+            if (!seen) {
+                assert_true(map->triangle[i] == -1 && map->depth[i] == INFINITY);
                 continue;
             }
-            const vplVec3 at = {map->position[0][i], map->position[1][i], map->position[2][i]};
-            const vplVec3 normal = {map->normal[0][i], map->normal[1][i], map->normal[2][i]};
+            const vplVec3 at = texel.position, normal = texel.normal;
             const vplVec3 corner = vplGeometry_Corners(room, map->triangle[i]).corner[0];
+            const size_t face = i / SIZE / SIZE;
+            const float depth = vplDot(vplSub(at, map->origin), map->forward[face]);
             assertNear((double)vplDot(vplSub(at, corner), hit.normal), 0, 4e-6, "plane", (int)i);
-            assertNear((double)vplLength(vplSub(at, hit.position)), 0, 0.01, "inside", (int)i);
+            assertNear((double)(depth - map->depth[i] * map->unit), 0, 0.01, "drawn depth", (int)i);
             assert_true(vplDot(normal, way) <= 0 && fabsf(vplLength(normal) - 1) < 1e-6f);
             const bool sun = k == VPL_EMITTER_DIRECTIONAL;
-            const vplRay ray = {sun ? vplSub(at, vplScale(map->distance[i] + 1, way)) : e.position,
+            const vplRay ray = {sun ? vplSub(at, vplScale(texel.distance + 1, way)) : e.position,
                                 sun ? way : vplNormalize(vplSub(at, e.position)),
                                 {0, 0}};
             assert_int_equal(vplReflectiveMap_Find(map, &ray), (int64_t)i);
             filled++;
             assert_true(vplGeometry_ClosestHit(room, &ray, &met));
             other += met.object != hit.object || // quads and boxes: an edge between triangles does not count
-                     fabsf(met.t - map->distance[i] - (sun ? 1.0f : 0.0f)) > 1e-5f;
+                     fabsf(met.t - texel.distance - (sun ? 1.0f : 0.0f)) > 1e-5f;
         }
         assert_true(filled > SIZE * SIZE / 2);
         assert_true(other <= filled / 500); // where a texel's centre is on an edge
@@ -230,14 +237,9 @@ static void SmoothObjectsHaveTheirNormals(void** state)
     vplReflectiveMap* map = mapOf(geometry, &e, 50);
     int seen = 0;
     for (size_t i = 0; i < texelsOf(map); i++) {
-        vplHit hit;
-        vplVec3 way;
-        if (vplReflectiveMap_GetHit(map, geometry, (int64_t)i, &hit, &way)) {
-            const vplVec3 at = vplNormalize(hit.position);
-            const vplVec3 normal = {map->normal[0][i], map->normal[1][i], map->normal[2][i]};
-            const vplVec3 shading = vplGeometry_ShadingNormal(geometry, &hit);
-            assert_true(vplDot(at, normal) > 0.999f);
-            assertNear((double)vplLength(vplSub(normal, shading)), 0, 1e-3, "normal", (int)i);
+        vplReflectiveTexel texel;
+        if (vplReflectiveMap_GetTexel(map, geometry, (int64_t)i, &texel)) {
+            assert_true(vplDot(vplNormalize(texel.position), texel.normal) > 0.999f);
             seen++;
         }
     }
@@ -259,9 +261,9 @@ static void AnEmptySceneGivesAnEmptyMap(void** state)
         const vplEmitterDef e = someEmitter(k);
         vplReflectiveMap* map = mapOf(nothing, &e, 5);
         for (size_t i = 0; i < texelsOf(map); i++) {
-            assert_true(map->triangle[i] == -1 && map->distance[i] == INFINITY && map->position[0][i] == 0);
+            assert_true(map->triangle[i] == -1 && map->depth[i] == INFINITY);
         }
-        assert_true(fluxOf(map) == 0);
+        assert_true(fluxOf(map, nothing) == 0);
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(nothing);
@@ -281,17 +283,30 @@ static void AnEmitterMayTouchASurface(void** state)
         const vplEmitterDef e =
             emitterOf(VPL_EMITTER_POINT, vplVec(0.1f, heights[i], 0.2f), vplVec(0, -1, 0));
         vplReflectiveMap* map = mapOf(cube, &e, 32);
-        const double share = fluxOf(map) / (8 * VPL_PI);
+        const double share = fluxOf(map, cube) / (8 * VPL_PI);
         assert_true(share >= 0.5 - 1e-6 && share <= 1 + 1e-6);
         for (size_t k = 0; k < texelsOf(map); k++) {
-            assert_true(isfinite(map->position[1][k]) && isfinite(map->normal[1][k]) &&
-                        isfinite(map->flux[1][k]));
-            assert_true(map->distance[k] >= 0);
+            vplReflectiveTexel texel;
+            assert_true(!vplReflectiveMap_GetTexel(map, cube, (int64_t)k, &texel) ||
+                        (vplIsFiniteVec(texel.position) && vplIsFiniteVec(texel.normal) &&
+                         isfinite(texel.flux.g) && texel.distance >= 0 && isfinite(texel.distance)));
+            assert_true(map->depth[k] >= 0);
         }
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(cube);
     closeTestContext(context);
+}
+
+static uint64_t folded(uint64_t hash, const void* numbers, size_t bytes)
+{
+    for (size_t i = 0; i < bytes; i += sizeof(uint32_t)) {
+        uint32_t bits;
+        memcpy(&bits, (const char*)numbers + i, sizeof bits);
+        hash = (hash ^ bits) * 0x9E3779B97F4A7C15u;
+        hash ^= hash >> 29;
+    }
+    return hash;
 }
 
 static void MapsDoNotDependOnThreadsOrIsa(void** state)
@@ -310,18 +325,14 @@ static void MapsDoNotDependOnThreadsOrIsa(void** state)
             const vplEmitterDef e = someEmitter(k);
             vplReflectiveMap* map = mapOf(room, &e, 77);
             uint64_t hash = 0;
-            const float* const planes[] = {map->distance,    map->position[0], map->position[1],
-                                           map->position[2], map->normal[0],   map->normal[1],
-                                           map->normal[2],   map->albedo[0],   map->flux[0],
-                                           map->flux[1],     map->flux[2]};
-            for (size_t p = 0; p < sizeof planes / sizeof *planes; p++) {
-                for (size_t t = 0; t < texelsOf(map); t++) {
-                    uint32_t bits;
-                    memcpy(&bits, &planes[p][t], sizeof bits);
-                    hash = (hash ^ bits ^ (uint64_t)(uint32_t)map->triangle[t] << 32) * 0x9E3779B97F4A7C15u;
-                    hash ^= hash >> 29;
-                }
+            for (size_t t = 0; t < texelsOf(map); t++) {
+                vplReflectiveTexel texel = {0};
+                vplReflectiveMap_GetTexel(map, room, (int64_t)t, &texel);
+                hash = folded(hash, &map->depth[t], sizeof(float));
+                hash = folded(hash, &map->triangle[t], sizeof(int32_t));
+                hash = folded(hash, &texel, sizeof texel);
             }
+            hash = folded(hash, &map->unit, sizeof map->unit);
             wanted = i == 0 ? hash : wanted;
             assert_true(hash == wanted);
             vplReflectiveMap_Destroy(map);

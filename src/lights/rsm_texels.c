@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // What texels of a reflective shadow map see, found from the triangle when it is asked for, and which texel a ray goes
 // through. In double: at a grazing angle a texel's ray meets the plane with ten times the rounding of the ray.
-#include <vpl/lights.h>
+#include "lights/rsm.h"
 
 #include "base/context.h"
+#include "base/isa.h"
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
+
+VPL_KERNEL_TABLE(FACTOR, vplReflectiveFactorFcn, vplReflectiveFactor);
 
 typedef struct Place {
     int face, i, j;
@@ -144,4 +147,10 @@ int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray)
     const int64_t i = cellOf((double)vplDot(map->right[0], p) / depth / map->extent[0], map->size);
     const int64_t j = cellOf(-(double)vplDot(map->up[0], p) / depth / map->extent[1], map->size);
     return i >= 0 && j >= 0 ? j * size + i : -1;
+}
+
+void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
+                                  float factorOut[VPL_LANES])
+{
+    FACTOR[map->context->isa](map, surface, factorOut);
 }

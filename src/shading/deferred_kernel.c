@@ -85,7 +85,12 @@ void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
             continue;
         }
         if (s->def->output == VPL_OUTPUT_SHADOW_FACTOR) {
-            vplShadow_FactorBlock(&s->def->shadows[0], b.points.plane, factor);
+            const vplReflectiveMap* map = vplEmitterMapOf(s->def, 0);
+            if (map != NULL) {
+                vplReflectiveMap_FactorBlock(map, b.points.plane, factor);
+            } else {
+                vplShadow_FactorBlock(&s->def->shadows[0], b.points.plane, factor);
+            }
         }
         for (int l = 0; l < VPL_LANES; l++) {
             if (b.points.triangle[l] < 0) {

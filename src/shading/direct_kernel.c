@@ -12,9 +12,9 @@ vplAddEmittersFcn VPL_KERNEL(vplAddEmitters);
 static void shadowEmitter(const vplShading* s, const vplPoints* points, int index, float amount[VPL_LANES],
                           int64_t* rays)
 {
-    const vplShadow* shadow = &s->def->shadows[index];
     const vplEmitterRay* emitter = &s->emitters[index];
-    if (emitter->parallel || shadow->map == NULL) {
+    const vplReflectiveMap* map = vplEmitterMapOf(s->def, index);
+    if (map == NULL && (emitter->parallel || s->def->shadows[index].map == NULL)) {
         vplCastEmitterRays(s, points, emitter, amount, rays);
         return;
     }
@@ -26,7 +26,11 @@ static void shadowEmitter(const vplShading* s, const vplPoints* points, int inde
             amount[l] = cosine[l] > 0 ? amount[l] : 0;
         }
     }
-    vplShadow_FactorBlock(shadow, points->plane, factor);
+    if (map != NULL) {
+        vplReflectiveMap_FactorBlock(map, points->plane, factor);
+    } else {
+        vplShadow_FactorBlock(&s->def->shadows[index], points->plane, factor);
+    }
     for (int l = 0; l < VPL_LANES; l++) {
         amount[l] *= 1 - factor[l];
     }

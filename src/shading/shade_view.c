@@ -75,7 +75,8 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
             "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
             def->compensation->rayCount, def->compensation->hitLights, VPL_MAX_NEAR_RAYS);
     }
-    if (def->output == VPL_OUTPUT_SHADOW_FACTOR && (def->emitterCount < 1 || def->shadows[0].map == NULL)) {
+    if (def->output == VPL_OUTPUT_SHADOW_FACTOR &&
+        (def->emitterCount < 1 || (vplEmitterMapOf(def, 0) == NULL && def->shadows[0].map == NULL))) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter with a shadow map");
     }
     return checkAccumulation(context, def);
@@ -175,7 +176,8 @@ static bool castsRays(const vplShadeDef* def)
     bool casts = def->lampCount > 0 || def->compensation != NULL ||
                  (def->lightCount > 0 && def->lightShadows == NULL && def->lightRays);
     for (int i = 0; i < def->emitterCount; i++) {
-        casts = casts || def->emitters[i].type == VPL_EMITTER_DIRECTIONAL || def->shadows[i].map == NULL;
+        casts = casts || (vplEmitterMapOf(def, i) == NULL &&
+                          (def->emitters[i].type == VPL_EMITTER_DIRECTIONAL || def->shadows[i].map == NULL));
     }
     return casts;
 }

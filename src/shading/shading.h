@@ -51,6 +51,12 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
 
 vplAddEmittersFcn* vplGetAddEmitters(vplIsa isa);
 
+// The map of what an emitter lights first, from which its shadow is taken; NULL: none.
+static inline const vplReflectiveMap* vplEmitterMapOf(const vplShadeDef* def, int emitter)
+{
+    return def->emitterMaps != NULL ? def->emitterMaps[emitter] : NULL;
+}
+
 // One render of one view.
 typedef struct vplShading {
     const vplGeometry* geometry;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Reflective shadow maps against rays: build/bench/rsm SCENE...: what a map costs, what a particle's first flight
-// costs either way, from how many particles on the map pays, and how far the picture moves. Processor time, medians.
+// costs either way, from how many particles on the map pays, and how far the picture moves; then direct light of the first
+// emitter at 1920x1080, its shadows by rays and by the map. Processor time, medians.
 #include "bench.h"
 
 #include "base/clock.h"
 
-enum { PARTICLES = 100000, RUNS = 5, SIDE = 96, SHOWN = 300 };
+enum { PARTICLES = 100000, RUNS = 5, SIDE = 96, SHOWN = 300, WIDTH = 1920, HEIGHT = 1080 };
 
 typedef struct Bench {
     const vplScene* scene;
@@ -101,6 +102,64 @@ static void measure(const Bench* b, const char* name)
     free(maps);
 }
 
+// ---- shadows
+
+// Direct light of one emitter; map NULL: by rays.
+static double light(const Bench* b, const vplView* view, const vplReflectiveMap* map, vplImage* image)
+{
+    const vplShadow none = {0};
+    vplShadeDef def = {.accumulation = VPL_ACCUMULATE_DEFERRED,
+                       .emitters = b->emitters,
+                       .emitterCount = 1,
+                       .shadows = &none,
+                       .emitterMaps = &map};
+    const double start = vplCpuMs();
+    check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
+    return vplCpuMs() - start;
+}
+
+// Shares of the pixels that differ by more than 1 % and by more than half of the larger one.
+static void countDifferent(const vplImage* a, const vplImage* b, double* someOut, double* muchOut)
+{
+    const size_t pixels = (size_t)a->width * (size_t)a->height;
+    size_t some = 0, much = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        const float x = a->pixels[3 * i], y = b->pixels[3 * i], larger = fmaxf(x, y);
+        some += fabsf(x - y) > 0.01f * larger;
+        much += fabsf(x - y) > 0.5f * larger;
+    }
+    *someOut = 100.0 * (double)some / (double)pixels;
+    *muchOut = 100.0 * (double)much / (double)pixels;
+}
+
+static void measureShadows(Bench* b)
+{
+    const vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), WIDTH, HEIGHT);
+    vplImage *byRays, *byMap;
+    check(vplImage_Create(b->geometry->context, WIDTH, HEIGHT, &byRays));
+    check(vplImage_Create(b->geometry->context, WIDTH, HEIGHT, &byMap));
+    b->emitterCount = 1;
+    printf("%6s %9s %12s %12s %10s %10s\n", "size", "map ms", "by rays ms", "by map ms", "> 1 % off",
+           "> 50 % off");
+    for (int size = 512; size <= 2048; size *= 2) {
+        double draws[RUNS], rays[RUNS], looks[RUNS], some, much;
+        for (int run = 0; run < RUNS; run++) {
+            vplReflectiveMap* map;
+            const double start = vplCpuMs();
+            drawMaps(b, size, &map);
+            draws[run] = vplCpuMs() - start;
+            rays[run] = light(b, &view, NULL, byRays);
+            looks[run] = light(b, &view, map, byMap);
+            vplReflectiveMap_Destroy(map);
+        }
+        countDifferent(byRays, byMap, &some, &much);
+        printf("%6d %9.2f %12.2f %12.2f %9.3f%% %9.3f%%\n", size, median(draws, RUNS), median(rays, RUNS),
+               median(looks, RUNS), some, much);
+    }
+    vplImage_Destroy(byRays);
+    vplImage_Destroy(byMap);
+}
+
 int main(int count, char** words)
 {
     for (int i = 1; i < count; i++) {
@@ -114,6 +173,7 @@ int main(int count, char** words)
         if (b.emitterCount > 0) {
             b.emitters = vplScene_GetEmitter(scene, 0);
             measure(&b, words[i]);
+            measureShadows(&b);
         } else {
             printf("%s has no emitter that could have a map\n", words[i]);
         }

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// Based on: Vitor Aranha, Márcio Macedo and Antônio Apolinário, Screen-Space Virtual Point Light Propagation for
+// Real-Time Global Illumination, section II-A: the texels of a reflective shadow map at the points of the 2D Hammersley
+// sequence are the lights of the first bounce. Departs: what a light sends out is written down, as the document does
+// not; several emitters share the lights by power, and a point's six faces lie side by side in the unit square.
+#include <vpl/lights.h>
+
+#include "base/context.h"
+#include "base/rng.h"
+#include "geometry/emission.h"
+#include "math/sampling.h"
+#include "math/vec.h"
+
+#include <math.h>
+
+enum { RSM_SAMPLE_COOKIE = 0x56504c63, SHIFT_STREAM = 0x52534d01, CHUNK = 256 };
+
+vplRsmSampleDef vplDefaultRsmSampleDef(void)
+{
+    return (vplRsmSampleDef){256, 0, RSM_SAMPLE_COOKIE};
+}
+
+typedef struct Sampling {
+    const vplGeometry* geometry;
+    const vplReflectiveMap* const* maps;
+    int mapCount, count;
+    uint64_t shift;
+    int* first;             // of each map: its first sample; one more than maps
+    vplVirtualLight* slots; // one per sample; weight 0: there is none
+    int64_t escaped;
+} Sampling;
+
+// ---- shares
+
+// W through all texels, mean of the channels.
+static double powerOf(const vplReflectiveMap* map)
+{
+    if (map == NULL) {
+        return 0;
+    }
+    const vplEmitterDef* e = &map->emitter;
+    const double share = e->type == VPL_EMITTER_POINT  ? 4 * VPL_PI
+                         : e->type == VPL_EMITTER_SPOT ? vplSpot_SolidAngle(e)
+                                                       : 4 * map->extent[0] * map->extent[1];
+    return share * vplRgbMean(e->intensity);
+}
+
+// Each map with power has one sample, where there are so many, lest its light be lost; the others go by power. Rounded
+// sums of all up to a map make shares that add up.
+static void shareSamples(Sampling* s)
+{
+    double total = 0, sum = 0;
+    int powered = 0, before = 0;
+    for (int i = 0; i < s->mapCount; i++) {
+        total += powerOf(s->maps[i]);
+        powered += powerOf(s->maps[i]) > 0;
+    }
+    const bool one = powered <= s->count;
+    const int rest = one ? s->count - powered : s->count;
+    s->first[0] = 0;
+    for (int i = 0; i < s->mapCount; i++) {
+        sum += powerOf(s->maps[i]);
+        before += one && powerOf(s->maps[i]) > 0;
+        s->first[i + 1] = before + (total > 0 ? (int)floor(rest * (sum / total) + 0.5) : 0);
+    }
+}
+
+// ---- samples
+
+// In which of `cells` equal parts of [0, 1) the coordinate numerator / denominator + shift, modulo 1, lies. No rounding
+// moves an unshifted point from one cell to another: its quotient is at least 2^-24 below the next integer, or is one.
+static int64_t cellOf(double numerator, double denominator, double shift, int64_t cells)
+{
+    double at = numerator * (double)cells / denominator + shift * (double)cells;
+    at -= at >= (double)cells ? (double)cells : 0;
+    return at < (double)cells ? (int64_t)at : cells - 1;
+}
+
+// Texel of sample k of n.
+static int64_t texelOf(const Sampling* s, const vplReflectiveMap* map, int emitter, int k, int n)
+{
+    const int64_t size = map->size;
+    double shiftX = 0, shiftY = 0;
+    if (s->shift != 0) {
+        const vplRandom4 r = vplRandomAt(s->shift, SHIFT_STREAM, (uint64_t)emitter);
+        shiftX = (double)vplUnitFloat(r.v[0]);
+        shiftY = (double)vplUnitFloat(r.v[1]);
+    }
+    const int64_t column = cellOf(k, n, shiftX, map->faceCount * size);
+    const int64_t row = cellOf((double)vplVanDerCorput((uint32_t)k), 1, shiftY, size);
+    return (column / size * size + row) * size + column % size;
+}
+
+// Each of the n samples stands for its n-th part of the map's texels, each of all N samples carries all of the map's
+// light: the weight N / n makes up for those that are other maps'.
+static void takeSample(Sampling* s, int emitter, int particle)
+{
+    const vplReflectiveMap* map = s->maps[emitter];
+    const int n = s->first[emitter + 1] - s->first[emitter];
+    const double texels = (double)map->faceCount * map->size * map->size;
+    vplVirtualLight* light = &s->slots[particle];
+    vplReflectiveTexel t;
+    *light = (vplVirtualLight){.weight = 0};
+    if (!vplReflectiveMap_GetTexel(map, s->geometry,
+                                   texelOf(s, map, emitter, particle - s->first[emitter], n), &t)) {
+        __atomic_fetch_add(&s->escaped, 1, __ATOMIC_RELAXED);
+        return;
+    }
+    const vplRgb flux = vplScaleRadiometric(texels, vplRgbMul(t.albedo, t.flux));
+    if (flux.r > 0 || flux.g > 0 || flux.b > 0) {
+        *light = (vplVirtualLight){.position = t.position,
+                                   .normal = t.normal,
+                                   .light = flux,
+                                   .weight = (float)((double)s->count / n),
+                                   .particle = particle,
+                                   .object = s->geometry->owners[t.triangle]};
+    }
+}
+
+static void takeSamples(void* data, int chunk, int worker)
+{
+    (void)worker;
+    Sampling* s = data;
+    const int all = s->first[s->mapCount], end = all - chunk * CHUNK < CHUNK ? all : (chunk + 1) * CHUNK;
+    for (int i = chunk * CHUNK, emitter = 0; i < end; i++) {
+        while (i >= s->first[emitter + 1]) {
+            emitter++;
+        }
+        takeSample(s, emitter, i);
+    }
+}
+
+// ---- the set
+
+static vplResult makeSet(Sampling* s, vplLightSet* set)
+{
+    int* counts = vplAllocZero(set->context, 1, sizeof *counts);
+    int* inStep = vplAllocZero(set->context, 1, sizeof *inStep);
+    s->slots = vplAlloc(set->context, (size_t)s->count, sizeof *s->slots);
+    s->first = vplAlloc(set->context, (size_t)s->mapCount + 1, sizeof *s->first);
+    set->lights = s->slots;
+    set->stepCounts = counts;
+    set->lightsInStep = inStep;
+    if (!counts || !inStep || !s->slots || !s->first) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    shareSamples(s);
+    const int taken = s->first[s->mapCount];
+    vplParallelFor(set->context, (taken + CHUNK - 1) / CHUNK, takeSamples, s);
+    for (int i = 0; i < taken; i++) {
+        if (s->slots[i].weight > 0) {
+            s->slots[set->lightCount++] = s->slots[i];
+        }
+    }
+    counts[0] = set->particleCount = s->count;
+    inStep[0] = set->lightCount;
+    set->stepCount = s->count > 0 ? 1 : 0;
+    set->escaped = (int)s->escaped;
+    return VPL_SUCCESS;
+}
+
+vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
+                                  int mapCount, const vplRsmSampleDef* def, vplLightSet** setOut)
+{
+    vplContext* context = geometry->context;
+    if (def->cookie != RSM_SAMPLE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplRsmSampleDef was not made by vplDefaultRsmSampleDef");
+    }
+    if (def->count < 0 || def->count > VPL_MAX_LIGHTS) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRsmSampleDef.count is %d, must be in [0, %d]",
+                       def->count, VPL_MAX_LIGHTS);
+    }
+    vplLightSet* set = vplAllocZero(context, 1, sizeof *set);
+    if (set == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    set->context = context;
+    Sampling s = {
+        .geometry = geometry, .maps = maps, .mapCount = mapCount, .count = def->count, .shift = def->shift};
+    const vplResult result = makeSet(&s, set);
+    vplFree(context, s.first);
+    if (result != VPL_SUCCESS) {
+        vplLightSet_Destroy(set);
+        return result;
+    }
+    *setOut = set;
+    return VPL_SUCCESS;
+}
