@@ -7,6 +7,8 @@
 #ifndef VPL_VISIBILITY_MAP_FILL_H
 #define VPL_VISIBILITY_MAP_FILL_H
 
+#include <vpl/raster.h>
+
 #include "geometry/bvh.h"
 #include "math/vec.h"
 
