@@ -148,7 +148,7 @@ static vplParaboloidPlace rollPlaceOf(const vplGeometry* g, Dice* dice, bool onS
 {
     vplHit hit;
     const vplHalfMapPlace at = rollPlace(g, dice, &hit);
-    const vplVec3 inside = vplScale(0.9f, at.position);
+    const vplVec3 inside = vplAdd(vplScale(0.87f, at.position), vplVec(0.01f, 0.02f, 0.03f));
     return onSurface ? (vplParaboloidPlace){at.position, at.normal, 1, true}
                      : (vplParaboloidPlace){inside, rollUnit(dice), 2, false};
 }
@@ -159,11 +159,13 @@ static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int w
     for (int i = 0; i < map->hemispheres * map->size * map->size; i++) {
         const int hemisphere = i / (map->size * map->size), texel = i % (map->size * map->size);
         const vplVec3 local = localOf(map, hemisphere, texel), d = toWorld(map, local);
-        const float length = vplLength(d), p = sqrtf(length - 1);
+        const float length = vplLength(d);
+        const double p = hypot((2 * (texel % map->size) + 1.0) / map->size - 1,
+                               (2 * (texel / map->size) + 1.0) / map->size - 1);
         const float stored = map->texels[placeOf(map, hemisphere, texel)];
         const int triangle = map->triangles[placeOf(map, hemisphere, texel)];
         assert_true((stored > 0) == (triangle >= 0) && stored >= 0 && stored < INFINITY);
-        if (fabsf(p - rim) < 1e-5f) {
+        if (fabs(p - rim) < 1e-5) {
             continue; // in or out
         }
         if (p > rim) {
@@ -230,26 +232,54 @@ static vplVec3 nastyCorner(Dice* dice, int kind)
     }
 }
 
-// Sines of the angles between a direction and the planes of a triangle's edges, the least: positive inside.
-static double depthIn(const vplVec3 corner[3], vplVec3 direction)
+static void cross(const double a[3], const double b[3], double out[3])
 {
-    double p[3][3], least = INFINITY, side = 0;
-    const double d[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void widen(const vplVec3 corner[3], double p[3][3])
+{
     for (int k = 0; k < 3; k++) {
         p[k][0] = (double)corner[k].x;
         p[k][1] = (double)corner[k].y;
         p[k][2] = (double)corner[k].z;
     }
+}
+
+// Sines of the angles between a direction and the planes of a triangle's edges, the least: positive inside.
+static double depthIn(const vplVec3 corner[3], vplVec3 direction)
+{
+    double p[3][3], e[3], least = INFINITY;
+    const double d[3] = {(double)direction.x, (double)direction.y, (double)direction.z};
+    widen(corner, p);
     for (int k = 0; k < 3; k++) {
-        const double *a = p[k], *b = p[(k + 1) % 3], *c = p[(k + 2) % 3];
-        const double e[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-        side = e[0] * c[0] + e[1] * c[1] + e[2] * c[2] > 0 ? 1 : -1;
-        const double at = side * (e[0] * d[0] + e[1] * d[1] + e[2] * d[2]) /
-                          sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]) /
-                          sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        cross(p[k], p[(k + 1) % 3], e);
+        const double side = dot(e, p[(k + 2) % 3]) > 0 ? 1 : -1;
+        const double at = side * dot(e, d) / sqrt(dot(e, e) * dot(d, d));
         least = at < least ? at : least;
     }
     return least;
+}
+
+// Distance of a triangle's plane as a share of that of its nearest corner.
+static double heightOf(const vplVec3 corner[3])
+{
+    double p[3][3], a[3], b[3], n[3];
+    widen(corner, p);
+    for (int k = 0; k < 3; k++) {
+        a[k] = p[1][k] - p[0][k];
+        b[k] = p[2][k] - p[0][k];
+    }
+    cross(a, b, n);
+    const double nearest = fmin(dot(p[0], p[0]), fmin(dot(p[1], p[1]), dot(p[2], p[2])));
+    return nearest > 0 ? fabs(dot(n, p[0])) / sqrt(dot(n, n) * nearest) : 0;
 }
 
 static void BoundsOfTrianglesLoseNoTexel(void** state)
@@ -272,8 +302,7 @@ static void BoundsOfTrianglesLoseNoTexel(void** state)
         addShape(scene, &one, false, NULL);
         freeShape(&one);
         vplGeometry* g = freezeScene(scene);
-        const vplVec3 n = g->normals[0];
-        const float high = fabsf(vplDot(n, corner[0]));
+        const double height = heightOf(corner);
         const vplParaboloidPlace place = {vplVec(0, 0, 0), vplVec(0, 0, 1), 1 + i % 2, false};
         vplParaboloidMaps* maps = drawMaps(g, 5 + i % 60, &place, 1);
         const vplParaboloidMap* map = &maps->maps[0];
@@ -284,8 +313,12 @@ static void BoundsOfTrianglesLoseNoTexel(void** state)
             const bool covered = map->texels[placeOf(map, h, texel)] > 0;
             const double depth = depthIn(corner, d);
             // From its edge a triangle may be seen or not.
-            if (high > 1e-5f * vplLargestOf(corner[0]) && vplLength(d) - 1 < rim * rim - 1e-5f &&
-                covered != (depth > 0) && fabs(depth) > 1e-5) {
+            if (height > 1e-5 && vplLength(d) - 1 < rim * rim - 1e-5f && covered != (depth > 0) &&
+                fabs(depth) > 1e-5) {
+                for (int k = 0; k < 3; k++) {
+                    printf("# corner %.9g %.9g %.9g\n", (double)corner[k].x, (double)corner[k].y,
+                           (double)corner[k].z);
+                }
                 fail_msg("triangle %d, hemisphere %d, texel %d of %d^2: %d, depth %.3g", i, h, texel,
                          map->size, covered, depth);
             }
@@ -398,6 +431,11 @@ static void comparePairs(const vplGeometry* g, Dice* dice, const vplParaboloidMa
             assert_true(factor == 1);
             continue;
         }
+        // Within a texel of the only hemisphere's rim nothing is known of what lies beyond it.
+        const float rim = 4 * 1.41421356f / (float)map->size;
+        if (map->hemispheres == 1 && -vplDot(way, map->forward) < rim * vplLength(way)) {
+            continue;
+        }
         if (!(vplDot(way, at.normal) > 0)) {
             continue; // no light falls here from the map's place, maybe from others of its cluster
         }
@@ -406,7 +444,7 @@ static void comparePairs(const vplGeometry* g, Dice* dice, const vplParaboloidMa
         const bool differs = shadowed ? factor < 1 : factor > 0;
         tally->pairs++;
         tally->dark += shadowed;
-        tally->apart += differs;
+        tally->apart += shadowed != (factor > 0.5f);
         if (differs && fabsf(factor - (float)shadowed) > 1e-6f &&
             isSureParaboloid(g, map, at.position, at.normal, shadowed)) {
             fail_msg("scene %d, point %d: the ray says %d, the map %g", which, i, shadowed, (double)factor);
@@ -430,7 +468,7 @@ static void MapsAndRaysAgreeOutsideTheBand(void** state)
         }
         printf("# %d pairs, %d dark, %d within the band\n", tally.pairs, tally.dark, tally.apart);
         assert_true(tally.dark > 500 && tally.pairs > tally.dark + 500);
-        assert_true(tally.apart > 0 && tally.apart < tally.pairs / 8);
+        assert_true(tally.apart > 0 && tally.apart < tally.pairs / 20);
         vplGeometry_Destroy(g);
     }
     closeTestContext(context);

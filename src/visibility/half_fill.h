@@ -24,6 +24,12 @@ static inline Linear linearOf(vplVec3 e, float right, float up)
     return (Linear){e.z, 0.5f * (p + q), 0.5f * (p - q)};
 }
 
+// Twice a x b.
+static inline vplVec3 edgeOf(vplVec3 a, vplVec3 b)
+{
+    return vplCross(vplSub(a, b), vplAdd(a, b));
+}
+
 typedef struct Filling {
     Linear edge[3], near; // near: 1/t
     float right, up;      // signs of the quadrant
@@ -33,7 +39,7 @@ typedef struct Filling {
 static inline int32_t setUp(vplVec3 p0, vplVec3 p1, vplVec3 p2, float right, float up, Filling* f)
 {
     Planes planes;
-    const int32_t seen = planesOf(p0, p1, p2, &planes);
+    const int32_t seen = planesOf(p0, p1, p2, edgeOf, &planes);
     f->near = linearOf(planes.near, right, up);
     for (int e = 0; e < 3; e++) {
         f->edge[e] = linearOf(planes.edge[e], right, up);

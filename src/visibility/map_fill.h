@@ -37,22 +37,20 @@ typedef struct Planes {
     vplVec3 near;    // 1/t, where t d meets the triangle's plane, is near.d
 } Planes;
 
-// Twice a x b.
-static inline vplVec3 edgeOf(vplVec3 a, vplVec3 b)
-{
-    return vplCross(vplSub(a, b), vplAdd(a, b));
-}
+// A multiple of p x q: odd in the exchange of its ends to the last bit.
+typedef vplVec3 EdgeFcn(vplVec3 p, vplVec3 q);
 
 // Returns whether it may be seen: from its edge a triangle hides nothing.
-static inline int32_t planesOf(vplVec3 p0, vplVec3 p1, vplVec3 p2, Planes* planes)
+static inline __attribute__((always_inline)) int32_t planesOf(vplVec3 p0, vplVec3 p1, vplVec3 p2,
+                                                              EdgeFcn* edge, Planes* planes)
 {
     const vplVec3 n = vplCross(vplSub(p1, p0), vplSub(p2, p0));
     const float x = n.x * p0.x, y = n.y * p0.y, z = n.z * p0.z, k = x + y + z;
     const float sign = k > 0 ? 1.0f : -1.0f, inverse = 1 / k;
     planes->near = vplScale(inverse, n);
-    planes->edge[0] = vplScale(sign, edgeOf(p0, p1));
-    planes->edge[1] = vplScale(sign, edgeOf(p1, p2));
-    planes->edge[2] = vplScale(sign, edgeOf(p2, p0));
+    planes->edge[0] = vplScale(sign, edge(p0, p1));
+    planes->edge[1] = vplScale(sign, edge(p1, p2));
+    planes->edge[2] = vplScale(sign, edge(p2, p0));
     return (fabsf(k) > 0x1p-20f * (fabsf(x) + fabsf(y) + fabsf(z))) & (fabsf(inverse) < INFINITY);
 }
 

@@ -9,7 +9,7 @@ bool vplParaboloid_Project(vplVec3 direction, double* x, double* y)
     const double dx = (double)direction.x, dy = (double)direction.y, dz = (double)direction.z;
     // The largest component is brought to 1, so that no square underflows or overflows.
     const double largest = fmax(fabs(dx), fmax(fabs(dy), fabs(dz)));
-    if (!(largest > 0) || !isfinite(largest)) {
+    if (!(largest > 0) || !isfinite(dx + dy + dz)) {
         return false;
     }
     const double a = dx / largest, b = dy / largest, c = dz / largest;

@@ -10,6 +10,16 @@
 #include "visibility/map_fill.h"
 #include "visibility/paraboloid_map.h"
 
+// p x q as that of the nearer end and the difference: right to rounding also where one end is 10^5 times as far as the
+// other, which moves edges by a hundredth where sum and difference are multiplied.
+static inline vplVec3 edgeOf(vplVec3 p, vplVec3 q)
+{
+    const float pp = vplDot(p, p), qq = vplDot(q, q);
+    const float a = pp < qq ? 1.0f : pp > qq ? 0.0f : 0.5f;
+    const vplVec3 nearer = {a * p.x + (1 - a) * q.x, a * p.y + (1 - a) * q.y, a * p.z + (1 - a) * q.z};
+    return vplCross(nearer, vplSub(q, p));
+}
+
 // The function a (1 - x^2 - y^2) + b x + c y.
 typedef struct Quadric {
     float a, b, c;

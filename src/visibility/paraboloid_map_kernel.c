@@ -13,12 +13,50 @@ typedef struct Fillings {
     int32_t box[4][VPL_LANES], kind[VPL_LANES];
 } Fillings;
 
+// Turns the corners round so that the nearest comes first: from there a plane's normal and distance are right to
+// rounding, while from a corner 1000 times as far even its side may be wrong.
+static inline void nearestFirst(vplVec3 p[3])
+{
+    const vplVec3 a = p[0], b = p[1], c = p[2];
+    const float aa = vplDot(a, a), bb = vplDot(b, b), cc = vplDot(c, c);
+    const bool second = (bb < aa) & (bb <= cc), third = (cc < aa) & (cc < bb);
+    p[0] = vplVec(second  ? b.x
+                  : third ? c.x
+                          : a.x,
+                  second  ? b.y
+                  : third ? c.y
+                          : a.y,
+                  second  ? b.z
+                  : third ? c.z
+                          : a.z);
+    p[1] = vplVec(second  ? c.x
+                  : third ? a.x
+                          : b.x,
+                  second  ? c.y
+                  : third ? a.y
+                          : b.y,
+                  second  ? c.z
+                  : third ? a.z
+                          : b.z);
+    p[2] = vplVec(second  ? a.x
+                  : third ? b.x
+                          : c.x,
+                  second  ? a.y
+                  : third ? b.y
+                          : c.y,
+                  second  ? a.z
+                  : third ? b.z
+                          : c.z);
+}
+
 static void setUpAll(const Sixteen* restrict s, Fillings* restrict all)
 {
     for (int l = 0; l < VPL_LANES; l++) {
         Planes p;
         const int32_t was = all->kind[l];
-        const int32_t seen = planesOf(cornerOf(s, 0, l), cornerOf(s, 1, l), cornerOf(s, 2, l), &p);
+        vplVec3 corner[3] = {cornerOf(s, 0, l), cornerOf(s, 1, l), cornerOf(s, 2, l)};
+        nearestFirst(corner);
+        const int32_t seen = planesOf(corner[0], corner[1], corner[2], edgeOf, &p);
         for (int e = 0; e < 3; e++) {
             const Quadric q = quadricOf(p.edge[e]);
             all->edge[e][0][l] = q.a;
