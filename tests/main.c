@@ -34,6 +34,7 @@
     X(objParts) \
     X(objScene) \
     X(packets) \
+    X(paraboloids) \
     X(passes) \
     X(path) \
     X(placement) \
