@@ -18,6 +18,7 @@
     X(emission) \
     X(emitters) \
     X(exr) \
+    X(frames) \
     X(geometry) \
     X(halfMaps) \
     X(hits) \
