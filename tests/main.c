@@ -19,6 +19,7 @@
     X(emission) \
     X(emitters) \
     X(exr) \
+    X(frames) \
     X(geometry) \
     X(halfMaps) \
     X(hits) \

@@ -81,6 +81,27 @@ typedef struct vplEmitterDef {
 
 vplEmitterDef vplDefaultEmitterDef(void);
 
+// What a camera is at one frame of its path.
+typedef struct vplCameraKey {
+    double frame; // any finite number within VPL_MAX_FRAME
+    vplVec3 eye, target, up;
+    double fovY;
+} vplCameraKey;
+
+// What an emitter is at one frame of its path.
+typedef struct vplEmitterKey {
+    double frame; // as in vplCameraKey
+    vplVec3 position, direction;
+    vplRgb intensity;
+} vplEmitterKey;
+
+// Most keys of a path, and the largest magnitude of their frames.
+enum { VPL_MAX_KEYS = 1 << 20, VPL_MAX_FRAME = 1000000000 };
+
+// A key at which all is as declared: set what the path changes.
+vplCameraKey vplMakeCameraKey(const vplCameraDef* def, double frame);
+vplEmitterKey vplMakeEmitterKey(const vplEmitterDef* def, double frame);
+
 // Everything that a render needs to know of the world. Not changed by rendering.
 typedef struct vplScene vplScene;
 
@@ -101,6 +122,12 @@ vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut);
 vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut);
 
+// Makes a camera or an emitter move: from key to key, all that they hold changes evenly with the frame; before the first
+// and after the last it stays. Frames must increase, and at each key the camera or emitter must be one that could
+// be declared. Replaces a path that was there; 0 keys: it stands still, as declared. The index must be in range.
+vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey* keys, int count);
+vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKey* keys, int count);
+
 // Reads an OBJ file with the MTL files it names (see README: Meshes) and adds one mesh of all its faces and the
 // materials they use (Kd reflectance, Ke emission), named "file.obj:name". Faces without a material get a grey
 // one. What is not understood is logged once as a warning; a damaged line is an error with file:line:column.
@@ -118,6 +145,15 @@ const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index);
 const vplMeshDef* vplScene_GetMesh(const vplScene* scene, int index);
 const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index);
 const vplEmitterDef* vplScene_GetEmitter(const vplScene* scene, int index);
+
+// The keys of its path, owned by the scene; NULL and 0 where it stands still. The index must be in range.
+const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut);
+const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut);
+
+// What it is at a frame (finite). VPL_INVALID_ARGUMENT where between two good keys the eye meets the target, the view
+// its up vector, or opposite directions cancel.
+vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut);
+vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut);
 
 vplContext* vplScene_GetContext(const vplScene* scene);
 

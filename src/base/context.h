@@ -5,13 +5,31 @@
 
 #include <vpl/base.h>
 
+// A large block that was freed and waits to be used again.
+typedef struct vplFreedBlock {
+    void* raw; // as the allocator returned it
+    size_t total;
+    int64_t age; // number of the round in which it was freed
+} vplFreedBlock;
+
+enum { VPL_MAX_FREED = 64 };
+
 struct vplContext {
     vplContextDef def;
     vplIsa isa;
     int workerCount;
-    size_t bytes;     // held now; allocation happens outside parallel sections, so plain counters do
-    size_t peakBytes; // most held at once
+    size_t bytes; // held now, kept blocks among them; allocation happens outside parallel sections, so plain
+                  // counters do
+    size_t peakBytes;  // most held at once
+    uint64_t stamps;   // handed out so far, see vplNextStamp
+    int keepers;       // histories that live
+    int64_t keptRound; // number of the frame, for ages
+    int keptCount;
+    vplFreedBlock kept[VPL_MAX_FREED];
 };
+
+// Another number each time, to tell one thing, or one state of it, from another.
+uint64_t vplNextStamp(vplContext* context);
 
 // ---- messages
 
@@ -41,6 +59,18 @@ vplResult vplReserve(vplContext* context, void* array, size_t* capacity, size_t 
 
 // NULL is allowed.
 void vplFree(vplContext* context, void* memory);
+
+// Between these two, freed blocks of VPL_KEPT_BYTES and more stay with the context, which hands them out again: the
+// kernel clears each page that it gives, which was 24 % of the processor time of a frame of Sponza at 1920x1080 (tests/bench/
+// flicker --frames). Both may be called several times: the last vplStopKeeping frees what is left.
+void vplStartKeeping(vplContext* context);
+void vplStopKeeping(vplContext* context);
+
+// Begins another round: blocks that were not used again in the last two are freed, so that what one frame needed is not
+// held for ever.
+void vplAgeKept(vplContext* context);
+
+enum { VPL_KEPT_BYTES = 1 << 20 };
 
 // A copy of a string in context memory; NULL when out of memory.
 char* vplCopyString(vplContext* context, const char* text);

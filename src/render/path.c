@@ -40,7 +40,7 @@ static vplResult begin(vplJob* job)
         return VPL_OUT_OF_MEMORY;
     }
     vplPathDef def = vplDefaultPathDef();
-    def.camera = vplScene_GetCamera(job->scene, o->camera);
+    def.camera = &job->camera;
     def.emitterCount = job->emitterCount;
     def.emitters = job->emitters;
     def.width = o->width;

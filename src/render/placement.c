@@ -24,7 +24,7 @@ static vplResult placeByView(vplJob* job, const vplEmitterDef* emitters, int emi
         return result;
     }
     def.lighting = vplJob_GetShading(job);
-    def.camera = *vplScene_GetCamera(job->scene, o->camera);
+    def.camera = job->camera;
     def.width = o->width;
     def.height = o->height;
     def.oversampling = oversamplingFor(o);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Checks, freezes the scene, counts and times what methods do.
 #include "base/clock.h"
+#include "render/history.h"
 #include "render/ssvp.h"
 
 #include <string.h>
@@ -117,14 +118,21 @@ static void chooseUsual(vplRenderOptions* o)
     }
 }
 
-static vplResult poseEmitters(vplJob* job)
+static vplResult pose(vplJob* job)
 {
+    const vplRenderOptions* o = &job->options;
+    vplResult result = vplScene_PoseCamera(job->scene, o->camera, o->frame, &job->camera);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    job->view = vplView_Create(&job->camera, o->width, o->height);
     job->emitterCount = vplScene_GetEmitterCount(job->scene);
     job->emitters = vplAlloc(job->context, (size_t)job->emitterCount, sizeof *job->emitters);
-    for (int i = 0; job->emitters != NULL && i < job->emitterCount; i++) {
-        job->emitters[i] = *vplScene_GetEmitter(job->scene, i);
+    result = job->emitters != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    for (int i = 0; i < job->emitterCount && result == VPL_SUCCESS; i++) {
+        result = vplScene_PoseEmitter(job->scene, i, o->frame, &job->emitters[i]);
     }
-    return job->emitters != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    return result;
 }
 
 vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, vplJob* job)
@@ -143,19 +151,21 @@ vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, v
     chooseUsual(&job->options);
     vplContext_ResetPeakBytes(job->context);
     vplJob_BeginStage(job, 0);
-    result = vplGeometry_Create(scene, &job->geometry);
+    result = pose(job);
     if (result == VPL_SUCCESS) {
-        result = poseEmitters(job);
+        result = options->history != NULL ? vplHistory_Open(options->history, scene, &job->geometry)
+                                          : vplGeometry_Create(scene, &job->geometry);
     }
     vplJob_EndStage(job, "geometry");
-    job->view = vplView_Create(vplScene_GetCamera(scene, options->camera), options->width, options->height);
     return result;
 }
 
 void vplJob_End(vplJob* job)
 {
     vplFree(job->context, job->emitters);
-    vplGeometry_Destroy(job->geometry);
+    if (job->options.history == NULL) {
+        vplGeometry_Destroy(job->geometry);
+    }
 }
 
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)

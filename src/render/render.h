@@ -13,6 +13,7 @@ typedef struct vplJob {
     const vplScene* scene;
     vplRenderOptions options;
     vplGeometry* geometry;
+    vplCameraDef camera; // the scene's, posed
     vplView view;
     vplEmitterDef* emitters; // of the scene, posed; NULL where there are none
     int emitterCount;

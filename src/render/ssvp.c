@@ -452,4 +452,5 @@ void vplSsvp_End(vplJob* job, vplSsvpState* state)
     }
     vplSsvp_Destroy(history->ssvp);
     history->ssvp = state;
+    history->destroySsvp = vplSsvp_Destroy;
 }

@@ -40,6 +40,7 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
         return VPL_OUT_OF_MEMORY;
     }
     scene->context = context;
+    scene->stamp = vplNextStamp(context);
     *sceneOut = scene;
     return VPL_SUCCESS;
 }
@@ -59,6 +60,7 @@ void vplScene_Destroy(vplScene* scene)
     for (int i = 0; i < scene->meshCount; i++) {
         vplFreeMesh(context, &scene->meshes[i]);
     }
+    vplFreePaths(scene);
     vplFree(context, scene->meshes);
     vplFree(context, scene->cameras);
     vplFree(context, scene->materials);
@@ -88,6 +90,7 @@ static void* grow(vplScene* scene, void* array, int* count, size_t* capacity, si
     if (vplReserve(scene->context, array, capacity, (size_t)*count + 1, size) != VPL_SUCCESS) {
         return NULL;
     }
+    scene->stamp = vplNextStamp(scene->context);
     char* base;
     memcpy(&base, array, sizeof base);
     return base + (size_t)*count * size;

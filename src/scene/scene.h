@@ -7,14 +7,30 @@
 
 #include "base/context.h"
 
+// How one camera or emitter moves.
+typedef struct vplPath {
+    int index; // of the camera or emitter
+    int count; // of keys, at least 1
+    void* keys;
+} vplPath;
+
+// Those that move, in no order.
+typedef struct vplPathList {
+    vplPath* paths;
+    size_t capacity;
+    int count;
+} vplPathList;
+
 struct vplScene {
     vplContext* context;
+    uint64_t stamp; // another one after each addition
     vplCameraDef* cameras;
     vplMaterialDef* materials;
     vplMeshDef* meshes; // their arrays are the scene's own
     vplObjectDef* objects;
     vplEmitterDef* emitters;
     int cameraCount, materialCount, meshCount, objectCount, emitterCount;
+    vplPathList cameraPaths, emitterPaths;
     size_t cameraCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
 };
 
@@ -47,5 +63,14 @@ vplFault vplCheckMaterial(const vplMaterialDef* def);
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
+
+// The declared thing with what the key says instead.
+vplCameraDef vplApplyCameraKey(const vplCameraDef* def, const vplCameraKey* key);
+vplEmitterDef vplApplyEmitterKey(const vplEmitterDef* def, const vplEmitterKey* key);
+
+// Whether a key may follow one of frame `before`.
+vplFault vplCheckKeyFrame(double before, double frame);
+
+void vplFreePaths(vplScene* scene);
 
 #endif

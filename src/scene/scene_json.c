@@ -34,6 +34,14 @@ vplResult vplSceneLoader_ReportFault(const vplSceneLoader* l, const vplJsonPath*
     return vplJsonReader_Fail(&l->json, fault->index >= 0 ? &component : &member, "%s", fault->text);
 }
 
+vplResult vplSceneLoader_ReportEmitterFault(const vplSceneLoader* l, const vplJsonPath* path,
+                                            vplEmitterType type, const vplFault* fault)
+{
+    const bool ofStrength = fault->field != NULL && strcmp(fault->field, "intensity") == 0;
+    return vplSceneLoader_ReportFault(
+        l, path, ofStrength && type == VPL_EMITTER_DIRECTIONAL ? "irradiance" : NULL, fault);
+}
+
 // An angle in degrees, read into radians. Open or closed bounds as the sentence says.
 static vplResult readAngle(const vplSceneLoader* l, const json_t* object, const vplJsonPath* path,
                            const char* key, double above, double below, const char* range, double* out)
@@ -52,21 +60,29 @@ static vplResult readAngle(const vplSceneLoader* l, const json_t* object, const 
     return VPL_SUCCESS;
 }
 
+vplResult vplSceneLoader_ReadFieldOfView(const vplSceneLoader* l, const json_t* object,
+                                         const vplJsonPath* path, double* out)
+{
+    return readAngle(l, object, path, "fov_y", 0, 180, "(0, 180)", out);
+}
+
 static vplResult readCamera(vplSceneLoader* l, const json_t* value, const vplJsonPath* path)
 {
-    static const char* const keys[] = {"!eye", "!target", "up", "fov_y", "near", "far", NULL};
+    static const char* const keys[] = {"!eye", "!target", "up", "fov_y", "near", "far", "path", NULL};
     vplCameraDef def = vplDefaultCameraDef();
     const vplJsonReader* json = &l->json;
     TRY(vplJsonReader_CheckKeys(json, value, path, keys));
     TRY(vplJsonReader_Floats(json, value, path, "eye", 3, &def.eye.x));
     TRY(vplJsonReader_Floats(json, value, path, "target", 3, &def.target.x));
     TRY(vplJsonReader_Floats(json, value, path, "up", 3, &def.up.x));
-    TRY(readAngle(l, value, path, "fov_y", 0, 180, "(0, 180)", &def.fovY));
+    TRY(vplSceneLoader_ReadFieldOfView(l, value, path, &def.fovY));
     TRY(vplJsonReader_Number(json, value, path, "near", &def.near));
     TRY(vplJsonReader_Number(json, value, path, "far", &def.far));
     vplFault fault = vplCheckCamera(&def);
     TRY(vplSceneLoader_ReportFault(l, path, NULL, &fault));
-    return vplScene_AddCamera(l->scene, &def, NULL);
+    int index;
+    TRY(vplScene_AddCamera(l->scene, &def, &index));
+    return vplSceneLoader_ReadCameraPath(l, value, path, index);
 }
 
 static vplResult readCameras(vplSceneLoader* l)
@@ -130,10 +146,10 @@ vplResult vplSceneLoader_ReadType(vplSceneLoader* l, const json_t* value, const 
 
 static vplResult readEmitter(vplSceneLoader* l, const json_t* value, const vplJsonPath* path)
 {
-    static const char* const pointKeys[] = {"!type", "name", "!position", "!intensity", NULL};
-    static const char* const spotKeys[] = {"!type",      "name",        "!position",   "!direction",
-                                           "!intensity", "inner_angle", "outer_angle", NULL};
-    static const char* const directionalKeys[] = {"!type", "name", "!direction", "!irradiance", NULL};
+    static const char* const pointKeys[] = {"!type", "name", "!position", "!intensity", "path", NULL};
+    static const char* const spotKeys[] = {
+        "!type", "name", "!position", "!direction", "!intensity", "inner_angle", "outer_angle", "path", NULL};
+    static const char* const directionalKeys[] = {"!type", "name", "!direction", "!irradiance", "path", NULL};
     const vplJsonReader* json = &l->json;
     const char* type = NULL;
     const char* name = NULL;
@@ -165,9 +181,10 @@ static vplResult readEmitter(vplSceneLoader* l, const json_t* value, const vplJs
                                   def.innerAngle / DEGREE, def.outerAngle / DEGREE);
     }
     vplFault fault = vplCheckEmitter(&def);
-    bool ofStrength = fault.field != NULL && strcmp(fault.field, "intensity") == 0;
-    TRY(vplSceneLoader_ReportFault(l, path, ofStrength ? strength : NULL, &fault));
-    return vplScene_AddEmitter(l->scene, &def, NULL);
+    int index;
+    TRY(vplSceneLoader_ReportEmitterFault(l, path, def.type, &fault));
+    TRY(vplScene_AddEmitter(l->scene, &def, &index));
+    return vplSceneLoader_ReadEmitterPath(l, value, path, index);
 }
 
 // Reads every element of the array at the root's `key`, if there is one.

@@ -27,11 +27,25 @@ typedef struct vplSceneLoader {
 vplResult vplSceneLoader_ReportFault(const vplSceneLoader* l, const vplJsonPath* path, const char* key,
                                      const vplFault* fault);
 
+// The same of an emitter, whose intensity is called irradiance where it is directional.
+vplResult vplSceneLoader_ReportEmitterFault(const vplSceneLoader* l, const vplJsonPath* path,
+                                            vplEmitterType type, const vplFault* fault);
+
+// "fov_y", degrees, into radians.
+vplResult vplSceneLoader_ReadFieldOfView(const vplSceneLoader* l, const json_t* object,
+                                         const vplJsonPath* path, double* out);
+
 // The type comes before all other keys, because it decides which of them are known.
 vplResult vplSceneLoader_ReadType(vplSceneLoader* l, const json_t* value, const vplJsonPath* path,
                                   const char** out);
 
 // Reads one of "objects" and adds it to the scene.
 vplResult vplSceneLoader_ReadObject(vplSceneLoader* l, const json_t* value, const vplJsonPath* path);
+
+// "path" of camera or emitter `index`, if there is one.
+vplResult vplSceneLoader_ReadCameraPath(vplSceneLoader* l, const json_t* value, const vplJsonPath* path,
+                                        int index);
+vplResult vplSceneLoader_ReadEmitterPath(vplSceneLoader* l, const json_t* value, const vplJsonPath* path,
+                                         int index);
 
 #endif
