@@ -53,7 +53,8 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
     (void)worker;
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
-    vplSeen seen = {.triangle = -1};
+    vplSeen seen;
+    vplSeen_Clear(&seen);
     vplBlock blocks[SQUARE_BLOCKS];
     for (int square = 0; square < SQUARES * SQUARES; square++) {
         const int x = square % SQUARES, y = square / SQUARES;
@@ -61,7 +62,7 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
             const int firstBlock = (y * VPL_TILE_BLOCKS + x) * SQUARE;
             lightSquare(s, tile, firstBlock, &seen, blocks);
             for (int i = 0; i < SQUARE_BLOCKS; i++) {
-                vplWriteLit(s, tile, blockOf(firstBlock, i), &blocks[i]);
+                vplWriteLit(s, tile, blockOf(firstBlock, i), &seen, &blocks[i]);
             }
         }
     }
@@ -76,7 +77,8 @@ void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
     const vplShading* s = data;
     const vplView* view = s->view;
     const bool depth = s->def->output == VPL_OUTPUT_DEPTH, normals = s->def->output == VPL_OUTPUT_NORMALS;
-    vplSeen seen = {.triangle = -1};
+    vplSeen seen;
+    vplSeen_Clear(&seen);
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
         vplBlock b;
         float values[3][VPL_LANES] = {{0}}, factor[VPL_LANES] = {0};

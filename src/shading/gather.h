@@ -3,7 +3,7 @@
 #ifndef VPL_SHADING_GATHER_H
 #define VPL_SHADING_GATHER_H
 
-#include "shading/shading.h"
+#include "shading/seen.h"
 
 enum {
     VPL_GATHER_WIDTH = 64,  // pixels of a task of the second step
@@ -23,12 +23,14 @@ typedef struct vplGatherRoom {
     float rowSums[3][VPL_GATHER_ROWS][VPL_GATHER_WIDTH];   // over the window of each pixel
     int32_t triangle[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS]; // 1 + index in geometry->normals, 0: nothing
     int32_t uniform[VPL_GATHER_ROWS][VPL_GATHER_RUNS]; // the one triangle in a run and its windows, else 0
-    // Where some window shows several triangles only: the triangles' planes n.x = offset, and distances along the
-    // view axis and positions in these planes, all from the eye.
+    vplSeen seen;
+    // Where some window shows several triangles only: normals and planes n.x = offset of these, and distances along the
+    // view axis in these planes, all from the eye. 0 where nothing is.
     float offset[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
     float distance[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
     float normal[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
-    float position[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
+    float right[VPL_GATHER_COLUMNS],
+        up[VPL_GATHER_ROWS]; // line of sight: forward + right view.right + up view.up
 } vplGatherRoom;
 
 typedef struct vplInterleave {

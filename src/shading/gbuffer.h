@@ -21,18 +21,18 @@ typedef struct vplBlock {
 enum { VPL_NO_CLUSTER = -2 };
 
 // Normals of the triangles that a block shows, and which of them are smooth.
-static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LANES], vplSurface* plane,
-                                 int32_t smooth[VPL_LANES])
+static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LANES], vplSeen* seen,
+                                 vplSurface* plane, int32_t smooth[VPL_LANES])
 {
-    const vplGeometry* g = s->geometry;
     vplVec3 n = {0, 0, 0};
     int32_t isSmooth = 0;
     for (int l = 0, last = -1; l < VPL_LANES; l++) {
         const int triangle = triangles[l];
         if (triangle != last) {
             last = triangle;
-            n = triangle < 0 ? vplVec(0, 0, 0) : vplGetFacet(s, triangle).normal;
-            isSmooth = triangle >= 0 && g->objects[g->owners[triangle]].smooth ? -1 : 0;
+            const vplSeenFacet* facet = triangle < 0 ? NULL : vplSee(s, triangle, seen);
+            n = facet ? facet->normal : vplVec(0, 0, 0);
+            isSmooth = facet && facet->smooth ? -1 : 0;
         }
         plane->nx[l] = n.x;
         plane->ny[l] = n.y;
@@ -53,25 +53,6 @@ static inline void vplReadPlane(const vplTile* tile, int plane, int element, con
     }
 }
 
-// The triangle that was looked up last: most blocks show that of the block before.
-typedef struct vplSeen {
-    int triangle; // -1 at first
-    vplFacet facet;
-    vplReflector reflector;
-    bool smooth;
-} vplSeen;
-
-static inline void vplSee(const vplShading* s, int triangle, vplSeen* seen)
-{
-    if (triangle != seen->triangle) {
-        const vplGeometry* g = s->geometry;
-        seen->triangle = triangle;
-        seen->facet = vplGetFacet(s, triangle);
-        seen->reflector = vplReflectorOf(s, &seen->facet);
-        seen->smooth = g->objects[g->owners[triangle]].smooth;
-    }
-}
-
 // False where it is empty.
 static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int element, vplSeen* seen,
                                 vplBlock* b)
@@ -89,12 +70,12 @@ static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int el
     int32_t smooth[VPL_LANES];
     vplSurface* flat = s->smooth ? &b->plane : &b->surface;
     if (b->same) {
-        vplSee(s, b->points.triangle[0], seen);
-        vplSetNormals(seen->facet.normal, flat);
-        b->reflector = seen->reflector;
-        memset(smooth, seen->smooth ? 0xff : 0, sizeof smooth);
+        const vplSeenFacet* facet = vplSee(s, b->points.triangle[0], seen);
+        vplSetNormals(facet->normal, flat);
+        b->reflector = facet->reflector;
+        memset(smooth, facet->smooth ? 0xff : 0, sizeof smooth);
     } else {
-        vplReadFacets(s, b->points.triangle, flat, smooth);
+        vplReadFacets(s, b->points.triangle, seen, flat, smooth);
     }
     if (!s->smooth) {
         return true;
@@ -177,7 +158,8 @@ static inline void vplWriteSums(const vplShading* s, const vplTile* tile, int bl
 }
 
 // Sums become radiance, where that is asked for, and pixels of block `block` of the tile.
-static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
+static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int block, vplSeen* seen,
+                               vplBlock* b)
 {
     float radiance[3][VPL_LANES] = {{0}};
     if (b->same && b->points.triangle[0] < 0) {
@@ -191,7 +173,7 @@ static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int blo
     if (b->same) {
         vplResolveSame(&b->reflector, b->sums, radiance);
     } else {
-        vplResolveMixed(s, b->points.triangle, b->sums, radiance);
+        vplResolveMixed(s, b->points.triangle, b->sums, seen, radiance);
     }
     vplWriteBlock(s, tile, block, radiance);
 }

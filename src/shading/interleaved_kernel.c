@@ -52,7 +52,7 @@ static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplSeen*
             storeLanes(tile, VPL_PLANE_NORMAL + k, element, p->nx + k * VPL_LANES);
         }
     }
-    vplWriteLit(s, tile, block, b);
+    vplWriteLit(s, tile, block, seen, b);
 }
 
 static void addBounds(const vplBounds* more, Region* r)
@@ -115,7 +115,7 @@ static int listPixels(const vplTile* tile, const Region* r, int x0, int y0, int 
 
 // Brings 16 pixels together. Lanes behind the last repeat the first, and show nothing that casts a ray.
 static void collect(const vplShading* s, const vplTile* tile, const Region* r, int* elements, int count,
-                    vplBlock* b)
+                    vplSeen* seen, vplBlock* b)
 {
     for (int l = count; l < VPL_LANES; l++) {
         elements[l] = elements[0];
@@ -149,7 +149,7 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
     if (s->smooth) {
         int32_t smooth[VPL_LANES];
         memcpy(&b->plane, &b->surface, 3 * sizeof b->surface.px);
-        vplReadFacets(s, b->points.triangle, &b->plane, smooth);
+        vplReadFacets(s, b->points.triangle, seen, &b->plane, smooth);
         b->points.plane = &b->plane;
     }
 }
@@ -187,7 +187,7 @@ static void scatter(vplTile* tile, const int* elements, int count, double factor
 }
 
 // The pixels of one class by the lights of that class.
-static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int x, int y)
+static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int x, int y, vplSeen* seen)
 {
     static const int all[MAX_CHUNKS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
     const int side = s->interleave->side, classes = side * side, lightCount = s->def->lightCount;
@@ -201,7 +201,7 @@ static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int 
     vplBlock blocks[MAX_CHUNKS];
     for (int i = 0; i < chunks; i++) {
         const int left = count - i * VPL_LANES;
-        collect(s, tile, r, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, &blocks[i]);
+        collect(s, tile, r, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, seen, &blocks[i]);
         if (s->nearLight != NULL) {
             addNearLight(s, tile, elements + i * VPL_LANES, &blocks[i], &tileSums->shadowRays);
         }
@@ -220,7 +220,8 @@ void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
     const int side = sideOf(s->interleave->side);
-    vplSeen seen = {.triangle = -1};
+    vplSeen seen;
+    vplSeen_Clear(&seen);
     for (int y = 0; y < tile->height; y += side) {
         for (int x = 0; x < tile->width; x += side) {
             Region r = {.x = x, .y = y};
@@ -228,7 +229,7 @@ void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
             r.height = tile->height - y < side ? tile->height - y : side;
             prepareRegion(s, tile, &r, &seen);
             for (int k = 0; r.any && k < s->interleave->side * s->interleave->side; k++) {
-                lightClass(s, tile, &r, x + k % s->interleave->side, y + k / s->interleave->side);
+                lightClass(s, tile, &r, x + k % s->interleave->side, y + k / s->interleave->side, &seen);
             }
         }
     }

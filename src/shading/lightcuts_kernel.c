@@ -279,7 +279,8 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
 {
     const vplShading* s = data;
     vplTileSums* tileSums = tile->scratch;
-    vplSeen seen = {.triangle = -1};
+    vplSeen seen;
+    vplSeen_Clear(&seen);
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
         const int x = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, y = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
         if (x >= tile->width || y >= tile->height) {
@@ -290,7 +291,7 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
             vplLightOnce(s, tile, block, &b);
             addCut(s, &s->lightcuts->workers[worker], &b, &tileSums->shadowRays);
         }
-        vplWriteLit(s, tile, block, &b);
+        vplWriteLit(s, tile, block, &seen, &b);
     }
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }

@@ -97,6 +97,8 @@ void VPL_KERNEL(vplResolveTile)(void* data, vplTile* tile, int worker)
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
+    vplSeen seen;
+    vplSeen_Clear(&seen);
     for (int block = 0; block < BLOCKS; block++) {
         int triangles[VPL_LANES];
         double sums[3][VPL_LANES];
@@ -105,11 +107,10 @@ void VPL_KERNEL(vplResolveTile)(void* data, vplTile* tile, int worker)
             memcpy(sums[c], tileSums->irradiance[c] + block * VPL_LANES, sizeof sums[c]);
         }
         float radiance[3][VPL_LANES];
-        if (vplSameTriangle(triangles)) {
-            const vplReflector r = vplGetReflector(s, triangles[0]);
-            vplResolveSame(&r, sums, radiance);
+        if (triangles[0] >= 0 && vplSameTriangle(triangles)) {
+            vplResolveSame(&vplSee(s, triangles[0], &seen)->reflector, sums, radiance);
         } else {
-            vplResolveMixed(s, triangles, sums, radiance);
+            vplResolveMixed(s, triangles, sums, &seen, radiance);
         }
         vplWriteBlock(s, tile, block, radiance);
     }

@@ -3,10 +3,7 @@
 #ifndef VPL_SHADING_RESOLVE_H
 #define VPL_SHADING_RESOLVE_H
 
-#include "math/scalar.h"
-#include "shading/shading.h"
-
-#include <string.h>
+#include "shading/seen.h"
 
 // What vplReadTriangles reads: one triangle in all lanes.
 static inline void vplShowTriangle(int triangle, vplFragments* f)
@@ -38,33 +35,6 @@ static inline bool vplSameTriangle(const int triangles[VPL_LANES])
         different |= triangles[l] ^ triangles[0];
     }
     return different == 0;
-}
-
-// What a triangle makes of irradiance: radiance = emission + factor E.
-typedef struct vplReflector {
-    double factor[3]; // rho / pi
-    float emission[3];
-} vplReflector;
-
-static inline vplReflector vplReflectorOf(const vplShading* s, const vplFacet* f)
-{
-    const double scale = 1 / VPL_PI;
-    vplReflector r = {{f->rho.r * scale, f->rho.g * scale, f->rho.b * scale}, {0, 0, 0}};
-    if (s->def->emission) {
-        r.emission[0] = f->emission.r;
-        r.emission[1] = f->emission.g;
-        r.emission[2] = f->emission.b;
-    }
-    return r;
-}
-
-static inline vplReflector vplGetReflector(const vplShading* s, int triangle)
-{
-    if (triangle < 0) {
-        return (vplReflector){{0, 0, 0}, {0, 0, 0}};
-    }
-    const vplFacet f = vplGetFacet(s, triangle);
-    return vplReflectorOf(s, &f);
 }
 
 // Writes three values per pixel of a block to the picture.
@@ -107,12 +77,13 @@ static inline void vplResolveSame(const vplReflector* r, double sums[3][VPL_LANE
 }
 
 static inline void vplResolveMixed(const vplShading* s, const int triangles[VPL_LANES],
-                                   double sums[3][VPL_LANES], float radiance[3][VPL_LANES])
+                                   double sums[3][VPL_LANES], vplSeen* seen, float radiance[3][VPL_LANES])
 {
-    vplReflector r = vplGetReflector(s, triangles[0]);
-    for (int l = 0; l < VPL_LANES; l++) {
-        if (l > 0 && triangles[l] != triangles[l - 1]) {
-            r = vplGetReflector(s, triangles[l]);
+    vplReflector r = {{0}, {0}};
+    for (int l = 0, last = -1; l < VPL_LANES; l++) {
+        if (triangles[l] != last) {
+            last = triangles[l];
+            r = last < 0 ? (vplReflector){{0}, {0}} : vplSee(s, last, seen)->reflector;
         }
         for (int c = 0; c < 3; c++) {
             radiance[c][l] = (float)(r.emission[c] + r.factor[c] * sums[c][l]);

@@ -125,6 +125,7 @@ enum { VPL_CAMERA_VARYINGS = 3, VPL_SURFACE_VARYINGS = 6 };
 // What the shading of a triangle needs besides positions.
 typedef struct vplFacet {
     vplVec3 normal; // as shaded: towards the eye for physical lighting, as declared for documented
+    float offset;   // of its plane from the eye: normal . (point - eye), metres
     vplRgb rho, emission;
 } vplFacet;
 

@@ -94,13 +94,16 @@ vplFacet vplGetFacet(const vplShading* shading, int triangle)
 {
     const vplGeometry* g = shading->geometry;
     const vplMaterialDef* material = &g->materials[g->triangleMaterials[triangle]];
-    vplFacet facet = {g->normals[triangle], material->diffuse, material->emission};
-    const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
-    bool fromBehind = vplDot(facet.normal, vplSub(shading->view->eye, t.corner[0])) < 0;
+    const vplVec3 corner = vplGeometry_Corners(g, triangle).corner[0];
+    vplFacet facet = {
+        .normal = g->normals[triangle], .rho = material->diffuse, .emission = material->emission};
+    facet.offset = vplDot(facet.normal, vplSub(corner, shading->view->eye));
+    const bool fromBehind = facet.offset > 0;
     if (fromBehind) {
         facet.emission = (vplRgb){0, 0, 0};
         if (shading->def->lighting == VPL_LIGHTING_PHYSICAL) {
             facet.normal = vplNegate(facet.normal);
+            facet.offset = -facet.offset;
         }
     }
     return facet;

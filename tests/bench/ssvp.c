@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// What a frame's shading costs once memory is there: G-buffer, classes of lights, sharing, and the visibility of
+// clusters; alternated, medians of processor and wall-clock time, and what a light costs 16 pixels.
+// `bench/ssvp SCENE [LIGHTS [RUNS [WIDTH HEIGHT [CLUSTERS [THREADS]]]]]`; direct light is left out.
+#include "bench.h"
+
+#include "base/clock.h"
+
+#include <malloc.h>
+#include <time.h>
+
+enum { MAX_RUNS = 101, MAX_CLUSTERS = 64, MAP_SIZE = 256 };
+
+typedef struct Way {
+    const char* name;
+    vplShadeOutput output;
+    bool lights, clusters;
+} Way;
+
+static const Way ways[] = {{"G-buffer", VPL_OUTPUT_RADIANCE, false, false},
+                           {"+ classes", VPL_OUTPUT_GATHER, true, false},
+                           {"+ sharing", VPL_OUTPUT_RADIANCE, true, false},
+                           {"+ classes, clusters", VPL_OUTPUT_GATHER, true, true},
+                           {"+ sharing, clusters", VPL_OUTPUT_RADIANCE, true, true}};
+enum { WAYS = sizeof ways / sizeof *ways };
+
+typedef struct Bench {
+    vplContext* context;
+    vplScene* scene;
+    vplGeometry* geometry;
+    vplView view;
+    vplShadeLight* lights;
+    int lightCount, clusterCount;
+    int* clusters;
+    vplParaboloidMap* maps;
+    vplImage* image;
+    double cpu[WAYS][MAX_RUNS], wall[WAYS][MAX_RUNS];
+    uint64_t hash[WAYS];
+} Bench;
+
+static double processorMs(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+// `count` of the particles' lights, evenly. In their order they are spread like halves of the scene's light paths are.
+static void makeLights(Bench* b, int count)
+{
+    vplParticleDef particles = vplDefaultParticleDef();
+    particles.particleCount = 4 * count; // many leave an open scene
+    particles.sampler = VPL_SAMPLER_HALTON;
+    vplLightSet* set;
+    check(vplSimulateParticles(b->geometry, vplScene_GetEmitter(b->scene, 0),
+                               vplScene_GetEmitterCount(b->scene), &particles, &set));
+    vplShadeLight* all = malloc((size_t)set->lightCount * sizeof *all);
+    const int made = vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, all);
+    b->lightCount = made < count ? made : count;
+    b->lights = malloc((size_t)count * sizeof *b->lights);
+    for (int i = 0; i < b->lightCount; i++) {
+        b->lights[i] = all[(int64_t)i * made / b->lightCount];
+    }
+    free(all);
+    vplLightSet_Destroy(set);
+}
+
+static int alongX(const void* a, const void* b)
+{
+    const float x = ((const vplShadeLight*)a)->px, y = ((const vplShadeLight*)b)->px;
+    return (x > y) - (x < y);
+}
+
+// Slices of the scene across x, of equal numbers of lights, each with a map of its own where its middle light is.
+static void makeClusters(Bench* b, int count)
+{
+    static float nothing[2 * MAP_SIZE * MAP_SIZE];
+    b->clusterCount = count;
+    b->clusters = malloc((size_t)b->lightCount * sizeof *b->clusters);
+    b->maps = malloc((size_t)count * sizeof *b->maps);
+    qsort(b->lights, (size_t)b->lightCount, sizeof *b->lights, alongX);
+    for (int i = 0; i < b->lightCount; i++) {
+        b->clusters[i] = (int)((int64_t)i * count / b->lightCount);
+    }
+    for (int i = 0; i < count; i++) {
+        const vplShadeLight* l = &b->lights[(2 * i + 1) * b->lightCount / (2 * count)];
+        b->maps[i] = (vplParaboloidMap){
+            {l->px, l->py, l->pz}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, MAP_SIZE, 2, nothing, NULL, b->context};
+    }
+}
+
+static void shade(Bench* b, int which, int run)
+{
+    const Way* way = &ways[which];
+    vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.5f, .output = way->output};
+    def.accumulation = VPL_ACCUMULATE_INTERLEAVED;
+    def.interleave = 4;
+    def.lights = b->lights;
+    def.lightCount = way->lights ? b->lightCount : 0;
+    if (way->clusters) {
+        def.lightClusters = b->clusters;
+        def.clusterShadows = b->maps;
+        def.clusterCount = b->clusterCount;
+    }
+    const double cpu = processorMs(), wall = vplClockMs();
+    check(vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->image, NULL));
+    b->cpu[which][run] = processorMs() - cpu;
+    b->wall[which][run] = vplClockMs() - wall;
+    b->hash[which] = vplImage_Hash(b->image);
+}
+
+static void print(Bench* b, int runs)
+{
+    printf("%d lights in %d clusters, %dx%d, 4x4, medians of %d runs\n", b->lightCount, b->clusterCount,
+           b->view.width, b->view.height, runs);
+    printf("%-22s %9s %9s %9s  %s\n", "", "cpu ms", "more", "wall ms", "hash");
+    for (int i = 0; i < WAYS; i++) {
+        const double cpu = median(b->cpu[i], runs), wall = median(b->wall[i], runs);
+        const double before = i == 0 ? 0 : b->cpu[i == 3 ? 0 : i - 1][runs / 2];
+        printf("%-22s %9.2f %9.2f %9.2f  %016llx\n", ways[i].name, cpu, cpu - before, wall,
+               (unsigned long long)b->hash[i]);
+    }
+}
+
+int main(int count, char** words)
+{
+    static Bench b;
+    // As a sequence of frames does: memory is kept, and no page is cleared twice.
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    int runs = count > 3 ? atoi(words[3]) : 9;
+    runs = runs < 1 ? 1 : runs > MAX_RUNS ? MAX_RUNS : runs;
+    openScene(count > 1 ? words[1] : "examples/scenes/room.json", count > 7 ? atoi(words[7]) : 0,
+              VPL_ISA_AUTO, &b.context, &b.scene);
+    check(vplGeometry_Create(b.scene, &b.geometry));
+    b.view = vplView_Create(vplScene_GetCamera(b.scene, 0), count > 5 ? atoi(words[4]) : 1920,
+                            count > 5 ? atoi(words[5]) : 1080);
+    check(vplImage_Create(b.context, b.view.width, b.view.height, &b.image));
+    makeLights(&b, count > 2 ? atoi(words[2]) : 512);
+    makeClusters(&b, count > 6 ? atoi(words[6]) : 8);
+    for (int run = -1; run < runs; run++) { // the first makes memory
+        for (int i = 0; i < WAYS; i++) {
+            shade(&b, i, run < 0 ? 0 : run);
+        }
+    }
+    print(&b, runs);
+    vplImage_Destroy(b.image);
+    free(b.lights);
+    free(b.clusters);
+    free(b.maps);
+    vplGeometry_Destroy(b.geometry);
+    vplScene_Destroy(b.scene);
+    vplContext_Destroy(b.context);
+    return 0;
+}
