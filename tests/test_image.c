@@ -144,6 +144,33 @@ static void ReinhardKeepsChromaticityAsInTheTable(void** state)
 }
 
 // X110: one bad pixel must not blacken the others.
+// What shows nothing leaves the rest as if it were not there; by default it counts, as published.
+static void ReinhardCanLeaveBlackOut(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    float mapped[3] = {0, 0, 0};
+    for (int way = 0; way < 3; way++) { // a grey picture alone, then beside as much black: left out, counted
+        vplImage* image;
+        assert_int_equal(vplImage_Create(context, way > 0 ? 8 : 4, 2, &image), VPL_SUCCESS);
+        for (int y = 0; y < 2; y++) {
+            for (int k = 0; k < 12; k++) {
+                image->pixels[3 * image->width * y + k] = 2.5f;
+            }
+        }
+        vplReinhardDef def = vplDefaultReinhardDef();
+        def.white = INFINITY;
+        def.skipBlack = way == 1;
+        assert_int_equal(vplToneMap_Reinhard(image, &def), VPL_SUCCESS);
+        mapped[way] = image->pixels[0];
+        vplImage_Destroy(image);
+    }
+    assert_true(mapped[1] == mapped[0]);
+    assertNear((double)mapped[0], 0.152542, 1e-5, "grey", 0);
+    assert_true(mapped[2] > 0.9f);
+    closeTestContext(context);
+}
+
 static void ReinhardIgnoresPixelsThatAreNotFinite(void** state)
 {
     (void)state;
@@ -365,6 +392,7 @@ TEST_SUITE(image, cmocka_unit_test(CodesByTableAreThoseOfTheFormula), cmocka_uni
            cmocka_unit_test(SrgbCodesAreMonotoneAndDefinedEverywhere),
            cmocka_unit_test(ReinhardIsThatOfTheTable),
            cmocka_unit_test(ReinhardKeepsChromaticityAsInTheTable),
+           cmocka_unit_test(ReinhardCanLeaveBlackOut),
            cmocka_unit_test(ReinhardIgnoresPixelsThatAreNotFinite), cmocka_unit_test(PfmKeepsEveryBit),
            cmocka_unit_test(HdrKeepsAPercentAndPngKeepsCodes), cmocka_unit_test(ExposureDoublesPerStop),
            cmocka_unit_test(APictureThatIsNotFiniteIsRefusedByName),

@@ -27,7 +27,7 @@ uint64_t vplImage_Hash(const vplImage* image);
 
 typedef enum vplToneMap {
     VPL_TONEMAP_NONE = 0, // clamp to [0, 1]
-    VPL_TONEMAP_REINHARD  // vplToneMap_Reinhard with its defaults
+    VPL_TONEMAP_REINHARD  // vplToneMap_Reinhard with its defaults but skipBlack
 } vplToneMap;
 
 typedef struct vplWriteOptions {
@@ -61,10 +61,12 @@ void vplPng_Free(vplContext* context, uint8_t* bytes);
 vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut);
 
 typedef struct vplReinhardDef {
-    float key;       // middle grey the geometric mean maps to, (0, 1], default 0.18
-    float delta;     // added before the logarithm, [0, 1], default 1e-6: keeps black pixels finite
-    float white;     // smallest scaled luminance that maps to 1, > 0; 0 (default): the picture's largest;
-                     // INFINITY: the plain L/(1+L)
+    float key;      // middle grey the geometric mean maps to, (0, 1], default 0.18
+    float delta;    // added before the logarithm, [0, 1], default 1e-6: keeps black pixels finite
+    float white;    // smallest scaled luminance that maps to 1, > 0; 0 (default): the picture's largest;
+                    // INFINITY: the plain L/(1+L)
+    bool skipBlack; // pixels of no light do not count in the mean: a black background, or rooms that no light
+        // gets to, do not blow out the rest; default false, as published; pictures are written with true
     uint32_t cookie; // set by vplDefaultReinhardDef
 } vplReinhardDef;
 

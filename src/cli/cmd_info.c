@@ -6,6 +6,7 @@
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { OBJECT_TYPES = VPL_OBJECT_MESH + 1, POINTS = 0, SPOTS, DIRECTIONALS, EMITTER_TYPES };
 

@@ -48,7 +48,9 @@ static vplResult applyDisplay(const vplImage* image, const vplWriteOptions* opti
         display->pixels[i] = options->exposure == 0 ? image->pixels[i] : gain * image->pixels[i];
     }
     if (options->tonemap == VPL_TONEMAP_REINHARD) {
-        result = vplToneMap_Reinhard(display, NULL);
+        vplReinhardDef def = vplDefaultReinhardDef();
+        def.skipBlack = true;
+        result = vplToneMap_Reinhard(display, &def);
     }
     if (result != VPL_SUCCESS) {
         vplImage_Destroy(display);

@@ -42,7 +42,7 @@ uint8_t vplSrgb_Code(float linear)
 
 vplReinhardDef vplDefaultReinhardDef(void)
 {
-    return (vplReinhardDef){0.18f, 1e-6f, 0, VPL_REINHARD_COOKIE};
+    return (vplReinhardDef){.key = 0.18f, .delta = 1e-6f, .cookie = VPL_REINHARD_COOKIE};
 }
 
 static vplResult checkReinhard(const vplContext* context, const vplReinhardDef* def)
@@ -81,6 +81,7 @@ typedef struct Row {
 typedef struct Reinhard {
     vplImage* image;
     double delta, scale, white;
+    bool skipBlack;
     int firstRow;
     double* logs; // of a band; 0 where a pixel does not count
     Row rows[BAND];
@@ -96,7 +97,7 @@ static void findLogs(void* data, int row, int worker)
     Row found = {0, 0};
     for (int x = 0; x < width; x++) {
         const double y = luminance(pixels + 3 * (size_t)x);
-        const bool counts = isfinite(y) && y + r->delta > 0;
+        const bool counts = isfinite(y) && y + (r->skipBlack ? 0 : r->delta) > 0;
         logs[x] = counts ? vplLog1(y + r->delta) : 0;
         found.counted += counts;
         found.largest = counts && y > found.largest ? y : found.largest;
@@ -151,7 +152,7 @@ vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def)
     if (result != VPL_SUCCESS) {
         return result;
     }
-    Reinhard r = {.image = image, .delta = settings.delta};
+    Reinhard r = {.image = image, .delta = settings.delta, .skipBlack = settings.skipBlack};
     r.logs = vplAlloc(image->context, (size_t)BAND * (size_t)image->width, sizeof *r.logs);
     if (r.logs == NULL) {
         return VPL_OUT_OF_MEMORY;
