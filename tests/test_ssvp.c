@@ -171,9 +171,10 @@ static void EachBounceHasTheLightOfPaths(void** state)
         vplScene* scene = corner(context, types[k]);
         for (int bounces = 1; bounces <= 2; bounces++) {
             vplRenderOptions o = ssvpOptions(32);
-            o.firstBounce = o.secondBounce = 2048;
+            o.firstBounce = o.secondBounce = 8192;
             o.clusters = 64;
-            o.minDistance = 0.02f;
+            o.minDistance = 0.01f;
+            o.accumulation = VPL_ACCUMULATE_DEFERRED; // sharing moves light at edges
             o.maxBounces = bounces;
             o.show = VPL_SHOW_INDIRECT;
             o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
@@ -366,8 +367,7 @@ static void CentroidsInMidAirLightTheBallTheyAreIn(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(2);
-    vplScene* scene;
-    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    vplScene* scene = sceneOf(context, 0.5f);
     Shape ball = icosphere(3);
     const vplMat4 identity = vplMat4_Identity();
     addShape(scene, &ball, false, &identity);
