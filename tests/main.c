@@ -41,6 +41,7 @@
     X(render) \
     X(renderer) \
     X(rsm) \
+    X(rsmLights) \
     X(rsmShadow) \
     X(scene) \
     X(sceneChecks) \
