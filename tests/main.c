@@ -45,6 +45,8 @@
     X(render) \
     X(renderer) \
     X(rsm) \
+    X(rsmLights) \
+    X(rsmShadow) \
     X(scene) \
     X(sceneChecks) \
     X(shadeOutputs) \

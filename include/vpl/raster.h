@@ -88,8 +88,9 @@ typedef struct vplPipeline {
     float
         distanceScale; // not 0: depth is the distance from the eye of a view of 90 by 90 degrees times this,
                        // instead of z/w; for draws without fragment shader and depthCompare LESS; default 0
-    // Of half the angle of that view. 1 (default): 90 degrees. 0: the distance is that along the view axis.
-    float distanceTangent;
+    // With distanceScale: the distance is that along the view axis, of any view, and on the triangle's plane also where
+    // snapping covers a pixel whose centre is outside of it. Default false.
+    bool distanceAlongAxis;
     bool writesDepth;   // the fragment shader replaces depth, and the test uses that; default false
     bool needsW;        // shaders read w; without it only varyings bring w along; default false
     bool readsPlanes;   // the fragment shader sees the framebuffer and blends by itself; default false

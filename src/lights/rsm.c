@@ -120,7 +120,7 @@ static vplResult recordFace(const vplReflectiveMap* map, const vplGeometry* g, f
         pipeline.vertex = shadeVertices;
         pipeline.vertexUniforms = u;
         pipeline.distanceScale = map->emitter.type == VPL_EMITTER_DIRECTIONAL ? 0 : 1;
-        pipeline.distanceTangent = 0;
+        pipeline.distanceAlongAxis = pipeline.distanceScale != 0;
         result = vplRaster_Draw(*rasterOut, &meshes[i], &pipeline);
     }
     return result;

@@ -16,6 +16,7 @@
 typedef struct Seen {
     float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES];    // right, up, forward, metres
     float nx[VPL_LANES], ny[VPL_LANES], nz[VPL_LANES]; // unit
+    float rounding[VPL_LANES];                         // metres: how far off their planes points may be
     int32_t first[VPL_LANES];                          // texel of the face
 } Seen;
 
@@ -23,8 +24,21 @@ typedef struct Seen {
 typedef struct Slope {
     float column[VPL_LANES], row[VPL_LANES]; // of the point, in texels; 0 is the first one's centre
     float near[VPL_LANES], across[VPL_LANES], down[VPL_LANES]; // there, and its growth per texel
+    float slack[VPL_LANES]; // how much nearer the plane may have been drawn
     int32_t seen[VPL_LANES];
 } Slope;
+
+// Four units in the last place of coordinates.
+static inline float roundingOf(vplVec3 o, float px, float py, float pz)
+{
+    return 0x1p-22f * (fabsf(px) + fabsf(py) + fabsf(pz) + fabsf(o.x) + fabsf(o.y) + fabsf(o.z));
+}
+
+// Texels' centres may be 1/256 outside of what they show.
+static inline float slackOf(float across, float down, float rounding)
+{
+    return 0x1p-8f * (fabsf(across) + fabsf(down)) + fabsf(rounding);
+}
 
 // ---- frames
 
@@ -40,6 +54,7 @@ static inline void turnToFace(const vplReflectiveMap* map, const vplSurface* res
         out->nx[l] = nx * r.x + ny * r.y + nz * r.z;
         out->ny[l] = nx * u.x + ny * u.y + nz * u.z;
         out->nz[l] = nx * f.x + ny * f.y + nz * f.z;
+        out->rounding[l] = roundingOf(o, s->px[l], s->py[l], s->pz[l]);
         out->first[l] = 0;
     }
 }
@@ -64,6 +79,7 @@ static inline void turnToCube(const vplReflectiveMap* map, const vplSurface* res
         out->nx[l] = signX * rightN;
         out->ny[l] = signY * upN;
         out->nz[l] = sign * sideN;
+        out->rounding[l] = roundingOf(o, s->px[l], s->py[l], s->pz[l]);
         out->first[l] = ((isZ ? 4 : isY ? 2 : 0) + (side < 0)) * texels;
     }
 }
@@ -88,8 +104,10 @@ static inline void projectCone(const vplReflectiveMap* map, const Seen* restrict
         out->column[l] = middle + x * near * inverseX;
         out->row[l] = middle - y * near * inverseY;
         out->near[l] = near;
-        out->across[l] = nx * rate * sideX;
-        out->down[l] = -ny * rate * sideY;
+        const float across = nx * rate * sideX, down = -ny * rate * sideY;
+        out->across[l] = across;
+        out->down[l] = down;
+        out->slack[l] = slackOf(across, down, s->rounding[l] * rate * near);
         out->seen[l] = z > 0;
     }
 }
@@ -105,8 +123,10 @@ static inline void projectParallel(const vplReflectiveMap* map, const Seen* rest
         out->column[l] = middle + s->x[l] * inverseX;
         out->row[l] = middle - s->y[l] * inverseY;
         out->near[l] = -s->z[l] * inverse;
-        out->across[l] = s->nx[l] * rate * sideX;
-        out->down[l] = -s->ny[l] * rate * sideY;
+        const float across = s->nx[l] * rate * sideX, down = -s->ny[l] * rate * sideY;
+        out->across[l] = across;
+        out->down[l] = down;
+        out->slack[l] = slackOf(across, down, s->rounding[l] * rate);
         out->seen[l] = -1;
     }
 }
@@ -149,9 +169,9 @@ static inline void compare(const vplReflectiveMap* map, const Slope* restrict s,
     const float side = 2 * larger / (float)map->size / map->unit;
     const float tolerance = VPL_REFLECTIVE_TOLERANCE * side + 0x1p-16f;
     for (int l = 0; l < VPL_LANES; l++) {
-        const float across = s->across[l], down = s->down[l], near = s->near[l], depth = stored[l];
+        const float across = s->across[l], down = s->down[l], near = s->near[l], slack = s->slack[l];
+        const float depth = stored[l];
         const float plane = near + (across * away[0][l] + down * away[1][l]);
-        const float slack = 0x1p-8f * (fabsf(across) + fabsf(down));
         const float nearest = vplMaxf(near, plane);
         const float parallelLimit = -(nearest + slack + tolerance),
                     coneLimit = nearest * (1 + tolerance) + slack;

@@ -53,27 +53,35 @@ static vplRgb fluxOf(const vplReflectiveMap* m, const Place* p)
 
 // ---- place
 
-// Where the ray through a texel's centre meets the plane of a triangle, metres. What is seen edge-on, or was not quite
-// seen (coverage is snapped to 1/256 texel), is met where it was drawn.
-static vplVec3 meetPlane(const vplReflectiveMap* m, const vplGeometry* g, const Place* p, double depth,
-                         int triangle)
+// A point of a triangle's plane: where the ray through a texel's centre meets it, metres. What is seen edge-on, or was
+// not quite seen (coverage is snapped to 1/256 texel), is met no nearer or farther than its corners.
+static vplVec3 meetPlane(const vplReflectiveMap* m, const vplGeometry* g, const Place* p, int triangle)
 {
     const bool parallel = m->emitter.type == VPL_EMITTER_DIRECTIONAL;
     const vplTriangleCorners corners = vplGeometry_Corners(g, triangle);
-    double n[3], from[3], way[3], height = 0, fall = 0;
+    double n[3], from[3], way[3], corner[3] = {0}, height = 0, fall = 0, square = 0;
     vplTriangle_Cross(&corners, n);
     for (int k = 0; k < 3; k++) {
-        const double across = p->x * vplComponent(m->right[p->face], k);
-        const double side = across + p->y * vplComponent(m->up[p->face], k);
+        const double forward = vplComponent(m->forward[p->face], k);
+        const double side =
+            p->x * vplComponent(m->right[p->face], k) + p->y * vplComponent(m->up[p->face], k);
         from[k] = vplComponent(m->origin, k) + (parallel ? side : 0);
-        way[k] = vplComponent(m->forward[p->face], k) + (parallel ? 0 : side);
+        way[k] = forward + (parallel ? 0 : side);
         height += n[k] * (vplComponent(corners.corner[0], k) - from[k]);
         fall += n[k] * way[k];
+        square += n[k] * n[k];
+        for (int i = 0; i < 3; i++) {
+            corner[i] += forward * ((double)vplComponent(corners.corner[i], k) - vplComponent(m->origin, k));
+        }
     }
-    const double t = height / fall;
-    const double at = fabs(t - depth) <= 0x1p-10 * depth ? t : depth; // also where t is not a number
-    return vplVec((float)(from[0] + at * way[0]), (float)(from[1] + at * way[1]),
-                  (float)(from[2] + at * way[2]));
+    const double least = fmin(corner[0], fmin(corner[1], corner[2]));
+    const double most = fmax(corner[0], fmax(corner[1], corner[2]));
+    const double meets = height / fall, t = meets < least  ? least
+                                            : meets < most ? meets
+                                                           : most;    // most: not a number
+    const double off = square > 0 ? (height - t * fall) / square : 0; // back to the plane where t was cut
+    return vplVec((float)(from[0] + t * way[0] + off * n[0]), (float)(from[1] + t * way[1] + off * n[1]),
+                  (float)(from[2] + t * way[2] + off * n[2]));
 }
 
 bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
@@ -84,7 +92,7 @@ bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geo
         return false;
     }
     const Place p = placeOf(map, texel);
-    const vplVec3 at = meetPlane(map, geometry, &p, (double)map->depth[texel] * map->unit, triangle);
+    const vplVec3 at = meetPlane(map, geometry, &p, triangle);
     vplHit hit = {.object = geometry->owners[triangle],
                   .face = vplGeometry_FaceOf(geometry, triangle),
                   .triangle = triangle,

@@ -18,7 +18,7 @@ typedef struct Draw {
     const Batch* batch;
     int place, owner; // of the triangle: in its batch, and its name in state->owner
     Shares* shares;   // of the triangle, once they are needed
-    float texel;      // of a view whose half is 1
+    float texel;      // of a view of 90 by 90 degrees, whose half is 1
     bool hasShares, keep, depthOnly, distances, rejects, tightens;
 } Draw;
 
@@ -176,7 +176,7 @@ static inline void drawDepth(const Draw* d, const Setup* s, double z, int at, bo
 // departs: w is turned into a distance by the texel's own direction.
 static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
 {
-    const float scale = d->pipeline->distanceScale, tangent = d->pipeline->distanceTangent, texel = d->texel;
+    const float scale = d->pipeline->distanceScale, texel = d->texel;
     x += d->state->tile.x;
     y += d->state->tile.y;
     float drawn[VPL_LANES], share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES];
@@ -184,10 +184,28 @@ static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled
     shareOf(d->shares, 1, x, y, share1);
     shareOf(d->shares, 2, x, y, share2);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float s = tangent * (((float)x + (float)(l & 3) + 0.5f) * texel - 1);
-        const float t = tangent * (1 - ((float)y + (float)(l >> 2) + 0.5f) * texel);
+        const float s = ((float)x + (float)(l & 3) + 0.5f) * texel - 1;
+        const float t = 1 - ((float)y + (float)(l >> 2) + 0.5f) * texel;
         const float w = 1 / (share0[l] + share1[l] + share2[l]);
         drawn[l] = w * sqrtf(1 + s * s + t * t) * scale;
+    }
+    keepNearer(d->state, d->owner, at, drawn, filled);
+}
+
+// w of the plane at the pixels' centres, within what the corners have.
+static inline void drawAlongAxis(const Draw* d, int x, int y, int at, bool filled)
+{
+    const Shares* s = d->shares;
+    const double perX = s->x[0] + s->x[1] + s->x[2], perY = s->y[0] + s->y[1] + s->y[2];
+    const double first =
+        perX * (d->state->tile.x + x) + (perY * (d->state->tile.y + y) + (s->c[0] + s->c[1] + s->c[2]));
+    const float scale = d->pipeline->distanceScale, least = s->leastInverse, most = s->mostInverse;
+    float drawn[VPL_LANES];
+    for (int l = 0; l < VPL_LANES; l++) {
+        float inverse = (float)(first + (perX * (l & 3) + perY * (l >> 2)));
+        inverse = inverse > least ? inverse : least;
+        inverse = inverse < most ? inverse : most;
+        drawn[l] = scale / inverse;
     }
     keepNearer(d->state, d->owner, at, drawn, filled);
 }
@@ -261,6 +279,14 @@ static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup
     const bool filled = edge == NULL;
     const int block = (y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
     if (!filled && !cover(&state->tile, s, edge, x, y, f->covered)) {
+        return;
+    }
+    if (d->distances && d->pipeline->distanceAlongAxis) {
+        if (filled) {
+            drawAlongAxis(d, x, y, block * VPL_LANES, true);
+        } else {
+            drawAlongAxis(d, x, y, block * VPL_LANES, false);
+        }
         return;
     }
     if (d->distances) {

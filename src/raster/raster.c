@@ -12,7 +12,6 @@ vplPipeline vplDefaultPipeline(void)
     vplPipeline pipeline = {0};
     pipeline.depthWrite = true;
     pipeline.planeMask = UINT32_MAX;
-    pipeline.distanceTangent = 1;
     pipeline.cookie = PIPELINE_COOKIE;
     return pipeline;
 }

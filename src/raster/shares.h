@@ -9,9 +9,12 @@
 
 #include "raster/setup.h"
 
+#include <math.h>
+
 typedef struct Shares {
     double x[3], y[3], c[3];                // the three planes over pixel indices; their sum is 1/w
     _Alignas(64) double lane[3][VPL_LANES]; // growth from lane 0
+    float leastInverse, mostInverse;        // of the corners' 1/w
     float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS],
         d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
 } Shares;
@@ -38,6 +41,10 @@ static inline void setUpShares(const vplRaster* r, const Batch* t, int place, co
         p[i][1] = 0.5 * r->framebuffer.height * ((double)clip[2] - clip[1]);
         p[i][2] = clip[2];
     }
+    const double nearest = fmin(p[0][2], fmin(p[1][2], p[2][2])),
+                 farthest = fmax(p[0][2], fmax(p[1][2], p[2][2]));
+    s->leastInverse = (float)(1 / farthest);
+    s->mostInverse = (float)(1 / nearest);
     crossPlanes(p, s);
     double determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
     if (!(determinant > 0)) {

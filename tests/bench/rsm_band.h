@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Where reflective maps and rays must agree on an emitter's shadow: shared by a benchmark and a test.
+#ifndef VPL_RSM_BAND_H
+#define VPL_RSM_BAND_H
+
+#include "lights/rsm.h"
+#include "math/vec.h"
+
+// A ray of the map's emitter that passes `across` and `down` metres (at distance 1 of other than parallel views) from
+// the one through `point`; its length is 1 per `depthOut`, the point's depth.
+static inline vplRay rayBeside(const vplReflectiveMap* m, int face, vplVec3 point, float across, float down,
+                               float* depthOut)
+{
+    const vplVec3 way = vplSub(point, m->origin), f = m->forward[face];
+    const float depth = vplDot(way, f);
+    const vplVec3 side = vplSub(vplScale(across, m->right[face]), vplScale(down, m->up[face]));
+    *depthOut = depth;
+    if (m->emitter.type == VPL_EMITTER_DIRECTIONAL) {
+        const vplVec3 start = vplSub(point, vplScale(depth, f));
+        return (vplRay){vplAdd(start, side), vplScale(depth, f), {0, 0}};
+    }
+    return (vplRay){m->origin, vplAdd(way, vplScale(depth, side)), {0, 0}};
+}
+
+static inline int faceOf(const vplReflectiveMap* m, vplVec3 point)
+{
+    int face = 0, i, j;
+    float s, t;
+    if (m->faceCount == 6) {
+        vplCube_Find(vplSub(point, m->origin), m->size, &face, &s, &t, &i, &j);
+    }
+    return face;
+}
+
+// Whether all rays that pass within a texel and a 128th (coverage is snapped to 1/256) of the point say what the
+// point's own says: that something is nearer than the point, and than its plane there, by the tolerance; or that nothing
+// is nearer than both. Then the map must say the same.
+static inline bool isSure(const vplGeometry* g, const vplReflectiveMap* m, vplVec3 point, vplVec3 normal,
+                          bool dark)
+{
+    enum { GRID = 9 };
+    const bool parallel = m->emitter.type == VPL_EMITTER_DIRECTIONAL;
+    const int face = faceOf(m, point);
+    const float sideX = (float)(2 * m->extent[0] / m->size), sideY = (float)(2 * m->extent[1] / m->size);
+    const float larger = fmaxf(sideX, sideY);
+    bool same = true;
+    for (int k = 0; k < GRID * GRID && same; k++) {
+        const float a = ((float)(k % GRID) / (GRID - 1) * 2 - 1) * (1 + 0x1p-7f);
+        const float b = ((float)(k / GRID) / (GRID - 1) * 2 - 1) * (1 + 0x1p-7f);
+        float depth;
+        const vplRay ray = rayBeside(m, face, point, a * sideX, b * sideY, &depth);
+        const float meets = vplDot(vplSub(point, ray.origin), normal) / vplDot(ray.direction, normal);
+        const float plane = meets > 0 && meets < 1 ? meets : 1;
+        const float most = VPL_REFLECTIVE_TOLERANCE * larger + 0x1p-14f;
+        const float slack = 0x1p-6f * fabsf(1 - plane) + (parallel ? most / depth : most);
+        same = vplGeometry_IsOccluded(g, &ray, plane * (1 - slack)) == dark;
+        if (same && !dark) {
+            same = !vplGeometry_IsOccluded(g, &ray, plane * (1 - 0x1p-14f));
+        }
+    }
+    return same;
+}
+
+#endif
