@@ -247,6 +247,44 @@ static vplResult renderCuts(vplContext* context, const char* path, int variant)
     return result;
 }
 
+// Three frames with one history. Variants: large enough for blocks that stay with the context, and small.
+static vplResult renderFrames(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplHistory* history = NULL;
+    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
+    if (variant) {
+        options.width = 480; // 1.4 MB of picture
+        options.height = 260;
+    }
+    options.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    options.particles = 1;
+    vplResult result = vplScene_Load(context, "examples/scenes/room-path.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplHistory_Create(context, &history);
+    }
+    options.history = history;
+    for (int frame = 0; frame < 3 && result == VPL_SUCCESS; frame++) {
+        vplImage* image = NULL;
+        options.frame = 10 * frame;
+        result = vplRender(scene, &options, &image, NULL);
+        vplImage_Destroy(image);
+    }
+    vplHistory_Destroy(history);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+// While blocks are kept one failure is none: they are given back, and the block is asked for again.
+static void EveryFailedAllocationOfFramesIsReported(void** state)
+{
+    (void)state;
+    failEveryAllocation(renderFrames, "png", 0, false);
+    failEveryAllocation(renderFrames, "png", 0, true);
+    failEveryAllocation(renderFrames, "png", 1, true);
+}
+
 static vplResult findClusters(vplContext* context, const char* path, int variant)
 {
     (void)path;
@@ -504,6 +542,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),

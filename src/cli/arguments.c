@@ -79,6 +79,7 @@ static Arguments defaultArguments(const char* command)
     a.write = vplDefaultWriteOptions();
     a.heat = vplDefaultHeatmapDef();
     a.runs = 5;
+    a.frames[1] = -1;
     a.seeds = 3;
     a.seconds = 300;
     if (strcmp(command, "tradeoff") == 0) {

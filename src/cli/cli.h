@@ -7,7 +7,7 @@
 
 enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
 
-enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8 };
+enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8, MAX_FRAMES = 100000 };
 
 // What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures,
 // enough particles to see something, the sampler and hard shadows that the truth of a point light wants, and a
@@ -27,6 +27,7 @@ typedef struct Arguments {
     const char* stats;   // --stats
     const char* heatmap; // --heatmap
     vplHeatmapDef heat;
+    int frames[2];     // --frames: first and last; [1] < 0: one picture without a number
     int region[4];     // --region: x, y, width, height; width 0: all of the picture
     int columns, rows; // --regions; 0: none
     int threads[MAX_THREAD_COUNTS];
@@ -91,6 +92,10 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
 
 // True if a file can probably be written there; complains otherwise. Asked before hours of rendering.
 bool checkOutput(const char* path);
+
+// The name of frame `number` of frames up to `last`: "-0012" before the extension, at least four digits. False if it
+// does not fit.
+bool numberName(const char* name, int number, int last, char* out, size_t size);
 
 // Writes a whole file beside its target and renames it, or leaves everything as it was and complains.
 bool writeTextFile(const char* path, const char* text);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cli.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool isEmpty(const float* pixel)
@@ -37,7 +39,7 @@ static bool endsWithPng(const char* path)
     return n >= 4 && (strcmp(path + n - 4, ".png") == 0 || strcmp(path + n - 4, ".PNG") == 0);
 }
 
-static int writePicture(const Arguments* a, vplImage* image)
+static int writePicture(const Arguments* a, vplImage* image, const char* path)
 {
     vplShow show = a->render.show;
     bool metres = show == VPL_SHOW_DEPTH || show == VPL_SHOW_SHADOW_MAP;
@@ -45,46 +47,119 @@ static int writePicture(const Arguments* a, vplImage* image)
     if (!a->tonemapGiven && a->render.method == VPL_METHOD_SSVP) {
         options.tonemap = VPL_TONEMAP_REINHARD;
     }
-    if (endsWithPng(a->output) && (metres || show == VPL_SHOW_NORMALS)) {
+    if (endsWithPng(path) && (metres || show == VPL_SHOW_NORMALS)) {
         prepareForEyes(image, show);
     }
     if (metres || show == VPL_SHOW_NORMALS || show == VPL_SHOW_SHADOW_FACTOR) {
         options = vplDefaultWriteOptions(); // exposure and tone map are for light
     }
-    return exitCode(vplImage_Write(image, a->output, &options), false);
+    return exitCode(vplImage_Write(image, path, &options), false);
 }
 
-static int renderScene(const Arguments* a, vplContext* context, const vplScene* scene)
+static void sayMore(const vplRenderStats* stats)
 {
-    Progress progress = beginProgress(a->quiet);
-    vplRenderOptions options = a->render;
-    options.progress = showProgress;
-    options.progressUser = &progress;
+    for (int i = 0; i < stats->stageCount; i++) {
+        complain("%-12s %9.2f ms", stats->stages[i].name, stats->stages[i].ms);
+    }
+    complain("%d virtual lights, %lld draw calls, hash %016llx", stats->virtualLights,
+             (long long)stats->drawCalls, (unsigned long long)stats->imageHash);
+    if (stats->clampLoss >= 0) {
+        complain("the bound at %g m takes about %.3g %% of the virtual lights' light away",
+                 (double)stats->minDistance, 100 * stats->clampLoss);
+    }
+}
+
+static bool isSequence(const Arguments* a)
+{
+    return a->frames[1] >= 0;
+}
+
+// The name of a file of one frame, PATH_MAX bytes; `name` may be NULL. False if it is too long.
+static bool nameFrame(const char* name, const Arguments* a, int frame, char* out)
+{
+    out[0] = 0;
+    if (name == NULL) {
+        return true;
+    }
+    return isSequence(a) ? numberName(name, frame, a->frames[1], out, PATH_MAX)
+                         : snprintf(out, PATH_MAX, "%s", name) < PATH_MAX;
+}
+
+// The bar is that of all frames.
+typedef struct Sequence {
+    Progress progress;
+    int done, count;
+} Sequence;
+
+static bool showSequence(void* user, double fraction)
+{
+    Sequence* s = user;
+    return showProgress(&s->progress, (s->done + fraction) / s->count);
+}
+
+// Renders one picture to `output`, and its statistics to `stats` unless that is NULL.
+static int renderPicture(const Arguments* a, vplContext* context, const vplScene* scene,
+                         const vplRenderOptions* options, const char* output, const char* statsFile)
+{
     vplImage* image = NULL;
     vplRenderStats stats;
-    vplResult result = vplRender(scene, &options, &image, &stats);
-    endProgress(&progress);
+    Sequence* sequence = options->progressUser;
+    vplResult result = vplRender(scene, options, &image, &stats);
+    endProgress(&sequence->progress);
+    if (result == VPL_CANCELLED && sequence->done > 0) {
+        complain("cancelled, %d of %d frames were written", sequence->done, sequence->count);
+        return EXIT_COULD_NOT;
+    }
     int code = exitCode(result, false);
     if (code != EXIT_DONE) {
         return code;
     }
     if (a->verbose) {
-        for (int i = 0; i < stats.stageCount; i++) {
-            complain("%-12s %9.2f ms", stats.stages[i].name, stats.stages[i].ms);
-        }
-        complain("%d virtual lights, %lld draw calls, hash %016llx", stats.virtualLights,
-                 (long long)stats.drawCalls, (unsigned long long)stats.imageHash);
-        if (stats.clampLoss >= 0) {
-            complain("the bound at %g m takes about %.3g %% of the virtual lights' light away",
-                     (double)stats.minDistance, 100 * stats.clampLoss);
-        }
+        sayMore(&stats);
     }
-    code = writePicture(a, image);
-    if (code == EXIT_DONE && a->stats != NULL) {
-        code = exitCode(writeStats(context, a->stats, &stats), false);
+    code = writePicture(a, image, output);
+    if (code == EXIT_DONE && statsFile != NULL) {
+        code = exitCode(writeStats(context, statsFile, &stats), false);
     }
     vplImage_Destroy(image);
     return code;
+}
+
+static int renderScene(const Arguments* a, vplContext* context, const vplScene* scene)
+{
+    Sequence sequence = {beginProgress(a->quiet), 0, 1};
+    vplRenderOptions options = a->render;
+    options.progress = showSequence;
+    options.progressUser = &sequence;
+    if (!isSequence(a)) {
+        return renderPicture(a, context, scene, &options, a->output, a->stats);
+    }
+    int code = exitCode(vplHistory_Create(context, &options.history), false);
+    sequence.count = a->frames[1] - a->frames[0] + 1;
+    for (; code == EXIT_DONE && sequence.done < sequence.count; sequence.done++) {
+        const int frame = a->frames[0] + sequence.done;
+        char output[PATH_MAX], stats[PATH_MAX];
+        options.frame = frame;
+        if (a->verbose) {
+            complain("frame %d", frame);
+        }
+        nameFrame(a->output, a, frame, output);
+        nameFrame(a->stats, a, frame, stats);
+        code = renderPicture(a, context, scene, &options, output, a->stats ? stats : NULL);
+    }
+    vplHistory_Destroy(options.history);
+    return code;
+}
+
+// Names of the first frame stand for all: they differ in digits only.
+static bool checkFiles(const Arguments* a)
+{
+    char output[PATH_MAX], stats[PATH_MAX];
+    if (!nameFrame(a->output, a, a->frames[0], output) || !nameFrame(a->stats, a, a->frames[0], stats)) {
+        complain("%s: the name is too long", a->output);
+        return false;
+    }
+    return checkOutput(output) && (a->stats == NULL || checkOutput(stats));
 }
 
 int runRender(const Arguments* a)
@@ -101,7 +176,7 @@ int runRender(const Arguments* a)
         complain("%s: both the picture and the statistics would be written there", a->output);
         return EXIT_USAGE;
     }
-    if (!checkOutput(a->output) || (a->stats != NULL && !checkOutput(a->stats))) {
+    if (!checkFiles(a)) {
         return EXIT_COULD_NOT;
     }
     catchInterrupts();

@@ -276,6 +276,30 @@ bool readRegion(const Option* o, const char* value, Arguments* a)
     return true;
 }
 
+bool readFrames(const Option* o, const char* value, Arguments* a)
+{
+    long numbers[2] = {-1, -1};
+    const char* at = value;
+    for (int i = 0; i < 2; i++) {
+        char* end;
+        errno = 0;
+        numbers[i] = *at >= '0' && *at <= '9' ? strtol(at, &end, 10) : -1;
+        if (numbers[i] < 0 || errno != 0 || numbers[i] > VPL_MAX_FRAME || *end != (i ? 0 : ':')) {
+            complain("%s is \"%s\", must be FIRST:LAST, two numbers in [0, %d]", o->name, value,
+                     VPL_MAX_FRAME);
+            return false;
+        }
+        at = end + 1;
+    }
+    if (numbers[0] > numbers[1] || numbers[1] - numbers[0] >= MAX_FRAMES) {
+        complain("%s is \"%s\", must be 1 to %d frames", o->name, value, MAX_FRAMES);
+        return false;
+    }
+    a->frames[0] = (int)numbers[0];
+    a->frames[1] = (int)numbers[1];
+    return true;
+}
+
 // One thread count, or for bench several: 1,2,4.
 bool readThreads(const Option* o, const char* value, Arguments* a)
 {

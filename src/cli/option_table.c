@@ -34,6 +34,8 @@ const Option OPTIONS[] = {
      "pixels; default 1280x720, for tradeoff 320x180"},
     {"--antialias", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.antialias), 1, 4096, NULL,
      "samples per pixel of rasterizing methods; default 1"},
+    {"--frames", "A:B", RENDER, readFrames, 0, 0, 0, NULL,
+     "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on"},
     {"--camera", "I", RENDER | TRADEOFF, readInt, AT(render.camera), 0, 1e9, NULL,
      "index of the scene's camera; default 0"},
     {"--method", "M", SCENE & ~TRADEOFF, readChoice, AT(render.method), 0, 0,

@@ -46,6 +46,20 @@ bool checkOutput(const char* path)
     return good;
 }
 
+bool numberName(const char* name, int number, int last, char* out, size_t size)
+{
+    int digits = 4;
+    for (int rest = last / 10000; rest > 0; rest /= 10) {
+        digits++;
+    }
+    const char* slash = strrchr(name, '/');
+    const char* base = slash ? slash + 1 : name;
+    const char* dot = strrchr(base, '.');
+    const int stem = (int)(dot != NULL && dot != base ? dot - name : (long)strlen(name));
+    const int length = snprintf(out, size, "%.*s-%0*d%s", stem, name, digits, number, name + stem);
+    return length >= 0 && (size_t)length < size;
+}
+
 static void complainOf(void* user, vplLogLevel level, const char* message)
 {
     (void)user;

@@ -26,6 +26,7 @@ failed=0
 . "$folder/files.sh"
 . "$folder/numbers.sh"
 . "$folder/pictures.sh"
+. "$folder/frames.sh"
 . "$folder/tradeoff.sh"
 . "$folder/bench.sh"
 
