@@ -44,6 +44,7 @@
     X(rsm) \
     X(scene) \
     X(sceneChecks) \
+    X(secondBounce) \
     X(shading) \
     X(tradeoff) \
     X(visibility)
