@@ -49,6 +49,7 @@
     X(rsmShadow) \
     X(scene) \
     X(sceneChecks) \
+    X(secondBounce) \
     X(shadeOutputs) \
     X(shading) \
     X(ssvp) \
