@@ -147,9 +147,9 @@ static void AsManyClustersAsLightsAreInstantRadiosity(void** state)
     vplImage* maps = renderWith(scene, o, VPL_LIGHT_SHADOWS_MAP);
     vplImage* none = renderWith(scene, o, VPL_LIGHT_SHADOWS_NONE);
     assertNear(meanOf(clusters) / meanOf(rays), 1, 0.01, "energy", 0);
-    assertNear(differenceOf(clusters, rays), 0, 0.02, "clusters and rays", 0);
+    assertNear(differenceOf(clusters, rays), 0, 0.01, "clusters and rays", 0);
     assertNear(differenceOf(clusters, maps), 0, 0.02, "clusters and maps", 0);
-    assert_true(differenceOf(none, rays) > 0.1); // shadows matter here
+    assert_true(differenceOf(none, rays) > 5 * differenceOf(clusters, rays)); // shadows matter here
     o.clusters = 8;
     vplImage* few = renderWith(scene, o, VPL_LIGHT_SHADOWS_CLUSTER);
     assert_true(differenceOf(few, rays) > 2 * differenceOf(clusters, rays)); // and so does their number
@@ -259,13 +259,15 @@ static void EveryStageIsShown(void** state)
     vplImage_Destroy(renderScene(scene, &o, &plain));
     for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_DENOISED; show++) {
         o.show = (vplShow)show;
-        assert_true(meanOf(renderScene(scene, &o, &stats)) > 0);
+        vplImage* image = renderScene(scene, &o, &stats);
+        assert_true(meanOf(image) > 0);
+        vplImage_Destroy(image);
         assert_true(stats.imageHash != plain.imageHash);
     }
     o.show = VPL_SHOW_PARABOLOID;
     o.showLight = 8;
-    vplImage* image = NULL;
-    assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+    vplImage* nothing = NULL;
+    assert_int_equal(vplRender(scene, &o, &nothing, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "cluster 8 does not exist, there are 8"));
     vplScene_Destroy(scene);
     closeTestContext(context);
