@@ -3,6 +3,8 @@
 // one sentence, nothing leaked and no file. New memory is filled with junk, so that success does not depend on it.
 #include "shapes.h"
 
+#include "render/show_ssvp.h"
+
 #include <jansson.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -370,6 +372,49 @@ static void EveryFailedAllocationOfAPlacementIsReported(void** state)
     }
 }
 
+// Variants: types of emitters. The map, its lights and its picture.
+static vplResult sampleReflectiveMap(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    vplReflectiveMap* map = NULL;
+    vplLightSet* set = NULL;
+    vplImage* image = NULL;
+    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+    vplRsmSampleDef sampling = vplDefaultRsmSampleDef();
+    def.size = 3;
+    def.emitter.type = (vplEmitterType)variant;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplReflectiveMap_Create(geometry, &def, NULL, NULL, &map);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplSampleReflectiveMaps(geometry, (const vplReflectiveMap* const*)&map, 1, &sampling, &set);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplShowReflectiveMap(map, geometry, &image);
+    }
+    vplImage_Destroy(image);
+    vplLightSet_Destroy(set);
+    vplReflectiveMap_Destroy(map);
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfAReflectiveMapIsReported(void** state)
+{
+    (void)state;
+    for (int variant = VPL_EMITTER_POINT; variant <= VPL_EMITTER_DIRECTIONAL; variant++) {
+        failEveryAllocation(sampleReflectiveMap, "png", variant, false);
+        failEveryAllocation(sampleReflectiveMap, "png", variant, true);
+    }
+}
+
 // Only the geometry of a mesh, and its tree.
 static vplResult freezeBall(vplContext* context, const char* path, int variant)
 {
@@ -546,6 +591,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfAReflectiveMapIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),

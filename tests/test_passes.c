@@ -282,6 +282,81 @@ static void DistancesNeedNoShader(void** state)
     closeTestContext(context);
 }
 
+// Plane 1: the triangle counted through all meshes. Depth: w.
+static void nameFragments(const void* uniforms, vplFragments* f)
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        f->plane[1][l] = (float)(*(const int*)uniforms + f->primitive);
+        f->depth[l] = f->w[l];
+    }
+}
+
+// Draws the soup as two meshes.
+static vplRasterStats drawNamed(vplContext* context, const Canvas* canvas, const vplPipeline* pipeline,
+                                int split)
+{
+    const int firsts[2] = {0, split};
+    const vplMesh meshes[2] = {{ascending(), 3 * TRIANGLES, split},
+                               {ascending() + 3 * split, 3 * TRIANGLES, TRIANGLES - split}};
+    vplRaster* raster;
+    vplRasterStats stats;
+    assert_int_equal(vplRaster_Create(context, &canvas->framebuffer, &raster), VPL_SUCCESS);
+    for (int i = 0; i < 2; i++) {
+        vplPipeline p = *pipeline;
+        p.fragmentUniforms = &firsts[i];
+        assert_int_equal(vplRaster_Draw(raster, &meshes[i], &p), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRaster_Run(raster, NULL, NULL, &stats), VPL_SUCCESS);
+    vplRaster_Destroy(raster);
+    return stats;
+}
+
+// However depth is written; w, along the axis, is a shader's but for outlines, where that is clamped otherwise.
+static void FramebuffersNameWhoWroteDepthLast(void** state)
+{
+    (void)state;
+    enum { SPLIT = 17 };
+    vplContext* context = openTestContext(2);
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        const int width = 20 + (int)(seed * 9), height = 200 - (int)(seed * 4), pixels = width * height;
+        ClipVertex* v = makeSoup(2100 + seed, TRIANGLES);
+        int32_t *shaded = malloc((size_t)pixels * sizeof *shaded),
+                *alone = malloc((size_t)pixels * sizeof *alone);
+        for (int axis = 0; axis < 2; axis++) {
+            Canvas one = makeCanvas(width, height, -1), two = makeCanvas(width, height, 0);
+            one.framebuffer.depth.clear = two.framebuffer.depth.clear = INFINITY;
+            one.framebuffer.triangles = shaded;
+            two.framebuffer.triangles = alone;
+            vplPipeline p = showPipeline(v);
+            p.fragment = nameFragments;
+            p.writesDepth = axis;
+            const int64_t fragments = drawNamed(context, &one, &p, SPLIT).fragments;
+            p.fragment = NULL;
+            p.writesDepth = false;
+            p.distanceScale = (float)axis;
+            p.distanceAlongAxis = axis;
+            const int64_t fragmentsAlone = drawNamed(context, &two, &p, SPLIT).fragments;
+            int named = 0, other = 0, deeper = 0;
+            for (int i = 0; i < pixels; i++) {
+                assert_int_equal(shaded[i], (int)one.planes[1][i]);
+                assert_true((alone[i] >= 0) == isfinite(two.depth[i]));
+                named += shaded[i] >= 0;
+                other += shaded[i] != alone[i];
+                deeper += isfinite(two.depth[i]) && fabsf(one.depth[i] - two.depth[i]) > 1e-5f * one.depth[i];
+            }
+            assert_true(named > pixels / 4 && (axis || other + deeper == 0));
+            assert_true(other <= named / 200 && deeper <= named / 50);
+            assert_true(axis || fragments == fragmentsAlone);
+            freeCanvas(&one);
+            freeCanvas(&two);
+        }
+        free(shaded);
+        free(alone);
+        free(v);
+    }
+    closeTestContext(context);
+}
+
 static void RastersSideBySideGiveTheBitsOfEachAlone(void** state)
 {
     (void)state;
@@ -341,6 +416,15 @@ static void DrawsThatAreNoPassesAreRefused(void** state)
     p.depthCompare = VPL_DEPTH_EQUAL;
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
     vplRaster_Destroy(raster);
+    vplFramebuffer naming = vplDefaultFramebuffer(8, 8);
+    int32_t triangles[64];
+    naming.triangles = triangles;
+    assert_int_equal(vplRaster_Create(context, &naming, &raster), VPL_SUCCESS);
+    p = vplDefaultPipeline();
+    p.vertex = passVertices;
+    p.ownerTest = true;
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
+    vplRaster_Destroy(raster);
     closeTestContext(context);
 }
 
@@ -348,5 +432,6 @@ TEST_SUITE(passes, cmocka_unit_test(PassesOverKeptBlocksGiveTheBitsOfDraws),
            cmocka_unit_test(SurfaceShadersRunBeforeFragmentShaders),
            cmocka_unit_test(SurfaceShadersMayMakeAllVaryings), cmocka_unit_test(HiddenBlocksAreHidden),
            cmocka_unit_test(DepthAloneIsTheDepthOfShadedDraws), cmocka_unit_test(DistancesNeedNoShader),
+           cmocka_unit_test(FramebuffersNameWhoWroteDepthLast),
            cmocka_unit_test(RastersSideBySideGiveTheBitsOfEachAlone),
            cmocka_unit_test(DrawsThatAreNoPassesAreRefused));

@@ -5,6 +5,7 @@
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
+#include "render/show_ssvp.h"
 
 static vplReflectiveMap* mapOf(const vplGeometry* g, const vplEmitterDef* emitter, int size)
 {
@@ -342,6 +343,57 @@ static void MapsDoNotDependOnThreadsOrIsa(void** state)
     }
 }
 
+// Four pictures side by side, of a point a cross each; each texel at its place.
+static void ShownMapsHaveFourParts(void** state)
+{
+    (void)state;
+    enum { SIZE = 24 };
+    vplContext* context = openTestContext(2);
+    vplGeometry* room = tableRoom(context);
+    for (int k = 0; k < 3; k++) {
+        const vplEmitterDef e = someEmitter(k);
+        vplReflectiveMap* map = mapOf(room, &e, SIZE);
+        vplImage* image;
+        assert_int_equal(vplShowReflectiveMap(map, room, &image), VPL_SUCCESS);
+        const bool cross = k == VPL_EMITTER_POINT;
+        const int width = cross ? 4 * SIZE : SIZE;
+        assert_int_equal(image->width, 4 * width);
+        assert_int_equal(image->height, cross ? 3 * SIZE : SIZE);
+        float least = 1, most = 0, brightest = 0;
+        for (int i = 0; i < 3 * image->width * image->height; i++) {
+            least = fminf(least, image->pixels[i]);
+            most = fmaxf(most, image->pixels[i]);
+            brightest = i / 3 % image->width >= 3 * width ? fmaxf(brightest, image->pixels[i]) : brightest;
+        }
+        assert_true(least >= 0 && most <= 1 && brightest == 1);
+        vplReflectiveTexel t; // the first of face -y, in the cross below the middle
+        int64_t texel = cross ? 3 * SIZE * SIZE : 0;
+        while (!vplReflectiveMap_GetTexel(map, room, texel, &t)) {
+            texel++;
+        }
+        const int64_t x = (cross ? SIZE : 0) + texel % SIZE, y = (cross ? 2 * SIZE : 0) + texel / SIZE % SIZE;
+        const float* pixel = image->pixels + 3 * (y * image->width + x);
+        assertNear((double)pixel[1],
+                   (double)((t.position.y - room->boundsMin.y) / (room->boundsMax.y - room->boundsMin.y)),
+                   1e-6, "position", k);
+        assertNear((double)pixel[3 * width + 2], 0.5 * (1 + (double)t.normal.z), 1e-6, "normal", k);
+        assertNear((double)pixel[6 * width], (double)t.albedo.r, 0, "albedo", k);
+        assertNear((double)(pixel[9 * width] * t.flux.b), (double)(pixel[9 * width + 2] * t.flux.r), 1e-6,
+                   "flux", k);
+        vplImage_Destroy(image);
+        vplReflectiveMap_Destroy(map);
+    }
+    const vplEmitterDef e = someEmitter(VPL_EMITTER_POINT);
+    vplReflectiveMap* large = mapOf(room, &e, 1025);
+    vplImage* none = NULL;
+    assert_int_equal(vplShowReflectiveMap(large, room, &none), VPL_LIMIT);
+    assert_non_null(strstr(takeMessage(), "at most 1024"));
+    assert_null(none);
+    vplReflectiveMap_Destroy(large);
+    vplGeometry_Destroy(room);
+    closeTestContext(context);
+}
+
 static void BadMapsAreRefused(void** state)
 {
     (void)state;
@@ -374,4 +426,5 @@ TEST_SUITE(rsm, cmocka_unit_test(APointInAClosedCubeSends4PiI), cmocka_unit_test
            cmocka_unit_test(TheSunSendsWhatTheFloorMeets), cmocka_unit_test(TexelsAreWhereRaysLand),
            cmocka_unit_test(ParticlesMoveByATexelAtMost), cmocka_unit_test(SmoothObjectsHaveTheirNormals),
            cmocka_unit_test(AnEmptySceneGivesAnEmptyMap), cmocka_unit_test(AnEmitterMayTouchASurface),
-           cmocka_unit_test(MapsDoNotDependOnThreadsOrIsa), cmocka_unit_test(BadMapsAreRefused));
+           cmocka_unit_test(MapsDoNotDependOnThreadsOrIsa), cmocka_unit_test(ShownMapsHaveFourParts),
+           cmocka_unit_test(BadMapsAreRefused));

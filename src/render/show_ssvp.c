@@ -3,6 +3,7 @@
 #include "render/show_ssvp.h"
 
 #include "base/context.h"
+#include "math/scalar.h"
 #include "math/vec.h"
 
 enum { PARTS = 4 }; // position, normal, reflectance, flux
@@ -16,7 +17,7 @@ typedef struct Shown {
 
 static float shareOf(float at, float low, float high)
 {
-    return high > low ? (at - low) / (high - low) : 0;
+    return high > low ? vplClampf((at - low) / (high - low), 0, 1) : 0;
 }
 
 // Where a texel is in the first part. The cross: +y above, -x +z +x -z in a row, -y below.
