@@ -35,6 +35,7 @@ bool writeOption(const Option* option, const Arguments* arguments, char* text, s
 void writeNamedOption(const char* name, const Arguments* arguments, char* text, size_t size);
 
 ReadFcn readInt, readSeed, readFloat, readDouble, readFloatOrAuto, readReflectivity, readTonemap, readBias,
-    readBiasSlope, readFlag, readText, readChoice, readShow, readSize, readThreads, readRegion, readGrid, readFrames;
+    readBiasSlope, readFlag, readText, readChoice, readShow, readSize, readThreads, readRegion, readGrid,
+    readFrames;
 
 #endif

@@ -192,6 +192,12 @@ static void compensated(vplRenderOptions* o)
     o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
 }
 
+static void laterFrame(vplRenderOptions* o)
+{
+    manyLights(o);
+    o->frame = 45;
+}
+
 static const Case CASES[] = {
     {"room-physical", "room", 1, defaults},
     {"room-documented", "closed-room", 0, documented},
@@ -220,6 +226,7 @@ static const Case CASES[] = {
     {"path-area", "room-area", 1, paths},
     {"path-point", "closed-room", 1, paths},
     {"path-bounce-2", "room", 3, secondBounce},
+    {"frame-45", "room-path", 2.5f, laterFrame},
 };
 
 enum { CASE_COUNT = sizeof CASES / sizeof *CASES };

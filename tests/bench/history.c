@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// What a history is worth: frames of a scene without one, with one that keeps the geometry only, and with one that keeps
+// large blocks, too; alternated, medians of processor time, of that the kernel's, and of pages it had to clear.
+// `bench/history SCENE [METHOD [WIDTH HEIGHT [RUNS]]]`; METHOD: direct (default), interleaved or ssvp.
+#include "bench.h"
+
+#include "base/clock.h"
+
+#include <string.h>
+#include <sys/resource.h>
+
+enum { WAYS = 3, MAX_RUNS = 101 };
+
+typedef struct Way {
+    const char* name;
+    vplContext* context;
+    vplScene* scene;
+    vplHistory* history;
+    double wall[MAX_RUNS], cpu[MAX_RUNS], kernel[MAX_RUNS], pages[MAX_RUNS];
+    size_t peak;
+} Way;
+
+static double kernelMs(const struct rusage* u)
+{
+    return (double)u->ru_stime.tv_sec * 1e3 + (double)u->ru_stime.tv_usec * 1e-3;
+}
+
+static uint64_t runOnce(Way* way, vplRenderOptions options, int run)
+{
+    struct rusage before, after;
+    vplImage* image;
+    vplRenderStats stats;
+    options.history = way->history;
+    options.frame = run;
+    const double wall = vplClockMs(), cpu = vplCpuMs();
+    getrusage(RUSAGE_SELF, &before);
+    check(vplRender(way->scene, &options, &image, &stats));
+    vplImage_Destroy(image);
+    getrusage(RUSAGE_SELF, &after);
+    way->peak = stats.peakBytes;
+    if (run >= 0) {
+        way->wall[run] = vplClockMs() - wall;
+        way->cpu[run] = vplCpuMs() - cpu;
+        way->kernel[run] = kernelMs(&after) - kernelMs(&before);
+        way->pages[run] = (double)(after.ru_minflt - before.ru_minflt);
+    }
+    return stats.imageHash;
+}
+
+int main(int count, char** words)
+{
+    static Way ways[WAYS] = {{.name = "none"}, {.name = "geometry"}, {.name = "geometry, blocks"}};
+    if (count < 2) {
+        fprintf(stderr, "usage: history SCENE [METHOD [WIDTH HEIGHT [RUNS]]]\n");
+        return 2;
+    }
+    const char* method = count > 2 ? words[2] : "direct";
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.method = strcmp(method, "direct") == 0 ? VPL_METHOD_DIRECT
+                     : strcmp(method, "ssvp") == 0 ? VPL_METHOD_SSVP
+                                                   : VPL_METHOD_INSTANT_RADIOSITY;
+    if (options.method == VPL_METHOD_INSTANT_RADIOSITY) {
+        options.accumulation = VPL_ACCUMULATE_INTERLEAVED;
+        options.placement = VPL_PLACEMENT_RSM;
+        options.particles = 256;
+    }
+    options.width = count > 4 ? atoi(words[3]) : 1920;
+    options.height = count > 4 ? atoi(words[4]) : 1080;
+    const int runs = count > 5 && atoi(words[5]) < MAX_RUNS ? atoi(words[5]) : 15;
+    for (int w = 0; w < WAYS; w++) {
+        openScene(words[1], 0, VPL_ISA_AUTO, &ways[w].context, &ways[w].scene);
+        if (w > 0) {
+            check(vplHistory_Create(ways[w].context, &ways[w].history));
+        }
+        if (w == 1) {
+            vplStopKeeping(ways[w].context);
+        }
+    }
+    for (int run = -2; run < runs; run++) {
+        uint64_t hashes[WAYS];
+        for (int w = 0; w < WAYS; w++) {
+            hashes[w] = runOnce(&ways[w], options, run);
+        }
+        if (hashes[0] != hashes[1] || hashes[0] != hashes[2]) {
+            fprintf(stderr, "history: frame %d is another picture\n", run);
+            return 1;
+        }
+    }
+    printf("%s, %s, %dx%d, medians of %d frames\n", words[1], method, options.width, options.height, runs);
+    printf("%-17s %9s %9s %10s %8s %8s\n", "history of", "wall ms", "cpu ms", "kernel ms", "pages",
+           "peak MB");
+    for (int w = 0; w < WAYS; w++) {
+        Way* way = &ways[w];
+        printf("%-17s %9.1f %9.1f %10.1f %8.0f %8.0f\n", way->name, median(way->wall, runs),
+               median(way->cpu, runs), median(way->kernel, runs), median(way->pages, runs),
+               (double)way->peak / (1 << 20));
+        if (w == 1) {
+            vplStartKeeping(way->context);
+        }
+        vplHistory_Destroy(way->history);
+        vplScene_Destroy(way->scene);
+        vplContext_Destroy(way->context);
+    }
+    return 0;
+}
