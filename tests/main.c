@@ -33,6 +33,7 @@
     X(objParts) \
     X(objScene) \
     X(packets) \
+    X(paraboloids) \
     X(passes) \
     X(path) \
     X(placement) \
@@ -45,6 +46,7 @@
     X(scene) \
     X(sceneChecks) \
     X(shadeOutputs) \
+    X(secondBounce) \
     X(shading) \
     X(tradeoff) \
     X(visibility)

@@ -172,3 +172,34 @@ vplVec3 rollUnit(Dice* dice)
         }
     }
 }
+
+vplGeometry* clutter(vplContext* context, int which)
+{
+    if (which == 0) {
+        return tableRoom(context);
+    }
+    vplScene* scene = sceneOf(context, 0.5f);
+    Shape ball = icosphere(3), box = gridBox(9);
+    const double turned[3] = {0.3, 0.7, 0.1};
+    placeShape(&ball, 0.35f, turned, vplVec(0.2f, -0.3f, 0.1f));
+    addShape(scene, &ball, false, NULL);
+    addShape(scene, &box, false, NULL);
+    freeShape(&ball);
+    freeShape(&box);
+    return freezeScene(scene);
+}
+
+vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)
+{
+    for (;;) {
+        const vplVec3 size = vplSub(g->boundsMax, g->boundsMin);
+        const vplVec3 from = {g->boundsMin.x + roll(dice, 0.01f, 0.99f) * size.x,
+                              g->boundsMin.y + roll(dice, 0.01f, 0.99f) * size.y,
+                              g->boundsMin.z + roll(dice, 0.01f, 0.99f) * size.z};
+        const vplRay ray = {from, rollUnit(dice), {0, 0}};
+        if (vplGeometry_ClosestHit(g, &ray, hitOut)) {
+            const vplVec3 n = hitOut->normal;
+            return (vplHalfMapPlace){hitOut->position, vplDot(n, ray.direction) < 0 ? n : vplNegate(n)};
+        }
+    }
+}

@@ -39,4 +39,10 @@ float roll(Dice* dice, float low, float high);
 vplVec3 rollVec(Dice* dice, float size); // each component in [-size, size)
 vplVec3 rollUnit(Dice* dice);            // a direction, all alike
 
+// 0: the room's objects; 1: a ball of 1,280 triangles in a box of 972.
+vplGeometry* clutter(vplContext* context, int which);
+
+// A place on some triangle, on the side that a random point in the bounds sees.
+vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut);
+
 #endif

@@ -31,39 +31,6 @@ static float factorAt(const vplHalfMap* map, vplVec3 p, vplVec3 n)
     return factor[0];
 }
 
-// The room's objects, and a ball of 1,280 triangles in a box of 972.
-static vplGeometry* clutter(vplContext* context, int which)
-{
-    if (which == 0) {
-        return tableRoom(context);
-    }
-    vplScene* scene = sceneOf(context, 0.5f);
-    Shape ball = icosphere(3), box = gridBox(9);
-    const double turned[3] = {0.3, 0.7, 0.1};
-    placeShape(&ball, 0.35f, turned, vplVec(0.2f, -0.3f, 0.1f));
-    addShape(scene, &ball, false, NULL);
-    addShape(scene, &box, false, NULL);
-    freeShape(&ball);
-    freeShape(&box);
-    return freezeScene(scene);
-}
-
-// A place on some triangle, on the side that a random point in the bounds sees.
-static vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)
-{
-    for (;;) {
-        const vplVec3 size = vplSub(g->boundsMax, g->boundsMin);
-        const vplVec3 from = {g->boundsMin.x + roll(dice, 0.01f, 0.99f) * size.x,
-                              g->boundsMin.y + roll(dice, 0.01f, 0.99f) * size.y,
-                              g->boundsMin.z + roll(dice, 0.01f, 0.99f) * size.z};
-        const vplRay ray = {from, rollUnit(dice), {0, 0}};
-        if (vplGeometry_ClosestHit(g, &ray, hitOut)) {
-            const vplVec3 n = hitOut->normal;
-            return (vplHalfMapPlace){hitOut->position, vplDot(n, ray.direction) < 0 ? n : vplNegate(n)};
-        }
-    }
-}
-
 // Where a texel's centre looks.
 static vplVec3 directionOf(const vplHalfMap* map, int column, int row)
 {

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // One triangle in the shadow map of a half space. Included by the kernel that draws them.
-// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, Graphics Hardware
-// 1997: inside is where three planes through the eye say so, so that nothing is clipped. The planes are Pluecker's
-// (as in Embree): they are exact negatives for both triangles at an edge, and no texel between them is lost.
 //
 // A texel at (u, v) in [-1, 1]^2 looks along d = (p, q, 1 - |p| - |q|), p = (u + v) / 2, q = (u - v) / 2, in the
 // light's frame; where p and q keep their signs d is linear in u and v. A point t d lies on a triangle's plane where
@@ -11,8 +8,7 @@
 #define VPL_VISIBILITY_HALF_FILL_H
 
 #include "visibility/half_map.h"
-
-#include <string.h>
+#include "visibility/map_fill.h"
 
 // ---- one triangle
 
@@ -34,11 +30,6 @@ static inline vplVec3 edgeOf(vplVec3 a, vplVec3 b)
     return vplCross(vplSub(a, b), vplAdd(a, b));
 }
 
-// Columns i0 to i1 and rows j0 to j1.
-typedef struct Texels {
-    int32_t i0, i1, j0, j1;
-} Texels;
-
 typedef struct Filling {
     Linear edge[3], near; // near: 1/t
     float right, up;      // signs of the quadrant
@@ -47,19 +38,16 @@ typedef struct Filling {
 // Returns whether it may be seen: from its edge a triangle hides nothing.
 static inline int32_t setUp(vplVec3 p0, vplVec3 p1, vplVec3 p2, float right, float up, Filling* f)
 {
-    const vplVec3 n = vplCross(vplSub(p1, p0), vplSub(p2, p0));
-    const float x = n.x * p0.x, y = n.y * p0.y, z = n.z * p0.z, k = x + y + z;
-    const float sign = k > 0 ? 1.0f : -1.0f, inverse = 1 / k;
-    f->near = linearOf(vplScale(inverse, n), right, up);
-    f->edge[0] = linearOf(vplScale(sign, edgeOf(p0, p1)), right, up);
-    f->edge[1] = linearOf(vplScale(sign, edgeOf(p1, p2)), right, up);
-    f->edge[2] = linearOf(vplScale(sign, edgeOf(p2, p0)), right, up);
+    Planes planes;
+    const int32_t seen = planesOf(p0, p1, p2, edgeOf, &planes);
+    f->near = linearOf(planes.near, right, up);
+    for (int e = 0; e < 3; e++) {
+        f->edge[e] = linearOf(planes.edge[e], right, up);
+    }
     f->right = right;
     f->up = up;
-    return (fabsf(k) > 0x1p-20f * (fabsf(x) + fabsf(y) + fabsf(z))) & (fabsf(inverse) < INFINITY);
+    return seen;
 }
-
-enum { SIDE = VPL_BLOCK_SIDE };
 
 // One row of blocks. `whole`: the triangle may reach into other quadrants, whose texels are not meant.
 static inline void fillRow(const Filling* restrict f, int32_t row, float scale, int32_t first, int32_t last,
@@ -128,9 +116,6 @@ static int cut(double (*restrict points)[3], int count, const double side[3])
     }
     return kept;
 }
-
-// Bounds are wider by this much of a texel, which covers the rounding of projected corners.
-static const float MARGIN = 0x1p-9f;
 
 static Texels boundsOf(double (*points)[3], int count, int size)
 {

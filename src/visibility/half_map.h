@@ -54,18 +54,25 @@ static inline float vplHalfMap_Tolerance(int size)
     return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
 }
 
-// The band of vplHalfMap_FactorBlock, 2.5 f + b, metres, and f.
+// 2.5 f + b, metres: how near something may be to a point at distance r for map and ray to disagree, where texels look
+// past the point by at most f and cosT is its plane's cosine to the light.
+static inline float vplShadowBand(float r, float f, float cosT)
+{
+    const float sinT = sqrtf(1 - cosT * cosT);
+    const float cosA = r / sqrtf(r * r + f * f), sinA = f / r * cosA;
+    const float turned = sinT * cosA <= cosT * sinA ? 1 : cosT * cosA + sinT * sinA;
+    return 2.5f * f + r * (1 - cosT / turned) + r * 0x1p-16f;
+}
+
+// The band of vplHalfMap_FactorBlock, and f.
 static inline float vplHalfMap_Band(const vplHalfMap* map, vplVec3 point, vplVec3 normal, float* footprintOut)
 {
     const vplVec3 way = vplSub(point, map->position);
     const float x = fabsf(vplDot(way, map->right)), y = fabsf(vplDot(way, map->up));
     const float r = fmaxf(vplLength(way), 1e-30f),
                 f = 1.41421356f * (x + y + fabsf(vplDot(way, map->forward))) / (float)map->size;
-    const float cosT = fminf(fabsf(vplDot(way, normal)) / r, 1), sinT = sqrtf(1 - cosT * cosT);
-    const float cosA = r / sqrtf(r * r + f * f), sinA = f / r * cosA;
-    const float turned = sinT * cosA <= cosT * sinA ? 1 : cosT * cosA + sinT * sinA;
     *footprintOut = f;
-    return 2.5f * f + r * (1 - cosT / turned) + r * 0x1p-16f;
+    return vplShadowBand(r, f, fminf(fabsf(vplDot(way, normal)) / r, 1));
 }
 
 static inline float vplLargestOf(vplVec3 p)

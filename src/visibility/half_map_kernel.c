@@ -5,33 +5,9 @@
 #include "math/scalar.h"
 #include "visibility/half_fill.h"
 
-#include <string.h>
-
 vplDrawHalfMapFcn VPL_KERNEL(vplDrawHalfMap);
 
 // ---- sixteen triangles
-
-typedef struct Sixteen {
-    float x[3][VPL_LANES], y[3][VPL_LANES],
-        z[3][VPL_LANES]; // corners: in the world, then as the light sees them
-    int32_t id[VPL_LANES];
-} Sixteen;
-
-enum { UNSEEN = 0, INSIDE, CROSSING };
-
-// Corners in the light's frame.
-static void turn(const vplHalfMap* map, Sixteen* restrict s)
-{
-    const vplVec3 o = map->position, r = map->right, u = map->up, f = map->forward;
-    for (int k = 0; k < 3; k++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            const float x = s->x[k][l] - o.x, y = s->y[k][l] - o.y, z = s->z[k][l] - o.z;
-            s->x[k][l] = x * r.x + y * r.y + z * r.z;
-            s->y[k][l] = x * u.x + y * u.y + z * u.z;
-            s->z[k][l] = x * f.x + y * f.y + z * f.z;
-        }
-    }
-}
 
 // Which texels' centres may lie in each triangle, and how it lies.
 static void bound(const vplHalfMap* map, const Sixteen* restrict s, int32_t box[restrict 4][VPL_LANES],
@@ -69,11 +45,6 @@ static void bound(const vplHalfMap* map, const Sixteen* restrict s, int32_t box[
     }
 }
 
-static inline vplVec3 cornerOf(const Sixteen* s, int k, int l)
-{
-    return vplVec(s->x[k][l], s->y[k][l], s->z[k][l]);
-}
-
 // The numbers of a Filling, side by side.
 typedef struct Fillings {
     float edge[3][3][VPL_LANES], near[3][VPL_LANES];
@@ -98,11 +69,18 @@ static void setUpAll(const Sixteen* restrict s, int32_t kind[restrict VPL_LANES]
     }
 }
 
-static void draw(const vplHalfMap* map, Sixteen* s, float* texels)
+typedef struct Canvas {
+    const vplHalfMap* map;
+    float* texels;
+} Canvas;
+
+static void draw(const void* data, Sixteen* s)
 {
+    const vplHalfMap* map = ((const Canvas*)data)->map;
+    float* texels = ((const Canvas*)data)->texels;
     int32_t box[4][VPL_LANES], kind[VPL_LANES];
     Fillings all;
-    turn(map, s);
+    turn((Eye){map->position, map->right, map->up, map->forward}, s);
     bound(map, s, box, kind);
     setUpAll(s, kind, &all);
     for (int l = 0; l < VPL_LANES; l++) {
@@ -121,52 +99,14 @@ static void draw(const vplHalfMap* map, Sixteen* s, float* texels)
 
 // ---- the tree
 
-// Two blocks of eight become sixteen; `second` may be NULL.
-static void drawBlocks(const vplHalfMap* map, const vplTriangleBlock* first, const vplTriangleBlock* second,
-                       float* texels)
+static inline uint32_t chooseAbove(const void* data, const vplBvhNode* node)
 {
-    Sixteen s;
-    const vplTriangleBlock* other = second != NULL ? second : first;
-    for (int k = 0; k < 3; k++) {
-        memcpy(s.x[k], first->p[k][0], sizeof first->p[k][0]);
-        memcpy(s.y[k], first->p[k][1], sizeof first->p[k][1]);
-        memcpy(s.z[k], first->p[k][2], sizeof first->p[k][2]);
-        memcpy(s.x[k] + VPL_BVH_WIDTH, other->p[k][0], sizeof other->p[k][0]);
-        memcpy(s.y[k] + VPL_BVH_WIDTH, other->p[k][1], sizeof other->p[k][1]);
-        memcpy(s.z[k] + VPL_BVH_WIDTH, other->p[k][2], sizeof other->p[k][2]);
-    }
-    memcpy(s.id, first->id, sizeof first->id);
-    memcpy(s.id + VPL_BVH_WIDTH, other->id, sizeof other->id);
-    draw(map, &s, texels);
+    const vplHalfMap* map = ((const Canvas*)data)->map;
+    return vplChildrenAbove(node, map->position, map->forward);
 }
 
 void VPL_KERNEL(vplDrawHalfMap)(const vplBvh* bvh, const vplHalfMap* map, float* texels)
 {
-    const vplTriangleBlock* waiting = NULL;
-    int32_t stack[VPL_BVH_DEPTH * VPL_BVH_WIDTH];
-    int depth = 0;
-    for (int i = 0; bvh->nodes == NULL && i < bvh->blockCount; i++) {
-        stack[depth++] = ~i;
-    }
-    if (bvh->nodes != NULL) {
-        stack[depth++] = 0;
-    }
-    while (depth > 0) {
-        const int32_t at = stack[--depth];
-        if (at >= 0) {
-            const vplBvhNode* node = &bvh->nodes[at];
-            for (uint32_t above = vplChildrenAbove(node, map->position, map->forward); above != 0;
-                 above &= above - 1) {
-                stack[depth++] = node->child[__builtin_ctz(above)];
-            }
-        } else if (waiting == NULL) {
-            waiting = &bvh->blocks[~at];
-        } else {
-            drawBlocks(map, waiting, &bvh->blocks[~at], texels);
-            waiting = NULL;
-        }
-    }
-    if (waiting != NULL) {
-        drawBlocks(map, waiting, NULL, texels);
-    }
+    const Canvas canvas = {map, texels};
+    walk(bvh, chooseAbove, draw, &canvas);
 }

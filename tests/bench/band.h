@@ -5,6 +5,7 @@
 
 #include "math/scalar.h"
 #include "visibility/half_map.h"
+#include "visibility/paraboloid_map.h"
 
 #include <vpl/lights.h>
 
@@ -25,13 +26,11 @@ static inline bool isDarkBetween(const vplGeometry* g, vplVec3 eye, vplVec3 to)
 
 // Whether all rays from the eye say the same as the point's own: to its plane within the footprint around it, and to
 // places nearer to the eye by the band.
-static inline bool isSure(const vplGeometry* g, const vplHalfMap* map, vplVec3 point, vplVec3 normal,
-                          bool dark)
+static inline bool isSureWithin(const vplGeometry* g, vplVec3 eye, vplVec3 point, vplVec3 normal,
+                                float footprint, float band, bool dark)
 {
     enum { RIM = 8, RINGS = 2 };
-    float footprint;
-    const float band = vplHalfMap_Band(map, point, normal, &footprint);
-    const vplVec3 way = vplSub(point, map->position);
+    const vplVec3 way = vplSub(point, eye);
     const float distance = vplLength(way);
     bool same = band < distance;
     vplVec3 t, u;
@@ -45,10 +44,26 @@ static inline bool isSure(const vplGeometry* g, const vplHalfMap* map, vplVec3 p
         const float plane = vplDot(way, normal) / vplDot(rim, normal);
         const float reach = plane > 0 && plane < 1 ? plane : 1;
         const vplVec3 far = vplScale(reach * (1 - 0x1p-14f), rim), near = vplScale(1 - band / distance, rim);
-        same = isDarkBetween(g, map->position, vplAdd(map->position, far)) == dark &&
-               isDarkBetween(g, map->position, vplAdd(map->position, near)) == dark;
+        same = isDarkBetween(g, eye, vplAdd(eye, far)) == dark &&
+               isDarkBetween(g, eye, vplAdd(eye, near)) == dark;
     }
     return same;
+}
+
+static inline bool isSure(const vplGeometry* g, const vplHalfMap* map, vplVec3 point, vplVec3 normal,
+                          bool dark)
+{
+    float footprint;
+    const float band = vplHalfMap_Band(map, point, normal, &footprint);
+    return isSureWithin(g, map->position, point, normal, footprint, band, dark);
+}
+
+static inline bool isSureParaboloid(const vplGeometry* g, const vplParaboloidMap* map, vplVec3 point,
+                                    vplVec3 normal, bool dark)
+{
+    float footprint;
+    const float band = vplParaboloidMap_Band(map, point, normal, &footprint);
+    return isSureWithin(g, map->position, point, normal, footprint, band, dark);
 }
 
 #endif

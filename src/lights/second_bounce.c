@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// Based on: Vitor Aranha, Marcio Macedo and Antonio Apolinario, Screen-Space Virtual Point Light Propagation for
+// Real-Time Global Illumination, section II-B: what a cluster's paraboloid map sees at evenly spread points of the disk
+// are the lights of the second bounce. Departs: points of equal density on the disk do not share a diffuse light's flux
+// equally, so each gets its weight, 4 (1 - p^2) / (1 + p^2)^3, whose mean over the disk is 1.
+#include <vpl/lights.h>
+
+#include "base/context.h"
+#include "base/rng.h"
+#include "math/sampling.h"
+#include "math/vec.h"
+
+enum { SECOND_BOUNCE_COOKIE = 0x56504c67, SHIFT_STREAM = 0x53424e01 };
+
+vplSecondBounceDef vplDefaultSecondBounceDef(void)
+{
+    return (vplSecondBounceDef){256, VPL_SECOND_WEIGHT_COSINE, 0, SECOND_BOUNCE_COOKIE};
+}
+
+typedef struct Sampling {
+    const vplGeometry* geometry;
+    const vplLightClusters* clusters;
+    const vplParaboloidMaps* maps;
+    const vplSecondBounceDef* def;
+    vplLightSet* set;
+    vplVirtualLight* lights;
+} Sampling;
+
+static bool shines(const vplLightCluster* c)
+{
+    return c->lightCount > 0 && (c->flux.r > 0 || c->flux.g > 0 || c->flux.b > 0);
+}
+
+static float wrap(float x)
+{
+    return x < 1 ? x : x - 1;
+}
+
+// Point k of m on the disk. Clusters see the same points shifted on the square, so that their lights do not lie alike;
+// the first cluster's are as published, unless all are shifted.
+static void pointOf(uint64_t shift, int cluster, int k, int m, float* x, float* y)
+{
+    float u = (float)((double)k / m), v = vplVanDerCorput((uint32_t)k);
+    if (shift != 0 || cluster != 0) {
+        const vplRandom4 r = vplRandomAt(shift, SHIFT_STREAM, (uint64_t)cluster);
+        u = wrap(u + vplUnitFloat(r.v[0]));
+        v = wrap(v + vplUnitFloat(r.v[1]));
+    }
+    vplSampleConcentricDisc(u, v, x, y);
+}
+
+// The column or row of a coordinate.
+static int cellOf(float x, int size)
+{
+    const int at = (int)((x + 1) * 0.5f * (float)size);
+    return at < size ? at : size - 1;
+}
+
+// The texel of a point; next to the rim, where the point's own may have its centre outside of the disk, one further in
+// by up to half a diagonal.
+static void texelOf(float x, float y, int size, int* column, int* row)
+{
+    const float r = sqrtf(x * x + y * y), most = fmaxf(1 - 1.4143f / (float)size, 0);
+    const float scale = r > most ? most / r : 1;
+    *column = cellOf(scale * x, size);
+    *row = cellOf(scale * y, size);
+}
+
+// One of the m samples of a cluster: each carries all that the cluster sends out, as far as its weight says; N / m
+// makes up for the samples that are other clusters'.
+static void takeSample(Sampling* s, int cluster, int k, int m, int particle)
+{
+    const vplParaboloidMap* map = &s->maps->maps[cluster];
+    const vplRgb flux = s->clusters->clusters[cluster].flux;
+    int column, row;
+    float x, y;
+    vplHit hit;
+    vplVec3 direction;
+    pointOf(s->def->shift, cluster, k, m, &x, &y);
+    texelOf(x, y, map->size, &column, &row);
+    if (!vplParaboloidMap_GetHit(map, s->geometry, 0, column, row, &hit, &direction)) {
+        s->set->escaped++;
+        return;
+    }
+    const double weight =
+        s->def->weight == VPL_SECOND_WEIGHT_PRINTED ? 1 : vplParaboloid_Weight((double)x, (double)y);
+    const vplRgb albedo = s->geometry->materials[s->geometry->triangleMaterials[hit.triangle]].diffuse;
+    const vplRgb light = vplRgbScale((float)weight, vplRgbMul(flux, albedo));
+    if (light.r > 0 || light.g > 0 || light.b > 0) {
+        s->lights[s->set->lightCount++] = (vplVirtualLight){
+            .position = hit.position,
+            .normal = vplDot(direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal,
+            .light = light,
+            .weight = (float)((double)s->set->particleCount / m),
+            .step = 1,
+            .particle = particle,
+            .object = hit.object};
+    }
+}
+
+// All clusters that shine have the same number of samples, but that the first of them have one more.
+static void takeSamples(Sampling* s)
+{
+    int shining = 0, rank = 0, particle = 0;
+    for (int i = 0; i < s->clusters->count; i++) {
+        shining += shines(&s->clusters->clusters[i]);
+    }
+    for (int i = 0; i < s->clusters->count; i++) {
+        if (shines(&s->clusters->clusters[i])) {
+            const int m = s->def->count / shining + (rank++ < s->def->count % shining);
+            for (int k = 0; k < m; k++) {
+                takeSample(s, i, k, m, particle++);
+            }
+        }
+    }
+}
+
+static vplResult check(const vplLightClusters* clusters, const vplParaboloidMaps* maps,
+                       const vplSecondBounceDef* def)
+{
+    vplContext* context = maps->context;
+    if (def->cookie != SECOND_BOUNCE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplSecondBounceDef was not made by vplDefaultSecondBounceDef");
+    }
+    if (def->count < 0 || def->count > VPL_MAX_LIGHTS) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplSecondBounceDef.count is %d, must be in [0, %d]",
+                       def->count, VPL_MAX_LIGHTS);
+    }
+    if (maps->count != clusters->count || maps->triangles == NULL) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "second-bounce lights of %d clusters need as many paraboloid maps, with triangles, not %d",
+            clusters->count, maps->count);
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClusters* clusters,
+                                  const vplParaboloidMaps* maps, const vplSecondBounceDef* def,
+                                  vplLightSet** setOut)
+{
+    vplContext* context = maps->context;
+    const vplResult result = check(clusters, maps, def);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplLightSet* set = vplAllocZero(context, 1, sizeof *set);
+    if (set == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    int* counts = vplAllocZero(context, 2, sizeof *counts);
+    int* inStep = vplAllocZero(context, 2, sizeof *inStep);
+    vplVirtualLight* lights = vplAlloc(context, (size_t)def->count, sizeof *lights);
+    *set = (vplLightSet){.lights = lights,
+                         .stepCounts = counts,
+                         .lightsInStep = inStep,
+                         .stepCount = 2,
+                         .particleCount = def->count,
+                         .context = context};
+    if (counts == NULL || inStep == NULL || lights == NULL) {
+        vplLightSet_Destroy(set);
+        return VPL_OUT_OF_MEMORY;
+    }
+    Sampling s = {geometry, clusters, maps, def, set, lights};
+    takeSamples(&s);
+    counts[1] = def->count;
+    inStep[1] = set->lightCount;
+    *setOut = set;
+    return VPL_SUCCESS;
+}
