@@ -9,10 +9,9 @@
 
 enum { WIDTH = 131, HEIGHT = 75, COUNT = 300, SIZE = 8, TEXELS = 2 * SIZE * SIZE };
 
-static const float nothing[TEXELS]; // is seen: light reaches everything
-static float wall[TEXELS];          // a millimetre from the place: it reaches nothing
+static const float nothing[TEXELS]; // is seen: light reaches all of the hemispheres that were drawn
 
-static vplParaboloidMap mapOf(const float* texels, vplVec3 position, int hemispheres)
+static vplParaboloidMap mapOf(vplContext* context, const float* texels, vplVec3 position, int hemispheres)
 {
     return (vplParaboloidMap){.position = position,
                               .right = {1, 0, 0},
@@ -20,7 +19,14 @@ static vplParaboloidMap mapOf(const float* texels, vplVec3 position, int hemisph
                               .forward = {0, 1, 0},
                               .size = SIZE,
                               .hemispheres = hemispheres,
-                              .texels = texels};
+                              .texels = texels,
+                              .context = context};
+}
+
+// Light reaches everything or, from high above up into one hemisphere, nothing.
+static vplParaboloidMap seeing(vplContext* context, bool all)
+{
+    return mapOf(context, nothing, vplVec(0, all ? 3 : 100, 0), all ? 2 : 1);
 }
 
 typedef struct Setting {
@@ -38,12 +44,9 @@ static Setting openSetting(vplContext* context, vplGeometry* geometry)
     Setting s = {.context = context, .geometry = geometry};
     s.view = stageView(vplVec(1, 2, 5), WIDTH, HEIGHT);
     s.lights = rollLights(COUNT, 7);
-    for (int i = 0; i < TEXELS; i++) {
-        wall[i] = 1000;
-    }
     for (int i = 0; i < COUNT; i++) {
         s.clusters[i] = i / 40;
-        s.maps[i] = mapOf(i % 2 ? wall : nothing, vplVec(0, 3, 0), 2);
+        s.maps[i] = seeing(context, i % 2 == 0);
     }
     return s;
 }
@@ -127,7 +130,7 @@ static void ClustersOfOneLightAreMapsOfTheirOwn(void** state)
     int seenCount = 0;
     for (int i = 0; i < FEW; i++) {
         s.clusters[i] = i;
-        s.maps[i] = mapOf(i % 3 ? wall : nothing, vplVec(0, 3, 0), 2);
+        s.maps[i] = seeing(s.context, i % 3 == 0);
         seen[seenCount] = s.lights[i];
         seenCount += i % 3 == 0;
     }
@@ -166,7 +169,7 @@ static void VisibilityIsThatOfEachPoint(void** state)
     (void)state;
     Setting s = openStage();
     memset(s.clusters, 0, sizeof s.clusters);
-    s.maps[0] = mapOf(nothing, vplVec(0, 1, 0), 1);
+    s.maps[0] = mapOf(s.context, nothing, vplVec(0, 1, 0), 1);
     Look* looks = lookAt(s.geometry, &s.view);
     for (int side = 0; side <= 4; side += 2) {
         const vplShadeDef plain = stageDef(s.lights, COUNT, side), shared = clusteredDef(&s, COUNT, side);
@@ -226,7 +229,7 @@ static void ThreadsAndInstructionSetsChangeNoBit(void** state)
         }
         Setting s = openSetting(context, smoothStage(context));
         for (int i = 0; i < COUNT; i++) {
-            s.maps[i].texels = spots;
+            s.maps[i] = mapOf(context, spots, vplVec(0, 3, 0), 2);
         }
         for (int way = 0; way < 2; way++) {
             const vplShadeDef def = clusteredDef(&s, COUNT, 4 * way);

@@ -20,7 +20,9 @@ enum { VPL_GATHER_INDIRECT = 0, VPL_GATHER_TRIANGLE = 3, VPL_GATHER_PLANES };
 // A worker's copy of a part of the picture. 0 outside the picture.
 typedef struct vplGatherRoom {
     _Alignas(64) float indirect[3][VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];
-    float rowSums[3][VPL_GATHER_ROWS][VPL_GATHER_WIDTH];   // over the window of each pixel
+    float rowSums[3][VPL_GATHER_ROWS][VPL_GATHER_WIDTH]; // over the window of each pixel
+    float rowCounts[VPL_GATHER_ROWS]
+                   [VPL_GATHER_WIDTH]; // and its weight; not asked for where all is one triangle
     int32_t triangle[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS]; // 1 + index in geometry->normals, 0: nothing
     int32_t uniform[VPL_GATHER_ROWS][VPL_GATHER_RUNS]; // the one triangle in a run and its windows, else 0
     vplSeen seen;

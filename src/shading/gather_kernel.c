@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The second step of interleaved shading: every pixel takes the mean indirect irradiance of the K x K pixels around
-// it that lie on about the same surface, and reflects it. Sums go along the rows first, then over the rows:
-// where a run of 16 pixels and all their windows show one triangle, the sums of rows are shared, and the bits are
-// those of the windows summed one by one.
+// The second step of interleaved shading: every pixel takes the mean indirect irradiance of the pixels less than K away
+// that lie on about the same surface, and reflects it. Sums go along the rows first, then over the rows. Where a run of
+// 16 pixels and all their windows show one triangle, nothing is tested; the bits are those of tests that all pass.
 #include "base/isa.h"
 #include "shading/gather_mixed.h"
 
@@ -50,11 +49,11 @@ static void findUniform(int side, vplGatherRoom* room, Part* part)
     }
 }
 
-static void sumRows(int side, vplGatherRoom* room, const Part* part)
+// Sums the rows of windows that show one triangle.
+static void sumRow(int side, vplGatherRoom* room, int row, int x)
 {
-    for (int i = 0; i < 3 * part->rows * VPL_GATHER_RUNS; i++) {
-        const int row = i / VPL_GATHER_RUNS % part->rows, x = i % VPL_GATHER_RUNS * VPL_LANES;
-        const float* from = room->indirect[i / VPL_GATHER_RUNS / part->rows][row] + x;
+    for (int c = 0; c < 3; c++) {
+        const float* from = room->indirect[c][row] + x;
         float sum[VPL_LANES] = {0};
         for (int k = 0; k < tapsOf(side); k++) {
             const float weight = weightOf(side, k);
@@ -62,7 +61,32 @@ static void sumRows(int side, vplGatherRoom* room, const Part* part)
                 sum[l] += weight * from[k + l];
             }
         }
-        memcpy(room->rowSums[i / VPL_GATHER_RUNS / part->rows][row] + x, sum, sizeof sum);
+        memcpy(room->rowSums[c][row] + x, sum, sizeof sum);
+    }
+    for (int l = 0; l < VPL_LANES; l++) {
+        room->rowCounts[row][x + l] = (float)(side * side);
+    }
+}
+
+static bool isEmpty(const int32_t triangles[VPL_LANES])
+{
+    int32_t any = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        any |= triangles[l];
+    }
+    return any == 0;
+}
+
+static void sumRows(const vplShading* s, vplGatherRoom* room, const Part* part)
+{
+    const int side = s->interleave->side;
+    for (int i = 0; i < part->rows * VPL_GATHER_RUNS; i++) {
+        const int row = i / VPL_GATHER_RUNS, x = i % VPL_GATHER_RUNS * VPL_LANES;
+        if (room->uniform[row][i % VPL_GATHER_RUNS] != 0) {
+            sumRow(side, room, row, x);
+        } else {
+            sumMixedRow(s->view, room, side, row, x);
+        }
     }
 }
 
@@ -137,41 +161,24 @@ static bool isUniform(const vplGatherRoom* room, int side, int row, int x)
     return uniform;
 }
 
-static bool isEmpty(const int32_t triangles[VPL_LANES])
-{
-    int32_t any = 0;
-    for (int l = 0; l < VPL_LANES; l++) {
-        any |= triangles[l];
-    }
-    return any == 0;
-}
-
-// Pixels x .. x + 15 of `count` rows of the part.
-static void gatherBand(const vplShading* s, vplGatherRoom* room, const Part* part, int row0, int x, int count)
+// Pixels x .. x + 15 of one row of the part.
+static void gatherRun(const vplShading* s, vplGatherRoom* room, const Part* part, int row, int x)
 {
     const int side = s->interleave->side;
-    Band band;
-    bool measured = false;
-    for (int row = row0; row < row0 + count; row++) {
-        const int32_t* triangles = room->triangle[row + side - 1] + x + side - 1;
-        float mean[3][VPL_LANES];
-        if (isUniform(room, side, row, x)) {
-            meanOfUniform(room, side, row, x, mean);
-        } else if (isEmpty(triangles)) {
-            continue;
-        } else {
-            if (!measured) {
-                measureBand(s, room, row0, x, count, &band);
-                measured = true;
-            }
-            meanOfMixed(s, room, row, x, &band, row - row0, mean);
-        }
-        if (!s->irradiance) {
-            reflect(s, triangles, &room->seen, mean);
-        }
-        const size_t pixel = (size_t)(part->y + row) * (size_t)s->image->width + (size_t)(part->x + x);
-        addToPixels(mean, s->image->pixels + 3 * pixel, part->width - x);
+    const int32_t* triangles = room->triangle[row + side - 1] + x + side - 1;
+    float mean[3][VPL_LANES];
+    if (isUniform(room, side, row, x)) {
+        meanOfUniform(room, side, row, x, mean);
+    } else if (isEmpty(triangles)) {
+        return;
+    } else {
+        meanOfMixed(s->view, room, side, row, x, mean);
     }
+    if (!s->irradiance) {
+        reflect(s, triangles, &room->seen, mean);
+    }
+    const size_t pixel = (size_t)(part->y + row) * (size_t)s->image->width + (size_t)(part->x + x);
+    addToPixels(mean, s->image->pixels + 3 * pixel, part->width - x);
 }
 
 void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
@@ -194,7 +201,6 @@ void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
     for (int c = 0; c < 3; c++) {
         loadPlane(image, vplGatherPlane(w, VPL_GATHER_INDIRECT + c), &part, reach, room->indirect[c][0]);
     }
-    sumRows(side, room, &part);
     vplSeen_Clear(&room->seen);
     if (part.mixed) {
         findSight(s->view, &part, reach, room);
@@ -202,9 +208,10 @@ void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
             findPlanes(s, row, part.columns, room);
         }
     }
-    for (int x = 0; x < part.width; x += VPL_LANES) {
-        for (int row = 0; row < part.height; row += BAND) {
-            gatherBand(s, room, &part, row, x, part.height - row < BAND ? part.height - row : BAND);
+    sumRows(s, room, &part);
+    for (int row = 0; row < part.height; row++) {
+        for (int x = 0; x < part.width; x += VPL_LANES) {
+            gatherRun(s, room, &part, row, x);
         }
     }
 }

@@ -32,7 +32,7 @@ typedef struct Bench {
     vplShadeLight* lights;
     int lightCount, clusterCount;
     int* clusters;
-    vplParaboloidMap* maps;
+    vplParaboloidMaps* maps;
     vplImage* image;
     double cpu[WAYS][MAX_RUNS], wall[WAYS][MAX_RUNS];
     uint64_t hash[WAYS];
@@ -74,19 +74,20 @@ static int alongX(const void* a, const void* b)
 // Slices of the scene across x, of equal numbers of lights, each with a map of its own where its middle light is.
 static void makeClusters(Bench* b, int count)
 {
-    static float nothing[2 * MAP_SIZE * MAP_SIZE];
+    vplParaboloidPlace places[MAX_CLUSTERS];
+    count = count < MAX_CLUSTERS ? count : MAX_CLUSTERS;
     b->clusterCount = count;
     b->clusters = malloc((size_t)b->lightCount * sizeof *b->clusters);
-    b->maps = malloc((size_t)count * sizeof *b->maps);
     qsort(b->lights, (size_t)b->lightCount, sizeof *b->lights, alongX);
     for (int i = 0; i < b->lightCount; i++) {
         b->clusters[i] = (int)((int64_t)i * count / b->lightCount);
     }
     for (int i = 0; i < count; i++) {
         const vplShadeLight* l = &b->lights[(2 * i + 1) * b->lightCount / (2 * count)];
-        b->maps[i] = (vplParaboloidMap){
-            {l->px, l->py, l->pz}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, MAP_SIZE, 2, nothing, NULL, b->context};
+        places[i] = (vplParaboloidPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}, 2, true};
     }
+    check(vplParaboloidMaps_Create(b->context, MAP_SIZE, count, false, &b->maps));
+    check(vplParaboloidMaps_Draw(b->maps, b->geometry, places, count, NULL, NULL));
 }
 
 static void shade(Bench* b, int which, int run)
@@ -99,7 +100,7 @@ static void shade(Bench* b, int which, int run)
     def.lightCount = way->lights ? b->lightCount : 0;
     if (way->clusters) {
         def.lightClusters = b->clusters;
-        def.clusterShadows = b->maps;
+        def.clusterShadows = b->maps->maps;
         def.clusterCount = b->clusterCount;
     }
     const double cpu = processorMs(), wall = vplClockMs();
@@ -147,7 +148,7 @@ int main(int count, char** words)
     vplImage_Destroy(b.image);
     free(b.lights);
     free(b.clusters);
-    free(b.maps);
+    vplParaboloidMaps_Destroy(b.maps);
     vplGeometry_Destroy(b.geometry);
     vplScene_Destroy(b.scene);
     vplContext_Destroy(b.context);
