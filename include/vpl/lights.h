@@ -245,6 +245,16 @@ vplRsmSampleDef vplDefaultRsmSampleDef(void);
 vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
                                   int mapCount, const vplRsmSampleDef* def, vplLightSet** setOut);
 
+// Of each light, the share of sixteen cosine-distributed rays that meet something: what of its light stays in the scene.
+vplResult vplMeasureUse(const vplGeometry* geometry, const vplLightSet* set, float* useOut);
+
+// How many lights vplKeepUseful is expected to keep.
+double vplCountUseful(const vplLightSet* set, const float* use);
+
+// Keeps each light with the probability of its use, at least 1/16, and divides its weight by that: the mean over all
+// shifts is the light of all. In closed rooms all are kept, as they are. `shift` as in vplRsmSampleDef.
+vplResult vplKeepUseful(const vplLightSet* set, const float* use, uint64_t shift, vplLightSet** setOut);
+
 // What makes a light far from a cluster: w1 |V - C| + w2 times one of these, n the two unit normals.
 typedef enum vplClusterMetric {
     VPL_CLUSTER_ONE_MINUS = 0,     // 1 - n.n (the default)

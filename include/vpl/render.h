@@ -143,9 +143,12 @@ typedef struct vplRenderOptions {
     vplPixel pixel; // path: default VPL_PIXEL_AREA
 
     // SSVP only.
-    int clusters;     // C, [1, VPL_MAX_LIGHTS]; default 8
-    int firstBounce;  // first-bounce lights, samples of the reflective map, [0, VPL_MAX_LIGHTS]; default 256
-    int secondBounce; // second-bounce lights, samples of all paraboloid maps together; default 256
+    int clusters;    // C, [1, VPL_MAX_LIGHTS]; default 8
+    int firstBounce; // first-bounce lights, samples of the reflective map, [0, VPL_MAX_LIGHTS]; default 256
+    int oversampling; // where much of the first bounce's light leaves the scene, up to so many times as many samples are
+        // taken, of which about firstBounce are kept: those whose light stays; [1, 1024]; 1: as in the
+        // document; default 16
+    int secondBounce;   // second-bounce lights, samples of all paraboloid maps together; default 256
     int paraboloidSize; // texels along a side of a paraboloid map, [1, VPL_MAX_SHADOW_MAP]; default 256
     double w1, w2;      // weights of distance, 1/metres, and of the normals; >= 0; default 0.6, 0.4
     vplClusterMetric clusterMetric; // default VPL_CLUSTER_ONE_MINUS

@@ -62,6 +62,9 @@ const Option OPTIONS[] = {
      "clusters of first-bounce lights, each with a paraboloid map; ssvp; default 8"},
     {"--first-bounce", "N", SCENE, readInt, AT(render.firstBounce), 0, VPL_MAX_LIGHTS, NULL,
      "lights of the first bounce, samples of the reflective shadow map; ssvp; default 256"},
+    {"--oversampling", "F", SCENE, readInt, AT(render.oversampling), 1, 1024, NULL,
+     "where light of the first bounce leaves the scene, up to F times as many samples are taken, and about "
+     "--first-bounce are kept: those whose light stays; ssvp; default 16; 1: as in the document"},
     {"--second-bounce", "N", SCENE, readInt, AT(render.secondBounce), 0, VPL_MAX_LIGHTS, NULL,
      "lights of the second bounce, samples of all paraboloid maps; ssvp; default 256"},
     {"--paraboloid", "N", SCENE, readInt, AT(render.paraboloidSize), 1, VPL_MAX_SHADOW_MAP, NULL,

@@ -26,6 +26,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.shadow = vplDefaultShadowDef();
     o.clusters = 8;
     o.firstBounce = o.secondBounce = 256;
+    o.oversampling = 16;
     o.paraboloidSize = 256;
     o.w1 = 0.6;
     o.w2 = 0.4;
@@ -85,6 +86,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"show", (int)o->show, 0, VPL_SHOW_DENOISED},
         {"clusters", o->clusters, 1, VPL_MAX_LIGHTS},
         {"firstBounce", o->firstBounce, 0, VPL_MAX_LIGHTS},
+        {"oversampling", o->oversampling, 1, 1024},
         {"secondBounce", o->secondBounce, 0, VPL_MAX_LIGHTS},
         {"paraboloidSize", o->paraboloidSize, 1, VPL_MAX_SHADOW_MAP},
         {"clusterMetric", (int)o->clusterMetric, 0, VPL_CLUSTER_ANGLE},

@@ -42,6 +42,7 @@ static vplSsvpKey keyOf(const vplJob* job)
     memset(&key, 0, sizeof key); // the gaps, too
     key.clusters = o->clusters;
     key.firstBounce = o->firstBounce;
+    key.oversampling = o->oversampling;
     key.secondBounce = o->secondBounce;
     key.paraboloidSize = o->paraboloidSize;
     key.rsmSize = o->rsmSize;
@@ -200,24 +201,87 @@ typedef struct Making {
     bool twice;                // there is a second bounce
 } Making;
 
+// As the document takes them.
+static vplResult sampleAll(const Making* m, int count, vplLightSet** setOut)
+{
+    vplRsmSampleDef def = vplDefaultRsmSampleDef();
+    def.count = count;
+    def.shift = m->lights->key.shift;
+    return vplSampleReflectiveMaps(m->job->geometry, (const vplReflectiveMap* const*)m->state->maps,
+                                   m->state->emitterCount, &def, setOut);
+}
+
+// So many samples, and what each is worth.
+static vplResult sampleAndMeasure(const Making* m, int count, vplLightSet** setOut, float** useOut)
+{
+    vplLightSet* set;
+    vplResult result = sampleAll(m, count, &set);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    float* use = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *use);
+    result = use ? vplMeasureUse(m->job->geometry, set, use) : VPL_OUT_OF_MEMORY;
+    if (result != VPL_SUCCESS) {
+        vplFree(m->job->context, use);
+        vplLightSet_Destroy(set);
+        return result;
+    }
+    *setOut = set;
+    *useOut = use;
+    return VPL_SUCCESS;
+}
+
+// How many times as many samples as lights are taken. A power of two: samples must not all move with every move of the
+// light.
+static int oversample(const vplRenderOptions* o, int count, double kept)
+{
+    int factor = 1;
+    while (kept > 0 && 2 * factor <= o->oversampling && 2 * factor * kept <= count &&
+           (int64_t)2 * factor * count <= VPL_MAX_LIGHTS) {
+        factor *= 2;
+    }
+    return factor;
+}
+
+static vplResult sampleMaps(const Making* m, int count, vplLightSet** setOut)
+{
+    vplContext* context = m->job->context;
+    vplLightSet* set = NULL;
+    float* use = NULL;
+    vplResult result = sampleAndMeasure(m, count, &set, &use);
+    const int factor =
+        result == VPL_SUCCESS ? oversample(&m->job->options, count, vplCountUseful(set, use)) : 1;
+    if (factor > 1) {
+        vplFree(context, use);
+        vplLightSet_Destroy(set);
+        use = NULL;
+        set = NULL;
+        result = sampleAndMeasure(m, factor * count, &set, &use);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplKeepUseful(set, use, m->lights->key.shift, setOut);
+    }
+    vplFree(context, use);
+    vplLightSet_Destroy(set);
+    return result;
+}
+
 static vplResult sampleFirstBounce(Making* m)
 {
     int lampLights = 0;
     vplLightSet *seen = NULL, *shot = NULL;
-    vplRsmSampleDef def = vplDefaultRsmSampleDef();
+    const vplRenderOptions* o = &m->job->options;
     vplResult result = countLampLights(m->job, &lampLights);
-    def.count = m->job->options.firstBounce - lampLights;
-    def.shift = m->lights->key.shift;
     if (result == VPL_SUCCESS) {
-        result = vplSampleReflectiveMaps(m->job->geometry, (const vplReflectiveMap* const*)m->state->maps,
-                                         m->state->emitterCount, &def, &seen);
+        const int count = o->firstBounce - lampLights;
+        result = o->oversampling > 1 ? sampleMaps(m, count, &seen) : sampleAll(m, count, &seen);
     }
     if (result == VPL_SUCCESS && lampLights == 0) {
         m->lights->bounce[0].lights = seen;
         return VPL_SUCCESS;
     }
     if (result == VPL_SUCCESS) {
-        result = shootFromLamps(m->job, lampLights, def.shift, &shot);
+        result = shootFromLamps(m->job, lampLights, m->lights->key.shift, &shot);
     }
     if (result == VPL_SUCCESS) {
         result = vplLightSet_Join(seen, shot, &m->lights->bounce[0].lights);
