@@ -245,6 +245,15 @@ vplRsmSampleDef vplDefaultRsmSampleDef(void);
 vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
                                   int mapCount, const vplRsmSampleDef* def, vplLightSet** setOut);
 
+// Most rays per light of vplMeasureOutlook.
+enum { VPL_MAX_OUTLOOK_RAYS = 4096 };
+
+// What each light of the set gives to the world: its flux, W (mean of the channels, divided by N), times the share of
+// `rayCount` rays, cosine-distributed, that meet a surface. Unlike vplMeasureLights it asks no camera, so that what
+// vplChooseLights chooses by it stays when the camera moves; four rays are enough where many lights are candidates.
+vplResult vplMeasureOutlook(const vplGeometry* geometry, const vplLightSet* set, int rayCount,
+                            vplProgressFcn* progress, void* user, float* contributionsOut);
+
 // What makes a light far from a cluster: w1 |V - C| + w2 times one of these, n the two unit normals.
 typedef enum vplClusterMetric {
     VPL_CLUSTER_ONE_MINUS = 0,     // 1 - n.n (the default)
