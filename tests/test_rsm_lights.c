@@ -334,6 +334,13 @@ static void LightsDoNotDependOnThreadsOrIsa(void** state)
             maps[k] = mapOf(room, &e, 60);
         }
         vplLightSet* set = sample(room, (const vplReflectiveMap* const*)maps, 3, 2000, 9);
+        float* worth = malloc((size_t)set->lightCount * sizeof *worth);
+        assert_non_null(worth);
+        assert_int_equal(vplMeasureOutlook(room, set, 7, NULL, NULL, worth), VPL_SUCCESS);
+        for (int k = 0; k < set->lightCount; k++) {
+            ((vplVirtualLight*)set->lights)[k].light.r += worth[k];
+        }
+        free(worth);
         if (wanted == NULL) {
             count = set->lightCount;
             wanted = malloc((size_t)count * sizeof *wanted);
@@ -350,6 +357,50 @@ static void LightsDoNotDependOnThreadsOrIsa(void** state)
         closeTestContext(context);
     }
     free(wanted);
+}
+
+// In a closed room all rays meet a wall, under the sky none does, and beside a tall wall half of them do.
+static void LightsAreWorthWhatTheySee(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(3);
+    vplGeometry* cube = closedCube(context, 0.5f);
+    vplGeometry* ground = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
+    vplScene* scene = sceneOf(context, 0.5f);
+    vplObjectDef wall = vplDefaultObjectDef(); // at z = 0
+    wall.transform = vplMat4_FromParts(vplVec(0, 0, 0), (double[3]){0, 0, 0}, vplVec(1e5f, 1e5f, 1));
+    assert_int_equal(vplScene_AddObject(scene, &wall, NULL), VPL_SUCCESS);
+    vplGeometry* half = freezeScene(scene);
+    vplEmitterDef e = someEmitter(VPL_EMITTER_POINT);
+    e.position = vplVec(0.1f, 0.5f, -0.2f);
+    vplReflectiveMap *inside = mapOf(cube, &e, 16), *outside = mapOf(ground, &e, 16);
+    vplLightSet* closed = sample(cube, (const vplReflectiveMap* const*)&inside, 1, 99, 0);
+    vplLightSet* open = sample(ground, (const vplReflectiveMap* const*)&outside, 1, 99, 0);
+    float worth[99];
+    assert_int_equal(vplMeasureOutlook(cube, closed, 5, NULL, NULL, worth), VPL_SUCCESS);
+    for (int i = 0; i < closed->lightCount; i++) {
+        assertNear((double)worth[i], vplRgbMean(closed->lights[i].light) / 99, 1e-5, "closed", i);
+    }
+    assert_int_equal(vplMeasureOutlook(ground, open, 5, NULL, NULL, worth), VPL_SUCCESS);
+    assert_true(open->lightCount > 10);
+    for (int i = 0; i < open->lightCount; i++) {
+        assertNear((double)worth[i], 0, 0, "open", i);
+    }
+    const vplVirtualLight beside = {
+        .position = {0, 3, 0.01f}, .normal = {0, 1, 0}, .light = {1, 2, 3}, .weight = 1};
+    const vplLightSet one = {.lights = &beside, .lightCount = 1, .particleCount = 1, .context = context};
+    assert_int_equal(vplMeasureOutlook(half, &one, 1024, NULL, NULL, worth), VPL_SUCCESS);
+    assertNear((double)worth[0], 1, 0.01, "half", 0);
+    assert_int_equal(vplMeasureOutlook(half, &one, 0, NULL, NULL, worth), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "rayCount is 0"));
+    vplLightSet_Destroy(closed);
+    vplLightSet_Destroy(open);
+    vplReflectiveMap_Destroy(inside);
+    vplReflectiveMap_Destroy(outside);
+    vplGeometry_Destroy(cube);
+    vplGeometry_Destroy(ground);
+    vplGeometry_Destroy(half);
+    closeTestContext(context);
 }
 
 static void BadSamplesAreRefused(void** state)
@@ -378,4 +429,5 @@ TEST_SUITE(rsmLights, cmocka_unit_test(AsManyPointsAsTexelsMeetEachOnce),
            cmocka_unit_test(PointsAreThoseOfTheDocument), cmocka_unit_test(LightsLieOnWhatIsLit),
            cmocka_unit_test(MapsShareTheLightsByPower), cmocka_unit_test(ShiftedPointsAreRightOnAverage),
            cmocka_unit_test(LightlessMapsGiveNoLights), cmocka_unit_test(OneTexelIsEnough),
-           cmocka_unit_test(LightsDoNotDependOnThreadsOrIsa), cmocka_unit_test(BadSamplesAreRefused));
+           cmocka_unit_test(LightsDoNotDependOnThreadsOrIsa), cmocka_unit_test(LightsAreWorthWhatTheySee),
+           cmocka_unit_test(BadSamplesAreRefused));
