@@ -2,6 +2,8 @@
 // Paths of cameras and emitters, and what frames hand on to each other: never anything that a picture shows.
 #include "scenes.h"
 
+#include "base/context.h"
+
 #include <stdlib.h>
 
 // ---- poses
@@ -436,6 +438,33 @@ static void LargeBlocksAreAskedForOnce(void** state)
     vplContext_Destroy(context);
 }
 
+// Ever larger blocks, none of which fits the next: no more is held than half as much again as was in use.
+static void KeptBlocksAreBounded(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplStartKeeping(context);
+    char* small = vplAlloc(context, 1000, 1); // small blocks go at once
+    const size_t before = vplContext_GetBytes(context);
+    vplFree(context, small);
+    assert_true(vplContext_GetBytes(context) < before);
+    size_t used = 0;
+    for (size_t size = 1 << 20; size < (size_t)200 << 20; size += size / 2) {
+        char* block = vplAlloc(context, size, 1);
+        assert_non_null(block);
+        block[0] = block[size - 1] = 1;
+        used = size + 4096;
+        assert_true(vplContext_GetBytes(context) <= used + used / 2);
+        vplFree(context, block);
+    }
+    assert_true(vplContext_GetBytes(context) > 1 << 20); // the last ones are there
+    char* again = vplAlloc(context, 100 << 20, 1);
+    assert_true(vplContext_GetPeakBytes(context) <= used + used / 2);
+    vplStopKeeping(context);
+    vplFree(context, again);
+    closeTestContext(context);
+}
+
 TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
            cmocka_unit_test(EmittersMoveTurnAndFade),
            cmocka_unit_test(OneKeyIsAConstantAndNoKeyTheDeclaration),
@@ -444,4 +473,4 @@ TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
            cmocka_unit_test(FilesSayWhatChangesAndTheRestIsAsDeclared),
            cmocka_unit_test(AFrameIsThePictureOfItsPose), cmocka_unit_test(AHistoryChangesNoPicture),
            cmocka_unit_test(AHistoryFreezesTheSceneOnce), cmocka_unit_test(AHistoryOfAnotherSceneIsRefused),
-           cmocka_unit_test(LargeBlocksAreAskedForOnce));
+           cmocka_unit_test(LargeBlocksAreAskedForOnce), cmocka_unit_test(KeptBlocksAreBounded));

@@ -89,7 +89,9 @@ typedef enum vplCoherence {
 
 // What frames of a sequence hand on to each other: the frozen geometry, large blocks of memory, and for SSVP what the
 // light sees, its lights and clusters, which are kept as they are where it has not moved. Frames are rendered one after
-// another, in any order, with one scene, which must not be changed, and options that may be.
+// another, in any order, with one scene, to which nothing may be added, and options that may change; pictures have the
+// same bits as without. While it lives the context keeps large blocks that are freed, as part of the bytes it holds: at
+// most half as much as was ever in use at once. It must outlive renderers that use it.
 typedef struct vplHistory vplHistory;
 
 vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut);

@@ -23,6 +23,8 @@ struct vplContext {
     size_t peakBytes;  // most held at once
     uint64_t stamps;   // handed out so far, see vplNextStamp
     int keepers;       // histories that live
+    size_t keptBytes;  // in kept blocks
+    size_t usedPeak;   // most that was in use, kept blocks not counted, since there are keepers
     int64_t keptRound; // number of the frame, for ages
     int keptCount;
     vplFreedBlock kept[VPL_MAX_FREED];
@@ -63,7 +65,7 @@ void vplFree(vplContext* context, void* memory);
 // Between these two, freed blocks of VPL_KEPT_BYTES and more stay with the context, which hands them out again: the
 // kernel clears each page that it gives, 8 ms of processor time in each frame of Sponza at 1920x1080 with
 // interleaved shading (bench/history), more where malloc gives them back at once. Both may be called several times:
-// the last vplStopKeeping frees what is left.
+// the last vplStopKeeping frees what is left. No more is asked for than half as much again as was ever in use at once.
 void vplStartKeeping(vplContext* context);
 void vplStopKeeping(vplContext* context);
 

@@ -29,8 +29,18 @@ static void dropKept(vplContext* context, int index)
 {
     const vplFreedBlock block = context->kept[index];
     context->kept[index] = context->kept[--context->keptCount];
+    context->keptBytes -= block.total;
     context->bytes -= block.total;
     context->def.alloc(context->def.allocUser, block.raw, block.total, 0);
+}
+
+static void dropOldestKept(vplContext* context)
+{
+    int oldest = 0;
+    for (int i = 1; i < context->keptCount; i++) {
+        oldest = context->kept[i].age < context->kept[oldest].age ? i : oldest;
+    }
+    dropKept(context, oldest);
 }
 
 static void dropAllKept(vplContext* context)
@@ -42,7 +52,9 @@ static void dropAllKept(vplContext* context)
 
 void vplStartKeeping(vplContext* context)
 {
-    context->keepers++;
+    if (context->keepers++ == 0) {
+        context->usedPeak = context->bytes;
+    }
 }
 
 void vplStopKeeping(vplContext* context)
@@ -69,12 +81,9 @@ static bool keep(vplContext* context, Header header)
         return false;
     }
     if (context->keptCount == VPL_MAX_FREED) {
-        int oldest = 0;
-        for (int i = 1; i < context->keptCount; i++) {
-            oldest = context->kept[i].age < context->kept[oldest].age ? i : oldest;
-        }
-        dropKept(context, oldest);
+        dropOldestKept(context);
     }
+    context->keptBytes += header.total;
     context->kept[context->keptCount++] = (vplFreedBlock){header.raw, header.total, context->keptRound};
     return true;
 }
@@ -93,14 +102,34 @@ static bool reuse(vplContext* context, size_t wanted, Header* headerOut)
     }
     *headerOut = (Header){context->kept[best].raw, context->kept[best].total};
     context->kept[best] = context->kept[--context->keptCount];
+    context->keptBytes -= headerOut->total;
     return true;
+}
+
+static void noteUse(vplContext* context)
+{
+    const size_t used = context->bytes - context->keptBytes;
+    context->usedPeak = used > context->usedPeak ? used : context->usedPeak;
+    context->peakBytes = context->bytes > context->peakBytes ? context->bytes : context->peakBytes;
+}
+
+// Whether so many bytes more would be too many while blocks are kept.
+static bool isTooMuch(const vplContext* context, size_t total)
+{
+    const size_t used = context->bytes - context->keptBytes + total;
+    const size_t most = used > context->usedPeak ? used : context->usedPeak;
+    return context->bytes + total > most + most / 2;
 }
 
 static Header request(vplContext* context, size_t total)
 {
     Header header;
     if (reuse(context, total, &header)) {
+        noteUse(context);
         return header;
+    }
+    while (context->keptCount > 0 && isTooMuch(context, total)) {
+        dropOldestKept(context);
     }
     header = (Header){context->def.alloc(context->def.allocUser, NULL, 0, total), total};
     if (header.raw == NULL && context->keptCount > 0) { // what is kept may be what is missing
@@ -109,7 +138,7 @@ static Header request(vplContext* context, size_t total)
     }
     if (header.raw != NULL) {
         context->bytes += total;
-        context->peakBytes = context->bytes > context->peakBytes ? context->bytes : context->peakBytes;
+        noteUse(context);
     }
     return header;
 }

@@ -12,6 +12,8 @@ enum { OBJECT_TYPES = VPL_OBJECT_MESH + 1, POINTS = 0, SPOTS, DIRECTIONALS, EMIT
 
 typedef struct Info {
     const char* path;
+    int paths;                    // of cameras and lights
+    double firstFrame, lastFrame; // of their keys; 0 where there are none
     int cameras, materials, objects, emitters, triangles, meshes;
     int64_t meshVertices, meshTriangles;
     int objectsOfType[OBJECT_TYPES], emittersOfType[EMITTER_TYPES];
@@ -48,6 +50,30 @@ static void describeScene(const vplScene* scene, Info* info)
         info->emittersOfType[type == VPL_EMITTER_POINT  ? POINTS
                              : type == VPL_EMITTER_SPOT ? SPOTS
                                                         : DIRECTIONALS]++;
+    }
+}
+
+static void addPath(Info* info, double first, double last)
+{
+    info->firstFrame = info->paths == 0 || first < info->firstFrame ? first : info->firstFrame;
+    info->lastFrame = info->paths == 0 || last > info->lastFrame ? last : info->lastFrame;
+    info->paths++;
+}
+
+static void describePaths(const vplScene* scene, Info* info)
+{
+    int count;
+    for (int i = 0; i < info->cameras; i++) {
+        const vplCameraKey* keys = vplScene_GetCameraPath(scene, i, &count);
+        if (keys != NULL) {
+            addPath(info, keys[0].frame, keys[count - 1].frame);
+        }
+    }
+    for (int i = 0; i < info->emitters; i++) {
+        const vplEmitterKey* keys = vplScene_GetEmitterPath(scene, i, &count);
+        if (keys != NULL) {
+            addPath(info, keys[0].frame, keys[count - 1].frame);
+        }
     }
 }
 
@@ -201,6 +227,9 @@ static void printText(const Info* info)
     }
     printf("  %-16s %d (%d point, %d spot, %d directional)\n", "lights", info->emitters,
            info->emittersOfType[POINTS], info->emittersOfType[SPOTS], info->emittersOfType[DIRECTIONALS]);
+    if (info->paths > 0) {
+        printf("  %-16s %d, frames %g to %g\n", "paths", info->paths, info->firstFrame, info->lastFrame);
+    }
     if (info->lampTriangles > 0) {
         printf("  %-16s %d triangles, %g m^2\n", "lamps", info->lampTriangles, info->lampArea);
     }
@@ -250,14 +279,16 @@ static json_t* renderJson(const Info* info)
 static bool printJson(const Info* info)
 {
     json_t* root = json_pack(
-        "{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:i, s:i, s:f, s:o, "
+        "{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:f, s:f}, "
+        "s:i, s:i, s:f, s:o, "
         "s:o, s:f, s:f, s:f, s:o}",
         "cameras", info->cameras, "materials", info->materials, "objects", "total", info->objects, "quad",
         info->objectsOfType[VPL_OBJECT_QUAD], "box", info->objectsOfType[VPL_OBJECT_BOX], "mesh",
         info->objectsOfType[VPL_OBJECT_MESH], "meshes", "total", info->meshes, "vertices",
         (json_int_t)info->meshVertices, "triangles", (json_int_t)info->meshTriangles, "lights", "total",
         info->emitters, "point", info->emittersOfType[POINTS], "spot", info->emittersOfType[SPOTS],
-        "directional", info->emittersOfType[DIRECTIONALS], "triangles", info->triangles, "lamp_triangles",
+        "directional", info->emittersOfType[DIRECTIONALS], "paths", "total", info->paths, "first_frame",
+        info->firstFrame, "last_frame", info->lastFrame, "triangles", info->triangles, "lamp_triangles",
         info->lampTriangles, "lamp_area", info->lampArea, "bounds_min", vector(info->low), "bounds_max",
         vector(info->high), "diagonal", info->diagonal, "area", info->area, "mean_reflectance",
         info->reflectance, "render", renderJson(info));
@@ -281,6 +312,7 @@ int runInfo(const Arguments* a)
     vplResult result = vplScene_Load(context, info.path, &scene);
     if (result == VPL_SUCCESS) {
         describeScene(scene, &info);
+        describePaths(scene, &info);
         result = describeGeometry(scene, &info);
     }
     if (result == VPL_SUCCESS) {

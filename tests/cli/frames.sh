@@ -51,3 +51,8 @@ check InterruptedFramesSayHowMany grep -q "^vpl: cancelled, [0-9]* of 100000 fra
 check InterruptedFramesKeepWhatIsFinished test "$(sed 's/.*cancelled, \([0-9]*\) .*/\1/' "$scratch/stderr")" -eq "$(ls "$out" | grep -c '^t-.*\.pfm$')"
 equals InterruptedFramesLeaveNothingElse 1 "$(ls "$out"/t-* | sed 's/.*\.//' | sort -u | wc -l)"
 rm "$out"/t-*
+
+succeeds InfoTellsTheFrames "$vpl" info "$moving"
+check InfoNamesFirstAndLastFrame grep -q "paths *2, frames 0 to 60" "$scratch/stdout"
+"$vpl" info "$moving" --json >"$scratch/info.json"
+equals InfoJsonNamesTheLastFrame 60 "$(field "$scratch/info.json" last_frame | sed 's/\.0*$//')"
