@@ -135,6 +135,13 @@ static void draw(const void* data, Sixteen* s)
     Fillings all;
     turn(c->eye, s);
     bound(c, s, &all);
+    int32_t any = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        any |= all.kind[l];
+    }
+    if (any == UNSEEN) {
+        return;
+    }
     setUpAll(s, &all);
     for (int l = 0; l < VPL_LANES; l++) {
         if (all.kind[l] != UNSEEN) {
