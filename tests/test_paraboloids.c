@@ -35,7 +35,7 @@ static float factorAt(const vplParaboloidMap* map, vplVec3 p, vplVec3 n)
 static size_t placeOf(const vplParaboloidMap* map, int hemisphere, int i)
 {
     return (size_t)hemisphere * vplParaboloidMap_Texels(map->size) +
-           (size_t)vplHalfMap_Place(vplHalfMap_Blocks(map->size), i % map->size, i / map->size);
+           vplParaboloidMap_Place(map->size, i % map->size, i / map->size);
 }
 
 // Where texel i looks, in the map's frame; its length is 1 + p^2.
@@ -580,11 +580,12 @@ static uint64_t hashOf(vplContext* context)
     }
     vplParaboloidMaps* maps = drawMaps(g, 37, places, 9);
     uint64_t hash = 0;
-    for (int i = 0; i < 9; i++) {
-        const vplParaboloidMap* map = &maps->maps[i];
-        const size_t texels = (size_t)map->hemispheres * vplParaboloidMap_Texels(37);
-        hash = vplHashFloats(hash, map->texels, texels);
-        hash = vplHashFloats(hash, (const float*)map->triangles, texels);
+    for (int i = 0; i < 9 * 2 * 37 * 37; i++) {
+        const vplParaboloidMap* map = &maps->maps[i % 9];
+        const int hemisphere = i / 9 / (37 * 37) % map->hemispheres;
+        const size_t at = placeOf(map, hemisphere, i / 9 % (37 * 37));
+        hash = vplHashFloats(hash, map->texels + at, 1);
+        hash = vplHashFloats(hash, (const float*)map->triangles + at, 1);
     }
     for (int i = 0; i < 9 * 500; i++) {
         const vplHalfMapPlace at = rollPlace(g, &dice, &hit);

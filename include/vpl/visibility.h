@@ -193,8 +193,10 @@ typedef struct vplParaboloidMap {
     int hemispheres;            // 1 or 2
     const float*
         texels; // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is
-                // and outside of the disk; [hemisphere] in blocks of 4 x 4 of columns (x) and rows (y)
-    const int32_t* triangles; // in the same order: index in the geometry, -1 where nothing is; NULL: not kept
+                // and outside of the disk (of two, by more than a texel's diagonal); [hemisphere][row + 1 (y)]
+                // [column + 1 (x)], size + 2 of either, where those at the sides are there twice
+    const int32_t*
+        triangles; // in the same order, but not twice: index in the geometry, -1 where nothing is; NULL: not kept
     vplContext* context;
 } vplParaboloidMap;
 
@@ -204,6 +206,7 @@ typedef struct vplParaboloidMaps {
     int count, capacity, size;
     float* texels;
     int32_t* triangles; // NULL: not kept
+    float* scratch;     // where workers draw
     vplContext* context;
 } vplParaboloidMaps;
 

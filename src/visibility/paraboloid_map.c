@@ -6,8 +6,6 @@
 #include "geometry/ray_tree.h"
 #include "geometry/triangle.h"
 
-#include <string.h>
-
 VPL_KERNEL_TABLE(DRAW, vplDrawParaboloidFcn, vplDrawParaboloid);
 VPL_KERNEL_TABLE(FACTOR, vplParaboloidFactorFcn, vplParaboloidFactor);
 
@@ -28,10 +26,13 @@ vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, 
     maps->texels = vplAlloc(context, (size_t)capacity, texels * sizeof *maps->texels);
     maps->triangles =
         triangles ? vplAlloc(context, (size_t)capacity, texels * sizeof *maps->triangles) : NULL;
+    maps->scratch = vplAlloc(context, (triangles ? 2 : 1) * (size_t)context->workerCount,
+                             vplParaboloidMap_Drawn(size) * sizeof *maps->scratch);
     maps->capacity = capacity;
     maps->size = size;
     maps->context = context;
-    if (maps->maps == NULL || maps->texels == NULL || (triangles && maps->triangles == NULL)) {
+    if (maps->maps == NULL || maps->texels == NULL || maps->scratch == NULL ||
+        (triangles && maps->triangles == NULL)) {
         vplParaboloidMaps_Destroy(maps);
         return VPL_OUT_OF_MEMORY;
     }
@@ -43,6 +44,7 @@ void vplParaboloidMaps_Destroy(vplParaboloidMaps* maps)
 {
     if (maps != NULL) {
         vplContext* context = maps->context;
+        vplFree(context, maps->scratch);
         vplFree(context, maps->triangles);
         vplFree(context, maps->texels);
         vplFree(context, (void*)maps->maps);
@@ -58,16 +60,18 @@ typedef struct Drawing {
 // Front hemispheres first: all of them are drawn, and workers end together.
 static void drawHemisphere(void* data, int index, int worker)
 {
-    (void)worker;
     const Drawing* d = data;
     const int hemisphere = index / d->maps->count;
     const vplParaboloidMap* map = &d->maps->maps[index % d->maps->count];
+    const size_t first = (size_t)hemisphere * vplParaboloidMap_Texels(map->size),
+                 drawn = vplParaboloidMap_Drawn(map->size);
+    const bool ids = map->triangles != NULL;
+    float* scratch = d->maps->scratch + (ids ? 2 : 1) * (size_t)worker * drawn;
     if (hemisphere < map->hemispheres) {
-        const size_t texels = vplParaboloidMap_Texels(map->size), first = (size_t)hemisphere * texels;
-        float* values = (float*)map->texels + first;
-        memset(values, 0, texels * sizeof *values);
-        DRAW[map->context->isa](d->bvh, map, hemisphere, values,
-                                map->triangles ? (int32_t*)map->triangles + first : NULL);
+        DRAW[map->context->isa](d->bvh, map, hemisphere,
+                                (vplParaboloidTexels){scratch, ids ? (int32_t*)(scratch + drawn) : NULL},
+                                (vplParaboloidTexels){(float*)map->texels + first,
+                                                      ids ? (int32_t*)map->triangles + first : NULL});
     }
 }
 
@@ -121,7 +125,7 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
         return false;
     }
     const size_t at = (size_t)hemisphere * vplParaboloidMap_Texels(map->size) +
-                      (size_t)vplHalfMap_Place(vplHalfMap_Blocks(map->size), column, row);
+                      vplParaboloidMap_Place(map->size, column, row);
     const int triangle = map->triangles[at];
     if (triangle < 0) {
         return false;

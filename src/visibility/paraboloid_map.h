@@ -1,15 +1,34 @@
 // SPDX-License-Identifier: MIT
-// Paraboloid maps from the inside. Texels lie in the order of half_map.h.
+// Paraboloid maps from the inside. They are drawn in blocks, in the order of half_map.h, and kept in rows, so that the
+// two texels beside a point are loaded at once.
 #ifndef VPL_VISIBILITY_PARABOLOID_MAP_H
 #define VPL_VISIBILITY_PARABOLOID_MAP_H
 
 #include "visibility/half_map.h"
 
-// Texels of one hemisphere.
-static inline size_t vplParaboloidMap_Texels(int size)
+// Texels of a hemisphere while it is drawn.
+static inline size_t vplParaboloidMap_Drawn(int size)
 {
     const size_t blocks = (size_t)vplHalfMap_Blocks(size);
     return blocks * blocks * VPL_LANES;
+}
+
+// Texels from one row to the next. Rows and columns at the sides are there twice, so that there are always two.
+static inline int32_t vplParaboloidMap_Stride(int size)
+{
+    return size + 2;
+}
+
+// Texels of one hemisphere.
+static inline size_t vplParaboloidMap_Texels(int size)
+{
+    return (size_t)vplParaboloidMap_Stride(size) * (size_t)vplParaboloidMap_Stride(size);
+}
+
+// Where a texel of a hemisphere is.
+static inline size_t vplParaboloidMap_Place(int size, int column, int row)
+{
+    return (size_t)(row + 1) * (size_t)vplParaboloidMap_Stride(size) + (size_t)(column + 1);
 }
 
 // Where there is a back, texels hold something as far as this outside of the disk: what lies there beyond the rim, so
@@ -19,16 +38,21 @@ static inline float vplParaboloidMap_Rim(int size, int hemispheres)
     return hemispheres == 2 ? 1 + 3 / (float)size : 1;
 }
 
-// Draws a hemisphere of a map, with a back or without; `triangles` may be NULL.
+// Texels of a hemisphere; `triangles` may be NULL.
+typedef struct vplParaboloidTexels {
+    float* texels;
+    int32_t* triangles;
+} vplParaboloidTexels;
+
+// Draws a hemisphere of a map, with a back or without; `scratch` has room for the blocks.
 typedef void vplDrawParaboloidFcn(const vplBvh* bvh, const vplParaboloidMap* map, int hemisphere,
-                                  float* texels, int32_t* triangles);
+                                  vplParaboloidTexels scratch, vplParaboloidTexels out);
 
 typedef void vplParaboloidFactorFcn(const vplParaboloidMap* map, const vplSurface* surface,
                                     float factor[restrict VPL_LANES]);
 
 // What is nearer to the place than a fragment and its plane by less than this share of the distance does not shadow
-// it, in footprints of a texel on the axis, whose centre is at most sqrt(2) 2 / size from its corner: see
-// vplHalfMap_Tolerance.
+// it: one and a half footprints of a texel on the axis, where its centre is 2 sqrt(2) / size from its corner.
 static inline float vplParaboloidMap_Tolerance(int size)
 {
     return 1.5f * 2 * 1.41421356f / (float)size;

@@ -135,6 +135,13 @@ static void draw(const void* data, Sixteen* s)
     Fillings all;
     turn(c->eye, s);
     bound(c, s, &all);
+    int32_t any = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        any |= all.kind[l];
+    }
+    if (any == UNSEEN) {
+        return;
+    }
     setUpAll(s, &all);
     for (int l = 0; l < VPL_LANES; l++) {
         if (all.kind[l] != UNSEEN) {
@@ -165,45 +172,50 @@ static inline uint32_t chooseReaching(const void* data, const vplBvhNode* node)
     return above;
 }
 
-// From 1/t to 1 / distance; what lies outside of the rim is gone.
-static void finish(const Canvas* c)
+// ---- from blocks to rows, and from 1/t to 1 / distance
+
+// Row `row` of the drawn texels; what lies outside of the rim is gone.
+static void finishRow(const Canvas* c, int32_t row, float* restrict texels, int32_t* restrict triangles)
 {
-    const int32_t blocks = vplHalfMap_Blocks(c->size);
     const float scale = 1 / (float)c->size, rim2 = c->rim * c->rim;
-    for (int32_t b = 0; b < blocks * blocks; b++) {
-        const int32_t column = b % blocks * SIDE, row = b / blocks * SIDE;
-        float value[VPL_LANES];
-        int32_t id[VPL_LANES];
-        memcpy(value, c->texels + (size_t)b * VPL_LANES, sizeof value);
-        for (int l = 0; l < VPL_LANES; l++) {
-            const float x = (float)(2 * (column + l % SIDE) + 1) * scale - 1;
-            const float y = (float)(2 * (row + l / SIDE) + 1) * scale - 1, r2 = x * x + y * y;
-            const float kept = value[l] / (1 + r2);
-            value[l] = r2 <= rim2 ? kept : 0.0f;
-        }
-        memcpy(c->texels + (size_t)b * VPL_LANES, value, sizeof value);
-        if (c->triangles != NULL) {
-            memcpy(id, c->triangles + (size_t)b * VPL_LANES, sizeof id);
-            for (int l = 0; l < VPL_LANES; l++) {
-                const int32_t owner = id[l];
-                id[l] = value[l] > 0 ? owner : -1;
-            }
-            memcpy(c->triangles + (size_t)b * VPL_LANES, id, sizeof id);
+    const float y = (float)(2 * row + 1) * scale - 1, yy = y * y;
+    const size_t from = (size_t)vplHalfMap_Place(vplHalfMap_Blocks(c->size), 0, row);
+    for (int32_t i = 0; i < c->size; i++) {
+        const size_t at = from + (size_t)(i / SIDE) * VPL_LANES + (size_t)(i % SIDE);
+        const float x = (float)(2 * i + 1) * scale - 1, r2 = x * x + yy;
+        const float value = r2 <= rim2 ? c->texels[at] / (1 + r2) : 0;
+        texels[i + 1] = value;
+        if (triangles != NULL) {
+            triangles[i + 1] = value > 0 ? c->triangles[at] : -1;
         }
     }
+    texels[0] = texels[1];
+    texels[c->size + 1] = texels[c->size];
+}
+
+static void finish(const Canvas* c, vplParaboloidTexels out)
+{
+    const size_t stride = (size_t)vplParaboloidMap_Stride(c->size), size = (size_t)c->size;
+    for (int32_t row = 0; row < c->size; row++) {
+        const size_t at = (size_t)(row + 1) * stride;
+        finishRow(c, row, out.texels + at, out.triangles != NULL ? out.triangles + at : NULL);
+    }
+    memcpy(out.texels, out.texels + stride, stride * sizeof *out.texels);
+    memcpy(out.texels + (size + 1) * stride, out.texels + size * stride, stride * sizeof *out.texels);
 }
 
 void VPL_KERNEL(vplDrawParaboloid)(const vplBvh* bvh, const vplParaboloidMap* map, int hemisphere,
-                                   float* texels, int32_t* triangles)
+                                   vplParaboloidTexels scratch, vplParaboloidTexels out)
 {
     const float rim = vplParaboloidMap_Rim(map->size, map->hemispheres);
     const Canvas canvas = {
         map->size,
         rim,
-        texels,
-        triangles,
+        scratch.texels,
+        scratch.triangles,
         {map->position, map->right, map->up, hemisphere == 0 ? map->forward : vplNegate(map->forward)},
         (rim * rim - 1) / (rim * rim + 1)};
+    memset(scratch.texels, 0, vplParaboloidMap_Drawn(map->size) * sizeof *scratch.texels);
     walk(bvh, chooseReaching, draw, &canvas);
-    finish(&canvas);
+    finish(&canvas, out);
 }
