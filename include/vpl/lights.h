@@ -245,9 +245,12 @@ vplRsmSampleDef vplDefaultRsmSampleDef(void);
 vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
                                   int mapCount, const vplRsmSampleDef* def, vplLightSet** setOut);
 
-<<<<<<< HEAD
-// Of each light, the share of sixteen cosine-distributed rays that meet something: what of its light stays in the scene.
-vplResult vplMeasureUse(const vplGeometry* geometry, const vplLightSet* set, float* useOut);
+// Most rays per light of vplMeasureUse.
+enum { VPL_MAX_USE_RAYS = 4096 };
+
+// Of each light, the share of `rayCount` cosine-distributed rays, [1, VPL_MAX_USE_RAYS], that meet something: what of
+// its light stays in the scene. Unlike vplMeasureLights it asks no camera, and does not change when one moves.
+vplResult vplMeasureUse(const vplGeometry* geometry, const vplLightSet* set, int rayCount, float* useOut);
 
 // How many lights vplKeepUseful is expected to keep.
 double vplCountUseful(const vplLightSet* set, const float* use);
@@ -255,16 +258,6 @@ double vplCountUseful(const vplLightSet* set, const float* use);
 // Keeps each light with the probability of its use, at least 1/16, and divides its weight by that: the mean over all
 // shifts is the light of all. In closed rooms all are kept, as they are. `shift` as in vplRsmSampleDef.
 vplResult vplKeepUseful(const vplLightSet* set, const float* use, uint64_t shift, vplLightSet** setOut);
-=======
-// Most rays per light of vplMeasureOutlook.
-enum { VPL_MAX_OUTLOOK_RAYS = 4096 };
-
-// What each light of the set gives to the world: its flux, W (mean of the channels, divided by N), times the share of
-// `rayCount` rays, cosine-distributed, that meet a surface. Unlike vplMeasureLights it asks no camera, so that what
-// vplChooseLights chooses by it stays when the camera moves; four rays are enough where many lights are candidates.
-vplResult vplMeasureOutlook(const vplGeometry* geometry, const vplLightSet* set, int rayCount,
-                            vplProgressFcn* progress, void* user, float* contributionsOut);
->>>>>>> rsm6
 
 // What makes a light far from a cluster: w1 |V - C| + w2 times one of these, n the two unit normals.
 typedef enum vplClusterMetric {

@@ -15,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SHIFT_STREAM = 0x80000004u };
+enum { SHIFT_STREAM = 0x80000004u, USE_RAYS = 16 };
 
 // ---- what it depends on
 
@@ -220,7 +220,7 @@ static vplResult sampleAndMeasure(const Making* m, int count, vplLightSet** setO
         return result;
     }
     float* use = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *use);
-    result = use ? vplMeasureUse(m->job->geometry, set, use) : VPL_OUT_OF_MEMORY;
+    result = use ? vplMeasureUse(m->job->geometry, set, USE_RAYS, use) : VPL_OUT_OF_MEMORY;
     if (result != VPL_SUCCESS) {
         vplFree(m->job->context, use);
         vplLightSet_Destroy(set);
