@@ -2,7 +2,7 @@
 // Where clusters start: at lights far from each other. Samples of a reflective map come sorted by a coordinate of the
 // map; starting from every n/C-th of them, the distances of all lights from their clusters add up to more: in the end
 // 1.36 times as much in cornell-spot with 8 clusters, 1.06 in sibenik-spot, 1.05 in sponza-sun, 1.00 in conference-spot
-// and 1.01 in the mean of 200 random rooms; with 32 clusters 1.27, 1.21, 1.09, 1.10 and 1.04.
+// and 1.01 in 200 random rooms; with 32 clusters 1.27, 1.21, 1.09, 1.10 and 1.04 (bench/clusters).
 // Based on: Gonzalez, Clustering to Minimize the Maximum Intercluster Distance, Theoretical Computer Science 1985.
 // Departs: the first is the light that is nearest to the mean.
 #include "lights/clusters.h"

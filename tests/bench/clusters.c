@@ -1,87 +1,137 @@
 // SPDX-License-Identifier: MIT
-// What few clusters cost SSVP. `bench/clusters SCENE [TRUTH.pfm]`: pictures of 4, 8 and 16 clusters against that of 32,
-// tone-mapped, 1920 x 1080, as the document compares them (0.1259, 0.1020 and 0.0806); then, at the truth's size, the
-// error of 4 to 256 clusters, of one and two bounces, against a path-traced picture. rmse: of values in [0, 1] after tone
-// mapping; coded: of the same as sRGB codes; error: root mean square by the truth's mean, linear.
+// Where k-means starts: lights far from each other against every n/C-th one, by the sum of the distances of all lights
+// from their clusters in the end, and by processor time. `bench/clusters SCENE...`: 256 first hits of each; and the
+// mean of 200 random rooms.
 #include "bench.h"
 
+#include "base/clock.h"
+
 #include <math.h>
+#include <string.h>
 
-static vplImage* renderClusters(const vplScene* scene, int width, int height, int clusters, int bounces)
+enum { SIZES = 4, LIGHTS = 256, ROOMS = 200 };
+static const int sizes[SIZES] = {4, 8, 16, 32};
+
+typedef struct Outcome {
+    double sum, iterations, us;
+} Outcome;
+
+static double sumOf(const vplLightSet* set, const vplLightClusters* clusters, const vplClusterDef* def)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
-    o.method = VPL_METHOD_SSVP;
-    o.width = width;
-    o.height = height;
-    o.clusters = clusters;
-    o.maxBounces = bounces;
-    vplImage* image;
-    check(vplRender(scene, &o, &image, NULL));
-    return image;
+    double sum = 0;
+    for (int i = 0; i < set->lightCount; i++) {
+        const vplVirtualLight* v = &set->lights[i];
+        const vplLightCluster* c = &clusters->clusters[clusters->of[i]];
+        sum += def->w1 * (double)vplLength(vplSub(v->position, c->position)) +
+               def->w2 * (1 - (double)vplDot(v->normal, c->normal));
+    }
+    return sum;
 }
 
-static vplComparison compareToned(vplImage* a, vplImage* b)
+static void addRun(const vplLightSet* set, int count, const int* seeds, Outcome* outcome)
 {
-    const vplReinhardDef tone = vplDefaultReinhardDef();
-    check(vplToneMap_Reinhard(a, &tone));
-    check(vplToneMap_Reinhard(b, &tone));
-    vplComparison c;
-    check(vplImage_Compare(a, b, &c));
-    vplImage_Destroy(a);
-    vplImage_Destroy(b);
-    return c;
+    vplClusterDef def = vplDefaultClusterDef();
+    def.count = count;
+    def.seeds = seeds;
+    vplLightClusters* clusters;
+    const double start = vplCpuMs();
+    check(vplFindClusters(set, &def, &clusters));
+    outcome->us += 1e3 * (vplCpuMs() - start);
+    outcome->sum += sumOf(set, clusters, &def);
+    outcome->iterations += clusters->iterations;
+    vplLightClusters_Destroy(clusters);
 }
 
-// psnr is of sRGB codes: its mean square is 10^(-psnr / 10).
-static double codedOf(const vplComparison* c)
+// [0]: every n/C-th light; [1]: the default.
+static void addBoth(const vplLightSet* set, int count, Outcome outcomes[2])
 {
-    return isfinite(c->psnr) ? pow(10, -c->psnr / 20) : 0;
+    int seeds[LIGHTS];
+    for (int j = 0; j < count; j++) {
+        seeds[j] = (int)((int64_t)j * set->lightCount / count);
+    }
+    addRun(set, count, seeds, &outcomes[0]);
+    addRun(set, count, NULL, &outcomes[1]);
 }
 
-static void againstMost(const vplScene* scene)
+static void print(const char* name, int lights, Outcome outcomes[SIZES][2], int sets)
 {
-    puts("clusters     rmse    coded   (against 32)");
-    for (int clusters = 4; clusters <= 16; clusters *= 2) {
-        const vplComparison c = compareToned(renderClusters(scene, 1920, 1080, clusters, 2),
-                                             renderClusters(scene, 1920, 1080, 32, 2));
-        printf("%8d  %7.4f  %7.4f\n", clusters, c.rmse, codedOf(&c));
+    for (int k = 0; k < SIZES; k++) {
+        const Outcome *plain = &outcomes[k][0], *ours = &outcomes[k][1];
+        printf("%-40s %6d %8d %10.2f %10.2f %6.2f %6.1f %6.1f %6.0f %6.0f\n", name, lights, sizes[k],
+               plain->sum / sets, ours->sum / sets, ours->sum / plain->sum, plain->iterations / sets,
+               ours->iterations / sets, plain->us / sets, ours->us / sets);
     }
 }
 
-static void againstTruth(const vplScene* scene, const char* path)
+static void measureScene(const char* path)
 {
-    vplImage* truth;
-    check(vplImage_Read(vplScene_GetContext(scene), path, &truth));
-    puts("clusters  bounces    error   energy    rmse    coded   (against the truth)");
-    for (int clusters = 4; clusters <= 256; clusters *= clusters < 32 ? 2 : 8) {
-        for (int bounces = clusters == 8 ? 0 : 2; bounces <= 2; bounces++) {
-            vplImage* image = renderClusters(scene, truth->width, truth->height, clusters, bounces);
-            vplImage* copy;
-            vplComparison linear;
-            check(vplImage_Compare(image, truth, &linear));
-            check(vplImage_Crop(truth, 0, 0, truth->width, truth->height, &copy));
-            const vplComparison toned = compareToned(image, copy);
-            printf("%8d  %7d  %6.1f %%  %7.3f  %7.4f  %7.4f\n", clusters, bounces, 100 * linear.relativeRmse,
-                   linear.energyRatio, toned.rmse, codedOf(&toned));
+    vplContext* context;
+    vplScene* scene;
+    vplLightSet* set;
+    openScene(path, 1, VPL_ISA_AUTO, &context, &scene);
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.placement = VPL_PLACEMENT_RSM;
+    o.sampler = VPL_SAMPLER_HAMMERSLEY;
+    o.particles = LIGHTS;
+    o.reflectivity = 0;
+    check(vplMakeLights(scene, &o, &set));
+    Outcome outcomes[SIZES][2] = {{{0, 0, 0}}};
+    for (int k = 0; k < SIZES; k++) {
+        addBoth(set, sizes[k], outcomes[k]);
+    }
+    print(path, set->lightCount, outcomes, 1);
+    vplLightSet_Destroy(set);
+    vplScene_Destroy(scene);
+    vplContext_Destroy(context);
+}
+
+static float unit(uint64_t room, uint64_t index)
+{
+    return vplUnitFloat(vplRandomAt(room, 0, index).v[0]);
+}
+
+// Lights by chance on the walls of a box of 2 to 10 metres.
+static void fillRoom(uint64_t room, vplVirtualLight* lights)
+{
+    const float size[3] = {2 + 8 * unit(room, 0), 2 + 4 * unit(room, 1), 2 + 8 * unit(room, 2)};
+    for (uint64_t i = 0; i < LIGHTS; i++) {
+        const int wall = (int)(6 * unit(room, 8 + 4 * i));
+        float p[3], n[3] = {0, 0, 0};
+        for (uint64_t k = 0; k < 3; k++) {
+            p[k] = size[k] * unit(room, 9 + 4 * i + k);
+        }
+        p[wall / 2] = wall % 2 ? size[wall / 2] : 0;
+        n[wall / 2] = wall % 2 ? -1 : 1;
+        lights[i] = (vplVirtualLight){
+            .position = {p[0], p[1], p[2]}, .normal = {n[0], n[1], n[2]}, .light = {1, 1, 1}, .weight = 1};
+    }
+}
+
+static void measureRooms(void)
+{
+    vplContext* context;
+    check(vplContext_Create(NULL, &context));
+    Outcome outcomes[SIZES][2] = {{{0, 0, 0}}};
+    for (uint64_t room = 1; room <= ROOMS; room++) {
+        static vplVirtualLight lights[LIGHTS];
+        fillRoom(room, lights);
+        const vplLightSet set = {
+            .lights = lights, .lightCount = LIGHTS, .particleCount = LIGHTS, .context = context};
+        for (int k = 0; k < SIZES; k++) {
+            addBoth(&set, sizes[k], outcomes[k]);
         }
     }
-    vplImage_Destroy(truth);
+    print("random rooms", LIGHTS, outcomes, ROOMS);
+    vplContext_Destroy(context);
 }
 
 int main(int count, char** words)
 {
-    vplContext* context;
-    vplScene* scene;
-    if (count < 2) {
-        fprintf(stderr, "usage: clusters SCENE [TRUTH.pfm]\n");
-        return 2;
+    printf("%-40s %6s %8s %10s %10s %6s %13s %13s\n", "scene", "lights", "clusters", "n/C-th", "far apart",
+           "ratio", "iterations", "us");
+    for (int i = 1; i < count; i++) {
+        measureScene(words[i]);
     }
-    openScene(words[1], 0, VPL_ISA_AUTO, &context, &scene);
-    againstMost(scene);
-    if (count > 2) {
-        againstTruth(scene, words[2]);
-    }
-    vplScene_Destroy(scene);
-    vplContext_Destroy(context);
+    measureRooms();
     return 0;
 }
