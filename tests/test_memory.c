@@ -439,6 +439,41 @@ static vplResult freezeBall(vplContext* context, const char* path, int variant)
     return result;
 }
 
+// Variants: without and with triangles, and then lights of the second bounce.
+static vplResult drawParaboloids(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    vplParaboloidMaps* maps = NULL;
+    vplLightSet* set = NULL;
+    const vplParaboloidPlace place = {{0, 1, 0}, {0, 1, 0}, 2, false};
+    const vplLightCluster cluster = {{0, 1, 0}, {0, 1, 0}, {1, 1, 1}, 1, 0, true};
+    const vplLightClusters clusters = {.clusters = &cluster, .count = 1};
+    vplSecondBounceDef def = vplDefaultSecondBounceDef();
+    def.count = 4;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    result = result == VPL_SUCCESS ? vplGeometry_Create(scene, &geometry) : result;
+    result = result == VPL_SUCCESS ? vplParaboloidMaps_Create(context, 4, 1, variant > 0, &maps) : result;
+    result = result == VPL_SUCCESS ? vplParaboloidMaps_Draw(maps, geometry, &place, 1, NULL, NULL) : result;
+    if (result == VPL_SUCCESS && variant > 0) {
+        result = vplSampleParaboloidMaps(geometry, &clusters, maps, &def, &set);
+    }
+    vplLightSet_Destroy(set);
+    vplParaboloidMaps_Destroy(maps);
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfParaboloidMapsIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(drawParaboloids, "png", variant, false);
+    }
+}
+
 static void EveryFailedAllocationOfAGeometryIsReported(void** state)
 {
     (void)state;
@@ -592,6 +627,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAReflectiveMapIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfParaboloidMapsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),

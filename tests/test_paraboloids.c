@@ -296,6 +296,9 @@ static void BoundsOfTrianglesLoseNoTexel(void** state)
         if (i % 4 == 0) { // a needle
             corner[2] = vplAdd(corner[1], vplScale(0.02f, rollVec(&dice, 1)));
         }
+        for (int k = 1; k < 3 && i % 7 == 0; k++) { // a small one
+            corner[k] = vplAdd(corner[0], vplScale(0.4f * vplLength(corner[0]), rollVec(&dice, 1)));
+        }
         vplScene* scene = sceneOf(context, 0.5f);
         Shape one = {0};
         addTriangle(&one, corner[0], corner[1], corner[2]);

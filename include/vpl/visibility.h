@@ -193,8 +193,8 @@ typedef struct vplParaboloidMap {
     int hemispheres;            // 1 or 2
     const float*
         texels; // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is
-                // and outside of the disk (of two, by more than a texel's diagonal); [hemisphere][row + 1 (y)]
-                // [column + 1 (x)], size + 2 of either, where those at the sides are there twice
+        // and outside of the disk (of two, by more than a texel's diagonal); [hemisphere][row + 1 (y)]
+        // [column + 1 (x)], size + 2 of either, where those at the sides are there twice
     const int32_t*
         triangles; // in the same order, but not twice: index in the geometry, -1 where nothing is; NULL: not kept
     vplContext* context;
@@ -238,9 +238,14 @@ void vplParaboloidMaps_Destroy(vplParaboloidMaps* maps);
 bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry, int hemisphere,
                              int column, int row, vplHit* hitOut, vplVec3* directionOut);
 
-// The share in [0, 1] of the light from the map's place that does not reach a point, for 16 points: of the four texels
-// around it, linearly weighted, those that see something nearer than the point's own plane. Points in a hemisphere that
-// was not drawn: 1.
+// The share in [0, 1] of what lies between a point and the map's place, for 16 points: of the four texels around it,
+// linearly weighted, those that see something nearer than the point's own plane. The plane may face either way: lights
+// beside the map's place may be before it. Points in a hemisphere that was not drawn: 1; of the only hemisphere, texels
+// beyond the rim hide nothing. A ray says the same except within a band: texels' centres look past a point at distance r
+// by at most a texel's diagonal f = 2 sqrt(2) (r + |z|) / size, z along the axis, where its plane, at the angle T to the
+// light, is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r; f / 2 and less is tolerated. So the answers
+// are equal where all that blocks the way is further than 2.5 f + b from the point, and blocks or frees all ways to the
+// point's plane within f around it alike.
 void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES]);
 

@@ -71,19 +71,22 @@ static void setUpAll(const Sixteen* restrict s, Fillings* restrict all)
     }
 }
 
-// Nearer to the horizon than this, or below it, a triangle is bounded exactly: 1 degree.
-static const float LOW = 0x1p-6f;
+// Nearer to the horizon than this (1 degree), or below it, a triangle is bounded exactly, unless it is SMALL and no lower
+// than DEEP (6 degrees).
+static const float LOW = 0x1p-6f, DEEP = 0.1f, SMALL = 0.5f;
 
-// Bounds of triangles above the horizon. An arc leaves the box of its ends by less than a quarter of the chord's
-// length (of a half circle, half; its ends are on the rim), and across the chord: (w + h) h / 4 to the sides of a box
-// of w x h, which is nothing for most triangles. Large ones are bounded again.
+// Bounds of triangles above the horizon. The image of an edge is at most half a circle: inside of the disk because a
+// great circle's image meets the rim in opposite points; further out because a chord of 1/2 stands for less than a
+// radian, of which each grows at most 2.3 times, while half of the smallest circle is pi long. Such an arc of chord c
+// leaves its chord by at most c^2 / 4R, R at least 1, at right angles to it: (w + h) h / 4 to the sides of a box of
+// w x h, which is nothing for most triangles. Large ones are bounded again.
 static void bound(const Canvas* c, const Sixteen* restrict s, Fillings* restrict all)
 {
     const int32_t last = c->size - 1;
     const float half = 0.5f * (float)c->size, least = 0.5f - MARGIN, most = 0.5f + MARGIN, slack = c->slack;
     for (int l = 0; l < VPL_LANES; l++) {
         float lowX = 2, highX = -2, lowY = 2, highY = -2;
-        int32_t above = 0, whole = 1;
+        int32_t above = 0, high = 1, low = 1;
         for (int k = 0; k < 3; k++) {
             const float x = s->x[k][l], y = s->y[k][l], z = s->z[k][l];
             const float length = sqrtf(x * x + y * y + z * z), inverse = 1 / vplMaxf(length + z, 1e-37f);
@@ -93,18 +96,20 @@ static void bound(const Canvas* c, const Sixteen* restrict s, Fillings* restrict
             lowY = vplMinf(lowY, atY);
             highY = vplMaxf(highY, atY);
             above |= z > -slack * length;
-            whole &= z > LOW * length;
+            high &= z > LOW * length;
+            low &= z > -DEEP * length;
         }
         const float w = highX - lowX, h = highY - lowY, bulge = 0.25f * (w + h);
         const float x0 = (lowX - bulge * h + 1) * half + least, x1 = (highX + bulge * h + 1) * half + most;
         const float y0 = (lowY - bulge * w + 1) * half + least, y1 = (highY + bulge * w + 1) * half + most;
         const int32_t i0 = (int32_t)vplClampf(x0, 0, 16384), i1 = (int32_t)vplClampf(x1, 0, 16384) - 1;
         const int32_t j0 = (int32_t)vplClampf(y0, 0, 16384), j1 = (int32_t)vplClampf(y1, 0, 16384) - 1;
-        const int32_t some = (i0 <= i1) & (j0 <= j1);
+        const int32_t right = i1 < last ? i1 : last, top = j1 < last ? j1 : last;
+        const int32_t some = (i0 <= right) & (j0 <= top), whole = high | (low & (w + h <= SMALL));
         all->box[0][l] = i0;
-        all->box[1][l] = i1 < last ? i1 : last;
+        all->box[1][l] = right;
         all->box[2][l] = j0;
-        all->box[3][l] = j1 < last ? j1 : last;
+        all->box[3][l] = top;
         all->kind[l] = above & (s->id[l] >= 0) ? (whole ? some : CROSSING) : UNSEEN;
     }
 }
@@ -174,34 +179,60 @@ static inline uint32_t chooseReaching(const void* data, const vplBvhNode* node)
 
 // ---- from blocks to rows, and from 1/t to 1 / distance
 
-// Row `row` of the drawn texels; what lies outside of the rim is gone.
-static void finishRow(const Canvas* c, int32_t row, float* restrict texels, int32_t* restrict triangles)
+// One block; what lies outside of the rim is gone.
+static inline void finishBlock(const Canvas* c, int32_t column, int32_t row, float value[restrict VPL_LANES],
+                               int32_t id[restrict VPL_LANES])
 {
     const float scale = 1 / (float)c->size, rim2 = c->rim * c->rim;
-    const float y = (float)(2 * row + 1) * scale - 1, yy = y * y;
-    const size_t from = (size_t)vplHalfMap_Place(vplHalfMap_Blocks(c->size), 0, row);
-    for (int32_t i = 0; i < c->size; i++) {
-        const size_t at = from + (size_t)(i / SIDE) * VPL_LANES + (size_t)(i % SIDE);
-        const float x = (float)(2 * i + 1) * scale - 1, r2 = x * x + yy;
-        const float value = r2 <= rim2 ? c->texels[at] / (1 + r2) : 0;
-        texels[i + 1] = value;
-        if (triangles != NULL) {
-            triangles[i + 1] = value > 0 ? c->triangles[at] : -1;
+    const size_t at = (size_t)vplHalfMap_Place(vplHalfMap_Blocks(c->size), column, row);
+    memcpy(value, c->texels + at, VPL_LANES * sizeof *value);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float x = (float)(2 * (column + l % SIDE) + 1) * scale - 1;
+        const float y = (float)(2 * (row + l / SIDE) + 1) * scale - 1, r2 = x * x + y * y;
+        const float kept = value[l] / (1 + r2);
+        value[l] = r2 <= rim2 ? kept : 0.0f;
+    }
+    if (c->triangles != NULL) {
+        memcpy(id, c->triangles + at, VPL_LANES * sizeof *id);
+        for (int l = 0; l < VPL_LANES; l++) {
+            const int32_t owner = id[l];
+            id[l] = value[l] > 0 ? owner : -1;
         }
     }
-    texels[0] = texels[1];
-    texels[c->size + 1] = texels[c->size];
+}
+
+// Doubles the first and the last of each row, and then the first and the last row.
+static void doubleSides(int32_t size, float* texels)
+{
+    const size_t stride = (size_t)vplParaboloidMap_Stride(size), last = (size_t)size;
+    for (size_t row = 1; row <= last; row++) {
+        texels[row * stride] = texels[row * stride + 1];
+        texels[row * stride + last + 1] = texels[row * stride + last];
+    }
+    memcpy(texels, texels + stride, stride * sizeof *texels);
+    memcpy(texels + (last + 1) * stride, texels + last * stride, stride * sizeof *texels);
 }
 
 static void finish(const Canvas* c, vplParaboloidTexels out)
 {
-    const size_t stride = (size_t)vplParaboloidMap_Stride(c->size), size = (size_t)c->size;
-    for (int32_t row = 0; row < c->size; row++) {
-        const size_t at = (size_t)(row + 1) * stride;
-        finishRow(c, row, out.texels + at, out.triangles != NULL ? out.triangles + at : NULL);
+    const int32_t size = c->size;
+    for (int32_t row = 0; row < size; row += SIDE) {
+        for (int32_t column = 0; column < size; column += SIDE) {
+            const int32_t rows = size - row < SIDE ? size - row : SIDE;
+            const size_t columns = (size_t)(size - column < SIDE ? size - column : SIDE);
+            float value[VPL_LANES];
+            int32_t id[VPL_LANES];
+            finishBlock(c, column, row, value, id);
+            for (int32_t k = 0; k < rows; k++) {
+                const size_t at = vplParaboloidMap_Place(size, column, row + k);
+                memcpy(out.texels + at, value + k * SIDE, columns * sizeof *value);
+                if (out.triangles != NULL) {
+                    memcpy(out.triangles + at, id + k * SIDE, columns * sizeof *id);
+                }
+            }
+        }
     }
-    memcpy(out.texels, out.texels + stride, stride * sizeof *out.texels);
-    memcpy(out.texels + (size + 1) * stride, out.texels + size * stride, stride * sizeof *out.texels);
+    doubleSides(size, out.texels);
 }
 
 void VPL_KERNEL(vplDrawParaboloid)(const vplBvh* bvh, const vplParaboloidMap* map, int hemisphere,
