@@ -3,7 +3,7 @@
 // one sentence, nothing leaked and no file. New memory is filled with junk, so that success does not depend on it.
 #include "shapes.h"
 
-#include "render/show_ssvp.h"
+#include "render/show_maps.h"
 
 #include <jansson.h>
 #include <stdlib.h>

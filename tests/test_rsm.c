@@ -5,7 +5,7 @@
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
-#include "render/show_ssvp.h"
+#include "render/show_maps.h"
 
 static vplReflectiveMap* mapOf(const vplGeometry* g, const vplEmitterDef* emitter, int size)
 {

@@ -2,8 +2,7 @@
 // SSVP's lights and clusters for eyes, as the document's figure 1 draws them.
 #include "image/draw.h"
 #include "math/vec.h"
-#include "render/show_paraboloid.h"
-#include "render/show_ssvp.h"
+#include "render/show_maps.h"
 #include "render/ssvp.h"
 
 #include <math.h>

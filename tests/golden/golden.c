@@ -192,6 +192,42 @@ static void compensated(vplRenderOptions* o)
     o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
 }
 
+static void ssvp(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_SSVP;
+    o->rsmSize = 128;
+}
+
+// What the document prints where a later reading differs from it.
+static void ssvpPrinted(vplRenderOptions* o)
+{
+    ssvp(o);
+    o->clusterMetric = VPL_CLUSTER_PRINTED;
+    o->clusterPlace = VPL_CLUSTER_PLACE_MEAN;
+    o->secondWeight = VPL_SECOND_WEIGHT_PRINTED;
+    o->oversampling = 1;
+}
+
+static void ssvpGather(vplRenderOptions* o)
+{
+    ssvp(o);
+    o->show = VPL_SHOW_GATHER;
+}
+
+static void ssvpClusters(vplRenderOptions* o)
+{
+    ssvp(o);
+    o->show = VPL_SHOW_CLUSTERS;
+}
+
+static void paraboloid(vplRenderOptions* o)
+{
+    ssvp(o);
+    o->show = VPL_SHOW_PARABOLOID;
+    o->showLight = 2;
+    o->paraboloidSize = 48;
+}
+
 static void laterFrame(vplRenderOptions* o)
 {
     manyLights(o);
@@ -226,6 +262,11 @@ static const Case CASES[] = {
     {"path-area", "room-area", 1, paths},
     {"path-point", "closed-room", 1, paths},
     {"path-bounce-2", "room", 3, secondBounce},
+    {"ssvp-room", "room", 1, ssvp},
+    {"ssvp-printed", "closed-room", 1, ssvpPrinted},
+    {"ssvp-gather", "room", 1, ssvpGather},
+    {"ssvp-clusters", "room", 0, ssvpClusters},
+    {"ssvp-paraboloid", "room", 0, paraboloid},
     {"frame-45", "room-path", 2.5f, laterFrame},
 };
 
