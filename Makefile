@@ -99,7 +99,6 @@ bench: all
 	$(BUILD)/bench/crossover --quick examples/scenes/room.json
 	$(BUILD)/bench/lightcuts examples/scenes/room.json
 	$(BUILD)/bench/rsm examples/scenes/room.json
-	$(BUILD)/bench/rsm_lights examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling
