@@ -107,8 +107,9 @@ bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* g
                                vplReflectiveTexel* texelOut);
 
 // The share in [0, 1] of the emitter's light that something nearer keeps from a point, for 16 points: of the four
-// texels around it, linearly weighted, those that see something nearer than the point's own plane. 0 where the map's
-// view does not reach.
+// texels around it, linearly weighted, those that see something nearer than the point and its own plane, by more than
+// half a texel's side; so planes never shadow themselves, and what is that near to a surface casts no shadow on it. A
+// ray says the same (0 or 1) where all rays within a texel's side around it do. 0 where the map's view does not reach.
 void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES]);
 

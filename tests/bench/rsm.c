@@ -3,8 +3,11 @@
 // costs either way, from how many particles on the map pays, and how far the picture moves; then direct light of the first
 // emitter at 1920x1080, its shadows by rays and by the map. Processor time, medians.
 #include "bench.h"
+#include "rsm_band.h"
 
 #include "base/clock.h"
+
+#include <string.h>
 
 enum { PARTICLES = 100000, RUNS = 5, SIDE = 96, SHOWN = 300, WIDTH = 1920, HEIGHT = 1080 };
 
@@ -132,6 +135,60 @@ static void countDifferent(const vplImage* a, const vplImage* b, double* someOut
     *muchOut = 100.0 * (double)much / (double)pixels;
 }
 
+// A point that a pixel shows, if it faces the emitter, and whether a ray finds it in shadow.
+static bool seePoint(const Bench* b, const vplView* view, int x, int y, vplHit* hit, vplVec3* normal,
+                     bool* dark)
+{
+    const vplEmitterDef* e = &b->emitters[0];
+    const vplRay look = {view->eye, rayThrough(view, x, y), {0, 0}};
+    if (!vplGeometry_ClosestHit(b->geometry, &look, hit)) {
+        return false;
+    }
+    const bool parallel = e->type == VPL_EMITTER_DIRECTIONAL;
+    const vplVec3 way = parallel ? vplNegate(e->direction) : vplSub(e->position, hit->position);
+    const vplRay ray = vplGeometry_Leave(b->geometry, hit, way);
+    *normal = vplDot(hit->normal, look.direction) > 0 ? vplNegate(hit->normal) : hit->normal;
+    *dark = vplGeometry_IsOccluded(b->geometry, &ray, parallel ? INFINITY : 1);
+    return vplDot(way, *normal) > 0 &&
+           (e->type != VPL_EMITTER_SPOT ||
+            vplSpot_Falloff(e, -(double)vplDot(vplNormalize(way), vplNormalize(e->direction))) > 0);
+}
+
+// Of every `STEP`-th pixel each way: how often map and rays disagree, and that they do not where they must not.
+static void measureAgreement(const Bench* b, const vplView* view, const vplReflectiveMap* map)
+{
+    enum { STEP = 11 };
+    int points = 0, sure = 0, mapOnly = 0, rayOnly = 0, wrong = 0;
+    for (int i = 0; i < (WIDTH / STEP) * (HEIGHT / STEP); i++) {
+        vplSurface s;
+        vplHit hit;
+        vplVec3 n;
+        bool dark;
+        float factor[VPL_LANES];
+        if (!seePoint(b, view, i % (WIDTH / STEP) * STEP, i / (WIDTH / STEP) * STEP, &hit, &n, &dark)) {
+            continue;
+        }
+        memset(&s, 0, sizeof s);
+        s.px[0] = hit.position.x;
+        s.py[0] = hit.position.y;
+        s.pz[0] = hit.position.z;
+        s.nx[0] = n.x;
+        s.ny[0] = n.y;
+        s.nz[0] = n.z;
+        vplReflectiveMap_FactorBlock(map, &s, factor);
+        const bool must = isSure(b->geometry, map, hit.position, n, dark);
+        points++;
+        sure += must;
+        mapOnly += factor[0] > 0.5f && !dark;
+        rayOnly += factor[0] <= 0.5f && dark;
+        wrong += must && factor[0] != (dark ? 1 : 0);
+    }
+    const double percent = 100.0 / (points > 0 ? points : 1);
+    printf("%6d: dark in the map only %.3f%%, by the ray only %.3f%%; beyond the band %.1f%%, of these wrong "
+           "%d of %d\n",
+           map->size, percent * mapOnly, percent * rayOnly, percent * sure, wrong, sure);
+}
+
 static void measureShadows(Bench* b)
 {
     const vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), WIDTH, HEIGHT);
@@ -155,6 +212,12 @@ static void measureShadows(Bench* b)
         countDifferent(byRays, byMap, &some, &much);
         printf("%6d %9.2f %12.2f %12.2f %9.3f%% %9.3f%%\n", size, median(draws, RUNS), median(rays, RUNS),
                median(looks, RUNS), some, much);
+    }
+    for (int size = 512; size <= 2048; size *= 2) {
+        vplReflectiveMap* map;
+        drawMaps(b, size, &map);
+        measureAgreement(b, &view, map);
+        vplReflectiveMap_Destroy(map);
     }
     vplImage_Destroy(byRays);
     vplImage_Destroy(byMap);
