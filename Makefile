@@ -96,6 +96,7 @@ bench: all
 	$(BUILD)/bench/shadow examples/scenes/room.json
 	$(BUILD)/bench/rays examples/scenes/room.json
 	$(BUILD)/bench/interleaved examples/scenes/room.json
+	$(BUILD)/bench/ssvp examples/scenes/room.json
 	$(BUILD)/bench/crossover --quick examples/scenes/room.json
 	$(BUILD)/bench/lightcuts examples/scenes/room.json
 	$(BUILD)/bench/rsm examples/scenes/room.json

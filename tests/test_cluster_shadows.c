@@ -194,6 +194,43 @@ static void VisibilityIsThatOfEachPoint(void** state)
     closeSetting(&s);
 }
 
+// Far above a floor, which half of the clusters a class has lights of makes no difference: the sum is that of deferred
+// shading, with clusters of many and of few lights, and few or many clusters.
+static void EachLightIsInOneClass(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    Setting s = openSetting(context, floorQuad(context, vplVec(0, 0, 0), 100, 0.5f));
+    s.view = stageView(vplVec(0, 3, 0.5f), WIDTH, HEIGHT);
+    for (int i = 0; i < COUNT; i++) {
+        s.lights[i].py = 2000 + 100 * s.lights[i].py;
+        s.lights[i].r = s.lights[i].g = s.lights[i].b = 1e6f;
+    }
+    static const int counts[] = {1, 7, 8, 9, 30, COUNT};
+    for (int k = 0; k < 6; k++) {
+        for (int i = 0; i < COUNT; i++) {
+            s.clusters[i] = (int)((int64_t)i * i * counts[k] / (COUNT * COUNT)) - (k == 3);
+        }
+        const vplShadeDef all = clusteredDef(&s, COUNT, 0);
+        vplImage* deferred = shadeStage(s.geometry, &s.view, &all);
+        for (int side = 2; side <= 6; side++) {
+            const vplShadeDef def = clusteredDef(&s, COUNT, side);
+            vplImage* image = shadeStage(s.geometry, &s.view, &def);
+            for (int i = 0; i < WIDTH * HEIGHT; i++) {
+                const int x = i % WIDTH, y = i / WIDTH, border = side - 1;
+                if (x >= border && y >= border && x < WIDTH - border && y < HEIGHT - border) {
+                    const double wanted = (double)deferred->pixels[3 * i];
+                    assert_true(wanted > 0);
+                    assertNear((double)image->pixels[3 * i], wanted, 1e-6 * wanted, "radiance", counts[k]);
+                }
+            }
+            vplImage_Destroy(image);
+        }
+        vplImage_Destroy(deferred);
+    }
+    closeSetting(&s);
+}
+
 // ---- the same bits
 
 // The stage below a smooth sphere, whose points have two normals.
@@ -275,5 +312,5 @@ TEST_SUITE(clusterShadows, cmocka_unit_test(OneClusterThatSeesAllHasTheBitsOfNoS
            cmocka_unit_test(InterleavedByOneIsDeferredBitForBit),
            cmocka_unit_test(ClustersOfOneLightAreMapsOfTheirOwn),
            cmocka_unit_test(AnyOrderOfClustersGivesTheSameSum), cmocka_unit_test(VisibilityIsThatOfEachPoint),
-           cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),
+           cmocka_unit_test(EachLightIsInOneClass), cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),
            cmocka_unit_test(WhatClustersCannotDoIsRefused));

@@ -326,6 +326,66 @@ static void EveryFailedAllocationOfLightcutsIsReported(void** state)
     }
 }
 
+// Interleaved lights of eight clusters. Variants: before neighbours share, after that.
+static vplResult shadeClusters(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    enum { LIGHTS = 16, CLUSTERS = 8 };
+    static const float texels[2 * 4 * 4];
+    vplShadeLight lights[LIGHTS];
+    int clusters[LIGHTS];
+    vplParaboloidMap maps[CLUSTERS];
+    for (int i = 0; i < LIGHTS; i++) {
+        lights[i] = (vplShadeLight){.py = 2, .pz = (float)i, .ny = -1, .r = 1, .g = 1, .b = 1};
+        clusters[i] = i / 2;
+        maps[i / 2] = (vplParaboloidMap){.position = {0, 2, 0},
+                                         .right = {1, 0, 0},
+                                         .up = {0, 0, -1},
+                                         .forward = {0, 1, 0},
+                                         .size = 4,
+                                         .hemispheres = 2,
+                                         .texels = texels,
+                                         .context = context};
+    }
+    const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
+                             .accumulation = VPL_ACCUMULATE_INTERLEAVED,
+                             .output = variant ? VPL_OUTPUT_DENOISED : VPL_OUTPUT_GATHER,
+                             .interleave = 2,
+                             .minDistance = 0.1f,
+                             .lights = lights,
+                             .lightCount = LIGHTS,
+                             .lightClusters = clusters,
+                             .clusterShadows = maps,
+                             .clusterCount = CLUSTERS};
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    vplImage* image = NULL;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Create(context, 8, 6, &image);
+    }
+    if (result == VPL_SUCCESS) {
+        const vplView view = vplView_Create(vplScene_GetCamera(scene, 0), 8, 6);
+        result = vplShadeView(geometry, &view, &def, NULL, NULL, image, NULL);
+    }
+    vplImage_Destroy(image);
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfLightsInClustersIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(shadeClusters, "png", variant, false);
+        failEveryAllocation(shadeClusters, "png", variant, true);
+    }
+}
+
 static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** state)
 {
     (void)state;
@@ -624,6 +684,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAReflectiveMapIsReported),

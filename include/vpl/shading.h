@@ -68,7 +68,8 @@ typedef enum vplShadeOutput {
     VPL_OUTPUT_DEPTH,         // distance along the view axis, metres; 0 where nothing is
     VPL_OUTPUT_NORMALS,       // unit normals as shaded; 0 where nothing is
     VPL_OUTPUT_SHADOW_FACTOR, // s of the first emitter, [0, 1]
-    VPL_OUTPUT_GATHER, // interleaved: indirect irradiance of each pixel's own class, K^2 times as bright, W/m^2
+    VPL_OUTPUT_GATHER,  // irradiance of virtual lights only, W/m^2; interleaved: of the pixel's own class of
+                        // lights, K^2 times as bright
     VPL_OUTPUT_DENOISED // the same after neighbours have shared
 } vplShadeOutput;
 
@@ -118,10 +119,13 @@ typedef struct vplShadeDef {
     int lightCount;                 // 0: no indirect light
     const vplHalfMap* lightShadows; // one per virtual light; NULL: they cast none, or by rays
     bool lightRays;                 // virtual lights cast shadows by rays
-    // Instead of these: lights that share what their clusters see. Lights of one cluster follow each other, or are
-    // slower. Deferred and interleaved only.
-    const int*
-        lightClusters; // one per virtual light: index in clusterShadows, -1: it casts none; NULL: no clusters
+    // Instead of these: lights that share what their clusters see. Lights of one cluster are summed and then
+    // multiplied by its visibility, which is looked up where they give anything: in groups of VPL_LIGHT_GROUP lights,
+    // and wherever the list changes cluster, so lights of one cluster should follow each other. Interleaved: with 8
+    // clusters that have lights, and more, and an even K, each class has lights of every other cluster. Deferred and
+    // interleaved only, without compensation.
+    // One per virtual light: index in clusterShadows, -1: it casts none; NULL (default): no clusters.
+    const int* lightClusters;
     const vplParaboloidMap* clusterShadows;
     int clusterCount;
     // One per emitter: its shadow is taken from what it lights first; NULL, also of an entry: as above.

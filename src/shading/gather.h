@@ -38,8 +38,11 @@ typedef struct vplGatherRoom {
 typedef struct vplInterleave {
     vplShadeDef def; // with the lights in the order of their classes
     vplShadeLight* lights;
-    vplHalfMap* shadows;  // NULL where lights have no maps
-    int* clusters;        // NULL where lights have no clusters
+    vplHalfMap* shadows; // NULL where lights have no maps
+    int* clusters;       // NULL where lights have no clusters
+    int* classes;        // one per light of the caller's
+    int classStart[VPL_MAX_INTERLEAVE * VPL_MAX_INTERLEAVE +
+                   1];    // a class's first light; that of the next ends them
     float* planes;        // VPL_GATHER_PLANES of pixelCount values
     vplGatherRoom* rooms; // one per worker
     size_t pixelCount;
@@ -50,13 +53,6 @@ typedef struct vplInterleave {
 static inline float* vplGatherPlane(const vplInterleave* w, int plane)
 {
     return w->planes + (size_t)plane * w->pixelCount;
-}
-
-// First of a class's lights; that of the next class ends them.
-static inline int vplClassStart(int lightCount, int classCount, int which)
-{
-    const int each = lightCount / classCount, more = lightCount % classCount;
-    return which * each + (which < more ? which : more);
 }
 
 #endif

@@ -12,8 +12,74 @@
 
 #include <string.h>
 
-// Lights i with equal i mod classCount side by side: of lights in the order of their clusters each class has some of
-// every cluster, in that order.
+// With this many clusters and more each class has lights of one half of them only, and pixels with lights of either half
+// alternate like the fields of a chessboard: what clusters see is asked for half as often. With 8 clusters of 512 lights,
+// 4x4 and 1920x1080 the error is 0.0328 instead of 0.0330 in a conference room and 0.176 instead of 0.167 in Sibenik, in
+// 200 and 195 instead of 267 and 246 ms of processor time. Quarters make it 0.0366 and 0.264 in 171 and 169 ms.
+enum { LEAST_TO_HALVE = 8 };
+
+// Which half of the clusters each belongs to, so that both have about as many lights; the last are lights without a
+// cluster. False where halves would not pay, or classes have no chessboard.
+static bool findHalves(const vplShadeDef* def, int side, int* halves)
+{
+    int lights[2] = {0, 0}, used = 0;
+    memset(halves, 0, ((size_t)def->clusterCount + 1) * sizeof *halves);
+    for (int i = 0; i < def->lightCount; i++) {
+        const int cluster = def->lightClusters[i];
+        halves[cluster < 0 ? def->clusterCount : cluster]++;
+    }
+    for (int i = 0; i <= def->clusterCount; i++) {
+        const int count = halves[i];
+        used += count > 0;
+        halves[i] = lights[1] < lights[0];
+        lights[halves[i]] += count;
+    }
+    return used >= LEAST_TO_HALVE && side % 2 == 0;
+}
+
+// The class of each light. Without `halves` lights are dealt out to all in turn.
+static void findClasses(const vplShadeDef* def, int side, const int* halves, int* classes)
+{
+    int turn[2] = {0, 0};
+    for (int i = 0; i < def->lightCount; i++) {
+        if (halves == NULL) {
+            classes[i] = i % (side * side);
+            continue;
+        }
+        const int cluster = def->lightClusters[i], half = halves[cluster < 0 ? def->clusterCount : cluster];
+        const int field = 2 * turn[half], y = field / side;
+        classes[i] = field + ((y + half) & 1);
+        turn[half] = (turn[half] + 1) % (side * side / 2);
+    }
+}
+
+static vplResult chooseClasses(vplContext* context, const vplShadeDef* def, int side, int* classes)
+{
+    if (def->lightClusters == NULL) {
+        findClasses(def, side, NULL, classes);
+        return VPL_SUCCESS;
+    }
+    int* halves = vplAlloc(context, (size_t)def->clusterCount + 1, sizeof *halves);
+    if (halves == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    findClasses(def, side, findHalves(def, side, halves) ? halves : NULL, classes);
+    vplFree(context, halves);
+    return VPL_SUCCESS;
+}
+
+static void putLight(const vplShadeDef* def, vplInterleave* w, int i, int at)
+{
+    w->lights[at] = def->lights[i];
+    if (w->shadows != NULL) {
+        w->shadows[at] = def->lightShadows[i];
+    }
+    if (w->clusters != NULL) {
+        w->clusters[at] = def->lightClusters[i];
+    }
+}
+
+// Lights of a class side by side, in the order that they have in the list: clusters stay together.
 static vplResult sortLights(vplShading* s, vplInterleave* w)
 {
     vplContext* context = s->geometry->context;
@@ -22,21 +88,22 @@ static vplResult sortLights(vplShading* s, vplInterleave* w)
     w->lights = vplAlloc(context, (size_t)count, sizeof *w->lights);
     w->shadows = def->lightShadows ? vplAlloc(context, (size_t)count, sizeof *w->shadows) : NULL;
     w->clusters = def->lightClusters ? vplAlloc(context, (size_t)count, sizeof *w->clusters) : NULL;
-    if (w->lights == NULL || (def->lightShadows != NULL && w->shadows == NULL) ||
-        (def->lightClusters != NULL && w->clusters == NULL)) {
+    w->classes = vplAlloc(context, (size_t)count, sizeof *w->classes);
+    if (w->lights == NULL || w->classes == NULL || (def->lightShadows != NULL && w->shadows == NULL) ||
+        (def->lightClusters != NULL && w->clusters == NULL) ||
+        chooseClasses(context, def, w->side, w->classes) != VPL_SUCCESS) {
         return VPL_OUT_OF_MEMORY;
     }
-    int at = 0;
-    for (int first = 0; first < classCount; first++) {
-        for (int i = first; i < count; i += classCount, at++) {
-            w->lights[at] = def->lights[i];
-            if (w->shadows != NULL) {
-                w->shadows[at] = def->lightShadows[i];
-            }
-            if (w->clusters != NULL) {
-                w->clusters[at] = def->lightClusters[i];
-            }
-        }
+    int next[VPL_MAX_INTERLEAVE * VPL_MAX_INTERLEAVE + 1] = {0};
+    for (int i = 0; i < count; i++) {
+        next[w->classes[i] + 1]++;
+    }
+    for (int i = 0; i < classCount; i++) {
+        next[i + 1] += next[i];
+    }
+    memcpy(w->classStart, next, sizeof next);
+    for (int i = 0; i < count; i++) {
+        putLight(def, w, i, next[w->classes[i]]++);
     }
     w->def = *def;
     w->def.lights = w->lights;
@@ -109,6 +176,7 @@ void vplCloseInterleave(vplShading* shading)
     if (w != NULL) {
         vplFree(context, w->rooms);
         vplFree(context, w->planes);
+        vplFree(context, w->classes);
         vplFree(context, w->clusters);
         vplFree(context, w->shadows);
         vplFree(context, w->lights);

@@ -190,10 +190,10 @@ static void scatter(vplTile* tile, const int* elements, int count, double factor
 static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int x, int y, vplSeen* seen)
 {
     static const int all[MAX_CHUNKS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
-    const int side = s->interleave->side, classes = side * side, lightCount = s->def->lightCount;
+    const int side = s->interleave->side, classes = side * side;
     const int which = (tile->y + y) % side * side + (tile->x + x) % side;
-    const int first = vplClassStart(lightCount, classes, which);
-    const int end = vplClassStart(lightCount, classes, which + 1);
+    const int first = s->interleave->classStart[which];
+    const int end = s->interleave->classStart[which + 1];
     vplTileSums* tileSums = tile->scratch;
     int elements[(MAX_CHUNKS + 1) * VPL_LANES];
     const int count = listPixels(tile, r, x, y, side, elements);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a frame's shading costs once memory is there: G-buffer, classes of lights, sharing, and the visibility of
-// clusters; alternated, medians of processor and wall-clock time, and what a light costs 16 pixels.
+// clusters; alternated, medians of processor and wall-clock time, and errors against all lights in every pixel. The last
+// line deals lights out otherwise: each class has lights of one or two clusters, instead of some of every cluster.
 // `bench/ssvp SCENE [LIGHTS [RUNS [WIDTH HEIGHT [CLUSTERS [THREADS]]]]]`; direct light is left out.
 #include "bench.h"
 
@@ -9,33 +10,38 @@
 #include <malloc.h>
 #include <time.h>
 
-enum { MAX_RUNS = 101, MAX_CLUSTERS = 64, MAP_SIZE = 256 };
+enum { MAX_RUNS = 101, MAX_CLUSTERS = 64, MAP_SIZE = 256, SIDE = 4 };
 
 typedef struct Way {
     const char* name;
     vplShadeOutput output;
-    bool lights, clusters;
+    int side; // 1: deferred
+    bool lights, clusters, whole;
+    int before, truth; // ways that it is measured against
 } Way;
 
-static const Way ways[] = {{"G-buffer", VPL_OUTPUT_RADIANCE, false, false},
-                           {"+ classes", VPL_OUTPUT_GATHER, true, false},
-                           {"+ sharing", VPL_OUTPUT_RADIANCE, true, false},
-                           {"+ classes, clusters", VPL_OUTPUT_GATHER, true, true},
-                           {"+ sharing, clusters", VPL_OUTPUT_RADIANCE, true, true}};
-enum { WAYS = sizeof ways / sizeof *ways };
+enum { ALL, ALL_CLUSTERS, GBUFFER, CLASSES, SHARED, CLUSTER_CLASSES, CLUSTER_SHARED, WHOLE, WAYS };
+static const Way ways[WAYS] = {
+    {"all lights", VPL_OUTPUT_RADIANCE, 1, true, false, false, ALL, ALL},
+    {"all lights, clusters", VPL_OUTPUT_RADIANCE, 1, true, true, false, ALL, ALL_CLUSTERS},
+    {"G-buffer", VPL_OUTPUT_RADIANCE, SIDE, false, false, false, GBUFFER, GBUFFER},
+    {"+ classes", VPL_OUTPUT_GATHER, SIDE, true, false, false, GBUFFER, CLASSES},
+    {"+ sharing", VPL_OUTPUT_RADIANCE, SIDE, true, false, false, CLASSES, ALL},
+    {"+ classes, clusters", VPL_OUTPUT_GATHER, SIDE, true, true, false, GBUFFER, CLUSTER_CLASSES},
+    {"+ sharing, clusters", VPL_OUTPUT_RADIANCE, SIDE, true, true, false, CLUSTER_CLASSES, ALL_CLUSTERS},
+    {"the same, dealt whole", VPL_OUTPUT_RADIANCE, SIDE, true, true, true, CLUSTER_CLASSES, ALL_CLUSTERS}};
 
 typedef struct Bench {
     vplContext* context;
     vplScene* scene;
     vplGeometry* geometry;
     vplView view;
-    vplShadeLight* lights;
+    vplShadeLight *lights, *wholeLights;
     int lightCount, clusterCount;
-    int* clusters;
+    int *clusters, *wholeClusters;
     vplParaboloidMaps* maps;
-    vplImage* image;
+    vplImage* images[WAYS];
     double cpu[WAYS][MAX_RUNS], wall[WAYS][MAX_RUNS];
-    uint64_t hash[WAYS];
 } Bench;
 
 static double processorMs(void)
@@ -78,6 +84,8 @@ static void makeClusters(Bench* b, int count)
     count = count < MAX_CLUSTERS ? count : MAX_CLUSTERS;
     b->clusterCount = count;
     b->clusters = malloc((size_t)b->lightCount * sizeof *b->clusters);
+    b->wholeLights = malloc((size_t)b->lightCount * sizeof *b->lights);
+    b->wholeClusters = malloc((size_t)b->lightCount * sizeof *b->clusters);
     qsort(b->lights, (size_t)b->lightCount, sizeof *b->lights, alongX);
     for (int i = 0; i < b->lightCount; i++) {
         b->clusters[i] = (int)((int64_t)i * count / b->lightCount);
@@ -85,6 +93,12 @@ static void makeClusters(Bench* b, int count)
     for (int i = 0; i < count; i++) {
         const vplShadeLight* l = &b->lights[(2 * i + 1) * b->lightCount / (2 * count)];
         places[i] = (vplParaboloidPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}, 2, true};
+    }
+    for (int i = 0, from = 0; i < SIDE * SIDE; i++) {
+        for (int k = i; k < b->lightCount; k += SIDE * SIDE, from++) {
+            b->wholeLights[k] = b->lights[from];
+            b->wholeClusters[k] = b->clusters[from];
+        }
     }
     check(vplParaboloidMaps_Create(b->context, MAP_SIZE, count, false, &b->maps));
     check(vplParaboloidMaps_Draw(b->maps, b->geometry, places, count, NULL, NULL));
@@ -95,31 +109,34 @@ static void shade(Bench* b, int which, int run)
     const Way* way = &ways[which];
     vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.5f, .output = way->output};
     def.accumulation = VPL_ACCUMULATE_INTERLEAVED;
-    def.interleave = 4;
-    def.lights = b->lights;
+    def.interleave = way->side;
+    def.lights = way->whole ? b->wholeLights : b->lights;
     def.lightCount = way->lights ? b->lightCount : 0;
     if (way->clusters) {
-        def.lightClusters = b->clusters;
+        def.lightClusters = way->whole ? b->wholeClusters : b->clusters;
         def.clusterShadows = b->maps->maps;
         def.clusterCount = b->clusterCount;
     }
     const double cpu = processorMs(), wall = vplClockMs();
-    check(vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->image, NULL));
+    check(vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->images[which], NULL));
     b->cpu[which][run] = processorMs() - cpu;
     b->wall[which][run] = vplClockMs() - wall;
-    b->hash[which] = vplImage_Hash(b->image);
 }
 
 static void print(Bench* b, int runs)
 {
     printf("%d lights in %d clusters, %dx%d, 4x4, medians of %d runs\n", b->lightCount, b->clusterCount,
            b->view.width, b->view.height, runs);
-    printf("%-22s %9s %9s %9s  %s\n", "", "cpu ms", "more", "wall ms", "hash");
+    printf("%-22s %9s %9s %9s %9s  %s\n", "", "cpu ms", "more", "wall ms", "rel. rmse", "hash");
+    double cpu[WAYS];
     for (int i = 0; i < WAYS; i++) {
-        const double cpu = median(b->cpu[i], runs), wall = median(b->wall[i], runs);
-        const double before = i == 0 ? 0 : b->cpu[i == 3 ? 0 : i - 1][runs / 2];
-        printf("%-22s %9.2f %9.2f %9.2f  %016llx\n", ways[i].name, cpu, cpu - before, wall,
-               (unsigned long long)b->hash[i]);
+        cpu[i] = median(b->cpu[i], runs);
+    }
+    for (int i = 0; i < WAYS; i++) {
+        vplComparison c = {0};
+        check(vplImage_Compare(b->images[i], b->images[ways[i].truth], &c));
+        printf("%-22s %9.2f %9.2f %9.2f %9.4f  %016llx\n", ways[i].name, cpu[i], cpu[i] - cpu[ways[i].before],
+               median(b->wall[i], runs), c.relativeRmse, (unsigned long long)vplImage_Hash(b->images[i]));
     }
 }
 
@@ -136,7 +153,9 @@ int main(int count, char** words)
     check(vplGeometry_Create(b.scene, &b.geometry));
     b.view = vplView_Create(vplScene_GetCamera(b.scene, 0), count > 5 ? atoi(words[4]) : 1920,
                             count > 5 ? atoi(words[5]) : 1080);
-    check(vplImage_Create(b.context, b.view.width, b.view.height, &b.image));
+    for (int i = 0; i < WAYS; i++) {
+        check(vplImage_Create(b.context, b.view.width, b.view.height, &b.images[i]));
+    }
     makeLights(&b, count > 2 ? atoi(words[2]) : 512);
     makeClusters(&b, count > 6 ? atoi(words[6]) : 8);
     for (int run = -1; run < runs; run++) { // the first makes memory
@@ -145,9 +164,13 @@ int main(int count, char** words)
         }
     }
     print(&b, runs);
-    vplImage_Destroy(b.image);
+    for (int i = 0; i < WAYS; i++) {
+        vplImage_Destroy(b.images[i]);
+    }
     free(b.lights);
     free(b.clusters);
+    free(b.wholeLights);
+    free(b.wholeClusters);
     vplParaboloidMaps_Destroy(b.maps);
     vplGeometry_Destroy(b.geometry);
     vplScene_Destroy(b.scene);
