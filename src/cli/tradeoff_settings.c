@@ -56,7 +56,7 @@ const Sweep SWEEPS[] = {
     {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
     {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
     {"bias", "--bias", "auto 0 @0.001 @0.003 @0.01", "Shadow bias"},
-    {"pipeline", "--pipeline", "deferred batched multipass", "How virtual lights are added up"},
+    {"pipeline", "--pipeline", "usual batched multipass", "How virtual lights are added up"},
     {"cut-error", "--pipeline lightcuts --light-shadows ray --particles 10000 --cut-error",
      "0.005 0.01 0.02 0.05 0.1 0.2", "Error of lightcuts"},
     {"lamp-lights", "--lamp-lights", "4 16 64 256", "Lights that stand for lamps"},
