@@ -99,6 +99,7 @@ bench: all
 	$(BUILD)/bench/crossover --quick examples/scenes/room.json
 	$(BUILD)/bench/lightcuts examples/scenes/room.json
 	$(BUILD)/bench/rsm examples/scenes/room.json
+	$(BUILD)/bench/paraboloid --quick examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling
