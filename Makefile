@@ -103,6 +103,7 @@ bench: all
 	$(BUILD)/bench/clusters examples/scenes/room.json
 	$(BUILD)/bench/history examples/scenes/room.json
 	$(BUILD)/bench/flicker examples/scenes/room.json instant-radiosity 12
+	$(BUILD)/bench/paraboloid --quick examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling

@@ -191,12 +191,12 @@ typedef struct vplParaboloidMap {
     vplVec3 right, up, forward; // right-handed, unit
     int size;                   // texels along a side; the disk touches the sides of the square
     int hemispheres;            // 1 or 2
-    const float*
-        texels; // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is
-        // and outside of the disk (of two, by more than a texel's diagonal); [hemisphere][row + 1 (y)]
-        // [column + 1 (x)], size + 2 of either, where those at the sides are there twice
+    // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is and outside of the disk
+    // (of two, by more than a texel's diagonal). [hemisphere][row + 1 (y)][column + 1 (x)], size + 2 of either: those at
+    // the sides are there twice.
+    const float* texels;
     const int32_t*
-        triangles; // in the same order, but not twice: index in the geometry, -1 where nothing is; NULL: not kept
+        triangles; // in that order, not twice: index in the geometry, -1 where nothing is; NULL: not kept
     vplContext* context;
 } vplParaboloidMap;
 

@@ -316,6 +316,7 @@ static vplResult cluster(const Making* m, int k)
     return bounce->lights != NULL ? vplFindClusters(bounce->lights, &def, &bounce->clusters) : VPL_SUCCESS;
 }
 
+// Always lifted, also from mid-air: a mean that lies on a wall but for rounding would see the wall as half of space.
 static vplParaboloidPlace placeOf(const Making* m, const vplSsvpBounce* bounce, int i)
 {
     const vplLightCluster* c = &bounce->clusters->clusters[i];
@@ -324,7 +325,7 @@ static vplParaboloidPlace placeOf(const Making* m, const vplSsvpBounce* bounce, 
                                     member ? bounce->lights->lights[c->nearest].position : c->position,
                                 .normal = c->normal,
                                 .hemispheres = c->flat ? 1 : 2,
-                                .onSurface = member || c->flat};
+                                .onSurface = true};
 }
 
 // With triangles where surfaces are asked for, not only distances.

@@ -110,7 +110,7 @@ static void bound(const Canvas* c, const Sixteen* restrict s, Fillings* restrict
         all->box[1][l] = right;
         all->box[2][l] = j0;
         all->box[3][l] = top;
-        all->kind[l] = above & (s->id[l] >= 0) ? (whole ? some : CROSSING) : UNSEEN;
+        all->kind[l] = (above & (s->id[l] >= 0)) ? (whole ? some : CROSSING) : UNSEEN;
     }
 }
 
