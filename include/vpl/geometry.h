@@ -78,6 +78,9 @@ typedef struct vplGeometry {
     const vplMaterialDef* materials; // without names
     int objectCount, materialCount, vertexCount, triangleCount;
     vplVec3 boundsMin, boundsMax; // of all positions; both 0 when there are none
+    double area;                  // of all triangles, square metres
+    double meanReflectance;       // over the area, mean of the channels; 0 where there is none
+    bool emits;                   // some triangle may
     struct vplRayTree* rayTree;   // what rays are traced through, once there are any
     vplContext* context;
 } vplGeometry;

@@ -151,7 +151,7 @@ typedef struct vplRenderOptions {
         // taken, of which about firstBounce are kept: those whose light stays; [1, 1024]; 1: as in the
         // document; default 16
     int secondBounce;   // second-bounce lights, samples of all paraboloid maps together; default 256
-    int paraboloidSize; // texels along a side of a paraboloid map, [1, VPL_MAX_SHADOW_MAP]; default 256
+    int paraboloidSize; // texels along a side of a paraboloid map, [1, VPL_MAX_SHADOW_MAP]; default 128
     double w1, w2;      // weights of distance, 1/metres, and of the normals; >= 0; default 0.6, 0.4
     vplClusterMetric clusterMetric; // default VPL_CLUSTER_ONE_MINUS
     vplClusterPlace clusterPlace;   // default VPL_CLUSTER_PLACE_MEMBER

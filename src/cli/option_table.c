@@ -68,7 +68,7 @@ const Option OPTIONS[] = {
     {"--second-bounce", "N", SCENE, readInt, AT(render.secondBounce), 0, VPL_MAX_LIGHTS, NULL,
      "lights of the second bounce, samples of all paraboloid maps; ssvp; default 256"},
     {"--paraboloid", "N", SCENE, readInt, AT(render.paraboloidSize), 1, VPL_MAX_SHADOW_MAP, NULL,
-     "texels along the side of a paraboloid map; ssvp; default 256"},
+     "texels along the side of a paraboloid map; ssvp; default 128"},
     {"--w1", "W", SCENE, readDouble, AT(render.w1), 0, 1e15, NULL,
      "weight of the distance between a light and a cluster, 1/metres; ssvp; default 0.6"},
     {"--w2", "W", SCENE, readDouble, AT(render.w2), 0, 1e15, NULL,

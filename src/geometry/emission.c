@@ -108,7 +108,7 @@ static void listSources(const vplEmission* e, Lister* l, int* firstTriangle)
         list(l, i, -1, factor, emitter->intensity);
     }
     *firstTriangle = l->count;
-    for (int i = 0; i < g->triangleCount; i++) {
+    for (int i = 0; g->emits && i < g->triangleCount; i++) {
         vplRgb radiance = g->materials[g->triangleMaterials[i]].emission;
         if (vplRgbMean(radiance) > 0) {
             list(l, -1, i, VPL_PI * vplGeometry_TriangleArea(g, i), radiance);

@@ -77,6 +77,21 @@ static vplResult fill(const vplScene* scene, vplGeometry* g, const vplFreezer* f
     return vplRayTree_Create(g->context, &g->rayTree);
 }
 
+// What renders ask for again and again, over all triangles in order.
+static void sumUp(vplGeometry* g)
+{
+    double reflecting = 0;
+    for (int i = 0; i < g->triangleCount; i++) {
+        const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
+        const vplRgb rho = material->diffuse;
+        const double area = vplGeometry_TriangleArea(g, i);
+        g->area += area;
+        reflecting += area * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
+        g->emits = g->emits || vplRgbMean(material->emission) > 0;
+    }
+    g->meanReflectance = g->area > 0 ? reflecting / g->area : 0;
+}
+
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
 {
     vplContext* context = scene->context;
@@ -111,6 +126,7 @@ vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
         vplGeometry_Destroy(g);
         return result;
     }
+    sumUp(g);
     *geometryOut = g;
     return VPL_SUCCESS;
 }
@@ -132,30 +148,14 @@ void vplGeometry_Destroy(vplGeometry* geometry)
     }
 }
 
-// Sums area, and area times mean reflectance, over all triangles in order.
-static void sumAreas(const vplGeometry* g, double* area, double* reflecting)
-{
-    *area = *reflecting = 0;
-    for (int i = 0; i < g->triangleCount; i++) {
-        const vplRgb rho = g->materials[g->triangleMaterials[i]].diffuse;
-        double a = vplGeometry_TriangleArea(g, i);
-        *area += a;
-        *reflecting += a * ((double)rho.r + (double)rho.g + (double)rho.b) / 3;
-    }
-}
-
 double vplGeometry_Area(const vplGeometry* geometry)
 {
-    double area, reflecting;
-    sumAreas(geometry, &area, &reflecting);
-    return area;
+    return geometry->area;
 }
 
 double vplGeometry_MeanReflectance(const vplGeometry* geometry)
 {
-    double area, reflecting;
-    sumAreas(geometry, &area, &reflecting);
-    return area > 0 ? reflecting / area : 0;
+    return geometry->meanReflectance;
 }
 
 float vplGeometry_Diagonal(const vplGeometry* geometry)

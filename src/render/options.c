@@ -27,7 +27,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.clusters = 8;
     o.firstBounce = o.secondBounce = 256;
     o.oversampling = 16;
-    o.paraboloidSize = 256;
+    o.paraboloidSize = 128;
     o.w1 = 0.6;
     o.w2 = 0.4;
     o.coherence = VPL_COHERENCE_ON;
