@@ -380,6 +380,7 @@ static void CentroidsInMidAirLightTheBallTheyAreIn(void** state)
         vplRenderOptions o = ssvpOptions(32);
         o.show = VPL_SHOW_INDIRECT;
         o.clusters = 2;
+        o.hemispheres = 2;
         o.clusterPlace = (vplClusterPlace)place;
         vplImage* clusters = renderScene(scene, &o, NULL);
         o.lightShadows = VPL_LIGHT_SHADOWS_RAY;

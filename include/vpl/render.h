@@ -154,8 +154,10 @@ typedef struct vplRenderOptions {
     int paraboloidSize; // texels along a side of a paraboloid map, [1, VPL_MAX_SHADOW_MAP]; default 128
     double w1, w2;      // weights of distance, 1/metres, and of the normals; >= 0; default 0.6, 0.4
     vplClusterMetric clusterMetric; // default VPL_CLUSTER_ONE_MINUS
-    vplClusterPlace clusterPlace;   // default VPL_CLUSTER_PLACE_MEMBER
-    vplSecondWeight secondWeight;   // default VPL_SECOND_WEIGHT_COSINE
+    int hemispheres; // that a cluster sees, 1 or 2; default 1: its lights do not shine behind the plane through it, even
+                     // where they might; 2: behind it, too, unless it is flat
+    vplClusterPlace clusterPlace; // default VPL_CLUSTER_PLACE_MEMBER
+    vplSecondWeight secondWeight; // default VPL_SECOND_WEIGHT_COSINE
 
     double frame;        // number of the frame that cameras and emitters with a path are posed at; default 0
     vplHistory* history; // what the frame before hands on, see vplHistory_Create; NULL (default): nothing

@@ -69,6 +69,10 @@ const Option OPTIONS[] = {
      "lights of the second bounce, samples of all paraboloid maps; ssvp; default 256"},
     {"--paraboloid", "N", SCENE, readInt, AT(render.paraboloidSize), 1, VPL_MAX_SHADOW_MAP, NULL,
      "texels along the side of a paraboloid map; ssvp; default 128"},
+    {"--hemispheres", "H", SCENE, readInt, AT(render.hemispheres), 1, 2, NULL,
+     "that a cluster sees: 1 (default): its lights do not shine behind the plane through it; 2: they do, in "
+     "more than "
+     "twice the time; ssvp"},
     {"--w1", "W", SCENE, readDouble, AT(render.w1), 0, 1e15, NULL,
      "weight of the distance between a light and a cluster, 1/metres; ssvp; default 0.6"},
     {"--w2", "W", SCENE, readDouble, AT(render.w2), 0, 1e15, NULL,

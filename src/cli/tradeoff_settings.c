@@ -49,6 +49,8 @@ const Sweep SWEEPS[] = {
      "SSVP: what makes a light far from a cluster"},
     {"cluster-place", "--method ssvp --cluster-place", "member mean", "SSVP: where clusters look from"},
     {"paraboloid", "--method ssvp --paraboloid", "64 128 256 512", "SSVP: size of paraboloid maps"},
+    {"hemispheres", "--method ssvp --hemispheres", "1 2", "SSVP: what clusters see"},
+    {"oversampling", "--method ssvp --oversampling", "1 4 16", "SSVP: samples for lights that are of use"},
     {"rsm-size", "--method ssvp --rsm-size", "256 512 1024 2048", "SSVP: size of the reflective map"},
     {"ssvp-interleave", "--method ssvp --interleave", "1 2 4 8",
      "SSVP: lights that neighbouring pixels share"},

@@ -28,6 +28,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.firstBounce = o.secondBounce = 256;
     o.oversampling = 16;
     o.paraboloidSize = 128;
+    o.hemispheres = 1;
     o.w1 = 0.6;
     o.w2 = 0.4;
     o.coherence = VPL_COHERENCE_ON;
@@ -89,6 +90,7 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         {"oversampling", o->oversampling, 1, 1024},
         {"secondBounce", o->secondBounce, 0, VPL_MAX_LIGHTS},
         {"paraboloidSize", o->paraboloidSize, 1, VPL_MAX_SHADOW_MAP},
+        {"hemispheres", o->hemispheres, 1, 2},
         {"clusterMetric", (int)o->clusterMetric, 0, VPL_CLUSTER_ANGLE},
         {"coherence", (int)o->coherence, 0, VPL_COHERENCE_ON},
         {"clusterPlace", (int)o->clusterPlace, 0, VPL_CLUSTER_PLACE_MEAN},

@@ -47,6 +47,7 @@ static vplSsvpKey keyOf(const vplJob* job)
     key.paraboloidSize = o->paraboloidSize;
     key.rsmSize = o->rsmSize;
     key.maxBounces = o->maxBounces;
+    key.hemispheres = o->hemispheres;
     key.clusterMetric = (int)o->clusterMetric;
     key.clusterPlace = (int)o->clusterPlace;
     key.secondWeight = (int)o->secondWeight;
@@ -324,7 +325,7 @@ static vplParaboloidPlace placeOf(const Making* m, const vplSsvpBounce* bounce, 
     return (vplParaboloidPlace){.position =
                                     member ? bounce->lights->lights[c->nearest].position : c->position,
                                 .normal = c->normal,
-                                .hemispheres = c->flat ? 1 : 2,
+                                .hemispheres = c->flat ? 1 : m->job->options.hemispheres,
                                 .onSurface = true};
 }
 

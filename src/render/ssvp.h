@@ -8,7 +8,7 @@
 // What all of it depends on besides the scene: where two are equal byte for byte, so is the rest.
 typedef struct vplSsvpKey {
     int clusters, firstBounce, oversampling, secondBounce, paraboloidSize, rsmSize, maxBounces;
-    int clusterMetric, clusterPlace, secondWeight, lightShadows;
+    int hemispheres, clusterMetric, clusterPlace, secondWeight, lightShadows;
     double w1, w2;
     uint64_t shift;
 } vplSsvpKey;
