@@ -740,6 +740,37 @@ static void refuse(const vplLightSet* set, const vplClusterDef* def, const char*
     assert_string_equal(takeMessage(), sentence);
 }
 
+// A light of weight 3 counts as three, one of 0 as none; where all weigh alike nothing changes.
+static void WeightsMoveMeans(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Lights l;
+    beginLights(&l, context, 4);
+    for (int i = 0; i < 4; i++) {
+        l.lights[i].position = (vplVec3){(float)i, 0, 0};
+    }
+    float weights[4] = {3, 1, 0, 1};
+    vplClusterDef def = vplDefaultClusterDef();
+    def.count = 1;
+    def.weights = weights;
+    vplLightClusters* clusters = find(&l.set, &def);
+    assertNear((double)clusters->clusters[0].position.x, 4.0 / 5, 1e-7, "mean", 0);
+    assert_int_equal(clusters->clusters[0].lightCount, 4);
+    vplLightClusters_Destroy(clusters);
+    def.count = 2; // what weighs nothing is never far
+    weights[3] = 0;
+    clusters = find(&l.set, &def);
+    assert_int_equal(clusters->of[0], 0);
+    assert_int_equal(clusters->of[1], 1);
+    vplLightClusters_Destroy(clusters);
+    weights[1] = NAN;
+    clusters = NULL;
+    assert_int_equal(vplFindClusters(&l.set, &def, &clusters), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "weights[1]"));
+    closeTestContext(context);
+}
+
 static void MistakesAreNamed(void** state)
 {
     (void)state;
@@ -787,4 +818,5 @@ TEST_SUITE(clusters, cmocka_unit_test(AssignmentsCentresAndIterationsAreThoseOfT
            cmocka_unit_test(InASphereTheNearestLightIsOnItsWall), cmocka_unit_test(HugeNumbersStayFinite),
            cmocka_unit_test(ClustersFarFromEachOtherStartBetterThanEveryNthLight),
            cmocka_unit_test(ClustersOfTheLastFrameAreFoundAgainAtOnce),
-           cmocka_unit_test(EmptyClustersOfTheLastFrameStartAnew), cmocka_unit_test(MistakesAreNamed));
+           cmocka_unit_test(EmptyClustersOfTheLastFrameStartAnew), cmocka_unit_test(WeightsMoveMeans),
+           cmocka_unit_test(MistakesAreNamed));

@@ -278,8 +278,11 @@ typedef struct vplClusterDef {
         seeds; // indices of `count` lights that clusters start from; NULL (default): lights that are far
                // from each other, or all lights, in their order, where there are no more than clusters
     const struct vplLightClusters*
-        last;        // where clusters start instead: those of the last frame that have lights;
-                     // others at lights that are far from them; NULL (default)
+        last; // where clusters start instead: those of the last frame that have lights;
+              // others at lights that are far from them; NULL (default)
+    const float*
+        weights; // of the lights, finite, >= 0: a cluster's mean goes by them, and how far is far where clusters
+                 // start; NULL (default): all count alike
     uint32_t cookie; // set by vplDefaultClusterDef
 } vplClusterDef;
 

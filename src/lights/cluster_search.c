@@ -127,10 +127,10 @@ static bool assign(vplClusterSearch* s)
 // ---- each cluster to the mean of its lights
 
 // Of a sum of unit normals that is next to nothing only roundings are left: they point nowhere.
-static void pointAlong(double n[3], const double sum[3], int count)
+static void pointAlong(double n[3], const double sum[3], double weight)
 {
     const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
-    for (int k = 0; k < 3 && length > 1e-6 * count; k++) {
+    for (int k = 0; k < 3 && length > 1e-6 * weight; k++) {
         n[k] = sum[k] / length;
     }
 }
@@ -140,20 +140,22 @@ static void update(vplClusterSearch* s)
     memset(s->tallies, 0, (size_t)s->count * sizeof *s->tallies);
     for (int i = 0; i < s->lightCount; i++) {
         vplClusterTally* tally = &s->tallies[s->of[i]];
+        const double weight = vplClusterSearch_Weight(s, i);
         for (int k = 0; k < 3; k++) {
-            tally->sum.p[k] += s->points[i].p[k];
-            tally->sum.n[k] += s->points[i].n[k];
+            tally->sum.p[k] += weight * s->points[i].p[k];
+            tally->sum.n[k] += weight * s->points[i].n[k];
         }
+        tally->weight += weight;
         tally->lightCount++;
     }
     s->movedCount = 0;
     for (int j = 0; j < s->count; j++) {
         const vplClusterTally* tally = &s->tallies[j];
         vplClusterPoint mean = s->centres[j];
-        for (int k = 0; k < 3 && tally->lightCount > 0; k++) {
-            mean.p[k] = tally->sum.p[k] / tally->lightCount;
+        for (int k = 0; k < 3 && tally->weight > 0; k++) {
+            mean.p[k] = tally->sum.p[k] / tally->weight;
         }
-        pointAlong(mean.n, tally->sum.n, tally->lightCount);
+        pointAlong(mean.n, tally->sum.n, tally->weight);
         s->moved[j] = memcmp(&mean, &s->centres[j], sizeof mean) != 0;
         s->centres[j] = mean;
         if (s->moved[j]) {

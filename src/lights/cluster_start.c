@@ -12,10 +12,15 @@
 static int findMiddle(const vplClusterSearch* s, const vplClusterDistance* distance)
 {
     vplClusterPoint mean = {{0, 0, 0}, {0, 0, 0}};
+    double sum = 0;
     for (int i = 0; i < s->lightCount; i++) {
+        sum += vplClusterSearch_Weight(s, i);
+    }
+    for (int i = 0; i < s->lightCount && sum > 0; i++) {
+        const double share = vplClusterSearch_Weight(s, i) / sum;
         for (int k = 0; k < 3; k++) {
-            mean.p[k] += s->points[i].p[k] / s->lightCount;
-            mean.n[k] += s->points[i].n[k] / s->lightCount;
+            mean.p[k] += s->points[i].p[k] * share;
+            mean.n[k] += s->points[i].n[k] * share;
         }
     }
     int middle = 0;
@@ -33,8 +38,11 @@ static int findMiddle(const vplClusterSearch* s, const vplClusterDistance* dista
 static int findFarthest(const vplClusterSearch* s)
 {
     int farthest = 0;
-    for (int i = 1; i < s->lightCount; i++) {
-        farthest = s->reached[i] > s->reached[farthest] ? i : farthest;
+    double most = -1;
+    for (int i = 0; i < s->lightCount; i++) {
+        const double far = vplClusterSearch_Weight(s, i) * s->reached[i];
+        farthest = far > most ? i : farthest;
+        most = far > most ? far : most;
     }
     return farthest;
 }

@@ -69,6 +69,13 @@ static vplResult checkDef(const vplLightSet* set, const vplClusterDef* def)
                            j, def->seeds[j], set->lightCount);
         }
     }
+    for (int i = 0; def->weights != NULL && i < set->lightCount; i++) {
+        if (!(def->weights[i] >= 0 && isfinite(def->weights[i]))) {
+            return vplFail(context, VPL_INVALID_ARGUMENT,
+                           "vplClusterDef.weights[%d] is %g, must be finite and at least 0", i,
+                           (double)def->weights[i]);
+        }
+    }
     return checkLights(set);
 }
 
@@ -195,7 +202,8 @@ vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def, v
                           .distance = {def->metric, def->w1, def->w2},
                           .lightCount = lights->lightCount,
                           .count = vplMini(def->count, lights->lightCount),
-                          .maxIterations = def->maxIterations};
+                          .maxIterations = def->maxIterations,
+                          .weights = def->weights};
     s.taskCount = (s.lightCount + VPL_CLUSTER_TASK - 1) / VPL_CLUSTER_TASK;
     clusters->context = context;
     clusters->lightCount = s.lightCount;

@@ -26,6 +26,7 @@ typedef struct vplClusterTally {
     vplClusterPoint sum;
     double flux[3];
     double nearest; // distance of its nearest light
+    double weight;  // of all its lights
     int lightCount;
 } vplClusterTally;
 
@@ -36,6 +37,7 @@ typedef struct vplClusterSearch {
     vplClusterDistance distance;
     int lightCount, count, maxIterations;
     vplClusterPoint* points; // of each light
+    const float* weights;    // of each light; NULL: 1
     double* reached;         // of each light: its distance from its cluster
     int* of;                 // of each light: its cluster; zeros before the search
     vplClusterPoint* centres;
@@ -48,6 +50,11 @@ typedef struct vplClusterSearch {
     bool* changed; // of each task: whether a light went to another cluster
     bool first;
 } vplClusterSearch;
+
+static inline double vplClusterSearch_Weight(const vplClusterSearch* search, int light)
+{
+    return search->weights != NULL ? (double)search->weights[light] : 1;
+}
 
 // Where clusters start: where def->last has clusters with lights, or at lights that def->seeds names, then at lights
 // that are far from all those before.

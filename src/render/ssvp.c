@@ -304,17 +304,44 @@ static vplResult sampleSecondBounce(Making* m)
                          : VPL_SUCCESS;
 }
 
+// Clusters are for lights whose light stays in the scene: of Sponza's eight, one had all of the courtyard's floor and the
+// others the roof. FLIP of 4, 8, 16, 32 clusters against path tracing, mean of three seeds: 0.254, 0.248, 0.204, 0.185
+// where all lights count alike; by their use 0.245, 0.192, 0.154, 0.175, by its square 0.278, 0.203, 0.176, 0.179. In
+// closed rooms all are of the same use.
+static vplResult weigh(const Making* m, const vplLightSet* set, float** weightsOut)
+{
+    float* weights = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *weights);
+    const vplResult result =
+        weights ? vplMeasureUse(m->job->geometry, set, USE_RAYS, weights) : VPL_OUT_OF_MEMORY;
+    if (result != VPL_SUCCESS) {
+        vplFree(m->job->context, weights);
+        return result;
+    }
+    *weightsOut = weights;
+    return VPL_SUCCESS;
+}
+
 static vplResult cluster(const Making* m, int k)
 {
     const vplRenderOptions* o = &m->job->options;
     vplSsvpBounce* bounce = &m->lights->bounce[k];
+    if (bounce->lights == NULL) {
+        return VPL_SUCCESS;
+    }
     vplClusterDef def = vplDefaultClusterDef();
     def.count = o->clusters;
     def.metric = o->clusterMetric;
     def.w1 = o->w1;
     def.w2 = o->w2;
     def.last = o->coherence == VPL_COHERENCE_ON && m->last != NULL ? m->last->bounce[k].clusters : NULL;
-    return bounce->lights != NULL ? vplFindClusters(bounce->lights, &def, &bounce->clusters) : VPL_SUCCESS;
+    float* weights = NULL;
+    vplResult result = o->oversampling > 1 ? weigh(m, bounce->lights, &weights) : VPL_SUCCESS;
+    if (result == VPL_SUCCESS) {
+        def.weights = weights;
+        result = vplFindClusters(bounce->lights, &def, &bounce->clusters);
+    }
+    vplFree(m->job->context, weights);
+    return result;
 }
 
 // Always lifted, also from mid-air: a mean that lies on a wall but for rounding would see the wall as half of space.
