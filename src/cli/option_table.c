@@ -132,7 +132,7 @@ const Option OPTIONS[] = {
      "paths per pixel of --method path; default 64"},
     {"--pixel", "P", RENDER, readChoice, AT(render.pixel), 0, 0, "area|centre",
      "area (default): --method path averages over each pixel; centre: looks at its centre, as other methods"},
-    {"--max-bounces", "N", RENDER | INFO, readInt, AT(render.maxBounces), -1, VPL_MAX_BOUNCES, NULL,
+    {"--max-bounces", "N", SCENE, readInt, AT(render.maxBounces), -1, VPL_MAX_BOUNCES, NULL,
      "diffuse reflections before the eye's last, of --method path and (up to 2) of ssvp; -1 (default): as "
      "many as it "
      "takes"},

@@ -212,6 +212,29 @@ static vplResult sampleAll(const Making* m, int count, vplLightSet** setOut)
                                    m->state->emitterCount, &def, setOut);
 }
 
+// A light that moves a little is of another use by a ray or two of sixteen. If weights followed at once, the picture would
+// flicker: they follow within some frames.
+static const float FOLLOW = 0.1f;
+
+// What each sample was taken to be of use in the last frame, and is now.
+static vplResult followUse(const Making* m, const vplLightSet* set, int count, float* use)
+{
+    vplSsvpLights* lights = m->lights;
+    const bool follows = m->last != NULL && m->last->use != NULL && m->last->sampleCount == count;
+    vplFree(lights->context, lights->use);
+    lights->sampleCount = count;
+    lights->use = vplAlloc(lights->context, (size_t)count, sizeof *lights->use);
+    for (int i = 0; lights->use != NULL && i < count; i++) {
+        lights->use[i] = follows ? m->last->use[i] : -1;
+    }
+    for (int i = 0; lights->use != NULL && i < set->lightCount; i++) {
+        float* known = &lights->use[set->lights[i].particle];
+        use[i] = *known >= 0 ? *known + FOLLOW * (use[i] - *known) : use[i];
+        *known = use[i];
+    }
+    return lights->use ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+}
+
 // So many samples, and what each is worth.
 static vplResult sampleAndMeasure(const Making* m, int count, vplLightSet** setOut, float** useOut)
 {
@@ -222,6 +245,9 @@ static vplResult sampleAndMeasure(const Making* m, int count, vplLightSet** setO
     }
     float* use = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *use);
     result = use ? vplMeasureUse(m->job->geometry, set, USE_RAYS, use) : VPL_OUT_OF_MEMORY;
+    if (result == VPL_SUCCESS) {
+        result = followUse(m, set, count, use);
+    }
     if (result != VPL_SUCCESS) {
         vplFree(m->job->context, use);
         vplLightSet_Destroy(set);
@@ -232,11 +258,17 @@ static vplResult sampleAndMeasure(const Making* m, int count, vplLightSet** setO
     return VPL_SUCCESS;
 }
 
-// How many times as many samples as lights are taken. A power of two: samples must not all move with every move of the
-// light.
-static int oversample(const vplRenderOptions* o, int count, double kept)
+// How many times as many samples as lights are taken. A power of two, and that of the last frame as long as it leaves
+// half to five quarters of the lights: samples must not all move with every move of the light.
+static int oversample(const Making* m, int count, double kept)
 {
+    const vplRenderOptions* o = &m->job->options;
+    const int before = m->last != NULL && count > 0 ? m->last->sampleCount / count : 0;
     int factor = 1;
+    if (before > 0 && before * count == m->last->sampleCount && before <= o->oversampling &&
+        2 * before * kept >= count * 0.8 && before * kept <= 1.25 * count) {
+        return before;
+    }
     while (kept > 0 && 2 * factor <= o->oversampling && 2 * factor * kept <= count &&
            (int64_t)2 * factor * count <= VPL_MAX_LIGHTS) {
         factor *= 2;
@@ -250,8 +282,7 @@ static vplResult sampleMaps(const Making* m, int count, vplLightSet** setOut)
     vplLightSet* set = NULL;
     float* use = NULL;
     vplResult result = sampleAndMeasure(m, count, &set, &use);
-    const int factor =
-        result == VPL_SUCCESS ? oversample(&m->job->options, count, vplCountUseful(set, use)) : 1;
+    const int factor = result == VPL_SUCCESS ? oversample(m, count, vplCountUseful(set, use)) : 1;
     if (factor > 1) {
         vplFree(context, use);
         vplLightSet_Destroy(set);
@@ -333,7 +364,7 @@ static vplResult cluster(const Making* m, int k)
     def.metric = o->clusterMetric;
     def.w1 = o->w1;
     def.w2 = o->w2;
-    def.last = o->coherence == VPL_COHERENCE_ON && m->last != NULL ? m->last->bounce[k].clusters : NULL;
+    def.last = m->last != NULL ? m->last->bounce[k].clusters : NULL;
     float* weights = NULL;
     vplResult result = o->oversampling > 1 ? weigh(m, bounce->lights, &weights) : VPL_SUCCESS;
     if (result == VPL_SUCCESS) {
@@ -344,28 +375,51 @@ static vplResult cluster(const Making* m, int k)
     return result;
 }
 
-// Always lifted, also from mid-air: a mean that lies on a wall but for rounding would see the wall as half of space.
-static vplParaboloidPlace placeOf(const Making* m, const vplSsvpBounce* bounce, int i)
+// The light that a cluster looks from: that of the last frame as long as it is one of its lights, so that what is seen
+// does not jump; else the nearest to the mean. -1: none.
+static int findLooker(const Making* m, int k, int cluster)
 {
+    const vplSsvpBounce* bounce = &m->lights->bounce[k];
+    const vplSsvpBounce* last = m->last != NULL ? &m->last->bounce[k] : NULL;
+    const vplLightClusters* clusters = bounce->clusters;
+    if (m->job->options.clusterPlace == VPL_CLUSTER_PLACE_MEAN) {
+        return -1;
+    }
+    for (int i = 0;
+         last != NULL && last->lookers != NULL && cluster < last->clusters->count && i < clusters->lightCount;
+         i++) {
+        if (clusters->of[i] == cluster && bounce->lights->lights[i].particle == last->lookers[cluster]) {
+            return i;
+        }
+    }
+    return clusters->clusters[cluster].nearest;
+}
+
+// Always lifted, also from mid-air: a mean that lies on a wall but for rounding would see the wall as half of space.
+static vplParaboloidPlace placeOf(const Making* m, int k, int i)
+{
+    vplSsvpBounce* bounce = &m->lights->bounce[k];
     const vplLightCluster* c = &bounce->clusters->clusters[i];
-    const bool member = m->job->options.clusterPlace == VPL_CLUSTER_PLACE_MEMBER && c->nearest >= 0;
-    return (vplParaboloidPlace){.position =
-                                    member ? bounce->lights->lights[c->nearest].position : c->position,
+    const int looker = findLooker(m, k, i);
+    const vplVirtualLight* light = looker >= 0 ? &bounce->lights->lights[looker] : NULL;
+    bounce->lookers[i] = light != NULL ? light->particle : -1;
+    return (vplParaboloidPlace){.position = light != NULL ? light->position : c->position,
                                 .normal = c->normal,
-                                .hemispheres = c->flat ? 1 : m->job->options.hemispheres,
+                                .hemispheres = m->sees && !c->flat ? m->job->options.hemispheres : 1,
                                 .onSurface = true};
 }
 
 // With triangles where surfaces are asked for, not only distances.
-static vplResult drawMaps(const Making* m, bool triangles, vplSsvpBounce* bounce)
+static vplResult drawMaps(const Making* m, bool triangles, int k)
 {
     vplJob* job = m->job;
+    vplSsvpBounce* bounce = &m->lights->bounce[k];
     const int count = bounce->clusters->count;
     vplParaboloidPlace* places = vplAlloc(job->context, (size_t)count, sizeof *places);
-    vplResult result = places ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    bounce->lookers = vplAlloc(job->context, (size_t)count, sizeof *bounce->lookers);
+    vplResult result = places && bounce->lookers ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        places[i] = placeOf(m, bounce, i);
-        places[i].hemispheres = m->sees ? places[i].hemispheres : 1; // samples are taken from the front only
+        places[i] = placeOf(m, k, i);
     }
     if (result == VPL_SUCCESS) {
         result = vplParaboloidMaps_Create(job->context, job->options.paraboloidSize, count, triangles,
@@ -387,7 +441,7 @@ static vplResult clusterFirst(Making* m)
 static vplResult drawFirst(Making* m)
 {
     const bool shown = m->job->options.show == VPL_SHOW_PARABOLOID;
-    return m->sees || m->twice || shown ? drawMaps(m, m->twice || shown, &m->lights->bounce[0]) : VPL_SUCCESS;
+    return m->sees || m->twice || shown ? drawMaps(m, m->twice || shown, 0) : VPL_SUCCESS;
 }
 
 static vplResult clusterSecond(Making* m)
@@ -397,8 +451,7 @@ static vplResult clusterSecond(Making* m)
 
 static vplResult drawSecond(Making* m)
 {
-    vplSsvpBounce* second = &m->lights->bounce[1];
-    return m->sees && second->lights != NULL ? drawMaps(m, false, second) : VPL_SUCCESS;
+    return m->sees && m->lights->bounce[1].lights != NULL ? drawMaps(m, false, 1) : VPL_SUCCESS;
 }
 
 // ---- both bounces as one list
@@ -471,8 +524,10 @@ static void destroyLights(vplSsvpLights* lights)
         vplLightSet_Destroy(lights->bounce[i].lights);
         vplLightClusters_Destroy(lights->bounce[i].clusters);
         vplParaboloidMaps_Destroy(lights->bounce[i].maps);
+        vplFree(lights->context, lights->bounce[i].lookers);
     }
     vplLightSet_Destroy(lights->set);
+    vplFree(lights->context, lights->use);
     vplFree(lights->context, lights->clusterOf);
     vplFree(lights->context, lights->shadows);
     vplFree(lights->context, lights);
@@ -491,9 +546,10 @@ vplResult vplSsvp_MakeLights(vplJob* job, vplSsvpState* state)
     }
     lights->context = job->context;
     memcpy(&lights->key, &key, sizeof key);
-    Making m = {.job = job, .state = state, .lights = lights, .last = state->lights};
-    if (m.last == NULL && history != NULL && history->ssvp != NULL) {
-        m.last = history->ssvp->lights;
+    Making m = {.job = job, .state = state, .lights = lights};
+    if (job->options.coherence == VPL_COHERENCE_ON) {
+        m.last = state->lights == NULL && history != NULL && history->ssvp != NULL ? history->ssvp->lights
+                                                                                   : state->lights;
     }
     m.sees = key.lightShadows == VPL_LIGHT_SHADOWS_CLUSTER;
     m.twice = key.maxBounces != 1 && key.secondBounce > 0;

@@ -18,12 +18,16 @@ typedef struct vplSsvpBounce {
     vplLightSet* lights;
     vplLightClusters* clusters;
     vplParaboloidMaps* maps; // one per cluster; NULL where nobody looks
+    int* lookers; // of each cluster: `particle` of the light that it looks from, -1: of none; NULL as maps
 } vplSsvpBounce;
 
 // All lights and what sees for them.
 typedef struct vplSsvpLights {
     vplSsvpKey key;
     vplSsvpBounce bounce[2];
+    float*
+        use; // of each sample of the reflective maps: of what use its light was taken to be; NULL: not asked
+    int sampleCount;
     vplLightSet* set; // both bounces, in their order
     int* clusterOf;   // of each light: index in `shadows`
     vplParaboloidMap* shadows;
