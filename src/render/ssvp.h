@@ -5,6 +5,9 @@
 
 #include "render/ingredients.h"
 
+// Of each light, to find of what use it is: weights change by sixteenths.
+enum { VPL_SSVP_USE_RAYS = 16 };
+
 // What all of it depends on besides the scene: where two are equal byte for byte, so is the rest.
 typedef struct vplSsvpKey {
     int clusters, firstBounce, oversampling, secondBounce, paraboloidSize, rsmSize, maxBounces;
@@ -43,6 +46,23 @@ typedef struct vplSsvpState {
     vplContext* context;
 } vplSsvpState;
 
+// One making of lights.
+typedef struct vplSsvpMaking {
+    vplJob* job;
+    const vplSsvpState* state;
+    vplSsvpLights* lights;
+    const vplSsvpLights* last; // of the frame before; NULL: there is none
+    bool sees;                 // lights see by clusters
+    bool twice;                // there is a second bounce
+} vplSsvpMaking;
+
+// The stages, of bounce k (0 or 1) where they are of one.
+vplResult vplSsvp_SampleFirstBounce(vplSsvpMaking* making);
+vplResult vplSsvp_SampleSecondBounce(vplSsvpMaking* making);
+vplResult vplSsvp_Cluster(vplSsvpMaking* making, int k);
+vplResult vplSsvp_DrawMaps(vplSsvpMaking* making, bool triangles,
+                           int k); // triangles where surfaces are asked for
+
 // Reflective maps of all emitters, unless those of the last frame do. Once per job.
 vplResult vplSsvp_Begin(vplJob* job, vplSsvpState** stateOut);
 
@@ -51,6 +71,12 @@ vplResult vplSsvp_MakeLights(vplJob* job, vplSsvpState* state);
 
 // The lights alone, for who destroys them.
 vplResult vplSsvp_TakeLights(vplJob* job, vplLightSet** setOut);
+
+// NULL is allowed.
+void vplSsvpLights_Destroy(vplSsvpLights* lights);
+
+// What lights depend on besides the scene.
+vplSsvpKey vplSsvp_FindKey(const vplJob* job);
 
 // NULL is allowed.
 void vplSsvp_Destroy(vplSsvpState* state);
