@@ -21,7 +21,7 @@ static vplResult clusterFirst(vplSsvpMaking* m)
 
 static vplResult drawFirst(vplSsvpMaking* m)
 {
-    const bool shown = m->job->options.show == VPL_SHOW_PARABOLOID;
+    const bool shown = m->lights->key.shown;
     return m->sees || m->twice || shown ? vplSsvp_DrawMaps(m, m->twice || shown, 0) : VPL_SUCCESS;
 }
 

@@ -12,6 +12,7 @@ enum { VPL_SSVP_USE_RAYS = 16 };
 typedef struct vplSsvpKey {
     int clusters, firstBounce, oversampling, secondBounce, paraboloidSize, rsmSize, maxBounces;
     int hemispheres, clusterMetric, clusterPlace, secondWeight, lightShadows;
+    bool shown; // a map is looked at, for which it must know surfaces
     double w1, w2;
     uint64_t shift;
 } vplSsvpKey;

@@ -43,6 +43,7 @@ vplSsvpKey vplSsvp_FindKey(const vplJob* job)
     key.clusterPlace = (int)o->clusterPlace;
     key.secondWeight = (int)o->secondWeight;
     key.lightShadows = (int)vplJob_GetLightShadows(job);
+    key.shown = o->show == VPL_SHOW_PARABOLOID;
     key.w1 = o->w1;
     key.w2 = o->w2;
     key.shift = shiftOf(job);
