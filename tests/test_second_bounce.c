@@ -216,7 +216,7 @@ static void APictureOfAMapShowsPositionsNormalsAlbedoAndDistance(void** state)
     assert_int_equal(vplShowParaboloidMap(&s.maps->maps[2], s.geometry, &image), VPL_SUCCESS);
     assert_true(image->width == 4 * 33 && image->height == 33);
     const float* row = image->pixels + 3 * 16 * (size_t)image->width; // straight up, from (0, -1, 0.2)
-    float far = 0; // the longest distance is white
+    float far = 0;                                                    // the longest distance is white
     for (int i = 0; i < 33 * 33; i++) {
         const float texel = s.maps->maps[2].texels[i];
         far = texel > 0 ? fmaxf(far, 1 / texel) : far;
