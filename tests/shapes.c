@@ -203,3 +203,15 @@ vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)
         }
     }
 }
+
+vplReflectiveMap* mapOf(const vplGeometry* geometry, const vplEmitterDef* emitter, int size)
+{
+    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+    vplReflectiveMap* map = NULL;
+    def.emitter = *emitter;
+    def.size = size;
+    if (vplReflectiveMap_Create(geometry, &def, NULL, NULL, &map) != VPL_SUCCESS) {
+        fail_msg("%s", takeMessage());
+    }
+    return map;
+}

@@ -11,7 +11,7 @@ enum { WIDTH = 131, HEIGHT = 75, COUNT = 300, SIZE = 8, TEXELS = 2 * SIZE * SIZE
 
 static const float nothing[TEXELS]; // is seen: light reaches all of the hemispheres that were drawn
 
-static vplParaboloidMap mapOf(vplContext* context, const float* texels, vplVec3 position, int hemispheres)
+static vplParaboloidMap farMapOf(vplContext* context, const float* texels, vplVec3 position, int hemispheres)
 {
     return (vplParaboloidMap){.position = position,
                               .right = {1, 0, 0},
@@ -26,7 +26,7 @@ static vplParaboloidMap mapOf(vplContext* context, const float* texels, vplVec3 
 // Light reaches everything or, from high above up into one hemisphere, nothing.
 static vplParaboloidMap seeing(vplContext* context, bool all)
 {
-    return mapOf(context, nothing, vplVec(0, all ? 3 : 100, 0), all ? 2 : 1);
+    return farMapOf(context, nothing, vplVec(0, all ? 3 : 100, 0), all ? 2 : 1);
 }
 
 typedef struct Setting {
@@ -169,7 +169,7 @@ static void VisibilityIsThatOfEachPoint(void** state)
     (void)state;
     Setting s = openStage();
     memset(s.clusters, 0, sizeof s.clusters);
-    s.maps[0] = mapOf(s.context, nothing, vplVec(0, 1, 0), 1);
+    s.maps[0] = farMapOf(s.context, nothing, vplVec(0, 1, 0), 1);
     Look* looks = lookAt(s.geometry, &s.view);
     for (int side = 0; side <= 4; side += 2) {
         const vplShadeDef plain = stageDef(s.lights, COUNT, side), shared = clusteredDef(&s, COUNT, side);
@@ -266,7 +266,7 @@ static void ThreadsAndInstructionSetsChangeNoBit(void** state)
         }
         Setting s = openSetting(context, smoothStage(context));
         for (int i = 0; i < COUNT; i++) {
-            s.maps[i] = mapOf(context, spots, vplVec(0, 3, 0), 2);
+            s.maps[i] = farMapOf(context, spots, vplVec(0, 3, 0), 2);
         }
         for (int way = 0; way < 2; way++) {
             const vplShadeDef def = clusteredDef(&s, COUNT, 4 * way);

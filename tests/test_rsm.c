@@ -7,18 +7,6 @@
 #include "math/vec.h"
 #include "render/show_maps.h"
 
-static vplReflectiveMap* mapOf(const vplGeometry* g, const vplEmitterDef* emitter, int size)
-{
-    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
-    vplReflectiveMap* map = NULL;
-    def.emitter = *emitter;
-    def.size = size;
-    if (vplReflectiveMap_Create(g, &def, NULL, NULL, &map) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return map;
-}
-
 static size_t texelsOf(const vplReflectiveMap* map)
 {
     return (size_t)map->faceCount * (size_t)map->size * (size_t)map->size;

@@ -7,18 +7,6 @@
 
 #include <stdlib.h>
 
-static vplReflectiveMap* mapOf(const vplGeometry* g, const vplEmitterDef* emitter, int size)
-{
-    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
-    vplReflectiveMap* map = NULL;
-    def.emitter = *emitter;
-    def.size = size;
-    if (vplReflectiveMap_Create(g, &def, NULL, NULL, &map) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return map;
-}
-
 static vplLightSet* sample(const vplGeometry* g, const vplReflectiveMap* const* maps, int mapCount, int count,
                            uint64_t shift)
 {

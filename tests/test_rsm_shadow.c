@@ -4,18 +4,6 @@
 
 #include "bench/rsm_band.h"
 
-static vplReflectiveMap* mapOf(const vplGeometry* g, const vplEmitterDef* emitter, int size)
-{
-    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
-    vplReflectiveMap* map = NULL;
-    def.emitter = *emitter;
-    def.size = size;
-    if (vplReflectiveMap_Create(g, &def, NULL, NULL, &map) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return map;
-}
-
 static vplEmitterDef emitterOf(vplEmitterType type, vplVec3 position, vplVec3 direction)
 {
     vplEmitterDef e = vplDefaultEmitterDef();

@@ -5,6 +5,7 @@
 // along a curve that fills space, so that the number is fixed and each region keeps its share of lights: 0.75 (room)
 // and 0.91 (sponza-sun) of the error that the particles' own order leaves. Lights beyond probability 1 are kept as
 // they are, not doubled.
+#include "lights/light_set.h"
 #include "lights/placement.h"
 
 #include "base/context.h"
@@ -176,26 +177,20 @@ static vplResult makeSet(const vplLightSet* from, const double* p, vplLightSet**
     for (int i = 0; i < from->lightCount; i++) {
         chosen += p[i] > 0;
     }
-    vplLightSet* set = vplAlloc(context, 1, sizeof *set);
-    if (set == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    vplLightSet* set;
+    const vplResult result = vplLightSet_Make(context, (int)chosen, from->stepCount, &set);
+    if (result != VPL_SUCCESS) {
+        return result;
     }
-    *set = *from;
-    vplVirtualLight* lights = vplAlloc(context, chosen, sizeof *lights);
-    int* counts = vplAlloc(context, (size_t)from->stepCount, sizeof *counts);
-    int* inStep = vplAllocZero(context, (size_t)from->stepCount, sizeof *inStep);
-    set->lights = lights;
-    set->stepCounts = counts;
-    set->lightsInStep = inStep;
     set->lightCount = 0;
-    if (lights == NULL || counts == NULL || inStep == NULL) {
-        vplLightSet_Destroy(set);
-        return VPL_OUT_OF_MEMORY;
-    }
+    set->escaped = from->escaped;
+    set->rays = from->rays;
+    set->rayObjectTests = from->rayObjectTests;
+    set->particleCount = from->particleCount;
     for (int i = 0; i < from->stepCount; i++) {
-        counts[i] = from->stepCounts[i];
+        ((int*)set->stepCounts)[i] = from->stepCounts[i];
     }
-    take(from, p, lights, inStep, set);
+    take(from, p, (vplVirtualLight*)set->lights, (int*)set->lightsInStep, set);
     *setOut = set;
     return VPL_SUCCESS;
 }

@@ -3,11 +3,10 @@
 // Real-Time Global Illumination, section II-A: the texels of a reflective shadow map at the points of the 2D Hammersley
 // sequence are the lights of the first bounce. Departs: what a light sends out is written down, as the document does
 // not; several emitters share the lights by power, and a point's six faces lie side by side in the unit square.
-#include <vpl/lights.h>
-
 #include "base/context.h"
 #include "base/rng.h"
 #include "geometry/emission.h"
+#include "lights/light_set.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 
@@ -132,31 +131,23 @@ static void takeSamples(void* data, int chunk, int worker)
 
 // ---- the set
 
-static vplResult makeSet(Sampling* s, vplLightSet* set)
+static void fillSet(Sampling* s, vplLightSet* set)
 {
-    int* counts = vplAllocZero(set->context, 1, sizeof *counts);
-    int* inStep = vplAllocZero(set->context, 1, sizeof *inStep);
-    s->slots = vplAlloc(set->context, (size_t)s->count, sizeof *s->slots);
-    s->first = vplAlloc(set->context, (size_t)s->mapCount + 1, sizeof *s->first);
-    set->lights = s->slots;
-    set->stepCounts = counts;
-    set->lightsInStep = inStep;
-    if (!counts || !inStep || !s->slots || !s->first) {
-        return VPL_OUT_OF_MEMORY;
-    }
     shareSamples(s);
     const int taken = s->first[s->mapCount];
     vplParallelFor(set->context, (taken + CHUNK - 1) / CHUNK, takeSamples, s);
+    set->lightCount = 0;
     for (int i = 0; i < taken; i++) {
         if (s->slots[i].weight > 0) {
             s->slots[set->lightCount++] = s->slots[i];
         }
     }
-    counts[0] = set->particleCount = s->count;
-    inStep[0] = set->lightCount;
-    set->stepCount = s->count > 0 ? 1 : 0;
+    set->particleCount = s->count;
     set->escaped = (int)s->escaped;
-    return VPL_SUCCESS;
+    if (set->stepCount > 0) {
+        ((int*)set->stepCounts)[0] = s->count;
+        ((int*)set->lightsInStep)[0] = set->lightCount;
+    }
 }
 
 vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
@@ -171,19 +162,24 @@ vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflecti
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplRsmSampleDef.count is %d, must be in [0, %d]",
                        def->count, VPL_MAX_LIGHTS);
     }
-    vplLightSet* set = vplAllocZero(context, 1, sizeof *set);
-    if (set == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    set->context = context;
-    Sampling s = {
-        .geometry = geometry, .maps = maps, .mapCount = mapCount, .count = def->count, .shift = def->shift};
-    const vplResult result = makeSet(&s, set);
-    vplFree(context, s.first);
+    vplLightSet* set;
+    const vplResult result = vplLightSet_Make(context, def->count, def->count > 0 ? 1 : 0, &set);
     if (result != VPL_SUCCESS) {
-        vplLightSet_Destroy(set);
         return result;
     }
+    Sampling s = {.geometry = geometry,
+                  .maps = maps,
+                  .mapCount = mapCount,
+                  .count = def->count,
+                  .shift = def->shift,
+                  .slots = (vplVirtualLight*)set->lights};
+    s.first = vplAlloc(context, (size_t)mapCount + 1, sizeof *s.first);
+    if (s.first == NULL) {
+        vplLightSet_Destroy(set);
+        return VPL_OUT_OF_MEMORY;
+    }
+    fillSet(&s, set);
+    vplFree(context, s.first);
     *setOut = set;
     return VPL_SUCCESS;
 }

@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "base/rng.h"
+#include "lights/light_set.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 
@@ -141,31 +142,21 @@ vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClu
                                   vplLightSet** setOut)
 {
     vplContext* context = maps->context;
-    const vplResult result = check(clusters, maps, def);
+    vplResult result = check(clusters, maps, def);
     if (result != VPL_SUCCESS) {
         return result;
     }
-    vplLightSet* set = vplAllocZero(context, 1, sizeof *set);
-    if (set == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    vplLightSet* set;
+    result = vplLightSet_Make(context, def->count, 2, &set);
+    if (result != VPL_SUCCESS) {
+        return result;
     }
-    int* counts = vplAllocZero(context, 2, sizeof *counts);
-    int* inStep = vplAllocZero(context, 2, sizeof *inStep);
-    vplVirtualLight* lights = vplAlloc(context, (size_t)def->count, sizeof *lights);
-    *set = (vplLightSet){.lights = lights,
-                         .stepCounts = counts,
-                         .lightsInStep = inStep,
-                         .stepCount = 2,
-                         .particleCount = def->count,
-                         .context = context};
-    if (counts == NULL || inStep == NULL || lights == NULL) {
-        vplLightSet_Destroy(set);
-        return VPL_OUT_OF_MEMORY;
-    }
-    Sampling s = {geometry, clusters, maps, def, set, lights};
+    set->lightCount = 0;
+    set->particleCount = def->count;
+    Sampling s = {geometry, clusters, maps, def, set, (vplVirtualLight*)set->lights};
     takeSamples(&s);
-    counts[1] = def->count;
-    inStep[1] = set->lightCount;
+    ((int*)set->stepCounts)[1] = def->count;
+    ((int*)set->lightsInStep)[1] = set->lightCount;
     *setOut = set;
     return VPL_SUCCESS;
 }
