@@ -146,7 +146,7 @@ static void countDraws(const vplRenderOptions* o, Info* info)
 }
 
 // SSVP draws every object once per face of its reflective maps and once for the camera; what paraboloid maps draw is
-// not counted as draws. Lights that meet nothing are left out later, and flat clusters need one hemisphere.
+// not counted as draws. Lights that meet nothing are left out later.
 static void countSsvp(const vplRenderOptions* o, Info* info)
 {
     const bool clusters =
@@ -162,7 +162,7 @@ static void countSsvp(const vplRenderOptions* o, Info* info)
         info->steps += lights[i] > 0;
         info->particlesPerStep[i] = lights[i];
         info->virtualLights += lights[i];
-        texels += clusters || sampled ? count * 2 * map * map * (sampled ? 2 : 1) : 0;
+        texels += clusters || sampled ? count * o->hemispheres * map * map * (sampled ? 2 : 1) : 0;
     }
     info->drawCalls = info->objects * (faces + o->antialias);
     info->shadowMapBytes = texels * (int64_t)sizeof(float);

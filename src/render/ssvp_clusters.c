@@ -15,6 +15,7 @@ static vplResult weigh(const vplSsvpMaking* m, const vplLightSet* set, float** w
         vplFree(m->job->context, weights);
         return result;
     }
+    m->job->stats.rays += VPL_SSVP_USE_RAYS * (int64_t)set->lightCount;
     *weightsOut = weights;
     return VPL_SUCCESS;
 }

@@ -80,6 +80,7 @@ static vplResult sampleAndMeasure(const vplSsvpMaking* m, int count, vplLightSet
     }
     float* use = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *use);
     result = use ? vplMeasureUse(m->job->geometry, set, VPL_SSVP_USE_RAYS, use) : VPL_OUT_OF_MEMORY;
+    m->job->stats.rays += VPL_SSVP_USE_RAYS * (int64_t)set->lightCount;
     if (result == VPL_SUCCESS) {
         result = followUse(m, set, count, use);
     }

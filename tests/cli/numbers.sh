@@ -53,6 +53,13 @@ for pipeline in multipass "batched --batch 7" deferred interleaved lightcuts; do
         done
     done
 done
+for method in ssvp "ssvp --light-shadows ray" "ssvp --max-bounces 0"; do # how many lights meet something it cannot know
+    stats "Foretold: $method" "$closed" --method $method --size 16x12 --rsm-size 64
+    succeeds "Info: $method" "$vpl" info "$closed" --json --method $method --size 16x12 --rsm-size 64
+    for key in draw_calls triangles; do
+        equals "InfoForetells_$key: $method" "$(field "$s" $key)" "$(field "$scratch/stdout" $key)"
+    done
+done
 # Passes end by a count, an error or a time.
 stats PassesAreCounted "$closed" $counted --method keller --size 16x12 --passes 3
 equals ThreePasses 3 "$(field "$s" passes)"
