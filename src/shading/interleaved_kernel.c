@@ -135,7 +135,9 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
             n[l] = normal[elements[l]];
         }
     }
-    memset(b->sums, 0, sizeof b->sums);
+    for (int c = 0; c < 3; c++) {
+        memset(b->sums[c], 0, sizeof b->sums[c]); // all at once becomes `rep stos`, which is slow to start
+    }
     b->points.surface = b->points.plane = &b->surface;
     b->cluster = VPL_NO_CLUSTER;
     const bool asksPlane = s->smooth && s->def->lightClusters != NULL;
