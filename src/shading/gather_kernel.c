@@ -201,7 +201,6 @@ void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
     for (int c = 0; c < 3; c++) {
         loadPlane(image, vplGatherPlane(w, VPL_GATHER_INDIRECT + c), &part, reach, room->indirect[c][0]);
     }
-    vplSeen_Clear(&room->seen);
     if (part.mixed) {
         findSight(s->view, &part, reach, room);
         for (int row = 0; row < part.rows; row++) {
