@@ -88,6 +88,9 @@ static inline void vplAddClusters(const vplShading* s, const vplKeptLights* kept
     _Alignas(64) float sum[3][VPL_LANES] = {{0}};
     for (int i = 0; i < kept->runCount; i++) {
         const vplLightRun* run = &kept->runs[i];
+        if (run->count == 0) {
+            continue;
+        }
         _Alignas(64) float part[3][VPL_LANES] = {{0}};
         s->lightKernel(&b->surface, kept->lights + run->first, run->count, s->inverseBound, part);
         if (vplAnyLit(part)) {

@@ -8,7 +8,7 @@
 vplTaskFcn VPL_KERNEL(vplGatherTile);
 
 // Rows are short and a picture's width apart: no processor guesses what comes next. This many rows before they are read.
-enum { AHEAD = 4, LINE = 64 / sizeof(float) };
+enum { AHEAD = 8, LINE = 64 / sizeof(float) };
 
 static void prefetch(const float* from, int count)
 {
