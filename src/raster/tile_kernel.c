@@ -42,6 +42,17 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
 {
     const vplTile* tile = &d->state->tile;
     Cells cells = {0xffff, 0xffff};
+    double z[VPL_LANES];
+    for (int i = 0; i < VPL_LANES; i++) {
+        z[i] = depthAt(s, x + (i & 3) * VPL_BLOCK_SIDE, y + (i >> 2) * VPL_BLOCK_SIDE);
+    }
+    float* farthest = d->state->farthest + (y / SQUARE_SIDE * SQUARES + x / SQUARE_SIDE) * VPL_LANES;
+    if (d->rejects) {
+        within &= ~hiddenBlocks(s, z, farthest);
+        if (within == 0) {
+            return;
+        }
+    }
     if (!filled) {
         cells = classify(s, x, y, VPL_BLOCK_SIDE);
     }
@@ -49,14 +60,6 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
     if (x + SQUARE_SIDE > tile->width || y + SQUARE_SIDE > tile->height) {
         cells.filled &= cellsWithin(0, (tile->width - x) / VPL_BLOCK_SIDE - 1, 0,
                                     (tile->height - y) / VPL_BLOCK_SIDE - 1);
-    }
-    double z[VPL_LANES];
-    for (int i = 0; i < VPL_LANES; i++) {
-        z[i] = depthAt(s, x + (i & 3) * VPL_BLOCK_SIDE, y + (i >> 2) * VPL_BLOCK_SIDE);
-    }
-    float* farthest = d->state->farthest + (y / SQUARE_SIDE * SQUARES + x / SQUARE_SIDE) * VPL_LANES;
-    if (d->rejects) {
-        cells.touched &= ~hiddenBlocks(s, z, farthest);
     }
     if (d->tightens) {
         tightenBlocks(s, z, cells.touched & cells.filled, farthest);
@@ -74,12 +77,33 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
     }
 }
 
+// Whether all that is there is nearer than the triangle in blocks x0 .. x1, y0 .. y1.
+static bool isHidden(const Draw* d, int x0, int y0, int x1, int y1)
+{
+    const Batch* t = d->batch;
+    const double zx = t->zx[d->place], zy = t->zy[d->place];
+    const double least = (zx < 0 ? zx * 3 : 0) + (zy < 0 ? zy * 3 : 0); // the bits of boundDepth's
+    for (int y = y0; y <= y1; y++) {
+        for (int x = x0; x <= x1; x++) {
+            const double z = t->planeZ[d->place] + (zx * (x * VPL_BLOCK_SIDE) + zy * (y * VPL_BLOCK_SIDE));
+            const int square = y / 4 * SQUARES + x / 4, block = y % 4 * 4 + x % 4;
+            if (!(clampDepth(z + least) > d->state->farthest[square * VPL_LANES + block])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 static void drawTriangle(Draw* d)
 {
     const Batch* t = d->batch;
     const int x0 = t->left[d->place] / VPL_BLOCK_SIDE, x1 = t->right[d->place] / VPL_BLOCK_SIDE;
     const int y0 = t->top[d->place] / VPL_BLOCK_SIDE, y1 = t->bottom[d->place] / VPL_BLOCK_SIDE;
     Setup s;
+    if (d->rejects && x1 - x0 <= 1 && y1 - y0 <= 1 && isHidden(d, x0, y0, x1, y1)) {
+        return;
+    }
     setUp(t, d->place, &s);
     if (d->distances) {
         needShares(d);

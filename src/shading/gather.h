@@ -25,7 +25,7 @@ typedef struct vplGatherRoom {
                    [VPL_GATHER_WIDTH]; // and its weight; not asked for where all is one triangle
     int32_t triangle[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS]; // 1 + index in geometry->normals, 0: nothing
     int32_t uniform[VPL_GATHER_ROWS][VPL_GATHER_RUNS]; // the one triangle in a run and its windows, else 0
-    vplSeen seen;
+    vplSeen seen;                                      // of both steps, from tile to tile
     // Where some window shows several triangles only: normals and planes n.x = offset of these, and distances along the
     // view axis in these planes, all from the eye. 0 where nothing is.
     float offset[VPL_GATHER_ROWS][VPL_GATHER_COLUMNS];

@@ -130,6 +130,9 @@ vplResult vplOpenInterleave(vplShading* shading, vplFramebuffer* framebuffer)
     if (w->planes == NULL || w->rooms == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
+    for (int i = 0; i < context->workerCount; i++) {
+        vplSeen_Clear(&w->rooms[i].seen);
+    }
     vplPlane* planes = framebuffer->planes;
     for (int k = 0; k < 3; k++) {
         planes[VPL_PLANE_INDIRECT + k].pixels = vplGatherPlane(w, VPL_GATHER_INDIRECT + k);

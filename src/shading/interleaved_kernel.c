@@ -135,7 +135,9 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
             n[l] = normal[elements[l]];
         }
     }
-    memset(b->sums, 0, sizeof b->sums);
+    for (int c = 0; c < 3; c++) {
+        memset(b->sums[c], 0, sizeof b->sums[c]); // all at once becomes `rep stos`, which is slow to start
+    }
     b->points.surface = b->points.plane = &b->surface;
     b->cluster = VPL_NO_CLUSTER;
     const bool asksPlane = s->smooth && s->def->lightClusters != NULL;
@@ -216,20 +218,18 @@ static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int 
 
 void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
 {
-    (void)worker;
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
     const int side = sideOf(s->interleave->side);
-    vplSeen seen;
-    vplSeen_Clear(&seen);
+    vplSeen* seen = &s->interleave->rooms[worker].seen;
     for (int y = 0; y < tile->height; y += side) {
         for (int x = 0; x < tile->width; x += side) {
             Region r = {.x = x, .y = y};
             r.width = tile->width - x < side ? tile->width - x : side;
             r.height = tile->height - y < side ? tile->height - y : side;
-            prepareRegion(s, tile, &r, &seen);
+            prepareRegion(s, tile, &r, seen);
             for (int k = 0; r.any && k < s->interleave->side * s->interleave->side; k++) {
-                lightClass(s, tile, &r, x + k % s->interleave->side, y + k / s->interleave->side, &seen);
+                lightClass(s, tile, &r, x + k % s->interleave->side, y + k / s->interleave->side, seen);
             }
         }
     }

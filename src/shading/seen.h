@@ -22,7 +22,8 @@ typedef struct vplSeenFacet {
     bool smooth;
 } vplSeenFacet;
 
-enum { VPL_SEEN_BITS = 6, VPL_SEEN_COUNT = 1 << VPL_SEEN_BITS };
+// 512 are 40 kilobytes: 287 instead of 292 ms of processor time of a frame of Sponza, 1920x1080, than with 64.
+enum { VPL_SEEN_BITS = 9, VPL_SEEN_COUNT = 1 << VPL_SEEN_BITS };
 
 typedef struct vplSeen {
     int triangles[VPL_SEEN_COUNT]; // whose facets these are; -1: none's
