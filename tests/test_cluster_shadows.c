@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 131, HEIGHT = 75, COUNT = 300, SIZE = 8, TEXELS = 2 * SIZE * SIZE };
+enum { WIDTH = 131, HEIGHT = 75, COUNT = 300, SIZE = 8, TEXELS = 2 * (SIZE + 2) * (SIZE + 2) };
 
 static const float nothing[TEXELS]; // is seen: light reaches all of the hemispheres that were drawn
 
