@@ -331,7 +331,7 @@ static vplResult shadeClusters(vplContext* context, const char* path, int varian
 {
     (void)path;
     enum { LIGHTS = 16, CLUSTERS = 8 };
-    static const float texels[2 * 4 * 4];
+    static const float texels[2 * (4 + 2) * (4 + 2)];
     vplShadeLight lights[LIGHTS];
     int clusters[LIGHTS];
     vplParaboloidMap maps[CLUSTERS];
