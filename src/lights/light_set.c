@@ -3,8 +3,6 @@
 
 #include "base/context.h"
 
-#include <string.h>
-
 vplResult vplLightSet_Make(vplContext* context, int lightCount, int stepCount, vplLightSet** setOut)
 {
     vplLightSet* set = vplAllocZero(context, 1, sizeof *set);
@@ -34,8 +32,9 @@ vplResult vplLightSet_Join(const vplLightSet* a, const vplLightSet* b, vplLightS
         return result;
     }
     vplVirtualLight* lights = (vplVirtualLight*)set->lights;
-    memcpy(lights, a->lights, (size_t)a->lightCount * sizeof *lights);
-    memcpy(lights + a->lightCount, b->lights, (size_t)b->lightCount * sizeof *lights);
+    for (int i = 0; i < set->lightCount; i++) {
+        lights[i] = i < a->lightCount ? a->lights[i] : b->lights[i - a->lightCount];
+    }
     set->particleCount = a->particleCount > 0 ? a->particleCount : b->particleCount;
     const float factor = b->particleCount > 0 ? (float)set->particleCount / (float)b->particleCount : 1;
     for (int i = a->lightCount; i < set->lightCount; i++) {
