@@ -331,6 +331,40 @@ static void StillLightsKeepTheirBits(void** state)
     closeTestContext(context);
 }
 
+// A frame for which nobody looked at the maps leaves none; the next one does not go without.
+static void MapsThatWereNotNeededAreDrawnWhenTheyAre(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = spotRoom(context, 0.6f);
+    vplRenderOptions o = ssvpOptions(32);
+    vplHistory* history;
+    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
+    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.maxBounces = 0;
+    hashOfFrame(scene, o, history, 0);
+    o.maxBounces = 2;
+    assert_true(hashOfFrame(scene, o, history, 1) == hashOfFrame(scene, o, NULL, 1));
+    vplHistory_Destroy(history);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
+// Passes are no frames: each has samples of its own, whatever those of the pass before were of use.
+static void PassesHaveNothingToDoWithEachOther(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplScene* scene = corner(context, VPL_EMITTER_SPOT);
+    vplRenderOptions o = ssvpOptions(32);
+    o.passes = 3;
+    const uint64_t on = hashOfFrame(scene, o, NULL, 0);
+    o.coherence = VPL_COHERENCE_OFF;
+    assert_true(hashOfFrame(scene, o, NULL, 0) == on);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
 // ---- extremes
 
 static void assertFinite(const vplScene* scene, vplRenderOptions o)
@@ -462,6 +496,17 @@ static void WhatIsNotPossibleIsASentence(void** state)
     o.lightShadows = VPL_LIGHT_SHADOWS_CLUSTER;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "clusters"));
+    const vplMethod others[3] = {VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_DIRECT, VPL_METHOD_PATH};
+    for (int i = 0; i < 3; i++) {
+        o = vplDefaultRenderOptions();
+        o.method = others[i];
+        o.width = o.height = 16;
+        for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_SECOND_BOUNCE; show++) {
+            o.show = (vplShow)show;
+            assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
+            assert_non_null(strstr(takeMessage(), "only SSVP"));
+        }
+    }
     assert_null(image);
     vplScene_Destroy(scene);
     closeTestContext(context);
@@ -472,6 +517,8 @@ TEST_SUITE(ssvp, cmocka_unit_test(AsManyClustersAsLightsAreInstantRadiosity),
            cmocka_unit_test(PrintedWeightsMoveTheSecondBounce), cmocka_unit_test(BouncesAreToggled),
            cmocka_unit_test(EveryStageIsShown), cmocka_unit_test(BitsDependOnNeitherThreadsNorInstructions),
            cmocka_unit_test(StillLightsKeepTheirBits),
+           cmocka_unit_test(MapsThatWereNotNeededAreDrawnWhenTheyAre),
+           cmocka_unit_test(PassesHaveNothingToDoWithEachOther),
            cmocka_unit_test(FewerLightsThanClustersAndMapsOfOneTexel),
            cmocka_unit_test(CentroidsInMidAirLightTheBallTheyAreIn),
            cmocka_unit_test(BlackScenesAndLightsThatSeeNothingStayBlack), cmocka_unit_test(LampsAreLightsToo),

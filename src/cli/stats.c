@@ -29,6 +29,10 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     json_object_set_new(root, "draw_calls", json_integer(stats->drawCalls));
     json_object_set_new(root, "fragments", json_integer(stats->fragments));
     json_object_set_new(root, "virtual_lights", json_integer(stats->virtualLights));
+    if (stats->clusters > 0) {
+        json_object_set_new(root, "clusters", json_integer(stats->clusters));
+        json_object_set_new(root, "cluster_iterations", json_integer(stats->clusterIterations));
+    }
     if (stats->cutPixels > 0) {
         json_object_set_new(root, "light_evaluations", json_integer(stats->lightEvaluations));
         json_object_set_new(root, "light_evaluations_per_pixel",

@@ -219,7 +219,10 @@ static vplResult makeSet(vplJob* job, vplIngredients* in)
     vplResult result = vplSsvp_MakeLights(job, in->ssvp);
     if (result == VPL_SUCCESS) {
         in->set = in->ssvp->lights->set;
+        const vplLightClusters* clusters = in->ssvp->lights->bounce[0].clusters;
         vplJob_CountLights(job, in->set);
+        job->stats.clusters = clusters != NULL ? clusters->count : 0;
+        job->stats.clusterIterations = clusters != NULL ? clusters->iterations : 0;
     }
     return result;
 }

@@ -23,21 +23,23 @@ typedef struct Recipe {
 
 bool vplNeedsLights(const vplRenderOptions* o)
 {
+    if (o->method == VPL_METHOD_DIRECT || (o->method == VPL_METHOD_SSVP && o->maxBounces == 0)) {
+        return false;
+    }
     switch (o->show) {
     case VPL_SHOW_PICTURE:
     case VPL_SHOW_INDIRECT:
     case VPL_SHOW_LIGHT:
     case VPL_SHOW_OVERLAY:
-        return o->method != VPL_METHOD_DIRECT && (o->method != VPL_METHOD_SSVP || o->maxBounces != 0);
-    case VPL_SHOW_DIRECT:
-        return o->method == VPL_METHOD_KELLER;
     case VPL_SHOW_RSM_SAMPLES:
     case VPL_SHOW_CLUSTERS:
     case VPL_SHOW_PARABOLOID:
     case VPL_SHOW_SECOND_BOUNCE:
     case VPL_SHOW_GATHER:
     case VPL_SHOW_DENOISED:
-        return o->maxBounces != 0;
+        return true;
+    case VPL_SHOW_DIRECT:
+        return o->method == VPL_METHOD_KELLER;
     default:
         return false;
     }
@@ -119,10 +121,11 @@ static vplResult shadeSamples(vplJob* job, const vplShadeDef* def)
 }
 
 // What SSVP's maps and clusters see; `first` as in shade, -1: without virtual lights.
-static void addSsvp(const vplIngredients* in, int first, vplShadeDef* def)
+static void addSsvp(const vplJob* job, const vplIngredients* in, int first, vplShadeDef* def)
 {
     const vplSsvpState* state = in->ssvp;
-    if (in->lightShadows != VPL_LIGHT_SHADOWS_RAY) {
+    if (job->options.lightShadows !=
+        VPL_LIGHT_SHADOWS_RAY) { // as of shadow maps; lights are maybe not there yet
         def->emitterMaps = (const vplReflectiveMap* const*)state->maps;
     }
     if (first >= 0 && in->lightClusters != NULL) {
@@ -167,7 +170,7 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
         def.lightCount = count;
     }
     if (in->ssvp != NULL) {
-        addSsvp(in, parts & PART_INDIRECT ? first : -1, &def);
+        addSsvp(job, in, parts & PART_INDIRECT ? first : -1, &def);
     }
     // Of all lights at once, whatever batch is shown.
     const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;

@@ -44,17 +44,9 @@ static vplResult checkInt(const vplContext* context, const char* name, int value
                          name, value, low, high);
 }
 
-vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
+// `cameras` of the scene, 1 or more.
+static vplResult checkInts(const vplContext* context, const vplRenderOptions* o, int cameras)
 {
-    vplContext* context = vplScene_GetContext(scene);
-    if (o->cookie != OPTIONS_COOKIE) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplRenderOptions was not made by vplDefaultRenderOptions");
-    }
-    int cameras = vplScene_GetCameraCount(scene);
-    if (cameras == 0) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "the scene has no camera");
-    }
     const struct {
         const char* name;
         int value, low, high;
@@ -103,6 +95,11 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
             return result;
         }
     }
+    return VPL_SUCCESS;
+}
+
+static vplResult checkReals(const vplContext* context, const vplRenderOptions* o)
+{
     if (!(o->reflectivity < 1)) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplRenderOptions.reflectivity is %g, must be in [0, 1) or negative for automatic",
@@ -116,9 +113,6 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplRenderOptions.budgetMs and maxError are %g and %g, must be at least 0",
                        o->budgetMs, o->maxError);
-    }
-    if (o->lightShadows == VPL_LIGHT_SHADOWS_CLUSTER && o->method != VPL_METHOD_SSVP) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "only SSVP's lights have clusters to cast shadows by");
     }
     if (!(o->w1 >= 0 && o->w2 >= 0 && isfinite(o->w1) && isfinite(o->w2))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
@@ -134,4 +128,37 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
                        (double)o->minDistance);
     }
     return VPL_SUCCESS;
+}
+
+// What only SSVP has.
+static vplResult checkSsvp(const vplContext* context, const vplRenderOptions* o)
+{
+    if (o->method == VPL_METHOD_SSVP) {
+        return VPL_SUCCESS;
+    }
+    if (o->lightShadows == VPL_LIGHT_SHADOWS_CLUSTER) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "only SSVP's lights have clusters to cast shadows by");
+    }
+    if (o->show >= VPL_SHOW_RSM && o->show <= VPL_SHOW_SECOND_BOUNCE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "only SSVP has maps, samples and clusters to show");
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
+{
+    vplContext* context = vplScene_GetContext(scene);
+    if (o->cookie != OPTIONS_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions was not made by vplDefaultRenderOptions");
+    }
+    const int cameras = vplScene_GetCameraCount(scene);
+    if (cameras == 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "the scene has no camera");
+    }
+    vplResult result = checkInts(context, o, cameras);
+    if (result == VPL_SUCCESS) {
+        result = checkReals(context, o);
+    }
+    return result == VPL_SUCCESS ? checkSsvp(context, o) : result;
 }

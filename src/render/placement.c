@@ -41,25 +41,34 @@ static vplResult placeByView(vplJob* job, const vplEmitterDef* emitters, int emi
     return vplPlaceLights(job->geometry, emitters, emitterCount, &candidates, &def, setOut);
 }
 
-// Maps of all emitters that particles start from; those of no power need none.
+vplResult vplJob_DrawReflectiveMaps(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
+                                    vplReflectiveMap** maps)
+{
+    vplResult result = VPL_SUCCESS;
+    for (int i = 0; i < emitterCount && result == VPL_SUCCESS; i++) {
+        const vplRgb intensity = emitters[i].intensity;
+        if (!(intensity.r > 0 || intensity.g > 0 || intensity.b > 0)) {
+            continue;
+        }
+        vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+        def.emitter = emitters[i];
+        def.size = job->options.rsmSize;
+        result = vplReflectiveMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps[i]);
+        if (result == VPL_SUCCESS) {
+            vplJob_AddRaster(job, &maps[i]->stats);
+        }
+    }
+    return result;
+}
+
+// Maps of all emitters that particles start from.
 static vplResult placeByMaps(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
                              const vplParticleDef* particles, vplLightSet** setOut)
 {
     vplContext* context = job->context;
     vplReflectiveMap** maps = vplAllocZero(context, (size_t)emitterCount, sizeof *maps);
-    vplResult result = maps ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    for (int i = 0; i < emitterCount && result == VPL_SUCCESS; i++) {
-        const vplRgb intensity = emitters[i].intensity;
-        if (intensity.r > 0 || intensity.g > 0 || intensity.b > 0) {
-            vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
-            def.emitter = emitters[i];
-            def.size = job->options.rsmSize > 0 ? job->options.rsmSize : 256;
-            result = vplReflectiveMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps[i]);
-        }
-        if (result == VPL_SUCCESS && maps[i] != NULL) {
-            vplJob_AddRaster(job, &maps[i]->stats);
-        }
-    }
+    vplResult result =
+        maps ? vplJob_DrawReflectiveMaps(job, emitters, emitterCount, maps) : VPL_OUT_OF_MEMORY;
     if (result == VPL_SUCCESS) {
         vplParticleDef def = *particles;
         def.maps = (const vplReflectiveMap* const*)maps;

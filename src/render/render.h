@@ -80,6 +80,10 @@ void vplJob_CountLights(vplJob* job, const vplLightSet* set);
 vplResult vplJob_PlaceLights(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
                              const vplParticleDef* particles, vplLightSet** setOut);
 
+// Reflective maps of the emitters, options.rsmSize texels a side; those of no power need none, and stay NULL.
+vplResult vplJob_DrawReflectiveMaps(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
+                                    vplReflectiveMap** maps);
+
 // The bound of the geometry term for so many lights a pass, metres.
 float vplJob_MinDistance(const vplJob* job, double lights);
 

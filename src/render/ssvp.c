@@ -16,7 +16,7 @@
 
 static vplResult clusterFirst(vplSsvpMaking* m)
 {
-    return vplSsvp_Cluster(m, 0);
+    return m->sees || m->twice || m->lights->key.shown ? vplSsvp_Cluster(m, 0) : VPL_SUCCESS;
 }
 
 static vplResult drawFirst(vplSsvpMaking* m)
@@ -110,9 +110,12 @@ vplResult vplSsvp_MakeLights(vplJob* job, vplSsvpState* state)
     lights->context = job->context;
     memcpy(&lights->key, &key, sizeof key);
     vplSsvpMaking m = {.job = job, .state = state, .lights = lights};
-    if (job->options.coherence == VPL_COHERENCE_ON) {
-        m.last = state->lights == NULL && history != NULL && history->ssvp != NULL ? history->ssvp->lights
-                                                                                   : state->lights;
+    const vplSsvpLights* last = state->lights == NULL && history != NULL && history->ssvp != NULL
+                                    ? history->ssvp->lights
+                                    : state->lights;
+    // Passes have other samples, which have nothing to do with those of the same number before.
+    if (job->options.coherence == VPL_COHERENCE_ON && last != NULL && last->key.shift == key.shift) {
+        m.last = last;
     }
     m.sees = key.lightShadows == VPL_LIGHT_SHADOWS_CLUSTER;
     m.twice = key.maxBounces != 1 && key.secondBounce > 0;

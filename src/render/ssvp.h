@@ -5,14 +5,11 @@
 
 #include "render/ingredients.h"
 
-// Of each light, to find of what use it is: weights change by sixteenths.
-enum { VPL_SSVP_USE_RAYS = 16 };
-
 // What all of it depends on besides the scene: where two are equal byte for byte, so is the rest.
 typedef struct vplSsvpKey {
     int clusters, firstBounce, oversampling, secondBounce, paraboloidSize, rsmSize, maxBounces;
     int hemispheres, clusterMetric, clusterPlace, secondWeight, lightShadows;
-    bool shown; // a map is looked at, for which it must know surfaces
+    bool shown; // clusters and their maps are looked at, for which these must know surfaces
     double w1, w2;
     uint64_t shift;
 } vplSsvpKey;
@@ -42,7 +39,8 @@ typedef struct vplSsvpLights {
 typedef struct vplSsvpState {
     vplEmitterDef* emitters; // that the maps were drawn for
     int emitterCount, rsmSize;
-    vplReflectiveMap** maps; // one per emitter; NULL where it has no power or nobody looks
+    bool drawn;              // the maps, unless nobody looked
+    vplReflectiveMap** maps; // one per emitter; NULL where it has no power or nobody looked
     vplSsvpLights* lights;   // NULL before vplSsvp_MakeLights
     vplContext* context;
 } vplSsvpState;
@@ -52,7 +50,7 @@ typedef struct vplSsvpMaking {
     vplJob* job;
     const vplSsvpState* state;
     vplSsvpLights* lights;
-    const vplSsvpLights* last; // of the frame before; NULL: there is none
+    const vplSsvpLights* last; // of the frame before, of the same samples; NULL: there are none
     bool sees;                 // lights see by clusters
     bool twice;                // there is a second bounce
 } vplSsvpMaking;
@@ -60,6 +58,7 @@ typedef struct vplSsvpMaking {
 // The stages, of bounce k (0 or 1) where they are of one.
 vplResult vplSsvp_SampleFirstBounce(vplSsvpMaking* making);
 vplResult vplSsvp_SampleSecondBounce(vplSsvpMaking* making);
+vplResult vplSsvp_MeasureUse(vplSsvpMaking* making, const vplLightSet* set, float** useOut); // of each light
 vplResult vplSsvp_Cluster(vplSsvpMaking* making, int k);
 vplResult vplSsvp_DrawMaps(vplSsvpMaking* making, bool triangles,
                            int k); // triangles where surfaces are asked for

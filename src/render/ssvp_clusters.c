@@ -6,20 +6,6 @@
 // others the roof. FLIP of 4, 8, 16, 32 clusters against path tracing, mean of three seeds: 0.254, 0.248, 0.204, 0.185
 // where all lights count alike; by their use 0.245, 0.192, 0.154, 0.175, by its square 0.278, 0.203, 0.176, 0.179. In
 // closed rooms all are of the same use.
-static vplResult weigh(const vplSsvpMaking* m, const vplLightSet* set, float** weightsOut)
-{
-    float* weights = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *weights);
-    const vplResult result =
-        weights ? vplMeasureUse(m->job->geometry, set, VPL_SSVP_USE_RAYS, weights) : VPL_OUT_OF_MEMORY;
-    if (result != VPL_SUCCESS) {
-        vplFree(m->job->context, weights);
-        return result;
-    }
-    m->job->stats.rays += VPL_SSVP_USE_RAYS * (int64_t)set->lightCount;
-    *weightsOut = weights;
-    return VPL_SUCCESS;
-}
-
 vplResult vplSsvp_Cluster(vplSsvpMaking* m, int k)
 {
     const vplRenderOptions* o = &m->job->options;
@@ -34,7 +20,7 @@ vplResult vplSsvp_Cluster(vplSsvpMaking* m, int k)
     def.w2 = o->w2;
     def.last = m->last != NULL ? m->last->bounce[k].clusters : NULL;
     float* weights = NULL;
-    vplResult result = o->oversampling > 1 ? weigh(m, bounce->lights, &weights) : VPL_SUCCESS;
+    vplResult result = o->oversampling > 1 ? vplSsvp_MeasureUse(m, bounce->lights, &weights) : VPL_SUCCESS;
     if (result == VPL_SUCCESS) {
         def.weights = weights;
         result = vplFindClusters(bounce->lights, &def, &bounce->clusters);

@@ -7,6 +7,9 @@
 
 #include <math.h>
 
+// Of each light, to find of what use it is: weights change by sixteenths.
+enum { USE_RAYS = 16 };
+
 // ---- the first bounce
 
 // How many of the first-bounce lights come from surfaces that emit: their share of the power.
@@ -51,8 +54,21 @@ static vplResult sampleAll(const vplSsvpMaking* m, int count, vplLightSet** setO
 // flicker: they follow within some frames.
 static const float FOLLOW = 0.1f;
 
+vplResult vplSsvp_MeasureUse(vplSsvpMaking* m, const vplLightSet* set, float** useOut)
+{
+    float* use = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *use);
+    const vplResult result = use ? vplMeasureUse(m->job->geometry, set, USE_RAYS, use) : VPL_OUT_OF_MEMORY;
+    if (result != VPL_SUCCESS) {
+        vplFree(m->job->context, use);
+        return result;
+    }
+    m->job->stats.rays += USE_RAYS * (int64_t)set->lightCount;
+    *useOut = use;
+    return VPL_SUCCESS;
+}
+
 // What each sample was taken to be of use in the last frame, and is now.
-static vplResult followUse(const vplSsvpMaking* m, const vplLightSet* set, int count, float* use)
+static vplResult followUse(vplSsvpMaking* m, const vplLightSet* set, int count, float* use)
 {
     vplSsvpLights* lights = m->lights;
     const bool follows = m->last != NULL && m->last->use != NULL && m->last->sampleCount == count;
@@ -71,16 +87,15 @@ static vplResult followUse(const vplSsvpMaking* m, const vplLightSet* set, int c
 }
 
 // So many samples, and what each is worth.
-static vplResult sampleAndMeasure(const vplSsvpMaking* m, int count, vplLightSet** setOut, float** useOut)
+static vplResult sampleAndMeasure(vplSsvpMaking* m, int count, vplLightSet** setOut, float** useOut)
 {
     vplLightSet* set;
     vplResult result = sampleAll(m, count, &set);
     if (result != VPL_SUCCESS) {
         return result;
     }
-    float* use = vplAlloc(m->job->context, (size_t)set->lightCount, sizeof *use);
-    result = use ? vplMeasureUse(m->job->geometry, set, VPL_SSVP_USE_RAYS, use) : VPL_OUT_OF_MEMORY;
-    m->job->stats.rays += VPL_SSVP_USE_RAYS * (int64_t)set->lightCount;
+    float* use = NULL;
+    result = vplSsvp_MeasureUse(m, set, &use);
     if (result == VPL_SUCCESS) {
         result = followUse(m, set, count, use);
     }
@@ -112,7 +127,7 @@ static int oversample(const vplSsvpMaking* m, int count, double kept)
     return factor;
 }
 
-static vplResult sampleMaps(const vplSsvpMaking* m, int count, vplLightSet** setOut)
+static vplResult sampleMaps(vplSsvpMaking* m, int count, vplLightSet** setOut)
 {
     vplContext* context = m->job->context;
     vplLightSet* set = NULL;

@@ -43,7 +43,7 @@ vplSsvpKey vplSsvp_FindKey(const vplJob* job)
     key.clusterPlace = (int)o->clusterPlace;
     key.secondWeight = (int)o->secondWeight;
     key.lightShadows = (int)vplJob_GetLightShadows(job);
-    key.shown = o->show == VPL_SHOW_PARABOLOID;
+    key.shown = o->show == VPL_SHOW_PARABOLOID || o->show == VPL_SHOW_CLUSTERS;
     key.w1 = o->w1;
     key.w2 = o->w2;
     key.shift = shiftOf(job);
@@ -63,9 +63,18 @@ static bool isSameEmitter(const vplEmitterDef* a, const vplEmitterDef* b)
            a->outerAngle == b->outerAngle;
 }
 
+// Direct light takes its shadows from them, lights are samples of them.
+static bool needsMaps(const vplJob* job)
+{
+    const vplRenderOptions* o = &job->options;
+    return o->lightShadows != VPL_LIGHT_SHADOWS_RAY || vplNeedsLights(o) || o->show == VPL_SHOW_RSM;
+}
+
+// Whether the last frame's maps do: nothing that they depend on has changed, and they are there where they are needed.
 static bool isStill(const vplJob* job, const vplSsvpState* last)
 {
-    bool still = last->emitterCount == job->emitterCount;
+    bool still = last->emitterCount == job->emitterCount && last->rsmSize == job->options.rsmSize &&
+                 (last->drawn || !needsMaps(job));
     for (int i = 0; still && i < job->emitterCount; i++) {
         still = isSameEmitter(&job->emitters[i], &last->emitters[i]);
     }
@@ -73,32 +82,6 @@ static bool isStill(const vplJob* job, const vplSsvpState* last)
 }
 
 // ---- reflective maps
-
-static bool hasPower(const vplEmitterDef* e)
-{
-    return e->intensity.r > 0 || e->intensity.g > 0 || e->intensity.b > 0;
-}
-
-static vplResult drawReflectiveMaps(vplJob* job, vplSsvpState* state)
-{
-    const vplRenderOptions* o = &job->options;
-    const bool wanted =
-        vplJob_GetLightShadows(job) != VPL_LIGHT_SHADOWS_RAY || vplNeedsLights(o) || o->show == VPL_SHOW_RSM;
-    vplResult result = VPL_SUCCESS;
-    for (int i = 0; i < job->emitterCount && wanted && result == VPL_SUCCESS; i++) {
-        if (!hasPower(&job->emitters[i])) {
-            continue;
-        }
-        vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
-        def.emitter = job->emitters[i];
-        def.size = o->rsmSize;
-        result = vplReflectiveMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &state->maps[i]);
-        if (result == VPL_SUCCESS) {
-            vplJob_AddRaster(job, &state->maps[i]->stats);
-        }
-    }
-    return result;
-}
 
 static vplResult makeState(vplJob* job, vplSsvpState** stateOut)
 {
@@ -130,8 +113,7 @@ vplResult vplSsvp_Begin(vplJob* job, vplSsvpState** stateOut)
         return vplFail(job->context, VPL_INVALID_ARGUMENT,
                        "the SSVP document prints no lighting formulas of its own; use physical lighting");
     }
-    if (history != NULL && history->ssvp != NULL && isStill(job, history->ssvp) &&
-        history->ssvp->rsmSize == job->options.rsmSize) {
+    if (history != NULL && history->ssvp != NULL && isStill(job, history->ssvp)) {
         *stateOut = history->ssvp;
         history->ssvp = NULL;
         return VPL_SUCCESS;
@@ -142,7 +124,10 @@ vplResult vplSsvp_Begin(vplJob* job, vplSsvpState** stateOut)
         return result;
     }
     vplJob_BeginStage(job, 0.05);
-    result = drawReflectiveMaps(job, state);
+    if (needsMaps(job)) {
+        result = vplJob_DrawReflectiveMaps(job, job->emitters, job->emitterCount, state->maps);
+        state->drawn = true;
+    }
     vplJob_EndStage(job, "reflective map");
     if (result != VPL_SUCCESS) {
         vplSsvp_Destroy(state);
