@@ -256,3 +256,21 @@ vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vp
     }
     return image;
 }
+
+void assertSameEverywhere(uint64_t (*hashOf)(vplContext* context))
+{
+    const uint64_t wanted = hashOf(openTestContext(1));
+    for (int workers = 2; workers < 8; workers += workers == 3 ? 4 : 1) {
+        assert_true(hashOf(openTestContext(workers)) == wanted);
+    }
+    for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+        vplContext* context = openIsaContext(2, (vplIsa)isa);
+        assert_true(context == NULL || hashOf(context) == wanted);
+    }
+}
+
+bool refuseThird(void* user, double fraction)
+{
+    (void)fraction;
+    return ++*(int*)user < 3;
+}

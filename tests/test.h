@@ -35,6 +35,12 @@ vplContext* openIsaContext(int workers, vplIsa isa);
 // A vplParallelForFcn made of threads, as a host program might have.
 void threadedFor(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data);
 
+// Fails unless a hash is the same for 1, 2, 3 and 7 workers and every instruction set. hashOf closes the context.
+void assertSameEverywhere(uint64_t (*hashOf)(vplContext* context));
+
+// A vplProgressFcn that refuses when it is asked for the third time; `user` is an int that counts.
+bool refuseThird(void* user, double fraction);
+
 // Destroys it and fails the test if any memory is still held.
 void closeTestContext(vplContext* context);
 

@@ -13,6 +13,18 @@ typedef struct Fillings {
     int32_t box[4][VPL_LANES], kind[VPL_LANES];
 } Fillings;
 
+static inline float pick(bool second, bool third, float a, float b, float c)
+{
+    const float other = third ? c : a;
+    return second ? b : other;
+}
+
+static inline vplVec3 pickCorner(bool second, bool third, vplVec3 a, vplVec3 b, vplVec3 c)
+{
+    return vplVec(pick(second, third, a.x, b.x, c.x), pick(second, third, a.y, b.y, c.y),
+                  pick(second, third, a.z, b.z, c.z));
+}
+
 // Turns the corners round so that the nearest comes first: from there a plane's normal and distance are right to
 // rounding, while from a corner 1000 times as far even its side may be wrong.
 static inline void nearestFirst(vplVec3 p[3])
@@ -20,33 +32,9 @@ static inline void nearestFirst(vplVec3 p[3])
     const vplVec3 a = p[0], b = p[1], c = p[2];
     const float aa = vplDot(a, a), bb = vplDot(b, b), cc = vplDot(c, c);
     const bool second = (bb < aa) & (bb <= cc), third = (cc < aa) & (cc < bb);
-    p[0] = vplVec(second  ? b.x
-                  : third ? c.x
-                          : a.x,
-                  second  ? b.y
-                  : third ? c.y
-                          : a.y,
-                  second  ? b.z
-                  : third ? c.z
-                          : a.z);
-    p[1] = vplVec(second  ? c.x
-                  : third ? a.x
-                          : b.x,
-                  second  ? c.y
-                  : third ? a.y
-                          : b.y,
-                  second  ? c.z
-                  : third ? a.z
-                          : b.z);
-    p[2] = vplVec(second  ? a.x
-                  : third ? b.x
-                          : c.x,
-                  second  ? a.y
-                  : third ? b.y
-                          : c.y,
-                  second  ? a.z
-                  : third ? b.z
-                          : c.z);
+    p[0] = pickCorner(second, third, a, b, c);
+    p[1] = pickCorner(second, third, b, c, a);
+    p[2] = pickCorner(second, third, c, a, b);
 }
 
 static void setUpAll(const Sixteen* restrict s, Fillings* restrict all)
