@@ -190,6 +190,67 @@ typedef struct vplParticle {
 bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
                                 vplParticle* particleOut);
 
+// ---- patches: what radiosity divides surfaces into
+
+// Most patches, and most rounds of bisection of one triangle.
+enum { VPL_MAX_PATCHES = 1 << 24, VPL_MAX_PATCH_ROUNDS = 40 };
+
+typedef struct vplPatchDef {
+    float
+        size; // T, metres, > 0: each round bisects every triangle whose longest edge is longer than this, at
+              // the middle of that edge; 0 (default): as long as there are fewer than `count`, those with the
+              // longest edges first, all of a length together
+    int count; // about so many patches, [1, VPL_MAX_PATCHES]; default 1000; only where size is 0. Never fewer
+               // than triangles
+    int rounds;      // at most so many, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
+    uint32_t cookie; // set by vplDefaultPatchDef
+} vplPatchDef;
+
+vplPatchDef vplDefaultPatchDef(void);
+
+// A triangle of the geometry or a half of another node, counter-clockwise seen from the front. Corner 0 is opposite to
+// the edge that is, or would be, bisected: the longest; of equally long ones the first in the order 01, 12, 20 of the
+// parent's corners.
+typedef struct vplPatchNode {
+    uint32_t corners[3]; // indices in vplPatches.positions
+    int triangle;        // of the geometry
+    int parent;          // -1: the node is that triangle
+    int children;        // the first of two, which follow each other; -1: a patch, or a triangle without area
+    int patch;           // index in vplPatches.patches; -1: none
+} vplPatchNode;
+
+// Triangles bisected at their longest edges. Read only. Node t, t < geometry->triangleCount, is triangle t. Middles are
+// the same bits for both triangles at an edge. Triangles whose area is 0 have no patch (X093).
+// Source: Hemgren, Radiosity in Realtime Rendering, 3.1; "longer than", not "as long as" (EXTREMES.md, X097).
+typedef struct vplPatches {
+    const vplGeometry* geometry;
+    const vplVec3* positions; // all different: patches that meet at a point share its index
+    int positionCount;
+    const vplPatchNode* nodes;
+    int nodeCount;
+    const int* patches; // nodes that are patches: triangle by triangle, each in the order of its tree
+    int patchCount;
+    float longestEdge; // of all patches, metres
+    vplContext* context;
+} vplPatches;
+
+vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def, vplPatches** patchesOut);
+
+// Bisects the patches of the largest priorities, one priority per patch, until there are `count` patches or no priority
+// above 0 is left; halves of a patch are not bisected again. New patches; the old ones stay.
+vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, int count,
+                            vplPatches** patchesOut);
+
+// NULL is allowed.
+void vplPatches_Destroy(vplPatches* patches);
+
+// The patch of a triangle that a point on it lies in, or nearly; of two that meet there, the first. -1: the triangle has
+// none.
+int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position);
+
+// Square metres.
+double vplPatches_Area(const vplPatches* patches, int patch);
+
 #ifdef __cplusplus
 }
 #endif

@@ -39,6 +39,9 @@ vplView vplView_At(const vplView* view, double x, double y);
 // Pixel coordinates of a point (x right, y down, (0, 0) the upper left corner). False behind the near plane.
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);
 
+// Clip coordinates x, y, z, w of points, those that all draws of the view have.
+void vplView_ToClip(const vplView* view, const vplVec3* points, int count, float (*clipOut)[4]);
+
 // Fills at most out[0 .. set->lightCount) and returns how many: lights of step 0 that are the emitter itself are
 // left out. Keller's are physical, also with documented attenuation.
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out);
@@ -146,6 +149,18 @@ typedef struct vplShadeStats {
 // Draws the geometry into `image`, which has the view's size.
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut);
+
+// Points on the geometry, each with the side that it is lit from.
+typedef struct vplSurfacePoint {
+    vplVec3 position; // metres; on the triangle
+    vplVec3 normal;   // unit, of the side that receives
+    int triangle;     // index in the geometry
+} vplSurfacePoint;
+
+// What arrives at points from the def's emitters, lamps and virtual lights, W/m^2, with the shadows that it asks for,
+// one of each per point; of pipelines, outputs and compensation nothing is used.
+vplResult vplShadePoints(const vplGeometry* geometry, const vplShadeDef* def, const vplSurfacePoint* points,
+                         int count, vplRgb* irradianceOut, int64_t* raysOut);
 
 // The distance D, metres, for which the mean of max(0, 1 - d^2 / D^2) over what surfaces in view see at distances d
 // (2048 cosine-distributed rays) is `share`, (0, 1): the bound D then takes about that share of the light of virtual

@@ -12,6 +12,7 @@
 #include <vpl/visibility.h>
 #include <vpl/lights.h>
 #include <vpl/shading.h>
+#include <vpl/radiosity.h>
 #include <vpl/render.h>
 
 #endif

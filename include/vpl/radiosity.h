@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+// Radiosity: surfaces in patches, form factors between them, and the light that all of them exchange.
+// Follows Dan Hemgren, Radiosity in Realtime Rendering, and the improvements that it names.
+#ifndef VPL_RADIOSITY_H
+#define VPL_RADIOSITY_H
+
+#include <vpl/geometry.h>
+#include <vpl/image.h>
+#include <vpl/raster.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---- sides of patches: what the equations are about
+
+// A patch's cells are the 16 triangles that two rounds of joining the middles of its edges make. Which, and in which
+// order: vplPatchSides_SampleCell.
+enum { VPL_PATCH_CELLS = 16 };
+
+// One side of a patch. Surfaces reflect on both sides, and only sides that light can reach are in the equations.
+typedef struct vplPatchSide {
+    int patch;
+    bool back;          // the side that the patch's normal points away from
+    uint16_t open;      // bit k: light can reach cell k; never 0
+    float area;         // of open cells, m^2; the patch's whole area where none is closed
+    vplVec3 corners[3]; // counter-clockwise seen from this side
+    vplVec3 normal;     // unit, of this side
+    vplVec3 incentre;   // the centre of the circle that touches the three edges
+    vplRgb reflectance;
+    vplRgb emission; // radiosity, W/m^2: pi times the material's radiance, 0 on the back
+} vplPatchSide;
+
+typedef struct vplPatchSidesDef {
+    const vplEmitterDef* emitters; // light that is not geometry's; NULL where emitterCount is 0
+    int emitterCount;
+    const vplVec3*
+        eyes; // places that are looked from: what they see counts as reached; NULL where eyeCount is 0
+    int eyeCount;
+    bool whole;    // cells of sides that light reaches are all open, as the document has it; default false
+    uint64_t seed; // default 0
+    vplProgressFcn* progress;
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultPatchSidesDef
+} vplPatchSidesDef;
+
+vplPatchSidesDef vplDefaultPatchSidesDef(void);
+
+// The sides that light can reach, and where on them: found by particles from everything that emits, from the eyes, and
+// by rays from cells that no particle met. The inside of a box, the floor under it and a room without a lamp take no
+// part, and do not darken what is beside them (X101). Read only.
+typedef struct vplPatchSides {
+    const vplPatches* patches;
+    const vplPatchSide* sides; // in the order of patches, front before back
+    int count;
+    const int* ofPatch; // [patch][front, back]: index in sides, -1: not among them
+    int64_t rays;       // that it took
+    vplContext* context;
+} vplPatchSides;
+
+vplResult vplPatchSides_Create(const vplPatches* patches, const vplPatchSidesDef* def,
+                               vplPatchSides** sidesOut);
+
+// NULL is allowed.
+void vplPatchSides_Destroy(vplPatchSides* sides);
+
+// A point of cell k, uniform over it for u, v uniform in [0, 1).
+vplVec3 vplPatchSide_SampleCell(const vplPatchSide* side, int k, float u, float v);
+
+// ---- form factors
+
+typedef enum vplFormFactorKind {
+    VPL_FORM_FACTORS_MONTE_CARLO =
+        0,                    // stratified pairs of points with a shadow ray each; near pairs: see `analytic`
+    VPL_FORM_FACTORS_INCENTRE // one pair, the incentres: A_j cos cos / (pi r^2) V, as the document has it
+} vplFormFactorKind;
+
+// What becomes of rows whose sum is not what it can be.
+typedef enum vplRowSums {
+    VPL_ROW_SUMS_USUAL = 0, // clamped for Monte Carlo, kept for incentres
+    VPL_ROW_SUMS_KEEP,
+    VPL_ROW_SUMS_CLAMP,    // factors are scaled, alike in both directions, until no row's sum is above 1
+    VPL_ROW_SUMS_NORMALISE // until every row's sum that is not 0 is 1: for closed rooms
+} vplRowSums;
+
+// Most memory that form factors of all pairs take; above it there is the hierarchy.
+#define VPL_MAX_FORM_FACTOR_BYTES ((int64_t)1 << 30)
+
+typedef struct vplFormFactorDef {
+    vplFormFactorKind kind; // default VPL_FORM_FACTORS_MONTE_CARLO
+    int samples;            // pairs of points per pair of patches, [1, 1024]; default 4; Monte Carlo only
+    bool analytic; // Monte Carlo: pairs near to each other take the exact integral along their edges, times
+                   // the share of it that the shadow rays see; default true
+    vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL
+    bool bruteForce;    // rays test every triangle: for measuring what the ray tree is worth; default false
+    uint64_t seed;      // default 0
+    vplProgressFcn* progress;
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultFormFactorDef
+} vplFormFactorDef;
+
+vplFormFactorDef vplDefaultFormFactorDef(void);
+
+// F[i][j]: the share of what side i emits that arrives at side j. Read only.
+typedef struct vplFormFactors {
+    int count;
+    const float* rows;    // [i][j]
+    const float* rowSums; // before `rowSums` of the def changed them
+    int64_t rays, analyticPairs;
+    vplContext* context;
+} vplFormFactors;
+
+// Half of the pairs are computed, the others by A_i F_ij = A_j F_ji. VPL_LIMIT where all take more than
+// VPL_MAX_FORM_FACTOR_BYTES. Source: Hemgren, 3.3.1.
+vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorDef* def,
+                                vplFormFactors** factorsOut);
+
+// NULL is allowed.
+void vplFormFactors_Destroy(vplFormFactors* factors);
+
+// The form factor from triangle a to triangle b with nothing between them, by the integral along their edges; what lies
+// behind the other's plane is cut off. Sides are those from which the corners are counter-clockwise.
+// Source: Hottel and Sarofim, Radiative Transfer, 1967 (after Stokes); relative error below 1e-6 (tests/test_form_factors.c).
+double vplTriangleFormFactor(const vplVec3 a[3], const vplVec3 b[3]);
+
+// ---- the hierarchy: form factors of near pairs between patches, of far ones between groups of them
+
+typedef struct vplLinkDef {
+    double
+        error; // links are divided until the error of what they carry is below this share of what their receiver
+               // gets of all, (0, 1]; default 0.01
+    int samples;   // pairs of points per link, [1, 1024]; default 4
+    uint64_t seed; // default 0
+    vplProgressFcn* progress;
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultLinkDef
+} vplLinkDef;
+
+vplLinkDef vplDefaultLinkDef(void);
+
+// Source: Hanrahan, Salzman and Aupperle, A Rapid Hierarchical Radiosity Algorithm, SIGGRAPH 1991; Smits, Arvo and
+// Greenberg, A Clustering Algorithm for Radiosity in Complex Environments, SIGGRAPH 1994 (groups of surfaces).
+typedef struct vplLinks {
+    int sideCount, groupCount;
+    int64_t linkCount, rays;
+    struct vplLinkTree* tree;
+    vplContext* context;
+} vplLinks;
+
+vplResult vplLinks_Create(const vplPatchSides* sides, const vplLinkDef* def, vplLinks** linksOut);
+
+// NULL is allowed.
+void vplLinks_Destroy(vplLinks* links);
+
+// ---- solvers of B = E + rho F B
+
+typedef enum vplSolver {
+    VPL_SOLVER_GAUSS_SEIDEL =
+        0,              // each side uses what the sides before it have just got (the document's Algorithm 1)
+    VPL_SOLVER_JACOBI,  // one sweep is one bounce; the only one of links
+    VPL_SOLVER_SHOOTING // the side with the most unshot power sends it to all others; as many shots as there
+                        // are sides count as a sweep
+} vplSolver;
+
+typedef struct vplSolveDef {
+    vplSolver solver; // default VPL_SOLVER_GAUSS_SEIDEL
+    int iterations;   // sweeps, at most, [0, 2^20]; default 100
+    double residual;  // ends when the largest change of a sweep is below this share of the largest radiosity,
+                      // [0, 1]; default 1e-4
+    vplProgressFcn* progress;
+    void* progressUser;
+    uint32_t cookie; // set by vplDefaultSolveDef
+} vplSolveDef;
+
+vplSolveDef vplDefaultSolveDef(void);
+
+typedef struct vplSolveStats {
+    int iterations;
+    double residual; // as above, of the last sweep
+    double
+        spectralRadius; // of rho F, an estimate: errors shrink by this factor in a sweep of Jacobi's; 1 and more:
+                        // there is no solution; 0: no light is exchanged
+    double rowSumMin, rowSumMean, rowSumMax; // of F, as used; the mean weighted by area
+} vplSolveStats;
+
+// What is exchanged: one of both.
+typedef struct vplTransport {
+    const vplPatchSides* sides;
+    const vplFormFactors* factors; // NULL: by links
+    const vplLinks* links;
+} vplTransport;
+
+// B starts from radiosity[] as it is: `source` for a solution from nothing, that of the frame before for a light that
+// moved. Both W/m^2, one per side. VPL_LIMIT, with a sentence, where it diverges; then radiosity[] is as it was.
+// VPL_SUCCESS with a warning where `iterations` end it before `residual` does.
+vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* def, const vplRgb* source,
+                            vplRgb* radiosity, vplSolveStats* statsOut);
+
+// What arrives at each side, W/m^2: F B.
+vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radiosity, vplRgb* irradianceOut);
+
+// The residual of each side, W/m^2: source + rho F B - B.
+vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
+                               vplRgb* residualOut);
+
+// ---- from patches to pictures
+
+// How sides that meet at a vertex are weighted there.
+typedef enum vplVertexWeight {
+    VPL_VERTEX_WEIGHT_ANGLE = 0, // by the angle of their corner, times the share of their cells that is open
+    VPL_VERTEX_WEIGHT_AREA,      // by their area, times that share
+    VPL_VERTEX_WEIGHT_EQUAL      // all alike, closed cells and all: as the document has it
+} vplVertexWeight;
+
+// Triangles to be drawn instead of the geometry's: the patches, cut where vertices of others lie on their edges, so
+// that nothing shines through and light is continuous (X100). Vertices are shared by patches in about one plane, or of
+// one smooth object.
+typedef struct vplPatchMesh {
+    const vplPatchSides* sides;
+    const vplVec3* positions; // metres
+    const uint32_t* indices;  // three per triangle
+    const int* patchOf;       // of each triangle
+    int vertexCount, triangleCount;
+    int hangingVertices; // that lay on edges
+    vplContext* context;
+} vplPatchMesh;
+
+vplResult vplPatchMesh_Create(const vplPatchSides* sides, vplPatchMesh** meshOut);
+
+// NULL is allowed.
+void vplPatchMesh_Destroy(vplPatchMesh* mesh);
+
+// Means at the vertices of one value per side: [vertex][front, back]. Sides that are not among `sides` do not count;
+// 0 where none does. `values` and the result in any unit.
+vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
+                                   vplRgb* vertexValuesOut);
+
+// What is drawn on the patches.
+typedef struct vplPatchDraw {
+    const vplPatchMesh* mesh;
+    const vplRgb*
+        vertexValues; // [vertex][front, back], interpolated over triangles (Gouraud); NULL: `values`, flat
+    const vplRgb* values; // one per side; sides without: 0
+    bool reflect;         // values are irradiance: multiplied by the patch's reflectance / pi
+    bool outlines;        // edges of patches are drawn dark
+} vplPatchDraw;
+
+// Adds to an image: one draw per side of all triangles. `clip` are x, y, z, w of the mesh's vertices in clip space
+// (vplView_ToClip). Source: Hemgren, 4.
+vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplProgressFcn* progress,
+                         void* user, vplImage* image, vplRasterStats* statsOut);
+
+// Writes the mesh as binary PLY with a colour per vertex: vertices of both sides where both have light. `values` W/m^2
+// irradiance, [vertex][front, back]; colours are linear radiosity rho E as float r, g, b, and 8-bit sRGB red, green,
+// blue of it times `scale`.
+vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIrradiance, float scale,
+                                const char* path);
+
+// ---- where more patches are wanted
+
+typedef struct vplPatchWorthDef {
+    const vplRgb* irradiance;       // W/m^2, indirect, one per side
+    const vplRgb* vertexIrradiance; // the same at the mesh's vertices: [vertex][front, back]
+    const float* directSpread; // standard deviation of direct irradiance over each side, W/m^2: large where a
+                               // shadow's boundary crosses it; NULL: not known
+    uint32_t cookie;           // set by vplDefaultPatchWorthDef
+} vplPatchWorthDef;
+
+vplPatchWorthDef vplDefaultPatchWorthDef(void);
+
+// How much is to be won by bisecting each patch, for vplPatches_Refine: by the gradient of light across it, by contact
+// with another surface, by a shadow's boundary. Comparable among patches of one call only.
+vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* def, float* worthOut);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
