@@ -1,116 +1,38 @@
 // SPDX-License-Identifier: MIT
-// What particles missed: sides that see a side that light reaches, and the cells of each.
+// The cells of sides that light reaches.
 #include "radiosity/open_cells.h"
 
-#include "base/context.h"
-#include "base/rng.h"
-#include "math/sampling.h"
-#include "math/scalar.h"
+#include "geometry/bvh.h"
 #include "radiosity/cells.h"
 
 enum {
-    TASK = 32,    // patches
-    QUARTERS = 4, // of a side that nothing is known of: a point in each
-    POINTS = 8,   // of a cell that is open in part
-    GATHERS = 4,  // rays from each point
-    KNOWN = 4,    // places of a side that are remembered
-    SWEEPS = 16,  // rooms behind rooms that no particle came to
-    STREAM = 0x5ead1000
+    KNOWN = 4,  // places of a side that are remembered
+    GATHERS = 3 // rays from each point that sees none of them, in each of two rounds
 };
 
-typedef struct Sweep {
-    vplReach* reach;
-    void (*examine)(const vplReach* reach, int side, int64_t* rays);
-} Sweep;
+_Static_assert((int)VPL_PATCH_CELLS == (int)VPL_RAY_PACKET, "one ray for each cell");
 
-// ---- one side
-
-// Random numbers of point `point` of cell `cell` of a side, and of the rays from it.
-static vplRandom4 dice(const vplReach* reach, int side, int cell, int point, int ray)
+// Whether from the middle of all cells of a side the known place is seen, and nothing is between them and the side. So it
+// is on most sides, and two packets of rays tell.
+static bool isWhole(const vplReach* reach, int side, int64_t* rays)
 {
-    const uint64_t index =
-        ((uint64_t)side * VPL_PATCH_CELLS + (uint64_t)cell) * 64 + (uint64_t)(point * 8 + ray);
-    return vplRandomAt(reach->def->seed, STREAM + (uint32_t)reach->sweep, index);
-}
-
-static bool risesFrom(const vplReach* reach, int side, int cell, int point, int64_t* rays, vplVec3* place)
-{
-    const vplRandom4 r = dice(reach, side, cell, point, 0);
+    vplRayPacket down = {.active = 0}, over = {.active = 0};
     vplVec3 corners[3];
+    const vplVec3 up = vplScale(reach->heights[side / 2], vplReach_Normal(reach, side));
+    const int triangle = reach->patches->nodes[reach->patches->patches[side / 2]].triangle;
     vplSide_GetCorners(reach->patches, side / 2, side & 1, corners);
-    const float u = ((float)point + vplUnitFloat(r.v[0])) / POINTS,
-                v = vplUnitFloat(r.v[1]) + vplVanDerCorput((uint32_t)point);
-    const vplVec3 at = vplCell_Point(corners, cell, u, v < 1 ? v : v - 1);
-    return vplReach_Rise(reach, side, at, rays, place);
-}
-
-// Whether a ray from a place lands where light is: from there the known place of that side must be free to go to, or
-// the floor under a box would be light because it is so beside it.
-static bool seesLight(const vplReach* reach, int side, int cell, int point, int ray, vplVec3 place,
-                      int64_t* rays)
-{
-    const vplRandom4 r = dice(reach, side, cell, point, 1 + ray);
-    const vplPatches* patches = reach->patches;
-    vplVec3 n = reach->geometry->normals[patches->nodes[patches->patches[side / 2]].triangle];
-    n = side & 1 ? vplNegate(n) : n;
-    vplLanding landing;
-    const vplVec3 direction = vplSampleCosineAround(n, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
-    return vplReach_Land(reach, place, direction, rays, &landing) && reach->open[landing.side] != 0 &&
-           vplReach_IsFree(reach, landing.place, reach->known[landing.side], rays);
-}
-
-static void note(const vplReach* reach, int side, int cell, vplVec3 place)
-{
-    if (reach->nextOpen[side] == 0) {
-        reach->nextKnown[side] = place;
+    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
+        const vplVec3 place = vplAdd(vplReach_PointOf(reach, side, cell, 0), up);
+        vplRayPacket_Set(&down, cell, &(vplRay){place, vplNegate(up), {triangle, 1}});
+        vplRayPacket_Set(&over, cell, &(vplRay){place, vplSub(reach->known[side], place), {0, 0}});
     }
-    reach->nextOpen[side] |= (uint16_t)(vplReach_IsSmall(reach, side / 2) ? 0xffff : 1 << cell);
-}
-
-static bool seesEye(const vplReach* reach, int side, vplVec3 place, int64_t* rays)
-{
-    const vplPatches* patches = reach->patches;
-    const vplVec3 n = reach->geometry->normals[patches->nodes[patches->patches[side / 2]].triangle];
-    for (int i = 0; i < reach->def->eyeCount; i++) {
-        const vplVec3 eye = reach->def->eyes[i];
-        const float along = vplDot(vplSub(eye, place), n);
-        if ((side & 1 ? -along : along) > 0 && vplReach_IsFree(reach, place, eye, rays)) {
-            return true;
-        }
+    *rays += VPL_PATCH_CELLS;
+    if (vplGeometry_AreOccluded(reach->geometry, &down, 1 + VPL_SAME_PLACE) != 0) {
+        return false;
     }
-    return false;
+    *rays += VPL_PATCH_CELLS;
+    return vplGeometry_AreOccluded(reach->geometry, &over, 1) == 0;
 }
-
-// A side that nothing reaches yet, seen from an eye.
-static void lookAtSide(const vplReach* reach, int side, int64_t* rays)
-{
-    for (int point = 0; point < QUARTERS && reach->open[side] == 0 && reach->nextOpen[side] == 0; point++) {
-        const int cell = 5 * point;
-        vplVec3 place;
-        if (risesFrom(reach, side, cell, 0, rays, &place) && seesEye(reach, side, place, rays)) {
-            note(reach, side, cell, place);
-        }
-    }
-}
-
-// A side that nothing reaches yet: does it see one that is reached?
-static void exploreSide(const vplReach* reach, int side, int64_t* rays)
-{
-    for (int point = 0; point < QUARTERS && reach->open[side] == 0 && reach->nextOpen[side] == 0; point++) {
-        const int cell = 4 * point + reach->sweep % 4;
-        vplVec3 place;
-        if (!risesFrom(reach, side, cell, 0, rays, &place)) {
-            continue;
-        }
-        for (int ray = 0; ray < GATHERS && reach->nextOpen[side] == 0; ray++) {
-            if (seesLight(reach, side, cell, 0, ray, place, rays)) {
-                note(reach, side, cell, place);
-            }
-        }
-    }
-}
-
-// ---- the cells of a side that is reached
 
 typedef struct Settler {
     const vplReach* reach;
@@ -119,117 +41,89 @@ typedef struct Settler {
     int64_t* rays;
 } Settler;
 
-static bool isReached(Settler* s, int cell, int point)
+static bool seesKnown(const Settler* s, vplVec3 place)
 {
-    vplVec3 place;
-    if (!risesFrom(s->reach, s->side, cell, point, s->rays, &place)) {
-        return false;
-    }
     for (int i = 0; i < s->knownCount; i++) {
         if (vplReach_IsFree(s->reach, place, s->known[i], s->rays)) {
-            return true;
-        }
-    }
-    for (int ray = 0; ray < GATHERS; ray++) {
-        if (seesLight(s->reach, s->side, cell, point, ray, place, s->rays)) {
-            if (s->knownCount < KNOWN) {
-                s->known[s->knownCount++] = place;
-            }
             return true;
         }
     }
     return false;
 }
 
+static bool isLit(const Settler* s, int cell, int point, int round, vplVec3 place, vplVec3* from)
+{
+    if (round == 0 && vplReach_SeesSource(s->reach, s->side, cell, point, place, s->rays, from)) {
+        return true;
+    }
+    for (int ray = 0; ray < GATHERS; ray++) {
+        vplLanding landing;
+        if (vplReach_SeesLight(s->reach, s->side, cell, point, round * GATHERS + ray, place, s->rays,
+                               &landing)) {
+            *from = landing.place;
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool isReached(Settler* s, int cell, int point, int round)
+{
+    vplVec3 place, from;
+    if (!vplReach_Rise(s->reach, s->side, vplReach_PointOf(s->reach, s->side, cell, point), s->rays,
+                       &place)) {
+        return false;
+    }
+    if (seesKnown(s, place)) {
+        return true;
+    }
+    if (!isLit(s, cell, point, round, place, &from)) {
+        return false;
+    }
+    if (s->knownCount < KNOWN) {
+        s->known[s->knownCount++] = vplReach_Pull(s->reach, s->side / 2, place, from);
+    }
+    return true;
+}
+
 // Cells of which light reaches a half at least; where it reaches no half, those that it reaches at all. A point of an
-// open cell that is covered gets no light in the equations, and would darken the patch: counting cells of which any
-// point is reached made floor patches beside the blocks of the report's box 0.83 of what they are by area, halves 0.95.
+// open cell that is covered gets no light in the equations, and would darken the patch. Points that missed have a second
+// try when other places of the side are known.
 static unsigned cellsInPart(Settler* s)
 {
-    unsigned half = 0, some = 0;
-    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
-        int reached = 0;
-        for (int point = 0; point < POINTS; point++) {
-            reached += isReached(s, cell, point);
+    unsigned half = 0, some = 0, reached[VPL_PATCH_CELLS] = {0};
+    for (int i = 0; i < 2 * VPL_PATCH_CELLS * VPL_REACH_POINTS; i++) {
+        const int round = i / (VPL_PATCH_CELLS * VPL_REACH_POINTS),
+                  cell = i / VPL_REACH_POINTS % VPL_PATCH_CELLS, point = i % VPL_REACH_POINTS;
+        if (!(reached[cell] >> point & 1) && isReached(s, cell, point, round)) {
+            reached[cell] |= 1u << point;
         }
-        half |= (unsigned)(2 * reached >= POINTS) << cell;
-        some |= (unsigned)(reached > 0) << cell;
+    }
+    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
+        half |= (unsigned)(2 * __builtin_popcount(reached[cell]) >= VPL_REACH_POINTS) << cell;
+        some |= (unsigned)(reached[cell] != 0) << cell;
     }
     return half != 0 ? half : some;
 }
 
-// From most cells the known place is seen, and one point of each will do.
-static void settleSide(const vplReach* reach, int side, int64_t* rays)
+static void findCells(const vplReach* reach, int side, int64_t* rays)
 {
-    const unsigned open = reach->open[side];
+    if (reach->open[side] == 0 || vplReach_IsSmall(reach, side / 2) || isWhole(reach, side, rays)) {
+        reach->nextOpen[side] = reach->open[side];
+        return;
+    }
     Settler s = {.reach = reach, .known = {reach->known[side]}, .side = side, .knownCount = 1, .rays = rays};
-    bool whole = true;
-    for (int cell = 0; cell < VPL_PATCH_CELLS && open != 0 && whole; cell++) {
-        whole = (open >> cell & 1) != 0 || isReached(&s, cell, 0);
-    }
-    if (open != 0) {
-        const unsigned part = whole ? 0xffff : cellsInPart(&s);
-        reach->nextOpen[side] = (uint16_t)(part != 0 ? part : open);
-    }
+    reach->nextOpen[side] = (uint16_t)cellsInPart(&s);
 }
 
-// ---- all sides
-
-static void examineSome(void* data, int task, int worker)
+vplResult vplReach_FindCells(vplReach* reach)
 {
-    (void)worker;
-    const Sweep* sweep = data;
-    vplReach* reach = sweep->reach;
-    const int end = vplMini((task + 1) * TASK, reach->patches->patchCount);
-    int64_t rays = 0;
-    for (int side = 2 * task * TASK; side < 2 * end; side++) {
-        sweep->examine(reach, side, &rays);
-    }
-    reach->taskRays[task] = rays;
-}
-
-// What a sweep found counts in the next only, so that the order of tasks is of no matter. Returns how many sides are new.
-static int adopt(vplReach* reach, int tasks)
-{
-    const int sides = 2 * reach->patches->patchCount;
-    int fresh = 0;
-    for (int side = 0; side < sides; side++) {
-        if (reach->open[side] == 0 && reach->nextOpen[side] != 0) {
-            reach->known[side] = reach->nextKnown[side];
-            fresh++;
-        }
-        reach->open[side] = reach->nextOpen[side] != 0 ? reach->nextOpen[side] : reach->open[side];
-        reach->nextOpen[side] = 0;
-    }
-    for (int i = 0; i < tasks; i++) {
-        reach->rays += reach->taskRays[i];
-    }
-    return fresh;
-}
-
-static vplResult runSweep(vplReach* reach, Sweep sweep, double from, double to, int* freshOut)
-{
-    const int tasks = (reach->patches->patchCount + TASK - 1) / TASK;
-    vplResult result = vplParallelForProgress(reach->context, tasks, examineSome, &sweep,
-                                              reach->def->progress, reach->def->progressUser, from, to);
-    if (result == VPL_SUCCESS) {
-        *freshOut = adopt(reach, tasks);
-        reach->sweep++;
+    int fresh;
+    vplResult result = vplReach_Sweep(reach, findCells, 0.7, 1, &fresh);
+    if (result == VPL_SUCCESS) { // also where no cell is left, which a sweep keeps
+        uint16_t* cells = reach->nextOpen;
+        reach->nextOpen = reach->open;
+        reach->open = cells;
     }
     return result;
-}
-
-vplResult vplReach_Explore(vplReach* reach)
-{
-    vplResult result = VPL_SUCCESS;
-    int fresh = 0;
-    if (reach->def->eyeCount > 0) {
-        result = runSweep(reach, (Sweep){reach, lookAtSide}, 0.5, 0.55, &fresh);
-    }
-    fresh = 1;
-    for (int i = 0; i < SWEEPS && fresh > 0 && result == VPL_SUCCESS; i++) {
-        result = runSweep(reach, (Sweep){reach, exploreSide}, 0.55 + 0.25 * i / SWEEPS,
-                          0.55 + 0.25 * (i + 1) / SWEEPS, &fresh);
-    }
-    return result == VPL_SUCCESS ? runSweep(reach, (Sweep){reach, settleSide}, 0.8, 1, &fresh) : result;
 }

@@ -43,7 +43,7 @@ static int triangleOf(const vplReach* reach, int side)
     return reach->patches->nodes[reach->patches->patches[side / 2]].triangle;
 }
 
-static vplVec3 normalOf(const vplReach* reach, int side)
+vplVec3 vplReach_Normal(const vplReach* reach, int side)
 {
     const vplVec3 n = reach->geometry->normals[triangleOf(reach, side)];
     return side & 1 ? vplNegate(n) : n;
@@ -65,9 +65,14 @@ bool vplReach_IsFree(const vplReach* reach, vplVec3 a, vplVec3 b, int64_t* rays)
     return !vplGeometry_IsOccluded(reach->geometry, &ray, 1);
 }
 
-// Triangles whose distance is this share of a place's height apart are in one place: their rounding decides which of
-// them a ray meets. That triangle counts which has the lowest index.
-static const float SAME_PLACE = 0x1p-6f;
+vplVec3 vplReach_Pull(const vplReach* reach, int patch, vplVec3 place, vplVec3 towards)
+{
+    const vplVec3 way = vplSub(towards, place);
+    const float length = vplLength(way), height = reach->heights[patch];
+    return vplAdd(place, vplScale(length > 2 * height ? height / length : 0.5f, way));
+}
+
+// ---- triangles in one place
 
 // The first of all triangles that are where `triangle` is under a place.
 static int firstBelow(const vplReach* reach, vplVec3 place, vplVec3 down, int triangle, int64_t* rays)
@@ -75,53 +80,51 @@ static int firstBelow(const vplReach* reach, vplVec3 place, vplVec3 down, int tr
     const vplRay ray = {place, down, {triangle, reach->geometry->triangleCount - triangle}};
     vplHit hit;
     ++*rays;
-    const bool found = vplClosestHitWithin(reach->geometry, &ray, 1 + SAME_PLACE, &hit);
-    return found && hit.t > 1 - SAME_PLACE ? hit.triangle : triangle;
+    const bool found = vplClosestHitWithin(reach->geometry, &ray, 1 + VPL_SAME_PLACE, &hit);
+    return found && hit.t > 1 - VPL_SAME_PLACE ? hit.triangle : triangle;
 }
 
 bool vplReach_Rise(const vplReach* reach, int side, vplVec3 point, int64_t* rays, vplVec3* placeOut)
 {
     const int triangle = triangleOf(reach, side);
-    const vplVec3 up = vplScale(reach->heights[side / 2], normalOf(reach, side));
+    const vplVec3 up = vplScale(reach->heights[side / 2], vplReach_Normal(reach, side));
     const vplRay ray = {vplAdd(point, up), vplNegate(up), {triangle, 1}};
     vplHit hit;
     *placeOut = ray.origin;
     ++*rays;
-    if (!vplClosestHitWithin(reach->geometry, &ray, 1 + SAME_PLACE, &hit)) {
+    if (!vplClosestHitWithin(reach->geometry, &ray, 1 + VPL_SAME_PLACE, &hit)) {
         return true;
     }
-    return hit.t > 1 - SAME_PLACE && hit.triangle > triangle &&
+    return hit.t > 1 - VPL_SAME_PLACE && hit.triangle > triangle &&
            firstBelow(reach, ray.origin, ray.direction, triangle, rays) == triangle;
 }
+
+// ---- landing
 
 bool vplReach_Land(const vplReach* reach, vplVec3 from, vplVec3 direction, int64_t* rays,
                    vplLanding* landingOut)
 {
     const vplRay ray = {from, direction, {0, 0}};
     vplHit hit;
-    vplVec3 corners[3];
     ++*rays;
     if (!vplGeometry_ClosestHit(reach->geometry, &ray, &hit)) {
         return false;
     }
-    const vplVec3 normal = vplDot(direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
-    int patch = vplPatches_Find(reach->patches, hit.triangle, hit.position);
-    const vplVec3 up = vplScale(reach->heights[patch], normal), place = vplAdd(hit.position, up);
-    const int triangle = firstBelow(reach, place, vplNegate(up), hit.triangle, rays);
-    if (triangle != hit.triangle) {
-        patch = vplPatches_Find(reach->patches, triangle, hit.position);
-    }
-    const bool back = vplDot(normal, reach->geometry->normals[triangle]) < 0;
-    vplSide_GetCorners(reach->patches, patch, back, corners);
-    *landingOut = (vplLanding){place, normal, 2 * patch + back, vplCell_Find(corners, hit.position)};
-    return vplReach_IsFree(reach, from, place, rays);
+    const bool back = vplDot(direction, hit.normal) > 0;
+    const vplVec3 normal = back ? vplNegate(hit.normal) : hit.normal;
+    const int patch = vplPatches_Find(reach->patches, hit.triangle, hit.position);
+    *landingOut =
+        (vplLanding){vplAdd(hit.position, vplScale(reach->heights[patch], normal)), normal, 2 * patch + back};
+    return true;
 }
 
-void vplReach_Mark(vplReach* reach, const vplLanding* landing)
+void vplReach_Settle(const vplReach* reach, vplLanding* landing, int64_t* rays)
 {
-    if (reach->open[landing->side] == 0) {
-        reach->known[landing->side] = landing->place;
+    const vplVec3 down = vplScale(-reach->heights[landing->side / 2], landing->normal);
+    const int triangle = triangleOf(reach, landing->side),
+              first = firstBelow(reach, landing->place, down, triangle, rays);
+    if (first != triangle) {
+        const int patch = vplPatches_Find(reach->patches, first, vplAdd(landing->place, down));
+        landing->side = 2 * patch + (vplDot(landing->normal, reach->geometry->normals[first]) < 0);
     }
-    const bool small = vplReach_IsSmall(reach, landing->side / 2);
-    reach->open[landing->side] |= (uint16_t)(small ? 0xffff : 1 << landing->cell);
 }

@@ -66,7 +66,8 @@ static void findHeights(vplReach* reach)
 static vplResult reserve(vplReach* reach)
 {
     vplContext* context = reach->context;
-    const size_t patches = (size_t)reach->patches->patchCount, tasks = patches / 32 + 65;
+    const size_t patches = (size_t)reach->patches->patchCount,
+                 tasks = patches / VPL_REACH_PATCHES + 1 + VPL_REACH_PARTICLE_TASKS;
     reach->heights = vplAlloc(context, patches, sizeof *reach->heights);
     reach->open = reach->heights ? vplAllocZero(context, 2 * patches, sizeof *reach->open) : NULL;
     reach->nextOpen = reach->open ? vplAllocZero(context, 2 * patches, sizeof *reach->nextOpen) : NULL;
@@ -94,11 +95,15 @@ static vplResult findOpen(vplReach* reach)
     if (result == VPL_SUCCESS) {
         result = vplGeometry_PrepareRays(reach->geometry);
     }
+    reach->emission = emission;
     if (result == VPL_SUCCESS && emission->sourceCount > 0) {
-        result = vplReach_ShootParticles(reach, emission);
+        result = vplReach_ShootParticles(reach);
     }
     if (result == VPL_SUCCESS && (emission->sourceCount > 0 || reach->def->eyeCount > 0)) {
         result = vplReach_Explore(reach);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplReach_FindCells(reach);
     }
     vplEmission_Destroy(emission);
     return result;
