@@ -162,9 +162,11 @@ typedef enum vplSolver {
                         // are sides count as a sweep
 } vplSolver;
 
+enum { VPL_MAX_SWEEPS = 1 << 20 };
+
 typedef struct vplSolveDef {
     vplSolver solver; // default VPL_SOLVER_GAUSS_SEIDEL
-    int iterations;   // sweeps, at most, [0, 2^20]; default 100
+    int iterations;   // sweeps, at most, [0, VPL_MAX_SWEEPS]; default 100
     double residual;  // ends when the largest change of a sweep is below this share of the largest radiosity,
                       // [0, 1]; default 1e-4
     vplProgressFcn* progress;

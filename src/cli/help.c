@@ -13,6 +13,11 @@ static const Topic TOPICS[] = {
      "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
      "or a\n"
      "mesh (.obj), which gets a camera that sees all of it and, if nothing emits, a light."},
+    {"bake", "vpl bake SCENE -o FILE [options]", "writes the patches of radiosity as a mesh",
+     "Finds the light of SCENE by --method radiosity and writes its patches as a binary PLY mesh with "
+     "colours "
+     "at\n"
+     "the vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity as properties r, g, b."},
     {"lights", "vpl lights SCENE [options]", "lists the virtual lights",
      "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of\n"
      "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "
