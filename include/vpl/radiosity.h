@@ -220,20 +220,26 @@ typedef enum vplVertexWeight {
 typedef struct vplPatchMesh {
     const vplPatchSides* sides;
     const vplVec3* positions; // metres
+    const vplVec3* normals;   // unit: the mean of the patches around, of shading normals on smooth objects
     const uint32_t* indices;  // three per triangle
     const int* patchOf;       // of each triangle
+    const uint8_t* edges;     // of each triangle: bit k: from corner k on runs an edge of the patch, no cut
     int vertexCount, triangleCount;
-    int hangingVertices; // that lay on edges
+    int hangingVertices;             // places where some patch's edge was cut
+    struct vplPatchesAround* around; // the patches at each vertex
     vplContext* context;
 } vplPatchMesh;
 
+// Edges are cut where the middles that bisection makes are vertices of other patches; vertices of the scene that lie
+// elsewhere on another triangle's edge stay as the scene has them.
 vplResult vplPatchMesh_Create(const vplPatchSides* sides, vplPatchMesh** meshOut);
 
 // NULL is allowed.
 void vplPatchMesh_Destroy(vplPatchMesh* mesh);
 
-// Means at the vertices of one value per side: [vertex][front, back]. Sides that are not among `sides` do not count;
-// 0 where none does. `values` and the result in any unit.
+// Means at the vertices of one value per side: [vertex][front, back]. Sides that are not among `sides` do not count, so
+// that what no light reaches darkens nothing (X101); 0 where none does, which is at no corner of a side that is among
+// them. A vertex on the edge of a patch has its share, too. `values` and the result in any unit; finite.
 vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                    vplRgb* vertexValuesOut);
 
@@ -247,14 +253,16 @@ typedef struct vplPatchDraw {
     bool outlines;        // edges of patches are drawn dark
 } vplPatchDraw;
 
-// Adds to an image: one draw per side of all triangles. `clip` are x, y, z, w of the mesh's vertices in clip space
-// (vplView_ToClip). Source: Hemgren, 4.
+// Adds to an image: one draw per side of all triangles, fronts first. Sides that are not among the mesh's are black:
+// they hide what is behind them. `clip` are x, y, z, w of the mesh's vertices in clip space (vplView_ToClip). Within a
+// triangle all values lie between those of its corners. Cancelled, it has added to a part of the image.
+// Source: Hemgren, 4.
 vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplProgressFcn* progress,
                          void* user, vplImage* image, vplRasterStats* statsOut);
 
-// Writes the mesh as binary PLY with a colour per vertex: vertices of both sides where both have light. `values` W/m^2
-// irradiance, [vertex][front, back]; colours are linear radiosity rho E as float r, g, b, and 8-bit sRGB red, green,
-// blue of it times `scale`.
+// Writes the mesh as binary little-endian PLY with a colour per vertex: all fronts, and the backs, turned round, that
+// are among `sides`. W/m^2 irradiance, [vertex][front, back]; colours are linear radiosity rho E as float r, g, b, and
+// 8-bit sRGB red, green, blue of it times `scale`, >= 0. Vertices are written twice where reflectances meet.
 vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIrradiance, float scale,
                                 const char* path);
 

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1; the bisection of longest edges is Rivara's, Algorithms for
+// Refining Triangular Grids, 1984, without her care for neighbours: hanging vertices are the mesh's (X100).
+#include "geometry/patch_tree.h"
+
+#include "base/context.h"
+#include "geometry/bvh.h"
+#include "math/vec.h"
+
+#include <string.h>
+
+// ---- one triangle
+
+static double squareBetween(vplVec3 a, vplVec3 b)
+{
+    const double x = (double)b.x - (double)a.x, y = (double)b.y - (double)a.y, z = (double)b.z - (double)a.z;
+    return x * x + y * y + z * z;
+}
+
+int vplPatch_FirstCorner(const vplTriangleCorners* triangle)
+{
+    const vplVec3* c = triangle->corner;
+    const double s01 = squareBetween(c[0], c[1]), s12 = squareBetween(c[1], c[2]),
+                 s20 = squareBetween(c[2], c[0]);
+    return s01 >= s12 && s01 >= s20 ? 2 : s12 >= s20 ? 0 : 1;
+}
+
+vplTriangleCorners vplPatch_Turn(const vplTriangleCorners* triangle)
+{
+    const vplVec3* c = triangle->corner;
+    const int first = vplPatch_FirstCorner(triangle);
+    return (vplTriangleCorners){{c[first], c[(first + 1) % 3], c[(first + 2) % 3]}};
+}
+
+double vplPatch_Square(const vplTriangleCorners* turned)
+{
+    return squareBetween(turned->corner[1], turned->corner[2]);
+}
+
+vplTriangleCorners vplPatch_Half(const vplTriangleCorners* turned, vplVec3 middle, int second)
+{
+    const vplVec3* c = turned->corner;
+    return second ? (vplTriangleCorners){{c[0], middle, c[2]}} : (vplTriangleCorners){{c[0], c[1], middle}};
+}
+
+static bool facesAlong(const vplTriangleCorners* triangle, vplVec3 normal)
+{
+    double c[3];
+    vplTriangle_Cross(triangle, c);
+    return c[0] * (double)normal.x + c[1] * (double)normal.y + c[2] * (double)normal.z > 0;
+}
+
+// Halves are added, not sums halved: the sum of two large coordinates may be none.
+bool vplPatch_Middle(const vplTriangleCorners* turned, vplVec3 normal, vplVec3* middleOut)
+{
+    const vplVec3 a = turned->corner[1], b = turned->corner[2];
+    *middleOut = vplAdd(vplScale(0.5f, a), vplScale(0.5f, b));
+    const vplTriangleCorners first = vplPatch_Half(turned, *middleOut, 0),
+                             second = vplPatch_Half(turned, *middleOut, 1);
+    return facesAlong(&first, normal) && facesAlong(&second, normal);
+}
+
+// ---- positions
+
+static uint32_t hashOf(const uint32_t bits[3])
+{
+    uint64_t h = bits[0] * UINT64_C(0x9E3779B97F4A7C15);
+    h = (h ^ (h >> 32) ^ bits[1]) * UINT64_C(0xBF58476D1CE4E5B9);
+    h = (h ^ (h >> 32) ^ bits[2]) * UINT64_C(0x94D049BB133111EB);
+    return (uint32_t)(h >> 32);
+}
+
+uint32_t vplPatchTree_Intern(vplPatchTree* tree, vplVec3 position)
+{
+    const vplVec3 p = vplVec(position.x + 0.0f, position.y + 0.0f, position.z + 0.0f); // -0 is 0
+    uint32_t bits[3];
+    memcpy(bits, &p, sizeof bits);
+    uint32_t slot = hashOf(bits) & tree->slotMask;
+    for (; tree->slots[slot] != 0; slot = (slot + 1) & tree->slotMask) {
+        if (memcmp(&tree->positions[tree->slots[slot] - 1], &p, sizeof p) == 0) {
+            return tree->slots[slot] - 1;
+        }
+    }
+    tree->positions[tree->positionCount] = p;
+    tree->slots[slot] = (uint32_t)++tree->positionCount;
+    return tree->slots[slot] - 1;
+}
+
+vplResult vplPatchTree_Reserve(vplPatchTree* tree, size_t positions, size_t nodes)
+{
+    vplContext* context = tree->geometry->context;
+    size_t slots = 16;
+    while (slots < 2 * positions) {
+        slots *= 2;
+    }
+    tree->slotMask = (uint32_t)(slots - 1);
+    tree->positions = vplAlloc(context, positions, sizeof *tree->positions);
+    tree->nodes = tree->positions ? vplAlloc(context, nodes, sizeof *tree->nodes) : NULL;
+    tree->slots = tree->nodes ? vplAllocZero(context, slots, sizeof *tree->slots) : NULL;
+    if (tree->slots == NULL) {
+        vplFree(context, tree->positions);
+        vplFree(context, tree->nodes);
+        return VPL_OUT_OF_MEMORY;
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- nodes
+
+vplTriangleCorners vplPatchTree_Corners(const vplPatchTree* tree, int node)
+{
+    return vplCornersOf(tree->positions, tree->nodes[node].corners);
+}
+
+static void addNode(vplPatchTree* tree, const uint32_t corners[3], int triangle, int parent)
+{
+    const vplTriangleCorners at = vplCornersOf(tree->positions, corners);
+    const int first = vplPatch_FirstCorner(&at);
+    vplPatchNode* node = &tree->nodes[tree->nodeCount++];
+    *node = (vplPatchNode){.triangle = triangle, .parent = parent, .children = -1, .patch = -1};
+    for (int k = 0; k < 3; k++) {
+        node->corners[k] = corners[(first + k) % 3];
+    }
+}
+
+void vplPatchTree_AddTriangles(vplPatchTree* tree)
+{
+    for (int t = 0; t < tree->geometry->triangleCount; t++) {
+        const vplTriangleCorners at = vplGeometry_Corners(tree->geometry, t);
+        uint32_t corners[3];
+        for (int k = 0; k < 3; k++) {
+            corners[k] = vplPatchTree_Intern(tree, at.corner[k]);
+        }
+        addNode(tree, corners, t, -1);
+    }
+}
+
+bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square)
+{
+    const vplPatchNode whole = tree->nodes[node];
+    const vplTriangleCorners at = vplPatchTree_Corners(tree, node);
+    vplVec3 middle;
+    if (!(vplPatch_Square(&at) > square) ||
+        !vplPatch_Middle(&at, tree->geometry->normals[whole.triangle], &middle)) {
+        return false;
+    }
+    const uint32_t m = vplPatchTree_Intern(tree, middle);
+    tree->nodes[node].children = tree->nodeCount;
+    addNode(tree, (const uint32_t[]){whole.corners[0], whole.corners[1], m}, whole.triangle, node);
+    addNode(tree, (const uint32_t[]){whole.corners[0], m, whole.corners[2]}, whole.triangle, node);
+    return true;
+}
+
+// ---- patches
+
+static int firstLeaf(const vplPatchNode* nodes, int node)
+{
+    while (nodes[node].children >= 0) {
+        node = nodes[node].children;
+    }
+    return node;
+}
+
+// The leaf after one in the order of the tree, -1 after the last. Without a stack: trees may be refined to any depth.
+static int nextLeaf(const vplPatchNode* nodes, int node)
+{
+    while (nodes[node].parent >= 0 && nodes[nodes[node].parent].children != node) {
+        node = nodes[node].parent;
+    }
+    return nodes[node].parent < 0 ? -1 : firstLeaf(nodes, node + 1);
+}
+
+static void listPatches(const vplPatchTree* tree, vplPatches* patches, int* list)
+{
+    double longest = 0;
+    for (int t = 0; t < tree->geometry->triangleCount; t++) {
+        for (int i = vplCanBeHit(tree->geometry, t) ? firstLeaf(tree->nodes, t) : -1; i >= 0;
+             i = nextLeaf(tree->nodes, i)) {
+            const vplTriangleCorners at = vplPatchTree_Corners(tree, i);
+            longest = fmax(longest, vplPatch_Square(&at));
+            tree->nodes[i].patch = patches->patchCount;
+            list[patches->patchCount++] = i;
+        }
+    }
+    patches->longestEdge = (float)sqrt(longest);
+}
+
+vplResult vplPatchTree_Finish(vplPatchTree* tree, vplPatches** patchesOut)
+{
+    vplContext* context = tree->geometry->context;
+    const size_t leaves = ((size_t)tree->nodeCount + (size_t)tree->geometry->triangleCount) / 2;
+    vplPatches* patches = vplAllocZero(context, 1, sizeof *patches);
+    int* list = patches ? vplAlloc(context, leaves, sizeof *list) : NULL;
+    vplFree(context, tree->slots);
+    if (list == NULL) {
+        vplFree(context, patches);
+        vplFree(context, tree->positions);
+        vplFree(context, tree->nodes);
+        return VPL_OUT_OF_MEMORY;
+    }
+    *patches = (vplPatches){.geometry = tree->geometry,
+                            .positions = tree->positions,
+                            .positionCount = tree->positionCount,
+                            .nodes = tree->nodes,
+                            .nodeCount = tree->nodeCount,
+                            .patches = list,
+                            .context = context};
+    listPatches(tree, patches, list);
+    *patchesOut = patches;
+    return VPL_SUCCESS;
+}
