@@ -43,6 +43,7 @@
     X(rasterTruth) \
     X(rays) \
     X(render) \
+    X(radiosity) \
     X(renderer) \
     X(rsm) \
     X(rsmLights) \
