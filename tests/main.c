@@ -37,6 +37,8 @@
     X(packets) \
     X(paraboloids) \
     X(passes) \
+    X(patches) \
+    X(patchSides) \
     X(path) \
     X(placement) \
     X(raster) \

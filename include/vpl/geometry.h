@@ -230,7 +230,7 @@ typedef struct vplPatches {
     int nodeCount;
     const int* patches; // nodes that are patches: triangle by triangle, each in the order of its tree
     int patchCount;
-    float longestEdge; // of all patches, metres
+    float longestEdge; // of all patches, metres; rounded up, so as T it gives the same patches
     vplContext* context;
 } vplPatches;
 

@@ -170,6 +170,13 @@ static int nextLeaf(const vplPatchNode* nodes, int node)
     return nodes[node].parent < 0 ? -1 : firstLeaf(nodes, node + 1);
 }
 
+// Rounded up, so that it is a T that bisects none of these patches.
+static float lengthOf(double square)
+{
+    const float length = (float)sqrt(square);
+    return (double)length * (double)length < square ? nextafterf(length, INFINITY) : length;
+}
+
 static void listPatches(const vplPatchTree* tree, vplPatches* patches, int* list)
 {
     double longest = 0;
@@ -182,7 +189,7 @@ static void listPatches(const vplPatchTree* tree, vplPatches* patches, int* list
             list[patches->patchCount++] = i;
         }
     }
-    patches->longestEdge = (float)sqrt(longest);
+    patches->longestEdge = lengthOf(longest);
 }
 
 vplResult vplPatchTree_Finish(vplPatchTree* tree, vplPatches** patchesOut)

@@ -1,0 +1,552 @@
+// SPDX-License-Identifier: MIT
+// Triangles bisected at their longest edges: tests/data/subdivision_counts.csv and subdivision_mesh.csv, X093, X097 to X099.
+#include "patch_model.h"
+
+#include "base/hash.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+static int countOf(const vplGeometry* g, float size, int rounds)
+{
+    vplPatches* patches = patchesOf(g, size, rounds);
+    const int count = patches->patchCount;
+    vplPatches_Destroy(patches);
+    return count;
+}
+
+static void compareCounts(const vplGeometry* g, float size, int most, const Table* t, int row)
+{
+    for (int rounds = 0; rounds <= most; rounds++) {
+        const char name[] = {'i', 't', (char)('0' + rounds), 0};
+        assertNear(countOf(g, size, rounds), number(t, row, name), 0, name, row);
+    }
+}
+
+static bool startsWith(const Table* t, int row, const char* text)
+{
+    return strncmp(cell(t, row, "rule"), text, strlen(text)) == 0;
+}
+
+// Lengths of the lab's unit are roots of numbers that float holds, so the two floats beside a length tell it from T on
+// both sides, and T that equals a length (82.5, 138.75, 165 ...) does not bisect it (X097). From below without the
+// seventh round: its thresholds (98.1, half of 196.2) are not among the table's.
+static void EveryThresholdGivesTheTablesCountsFromBothSides(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
+    Table t = loadTable("subdivision_counts.csv");
+    int rows = 0;
+    for (int row = 0; row < t.rows && strcmp(cell(&t, row, "rule"), "longest_edge > T") == 0; row++, rows++) {
+        const double length = number(&t, row, "T_lab");
+        float size = (float)length;
+        size = (double)size < length ? nextafterf(size, INFINITY) : size;
+        compareCounts(g, size, 7, &t, row);
+        if (row > 0) {
+            compareCounts(g, nextafterf(size, 0), 6, &t, row - 1);
+        }
+    }
+    assert_true(rows > 50);
+    freeTable(&t);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// T = 0.5 in the lab's own float coordinates, which halves of walls have exactly: 464, and a hair below 784 (X097).
+static void ScaledThresholdsInFloatGiveTheTablesCounts(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = testModel(context, MODEL_SCALED, 0.5f);
+    Table t = loadTable("subdivision_counts.csv");
+    int rows = 0;
+    for (int row = 0; row < t.rows; row++) {
+        if (startsWith(&t, row, "binary32") || startsWith(&t, row, "longest_edge > T=0.5")) {
+            compareCounts(g, (float)number(&t, row, "T_scaled"), 7, &t, row);
+            rows++;
+        } else if (startsWith(&t, row, "longest_edge >= T=0.5")) {
+            compareCounts(g, nextafterf(0.5f, 0), 7, &t, row);
+            rows++;
+        }
+    }
+    assert_int_equal(rows, 6);
+    freeTable(&t);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// Triangles with their corners in another order: other edges are first among equals, counts are the same (X099).
+static void CountsDoNotDependOnWhichOfEqualEdgesIsFirst(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Table model = loadTable("cornell_testmodel.csv"), t = loadTable("subdivision_counts.csv");
+    for (int turn = 0; turn < 3; turn++) {
+        Shape shape = {0};
+        for (int row = 0; row < model.rows; row++) {
+            const vplVec3 c[] = {vectorOf(&model, row, "v0"), vectorOf(&model, row, "v1"),
+                                 vectorOf(&model, row, "v2")};
+            addTriangle(&shape, c[turn], c[(turn + 1) % 3], c[(turn + 2) % 3]);
+        }
+        vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
+        int rows = 0;
+        for (int row = 0; row < t.rows; row++) {
+            if (startsWith(&t, row, "longest_edge > T; tie")) {
+                compareCounts(g, (float)number(&t, row, "T_lab"), 7, &t, row);
+                rows++;
+            }
+        }
+        assert_int_equal(rows, 4);
+        freeShape(&shape);
+        vplGeometry_Destroy(g);
+    }
+    freeTable(&model);
+    freeTable(&t);
+    closeTestContext(context);
+}
+
+// ---- the mesh
+
+static double distance(vplVec3 a, vplVec3 b)
+{
+    const double x = (double)a.x - (double)b.x, y = (double)a.y - (double)b.y, z = (double)a.z - (double)b.z;
+    return sqrt(x * x + y * y + z * z);
+}
+
+static void cornersOf(const vplPatches* p, int patch, vplVec3 c[3])
+{
+    for (int k = 0; k < 3; k++) {
+        c[k] = p->positions[p->nodes[p->patches[patch]].corners[k]];
+    }
+}
+
+static double shortestEdge(const vplPatches* p)
+{
+    double shortest = INFINITY;
+    for (int i = 0; i < p->patchCount; i++) {
+        vplVec3 c[3];
+        cornersOf(p, i, c);
+        for (int k = 0; k < 3; k++) {
+            shortest = fmin(shortest, distance(c[k], c[(k + 1) % 3]));
+        }
+    }
+    return shortest;
+}
+
+// Whether a point lies inside some patch's edge, not at its ends.
+static bool isHanging(const vplPatches* p, vplVec3 at)
+{
+    for (int i = 0; i < p->patchCount; i++) {
+        vplVec3 c[3];
+        cornersOf(p, i, c);
+        for (int k = 0; k < 3; k++) {
+            const double a = distance(c[k], at), b = distance(c[(k + 1) % 3], at),
+                         ab = distance(c[k], c[(k + 1) % 3]);
+            if (a > 1e-3 && b > 1e-3 && a + b < ab * (1 + 1e-9)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+static void compareSurfaces(const vplPatches* p, const Table* model, const Table* t, int row)
+{
+    static const char* const names[] = {"floor", "left", "right", "ceiling", "back", "short", "tall"};
+    for (int k = 0; k < 7; k++) {
+        int count = 0;
+        for (int i = 0; i < p->patchCount; i++) {
+            count += strcmp(cell(model, p->nodes[p->patches[i]].triangle, "surface"), names[k]) == 0;
+        }
+        assertNear(count, number(t, row, names[k]), 0, names[k], row);
+    }
+}
+
+static void TheMeshOfEachRoundIsTheTables(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
+    Table t = loadTable("subdivision_mesh.csv"), model = loadTable("cornell_testmodel.csv");
+    for (int row = 0; row < t.rows; row++) {
+        vplPatches* p = patchesOf(g, 125, row);
+        double area = 0;
+        int hanging = 0;
+        for (int i = 0; i < p->patchCount; i++) {
+            area += vplPatches_Area(p, i);
+        }
+        for (int i = 0; i < p->positionCount; i++) {
+            hanging += isHanging(p, p->positions[i]);
+        }
+        assertNear(p->patchCount, number(&t, row, "patches"), 0, "patches", row);
+        assertNear(p->positionCount, number(&t, row, "distinct_vertices"), 0, "vertices", row);
+        assertNear(hanging, number(&t, row, "hanging_vertices"), 0, "hanging", row);
+        assertNear((double)p->longestEdge, number(&t, row, "longest_edge"), 4e-5, "longest", row);
+        assertNear(shortestEdge(p), number(&t, row, "shortest_edge"), 1e-10, "shortest", row);
+        assertNear(area, number(&t, row, "total_area"), 1e-6, "area", row);
+        compareSurfaces(p, &model, &t, row);
+        vplPatches_Destroy(p);
+    }
+    freeTable(&t);
+    freeTable(&model);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+static bool isSame(vplVec3 a, vplVec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+// What vpl/geometry.h says of nodes, on triangles of all shapes.
+static void assertNodes(const vplPatches* p)
+{
+    int patches = 0;
+    for (int i = 0; i < p->nodeCount; i++) {
+        const vplPatchNode* node = &p->nodes[i];
+        vplVec3 c[3];
+        for (int k = 0; k < 3; k++) {
+            c[k] = p->positions[node->corners[k]];
+        }
+        const double opposite = distance(c[1], c[2]);
+        assert_true(opposite >= distance(c[0], c[1]) && opposite >= distance(c[0], c[2]));
+        const vplVec3 n = vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0]));
+        assert_true(vplDot(n, p->geometry->normals[node->triangle]) > 0);
+        if (node->children < 0) {
+            assert_int_equal(p->patches[node->patch], i);
+            patches++;
+            continue;
+        }
+        assert_int_equal(node->patch, -1);
+        const vplVec3 middle = vplScale(0.5f, vplAdd(c[1], c[2]));
+        for (int half = 0; half < 2; half++) {
+            const vplPatchNode* child = &p->nodes[node->children + half];
+            bool hasMiddle = false, hasApex = false, hasEnd = false;
+            for (int k = 0; k < 3; k++) {
+                hasMiddle = hasMiddle || isSame(p->positions[child->corners[k]], middle);
+                hasApex = hasApex || child->corners[k] == node->corners[0];
+                hasEnd = hasEnd || child->corners[k] == node->corners[1 + half];
+            }
+            assert_true(hasMiddle && hasApex && hasEnd);
+            assert_true(child->parent == i && child->triangle == node->triangle);
+        }
+    }
+    assert_int_equal(patches, p->patchCount);
+}
+
+static void assertPositionsDiffer(const vplPatches* p)
+{
+    for (int i = 0; i < p->positionCount; i++) {
+        for (int k = 0; k < i; k++) {
+            assert_false(isSame(p->positions[i], p->positions[k]));
+        }
+    }
+}
+
+static Shape looseTriangles(int count, uint64_t seed)
+{
+    Shape shape = {0};
+    Dice dice = {seed, 0};
+    for (int i = 0; i < count; i++) {
+        addTriangle(&shape, rollVec(&dice, 1), rollVec(&dice, 1), rollVec(&dice, 1));
+    }
+    return shape;
+}
+
+static void NodesAreWhatTheHeaderSays(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Shape shapes[] = {looseTriangles(20, 7), ringSphere(5), gridBox(2)};
+    for (int i = 0; i < 3; i++) {
+        vplGeometry* g = geometryOf(context, &shapes[i], 0.5f, 0);
+        vplPatches* p = patchesOf(g, 0.3f, VPL_MAX_PATCH_ROUNDS);
+        assert_true(p->patchCount > 4 * g->triangleCount);
+        assert_true(p->longestEdge <= 0.3f);
+        assertNodes(p);
+        assertPositionsDiffer(p);
+        vplPatches_Destroy(p);
+        vplGeometry_Destroy(g);
+        freeShape(&shapes[i]);
+    }
+    closeTestContext(context);
+}
+
+// Points of each patch, a hair inside, are found in it, and corners of the triangle in a patch that has them.
+static void PointsAreFoundInTheirPatch(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Shape shape = looseTriangles(20, 8);
+    vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
+    vplPatches* p = patchesOf(g, 0.2f, VPL_MAX_PATCH_ROUNDS);
+    Dice dice = {9, 0};
+    for (int i = 0; i < p->patchCount; i++) {
+        const int triangle = p->nodes[p->patches[i]].triangle;
+        for (int k = 0; k < 8; k++) {
+            vplVec3 c[3];
+            cornersOf(p, i, c);
+            const float a = roll(&dice, 0.01f, 0.49f), b = roll(&dice, 0.01f, 0.49f);
+            const vplVec3 at =
+                vplAdd(vplScale(1 - a - b, c[0]), vplAdd(vplScale(a, c[1]), vplScale(b, c[2])));
+            assert_int_equal(vplPatches_Find(p, triangle, at), i);
+        }
+    }
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+    freeShape(&shape);
+    closeTestContext(context);
+}
+
+// ---- extremes
+
+// X093: needles that are lines and points have no patch, also beside others; and no half ever has no area.
+static void TrianglesWithoutAreaHaveNoPatch(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Shape shape = {0};
+    const vplVec3 a = {0, 0, 0}, b = {1, 0, 0}, c = {2, 0, 0}, d = {0, 1, 0};
+    addTriangle(&shape, a, b, c);
+    addTriangle(&shape, a, b, d);
+    addTriangle(&shape, b, b, b);
+    addTriangle(&shape, a, a, d);
+    vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
+    vplPatches* p = patchesOf(g, 0.5f, VPL_MAX_PATCH_ROUNDS);
+    assert_true(p->patchCount > 1);
+    for (int i = 0; i < p->patchCount; i++) {
+        assert_int_equal(p->nodes[p->patches[i]].triangle, 1);
+        assert_true(vplPatches_Area(p, i) > 0);
+    }
+    for (int t = 0; t < 4; t += 1 + (t == 0)) {
+        assert_true(p->nodes[t].children == -1 && p->nodes[t].patch == -1);
+        assert_int_equal(vplPatches_Find(p, t, a), -1);
+    }
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+    freeShape(&shape);
+    closeTestContext(context);
+}
+
+static void expectFailure(const vplGeometry* g, vplPatchDef def, vplResult wanted, const char* sentence)
+{
+    vplPatches* untouched = (vplPatches*)&def;
+    vplPatches* p = untouched;
+    takeMessage();
+    assert_int_equal(vplPatches_Create(g, &def, &p), wanted);
+    assert_ptr_equal(p, untouched);
+    assert_string_equal(takeMessage(), sentence);
+}
+
+// X098: T of 0 is the count's; below 0 and not finite are refused; tiny T is refused before memory is taken, or ended
+// by rounds, or by floats that have nothing between them.
+static void TinyThresholdsEnd(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
+    vplPatchDef def = vplDefaultPatchDef();
+    def.size = 1e-30f;
+    vplContext_ResetPeakBytes(context);
+    const size_t before = vplContext_GetPeakBytes(context);
+    expectFailure(g, def, VPL_LIMIT,
+                  "patches with edges up to 1e-30 m are more than 16777216, which are allowed");
+    assert_int_equal(vplContext_GetPeakBytes(context), before);
+    assert_int_equal(countOf(g, 1e-30f, 5), 30 << 5);
+    def.size = -1;
+    expectFailure(g, def, VPL_INVALID_ARGUMENT, "vplPatchDef.size is -1, must be finite and at least 0");
+    def.size = NAN;
+    expectFailure(g, def, VPL_INVALID_ARGUMENT, "vplPatchDef.size is nan, must be finite and at least 0");
+    def.size = 0;
+    def.count = 0;
+    expectFailure(g, def, VPL_INVALID_ARGUMENT, "vplPatchDef.count is 0, must be in [1, 16777216]");
+    def.count = 1;
+    def.rounds = 41;
+    expectFailure(g, def, VPL_INVALID_ARGUMENT, "vplPatchDef.rounds is 41, must be in [0, 40]");
+    def.cookie = 0;
+    expectFailure(g, def, VPL_INVALID_ARGUMENT, "vplPatchDef was not made by vplDefaultPatchDef");
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// A triangle of a few units in the last place: patches end where float does.
+static void EdgesEndWhereFloatDoes(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    const float u = 0x1p-23f;
+    Shape shape = {0};
+    addTriangle(&shape, (vplVec3){1, 1, 1}, (vplVec3){1 + 8 * u, 1, 1}, (vplVec3){1, 1 + 8 * u, 1});
+    vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
+    vplPatches* p = patchesOf(g, 1e-20f, VPL_MAX_PATCH_ROUNDS);
+    assert_true(p->patchCount >= 64);
+    assert_true(p->patchCount < 1000);
+    double area = 0;
+    for (int i = 0; i < p->patchCount; i++) {
+        assert_true(vplPatches_Area(p, i) > 0);
+        area += vplPatches_Area(p, i);
+    }
+    assertNear(area, 32.0 * (double)u * (double)u, 1e-20, "area", 0);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+    freeShape(&shape);
+    closeTestContext(context);
+}
+
+static void NoTrianglesGiveNoPatches(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    Shape shape = {0};
+    addTriangle(&shape, (vplVec3){0}, (vplVec3){0}, (vplVec3){0});
+    vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
+    vplPatchDef def = vplDefaultPatchDef();
+    vplPatches* p;
+    assert_int_equal(vplPatches_Create(g, &def, &p), VPL_SUCCESS);
+    assert_int_equal(p->patchCount, 0);
+    vplPatches_Destroy(p);
+    vplPatches_Destroy(NULL);
+    vplGeometry_Destroy(g);
+    freeShape(&shape);
+    closeTestContext(context);
+}
+
+// ---- counts
+
+static vplPatches* byCount(const vplGeometry* g, int count)
+{
+    vplPatchDef def = vplDefaultPatchDef();
+    vplPatches* p = NULL;
+    def.count = count;
+    assert_int_equal(vplPatches_Create(g, &def, &p), VPL_SUCCESS);
+    return p;
+}
+
+// A count is met as soon as all edges of one length are bisected: one class less is too few, and the patches are those
+// of a threshold. Edges of the metre model are alike only to rounding and yet go together.
+static void ACountBisectsTheLongestFirstAllOfALengthTogether(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* lab = testModel(context, MODEL_LAB, 0.5f);
+    vplGeometry* metres = testModel(context, MODEL_METRES, 0.5f);
+    static const int counts[] = {1, 30, 31, 464, 465, 784, 785, 5000};
+    for (int i = 0; i < 8; i++) {
+        vplPatches *p = byCount(lab, counts[i]), *q = byCount(metres, counts[i]);
+        assert_true(p->patchCount >= counts[i]);
+        assert_int_equal(q->patchCount, p->patchCount);
+        assert_int_equal(countOf(lab, p->longestEdge, VPL_MAX_PATCH_ROUNDS), p->patchCount);
+        if (counts[i] > 30) { // one class of lengths less
+            const float more = nextafterf(p->longestEdge, INFINITY);
+            int fewer = p->patchCount;
+            for (float size = more; fewer == p->patchCount; size *= 1.0005f) {
+                fewer = countOf(lab, size, VPL_MAX_PATCH_ROUNDS);
+            }
+            assert_true(fewer < counts[i]);
+        }
+        vplPatches_Destroy(p);
+        vplPatches_Destroy(q);
+    }
+    vplGeometry_Destroy(lab);
+    vplGeometry_Destroy(metres);
+    closeTestContext(context);
+}
+
+// ---- refining
+
+static void RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
+    vplPatches *p = patchesOf(g, 125, 2), *q;
+    float priorities[120] = {0};
+    for (int i = 10; i < 60; i++) {
+        priorities[i] = (float)(i % 5);
+    }
+    assert_int_equal(vplPatches_Refine(p, priorities, 133, &q), VPL_SUCCESS);
+    assert_int_equal(q->patchCount, 133);
+    assertNodes(q);
+    assertPositionsDiffer(q);
+    int bisected = 0;
+    for (int i = 0; i < p->patchCount; i++) { // ten of priority 4 and the first three of priority 3
+        const bool wanted = i >= 10 && i < 60 && (i % 5 == 4 || (i % 5 == 3 && i < 25));
+        assert_int_equal(q->nodes[p->patches[i]].children >= 0, wanted);
+        bisected += wanted;
+    }
+    assert_int_equal(bisected, 13);
+    assert_int_equal(p->nodes[p->patches[14]].children, -1);
+    vplPatches_Destroy(q);
+    assert_int_equal(vplPatches_Refine(p, priorities, 1000, &q), VPL_SUCCESS); // 40 are above 0
+    assert_int_equal(q->patchCount, 160);
+    vplPatches_Destroy(q);
+    assert_int_equal(vplPatches_Refine(p, priorities, 1, &q), VPL_SUCCESS);
+    assert_int_equal(q->patchCount, 120);
+    vplPatches_Destroy(q);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+// Refining all, again and again, is what a threshold does; old patches outlive nothing they need.
+static void RefiningEverythingIsARound(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
+    float ones[960];
+    for (int i = 0; i < 960; i++) {
+        ones[i] = 1;
+    }
+    vplPatches* p = patchesOf(g, 1, 0);
+    for (int rounds = 1; rounds <= 5; rounds++) {
+        vplPatches *next, *wanted = patchesOf(g, 1, rounds);
+        assert_int_equal(vplPatches_Refine(p, ones, VPL_MAX_PATCHES, &next), VPL_SUCCESS);
+        vplPatches_Destroy(p);
+        p = next;
+        assert_int_equal(p->patchCount, 30 << rounds);
+        assert_int_equal(p->positionCount, wanted->positionCount);
+        for (int i = 0; i < p->patchCount; i++) {
+            vplVec3 a[3], b[3];
+            cornersOf(p, i, a);
+            cornersOf(wanted, i, b);
+            assert_memory_equal(a, b, sizeof a);
+        }
+        vplPatches_Destroy(wanted);
+    }
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+static void RefiningRefusesWhatIsNoPriority(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
+    vplPatches *p = patchesOf(g, 1, 0), *q = p;
+    float priorities[30] = {0};
+    priorities[7] = NAN;
+    assert_int_equal(vplPatches_Refine(p, priorities, 40, &q), VPL_INVALID_ARGUMENT);
+    assert_string_equal(takeMessage(), "priorities[7] is not a number");
+    priorities[7] = 0;
+    assert_int_equal(vplPatches_Refine(p, priorities, 0, &q), VPL_INVALID_ARGUMENT);
+    assert_string_equal(takeMessage(), "count is 0, must be in [1, 16777216]");
+    assert_ptr_equal(q, p);
+    vplPatches_Destroy(p);
+    vplGeometry_Destroy(g);
+    closeTestContext(context);
+}
+
+TEST_SUITE(patches, cmocka_unit_test(EveryThresholdGivesTheTablesCountsFromBothSides),
+           cmocka_unit_test(ScaledThresholdsInFloatGiveTheTablesCounts),
+           cmocka_unit_test(CountsDoNotDependOnWhichOfEqualEdgesIsFirst),
+           cmocka_unit_test(TheMeshOfEachRoundIsTheTables), cmocka_unit_test(NodesAreWhatTheHeaderSays),
+           cmocka_unit_test(PointsAreFoundInTheirPatch), cmocka_unit_test(TrianglesWithoutAreaHaveNoPatch),
+           cmocka_unit_test(TinyThresholdsEnd), cmocka_unit_test(EdgesEndWhereFloatDoes),
+           cmocka_unit_test(NoTrianglesGiveNoPatches),
+           cmocka_unit_test(ACountBisectsTheLongestFirstAllOfALengthTogether),
+           cmocka_unit_test(RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes),
+           cmocka_unit_test(RefiningEverythingIsARound), cmocka_unit_test(RefiningRefusesWhatIsNoPriority));
