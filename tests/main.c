@@ -37,6 +37,7 @@
     X(packets) \
     X(paraboloids) \
     X(passes) \
+    X(patchMesh) \
     X(path) \
     X(placement) \
     X(raster) \
