@@ -16,6 +16,7 @@
     X(clusterShadows) \
     X(clusters) \
     X(compensation) \
+    X(drawPatches) \
     X(emission) \
     X(emitters) \
     X(exr) \
@@ -40,6 +41,7 @@
     X(patchMesh) \
     X(path) \
     X(placement) \
+    X(ply) \
     X(raster) \
     X(rasterTruth) \
     X(rays) \
