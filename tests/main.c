@@ -16,6 +16,7 @@
     X(clusterShadows) \
     X(clusters) \
     X(compensation) \
+    X(drawPatches) \
     X(emission) \
     X(emitters) \
     X(exr) \
@@ -37,15 +38,17 @@
     X(packets) \
     X(paraboloids) \
     X(passes) \
-    X(patches) \
+    X(patchMesh) \
     X(patchSides) \
+    X(patches) \
     X(path) \
     X(placement) \
+    X(ply) \
+    X(radiosity) \
     X(raster) \
     X(rasterTruth) \
     X(rays) \
     X(render) \
-    X(radiosity) \
     X(renderer) \
     X(rsm) \
     X(rsmLights) \

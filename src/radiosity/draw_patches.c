@@ -67,7 +67,7 @@ vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplPr
     const vplMesh triangles = {mesh->indices, mesh->vertexCount, mesh->triangleCount};
     vplPatchFace faces[2];
     for (int face = 0; face < 2; face++) {
-        faces[face] = (vplPatchFace){draw, clip, face, image->width, image->height, image};
+        faces[face] = (vplPatchFace){draw, clip, face, image->width, image->height};
     }
     vplFramebuffer framebuffer = vplDefaultFramebuffer(image->width, image->height);
     framebuffer.planeCount = 3;

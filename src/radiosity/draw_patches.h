@@ -11,7 +11,6 @@ typedef struct vplPatchFace {
     const float (*clip)[4];
     int face;             // 0: fronts
     double width, height; // pixels of the picture
-    vplImage* image;
 } vplPatchFace;
 
 #endif

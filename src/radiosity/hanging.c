@@ -16,7 +16,7 @@ enum { MOST_PIECES = VPL_MAX_TRIANGLES / 3 }; // corners are counted in int, too
 typedef struct Cutter {
     const vplPatches* patches;
     vplPieces* out;
-    int* table; // position indices, -1: empty
+    int* table; // indices of positions by place, -1: empty
     size_t tableMask;
     uint8_t* hangs; // per position
     vplResult result;
@@ -47,17 +47,17 @@ static int findPosition(const Cutter* c, vplVec3 p)
     }
 }
 
+// Corners of patches only: a scene's triangle without area has none.
 static void fillTable(Cutter* c)
 {
-    for (size_t slot = 0; slot <= c->tableMask; slot++) {
-        c->table[slot] = -1;
-    }
-    for (int i = 0; i < c->patches->positionCount; i++) {
-        size_t slot = slotOf(c, c->patches->positions[i]);
-        while (c->table[slot] >= 0) {
+    memset(c->table, 0xff, (c->tableMask + 1) * sizeof *c->table);
+    for (int i = 0; i < 3 * c->patches->patchCount; i++) {
+        const uint32_t corner = c->patches->nodes[c->patches->patches[i / 3]].corners[i % 3];
+        size_t slot = slotOf(c, c->patches->positions[corner]);
+        while (c->table[slot] >= 0 && c->table[slot] != (int)corner) {
             slot = (slot + 1) & c->tableMask;
         }
-        c->table[slot] = i;
+        c->table[slot] = (int)corner;
     }
 }
 
