@@ -39,6 +39,7 @@
     X(passes) \
     X(path) \
     X(placement) \
+    X(radiositySolve) \
     X(raster) \
     X(rasterTruth) \
     X(rays) \

@@ -150,7 +150,7 @@ static vplResult reserve(vplSolve* s, vplPlanes* scratch)
 {
     vplContext* context = s->exchange.context;
     const int count = s->exchange.count;
-    vplPlanes* planes[] = {&s->source, &s->radiosity, scratch, &s->before, &s->unshot, &s->gain};
+    vplPlanes* planes[] = {&s->source, &s->radiosity, scratch, &s->shot, &s->unshot, &s->gain};
     const int needed = s->solver == VPL_SOLVER_SHOOTING ? 6 : 3;
     for (int i = 0; i < needed; i++) {
         if (vplPlanes_Create(context, count, planes[i]) != VPL_SUCCESS) {
@@ -167,7 +167,7 @@ static vplResult reserve(vplSolve* s, vplPlanes* scratch)
 static void release(vplSolve* s, vplPlanes* scratch)
 {
     vplContext* context = s->exchange.context;
-    vplPlanes* planes[] = {&s->source, &s->radiosity, scratch, &s->before, &s->unshot, &s->gain};
+    vplPlanes* planes[] = {&s->source, &s->radiosity, scratch, &s->shot, &s->unshot, &s->gain};
     for (int i = 0; i < 6; i++) {
         vplPlanes_Destroy(context, planes[i]);
     }

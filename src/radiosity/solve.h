@@ -28,7 +28,7 @@ typedef struct vplShot {
     const float* row; // form factors from the side that shoots
     float power[3];   // that it shoots, W
     vplPlanes gain;   // reflectance / area, 1/m^2
-    vplPlanes unshot, radiosity;
+    vplPlanes unshot;
     const float* area;
 } vplShot;
 
@@ -70,11 +70,11 @@ typedef struct vplSolve {
     const vplSolveDef* def;
     vplSolver solver;
     vplPlanes source, radiosity;
-    vplPlanes before, unshot, gain; // shooting
-    float* area;                    // shooting
-    int next;                       // shooting: the side that shoots next; -1: none
-    double change, largest;         // of the last sweep: of radiosities, W/m^2
-    bool finite;                    // all radiosities are
+    vplPlanes shot, unshot, gain; // shooting: their sum is the radiosity
+    float* area;                  // shooting
+    int next;                     // shooting: the side that shoots next; -1: none
+    double change, largest;       // of the last sweep: of radiosities, W/m^2
+    bool finite;                  // all radiosities are
 } vplSolve;
 
 // What shooting needs before its first sweep.

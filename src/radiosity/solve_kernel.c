@@ -73,18 +73,14 @@ static inline void shootAt(const vplShot* shot, const float* row, int j, float p
     memset(power, 0, LANES * sizeof *power);
     for (int c = 0; c < 3; c++) {
         const float sent = shot->power[c];
-        float gain[LANES], unshot[LANES], radiosity[LANES];
+        float gain[LANES], unshot[LANES];
         memcpy(gain, shot->gain.c[c] + j, sizeof gain);
         memcpy(unshot, shot->unshot.c[c] + j, sizeof unshot);
-        memcpy(radiosity, shot->radiosity.c[c] + j, sizeof radiosity);
         for (int l = 0; l < LANES; l++) {
-            const float more = gain[l] * (f[l] * sent);
-            unshot[l] += more;
-            radiosity[l] += more;
+            unshot[l] += gain[l] * (f[l] * sent);
             power[l] += area[l] * fabsf(unshot[l]);
         }
         memcpy(shot->unshot.c[c] + j, unshot, sizeof unshot);
-        memcpy(shot->radiosity.c[c] + j, radiosity, sizeof radiosity);
     }
 }
 

@@ -93,7 +93,8 @@ static int mostPower(const vplSolve* s)
     return next;
 }
 
-// From the source alone nothing is shot yet. From elsewhere, one sweep of Jacobi's finds what is wrong.
+// From the source alone nothing is shot yet. From elsewhere, that is what was shot, and one sweep of Jacobi's finds what
+// is wrong with it.
 void vplSolve_BeginShooting(vplSolve* s)
 {
     const int count = s->exchange.count;
@@ -101,12 +102,12 @@ void vplSolve_BeginShooting(vplSolve* s)
     if (memcmp(s->radiosity.c[0], s->source.c[0], bytes) == 0) {
         memcpy(s->unshot.c[0], s->source.c[0], bytes);
     } else {
+        memcpy(s->shot.c[0], s->radiosity.c[0], bytes);
         vplExchange_Gather(&s->exchange, &s->radiosity);
         for (int i = 0; i < count; i++) {
             for (int c = 0; c < 3; c++) {
-                const float old = s->radiosity.c[c][i];
-                s->radiosity.c[c][i] = (float)reflect(s, i, c, s->exchange.sums[i][c]);
-                s->unshot.c[c][i] = s->radiosity.c[c][i] - old;
+                const double better = reflect(s, i, c, s->exchange.sums[i][c]);
+                s->unshot.c[c][i] = (float)(better - (double)s->shot.c[c][i]);
             }
         }
     }
@@ -125,20 +126,22 @@ static void sweepShooting(vplSolve* s)
     const vplFormFactors* f = s->exchange.transport->factors;
     const int count = s->exchange.count;
     vplShootFcn* shoot = vplGetShoot(s->exchange.context->isa);
-    vplShot shot = {.gain = s->gain, .unshot = s->unshot, .radiosity = s->radiosity, .area = s->area};
-    memcpy(s->before.c[0], s->radiosity.c[0], 3 * vplPaddedSides(count) * sizeof(float));
+    vplShot shot = {.gain = s->gain, .unshot = s->unshot, .area = s->area};
     for (int k = 0; k < count && s->next >= 0; k++) {
         const int i = s->next;
         shot.row = f->rows + (size_t)i * (size_t)count;
         for (int c = 0; c < 3; c++) {
             shot.power[c] = s->area[i] * s->unshot.c[c][i];
+            s->shot.c[c][i] += s->unshot.c[c][i];
             s->unshot.c[c][i] = 0;
         }
         s->next = shoot(&shot, count);
     }
     for (int i = 0; i < count; i++) {
         for (int c = 0; c < 3; c++) {
-            note(s, (double)s->before.c[c][i], (double)s->radiosity.c[c][i]);
+            const float now = s->shot.c[c][i] + s->unshot.c[c][i];
+            note(s, (double)s->radiosity.c[c][i], (double)now);
+            s->radiosity.c[c][i] = now;
         }
     }
 }
