@@ -45,6 +45,7 @@
     X(placement) \
     X(ply) \
     X(radiosity) \
+    X(radiositySolve) \
     X(raster) \
     X(rasterTruth) \
     X(rays) \

@@ -129,8 +129,9 @@ typedef struct vplLinkDef {
     double
         error; // links are divided until the error of what they carry is below this share of what their receiver
                // gets of all, (0, 1]; default 0.01
-    int samples;   // pairs of points per link, [1, 1024]; default 4
-    uint64_t seed; // default 0
+    int samples;        // points on either of two groups, all with all, [1, 32]; default 4: 16 pairs and rays
+    vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL: clamped
+    uint64_t seed;      // default 0
     vplProgressFcn* progress;
     void* progressUser;
     uint32_t cookie; // set by vplDefaultLinkDef
@@ -143,6 +144,7 @@ vplLinkDef vplDefaultLinkDef(void);
 typedef struct vplLinks {
     int sideCount, groupCount;
     int64_t linkCount, rays;
+    const float* rowSums; // of each side: the sum of its form factors before `rowSums` of the def changed them
     struct vplLinkTree* tree;
     vplContext* context;
 } vplLinks;
@@ -168,7 +170,9 @@ typedef struct vplSolveDef {
     vplSolver solver; // default VPL_SOLVER_GAUSS_SEIDEL
     int iterations;   // sweeps, at most, [0, VPL_MAX_SWEEPS]; default 100
     double residual;  // ends when the largest change of a sweep is below this share of the largest radiosity,
-                      // [0, 1]; default 1e-4
+                      // [0, 1]; default 1e-4. 0: only where nothing changes, and without a warning
+    bool spectrum;    // find the stats' spectral radius and sums of rows, which costs some ten sweeps: for light
+                      // that moves, once; default true
     vplProgressFcn* progress;
     void* progressUser;
     uint32_t cookie; // set by vplDefaultSolveDef
@@ -177,11 +181,12 @@ typedef struct vplSolveDef {
 vplSolveDef vplDefaultSolveDef(void);
 
 typedef struct vplSolveStats {
+    vplSolver solver; // that was used: for links it is Jacobi's whatever the def says
     int iterations;
-    double residual; // as above, of the last sweep
+    double residual; // as above, of the last sweep; 0 where there was none
     double
-        spectralRadius; // of rho F, an estimate: errors shrink by this factor in a sweep of Jacobi's; 1 and more:
-                        // there is no solution; 0: no light is exchanged
+        spectralRadius; // of rho F, an estimate from below: errors shrink by this factor in a sweep of Jacobi's; 1
+                        // and more: there is no solution; 0: no light is exchanged, or vplSolveDef.spectrum is off
     double rowSumMin, rowSumMean, rowSumMax; // of F, as used; the mean weighted by area
 } vplSolveStats;
 
@@ -194,7 +199,8 @@ typedef struct vplTransport {
 
 // B starts from radiosity[] as it is: `source` for a solution from nothing, that of the frame before for a light that
 // moved. Both W/m^2, one per side. VPL_LIMIT, with a sentence, where it diverges; then radiosity[] is as it was.
-// VPL_SUCCESS with a warning where `iterations` end it before `residual` does.
+// It does where changes grow, sweep for sweep, and the spectral radius is above 1.0001; and where radiosities leave the
+// range of float. VPL_SUCCESS with a warning where `iterations` end it before `residual` does. Shooting relies on A_i F_ij = A_j F_ji.
 vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* def, const vplRgb* source,
                             vplRgb* radiosity, vplSolveStats* statsOut);
 
