@@ -147,7 +147,8 @@ static void countDraws(const vplRenderOptions* o, Info* info)
         o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
     const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? drawn : 0;
     const int64_t size = o->shadowMapSize, lightSize = o->lightMapSize;
-    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias);
+    const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
+    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias) + patchDraws * o->antialias;
     const int64_t lightMapBytes = lightMaps * lightSize * lightSize * (int64_t)sizeof(float);
     info->shadowMapBytes = 6 * maps * size * size * (int64_t)sizeof(float) +
                            (lightMapBytes < VPL_LIGHT_MAP_BYTES ? lightMapBytes : VPL_LIGHT_MAP_BYTES);

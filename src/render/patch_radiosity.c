@@ -202,7 +202,7 @@ static vplResult create(vplJob* job, vplRadiosityNeed need, vplRadiosityState** 
     } else {
         vplJob_BeginStage(job, 0.05);
         result = makePatches(job, job->options.patches, &patches);
-        vplJob_EndStage(job, "patches");
+        vplJob_EndStage(job, "bisection");
     }
     if (result == VPL_SUCCESS) {
         result = makeState(job, patches, &s);
