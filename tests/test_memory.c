@@ -370,6 +370,55 @@ static void EveryFailedAllocationOfPatchMeshesIsReported(void** state)
     }
 }
 
+// Patches, finer ones, and their sides. Variants: by the lamp alone, and by an eye.
+static vplResult findSides(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    vplPatches *patches = NULL, *finer = NULL;
+    vplPatchSides* sides = NULL;
+    vplPatchDef def = vplDefaultPatchDef();
+    vplPatchSidesDef sidesDef = vplDefaultPatchSidesDef();
+    const vplVec3 eye = {0, 0, 0};
+    float priorities[200];
+    for (int i = 0; i < 200; i++) {
+        priorities[i] = 1;
+    }
+    def.count = 50;
+    sidesDef.eyes = &eye;
+    sidesDef.eyeCount = variant;
+    vplResult result = vplScene_Load(context, "examples/scenes/room-area.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplPatches_Create(geometry, &def, &patches);
+    }
+    if (result == VPL_SUCCESS) {
+        assert_true(patches->patchCount <= 200);
+        result = vplPatches_Refine(patches, priorities, 70, &finer);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplPatchSides_Create(finer, &sidesDef, &sides);
+    }
+    vplPatchSides_Destroy(sides);
+    vplPatches_Destroy(finer);
+    vplPatches_Destroy(patches);
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfPatchesIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(findSides, "png", variant, false);
+        failEveryAllocation(findSides, "png", variant, true);
+    }
+}
+
 static void EveryFailedAllocationOfLightcutsIsReported(void** state)
 {
     (void)state;
@@ -736,6 +785,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfPatchMeshesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfPatchesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),

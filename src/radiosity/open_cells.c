@@ -9,10 +9,12 @@
 #include "radiosity/cells.h"
 
 enum {
-    TASK = 32,   // patches
-    POINTS = 4,  // of a cell, and of a side that nothing is known of
-    GATHERS = 4, // rays from each point
-    SWEEPS = 16, // rooms behind rooms that no particle came to
+    TASK = 32,    // patches
+    QUARTERS = 4, // of a side that nothing is known of: a point in each
+    POINTS = 8,   // of a cell that is open in part
+    GATHERS = 4,  // rays from each point
+    KNOWN = 4,    // places of a side that are remembered
+    SWEEPS = 16,  // rooms behind rooms that no particle came to
     STREAM = 0x5ead1000
 };
 
@@ -36,7 +38,9 @@ static bool risesFrom(const vplReach* reach, int side, int cell, int point, int6
     const vplRandom4 r = dice(reach, side, cell, point, 0);
     vplVec3 corners[3];
     vplSide_GetCorners(reach->patches, side / 2, side & 1, corners);
-    const vplVec3 at = vplCell_Point(corners, cell, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
+    const float u = ((float)point + vplUnitFloat(r.v[0])) / POINTS,
+                v = vplUnitFloat(r.v[1]) + vplVanDerCorput((uint32_t)point);
+    const vplVec3 at = vplCell_Point(corners, cell, u, v < 1 ? v : v - 1);
     return vplReach_Rise(reach, side, at, rays, place);
 }
 
@@ -80,7 +84,7 @@ static bool seesEye(const vplReach* reach, int side, vplVec3 place, int64_t* ray
 // A side that nothing reaches yet, seen from an eye.
 static void lookAtSide(const vplReach* reach, int side, int64_t* rays)
 {
-    for (int point = 0; point < POINTS && reach->open[side] == 0 && reach->nextOpen[side] == 0; point++) {
+    for (int point = 0; point < QUARTERS && reach->open[side] == 0 && reach->nextOpen[side] == 0; point++) {
         const int cell = 5 * point;
         vplVec3 place;
         if (risesFrom(reach, side, cell, 0, rays, &place) && seesEye(reach, side, place, rays)) {
@@ -92,7 +96,7 @@ static void lookAtSide(const vplReach* reach, int side, int64_t* rays)
 // A side that nothing reaches yet: does it see one that is reached?
 static void exploreSide(const vplReach* reach, int side, int64_t* rays)
 {
-    for (int point = 0; point < POINTS && reach->open[side] == 0 && reach->nextOpen[side] == 0; point++) {
+    for (int point = 0; point < QUARTERS && reach->open[side] == 0 && reach->nextOpen[side] == 0; point++) {
         const int cell = 4 * point + reach->sweep % 4;
         vplVec3 place;
         if (!risesFrom(reach, side, cell, 0, rays, &place)) {
@@ -106,27 +110,66 @@ static void exploreSide(const vplReach* reach, int side, int64_t* rays)
     }
 }
 
-static bool isCellOpen(const vplReach* reach, int side, int cell, int64_t* rays)
+// ---- the cells of a side that is reached
+
+typedef struct Settler {
+    const vplReach* reach;
+    vplVec3 known[KNOWN]; // more than one where something stands on the side
+    int side, knownCount;
+    int64_t* rays;
+} Settler;
+
+static bool isReached(Settler* s, int cell, int point)
 {
-    for (int point = 0; point < POINTS; point++) {
-        vplVec3 place;
-        if (risesFrom(reach, side, cell, point, rays, &place) &&
-            (vplReach_IsFree(reach, place, reach->known[side], rays) ||
-             seesLight(reach, side, cell, point, 0, place, rays))) {
+    vplVec3 place;
+    if (!risesFrom(s->reach, s->side, cell, point, s->rays, &place)) {
+        return false;
+    }
+    for (int i = 0; i < s->knownCount; i++) {
+        if (vplReach_IsFree(s->reach, place, s->known[i], s->rays)) {
+            return true;
+        }
+    }
+    for (int ray = 0; ray < GATHERS; ray++) {
+        if (seesLight(s->reach, s->side, cell, point, ray, place, s->rays)) {
+            if (s->knownCount < KNOWN) {
+                s->known[s->knownCount++] = place;
+            }
             return true;
         }
     }
     return false;
 }
 
-// The cells of a side that is reached. From most the known place is seen.
+// Cells of which light reaches a half at least; where it reaches no half, those that it reaches at all. A point of an
+// open cell that is covered gets no light in the equations, and would darken the patch: counting cells of which any
+// point is reached made floor patches beside the blocks of the report's box 0.83 of what they are by area, halves 0.95.
+static unsigned cellsInPart(Settler* s)
+{
+    unsigned half = 0, some = 0;
+    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
+        int reached = 0;
+        for (int point = 0; point < POINTS; point++) {
+            reached += isReached(s, cell, point);
+        }
+        half |= (unsigned)(2 * reached >= POINTS) << cell;
+        some |= (unsigned)(reached > 0) << cell;
+    }
+    return half != 0 ? half : some;
+}
+
+// From most cells the known place is seen, and one point of each will do.
 static void settleSide(const vplReach* reach, int side, int64_t* rays)
 {
-    const uint16_t open = reach->open[side];
-    for (int cell = 0; cell < VPL_PATCH_CELLS && open != 0; cell++) {
-        if (!(open >> cell & 1) && isCellOpen(reach, side, cell, rays)) {
-            reach->nextOpen[side] |= (uint16_t)(1 << cell);
-        }
+    const unsigned open = reach->open[side];
+    Settler s = {.reach = reach, .known = {reach->known[side]}, .side = side, .knownCount = 1, .rays = rays};
+    bool whole = true;
+    for (int cell = 0; cell < VPL_PATCH_CELLS && open != 0 && whole; cell++) {
+        whole = (open >> cell & 1) != 0 || isReached(&s, cell, 0);
+    }
+    if (open != 0) {
+        const unsigned part = whole ? 0xffff : cellsInPart(&s);
+        reach->nextOpen[side] = (uint16_t)(part != 0 ? part : open);
     }
 }
 
@@ -155,7 +198,7 @@ static int adopt(vplReach* reach, int tasks)
             reach->known[side] = reach->nextKnown[side];
             fresh++;
         }
-        reach->open[side] |= reach->nextOpen[side];
+        reach->open[side] = reach->nextOpen[side] != 0 ? reach->nextOpen[side] : reach->open[side];
         reach->nextOpen[side] = 0;
     }
     for (int i = 0; i < tasks; i++) {

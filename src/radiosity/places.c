@@ -65,15 +65,33 @@ bool vplReach_IsFree(const vplReach* reach, vplVec3 a, vplVec3 b, int64_t* rays)
     return !vplGeometry_IsOccluded(reach->geometry, &ray, 1);
 }
 
-// Coplanar duplicates: a ray meets the first triangle only, and so the others are in no place that light comes to.
-bool vplReach_Rise(const vplReach* reach, int side, vplVec3 point, int64_t* rays, vplVec3* placeOut)
+// Triangles whose distance is this share of a place's height apart are in one place: their rounding decides which of
+// them a ray meets. That triangle counts which has the lowest index.
+static const float SAME_PLACE = 0x1p-6f;
+
+// The first of all triangles that are where `triangle` is under a place.
+static int firstBelow(const vplReach* reach, vplVec3 place, vplVec3 down, int triangle, int64_t* rays)
 {
-    const vplVec3 up = vplScale(reach->heights[side / 2], normalOf(reach, side));
-    const vplRay down = {vplAdd(point, up), vplNegate(up), {0, 0}};
+    const vplRay ray = {place, down, {triangle, reach->geometry->triangleCount - triangle}};
     vplHit hit;
     ++*rays;
-    *placeOut = down.origin;
-    return vplClosestHitWithin(reach->geometry, &down, 2, &hit) && hit.triangle == triangleOf(reach, side);
+    const bool found = vplClosestHitWithin(reach->geometry, &ray, 1 + SAME_PLACE, &hit);
+    return found && hit.t > 1 - SAME_PLACE ? hit.triangle : triangle;
+}
+
+bool vplReach_Rise(const vplReach* reach, int side, vplVec3 point, int64_t* rays, vplVec3* placeOut)
+{
+    const int triangle = triangleOf(reach, side);
+    const vplVec3 up = vplScale(reach->heights[side / 2], normalOf(reach, side));
+    const vplRay ray = {vplAdd(point, up), vplNegate(up), {triangle, 1}};
+    vplHit hit;
+    *placeOut = ray.origin;
+    ++*rays;
+    if (!vplClosestHitWithin(reach->geometry, &ray, 1 + SAME_PLACE, &hit)) {
+        return true;
+    }
+    return hit.t > 1 - SAME_PLACE && hit.triangle > triangle &&
+           firstBelow(reach, ray.origin, ray.direction, triangle, rays) == triangle;
 }
 
 bool vplReach_Land(const vplReach* reach, vplVec3 from, vplVec3 direction, int64_t* rays,
@@ -86,10 +104,14 @@ bool vplReach_Land(const vplReach* reach, vplVec3 from, vplVec3 direction, int64
     if (!vplGeometry_ClosestHit(reach->geometry, &ray, &hit)) {
         return false;
     }
-    const bool back = vplDot(direction, hit.normal) > 0;
-    const int patch = vplPatches_Find(reach->patches, hit.triangle, hit.position);
-    const vplVec3 normal = back ? vplNegate(hit.normal) : hit.normal;
-    const vplVec3 place = vplAdd(hit.position, vplScale(reach->heights[patch], normal));
+    const vplVec3 normal = vplDot(direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
+    int patch = vplPatches_Find(reach->patches, hit.triangle, hit.position);
+    const vplVec3 up = vplScale(reach->heights[patch], normal), place = vplAdd(hit.position, up);
+    const int triangle = firstBelow(reach, place, vplNegate(up), hit.triangle, rays);
+    if (triangle != hit.triangle) {
+        patch = vplPatches_Find(reach->patches, triangle, hit.position);
+    }
+    const bool back = vplDot(normal, reach->geometry->normals[triangle]) < 0;
     vplSide_GetCorners(reach->patches, patch, back, corners);
     *landingOut = (vplLanding){place, normal, 2 * patch + back, vplCell_Find(corners, hit.position)};
     return vplReach_IsFree(reach, from, place, rays);

@@ -103,7 +103,7 @@ int main(int count, char** words)
     bool* smooth = findSmooth(scene, truth);
     puts("placement patches   sides        ms     relmse        all  energy");
     for (int patches = 125; patches <= 16000; patches *= 2) {
-        for (int placement = 0; placement < 2; placement++) {
+        for (int placement = 0; placement < (strchr(count > 3 ? words[3] : "", (int)117) ? 1 : 2); placement++) {
             measure(scene, truth, smooth, count > 3 ? words[3] : "", (vplPatchPlacement)placement, patches);
         }
     }
