@@ -73,8 +73,8 @@ static double lengthSquared(const Cutter* c, uint32_t a, uint32_t b)
 // The vertex in the middle of an edge, -1 where there is none.
 static int middleOf(const Cutter* c, uint32_t a, uint32_t b)
 {
-    const vplVec3 sum = vplAdd(c->patches->positions[a], c->patches->positions[b]);
-    const int middle = findPosition(c, vplScale(0.5f, sum));
+    const vplVec3 p = c->patches->positions[a], q = c->patches->positions[b];
+    const int middle = findPosition(c, vplAdd(vplScale(0.5f, p), vplScale(0.5f, q))); // as bisection has it
     // Between neighbouring floats the middle is one of them.
     return middle == (int)a || middle == (int)b ? -1 : middle;
 }
