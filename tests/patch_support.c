@@ -63,8 +63,8 @@ static float longestOf(const Tree* t, const vplPatchNode* n)
 static void bisect(Tree* t, int node)
 {
     const vplPatchNode n = t->nodes[node];
-    const uint32_t middle =
-        intern(t, vplScale(0.5f, vplAdd(t->positions[n.corners[1]], t->positions[n.corners[2]])));
+    const uint32_t middle = intern(
+        t, vplAdd(vplScale(0.5f, t->positions[n.corners[1]]), vplScale(0.5f, t->positions[n.corners[2]])));
     t->nodes[node].children = t->nodeCount;
     addNode(t, n.corners[0], n.corners[1], middle, n.triangle, node);
     addNode(t, n.corners[0], middle, n.corners[2], n.triangle, node);

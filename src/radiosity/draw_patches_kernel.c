@@ -121,6 +121,26 @@ void VPL_KERNEL(vplShadePatch)(const void* uniforms, vplFragments* f)
     }
 }
 
+// Four pixels of a row, or fewer at the picture's right end.
+static inline void addPixels(const vplTile* tile, int element, int count, float* to)
+{
+    float sum[3 * VPL_BLOCK_SIDE];
+    for (int i = 0; i < VPL_BLOCK_SIDE; i++) {
+        sum[3 * i] = tile->planes[0][element + i];
+        sum[3 * i + 1] = tile->planes[1][element + i];
+        sum[3 * i + 2] = tile->planes[2][element + i];
+    }
+    if (count == VPL_BLOCK_SIDE) {
+        for (int k = 0; k < 3 * VPL_BLOCK_SIDE; k++) {
+            to[k] += sum[k];
+        }
+        return;
+    }
+    for (int k = 0; k < 3 * count; k++) {
+        to[k] += sum[k];
+    }
+}
+
 // Adds the tile's planes to the picture.
 void VPL_KERNEL(vplAddPatchTile)(void* data, vplTile* tile, int worker)
 {
@@ -130,11 +150,10 @@ void VPL_KERNEL(vplAddPatchTile)(void* data, vplTile* tile, int worker)
         float* to = image->pixels + 3 * ((size_t)(tile->y + y) * (size_t)image->width + (size_t)tile->x);
         const int row =
             y / VPL_BLOCK_SIDE * VPL_TILE_BLOCKS * VPL_LANES + y % VPL_BLOCK_SIDE * VPL_BLOCK_SIDE;
-        for (int x = 0; x < tile->width; x++) {
-            const int element = row + x / VPL_BLOCK_SIDE * VPL_LANES + x % VPL_BLOCK_SIDE;
-            to[3 * x] += tile->planes[0][element];
-            to[3 * x + 1] += tile->planes[1][element];
-            to[3 * x + 2] += tile->planes[2][element];
+        for (int x = 0; x < tile->width; x += VPL_BLOCK_SIDE, to += 3 * VPL_BLOCK_SIDE) {
+            const int left = tile->width - x;
+            addPixels(tile, row + x / VPL_BLOCK_SIDE * VPL_LANES,
+                      left < VPL_BLOCK_SIDE ? left : VPL_BLOCK_SIDE, to);
         }
     }
 }

@@ -5,7 +5,6 @@
 // Departs: they find such vertices in a tree of edges that is kept during subdivision. Bisection puts them in the
 // middles of edges only, and middles are the same bits from both sides, so a table of positions answers the same.
 #include "base/context.h"
-#include "base/hash.h"
 #include "math/vec.h"
 #include "radiosity/mesh.h"
 
@@ -27,8 +26,13 @@ typedef struct Cutter {
 // -0 and 0 are one place.
 static size_t slotOf(const Cutter* c, vplVec3 p)
 {
-    const float key[3] = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
-    return (size_t)vplHashFloats(0, key, 3) & c->tableMask;
+    const vplVec3 key = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};
+    uint32_t bits[3];
+    memcpy(bits, &key, sizeof bits);
+    uint64_t h = bits[0] * UINT64_C(0x9E3779B97F4A7C15);
+    h = (h ^ (h >> 32) ^ bits[1]) * UINT64_C(0xBF58476D1CE4E5B9);
+    h = (h ^ (h >> 32) ^ bits[2]) * UINT64_C(0x94D049BB133111EB);
+    return (size_t)(h ^ (h >> 32)) & c->tableMask;
 }
 
 static bool sameVec(vplVec3 a, vplVec3 b)
@@ -73,8 +77,8 @@ static double lengthSquared(const Cutter* c, uint32_t a, uint32_t b)
 // The vertex in the middle of an edge, -1 where there is none.
 static int middleOf(const Cutter* c, uint32_t a, uint32_t b)
 {
-    const vplVec3 sum = vplAdd(c->patches->positions[a], c->patches->positions[b]);
-    const int middle = findPosition(c, vplScale(0.5f, sum));
+    const vplVec3 p = c->patches->positions[a], q = c->patches->positions[b];
+    const int middle = findPosition(c, vplAdd(vplScale(0.5f, p), vplScale(0.5f, q))); // as bisection has it
     // Between neighbouring floats the middle is one of them.
     return middle == (int)a || middle == (int)b ? -1 : middle;
 }

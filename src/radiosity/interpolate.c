@@ -29,27 +29,26 @@ vplResult vplCheckRgb(const vplContext* context, const char* name, const vplRgb*
     return VPL_SUCCESS;
 }
 
-static double weightOf(vplVertexWeight weight, const vplPatchAround* around, const vplPatchSide* side)
+static double weightOf(const Means* m, const vplPatchAround* around, int face)
 {
-    if (weight == VPL_VERTEX_WEIGHT_EQUAL) {
+    if (m->weight == VPL_VERTEX_WEIGHT_EQUAL) {
         return 1;
     }
-    if (weight == VPL_VERTEX_WEIGHT_AREA) {
-        return (double)side->area; // of open cells
+    if (m->weight == VPL_VERTEX_WEIGHT_AREA) {
+        return (double)m->mesh->sides->sides[around->side[face]].area; // of open cells
     }
-    return (double)around->angle * (double)__builtin_popcount(side->open);
+    return (double)around->angle * (double)around->open[face];
 }
 
 // In double, and in the order of patches: the mean of equal values is that value.
 static vplRgb meanAt(const Means* m, int vertex, int face)
 {
     const struct vplPatchesAround* around = m->mesh->around;
-    const vplPatchSides* sides = m->mesh->sides;
     double sum[3] = {0, 0, 0}, total = 0;
     for (size_t i = around->first[vertex]; i < around->first[vertex + 1]; i++) {
-        const int side = vplSideOf(sides, around->list[i].patch, face);
+        const int side = around->list[i].side[face];
         if (side >= 0) {
-            const double weight = weightOf(m->weight, &around->list[i], &sides->sides[side]);
+            const double weight = weightOf(m, &around->list[i], face);
             const vplRgb value = m->values[side];
             sum[0] += weight * (double)value.r;
             sum[1] += weight * (double)value.g;

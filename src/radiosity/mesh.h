@@ -55,6 +55,8 @@ void vplMeshCorners_Release(vplMeshCorners* corners);
 typedef struct vplPatchAround {
     int patch;
     float angle; // radians, of all its pieces
+    int side[2]; // front and back, -1: no light reaches it. Here and not looked up when means are made, which
+    uint8_t open[2]; // then takes half as long; how many of their cells are open
 } vplPatchAround;
 
 // Patches at vertex v: list[first[v] .. first[v + 1]), by index.

@@ -19,6 +19,17 @@ typedef struct Maker {
 
 // ---- vertices
 
+static vplPatchAround makeAround(const vplPatchSides* sides, int patch, float angle)
+{
+    vplPatchAround around = {.patch = patch, .angle = angle};
+    for (int face = 0; face < 2; face++) {
+        const int side = vplSideOf(sides, patch, face);
+        around.side[face] = side;
+        around.open[face] = side < 0 ? 0 : (uint8_t)__builtin_popcount(sides->sides[side].open);
+    }
+    return around;
+}
+
 // A corner joins the vertex that is being made.
 static void addCorner(Maker* m, size_t i, int vertex, double normal[3])
 {
@@ -34,7 +45,7 @@ static void addCorner(Maker* m, size_t i, int vertex, double normal[3])
     if (*end > m->around->first[vertex] && m->around->list[*end - 1].patch == patch) {
         m->around->list[*end - 1].angle += angle;
     } else {
-        m->around->list[(*end)++] = (vplPatchAround){patch, angle};
+        m->around->list[(*end)++] = makeAround(m->mesh->sides, patch, angle);
     }
 }
 
