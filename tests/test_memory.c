@@ -278,6 +278,57 @@ static vplResult renderFrames(vplContext* context, const char* path, int variant
     return result;
 }
 
+// Variants: all pairs, adaptive, links; two frames, in the second of which the light has moved.
+static vplResult renderRadiosity(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplHistory* history = NULL;
+    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
+    options.method = VPL_METHOD_RADIOSITY;
+    options.patches = 40;
+    options.patchPlacement = variant == 1 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+    options.hierarchy = variant == 2 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
+    vplResult result = vplScene_Load(context, "examples/scenes/room-path.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplHistory_Create(context, &history);
+    }
+    options.history = history;
+    for (int frame = 0; frame < 2 && result == VPL_SUCCESS; frame++) {
+        vplImage* image = NULL;
+        options.frame = 10 * frame;
+        result = vplRender(scene, &options, &image, NULL);
+        vplImage_Destroy(image);
+    }
+    vplHistory_Destroy(history);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static vplResult bakeRoom(vplContext* context, const char* path, int variant)
+{
+    vplScene* scene = NULL;
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.patches = 40;
+    options.solver = variant ? VPL_SOLVER_SHOOTING : VPL_SOLVER_JACOBI;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplBake(scene, &options, 0, path, NULL);
+    }
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfRadiosityIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 3; variant++) {
+        failEveryAllocation(renderRadiosity, "png", variant, true);
+    }
+    failEveryAllocation(bakeRoom, "ply", 0, true);
+    failEveryAllocation(bakeRoom, "ply", 1, true);
+}
+
 // While blocks are kept one failure is none: they are given back, and the block is asked for again.
 static void EveryFailedAllocationOfFramesIsReported(void** state)
 {
@@ -787,6 +838,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfPatchesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfRadiosityIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
