@@ -19,6 +19,7 @@
     X(emission) \
     X(emitters) \
     X(exr) \
+    X(formFactors) \
     X(frames) \
     X(geometry) \
     X(halfMaps) \
@@ -54,6 +55,7 @@
     X(shading) \
     X(ssvp) \
     X(tradeoff) \
+    X(triangleFactors) \
     X(visibility)
 // clang-format on
 
