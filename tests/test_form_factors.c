@@ -184,7 +184,7 @@ static void IncentresOfTheReportsBoxAreThoseOfTheTable(void** state)
 
 // ---- closed rooms
 
-// Measured: at most 0.0082 (48 patches).
+// Measured: at most 0.0025, by three points for a side where pairs are not near.
 static void ClosedBoxesClose(void** state)
 {
     (void)state;
@@ -194,8 +194,8 @@ static void ClosedBoxesClose(void** state)
         const vplFormFactorDef def = vplDefaultFormFactorDef();
         vplFormFactors* f = create(&s, &def);
         for (int i = 0; i < f->count; i++) {
-            assertNear((double)f->rowSums[i], 1, 0.01, "row sum", i);
-            assert_true(sumOf(f, i) <= 1 && sumOf(f, i) > 0.99);
+            assertNear((double)f->rowSums[i], 1, 0.004, "row sum", i);
+            assert_true(sumOf(f, i) <= 1 && sumOf(f, i) > 0.996);
         }
         assertReciprocal(&s, f);
         vplFormFactors_Destroy(f);
@@ -294,7 +294,7 @@ static void PairsOfPointsFindTheIntegralWhateverTheirNumber(void** state)
     }
     vplFormFactorDef def = vplDefaultFormFactorDef();
     vplFormFactors* f = create(&s, &def);
-    assert_int_equal(f->rays, 4);
+    assert_int_equal(f->rays, 0); // nothing can stand between
     // Points in the middles of quarters, for these: 0.4 %.
     assertNear(factorAt(f, 0, 1), wanted, 0.01 * wanted, "known", 0);
     vplFormFactors_Destroy(f);

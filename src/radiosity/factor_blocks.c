@@ -5,6 +5,7 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/shaft.h"
 
 // Streams of random numbers: this one and those after it, one per sixteen points.
 enum { POINT_STREAM = 0x46460000 };
@@ -159,6 +160,7 @@ static void fillBlock(void* data, int index, int worker)
     for (int i = first; i < vplMini(first + VPL_FACTOR_LANES, f->sides->count); i++) {
         fillSide(f->sides, f->def, i, &f->blocks[index]);
     }
+    vplFactorBlock_Bound(&f->blocks[index]);
     if (f->def->kind == VPL_FORM_FACTORS_MONTE_CARLO) {
         vplFactorPoints_Fill(f->sides, f->def, index, 0, &f->blocks[index].points);
     }

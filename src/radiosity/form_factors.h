@@ -23,6 +23,7 @@ typedef struct vplFactorBlock {
     float middle[VPL_FACTOR_MIDDLES][3][VPL_FACTOR_LANES];        // of thirds of what is open
     float centre[3][VPL_FACTOR_LANES], radius2[VPL_FACTOR_LANES]; // of the corners; metres squared
     float area[VPL_FACTOR_LANES];                                 // 0: not there
+    float low[3], high[3];                                        // of the box around all corners
     int32_t skipFirst[VPL_FACTOR_LANES], skipCount[VPL_FACTOR_LANES];
     vplFactorPoints points;
 } vplFactorBlock;
