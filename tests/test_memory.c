@@ -318,6 +318,16 @@ static void EveryFailedAllocationOfClustersIsReported(void** state)
     }
 }
 
+static void EveryFailedAllocationOfLightcutsIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(renderCuts, "png", variant, false);
+        failEveryAllocation(renderCuts, "png", variant, true);
+    }
+}
+
+// Interleaved lights of eight clusters. Variants: before neighbours share, after that.
 static vplResult findFactors(vplContext* context, const char* path, int variant)
 {
     (void)path;
@@ -345,16 +355,6 @@ static void EveryFailedAllocationOfFormFactorsIsReported(void** state)
     }
 }
 
-static void EveryFailedAllocationOfLightcutsIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(renderCuts, "png", variant, false);
-        failEveryAllocation(renderCuts, "png", variant, true);
-    }
-}
-
-// Interleaved lights of eight clusters. Variants: before neighbours share, after that.
 static vplResult shadeClusters(vplContext* context, const char* path, int variant)
 {
     (void)path;
@@ -710,9 +710,9 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfFormFactorsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfFormFactorsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),

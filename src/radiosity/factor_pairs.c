@@ -21,10 +21,9 @@ enum { LANES = VPL_FACTOR_LANES };
 enum { JOIN_STREAM = 0x4a4f0000 };
 
 // Three points each do for sides whose middles are this many times the larger one's radius apart. In the report's box of
-// 784 patches, against 1024 samples (mean of the sums over a row of |F - exact|; milliseconds on one thread):
-// 1.25: 0.0184, 58; 1.5: 0.0165, 58; 2: 0.0158, 62; 3: 0.0152, 78; 6: 0.0149, 169. What is left is that of four rays:
-// 1: 0.0409, 20; 2: 0.0271, 33; 8: 0.0119, 110; 16: 0.0085, 209. Pairs of points alone (`analytic` false) 4: 0.107, 55;
-// 16: 0.064, 206.
+// 784 patches, against 1024 samples (mean over rows of the sum of |F - exact|; milliseconds of one thread): 1.25: 0.0184,
+// 30; 1.5: 0.0165, 30; 2: 0.0158, 34; 3: 0.0152, 50; 6: 0.0149, 142. What is left is that of four rays; with 1: 0.0409,
+// 16; 2: 0.0271, 21; 8: 0.0119, 48; 16: 0.0085, 85. Pairs of points alone (`analytic` false) 4: 0.107, 27; 16: 0.064, 83.
 static const float NEAR = 1.5f;
 
 VPL_KERNEL_TABLE(FIRST, vplFactorFirstFcn, vplFactorFirst);
