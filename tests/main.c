@@ -20,6 +20,7 @@
     X(emission) \
     X(emitters) \
     X(exr) \
+    X(formFactors) \
     X(frames) \
     X(geometry) \
     X(halfMaps) \
@@ -61,6 +62,7 @@
     X(shading) \
     X(ssvp) \
     X(tradeoff) \
+    X(triangleFactors) \
     X(visibility)
 // clang-format on
 

@@ -2,6 +2,8 @@
 // Running out of memory: the n-th allocation fails, for every n, and each time the answer is VPL_OUT_OF_MEMORY,
 // one sentence, nothing leaked and no file. New memory is filled with junk, so that success does not depend on it.
 #include "patch_support.h"
+#include "shapes.h"
+#include "sides_fixture.h"
 
 #include "render/show_maps.h"
 
@@ -480,6 +482,33 @@ static void EveryFailedAllocationOfLightcutsIsReported(void** state)
 }
 
 // Interleaved lights of eight clusters. Variants: before neighbours share, after that.
+static vplResult findFactors(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplVec3 corners[36];
+    boxCorners(1, 1, 1, corners);
+    SidesFixture sides;
+    if (!makeSides(context, corners, 12, 0, 1, &sides)) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplFormFactorDef def = vplDefaultFormFactorDef();
+    def.samples = variant ? 20 : 4;
+    vplFormFactors* factors = NULL;
+    const vplResult result = vplFormFactors_Create(&sides.sides, &def, &factors);
+    vplFormFactors_Destroy(factors);
+    freeSides(&sides);
+    return result;
+}
+
+static void EveryFailedAllocationOfFormFactorsIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(findFactors, "png", variant, false);
+        failEveryAllocation(findFactors, "png", variant, true);
+    }
+}
+
 static vplResult shadeClusters(vplContext* context, const char* path, int variant)
 {
     (void)path;
@@ -840,6 +869,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfRadiosityIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfFormFactorsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),

@@ -89,8 +89,10 @@ typedef enum vplRowSums {
 typedef struct vplFormFactorDef {
     vplFormFactorKind kind; // default VPL_FORM_FACTORS_MONTE_CARLO
     int samples;            // pairs of points per pair of patches, [1, 1024]; default 4; Monte Carlo only
-    bool analytic; // Monte Carlo: pairs near to each other take the exact integral along their edges, times
-                   // the share of it that the shadow rays see; default true
+    bool
+        analytic; // Monte Carlo: what a pair would exchange with nothing between is known: by the integral along
+        // the edges of near ones, by three points on each side of others; rays only say which share of it
+        // is seen. false: the mean over the pairs of points, as the document has it; default true
     vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL
     bool bruteForce;    // rays test every triangle: for measuring what the ray tree is worth; default false
     uint64_t seed;      // default 0
@@ -110,7 +112,8 @@ typedef struct vplFormFactors {
     vplContext* context;
 } vplFormFactors;
 
-// Half of the pairs are computed, the others by A_i F_ij = A_j F_ji. VPL_LIMIT where all take more than
+// Half of the pairs are computed, the others by A_i F_ij = A_j F_ji. Factors are 0 within a plane, and, but for
+// incentres, never above 1 (X095). Rays are cast only where something can stand between; bruteForce casts all. VPL_LIMIT where all take more than
 // VPL_MAX_FORM_FACTOR_BYTES. Source: Hemgren, 3.3.1.
 vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorDef* def,
                                 vplFormFactors** factorsOut);
@@ -120,7 +123,8 @@ void vplFormFactors_Destroy(vplFormFactors* factors);
 
 // The form factor from triangle a to triangle b with nothing between them, by the integral along their edges; what lies
 // behind the other's plane is cut off. Sides are those from which the corners are counter-clockwise.
-// Source: Hottel and Sarofim, Radiative Transfer, 1967 (after Stokes); relative error below 1e-6 (tests/test_form_factors.c).
+// Source: Hottel and Sarofim, Radiative Transfer, 1967 (after Stokes). Relative error below 1e-11 against closed forms of
+// squares 2^-7 to 10^6 sides apart, of touching and of thin triangles, below 1e-8 for any (tests/test_triangle_factors.c).
 double vplTriangleFormFactor(const vplVec3 a[3], const vplVec3 b[3]);
 
 // ---- the hierarchy: form factors of near pairs between patches, of far ones between groups of them

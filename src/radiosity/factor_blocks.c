@@ -5,9 +5,12 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/shaft.h"
 
 // Streams of random numbers: this one and those after it, one per sixteen points.
 enum { POINT_STREAM = 0x46460000 };
+
+enum { ALL_CELLS = (1 << VPL_PATCH_CELLS) - 1 };
 
 static void put(float to[3][VPL_FACTOR_LANES], int lane, vplVec3 v)
 {
@@ -79,23 +82,36 @@ void vplFactorPoints_Fill(const vplPatchSides* sides, const vplFormFactorDef* de
 
 // ---- what stays
 
-// Means of the middles of open cells, of a quarter of them each; a cell on the border of two quarters counts in both by
-// its shares. Without closed cells these are the middles of the first round's four parts.
-static void fillQuarters(const vplPatchSide* side, int lane, vplFactorBlock* block)
+// Three points that stand for a triangle: exact for polynomials of degree 2 (Strang and Fix, An Analysis of the Finite
+// Element Method, 1973).
+static void fillWhole(const vplPatchSide* side, int lane, vplFactorBlock* block)
+{
+    for (int q = 0; q < VPL_FACTOR_MIDDLES; q++) {
+        vplVec3 sum = {0, 0, 0};
+        for (int c = 0; c < 3; c++) {
+            sum = vplAdd(sum, vplScale(c == q ? 2.0f / 3 : 1.0f / 6, side->corners[c]));
+        }
+        put(block->middle[q], lane, sum);
+    }
+}
+
+// Of a side with closed cells: means of the middles of open ones, of a third of them each; a cell on the border of two
+// thirds counts in both by its shares.
+static void fillPart(const vplPatchSide* side, int lane, vplFactorBlock* block)
 {
     const float middle = 2.0f / 3; // twice this is the middle of a cell: weights of 1/3
     int cells[VPL_PATCH_CELLS];
     const int open = listOpen(side, cells);
-    for (int q = 0; q < VPL_FACTOR_QUARTERS; q++) {
+    for (int q = 0; q < VPL_FACTOR_MIDDLES; q++) {
         vplVec3 sum = {0, 0, 0};
         for (int c = 0; c < open; c++) {
-            const int low = vplMaxi(4 * c, q * open), high = vplMini(4 * c + 4, (q + 1) * open);
+            const int low = vplMaxi(3 * c, q * open), high = vplMini(3 * c + 3, (q + 1) * open);
             if (high > low) {
                 const vplVec3 at = vplPatchSide_SampleCell(side, cells[c], middle, middle);
                 sum = vplAdd(sum, vplScale((float)(high - low) / (float)open, at));
             }
         }
-        put(block->quarter[q], lane, sum);
+        put(block->middle[q], lane, sum);
     }
 }
 
@@ -125,7 +141,7 @@ static void fillSide(const vplPatchSides* sides, const vplFormFactorDef* def, in
             vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
         block->area[lane] = 0.5f * vplLength(cross);
     } else {
-        fillQuarters(side, lane, block);
+        (side->open == ALL_CELLS ? fillWhole : fillPart)(side, lane, block);
         block->area[lane] = side->area;
     }
 }
@@ -144,6 +160,7 @@ static void fillBlock(void* data, int index, int worker)
     for (int i = first; i < vplMini(first + VPL_FACTOR_LANES, f->sides->count); i++) {
         fillSide(f->sides, f->def, i, &f->blocks[index]);
     }
+    vplFactorBlock_Bound(&f->blocks[index]);
     if (f->def->kind == VPL_FORM_FACTORS_MONTE_CARLO) {
         vplFactorPoints_Fill(f->sides, f->def, index, 0, &f->blocks[index].points);
     }

@@ -7,7 +7,7 @@
 
 #include <vpl/radiosity.h>
 
-enum { VPL_FACTOR_LANES = VPL_RAY_PACKET, VPL_FACTOR_POINTS = 16, VPL_FACTOR_QUARTERS = 4 };
+enum { VPL_FACTOR_LANES = VPL_RAY_PACKET, VPL_FACTOR_POINTS = 16, VPL_FACTOR_MIDDLES = 3 };
 
 // Points that sides are sampled at, and where rays from them start. Any four that follow each other, the first behind
 // the last, lie in different quarters of the side.
@@ -20,9 +20,10 @@ typedef struct vplFactorPoints {
 typedef struct vplFactorBlock {
     float corner[3][3][VPL_FACTOR_LANES]; // [corner][axis]
     float normal[3][VPL_FACTOR_LANES];
-    float quarter[VPL_FACTOR_QUARTERS][3][VPL_FACTOR_LANES];      // middles of quarters of what is open
+    float middle[VPL_FACTOR_MIDDLES][3][VPL_FACTOR_LANES];        // of thirds of what is open
     float centre[3][VPL_FACTOR_LANES], radius2[VPL_FACTOR_LANES]; // of the corners; metres squared
     float area[VPL_FACTOR_LANES];                                 // 0: not there
+    float low[3], high[3];                                        // of the box around all corners
     int32_t skipFirst[VPL_FACTOR_LANES], skipCount[VPL_FACTOR_LANES];
     vplFactorPoints points;
 } vplFactorBlock;
@@ -31,7 +32,7 @@ typedef struct vplFactorBlock {
 typedef struct vplFactorFirst {
     uint32_t seen;                  // bit l: some of each lies in front of the other's plane
     uint32_t near;                  // bit l: too near for `middle`
-    float middle[VPL_FACTOR_LANES]; // the mean of cos cos / (pi r^2) over all pairs of quarters, 1/m^2
+    float middle[VPL_FACTOR_LANES]; // the mean of cos cos / (pi r^2) over all pairs of middles, 1/m^2
 } vplFactorFirst;
 
 // Heights up to `tolerance` are none, metres. Near: middles less than sqrt(near2) times the larger radius apart.

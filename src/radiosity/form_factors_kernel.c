@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One side against sixteen: by their planes, by points in the middle of their quarters, by points that rays join.
+// One side against sixteen: by their planes, by points in the middle of their thirds, by points that rays join.
 #include "base/isa.h"
 #include "radiosity/form_factors.h"
 
@@ -75,18 +75,17 @@ void VPL_KERNEL(vplFactorFirst)(const vplFactorBlock* a, int lane, const vplFact
     if (first->seen == 0) {
         return;
     }
-    for (int p = 0; p < VPL_FACTOR_QUARTERS; p++) {
-        const float px = a->quarter[p][0][lane], py = a->quarter[p][1][lane], pz = a->quarter[p][2][lane];
-        for (int q = 0; q < VPL_FACTOR_QUARTERS; q++) {
+    for (int p = 0; p < VPL_FACTOR_MIDDLES; p++) {
+        const float px = a->middle[p][0][lane], py = a->middle[p][1][lane], pz = a->middle[p][2][lane];
+        for (int q = 0; q < VPL_FACTOR_MIDDLES; q++) {
             for (int l = 0; l < LANES; l++) {
-                sum[l] +=
-                    exchange(b->quarter[q][0][l] - px, b->quarter[q][1][l] - py, b->quarter[q][2][l] - pz, nx,
-                             ny, nz, b->normal[0][l], b->normal[1][l], b->normal[2][l]);
+                sum[l] += exchange(b->middle[q][0][l] - px, b->middle[q][1][l] - py, b->middle[q][2][l] - pz,
+                                   nx, ny, nz, b->normal[0][l], b->normal[1][l], b->normal[2][l]);
             }
         }
     }
     for (int l = 0; l < LANES; l++) {
-        sum[l] *= 1.0f / (VPL_FACTOR_QUARTERS * VPL_FACTOR_QUARTERS);
+        sum[l] *= 1.0f / (VPL_FACTOR_MIDDLES * VPL_FACTOR_MIDDLES);
     }
     memcpy(first->middle, sum, sizeof sum);
 }
