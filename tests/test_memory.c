@@ -317,7 +317,7 @@ static void EveryFailedAllocationOfClustersIsReported(void** state)
     }
 }
 
-// A closed box in uneven patches: mesh, means, picture and file.
+// A room in uneven patches: mesh, means, picture and file.
 static vplResult meshAndWrite(vplContext* context, const char* path, int variant)
 {
     vplScene* scene = NULL;

@@ -88,7 +88,7 @@ static vplResult findVertex(Baker* b, uint32_t vertex, int face, vplRgb reflecta
 
 // ---- faces
 
-// Black where no light comes; backs then are not there.
+// Backs only where light comes; fronts elsewhere have what their corners have from those beside them, or are black.
 static vplResult addTriangle(Baker* b, int triangle, int face)
 {
     const vplPatchMesh* m = b->mesh;
@@ -96,7 +96,7 @@ static vplResult addTriangle(Baker* b, int triangle, int face)
     if (side < 0 && face == 1) {
         return VPL_SUCCESS;
     }
-    const vplRgb reflectance = side < 0 ? (vplRgb){0, 0, 0} : m->sides->sides[side].reflectance;
+    const vplRgb reflectance = vplReflectanceOf(m->sides, m->patchOf[triangle], side);
     PlyFace out = {.count = 3};
     vplResult result = VPL_SUCCESS;
     for (int k = 0; k < 3 && result == VPL_SUCCESS; k++) {
