@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A lit mesh as a file that other programs open: what is baked, in the colours of its vertices.
-// Based on: Turk, The PLY Polygon File Format, 1994. Little-endian machines only, as everything here that writes floats
-// as they are.
+// Based on: Turk, The PLY Polygon File Format, 1994. On little-endian machines: numbers are written as memory has them.
 #include "base/context.h"
 #include "math/vec.h"
 #include "radiosity/mesh.h"
