@@ -176,6 +176,61 @@ static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
     }
 }
 
+// ---- meshes of patches
+
+// A room in uneven patches: mesh, means, picture and file.
+static vplResult meshAndWrite(vplContext* context, const char* path, int variant)
+{
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+    }
+    vplScene_Destroy(scene);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplPatches* patches = openUnevenPatches(geometry, 4, (uint64_t)variant);
+    vplPatchSides* sides = openSides(patches, allOpen);
+    const size_t most = 6 * (size_t)patches->patchCount * 8;
+    vplRgb *values = calloc(most, sizeof *values), *corners = calloc(most, sizeof *corners);
+    float(*clip)[4] = calloc(most, sizeof *clip);
+    vplPatchMesh* mesh = NULL;
+    vplImage* image = NULL;
+    result = vplPatchMesh_Create(sides, &mesh);
+    if (result == VPL_SUCCESS) {
+        result = vplPatchMesh_Interpolate(mesh, VPL_VERTEX_WEIGHT_ANGLE, values, corners);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Create(context, 16, 16, &image);
+    }
+    if (result == VPL_SUCCESS) {
+        const vplPatchDraw draw = {.mesh = mesh, .values = values, .vertexValues = variant ? corners : NULL};
+        result = vplDrawPatches(&draw, (const float(*)[4])clip, NULL, NULL, image, NULL);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplPatchMesh_WritePly(mesh, corners, 1, path);
+    }
+    vplImage_Destroy(image);
+    vplPatchMesh_Destroy(mesh);
+    free(clip);
+    free(values);
+    free(corners);
+    closeSides(sides);
+    closePatches(patches);
+    vplGeometry_Destroy(geometry);
+    return result;
+}
+
+static void EveryFailedAllocationOfPatchMeshesIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(meshAndWrite, "ply", variant, variant);
+    }
+}
+
 // ---- meshes with a tree, lamps, and shadows of virtual lights
 
 static vplResult addBall(vplScene* scene, const Shape* ball)
@@ -862,7 +917,6 @@ static void EveryFailedAllocationOfAnEncodedPngIsReported(void** state)
 TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReported),
            cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfPatchMeshesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfPatchesIsReported),
@@ -877,6 +931,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfParaboloidMapsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfPatchMeshesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheJsonReaderIsReported));

@@ -128,7 +128,7 @@ static Ply bake(vplContext* context, vplPatchMesh** meshOut)
     return writeAndRead(m, irradiance, 0.25f);
 }
 
-// Three fronts (the third black) and one back; where two reflectances meet each has its vertex.
+// Three fronts (the third as its material) and one back; where two reflectances meet each has its vertex.
 static void FileHasAllFrontsAndTheLitBacks(void** state)
 {
     (void)state;
@@ -156,7 +156,7 @@ static void ColoursAreRadiosity(void** state)
     vplContext* context = openTestContext(1);
     vplPatchMesh* m;
     Ply ply = bake(context, &m);
-    const float rho[4][3] = {{0.5f, 0, 0.25f}, {0.125f, 0.5f, 0}, {0, 0, 0}, {0.125f, 0.5f, 0}};
+    const float rho[4][3] = {{0.5f, 0, 0.25f}, {0.125f, 0.5f, 0}, {0.5f, 0.5f, 0.5f}, {0.125f, 0.5f, 0}};
     for (int i = 0; i < 12; i++) {
         const int face = i / 3, vertex = cornerOf(&ply, face, i % 3);
         const vplVec3 p = vecAt(&ply, vertex, 0), colour = vecAt(&ply, vertex, 27);

@@ -12,18 +12,20 @@ vplTileFcn VPL_KERNEL(vplAddPatchTile);
 // 1 / pi to float.
 static const float INVERSE_PI = 0.318309886f;
 
-// What values are multiplied by: the patch's, and of a flat one its value. 0 where no light reaches it.
-static vplRgb factorOf(const vplPatchFace* u, int side)
+// What values are multiplied by: the patch's, and of a flat one its value. Interpolated, a side that no light was found
+// to reach shows what its corners have from those beside it, and is black where they have nothing: a hair of floor at
+// the foot of a box, which the rays missed, is no black pixel then.
+static vplRgb factorOf(const vplPatchFace* u, int patch, int side)
 {
     const vplPatchDraw* d = u->draw;
-    if (side < 0) {
-        return (vplRgb){0, 0, 0};
-    }
     vplRgb factor = {1, 1, 1};
     if (d->reflect) {
-        factor = vplRgbScale(INVERSE_PI, d->mesh->sides->sides[side].reflectance);
+        factor = vplRgbScale(INVERSE_PI, vplReflectanceOf(d->mesh->sides, patch, side));
     }
-    return d->vertexValues != NULL ? factor : vplRgbMul(factor, d->values[side]);
+    if (d->vertexValues != NULL) {
+        return factor;
+    }
+    return side < 0 ? (vplRgb){0, 0, 0} : vplRgbMul(factor, d->values[side]);
 }
 
 // Interpolated values, kept between those of the corners: a pixel that snapping gave to a triangle has its centre
@@ -109,14 +111,15 @@ void VPL_KERNEL(vplShadePatch)(const void* uniforms, vplFragments* f)
 {
     const vplPatchFace* u = uniforms;
     const vplPatchMesh* mesh = u->draw->mesh;
-    const int side = vplSideOf(mesh->sides, mesh->patchOf[f->primitive], u->face);
-    const vplRgb factor = factorOf(u, side);
-    if (side >= 0 && u->draw->vertexValues != NULL) {
+    const int patch = mesh->patchOf[f->primitive];
+    const int side = vplSideOf(mesh->sides, patch, u->face);
+    const vplRgb factor = factorOf(u, patch, side);
+    if (u->draw->vertexValues != NULL) {
         interpolate(u, f, factor);
     } else {
         fill(f, factor);
     }
-    if (side >= 0 && u->draw->outlines) {
+    if (u->draw->outlines) {
         outline(u, f);
     }
 }

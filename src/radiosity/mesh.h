@@ -71,6 +71,17 @@ static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
     return sides->ofPatch[2 * (size_t)patch + (size_t)face];
 }
 
+// Of a patch whose side is `side`; -1: of what no light reaches, as its material says.
+static inline vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side)
+{
+    if (side >= 0) {
+        return sides->sides[side].reflectance;
+    }
+    const vplGeometry* g = sides->patches->geometry;
+    return g->materials[g->triangleMaterials[sides->patches->nodes[sides->patches->patches[patch]].triangle]]
+        .diffuse;
+}
+
 // The position of corner `corner` of triangle `triangle` of the mesh.
 static inline vplVec3 vplPatchMesh_Corner(const vplPatchMesh* mesh, int triangle, int corner)
 {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A lit mesh as a file that other programs open: what is baked, in the colours of its vertices.
-// Based on: Turk, The PLY Polygon File Format, 1994. Little-endian machines only, as everything here that writes floats
-// as they are.
+// Based on: Turk, The PLY Polygon File Format, 1994. On little-endian machines: numbers are written as memory has them.
 #include "base/context.h"
 #include "math/vec.h"
 #include "radiosity/mesh.h"
@@ -88,7 +87,7 @@ static vplResult findVertex(Baker* b, uint32_t vertex, int face, vplRgb reflecta
 
 // ---- faces
 
-// Black where no light comes; backs then are not there.
+// Backs only where light comes; fronts elsewhere have what their corners have from those beside them, or are black.
 static vplResult addTriangle(Baker* b, int triangle, int face)
 {
     const vplPatchMesh* m = b->mesh;
@@ -96,7 +95,7 @@ static vplResult addTriangle(Baker* b, int triangle, int face)
     if (side < 0 && face == 1) {
         return VPL_SUCCESS;
     }
-    const vplRgb reflectance = side < 0 ? (vplRgb){0, 0, 0} : m->sides->sides[side].reflectance;
+    const vplRgb reflectance = vplReflectanceOf(m->sides, m->patchOf[triangle], side);
     PlyFace out = {.count = 3};
     vplResult result = VPL_SUCCESS;
     for (int k = 0; k < 3 && result == VPL_SUCCESS; k++) {
