@@ -14,8 +14,6 @@ vplPatches* openPatches(const vplGeometry* geometry, float size, int rounds);
 // Bisected at random: in each of `rounds`, each patch with probability 1/2.
 vplPatches* openUnevenPatches(const vplGeometry* geometry, int rounds, uint64_t seed);
 
-void closePatches(vplPatches* patches);
-
 // Which cells of a side are open; 0: it is not among the sides.
 typedef uint16_t OpenFcn(const vplPatches* patches, int patch, int face);
 

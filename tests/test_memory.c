@@ -178,6 +178,25 @@ static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
 
 // ---- meshes of patches
 
+// Every third patch of 100 is bisected, so that edges of others are cut.
+static vplResult openThirds(const vplGeometry* geometry, vplPatches** patchesOut)
+{
+    vplPatchDef def = vplDefaultPatchDef();
+    vplPatches* whole = NULL;
+    def.count = 100;
+    vplResult result = vplPatches_Create(geometry, &def, &whole);
+    if (result == VPL_SUCCESS) {
+        float* priorities = calloc((size_t)whole->patchCount, sizeof *priorities);
+        for (int i = 0; i < whole->patchCount; i += 3) {
+            priorities[i] = 1;
+        }
+        result = vplPatches_Refine(whole, priorities, VPL_MAX_PATCHES, patchesOut);
+        free(priorities);
+    }
+    vplPatches_Destroy(whole);
+    return result;
+}
+
 // A room in uneven patches: mesh, means, picture and file.
 static vplResult meshAndWrite(vplContext* context, const char* path, int variant)
 {
@@ -191,7 +210,12 @@ static vplResult meshAndWrite(vplContext* context, const char* path, int variant
     if (result != VPL_SUCCESS) {
         return result;
     }
-    vplPatches* patches = openUnevenPatches(geometry, 4, (uint64_t)variant);
+    vplPatches* patches = NULL;
+    result = openThirds(geometry, &patches);
+    if (result != VPL_SUCCESS) {
+        vplGeometry_Destroy(geometry);
+        return result;
+    }
     vplPatchSides* sides = openSides(patches, allOpen);
     const size_t most = 6 * (size_t)patches->patchCount * 8;
     vplRgb *values = calloc(most, sizeof *values), *corners = calloc(most, sizeof *corners);
@@ -218,7 +242,7 @@ static vplResult meshAndWrite(vplContext* context, const char* path, int variant
     free(values);
     free(corners);
     closeSides(sides);
-    closePatches(patches);
+    vplPatches_Destroy(patches);
     vplGeometry_Destroy(geometry);
     return result;
 }
@@ -422,59 +446,6 @@ static void EveryFailedAllocationOfClustersIsReported(void** state)
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(findClusters, "png", variant, false);
         failEveryAllocation(findClusters, "png", variant, true);
-    }
-}
-
-// A closed box in uneven patches: mesh, means, picture and file.
-static vplResult meshAndWrite(vplContext* context, const char* path, int variant)
-{
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(scene, &geometry);
-    }
-    vplScene_Destroy(scene);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplPatches* patches = openUnevenPatches(geometry, 4, (uint64_t)variant);
-    vplPatchSides* sides = openSides(patches, allOpen);
-    const size_t most = 6 * (size_t)patches->patchCount * 8;
-    vplRgb *values = calloc(most, sizeof *values), *corners = calloc(most, sizeof *corners);
-    float(*clip)[4] = calloc(most, sizeof *clip);
-    vplPatchMesh* mesh = NULL;
-    vplImage* image = NULL;
-    result = vplPatchMesh_Create(sides, &mesh);
-    if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Interpolate(mesh, VPL_VERTEX_WEIGHT_ANGLE, values, corners);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Create(context, 16, 16, &image);
-    }
-    if (result == VPL_SUCCESS) {
-        const vplPatchDraw draw = {.mesh = mesh, .values = values, .vertexValues = variant ? corners : NULL};
-        result = vplDrawPatches(&draw, (const float(*)[4])clip, NULL, NULL, image, NULL);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_WritePly(mesh, corners, 1, path);
-    }
-    vplImage_Destroy(image);
-    vplPatchMesh_Destroy(mesh);
-    free(clip);
-    free(values);
-    free(corners);
-    closeSides(sides);
-    closePatches(patches);
-    vplGeometry_Destroy(geometry);
-    return result;
-}
-
-static void EveryFailedAllocationOfPatchMeshesIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(meshAndWrite, "ply", variant, variant);
     }
 }
 

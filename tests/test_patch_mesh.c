@@ -290,19 +290,9 @@ static vplPatchMesh* squareMesh(vplContext* context, OpenFcn* open)
     addTriangle(&shape, vplVec(5, 0, 0), vplVec(6, 0, 0), vplVec(6, 1, 0)); // alone
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
-    vplPatches* p = openPatches(freezeScene(scene), 1, 1);
-    // Undo the cut of the first triangle and of the third.
-    vplPatchNode* nodes = (vplPatchNode*)p->nodes;
-    int* list = (int*)p->patches;
-    p->patchCount = 0;
-    for (int i = 0; i < p->nodeCount; i++) {
-        const bool whole = i == 0 || i == 2 || nodes[i].parent == 1;
-        nodes[i].patch = whole ? p->patchCount : -1;
-        if (whole) {
-            list[p->patchCount++] = i;
-        }
-    }
-    assert_int_equal(p->patchCount, 4); // the whole first, the third, two halves of the second
+    vplPatches *whole = openPatches(freezeScene(scene), 100, 0), *p = NULL;
+    assert_int_equal(vplPatches_Refine(whole, (const float[]){0, 1, 0}, 4, &p), VPL_SUCCESS);
+    vplPatches_Destroy(whole);
     return meshOf(openSides(p, open));
 }
 
@@ -321,7 +311,7 @@ static double meanAt(const vplPatchMesh* m, vplVertexWeight weight, float x, flo
 {
     vplRgb values[8], *out;
     for (int i = 0; i < m->sides->count; i++) {
-        const float value[4] = {1, 100, 2, 6}; // of the patches
+        const float value[4] = {1, 2, 6, 100}; // of the patches
         values[i] = (vplRgb){value[m->sides->sides[i].patch], 0, 0};
     }
     out = interpolated(m, weight, values);
@@ -352,11 +342,11 @@ static void VerticesAreMeansByAngleAreaOrCount(void** state)
     closeTestContext(context);
 }
 
-// Patch 0 is under a box; of patch 2 light reaches a quarter.
+// Patch 0 is under a box; of patch 1 light reaches a quarter.
 static uint16_t underBox(const vplPatches* patches, int patch, int face)
 {
     (void)patches;
-    return face == 1 || patch == 0 ? 0 : patch == 2 ? 0x1111 : 0xffff;
+    return face == 1 || patch == 0 ? 0 : patch == 1 ? 0x1111 : 0xffff;
 }
 
 // X101: a floor that no light reaches darkens nothing beside it, and what is partly covered counts for as much as is
