@@ -105,6 +105,7 @@ bench: all
 	$(BUILD)/bench/flicker examples/scenes/room.json instant-radiosity 12
 	$(BUILD)/bench/paraboloid --quick examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
+	$(BUILD)/bench/form_factors examples/scenes/room-area.json
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling
 

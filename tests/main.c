@@ -16,9 +16,11 @@
     X(clusterShadows) \
     X(clusters) \
     X(compensation) \
+    X(drawPatches) \
     X(emission) \
     X(emitters) \
     X(exr) \
+    X(formFactors) \
     X(frames) \
     X(geometry) \
     X(halfMaps) \
@@ -37,10 +39,14 @@
     X(packets) \
     X(paraboloids) \
     X(passes) \
-    X(patches) \
+    X(patchMesh) \
     X(patchSides) \
+    X(patches) \
     X(path) \
     X(placement) \
+    X(ply) \
+    X(radiosity) \
+    X(radiositySolve) \
     X(raster) \
     X(rasterTruth) \
     X(rays) \
@@ -56,6 +62,7 @@
     X(shading) \
     X(ssvp) \
     X(tradeoff) \
+    X(triangleFactors) \
     X(visibility)
 // clang-format on
 

@@ -19,6 +19,19 @@ vplGeometry* closedCube(vplContext* context, float rho);
 // A quad of the given size around `centre`, its front towards +y, of reflectance rho.
 vplGeometry* floorQuad(vplContext* context, vplVec3 centre, float size, float rho);
 
+// Adds a camera of 1.2 radians.
+void aim(vplScene* scene, vplVec3 eye, vplVec3 target);
+
+// Adds an emitter of white light; what its type does not have is not used.
+void addEmitter(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3 direction, float intensity);
+
+// The new material's index; emission is white.
+int addMaterial(vplScene* scene, vplRgb diffuse, float emission);
+
+// A quad or box, turned about x, then y, radians.
+void addThing(vplScene* scene, vplObjectType type, int material, vplVec3 place, double turnX, double turnY,
+              vplVec3 size);
+
 // Model matrix from a table's row-major 3x4 columns m00 .. m23.
 vplMat4 matrixOf(const Table* t, int row);
 

@@ -53,8 +53,8 @@ static int addGlow(vplScene* scene, vplRgb emission, float rho)
     return index;
 }
 
-static void addEmitter(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3 direction,
-                       float intensity)
+static void addColoured(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3 direction,
+                        float intensity)
 {
     vplEmitterDef emitter = vplDefaultEmitterDef();
     emitter.type = type;
@@ -76,7 +76,7 @@ static void SpotAndSunAreAnalytic(void** state)
         addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
         lookDown(scene, 4, 0.3);
         const vplVec3 d = {0.1f, -1, 0.05f}, p = {0.3f, 2, -0.25f};
-        addEmitter(scene, sun ? VPL_EMITTER_DIRECTIONAL : VPL_EMITTER_SPOT, p, d, 3);
+        addColoured(scene, sun ? VPL_EMITTER_DIRECTIONAL : VPL_EMITTER_SPOT, p, d, 3);
         vplRenderOptions o = vplDefaultRenderOptions();
         o.method = VPL_METHOD_DIRECT;
         o.width = o.height = SIZE;
@@ -259,7 +259,7 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
         freeShape(&lamp);
     } else {
-        addEmitter(scene, (vplEmitterType)kind, place, d, 2);
+        addColoured(scene, (vplEmitterType)kind, place, d, 2);
     }
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_DIRECT;
@@ -370,7 +370,7 @@ static void SmoothMeshesShadeWithoutSeams(void** state)
         assert_int_equal(vplScene_AddMesh(scene, &mesh, &object.mesh), VPL_SUCCESS);
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
         lookDown(scene, 3, 0.1);
-        addEmitter(scene, VPL_EMITTER_POINT, vplVec(1, 2, 0), vplVec(0, -1, 0), 10);
+        addColoured(scene, VPL_EMITTER_POINT, vplVec(1, 2, 0), vplVec(0, -1, 0), 10);
         vplRenderOptions o = vplDefaultRenderOptions();
         o.method = VPL_METHOD_DIRECT;
         o.width = o.height = VIEW;
@@ -413,9 +413,9 @@ static vplScene* zoo(vplContext* context, float factor)
         vplMat4_FromParts(vplVec(0.5f, 0.6f, 0.2f), (double[3]){0, 0, 0}, vplVec(0.5f, 0.4f, 0.5f));
     addShape(scene, &ball, true, &place);
     freeShape(&ball);
-    addEmitter(scene, VPL_EMITTER_POINT, vplVec(-0.5f, 1.5f, 0.5f), vplVec(0, -1, 0), 2 * factor);
-    addEmitter(scene, VPL_EMITTER_SPOT, vplVec(0.5f, 2.5f, 1), vplVec(0, -2, -0.7f), 5 * factor);
-    addEmitter(scene, VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(-0.3f, -1, -0.4f), factor);
+    addColoured(scene, VPL_EMITTER_POINT, vplVec(-0.5f, 1.5f, 0.5f), vplVec(0, -1, 0), 2 * factor);
+    addColoured(scene, VPL_EMITTER_SPOT, vplVec(0.5f, 2.5f, 1), vplVec(0, -2, -0.7f), 5 * factor);
+    addColoured(scene, VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(-0.3f, -1, -0.4f), factor);
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0, 1.5f, 4);
     camera.target = vplVec(0, 0.7f, 0);
@@ -507,8 +507,8 @@ static void DocumentedLightingRefusesOtherEmitters(void** state)
         vplScene* scene = sceneOf(context, 0.5f);
         addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
         lookDown(scene, 4, 0.3);
-        addEmitter(scene, VPL_EMITTER_POINT, vplVec(0, 2, 0), vplVec(0, -1, 0), 1);
-        addEmitter(scene, (vplEmitterType)type, vplVec(0, 2, 0), vplVec(0, -1, 0), 1);
+        addColoured(scene, VPL_EMITTER_POINT, vplVec(0, 2, 0), vplVec(0, -1, 0), 1);
+        addColoured(scene, (vplEmitterType)type, vplVec(0, 2, 0), vplVec(0, -1, 0), 1);
         vplRenderOptions o = zooOptions(0);
         for (int direct = 0; direct < 2; direct++) {
             vplImage* image = NULL;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Running out of memory: the n-th allocation fails, for every n, and each time the answer is VPL_OUT_OF_MEMORY,
 // one sentence, nothing leaked and no file. New memory is filled with junk, so that success does not depend on it.
+#include "patch_support.h"
 #include "shapes.h"
+#include "sides_fixture.h"
 
 #include "render/show_maps.h"
 
@@ -174,6 +176,85 @@ static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
     }
 }
 
+// ---- meshes of patches
+
+// Every third patch of 100 is bisected, so that edges of others are cut.
+static vplResult openThirds(const vplGeometry* geometry, vplPatches** patchesOut)
+{
+    vplPatchDef def = vplDefaultPatchDef();
+    vplPatches* whole = NULL;
+    def.count = 100;
+    vplResult result = vplPatches_Create(geometry, &def, &whole);
+    if (result == VPL_SUCCESS) {
+        float* priorities = calloc((size_t)whole->patchCount, sizeof *priorities);
+        for (int i = 0; i < whole->patchCount; i += 3) {
+            priorities[i] = 1;
+        }
+        result = vplPatches_Refine(whole, priorities, VPL_MAX_PATCHES, patchesOut);
+        free(priorities);
+    }
+    vplPatches_Destroy(whole);
+    return result;
+}
+
+// A room in uneven patches: mesh, means, picture and file.
+static vplResult meshAndWrite(vplContext* context, const char* path, int variant)
+{
+    vplScene* scene = NULL;
+    vplGeometry* geometry = NULL;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_Create(scene, &geometry);
+    }
+    vplScene_Destroy(scene);
+    if (result != VPL_SUCCESS) {
+        return result;
+    }
+    vplPatches* patches = NULL;
+    result = openThirds(geometry, &patches);
+    if (result != VPL_SUCCESS) {
+        vplGeometry_Destroy(geometry);
+        return result;
+    }
+    vplPatchSides* sides = openSides(patches, allOpen);
+    const size_t most = 6 * (size_t)patches->patchCount * 8;
+    vplRgb *values = calloc(most, sizeof *values), *corners = calloc(most, sizeof *corners);
+    float(*clip)[4] = calloc(most, sizeof *clip);
+    vplPatchMesh* mesh = NULL;
+    vplImage* image = NULL;
+    result = vplPatchMesh_Create(sides, &mesh);
+    if (result == VPL_SUCCESS) {
+        result = vplPatchMesh_Interpolate(mesh, VPL_VERTEX_WEIGHT_ANGLE, values, corners);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplImage_Create(context, 16, 16, &image);
+    }
+    if (result == VPL_SUCCESS) {
+        const vplPatchDraw draw = {.mesh = mesh, .values = values, .vertexValues = variant ? corners : NULL};
+        result = vplDrawPatches(&draw, (const float(*)[4])clip, NULL, NULL, image, NULL);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplPatchMesh_WritePly(mesh, corners, 1, path);
+    }
+    vplImage_Destroy(image);
+    vplPatchMesh_Destroy(mesh);
+    free(clip);
+    free(values);
+    free(corners);
+    closeSides(sides);
+    vplPatches_Destroy(patches);
+    vplGeometry_Destroy(geometry);
+    return result;
+}
+
+static void EveryFailedAllocationOfPatchMeshesIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(meshAndWrite, "ply", variant, variant);
+    }
+}
+
 // ---- meshes with a tree, lamps, and shadows of virtual lights
 
 static vplResult addBall(vplScene* scene, const Shape* ball)
@@ -278,6 +359,57 @@ static vplResult renderFrames(vplContext* context, const char* path, int variant
     return result;
 }
 
+// Variants: all pairs, adaptive, links; two frames, in the second of which the light has moved.
+static vplResult renderRadiosity(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplScene* scene = NULL;
+    vplHistory* history = NULL;
+    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
+    options.method = VPL_METHOD_RADIOSITY;
+    options.patches = 40;
+    options.patchPlacement = variant == 1 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+    options.hierarchy = variant == 2 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
+    vplResult result = vplScene_Load(context, "examples/scenes/room-path.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplHistory_Create(context, &history);
+    }
+    options.history = history;
+    for (int frame = 0; frame < 2 && result == VPL_SUCCESS; frame++) {
+        vplImage* image = NULL;
+        options.frame = 10 * frame;
+        result = vplRender(scene, &options, &image, NULL);
+        vplImage_Destroy(image);
+    }
+    vplHistory_Destroy(history);
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static vplResult bakeRoom(vplContext* context, const char* path, int variant)
+{
+    vplScene* scene = NULL;
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.patches = 40;
+    options.solver = variant ? VPL_SOLVER_SHOOTING : VPL_SOLVER_JACOBI;
+    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    if (result == VPL_SUCCESS) {
+        result = vplBake(scene, &options, 0, path, NULL);
+    }
+    vplScene_Destroy(scene);
+    return result;
+}
+
+static void EveryFailedAllocationOfRadiosityIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 3; variant++) {
+        failEveryAllocation(renderRadiosity, "png", variant, true);
+    }
+    failEveryAllocation(bakeRoom, "ply", 0, true);
+    failEveryAllocation(bakeRoom, "ply", 1, true);
+}
+
 // While blocks are kept one failure is none: they are given back, and the block is asked for again.
 static void EveryFailedAllocationOfFramesIsReported(void** state)
 {
@@ -376,6 +508,33 @@ static void EveryFailedAllocationOfLightcutsIsReported(void** state)
 }
 
 // Interleaved lights of eight clusters. Variants: before neighbours share, after that.
+static vplResult findFactors(vplContext* context, const char* path, int variant)
+{
+    (void)path;
+    vplVec3 corners[36];
+    boxCorners(1, 1, 1, corners);
+    SidesFixture sides;
+    if (!makeSides(context, corners, 12, 0, 1, &sides)) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplFormFactorDef def = vplDefaultFormFactorDef();
+    def.samples = variant ? 20 : 4;
+    vplFormFactors* factors = NULL;
+    const vplResult result = vplFormFactors_Create(&sides.sides, &def, &factors);
+    vplFormFactors_Destroy(factors);
+    freeSides(&sides);
+    return result;
+}
+
+static void EveryFailedAllocationOfFormFactorsIsReported(void** state)
+{
+    (void)state;
+    for (int variant = 0; variant < 2; variant++) {
+        failEveryAllocation(findFactors, "png", variant, false);
+        failEveryAllocation(findFactors, "png", variant, true);
+    }
+}
+
 static vplResult shadeClusters(vplContext* context, const char* path, int variant)
 {
     (void)path;
@@ -733,7 +892,9 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfPatchesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfRadiosityIsReported),
            cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfFormFactorsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),
            cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
@@ -741,6 +902,7 @@ TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReporte
            cmocka_unit_test(EveryFailedAllocationOfParaboloidMapsIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
+           cmocka_unit_test(EveryFailedAllocationOfPatchMeshesIsReported),
            cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),
            cmocka_unit_test(EveryFailedAllocationOfTheJsonReaderIsReported));

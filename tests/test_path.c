@@ -15,7 +15,7 @@ static vplScene* newScene(vplContext* context)
     return scene;
 }
 
-static int addMaterial(vplScene* scene, float rho, float emission)
+static int addGrey(vplScene* scene, float rho, float emission)
 {
     int index;
     vplMaterialDef def = vplDefaultMaterialDef();
@@ -95,7 +95,7 @@ static void addSphere(vplScene* scene, int material, vplVec3 centre, float radiu
     free(indices);
 }
 
-static vplEmitterDef* addEmitter(vplScene* scene, vplEmitterType type, vplVec3 position, float intensity)
+static vplEmitterDef* addWhite(vplScene* scene, vplEmitterType type, vplVec3 position, float intensity)
 {
     static vplEmitterDef def; // for the caller to compare with
     def = vplDefaultEmitterDef();
@@ -162,7 +162,7 @@ static void FurnaceGlowsEverywhereAlike(void** state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         vplContext* context = openTestContext(2);
         vplScene* scene = newScene(context);
-        addRoom(scene, addMaterial(scene, cases[i].rho, 2));
+        addRoom(scene, addGrey(scene, cases[i].rho, 2));
         addCamera(scene, (vplVec3){0.3f, 0.1f, 0.2f}, (vplVec3){-1, -0.4f, -0.8f}, 1.5);
         vplRenderOptions options = pathOptions(8, cases[i].samples);
         vplImage* image = renderScene(scene, &options, NULL);
@@ -185,8 +185,8 @@ static void WhiteBodyInAFurnaceVanishes(void** state)
     for (int smooth = 0; smooth < 2; smooth++) {
         vplContext* context = openTestContext(2);
         vplScene* scene = newScene(context);
-        int white = addMaterial(scene, 1, 0);
-        addRoom(scene, addMaterial(scene, 0, 1));
+        int white = addGrey(scene, 1, 0);
+        addRoom(scene, addGrey(scene, 0, 1));
         addSphere(scene, white, (vplVec3){0, 0, 0}, 0.5f, 3, smooth);
         addCamera(scene, (vplVec3){0, 0, 0.95f}, (vplVec3){0, 0, 0}, 0.8);
         vplRenderOptions options = pathOptions(32, 64);
@@ -214,8 +214,8 @@ static void PointLightFollowsTheInverseSquare(void** state)
     for (int i = 0; i < 5; i++) {
         const float x = 0.7f * (float)i;
         vplScene* scene = newScene(context);
-        addQuad(scene, addMaterial(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
-        addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 2, 0}, 3);
+        addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
+        addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 2, 0}, 3);
         addCamera(scene, (vplVec3){x, 3, 0}, (vplVec3){x, 0, 0}, NARROW);
         vplRenderOptions options = pathOptions(1, 4);
         double d2 = 4 + (double)x * x, wanted = 0.5 / VPL_PI * 3 / d2 * (2 / sqrt(d2));
@@ -238,8 +238,8 @@ static void SpotFadesSmoothlyBetweenItsAngles(void** state)
         const double angle = cases[i].angle * VPL_PI / 180, inner = cos(VPL_PI / 9), outer = cos(VPL_PI / 6);
         const float x = (float)(2 * tan(angle));
         vplScene* scene = newScene(context);
-        addQuad(scene, addMaterial(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
-        addEmitter(scene, VPL_EMITTER_SPOT, (vplVec3){0, 2, 0}, 3); // shines down: 20 and 30 degrees
+        addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
+        addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){0, 2, 0}, 3); // shines down: 20 and 30 degrees
         addCamera(scene, (vplVec3){x, 3, 0}, (vplVec3){x, 0, 0}, NARROW);
         vplRenderOptions options = pathOptions(1, 4);
         double way = (cos(angle) - outer) / (inner - outer);
@@ -256,7 +256,7 @@ static void DirectionalLightGoesByTheCosine(void** state)
     (void)state;
     vplContext* context = openTestContext(1);
     vplScene* scene = newScene(context);
-    addQuad(scene, addMaterial(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
+    addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
     vplEmitterDef sun = vplDefaultEmitterDef();
     sun.type = VPL_EMITTER_DIRECTIONAL;
     sun.direction = (vplVec3){3, -4, 0};
@@ -287,8 +287,8 @@ static void SquareLampGivesItsFormFactor(void** state)
     vplContext* context = openTestContext(1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         vplScene* scene = newScene(context);
-        addQuad(scene, addMaterial(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
-        addQuad(scene, addMaterial(scene, 0, 5), (vplVec3){0, cases[i].height, 0}, 1, cases[i].size);
+        addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
+        addQuad(scene, addGrey(scene, 0, 5), (vplVec3){0, cases[i].height, 0}, 1, cases[i].size);
         vplVec3 eye = {0.25f * cases[i].size, 0.5f * cases[i].height, 0}, target = eye;
         target.y = 0;
         addCamera(scene, eye, target, NARROW);
@@ -309,8 +309,8 @@ static void OnlyTheFrontOfALampEmits(void** state)
     vplContext* context = openTestContext(1);
     for (int behind = 0; behind < 2; behind++) {
         vplScene* scene = newScene(context);
-        addQuad(scene, addMaterial(scene, 0, 5), (vplVec3){0, 0, 0}, 0, 1);
-        addQuad(scene, addMaterial(scene, 0.5f, 0), (vplVec3){0, 0, -1}, 0, 4); // what the back faces
+        addQuad(scene, addGrey(scene, 0, 5), (vplVec3){0, 0, 0}, 0, 1);
+        addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, -1}, 0, 4); // what the back faces
         addCamera(scene, (vplVec3){0, 0, behind ? -0.5f : 1}, (vplVec3){0, 0, 0}, NARROW);
         addCamera(scene, (vplVec3){0.3f, 0, -0.5f}, (vplVec3){0.3f, 0, -1}, NARROW);
         vplRenderOptions options = pathOptions(1, 16);
@@ -346,8 +346,8 @@ static void CubeMatchesTheTableBounceByBounce(void** state)
     for (int row = 0; row < t.rows; row++) {
         const float u = (float)number(&t, row, "u"), v = (float)number(&t, row, "v");
         vplScene* scene = newScene(context);
-        addRoom(scene, addMaterial(scene, rho, 0));
-        addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, 1);
+        addRoom(scene, addGrey(scene, rho, 0));
+        addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, 1);
         addCamera(scene, (vplVec3){u, 0, v}, (vplVec3){u, -1, v}, NARROW);
         vplRenderOptions options = pathOptions(8, 512);
         options.show = VPL_SHOW_BOUNCE;
@@ -375,8 +375,8 @@ static void SphereMatchesTheTable(void** state)
     for (int row = 0; row < t.rows; row++) {
         const float radius = (float)number(&t, row, "R"), rho = (float)number(&t, row, "rho");
         vplScene* scene = newScene(context);
-        addSphere(scene, addMaterial(scene, rho, 0), (vplVec3){0, 0, 0}, radius, 32, row & 1);
-        addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, (float)number(&t, row, "I"));
+        addSphere(scene, addGrey(scene, rho, 0), (vplVec3){0, 0, 0}, radius, 32, row & 1);
+        addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, (float)number(&t, row, "I"));
         vplCameraDef camera = vplDefaultCameraDef();
         camera.eye = (vplVec3){0.1f * radius, 0.2f * radius, 0.3f * radius};
         camera.near = 0.01 * (double)radius;
@@ -530,12 +530,12 @@ static void AllWaysOfFindingLightAgree(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = newScene(context);
     vplGeometry* geometry;
-    addRoom(scene, addMaterial(scene, 0.6f, 0));
-    addQuad(scene, addMaterial(scene, 0.3f, 4), (vplVec3){0.3f, 0.6f, 0}, 1, 0.5f);
-    addSphere(scene, addMaterial(scene, 0.8f, 0), (vplVec3){-0.4f, -0.5f, 0}, 0.4f, 3, true);
-    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0.5f, -0.5f, 0.3f}, 0.4f);
-    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){-0.5f, 0.5f, -0.3f}, 0.2f);
-    addEmitter(scene, VPL_EMITTER_SPOT, (vplVec3){-0.5f, 0.8f, 0.3f}, 2);
+    addRoom(scene, addGrey(scene, 0.6f, 0));
+    addQuad(scene, addGrey(scene, 0.3f, 4), (vplVec3){0.3f, 0.6f, 0}, 1, 0.5f);
+    addSphere(scene, addGrey(scene, 0.8f, 0), (vplVec3){-0.4f, -0.5f, 0}, 0.4f, 3, true);
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0.5f, -0.5f, 0.3f}, 0.4f);
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){-0.5f, 0.5f, -0.3f}, 0.2f);
+    addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){-0.5f, 0.8f, 0.3f}, 2);
     addCamera(scene, (vplVec3){0, 0, 0.9f}, (vplVec3){0, -0.1f, -1}, 1.4);
     assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);
     vplPathDef def = vplDefaultPathDef();
@@ -688,16 +688,16 @@ static void LightsOnSurfacesAndEdgesGiveNumbers(void** state)
     (void)state;
     vplContext* context = openTestContext(2);
     vplScene* scene = newScene(context);
-    int grey = addMaterial(scene, 1, 0), lamp = addMaterial(scene, 0.5f, 1e15f);
+    int grey = addGrey(scene, 1, 0), lamp = addGrey(scene, 0.5f, 1e15f);
     addRoom(scene, grey);
-    addQuad(scene, lamp, (vplVec3){0, -1, 0}, -1, 0.5f);               // in the floor
-    addQuad(scene, lamp, (vplVec3){0, 0, -1}, 0, 1e-6f);               // tiny, in the wall
-    addQuad(scene, grey, (vplVec3){0, 0, 0}, -1, 1e-15f);              // a speck
-    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 1, 0}, 5e14f);   // in the ceiling
-    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){1, 1, -1}, 1);      // in a corner
-    addEmitter(scene, VPL_EMITTER_SPOT, (vplVec3){0, -1, 0}, 1);       // on a lamp
-    addEmitter(scene, VPL_EMITTER_DIRECTIONAL, (vplVec3){0, 0, 0}, 1); // along the walls
-    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){5, 5, 5}, 0);
+    addQuad(scene, lamp, (vplVec3){0, -1, 0}, -1, 0.5f);             // in the floor
+    addQuad(scene, lamp, (vplVec3){0, 0, -1}, 0, 1e-6f);             // tiny, in the wall
+    addQuad(scene, grey, (vplVec3){0, 0, 0}, -1, 1e-15f);            // a speck
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 1, 0}, 5e14f);   // in the ceiling
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){1, 1, -1}, 1);      // in a corner
+    addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){0, -1, 0}, 1);       // on a lamp
+    addWhite(scene, VPL_EMITTER_DIRECTIONAL, (vplVec3){0, 0, 0}, 1); // along the walls
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){5, 5, 5}, 0);
     addCamera(scene, (vplVec3){0, 0, 0.99f}, (vplVec3){0.1f, -0.2f, -1}, 2.8);
     vplRenderOptions options = pathOptions(24, 8);
     options.maxBounces = 20;
@@ -718,8 +718,8 @@ static void PerfectMirrorRoomEnds(void** state)
     (void)state;
     vplContext* context = openTestContext(1);
     vplScene* scene = newScene(context);
-    addRoom(scene, addMaterial(scene, 1, 0));
-    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, 1);
+    addRoom(scene, addGrey(scene, 1, 0));
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, 1);
     addCamera(scene, (vplVec3){0, 0, 0.5f}, (vplVec3){0, 0, -1}, 1);
     vplRenderOptions options = pathOptions(1, 1);
     double mean = radianceOf(scene, &options, 0);

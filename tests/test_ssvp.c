@@ -8,47 +8,6 @@
 
 // ---- scenes
 
-static void aim(vplScene* scene, vplVec3 eye, vplVec3 target)
-{
-    vplCameraDef camera = vplDefaultCameraDef();
-    camera.eye = eye;
-    camera.target = target;
-    camera.fovY = 1.2;
-    camera.near = 0.01;
-    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
-}
-
-static void addEmitter(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3 direction,
-                       float intensity)
-{
-    vplEmitterDef emitter = vplDefaultEmitterDef();
-    emitter.type = type;
-    emitter.position = position;
-    emitter.direction = direction;
-    emitter.intensity = (vplRgb){intensity, intensity, intensity};
-    assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
-}
-
-static int addMaterial(vplScene* scene, vplRgb diffuse, float emission)
-{
-    vplMaterialDef material = vplDefaultMaterialDef();
-    material.diffuse = diffuse;
-    material.emission = (vplRgb){emission, emission, emission};
-    int index;
-    assert_int_equal(vplScene_AddMaterial(scene, &material, &index), VPL_SUCCESS);
-    return index;
-}
-
-static void addThing(vplScene* scene, vplObjectType type, int material, vplVec3 place, double turnX,
-                     double turnY, vplVec3 size)
-{
-    vplObjectDef object = vplDefaultObjectDef();
-    object.type = type;
-    object.material = material;
-    object.transform = vplMat4_FromParts(place, (double[3]){turnX, turnY, 0}, size);
-    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-}
-
 static void addBox(vplScene* scene)
 {
     addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.25f, -0.7f, -0.2f), 0, 0.5, vplVec(0.5f, 0.6f, 0.5f));

@@ -3,6 +3,7 @@
 #ifndef VPL_RENDER_H
 #define VPL_RENDER_H
 
+#include <vpl/radiosity.h>
 #include <vpl/shading.h>
 
 #ifdef __cplusplus
@@ -14,7 +15,8 @@ typedef enum vplMethod {
     VPL_METHOD_DIRECT,                // the scene's own lights only
     VPL_METHOD_PATH,                  // path tracing: the truth that the others are judged against
     VPL_METHOD_KELLER,                // Keller, Instant Radiosity
-    VPL_METHOD_SSVP // Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation
+    VPL_METHOD_SSVP,     // Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation
+    VPL_METHOD_RADIOSITY // Hemgren, Radiosity in Realtime Rendering
 } vplMethod;
 
 // What the picture shows.
@@ -36,7 +38,13 @@ typedef enum vplShow {
     VPL_SHOW_PARABOLOID, // the map of cluster `showLight`: position, normal, albedo and distance side by side
     VPL_SHOW_SECOND_BOUNCE, // the picture with the second-bounce lights drawn on it
     VPL_SHOW_GATHER,        // indirect irradiance before pixels share it, W/m^2: of every pixel's own lights
-    VPL_SHOW_DENOISED       // after that
+    VPL_SHOW_DENOISED,      // after that
+    // of radiosity, without interpolation:
+    VPL_SHOW_PATCHES,         // patches with their outlines, in the colours of their surfaces
+    VPL_SHOW_PATCH_RADIOSITY, // radiosity / pi of each patch: emission, direct and indirect light, W/(m^2 sr)
+    VPL_SHOW_FORM_FACTOR_SUMS, // sum of each patch's form factors, before they were clamped or normalised: 1 in closed
+                               // rooms
+    VPL_SHOW_RESIDUAL          // what each patch's radiosity still lacks, / pi, W/(m^2 sr): absolute values
 } vplShow;
 
 // Most paths per pixel, and most bounces of a path.
@@ -80,17 +88,41 @@ typedef enum vplClusterPlace {
     VPL_CLUSTER_PLACE_MEAN // from the mean, as the document has it: maybe in mid-air or inside of something
 } vplClusterPlace;
 
+// What form factors are found between.
+typedef enum vplHierarchy {
+    VPL_HIERARCHY_AUTO = 0, // all pairs up to VPL_ALL_PAIRS sides, else links
+    VPL_HIERARCHY_OFF,      // all pairs of sides
+    VPL_HIERARCHY_ON        // links between groups of them
+} vplHierarchy;
+
+// More sides of patches than this are linked in groups (bench/form_factors: from there on it is faster).
+enum { VPL_ALL_PAIRS = 4096 };
+
+// Where patches are small.
+typedef enum vplPatchPlacement {
+    VPL_PATCHES_UNIFORM = 0, // everywhere alike, as in the document
+    VPL_PATCHES_ADAPTIVE     // where light changes much: found from solutions with fewer patches
+} vplPatchPlacement;
+
+// How light varies over a patch.
+typedef enum vplInterpolation {
+    VPL_INTERPOLATION_GOURAUD = 0, // linearly between the patches' corners
+    VPL_INTERPOLATION_NONE         // not at all
+} vplInterpolation;
+
 // Whether frames of a sequence have anything to do with each other.
 typedef enum vplCoherence {
     VPL_COHERENCE_OFF =
         0, // new sample patterns for each frame, and clusters that start from the frame's own lights
-    VPL_COHERENCE_ON // the same patterns in all frames, and clusters that start from those of the frame before
+    // The same patterns in all frames, and clusters that start from those of the frame before. Radiosities go on from
+    // those of the frame before, `iterations` sweeps a frame: light that moved arrives with the lag of its bounces.
+    VPL_COHERENCE_ON
 } vplCoherence;
 
 // What frames of a sequence hand on to each other: the frozen geometry, large blocks of memory, and for SSVP what the
 // light sees, its lights and clusters, which are kept as they are where it has not moved. Frames are rendered one after
 // another, in any order, with one scene, to which nothing may be added, and options that may change; pictures have the
-// same bits as without. While it lives the context keeps large blocks that are freed, as part of the bytes it holds: at
+// same bits as without, but for what `coherence` says. For radiosity it keeps patches and form factors. While it lives the context keeps large blocks that are freed, as part of the bytes it holds: at
 // most half as much as was ever in use at once. It must outlive renderers that use it.
 typedef struct vplHistory vplHistory;
 
@@ -159,9 +191,28 @@ typedef struct vplRenderOptions {
     vplClusterPlace clusterPlace; // default VPL_CLUSTER_PLACE_MEMBER
     vplSecondWeight secondWeight; // default VPL_SECOND_WEIGHT_COSINE
 
+    // Radiosity only.
+    float patchSize;  // T, metres: longest edge allowed; 0 (default): about `patches` patches
+    int patches;      // [1, VPL_MAX_PATCHES]; default 2000
+    int subdivisions; // rounds of bisection, at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
+    vplPatchPlacement patchPlacement; // default VPL_PATCHES_UNIFORM
+    vplFormFactorKind formFactors;    // default VPL_FORM_FACTORS_MONTE_CARLO
+    int formSamples;                  // pairs of points per pair of patches, [1, 1024]; default 4
+    vplRowSums rowSums;               // default VPL_ROW_SUMS_USUAL
+    vplHierarchy hierarchy;           // default VPL_HIERARCHY_AUTO
+    double linkError; // of the hierarchy, as a share of what a patch receives, (0, 1]; default 0.01
+    int patchLightSamples; // points of each patch where emitters' light is found with shadow rays, [0, 16]; 0 (default):
+        // 16 for Monte Carlo form factors, for incentres 1: the incentre, as in the document
+    vplSolver solver; // default VPL_SOLVER_GAUSS_SEIDEL; links know VPL_SOLVER_JACOBI only, and use it
+    int iterations;   // sweeps, at most, [0, VPL_MAX_SWEEPS]; default 100; with a history: per frame
+    double residual; // ends when a sweep changes no radiosity by more than this share of the largest, [0, 1];
+                     // default 1e-4
+    vplInterpolation interpolation; // default VPL_INTERPOLATION_GOURAUD
+    vplVertexWeight vertexWeight;   // default VPL_VERTEX_WEIGHT_ANGLE
+
     double frame;        // number of the frame that cameras and emitters with a path are posed at; default 0
     vplHistory* history; // what the frame before hands on, see vplHistory_Create; NULL (default): nothing
-    vplCoherence coherence; // SSVP with a history: default VPL_COHERENCE_ON
+    vplCoherence coherence; // SSVP and radiosity with a history: default VPL_COHERENCE_ON
 
     int passes; // pictures of N particles each, whose mean is the picture, [0, VPL_MAX_PASSES]; 0 (default):
                 // one, or as many as budgetMs or maxError ask for; methods with virtual lights
@@ -209,6 +260,10 @@ typedef struct vplRenderStats {
     int largestCut;           // lightcuts: most virtual lights evaluated for one pixel
     int clusters;             // SSVP: clusters of first-bounce lights
     int clusterIterations;    // SSVP: of k-means
+    int patches, patchSides;  // radiosity: patches, and sides of them that light reaches
+    bool linked;              // by the hierarchy
+    int64_t formFactors;      // radiosity: pairs of sides, or links
+    vplSolveStats solve;      // radiosity: of the last frame
     int stepCount;            // steps of the particle simulation
     int particlesPerStep
         [VPL_MAX_STEPS_REPORTED]; // nominal: floor(rho^k N), by which lights are weighted; of all
@@ -237,6 +292,12 @@ typedef struct vplRenderStats {
 // vplImage_Destroy. statsOut may be NULL.
 vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
                     vplRenderStats* statsOut);
+
+// Radiosity's patches as a mesh with colours at its vertices: the light that options.method VPL_METHOD_RADIOSITY finds,
+// direct and indirect, for tools that draw. Written by vplPatchMesh_WritePly; its 8-bit colours are those of pictures of
+// the same exposure (stops). statsOut may be NULL.
+vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float exposure, const char* path,
+                  vplRenderStats* statsOut);
 
 // The same step by step, for windows, deadlines and progressive output: after each step there is a picture of all
 // that was done. Steps give the same bits as one call of vplRender. One step is one pass.

@@ -158,7 +158,7 @@ typedef struct vplSurfacePoint {
 } vplSurfacePoint;
 
 // What arrives at points from the def's emitters, lamps and virtual lights, W/m^2, with the shadows that it asks for,
-// one of each per point; of pipelines, outputs and compensation nothing is used.
+// one way for all points; of pipelines, outputs, clusters and compensation nothing is used. Rays are added to *raysOut, which may be NULL.
 vplResult vplShadePoints(const vplGeometry* geometry, const vplShadeDef* def, const vplSurfacePoint* points,
                          int count, vplRgb* irradianceOut, int64_t* raysOut);
 

@@ -106,5 +106,6 @@ int runCompare(const Arguments* arguments);
 int runInfo(const Arguments* arguments);
 int runBench(const Arguments* arguments);
 int runTradeoff(const Arguments* arguments);
+int runBake(const Arguments* arguments);
 
 #endif

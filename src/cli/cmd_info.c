@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is in a scene, and what a render with the same options would need. Nothing is rendered: counts follow
 // from floor(rho^k N) and from the passes over the objects, as --stats reports them afterwards.
+#include "cli/info_patches.h"
 #include "cli/option.h"
 
 #include <jansson.h>
@@ -28,6 +29,7 @@ typedef struct Info {
     int steps, particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights, drawCalls;
     int64_t shadowMapBytes, lightBytes, pictureBytes;
+    PatchInfo patches;   // radiosity
     const char* problem; // why it cannot be rendered; NULL: it can
 } Info;
 
@@ -77,7 +79,7 @@ static void describePaths(const vplScene* scene, Info* info)
     }
 }
 
-static vplResult describeGeometry(const vplScene* scene, Info* info)
+static vplResult describeGeometry(const vplScene* scene, const vplRenderOptions* o, Info* info)
 {
     vplGeometry* geometry;
     vplResult result = vplGeometry_Create(scene, &geometry);
@@ -95,6 +97,9 @@ static vplResult describeGeometry(const vplScene* scene, Info* info)
             info->lampArea = vplEmission_Area(emission);
             vplEmission_Destroy(emission);
         }
+        if (result == VPL_SUCCESS && o->method == VPL_METHOD_RADIOSITY) {
+            result = measurePatches(scene, o, geometry, &info->patches);
+        }
         vplGeometry_Destroy(geometry);
     }
     return result;
@@ -109,6 +114,13 @@ static const char* findProblem(const Info* info, const vplRenderOptions* o)
     }
     if (documented && o->method == VPL_METHOD_SSVP) {
         return "ssvp knows physical lighting only";
+    }
+    if (documented && o->method == VPL_METHOD_RADIOSITY) {
+        return "radiosity knows physical lighting only";
+    }
+    if (o->method == VPL_METHOD_RADIOSITY && !info->patches.linked &&
+        info->patches.formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES) {
+        return "form factors of all pairs take more memory than is allowed; use --hierarchy on";
     }
     if (documented && info->emittersOfType[SPOTS] + info->emittersOfType[DIRECTIONALS] > 0) {
         return "documented lighting knows point lights only";
@@ -135,7 +147,8 @@ static void countDraws(const vplRenderOptions* o, Info* info)
         o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
     const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? drawn : 0;
     const int64_t size = o->shadowMapSize, lightSize = o->lightMapSize;
-    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias);
+    const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
+    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias) + patchDraws * o->antialias;
     const int64_t lightMapBytes = lightMaps * lightSize * lightSize * (int64_t)sizeof(float);
     info->shadowMapBytes = 6 * maps * size * size * (int64_t)sizeof(float) +
                            (lightMapBytes < VPL_LIGHT_MAP_BYTES ? lightMapBytes : VPL_LIGHT_MAP_BYTES);
@@ -212,6 +225,17 @@ static void printSteps(const Info* info)
     printf("%s\n", info->steps > 12 ? ", ...)" : info->steps > 0 ? ")" : "");
 }
 
+static void printPatches(const PatchInfo* p)
+{
+    printf("  %-16s %d, edges up to %g m\n", "patches", p->patches, p->longestEdge);
+    printf("  %-16s %d of %d that light reaches\n", "sides", p->sides, 2 * p->patches);
+    if (p->linked) {
+        printf("  %-16s by links between groups of patches\n", "form factors");
+    } else {
+        printBytes("form factors", p->formFactorBytes);
+    }
+}
+
 static void printText(const Info* info)
 {
     const vplRenderOptions* o = &info->arguments->render;
@@ -244,7 +268,11 @@ static void printText(const Info* info)
         printf("  %-16s %lld\n", "paths", (long long)o->width * o->height * o->samplesPerPixel);
     } else {
         printf("\nto render it by %s, %s, at %dx%d\n", info->method, info->pipeline, o->width, o->height);
-        printSteps(info);
+        if (o->method == VPL_METHOD_RADIOSITY) {
+            printPatches(&info->patches);
+        } else {
+            printSteps(info);
+        }
         printf("  %-16s %lld\n", "draw calls", (long long)info->drawCalls);
         printBytes("shadow maps", info->shadowMapBytes);
         printBytes("lights", info->lightBytes);
@@ -267,13 +295,15 @@ static json_t* renderJson(const Info* info)
     for (int i = 0; i < info->steps && i < VPL_MAX_STEPS_REPORTED; i++) {
         json_array_append_new(steps, json_integer(info->particlesPerStep[i]));
     }
-    return json_pack("{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:s?}", "method",
-                     info->method, "pipeline", info->pipeline, "width", o->width, "height", o->height,
-                     "reflectivity", info->reflectivity, "steps", info->steps, "lights_per_step", steps,
-                     "virtual_lights", (json_int_t)info->virtualLights, "draw_calls",
-                     (json_int_t)info->drawCalls, "shadow_map_bytes", (json_int_t)info->shadowMapBytes,
-                     "light_bytes", (json_int_t)info->lightBytes, "picture_bytes",
-                     (json_int_t)info->pictureBytes, "problem", info->problem);
+    return json_pack(
+        "{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:i, s:i, s:I, s:s?}", "method",
+        info->method, "pipeline", info->pipeline, "width", o->width, "height", o->height, "reflectivity",
+        info->reflectivity, "steps", info->steps, "lights_per_step", steps, "virtual_lights",
+        (json_int_t)info->virtualLights, "draw_calls", (json_int_t)info->drawCalls, "shadow_map_bytes",
+        (json_int_t)info->shadowMapBytes, "light_bytes", (json_int_t)info->lightBytes, "picture_bytes",
+        (json_int_t)info->pictureBytes, "patches", info->patches.patches, "patch_sides", info->patches.sides,
+        "form_factor_bytes", (json_int_t)(info->patches.linked ? 0 : info->patches.formFactorBytes),
+        "problem", info->problem);
 }
 
 static bool printJson(const Info* info)
@@ -313,7 +343,7 @@ int runInfo(const Arguments* a)
     if (result == VPL_SUCCESS) {
         describeScene(scene, &info);
         describePaths(scene, &info);
-        result = describeGeometry(scene, &info);
+        result = describeGeometry(scene, &a->render, &info);
     }
     if (result == VPL_SUCCESS) {
         result = describeRender(context, a, &info);

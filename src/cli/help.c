@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cli.h"
+#include "cli/tradeoff.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -13,6 +14,11 @@ static const Topic TOPICS[] = {
      "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
      "or a\n"
      "mesh (.obj), which gets a camera that sees all of it and, if nothing emits, a light."},
+    {"bake", "vpl bake SCENE -o FILE [options]", "writes the patches of radiosity as a mesh",
+     "Finds the light of SCENE by --method radiosity and writes its patches as a binary PLY mesh with "
+     "colours "
+     "at\n"
+     "the vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity as properties r, g, b."},
     {"lights", "vpl lights SCENE [options]", "lists the virtual lights",
      "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of\n"
      "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "
@@ -35,9 +41,7 @@ static const Topic TOPICS[] = {
      "to DIR: report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot),\n"
      "tradeoff.csv (every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options\n"
      "given here change the base that the sweeps start from: " TRADEOFF_BASE ".\n"
-     "Physical lighting only: the documented formulas have no truth to compare with.\n"
-     "Sweeps: frontier, path, direct, particles, light-shadows, min-distance, compensation, sampler,\n"
-     "reflectivity, shadow-map, pcf, bias, pipeline, particle-geometry."},
+     "Physical lighting only: the documented formulas have no truth to compare with."},
     {"bench", "vpl bench [options]", "times every stage",
      "Times the stages on the built-in room: medians of the wall clock and of processor time, counts, "
      "hashes,\n"
@@ -46,6 +50,24 @@ static const Topic TOPICS[] = {
      "exponents\n"
      "fitted over all points and over the upper half, and the part of the time that does not grow."},
 };
+
+// Their names, each once, in the order of the table.
+static void printSweeps(void)
+{
+    printf("\n\nSweeps:");
+    for (int i = 0, column = 7; i < SWEEP_COUNT; i++) {
+        if (i > 0 && strcmp(SWEEPS[i].name, SWEEPS[i - 1].name) == 0) {
+            continue;
+        }
+        const int length = (int)strlen(SWEEPS[i].name) + 1;
+        if (column + length > 110) {
+            printf("\n ");
+            column = 1;
+        }
+        printf(" %s", SWEEPS[i].name);
+        column += length;
+    }
+}
 
 bool printHelp(const char* command)
 {
@@ -62,7 +84,11 @@ bool printHelp(const char* command)
     }
     for (size_t i = 0; i < sizeof TOPICS / sizeof *TOPICS; i++) {
         if (strcmp(TOPICS[i].name, command) == 0) {
-            printf("%s\n\n%s\n\nOptions (--name VALUE or --name=VALUE):\n", TOPICS[i].usage, TOPICS[i].text);
+            printf("%s\n\n%s", TOPICS[i].usage, TOPICS[i].text);
+            if (strcmp(command, "tradeoff") == 0) {
+                printSweeps();
+            }
+            printf("\n\nOptions (--name VALUE or --name=VALUE):\n");
             printOptions(command);
             return true;
         }

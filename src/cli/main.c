@@ -75,6 +75,7 @@ int main(int count, char** words)
     } commands[] = {
         {"render", runRender, 1}, {"lights", runLights, 1}, {"compare", runCompare, 2},
         {"info", runInfo, 1},     {"bench", runBench, 0},   {"tradeoff", runTradeoff, 1},
+        {"bake", runBake, 1},
     };
     signal(SIGPIPE, SIG_IGN); // a closed pipe is a failed write, and said so
     signal(SIGXFSZ, SIG_IGN); // so is a file beyond the size limit

@@ -11,7 +11,9 @@ enum {
     INFO = 8,
     BENCH = 16,
     TRADEOFF = 32,
-    SCENE = RENDER | LIGHTS | INFO | TRADEOFF
+    BAKE = 64,
+    SCENE = RENDER | LIGHTS | INFO | TRADEOFF,
+    RADIOSITY = RENDER | INFO | TRADEOFF | BAKE
 };
 
 #define AT(field) offsetof(Arguments, field)
@@ -19,6 +21,7 @@ enum {
 const Option OPTIONS[] = {
     {"-o", "FILE", RENDER, readText, AT(output), 0, 0, NULL,
      "picture to write: .png, .hdr, .pfm or, where built in, .exr (required)"},
+    {"-o", "FILE", BAKE, readText, AT(output), 0, 0, NULL, "mesh to write: .ply (required)"},
     {"-o", "DIR", TRADEOFF, readText, AT(output), 0, 0, NULL,
      "folder for report.html, tradeoff.svg, tradeoff.csv and the reference, made if missing (required)"},
     {"--reference", "FILES", TRADEOFF, readText, AT(reference), 0, 0, NULL,
@@ -36,12 +39,13 @@ const Option OPTIONS[] = {
      "samples per pixel of rasterizing methods; default 1"},
     {"--frames", "A:B", RENDER, readFrames, 0, 0, 0, NULL,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on"},
-    {"--camera", "I", RENDER | TRADEOFF, readInt, AT(render.camera), 0, 1e9, NULL,
+    {"--camera", "I", RENDER | TRADEOFF | BAKE, readInt, AT(render.camera), 0, 1e9, NULL,
      "index of the scene's camera; default 0"},
     {"--method", "M", SCENE & ~TRADEOFF, readChoice, AT(render.method), 0, 0,
-     "instant-radiosity|direct|path|keller|ssvp",
+     "instant-radiosity|direct|path|keller|ssvp|radiosity",
      "instant-radiosity (default), direct: the scene's own lights only, path: the path-traced reference, "
-     "keller: Instant Radiosity as published, or ssvp: screen-space virtual point light propagation"},
+     "keller: Instant Radiosity as published, ssvp: screen-space virtual point light propagation, or "
+     "radiosity: patches and form factors"},
     {"--lighting", "L", SCENE, readChoice, AT(render.lighting), 0, 0, "physical|documented",
      "physical (default) or documented: the formulas as printed"},
     {"--particles", "N", SCENE, readInt, AT(render.particles), 0, VPL_MAX_LIGHTS, NULL,
@@ -87,13 +91,48 @@ const Option OPTIONS[] = {
     {"--second-weight", "W", SCENE, readChoice, AT(render.secondWeight), 0, 0, "cosine|printed",
      "cosine (default): second-bounce lights carry what a diffuse cluster sends to them; printed: all the "
      "same; ssvp"},
+    {"--patch-size", "T", RADIOSITY, readFloat, AT(render.patchSize), 0, 1e15, NULL,
+     "metres: triangles are bisected while an edge is longer; radiosity; default 0: see --patches"},
+    {"--patches", "N", RADIOSITY, readInt, AT(render.patches), 1, VPL_MAX_PATCHES, NULL,
+     "about so many patches, where --patch-size is 0; radiosity; default 2000"},
+    {"--subdivisions", "K", RADIOSITY, readInt, AT(render.subdivisions), 0, VPL_MAX_PATCH_ROUNDS, NULL,
+     "rounds of bisection, at most; radiosity; default 40"},
+    {"--patch-placement", "P", RADIOSITY, readChoice, AT(render.patchPlacement), 0, 0, "uniform|adaptive",
+     "uniform (default): patches of one size, or adaptive: small ones where light changes much; radiosity"},
+    {"--form-factors", "F", RADIOSITY, readChoice, AT(render.formFactors), 0, 0, "monte-carlo|incentre",
+     "monte-carlo (default): several pairs of points per pair of patches, exact integrals for near ones, or "
+     "incentre: one pair, as in the document; radiosity"},
+    {"--form-samples", "N", RADIOSITY, readInt, AT(render.formSamples), 1, 1024, NULL,
+     "pairs of points per pair of patches; radiosity; default 4"},
+    {"--row-sums", "R", RADIOSITY, readChoice, AT(render.rowSums), 0, 0, "usual|keep|clamp|normalise",
+     "form factors of a patch that sum to more than 1: keep, clamp to 1, or normalise all to 1; usual "
+     "(default): clamp for monte-carlo, keep for incentre; radiosity"},
+    {"--hierarchy", "H", RADIOSITY, readChoice, AT(render.hierarchy), 0, 0, "auto|off|on",
+     "off: form factors of all pairs; on: links between groups of patches; auto (default): by their number; "
+     "radiosity"},
+    {"--link-error", "E", RADIOSITY, readDouble, AT(render.linkError), 1e-6, 1, NULL,
+     "error of one link as a share of what its receiver gets; radiosity; default 0.01"},
+    {"--patch-light", "N", RADIOSITY, readInt, AT(render.patchLightSamples), 0, VPL_PATCH_CELLS, NULL,
+     "points of a patch at which lights' light is found; default 0: 16, of --form-factors incentre 1, its "
+     "centre; radiosity"},
+    {"--solver", "S", RADIOSITY, readChoice, AT(render.solver), 0, 0, "gauss-seidel|jacobi|shooting",
+     "gauss-seidel (default), jacobi: a bounce per sweep, or shooting: the brightest first; radiosity"},
+    {"--iterations", "I", RADIOSITY, readInt, AT(render.iterations), 0, VPL_MAX_SWEEPS, NULL,
+     "sweeps of the solver, at most, with --frames per frame; radiosity; default 100"},
+    {"--residual", "E", RADIOSITY, readDouble, AT(render.residual), 0, 1, NULL,
+     "ends when a sweep changes no radiosity by more than this share of the largest; radiosity; default "
+     "0.0001"},
+    {"--interpolation", "I", RENDER | INFO | TRADEOFF, readChoice, AT(render.interpolation), 0, 0,
+     "gouraud|none", "light over a patch: gouraud (default): linear between its corners, or none; radiosity"},
+    {"--vertex-weight", "W", RADIOSITY, readChoice, AT(render.vertexWeight), 0, 0, "angle|area|equal",
+     "of patches that meet at a corner: angle (default), area or, as in the document, equal; radiosity"},
     {"--coherence", "C", RENDER, readChoice, AT(render.coherence), 0, 0, "off|on",
-     "on (default): frames of a sequence keep sample patterns and clusters of the frame before; off: new "
-     "ones; "
-     "ssvp"},
+     "on (default): frames of a sequence keep sample patterns, clusters and radiosities of the frame before; "
+     "off: "
+     "new ones; ssvp and radiosity"},
     {"--bounce", "B", SCENE, readChoice, AT(render.bounce), 0, 0, "auto|reflect|diffuse",
      "auto (default): reflect for documented lighting, diffuse for physical"},
-    {"--seed", "S", SCENE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},
+    {"--seed", "S", SCENE | BAKE, readSeed, 0, 0, 0, NULL, "of all random numbers; default 0"},
     {"--pipeline", "P", RENDER | INFO | TRADEOFF, readChoice, AT(render.accumulation), 0, 0,
      "multipass|batched|deferred|interleaved|lightcuts|usual",
      "how virtual lights are added: usual (default): interleaved for ssvp, else deferred; multipass, batched "
@@ -157,16 +196,17 @@ const Option OPTIONS[] = {
     {"--show", "WHAT", RENDER, readShow, 0, 0, 0,
      "picture|depth|normals|shadow-map|shadow-factor|direct|indirect|light:K|overlay|bounce:K|rsm|rsm-"
      "samples|"
-     "clusters|paraboloid:C|second-bounce|gather|denoised",
+     "clusters|paraboloid:C|second-bounce|gather|denoised|patches|patch-radiosity|form-factor-sums|residual",
      "picture (default), depth, normals, shadow-map, shadow-factor, direct, indirect, light:K (K as in vpl "
      "lights), overlay, bounce:K (--method path: light after K reflections, 0 is direct); of ssvp: rsm, "
      "rsm-samples, "
-     "clusters, paraboloid:C (cluster C's map), second-bounce, gather, denoised"},
-    {"--exposure", "EV", RENDER | TRADEOFF, readFloat, AT(write.exposure), -64, 64, NULL,
-     "stops, PNG only: pixels times 2^EV; default 0"},
+     "clusters, paraboloid:C (cluster C's map), second-bounce, gather, denoised; of radiosity: patches, "
+     "patch-radiosity, form-factor-sums, residual"},
+    {"--exposure", "EV", RENDER | TRADEOFF | BAKE, readFloat, AT(write.exposure), -64, 64, NULL,
+     "stops, PNG and the colours of PLY only: pixels times 2^EV; default 0"},
     {"--tonemap", "T", RENDER, readTonemap, AT(write.tonemap), 0, 0, "none|reinhard",
      "none or reinhard, PNG only; default: reinhard for ssvp, else none"},
-    {"--stats", "FILE", RENDER, readText, AT(stats), 0, 0, NULL, "write statistics as JSON"},
+    {"--stats", "FILE", RENDER | BAKE, readText, AT(stats), 0, 0, NULL, "write statistics as JSON"},
     {"--heatmap", "FILE", COMPARE, readText, AT(heatmap), 0, 0, NULL, "write a picture of the differences"},
     {"--heatmap-of", "WHAT", COMPARE, readChoice, AT(heat.of), 0, 0, "difference|relative|ssim|flip",
      "difference (default), relative, ssim (1 - SSIM) or flip (in magma colours)"},
@@ -186,9 +226,9 @@ const Option OPTIONS[] = {
     {"--all", NULL, BENCH, readFlag, AT(all), 0, 0, NULL, "slow stages, too"},
     {"--scaling", NULL, BENCH, readFlag, AT(scaling), 0, 0, NULL,
      "instead: time against lights, pixels, triangles, threads and shadow map size, with fitted exponents"},
-    {"--threads", "T", RENDER | LIGHTS | BENCH | COMPARE | TRADEOFF, readThreads, 0, 0, 0, NULL,
+    {"--threads", "T", RENDER | BAKE | LIGHTS | BENCH | COMPARE | TRADEOFF, readThreads, 0, 0, 0, NULL,
      "worker threads, 0 (default, tradeoff: 1): one per processor; bench takes several: 1,2"},
-    {"--isa", "I", RENDER | LIGHTS | BENCH | TRADEOFF, readChoice, AT(context.isa), 0, 0,
+    {"--isa", "I", RENDER | BAKE | LIGHTS | BENCH | TRADEOFF, readChoice, AT(context.isa), 0, 0,
      "auto|scalar|sse2|avx2|avx512", "auto (default), scalar, sse2, avx2, avx512: the same bits"},
     {"--quiet", NULL, ~0, readFlag, AT(quiet), 0, 0, NULL, "no progress bar, no warnings"},
     {"-v", NULL, ~0, readFlag, AT(verbose), 0, 0, NULL, "say more"},
@@ -199,8 +239,8 @@ const int OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS;
 
 int commandBit(const char* command)
 {
-    static const char* const names[] = {"render", "lights", "compare", "info", "bench", "tradeoff"};
-    for (int i = 0; i < 6; i++) {
+    static const char* const names[] = {"render", "lights", "compare", "info", "bench", "tradeoff", "bake"};
+    for (int i = 0; i < 7; i++) {
         if (strcmp(names[i], command) == 0) {
             return 1 << i;
         }

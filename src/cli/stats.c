@@ -14,6 +14,22 @@ static json_t* intArray(const int* values, int count)
     return array;
 }
 
+static void addRadiosity(json_t* root, const vplRenderStats* stats)
+{
+    if (stats->patches == 0) {
+        return;
+    }
+    const vplSolveStats* s = &stats->solve;
+    json_object_set_new(root, "patch_sides", json_integer(stats->patchSides));
+    json_object_set_new(root, stats->linked ? "links" : "form_factors", json_integer(stats->formFactors));
+    json_object_set_new(root, "iterations", json_integer(s->iterations));
+    json_object_set_new(root, "residual", json_real(s->residual));
+    json_object_set_new(root, "spectral_radius", json_real(s->spectralRadius));
+    json_object_set_new(
+        root, "form_factor_sums",
+        json_pack("{s:f, s:f, s:f}", "min", s->rowSumMin, "mean", s->rowSumMean, "max", s->rowSumMax));
+}
+
 vplResult writeStats(vplContext* context, const char* path, const vplRenderStats* stats)
 {
     char hash[17];
@@ -46,9 +62,10 @@ vplResult writeStats(vplContext* context, const char* path, const vplRenderStats
     json_object_set_new(root, "rays", json_integer(stats->rays));
     json_object_set_new(root, "objects", json_integer(stats->objects));
     json_object_set_new(root, "triangles", json_integer(stats->triangles));
-    json_object_set_new(root, "patches", json_integer(0));
+    json_object_set_new(root, "patches", json_integer(stats->patches));
+    addRadiosity(root, stats);
     json_object_set_new(root, "min_distance", json_real(stats->minDistance));
-    static const char* const shadows[] = {"", "none", "map", "ray"};
+    static const char* const shadows[] = {"", "none", "map", "ray", "auto", "cluster"};
     if (stats->lightShadows != VPL_LIGHT_SHADOWS_USUAL) {
         json_object_set_new(root, "light_shadows", json_string(shadows[stats->lightShadows]));
     }

@@ -17,6 +17,7 @@ typedef enum Family {
     FAMILY_RAY,        // with a ray per pixel and virtual light
     FAMILY_KELLER,     // Keller's method, whatever its shadows
     FAMILY_SSVP,
+    FAMILY_RADIOSITY,
     FAMILY_PATH,
     FAMILY_COUNT
 } Family;

@@ -39,7 +39,7 @@ vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptio
 // scaled by the work; where there is none yet, a guess per pixel that only has to put the kinds in order.
 static double foresee(const Tradeoff* t, const Setting* s)
 {
-    static const double guess[FAMILY_COUNT] = {1e-4, 1e-7, 1e-5, 1e-5, 1e-5, 1e-6, 1e-3};
+    static const double guess[FAMILY_COUNT] = {1e-4, 1e-7, 1e-5, 1e-5, 1e-5, 1e-6, 1e-7, 1e-3};
     const vplRenderOptions* o = &s->arguments.render;
     const Setting* nearest = NULL;
     double least = INFINITY;

@@ -26,12 +26,12 @@ static double atY(const Plot* p, double error)
 // Okabe and Ito, Color Universal Design, 2008: told apart also by those who see fewer colours; and by shape.
 void writeStyle(Text* css)
 {
-    static const char light[] =
-        "--ink:#1b1b1b;--soft:#5c5c5c;--paper:#ffffff;--panel:#f4f4f1;--line:#d5d5d0;"
-        "--f0:#6f6f6f;--f1:#c77700;--f2:#0072b2;--f3:#00805c;--f4:#b3362b;--f5:#7a5cc4;--f6:#b2399a";
-    static const char dark[] =
-        "--ink:#ececec;--soft:#a8a8a8;--paper:#16181b;--panel:#212428;--line:#3a3e44;"
-        "--f0:#a5a5a5;--f1:#f0a830;--f2:#56b4e9;--f3:#2ec79a;--f4:#ff8a7a;--f5:#b39dff;--f6:#e58fd0";
+    static const char light[] = "--ink:#1b1b1b;--soft:#5c5c5c;--paper:#ffffff;--panel:#f4f4f1;--line:#d5d5d0;"
+                                "--f0:#6f6f6f;--f1:#c77700;--f2:#0072b2;--f3:#00805c;--f4:#b3362b;--f5:#"
+                                "7a5cc4;--f6:#7d8a00;--f7:#b2399a";
+    static const char dark[] = "--ink:#ececec;--soft:#a8a8a8;--paper:#16181b;--panel:#212428;--line:#3a3e44;"
+                               "--f0:#a5a5a5;--f1:#f0a830;--f2:#56b4e9;--f3:#2ec79a;--f4:#ff8a7a;--f5:#"
+                               "b39dff;--f6:#c3d14a;--f7:#e58fd0";
     addText(css, ".vpl{%s}\n@media screen and (prefers-color-scheme:dark){.vpl{%s}}\n", light, dark);
     addText(css, "svg.vpl{font:13px system-ui,sans-serif;max-width:100%%;height:auto}\n"
                  "svg.vpl text{fill:var(--ink)} svg.vpl .soft{fill:var(--soft);font-size:12px}\n"
@@ -55,6 +55,7 @@ void addMarker(Text* svg, Family family, bool solid, double x, double y)
                                                      "M0 -7L7 0L0 7L-7 0Z",
                                                      "M-2 -6H2V-2H6V2H2V6H-2V2H-6V-2H-2Z",
                                                      "M-6 -6L0 -3L6 -6L3 0L6 6L0 3L-6 6L-3 0Z",
+                                                     "M-6 -2.5H6V2.5H-6Z",
                                                      "M-6 -5H6L0 6Z"};
     addText(svg, "<path class=\"f%d%s\" transform=\"translate(%.1f %.1f)\" d=\"%s\"/>", family,
             solid ? "" : " off", x, y, shapes[family]);

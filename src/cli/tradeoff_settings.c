@@ -10,6 +10,8 @@
 
 static const char PARTICLES[] = "3 10 30 100 300 1000 3000 10000 30000 65536";
 
+static const char PATCHES[] = "100 300 1000 3000 10000 30000";
+
 static const char DISTANCES[] = "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4";
 
 const Sweep SWEEPS[] = {
@@ -21,6 +23,8 @@ const Sweep SWEEPS[] = {
     {"frontier", "--method keller --pipeline interleaved --interleave 16 --particles", PARTICLES, NULL},
     {"frontier", "--method ssvp --clusters", "4 8 16 32 64", NULL},
     {"frontier", "--method ssvp --clusters 32 --first-bounce 1024 --second-bounce", "1024 4096", NULL},
+    {"frontier", "--method radiosity --patches", PATCHES, NULL},
+    {"frontier", "--method radiosity --patch-placement adaptive --patches", PATCHES, NULL},
     {"frontier", "--light-shadows none --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows map --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows ray --min-distance @0.03 --particles", PARTICLES, NULL},
@@ -54,6 +58,21 @@ const Sweep SWEEPS[] = {
     {"rsm-size", "--method ssvp --rsm-size", "256 512 1024 2048", "SSVP: size of the reflective map"},
     {"ssvp-interleave", "--method ssvp --interleave", "1 2 4 8",
      "SSVP: lights that neighbouring pixels share"},
+    {"patches", "--method radiosity --patches", PATCHES, "Radiosity: patches"},
+    {"patch-placement", "--method radiosity --patch-placement", "uniform adaptive",
+     "Radiosity: where patches are small"},
+    {"form-factors", "--method radiosity --form-factors", "monte-carlo incentre", "Radiosity: form factors"},
+    {"form-samples", "--method radiosity --form-samples", "1 4 16", "Radiosity: samples of form factors"},
+    {"row-sums", "--method radiosity --row-sums", "keep clamp normalise",
+     "Radiosity: what becomes of sums above 1"},
+    {"hierarchy", "--method radiosity --hierarchy", "off on", "Radiosity: links between groups"},
+    {"link-error", "--method radiosity --hierarchy on --link-error", "0.001 0.003 0.01 0.03 0.1",
+     "Radiosity: error of links"},
+    {"patch-light", "--method radiosity --patch-light", "1 4 16", "Radiosity: samples of lights"},
+    {"iterations", "--method radiosity --iterations", "1 2 5 10", "Radiosity: sweeps"},
+    {"interpolation", "--method radiosity --interpolation", "gouraud none", "Radiosity: interpolation"},
+    {"vertex-weight", "--method radiosity --vertex-weight", "angle area equal",
+     "Radiosity: weights at corners"},
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
     {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
     {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
@@ -77,6 +96,7 @@ const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
                                                 "virtual lights with shadow rays",
                                                 "Keller's method",
                                                 "SSVP",
+                                                "radiosity",
                                                 "path tracing"};
 
 // True if `name` is one of the words in "a,b,c"; NULL names all.
@@ -118,6 +138,8 @@ static Family familyOf(const vplRenderOptions* o)
         return FAMILY_KELLER;
     case VPL_METHOD_SSVP:
         return FAMILY_SSVP;
+    case VPL_METHOD_RADIOSITY:
+        return FAMILY_RADIOSITY;
     case VPL_METHOD_INSTANT_RADIOSITY:
         break;
     }
@@ -130,10 +152,11 @@ static Family familyOf(const vplRenderOptions* o)
 static double workOf(const vplRenderOptions* o)
 {
     double reflectivity = o->reflectivity >= 0 ? o->reflectivity : 0.7;
-    return o->method == VPL_METHOD_PATH     ? o->samplesPerPixel
-           : o->method == VPL_METHOD_DIRECT ? 1
-           : o->method == VPL_METHOD_SSVP   ? 200 + o->firstBounce + o->secondBounce + 8 * o->clusters
-                                            : 50 + o->particles / (1 - reflectivity);
+    return o->method == VPL_METHOD_PATH        ? o->samplesPerPixel
+           : o->method == VPL_METHOD_DIRECT    ? 1
+           : o->method == VPL_METHOD_RADIOSITY ? 500 + o->patches
+           : o->method == VPL_METHOD_SSVP      ? 200 + o->firstBounce + o->secondBounce + 8 * o->clusters
+                                               : 50 + o->particles / (1 - reflectivity);
 }
 
 // The words that make `plain` into `a`.
@@ -159,7 +182,7 @@ void writeCommand(const Setting* s, char* words, size_t size)
     writeDifference(&plain, &s->arguments, words, size);
 }
 
-// The same for SSVP, which has samples of maps instead of particles.
+// SSVP has samples of maps instead of particles, radiosity has patches.
 static void forgetParticles(vplRenderOptions* o)
 {
     const vplRenderOptions plain = vplDefaultRenderOptions();
@@ -170,22 +193,26 @@ static void forgetParticles(vplRenderOptions* o)
     o->bounce = plain.bounce;
     o->placement = plain.placement;
     o->particleGeometry = plain.particleGeometry;
-    o->shadowMapSize = plain.shadowMapSize;
-    o->shadow = plain.shadow;
 }
 
 // Options that the method never looks at go back to their defaults: equal settings look equal, and a command to
 // copy says only what matters.
 static void forgetUnused(vplRenderOptions* o)
 {
+    vplRenderOptions plain = vplDefaultRenderOptions();
     if (o->method == VPL_METHOD_SSVP) {
+        forgetParticles(o);
+        o->shadowMapSize = plain.shadowMapSize;
+        o->shadow = plain.shadow;
+        return;
+    }
+    if (o->method == VPL_METHOD_RADIOSITY) {
         forgetParticles(o);
         return;
     }
     if (o->method == VPL_METHOD_INSTANT_RADIOSITY || o->method == VPL_METHOD_KELLER) {
         return;
     }
-    vplRenderOptions plain = vplDefaultRenderOptions();
     plain.method = o->method;
     plain.width = o->width;
     plain.height = o->height;
@@ -222,7 +249,8 @@ static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
         return false;
     }
     s.family = familyOf(&s.arguments.render);
-    if (s.family == FAMILY_DIRECT || s.family == FAMILY_PATH || s.family == FAMILY_SSVP) {
+    if (s.family == FAMILY_DIRECT || s.family == FAMILY_PATH || s.family == FAMILY_SSVP ||
+        s.family == FAMILY_RADIOSITY) {
         snprintf(s.change, sizeof s.change, "%s", words); // what it does not use is no difference
     } else {
         writeDifference(t->arguments, &s.arguments, s.change, sizeof s.change);

@@ -22,6 +22,9 @@ void vplHistory_Destroy(vplHistory* history)
         if (history->ssvp != NULL) {
             history->destroySsvp(history->ssvp);
         }
+        if (history->radiosity != NULL) {
+            history->destroyRadiosity(history->radiosity);
+        }
         vplGeometry_Destroy(history->geometry);
         vplFree(context, history);
         vplStopKeeping(context);

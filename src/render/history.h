@@ -13,6 +13,8 @@ struct vplHistory {
     vplGeometry* geometry; // of that scene
     struct vplSsvpState* ssvp;
     void (*destroySsvp)(struct vplSsvpState* ssvp); // called where ssvp is not NULL
+    struct vplRadiosityState* radiosity;
+    void (*destroyRadiosity)(struct vplRadiosityState* radiosity); // called where radiosity is not NULL
 };
 
 // Begins a frame: the geometry of the scene, frozen by the first frame and owned by the history.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "render/choose_shadows.h"
+#include "render/radiosity.h"
 #include "render/ssvp.h"
 
 #include <math.h>
@@ -274,6 +275,7 @@ void vplFreeIngredients(vplJob* job, vplIngredients* in)
 {
     vplFreeVirtualLights(job, in);
     vplSsvp_End(job, in->ssvp);
+    vplRadiosity_End(job, in->radiosity);
     freeMaps(job, &in->emitterMaps);
     vplFree(job->context, in->lamps);
 }

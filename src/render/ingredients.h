@@ -26,9 +26,10 @@ typedef struct vplIngredients {
     int lampLights; // the first lights, if they lie on lamps
     int firstShown; // Keller's --show indirect: lights before this one light only what compensation meets
     float minDistance;
-    vplLightShadows lightShadows; // none, map or ray
-    vplHalfMaps* lightMaps;       // NULL where there are none; room for a batch of the lights
-    struct vplSsvpState* ssvp;    // NULL but for SSVP; then it owns `set`
+    vplLightShadows lightShadows;        // none, map or ray
+    vplHalfMaps* lightMaps;              // NULL where there are none; room for a batch of the lights
+    struct vplSsvpState* ssvp;           // NULL but for SSVP; then it owns `set`
+    struct vplRadiosityState* radiosity; // NULL but for radiosity
     int* lightClusters; // of each of `lights`, which are in the order of clusters; NULL: without clusters
 } vplIngredients;
 

@@ -4,6 +4,7 @@
 // Alexander Keller, Instant Radiosity, SIGGRAPH 1997: the same with particles that begin as lights on the emitters,
 // and with shadows. Direct lighting is the recipe without particles.
 #include "math/sampling.h"
+#include "render/radiosity.h"
 #include "render/ssvp.h"
 
 #include <math.h>
@@ -23,7 +24,8 @@ typedef struct Recipe {
 
 bool vplNeedsLights(const vplRenderOptions* o)
 {
-    if (o->method == VPL_METHOD_DIRECT || (o->method == VPL_METHOD_SSVP && o->maxBounces == 0)) {
+    if (o->method == VPL_METHOD_DIRECT || o->method == VPL_METHOD_RADIOSITY ||
+        (o->method == VPL_METHOD_SSVP && o->maxBounces == 0)) {
         return false;
     }
     switch (o->show) {
@@ -56,6 +58,10 @@ bool vplNeedsDirect(const vplRenderOptions* o)
     case VPL_SHOW_PARABOLOID:
     case VPL_SHOW_GATHER:
     case VPL_SHOW_DENOISED:
+    case VPL_SHOW_PATCHES:
+    case VPL_SHOW_PATCH_RADIOSITY:
+    case VPL_SHOW_FORM_FACTOR_SUMS:
+    case VPL_SHOW_RESIDUAL:
         return false;
     default:
         return true;
@@ -70,9 +76,22 @@ static bool isProgressive(const vplRenderOptions* o)
 
 // ---- shading
 
+// Patches alone, without light of pixels.
+static bool showsPatches(const vplRenderOptions* o)
+{
+    return o->show >= VPL_SHOW_PATCHES && o->show <= VPL_SHOW_RESIDUAL;
+}
+
+static vplResult clear(vplImage* image)
+{
+    memset(image->pixels, 0, 3 * (size_t)image->width * (size_t)image->height * sizeof *image->pixels);
+    return VPL_SUCCESS;
+}
+
 // One look at every pixel at place i of `count`: Hammersley points, so that edges along the axes, too, are cut at
 // as many places as there are samples.
-static vplResult shadeSample(vplJob* job, const vplShadeDef* plain, int i, int count)
+static vplResult shadeSample(vplJob* job, const vplIngredients* in, const vplShadeDef* plain, int i,
+                             int count)
 {
     vplShadeDef def = *plain;
     vplCompensationDef compensation;
@@ -85,22 +104,27 @@ static vplResult shadeSample(vplJob* job, const vplShadeDef* plain, int i, int c
     vplView view = vplView_At(&job->view, (i + 0.5) / count, y - floor(y));
     vplShadeStats stats = {0};
     vplResult result =
-        vplShadeView(job->geometry, &view, &def, vplJob_GetProgress(job), job, job->image, &stats);
+        showsPatches(&job->options)
+            ? clear(job->image)
+            : vplShadeView(job->geometry, &view, &def, vplJob_GetProgress(job), job, job->image, &stats);
     vplJob_AddRaster(job, &stats.raster);
     job->stats.rays += stats.shadowRays;
     job->stats.lightEvaluations += stats.lightEvaluations;
     job->stats.cutPixels += stats.cutPixels;
     job->stats.largestCut =
         stats.largestCut > job->stats.largestCut ? stats.largestCut : job->stats.largestCut;
+    if (result == VPL_SUCCESS && in->radiosity != NULL) {
+        result = vplRadiosity_Draw(job, in->radiosity, &view, job->image);
+    }
     return result;
 }
 
-static vplResult shadeSamples(vplJob* job, const vplShadeDef* def)
+static vplResult shadeSamples(vplJob* job, const vplIngredients* in, const vplShadeDef* def)
 {
     const int count = job->options.antialias;
     const size_t values = 3 * (size_t)job->image->width * (size_t)job->image->height;
     if (count == 1) {
-        return shadeSample(job, def, 0, 1);
+        return shadeSample(job, in, def, 0, 1);
     }
     double* sums = vplAllocZero(job->context, values, sizeof *sums);
     vplResult result = sums ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
@@ -108,7 +132,7 @@ static vplResult shadeSamples(vplJob* job, const vplShadeDef* def)
     for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
         job->progressFrom = from + (to - from) * i / count;
         job->progressTo = from + (to - from) * (i + 1) / count;
-        result = shadeSample(job, def, i, count);
+        result = shadeSample(job, in, def, i, count);
         for (size_t k = 0; k < values && result == VPL_SUCCESS; k++) {
             sums[k] += (double)job->image->pixels[k];
         }
@@ -183,7 +207,7 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
     vplJob_BeginStage(
         job, 0.1 + 0.9 * (count > 0 ? (first + count) / (double)(in->lightCount - in->firstShown) : 1));
     if (result == VPL_SUCCESS) {
-        result = shadeSamples(job, &def);
+        result = shadeSamples(job, in, &def);
     }
     vplJob_EndStage(job, "shading");
     const bool known = o->show != VPL_SHOW_LIGHT && o->history == NULL && // frames have no time for it
@@ -234,6 +258,13 @@ static vplResult overlay(vplJob* job, const vplLightSet* set)
     return result;
 }
 
+static vplResult makeRadiosity(vplJob* job, vplIngredients* in)
+{
+    vplResult result = vplRadiosity_Begin(job, &in->radiosity);
+    const bool lit = vplFindRadiosityNeed(&job->options) == VPL_NEED_LIGHT;
+    return result == VPL_SUCCESS && lit ? vplRadiosity_Light(job, in->radiosity) : result;
+}
+
 // ---- the recipe
 
 static vplResult cook(vplJob* job, vplIngredients* in, int parts)
@@ -242,6 +273,9 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
     vplResult result = VPL_SUCCESS;
     if (o->method == VPL_METHOD_SSVP && in->ssvp == NULL) {
         result = vplSsvp_Begin(job, &in->ssvp);
+    }
+    if (vplFindRadiosityNeed(o) != VPL_NEED_NOTHING && in->radiosity == NULL) {
+        result = makeRadiosity(job, in);
     }
     if (result == VPL_SUCCESS && parts & PART_INDIRECT && vplNeedsLights(o)) {
         vplJob_BeginStage(job, 0.05);

@@ -32,6 +32,12 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.w1 = 0.6;
     o.w2 = 0.4;
     o.coherence = VPL_COHERENCE_ON;
+    o.patches = 2000;
+    o.subdivisions = VPL_MAX_PATCH_ROUNDS;
+    o.formSamples = 4;
+    o.linkError = 0.01;
+    o.iterations = 100;
+    o.residual = 1e-4;
     o.cookie = OPTIONS_COOKIE;
     return o;
 }
@@ -51,7 +57,7 @@ static vplResult checkInts(const vplContext* context, const vplRenderOptions* o,
         const char* name;
         int value, low, high;
     } ints[] = {
-        {"method", (int)o->method, 0, VPL_METHOD_SSVP},
+        {"method", (int)o->method, 0, VPL_METHOD_RADIOSITY},
         {"lighting", (int)o->lighting, 0, VPL_LIGHTING_DOCUMENTED},
         {"width", o->width, 1, VPL_MAX_IMAGE_SIZE},
         {"height", o->height, 1, VPL_MAX_IMAGE_SIZE},
@@ -76,7 +82,7 @@ static vplResult checkInts(const vplContext* context, const vplRenderOptions* o,
         {"pixel", (int)o->pixel, 0, VPL_PIXEL_CENTRE},
         {"showBounce", o->showBounce, 0, VPL_MAX_BOUNCES},
         {"shadowMapSize", o->shadowMapSize, 1, VPL_MAX_SHADOW_MAP},
-        {"show", (int)o->show, 0, VPL_SHOW_DENOISED},
+        {"show", (int)o->show, 0, VPL_SHOW_RESIDUAL},
         {"clusters", o->clusters, 1, VPL_MAX_LIGHTS},
         {"firstBounce", o->firstBounce, 0, VPL_MAX_LIGHTS},
         {"oversampling", o->oversampling, 1, 1024},
@@ -88,6 +94,18 @@ static vplResult checkInts(const vplContext* context, const vplRenderOptions* o,
         {"clusterPlace", (int)o->clusterPlace, 0, VPL_CLUSTER_PLACE_MEAN},
         {"secondWeight", (int)o->secondWeight, 0, VPL_SECOND_WEIGHT_PRINTED},
         {"showLight", o->showLight, 0, VPL_MAX_LIGHTS},
+        {"patches", o->patches, 1, VPL_MAX_PATCHES},
+        {"subdivisions", o->subdivisions, 0, VPL_MAX_PATCH_ROUNDS},
+        {"patchPlacement", (int)o->patchPlacement, 0, VPL_PATCHES_ADAPTIVE},
+        {"formFactors", (int)o->formFactors, 0, VPL_FORM_FACTORS_INCENTRE},
+        {"formSamples", o->formSamples, 1, 1024},
+        {"rowSums", (int)o->rowSums, 0, VPL_ROW_SUMS_NORMALISE},
+        {"hierarchy", (int)o->hierarchy, 0, VPL_HIERARCHY_ON},
+        {"patchLightSamples", o->patchLightSamples, 0, VPL_PATCH_CELLS},
+        {"solver", (int)o->solver, 0, VPL_SOLVER_SHOOTING},
+        {"iterations", o->iterations, 0, VPL_MAX_SWEEPS},
+        {"interpolation", (int)o->interpolation, 0, VPL_INTERPOLATION_NONE},
+        {"vertexWeight", (int)o->vertexWeight, 0, VPL_VERTEX_WEIGHT_EQUAL},
     };
     for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) {
         vplResult result = checkInt(context, ints[i].name, ints[i].value, ints[i].low, ints[i].high);
@@ -119,6 +137,19 @@ static vplResult checkReals(const vplContext* context, const vplRenderOptions* o
                        "vplRenderOptions.w1 and w2 are %g and %g, must be finite and at least 0", o->w1,
                        o->w2);
     }
+    if (!(o->linkError > 0 && o->linkError <= 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.linkError is %g, must be in (0, 1]",
+                       o->linkError);
+    }
+    if (!(o->residual >= 0 && o->residual <= 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.residual is %g, must be in [0, 1]",
+                       o->residual);
+    }
+    if (!(o->patchSize >= 0 && isfinite(o->patchSize))) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.patchSize is %g, must be finite and at least 0",
+                       (double)o->patchSize);
+    }
     if (!isfinite(o->frame)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.frame is %g, must be finite",
                        o->frame);
@@ -145,6 +176,30 @@ static vplResult checkSsvp(const vplContext* context, const vplRenderOptions* o)
     return VPL_SUCCESS;
 }
 
+// What only radiosity has, and what it has not.
+static vplResult checkRadiosity(const vplContext* context, const vplRenderOptions* o)
+{
+    if (o->method != VPL_METHOD_RADIOSITY) {
+        return o->show >= VPL_SHOW_PATCHES ? vplFail(context, VPL_INVALID_ARGUMENT,
+                                                     "only radiosity has patches and form factors to show")
+                                           : VPL_SUCCESS;
+    }
+    if (o->lighting == VPL_LIGHTING_DOCUMENTED) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "radiosity's document prints no lighting formulas of its own; use physical lighting");
+    }
+    if (o->patchPlacement == VPL_PATCHES_ADAPTIVE && o->patchSize > 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "adaptive patches are counted, not measured: set vplRenderOptions.patches and leave "
+                       "patchSize at 0");
+    }
+    if (o->show == VPL_SHOW_LIGHT || o->show == VPL_SHOW_OVERLAY || o->show == VPL_SHOW_GATHER ||
+        o->show == VPL_SHOW_DENOISED) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "radiosity has no virtual lights to show");
+    }
+    return VPL_SUCCESS;
+}
+
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
 {
     vplContext* context = vplScene_GetContext(scene);
@@ -160,5 +215,8 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
     if (result == VPL_SUCCESS) {
         result = checkReals(context, o);
     }
-    return result == VPL_SUCCESS ? checkSsvp(context, o) : result;
+    if (result == VPL_SUCCESS) {
+        result = checkSsvp(context, o);
+    }
+    return result == VPL_SUCCESS ? checkRadiosity(context, o) : result;
 }

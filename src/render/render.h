@@ -90,6 +90,17 @@ float vplJob_MinDistance(const vplJob* job, double lights);
 // Whether something is between the eye and a point of the view.
 bool vplView_IsHidden(const vplView* view, const vplGeometry* geometry, vplVec3 position);
 
+// Emitters and eyes in the course of their paths.
+typedef struct vplPoses {
+    vplEmitterDef* emitters;
+    vplVec3* eyes;
+    int emitterCount, eyeCount;
+} vplPoses;
+
+// vplPoses_Free follows, whether it succeeded or not.
+vplResult vplJob_FindPoses(const vplJob* job, vplPoses* posesOut);
+void vplPoses_Free(vplContext* context, vplPoses* poses);
+
 // Draws the lights over the picture.
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set);
 

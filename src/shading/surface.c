@@ -56,18 +56,31 @@ bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y)
     return true;
 }
 
+// One function for all draws: depths that are compared must be the same bits.
+static void toClip(const vplView* view, vplVec3 point, float* x, float* y, float* z, float* w)
+{
+    const ViewPoint v = toView(view, point);
+    *x = (float)v.x;
+    *y = (float)v.y;
+    *z = (float)((v.depth - view->near) * (view->far / (view->far - view->near)));
+    *w = (float)v.depth;
+}
+
+void vplView_ToClip(const vplView* view, const vplVec3* points, int count, float (*clipOut)[4])
+{
+    for (int i = 0; i < count; i++) {
+        float* clip = clipOut[i];
+        toClip(view, points[i], &clip[0], &clip[1], &clip[2], &clip[3]);
+    }
+}
+
 void vplCameraVertices(const void* uniforms, int first, int count, const vplVertices* out)
 {
     const vplObjectUniforms* u = uniforms;
     const vplView* view = u->shading->view;
-    const double depthScale = view->far / (view->far - view->near);
     for (int i = 0; i < count; i++) {
         vplVec3 p = u->positions[first + i];
-        ViewPoint v = toView(view, p);
-        out->x[i] = (float)v.x;
-        out->y[i] = (float)v.y;
-        out->z[i] = (float)((v.depth - view->near) * depthScale);
-        out->w[i] = (float)v.depth;
+        toClip(view, p, &out->x[i], &out->y[i], &out->z[i], &out->w[i]);
         out->varying[0][i] = p.x;
         out->varying[1][i] = p.y;
         out->varying[2][i] = p.z;

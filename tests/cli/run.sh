@@ -27,6 +27,7 @@ failed=0
 . "$folder/numbers.sh"
 . "$folder/pictures.sh"
 . "$folder/frames.sh"
+. "$folder/radiosity.sh"
 . "$folder/tradeoff.sh"
 . "$folder/bench.sh"
 

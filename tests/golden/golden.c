@@ -228,6 +228,48 @@ static void paraboloid(vplRenderOptions* o)
     o->paraboloidSize = 48;
 }
 
+static void radiosity(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_RADIOSITY;
+    o->patchSize = 0.45f; // 784 patches of the report's box
+}
+
+static void radiosityIncentre(vplRenderOptions* o)
+{
+    radiosity(o);
+    o->subdivisions = 3; // 192, and too bright
+    o->formFactors = VPL_FORM_FACTORS_INCENTRE;
+    o->vertexWeight = VPL_VERTEX_WEIGHT_EQUAL;
+    o->interpolation = VPL_INTERPOLATION_NONE;
+}
+
+static void radiosityLinks(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_RADIOSITY;
+    o->patches = 500;
+    o->hierarchy = VPL_HIERARCHY_ON;
+}
+
+static void radiosityAdaptive(vplRenderOptions* o)
+{
+    o->method = VPL_METHOD_RADIOSITY;
+    o->patches = 300;
+    o->patchPlacement = VPL_PATCHES_ADAPTIVE;
+}
+
+static void adaptivePatches(vplRenderOptions* o)
+{
+    radiosityAdaptive(o);
+    o->show = VPL_SHOW_PATCHES;
+}
+
+static void patchRadiosity(vplRenderOptions* o)
+{
+    radiosity(o);
+    o->show = VPL_SHOW_PATCH_RADIOSITY;
+    o->solver = VPL_SOLVER_SHOOTING;
+}
+
 static void laterFrame(vplRenderOptions* o)
 {
     manyLights(o);
@@ -267,6 +309,12 @@ static const Case CASES[] = {
     {"ssvp-gather", "room", 1, ssvpGather},
     {"ssvp-clusters", "room", 0, ssvpClusters},
     {"ssvp-paraboloid", "room", 0, paraboloid},
+    {"radiosity-box", "testmodel", 1.65f, radiosity},
+    {"radiosity-incentre", "testmodel", 1.65f, radiosityIncentre},
+    {"radiosity-patches", "testmodel", 1.65f, patchRadiosity},
+    {"radiosity-links", "room", 1, radiosityLinks},
+    {"radiosity-adaptive", "room-area", 1, radiosityAdaptive},
+    {"adaptive-patches", "room-area", 0, adaptivePatches},
     {"frame-45", "room-path", 2.5f, laterFrame},
 };
 

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// The hierarchy: what its caller sees.
+#include "radiosity/links.h"
+
+#include "base/context.h"
+
+#include <string.h>
+
+enum { LINK_COOKIE = 0x56504cb4 };
+
+vplLinkDef vplDefaultLinkDef(void)
+{
+    return (vplLinkDef){.error = 0.01, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
+}
+
+static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)
+{
+    vplContext* context = sides->context;
+    if (def->cookie != LINK_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef was not made by vplDefaultLinkDef");
+    }
+    if (!(def->error > 0 && def->error <= 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.error is %g, must be in (0, 1]",
+                       def->error);
+    }
+    if (def->samples < 1 || def->samples > VPL_LINK_POINTS) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.samples is %d, must be in [1, %d]",
+                       def->samples, (int)VPL_LINK_POINTS);
+    }
+    if ((int)def->rowSums < 0 || def->rowSums > VPL_ROW_SUMS_NORMALISE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.rowSums is %d, must be a vplRowSums",
+                       (int)def->rowSums);
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult build(const vplPatchSides* sides, const vplLinkDef* def, vplLinks* links)
+{
+    vplContext* context = links->context;
+    vplLinkList list = {.links = NULL};
+    vplResult result = vplLinkTree_Build(sides, links->tree);
+    if (result == VPL_SUCCESS) {
+        result = vplGeometry_PrepareRays(sides->patches->geometry);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplFindLinks(sides, links->tree, def, &list);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplLinkTree_Connect(context, links->tree, &list);
+    }
+    links->linkCount = (int64_t)list.count;
+    links->rays = list.rays;
+    vplFree(context, list.links);
+    if (result == VPL_SUCCESS) {
+        links->groupCount = links->tree->nodeCount - sides->count;
+        links->tree->scale = vplAlloc(context, (size_t)sides->count, sizeof *links->tree->scale);
+        links->rowSums = vplAlloc(context, (size_t)sides->count, sizeof *links->rowSums);
+        result = links->tree->scale && links->rowSums ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplLinks_FitRows(links, def->rowSums, (float*)links->rowSums);
+    }
+    return result;
+}
+
+vplResult vplLinks_Create(const vplPatchSides* sides, const vplLinkDef* def, vplLinks** linksOut)
+{
+    vplContext* context = sides->context;
+    vplResult result = checkDef(sides, def);
+    vplLinks* links = result == VPL_SUCCESS ? vplAllocZero(context, 1, sizeof *links) : NULL;
+    if (links == NULL) {
+        return result == VPL_SUCCESS ? VPL_OUT_OF_MEMORY : result;
+    }
+    links->context = context;
+    links->sideCount = sides->count;
+    links->tree = vplAllocZero(context, 1, sizeof *links->tree);
+    result = links->tree ? build(sides, def, links) : VPL_OUT_OF_MEMORY;
+    if (result != VPL_SUCCESS) {
+        vplLinks_Destroy(links);
+        return result;
+    }
+    *linksOut = links;
+    return VPL_SUCCESS;
+}
+
+void vplLinks_Destroy(vplLinks* links)
+{
+    if (links == NULL) {
+        return;
+    }
+    vplContext* context = links->context;
+    struct vplLinkTree* tree = links->tree;
+    if (tree != NULL) {
+        vplFree(context, tree->nodes);
+        vplFree(context, tree->order);
+        vplFree(context, tree->areaUpTo);
+        vplFree(context, tree->firstOf);
+        vplFree(context, tree->senders);
+        vplFree(context, tree->factors);
+        vplFree(context, tree->scale);
+        vplFree(context, tree);
+    }
+    vplFree(context, (void*)links->rowSums);
+    vplFree(context, links);
+}

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+// Points on groups of sides, all pairs of them, and rays between them.
+#include "radiosity/links_points.h"
+
+#include "base/context.h"
+#include "base/isa.h"
+#include "base/rng.h"
+#include "geometry/bvh.h"
+#include "geometry/triangle.h"
+#include "math/vec.h"
+#include "visibility/half_map.h"
+
+#include <string.h>
+
+enum { STREAM = 0x4c00 }; // of random numbers: two per point
+
+VPL_KERNEL_TABLE(pairKernels, vplPairKernelFcn, vplPairKernel);
+
+vplPairKernelFcn* vplGetPairKernel(vplIsa isa)
+{
+    return pairKernels[isa];
+}
+
+// ---- points
+
+// The place in the tree's order whose side holds the area `target` of all before.
+static int findSide(const struct vplLinkTree* tree, const vplLinkNode* node, double target)
+{
+    int low = node->first, high = node->first + node->count - 1;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (tree->areaUpTo[middle + 1] > target) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    return low;
+}
+
+// The k-th open cell.
+static int openCell(const vplPatchSide* side, int k)
+{
+    unsigned open = side->open;
+    for (; k > 0; k--) {
+        open &= open - 1;
+    }
+    return __builtin_ctz(open);
+}
+
+void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
+                   int node, int other, bool second, vplLinkPoints* out)
+{
+    const vplLinkNode* n = &tree->nodes[node];
+    const double from = tree->areaUpTo[n->first], to = tree->areaUpTo[n->first + n->count];
+    const uint64_t index = second ? (uint64_t)(uint32_t)other << 32 | (uint32_t)node
+                                  : (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
+    for (int k = 0; k < def->samples; k++) {
+        const vplRandom4 random =
+            vplRandomAt(def->seed, (uint32_t)STREAM + 2 * (uint32_t)k + (second ? 1 : 0), index);
+        const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / def->samples);
+        const int place = findSide(tree, n, target);
+        const vplPatchSide* side = &sides->sides[tree->order[place]];
+        const double into = (target - tree->areaUpTo[place]) / (double)side->area;
+        const int cells = __builtin_popcount(side->open);
+        const int cell = (int)(into * cells);
+        out->side[k] = side;
+        out->at[k] = vplPatchSide_SampleCell(side, openCell(side, cell < cells ? cell : cells - 1),
+                                             vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+    }
+}
+
+// ---- pairs
+
+static void setLane(float to[3][VPL_SIDE_LANES], int lane, vplVec3 v)
+{
+    to[0][lane] = v.x;
+    to[1][lane] = v.y;
+    to[2][lane] = v.z;
+}
+
+void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q, int count,
+                   float kernelOut[VPL_LINK_POINTS][VPL_LINK_POINTS])
+{
+    vplPairKernelFcn* find = vplGetPairKernel(sides->context->isa);
+    for (int first = 0; first < count * count; first += VPL_SIDE_LANES) {
+        vplPointPairs pairs;
+        float kernel[VPL_SIDE_LANES];
+        for (int l = 0; l < VPL_SIDE_LANES; l++) {
+            const int at = first + l < count * count ? first + l : count * count - 1;
+            const int i = at / count, k = at % count;
+            setLane(pairs.x, l, p->at[i]);
+            setLane(pairs.nx, l, p->side[i]->normal);
+            setLane(pairs.y, l, q->at[k]);
+            setLane(pairs.ny, l, q->side[k]->normal);
+        }
+        find(&pairs, kernel);
+        for (int l = 0; l < VPL_SIDE_LANES && first + l < count * count; l++) {
+            kernelOut[(first + l) / count][(first + l) % count] = kernel[l];
+        }
+    }
+}
+
+// ---- rays
+
+static vplHit hitOf(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
+{
+    const vplPatches* patches = sides->patches;
+    const vplGeometry* g = patches->geometry;
+    const int triangle = patches->nodes[patches->patches[side->patch]].triangle;
+    return (vplHit){.object = g->owners[triangle],
+                    .face = vplGeometry_FaceOf(g, triangle),
+                    .triangle = triangle,
+                    .position = at,
+                    .normal = g->normals[triangle]};
+}
+
+int vplShadowPairs(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q, int count,
+                   float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS])
+{
+    const vplGeometry* g = sides->patches->geometry;
+    int rays = 0;
+    for (int first = 0; first < count * count; first += VPL_RAY_PACKET) {
+        vplRayPacket packet;
+        float amount[VPL_RAY_PACKET];
+        packet.active = 0;
+        for (int l = 0; l < VPL_RAY_PACKET && first + l < count * count; l++) {
+            const int i = (first + l) / count, k = (first + l) % count;
+            amount[l] = kernel[i][k];
+            if (amount[l] > 0) {
+                const vplHit start = hitOf(sides, p->side[i], p->at[i]);
+                const vplRay ray =
+                    vplGeometry_Leave(g, &start, vplWayToLight(q->at[k], q->side[k]->normal, p->at[i]));
+                vplRayPacket_Set(&packet, l, &ray);
+            }
+        }
+        rays += vplGeometry_Darken(g, &packet, 1, amount);
+        for (int l = 0; l < VPL_RAY_PACKET && first + l < count * count; l++) {
+            kernel[(first + l) / count][(first + l) % count] = amount[l];
+        }
+    }
+    return rays;
+}

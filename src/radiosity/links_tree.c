@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: MIT
+// The tree: groups are halved where they look different ways first, then where they are longest.
+// Based on: Smits, Arvo and Greenberg, A Clustering Algorithm for Radiosity in Complex Environments, SIGGRAPH 1994, 3.
+// Departs: by normals as well, so that a group, too, has a cosine.
+#include "base/context.h"
+#include "math/vec.h"
+#include "radiosity/links.h"
+
+#include <float.h>
+#include <math.h>
+
+enum {
+    HALVES_DEPTH = 48, // from here on groups are halved by number: a depth of 48 + log2(n)
+    STACK = 128
+};
+
+// Of normals' components, from end to end: groups that differ by more are first halved by them. 0.3 is 17 degrees.
+static const float TURNED = 0.3f;
+
+// Sides of a group lie in one plane if their corners are this near to it, as a share of its radius.
+static const double FLAT = 1e-5;
+
+typedef struct Build {
+    const vplPatchSide* sides;
+    struct vplLinkTree* tree;
+} Build;
+
+typedef struct Range {
+    float low[6], high[6]; // of sides' centres and normals
+} Range;
+
+static float keyOf(const vplPatchSide* side, int k)
+{
+    return k < 3 ? vplComponent(side->incentre, k) : vplComponent(side->normal, k - 3);
+}
+
+static Range rangeOf(const Build* b, const vplLinkNode* node)
+{
+    Range range;
+    for (int k = 0; k < 6; k++) {
+        range.low[k] = INFINITY;
+        range.high[k] = -INFINITY;
+        for (int i = 0; i < node->count; i++) {
+            const float key = keyOf(&b->sides[b->tree->order[node->first + i]], k);
+            range.low[k] = key < range.low[k] ? key : range.low[k];
+            range.high[k] = key > range.high[k] ? key : range.high[k];
+        }
+    }
+    return range;
+}
+
+// ---- what a node is
+
+static void boundNode(const Build* b, vplLinkNode* node)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double normal[3] = {0}, area = 0;
+    for (int i = 0; i < node->count; i++) {
+        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
+        area += (double)s->area;
+        for (int axis = 0; axis < 3; axis++) {
+            normal[axis] += (double)s->area * (double)vplComponent(s->normal, axis);
+            for (int k = 0; k < 3; k++) {
+                const float x = vplComponent(s->corners[k], axis);
+                low[axis] = x < low[axis] ? x : low[axis];
+                high[axis] = x > high[axis] ? x : high[axis];
+            }
+        }
+    }
+    node->area = (float)area;
+    node->low = vplVec(low[0], low[1], low[2]);
+    node->high = vplVec(high[0], high[1], high[2]);
+    node->centre = vplVec(0.5f * low[0] + 0.5f * high[0], 0.5f * low[1] + 0.5f * high[1],
+                          0.5f * low[2] + 0.5f * high[2]);
+    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    node->normal = length > 1e-3 * area ? vplVec((float)(normal[0] / length), (float)(normal[1] / length),
+                                                 (float)(normal[2] / length))
+                                        : b->sides[b->tree->order[node->first]].normal;
+}
+
+static void measureNode(const Build* b, vplLinkNode* node)
+{
+    const vplPatchSide* firstSide = &b->sides[b->tree->order[node->first]];
+    double radius = 0, cosine = 1, height = 0, turned = 0;
+    for (int i = 0; i < node->count; i++) {
+        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
+        const double c = (double)vplDot(s->normal, node->normal);
+        cosine = c < cosine ? c : cosine;
+        const double off = (double)vplLength(vplSub(s->normal, firstSide->normal));
+        turned = off > turned ? off : turned;
+        for (int k = 0; k < 3; k++) {
+            const double r = (double)vplLength(vplSub(s->corners[k], node->centre));
+            radius = r > radius ? r : radius;
+            const double h =
+                fabs((double)vplDot(vplSub(s->corners[k], firstSide->corners[0]), firstSide->normal));
+            height = h > height ? h : height;
+        }
+    }
+    cosine = cosine < -1 ? -1 : cosine;
+    node->radius = (float)radius;
+    node->cosSpread = (float)cosine;
+    node->sinSpread = (float)sqrt(1 - cosine * cosine);
+    node->flat = node->count == 1 || (turned <= FLAT && height <= FLAT * radius);
+}
+
+// ---- halving
+
+// What belongs before moves there; order is kept on either side. Returns how many do.
+static int divideAt(const Build* b, const vplLinkNode* node, int key, float middle, int* scratch)
+{
+    int* order = b->tree->order + node->first;
+    int before = 0, after = 0;
+    for (int i = 0; i < node->count; i++) {
+        if (keyOf(&b->sides[order[i]], key) < middle) {
+            order[before++] = order[i];
+        } else {
+            scratch[after++] = order[i];
+        }
+    }
+    for (int i = 0; i < after; i++) {
+        order[before + i] = scratch[i];
+    }
+    return before;
+}
+
+static int longestOf(const Range* range, int first)
+{
+    int best = first;
+    for (int k = first + 1; k < first + 3; k++) {
+        best = range->high[k] - range->low[k] > range->high[best] - range->low[best] ? k : best;
+    }
+    return best;
+}
+
+// How many of the node's sides the first child gets.
+static int halve(const Build* b, const vplLinkNode* node, int depth, int* scratch)
+{
+    const Range range = rangeOf(b, node);
+    const int turn = longestOf(&range, 3), length = longestOf(&range, 0);
+    const int key = range.high[turn] - range.low[turn] > TURNED ? turn : length;
+    const float middle = 0.5f * range.low[key] + 0.5f * range.high[key];
+    const int before = depth < HALVES_DEPTH ? divideAt(b, node, key, middle, scratch) : 0;
+    return before > 0 && before < node->count ? before : node->count / 2;
+}
+
+static void divideAll(const Build* b, int count, int* scratch)
+{
+    struct vplLinkTree* tree = b->tree;
+    struct {
+        int node, depth;
+    } stack[STACK], top;
+    int height = 0;
+    tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = count};
+    tree->nodeCount = 1;
+    stack[height].node = 0;
+    stack[height++].depth = 0;
+    while (height > 0) {
+        top = stack[--height];
+        vplLinkNode* node = &tree->nodes[top.node];
+        boundNode(b, node);
+        measureNode(b, node);
+        if (node->count == 1) {
+            continue;
+        }
+        const int before = halve(b, node, top.depth, scratch);
+        node->children = tree->nodeCount;
+        vplLinkNode* child = &tree->nodes[tree->nodeCount];
+        child[0] = (vplLinkNode){.children = -1, .first = node->first, .count = before};
+        child[1] =
+            (vplLinkNode){.children = -1, .first = node->first + before, .count = node->count - before};
+        tree->nodeCount += 2;
+        for (int k = 1; k >= 0; k--) {
+            stack[height].node = node->children + k;
+            stack[height++].depth = top.depth + 1;
+        }
+    }
+}
+
+vplResult vplLinkTree_Build(const vplPatchSides* sides, struct vplLinkTree* tree)
+{
+    vplContext* context = sides->context;
+    const size_t count = (size_t)sides->count, nodes = count > 0 ? 2 * count - 1 : 0;
+    int* scratch = vplAlloc(context, count, sizeof *scratch);
+    tree->nodes = scratch ? vplAlloc(context, nodes, sizeof *tree->nodes) : NULL;
+    tree->order = tree->nodes ? vplAlloc(context, count, sizeof *tree->order) : NULL;
+    tree->areaUpTo = tree->order ? vplAlloc(context, count + 1, sizeof *tree->areaUpTo) : NULL;
+    if (tree->areaUpTo == NULL) {
+        vplFree(context, scratch);
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int i = 0; i < sides->count; i++) {
+        tree->order[i] = i;
+    }
+    if (sides->count > 0) {
+        divideAll(&(Build){sides->sides, tree}, sides->count, scratch);
+    }
+    tree->areaUpTo[0] = 0;
+    for (int i = 0; i < sides->count; i++) {
+        tree->areaUpTo[i + 1] = tree->areaUpTo[i] + (double)sides->sides[tree->order[i]].area;
+    }
+    vplFree(context, scratch);
+    return VPL_SUCCESS;
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// What patches cost after the light is known: the mesh, means at its vertices, and pictures of it, beside a deferred
+// picture of the same view that only shows depth. Medians of milliseconds of processor time, one
+// thread unless --threads.
+//   patch_mesh [--threads N] SCENE...
+#include "bench.h"
+
+#include <string.h>
+#include <time.h>
+
+enum { RUNS = 15, WIDTH = 1280, HEIGHT = 720 };
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+// Both sides of all patches are lit.
+static vplPatchSides* fillSides(const vplPatches* p)
+{
+    const int count = 2 * p->patchCount;
+    vplPatchSides* sides = calloc(1, sizeof *sides);
+    vplPatchSide* list = calloc((size_t)count, sizeof *list);
+    int* of = calloc((size_t)count, sizeof *of);
+    for (int i = 0; i < count; i++) {
+        list[i] =
+            (vplPatchSide){.patch = i / 2, .open = 0xffff, .area = 1, .reflectance = {0.5f, 0.5f, 0.5f}};
+        of[i] = i;
+    }
+    *sides = (vplPatchSides){p, list, count, of, 0, p->context};
+    return sides;
+}
+
+typedef struct Times {
+    double mesh[RUNS], means[RUNS], clip[RUNS], flat[RUNS], smooth[RUNS], depth[RUNS];
+} Times;
+
+static void drawOnce(const vplPatchDraw* draw, float (*clip)[4], vplImage* image)
+{
+    check(vplDrawPatches(draw, (const float(*)[4])clip, NULL, NULL, image, NULL));
+}
+
+static void runOnce(const vplPatchSides* sides, const vplView* view, vplImage* image, Times* t, int run)
+{
+    vplPatchMesh* mesh;
+    double start = now();
+    check(vplPatchMesh_Create(sides, &mesh));
+    t->mesh[run] = now() - start;
+    vplRgb* values = calloc((size_t)sides->count, sizeof *values);
+    vplRgb* corners = calloc(2 * (size_t)mesh->vertexCount, sizeof *corners);
+    float(*clip)[4] = calloc((size_t)mesh->vertexCount, sizeof *clip);
+    start = now();
+    check(vplPatchMesh_Interpolate(mesh, VPL_VERTEX_WEIGHT_ANGLE, values, corners));
+    t->means[run] = now() - start;
+    start = now();
+    vplView_ToClip(view, mesh->positions, mesh->vertexCount, clip);
+    t->clip[run] = now() - start;
+    vplPatchDraw draw = {.mesh = mesh, .values = values, .reflect = true};
+    start = now();
+    drawOnce(&draw, clip, image);
+    t->flat[run] = now() - start;
+    draw.vertexValues = corners;
+    start = now();
+    drawOnce(&draw, clip, image);
+    t->smooth[run] = now() - start;
+    const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
+                             .accumulation = VPL_ACCUMULATE_DEFERRED,
+                             .output = VPL_OUTPUT_DEPTH,
+                             .batch = 1};
+    start = now();
+    check(vplShadeView(sides->patches->geometry, view, &def, NULL, NULL, image, NULL));
+    t->depth[run] = now() - start;
+    free(values);
+    free(corners);
+    free(clip);
+    vplPatchMesh_Destroy(mesh);
+}
+
+// All of about a size; or from an eighth of them by three rounds, in each of which chance bisects them, so that edges
+// are cut.
+static vplPatches* divide(const vplGeometry* g, int count, bool uneven)
+{
+    vplPatchDef def = vplDefaultPatchDef();
+    vplPatches* patches;
+    def.count = uneven ? count / 8 : count;
+    check(vplPatches_Create(g, &def, &patches));
+    for (int round = 0; round < 3 && uneven; round++) {
+        vplPatches* finer;
+        float* priorities = calloc((size_t)patches->patchCount, sizeof *priorities);
+        for (int i = 0; i < patches->patchCount; i++) {
+            priorities[i] = (float)vplRandomAt(1, (uint32_t)round, (uint64_t)i).v[0] + 1;
+        }
+        check(vplPatches_Refine(patches, priorities, patches->patchCount * 2 - patches->patchCount / 5,
+                                &finer));
+        vplPatches_Destroy(patches);
+        free(priorities);
+        patches = finer;
+    }
+    return patches;
+}
+
+static void measure(const vplGeometry* g, const vplView* view, int count, bool uneven)
+{
+    vplImage* image;
+    vplPatchMesh* mesh;
+    static Times t;
+    vplPatches* patches = divide(g, count, uneven);
+    check(vplImage_Create(g->context, WIDTH, HEIGHT, &image));
+    vplPatchSides* sides = fillSides(patches);
+    for (int run = 0; run < RUNS; run++) {
+        runOnce(sides, view, image, &t, run);
+    }
+    check(vplPatchMesh_Create(sides, &mesh));
+    printf("%7d %8d %8d %7d %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f\n", patches->patchCount, mesh->vertexCount,
+           mesh->triangleCount, mesh->hangingVertices, median(t.mesh, RUNS), median(t.means, RUNS),
+           median(t.clip, RUNS), median(t.flat, RUNS), median(t.smooth, RUNS), median(t.depth, RUNS));
+    vplPatchMesh_Destroy(mesh);
+    free((void*)sides->sides);
+    free((void*)sides->ofPatch);
+    free(sides);
+    vplImage_Destroy(image);
+    vplPatches_Destroy(patches);
+}
+
+static void measureScene(const char* path, int threads)
+{
+    vplContext* context;
+    vplScene* scene;
+    vplGeometry* geometry;
+    openScene(path, threads, VPL_ISA_AUTO, &context, &scene);
+    const vplView view = vplView_Create(vplScene_GetCamera(scene, 0), WIDTH, HEIGHT);
+    check(vplGeometry_Create(scene, &geometry));
+    printf("%s, %d x %d, %d threads\n", path, WIDTH, HEIGHT, threads);
+    printf(
+        "patches vertices triangles hanging    mesh   means    clip    flat  smooth   depth of deferred\n");
+    for (int count = 784; count <= 51200; count *= 4) {
+        measure(geometry, &view, count, false);
+        measure(geometry, &view, count, true);
+    }
+    vplGeometry_Destroy(geometry);
+    vplScene_Destroy(scene);
+    vplContext_Destroy(context);
+}
+
+int main(int argCount, char** args)
+{
+    int threads = 1;
+    for (int i = 1; i < argCount; i++) {
+        if (strcmp(args[i], "--threads") == 0 && i + 1 < argCount) {
+            threads = atoi(args[++i]);
+        } else {
+            measureScene(args[i], threads);
+        }
+    }
+    return 0;
+}

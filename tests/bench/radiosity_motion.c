@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// A light that moves over kept form factors. `bench/radiosity_motion SCENE [WIDTH HEIGHT]`; the first light gets a path: a
+// little way each frame, and between frames 20 and 21 a jump. One sweep a frame, as the document proposes after Burenius.
+//   first      ms of the first frame, which makes patches and form factors
+//   frame      median ms of the others, of which
+//   light      emitters' light at patches, solve: the sweep, corners and drawing: the rest is direct light
+//   lag k      the indirect picture k frames after the jump against the converged one: rmse / mean
+#include "bench.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { FRAMES = 32, JUMP = 21 };
+
+static vplScene* scene;
+static int width = 640, height = 480;
+
+static void moveLight(void)
+{
+    const vplEmitterDef* def = vplScene_GetEmitter(scene, 0);
+    vplEmitterKey keys[4];
+    for (int i = 0; i < 4; i++) {
+        static const double frames[4] = {0, JUMP - 1, JUMP, FRAMES};
+        static const float at[4] = {-0.1f, 0.1f, -0.5f, -0.5f};
+        keys[i] = vplMakeEmitterKey(def, frames[i]);
+        keys[i].position = vplAdd(def->position, vplVec(at[i], 0, 0));
+    }
+    check(vplScene_SetEmitterPath(scene, 0, keys, 4));
+}
+
+static double stage(const vplRenderStats* s, const char* name)
+{
+    double ms = 0;
+    for (int i = 0; i < s->stageCount; i++) {
+        ms += strcmp(s->stages[i].name, name) == 0 ? s->stages[i].ms : 0;
+    }
+    return ms;
+}
+
+static vplImage* renderFrame(vplHistory* history, int frame, int patches, bool indirect, vplSolver solver,
+                             vplRenderStats* stats)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    vplImage* image;
+    o.method = VPL_METHOD_RADIOSITY;
+    o.show = indirect ? VPL_SHOW_INDIRECT : VPL_SHOW_PICTURE;
+    o.width = width;
+    o.height = height;
+    o.patches = patches;
+    o.frame = frame;
+    o.history = history;
+    o.solver = solver;
+    o.iterations = history != NULL && frame > 0 ? 1 : 1000;
+    o.residual = history != NULL && frame > 0 ? o.residual : 1e-7;
+    check(vplRender(scene, &o, &image, stats));
+    return image;
+}
+
+static void time(vplContext* context, int patches)
+{
+    vplHistory* history;
+    double total[FRAMES], light[FRAMES], solve[FRAMES];
+    vplRenderStats stats;
+    check(vplHistory_Create(context, &history));
+    for (int f = 0; f < FRAMES; f++) {
+        vplImage_Destroy(renderFrame(history, f, patches, false, VPL_SOLVER_GAUSS_SEIDEL, &stats));
+        total[f] = stats.totalMs;
+        light[f] = stage(&stats, "patch light");
+        solve[f] = stage(&stats, "solve");
+    }
+    vplHistory_Destroy(history);
+    const double first = total[0], frame = median(total + 1, JUMP - 1);
+    printf("%7d %7d %8.0f %8.1f %6.1f %8.2f %8.2f\n", stats.patches, stats.patchSides, first, frame,
+           1000 / frame, median(light + 1, JUMP - 1), median(solve + 1, JUMP - 1));
+}
+
+static void lag(vplContext* context, int patches, vplSolver solver)
+{
+    vplHistory* history;
+    vplRenderStats stats;
+    vplImage* truth = renderFrame(NULL, JUMP, patches, true, VPL_SOLVER_GAUSS_SEIDEL, &stats);
+    check(vplHistory_Create(context, &history));
+    printf("%7d %-12s", stats.patches, solver == VPL_SOLVER_JACOBI ? "jacobi" : "gauss-seidel");
+    for (int f = 0; f < FRAMES; f++) {
+        vplImage* image = renderFrame(history, f, patches, true, solver, &stats);
+        vplComparison c;
+        check(vplImage_Compare(image, truth, &c));
+        if (f >= JUMP - 1 && f < JUMP + 6) {
+            printf(" %8.4f", c.relativeRmse);
+        }
+        vplImage_Destroy(image);
+    }
+    puts("");
+    vplHistory_Destroy(history);
+    vplImage_Destroy(truth);
+}
+
+int main(int count, char** words)
+{
+    vplContext* context;
+    if (count < 2) {
+        fprintf(stderr, "usage: radiosity_motion SCENE [WIDTH HEIGHT]\n");
+        return 2;
+    }
+    if (count > 3) {
+        width = atoi(words[2]);
+        height = atoi(words[3]);
+    }
+    openScene(words[1], 0, VPL_ISA_AUTO, &context, &scene);
+    moveLight();
+    puts("patches   sides    first    frame    fps    light    solve   (ms)");
+    time(context, 784);
+    time(context, 3000);
+    puts("patches solver        before     jump        1        2        3        4        5");
+    lag(context, 784, VPL_SOLVER_GAUSS_SEIDEL);
+    lag(context, 784, VPL_SOLVER_JACOBI);
+    lag(context, 3000, VPL_SOLVER_GAUSS_SEIDEL);
+    vplScene_Destroy(scene);
+    vplContext_Destroy(context);
+    return 0;
+}

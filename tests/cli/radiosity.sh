@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+# Radiosity from outside: the report's counts, what info foretells, stages for eyes, and meshes.
+
+box=$PWD/examples/scenes/testmodel.json
+s=$out/s.json
+tiny="--method radiosity --size 16x12 --shadow-map 16"
+
+# The report's 30, 60, 120, 192, 304, 464, 784 patches (its figures 8 to 11), and no more in a seventh round.
+for pair in 0:30 1:60 2:120 3:192 4:304 5:464 6:784 7:784; do
+    succeeds "BoxIsDivided_$pair" "$vpl" render "$box" $tiny --patch-size 0.45 --subdivisions "${pair%:*}" --show patches \
+        -o "$out/a.pfm" --stats "$s"
+    equals "BoxHasPatches_$pair" "${pair#*:}" "$(field "$s" patches)"
+    equals "InfoForetellsPatches_$pair" "${pair#*:}" \
+        "$("$vpl" info "$box" --method radiosity --patch-size 0.45 --subdivisions "${pair%:*}" --json >"$scratch/i" && field "$scratch/i" patches)"
+done
+for words in "--patches 100" "--patches 100 --antialias 3" "--patches 100 --hierarchy on" "--patch-size 1"; do
+    succeeds "Radiosity: $words" "$vpl" render "$room" $tiny $words -o "$out/a.pfm" --stats "$s"
+    succeeds "Info: radiosity $words" "$vpl" info "$room" --method radiosity --shadow-map 16 $words --json
+    for key in patches patch_sides draw_calls triangles; do
+        equals "InfoForetells_$key: $words" "$(field "$s" $key)" "$(field "$scratch/stdout" $key)"
+    done
+done
+for key in iterations residual spectral_radius form_factor_sums links; do
+    "$vpl" render "$room" $tiny --patches 100 --hierarchy on -o "$out/a.pfm" --stats "$s"
+    check "RadiosityStatsHave_$key" test -n "$(field "$s" $key)"
+done
+succeeds InfoOfRadiosity "$vpl" info "$room" --method radiosity --patches 100
+check InfoHasPatches grep -qE '^ +patches +[0-9]+, edges up to [0-9.]+ m$' "$scratch/stdout"
+check InfoHasSides grep -qE '^ +sides +[0-9]+ of [0-9]+ that light reaches$' "$scratch/stdout"
+check InfoHasFormFactors grep -qE '^ +form factors +[0-9.]+ KiB$' "$scratch/stdout"
+for show in picture indirect direct depth patches patch-radiosity form-factor-sums residual; do
+    succeeds "RadiosityShows_$show" "$vpl" render "$room" $tiny --patches 50 --show $show -o "$out/a.png"
+done
+
+cat >"$scratch/white.json" <<'END'
+{ "camera": { "eye": [0, 0, 0.4], "target": [0, 0, 0] },
+  "materials": { "white": { "diffuse": [0.9, 0.9, 0.9] } },
+  "objects": [ { "type": "box", "material": "white" } ],
+  "lights": [ { "type": "point", "position": [0, 0.2, 0], "intensity": [1, 1, 1] } ] }
+END
+refuses IncentresThatDivergeAreSaid 2 "row-sums" "$vpl" render "$scratch/white.json" $tiny --patches 12 --form-factors incentre \
+    -o "$out/never.png"
+refuses TooManyPairsAreSaid 2 "bytes" "$vpl" render "$room" $tiny --patches 40000 --hierarchy off -o "$out/never.png"
+refuses PatchesOfOthersAreSaid 2 "only radiosity" "$vpl" render "$room" --show residual -o "$out/never.png"
+refuses NoPatchesAreSaid 2 "--patches is \"0\"" "$vpl" render "$room" $tiny --patches 0 -o "$out/never.png"
+
+# Meshes.
+succeeds RoomIsBaked "$vpl" bake "$room" --patches 200 -o "$out/room.ply" --stats "$s"
+equals PlyBegins ply "$(head -n 1 "$out/room.ply")"
+equals PlyIsBinary "format binary_little_endian 1.0" "$(sed -n 2p "$out/room.ply" | tr -d '\000')"
+vertices=$(head -c 600 "$out/room.ply" | tr -d '\000' | sed -n 's/^element vertex //p')
+faces=$(head -c 600 "$out/room.ply" | tr -d '\000' | sed -n 's/^element face //p')
+check PlyHasItsPatches test "$faces" -ge 200 -a "$vertices" -ge 100
+refuses BakeNeedsAName 2 "bake needs -o FILE" "$vpl" bake "$room"
+refuses BakeWritesPlyOnly 2 "ends in .ply" "$vpl" bake "$room" -o "$out/room.obj"
+refuses BakeFindsNoFolder 1 "cannot write" "$vpl" bake "$room" -o "$out/none/room.ply"
+refuses BakeHasNoSize 2 "bake has no option --size" "$vpl" bake "$room" -o "$out/b.ply" --size 8x8
+rm -f "$out"/*

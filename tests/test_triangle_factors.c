@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: MIT
+// Form factors of two triangles: tests/data/ff_triangles.csv, ff_cube12.csv, ff_analytic.csv, ff_closure.csv, and what
+// holds for all of them.
+#include "test.h"
+
+static vplVec3 cornerOf(const Table* t, int row, const char* letter, int i)
+{
+    char prefix[8];
+    snprintf(prefix, sizeof prefix, "%s%d", letter, i);
+    return vectorOf(t, row, prefix);
+}
+
+static void swapCorners(vplVec3 t[3])
+{
+    const vplVec3 swap = t[1];
+    t[1] = t[2];
+    t[2] = swap;
+}
+
+// The tables do not say which side is the front: that which sees something.
+static double factorOfEitherSide(const vplVec3 a[3], vplVec3 b[3])
+{
+    const double f = vplTriangleFormFactor(a, b);
+    if (f > 0) {
+        return f;
+    }
+    swapCorners(b);
+    return vplTriangleFormFactor(a, b);
+}
+
+static void assertRelative(double value, double wanted, double tolerance, const char* what, int row)
+{
+    assertNear(value / wanted, 1, tolerance, what, row);
+}
+
+static void FactorsOfPairsAreThoseOfTheTable(void** state)
+{
+    (void)state;
+    Table t = loadTable("ff_triangles.csv");
+    for (int row = 0; row < t.rows; row++) {
+        vplVec3 a[3], b[3];
+        for (int i = 0; i < 3; i++) {
+            a[i] = cornerOf(&t, row, "A", i);
+            b[i] = cornerOf(&t, row, "B", i);
+        }
+        assertRelative(factorOfEitherSide(a, b), number(&t, row, "F_AB"), 1e-11, cell(&t, row, "pair"), row);
+        assertRelative(vplTriangleFormFactor(b, a), number(&t, row, "F_BA"), 1e-11, cell(&t, row, "pair"),
+                       row);
+    }
+    freeTable(&t);
+}
+
+static void RowsOfACubeAreThoseOfTheTableAndSumToOne(void** state)
+{
+    (void)state;
+    Table t = loadTable("ff_cube12.csv");
+    vplVec3 corners[12][3];
+    for (int i = 0; i < 12; i++) {
+        for (int k = 0; k < 3; k++) {
+            corners[i][k] = cornerOf(&t, i, "v", k);
+        }
+        // The front is inside: that from which the middle of the cube is seen.
+        const vplVec3 *p = corners[i], m = {0.5f, 0.5f, 0.5f};
+        const vplVec3 u = {p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
+        const vplVec3 v = {p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
+        const float height = (u.y * v.z - u.z * v.y) * (m.x - p[0].x) +
+                             (u.z * v.x - u.x * v.z) * (m.y - p[0].y) +
+                             (u.x * v.y - u.y * v.x) * (m.z - p[0].z);
+        if (height < 0) {
+            swapCorners(corners[i]);
+        }
+    }
+    for (int i = 0; i < 12; i++) {
+        double sum = 0;
+        for (int k = 0; k < 12; k++) {
+            char name[16];
+            snprintf(name, sizeof name, "F_to_%d", k);
+            const double f = vplTriangleFormFactor(corners[i], corners[k]);
+            assertNear(f, number(&t, i, name), 1e-13, name, i);
+            sum += f;
+        }
+        assertNear(sum, 1, 1e-13, "sum", i);
+    }
+    freeTable(&t);
+}
+
+// ---- rectangles, as two triangles each
+
+// From rectangle a to rectangle b, corners in order.
+static double factorOfRectangles(const vplVec3 a[4], const vplVec3 b[4])
+{
+    double sum = 0, all = 0;
+    for (int i = 0; i < 2; i++) {
+        const vplVec3 s[3] = {a[0], a[1 + i], a[2 + i]};
+        const double ux = s[1].x - s[0].x, uy = s[1].y - s[0].y, uz = s[1].z - s[0].z;
+        const double vx = s[2].x - s[0].x, vy = s[2].y - s[0].y, vz = s[2].z - s[0].z;
+        const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+        const double area = 0.5 * sqrt(x * x + y * y + z * z);
+        for (int k = 0; k < 2; k++) {
+            sum += area * vplTriangleFormFactor(s, (const vplVec3[3]){b[0], b[1 + k], b[2 + k]});
+        }
+        all += area;
+    }
+    return sum / all;
+}
+
+static double factorOfParallel(float a, float b, float c)
+{
+    return factorOfRectangles((const vplVec3[4]){{0, 0, 0}, {a, 0, 0}, {a, b, 0}, {0, b, 0}},
+                              (const vplVec3[4]){{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}});
+}
+
+// w x l on the floor, l x h on the wall at its edge.
+static double factorOfPerpendicular(float w, float l, float h)
+{
+    return factorOfRectangles((const vplVec3[4]){{0, 0, 0}, {w, 0, 0}, {w, l, 0}, {0, l, 0}},
+                              (const vplVec3[4]){{0, 0, 0}, {0, l, 0}, {0, l, h}, {0, 0, h}});
+}
+
+// Lengths are floats: 0.001 is wrong by 5e-8 of it. Those that are exact agree to 1e-11.
+static void RectanglesAreThoseOfTheClosedForms(void** state)
+{
+    (void)state;
+    Table t = loadTable("ff_analytic.csv");
+    int compared = 0;
+    for (int row = 0; row < t.rows; row++) {
+        const char *config = cell(&t, row, "config"), *parameters = cell(&t, row, "parameters");
+        double v[3] = {1, 1, 1}, found;
+        if (strcmp(config, "parallel_unit_squares") == 0) {
+            assert_int_equal(sscanf(parameters, "d=%lf", &v[2]), 1);
+            found = factorOfParallel(1, 1, (float)v[2]);
+        } else if (strcmp(config, "parallel_rect") == 0) {
+            assert_int_equal(sscanf(parameters, "a=%lf b=%lf c=%lf", &v[0], &v[1], &v[2]), 3);
+            found = factorOfParallel((float)v[0], (float)v[1], (float)v[2]);
+        } else if (strcmp(config, "perp_common_edge") == 0) {
+            assert_int_equal(sscanf(parameters, "w=%lf l=%lf h=%lf", &v[0], &v[1], &v[2]), 3);
+            found = factorOfPerpendicular((float)v[0], (float)v[1], (float)v[2]);
+        } else {
+            continue;
+        }
+        bool exact = true;
+        for (int k = 0; k < 3; k++) {
+            exact = exact && (double)(float)v[k] == v[k];
+        }
+        assertRelative(found, number(&t, row, "F12"), exact ? 1e-11 : 1e-7, parameters, row);
+        compared++;
+    }
+    assert_int_equal(compared, 23);
+    freeTable(&t);
+}
+
+static void BoxesCloseAsTheTableSays(void** state)
+{
+    (void)state;
+    static const float sizes[5][3] = {{1, 1, 1}, {5, 5, 5}, {1, 2, 3}, {1, 1, 100}, {1, 100, 100}};
+    Table t = loadTable("ff_closure.csv");
+    for (int row = 0; row < t.rows; row++) {
+        const float a = sizes[row][0], b = sizes[row][1], c = sizes[row][2];
+        const double opposite = factorOfParallel(a, b, c), overB = factorOfPerpendicular(b, a, c),
+                     overA = factorOfPerpendicular(a, b, c);
+        assertRelative(opposite, number(&t, row, "F_opposite"), 1e-11, cell(&t, row, "box"), row);
+        assertRelative(overB, number(&t, row, "F_adjacent_first"), 1e-11, cell(&t, row, "box"), row);
+        assertNear(opposite + 2 * overA + 2 * overB, 1, 1e-12, cell(&t, row, "box"), row);
+    }
+    freeTable(&t);
+}
+
+// ---- any two triangles
+
+static vplVec3 rollPoint(uint64_t seed, uint64_t index, float size, vplVec3 at)
+{
+    return (vplVec3){at.x + size * (float)(uniformAt(seed, 3 * index) - 0.5),
+                     at.y + size * (float)(uniformAt(seed, 3 * index + 1) - 0.5),
+                     at.z + size * (float)(uniformAt(seed, 3 * index + 2) - 0.5)};
+}
+
+// Up to 8 apart, up to a hundred times as large, and cutting each other's planes as often as not.
+static void rollPair(uint64_t seed, vplVec3 a[3], vplVec3 b[3])
+{
+    const float size = powf(10, (float)(uniformAt(seed, 100) * 2 - 1)),
+                apart = 8 * (float)uniformAt(seed, 101);
+    for (uint64_t i = 0; i < 3; i++) {
+        a[i] = rollPoint(seed, i, 1, (vplVec3){0, 0, 0});
+        b[i] = rollPoint(seed, 3 + i, size, (vplVec3){0, 0, apart});
+    }
+    if (vplTriangleFormFactor(a, b) == 0) {
+        swapCorners(b);
+    }
+}
+
+static double areaOf(const vplVec3 t[3])
+{
+    const double ux = (double)t[1].x - t[0].x, uy = (double)t[1].y - t[0].y, uz = (double)t[1].z - t[0].z;
+    const double vx = (double)t[2].x - t[0].x, vy = (double)t[2].y - t[0].y, vz = (double)t[2].z - t[0].z;
+    const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+    return 0.5 * sqrt(x * x + y * y + z * z);
+}
+
+enum { MOST_CASES = 2000 };
+
+static void BothDirectionsExchangeTheSame(void** state)
+{
+    (void)state;
+    int seen = 0;
+    for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
+        vplVec3 a[3], b[3];
+        rollPair(seed, a, b);
+        const double there = areaOf(a) * vplTriangleFormFactor(a, b),
+                     back = areaOf(b) * vplTriangleFormFactor(b, a);
+        assert_true((there > 0) == (back > 0));
+        if (there > 1e-8 * areaOf(a)) {
+            assertRelative(there, back, 1e-8, "exchange", (int)seed); // measured: 1.7e-9
+            seen++;
+        }
+    }
+    assert_true(seen > MOST_CASES / 2);
+}
+
+// Halves are smaller than the whole, so that other formulas and other cuts do for them: all must agree.
+static void HalvesSumToTheWhole(void** state)
+{
+    (void)state;
+    int seen = 0;
+    for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
+        vplVec3 a[3], b[3];
+        rollPair(seed, a, b);
+        // Of corners that are multiples of 2^-14, so that the middle is exact.
+        for (int i = 0; i < 3; i++) {
+            b[i] = (vplVec3){rintf(b[i].x * 0x1p14f) * 0x1p-14f, rintf(b[i].y * 0x1p14f) * 0x1p-14f,
+                             rintf(b[i].z * 0x1p14f) * 0x1p-14f};
+        }
+        const vplVec3 m = {0.5f * (b[0].x + b[1].x), 0.5f * (b[0].y + b[1].y), 0.5f * (b[0].z + b[1].z)};
+        const double whole = vplTriangleFormFactor(a, b);
+        const double first = vplTriangleFormFactor(a, (const vplVec3[3]){b[0], m, b[2]}),
+                     second = vplTriangleFormFactor(a, (const vplVec3[3]){m, b[1], b[2]});
+        if (whole > 1e-6) {
+            assertRelative(first + second, whole, 1e-7, "halves", (int)seed);
+            seen++;
+        }
+    }
+    assert_true(seen > MOST_CASES / 2);
+}
+
+// Of every size that floats have: the same share, and a number.
+static void FactorsDoNotDependOnTheUnit(void** state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 100; seed++) {
+        vplVec3 a[3], b[3];
+        rollPair(seed, a, b);
+        const double wanted = vplTriangleFormFactor(a, b);
+        for (int power = -100; power <= 100; power += 20) {
+            vplVec3 c[2][3];
+            for (int i = 0; i < 3; i++) {
+                c[0][i] = (vplVec3){ldexpf(a[i].x, power), ldexpf(a[i].y, power), ldexpf(a[i].z, power)};
+                c[1][i] = (vplVec3){ldexpf(b[i].x, power), ldexpf(b[i].y, power), ldexpf(b[i].z, power)};
+            }
+            assertNear(vplTriangleFormFactor(c[0], c[1]), wanted, 1e-12 * wanted, "scaled", (int)seed);
+        }
+    }
+}
+
+// X093, X095, and whatever touches.
+static void PlanesTouchesAndDuplicatesAreNumbers(void** state)
+{
+    (void)state;
+    const vplVec3 floor[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, over[3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
+    const vplVec3 beside[3] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, point[3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
+    const vplVec3 line[3] = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}},
+                  crossing[3] = {{0, 0, -1}, {0, 1, 1}, {1, 0, 1}};
+    assert_true(vplTriangleFormFactor(floor, floor) == 0);
+    assert_true(vplTriangleFormFactor(floor, over) == 0);
+    assert_true(vplTriangleFormFactor(floor, beside) == 0);
+    assert_true(vplTriangleFormFactor(floor, point) == 0);
+    assert_true(vplTriangleFormFactor(point, floor) == 0);
+    assert_true(vplTriangleFormFactor(floor, line) == 0);
+    const double f = vplTriangleFormFactor(floor, crossing), g = vplTriangleFormFactor(crossing, floor);
+    assert_true(f >= 0 && f <= 1 && g >= 0 && g <= 1 && f + g > 0);
+}
+
+// Two triangles with an edge in common, folded: from 1 where they lie on each other to 0 where they are in one plane.
+static void FoldedPairsFallFromOneToZero(void** state)
+{
+    (void)state;
+    double last = 1;
+    for (int degrees = 1; degrees < 180; degrees++) {
+        double sine, cosine;
+        sine = sin(degrees * 3.14159265358979 / 180);
+        cosine = cos(degrees * 3.14159265358979 / 180);
+        const vplVec3 a[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        const vplVec3 b[3] = {{0, 0, 0}, {0, (float)cosine, (float)sine}, {1, 0, 0}};
+        const double f = vplTriangleFormFactor(a, b);
+        assert_true(f > 0 && f < last);
+        assertNear(f, vplTriangleFormFactor(b, a), 1e-7, "degrees", degrees);
+        last = f;
+    }
+    assert_true(last < 1e-4);
+}
+
+TEST_SUITE(triangleFactors, cmocka_unit_test(FactorsOfPairsAreThoseOfTheTable),
+           cmocka_unit_test(RowsOfACubeAreThoseOfTheTableAndSumToOne),
+           cmocka_unit_test(RectanglesAreThoseOfTheClosedForms), cmocka_unit_test(BoxesCloseAsTheTableSays),
+           cmocka_unit_test(BothDirectionsExchangeTheSame), cmocka_unit_test(HalvesSumToTheWhole),
+           cmocka_unit_test(FactorsDoNotDependOnTheUnit),
+           cmocka_unit_test(PlanesTouchesAndDuplicatesAreNumbers),
+           cmocka_unit_test(FoldedPairsFallFromOneToZero));
