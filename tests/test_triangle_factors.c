@@ -234,7 +234,7 @@ static void HalvesSumToTheWhole(void** state)
         const double first = vplTriangleFormFactor(a, (const vplVec3[3]){b[0], m, b[2]}),
                      second = vplTriangleFormFactor(a, (const vplVec3[3]){m, b[1], b[2]});
         if (whole > 1e-6) {
-            assertRelative(first + second, whole, 1e-7, "halves", (int)seed);
+            assertRelative(first + second, whole, 2e-8, "halves", (int)seed); // measured: 1.1e-8 of 33000
             seen++;
         }
     }

@@ -91,8 +91,8 @@ typedef struct vplFormFactorDef {
     int samples;            // pairs of points per pair of patches, [1, 1024]; default 4; Monte Carlo only
     bool
         analytic; // Monte Carlo: what a pair would exchange with nothing between is known: by the integral along
-        // the edges of near ones, by three points on each side of others; rays only say which share of it
-        // is seen. false: the mean over the pairs of points, as the document has it; default true
+    // the edges of near ones, by three points on each side of others; rays only say which share of it
+    // is seen. false: the mean over the pairs of points, as the document has it; default true
     vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL
     bool bruteForce;    // rays test every triangle: for measuring what the ray tree is worth; default false
     uint64_t seed;      // default 0
@@ -124,7 +124,7 @@ void vplFormFactors_Destroy(vplFormFactors* factors);
 // The form factor from triangle a to triangle b with nothing between them, by the integral along their edges; what lies
 // behind the other's plane is cut off. Sides are those from which the corners are counter-clockwise.
 // Source: Hottel and Sarofim, Radiative Transfer, 1967 (after Stokes). Relative error below 1e-11 against closed forms of
-// squares 2^-7 to 10^6 sides apart, of touching and of thin triangles, below 1e-8 for any (tests/test_triangle_factors.c).
+// squares 2^-7 to 10^6 sides apart, of touching and of thin triangles, below 2e-8 for any above 1e-6 (tests/test_triangle_factors.c).
 double vplTriangleFormFactor(const vplVec3 a[3], const vplVec3 b[3]);
 
 // ---- the hierarchy: form factors of near pairs between patches, of far ones between groups of them
