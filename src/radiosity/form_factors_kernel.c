@@ -23,7 +23,7 @@ static inline float exchange(float x, float y, float z, float nx, float ny, floa
     const float inverse = 1 / (square > 0x1p-100f ? square : 0x1p-100f);
     const float a = (x * nx + y * ny + z * nz) * inverse, b = -(x * mx + y * my + z * mz) * inverse;
     const float product = a * b * INVERSE_PI;
-    return (a > 0) & (b > 0) ? product : 0;
+    return ((a > 0) & (b > 0)) ? product : 0;
 }
 
 // The heights of the highest corners of b over a's plane, and of a over b's.
