@@ -22,6 +22,9 @@ static void addRadiosity(json_t* root, const vplRenderStats* stats)
     const vplSolveStats* s = &stats->solve;
     json_object_set_new(root, "patch_sides", json_integer(stats->patchSides));
     json_object_set_new(root, stats->linked ? "links" : "form_factors", json_integer(stats->formFactors));
+    if (s->rowSumMax == 0) {
+        return; // nothing was exchanged, or asked for
+    }
     json_object_set_new(root, "iterations", json_integer(s->iterations));
     json_object_set_new(root, "residual", json_real(s->residual));
     json_object_set_new(root, "spectral_radius", json_real(s->spectralRadius));

@@ -40,7 +40,7 @@ double vplPatch_Square(const vplTriangleCorners* turned)
 vplTriangleCorners vplPatch_Half(const vplTriangleCorners* turned, vplVec3 middle, int second)
 {
     const vplVec3* c = turned->corner;
-    return second ? (vplTriangleCorners){{c[0], middle, c[2]}} : (vplTriangleCorners){{c[0], c[1], middle}};
+    return second ? (vplTriangleCorners){{middle, c[2], c[0]}} : (vplTriangleCorners){{c[1], middle, c[0]}};
 }
 
 static bool facesAlong(const vplTriangleCorners* triangle, vplVec3 normal)
@@ -146,8 +146,8 @@ bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square)
     }
     const uint32_t m = vplPatchTree_Intern(tree, middle);
     tree->nodes[node].children = tree->nodeCount;
-    addNode(tree, (const uint32_t[]){whole.corners[0], whole.corners[1], m}, whole.triangle, node);
-    addNode(tree, (const uint32_t[]){whole.corners[0], m, whole.corners[2]}, whole.triangle, node);
+    addNode(tree, (const uint32_t[]){whole.corners[1], m, whole.corners[0]}, whole.triangle, node);
+    addNode(tree, (const uint32_t[]){m, whole.corners[2], whole.corners[0]}, whole.triangle, node);
     return true;
 }
 

@@ -28,6 +28,7 @@ double vplPatch_Square(const vplTriangleCorners* turned);
 // area, because float holds nothing between the ends.
 bool vplPatch_Middle(const vplTriangleCorners* turned, vplVec3 normal, vplVec3* middleOut);
 
+// Corners begin with those of the edge that was cut, which is what decides between equally long edges (X099).
 vplTriangleCorners vplPatch_Half(const vplTriangleCorners* turned, vplVec3 middle, int second);
 
 // Room for so many positions and nodes.
