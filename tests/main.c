@@ -41,6 +41,7 @@
     X(passes) \
     X(patchMesh) \
     X(patchSides) \
+    X(patchWorth) \
     X(patches) \
     X(path) \
     X(placement) \

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+// Where more patches are wanted: what vplFindPatchWorth says, and that following it pays.
+#include "patch_model.h"
+
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+// A floor under a light that is much nearer to one place than to others: irradiance cos^4 / height^2.
+static double irradianceAt(vplVec3 p)
+{
+    const double x = (double)p.x - 0.7, z = (double)p.z + 0.4, height = 0.5;
+    const double square = x * x + z * z + height * height;
+    return height * height / (square * square);
+}
+
+typedef struct Field {
+    vplContext* context;
+    vplGeometry* geometry;
+    vplPatches* patches;
+    vplPatchSides* sides;
+    vplPatchMesh* mesh;
+    vplRgb *values, *corners;
+    float* worth;
+} Field;
+
+static const vplVec3 LAMP = {0, 5, 0};
+
+static double meanOver(const vplPatchSide* side, double (*at)(vplVec3))
+{
+    double sum = 0;
+    for (int i = 0; i < 16 * VPL_PATCH_CELLS; i++) {
+        sum += at(vplPatchSide_SampleCell(side, i / 16, ((float)(i % 4) + 0.5f) / 4,
+                                          ((float)(i / 4 % 4) + 0.5f) / 4));
+    }
+    return sum / (16 * VPL_PATCH_CELLS);
+}
+
+// Takes over the patches.
+static void fillField(Field* f, vplPatches* patches, double (*at)(vplVec3))
+{
+    f->patches = patches;
+    f->sides = sidesOf(patches, &LAMP);
+    assert_int_equal(vplPatchMesh_Create(f->sides, &f->mesh), VPL_SUCCESS);
+    f->values = malloc((size_t)f->sides->count * sizeof *f->values);
+    f->corners = malloc(2 * (size_t)f->mesh->vertexCount * sizeof *f->corners);
+    f->worth = malloc((size_t)patches->patchCount * sizeof *f->worth);
+    for (int i = 0; i < f->sides->count; i++) {
+        const float e = (float)meanOver(&f->sides->sides[i], at);
+        f->values[i] = (vplRgb){e, 0.5f * e, 0.25f * e};
+    }
+    assert_int_equal(vplPatchMesh_Interpolate(f->mesh, VPL_VERTEX_WEIGHT_ANGLE, f->values, f->corners),
+                     VPL_SUCCESS);
+}
+
+static Field openField(float size, double (*at)(vplVec3))
+{
+    Field f = {.context = openTestContext(1)};
+    Shape shape = {0};
+    addTriangle(&shape, vplVec(-2, 0, -2), vplVec(-2, 0, 2), vplVec(2, 0, 2));
+    addTriangle(&shape, vplVec(-2, 0, -2), vplVec(2, 0, 2), vplVec(2, 0, -2));
+    f.geometry = geometryOf(f.context, &shape, 0.5f, 0);
+    freeShape(&shape);
+    fillField(&f, patchesOf(f.geometry, size, VPL_MAX_PATCH_ROUNDS), at);
+    return f;
+}
+
+static void emptyField(Field* f)
+{
+    free(f->values);
+    free(f->corners);
+    free(f->worth);
+    vplPatchMesh_Destroy(f->mesh);
+    vplPatchSides_Destroy(f->sides);
+    vplPatches_Destroy(f->patches);
+}
+
+static void closeField(Field* f)
+{
+    emptyField(f);
+    vplGeometry_Destroy(f->geometry);
+    closeTestContext(f->context);
+}
+
+static vplPatchWorthDef defOf(const Field* f)
+{
+    vplPatchWorthDef def = vplDefaultPatchWorthDef();
+    def.irradiance = f->values;
+    def.vertexIrradiance = f->corners;
+    return def;
+}
+
+static void findWorth(Field* f)
+{
+    const vplPatchWorthDef def = defOf(f);
+    assert_int_equal(vplFindPatchWorth(f->mesh, &def, f->worth), VPL_SUCCESS);
+}
+
+static double one(vplVec3 p)
+{
+    (void)p;
+    return 1;
+}
+
+static double none(vplVec3 p)
+{
+    (void)p;
+    return 0;
+}
+
+static double ramp(vplVec3 p)
+{
+    return 1 + (p.x > 0 ? (double)p.x : 0);
+}
+
+static void EvenLightAndNoLightNeedNoMorePatches(void** state)
+{
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        Field f = openField(0.5f, i ? none : one);
+        findWorth(&f);
+        for (int k = 0; k < f.patches->patchCount; k++) {
+            assert_true(f.worth[k] == 0);
+        }
+        closeField(&f);
+    }
+}
+
+// Light that grows from the middle on: no patch beside the slope is worth as much as any on it.
+static void SlopesAreWorthMoreThanPlains(void** state)
+{
+    (void)state;
+    Field f = openField(0.5f, ramp);
+    float most = 0, least = INFINITY;
+    findWorth(&f);
+    for (int i = 0; i < f.patches->patchCount; i++) {
+        const vplPatchSide* s = &f.sides->sides[f.sides->ofPatch[2 * i]];
+        const float low = fminf(s->corners[0].x, fminf(s->corners[1].x, s->corners[2].x)),
+                    high = fmaxf(s->corners[0].x, fmaxf(s->corners[1].x, s->corners[2].x));
+        most = high < -0.4f ? fmaxf(most, f.worth[i]) : most;
+        least = low > 0 ? fminf(least, f.worth[i]) : least;
+    }
+    assert_true(most == 0);
+    assert_true(least > 0);
+    closeField(&f);
+}
+
+static void AShadowsBoundaryIsWorthPatches(void** state)
+{
+    (void)state;
+    Field f = openField(0.5f, one);
+    vplPatchWorthDef def = defOf(&f);
+    float* spread = calloc((size_t)f.sides->count, sizeof *spread);
+    spread[5] = 0.2f;
+    spread[9] = 0.4f;
+    def.directSpread = spread;
+    assert_int_equal(vplFindPatchWorth(f.mesh, &def, f.worth), VPL_SUCCESS);
+    for (int i = 0; i < f.sides->count; i++) {
+        assert_int_equal(f.worth[f.sides->sides[i].patch] > 0, i == 5 || i == 9);
+    }
+    assert_true(f.worth[f.sides->sides[9].patch] > 2 * f.worth[f.sides->sides[5].patch]);
+    free(spread);
+    closeField(&f);
+}
+
+// Mean over the floor of the square of the relative error of what is drawn.
+static double errorOf(const Field* f)
+{
+    double sum = 0, total = 0;
+    for (int t = 0; t < f->mesh->triangleCount; t++) {
+        const uint32_t* index = f->mesh->indices + 3 * (size_t)t;
+        vplPatchSide s = {.open = 0xffff};
+        double values[3];
+        for (int k = 0; k < 3; k++) {
+            s.corners[k] = f->mesh->positions[index[k]];
+            values[k] = (double)f->corners[2 * (size_t)index[k]].r;
+        }
+        const double area = (double)vplLength(
+            vplCross(vplSub(s.corners[1], s.corners[0]), vplSub(s.corners[2], s.corners[0])));
+        for (int i = 0; i < 64; i++) {
+            const float u = ((float)(i % 8) + 0.5f) / 8, v = ((float)(i / 8) + 0.5f) / 8;
+            const float b = v > u ? 0.5f * u : u - 0.5f * v, c = v > u ? v - 0.5f * u : 0.5f * v,
+                        a = 1 - b - c;
+            const vplVec3 p = vplAdd(vplScale(a, s.corners[0]),
+                                     vplAdd(vplScale(b, s.corners[1]), vplScale(c, s.corners[2])));
+            const double truth = irradianceAt(p),
+                         drawn = (double)a * values[0] + (double)b * values[1] + (double)c * values[2];
+            sum += area * (drawn - truth) * (drawn - truth) / ((truth + 0.05) * (truth + 0.05));
+            total += area;
+        }
+    }
+    return sum / total;
+}
+
+static void refineTo(Field* f, int count)
+{
+    while (f->patches->patchCount < count) {
+        vplPatches* next;
+        const int more = f->patches->patchCount * 3 / 2;
+        findWorth(f);
+        assert_int_equal(vplPatches_Refine(f->patches, f->worth, more < count ? more : count, &next),
+                         VPL_SUCCESS);
+        assert_true(next->patchCount > f->patches->patchCount);
+        emptyField(f);
+        fillField(f, next, irradianceAt);
+    }
+}
+
+// As many patches as a size gives, placed by worth, have less than half the squared error.
+static void PatchesWhereTheyAreWorthMostHalveTheError(void** state)
+{
+    (void)state;
+    for (float size = 0.36f; size > 0.1f; size *= 0.5f) {
+        Field uniform = openField(size, irradianceAt), adaptive = openField(4 * size, irradianceAt);
+        refineTo(&adaptive, uniform.patches->patchCount);
+        assert_int_equal(adaptive.patches->patchCount, uniform.patches->patchCount);
+        const double a = errorOf(&adaptive), u = errorOf(&uniform);
+        printf("patches %d: %.3g uniform, %.3g adaptive\n", uniform.patches->patchCount, u, a);
+        assert_true(a < 0.5 * u);
+        closeField(&uniform);
+        closeField(&adaptive);
+    }
+}
+
+static void expectFailure(const Field* f, vplPatchWorthDef def, const char* sentence)
+{
+    f->worth[0] = 7;
+    takeMessage();
+    assert_int_equal(vplFindPatchWorth(f->mesh, &def, f->worth), VPL_INVALID_ARGUMENT);
+    assert_string_equal(takeMessage(), sentence);
+    assert_true(f->worth[0] == 7);
+}
+
+static void WrongDefsAreRefused(void** state)
+{
+    (void)state;
+    Field f = openField(1, one);
+    vplPatchWorthDef def = defOf(&f);
+    def.irradiance = NULL;
+    expectFailure(
+        &f, def,
+        "vplPatchWorthDef.irradiance and vertexIrradiance are NULL, must be given where there are sides");
+    def = defOf(&f);
+    def.cookie = 1;
+    expectFailure(&f, def, "vplPatchWorthDef was not made by vplDefaultPatchWorthDef");
+    closeField(&f);
+}
+
+TEST_SUITE(patchWorth, cmocka_unit_test(EvenLightAndNoLightNeedNoMorePatches),
+           cmocka_unit_test(SlopesAreWorthMoreThanPlains), cmocka_unit_test(AShadowsBoundaryIsWorthPatches),
+           cmocka_unit_test(PatchesWhereTheyAreWorthMostHalveTheError),
+           cmocka_unit_test(WrongDefsAreRefused));
