@@ -11,6 +11,7 @@ typedef struct vplLinkNode {
     int first, count; // in vplLinkTree.order
     bool flat;        // its sides are in one plane: none sees another
     float area;
+    float glow; // the radiosity that it may be expected to have, as a share of the mean of all; at least 1
     vplVec3 low, high, centre;  // the box around it, metres, and its middle
     float radius;               // from there to the farthest corner
     vplVec3 normal;             // unit: the mean over its area; any where that is 0

@@ -8,6 +8,7 @@
 #include "math/vec.h"
 #include "radiosity/links.h"
 #include "radiosity/links_points.h"
+#include "radiosity/polygon_factor.h"
 
 #include <math.h>
 
@@ -26,6 +27,12 @@ static const double HIDDEN = 8;
 // group is an error of what is received.
 static const double UNEVEN = 0.25;
 
+// How much of what a pair may exchange at most, above what its points say, counts as an error: points miss peaks.
+static const double PEAK = 0.05;
+
+static const double RECEIVED = 1.0;
+static const double NOISE = 1.0;
+
 // A pair at work.
 typedef struct Pair {
     const vplPatchSides* sides;
@@ -35,6 +42,18 @@ typedef struct Pair {
     const vplLinkNode *p, *q;
     vplLinkAnswer* answer;
 } Pair;
+
+static double triangleArea(const vplPatchSide* side)
+{
+    const vplVec3* c = side->corners;
+    return 0.5 * (double)vplLength(vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0])));
+}
+
+static void samplePair(const Pair* pair, int set, vplLinkPoints* p, vplLinkPoints* q)
+{
+    vplSampleNode(pair->sides, pair->tree, pair->def, pair->ids->p, pair->ids->q, 2 * set, p);
+    vplSampleNode(pair->sides, pair->tree, pair->def, pair->ids->q, pair->ids->p, 2 * set + 1, q);
+}
 
 // ---- bounds
 
@@ -95,7 +114,7 @@ static bool isBehind(const Pair* pair, const vplLinkNode* node, const vplLinkNod
     return most <= 0x1p-20f * (largest + node->radius + plane->radius);
 }
 
-// The larger of both form factors is not above this; infinity where the nodes touch.
+// The larger of both form factors, times the sender's glow, is not above this; infinity where the nodes touch.
 static double factorBound(const Pair* pair, double larger)
 {
     const double p = cosineBound(pair->p, pair->q), q = cosineBound(pair->q, pair->p);
@@ -104,6 +123,12 @@ static double factorBound(const Pair* pair, double larger)
 }
 
 // ---- measured
+
+// What its sides would have to be like to send as much with the mean radiosity.
+static double sentArea(const vplLinkNode* node)
+{
+    return (double)node->area * (double)node->glow;
+}
 
 typedef struct Spread {
     double mean;
@@ -143,14 +168,14 @@ typedef struct Errors {
 
 static Errors errorsOf(const Pair* pair, const Spread* s)
 {
-    const double areaP = (double)pair->p->area, areaQ = (double)pair->q->area;
+    const double areaP = sentArea(pair->p), areaQ = sentArea(pair->q);
     const bool groupP = pair->p->count > 1, groupQ = pair->q->count > 1;
     const double p = groupP ? s->p : 0, q = groupQ ? s->q : 0;
-    const double atP = areaQ * (p + UNEVEN * q), atQ = areaP * (q + UNEVEN * p);
-    const double noise = groupP || groupQ ? (areaP > areaQ ? areaP : areaQ) * s->noise : 0;
+    const double atP = areaQ * (RECEIVED * p + UNEVEN * q), atQ = areaP * (RECEIVED * q + UNEVEN * p);
+    const double noise = groupP || groupQ ? NOISE * (areaP > areaQ ? areaP : areaQ) * s->noise : 0;
     const double more = atP > atQ ? atP : atQ;
-    return (Errors){.ofP = p * (areaQ + UNEVEN * areaP),
-                    .ofQ = q * (areaP + UNEVEN * areaQ),
+    return (Errors){.ofP = p * (RECEIVED * areaQ + UNEVEN * areaP),
+                    .ofQ = q * (RECEIVED * areaP + UNEVEN * areaQ),
                     .all = more > noise ? more : noise};
 }
 
@@ -177,43 +202,87 @@ static vplLinkVerdict divideTurned(const Pair* pair)
     return p && q ? divideLarger(pair) : p ? VPL_LINK_DIVIDE_P : VPL_LINK_DIVIDE_Q;
 }
 
+// Sides as near as this, in radii of the larger, take the integral along their edges, of which rays see a share.
+static const float NEAR = 3;
+
+static bool isNear(const Pair* pair)
+{
+    const float larger = fmaxf(pair->p->radius, pair->q->radius);
+    return vplLength(vplSub(pair->q->centre, pair->p->centre)) < NEAR * larger;
+}
+
+// The mean of cos cos / (pi r^2) over two sides.
+static double exactMean(const Pair* pair)
+{
+    const vplPatchSide* a = &pair->sides->sides[pair->tree->order[pair->p->first]];
+    const vplPatchSide* b = &pair->sides->sides[pair->tree->order[pair->q->first]];
+    const double areaA = triangleArea(a), areaB = triangleArea(b);
+    return vplTriangleExchange(a->corners, b->corners, &vplEdgesQuick) / (areaA * areaB);
+}
+
+static void keep(const Pair* pair, double kernel)
+{
+    const double area = (double)fmaxf(pair->p->area, pair->q->area);
+    pair->answer->verdict = kernel > 0 ? VPL_LINK_KEEP : VPL_LINK_NONE;
+    pair->answer->kernel = (float)(kernel * area < 1 ? kernel : 1 / area); // no form factor is above 1 (X095)
+}
+
+static void measureSides(const Pair* pair)
+{
+    const int n = pair->def->samples;
+    float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS];
+    vplLinkPoints p, q;
+    samplePair(pair, 1, &p, &q);
+    vplPairPoints(pair->sides, &p, &q, n, kernel);
+    const double open = spreadOf(kernel, n).mean;
+    if (!(open > 0)) {
+        return;
+    }
+    pair->answer->rays = vplShadowPairs(pair->sides, &p, &q, n, kernel);
+    const double seen = spreadOf(kernel, n).mean;
+    keep(pair, isNear(pair) ? exactMean(pair) * (seen / open) : seen);
+}
+
 // By points and rays.
 static void measure(const Pair* pair, double larger, double bound)
 {
     vplLinkAnswer* answer = pair->answer;
+    const double allowed = pair->def->error;
     const int n = pair->def->samples;
-    const bool leaves = pair->p->count == 1 && pair->q->count == 1;
     float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS];
     vplLinkPoints p, q;
-    vplSampleNode(pair->sides, pair->tree, pair->def, pair->ids->p, pair->ids->q, false, &p);
-    vplSampleNode(pair->sides, pair->tree, pair->def, pair->ids->q, pair->ids->p, true, &q);
+    samplePair(pair, 0, &p, &q);
     vplPairPoints(pair->sides, &p, &q, n, kernel);
     const Spread open = spreadOf(kernel, n);
-    if (!(open.mean > 0)) {
-        answer->verdict = bound <= pair->def->error ? VPL_LINK_NONE : divideLarger(pair);
-        return;
-    }
     const Errors before = errorsOf(pair, &open);
-    if (answer->seen && before.all > pair->def->error) {
-        answer->verdict = divideWorse(pair, &before);
+    const double peak = PEAK * (bound - larger * open.mean);
+    const bool rough = before.all > allowed || peak > allowed;
+    if (!(open.mean > 0)) {
+        answer->verdict = bound <= allowed ? VPL_LINK_NONE : divideLarger(pair);
         return;
     }
+    if (answer->seen && rough) {
+        answer->verdict = before.all > allowed ? divideWorse(pair, &before) : divideLarger(pair);
+        return;
+    }
+    // Others than those that said it is smooth: from these, links that miss a peak would be kept, and light be lost.
+    samplePair(pair, 1, &p, &q);
+    vplPairPoints(pair->sides, &p, &q, n, kernel);
     answer->rays = vplShadowPairs(pair->sides, &p, &q, n, kernel);
     const Spread seen = spreadOf(kernel, n);
     answer->seen = seen.mean > 0;
-    if (!answer->seen && !leaves) {
-        answer->verdict =
-            larger * open.mean <= HIDDEN * pair->def->error ? VPL_LINK_NONE : divideLarger(pair);
+    if (!answer->seen) {
+        answer->verdict = larger * open.mean <= HIDDEN * allowed ? VPL_LINK_NONE : divideLarger(pair);
         return;
     }
     const Errors errors = errorsOf(pair, &seen);
-    if (errors.all > pair->def->error) {
+    if (errors.all > allowed) {
         answer->verdict = divideWorse(pair, &errors);
-        return;
+    } else if (rough) {
+        answer->verdict = divideLarger(pair);
+    } else {
+        keep(pair, seen.mean);
     }
-    answer->verdict = seen.mean > 0 ? VPL_LINK_KEEP : VPL_LINK_NONE;
-    answer->kernel =
-        (float)(seen.mean * larger < 1 ? seen.mean : 1 / larger); // no form factor is above 1 (X095)
 }
 
 vplLinkAnswer vplJudgePair(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
@@ -230,14 +299,16 @@ vplLinkAnswer vplJudgePair(const vplPatchSides* sides, const struct vplLinkTree*
     if (isBehind(&work, work.p, work.q) || isBehind(&work, work.q, work.p)) {
         return answer;
     }
-    const double larger = (double)fmaxf(work.p->area, work.q->area);
+    const double larger = fmax(sentArea(work.p), sentArea(work.q));
     const double bound = factorBound(&work, larger);
     const bool leaves = work.p->count == 1 && work.q->count == 1;
     const bool turned = work.p->cosSpread < TURNED || work.q->cosSpread < TURNED;
     if (!(bound > 0)) {
         return answer;
     }
-    if (!leaves && isinf(bound)) {
+    if (leaves) {
+        measureSides(&work);
+    } else if (isinf(bound)) {
         answer.verdict = divideLarger(&work);
     } else if (turned && bound > TINY * def->error) {
         answer.verdict = divideTurned(&work);

@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-enum { STREAM = 0x4c00 }; // of random numbers: two per point
+enum { STREAM = 0x4c00 }; // of random numbers: four per point
 
 VPL_KERNEL_TABLE(pairKernels, vplPairKernelFcn, vplPairKernel);
 
@@ -49,15 +49,15 @@ static int openCell(const vplPatchSide* side, int k)
 }
 
 void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
-                   int node, int other, bool second, vplLinkPoints* out)
+                   int node, int other, int stream, vplLinkPoints* out)
 {
     const vplLinkNode* n = &tree->nodes[node];
     const double from = tree->areaUpTo[n->first], to = tree->areaUpTo[n->first + n->count];
-    const uint64_t index = second ? (uint64_t)(uint32_t)other << 32 | (uint32_t)node
-                                  : (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
+    const uint64_t index = stream & 1 ? (uint64_t)(uint32_t)other << 32 | (uint32_t)node
+                                      : (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
     for (int k = 0; k < def->samples; k++) {
         const vplRandom4 random =
-            vplRandomAt(def->seed, (uint32_t)STREAM + 2 * (uint32_t)k + (second ? 1 : 0), index);
+            vplRandomAt(def->seed, (uint32_t)STREAM + 4 * (uint32_t)k + (uint32_t)stream, index);
         const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / def->samples);
         const int place = findSide(tree, n, target);
         const vplPatchSide* side = &sides->sides[tree->order[place]];

@@ -11,9 +11,9 @@ typedef struct vplLinkPoints {
 } vplLinkPoints;
 
 // def->samples points on the open cells of a node, one in each of as many parts of equal area. Random numbers are those
-// of the pair; `second`: another stream.
+// of the pair; `stream` tells draws apart, even for the first of the pair and odd for the second.
 void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
-                   int node, int other, bool second, vplLinkPoints* pointsOut);
+                   int node, int other, int stream, vplLinkPoints* pointsOut);
 
 // kernelOut[i][k] between point i of p and k of q, with nothing between them.
 void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q, int count,

@@ -17,27 +17,36 @@ enum {
 // Of normals' components, from end to end: groups that differ by more are first halved by them. 0.3 is 17 degrees.
 static const float TURNED = 0.3f;
 
+// Of the radiosity to be expected: emission above that is uneven if it differs by a factor of two. Else the light of a
+// lamp that is flush with a ceiling would come from all of it.
+static const double UNEVEN = 0.1;
+
 // Sides of a group lie in one plane if their corners are this near to it, as a share of its radius.
 static const double FLAT = 1e-5;
 
 typedef struct Build {
     const vplPatchSide* sides;
     struct vplLinkTree* tree;
+    double mean; // radiosity that is to be expected, W/m^2; 0: nothing emits
 } Build;
 
+enum { KEYS = 7, EMISSION = 6 };
+
 typedef struct Range {
-    float low[6], high[6]; // of sides' centres and normals
+    float low[KEYS], high[KEYS]; // of sides' centres, normals and emission
 } Range;
 
 static float keyOf(const vplPatchSide* side, int k)
 {
-    return k < 3 ? vplComponent(side->incentre, k) : vplComponent(side->normal, k - 3);
+    return k < 3          ? vplComponent(side->incentre, k)
+           : k < EMISSION ? vplComponent(side->normal, k - 3)
+                          : (float)vplRgbMean(side->emission);
 }
 
 static Range rangeOf(const Build* b, const vplLinkNode* node)
 {
     Range range;
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < KEYS; k++) {
         range.low[k] = INFINITY;
         range.high[k] = -INFINITY;
         for (int i = 0; i < node->count; i++) {
@@ -54,10 +63,11 @@ static Range rangeOf(const Build* b, const vplLinkNode* node)
 static void boundNode(const Build* b, vplLinkNode* node)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    double normal[3] = {0}, area = 0;
+    double normal[3] = {0}, area = 0, emitted = 0;
     for (int i = 0; i < node->count; i++) {
         const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
         area += (double)s->area;
+        emitted += (double)s->area * vplRgbMean(s->emission);
         for (int axis = 0; axis < 3; axis++) {
             normal[axis] += (double)s->area * (double)vplComponent(s->normal, axis);
             for (int k = 0; k < 3; k++) {
@@ -68,6 +78,7 @@ static void boundNode(const Build* b, vplLinkNode* node)
         }
     }
     node->area = (float)area;
+    node->glow = emitted > b->mean * area ? (float)(emitted / (b->mean * area)) : 1;
     node->low = vplVec(low[0], low[1], low[2]);
     node->high = vplVec(high[0], high[1], high[2]);
     node->centre = vplVec(0.5f * low[0] + 0.5f * high[0], 0.5f * low[1] + 0.5f * high[1],
@@ -136,8 +147,10 @@ static int longestOf(const Range* range, int first)
 static int halve(const Build* b, const vplLinkNode* node, int depth, int* scratch)
 {
     const Range range = rangeOf(b, node);
+    const bool uneven =
+        (double)range.high[EMISSION] > UNEVEN * b->mean && range.high[EMISSION] > 2 * range.low[EMISSION];
     const int turn = longestOf(&range, 3), length = longestOf(&range, 0);
-    const int key = range.high[turn] - range.low[turn] > TURNED ? turn : length;
+    const int key = uneven ? EMISSION : range.high[turn] - range.low[turn] > TURNED ? turn : length;
     const float middle = 0.5f * range.low[key] + 0.5f * range.high[key];
     const int before = depth < HALVES_DEPTH ? divideAt(b, node, key, middle, scratch) : 0;
     return before > 0 && before < node->count ? before : node->count / 2;
@@ -176,6 +189,20 @@ static void divideAll(const Build* b, int count, int* scratch)
     }
 }
 
+// As if the room were closed, and all alike.
+static double expectedRadiosity(const vplPatchSides* sides)
+{
+    double emitted = 0, kept = 0, area = 0;
+    for (int i = 0; i < sides->count; i++) {
+        const vplPatchSide* s = &sides->sides[i];
+        emitted += (double)s->area * vplRgbMean(s->emission);
+        kept += (double)s->area * vplRgbMean(s->reflectance);
+        area += (double)s->area;
+    }
+    const double lost = area - kept;
+    return emitted > 0 ? emitted / (lost > 0.1 * area ? lost : 0.1 * area) : 0;
+}
+
 vplResult vplLinkTree_Build(const vplPatchSides* sides, struct vplLinkTree* tree)
 {
     vplContext* context = sides->context;
@@ -192,7 +219,7 @@ vplResult vplLinkTree_Build(const vplPatchSides* sides, struct vplLinkTree* tree
         tree->order[i] = i;
     }
     if (sides->count > 0) {
-        divideAll(&(Build){sides->sides, tree}, sides->count, scratch);
+        divideAll(&(Build){sides->sides, tree, expectedRadiosity(sides)}, sides->count, scratch);
     }
     tree->areaUpTo[0] = 0;
     for (int i = 0; i < sides->count; i++) {

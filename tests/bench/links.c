@@ -73,9 +73,16 @@ static Row timeLinks(const vplPatchSides* sides, const vplLinkDef* def)
     return row;
 }
 
-static void printRow(vplContext* context, const vplPatches* patches, const vplLinkDef* def)
+static void printRow(vplContext* context, const vplPatches* patches, const vplScene* scene,
+                     const vplLinkDef* def)
 {
-    const vplPatchSidesDef sidesDef = vplDefaultPatchSidesDef();
+    vplPatchSidesDef sidesDef = vplDefaultPatchSidesDef();
+    sidesDef.emitterCount = vplScene_GetEmitterCount(scene);
+    vplEmitterDef emitters[64];
+    for (int i = 0; i < sidesDef.emitterCount && i < 64; i++) {
+        emitters[i] = *vplScene_GetEmitter(scene, i);
+    }
+    sidesDef.emitters = emitters;
     vplPatchSides* sides = NULL;
     vplFormFactors* factors = NULL;
     check(vplPatchSides_Create(patches, &sidesDef, &sides));
@@ -115,7 +122,18 @@ static void printRow(vplContext* context, const vplPatches* patches, const vplLi
         const vplTransport byAll = {.sides = sides, .factors = factors};
         check(vplGatherRadiosity(&byAll, b, dense));
         const Difference d = differ(sides, e, dense), f = differ(sides, few, dense);
-        printf("  %5.2f%% %+5.2f%%   %8.0f %5.2f%%", 100 * d.rms, 100 * d.mean, ms, 100 * f.rms);
+        double rows = 0;
+        for (int i = 0; i < sides->count; i++) {
+            rows += (double)factors->rowSums[i] / sides->count;
+            b[i].r -= sides->sides[i].emission.r;
+            b[i].g -= sides->sides[i].emission.g;
+            b[i].b -= sides->sides[i].emission.b;
+        }
+        check(vplGatherRadiosity(&byAll, b, dense));
+        check(vplGatherRadiosity(&byLinks, b, e));
+        const Difference dark = differ(sides, e, dense);
+        printf("  %5.2f%% %+5.2f%%  %5.2f%% %+5.2f%%   %8.0f %5.2f%% %6.4f", 100 * d.rms, 100 * d.mean,
+               100 * dark.rms, 100 * dark.mean, ms, 100 * f.rms, rows);
         free(few);
     }
     printf("\n");
@@ -147,13 +165,13 @@ int main(int count, char** words)
            words[1], def.error, def.samples);
     printf("  sides    links  /side      rays   create   gather     MiB  rows: mean, rms-1     rms    mean   "
            "all: ms    "
-           "rms\n");
+           "rms   rows\n");
     for (int i = 0; i < (count > 4 ? count - 4 : 4); i++) {
         vplPatchDef patchDef = vplDefaultPatchDef();
         vplPatches* patches = NULL;
         patchDef.count = count > 4 ? atoi(words[4 + i]) : usual[i];
         check(vplPatches_Create(geometry, &patchDef, &patches));
-        printRow(context, patches, &def);
+        printRow(context, patches, scene, &def);
         vplPatches_Destroy(patches);
     }
     vplGeometry_Destroy(geometry);
