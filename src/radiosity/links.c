@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { LINK_COOKIE = 0x56504cb4 };
+enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = VPL_LINK_POINTS * VPL_LINK_POINTS };
 
 vplLinkDef vplDefaultLinkDef(void)
 {
@@ -23,9 +23,9 @@ static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.error is %g, must be in (0, 1]",
                        def->error);
     }
-    if (def->samples < 1 || def->samples > VPL_LINK_POINTS) {
+    if (def->samples < 1 || def->samples > MOST_SAMPLES) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.samples is %d, must be in [1, %d]",
-                       def->samples, (int)VPL_LINK_POINTS);
+                       def->samples, (int)MOST_SAMPLES);
     }
     if ((int)def->rowSums < 0 || def->rowSums > VPL_ROW_SUMS_NORMALISE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.rowSums is %d, must be a vplRowSums",

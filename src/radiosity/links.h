@@ -52,7 +52,7 @@ vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tre
 
 // ---- one pair of nodes (links_pair.c)
 
-enum { VPL_LINK_POINTS = 32 }; // most on either of two groups
+enum { VPL_LINK_POINTS = 32 }; // most on either of two nodes
 
 typedef struct vplLinkPair {
     int32_t p, q;
@@ -87,8 +87,6 @@ typedef struct vplPointPairs {
 } vplPointPairs;
 
 typedef void vplPairKernelFcn(const vplPointPairs* pairs, float kernelOut[VPL_SIDE_LANES]);
-
-vplPairKernelFcn* vplGetPairKernel(vplIsa isa);
 
 // ---- transport (links_gather.c)
 
