@@ -40,6 +40,9 @@ typedef struct vplLink {
     float kernel; // mean of cos cos V / (pi r^2), 1/m^2: times the sender's area it is the form factor
 } vplLink;
 
+// Of all progress, when all are found.
+#define VPL_LINKS_SHARE 0.9
+
 typedef struct vplLinkList {
     vplLink* links;
     size_t count, capacity;
@@ -99,7 +102,11 @@ void vplLinks_Gather(const vplLinks* links, const vplPlanes* x, double* scratch,
 // Sorts the list into the tree by receiver.
 vplResult vplLinkTree_Connect(vplContext* context, struct vplLinkTree* tree, const vplLinkList* list);
 
-// Finds the scale of each side that makes sums of rows what they are to be, and the sums before.
-vplResult vplLinks_FitRows(vplLinks* links, vplRowSums rows, float* rowSums);
+// Whether nothing that a side sends can miss the other sides, as far as some rays tell. Adds how many it cast.
+vplResult vplFindClosed(const vplPatchSides* sides, const vplLinkDef* def, bool* closed, int64_t* rays);
+
+// Finds the scale of each side that makes sums of rows what they are to be, and the sums before. `closed`: which
+// are to have 1, others only not more.
+vplResult vplLinks_FitRows(vplLinks* links, vplRowSums rows, const bool* closed, float* rowSums);
 
 #endif

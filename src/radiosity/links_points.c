@@ -35,8 +35,7 @@ static int findSide(const struct vplLinkTree* tree, const vplLinkNode* node, dou
     return low;
 }
 
-// The k-th open cell.
-static int openCell(const vplPatchSide* side, int k)
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 {
     unsigned open = side->open;
     for (; k > 0; k--) {
@@ -66,8 +65,9 @@ void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, c
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
         out->side[k] = side;
-        out->at[k] = vplPatchSide_SampleCell(side, openCell(side, cell < cells ? cell : cells - 1),
-                                             vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+        out->at[k] =
+            vplPatchSide_SampleCell(side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
+                                    vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
     }
 }
 
@@ -105,7 +105,7 @@ void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vpl
 
 // ---- rays
 
-static vplHit hitOf(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
 {
     const vplPatches* patches = sides->patches;
     const vplGeometry* g = patches->geometry;
@@ -132,7 +132,7 @@ double vplSeeShare(const vplPatchSides* sides, const vplLinkPoints* p, const vpl
             amount[l] = first + l < samples ? kernel->of[i][k] : 0;
             open += (double)amount[l];
             if (amount[l] > 0) {
-                const vplHit start = hitOf(sides, p->side[i], p->at[i]);
+                const vplHit start = vplPatchSide_HitAt(sides, p->side[i], p->at[i]);
                 const vplRay ray =
                     vplGeometry_Leave(g, &start, vplWayToLight(q->at[k], q->side[k]->normal, p->at[i]));
                 vplRayPacket_Set(&packet, l, &ray);

@@ -16,6 +16,12 @@ typedef struct vplLinkPoints {
 void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
                    int node, int other, int stream, vplLinkPoints* pointsOut);
 
+// The k-th open cell.
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
+
+// Where rays leave a side.
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
+
 // cos cos / (pi r^2) between point i of one node and k of another, with nothing between them, 1/m^2.
 typedef struct vplLinkKernel {
     int count; // points on either
