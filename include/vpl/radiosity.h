@@ -135,8 +135,9 @@ typedef struct vplLinkDef {
     double
         error; // links are divided until the error of what they carry is below this share of what their receiver
                // gets of all, (0, 1]; default 0.01
-    int samples;        // points on either of two groups, all with all, [1, 32]; default 4: 16 pairs and rays
-    vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL: clamped
+    int samples;        // pairs of points with a shadow ray per link, [1, 1024]; default 4
+    vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL: 1 for sides from which all of 32 rays meet sides, others
+                        // clamped; links err by some percent, and what is clamped alone grows darker by that
     uint64_t seed;      // default 0
     vplProgressFcn* progress;
     void* progressUser;

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { LINK_COOKIE = 0x56504cb4 };
+enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = VPL_LINK_POINTS * VPL_LINK_POINTS };
 
 vplLinkDef vplDefaultLinkDef(void)
 {
@@ -23,9 +23,9 @@ static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.error is %g, must be in (0, 1]",
                        def->error);
     }
-    if (def->samples < 1 || def->samples > VPL_LINK_POINTS) {
+    if (def->samples < 1 || def->samples > MOST_SAMPLES) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.samples is %d, must be in [1, %d]",
-                       def->samples, (int)VPL_LINK_POINTS);
+                       def->samples, (int)MOST_SAMPLES);
     }
     if ((int)def->rowSums < 0 || def->rowSums > VPL_ROW_SUMS_NORMALISE) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplLinkDef.rowSums is %d, must be a vplRowSums",
@@ -34,31 +34,52 @@ static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)
     return VPL_SUCCESS;
 }
 
-static vplResult build(const vplPatchSides* sides, const vplLinkDef* def, vplLinks* links)
+static vplResult findLinks(const vplPatchSides* sides, const vplLinkDef* def, vplLinks* links)
+{
+    vplLinkList list = {.links = NULL};
+    vplResult result = vplFindLinks(sides, links->tree, def, &list);
+    if (result == VPL_SUCCESS) {
+        result = vplLinkTree_Connect(links->context, links->tree, &list);
+    }
+    links->linkCount = (int64_t)list.count;
+    links->rays = list.rays;
+    vplFree(links->context, list.links);
+    return result;
+}
+
+static vplResult fitRows(const vplPatchSides* sides, const vplLinkDef* def, vplLinks* links)
 {
     vplContext* context = links->context;
-    vplLinkList list = {.links = NULL};
+    const size_t count = (size_t)sides->count;
+    bool* closed = vplAlloc(context, count, sizeof *closed);
+    links->tree->scale = closed ? vplAlloc(context, count, sizeof *links->tree->scale) : NULL;
+    links->rowSums = links->tree->scale ? vplAlloc(context, count, sizeof *links->rowSums) : NULL;
+    vplResult result = links->rowSums ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    for (size_t i = 0; i < count && result == VPL_SUCCESS; i++) {
+        closed[i] = def->rowSums == VPL_ROW_SUMS_NORMALISE;
+    }
+    if (result == VPL_SUCCESS && def->rowSums == VPL_ROW_SUMS_USUAL) {
+        result = vplFindClosed(sides, def, closed, &links->rays);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplLinks_FitRows(links, def->rowSums, closed, (float*)links->rowSums);
+    }
+    vplFree(context, closed);
+    return result;
+}
+
+static vplResult build(const vplPatchSides* sides, const vplLinkDef* def, vplLinks* links)
+{
     vplResult result = vplLinkTree_Build(sides, links->tree);
     if (result == VPL_SUCCESS) {
         result = vplGeometry_PrepareRays(sides->patches->geometry);
     }
     if (result == VPL_SUCCESS) {
-        result = vplFindLinks(sides, links->tree, def, &list);
+        result = findLinks(sides, def, links);
     }
-    if (result == VPL_SUCCESS) {
-        result = vplLinkTree_Connect(context, links->tree, &list);
-    }
-    links->linkCount = (int64_t)list.count;
-    links->rays = list.rays;
-    vplFree(context, list.links);
     if (result == VPL_SUCCESS) {
         links->groupCount = links->tree->nodeCount - sides->count;
-        links->tree->scale = vplAlloc(context, (size_t)sides->count, sizeof *links->tree->scale);
-        links->rowSums = vplAlloc(context, (size_t)sides->count, sizeof *links->rowSums);
-        result = links->tree->scale && links->rowSums ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplLinks_FitRows(links, def->rowSums, (float*)links->rowSums);
+        result = fitRows(sides, def, links);
     }
     return result;
 }

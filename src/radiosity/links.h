@@ -40,6 +40,9 @@ typedef struct vplLink {
     float kernel; // mean of cos cos V / (pi r^2), 1/m^2: times the sender's area it is the form factor
 } vplLink;
 
+// Of all progress, when all are found.
+#define VPL_LINKS_SHARE 0.9
+
 typedef struct vplLinkList {
     vplLink* links;
     size_t count, capacity;
@@ -52,7 +55,7 @@ vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tre
 
 // ---- one pair of nodes (links_pair.c)
 
-enum { VPL_LINK_POINTS = 32 }; // most on either of two groups
+enum { VPL_LINK_POINTS = 32 }; // most on either of two nodes
 
 typedef struct vplLinkPair {
     int32_t p, q;
@@ -88,8 +91,6 @@ typedef struct vplPointPairs {
 
 typedef void vplPairKernelFcn(const vplPointPairs* pairs, float kernelOut[VPL_SIDE_LANES]);
 
-vplPairKernelFcn* vplGetPairKernel(vplIsa isa);
-
 // ---- transport (links_gather.c)
 
 // Doubles that vplLinks_Gather needs.
@@ -101,7 +102,11 @@ void vplLinks_Gather(const vplLinks* links, const vplPlanes* x, double* scratch,
 // Sorts the list into the tree by receiver.
 vplResult vplLinkTree_Connect(vplContext* context, struct vplLinkTree* tree, const vplLinkList* list);
 
-// Finds the scale of each side that makes sums of rows what they are to be, and the sums before.
-vplResult vplLinks_FitRows(vplLinks* links, vplRowSums rows, float* rowSums);
+// Whether nothing that a side sends can miss the other sides, as far as some rays tell. Adds how many it cast.
+vplResult vplFindClosed(const vplPatchSides* sides, const vplLinkDef* def, bool* closed, int64_t* rays);
+
+// Finds the scale of each side that makes sums of rows what they are to be, and the sums before. `closed`: which
+// are to have 1, others only not more.
+vplResult vplLinks_FitRows(vplLinks* links, vplRowSums rows, const bool* closed, float* rowSums);
 
 #endif

@@ -139,9 +139,10 @@ enum { ROUNDS = 10 };
 // Room for the rounding of scales and sums, so that none is above 1.
 static const double MARGIN = 1 - 0x1p-21;
 
-// One round: towards 1 by half the way; rows of a clamp only while they are above. The last of a clamp takes the whole
-// step, which leaves none above 1, since no factor grows.
-static void fitScales(struct vplLinkTree* tree, const double (*sums)[3], int count, bool clamp, bool last)
+// One round: towards 1 by half the way; what is not closed only while it is above. The last takes the whole step down,
+// which leaves none above 1, since no factor grows.
+static void fitScales(struct vplLinkTree* tree, const double (*sums)[3], int count, const bool* closed,
+                      bool last)
 {
     for (int i = 0; i < count; i++) {
         const double sum = sums[i][0], scale = (double)tree->scale[i];
@@ -149,17 +150,16 @@ static void fitScales(struct vplLinkTree* tree, const double (*sums)[3], int cou
             tree->scale[i] = (float)(sum > MARGIN ? scale * MARGIN / sum : scale);
         } else if (sum > 0) {
             const double wanted = scale / sqrt(sum);
-            tree->scale[i] = (float)(clamp && wanted > 1 ? 1 : wanted);
+            tree->scale[i] = (float)(!closed[i] && wanted > 1 ? 1 : wanted);
         }
     }
 }
 
 // Every factor is multiplied by the scales of both its sides.
-vplResult vplLinks_FitRows(vplLinks* links, vplRowSums rows, float* rowSums)
+vplResult vplLinks_FitRows(vplLinks* links, vplRowSums rows, const bool* closed, float* rowSums)
 {
     vplContext* context = links->context;
     const int count = links->sideCount, rounds = rows == VPL_ROW_SUMS_KEEP ? 0 : ROUNDS;
-    const bool clamp = rows != VPL_ROW_SUMS_NORMALISE;
     vplPlanes ones = {{NULL, NULL, NULL}};
     double(*sums)[3] = vplAlloc(context, (size_t)count, sizeof *sums);
     double* scratch = sums ? vplAlloc(context, vplLinks_ScratchSize(links), sizeof *scratch) : NULL;
@@ -174,7 +174,7 @@ vplResult vplLinks_FitRows(vplLinks* links, vplRowSums rows, float* rowSums)
             rowSums[i] = (float)sums[i][0];
         }
         if (rounds > 0) {
-            fitScales(links->tree, (const double(*)[3])sums, count, clamp, round == rounds);
+            fitScales(links->tree, (const double(*)[3])sums, count, closed, round == rounds);
         }
     }
     vplPlanes_Destroy(context, &ones);

@@ -21,17 +21,10 @@ static const double TINY = 0.25;
 
 // Of the allowed error: groups of which no ray reaches the other exchange nothing if they would exchange less than this
 // with nothing between them.
-static const double HIDDEN = 8;
-
-// How much radiosity differs over a group that sends, as a share of its mean: with it the kernel's spread over that
-// group is an error of what is received.
-static const double UNEVEN = 0.25;
+static const double HIDDEN = 4;
 
 // How much of what a pair may exchange at most, above what its points say, counts as an error: points miss peaks.
 static const double PEAK = 0.05;
-
-static const double RECEIVED = 1.0;
-static const double NOISE = 1.0;
 
 // A pair at work.
 typedef struct Pair {
@@ -40,8 +33,15 @@ typedef struct Pair {
     const vplLinkDef* def;
     const vplLinkPair* ids;
     const vplLinkNode *p, *q;
+    double sent; // the larger of what their areas send with the mean radiosity, m^2
     vplLinkAnswer* answer;
 } Pair;
+
+// As much area of the mean radiosity sends as much.
+static double sentArea(const vplLinkNode* node)
+{
+    return (double)node->area * (double)node->glow;
+}
 
 static double triangleArea(const vplPatchSide* side)
 {
@@ -115,68 +115,54 @@ static bool isBehind(const Pair* pair, const vplLinkNode* node, const vplLinkNod
 }
 
 // The larger of both form factors, times the sender's glow, is not above this; infinity where the nodes touch.
-static double factorBound(const Pair* pair, double larger)
+static double factorBound(const Pair* pair)
 {
     const double p = cosineBound(pair->p, pair->q), q = cosineBound(pair->q, pair->p);
     const double square = squareGap(pair->p, pair->q);
-    return p * q > 0 ? larger * p * q / (VPL_PI * square) : 0;
+    return p * q > 0 ? pair->sent * p * q / (VPL_PI * square) : 0;
 }
 
 // ---- measured
-
-// What its sides would have to be like to send as much with the mean radiosity.
-static double sentArea(const vplLinkNode* node)
-{
-    return (double)node->area * (double)node->glow;
-}
 
 typedef struct Spread {
     double mean;
     double p,
         q; // standard deviations of means: over points of p, each with all of q; and the other way round
-    double noise; // standard error of the mean
 } Spread;
 
-static Spread spreadOf(const float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS], int n)
+static Spread spreadOf(const vplLinkKernel* kernel)
 {
-    double rows[VPL_LINK_POINTS] = {0}, columns[VPL_LINK_POINTS] = {0}, sum = 0, squares = 0;
+    const int n = kernel->count;
+    double rows[VPL_LINK_POINTS] = {0}, columns[VPL_LINK_POINTS] = {0}, sum = 0;
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < n; k++) {
-            const double value = (double)kernel[i][k];
+            const double value = (double)kernel->of[i][k];
             rows[i] += value / n;
             columns[k] += value / n;
             sum += value;
-            squares += value * value;
         }
     }
     Spread s = {.mean = sum / (n * n)};
     for (int i = 0; i < n; i++) {
-        s.p += (rows[i] - s.mean) * (rows[i] - s.mean);
-        s.q += (columns[i] - s.mean) * (columns[i] - s.mean);
+        s.p += (rows[i] - s.mean) * (rows[i] - s.mean) / (n - 1);
+        s.q += (columns[i] - s.mean) * (columns[i] - s.mean) / (n - 1);
     }
-    const double all = squares / (n * n) - s.mean * s.mean;
-    s.p = n > 1 ? sqrt(s.p / (n - 1)) : s.mean;
-    s.q = n > 1 ? sqrt(s.q / (n - 1)) : s.mean;
-    s.noise = sqrt(all > 0 ? all : 0) / n;
+    s.p = sqrt(s.p);
+    s.q = sqrt(s.q);
     return s;
 }
 
-// Errors of both irradiances, as shares of the sender's radiosity, from what either group's extent does.
+// Errors of irradiance, as shares of the mean radiosity, from what either group's extent does. What is received differs
+// over a group that receives; and over one that sends, what it sends may.
 typedef struct Errors {
     double ofP, ofQ, all;
 } Errors;
 
 static Errors errorsOf(const Pair* pair, const Spread* s)
 {
-    const double areaP = sentArea(pair->p), areaQ = sentArea(pair->q);
-    const bool groupP = pair->p->count > 1, groupQ = pair->q->count > 1;
-    const double p = groupP ? s->p : 0, q = groupQ ? s->q : 0;
-    const double atP = areaQ * (RECEIVED * p + UNEVEN * q), atQ = areaP * (RECEIVED * q + UNEVEN * p);
-    const double noise = groupP || groupQ ? NOISE * (areaP > areaQ ? areaP : areaQ) * s->noise : 0;
-    const double more = atP > atQ ? atP : atQ;
-    return (Errors){.ofP = p * (RECEIVED * areaQ + UNEVEN * areaP),
-                    .ofQ = q * (RECEIVED * areaP + UNEVEN * areaQ),
-                    .all = more > noise ? more : noise};
+    const double p = pair->p->count > 1 ? pair->sent * s->p : 0;
+    const double q = pair->q->count > 1 ? pair->sent * s->q : 0;
+    return (Errors){.ofP = p, .ofQ = q, .all = p + q};
 }
 
 // ---- division
@@ -227,61 +213,54 @@ static void keep(const Pair* pair, double kernel)
     pair->answer->kernel = (float)(kernel * area < 1 ? kernel : 1 / area); // no form factor is above 1 (X095)
 }
 
+// The share of its kernel that rays see. The first pairs of points are tested: each point once, then each once more.
+static double seenShare(const Pair* pair, const vplLinkPoints* p, const vplLinkPoints* q,
+                        const vplLinkKernel* kernel)
+{
+    return vplSeeShare(pair->sides, p, q, kernel, pair->def->samples, &pair->answer->rays);
+}
+
 static void measureSides(const Pair* pair)
 {
-    const int n = pair->def->samples;
-    float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS];
+    vplLinkKernel kernel;
     vplLinkPoints p, q;
     samplePair(pair, 1, &p, &q);
-    vplPairPoints(pair->sides, &p, &q, n, kernel);
-    const double open = spreadOf(kernel, n).mean;
-    if (!(open > 0)) {
-        return;
-    }
-    pair->answer->rays = vplShadowPairs(pair->sides, &p, &q, n, kernel);
-    const double seen = spreadOf(kernel, n).mean;
-    keep(pair, isNear(pair) ? exactMean(pair) * (seen / open) : seen);
+    vplPairPoints(pair->sides, &p, &q, &kernel);
+    const double open = spreadOf(&kernel).mean, seen = seenShare(pair, &p, &q, &kernel);
+    keep(pair, seen * (open > 0 && isNear(pair) ? exactMean(pair) : open));
 }
 
 // By points and rays.
-static void measure(const Pair* pair, double larger, double bound)
+static void measure(const Pair* pair, double bound)
 {
     vplLinkAnswer* answer = pair->answer;
     const double allowed = pair->def->error;
-    const int n = pair->def->samples;
-    float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS];
+    vplLinkKernel kernel;
     vplLinkPoints p, q;
     samplePair(pair, 0, &p, &q);
-    vplPairPoints(pair->sides, &p, &q, n, kernel);
-    const Spread open = spreadOf(kernel, n);
-    const Errors before = errorsOf(pair, &open);
-    const double peak = PEAK * (bound - larger * open.mean);
-    const bool rough = before.all > allowed || peak > allowed;
+    vplPairPoints(pair->sides, &p, &q, &kernel);
+    const Spread open = spreadOf(&kernel);
+    const Errors errors = errorsOf(pair, &open);
+    const bool rough = errors.all > allowed || PEAK * (bound - pair->sent * open.mean) > allowed;
     if (!(open.mean > 0)) {
         answer->verdict = bound <= allowed ? VPL_LINK_NONE : divideLarger(pair);
         return;
     }
     if (answer->seen && rough) {
-        answer->verdict = before.all > allowed ? divideWorse(pair, &before) : divideLarger(pair);
-        return;
-    }
-    // Others than those that said it is smooth: from these, links that miss a peak would be kept, and light be lost.
-    samplePair(pair, 1, &p, &q);
-    vplPairPoints(pair->sides, &p, &q, n, kernel);
-    answer->rays = vplShadowPairs(pair->sides, &p, &q, n, kernel);
-    const Spread seen = spreadOf(kernel, n);
-    answer->seen = seen.mean > 0;
-    if (!answer->seen) {
-        answer->verdict = larger * open.mean <= HIDDEN * allowed ? VPL_LINK_NONE : divideLarger(pair);
-        return;
-    }
-    const Errors errors = errorsOf(pair, &seen);
-    if (errors.all > allowed) {
         answer->verdict = divideWorse(pair, &errors);
-    } else if (rough) {
-        answer->verdict = divideLarger(pair);
+        return;
+    }
+    // Others than those that said it is smooth: by these, links that miss a peak would be kept, and light be lost.
+    samplePair(pair, 1, &p, &q);
+    vplPairPoints(pair->sides, &p, &q, &kernel);
+    const double mean = spreadOf(&kernel).mean, share = seenShare(pair, &p, &q, &kernel);
+    answer->seen = share > 0;
+    if (!answer->seen && pair->sent * open.mean <= HIDDEN * allowed) {
+        answer->verdict = VPL_LINK_NONE;
+    } else if (rough || pair->sent * mean * sqrt(share * (1 - share)) > allowed) {
+        answer->verdict = divideWorse(pair, &errors);
     } else {
-        keep(pair, seen.mean);
+        keep(pair, mean * share);
     }
 }
 
@@ -289,31 +268,30 @@ vplLinkAnswer vplJudgePair(const vplPatchSides* sides, const struct vplLinkTree*
                            const vplLinkPair* pair)
 {
     vplLinkAnswer answer = {.verdict = VPL_LINK_NONE, .seen = pair->seen};
-    const Pair work = {.sides = sides,
-                       .tree = tree,
-                       .def = def,
-                       .ids = pair,
-                       .p = &tree->nodes[pair->p],
-                       .q = &tree->nodes[pair->q],
-                       .answer = &answer};
+    Pair work = {.sides = sides,
+                 .tree = tree,
+                 .def = def,
+                 .ids = pair,
+                 .p = &tree->nodes[pair->p],
+                 .q = &tree->nodes[pair->q],
+                 .answer = &answer};
+    work.sent = fmax(sentArea(work.p), sentArea(work.q));
     if (isBehind(&work, work.p, work.q) || isBehind(&work, work.q, work.p)) {
         return answer;
     }
-    const double larger = fmax(sentArea(work.p), sentArea(work.q));
-    const double bound = factorBound(&work, larger);
-    const bool leaves = work.p->count == 1 && work.q->count == 1;
+    const double bound = factorBound(&work);
     const bool turned = work.p->cosSpread < TURNED || work.q->cosSpread < TURNED;
     if (!(bound > 0)) {
         return answer;
     }
-    if (leaves) {
+    if (work.p->count == 1 && work.q->count == 1) {
         measureSides(&work);
     } else if (isinf(bound)) {
         answer.verdict = divideLarger(&work);
     } else if (turned && bound > TINY * def->error) {
         answer.verdict = divideTurned(&work);
     } else {
-        measure(&work, larger, bound);
+        measure(&work, bound);
     }
     return answer;
 }

@@ -12,14 +12,11 @@
 
 #include <string.h>
 
+enum { LEAST_POINTS = 4 }; // 16 pairs: one block of lanes
+
 enum { STREAM = 0x4c00 }; // of random numbers: four per point
 
 VPL_KERNEL_TABLE(pairKernels, vplPairKernelFcn, vplPairKernel);
-
-vplPairKernelFcn* vplGetPairKernel(vplIsa isa)
-{
-    return pairKernels[isa];
-}
 
 // ---- points
 
@@ -38,8 +35,7 @@ static int findSide(const struct vplLinkTree* tree, const vplLinkNode* node, dou
     return low;
 }
 
-// The k-th open cell.
-static int openCell(const vplPatchSide* side, int k)
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 {
     unsigned open = side->open;
     for (; k > 0; k--) {
@@ -55,18 +51,23 @@ void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, c
     const double from = tree->areaUpTo[n->first], to = tree->areaUpTo[n->first + n->count];
     const uint64_t index = stream & 1 ? (uint64_t)(uint32_t)other << 32 | (uint32_t)node
                                       : (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
-    for (int k = 0; k < def->samples; k++) {
+    out->count = LEAST_POINTS;
+    while (out->count * out->count < def->samples) {
+        out->count++;
+    }
+    for (int k = 0; k < out->count; k++) {
         const vplRandom4 random =
             vplRandomAt(def->seed, (uint32_t)STREAM + 4 * (uint32_t)k + (uint32_t)stream, index);
-        const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / def->samples);
+        const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / out->count);
         const int place = findSide(tree, n, target);
         const vplPatchSide* side = &sides->sides[tree->order[place]];
         const double into = (target - tree->areaUpTo[place]) / (double)side->area;
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
         out->side[k] = side;
-        out->at[k] = vplPatchSide_SampleCell(side, openCell(side, cell < cells ? cell : cells - 1),
-                                             vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+        out->at[k] =
+            vplPatchSide_SampleCell(side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
+                                    vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
     }
 }
 
@@ -79,31 +80,32 @@ static void setLane(float to[3][VPL_SIDE_LANES], int lane, vplVec3 v)
     to[2][lane] = v.z;
 }
 
-void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q, int count,
-                   float kernelOut[VPL_LINK_POINTS][VPL_LINK_POINTS])
+void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q,
+                   vplLinkKernel* out)
 {
-    vplPairKernelFcn* find = vplGetPairKernel(sides->context->isa);
-    for (int first = 0; first < count * count; first += VPL_SIDE_LANES) {
+    vplPairKernelFcn* find = pairKernels[sides->context->isa];
+    const int n = p->count;
+    out->count = n;
+    for (int first = 0; first < n * n; first += VPL_SIDE_LANES) {
         vplPointPairs pairs;
         float kernel[VPL_SIDE_LANES];
         for (int l = 0; l < VPL_SIDE_LANES; l++) {
-            const int at = first + l < count * count ? first + l : count * count - 1;
-            const int i = at / count, k = at % count;
+            const int at = first + l < n * n ? first + l : n * n - 1, i = at / n, k = at % n;
             setLane(pairs.x, l, p->at[i]);
             setLane(pairs.nx, l, p->side[i]->normal);
             setLane(pairs.y, l, q->at[k]);
             setLane(pairs.ny, l, q->side[k]->normal);
         }
         find(&pairs, kernel);
-        for (int l = 0; l < VPL_SIDE_LANES && first + l < count * count; l++) {
-            kernelOut[(first + l) / count][(first + l) % count] = kernel[l];
+        for (int l = 0; l < VPL_SIDE_LANES && first + l < n * n; l++) {
+            out->of[(first + l) / n][(first + l) % n] = kernel[l];
         }
     }
 }
 
 // ---- rays
 
-static vplHit hitOf(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
 {
     const vplPatches* patches = sides->patches;
     const vplGeometry* g = patches->geometry;
@@ -115,29 +117,31 @@ static vplHit hitOf(const vplPatchSides* sides, const vplPatchSide* side, vplVec
                     .normal = g->normals[triangle]};
 }
 
-int vplShadowPairs(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q, int count,
-                   float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS])
+double vplSeeShare(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q,
+                   const vplLinkKernel* kernel, int samples, int* rays)
 {
     const vplGeometry* g = sides->patches->geometry;
-    int rays = 0;
-    for (int first = 0; first < count * count; first += VPL_RAY_PACKET) {
+    const int n = kernel->count;
+    double open = 0, seen = 0;
+    for (int first = 0; first < samples; first += VPL_RAY_PACKET) {
         vplRayPacket packet;
         float amount[VPL_RAY_PACKET];
         packet.active = 0;
-        for (int l = 0; l < VPL_RAY_PACKET && first + l < count * count; l++) {
-            const int i = (first + l) / count, k = (first + l) % count;
-            amount[l] = kernel[i][k];
+        for (int l = 0; l < VPL_RAY_PACKET; l++) {
+            const int i = (first + l) % n, k = (i + (first + l) / n) % n;
+            amount[l] = first + l < samples ? kernel->of[i][k] : 0;
+            open += (double)amount[l];
             if (amount[l] > 0) {
-                const vplHit start = hitOf(sides, p->side[i], p->at[i]);
+                const vplHit start = vplPatchSide_HitAt(sides, p->side[i], p->at[i]);
                 const vplRay ray =
                     vplGeometry_Leave(g, &start, vplWayToLight(q->at[k], q->side[k]->normal, p->at[i]));
                 vplRayPacket_Set(&packet, l, &ray);
             }
         }
-        rays += vplGeometry_Darken(g, &packet, 1, amount);
-        for (int l = 0; l < VPL_RAY_PACKET && first + l < count * count; l++) {
-            kernel[(first + l) / count][(first + l) % count] = amount[l];
+        *rays += vplGeometry_Darken(g, &packet, 1, amount);
+        for (int l = 0; l < VPL_RAY_PACKET; l++) {
+            seen += (double)amount[l];
         }
     }
-    return rays;
+    return open > 0 ? seen / open : 0;
 }

@@ -6,21 +6,34 @@
 #include "radiosity/links.h"
 
 typedef struct vplLinkPoints {
+    int count;
     vplVec3 at[VPL_LINK_POINTS];
     const vplPatchSide* side[VPL_LINK_POINTS];
 } vplLinkPoints;
 
-// def->samples points on the open cells of a node, one in each of as many parts of equal area. Random numbers are those
+// Points on the open cells of a node, one in each of as many parts of equal area: at least 4, and enough for def->samples pairs. Random numbers are those
 // of the pair; `stream` tells draws apart, even for the first of the pair and odd for the second.
 void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
                    int node, int other, int stream, vplLinkPoints* pointsOut);
 
-// kernelOut[i][k] between point i of p and k of q, with nothing between them.
-void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q, int count,
-                   float kernelOut[VPL_LINK_POINTS][VPL_LINK_POINTS]);
+// The k-th open cell.
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
 
-// Sets to 0 what meets something. Returns how many rays were cast.
-int vplShadowPairs(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q, int count,
-                   float kernel[VPL_LINK_POINTS][VPL_LINK_POINTS]);
+// Where rays leave a side.
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
+
+// cos cos / (pi r^2) between point i of one node and k of another, with nothing between them, 1/m^2.
+typedef struct vplLinkKernel {
+    int count; // points on either
+    float of[VPL_LINK_POINTS][VPL_LINK_POINTS];
+} vplLinkKernel;
+
+void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q,
+                   vplLinkKernel* kernelOut);
+
+// The share of the kernel that rays see, by `samples` pairs of points: (0, 0), (1, 1), ..., then (0, 1), (1, 2), ....
+// Adds how many rays it cast.
+double vplSeeShare(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q,
+                   const vplLinkKernel* kernel, int samples, int* rays);
 
 #endif

@@ -98,7 +98,8 @@ static vplResult refineAll(Refinement* r, vplLinkPair* scratch, vplLinkList* lis
         r->count = r->pairCount < BATCH ? r->pairCount : BATCH;
         r->first = r->pairCount - r->count;
         result = vplParallelForProgress(r->sides->context, (int)((r->count + TASK - 1) / TASK), judgeTask, r,
-                                        r->def->progress, r->def->progressUser, done, done);
+                                        r->def->progress, r->def->progressUser, VPL_LINKS_SHARE * done,
+                                        VPL_LINKS_SHARE * done);
         if (result == VPL_SUCCESS) {
             result = settle(r, scratch, list, &done);
         }
