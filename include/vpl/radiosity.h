@@ -135,10 +135,11 @@ typedef struct vplLinkDef {
     double
         error; // links are divided until the error of what they carry is below this share of what their receiver
                // gets of all, (0, 1]; default 0.01
-    int samples;        // pairs of points with a shadow ray per link, [1, 1024]; default 4
-    vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL: 1 for sides from which all of 32 rays meet sides, others
-                        // clamped; links err by some percent, and what is clamped alone grows darker by that
-    uint64_t seed;      // default 0
+    int samples; // pairs of points with a shadow ray per link, [1, 1024]; default 4
+    vplRowSums
+        rowSums;   // default VPL_ROW_SUMS_USUAL: 1 for sides from which all of 32 rays meet sides, others
+                   // clamped; links err by some percent, and what is clamped alone grows darker by that
+    uint64_t seed; // default 0
     vplProgressFcn* progress;
     void* progressUser;
     uint32_t cookie; // set by vplDefaultLinkDef
@@ -179,6 +180,8 @@ typedef struct vplSolveDef {
     int iterations;   // sweeps, at most, [0, VPL_MAX_SWEEPS]; default 100
     double residual;  // ends when the largest change of a sweep is below this share of the largest radiosity,
                       // [0, 1]; default 1e-4. 0: only where nothing changes, and without a warning
+    bool
+        relaxes; // more sweeps follow in the next frame: to end before `residual` is no warning; default false
     bool spectrum; // find the stats' spectral radius and sums of rows, which costs some ten sweeps: for light
                    // that moves, once; default true
     vplProgressFcn* progress;
@@ -194,7 +197,7 @@ typedef struct vplSolveStats {
     double residual; // as above, of the last sweep; 0 where there was none
     double
         spectralRadius; // of rho F, an estimate from below: errors shrink by this factor in a sweep of Jacobi's; 1
-        // and more: there is no solution; 0: no light is exchanged, or vplSolveDef.spectrum is off
+    // and more: there is no solution; 0: no light is exchanged, or vplSolveDef.spectrum is off
     double rowSumMin, rowSumMean, rowSumMax; // of F, as used; the mean weighted by area
 } vplSolveStats;
 
