@@ -401,6 +401,81 @@ static void WrongValuesAreRefused(void** state)
     closeTestContext(context);
 }
 
+// How far what is interpolated lies from the value of the sides on which it does, on the mean over triangles' area.
+static double missingOf(const vplPatchMesh* m, const vplRgb* values, const vplRgb* corners)
+{
+    double* sums = calloc(2 * (size_t)m->sides->count, sizeof *sums);
+    double missing = 0, all = 0;
+    for (int t = 0; t < m->triangleCount; t++) {
+        const int side = m->sides->ofPatch[2 * m->patchOf[t]];
+        for (int k = 0; k < 3 && side >= 0; k++) {
+            sums[2 * side] += triangleArea(m, t) / 3 * (double)corners[2 * m->indices[3 * t + k]].r;
+            sums[2 * side + 1] += triangleArea(m, t) / 3;
+        }
+    }
+    for (int i = 0; i < m->sides->count; i++) {
+        missing += fabs(sums[2 * i] - sums[2 * i + 1] * (double)values[i].r);
+        all += sums[2 * i + 1];
+    }
+    free(sums);
+    return missing / all;
+}
+
+static void SharpeningShowsEachPatchItsOwnLight(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    vplPatchMesh* m = unevenMesh(context, true, true, 6, 3, frontsOpen);
+    vplRgb* values = constantValues(m, (vplRgb){0, 0.3f, 0});
+    for (int i = 0; i < m->sides->count; i++) {
+        values[i].r = 1 + 0.5f * (float)uniformAt(7, (uint64_t)i);
+    }
+    double missing[3];
+    for (int k = 0; k < 3; k++) {
+        vplRgb* out = interpolated(m, VPL_VERTEX_WEIGHT_ANGLE, values);
+        assert_int_equal(vplPatchMesh_Sharpen(m, VPL_VERTEX_WEIGHT_ANGLE, values, 4 * k * k, out),
+                         VPL_SUCCESS);
+        missing[k] = missingOf(m, values, out);
+        for (int v = 0; v < m->vertexCount; v++) {
+            assertNear((double)out[2 * v].g, 0.3, 1e-6, "where all is the same", v);
+            assert_true(out[2 * v].r > 0 && out[2 * v].r < 3);
+        }
+        free(out);
+    }
+    assert_true(missing[1] < 0.7 * missing[0] && missing[2] < 0.8 * missing[1]);
+    free(values);
+    closeMesh(m);
+    closeTestContext(context);
+}
+
+// A patch of which a part only has light keeps its corners: its value is that part's. Nothing falls below 0.
+static void SharpeningLeavesPartsAloneAndNothingIsNegative(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(2);
+    for (int part = 0; part < 2; part++) {
+        vplPatchMesh* m = unevenMesh(context, true, true, 6, 3, part ? diceOpen : frontsOpen);
+        vplRgb* values = constantValues(m, (vplRgb){0, 0, 0});
+        for (int i = 0; i < m->sides->count; i++) {
+            values[i].r = i % 7 == 0 ? 100 : 0;
+        }
+        vplRgb *means = interpolated(m, VPL_VERTEX_WEIGHT_ANGLE, values),
+               *out = interpolated(m, VPL_VERTEX_WEIGHT_ANGLE, values);
+        assert_int_equal(vplPatchMesh_Sharpen(m, VPL_VERTEX_WEIGHT_ANGLE, values, 9, out), VPL_SUCCESS);
+        int changed = 0;
+        for (int i = 0; i < 2 * m->vertexCount; i++) {
+            assert_true(out[i].r >= 0);
+            changed += out[i].r != means[i].r;
+        }
+        assert_true(part ? changed == 0 : changed > 0);
+        free(means);
+        free(out);
+        free(values);
+        closeMesh(m);
+    }
+    closeTestContext(context);
+}
+
 static uint64_t hashOfMesh(vplContext* context)
 {
     if (context == NULL) {
@@ -436,4 +511,6 @@ TEST_SUITE(patchMesh, cmocka_unit_test(HangingVerticesAreThoseOfTheTable),
            cmocka_unit_test(CoplanarObjectsShareAndWallsDoNot), cmocka_unit_test(EqualValuesStayTheSameBits),
            cmocka_unit_test(VerticesAreMeansByAngleAreaOrCount),
            cmocka_unit_test(CoveredPatchesDarkenNothing), cmocka_unit_test(NoCornerOfALitSideIsBlack),
+           cmocka_unit_test(SharpeningShowsEachPatchItsOwnLight),
+           cmocka_unit_test(SharpeningLeavesPartsAloneAndNothingIsNegative),
            cmocka_unit_test(WrongValuesAreRefused), cmocka_unit_test(MeshesAreTheSameBitsEverywhere));

@@ -261,6 +261,10 @@ void vplPatchMesh_Destroy(vplPatchMesh* mesh);
 vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                    vplRgb* vertexValuesOut);
 
+// Moves such means, not below 0, so that what interpolation shows of each side comes nearer to its value, `rounds` times.
+vplResult vplPatchMesh_Sharpen(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values, int rounds,
+                               vplRgb* vertexValues);
+
 // What is drawn on the patches.
 typedef struct vplPatchDraw {
     const vplPatchMesh* mesh;

@@ -126,6 +126,10 @@ const Option OPTIONS[] = {
      "gouraud|none", "light over a patch: gouraud (default): linear between its corners, or none; radiosity"},
     {"--vertex-weight", "W", RADIOSITY, readChoice, AT(render.vertexWeight), 0, 0, "angle|area|equal",
      "of patches that meet at a corner: angle (default), area or, as in the document, equal; radiosity"},
+    {"--sharpen", "N", RADIOSITY, readInt, AT(render.sharpen), 0, 64, NULL,
+     "rounds in which corners are moved until patches show their light again, which means at corners smooth "
+     "out; "
+     "radiosity; default 4; 0: as in the document"},
     {"--coherence", "C", RENDER, readChoice, AT(render.coherence), 0, 0, "off|on",
      "on (default): frames of a sequence keep sample patterns, clusters and radiosities of the frame before; "
      "off: "

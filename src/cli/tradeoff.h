@@ -7,7 +7,7 @@
 #include "cli/tradeoff_math.h"
 #include "cli/tradeoff_text.h"
 
-enum { MAX_SETTINGS = 256, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
+enum { MAX_SETTINGS = 512, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
 
 // What is told apart by colour: methods that converge, or do not, in ways of their own.
 typedef enum Family {

@@ -71,6 +71,7 @@ const Sweep SWEEPS[] = {
     {"patch-light", "--method radiosity --patch-light", "1 4 16", "Radiosity: samples of lights"},
     {"iterations", "--method radiosity --iterations", "1 2 5 10", "Radiosity: sweeps"},
     {"interpolation", "--method radiosity --interpolation", "gouraud none", "Radiosity: interpolation"},
+    {"sharpen", "--method radiosity --sharpen", "0 1 2 4 8", "Radiosity: corners against smoothing"},
     {"vertex-weight", "--method radiosity --vertex-weight", "angle area equal",
      "Radiosity: weights at corners"},
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},

@@ -37,6 +37,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.formSamples = 4;
     o.linkError = 0.01;
     o.iterations = 100;
+    o.sharpen = 4;
     o.residual = 1e-4;
     o.cookie = OPTIONS_COOKIE;
     return o;
@@ -105,6 +106,7 @@ static vplResult checkInts(const vplContext* context, const vplRenderOptions* o,
         {"solver", (int)o->solver, 0, VPL_SOLVER_SHOOTING},
         {"iterations", o->iterations, 0, VPL_MAX_SWEEPS},
         {"interpolation", (int)o->interpolation, 0, VPL_INTERPOLATION_NONE},
+        {"sharpen", o->sharpen, 0, 64},
         {"vertexWeight", (int)o->vertexWeight, 0, VPL_VERTEX_WEIGHT_EQUAL},
     };
     for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) {

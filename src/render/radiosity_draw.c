@@ -88,6 +88,10 @@ static vplResult writeMesh(vplJob* job, const vplRadiosityState* s, float scale,
         result = vplPatchMesh_Interpolate(s->mesh, job->options.vertexWeight, all, vertices);
     }
     if (result == VPL_SUCCESS) {
+        result =
+            vplPatchMesh_Sharpen(s->mesh, job->options.vertexWeight, all, job->options.sharpen, vertices);
+    }
+    if (result == VPL_SUCCESS) {
         result = vplPatchMesh_WritePly(s->mesh, vertices, scale, path);
     }
     vplFree(job->context, all);

@@ -249,6 +249,10 @@ vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* s)
     if (result == VPL_SUCCESS) {
         result = vplPatchMesh_Interpolate(s->mesh, job->options.vertexWeight, s->irradiance, s->corners);
     }
+    if (result == VPL_SUCCESS) {
+        result = vplPatchMesh_Sharpen(s->mesh, job->options.vertexWeight, s->irradiance, job->options.sharpen,
+                                      s->corners);
+    }
     vplJob_EndStage(job, "corners");
     job->stats.solve = s->solve;
     return result;

@@ -18,7 +18,7 @@ for rounds in 2 3 4 5 6; do
         for light in none gouraud; do
             words="--method radiosity --patch-size 0.45 --subdivisions $rounds --form-factors $estimator \
                 --interpolation $light --iterations 100 --residual 0"
-            test $estimator = monte-carlo || words="$words --vertex-weight equal"
+            test $estimator = monte-carlo || words="$words --vertex-weight equal --sharpen 0"
             # shellcheck disable=SC2086
             $render -o "$out/indirect.pfm" $words --show indirect --stats "$out/stats.json"
             patches=$(sed -n 's/.*"patches": \([0-9]*\).*/\1/p' "$out/stats.json")
