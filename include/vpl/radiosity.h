@@ -49,8 +49,10 @@ typedef struct vplPatchSidesDef {
 vplPatchSidesDef vplDefaultPatchSidesDef(void);
 
 // The sides that light can reach, and where on them: found by particles from everything that emits, from the eyes, and
-// by rays from cells that no particle met. The inside of a box, the floor under it and a room without a lamp take no
-// part, and do not darken what is beside them (X101). Read only.
+// by rays from sides that no particle met to others that are reached. The inside of a box, the floor under it and a room
+// without a lamp take no part, and do not darken what is beside them (X101). A cell is open where light reaches half of
+// it; a patch of less than 1/32 of the mean area is one cell. Of triangles in one place the first has the light. Without
+// light, what the eyes see, and what is seen from there, is all that takes part. Read only.
 typedef struct vplPatchSides {
     const vplPatches* patches;
     const vplPatchSide* sides; // in the order of patches, front before back

@@ -17,11 +17,19 @@ vplPatchWorthDef vplDefaultPatchWorthDef(void)
     return (vplPatchWorthDef){.cookie = WORTH_COOKIE};
 }
 
-// Weights of squares of relative errors.
-static const double GRADIENT = 0.1;
-static const double CURVE = 1;
-static const double SHADOW = 0.02;
-static const double FLOOR = 0.05; // of the mean irradiance: what is darker is as good as that dark
+// Weights of squares of relative errors. The bend, how far the mean of the interpolated corners is from the patch's own
+// light, is what bisecting takes away; but it is small across many an edge of light, which only the gradient sees. At
+// 2000 patches of cornell-area the squared error of the picture is 0.00038 by both, 0.00067 by the bend alone, 0.00054 by
+// the gradient alone (bench/radiosity_error); between 0.02 and 0.15 it differs by less than a tenth.
+static const double GRADIENT = 0.05, BEND = 1;
+
+// A shadow of direct light is drawn by pixels, and errs only in what the patch reflects: from 0 to 0.02 the error of room
+// at 1000 to 4000 patches is the same to 0.07, 0.1 makes 1.3 times as much of it at 1000.
+static const double SHADOW = 0.01;
+
+// Of the mean irradiance: relative errors of what is darker than this share are of no more weight. From 0.05 to 0.2 the
+// same error, at 0.5 a tenth more.
+static const double FLOOR = 0.1;
 
 // What the corners of one side of a patch say.
 typedef struct Corners {
@@ -58,7 +66,7 @@ static double errorOf(const vplPatchWorthDef* def, const vplPatchSide* side, int
         const double range = c->high[channel] - c->low[channel],
                      bend = c->sum[channel] / c->area - values[channel];
         const double scale = values[channel] + floor;
-        error += (GRADIENT * range * range + CURVE * bend * bend) / (scale * scale);
+        error += (GRADIENT * range * range + BEND * bend * bend) / (scale * scale);
     }
     if (def->directSpread != NULL) {
         const double spread = (double)def->directSpread[index] * vplRgbMean(side->reflectance),
