@@ -396,7 +396,7 @@ static void RoomsWithoutLightTakeNoPart(void** state)
 }
 
 // X101. Corners of floor patches under the box have no light; nothing near it may be dark for that. Compared are flat
-// patches beside the box, of which none is darker than half of what paths say.
+// patches beside the box, of which none is much darker than paths say.
 static void NothingIsDarkBecauseItTouchesABox(void** state)
 {
     (void)state;
@@ -412,14 +412,16 @@ static void NothingIsDarkBecauseItTouchesABox(void** state)
         o.vertexWeight = equal ? VPL_VERTEX_WEIGHT_EQUAL : VPL_VERTEX_WEIGHT_ANGLE;
         o.formFactors = equal ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
         vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
+        const double energy = compare(image, truth).energyRatio; // the document's is too bright as a whole
         least[equal] = 10;
         for (int i = 0; i < 40 * 30; i++) {
-            least[equal] = fmin(least[equal], (double)image->pixels[3 * i] / (double)truth->pixels[3 * i]);
+            const double ratio = (double)image->pixels[3 * i] / (double)truth->pixels[3 * i];
+            least[equal] = fmin(least[equal], ratio / energy);
         }
         vplImage_Destroy(image);
     }
-    printf("least %g %g\n",least[0],least[1]);assert_true(least[0] > 0.5);
-    assert_true(least[1] < least[0]); // the document's way
+    assert_true(least[0] > 0.8); // 0.9
+    assert_true(least[1] < 0.7); // its figure 7
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
     closeTestContext(context);

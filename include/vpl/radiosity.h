@@ -37,7 +37,9 @@ typedef struct vplPatchSidesDef {
     const vplVec3*
         eyes; // places that are looked from: what they see counts as reached; NULL where eyeCount is 0
     int eyeCount;
-    bool whole;    // cells of sides that light reaches are all open, as the document has it; default false
+    bool
+        whole; // as the document has it: all of a triangle's side takes part, cells and patches under boxes, too,
+               // where light reaches some of it; default false
     uint64_t seed; // default 0
     vplProgressFcn* progress;
     void* progressUser;
@@ -133,10 +135,11 @@ typedef struct vplLinkDef {
     double
         error; // links are divided until the error of what they carry is below this share of what their receiver
                // gets of all, (0, 1]; default 0.01
-    int samples;        // pairs of points with a shadow ray per link, [1, 1024]; default 4
-    vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL: 1 for sides from which all of 32 rays meet sides, others
-                        // clamped; links err by some percent, and what is clamped alone grows darker by that
-    uint64_t seed;      // default 0
+    int samples; // pairs of points with a shadow ray per link, [1, 1024]; default 4
+    vplRowSums
+        rowSums;   // default VPL_ROW_SUMS_USUAL: 1 for sides from which all of 32 rays meet sides, others
+                   // clamped; links err by some percent, and what is clamped alone grows darker by that
+    uint64_t seed; // default 0
     vplProgressFcn* progress;
     void* progressUser;
     uint32_t cookie; // set by vplDefaultLinkDef
@@ -149,7 +152,8 @@ vplLinkDef vplDefaultLinkDef(void);
 typedef struct vplLinks {
     int sideCount, groupCount;
     int64_t linkCount, rays;
-    const float* rowSums; // of each side: the sum of its form factors before `rowSums` of the def changed them
+    const float*
+        rowSums; // of each side: the sum of its form factors before `rowSums` of the def changed them
     struct vplLinkTree* tree;
     vplContext* context;
 } vplLinks;
@@ -176,8 +180,10 @@ typedef struct vplSolveDef {
     int iterations;   // sweeps, at most, [0, VPL_MAX_SWEEPS]; default 100
     double residual;  // ends when the largest change of a sweep is below this share of the largest radiosity,
                       // [0, 1]; default 1e-4. 0: only where nothing changes, and without a warning
-    bool spectrum;    // find the stats' spectral radius and sums of rows, which costs some ten sweeps: for light
-                      // that moves, once; default true
+    bool
+        relaxes; // more sweeps follow in the next frame: to end before `residual` is no warning; default false
+    bool spectrum; // find the stats' spectral radius and sums of rows, which costs some ten sweeps: for light
+                   // that moves, once; default true
     vplProgressFcn* progress;
     void* progressUser;
     uint32_t cookie; // set by vplDefaultSolveDef
@@ -191,7 +197,7 @@ typedef struct vplSolveStats {
     double residual; // as above, of the last sweep; 0 where there was none
     double
         spectralRadius; // of rho F, an estimate from below: errors shrink by this factor in a sweep of Jacobi's; 1
-                        // and more: there is no solution; 0: no light is exchanged, or vplSolveDef.spectrum is off
+    // and more: there is no solution; 0: no light is exchanged, or vplSolveDef.spectrum is off
     double rowSumMin, rowSumMean, rowSumMax; // of F, as used; the mean weighted by area
 } vplSolveStats;
 

@@ -152,6 +152,23 @@ static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, un
     return side;
 }
 
+// As the document has it: where light reaches some of a triangle's side, all of that is there.
+static void openWhole(vplReach* reach)
+{
+    const vplPatches* p = reach->patches;
+    for (int first = 0, end; first < p->patchCount; first = end) {
+        const int triangle = p->nodes[p->patches[first]].triangle;
+        bool reached[2] = {false, false};
+        for (end = first; end < p->patchCount && p->nodes[p->patches[end]].triangle == triangle; end++) {
+            reached[0] = reached[0] || reach->open[2 * end] != 0;
+            reached[1] = reached[1] || reach->open[2 * end + 1] != 0;
+        }
+        for (int i = 2 * first; i < 2 * end; i++) {
+            reach->open[i] = reached[i & 1] ? 0xffff : 0;
+        }
+    }
+}
+
 static vplResult listSides(const vplReach* reach, vplPatchSides* sides)
 {
     const int patchCount = reach->patches->patchCount;
@@ -169,8 +186,7 @@ static vplResult listSides(const vplReach* reach, vplPatchSides* sides)
     for (int i = 0; i < 2 * patchCount; i++) {
         ofPatch[i] = -1;
         if (reach->open[i] != 0) {
-            list[sides->count] =
-                makeSide(reach->patches, i / 2, i & 1, reach->def->whole ? 0xffff : reach->open[i]);
+            list[sides->count] = makeSide(reach->patches, i / 2, i & 1, reach->open[i]);
             ofPatch[i] = sides->count++;
         }
     }
@@ -194,6 +210,9 @@ vplResult vplPatchSides_Create(const vplPatches* patches, const vplPatchSidesDef
     if (result == VPL_SUCCESS) {
         findHeights(&reach);
         result = findOpen(&reach);
+    }
+    if (result == VPL_SUCCESS && def->whole) {
+        openWhole(&reach);
     }
     if (result == VPL_SUCCESS) {
         result = listSides(&reach, sides);

@@ -136,7 +136,7 @@ static vplResult sweep(vplSolve* s, vplPlanes* scratch, Ending* end)
     if (growing > 0 && end->known && end->stats.spectralRadius > DIVERGES) {
         return diverges(s, end->stats.iterations, &end->stats);
     }
-    if (!done && def->iterations > 0 && def->residual > 0) {
+    if (!done && !def->relaxes && def->iterations > 0 && def->residual > 0) {
         vplLog(s->exchange.context, VPL_LOG_WARNING,
                "radiosity ended after %d sweeps with a residual of %.3g, not below %g", end->stats.iterations,
                end->stats.residual, def->residual);

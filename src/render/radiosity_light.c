@@ -147,17 +147,28 @@ static vplTransport transportOf(const vplRadiosityState* s)
     return (vplTransport){s->sides, s->factors, s->links};
 }
 
-static vplResult solve(vplJob* job, vplRadiosityState* s)
+// How fast light dies away is asked once: it depends on form factors alone, which are kept.
+static vplResult solve(vplJob* job, vplRadiosityState* s, bool first)
 {
     const vplRenderOptions* o = &job->options;
     const vplTransport transport = transportOf(s);
+    const vplSolveStats last = s->solve;
     vplSolveDef def = vplDefaultSolveDef();
     def.solver = s->links != NULL ? VPL_SOLVER_JACOBI : o->solver;
     def.iterations = o->iterations;
     def.residual = o->residual;
+    def.spectrum = first;
+    def.relaxes = o->history != NULL;
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
-    return vplSolveRadiosity(&transport, &def, s->source, s->radiosity, &s->solve);
+    vplResult result = vplSolveRadiosity(&transport, &def, s->source, s->radiosity, &s->solve);
+    if (result == VPL_SUCCESS && !first) {
+        s->solve.spectralRadius = last.spectralRadius;
+        s->solve.rowSumMin = last.rowSumMin;
+        s->solve.rowSumMean = last.rowSumMean;
+        s->solve.rowSumMax = last.rowSumMax;
+    }
+    return result;
 }
 
 // What was reflected at least once arrives here; lamps' own light is direct.
@@ -218,7 +229,7 @@ static vplResult findLight(vplJob* job, vplRadiosityState* s, bool first)
     }
     vplJob_BeginStage(job, 0.7);
     if (result == VPL_SUCCESS) {
-        result = solve(job, s);
+        result = solve(job, s, first);
     }
     if (result == VPL_SUCCESS) {
         result = gather(s);
