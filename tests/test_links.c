@@ -231,8 +231,8 @@ static void IrradianceIsThatOfAllPairsToTheErrorAskedFor(void** state)
     vplContext* context = openTestContext(2);
     Room room;
     openRoom(&room, boxInRoom(context), 1000);
-    // Measured: 0.0107 by default; 0.0305 and 0.0058.
-    assert_true(errorOf(&room, vplDefaultLinkDef().error) < 0.02);
+    // Measured: 0.012; 0.032 and 0.0094, with 20 times the links.
+    assert_true(errorOf(&room, vplDefaultLinkDef().error) < 0.016);
     vplLinks_Destroy(room.links);
     const double coarse = errorOf(&room, 0.02);
     const int64_t few = room.links->linkCount;
@@ -264,7 +264,7 @@ static void ALampFlushWithTheCeilingShinesFromWhereItIs(void** state)
     }
     vplRgb *e = gather(&room, NULL, b), *wanted = gather(&room, room.factors, b);
     assert_true(areaMean(&room, wanted) > 0.01);
-    assert_true(difference(&room, e, wanted) < 0.12); // the wall next to it has ten times the mean
+    assert_true(difference(&room, e, wanted) < 0.12); // measured: 0.098, on walls next to it
     free(b);
     free(e);
     free(wanted);
@@ -306,7 +306,7 @@ static void NoLightGoesThroughAWall(void** state)
 
 // ---- cost
 
-static void EightTimesThePatchesTakeFewerThanFourTimesTheLinks(void** state)
+static void EightTimesThePatchesTakeHalfAsManyLinksEach(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(2);
@@ -325,7 +325,8 @@ static void EightTimesThePatchesTakeFewerThanFourTimesTheLinks(void** state)
         assert_true(vplContext_GetBytes(context) - before < 1000 * (size_t)sides[k]);
         closeRoom(&room);
     }
-    assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 4 * rays[0]);
+    // Measured: 3.4 times the links, 3.9 times the rays, 32 of which each side casts itself.
+    assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 5 * rays[0]);
     closeTestContext(context);
 }
 
@@ -492,7 +493,7 @@ TEST_SUITE(links, cmocka_unit_test(AClosedRoomKeepsAllLight), cmocka_unit_test(A
            cmocka_unit_test(IrradianceIsThatOfAllPairsToTheErrorAskedFor),
            cmocka_unit_test(ALampFlushWithTheCeilingShinesFromWhereItIs),
            cmocka_unit_test(NoLightGoesThroughAWall),
-           cmocka_unit_test(EightTimesThePatchesTakeFewerThanFourTimesTheLinks),
+           cmocka_unit_test(EightTimesThePatchesTakeHalfAsManyLinksEach),
            cmocka_unit_test(WhatIsInOnePlaneHasNoLinks), cmocka_unit_test(NoSidesHaveNoLinks),
            cmocka_unit_test(CornersAndScalesAreFinite), cmocka_unit_test(WrongArgumentsAreRefused),
            cmocka_unit_test(CancellingLeavesNothing), cmocka_unit_test(LinksAreTheSameBitsEverywhere));
