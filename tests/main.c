@@ -30,6 +30,7 @@
     X(keller) \
     X(lightcuts) \
     X(lights) \
+    X(links) \
     X(math) \
     X(memory) \
     X(metrics) \

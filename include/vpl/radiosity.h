@@ -136,7 +136,7 @@ double vplTriangleFormFactor(const vplVec3 a[3], const vplVec3 b[3]);
 typedef struct vplLinkDef {
     double
         error; // links are divided until the error of what they carry is below this share of what their receiver
-               // gets of all, (0, 1]; default 0.01
+               // gets of all, (0, 1]; default 0.002
     int samples; // pairs of points with a shadow ray per link, [1, 1024]; default 4
     vplRowSums
         rowSums;   // default VPL_ROW_SUMS_USUAL: 1 for sides from which all of 32 rays meet sides, others

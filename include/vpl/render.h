@@ -200,7 +200,7 @@ typedef struct vplRenderOptions {
     int formSamples;                  // pairs of points per pair of patches, [1, 1024]; default 4
     vplRowSums rowSums;               // default VPL_ROW_SUMS_USUAL
     vplHierarchy hierarchy;           // default VPL_HIERARCHY_AUTO
-    double linkError; // of the hierarchy, as a share of what a patch receives, (0, 1]; default 0.01
+    double linkError; // of the hierarchy, as a share of what a patch receives, (0, 1]; default 0.002
     int patchLightSamples; // points of each patch where emitters' light is found with shadow rays, [0, 16]; 0 (default):
         // 16 for Monte Carlo form factors, for incentres 1: the incentre, as in the document
     vplSolver solver; // default VPL_SOLVER_GAUSS_SEIDEL; links know VPL_SOLVER_JACOBI only, and use it

@@ -111,7 +111,7 @@ const Option OPTIONS[] = {
      "off: form factors of all pairs; on: links between groups of patches; auto (default): by their number; "
      "radiosity"},
     {"--link-error", "E", RADIOSITY, readDouble, AT(render.linkError), 1e-6, 1, NULL,
-     "error of one link as a share of what its receiver gets; radiosity; default 0.01"},
+     "error of one link as a share of what its receiver gets; radiosity; default 0.002"},
     {"--patch-light", "N", RADIOSITY, readInt, AT(render.patchLightSamples), 0, VPL_PATCH_CELLS, NULL,
      "points of a patch at which lights' light is found; default 0: 16, of --form-factors incentre 1, its "
      "centre; radiosity"},

@@ -10,7 +10,7 @@ enum { LINK_COOKIE = 0x56504cb4, MOST_SAMPLES = VPL_LINK_POINTS * VPL_LINK_POINT
 
 vplLinkDef vplDefaultLinkDef(void)
 {
-    return (vplLinkDef){.error = 0.01, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
+    return (vplLinkDef){.error = 0.002, .samples = 4, .rowSums = VPL_ROW_SUMS_USUAL, .cookie = LINK_COOKIE};
 }
 
 static vplResult checkDef(const vplPatchSides* sides, const vplLinkDef* def)

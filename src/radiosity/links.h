@@ -18,10 +18,20 @@ typedef struct vplLinkNode {
     float cosSpread, sinSpread; // of the largest angle between it and a side's normal
 } vplLinkNode;
 
+// Points by which pairs are judged: 16 pairs, one block of lanes.
+enum { VPL_JUDGE_POINTS = 4 };
+
+typedef struct vplNodePoints {
+    vplVec3 at[VPL_JUDGE_POINTS];
+    int side[VPL_JUDGE_POINTS];
+} vplNodePoints;
+
 struct vplLinkTree {
     vplLinkNode* nodes; // the root first; parents before children
     int nodeCount;
-    int* order;       // of the sides, such that those of each node follow each other
+    int* order; // of the sides, such that those of each node follow each other
+    vplNodePoints*
+        points;       // of each node, while links are found; drawn for each pair they took 0.35 of all time
     double* areaUpTo; // of the sides before each in that order; one more than sides
     // What each node receives, links sorted by receiver: irradiance = the sum of factor times the sender's radiosity.
     int64_t* firstOf; // of each node; one more than nodes
@@ -50,7 +60,7 @@ typedef struct vplLinkList {
 } vplLinkList;
 
 // The caller frees links, on failure as well.
-vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
+vplResult vplFindLinks(const vplPatchSides* sides, struct vplLinkTree* tree, const vplLinkDef* def,
                        vplLinkList* list);
 
 // ---- one pair of nodes (links_pair.c)

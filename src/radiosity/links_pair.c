@@ -11,6 +11,7 @@
 #include "radiosity/polygon_factor.h"
 
 #include <math.h>
+#include <string.h>
 
 // Groups whose normals are further from their mean than this are divided, whatever the spread, unless the link is tiny:
 // all their sides would receive the same. 26 degrees.
@@ -49,10 +50,22 @@ static double triangleArea(const vplPatchSide* side)
     return 0.5 * (double)vplLength(vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0])));
 }
 
-static void samplePair(const Pair* pair, int set, vplLinkPoints* p, vplLinkPoints* q)
+static void readPoints(const vplNodePoints* from, vplLinkPoints* to)
 {
-    vplSampleNode(pair->sides, pair->tree, pair->def, pair->ids->p, pair->ids->q, 2 * set, p);
-    vplSampleNode(pair->sides, pair->tree, pair->def, pair->ids->q, pair->ids->p, 2 * set + 1, q);
+    to->count = VPL_JUDGE_POINTS;
+    memcpy(to->at, from->at, sizeof from->at);
+    memcpy(to->side, from->side, sizeof from->side);
+}
+
+// The pair's own points, which measure: of those that judge, those of links that are kept miss peaks, and so light.
+static void drawPoints(const Pair* pair, vplLinkPoints* p, vplLinkPoints* q)
+{
+    int count = VPL_JUDGE_POINTS;
+    while (count * count < pair->def->samples) {
+        count++;
+    }
+    vplSampleNode(pair->sides, pair->tree, pair->def->seed, pair->ids->p, pair->ids->q, count, p);
+    vplSampleNode(pair->sides, pair->tree, pair->def->seed, pair->ids->q, pair->ids->p, count, q);
 }
 
 // ---- bounds
@@ -224,7 +237,7 @@ static void measureSides(const Pair* pair)
 {
     vplLinkKernel kernel;
     vplLinkPoints p, q;
-    samplePair(pair, 1, &p, &q);
+    drawPoints(pair, &p, &q);
     vplPairPoints(pair->sides, &p, &q, &kernel);
     const double open = spreadOf(&kernel).mean, seen = seenShare(pair, &p, &q, &kernel);
     keep(pair, seen * (open > 0 && isNear(pair) ? exactMean(pair) : open));
@@ -237,7 +250,8 @@ static void measure(const Pair* pair, double bound)
     const double allowed = pair->def->error;
     vplLinkKernel kernel;
     vplLinkPoints p, q;
-    samplePair(pair, 0, &p, &q);
+    readPoints(&pair->tree->points[pair->ids->p], &p);
+    readPoints(&pair->tree->points[pair->ids->q], &q);
     vplPairPoints(pair->sides, &p, &q, &kernel);
     const Spread open = spreadOf(&kernel);
     const Errors errors = errorsOf(pair, &open);
@@ -250,8 +264,7 @@ static void measure(const Pair* pair, double bound)
         answer->verdict = divideWorse(pair, &errors);
         return;
     }
-    // Others than those that said it is smooth: by these, links that miss a peak would be kept, and light be lost.
-    samplePair(pair, 1, &p, &q);
+    drawPoints(pair, &p, &q);
     vplPairPoints(pair->sides, &p, &q, &kernel);
     const double mean = spreadOf(&kernel).mean, share = seenShare(pair, &p, &q, &kernel);
     answer->seen = share > 0;

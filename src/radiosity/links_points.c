@@ -12,9 +12,7 @@
 
 #include <string.h>
 
-enum { LEAST_POINTS = 4 }; // 16 pairs: one block of lanes
-
-enum { STREAM = 0x4c00 }; // of random numbers: four per point
+enum { STREAM = 0x4c00 }; // of random numbers: one per point
 
 VPL_KERNEL_TABLE(pairKernels, vplPairKernelFcn, vplPairKernel);
 
@@ -35,8 +33,12 @@ static int findSide(const struct vplLinkTree* tree, const vplLinkNode* node, dou
     return low;
 }
 
+// All are open of most.
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 {
+    if (side->open == (1 << VPL_PATCH_CELLS) - 1) {
+        return k;
+    }
     unsigned open = side->open;
     for (; k > 0; k--) {
         open &= open - 1;
@@ -44,27 +46,22 @@ int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
     return __builtin_ctz(open);
 }
 
-void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
-                   int node, int other, int stream, vplLinkPoints* out)
+void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, uint64_t seed, int node,
+                   int other, int count, vplLinkPoints* out)
 {
     const vplLinkNode* n = &tree->nodes[node];
     const double from = tree->areaUpTo[n->first], to = tree->areaUpTo[n->first + n->count];
-    const uint64_t index = stream & 1 ? (uint64_t)(uint32_t)other << 32 | (uint32_t)node
-                                      : (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
-    out->count = LEAST_POINTS;
-    while (out->count * out->count < def->samples) {
-        out->count++;
-    }
-    for (int k = 0; k < out->count; k++) {
-        const vplRandom4 random =
-            vplRandomAt(def->seed, (uint32_t)STREAM + 4 * (uint32_t)k + (uint32_t)stream, index);
-        const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / out->count);
+    const uint64_t index = (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
+    out->count = count;
+    for (int k = 0; k < count; k++) {
+        const vplRandom4 random = vplRandomAt(seed, STREAM + (uint32_t)k, index);
+        const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / count);
         const int place = findSide(tree, n, target);
         const vplPatchSide* side = &sides->sides[tree->order[place]];
         const double into = (target - tree->areaUpTo[place]) / (double)side->area;
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
-        out->side[k] = side;
+        out->side[k] = tree->order[place];
         out->at[k] =
             vplPatchSide_SampleCell(side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
                                     vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
@@ -92,9 +89,9 @@ void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vpl
         for (int l = 0; l < VPL_SIDE_LANES; l++) {
             const int at = first + l < n * n ? first + l : n * n - 1, i = at / n, k = at % n;
             setLane(pairs.x, l, p->at[i]);
-            setLane(pairs.nx, l, p->side[i]->normal);
+            setLane(pairs.nx, l, sides->sides[p->side[i]].normal);
             setLane(pairs.y, l, q->at[k]);
-            setLane(pairs.ny, l, q->side[k]->normal);
+            setLane(pairs.ny, l, sides->sides[q->side[k]].normal);
         }
         find(&pairs, kernel);
         for (int l = 0; l < VPL_SIDE_LANES && first + l < n * n; l++) {
@@ -132,9 +129,9 @@ double vplSeeShare(const vplPatchSides* sides, const vplLinkPoints* p, const vpl
             amount[l] = first + l < samples ? kernel->of[i][k] : 0;
             open += (double)amount[l];
             if (amount[l] > 0) {
-                const vplHit start = vplPatchSide_HitAt(sides, p->side[i], p->at[i]);
-                const vplRay ray =
-                    vplGeometry_Leave(g, &start, vplWayToLight(q->at[k], q->side[k]->normal, p->at[i]));
+                const vplHit start = vplPatchSide_HitAt(sides, &sides->sides[p->side[i]], p->at[i]);
+                const vplRay ray = vplGeometry_Leave(
+                    g, &start, vplWayToLight(q->at[k], sides->sides[q->side[k]].normal, p->at[i]));
                 vplRayPacket_Set(&packet, l, &ray);
             }
         }

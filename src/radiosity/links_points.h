@@ -8,13 +8,13 @@
 typedef struct vplLinkPoints {
     int count;
     vplVec3 at[VPL_LINK_POINTS];
-    const vplPatchSide* side[VPL_LINK_POINTS];
+    int side[VPL_LINK_POINTS];
 } vplLinkPoints;
 
-// Points on the open cells of a node, one in each of as many parts of equal area: at least 4, and enough for def->samples pairs. Random numbers are those
-// of the pair; `stream` tells draws apart, even for the first of the pair and odd for the second.
-void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
-                   int node, int other, int stream, vplLinkPoints* pointsOut);
+// `count` points on the open cells of a node, one in each of as many parts of equal area. Random numbers are those of
+// the pair of both nodes; node with itself: those by which pairs are judged.
+void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, uint64_t seed, int node,
+                   int other, int count, vplLinkPoints* pointsOut);
 
 // The k-th open cell.
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k);

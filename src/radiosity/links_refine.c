@@ -2,6 +2,7 @@
 // From the root linked to itself down: pairs are divided until a link may stand for each.
 #include "base/context.h"
 #include "radiosity/links.h"
+#include "radiosity/links_points.h"
 
 #include <string.h>
 
@@ -107,21 +108,38 @@ static vplResult refineAll(Refinement* r, vplLinkPair* scratch, vplLinkList* lis
     return result;
 }
 
-vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tree, const vplLinkDef* def,
+static void drawTask(void* data, int task, int worker)
+{
+    (void)worker;
+    const Refinement* r = data;
+    const int end = (task + 1) * TASK < r->tree->nodeCount ? (task + 1) * TASK : r->tree->nodeCount;
+    for (int node = task * TASK; node < end; node++) {
+        vplLinkPoints points;
+        vplSampleNode(r->sides, r->tree, r->def->seed, node, node, VPL_JUDGE_POINTS, &points);
+        memcpy(r->tree->points[node].at, points.at, sizeof r->tree->points[node].at);
+        memcpy(r->tree->points[node].side, points.side, sizeof r->tree->points[node].side);
+    }
+}
+
+vplResult vplFindLinks(const vplPatchSides* sides, struct vplLinkTree* tree, const vplLinkDef* def,
                        vplLinkList* list)
 {
     vplContext* context = sides->context;
     Refinement r = {.sides = sides, .tree = tree, .def = def};
     vplLinkPair* scratch = vplAlloc(context, BATCH, sizeof *scratch);
     r.answers = scratch ? vplAlloc(context, BATCH, sizeof *r.answers) : NULL;
+    tree->points = r.answers ? vplAlloc(context, (size_t)tree->nodeCount, sizeof *tree->points) : NULL;
     vplResult result =
-        r.answers ? vplReserve(context, &r.pairs, &r.pairCapacity, 1, sizeof *r.pairs) : VPL_OUT_OF_MEMORY;
+        tree->points ? vplReserve(context, &r.pairs, &r.pairCapacity, 1, sizeof *r.pairs) : VPL_OUT_OF_MEMORY;
     if (result == VPL_SUCCESS && tree->nodeCount > 0) {
+        vplParallelFor(context, (tree->nodeCount + TASK - 1) / TASK, drawTask, &r);
         r.pairs[r.pairCount++] = (vplLinkPair){.p = 0, .q = 0, .seen = false, .weight = 1};
         result = refineAll(&r, scratch, list);
     }
     vplFree(context, scratch);
     vplFree(context, r.answers);
     vplFree(context, r.pairs);
+    vplFree(context, tree->points);
+    tree->points = NULL;
     return result;
 }

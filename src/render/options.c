@@ -35,7 +35,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.patches = 2000;
     o.subdivisions = VPL_MAX_PATCH_ROUNDS;
     o.formSamples = 4;
-    o.linkError = 0.01;
+    o.linkError = vplDefaultLinkDef().error;
     o.iterations = 100;
     o.sharpen = 4;
     o.residual = 1e-4;

@@ -78,7 +78,7 @@ static vplResult makeFactors(vplJob* job, vplRadiosityState* s)
     vplLinkDef links = vplDefaultLinkDef();
     vplFormFactorDef factors = vplDefaultFormFactorDef();
     factors.kind = o->formFactors;
-    factors.rowSums = o->rowSums;
+    factors.rowSums = links.rowSums = o->rowSums;
     links.error = o->linkError;
     factors.samples = links.samples = o->formSamples;
     factors.seed = links.seed = o->seed;

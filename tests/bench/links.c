@@ -73,6 +73,24 @@ static Row timeLinks(const vplPatchSides* sides, const vplLinkDef* def)
     return row;
 }
 
+// Processor ms of one sweep.
+static double sweepMs(const vplTransport* transport, vplSolver solver, const vplRgb* source)
+{
+    enum { SWEEPS = 20 };
+    vplSolveDef def = vplDefaultSolveDef();
+    vplRgb* b = malloc(sizeof *b * (size_t)transport->sides->count);
+    memcpy(b, source, sizeof *b * (size_t)transport->sides->count);
+    def.solver = solver;
+    def.iterations = SWEEPS;
+    def.residual = 0;
+    def.spectrum = false;
+    const double start = processorMs();
+    check(vplSolveRadiosity(transport, &def, source, b, NULL));
+    const double ms = (processorMs() - start) / SWEEPS;
+    free(b);
+    return ms;
+}
+
 static void printRow(vplContext* context, const vplPatches* patches, const vplScene* scene,
                      const vplLinkDef* def)
 {
@@ -114,6 +132,9 @@ static void printRow(vplContext* context, const vplPatches* patches, const vplSc
         const vplTransport usual = {.sides = sides, .factors = factors};
         vplRgb* few = malloc(sizeof *few * (size_t)sides->count);
         check(vplGatherRadiosity(&usual, b, few));
+        const double gaussSeidel = sweepMs(&usual, VPL_SOLVER_GAUSS_SEIDEL, b);
+        const double jacobi = sweepMs(&usual, VPL_SOLVER_JACOBI, b);
+        const double shooting = sweepMs(&usual, VPL_SOLVER_SHOOTING, b);
         vplFormFactors_Destroy(factors);
         all.samples = 64;
         all.seed = 1;
@@ -134,6 +155,9 @@ static void printRow(vplContext* context, const vplPatches* patches, const vplSc
         const Difference dark = differ(sides, e, dense);
         printf("  %5.2f%% %+5.2f%%  %5.2f%% %+5.2f%%   %8.0f %5.2f%% %6.4f", 100 * d.rms, 100 * d.mean,
                100 * dark.rms, 100 * dark.mean, ms, 100 * f.rms, rows);
+        printf("\n        sweeps over all pairs: Gauss-Seidel %.2f ms, Jacobi %.2f, shooting %.2f; over "
+               "links %.2f",
+               gaussSeidel, jacobi, shooting, sweepMs(&byLinks, VPL_SOLVER_JACOBI, b));
         free(few);
     }
     printf("\n");
