@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// How near radiosity comes to the truth as patches shrink. `bench/radiosity_error SCENE TRUTH.pfm [OPTIONS]`: the truth is
-// indirect light (vpl render SCENE --method path --pixel centre --show indirect); OPTIONS, in one word, are letters:
-// i: the document's estimator; h: the hierarchy; c: rows clamped; n: no interpolation.
-//   relmse   mean of (a - b)^2 / (b + 0.01)^2 over pixels off discontinuities: all around show the same plane
+// How near radiosity comes to the truth as patches shrink. `bench/radiosity_error SCENE TRUTH.pfm TRUTH.pfm [OPTIONS]`: the
+// truths are indirect light of different seeds (vpl render SCENE --method path --pixel centre --show indirect --seed S), so
+// that their noise is not counted; OPTIONS, in one word, are letters:
+// i: the document's estimator; h: the hierarchy; c: rows clamped; n: no interpolation;
+// u: uniform patches only.
+//   relmse   mean of (a - b)(a - c) / ((b + c) / 2 + 0.01)^2 over pixels off discontinuities: all around show one plane, to 1 mm
 //   all      the same over all pixels
 //   energy   sum of a / sum of b
 // ms are of the wall clock, of the whole picture; with several patch counts and both placements.
@@ -23,54 +25,73 @@ static vplImage* show(const vplScene* scene, const vplImage* like, vplShow what)
     return image;
 }
 
-// Whether two neighbours show one plane.
-static bool isSame(const float* d, const float* n, int i, int k)
+// Distance of each pixel's surface's plane from the origin; infinity where nothing is.
+static float* findPlanes(const vplScene* scene, const vplImage* depth, const vplImage* normals)
 {
-    const float dot = n[3 * i] * n[3 * k] + n[3 * i + 1] * n[3 * k + 1] + n[3 * i + 2] * n[3 * k + 2];
-    return d[3 * k] > 0 && dot > 0.99f && fabsf(d[3 * i] - d[3 * k]) < 0.03f * d[3 * i];
+    const vplView view = vplView_Create(vplScene_GetCamera(scene, 0), depth->width, depth->height);
+    float* planes = malloc((size_t)depth->width * (size_t)depth->height * sizeof *planes);
+    for (int i = 0; i < depth->width * depth->height; i++) {
+        const vplVec3 d = rayThrough(&view, i % depth->width, i / depth->width);
+        const vplVec3 p = vplAdd(view.eye, vplScale(depth->pixels[3 * i] / vplDot(d, view.forward), d));
+        const float* n = normals->pixels + 3 * i;
+        planes[i] = depth->pixels[3 * i] > 0 ? vplDot(p, vplVec(n[0], n[1], n[2])) : INFINITY;
+    }
+    return planes;
+}
+
+// Whether two pixels show one plane.
+static bool isSame(const vplImage* normals, const float* planes, int i, int k)
+{
+    const float *n = normals->pixels + 3 * i, *m = normals->pixels + 3 * k;
+    const float dot = n[0] * m[0] + n[1] * m[1] + n[2] * m[2];
+    return dot > 0.99f && fabsf(planes[i] - planes[k]) < 1e-3f;
 }
 
 static bool* findSmooth(const vplScene* scene, const vplImage* like)
 {
     vplImage *depth = show(scene, like, VPL_SHOW_DEPTH), *normals = show(scene, like, VPL_SHOW_NORMALS);
+    float* planes = findPlanes(scene, depth, normals);
     const int w = like->width, h = like->height;
     bool* smooth = calloc((size_t)w * (size_t)h, 1);
     for (int y = 1; y + 1 < h; y++) {
         for (int x = 1; x + 1 < w; x++) {
-            bool same = depth->pixels[3 * (y * w + x)] > 0;
-            for (int k = 0; k < 9; k++) {
-                same = same &&
-                       isSame(depth->pixels, normals->pixels, y * w + x, (y + k / 3 - 1) * w + x + k % 3 - 1);
+            bool same = isfinite(planes[y * w + x]);
+            for (int k = 0; k < 9 && same; k++) {
+                same = isSame(normals, planes, y * w + x, (y + k / 3 - 1) * w + x + k % 3 - 1);
             }
             smooth[y * w + x] = same;
         }
     }
+    free(planes);
     vplImage_Destroy(depth);
     vplImage_Destroy(normals);
     return smooth;
 }
 
-static double relmseOf(const vplImage* a, const vplImage* b, const bool* mask)
+// What is common to the errors against two truths of independent noise is that of the picture.
+static double relmseOf(const vplImage* image, vplImage* const truth[2], const bool* mask)
 {
     double sum = 0, count = 0;
-    for (int i = 0; i < a->width * a->height; i++) {
-        for (int c = 0; c < 3 && (mask == NULL || mask[i]); c++) {
-            const double truth = (double)b->pixels[3 * i + c], e = (double)a->pixels[3 * i + c] - truth;
-            sum += e * e / ((truth + 0.01) * (truth + 0.01));
+    for (int i = 0; i < 3 * image->width * image->height; i++) {
+        const double a = (double)truth[0]->pixels[i], b = (double)truth[1]->pixels[i],
+                     x = (double)image->pixels[i];
+        const double scale = 0.5 * (a + b) + 0.01;
+        if (mask == NULL || mask[i / 3]) {
+            sum += (x - a) * (x - b) / (scale * scale);
             count++;
         }
     }
     return sum / count;
 }
 
-static void measure(const vplScene* scene, const vplImage* truth, const bool* smooth, const char* letters,
+static void measure(const vplScene* scene, vplImage* const truth[2], const bool* smooth, const char* letters,
                     vplPatchPlacement placement, int patches)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_RADIOSITY;
     o.show = VPL_SHOW_INDIRECT;
-    o.width = truth->width;
-    o.height = truth->height;
+    o.width = truth[0]->width;
+    o.height = truth[0]->height;
     o.patches = patches;
     o.patchPlacement = placement;
     o.formFactors = strchr(letters, 'i') ? VPL_FORM_FACTORS_INCENTRE : o.formFactors;
@@ -81,7 +102,7 @@ static void measure(const vplScene* scene, const vplImage* truth, const bool* sm
     vplRenderStats stats;
     check(vplRender(scene, &o, &image, &stats));
     vplComparison c;
-    check(vplImage_Compare(image, truth, &c));
+    check(vplImage_Compare(image, truth[0], &c));
     printf("%-8s %7d %7d %9.0f  %9.6f  %9.6f  %6.3f\n", placement ? "adaptive" : "uniform", stats.patches,
            stats.patchSides, stats.totalMs, relmseOf(image, truth, smooth), relmseOf(image, truth, NULL),
            c.energyRatio);
@@ -93,22 +114,25 @@ int main(int count, char** words)
 {
     vplContext* context;
     vplScene* scene;
-    vplImage* truth;
-    if (count < 3) {
-        fprintf(stderr, "usage: radiosity_error SCENE TRUTH.pfm [OPTIONS]\n");
+    vplImage* truth[2];
+    if (count < 4) {
+        fprintf(stderr, "usage: radiosity_error SCENE TRUTH.pfm TRUTH.pfm [OPTIONS]\n");
         return 2;
     }
     openScene(words[1], 0, VPL_ISA_AUTO, &context, &scene);
-    check(vplImage_Read(context, words[2], &truth));
-    bool* smooth = findSmooth(scene, truth);
+    check(vplImage_Read(context, words[2], &truth[0]));
+    check(vplImage_Read(context, words[3], &truth[1]));
+    bool* smooth = findSmooth(scene, truth[0]);
+    const char* letters = count > 4 ? words[4] : "";
     puts("placement patches   sides        ms     relmse        all  energy");
     for (int patches = 125; patches <= 16000; patches *= 2) {
-        for (int placement = 0; placement < (strchr(count > 3 ? words[3] : "", (int)117) ? 1 : 2); placement++) {
-            measure(scene, truth, smooth, count > 3 ? words[3] : "", (vplPatchPlacement)placement, patches);
+        for (int placement = 0; placement < (strchr(letters, 'u') ? 1 : 2); placement++) {
+            measure(scene, truth, smooth, letters, (vplPatchPlacement)placement, patches);
         }
     }
     free(smooth);
-    vplImage_Destroy(truth);
+    vplImage_Destroy(truth[0]);
+    vplImage_Destroy(truth[1]);
     vplScene_Destroy(scene);
     vplContext_Destroy(context);
     return 0;
