@@ -595,7 +595,7 @@ static void CancellingLeavesTheRadiosities(void** state)
 
 static uint64_t solveHash(vplContext* context)
 {
-    enum { LARGE = 531 }; // rows enough for workers to share
+    enum { LARGE = 1109 }; // rows enough for workers to share Jacobi sweeps
     Exchange e;
     vplRgb source[LARGE], b[LARGE];
     uint64_t hash = 0;

@@ -133,7 +133,7 @@ vplResult vplLinkTree_Connect(vplContext* context, struct vplLinkTree* tree, con
 
 // ---- sums of rows: Sinkhorn and Knopp, 1967, as in row_sums.c
 
-// Rooms are within 1e-4 of what fits after ten (tests/bench/links).
+// As row_sums.c's, but as many each time: a gather over links costs little.
 enum { ROUNDS = 10 };
 
 // Room for the rounding of scales and sums, so that none is above 1.

@@ -21,10 +21,11 @@ static const float TURNED = 0.9f;
 static const double TINY = 0.25;
 
 // Of the allowed error: groups of which no ray reaches the other exchange nothing if they would exchange less than this
-// with nothing between them.
+// with nothing between them. With 8 a closed room's rows sum to 0.989 before they are fitted, with 2 to 0.994 (at 0.003).
 static const double HIDDEN = 4;
 
-// How much of what a pair may exchange at most, above what its points say, counts as an error: points miss peaks.
+// How much of what a pair may exchange at most, above what its points say, counts as an error: points miss peaks. 0:
+// 1.1 times the difference to all pairs, with 0.7 of the links (closed-room, 3,136 patches, error 0.01).
 static const double PEAK = 0.05;
 
 // A pair at work.
@@ -240,7 +241,9 @@ static void measureSides(const Pair* pair)
     drawPoints(pair, &p, &q);
     vplPairPoints(pair->sides, &p, &q, &kernel);
     const double open = spreadOf(&kernel).mean, seen = seenShare(pair, &p, &q, &kernel);
-    keep(pair, seen * (open > 0 && isNear(pair) ? exactMean(pair) : open));
+    // Neighbours on a curved surface are near, and exchange next to nothing.
+    const bool exact = isNear(pair) && pair->sent * open > TINY * pair->def->error;
+    keep(pair, seen * (exact ? exactMean(pair) : open));
 }
 
 // By points and rays.
