@@ -215,7 +215,6 @@ static void PatchesWhereTheyAreWorthMostHalveTheError(void** state)
         refineTo(&adaptive, uniform.patches->patchCount);
         assert_int_equal(adaptive.patches->patchCount, uniform.patches->patchCount);
         const double a = errorOf(&adaptive), u = errorOf(&uniform);
-        printf("patches %d: %.3g uniform, %.3g adaptive\n", uniform.patches->patchCount, u, a);
         assert_true(a < 0.5 * u);
         closeField(&uniform);
         closeField(&adaptive);

@@ -6,8 +6,9 @@
 #include "radiosity/cells.h"
 
 enum {
-    KNOWN = 4,  // places of a side that are remembered
-    GATHERS = 3 // rays from each point that sees none of them, in each of two rounds
+    KNOWN = 4,   // places of a side that are remembered
+    GATHERS = 4, // rays from each point that sees none of them
+    FEW = VPL_REACH_POINTS / 2
 };
 
 _Static_assert((int)VPL_PATCH_CELLS == (int)VPL_RAY_PACKET, "one ray for each cell");
@@ -51,15 +52,14 @@ static bool seesKnown(const Settler* s, vplVec3 place)
     return false;
 }
 
-static bool isLit(const Settler* s, int cell, int point, int round, vplVec3 place, vplVec3* from)
+static bool isLit(const Settler* s, int cell, int point, vplVec3 place, vplVec3* from)
 {
-    if (round == 0 && vplReach_SeesSource(s->reach, s->side, cell, point, place, s->rays, from)) {
+    if (vplReach_SeesSource(s->reach, s->side, cell, point, place, s->rays, from)) {
         return true;
     }
     for (int ray = 0; ray < GATHERS; ray++) {
         vplLanding landing;
-        if (vplReach_SeesLight(s->reach, s->side, cell, point, round * GATHERS + ray, place, s->rays,
-                               &landing)) {
+        if (vplReach_SeesLight(s->reach, s->side, cell, point, ray, place, s->rays, &landing)) {
             *from = landing.place;
             return true;
         }
@@ -67,7 +67,8 @@ static bool isLit(const Settler* s, int cell, int point, int round, vplVec3 plac
     return false;
 }
 
-static bool isReached(Settler* s, int cell, int point, int round)
+// `search`: also where none of the known places is seen.
+static bool isReached(Settler* s, int cell, int point, bool search)
 {
     vplVec3 place, from;
     if (!vplReach_Rise(s->reach, s->side, vplReach_PointOf(s->reach, s->side, cell, point), s->rays,
@@ -77,7 +78,7 @@ static bool isReached(Settler* s, int cell, int point, int round)
     if (seesKnown(s, place)) {
         return true;
     }
-    if (!isLit(s, cell, point, round, place, &from)) {
+    if (!search || !isLit(s, cell, point, place, &from)) {
         return false;
     }
     if (s->knownCount < KNOWN) {
@@ -86,21 +87,36 @@ static bool isReached(Settler* s, int cell, int point, int round)
     return true;
 }
 
+// Points first .. first + FEW - 1 of a cell that are reached and were not.
+static unsigned findPoints(Settler* s, int cell, int first, bool search, unsigned reached)
+{
+    for (int point = first; point < first + FEW; point++) {
+        if (!(reached >> point & 1) && isReached(s, cell, point, search)) {
+            reached |= 1u << point;
+        }
+    }
+    return reached;
+}
+
 // Cells of which light reaches a half at least; where it reaches no half, those that it reaches at all. A point of an
-// open cell that is covered gets no light in the equations, and would darken the patch. Points that missed have a second
-// try when other places of the side are known.
+// open cell that is covered gets no light in the equations, and would darken the patch. Four points tell, eight where
+// these do not agree; those that missed are tried again when other places of the side are known.
 static unsigned cellsInPart(Settler* s)
 {
     unsigned half = 0, some = 0, reached[VPL_PATCH_CELLS] = {0};
-    for (int i = 0; i < 2 * VPL_PATCH_CELLS * VPL_REACH_POINTS; i++) {
-        const int round = i / (VPL_PATCH_CELLS * VPL_REACH_POINTS),
-                  cell = i / VPL_REACH_POINTS % VPL_PATCH_CELLS, point = i % VPL_REACH_POINTS;
-        if (!(reached[cell] >> point & 1) && isReached(s, cell, point, round)) {
-            reached[cell] |= 1u << point;
-        }
+    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
+        reached[cell] = findPoints(s, cell, 0, true, 0);
     }
     for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
-        half |= (unsigned)(2 * __builtin_popcount(reached[cell]) >= VPL_REACH_POINTS) << cell;
+        int tested = FEW;
+        if (s->knownCount > 1) {
+            reached[cell] = findPoints(s, cell, 0, false, reached[cell]);
+        }
+        if (reached[cell] != 0 && reached[cell] != (1u << FEW) - 1) {
+            reached[cell] = findPoints(s, cell, FEW, true, reached[cell]);
+            tested = 2 * FEW;
+        }
+        half |= (unsigned)(2 * __builtin_popcount(reached[cell]) >= tested) << cell;
         some |= (unsigned)(reached[cell] != 0) << cell;
     }
     return half != 0 ? half : some;
