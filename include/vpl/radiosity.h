@@ -264,8 +264,8 @@ vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight wei
                                    vplRgb* vertexValuesOut);
 
 // Moves such means, not below 0, so that what interpolation shows of each side comes nearer to its value, `rounds` times.
-vplResult vplPatchMesh_Sharpen(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values, int rounds,
-                               vplRgb* vertexValues);
+vplResult vplPatchMesh_Sharpen(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
+                               int rounds, vplRgb* vertexValues);
 
 // What is drawn on the patches.
 typedef struct vplPatchDraw {

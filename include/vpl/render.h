@@ -95,8 +95,9 @@ typedef enum vplHierarchy {
     VPL_HIERARCHY_ON        // links between groups of them
 } vplHierarchy;
 
-// More sides of patches than this are linked in groups (bench/form_factors: from there on it is faster).
-enum { VPL_ALL_PAIRS = 4096 };
+// More sides of patches than this are linked in groups. All pairs of so many take 256 MB and, in the rooms, as much time as
+// links that err twenty times as much (bench/radiosity_error).
+enum { VPL_ALL_PAIRS = 8192 };
 
 // Where patches are small.
 typedef enum vplPatchPlacement {

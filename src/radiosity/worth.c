@@ -31,6 +31,11 @@ static const double SHADOW = 0.01;
 // same error, at 0.5 a tenth more.
 static const double FLOOR = 0.1;
 
+// Of the square of a side's area by the mean: a face of two patches shows no gradient, whatever happens on it. With it the
+// error of room-area at 500 patches is 0.0017 instead of 0.0035, that of cornell-area 0.0012 instead of 0.0015; at 4000
+// 0.00006 to 0.00007 with and without.
+static const double PRIOR = 0.003;
+
 // What the corners of one side of a patch say.
 typedef struct Corners {
     double low[3], high[3], sum[3]; // sum: over the area
@@ -86,6 +91,15 @@ static double meanIrradiance(const vplPatchSides* sides, const vplRgb* irradianc
     return area > 0 ? sum / area : 0;
 }
 
+static double meanArea(const vplPatchSides* sides)
+{
+    double sum = 0;
+    for (int i = 0; i < sides->count; i++) {
+        sum += (double)sides->sides[i].area;
+    }
+    return sides->count > 0 ? sum / sides->count : 1;
+}
+
 static vplResult checkDef(const vplPatchMesh* mesh, const vplPatchWorthDef* def)
 {
     if (def->cookie != WORTH_COOKIE) {
@@ -122,12 +136,15 @@ vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* de
         }
     }
     const double floor = FLOOR * meanIrradiance(sides, def->irradiance);
+    const double mean = meanArea(sides);
     for (int i = 0; i < patches->patchCount; i++) {
         double worth = 0;
         for (int back = 0; back < 2; back++) {
             const int side = sides->ofPatch[2 * (size_t)i + (size_t)back];
             if (side >= 0 && floor > 0) {
-                worth += errorOf(def, &sides->sides[side], side, &corners[side], floor);
+                const double share = (double)sides->sides[side].area / mean;
+                worth +=
+                    errorOf(def, &sides->sides[side], side, &corners[side], floor) + PRIOR * share * share;
             }
         }
         worthOut[i] = (float)(worth * vplPatches_Area(patches, i));

@@ -51,7 +51,7 @@ vplResult vplRadiosity_Begin(vplJob* job, vplRadiosityState** stateOut);
 vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* state);
 
 // Where more patches are wanted, one number per patch; light must be there.
-vplResult vplRadiosity_FindWorth(const vplRadiosityState* state, float* worthOut);
+vplResult vplRadiosity_FindWorth(vplJob* job, const vplRadiosityState* state, float* worthOut);
 
 // Adds to a picture what the options ask to be seen of patches.
 vplResult vplRadiosity_Draw(vplJob* job, const vplRadiosityState* state, const vplView* view,

@@ -258,11 +258,20 @@ vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* s)
     return result;
 }
 
-vplResult vplRadiosity_FindWorth(const vplRadiosityState* s, float* worthOut)
+// By means at corners as they are: sharpened ones hide how far they are from the patches' light.
+vplResult vplRadiosity_FindWorth(vplJob* job, const vplRadiosityState* s, float* worthOut)
 {
-    vplPatchWorthDef def = vplDefaultPatchWorthDef();
-    def.irradiance = s->irradiance;
-    def.vertexIrradiance = s->corners;
-    def.directSpread = s->spread;
-    return vplFindPatchWorth(s->mesh, &def, worthOut);
+    vplRgb* corners = vplAlloc(s->context, 2 * (size_t)s->mesh->vertexCount, sizeof *corners);
+    vplResult result =
+        corners != NULL ? vplPatchMesh_Interpolate(s->mesh, job->options.vertexWeight, s->irradiance, corners)
+                        : VPL_OUT_OF_MEMORY;
+    if (result == VPL_SUCCESS) {
+        vplPatchWorthDef def = vplDefaultPatchWorthDef();
+        def.irradiance = s->irradiance;
+        def.vertexIrradiance = corners;
+        def.directSpread = s->spread;
+        result = vplFindPatchWorth(s->mesh, &def, worthOut);
+    }
+    vplFree(s->context, corners);
+    return result;
 }

@@ -3,7 +3,7 @@
 // truths are indirect light of different seeds (vpl render SCENE --method path --pixel centre --show indirect --seed S), so
 // that their noise is not counted; OPTIONS, in one word, are letters:
 // i: the document's estimator; h: the hierarchy; c: rows clamped; n: no interpolation;
-// u: uniform patches only.
+// u: uniform patches only; a: adaptive patches only; f: 500 to 4000 patches.
 //   relmse   mean of (a - b)(a - c) / ((b + c) / 2 + 0.01)^2 over pixels off discontinuities: all around show one plane, to 1 mm
 //   all      the same over all pixels
 //   energy   sum of a / sum of b
@@ -125,8 +125,10 @@ int main(int count, char** words)
     bool* smooth = findSmooth(scene, truth[0]);
     const char* letters = count > 4 ? words[4] : "";
     puts("placement patches   sides        ms     relmse        all  energy");
-    for (int patches = 125; patches <= 16000; patches *= 2) {
-        for (int placement = 0; placement < (strchr(letters, 'u') ? 1 : 2); placement++) {
+    const bool few = strchr(letters, 'f') != NULL;
+    for (int patches = few ? 500 : 125; patches <= (few ? 4000 : 16000); patches *= 2) {
+        for (int placement = strchr(letters, 'a') != NULL; placement < (strchr(letters, 'u') ? 1 : 2);
+             placement++) {
             measure(scene, truth, smooth, letters, (vplPatchPlacement)placement, patches);
         }
     }
