@@ -105,7 +105,11 @@ bench: all
 	$(BUILD)/bench/flicker examples/scenes/room.json instant-radiosity 12
 	$(BUILD)/bench/paraboloid --quick examples/scenes/room.json
 	$(BUILD)/bench/path examples/scenes/room-area.json
+	$(BUILD)/bench/patches examples/scenes/room-area.json
 	$(BUILD)/bench/form_factors examples/scenes/room-area.json
+	$(BUILD)/bench/links examples/scenes/closed-room.json
+	$(BUILD)/bench/patch_mesh examples/scenes/room-area.json
+	$(BUILD)/bench/radiosity_motion examples/scenes/testmodel.json
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling
 

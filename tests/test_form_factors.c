@@ -10,13 +10,11 @@
 
 #include <stdlib.h>
 
-static SidesFixture boxOf(vplContext* context, float x, float y, float z, int rounds)
+static void makeBox(vplContext* context, float x, float y, float z, int rounds, SidesFixture* f)
 {
     vplVec3 corners[36];
-    SidesFixture f;
     boxCorners(x, y, z, corners);
-    assert_true(makeSides(context, corners, 12, 0, rounds, &f));
-    return f;
+    assert_true(makeSides(context, corners, 12, 0, rounds, f));
 }
 
 static vplFormFactors* createFor(const vplPatchSides* sides, const vplFormFactorDef* def)
@@ -207,7 +205,8 @@ static void ClosedBoxesClose(void** state)
     (void)state;
     vplContext* context = openTestContext(2);
     for (int rounds = 0; rounds <= 6; rounds++) {
-        SidesFixture s = boxOf(context, 4, 2.5f, 5, rounds);
+        SidesFixture s;
+        makeBox(context, 4, 2.5f, 5, rounds, &s);
         const vplFormFactorDef def = vplDefaultFormFactorDef();
         vplFormFactors* f = create(&s, &def);
         for (int i = 0; i < f->count; i++) {
@@ -225,7 +224,8 @@ static void NormalisedRowsSumToOneAndStayReciprocal(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(2);
-    SidesFixture s = boxOf(context, 4, 2.5f, 5, 4);
+    SidesFixture s;
+    makeBox(context, 4, 2.5f, 5, 4, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
     def.rowSums = VPL_ROW_SUMS_NORMALISE;
     for (int kind = 0; kind < 2; kind++) {
@@ -247,7 +247,8 @@ static void ClampedRowsNeverSumToMoreThanOne(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(1);
-    SidesFixture s = boxOf(context, 4, 2.5f, 5, 3);
+    SidesFixture s;
+    makeBox(context, 4, 2.5f, 5, 3, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
     def.kind = VPL_FORM_FACTORS_INCENTRE;
     def.rowSums = VPL_ROW_SUMS_CLAMP;
@@ -425,7 +426,8 @@ static void FactorsDoNotDependOnTheSizeOfTheScene(void** state)
     uint64_t hashes[3];
     for (int k = 0; k < 3; k++) {
         const float size = ldexpf(1, 20 * (k - 1));
-        SidesFixture s = boxOf(context, 4 * size, 2.5f * size, 5 * size, 3);
+        SidesFixture s;
+        makeBox(context, 4 * size, 2.5f * size, 5 * size, 3, &s);
         const vplFormFactorDef def = vplDefaultFormFactorDef();
         vplFormFactors* f = create(&s, &def);
         hashes[k] = vplHashFloats(0, f->rows, (size_t)f->count * (size_t)f->count);
@@ -475,7 +477,8 @@ static void DefsOutOfRangeAreRefusedByName(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(1);
-    SidesFixture s = boxOf(context, 1, 1, 1, 0);
+    SidesFixture s;
+    makeBox(context, 1, 1, 1, 0, &s);
     vplFormFactors* untouched = NULL;
     for (int k = 0; k < 6; k++) {
         static const char* const words[6] = {"vplDefaultFormFactorDef",
@@ -512,7 +515,8 @@ static void FactorsCanBeCancelled(void** state)
 {
     (void)state;
     vplContext* context = openTestContext(1);
-    SidesFixture s = boxOf(context, 1, 1, 1, 4);
+    SidesFixture s;
+    makeBox(context, 1, 1, 1, 4, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
     vplFormFactors* untouched = NULL;
     int asked = 0;

@@ -6,6 +6,7 @@
 #include "math/vec.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/shaft.h"
+#include "radiosity/side.h"
 
 // Streams of random numbers: this one and those after it, one per sixteen points.
 enum { POINT_STREAM = 0x46460000 };
@@ -30,25 +31,11 @@ static int listOpen(const vplPatchSide* side, int cells[VPL_PATCH_CELLS])
     return count;
 }
 
-static int triangleOf(const vplPatchSides* sides, const vplPatchSide* side)
-{
-    const vplPatches* patches = sides->patches;
-    return patches->nodes[patches->patches[side->patch]].triangle;
-}
-
 // A ray that leaves the side, for what it starts from and does not meet.
 static vplRay leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 from)
 {
-    const vplGeometry* g = sides->patches->geometry;
-    const int triangle = triangleOf(sides, side);
-    const vplGeometryObject* object = &g->objects[g->owners[triangle]];
-    const vplHit hit = {.object = g->owners[triangle],
-                        .face = object->type == VPL_OBJECT_BOX ? (triangle - object->firstTriangle) / 2
-                                                               : VPL_FACE_NONE,
-                        .triangle = triangle,
-                        .position = from,
-                        .normal = g->normals[triangle]};
-    return vplGeometry_Leave(g, &hit, side->normal);
+    const vplHit start = vplPatchSide_HitAt(sides, side, from);
+    return vplGeometry_Leave(sides->patches->geometry, &start, side->normal);
 }
 
 // Sixteen strata, each uniform over a sixteenth of what is open: of a side without closed cells, its cells.

@@ -33,19 +33,6 @@ static int findSide(const struct vplLinkTree* tree, const vplLinkNode* node, dou
     return low;
 }
 
-// All are open of most.
-int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
-{
-    if (side->open == (1 << VPL_PATCH_CELLS) - 1) {
-        return k;
-    }
-    unsigned open = side->open;
-    for (; k > 0; k--) {
-        open &= open - 1;
-    }
-    return __builtin_ctz(open);
-}
-
 void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, uint64_t seed, int node,
                    int other, int count, vplLinkPoints* out)
 {
@@ -101,18 +88,6 @@ void vplPairPoints(const vplPatchSides* sides, const vplLinkPoints* p, const vpl
 }
 
 // ---- rays
-
-vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
-{
-    const vplPatches* patches = sides->patches;
-    const vplGeometry* g = patches->geometry;
-    const int triangle = patches->nodes[patches->patches[side->patch]].triangle;
-    return (vplHit){.object = g->owners[triangle],
-                    .face = vplGeometry_FaceOf(g, triangle),
-                    .triangle = triangle,
-                    .position = at,
-                    .normal = g->normals[triangle]};
-}
 
 double vplSeeShare(const vplPatchSides* sides, const vplLinkPoints* p, const vplLinkPoints* q,
                    const vplLinkKernel* kernel, int samples, int* rays)

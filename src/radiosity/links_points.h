@@ -3,6 +3,7 @@
 #ifndef VPL_RADIOSITY_LINKS_POINTS_H
 #define VPL_RADIOSITY_LINKS_POINTS_H
 
+#include "radiosity/side.h"
 #include "radiosity/links.h"
 
 typedef struct vplLinkPoints {
@@ -15,12 +16,6 @@ typedef struct vplLinkPoints {
 // the pair of both nodes; node with itself: those by which pairs are judged.
 void vplSampleNode(const vplPatchSides* sides, const struct vplLinkTree* tree, uint64_t seed, int node,
                    int other, int count, vplLinkPoints* pointsOut);
-
-// The k-th open cell.
-int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
-
-// Where rays leave a side.
-vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
 
 // cos cos / (pi r^2) between point i of one node and k of another, with nothing between them, 1/m^2.
 typedef struct vplLinkKernel {

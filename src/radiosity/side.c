@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "radiosity/side.h"
+
+#include "geometry/triangle.h"
+
+// All are open of most.
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
+{
+    if (side->open == (1 << VPL_PATCH_CELLS) - 1) {
+        return k;
+    }
+    unsigned open = side->open;
+    for (; k > 0; k--) {
+        open &= open - 1;
+    }
+    return __builtin_ctz(open);
+}
+
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
+{
+    const vplPatches* patches = sides->patches;
+    const vplGeometry* g = patches->geometry;
+    const int triangle = patches->nodes[patches->patches[side->patch]].triangle;
+    return (vplHit){.object = g->owners[triangle],
+                    .face = vplGeometry_FaceOf(g, triangle),
+                    .triangle = triangle,
+                    .position = at,
+                    .normal = g->normals[triangle]};
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Points of sides, for all that casts rays from them.
+#ifndef VPL_RADIOSITY_SIDE_H
+#define VPL_RADIOSITY_SIDE_H
+
+#include <vpl/radiosity.h>
+
+// The k-th open cell.
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
+
+// Where rays leave a side.
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
+
+#endif
