@@ -19,3 +19,14 @@ shot light-6 $closed --size 240x210 --lighting documented --show light:6 --expos
 shot overlay $closed --size 240x210 --lighting documented --show overlay
 shot shadow-map $room --size 240x210 --show shadow-map --shadow-map 60
 shot normals $room --size 240x210 --show normals
+box=examples/scenes/testmodel.json
+report="--form-factors incentre --vertex-weight equal --sharpen 0"
+boxed="--size 200x200 --exposure 2.3 --antialias 4 --show indirect"
+shot radiosity-truth $box --size 200x200 --exposure 2.3 --show indirect --method path --spp 1024
+shot radiosity-incentre-192 $box $boxed --method radiosity --patch-size 0.45 --subdivisions 3 $report
+shot radiosity-192 $box $boxed --method radiosity --patch-size 0.45 --subdivisions 3
+shot radiosity-incentre-784 $box $boxed --method radiosity --patch-size 0.45 $report
+shot radiosity-784 $box $boxed --method radiosity --patch-size 0.45
+shot radiosity-box $box --size 200x200 --exposure 1.3 --antialias 4 --method radiosity --patch-size 0.45
+shot radiosity-patches $box --size 200x200 --exposure -0.5 --antialias 4 --method radiosity --patch-size 0.45 --show patches
+shot radiosity-adaptive examples/scenes/room-area.json --size 200x200 --antialias 4 --method radiosity --patch-placement adaptive --patches 1500 --show patches
