@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What form factors cost, and what rays, the tree and the integral along edges do for it:
 // bench/form_factors SCENE [--runs N] [--most PATCHES] [--brute PATCHES]
-// Milliseconds of processor time on one thread, medians of alternated runs, for about 784, 3000 and 12000 patches, up to
-// --most (default 4000). Ways that test every triangle run up to --brute patches (default 1000). Error: the mean over
+// Milliseconds of processor time on one thread, medians of alternated runs, for about 784, 3000, 12000 and 50000 patches, up to
+// --most (default 4000; all pairs of 50000 are refused). Times: of the first way. Ways that test every triangle run up to --brute patches (default 1000). Error: the mean over
 // rows of the sum of |F - F of 64 samples|, up to 1000 patches.
 #include "bench.h"
 #include "base/clock.h"
@@ -76,7 +76,7 @@ static void print(const vplPatchSides* sides, const Way* way, double ms, double 
     printf("\n");
 }
 
-static void measure(const vplPatchSides* sides, int runs, int brute)
+static double measure(const vplPatchSides* sides, int runs, int brute)
 {
     static const Way truthWay = {"", VPL_FORM_FACTORS_MONTE_CARLO, true, false};
     double times[WAY_COUNT][MOST_RUNS], first = 0;
@@ -86,7 +86,8 @@ static void measure(const vplPatchSides* sides, int runs, int brute)
            sides->count, "way", "ms", "times", "rays", "exact", "row sum", "error");
     for (int run = 0; run < runs; run++) {
         for (int w = 0; w < WAY_COUNT; w++) {
-            if (WAYS[w].bruteForce && sides->patches->patchCount > brute) {
+            const bool many = (int64_t)sides->count * sides->count * 4 > VPL_MAX_FORM_FACTOR_BYTES;
+            if (many || (WAYS[w].bruteForce && sides->patches->patchCount > brute)) {
                 continue;
             }
             const double start = vplCpuMs();
@@ -101,6 +102,26 @@ static void measure(const vplPatchSides* sides, int runs, int brute)
         }
     }
     vplFormFactors_Destroy(truth);
+    return first;
+}
+
+// The hierarchy, beside the same `first`.
+static void measureLinks(const vplPatchSides* sides, int runs, double first)
+{
+    double times[MOST_RUNS];
+    const vplLinkDef def = vplDefaultLinkDef();
+    for (int run = 0; run < runs; run++) {
+        vplLinks* links;
+        const double start = vplCpuMs();
+        check(vplLinks_Create(sides, &def, &links));
+        times[run] = vplCpuMs() - start;
+        if (run == runs - 1) {
+            const double ms = median(times, runs);
+            printf("  %-26s %10.1f %8.2f %12lld %8s  %lld links\n", "links", ms, first > 0 ? first / ms : 1,
+                   (long long)links->rays, "", (long long)links->linkCount);
+        }
+        vplLinks_Destroy(links);
+    }
 }
 
 int main(int argc, char** argv)
@@ -129,8 +150,8 @@ int main(int argc, char** argv)
     openScene(path, 1, VPL_ISA_AUTO, &context, &scene);
     check(vplGeometry_Create(scene, &geometry));
     const int emitters = vplScene_GetEmitterCount(scene);
-    static const int counts[] = {784, 3000, 12000};
-    for (int i = 0; i < 3 && counts[i] <= most; i++) {
+    static const int counts[] = {784, 3000, 12000, 50000};
+    for (int i = 0; i < 4 && counts[i] <= most; i++) {
         vplPatchDef patchDef = vplDefaultPatchDef();
         patchDef.count = counts[i];
         vplPatches* patches;
@@ -143,7 +164,7 @@ int main(int argc, char** argv)
         sidesDef.emitterCount = emitters;
         vplPatchSides* sides;
         check(vplPatchSides_Create(patches, &sidesDef, &sides));
-        measure(sides, runs, brute);
+        measureLinks(sides, runs, measure(sides, runs, brute));
         vplPatchSides_Destroy(sides);
         vplPatches_Destroy(patches);
     }
