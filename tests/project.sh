@@ -61,7 +61,7 @@ readme_program() {
 readme_commands() {
     mkdir -p "$scratch/commands/build" "$scratch/commands/examples/scenes"
     cp "$build/vpl" "$scratch/commands/build/vpl"
-    cp examples/scenes/*.json "$scratch/commands/examples/scenes"
+    cp examples/scenes/* "$scratch/commands/examples/scenes"
     sed -n '/^```sh$/,/^```$/p' README.md | grep '^build/vpl' >"$scratch/commands/list"
     [ -s "$scratch/commands/list" ] && (cd "$scratch/commands" && sh -e list)
 }
