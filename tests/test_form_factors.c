@@ -91,19 +91,19 @@ typedef struct Summary {
     double min, mean, max, largest;
 } Summary;
 
-static Summary summarise(const vplPatchSides* s, const vplFormFactors* f)
+static Summary summarise(const vplPatchSides* sides, const vplFormFactors* f)
 {
     Summary out = {.min = INFINITY};
     double area = 0;
     for (int i = 0; i < f->count; i++) {
-        const double sum = (double)f->rowSums[i], a = (double)s->sides[i].area;
-        out.min = fmin(out.min, sum);
-        out.max = fmax(out.max, sum);
+        const double sum = (double)f->rowSums[i], a = (double)sides->sides[i].area;
+        out.min = sum < out.min ? sum : out.min;
+        out.max = sum > out.max ? sum : out.max;
         out.mean += a * sum;
         area += a;
-        for (int j = 0; j < f->count; j++) {
-            out.largest = fmax(out.largest, factorAt(f, i, j));
-        }
+    }
+    for (size_t i = 0; i < (size_t)f->count * (size_t)f->count; i++) {
+        out.largest = (double)f->rows[i] > out.largest ? (double)f->rows[i] : out.largest;
     }
     out.mean /= area;
     return out;

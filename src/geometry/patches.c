@@ -179,27 +179,6 @@ double vplPatches_Area(const vplPatches* patches, int patch)
     return vplTriangle_Area(&at);
 }
 
-// Weights of a triangle's corners at a point in its plane, or at the point's foot there.
-static void weigh(const vplTriangleCorners* at, vplVec3 point, double w[3])
-{
-    double u[3], v[3], p[3], uu = 0, uv = 0, vv = 0, pu = 0, pv = 0;
-    for (int k = 0; k < 3; k++) {
-        const double origin = vplComponent(at->corner[0], k);
-        u[k] = vplComponent(at->corner[1], k) - origin;
-        v[k] = vplComponent(at->corner[2], k) - origin;
-        p[k] = vplComponent(point, k) - origin;
-        uu += u[k] * u[k];
-        uv += u[k] * v[k];
-        vv += v[k] * v[k];
-        pu += p[k] * u[k];
-        pv += p[k] * v[k];
-    }
-    const double area = uu * vv - uv * uv;
-    w[1] = area > 0 ? (vv * pu - uv * pv) / area : 0;
-    w[2] = area > 0 ? (uu * pv - uv * pu) / area : 0;
-    w[0] = 1 - w[1] - w[2];
-}
-
 // On its way down only weights change, and no position is looked up: 2 w of the corner that is left goes to the middle.
 // The tests of sides at 51,456 patches spent two fifths of their time here when the middles' lines were asked.
 int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position)
@@ -207,7 +186,7 @@ int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position)
     const vplPatchNode* node = &patches->nodes[triangle];
     const vplTriangleCorners at = vplCornersOf(patches->positions, node->corners);
     double w[3];
-    weigh(&at, position, w);
+    vplTriangle_Weigh(at.corner, position, w);
     while (node->children >= 0) {
         const bool second = w[2] > w[1];
         const vplPatchNode* half = &patches->nodes[node->children + second];

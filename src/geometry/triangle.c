@@ -85,3 +85,23 @@ vplVec3 vplGeometry_InsideAt(const vplGeometry* g, int triangle, vplVec3 point, 
     return vplVec((float)(a[0] + b * u[0] + c * v[0]), (float)(a[1] + b * u[1] + c * v[1]),
                   (float)(a[2] + b * u[2] + c * v[2]));
 }
+
+void vplTriangle_Weigh(const vplVec3 corners[3], vplVec3 point, double weightsOut[3])
+{
+    double u[3], v[3], p[3], uu = 0, uv = 0, vv = 0, pu = 0, pv = 0;
+    for (int k = 0; k < 3; k++) {
+        const double origin = vplComponent(corners[0], k);
+        u[k] = vplComponent(corners[1], k) - origin;
+        v[k] = vplComponent(corners[2], k) - origin;
+        p[k] = vplComponent(point, k) - origin;
+        uu += u[k] * u[k];
+        uv += u[k] * v[k];
+        vv += v[k] * v[k];
+        pu += p[k] * u[k];
+        pv += p[k] * v[k];
+    }
+    const double area = uu * vv - uv * uv;
+    weightsOut[1] = area > 0 ? (vv * pu - uv * pv) / area : 0;
+    weightsOut[2] = area > 0 ? (uu * pv - uv * pu) / area : 0;
+    weightsOut[0] = 1 - weightsOut[1] - weightsOut[2];
+}

@@ -41,4 +41,7 @@ vplVec3 vplGeometry_Inside(const vplGeometry* geometry, int triangle, vplVec3 po
 vplVec3 vplGeometry_InsideAt(const vplGeometry* geometry, int triangle, vplVec3 point, float* weight1Out,
                              float* weight2Out);
 
+// Weights of a triangle's corners at a point in its plane, or at the point's foot there; of one without area 1, 0, 0.
+void vplTriangle_Weigh(const vplVec3 corners[3], vplVec3 point, double weightsOut[3]);
+
 #endif

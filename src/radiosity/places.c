@@ -2,30 +2,14 @@
 // Places a hair above surfaces, and what is between them.
 #include "base/context.h"
 #include "geometry/bvh.h"
+#include "geometry/triangle.h"
 #include "radiosity/cells.h"
 #include "radiosity/open_cells.h"
 
 int vplCell_Find(const vplVec3 corners[3], vplVec3 point)
 {
-    double u[3], v[3], p[3], uu = 0, uv = 0, vv = 0, pu = 0, pv = 0;
-    for (int k = 0; k < 3; k++) {
-        const double origin = vplComponent(corners[0], k);
-        u[k] = vplComponent(corners[1], k) - origin;
-        v[k] = vplComponent(corners[2], k) - origin;
-        p[k] = vplComponent(point, k) - origin;
-        uu += u[k] * u[k];
-        uv += u[k] * v[k];
-        vv += v[k] * v[k];
-        pu += p[k] * u[k];
-        pv += p[k] * v[k];
-    }
-    const double area = uu * vv - uv * uv;
-    double w[3] = {1, 0, 0};
-    if (area > 0) {
-        w[1] = (vv * pu - uv * pv) / area;
-        w[2] = (uu * pv - uv * pu) / area;
-        w[0] = 1 - w[1] - w[2];
-    }
+    double w[3];
+    vplTriangle_Weigh(corners, point, w);
     const int part = vplCell_Inward(w);
     return 4 * part + vplCell_Inward(w);
 }
