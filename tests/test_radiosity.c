@@ -464,7 +464,7 @@ static void NothingIsDarkBecauseItTouchesABox(void** state)
         least[equal] = 10;
         for (int i = 0; i < 40 * 30; i++) {
             const double ratio = (double)image->pixels[3 * i] / (double)truth->pixels[3 * i];
-            least[equal] = fmin(least[equal], ratio / energy);
+            least[equal] = ratio / energy < least[equal] ? ratio / energy : least[equal];
         }
         vplImage_Destroy(image);
     }
