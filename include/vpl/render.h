@@ -95,9 +95,10 @@ typedef enum vplHierarchy {
     VPL_HIERARCHY_ON        // links between groups of them
 } vplHierarchy;
 
-// More sides of patches than this are linked in groups. All pairs of so many take 256 MB and, in the rooms, as much time as
-// links that err twenty times as much (bench/radiosity_error).
-enum { VPL_ALL_PAIRS = 8192 };
+// More sides of patches than this are linked in groups: as many as VPL_MAX_FORM_FACTOR_BYTES allow. Links are five times as
+// fast there and err ten to twenty times as much (bench/form_factors, bench/radiosity_error): more patches should not make a
+// picture worse where nobody asked for it.
+enum { VPL_ALL_PAIRS = 16384 };
 
 // Where patches are small.
 typedef enum vplPatchPlacement {
