@@ -21,7 +21,10 @@ count() {
     passed=$((passed + ${good:-0}))
     failed=$((failed + bad))
     echo "$name: ${good:-0} passed, $bad failed"
-    [ "$bad" -eq 0 ] || tail -n 60 "$scratch/log"
+    if [ "$bad" -ne 0 ]; then # which, however many suites came after it
+        grep -E 'FAILED|ERROR|LINE' "$scratch/log" | head -n 40
+        tail -n 60 "$scratch/log"
+    fi
 }
 
 # one NAME COMMAND...: a single test that passes if the command succeeds.
