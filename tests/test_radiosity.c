@@ -354,6 +354,48 @@ static void FormFactorsAreKeptAndNothingElseChanges(void** state)
     closeTestContext(context);
 }
 
+// A vplProgressFcn that refuses from the n-th time on; `user` is an int that counts down.
+static bool refuseLater(void* user, double fraction)
+{
+    (void)fraction;
+    return --*(int*)user > 0;
+}
+
+// Wherever the first frame was cancelled, the next of the same history is as if it had not been.
+static void CancelledFramesLeaveNothingBehind(void** state)
+{
+    (void)state;
+    vplContext* context = openTestContext(1);
+    vplScene* scene = boxRoom(context, 0.7f, false);
+    vplRenderOptions o = radiosityOptions(60);
+    vplRenderStats alone, after;
+    o.coherence = VPL_COHERENCE_OFF; // light that was found before pixels were cancelled may be gone on from
+    vplImage_Destroy(renderScene(scene, &o, &alone));
+    int cancelled = 0;
+    for (int last = 1, done = 0; !done; last++) {
+        int left = last;
+        vplImage* image = NULL;
+        assert_int_equal(vplHistory_Create(context, &o.history), VPL_SUCCESS);
+        o.progress = refuseLater;
+        o.progressUser = &left;
+        const vplResult result = vplRender(scene, &o, &image, NULL);
+        vplImage_Destroy(image);
+        o.progress = NULL;
+        if (result == VPL_CANCELLED) {
+            vplImage_Destroy(renderScene(scene, &o, &after));
+            assert_true(after.imageHash == alone.imageHash);
+            assert_true(after.solve.spectralRadius == alone.solve.spectralRadius);
+            cancelled++;
+        }
+        done = result == VPL_SUCCESS;
+        vplHistory_Destroy(o.history);
+        o.history = NULL;
+    }
+    assert_true(cancelled > 10);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+}
+
 // ---- extremes
 
 static void NoLightIsBlack(void** state)
@@ -522,7 +564,8 @@ TEST_SUITE(radiosity, cmocka_unit_test(PictureIsDirectLightAndPatches),
            cmocka_unit_test(OneSampleFormFactorsSaturateAndOursDoNot),
            cmocka_unit_test(DivergenceIsASentence), cmocka_unit_test(WhiteClosedRoomEndsWithAWarning),
            cmocka_unit_test(LightThatJumpedArrivesSweepBySweep),
-           cmocka_unit_test(FormFactorsAreKeptAndNothingElseChanges), cmocka_unit_test(NoLightIsBlack),
+           cmocka_unit_test(FormFactorsAreKeptAndNothingElseChanges),
+           cmocka_unit_test(CancelledFramesLeaveNothingBehind), cmocka_unit_test(NoLightIsBlack),
            cmocka_unit_test(OneTriangleReflectsNothingToItself),
            cmocka_unit_test(CoplanarDuplicatesDoNotDoubleLight),
            cmocka_unit_test(RoomsWithoutLightTakeNoPart), cmocka_unit_test(NothingIsDarkBecauseItTouchesABox),

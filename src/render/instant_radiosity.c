@@ -82,10 +82,9 @@ static bool showsPatches(const vplRenderOptions* o)
     return o->show >= VPL_SHOW_PATCHES && o->show <= VPL_SHOW_RESIDUAL;
 }
 
-static vplResult clear(vplImage* image)
+static void clear(vplImage* image)
 {
     memset(image->pixels, 0, 3 * (size_t)image->width * (size_t)image->height * sizeof *image->pixels);
-    return VPL_SUCCESS;
 }
 
 // One look at every pixel at place i of `count`: Hammersley points, so that edges along the axes, too, are cut at
@@ -103,10 +102,12 @@ static vplResult shadeSample(vplJob* job, const vplIngredients* in, const vplSha
     double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
     vplView view = vplView_At(&job->view, (i + 0.5) / count, y - floor(y));
     vplShadeStats stats = {0};
-    vplResult result =
-        showsPatches(&job->options)
-            ? clear(job->image)
-            : vplShadeView(job->geometry, &view, &def, vplJob_GetProgress(job), job, job->image, &stats);
+    vplResult result = VPL_SUCCESS;
+    if (showsPatches(&job->options)) {
+        clear(job->image);
+    } else {
+        result = vplShadeView(job->geometry, &view, &def, vplJob_GetProgress(job), job, job->image, &stats);
+    }
     vplJob_AddRaster(job, &stats.raster);
     job->stats.rays += stats.shadowRays;
     job->stats.lightEvaluations += stats.lightEvaluations;
@@ -261,8 +262,14 @@ static vplResult overlay(vplJob* job, const vplLightSet* set)
 static vplResult makeRadiosity(vplJob* job, vplIngredients* in)
 {
     vplResult result = vplRadiosity_Begin(job, &in->radiosity);
-    const bool lit = vplFindRadiosityNeed(&job->options) == VPL_NEED_LIGHT;
-    return result == VPL_SUCCESS && lit ? vplRadiosity_Light(job, in->radiosity) : result;
+    if (result == VPL_SUCCESS && vplFindRadiosityNeed(&job->options) == VPL_NEED_LIGHT) {
+        result = vplRadiosity_Light(job, in->radiosity);
+        if (result != VPL_SUCCESS) { // half a frame's light is none that the next could go on from
+            vplRadiosity_Destroy(in->radiosity);
+            in->radiosity = NULL;
+        }
+    }
+    return result;
 }
 
 // ---- the recipe
