@@ -37,18 +37,6 @@ vplGeometry* testModel(vplContext* context, ModelUnit unit, float rho)
     return geometry;
 }
 
-vplPatches* patchesOf(const vplGeometry* geometry, float size, int rounds)
-{
-    vplPatchDef def = vplDefaultPatchDef();
-    vplPatches* patches = NULL;
-    def.size = size;
-    def.rounds = rounds;
-    if (vplPatches_Create(geometry, &def, &patches) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return patches;
-}
-
 vplPatchSides* sidesOf(const vplPatches* patches, const vplVec3* position)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();

@@ -3,7 +3,7 @@
 #ifndef VPL_TESTS_PATCH_MODEL_H
 #define VPL_TESTS_PATCH_MODEL_H
 
-#include "shapes.h"
+#include "patch_support.h"
 
 typedef enum ModelUnit {
     MODEL_LAB,    // 555 a side, all coordinates whole numbers
@@ -16,9 +16,6 @@ vplGeometry* testModel(vplContext* context, ModelUnit unit, float rho);
 
 // Triangles from a shape, of one material.
 vplGeometry* geometryOf(vplContext* context, const Shape* shape, float rho, float emission);
-
-// Patches with edges of at most `size`, or a failed test.
-vplPatches* patchesOf(const vplGeometry* geometry, float size, int rounds);
 
 // Sides lit by a point at `position`; NULL: by what emits itself.
 vplPatchSides* sidesOf(const vplPatches* patches, const vplVec3* position);

@@ -51,7 +51,7 @@ static Case openCase(Shape* shape, float size, const vplVec3* lamp)
 {
     Case c = {.context = openTestContext(2)};
     c.geometry = geometryOf(c.context, shape, 0.5f, 0);
-    c.patches = patchesOf(c.geometry, size, VPL_MAX_PATCH_ROUNDS);
+    c.patches = openPatches(c.geometry, size, VPL_MAX_PATCH_ROUNDS);
     c.sides = sidesOf(c.patches, lamp);
     freeShape(shape);
     return c;
@@ -178,7 +178,7 @@ static void TheReportsBoxHasItsFrontsButUnderBlocks(void** state)
     (void)state;
     vplContext* context = openTestContext(2);
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
-    vplPatches* p = patchesOf(g, 1.25f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 1.25f, VPL_MAX_PATCH_ROUNDS);
     vplPatchSides* s = sidesOf(p, &NEAR_CEILING);
     int covered = 0, partly = 0, more = 0;
     assert_int_equal(p->patchCount, 784);
@@ -243,7 +243,7 @@ static void SidesAreWhatTheHeaderSays(void** state)
     vplGeometry* g;
     assert_int_equal(vplScene_Load(context, "examples/scenes/room-area.json", &scene), VPL_SUCCESS);
     assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
-    vplPatches* p = patchesOf(g, 0.8f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 0.8f, VPL_MAX_PATCH_ROUNDS);
     vplPatchSides* s = sidesOf(p, NULL);
     double emitted = 0;
     int before = -1;
@@ -301,7 +301,7 @@ static void NoSeedLightsTheBackOfAWall(void** state)
     vplContext* context = openTestContext(2);
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
     for (uint64_t seed = 0; seed < 20; seed++) {
-        vplPatches* p = patchesOf(g, 2.0f - 0.07f * (float)seed, VPL_MAX_PATCH_ROUNDS);
+        vplPatches* p = openPatches(g, 2.0f - 0.07f * (float)seed, VPL_MAX_PATCH_ROUNDS);
         vplPatchSidesDef def = vplDefaultPatchSidesDef();
         vplEmitterDef lamp = vplDefaultEmitterDef();
         vplPatchSides* s;
@@ -395,7 +395,7 @@ static void ALampAloneIsASide(void** state)
     Shape shape = {0};
     addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 0, 0), vplVec(0, 1, 0));
     vplGeometry* g = geometryOf(context, &shape, 0, 2);
-    vplPatches* p = patchesOf(g, 0.5f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 0.5f, VPL_MAX_PATCH_ROUNDS);
     vplPatchSides* s = sidesOf(p, NULL);
     assert_true(p->patchCount > 1);
     assertAll(s, 0, 1, false);
@@ -484,7 +484,7 @@ static void AWeakLampLightsItsRoom(void** state)
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(3, 0, 0), vplVec(5, 2, 2), true);
     vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
-    vplPatches* p = patchesOf(g, 0.7f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 0.7f, VPL_MAX_PATCH_ROUNDS);
     vplEmitterDef lamps[2] = {vplDefaultEmitterDef(), vplDefaultEmitterDef()};
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
     vplPatchSides* s;
@@ -560,7 +560,7 @@ static void WholeSidesAreThoseOfWholeTriangles(void** state)
 static uint64_t hashOfModel(vplContext* context)
 {
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
-    vplPatches* p = patchesOf(g, 0.8f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 0.8f, VPL_MAX_PATCH_ROUNDS);
     vplPatchSides* s = sidesOf(p, &NEAR_CEILING);
     uint64_t hash = vplHashFloats(0, &p->positions[0].x, 3 * (size_t)p->positionCount);
     for (int i = 0; i < s->count; i++) {

@@ -61,7 +61,7 @@ static Field openField(float size, double (*at)(vplVec3))
     addTriangle(&shape, vplVec(-2, 0, -2), vplVec(2, 0, 2), vplVec(2, 0, -2));
     f.geometry = geometryOf(f.context, &shape, 0.5f, 0);
     freeShape(&shape);
-    fillField(&f, patchesOf(f.geometry, size, VPL_MAX_PATCH_ROUNDS), at);
+    fillField(&f, openPatches(f.geometry, size, VPL_MAX_PATCH_ROUNDS), at);
     return f;
 }
 

@@ -10,7 +10,7 @@
 
 static int countOf(const vplGeometry* g, float size, int rounds)
 {
-    vplPatches* patches = patchesOf(g, size, rounds);
+    vplPatches* patches = openPatches(g, size, rounds);
     const int count = patches->patchCount;
     vplPatches_Destroy(patches);
     return count;
@@ -171,7 +171,7 @@ static void TheMeshOfEachRoundIsTheTables(void** state)
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     Table t = loadTable("subdivision_mesh.csv"), model = loadTable("cornell_testmodel.csv");
     for (int row = 0; row < t.rows; row++) {
-        vplPatches* p = patchesOf(g, 125, row);
+        vplPatches* p = openPatches(g, 125, row);
         double area = 0;
         int hanging = 0;
         for (int i = 0; i < p->patchCount; i++) {
@@ -262,7 +262,7 @@ static void NodesAreWhatTheHeaderSays(void** state)
     Shape shapes[] = {looseTriangles(20, 7), ringSphere(5), gridBox(2)};
     for (int i = 0; i < 3; i++) {
         vplGeometry* g = geometryOf(context, &shapes[i], 0.5f, 0);
-        vplPatches* p = patchesOf(g, 0.3f, VPL_MAX_PATCH_ROUNDS);
+        vplPatches* p = openPatches(g, 0.3f, VPL_MAX_PATCH_ROUNDS);
         assert_true(p->patchCount > 4 * g->triangleCount);
         assert_true(p->longestEdge <= 0.3f);
         assertNodes(p);
@@ -281,7 +281,7 @@ static void PointsAreFoundInTheirPatch(void** state)
     vplContext* context = openTestContext(1);
     Shape shape = looseTriangles(20, 8);
     vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
-    vplPatches* p = patchesOf(g, 0.2f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 0.2f, VPL_MAX_PATCH_ROUNDS);
     Dice dice = {9, 0};
     for (int i = 0; i < p->patchCount; i++) {
         const int triangle = p->nodes[p->patches[i]].triangle;
@@ -314,7 +314,7 @@ static void TrianglesWithoutAreaHaveNoPatch(void** state)
     addTriangle(&shape, b, b, b);
     addTriangle(&shape, a, a, d);
     vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
-    vplPatches* p = patchesOf(g, 0.5f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 0.5f, VPL_MAX_PATCH_ROUNDS);
     assert_true(p->patchCount > 1);
     for (int i = 0; i < p->patchCount; i++) {
         assert_int_equal(p->nodes[p->patches[i]].triangle, 1);
@@ -380,7 +380,7 @@ static void EdgesEndWhereFloatDoes(void** state)
     Shape shape = {0};
     addTriangle(&shape, (vplVec3){1, 1, 1}, (vplVec3){1 + 8 * u, 1, 1}, (vplVec3){1, 1 + 8 * u, 1});
     vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
-    vplPatches* p = patchesOf(g, 1e-20f, VPL_MAX_PATCH_ROUNDS);
+    vplPatches* p = openPatches(g, 1e-20f, VPL_MAX_PATCH_ROUNDS);
     assert_true(p->patchCount >= 64);
     assert_true(p->patchCount < 1000);
     double area = 0;
@@ -461,7 +461,7 @@ static void RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes(void** sta
     (void)state;
     vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
-    vplPatches *p = patchesOf(g, 125, 2), *q;
+    vplPatches *p = openPatches(g, 125, 2), *q;
     float priorities[120] = {0};
     for (int i = 10; i < 60; i++) {
         priorities[i] = (float)(i % 5);
@@ -500,9 +500,9 @@ static void RefiningEverythingIsARound(void** state)
     for (int i = 0; i < 960; i++) {
         ones[i] = 1;
     }
-    vplPatches* p = patchesOf(g, 1, 0);
+    vplPatches* p = openPatches(g, 1, 0);
     for (int rounds = 1; rounds <= 5; rounds++) {
-        vplPatches *next, *wanted = patchesOf(g, 1, rounds);
+        vplPatches *next, *wanted = openPatches(g, 1, rounds);
         assert_int_equal(vplPatches_Refine(p, ones, VPL_MAX_PATCHES, &next), VPL_SUCCESS);
         vplPatches_Destroy(p);
         p = next;
@@ -526,7 +526,7 @@ static void RefiningRefusesWhatIsNoPriority(void** state)
     (void)state;
     vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
-    vplPatches *p = patchesOf(g, 1, 0), *q = p;
+    vplPatches *p = openPatches(g, 1, 0), *q = p;
     float priorities[30] = {0};
     priorities[7] = NAN;
     assert_int_equal(vplPatches_Refine(p, priorities, 40, &q), VPL_INVALID_ARGUMENT);

@@ -68,6 +68,10 @@ vplContext* openContext(const Arguments* arguments);
 // Exit code of a result; `reading` says whether a file error was met while reading input.
 int exitCode(vplResult result, bool reading);
 
+// Loads the scene that the words name, lets `work` have it, and cleans up. Interrupts cancel the work.
+typedef int SceneWork(const Arguments* arguments, vplContext* context, const vplScene* scene);
+int runOnScene(const Arguments* arguments, SceneWork* work);
+
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
 int finishOutput(int code);
 

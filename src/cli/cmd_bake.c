@@ -33,17 +33,5 @@ int runBake(const Arguments* a)
     if (!checkOutput(a->output) || (a->stats != NULL && !checkOutput(a->stats))) {
         return EXIT_COULD_NOT;
     }
-    catchInterrupts();
-    vplContext* context = openContext(a);
-    if (context == NULL) {
-        return EXIT_USAGE;
-    }
-    vplScene* scene = NULL;
-    int code = exitCode(vplScene_Load(context, a->positionals[0], &scene), true);
-    if (code == EXIT_DONE) {
-        code = bake(a, context, scene);
-    }
-    vplScene_Destroy(scene);
-    vplContext_Destroy(context);
-    return code;
+    return runOnScene(a, bake);
 }

@@ -179,17 +179,5 @@ int runRender(const Arguments* a)
     if (!checkFiles(a)) {
         return EXIT_COULD_NOT;
     }
-    catchInterrupts();
-    vplContext* context = openContext(a);
-    if (context == NULL) {
-        return EXIT_USAGE;
-    }
-    vplScene* scene = NULL;
-    int code = exitCode(vplScene_Load(context, a->positionals[0], &scene), true);
-    if (code == EXIT_DONE) {
-        code = renderScene(a, context, scene);
-    }
-    vplScene_Destroy(scene);
-    vplContext_Destroy(context);
-    return code;
+    return runOnScene(a, renderScene);
 }

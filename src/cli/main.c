@@ -57,6 +57,23 @@ int exitCode(vplResult result, bool reading)
     return EXIT_COULD_NOT;
 }
 
+int runOnScene(const Arguments* a, SceneWork* work)
+{
+    catchInterrupts();
+    vplContext* context = openContext(a);
+    if (context == NULL) {
+        return EXIT_USAGE;
+    }
+    vplScene* scene = NULL;
+    int code = exitCode(vplScene_Load(context, a->positionals[0], &scene), true);
+    if (code == EXIT_DONE) {
+        code = work(a, context, scene);
+    }
+    vplScene_Destroy(scene);
+    vplContext_Destroy(context);
+    return code;
+}
+
 int finishOutput(int code)
 {
     if (fflush(stdout) != 0 || ferror(stdout)) {

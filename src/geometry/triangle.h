@@ -44,4 +44,9 @@ vplVec3 vplGeometry_InsideAt(const vplGeometry* geometry, int triangle, vplVec3 
 // Weights of a triangle's corners at a point in its plane, or at the point's foot there; of one without area 1, 0, 0.
 void vplTriangle_Weigh(const vplVec3 corners[3], vplVec3 point, double weightsOut[3]);
 
+static inline int vplPatches_TriangleOf(const vplPatches* patches, int patch)
+{
+    return patches->nodes[patches->patches[patch]].triangle;
+}
+
 #endif

@@ -5,6 +5,8 @@
 
 #include <vpl/radiosity.h>
 
+#include "geometry/triangle.h"
+
 // ---- cuts
 
 // A patch, or a piece of one that was cut.
@@ -78,8 +80,7 @@ static inline vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int
         return sides->sides[side].reflectance;
     }
     const vplGeometry* g = sides->patches->geometry;
-    return g->materials[g->triangleMaterials[sides->patches->nodes[sides->patches->patches[patch]].triangle]]
-        .diffuse;
+    return g->materials[g->triangleMaterials[vplPatches_TriangleOf(sides->patches, patch)]].diffuse;
 }
 
 // The position of corner `corner` of triangle `triangle` of the mesh.

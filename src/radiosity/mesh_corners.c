@@ -52,7 +52,7 @@ static float angleAt(const vplVec3* positions, const vplPiece* piece, int corner
 // The scene's.
 static int triangleOf(const vplMeshCorners* b, size_t i)
 {
-    return b->patches->nodes[b->patches->patches[vplMeshCorners_Piece(b, i)->patch]].triangle;
+    return vplPatches_TriangleOf(b->patches, vplMeshCorners_Piece(b, i)->patch);
 }
 
 // Counting sort: the corners of one position in the order of pieces.

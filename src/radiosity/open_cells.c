@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The cells of sides that light reaches.
+#include "geometry/triangle.h"
 #include "radiosity/open_cells.h"
 
 #include "geometry/bvh.h"
@@ -20,7 +21,7 @@ static bool isWhole(const vplReach* reach, int side, int64_t* rays)
     vplRayPacket down = {.active = 0}, over = {.active = 0};
     vplVec3 corners[3];
     const vplVec3 up = vplScale(reach->heights[side / 2], vplReach_Normal(reach, side));
-    const int triangle = reach->patches->nodes[reach->patches->patches[side / 2]].triangle;
+    const int triangle = vplPatches_TriangleOf(reach->patches, side / 2);
     vplSide_GetCorners(reach->patches, side / 2, side & 1, corners);
     for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
         const vplVec3 place = vplAdd(vplReach_PointOf(reach, side, cell, 0), up);

@@ -24,7 +24,7 @@ void vplSide_GetCorners(const vplPatches* patches, int patch, bool back, vplVec3
 
 static int triangleOf(const vplReach* reach, int side)
 {
-    return reach->patches->nodes[reach->patches->patches[side / 2]].triangle;
+    return vplPatches_TriangleOf(reach->patches, side / 2);
 }
 
 vplVec3 vplReach_Normal(const vplReach* reach, int side)

@@ -2,6 +2,7 @@
 // Particles that only mark where they come to.
 // Based on: Alexander Keller, Instant Radiosity, SIGGRAPH 1997, for particles; departs in letting all go on, since they
 // carry nothing: rooms behind rooms are met as often as can be.
+#include "geometry/triangle.h"
 #include "base/context.h"
 #include "base/rng.h"
 #include "math/sampling.h"
@@ -51,7 +52,7 @@ static bool start(const vplReach* reach, const vplEmission* e, const vplParticle
 static bool isBlack(const vplReach* reach, int side)
 {
     const vplGeometry* g = reach->geometry;
-    const int triangle = reach->patches->nodes[reach->patches->patches[side / 2]].triangle;
+    const int triangle = vplPatches_TriangleOf(reach->patches, side / 2);
     const vplRgb rho = g->materials[g->triangleMaterials[triangle]].diffuse;
     return !(rho.r > 0 || rho.g > 0 || rho.b > 0);
 }

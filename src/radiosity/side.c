@@ -20,7 +20,7 @@ vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, 
 {
     const vplPatches* patches = sides->patches;
     const vplGeometry* g = patches->geometry;
-    const int triangle = patches->nodes[patches->patches[side->patch]].triangle;
+    const int triangle = vplPatches_TriangleOf(patches, side->patch);
     return (vplHit){.object = g->owners[triangle],
                     .face = vplGeometry_FaceOf(g, triangle),
                     .triangle = triangle,

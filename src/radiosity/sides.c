@@ -2,6 +2,7 @@
 // The sides of patches that take part. The document's equations are about patches that face the room, and what covers
 // the floor under its blocks "I have not found a good solution to" (Hemgren, 4): here no light gets there, and neither
 // do equations.
+#include "geometry/triangle.h"
 #include "base/context.h"
 #include "geometry/emission.h"
 #include "math/scalar.h"
@@ -138,7 +139,7 @@ static float toFloat(double x)
 static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, unsigned open)
 {
     const vplGeometry* g = patches->geometry;
-    const int triangle = patches->nodes[patches->patches[patch]].triangle;
+    const int triangle = vplPatches_TriangleOf(patches, patch);
     const vplMaterialDef* material = &g->materials[g->triangleMaterials[triangle]];
     vplPatchSide side = {
         .patch = patch, .back = back, .open = (uint16_t)open, .reflectance = material->diffuse};

@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-enum { SOLVE_COOKIE = 0x56504cb5, MOST_SWEEPS = 1 << 20 };
+enum { SOLVE_COOKIE = 0x56504cb5 };
 
 // Sweeps whose change grows, one after another, before the spectral radius is asked. Where there is a solution, too,
 // the largest change may grow for a while: light that a dark corner catches.
@@ -65,9 +65,9 @@ static vplResult checkDef(const vplTransport* t, const vplSolveDef* def)
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef.solver is %d, must be a vplSolver",
                        (int)def->solver);
     }
-    if (def->iterations < 0 || def->iterations > MOST_SWEEPS) {
+    if (def->iterations < 0 || def->iterations > VPL_MAX_SWEEPS) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef.iterations is %d, must be in [0, %d]",
-                       def->iterations, (int)MOST_SWEEPS);
+                       def->iterations, (int)VPL_MAX_SWEEPS);
     }
     if (!(def->residual >= 0 && def->residual <= 1)) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef.residual is %g, must be in [0, 1]",

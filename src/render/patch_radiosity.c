@@ -92,11 +92,6 @@ static vplResult makeFactors(vplJob* job, vplRadiosityState* s)
     return result;
 }
 
-static vplResult makeMesh(vplRadiosityState* s)
-{
-    return vplPatchMesh_Create(s->sides, &s->mesh);
-}
-
 // From patches on, so far as `need` goes.
 static vplResult divide(vplJob* job, vplRadiosityNeed need, vplRadiosityState* s)
 {
@@ -105,7 +100,7 @@ static vplResult divide(vplJob* job, vplRadiosityNeed need, vplRadiosityState* s
     vplJob_EndStage(job, "reachable sides");
     if (result == VPL_SUCCESS) {
         vplJob_BeginStage(job, 0.11);
-        result = makeMesh(s);
+        result = vplPatchMesh_Create(s->sides, &s->mesh);
         vplJob_EndStage(job, "patch mesh");
     }
     if (result == VPL_SUCCESS && need >= VPL_NEED_FACTORS) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where emitters and the camera are in the course of their paths: what is made once for all frames must do for each.
+// Where emitters and the camera are in the course of their paths: what is made once for all frames must do for each; and
+// whether an emitter is still where it was.
 #include "render/render.h"
 
 // Poses per path, evenly spaced from its first key to its last.
@@ -60,4 +61,17 @@ void vplPoses_Free(vplContext* context, vplPoses* poses)
 {
     vplFree(context, poses->emitters);
     vplFree(context, poses->eyes);
+}
+
+static bool isSame(vplVec3 a, vplVec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool vplIsSameEmitter(const vplEmitterDef* a, const vplEmitterDef* b)
+{
+    return a->type == b->type && isSame(a->position, b->position) && isSame(a->direction, b->direction) &&
+           a->intensity.r == b->intensity.r && a->intensity.g == b->intensity.g &&
+           a->intensity.b == b->intensity.b && a->innerAngle == b->innerAngle &&
+           a->outerAngle == b->outerAngle;
 }

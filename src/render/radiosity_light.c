@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One frame's light for patches: what emitters give to them, and what they then exchange.
 #include "base/rng.h"
+#include "geometry/triangle.h"
+#include "radiosity/side.h"
 #include "render/history.h"
 #include "render/radiosity.h"
 
@@ -44,16 +46,10 @@ static int placePoints(const vplRadiosityState* s, int side, int samples, uint64
                        vplSurfacePoint* points)
 {
     const vplPatchSide* p = &s->sides->sides[side];
-    const int triangle = s->patches->nodes[s->patches->patches[p->patch]].triangle;
-    int cells[VPL_PATCH_CELLS], open = 0;
-    for (int k = 0; k < VPL_PATCH_CELLS; k++) {
-        if (p->open >> k & 1) {
-            cells[open++] = k;
-        }
-    }
-    const int count = open < samples ? open : samples;
+    const int triangle = vplPatches_TriangleOf(s->patches, p->patch);
+    const int open = __builtin_popcount(p->open), count = open < samples ? open : samples;
     for (int i = 0; i < count; i++) {
-        const int k = cells[(2 * i + 1) * open / (2 * count)];
+        const int k = vplPatchSide_OpenCell(p, (2 * i + 1) * open / (2 * count));
         const vplRandom4 r =
             vplRandomAt(seed, PATCH_LIGHT_STREAM, (uint64_t)side * VPL_PATCH_CELLS + (uint64_t)k);
         points[i] = (vplSurfacePoint){
@@ -189,13 +185,6 @@ static vplResult gather(vplRadiosityState* s)
     return result;
 }
 
-static bool isSameEmitter(const vplEmitterDef* a, const vplEmitterDef* b)
-{
-    return memcmp(&a->position, &b->position, sizeof a->position) == 0 &&
-           memcmp(&a->direction, &b->direction, sizeof a->direction) == 0 &&
-           memcmp(&a->intensity, &b->intensity, sizeof a->intensity) == 0;
-}
-
 static vplResult keepEmitters(vplJob* job, vplRadiosityState* s)
 {
     if (s->emitters == NULL) {
@@ -212,7 +201,7 @@ static vplResult findLight(vplJob* job, vplRadiosityState* s, bool first)
 {
     bool moved = first;
     for (int i = 0; i < job->emitterCount && !moved; i++) {
-        moved = !isSameEmitter(&s->emitters[i], &job->emitters[i]);
+        moved = !vplIsSameEmitter(&s->emitters[i], &job->emitters[i]);
     }
     vplResult result = VPL_SUCCESS;
     if (moved) {

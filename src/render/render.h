@@ -101,6 +101,9 @@ typedef struct vplPoses {
 vplResult vplJob_FindPoses(const vplJob* job, vplPoses* posesOut);
 void vplPoses_Free(vplContext* context, vplPoses* poses);
 
+// Whether two poses of an emitter give the same light.
+bool vplIsSameEmitter(const vplEmitterDef* a, const vplEmitterDef* b);
+
 // Draws the lights over the picture.
 void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set);
 

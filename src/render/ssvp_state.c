@@ -50,19 +50,6 @@ vplSsvpKey vplSsvp_FindKey(const vplJob* job)
     return key;
 }
 
-static bool isSame(vplVec3 a, vplVec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-static bool isSameEmitter(const vplEmitterDef* a, const vplEmitterDef* b)
-{
-    return a->type == b->type && isSame(a->position, b->position) && isSame(a->direction, b->direction) &&
-           a->intensity.r == b->intensity.r && a->intensity.g == b->intensity.g &&
-           a->intensity.b == b->intensity.b && a->innerAngle == b->innerAngle &&
-           a->outerAngle == b->outerAngle;
-}
-
 // Direct light takes its shadows from them, lights are samples of them.
 static bool needsMaps(const vplJob* job)
 {
@@ -76,7 +63,7 @@ static bool isStill(const vplJob* job, const vplSsvpState* last)
     bool still = last->emitterCount == job->emitterCount && last->rsmSize == job->options.rsmSize &&
                  (last->drawn || !needsMaps(job));
     for (int i = 0; still && i < job->emitterCount; i++) {
-        still = isSameEmitter(&job->emitters[i], &last->emitters[i]);
+        still = vplIsSameEmitter(&job->emitters[i], &last->emitters[i]);
     }
     return still;
 }
