@@ -26,6 +26,12 @@ typedef struct Suite {
     static const struct CMUnitTest name##Tests[] = {__VA_ARGS__};                                            \
     const Suite name##Suite = {#name, name##Tests, sizeof name##Tests / sizeof *name##Tests}
 
+// For TEST_SUITE, a test that takes a second or more because it is about statistics, or tries many cases of one thing:
+// it has nothing new to say where the bits are the same, and `vpl-tests --quick` leaves it out.
+#define slow_unit_test(f) {#f, f, NULL, NULL, (void*)&testIsSlow}
+
+extern char testIsSlow;
+
 // A context with `workers` threads whose last message is kept. Never NULL.
 vplContext* openTestContext(int workers);
 

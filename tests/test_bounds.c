@@ -234,5 +234,5 @@ static void BoundsTellMostOfARoom(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(bounds, cmocka_unit_test(BoundsHoldForEveryTexel),
-           cmocka_unit_test(BoundsNeverChangeAShadowOfRandomMaps), cmocka_unit_test(BoundsTellMostOfARoom));
+TEST_SUITE(bounds, slow_unit_test(BoundsHoldForEveryTexel),
+           slow_unit_test(BoundsNeverChangeAShadowOfRandomMaps), cmocka_unit_test(BoundsTellMostOfARoom));

@@ -403,8 +403,8 @@ static void NearDistanceOfASphereIsThatOfItsChords(void** state)
 }
 
 TEST_SUITE(compensation, cmocka_unit_test(NearDistanceOfASphereIsThatOfItsChords),
-           cmocka_unit_test(PlaneGetsBackWhatTheBoundTakes), cmocka_unit_test(FurnaceIsRightWhateverTheBound),
-           cmocka_unit_test(LossIsWhatCompensationAdds), cmocka_unit_test(WhiteWallsAndAnEndlessBoundEnd),
+           cmocka_unit_test(PlaneGetsBackWhatTheBoundTakes), slow_unit_test(FurnaceIsRightWhateverTheBound),
+           slow_unit_test(LossIsWhatCompensationAdds), cmocka_unit_test(WhiteWallsAndAnEndlessBoundEnd),
            cmocka_unit_test(ThreadsAndInstructionSetsGiveTheSameBits),
            cmocka_unit_test(PipelinesGiveTheSameBits), cmocka_unit_test(PartsAddUpOnAverage),
-           cmocka_unit_test(EveryKindOfLightIsGivenBack), cmocka_unit_test(PassesCastOtherRays));
+           slow_unit_test(EveryKindOfLightIsGivenBack), cmocka_unit_test(PassesCastOtherRays));

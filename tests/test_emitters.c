@@ -723,11 +723,10 @@ static void EnergyIsThatOfPathTracing(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(emitters, cmocka_unit_test(EnergyIsThatOfPathTracing), cmocka_unit_test(SpotAndSunAreAnalytic),
+TEST_SUITE(emitters, slow_unit_test(EnergyIsThatOfPathTracing), cmocka_unit_test(SpotAndSunAreAnalytic),
            cmocka_unit_test(LampLightsConvergeToTheFormFactor), cmocka_unit_test(RayAndMapShadowsAgree),
            cmocka_unit_test(RayShadowsAreExact), cmocka_unit_test(SmoothTrianglesAreDarkFromBehind),
-           cmocka_unit_test(SmoothMeshesShadeWithoutSeams),
-           cmocka_unit_test(AccumulationsAgreeWithEveryShadow),
+           cmocka_unit_test(SmoothMeshesShadeWithoutSeams), slow_unit_test(AccumulationsAgreeWithEveryShadow),
            cmocka_unit_test(DoublingEmittersDoublesEveryBit),
            cmocka_unit_test(DocumentedLightingRefusesOtherEmitters), cmocka_unit_test(LampsShootTheirPower),
            cmocka_unit_test(BoxesInsteadOfBoxesGiveTheSameLights),

@@ -495,7 +495,7 @@ TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
            cmocka_unit_test(BadPathsAreRefusedAndChangeNothing),
            cmocka_unit_test(PosesThatDegenerateAreRefused),
            cmocka_unit_test(FilesSayWhatChangesAndTheRestIsAsDeclared),
-           cmocka_unit_test(AFrameIsThePictureOfItsPose), cmocka_unit_test(AHistoryChangesNoPicture),
+           cmocka_unit_test(AFrameIsThePictureOfItsPose), slow_unit_test(AHistoryChangesNoPicture),
            cmocka_unit_test(AHistoryFreezesTheSceneOnce), cmocka_unit_test(AHistoryOfAnotherSceneIsRefused),
            cmocka_unit_test(LargeBlocksAreAskedForOnce), cmocka_unit_test(KeptBlocksAreBounded),
            cmocka_unit_test(AHistoryDestroysWhatAMethodLeftWithIt));

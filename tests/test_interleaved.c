@@ -297,7 +297,7 @@ static void SizesOfBlocksOutOfRangeAreRefused(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(interleaved, cmocka_unit_test(EveryPixelIsThatOfTheDefinition),
+TEST_SUITE(interleaved, slow_unit_test(EveryPixelIsThatOfTheDefinition),
            cmocka_unit_test(FarLightsOnAFloorAreThoseOfDeferredShading),
            cmocka_unit_test(NoLightLeaksOverAnEdge), cmocka_unit_test(BlocksOfOnePixelAreDeferredBitForBit),
            cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),

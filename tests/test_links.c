@@ -490,10 +490,10 @@ static void LinksAreTheSameBitsEverywhere(void** state)
 
 TEST_SUITE(links, cmocka_unit_test(AClosedRoomKeepsAllLight), cmocka_unit_test(AFurnaceGlowsAsItMust),
            cmocka_unit_test(LinksServeBothDirections),
-           cmocka_unit_test(IrradianceIsThatOfAllPairsToTheErrorAskedFor),
+           slow_unit_test(IrradianceIsThatOfAllPairsToTheErrorAskedFor),
            cmocka_unit_test(ALampFlushWithTheCeilingShinesFromWhereItIs),
            cmocka_unit_test(NoLightGoesThroughAWall),
-           cmocka_unit_test(EightTimesThePatchesTakeHalfAsManyLinksEach),
+           slow_unit_test(EightTimesThePatchesTakeHalfAsManyLinksEach),
            cmocka_unit_test(WhatIsInOnePlaneHasNoLinks), cmocka_unit_test(NoSidesHaveNoLinks),
            cmocka_unit_test(CornersAndScalesAreFinite), cmocka_unit_test(WrongArgumentsAreRefused),
            cmocka_unit_test(CancellingLeavesNothing), cmocka_unit_test(LinksAreTheSameBitsEverywhere));

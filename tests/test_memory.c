@@ -370,7 +370,7 @@ static vplResult renderRadiosity(vplContext* context, const char* path, int vari
     options.patches = 40;
     options.patchPlacement = variant == 1 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
     options.hierarchy = variant == 2 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
-    vplResult result = vplScene_Load(context, "examples/scenes/room-path.json", &scene);
+    vplResult result = vplScene_Load(context, "tests/data/corner-path.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplHistory_Create(context, &history);
     }
@@ -392,7 +392,7 @@ static vplResult bakeRoom(vplContext* context, const char* path, int variant)
     vplRenderOptions options = vplDefaultRenderOptions();
     options.patches = 40;
     options.solver = variant ? VPL_SOLVER_SHOOTING : VPL_SOLVER_JACOBI;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
+    vplResult result = vplScene_Load(context, "tests/data/corner-path.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplBake(scene, &options, 0, path, NULL);
     }

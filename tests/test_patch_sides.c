@@ -641,7 +641,7 @@ TEST_SUITE(patchSides, cmocka_unit_test(CellsTileThePatch), cmocka_unit_test(Cel
            cmocka_unit_test(TheReportsBoxHasItsFrontsButUnderBlocks),
            cmocka_unit_test(SidesAreWhatTheHeaderSays),
            cmocka_unit_test(TheInsideOfACrateAndTheFloorUnderItAreDark),
-           cmocka_unit_test(NoSeedLightsTheBackOfAWall), cmocka_unit_test(ARoomWithoutALampTakesNoPart),
+           slow_unit_test(NoSeedLightsTheBackOfAWall), cmocka_unit_test(ARoomWithoutALampTakesNoPart),
            cmocka_unit_test(WithoutLightThereAreNoSides), cmocka_unit_test(WhatAnEyeSeesTakesPart),
            cmocka_unit_test(OneTriangleHasTheSideThatFacesTheLamp), cmocka_unit_test(ALampAloneIsASide),
            cmocka_unit_test(ACurtainHasBothSides),

@@ -791,14 +791,14 @@ static void ProgressCanCancel(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(path, cmocka_unit_test(FurnaceGlowsEverywhereAlike), cmocka_unit_test(WhiteBodyInAFurnaceVanishes),
+TEST_SUITE(path, slow_unit_test(FurnaceGlowsEverywhereAlike), cmocka_unit_test(WhiteBodyInAFurnaceVanishes),
            cmocka_unit_test(PointLightFollowsTheInverseSquare),
            cmocka_unit_test(SpotFadesSmoothlyBetweenItsAngles),
            cmocka_unit_test(DirectionalLightGoesByTheCosine), cmocka_unit_test(SquareLampGivesItsFormFactor),
-           cmocka_unit_test(OnlyTheFrontOfALampEmits), cmocka_unit_test(CubeMatchesTheTableBounceByBounce),
-           cmocka_unit_test(SphereMatchesTheTable), cmocka_unit_test(PartsAddUpToThePicture),
-           cmocka_unit_test(ErrorEstimatePredictsTheDifferenceOfSeeds),
-           cmocka_unit_test(AllWaysOfFindingLightAgree),
+           cmocka_unit_test(OnlyTheFrontOfALampEmits), slow_unit_test(CubeMatchesTheTableBounceByBounce),
+           slow_unit_test(SphereMatchesTheTable), cmocka_unit_test(PartsAddUpToThePicture),
+           slow_unit_test(ErrorEstimatePredictsTheDifferenceOfSeeds),
+           slow_unit_test(AllWaysOfFindingLightAgree),
            cmocka_unit_test(SameBitsForAllThreadsAndInstructionSets),
            cmocka_unit_test(PassesOfAnySizeEndInTheSameBits), cmocka_unit_test(PixelsAreTheRasterizersPixels),
            cmocka_unit_test(LightsOnSurfacesAndEdgesGiveNumbers), cmocka_unit_test(PerfectMirrorRoomEnds),

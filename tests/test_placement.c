@@ -460,7 +460,7 @@ TEST_SUITE(placement, cmocka_unit_test(WorthIsWhatTheFloorReflects),
            cmocka_unit_test(WhatIsBetweenStopsOnlyLightsWithShadows),
            cmocka_unit_test(EachLightKeepsItsWeightInTheMean),
            cmocka_unit_test(ChosenFluxIsThatOfAClosedRoom), cmocka_unit_test(AllAreKeptWhereAllAreWanted),
-           cmocka_unit_test(PicturesAreThoseOfPlainParticlesInTheMean),
+           slow_unit_test(PicturesAreThoseOfPlainParticlesInTheMean),
            cmocka_unit_test(LightsBehindWallsAreLeftOut), cmocka_unit_test(ChoicesDoNotDependOnThreadsOrIsa),
            cmocka_unit_test(DoublingTheEmitterChoosesTheSameLights), cmocka_unit_test(ExtremesStayFinite),
            cmocka_unit_test(BadPlacementsAreRefused));

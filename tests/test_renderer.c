@@ -187,6 +187,6 @@ static void StepsAreCancelledAndNeedAFirst(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(renderer, cmocka_unit_test(StepsGiveTheBitsOfOneCall),
-           cmocka_unit_test(MorePassesAreBetterAndSaySo), cmocka_unit_test(AnErrorOrATimeEndsIt),
-           cmocka_unit_test(PathsEndByTheirError), cmocka_unit_test(StepsAreCancelledAndNeedAFirst));
+TEST_SUITE(renderer, cmocka_unit_test(StepsGiveTheBitsOfOneCall), slow_unit_test(MorePassesAreBetterAndSaySo),
+           cmocka_unit_test(AnErrorOrATimeEndsIt), cmocka_unit_test(PathsEndByTheirError),
+           cmocka_unit_test(StepsAreCancelledAndNeedAFirst));

@@ -266,7 +266,7 @@ static void EmittersTakeTheirShadowsFromTheirMaps(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(rsmShadow, cmocka_unit_test(NoPlaneShadowsItselfAtAnyAngle),
+TEST_SUITE(rsmShadow, slow_unit_test(NoPlaneShadowsItselfAtAnyAngle),
            cmocka_unit_test(RaysSayTheSameBeyondTheBand), cmocka_unit_test(NothingIsShadowedOutsideOfTheView),
            cmocka_unit_test(FactorsDoNotDependOnIsa),
            cmocka_unit_test(EmittersTakeTheirShadowsFromTheirMaps));

@@ -497,7 +497,7 @@ static void EveryPixelOfAnySizeIsShadedOnce(void** state)
 TEST_SUITE(shading, cmocka_unit_test(EveryKernelValueOfTheTable),
            cmocka_unit_test(ClampLosesOnAPlaneWhatTheTableSays), cmocka_unit_test(FurnaceSphereIsExact),
            cmocka_unit_test(DocumentedFurnaceSphereIsThatOfTheTable),
-           cmocka_unit_test(LightsInACubeConvergeToTheTable),
+           slow_unit_test(LightsInACubeConvergeToTheTable),
            cmocka_unit_test(DocumentedLightsInACubeConvergeToTheTable),
            cmocka_unit_test(EveryPointOfTheRoomIsLitAsTheTableSays),
            cmocka_unit_test(BothLightingsDifferByTheFactorsOfTheTable),

@@ -471,14 +471,14 @@ static void WhatIsNotPossibleIsASentence(void** state)
     closeTestContext(context);
 }
 
-TEST_SUITE(ssvp, cmocka_unit_test(AsManyClustersAsLightsAreInstantRadiosity),
-           cmocka_unit_test(EachBounceHasTheLightOfPaths),
-           cmocka_unit_test(PrintedWeightsMoveTheSecondBounce), cmocka_unit_test(BouncesAreToggled),
-           cmocka_unit_test(EveryStageIsShown), cmocka_unit_test(BitsDependOnNeitherThreadsNorInstructions),
+TEST_SUITE(ssvp, slow_unit_test(AsManyClustersAsLightsAreInstantRadiosity),
+           slow_unit_test(EachBounceHasTheLightOfPaths), cmocka_unit_test(PrintedWeightsMoveTheSecondBounce),
+           cmocka_unit_test(BouncesAreToggled), cmocka_unit_test(EveryStageIsShown),
+           cmocka_unit_test(BitsDependOnNeitherThreadsNorInstructions),
            cmocka_unit_test(StillLightsKeepTheirBits),
            cmocka_unit_test(MapsThatWereNotNeededAreDrawnWhenTheyAre),
            cmocka_unit_test(PassesHaveNothingToDoWithEachOther),
            cmocka_unit_test(FewerLightsThanClustersAndMapsOfOneTexel),
            cmocka_unit_test(CentroidsInMidAirLightTheBallTheyAreIn),
-           cmocka_unit_test(BlackScenesAndLightsThatSeeNothingStayBlack), cmocka_unit_test(LampsAreLightsToo),
+           cmocka_unit_test(BlackScenesAndLightsThatSeeNothingStayBlack), slow_unit_test(LampsAreLightsToo),
            cmocka_unit_test(WhatIsNotPossibleIsASentence));
