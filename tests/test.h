@@ -28,10 +28,9 @@ typedef struct Suite {
 
 // For TEST_SUITE, a test that takes a second or more because it is about statistics, or tries many cases of one thing:
 // it has nothing new to say where the bits are the same, and `vpl-tests --quick` leaves it out.
-#define slow_unit_test(f)                                                                                    \
-    {                                                                                                        \
-#f, f, NULL, NULL, (void*)&testIsSlow                                                                \
-    }
+// clang-format off
+#define slow_unit_test(f) {#f, f, NULL, NULL, (void*)&testIsSlow}
+// clang-format on
 
 extern char testIsSlow;
 
