@@ -24,6 +24,7 @@
     X(exr) \
     X(formFactors) \
     X(frames) \
+    X(gather) \
     X(geometry) \
     X(halfMaps) \
     X(hits) \

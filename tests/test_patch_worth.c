@@ -5,6 +5,7 @@
 #include "math/vec.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // A floor under a light that is much nearer to one place than to others: irradiance cos^4 / height^2.
 static double irradianceAt(vplVec3 p)
@@ -113,19 +114,15 @@ static double ramp(vplVec3 p)
     return 1 + (p.x > 0 ? (double)p.x : 0);
 }
 
-// In even light all patches of a size are worth the same, smaller ones less.
-static void NoLightNeedsNoPatchesAndEvenLightLargeOnesFirst(void** state)
+static void NoLightAndEvenLightNeedNoPatches(void** state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
         Field f = openField(0.5f, i ? none : one);
         findWorth(&f);
-        const double largest = (double)f.sides->sides[0].area;
         for (int k = 0; k < f.patches->patchCount; k++) {
-            const double share = vplPatches_Area(f.patches, k) / largest;
-            assertNear((double)f.worth[k], i ? 0 : (double)f.worth[0] * pow(share, 3), 1e-5, "worth", k);
+            assertNear((double)f.worth[k], 0, 1e-12, "worth", k);
         }
-        assert_true(i || f.worth[0] > 0);
         closeField(&f);
     }
 }
@@ -164,6 +161,39 @@ static void AShadowsBoundaryIsWorthPatches(void** state)
     }
     assert_true(f.worth[f.sides->sides[9].patch] - plain > 2 * (f.worth[f.sides->sides[5].patch] - plain));
     free(spread);
+    closeField(&f);
+}
+
+// Direct light that changes across a patch errs in what the patch reflects; even light, however bright, does not.
+static void ChangesOfDirectLightAreWorthPatches(void** state)
+{
+    (void)state;
+    Field f = openField(0.5f, one);
+    const size_t corners = 2 * (size_t)f.mesh->vertexCount;
+    vplRgb* direct = malloc(corners * sizeof *direct);
+    float* plain = malloc((size_t)f.patches->patchCount * sizeof *plain);
+    vplPatchWorthDef def = defOf(&f);
+    findWorth(&f);
+    memcpy(plain, f.worth, (size_t)f.patches->patchCount * sizeof *plain);
+    def.vertexDirect = direct;
+    for (int slope = 0; slope < 2; slope++) {
+        for (size_t i = 0; i < corners; i++) {
+            const float x = f.mesh->positions[i / 2].x, e = 10 + (slope ? fmaxf(x, 0) : 0);
+            direct[i] = (vplRgb){e, e, e};
+        }
+        assert_int_equal(vplFindPatchWorth(f.mesh, &def, f.worth), VPL_SUCCESS);
+        for (int i = 0; i < f.patches->patchCount; i++) {
+            const vplPatchSide* s = &f.sides->sides[f.sides->ofPatch[2 * i]];
+            const bool changes = slope && (s->corners[0].x > 0 || s->corners[1].x > 0 || s->corners[2].x > 0);
+            if (changes) {
+                assert_true(f.worth[i] > 1.5f * plain[i]);
+            } else {
+                assertNear((double)f.worth[i], (double)plain[i], 1e-5 * (double)plain[i], "worth", i);
+            }
+        }
+    }
+    free(direct);
+    free(plain);
     closeField(&f);
 }
 
@@ -249,7 +279,8 @@ static void WrongDefsAreRefused(void** state)
     closeField(&f);
 }
 
-TEST_SUITE(patchWorth, cmocka_unit_test(NoLightNeedsNoPatchesAndEvenLightLargeOnesFirst),
+TEST_SUITE(patchWorth, cmocka_unit_test(NoLightAndEvenLightNeedNoPatches),
            cmocka_unit_test(SlopesAreWorthMoreThanPlains), cmocka_unit_test(AShadowsBoundaryIsWorthPatches),
+           cmocka_unit_test(ChangesOfDirectLightAreWorthPatches),
            cmocka_unit_test(PatchesWhereTheyAreWorthMostHalveTheError),
            cmocka_unit_test(WrongDefsAreRefused));

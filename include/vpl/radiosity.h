@@ -263,6 +263,15 @@ void vplPatchMesh_Destroy(vplPatchMesh* mesh);
 vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                    vplRgb* vertexValuesOut);
 
+// Irradiance at the vertices from all that radiosities send there, found by `rays` rays in [1, 65536] from each: unlike
+// means of patches around it, it knows that a corner is dark, and its patches need not. Where sides around a vertex end,
+// at a wall or under a box, the place is moved a 32nd of the way into them. `radiosity`, W/m^2, one per side; out:
+// [vertex][front, back], W/m^2, with the standard deviation of what the rays meet over sqrt(rays), or less; 0 at
+// vertices of no side. raysOut, if given, grows by what it took. Source: Reichert, A Two-Pass Radiosity Method Driven by Lights and Viewer Position, Cornell 1992.
+vplResult vplPatchMesh_Gather(const vplPatchMesh* mesh, const vplRgb* radiosity, int rays, uint64_t seed,
+                              vplRgb* vertexIrradianceOut, vplProgressFcn* progress, void* user,
+                              int64_t* raysOut);
+
 // Moves such means, not below 0, so that what interpolation shows of each side comes nearer to its value, `rounds` times.
 vplResult vplPatchMesh_Sharpen(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                int rounds, vplRgb* vertexValues);
@@ -293,8 +302,10 @@ vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIr
 // ---- where more patches are wanted
 
 typedef struct vplPatchWorthDef {
-    const vplRgb* irradiance;       // W/m^2, indirect, one per side
-    const vplRgb* vertexIrradiance; // the same at the mesh's vertices: [vertex][front, back]
+    const vplRgb* irradiance; // W/m^2, indirect, one per side
+    const vplRgb*
+        vertexIrradiance;       // the same at the mesh's vertices, [vertex][front, back]: gathered, or means
+    const vplRgb* vertexDirect; // W/m^2, direct irradiance there, of lamps, too; NULL: not known
     const float* directSpread; // standard deviation of direct irradiance over each side, W/m^2: large where a
                                // shadow's boundary crosses it; NULL: not known
     uint32_t cookie;           // set by vplDefaultPatchWorthDef

@@ -23,13 +23,9 @@ typedef struct Looking {
 
 static bool meetsSide(const vplPatchSides* sides, const vplRay* ray)
 {
-    const vplPatches* patches = sides->patches;
     vplHit hit;
-    if (!vplGeometry_ClosestHit(patches->geometry, ray, &hit)) {
-        return false;
-    }
-    const int patch = vplPatches_Find(patches, hit.triangle, hit.position);
-    return patch >= 0 && sides->ofPatch[2 * patch + (vplDot(ray->direction, hit.normal) > 0)] >= 0;
+    return vplGeometry_ClosestHit(sides->patches->geometry, ray, &hit) &&
+           vplPatchSides_Find(sides, &hit, ray->direction) >= 0;
 }
 
 // Directions are a grid of 4 x 8 over the hemisphere, so that none looks past a large opening.

@@ -2,6 +2,7 @@
 #include "radiosity/side.h"
 
 #include "geometry/triangle.h"
+#include "math/vec.h"
 
 // All are open of most.
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
@@ -26,4 +27,10 @@ vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, 
                     .triangle = triangle,
                     .position = at,
                     .normal = g->normals[triangle]};
+}
+
+int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction)
+{
+    const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
+    return patch < 0 ? -1 : sides->ofPatch[2 * (size_t)patch + (vplDot(direction, hit->normal) > 0)];
 }

@@ -11,4 +11,7 @@ int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
 // Where rays leave a side.
 vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
 
+// The side that a ray which goes in `direction` meets at `hit`; -1: none that takes part.
+int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction);
+
 #endif

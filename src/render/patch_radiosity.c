@@ -113,8 +113,9 @@ static vplResult divide(vplJob* job, vplRadiosityNeed need, vplRadiosityState* s
 
 // ---- adaptive patches
 
-// Rounds begin with a quarter of the patches and grow by half: four solutions, all of which before the last cost less than
-// it. From an eighth on, or by a quarter a round, pictures of room-area and cornell-area were not nearer to the truth.
+// Rounds begin with a quarter of the patches and grow by half: five solutions, the last of which costs nearly as much as
+// the others. In the mean over cornell-area and room-area at 500 to 4000 patches the squared error from an eighth on is
+// 0.97 of this, by a quarter a round 0.94 for twice the rounds; by doubling 1.6.
 static const double ADAPTIVE_START = 0.25, ADAPTIVE_GROWTH = 1.5;
 
 static vplResult makePatches(const vplJob* job, int count, vplPatches** patchesOut)

@@ -47,6 +47,14 @@ typedef struct vplRadiosityState {
 // Patches, their sides and what these exchange, as far as options need, unless those of the last frame do.
 vplResult vplRadiosity_Begin(vplJob* job, vplRadiosityState** stateOut);
 
+static inline vplTransport vplRadiosity_Transport(const vplRadiosityState* s)
+{
+    return (vplTransport){s->sides, s->factors, s->links};
+}
+
+// What sides radiate of light that they did not make themselves.
+void vplRadiosity_FindReflected(const vplRadiosityState* s, vplRgb* reflectedOut);
+
 // Light of this frame.
 vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* state);
 

@@ -8,7 +8,7 @@
 
 static vplResult findValues(const vplJob* job, const vplRadiosityState* s, vplRgb* values)
 {
-    const vplTransport transport = {s->sides, s->factors, s->links};
+    const vplTransport transport = vplRadiosity_Transport(s);
     const int count = s->sides->count;
     const float scale = (float)(1 / VPL_PI);
     switch (job->options.show) {
@@ -73,7 +73,7 @@ vplResult vplRadiosity_Draw(vplJob* job, const vplRadiosityState* s, const vplVi
 static vplResult writeMesh(vplJob* job, const vplRadiosityState* s, float scale, const char* path)
 {
     const size_t count = (size_t)s->sides->count, corners = 2 * (size_t)s->mesh->vertexCount;
-    const vplTransport transport = {s->sides, s->factors, s->links};
+    const vplTransport transport = vplRadiosity_Transport(s);
     vplRgb* all = vplAlloc(job->context, count, sizeof *all);
     vplRgb* vertices = vplAlloc(job->context, corners, sizeof *vertices);
     vplResult result = all != NULL && vertices != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;

@@ -138,16 +138,11 @@ static void findSource(vplRadiosityState* s)
 
 // ---- exchange
 
-static vplTransport transportOf(const vplRadiosityState* s)
-{
-    return (vplTransport){s->sides, s->factors, s->links};
-}
-
 // How fast light dies away is asked once: it depends on form factors alone, which are kept.
 static vplResult solve(vplJob* job, vplRadiosityState* s, bool first)
 {
     const vplRenderOptions* o = &job->options;
-    const vplTransport transport = transportOf(s);
+    const vplTransport transport = vplRadiosity_Transport(s);
     const vplSolveStats last = s->solve;
     vplSolveDef def = vplDefaultSolveDef();
     def.solver = s->links != NULL ? VPL_SOLVER_JACOBI : o->solver;
@@ -167,19 +162,24 @@ static vplResult solve(vplJob* job, vplRadiosityState* s, bool first)
     return result;
 }
 
+void vplRadiosity_FindReflected(const vplRadiosityState* s, vplRgb* reflectedOut)
+{
+    for (int i = 0; i < s->sides->count; i++) {
+        const vplRgb b = s->radiosity[i], e = s->sides->sides[i].emission;
+        reflectedOut[i] = (vplRgb){b.r - e.r, b.g - e.g, b.b - e.b};
+    }
+}
+
 // What was reflected at least once arrives here; lamps' own light is direct.
 static vplResult gather(vplRadiosityState* s)
 {
-    const vplTransport transport = transportOf(s);
+    const vplTransport transport = vplRadiosity_Transport(s);
     const size_t count = (size_t)s->sides->count;
     vplRgb* reflected = vplAlloc(s->context, count, sizeof *reflected);
     if (reflected == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    for (size_t i = 0; i < count; i++) {
-        const vplRgb b = s->radiosity[i], e = s->sides->sides[i].emission;
-        reflected[i] = (vplRgb){b.r - e.r, b.g - e.g, b.b - e.b};
-    }
+    vplRadiosity_FindReflected(s, reflected);
     vplResult result = vplGatherRadiosity(&transport, reflected, s->irradiance);
     vplFree(s->context, reflected);
     return result;
@@ -244,23 +244,5 @@ vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* s)
     }
     vplJob_EndStage(job, "corners");
     job->stats.solve = s->solve;
-    return result;
-}
-
-// By means at corners as they are: sharpened ones hide how far they are from the patches' light.
-vplResult vplRadiosity_FindWorth(vplJob* job, const vplRadiosityState* s, float* worthOut)
-{
-    vplRgb* corners = vplAlloc(s->context, 2 * (size_t)s->mesh->vertexCount, sizeof *corners);
-    vplResult result =
-        corners != NULL ? vplPatchMesh_Interpolate(s->mesh, job->options.vertexWeight, s->irradiance, corners)
-                        : VPL_OUT_OF_MEMORY;
-    if (result == VPL_SUCCESS) {
-        vplPatchWorthDef def = vplDefaultPatchWorthDef();
-        def.irradiance = s->irradiance;
-        def.vertexIrradiance = corners;
-        def.directSpread = s->spread;
-        result = vplFindPatchWorth(s->mesh, &def, worthOut);
-    }
-    vplFree(s->context, corners);
     return result;
 }
