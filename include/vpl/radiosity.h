@@ -131,6 +131,16 @@ void vplFormFactors_Destroy(vplFormFactors* factors);
 // squares 2^-7 to 10^6 sides apart, of touching and of thin triangles, below 2e-8 for any above 1e-6 (tests/test_triangle_factors.c).
 double vplTriangleFormFactor(const vplVec3 a[3], const vplVec3 b[3]);
 
+// The form factor from a surface element to a triangle with nothing between them: the share of what leaves the element at
+// `point`, diffuse, that arrives at the side from which the corners are counter-clockwise; that is what the triangle's
+// radiosity is multiplied by in the element's irradiance. What lies behind the element's plane is cut off. `normal` is
+// unit; only its direction counts. In [0, 1]; 0 where the point is behind the triangle's plane, or in it as far as double
+// can tell, where the triangle has no area, and where numbers are not finite.
+// Source: Lambert, Photometria, 1760; Hottel and Sarofim, Radiative Transfer, 1967, chapter 2; Baum, Rushmeier and Winget,
+// SIGGRAPH 1989. Error below 1e-15, or that times the triangle's size over the distance from its edges; from five sizes
+// away, relative error below 1e-13 over the lesser of both cosines (300,000 random cases in quadruple precision).
+double vplPointFormFactor(vplVec3 point, vplVec3 normal, const vplVec3 triangle[3]);
+
 // ---- the hierarchy: form factors of near pairs between patches, of far ones between groups of them
 
 typedef struct vplLinkDef {
