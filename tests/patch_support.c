@@ -81,6 +81,9 @@ static vplPatchSide sideOf(const vplPatches* p, int patch, int face, uint16_t op
                           .back = face == 1,
                           .open = open,
                           .area = (float)(vplTriangle_Area(&c) * __builtin_popcount(open) / 16),
+                          .corners = {p->positions[n->corners[0]],
+                                      p->positions[n->corners[face == 0 ? 1 : 2]],
+                                      p->positions[n->corners[face == 0 ? 2 : 1]]},
                           .normal = face == 0 ? normal : vplNegate(normal),
                           .reflectance = material->diffuse};
 }

@@ -114,7 +114,7 @@ static void TheFootOfAWallIsLitByTheWall(void** state)
         const bool ofFloor =
             vplPatches_TriangleOf(m->sides->patches, m->around->list[m->around->first[v]].patch) < 2;
         if (ofFloor && p.z == 0 && fabsf(p.x) < 0.9f) {
-            assert_true(e[2 * v].r > 0.42f && e[2 * v].r < 0.5f);
+            assert_true(e[2 * v].r > 0.49f && e[2 * v].r < 0.5f);
             feet++;
         }
     }
