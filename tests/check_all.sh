@@ -4,7 +4,11 @@
 # All of it takes as long as three times `make test`: slow tests are left out, and what a configuration is not about.
 jobs=$(nproc)
 RUNNER=
-TESTS=
+# What one thread can say of arithmetic; of all else golden pictures do.
+ARITHMETIC="bench clusters drawPatches emission exr gather geometry halfMaps hits image lights math metrics obj objParts
+    objScene packets paraboloids patchMesh patchWorth ply raster rasterTruth rays rsm scene sceneChecks secondBounce
+    triangleFactors visibility -Threads -Everywhere -ChoicesDoNotDepend -AHostsOwnScheduler"
+export OMP_WAIT_POLICY=passive # configurations are tested side by side: threads that wait must not spin
 
 # check NAME: the tests of a configuration that was built.
 check() {
@@ -22,14 +26,12 @@ fails() {
     touch build/check-all-failed
 }
 
-# run NAME [MAKE VARIABLES...]: builds one configuration while the one before is tested, most of it on one thread,
-# then tests it in the background.
+# run NAME [MAKE VARIABLES...]: builds one configuration while those before are tested, then tests it in the background.
 run() {
     name=$1
     shift
     if make -j"$jobs" --no-print-directory BUILD="build/$name" "$@" "build/$name/vpl-tests" "build/$name/vpl-golden" \
         >"build/$name.log" 2>&1; then
-        wait
         check "$name" &
     else
         fails "$name"
@@ -39,23 +41,21 @@ run() {
 mkdir -p build
 rm -f build/check-all-failed
 # The longest first, so that the others are built meanwhile.
+TESTS=
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
-TESTS=-memory # allocation failures are for the address sanitizer
-run gcc-plain CC=gcc MODE=debug OPENMP=0 EXR=0
 if command -v clang >/dev/null 2>&1; then
-    run clang-release CC=clang
     # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor.
+    TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive progress"
     run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g -O1 -DVPL_TEST_PTHREADS"
+    TESTS=-memory # allocation failures are for the address sanitizer
+    run clang-release CC=clang
 fi
+TESTS=$ARITHMETIC
+run gcc-plain CC=gcc MODE=debug OPENMP=0 EXR=0
 if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64-static >/dev/null 2>&1 &&
     [ -e /usr/lib/aarch64-linux-gnu/libcmocka.so ]; then
     export QEMU_LD_PREFIX=/usr/aarch64-linux-gnu
     RUNNER="qemu-aarch64-static -E LD_LIBRARY_PATH=/usr/lib/aarch64-linux-gnu"
-    # Emulated, all takes twenty times as long: arithmetic is tested by itself, and all else by golden pictures. There are
-    # no threads and one instruction set.
-    TESTS="bench clusters drawPatches emission exr geometry halfMaps hits image lights math metrics obj objParts objScene
-        packets paraboloids patchMesh patchWorth ply raster rasterTruth rays rsm scene sceneChecks secondBounce
-        triangleFactors visibility -ThreadsAndInstructionSets -ChoicesDoNotDepend -AHostsOwnScheduler"
     run aarch64 CC=aarch64-linux-gnu-gcc OPENMP=0 LDLIBS="-L/usr/lib/aarch64-linux-gnu -ljansson -lm"
 fi
 wait
