@@ -1,7 +1,7 @@
 #!/bin/sh
 # The unit tests and golden pictures under the configurations that `make test` leaves out: without optimisation, OpenMP
 # and EXR; another compiler; sanitizers, of threads too; another architecture. The bits must be the same in all.
-# All of it takes as long as three times `make test`: slow tests are left out, and what a configuration is not about.
+# All of it takes four times as long as `make test`: slow tests are left out, and what a configuration is not about.
 jobs=$(nproc)
 RUNNER=
 # What one thread can say of arithmetic; of all else golden pictures do.
