@@ -70,6 +70,10 @@ static vplResult makeSides(vplJob* job, vplRadiosityState* s)
     return result;
 }
 
+// Of a draft. With one pair of points instead of four the pictures' error is the same, and the drafts' form factors take
+// two thirds of the time (cornell-area, 4000 patches).
+enum { DRAFT_SAMPLES = 1 };
+
 static vplResult makeFactors(vplJob* job, vplRadiosityState* s)
 {
     const vplRenderOptions* o = &job->options;
@@ -80,7 +84,7 @@ static vplResult makeFactors(vplJob* job, vplRadiosityState* s)
     factors.kind = o->formFactors;
     factors.rowSums = links.rowSums = o->rowSums;
     links.error = o->linkError;
-    factors.samples = links.samples = o->formSamples;
+    factors.samples = links.samples = s->draft ? DRAFT_SAMPLES : o->formSamples;
     factors.seed = links.seed = o->seed;
     factors.progress = links.progress = vplJob_GetProgress(job);
     factors.progressUser = links.progressUser = job;
@@ -113,8 +117,8 @@ static vplResult divide(vplJob* job, vplRadiosityNeed need, vplRadiosityState* s
 
 // ---- adaptive patches
 
-// Rounds begin with a quarter of the patches and grow by half: five solutions, the last of which costs nearly as much as
-// the others. In the mean over cornell-area and room-area at 500 to 4000 patches the squared error from an eighth on is
+// Rounds begin with a quarter of the patches and grow by half: four drafts and a solution, which costs a little less than
+// they do together. In the mean over cornell-area and room-area at 500 to 4000 patches the squared error from an eighth on is
 // 0.97 of this, by a quarter a round 0.94 for twice the rounds; by doubling 1.6.
 static const double ADAPTIVE_START = 0.25, ADAPTIVE_GROWTH = 1.5;
 
@@ -167,6 +171,7 @@ static vplResult adapt(vplJob* job, vplPatches** patchesOut)
         if (result != VPL_SUCCESS) {
             return result;
         }
+        s->draft = true;
         result = divide(job, VPL_NEED_LIGHT, s);
         if (result == VPL_SUCCESS) {
             result = vplRadiosity_Light(job, s);

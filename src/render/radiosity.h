@@ -27,6 +27,7 @@ vplRadiosityNeed vplFindRadiosityNeed(const vplRenderOptions* options);
 
 typedef struct vplRadiosityState {
     vplRadiosityKey key;
+    bool draft; // of a round before the last: good enough to say where patches are wanted
     vplPatches* patches;
     vplPatchSides* sides;
     vplPatchMesh* mesh;

@@ -138,6 +138,10 @@ static void findSource(vplRadiosityState* s)
 
 // ---- exchange
 
+// Of a draft, which is not asked how fast light dies away either: solutions of drafts take a fifth of the time. With 0.01
+// patches are not so well placed.
+static const double DRAFT_RESIDUAL = 0.003;
+
 // How fast light dies away is asked once: it depends on form factors alone, which are kept.
 static vplResult solve(vplJob* job, vplRadiosityState* s, bool first)
 {
@@ -147,9 +151,9 @@ static vplResult solve(vplJob* job, vplRadiosityState* s, bool first)
     vplSolveDef def = vplDefaultSolveDef();
     def.solver = s->links != NULL ? VPL_SOLVER_JACOBI : o->solver;
     def.iterations = o->iterations;
-    def.residual = o->residual;
-    def.spectrum = first;
-    def.relaxes = o->history != NULL;
+    def.residual = s->draft ? fmax(o->residual, DRAFT_RESIDUAL) : o->residual;
+    def.spectrum = first && !s->draft;
+    def.relaxes = o->history != NULL || s->draft;
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
     vplResult result = vplSolveRadiosity(&transport, &def, s->source, s->radiosity, &s->solve);
