@@ -45,7 +45,7 @@ TESTS=
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
 if command -v clang >/dev/null 2>&1; then
     # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor.
-    TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive progress"
+    TESTS="Threads Everywhere SameBits ChoicesDoNotDepend AHostsOwnScheduler Cancel StepsGive"
     run clang-tsan CC=clang OPENMP=0 SANITIZE=thread CFLAGS="-g -O1 -DVPL_TEST_PTHREADS"
     TESTS=-memory # allocation failures are for the address sanitizer
     run clang-release CC=clang

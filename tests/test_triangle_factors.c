@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Form factors of two triangles and of a point and a triangle: tests/data/ff_triangles.csv, ff_cube12.csv,
 // ff_analytic.csv, ff_closure.csv, and what holds for all of them.
-#include "test.h"
+#include "shapes.h"
 
 static vplVec3 cornerOf(const Table* t, int row, const char* letter, int i)
 {
@@ -399,15 +399,10 @@ static void DisksAreThoseOfTheClosedForm(void** state)
     freeTable(&t);
 }
 
-static vplVec3 rollUnitNormal(uint64_t seed)
+static vplVec3 rollNormal(uint64_t seed)
 {
-    for (uint64_t i = 0;; i++) {
-        const vplVec3 v = rollPoint(seed + 1000, i, 2, (vplVec3){0, 0, 0});
-        const float length = sqrtf(v.x * v.x + v.y * v.y + v.z * v.z);
-        if (length > 0.1f && length < 1) {
-            return (vplVec3){v.x / length, v.y / length, v.z / length};
-        }
-    }
+    Dice dice = {seed + 1000, 0};
+    return rollUnit(&dice);
 }
 
 static double heightAbove(vplVec3 point, vplVec3 normal, vplVec3 p)
@@ -424,7 +419,7 @@ static void PointsSeeOneSideAndNothingBehindThem(void** state)
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
         rollPair(seed, a, b);
-        const vplVec3 point = a[0], normal = rollUnitNormal(seed);
+        const vplVec3 point = a[0], normal = rollNormal(seed);
         double highest = -INFINITY;
         for (int i = 0; i < 3; i++) {
             highest = fmax(highest, heightAbove(point, normal, b[i]));
@@ -455,7 +450,7 @@ static void BoxesAroundAPointSumToOne(void** state)
     static const float sizes[4][3] = {{1, 1, 1}, {1, 2, 3}, {1, 1, 1000}, {1000, 1, 1000}};
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         const float* size = sizes[seed % 4];
-        const vplVec3 normal = rollUnitNormal(seed);
+        const vplVec3 normal = rollNormal(seed);
         vplVec3 point = {size[0] * (float)uniformAt(seed, 0), size[1] * (float)uniformAt(seed, 1),
                          size[2] * (float)uniformAt(seed, 2)};
         vplVec3 ahead = normal;
@@ -523,7 +518,7 @@ static void PointFactorsDoNotDependOnTheUnitOrThePlace(void** state)
         }
         const vplVec3 point = {rintf(a[0].x / step) * step, rintf(a[0].y / step) * step,
                                rintf(a[0].z / step) * step},
-                      normal = rollUnitNormal(seed);
+                      normal = rollNormal(seed);
         const double wanted = vplPointFormFactor(point, normal, b);
         seen += wanted > 0;
         assert_true(vplPointFormFactor((vplVec3){point.x + far, point.y - far, point.z + far}, normal,
@@ -572,7 +567,7 @@ static void HalvesSeenFromAPointSumToTheWhole(void** state)
                              rintf(b[i].z * 0x1p14f) * 0x1p-14f};
         }
         const vplVec3 m = {0.5f * (b[0].x + b[1].x), 0.5f * (b[0].y + b[1].y), 0.5f * (b[0].z + b[1].z)};
-        const vplVec3 normal = rollUnitNormal(seed);
+        const vplVec3 normal = rollNormal(seed);
         const double whole = vplPointFormFactor(a[0], normal, b);
         const double first = vplPointFormFactor(a[0], normal, (const vplVec3[3]){b[0], m, b[2]}),
                      second = vplPointFormFactor(a[0], normal, (const vplVec3[3]){m, b[1], b[2]});
@@ -668,7 +663,7 @@ static void PointsInThePlaneAndNoAreaSeeNothing(void** state)
             t[i] = (vplVec3){rintf(t[i].x * 0x1p22f) * 0x1p-22f, rintf(t[i].y * 0x1p22f) * 0x1p-22f,
                              rintf(t[i].z * 0x1p22f) * 0x1p-22f};
         }
-        const vplVec3 normal = rollUnitNormal(seed);
+        const vplVec3 normal = rollNormal(seed);
         for (int i = 0; i < 3; i++) {
             const vplVec3 p = t[i], q = t[(i + 1) % 3];
             const vplVec3 m = {0.5f * (p.x + q.x), 0.5f * (p.y + q.y), 0.5f * (p.z + q.z)};

@@ -277,7 +277,8 @@ vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight wei
 // means of patches around it, it knows that a corner is dark, and its patches need not. Where sides around a vertex end,
 // at a wall or under a box, the place is moved a 32nd of the way into them. `radiosity`, W/m^2, one per side; out:
 // [vertex][front, back], W/m^2, with the standard deviation of what the rays meet over sqrt(rays), or less; 0 at
-// vertices of no side. raysOut, if given, grows by what it took. Source: Reichert, A Two-Pass Radiosity Method Driven by Lights and Viewer Position, Cornell 1992.
+// vertices of no side. raysOut, if given, grows by what it took. Source: Reichert, A Two-Pass Radiosity Method Driven by
+// Lights and Viewer Position, Cornell 1992.
 vplResult vplPatchMesh_Gather(const vplPatchMesh* mesh, const vplRgb* radiosity, int rays, uint64_t seed,
                               vplRgb* vertexIrradianceOut, vplProgressFcn* progress, void* user,
                               int64_t* raysOut);
@@ -312,10 +313,9 @@ vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIr
 // ---- where more patches are wanted
 
 typedef struct vplPatchWorthDef {
-    const vplRgb* irradiance; // W/m^2, indirect, one per side
-    const vplRgb*
-        vertexIrradiance;       // the same at the mesh's vertices, [vertex][front, back]: gathered, or means
-    const vplRgb* vertexDirect; // W/m^2, direct irradiance there, of lamps, too; NULL: not known
+    const vplRgb* irradiance;       // W/m^2, indirect, one per side
+    const vplRgb* vertexIrradiance; // the same at the mesh's vertices: [vertex][front, back]
+    const vplRgb* vertexDirect;     // W/m^2, direct irradiance there, of lamps, too; NULL: not known
     const float* directSpread; // standard deviation of direct irradiance over each side, W/m^2: large where a
                                // shadow's boundary crosses it; NULL: not known
     uint32_t cookie;           // set by vplDefaultPatchWorthDef
@@ -324,7 +324,8 @@ typedef struct vplPatchWorthDef {
 vplPatchWorthDef vplDefaultPatchWorthDef(void);
 
 // How much is to be won by bisecting each patch, for vplPatches_Refine: by the gradient of light across it, by contact
-// with another surface, by a shadow's boundary. Comparable among patches of one call only.
+// with another surface, by a shadow's boundary. Contact shows only if light at vertices was gathered there. Comparable
+// among patches of one call only.
 vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* def, float* worthOut);
 
 #ifdef __cplusplus

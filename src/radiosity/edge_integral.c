@@ -4,6 +4,7 @@
 // outer integral, whose closed form takes dilogarithms, is done in parts that shrink towards where it is singular.
 #include "radiosity/edge_integral.h"
 
+#include "math/double3.h"
 #include "math/scalar.h"
 
 #include <stdbool.h>
@@ -32,11 +33,6 @@ typedef struct Inner {
     int singularCount;
 } Inner;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 // The integral of ln sqrt(u^2 + h^2) du.
 static double onceIntegrated(double u, double h)
 {
@@ -64,7 +60,7 @@ static double project(const vplEdge* edge, const double point[3], double* height
     for (int k = 0; k < 3; k++) {
         way[k] = point[k] - edge->from[k];
     }
-    const double at = dot(way, edge->along);
+    const double at = vplDot3(way, edge->along);
     for (int k = 0; k < 3; k++) {
         const double off = way[k] - at * edge->along[k];
         square += off * off;
@@ -111,7 +107,7 @@ static void findSingular(Inner* inner, double cosine, double sine2)
     for (int k = 0; k < 3; k++) {
         way[k] = a->from[k] - b->from[k];
     }
-    const double d = dot(a->along, way), e = dot(b->along, way);
+    const double d = vplDot3(a->along, way), e = vplDot3(b->along, way);
     const double s = (cosine * e - d) / sine2, t = (e - cosine * d) / sine2;
     if (t > 0 && t < b->length) {
         double square = 0;
@@ -171,7 +167,7 @@ static double gradedIntegral(const Inner* inner, double from, double to, double 
 
 double vplEdgeIntegral(const vplEdge* outer, const vplEdge* edge, const vplEdgeRule* rule)
 {
-    double cosine = dot(outer->along, edge->along), sine2 = 0;
+    double cosine = vplDot3(outer->along, edge->along), sine2 = 0;
     for (int k = 0; k < 3; k++) {
         const double off = edge->along[k] - cosine * outer->along[k];
         sine2 += off * off;

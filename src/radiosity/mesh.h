@@ -6,6 +6,7 @@
 #include <vpl/radiosity.h>
 
 #include "geometry/triangle.h"
+#include "radiosity/side.h"
 
 // ---- cuts
 
@@ -66,12 +67,6 @@ struct vplPatchesAround {
     size_t* first; // one more than vertices
     vplPatchAround* list;
 };
-
-// Index in mesh->sides->sides of a patch's front (0) or back (1); -1: no light reaches it.
-static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
-{
-    return sides->ofPatch[2 * (size_t)patch + (size_t)face];
-}
 
 // Of a patch whose side is `side`; -1: of what no light reaches, as its material says.
 static inline vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side)

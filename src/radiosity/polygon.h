@@ -3,6 +3,8 @@
 #ifndef VPL_RADIOSITY_POLYGON_H
 #define VPL_RADIOSITY_POLYGON_H
 
+#include "math/double3.h"
+
 #include <stdbool.h>
 
 // A triangle that was cut once at most.
@@ -15,18 +17,6 @@ typedef struct vplPolygon {
 typedef struct vplHalfSpace {
     double n[3], offset;
 } vplHalfSpace;
-
-static inline double vplDot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static inline void vplCross3(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 // Twice the vector area of three corners: it points to where they are counter-clockwise.
 void vplTwiceArea(const double a[3], const double b[3], const double c[3], double out[3]);

@@ -7,6 +7,7 @@
 #include "base/context.h"
 #include "math/scalar.h"
 #include "math/vec.h"
+#include "radiosity/side.h"
 
 #include <vpl/radiosity.h>
 
@@ -47,7 +48,7 @@ static void addTriangle(const Sharpening* s, const vplRgb* vertexValues, int t)
     const vplVec3 cross = vplCross(vplSub(m->positions[v[1]], p), vplSub(m->positions[v[2]], p));
     const double area = sqrt((double)vplDot(cross, cross));
     for (int face = 0; face < 2; face++) {
-        const int side = m->sides->ofPatch[2 * (size_t)m->patchOf[t] + (size_t)face];
+        const int side = vplSideOf(m->sides, m->patchOf[t], face);
         if (side >= 0) {
             double* sum = s->sums[side];
             for (int k = 0; k < 3; k++) {

@@ -32,5 +32,5 @@ vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, 
 int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction)
 {
     const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
-    return patch < 0 ? -1 : sides->ofPatch[2 * (size_t)patch + (vplDot(direction, hit->normal) > 0)];
+    return patch < 0 ? -1 : vplSideOf(sides, patch, vplDot(direction, hit->normal) > 0);
 }

@@ -5,6 +5,12 @@
 
 #include <vpl/radiosity.h>
 
+// Index in sides->sides of a patch's front (0) or back (1); -1: no light reaches it.
+static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
+{
+    return sides->ofPatch[2 * (size_t)patch + (size_t)face];
+}
+
 // The k-th open cell.
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
 

@@ -5,6 +5,7 @@
 #include "base/context.h"
 #include "math/scalar.h"
 #include "math/vec.h"
+#include "radiosity/side.h"
 
 #include <vpl/radiosity.h>
 
@@ -129,7 +130,7 @@ vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* de
     }
     for (int t = 0; t < mesh->triangleCount; t++) {
         for (int back = 0; back < 2; back++) {
-            const int side = sides->ofPatch[2 * (size_t)mesh->patchOf[t] + (size_t)back];
+            const int side = vplSideOf(sides, mesh->patchOf[t], back);
             if (side >= 0) {
                 addTriangle(mesh, def, t, back, &corners[side]);
             }
@@ -139,7 +140,7 @@ vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* de
     for (int i = 0; i < patches->patchCount; i++) {
         double worth = 0;
         for (int back = 0; back < 2; back++) {
-            const int side = sides->ofPatch[2 * (size_t)i + (size_t)back];
+            const int side = vplSideOf(sides, i, back);
             if (side >= 0 && floor > 0) {
                 worth += errorOf(def, &sides->sides[side], side, &corners[side], floor);
             }

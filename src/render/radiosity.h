@@ -56,6 +56,9 @@ static inline vplTransport vplRadiosity_Transport(const vplRadiosityState* s)
 // What sides radiate of light that they did not make themselves.
 void vplRadiosity_FindReflected(const vplRadiosityState* s, vplRgb* reflectedOut);
 
+// Irradiance of sides by what sides send, and by emitters.
+vplResult vplRadiosity_Receive(const vplRadiosityState* s, const vplRgb* sent, vplRgb* irradianceOut);
+
 // Light of this frame.
 vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* state);
 

@@ -73,16 +73,11 @@ vplResult vplRadiosity_Draw(vplJob* job, const vplRadiosityState* s, const vplVi
 static vplResult writeMesh(vplJob* job, const vplRadiosityState* s, float scale, const char* path)
 {
     const size_t count = (size_t)s->sides->count, corners = 2 * (size_t)s->mesh->vertexCount;
-    const vplTransport transport = vplRadiosity_Transport(s);
     vplRgb* all = vplAlloc(job->context, count, sizeof *all);
     vplRgb* vertices = vplAlloc(job->context, corners, sizeof *vertices);
     vplResult result = all != NULL && vertices != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     if (result == VPL_SUCCESS) {
-        result = vplGatherRadiosity(&transport, s->radiosity, all);
-    }
-    for (size_t i = 0; i < count && result == VPL_SUCCESS; i++) {
-        const vplRgb d = s->direct[i];
-        all[i] = (vplRgb){all[i].r + d.r, all[i].g + d.g, all[i].b + d.b};
+        result = vplRadiosity_Receive(s, s->radiosity, all);
     }
     if (result == VPL_SUCCESS) {
         result = vplPatchMesh_Interpolate(s->mesh, job->options.vertexWeight, all, vertices);

@@ -174,6 +174,17 @@ void vplRadiosity_FindReflected(const vplRadiosityState* s, vplRgb* reflectedOut
     }
 }
 
+vplResult vplRadiosity_Receive(const vplRadiosityState* s, const vplRgb* sent, vplRgb* irradianceOut)
+{
+    const vplTransport transport = vplRadiosity_Transport(s);
+    const vplResult result = vplGatherRadiosity(&transport, sent, irradianceOut);
+    for (int i = 0; i < s->sides->count && result == VPL_SUCCESS; i++) {
+        const vplRgb e = irradianceOut[i], d = s->direct[i];
+        irradianceOut[i] = (vplRgb){e.r + d.r, e.g + d.g, e.b + d.b};
+    }
+    return result;
+}
+
 // What was reflected at least once arrives here; lamps' own light is direct.
 static vplResult gather(vplRadiosityState* s)
 {

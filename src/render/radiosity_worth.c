@@ -9,7 +9,6 @@ enum { GATHER_RAYS = 128 };
 // Direct light of sides, of lamps as well as of emitters.
 static vplResult findDirect(vplJob* job, const vplRadiosityState* s, vplRgb* direct)
 {
-    const vplTransport transport = vplRadiosity_Transport(s);
     const size_t count = (size_t)s->sides->count;
     vplRgb* emission = vplAlloc(job->context, count, sizeof *emission);
     if (emission == NULL) {
@@ -18,11 +17,7 @@ static vplResult findDirect(vplJob* job, const vplRadiosityState* s, vplRgb* dir
     for (size_t i = 0; i < count; i++) {
         emission[i] = s->sides->sides[i].emission;
     }
-    const vplResult result = vplGatherRadiosity(&transport, emission, direct);
-    for (size_t i = 0; i < count; i++) {
-        const vplRgb d = s->direct[i];
-        direct[i] = (vplRgb){direct[i].r + d.r, direct[i].g + d.g, direct[i].b + d.b};
-    }
+    const vplResult result = vplRadiosity_Receive(s, emission, direct);
     vplFree(job->context, emission);
     return result;
 }

@@ -7,6 +7,7 @@
 #ifndef VPL_VISIBILITY_PARABOLOID_FILL_H
 #define VPL_VISIBILITY_PARABOLOID_FILL_H
 
+#include "math/double3.h"
 #include "visibility/map_fill.h"
 #include "visibility/paraboloid_map.h"
 
@@ -113,23 +114,11 @@ static inline void widen(Box* box, int axis, double at)
     box->high[axis] = at > box->high[axis] ? at : box->high[axis];
 }
 
-static inline double dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static inline void cross3(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 // The image of the edge from a to b lies on the circle around (e.x, e.y) / e.z of radius |e| / |e.z|, e = a x b. Its
 // ends on each axis count where they lie between a and b.
 static inline void widenByArc(Box* box, const double a[3], const double b[3], const double e[3])
 {
-    const double length = sqrt(dot3(e, e));
+    const double length = sqrt(vplDot3(e, e));
     if (!(fabs(e[2]) > 1e-12 * length)) { // a straight line
         return;
     }
@@ -143,9 +132,9 @@ static inline void widenByArc(Box* box, const double a[3], const double b[3], co
             m[axis] = 2 * at;
             m[1 - axis] = 2 * other;
             m[2] = 1 - at * at - other * other;
-            cross3(a, m, am);
-            cross3(m, b, mb);
-            if (dot3(am, e) >= 0 && dot3(mb, e) >= 0) {
+            vplCross3(a, m, am);
+            vplCross3(m, b, mb);
+            if (vplDot3(am, e) >= 0 && vplDot3(mb, e) >= 0) {
                 widen(box, axis, at);
             }
         }
@@ -184,11 +173,11 @@ static Texels boundsOf(const vplVec3 corner[3], int32_t size)
         widen(&box, 1, p[k][1] * scale);
     }
     bool behind = true; // is what lies straight behind the eye in the triangle?
-    cross3(p[1], p[2], n);
-    const double side = dot3(n, p[0]) > 0 ? 1 : -1;
+    vplCross3(p[1], p[2], n);
+    const double side = vplDot3(n, p[0]) > 0 ? 1 : -1;
     for (int k = 0; k < 3; k++) {
-        cross3(p[k], p[(k + 1) % 3], e[k]);
-        behind = behind && -side * e[k][2] >= -1e-9 * sqrt(dot3(e[k], e[k]));
+        vplCross3(p[k], p[(k + 1) % 3], e[k]);
+        behind = behind && -side * e[k][2] >= -1e-9 * sqrt(vplDot3(e[k], e[k]));
         widenByArc(&box, p[k], p[(k + 1) % 3], e[k]);
     }
     return behind ? all
