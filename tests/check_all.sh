@@ -5,8 +5,8 @@
 jobs=$(nproc)
 RUNNER=
 # What one thread can say of arithmetic; of all else golden pictures do.
-ARITHMETIC="bench clusters drawPatches emission exr gather geometry halfMaps hits image lights math metrics obj objParts
-    objScene packets paraboloids patchMesh patchWorth ply raster rasterTruth rays rsm scene sceneChecks secondBounce
+ARITHMETIC="bench clusters drawPatches emission exr gather geometry hemiMaps hits image lights math metrics obj objParts
+    objScene packets paraboloids patchMesh patchPriority ply raster rasterTruth rays rsm scene sceneChecks secondBounce
     triangleFactors visibility -Threads -Everywhere -ChoicesDoNotDepend -AHostsOwnScheduler"
 export OMP_WAIT_POLICY=passive # configurations are tested side by side: threads that wait must not spin
 

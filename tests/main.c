@@ -26,7 +26,7 @@
     X(frames) \
     X(gather) \
     X(geometry) \
-    X(halfMaps) \
+    X(hemiMaps) \
     X(hits) \
     X(image) \
     X(interleaved) \
@@ -45,7 +45,7 @@
     X(passes) \
     X(patchMesh) \
     X(patchSides) \
-    X(patchWorth) \
+    X(patchPriority) \
     X(patches) \
     X(path) \
     X(placement) \

@@ -189,7 +189,7 @@ vplGeometry* clutter(vplContext* context, int which)
     return freezeScene(scene);
 }
 
-vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)
+vplHemiMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)
 {
     for (;;) {
         const vplVec3 size = vplSub(g->boundsMax, g->boundsMin);
@@ -199,7 +199,7 @@ vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)
         const vplRay ray = {from, rollUnit(dice), {0, 0}};
         if (vplGeometry_ClosestHit(g, &ray, hitOut)) {
             const vplVec3 n = hitOut->normal;
-            return (vplHalfMapPlace){hitOut->position, vplDot(n, ray.direction) < 0 ? n : vplNegate(n)};
+            return (vplHemiMapPlace){hitOut->position, vplDot(n, ray.direction) < 0 ? n : vplNegate(n)};
         }
     }
 }

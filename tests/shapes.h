@@ -43,7 +43,7 @@ vplVec3 rollUnit(Dice* dice);            // a direction, all alike
 vplGeometry* clutter(vplContext* context, int which);
 
 // A place on some triangle, on the side that a random point in the bounds sees.
-vplHalfMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut);
+vplHemiMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut);
 
 // Its reflective map, or a failed test.
 vplReflectiveMap* mapOf(const vplGeometry* geometry, const vplEmitterDef* emitter, int size);

@@ -90,8 +90,8 @@ static void PlaneGetsBackWhatTheBoundTakes(void** state)
                                    .lights = lights,
                                    .lightCount = SIDE * SIDE,
                                    .reflection = 1,
-                                   .lampLights = SIDE * SIDE,
-                                   .lightLampDistance = distance,
+                                   .emitterLightCount = SIDE * SIDE,
+                                   .emitterLightDistance = distance,
                                    .seesEmission = true};
         const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                                  .minDistance = distance,
@@ -99,7 +99,7 @@ static void PlaneGetsBackWhatTheBoundTakes(void** state)
                                  .lightCount = SIDE * SIDE,
                                  .compensation = &near};
         assertNear(givenBack(g, &def), lost, 1e-3, "by rays alone", row);
-        near.lightLampDistance = 0.2f * distance; // the cells of the grid measure D / 24
+        near.emitterLightDistance = 0.2f * distance; // the cells of the grid measure D / 24
         assertNear(givenBack(g, &def), lost, 4e-3, "by rays and lights", row);
         free(lights);
         vplGeometry_Destroy(g);

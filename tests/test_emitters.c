@@ -134,7 +134,7 @@ static void LampLightsConvergeToTheFormFactor(void** state)
         vplRenderOptions o = vplDefaultRenderOptions();
         o.method = VPL_METHOD_DIRECT;
         o.width = o.height = SIZE;
-        o.lampLights = cases[n].count;
+        o.areaLightSamples = cases[n].count;
         vplImage* image = renderScene(scene, &o, NULL);
         double worst = 0;
         for (int i = 0; i < SIZE * SIZE; i++) {
@@ -196,11 +196,11 @@ static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplSh
 {
     vplShadeDef def = {
         .lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .batch = 1};
-    vplHalfMaps* maps = NULL;
+    vplHemiMaps* maps = NULL;
     if (map) {
-        const vplHalfMapPlace place = {{light->px, light->py, light->pz}, {light->nx, light->ny, light->nz}};
-        assert_int_equal(vplHalfMaps_Create(g->context, 256, 1, &maps), VPL_SUCCESS);
-        assert_int_equal(vplHalfMaps_Draw(maps, g, &place, 1, NULL, NULL), VPL_SUCCESS);
+        const vplHemiMapPlace place = {{light->px, light->py, light->pz}, {light->nx, light->ny, light->nz}};
+        assert_int_equal(vplHemiMaps_Create(g->context, 256, 1, &maps), VPL_SUCCESS);
+        assert_int_equal(vplHemiMaps_Draw(maps, g, &place, 1, NULL, NULL), VPL_SUCCESS);
     }
     def.lights = light;
     def.lightCount = 1;
@@ -211,7 +211,7 @@ static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplSh
     if (vplShadeView(g, view, &def, NULL, NULL, image, NULL) != VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
-    vplHalfMaps_Destroy(maps);
+    vplHemiMaps_Destroy(maps);
     return image;
 }
 
@@ -266,7 +266,7 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     o.width = o.height = VIEW;
     o.shadowMapSize = 256;
     o.shadow.pcfSamples = 1;
-    o.lampLights = 1;
+    o.areaLightSamples = 1;
     o.lightShadows = map ? VPL_LIGHT_SHADOWS_MAP : VPL_LIGHT_SHADOWS_RAY;
     image = renderScene(scene, &o, NULL);
     vplScene_Destroy(scene);
@@ -429,7 +429,7 @@ static vplRenderOptions zooOptions(int shadows)
     o.width = 35;
     o.height = 25;
     o.particles = 36; // about 70 lights, more than a group of them
-    o.lampLights = 9;
+    o.areaLightSamples = 9;
     o.shadowMapSize = 32;
     o.lightMapSize = 8;
     o.lightShadows = (vplLightShadows)shadows;

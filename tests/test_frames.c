@@ -411,84 +411,6 @@ static void AHistoryDestroysWhatAMethodLeftWithIt(void** state)
     closeTestContext(context);
 }
 
-// ---- blocks that stay
-
-static size_t calls; // of the allocator, of blocks of a megabyte and more
-
-static void* countingAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
-{
-    (void)user;
-    (void)oldSize;
-    calls += newSize >= 1 << 20;
-    if (newSize == 0) {
-        free(memory);
-        return NULL;
-    }
-    return realloc(memory, newSize);
-}
-
-static void LargeBlocksAreAskedForOnce(void** state)
-{
-    (void)state;
-    vplContextDef def = vplDefaultContextDef();
-    def.alloc = countingAlloc;
-    vplContext* context = NULL;
-    assert_int_equal(vplContext_Create(&def, &context), VPL_SUCCESS);
-    vplScene* scene = movingRoom(context);
-    vplHistory* history = NULL;
-    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
-    vplRenderOptions options = optionsOf(&kinds[0]);
-    options.width = 640;
-    options.height = 480;
-    options.history = history;
-    hashOf(scene, &options);
-    assert_true(calls > 0);
-    const size_t held = vplContext_GetBytes(context);
-    calls = 0;
-    for (int f = 1; f < 6; f++) {
-        options.frame = f;
-        hashOf(scene, &options);
-        assert_true(vplContext_GetBytes(context) == held);
-    }
-    assert_int_equal(calls, 0);
-    options.width = options.height = 16; // what small frames do not need goes after three of them
-    for (int f = 0; f < 3; f++) {
-        hashOf(scene, &options);
-    }
-    assert_true(vplContext_GetBytes(context) + (1 << 20) < held);
-    vplHistory_Destroy(history);
-    vplScene_Destroy(scene);
-    assert_true(vplContext_GetBytes(context) == 0);
-    vplContext_Destroy(context);
-}
-
-// Ever larger blocks, none of which fits the next: no more is held than half as much again as was in use.
-static void KeptBlocksAreBounded(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    vplStartKeeping(context);
-    char* small = vplAlloc(context, 1000, 1); // small blocks go at once
-    const size_t before = vplContext_GetBytes(context);
-    vplFree(context, small);
-    assert_true(vplContext_GetBytes(context) < before);
-    size_t used = 0;
-    for (size_t size = 1 << 20; size < (size_t)200 << 20; size += size / 2) {
-        char* block = vplAlloc(context, size, 1);
-        assert_non_null(block);
-        block[0] = block[size - 1] = 1;
-        used = size + 4096;
-        assert_true(vplContext_GetBytes(context) <= used + used / 2);
-        vplFree(context, block);
-    }
-    assert_true(vplContext_GetBytes(context) > 1 << 20); // the last ones are there
-    char* again = vplAlloc(context, 100 << 20, 1);
-    assert_true(vplContext_GetPeakBytes(context) <= used + used / 2);
-    vplStopKeeping(context);
-    vplFree(context, again);
-    closeTestContext(context);
-}
-
 TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
            cmocka_unit_test(EmittersMoveTurnAndFade),
            cmocka_unit_test(OneKeyIsAConstantAndNoKeyTheDeclaration),
@@ -497,5 +419,4 @@ TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
            cmocka_unit_test(FilesSayWhatChangesAndTheRestIsAsDeclared),
            cmocka_unit_test(AFrameIsThePictureOfItsPose), slow_unit_test(AHistoryChangesNoPicture),
            cmocka_unit_test(AHistoryFreezesTheSceneOnce), cmocka_unit_test(AHistoryOfAnotherSceneIsRefused),
-           cmocka_unit_test(LargeBlocksAreAskedForOnce), cmocka_unit_test(KeptBlocksAreBounded),
            cmocka_unit_test(AHistoryDestroysWhatAMethodLeftWithIt));

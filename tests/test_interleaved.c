@@ -178,7 +178,7 @@ static vplRenderOptions optionsOf(int side)
     o.sampler = VPL_SAMPLER_HALTON;
     o.shadowMapSize = 32;
     o.lightMapSize = 8;
-    o.lampLights = 4;
+    o.areaLightSamples = 4;
     o.accumulation = side > 0 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
     o.interleave = side > 0 ? side : 4;
     return o;

@@ -447,7 +447,7 @@ static vplRenderOptions optionsOf(int particles, vplLightShadows shadows)
     o.lightShadows = shadows;
     o.shadowMapSize = 32;
     o.lightMapSize = 16;
-    o.lampLights = 4;
+    o.areaLightSamples = 4;
     o.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
     o.compensation = VPL_COMPENSATION_NONE; // its rays depend on how lights are added up
     return o;

@@ -295,7 +295,7 @@ static vplResult renderBall(vplContext* context, const char* path, int variant)
     options.width = options.height = 8;
     options.particles = 2;
     options.shadowMapSize = options.lightMapSize = 2;
-    options.lampLights = 3;
+    options.areaLightSamples = 3;
     vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
     if (result == VPL_SUCCESS) {
         result = addBall(scene, &ball);

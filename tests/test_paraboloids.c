@@ -147,7 +147,7 @@ static bool holdsRay(const vplGeometry* g, const vplParaboloidMap* map, vplVec3 
 static vplParaboloidPlace rollPlaceOf(const vplGeometry* g, Dice* dice, bool onSurface)
 {
     vplHit hit;
-    const vplHalfMapPlace at = rollPlace(g, dice, &hit);
+    const vplHemiMapPlace at = rollPlace(g, dice, &hit);
     const vplVec3 inside = vplAdd(vplScale(0.87f, at.position), vplVec(0.01f, 0.02f, 0.03f));
     return onSurface ? (vplParaboloidPlace){at.position, at.normal, 1, true}
                      : (vplParaboloidPlace){inside, rollUnit(dice), 2, false};
@@ -426,7 +426,7 @@ static void comparePairs(const vplGeometry* g, Dice* dice, const vplParaboloidMa
 {
     for (int i = 0; i < 300; i++) {
         vplHit hit;
-        const vplHalfMapPlace at = rollPlace(g, dice, &hit);
+        const vplHemiMapPlace at = rollPlace(g, dice, &hit);
         const vplVec3 way = vplSub(map->position, at.position);
         const float factor = factorAt(map, at.position, at.normal);
         assert_true(factor >= 0 && factor <= 1 + 1e-6f);
@@ -560,7 +560,7 @@ static void PlacesInMidAirGiveNumbersAnywhere(void** state)
         }
         for (int k = 0; k < 20; k++) {
             vplHit hit;
-            const vplHalfMapPlace p = rollPlace(g, &dice, &hit);
+            const vplHemiMapPlace p = rollPlace(g, &dice, &hit);
             const float factor = factorAt(map, p.position, p.normal);
             assert_true(factor >= 0 && factor <= 1 + 1e-6f);
         }
@@ -591,7 +591,7 @@ static uint64_t hashOf(vplContext* context)
         hash = vplHashFloats(hash, (const float*)map->triangles + at, 1);
     }
     for (int i = 0; i < 9 * 500; i++) {
-        const vplHalfMapPlace at = rollPlace(g, &dice, &hit);
+        const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
         const float factor = factorAt(&maps->maps[i % 9], at.position, at.normal);
         hash = vplHashFloats(hash, &factor, 1);
     }

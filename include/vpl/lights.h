@@ -363,7 +363,7 @@ typedef struct vplShadeLight {
 // Lights that stand for the emitting triangles in direct light: `count` points spread over them by power, each
 // with its share of it. Returns how many were written: count, or 0 where no triangle emits.
 // Source: Keller, Instant Radiosity, 1997, section 3.
-int vplMakeLampLights(const vplEmission* emission, int count, vplShadeLight* out);
+int vplSampleAreaLights(const vplEmission* emission, int count, vplShadeLight* out);
 
 #ifdef __cplusplus
 }

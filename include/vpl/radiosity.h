@@ -312,21 +312,21 @@ vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIr
 
 // ---- where more patches are wanted
 
-typedef struct vplPatchWorthDef {
+typedef struct vplPatchPriorityDef {
     const vplRgb* irradiance;       // W/m^2, indirect, one per side
     const vplRgb* vertexIrradiance; // the same at the mesh's vertices: [vertex][front, back]
     const vplRgb* vertexDirect;     // W/m^2, direct irradiance there, of lamps, too; NULL: not known
     const float* directSpread; // standard deviation of direct irradiance over each side, W/m^2: large where a
                                // shadow's boundary crosses it; NULL: not known
-    uint32_t cookie;           // set by vplDefaultPatchWorthDef
-} vplPatchWorthDef;
+    uint32_t cookie;           // set by vplDefaultPatchPriorityDef
+} vplPatchPriorityDef;
 
-vplPatchWorthDef vplDefaultPatchWorthDef(void);
+vplPatchPriorityDef vplDefaultPatchPriorityDef(void);
 
 // How much is to be won by bisecting each patch, for vplPatches_Refine: by the gradient of light across it, by contact
 // with another surface, by a shadow's boundary. Contact shows only if light at vertices was gathered there. Comparable
 // among patches of one call only.
-vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* def, float* worthOut);
+vplResult vplFindPatchPriority(const vplPatchMesh* mesh, const vplPatchPriorityDef* def, float* priorityOut);
 
 #ifdef __cplusplus
 }

@@ -121,11 +121,10 @@ typedef enum vplCoherence {
     VPL_COHERENCE_ON
 } vplCoherence;
 
-// What frames of a sequence hand on to each other: the frozen geometry, large blocks of memory, and for SSVP what the
-// light sees, its lights and clusters, which are kept as they are where it has not moved. Frames are rendered one after
-// another, in any order, with one scene, to which nothing may be added, and options that may change; pictures have the
-// same bits as without, but for what `coherence` says. For radiosity it keeps patches and form factors. While it lives the context keeps large blocks that are freed, as part of the bytes it holds: at
-// most half as much as was ever in use at once. It must outlive renderers that use it.
+// What frames of a sequence hand on to each other: the geometry, and for SSVP and radiosity what the light sees, lights,
+// clusters, patches and form factors, as long as nothing that they depend on has changed. Frames are rendered one after
+// another, in any order, with one scene, to which nothing may be added, and options that may change. Pictures have the
+// same bits as without a history, but for what `coherence` says. It must outlive renderers that use it.
 typedef struct vplHistory vplHistory;
 
 vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut);
@@ -167,10 +166,10 @@ typedef struct vplRenderOptions {
 
     vplLightShadows lightShadows; // of virtual lights; RAY also replaces the emitters' shadow maps; default
                                   // VPL_LIGHT_SHADOWS_USUAL
-    int lightMapSize; // texels along the side of a virtual light's map (vplHalfMap), [1, VPL_MAX_SHADOW_MAP];
+    int lightMapSize; // texels along the side of a virtual light's map (vplHemiMap), [1, VPL_MAX_SHADOW_MAP];
                       // default 256: in simple scenes as near to rays as cube maps of 128 were, in large ones
                       // twice as near (bench/crossover), with two thirds of the texels
-    int lampLights;   // lights that stand for area emitters in direct light, with shadow rays,
+    int areaLightSamples;   // lights that stand for area emitters in direct light, with shadow rays,
                       // [1, VPL_MAX_LIGHTS]; default 64
 
     int samplesPerPixel; // path: [1, VPL_MAX_SAMPLES]; default 64

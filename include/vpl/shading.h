@@ -89,17 +89,17 @@ typedef struct vplCompensationDef {
     const vplEmitterDef* emitters; // as in vplShadeDef
     const vplShadow* shadows;
     int emitterCount;
-    const vplShadeLight* lamps;
-    int lampCount;
-    float lampMinDistance;
+    const vplShadeLight* areaLights;
+    int areaLightCount;
+    float areaLightMinDistance;
     const vplShadeLight* lights;
     int lightCount;
     bool lightRays;   // they cast shadows: by rays, also where the picture's come from maps
     float reflection; // multiplies reflectances: 1; for lights that lost light as documented 1/pi
-    // The first lights of the list lie on surfaces that emit and stand for their emission. Within lightLampDistance,
+    // The first lights of the list lie on surfaces that emit and stand for their emission. Within emitterLightDistance,
     // metres, (0, minDistance], rays find that emission; beyond it these lights themselves do.
-    int lampLights;
-    float lightLampDistance;
+    int emitterLightCount;
+    float emitterLightDistance;
     bool seesEmission;   // also by the first ray: the picture shows these lights
     bool seesReflection; // the picture shows lights of reflected light
 } vplCompensationDef;
@@ -114,13 +114,13 @@ typedef struct vplShadeDef {
     const vplEmitterDef* emitters; // emitters that light directly; documented: point emitters only
     const vplShadow* shadows;   // one per emitter; where its map is NULL, and for directional emitters, rays
     int emitterCount;           // 0: no direct light
-    const vplShadeLight* lamps; // direct light of area emitters, always with shadow rays; physical only
-    int lampCount;
-    float lampMinDistance;          // as minDistance
+    const vplShadeLight* areaLights; // direct light of area emitters, always with shadow rays; physical only
+    int areaLightCount;
+    float areaLightMinDistance;          // as minDistance
     int particleCount;              // N, by which documented direct light is divided (0 counts as 1)
     const vplShadeLight* lights;    // virtual lights
     int lightCount;                 // 0: no indirect light
-    const vplHalfMap* lightShadows; // one per virtual light; NULL: they cast none, or by rays
+    const vplHemiMap* lightShadows; // one per virtual light; NULL: they cast none, or by rays
     bool lightRays;                 // virtual lights cast shadows by rays
     // Instead of these: lights that share what their clusters see. Lights of one cluster are summed and then
     // multiplied by its visibility, which is looked up where they give anything: in groups of VPL_LIGHT_GROUP lights,

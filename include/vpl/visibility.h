@@ -125,7 +125,7 @@ void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, f
 // edges stay straight but for kinks where x or y is 0, and one square sees what a half cube sees with three.
 // Source: Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003 (the octahedron); Zina
 // Cigolle and others, A Survey of Efficient Representations for Independent Unit Vectors, JCGT 2014 (its half).
-typedef struct vplHalfMap {
+typedef struct vplHemiMap {
     vplVec3 position;           // metres; a hair above the surface
     vplVec3 right, up, forward; // right-handed, unit; forward is the surface's normal
     int size;                   // texels along a side
@@ -133,33 +133,33 @@ typedef struct vplHalfMap {
         texels; // 1 / (|x| + |y| + z) of the nearest surface, 1/metres; 0 where nothing is; in blocks of
                 // 4 x 4 of columns (u) and rows (v)
     vplContext* context;
-} vplHalfMap;
+} vplHemiMap;
 
 // Read only.
-typedef struct vplHalfMaps {
-    const vplHalfMap* maps;
+typedef struct vplHemiMaps {
+    const vplHemiMap* maps;
     int count, capacity, size;
     float* texels;
     vplContext* context;
-} vplHalfMaps;
+} vplHemiMaps;
 
-typedef struct vplHalfMapPlace {
+typedef struct vplHemiMapPlace {
     vplVec3 position; // metres; on a surface, which does not shadow it
     vplVec3 normal;   // unit
-} vplHalfMapPlace;
+} vplHemiMapPlace;
 
 // Room for `capacity` maps with `size` texels a side, [1, VPL_MAX_SHADOW_MAP].
-vplResult vplHalfMaps_Create(vplContext* context, int size, int capacity, vplHalfMaps** mapsOut);
+vplResult vplHemiMaps_Create(vplContext* context, int size, int capacity, vplHemiMaps** mapsOut);
 
 // Memory per map.
-size_t vplHalfMaps_BytesPerMap(int size);
+size_t vplHemiMaps_BytesPerMap(int size);
 
 // Draws what is seen from `count` places, at most the capacity, side by side; those of before are gone.
-vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const vplHalfMapPlace* places,
+vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const vplHemiMapPlace* places,
                            int count, vplProgressFcn* progress, void* user);
 
 // NULL is allowed.
-void vplHalfMaps_Destroy(vplHalfMaps* maps);
+void vplHemiMaps_Destroy(vplHemiMaps* maps);
 
 // 1 where something nearer to the place hides it from a point, and where one lies behind the other's surface; else 0.
 // A ray says the same except within a band. A texel's centre looks past a point at distance r, in the direction (x, y,
@@ -167,7 +167,7 @@ void vplHalfMaps_Destroy(vplHalfMaps* maps);
 // it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r, as in VPL_BIAS_EXACT; 1.5 f are tolerated. So
 // the answers are equal where all that blocks the way is further than 2.5 f + b from the point, and blocks or frees all
 // ways to the point's plane within f around it alike.
-void vplHalfMap_FactorBlock(const vplHalfMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
+void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
 
 // ---- paraboloid maps: what a cluster of virtual lights sees of a scene
 

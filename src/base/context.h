@@ -5,29 +5,13 @@
 
 #include <vpl/base.h>
 
-// A large block that was freed and waits to be used again.
-typedef struct vplFreedBlock {
-    void* raw; // as the allocator returned it
-    size_t total;
-    int64_t age; // number of the round in which it was freed
-} vplFreedBlock;
-
-enum { VPL_MAX_FREED = 64 };
-
 struct vplContext {
     vplContextDef def;
     vplIsa isa;
     int workerCount;
-    size_t bytes; // held now, kept blocks among them; allocation happens outside parallel sections, so plain
-                  // counters do
-    size_t peakBytes;  // most held at once
-    uint64_t stamps;   // handed out so far, see vplNextStamp
-    int keepers;       // histories that live
-    size_t keptBytes;  // in kept blocks
-    size_t usedPeak;   // most that was in use, kept blocks not counted, since there are keepers
-    int64_t keptRound; // number of the frame, for ages
-    int keptCount;
-    vplFreedBlock kept[VPL_MAX_FREED];
+    // Bytes held now, and most at once. Allocation happens outside parallel sections, so plain counters do.
+    size_t bytes, peakBytes;
+    uint64_t stamps; // handed out so far, see vplNextStamp
 };
 
 // Another number each time, to tell one thing, or one state of it, from another.
@@ -61,19 +45,6 @@ vplResult vplReserve(vplContext* context, void* array, size_t* capacity, size_t 
 
 // NULL is allowed.
 void vplFree(vplContext* context, void* memory);
-
-// Between these two, freed blocks of VPL_KEPT_BYTES and more stay with the context, which hands them out again: the
-// kernel clears each page that it gives, 8 ms of processor time in each frame of Sponza at 1920x1080 with
-// interleaved shading (bench/history), more where malloc gives them back at once. Both may be called several times:
-// the last vplStopKeeping frees what is left. No more is asked for than half as much again as was ever in use at once.
-void vplStartKeeping(vplContext* context);
-void vplStopKeeping(vplContext* context);
-
-// Begins another round: blocks that were not used again in the last two are freed, so that what one frame needed is not
-// held for ever.
-void vplAgeKept(vplContext* context);
-
-enum { VPL_KEPT_BYTES = 1 << 20 };
 
 // A copy of a string in context memory; NULL when out of memory.
 char* vplCopyString(vplContext* context, const char* text);

@@ -152,7 +152,7 @@ static void countDraws(const vplRenderOptions* o, Info* info)
     const int64_t lightMapBytes = lightMaps * lightSize * lightSize * (int64_t)sizeof(float);
     info->shadowMapBytes = 6 * maps * size * size * (int64_t)sizeof(float) +
                            (lightMapBytes < VPL_LIGHT_MAP_BYTES ? lightMapBytes : VPL_LIGHT_MAP_BYTES);
-    const int64_t lamps = info->lampTriangles > 0 && o->method != VPL_METHOD_KELLER ? o->lampLights : 0;
+    const int64_t lamps = info->lampTriangles > 0 && o->method != VPL_METHOD_KELLER ? o->areaLightSamples : 0;
     const int64_t each = (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight)) +
                          (o->accumulation == VPL_ACCUMULATE_LIGHTCUTS ? LIGHT_TREE_BYTES : 0);
     info->lightBytes = info->virtualLights * each + lamps * (int64_t)sizeof(vplShadeLight);

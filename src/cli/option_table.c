@@ -167,7 +167,7 @@ const Option OPTIONS[] = {
      "(default): rays for keller with shadows, else none"},
     {"--light-map", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.lightMapSize), 1, VPL_MAX_SHADOW_MAP,
      NULL, "texels along the side of each virtual light's map, for --light-shadows map; default 256"},
-    {"--lamp-lights", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.lampLights), 1, VPL_MAX_LIGHTS, NULL,
+    {"--lamp-lights", "N", RENDER | INFO | TRADEOFF, readInt, AT(render.areaLightSamples), 1, VPL_MAX_LIGHTS, NULL,
      "lights that stand for area emitters in direct light, with shadow rays; default 64"},
     {"--particle-geometry", "G", SCENE, readChoice, AT(render.particleGeometry), 0, 0, "exact|obb",
      "exact (default), or obb: particles stop at an object's oriented bounding box"},

@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-int vplMakeLampLights(const vplEmission* emission, int count, vplShadeLight* out)
+int vplSampleAreaLights(const vplEmission* emission, int count, vplShadeLight* out)
 {
     const int first = emission->firstTriangle;
     if (first >= emission->sourceCount) {

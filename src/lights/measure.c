@@ -10,7 +10,7 @@
 #include "base/isa.h"
 #include "lights/prepare.h"
 #include "math/vec.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
 #include <float.h>
 

@@ -12,7 +12,7 @@
 #include "lights/light_set.h"
 #include "math/sampling.h"
 #include "math/vec.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
 enum { CHUNK = 32, LOT_STREAM = 0x80000006u }; // lights per task; of random numbers
 

@@ -8,7 +8,7 @@
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render/choose_shadows.h"
 #include "math/vec.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
 #include <math.h>
 
@@ -76,8 +76,8 @@ vplShadowLoad vplMeasureShadowLoad(const vplGeometry* geometry, const vplView* v
     const int seen = count < SOME_LIGHTS ? count : SOME_LIGHTS;
     for (int i = 0; i < seen; i++) {
         const vplShadeLight* l = &some[(int64_t)i * count / seen];
-        const vplHalfMapPlace place = {{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
-        load.trianglesAbove += (double)vplHalfMap_TrianglesAbove(geometry, &place) / seen;
+        const vplHemiMapPlace place = {{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+        load.trianglesAbove += (double)vplHemiMap_TrianglesAbove(geometry, &place) / seen;
     }
     load.facing = count > 0 ? (double)facing / count / (LOOKS * LOOKS) : 0;
     return load;

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-int vplCountLampLights(const vplLightSet* set)
+int vplCountEmitterLights(const vplLightSet* set)
 {
     int count = 0;
     for (int i = 0; set->stepCount > 0 && i < set->lightsInStep[0]; i++) {
@@ -97,15 +97,15 @@ vplCompensationDef vplMakeCompensation(const vplJob* job, const vplIngredients* 
                               .emitters = in->emitters,
                               .shadows = in->emitterMaps.shadows,
                               .emitterCount = in->emitterMaps.shadows ? in->emitterCount : 0,
-                              .lamps = in->lamps,
-                              .lampCount = in->lampCount,
-                              .lampMinDistance = in->lampMinDistance,
+                              .areaLights = in->areaLights,
+                              .areaLightCount = in->areaLightCount,
+                              .areaLightMinDistance = in->areaLightMinDistance,
                               .lights = in->lights,
                               .lightCount = in->lightCount,
                               .lightRays = in->lightShadows != VPL_LIGHT_SHADOWS_NONE,
                               .reflection = 1,
-                              .lampLights = in->lampLights,
-                              .lightLampDistance = in->lampLights > 0 ? lampDistance(job->geometry) : 0};
+                              .emitterLightCount = in->emitterLightCount,
+                              .emitterLightDistance = in->emitterLightCount > 0 ? lampDistance(job->geometry) : 0};
     if (o->lighting == VPL_LIGHTING_DOCUMENTED) {
         def.reflection = (float)(1 / VPL_PI);
     }

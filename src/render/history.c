@@ -10,7 +10,6 @@ vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut)
         return VPL_OUT_OF_MEMORY;
     }
     history->context = context;
-    vplStartKeeping(context);
     *historyOut = history;
     return VPL_SUCCESS;
 }
@@ -27,7 +26,6 @@ void vplHistory_Destroy(vplHistory* history)
         }
         vplGeometry_Destroy(history->geometry);
         vplFree(context, history);
-        vplStopKeeping(context);
     }
 }
 
@@ -42,7 +40,6 @@ vplResult vplHistory_Open(vplHistory* history, const vplScene* scene, vplGeometr
             scene->context, VPL_INVALID_ARGUMENT,
             "vplRenderOptions.history is of another scene, or something was added to the scene since");
     }
-    vplAgeKept(history->context);
     if (history->geometry == NULL) {
         vplResult result = vplGeometry_Create(scene, &history->geometry);
         if (result != VPL_SUCCESS) {

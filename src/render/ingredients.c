@@ -79,23 +79,23 @@ static vplResult makeEmitterShadows(vplJob* job, vplIngredients* in)
 
 int vplLightBatch(const vplJob* job, const vplIngredients* in)
 {
-    const size_t room = (size_t)VPL_LIGHT_MAP_BYTES / vplHalfMaps_BytesPerMap(job->options.lightMapSize);
+    const size_t room = (size_t)VPL_LIGHT_MAP_BYTES / vplHemiMaps_BytesPerMap(job->options.lightMapSize);
     return room >= (size_t)in->lightCount ? in->lightCount : room > 0 ? (int)room : 1;
 }
 
 vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in, int first, int count)
 {
-    vplHalfMapPlace* places = vplAlloc(job->context, (size_t)count, sizeof *places);
+    vplHemiMapPlace* places = vplAlloc(job->context, (size_t)count, sizeof *places);
     vplResult result = places ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     if (result == VPL_SUCCESS && in->lightMaps == NULL) {
-        result = vplHalfMaps_Create(job->context, job->options.lightMapSize, count, &in->lightMaps);
+        result = vplHemiMaps_Create(job->context, job->options.lightMapSize, count, &in->lightMaps);
     }
     for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
         const vplShadeLight* l = &in->lights[in->firstShown + first + i];
-        places[i] = (vplHalfMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+        places[i] = (vplHemiMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
     }
     if (result == VPL_SUCCESS) {
-        result = vplHalfMaps_Draw(in->lightMaps, job->geometry, places, count, vplJob_GetProgress(job), job);
+        result = vplHemiMaps_Draw(in->lightMaps, job->geometry, places, count, vplJob_GetProgress(job), job);
     }
     vplFree(job->context, places);
     return result;
@@ -110,12 +110,12 @@ static vplResult makeLamps(vplJob* job, vplIngredients* in)
     }
     double area = 0;
     if (emission->sourceCount > 0) {
-        const int count = job->options.lampLights;
-        in->lamps = vplAlloc(job->context, (size_t)count, sizeof *in->lamps);
-        in->lampCount = in->lamps ? vplMakeLampLights(emission, count, in->lamps) : 0;
-        result = in->lamps ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+        const int count = job->options.areaLightSamples;
+        in->areaLights = vplAlloc(job->context, (size_t)count, sizeof *in->areaLights);
+        in->areaLightCount = in->areaLights ? vplSampleAreaLights(emission, count, in->areaLights) : 0;
+        result = in->areaLights ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
         area = vplEmission_Area(emission);
-        in->lampMinDistance = (float)(0.5 * sqrt(area / count / VPL_PI));
+        in->areaLightMinDistance = (float)(0.5 * sqrt(area / count / VPL_PI));
     }
     vplEmission_Destroy(emission);
     return result;
@@ -139,8 +139,8 @@ static vplResult choose(vplJob* job, vplIngredients* in, vplLightSet* shown)
 {
     const vplRenderOptions* o = &job->options;
     const vplLightSet* set = in->set;
-    in->lampLights =
-        o->method == VPL_METHOD_KELLER && o->show != VPL_SHOW_LIGHT ? vplCountLampLights(set) : 0;
+    in->emitterLightCount =
+        o->method == VPL_METHOD_KELLER && o->show != VPL_SHOW_LIGHT ? vplCountEmitterLights(set) : 0;
     in->firstShown = 0;
     *shown = *set;
     if (o->show == VPL_SHOW_LIGHT) {
@@ -154,10 +154,10 @@ static vplResult choose(vplJob* job, vplIngredients* in, vplLightSet* shown)
     }
     if (o->show == VPL_SHOW_INDIRECT && o->method == VPL_METHOD_KELLER && set->stepCount > 0) {
         if (vplCompensates(job)) {
-            in->firstShown = in->lampLights;
+            in->firstShown = in->emitterLightCount;
             return VPL_SUCCESS;
         }
-        in->lampLights = 0;
+        in->emitterLightCount = 0;
         shown->lights += set->lightsInStep[0];
         shown->lightCount -= set->lightsInStep[0];
     }
@@ -258,7 +258,7 @@ vplResult vplMakeVirtualLights(vplJob* job, vplIngredients* in)
 
 void vplFreeVirtualLights(vplJob* job, vplIngredients* in)
 {
-    vplHalfMaps_Destroy(in->lightMaps);
+    vplHemiMaps_Destroy(in->lightMaps);
     in->lightMaps = NULL;
     vplFree(job->context, in->lights);
     vplFree(job->context, in->lightClusters);
@@ -277,5 +277,5 @@ void vplFreeIngredients(vplJob* job, vplIngredients* in)
     vplSsvp_End(job, in->ssvp);
     vplRadiosity_End(job, in->radiosity);
     freeMaps(job, &in->emitterMaps);
-    vplFree(job->context, in->lamps);
+    vplFree(job->context, in->areaLights);
 }

@@ -16,18 +16,18 @@ typedef struct vplIngredients {
     const vplEmitterDef* emitters;
     int emitterCount;
     vplMaps emitterMaps;
-    vplShadeLight* lamps;
-    int lampCount;
-    float lampMinDistance;
+    vplShadeLight* areaLights;
+    int areaLightCount;
+    float areaLightMinDistance;
     // of one pass
     vplLightSet* set;
     vplShadeLight* lights;
     int lightCount;
-    int lampLights; // the first lights, if they lie on lamps
+    int emitterLightCount; // the first lights, if they lie on lamps
     int firstShown; // Keller's --show indirect: lights before this one light only what compensation meets
     float minDistance;
     vplLightShadows lightShadows;        // none, map or ray
-    vplHalfMaps* lightMaps;              // NULL where there are none; room for a batch of the lights
+    vplHemiMaps* lightMaps;              // NULL where there are none; room for a batch of the lights
     struct vplSsvpState* ssvp;           // NULL but for SSVP; then it owns `set`
     struct vplRadiosityState* radiosity; // NULL but for radiosity
     int* lightClusters; // of each of `lights`, which are in the order of clusters; NULL: without clusters
@@ -46,7 +46,7 @@ int vplLightBatch(const vplJob* job, const vplIngredients* in);
 vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in, int first, int count);
 
 // Lights of step 0 that lie on surfaces: Keller's, which stand for their emission.
-int vplCountLampLights(const vplLightSet* set);
+int vplCountEmitterLights(const vplLightSet* set);
 
 // Whether light that the bound takes away is found by rays.
 bool vplCompensates(const vplJob* job);

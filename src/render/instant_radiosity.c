@@ -183,9 +183,9 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
         def.emitters = in->emitters;
         def.shadows = in->emitterMaps.shadows;
         def.emitterCount = in->emitterMaps.shadows ? in->emitterCount : 0;
-        def.lamps = in->lamps;
-        def.lampCount = in->lampCount;
-        def.lampMinDistance = in->lampMinDistance;
+        def.areaLights = in->areaLights;
+        def.areaLightCount = in->areaLightCount;
+        def.areaLightMinDistance = in->areaLightMinDistance;
         def.emission = true;
     }
     if (parts & PART_INDIRECT) {

@@ -19,7 +19,7 @@ vplRenderOptions vplDefaultRenderOptions(void)
     o.cutError = 0.02f;
     o.minDistance = -1;
     o.lightMapSize = 256;
-    o.lampLights = 64;
+    o.areaLightSamples = 64;
     o.samplesPerPixel = 64;
     o.maxBounces = -1;
     o.shadowMapSize = 1024;
@@ -77,7 +77,7 @@ static vplResult checkInts(const vplContext* context, const vplRenderOptions* o,
         {"compensation", (int)o->compensation, 0, VPL_COMPENSATION_RAYS},
         {"passes", o->passes, 0, VPL_MAX_PASSES},
         {"lightMapSize", o->lightMapSize, 1, VPL_MAX_SHADOW_MAP},
-        {"lampLights", o->lampLights, 1, VPL_MAX_LIGHTS},
+        {"areaLightSamples", o->areaLightSamples, 1, VPL_MAX_LIGHTS},
         {"samplesPerPixel", o->samplesPerPixel, 1, VPL_MAX_SAMPLES},
         {"maxBounces", o->maxBounces, -1, VPL_MAX_BOUNCES},
         {"pixel", (int)o->pixel, 0, VPL_PIXEL_CENTRE},

@@ -149,7 +149,7 @@ static vplResult makeState(vplJob* job, vplPatches* patches, vplRadiosityState**
 static vplResult refine(vplJob* job, const vplRadiosityState* s, int count, vplPatches** patchesOut)
 {
     float* worth = vplAlloc(job->context, (size_t)s->patches->patchCount, sizeof *worth);
-    vplResult result = worth != NULL ? vplRadiosity_FindWorth(job, s, worth) : VPL_OUT_OF_MEMORY;
+    vplResult result = worth != NULL ? vplRadiosity_FindPriority(job, s, worth) : VPL_OUT_OF_MEMORY;
     if (result == VPL_SUCCESS) {
         result = vplPatches_Refine(s->patches, worth, count, patchesOut);
     }

@@ -63,7 +63,7 @@ vplResult vplRadiosity_Receive(const vplRadiosityState* s, const vplRgb* sent, v
 vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* state);
 
 // Where more patches are wanted, one number per patch; light must be there.
-vplResult vplRadiosity_FindWorth(vplJob* job, const vplRadiosityState* state, float* worthOut);
+vplResult vplRadiosity_FindPriority(vplJob* job, const vplRadiosityState* state, float* priorityOut);
 
 // Adds to a picture what the options ask to be seen of patches.
 vplResult vplRadiosity_Draw(vplJob* job, const vplRadiosityState* state, const vplView* view,

@@ -45,7 +45,7 @@ static void addBlock(const vplShading* s, int first, int count, vplClampLoss* su
 {
     const vplGeometry* g = s->geometry;
     const vplCompensationDef* def = s->nearLight->def;
-    const int hidden = def->seesEmission ? 0 : def->lampLights; // that light only what rays meet
+    const int hidden = def->seesEmission ? 0 : def->emitterLightCount; // that light only what rays meet
     const vplLightChoice all = {def->lights + hidden, def->lightCount - hidden, CHOSEN_LIGHTS, 0, 0};
     vplLitPoint at[VPL_LANES];
     vplSurface surface, plane;

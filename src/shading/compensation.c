@@ -129,7 +129,7 @@ static void addReflection(const vplShading* s, Walk* w, double sums[3][VPL_LANES
 {
     const vplNearLight* near = s->nearLight;
     const vplCompensationDef* def = near->def;
-    const vplLightChoice all = {def->lights, def->lightCount, def->hitLights, def->lampLights, 0};
+    const vplLightChoice all = {def->lights, def->lightCount, def->hitLights, def->emitterLightCount, 0};
     vplSurface surface, plane;
     vplPoints points;
     float direct[3][VPL_LANES];
@@ -176,7 +176,7 @@ static void walk(const vplShading* s, Walk* w, double sums[3][VPL_LANES], int64_
         if (w->active == 0) {
             return;
         }
-        if (def->lampLights > 0 && (bounce > 0 || def->seesEmission)) {
+        if (def->emitterLightCount > 0 && (bounce > 0 || def->seesEmission)) {
             addEmission(s, w, sums);
         }
         if (!def->seesReflection) {
@@ -193,7 +193,7 @@ static void addLamps(const vplShading* s, Walk* start, float irradiance[3][VPL_L
 {
     const vplCompensationDef* def = s->nearLight->def;
     const int chosen = def->hitLights > def->rayCount ? def->hitLights : def->rayCount;
-    const vplLightChoice lamps = {def->lights, def->lampLights, chosen, def->lampLights, s->inverseBound};
+    const vplLightChoice lamps = {def->lights, def->emitterLightCount, chosen, def->emitterLightCount, s->inverseBound};
     for (uint32_t left = start->active; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
         float part[3];
@@ -226,7 +226,7 @@ void vplAddNearLight(const vplShading* shading, const vplPoints* points, const u
         }
     }
     double sums[3][VPL_LANES] = {{0}};
-    if (def->seesEmission && def->lampLights > 0) {
+    if (def->seesEmission && def->emitterLightCount > 0) {
         addLamps(shading, &start, irradiance, rays);
     }
     for (int i = 0; i < def->rayCount; i++) {

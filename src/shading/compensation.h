@@ -27,7 +27,7 @@ typedef struct vplNearLight {
     vplPointKernelFcn* kernel;
     vplSobol sobol;
     float distance;                       // D, metres
-    float lampDistance, lampInverseBound; // the smaller one of lights on lamps
+    float lampDistance, areaLightInverseBound; // the smaller one of lights on lamps
 } vplNearLight;
 
 // A point to be lit, and the numbers that its choices are drawn with.
@@ -44,7 +44,7 @@ bool vplLookAt(const vplGeometry* g, const vplView* view, double x, double y, vp
 typedef struct vplLightChoice {
     const vplShadeLight* lights;
     int count, chosen;
-    int lampCount; // the first of them lie on lamps
+    int areaLightCount; // the first of them lie on lamps
     float taken;   // as the kernel's
 } vplLightChoice;
 

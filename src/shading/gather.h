@@ -38,7 +38,7 @@ typedef struct vplGatherRoom {
 typedef struct vplInterleave {
     vplShadeDef def; // with the lights in the order of their classes
     vplShadeLight* lights;
-    vplHalfMap* shadows; // NULL where lights have no maps
+    vplHemiMap* shadows; // NULL where lights have no maps
     int* clusters;       // NULL where lights have no clusters
     int* classes;        // one per light of the caller's
     int classStart[VPL_MAX_INTERLEAVE * VPL_MAX_INTERLEAVE +

@@ -5,7 +5,7 @@
 #include "geometry/triangle.h"
 #include "math/vec.h"
 #include "shading/shading.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
 #include <string.h>
 
@@ -83,7 +83,7 @@ static void castLightRays(const vplShading* shading, const vplPoints* points, co
 }
 
 bool vplLightVisibly(const vplShading* s, const vplPoints* points, const vplRayStarts* starts,
-                     const vplHalfMap* map, const vplShadeLight* light, float inverseBound,
+                     const vplHemiMap* map, const vplShadeLight* light, float inverseBound,
                      float part[3][VPL_LANES], float visible[VPL_LANES], int64_t* rays)
 {
     memset(part, 0, 3 * sizeof part[0]);
@@ -100,7 +100,7 @@ bool vplLightVisibly(const vplShading* s, const vplPoints* points, const vplRayS
         castLightRays(s, points, starts, light, visible, rays);
     } else if (map != NULL) {
         float factor[VPL_LANES];
-        vplHalfMap_FactorBlock(map, points->plane, factor);
+        vplHemiMap_FactorBlock(map, points->plane, factor);
         for (int l = 0; l < VPL_LANES; l++) {
             visible[l] *= 1 - factor[l];
         }
@@ -110,7 +110,7 @@ bool vplLightVisibly(const vplShading* s, const vplPoints* points, const vplRayS
 
 // Adds one light after another, each with a ray or a map of its own.
 static void addShadowed(const vplShading* s, const vplPoints* points, const vplShadeLight* lights,
-                        const vplHalfMap* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
+                        const vplHemiMap* maps, int count, float inverseBound, float irradiance[3][VPL_LANES],
                         int64_t* rays)
 {
     vplRayStarts starts;
@@ -137,10 +137,10 @@ void vplDirectIrradiance(const vplShading* shading, const vplPoints* points, flo
     const vplShadeDef* def = shading->def;
     memset(irradiance, 0, 3 * sizeof irradiance[0]);
     shading->addEmitters(shading, points, irradiance, rays);
-    for (int first = 0; first < def->lampCount; first += VPL_LIGHT_GROUP) {
-        const int count = def->lampCount - first < VPL_LIGHT_GROUP ? def->lampCount - first : VPL_LIGHT_GROUP;
+    for (int first = 0; first < def->areaLightCount; first += VPL_LIGHT_GROUP) {
+        const int count = def->areaLightCount - first < VPL_LIGHT_GROUP ? def->areaLightCount - first : VPL_LIGHT_GROUP;
         float part[3][VPL_LANES] = {{0}};
-        addShadowed(shading, points, def->lamps + first, NULL, count, shading->lampInverseBound, part, rays);
+        addShadowed(shading, points, def->areaLights + first, NULL, count, shading->areaLightInverseBound, part, rays);
         for (int c = 0; c < 3; c++) {
             for (int l = 0; l < VPL_LANES; l++) {
                 irradiance[c][l] += part[c][l];

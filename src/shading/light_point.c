@@ -4,7 +4,7 @@
 #include "geometry/bvh.h"
 #include "math/vec.h"
 #include "shading/compensation.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
 #include <math.h>
 
@@ -82,7 +82,7 @@ void vplLightPoint(const vplShading* shading, const vplNearLight* near, const vp
         loadLights(from->lights, indices, count, &lanes);
         for (int l = 0; l < VPL_LANES; l++) {
             bounds[l] =
-                l < count && indices[l] < from->lampCount ? near->lampInverseBound : shading->inverseBound;
+                l < count && indices[l] < from->areaLightCount ? near->areaLightInverseBound : shading->inverseBound;
         }
         near->kernel(&lanes, at, bounds, from->taken, amount);
         for (int l = count; l < VPL_LANES; l++) {

@@ -78,7 +78,7 @@ static void evaluate(Work* w, int i, Gift* gift)
     vplShadeLight light = from->light;
     light.r = light.g = light.b = 1;
     float part[3][VPL_LANES], visible[VPL_LANES];
-    const vplHalfMap* map = s->def->lightShadows ? &s->def->lightShadows[from->index] : NULL;
+    const vplHemiMap* map = s->def->lightShadows ? &s->def->lightShadows[from->index] : NULL;
     w->cut->evaluations++;
     if (!vplLightVisibly(s, w->points, w->starts, map, &light, s->inverseBound, part, visible, w->rays)) {
         memset(gift, 0, sizeof *gift);

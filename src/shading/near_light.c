@@ -21,15 +21,15 @@ vplResult vplOpenNearLight(vplShading* shading)
     near->kernel = vplGetPointKernel(context->isa);
     near->sobol = vplSobol_Make();
     near->distance = outer->minDistance;
-    near->lampDistance = fminf(def->lightLampDistance, outer->minDistance);
-    near->lampInverseBound = vplInverseSquare(near->lampDistance);
+    near->lampDistance = fminf(def->emitterLightDistance, outer->minDistance);
+    near->areaLightInverseBound = vplInverseSquare(near->lampDistance);
     near->hitsDef = (vplShadeDef){.lighting = VPL_LIGHTING_PHYSICAL,
                                   .emitters = def->emitters,
                                   .shadows = def->shadows,
                                   .emitterCount = def->emitterCount,
-                                  .lamps = def->lamps,
-                                  .lampCount = def->lampCount,
-                                  .lampMinDistance = def->lampMinDistance};
+                                  .areaLights = def->areaLights,
+                                  .areaLightCount = def->areaLightCount,
+                                  .areaLightMinDistance = def->areaLightMinDistance};
     near->hits = vplShading_Make(shading->geometry, shading->view, &near->hitsDef);
     return vplMakeEmitterRays(&near->hits);
 }

@@ -62,10 +62,10 @@ static vplResult checkDef(const vplContext* context, const vplView* view, const 
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplShadeDef.minDistance is %g, must be finite and >= 0", (double)def->minDistance);
     }
-    if (!(def->lampMinDistance >= 0 && isfinite(def->lampMinDistance))) {
+    if (!(def->areaLightMinDistance >= 0 && isfinite(def->areaLightMinDistance))) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplShadeDef.lampMinDistance is %g, must be finite and >= 0",
-                       (double)def->lampMinDistance);
+                       "vplShadeDef.areaLightMinDistance is %g, must be finite and >= 0",
+                       (double)def->areaLightMinDistance);
     }
     if (def->compensation != NULL &&
         (def->compensation->rayCount < 1 || def->compensation->rayCount > VPL_MAX_NEAR_RAYS ||
@@ -98,7 +98,7 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                         .addEmitters = vplGetAddEmitters(isa),
                         .cull = vplGetCull(isa, def->lighting),
                         .inverseBound = vplInverseSquare(def->minDistance),
-                        .lampInverseBound = vplInverseSquare(def->lampMinDistance),
+                        .areaLightInverseBound = vplInverseSquare(def->areaLightMinDistance),
                         .smooth = geometry->shadingNormals != NULL,
                         .irradiance = def->output == VPL_OUTPUT_GATHER || def->output == VPL_OUTPUT_DENOISED};
 }
@@ -173,7 +173,7 @@ static vplResult makeColumns(vplShading* s)
 // Whether any shadow is found by rays, which want their tree before tasks begin.
 static bool castsRays(const vplShadeDef* def)
 {
-    bool casts = def->lampCount > 0 || def->compensation != NULL ||
+    bool casts = def->areaLightCount > 0 || def->compensation != NULL ||
                  (def->lightCount > 0 && def->lightShadows == NULL && def->lightRays);
     for (int i = 0; i < def->emitterCount; i++) {
         casts = casts || (vplEmitterMapOf(def, i) == NULL &&

@@ -68,7 +68,7 @@ typedef struct vplShading {
     vplCullFcn* cull;
     vplClusterBoundFcn* clusterBound;
     float* columns[6]; // of the virtual lights, for `cull`; NULL where no light is left out
-    float inverseBound, lampInverseBound;
+    float inverseBound, areaLightInverseBound;
     bool smooth;                       // some object has shading normals
     bool irradiance;                   // of virtual lights only is shown, as it arrives
     vplMesh* meshes;                   // one per object
@@ -142,7 +142,7 @@ void vplFindRayStarts(const vplShading* shading, const vplPoints* points, vplRay
 // What one virtual light or lamp gives to the lanes, and which of it arrives, [0, 1]: by rays where there are starts,
 // else by the map, else all of it. False where no lane is lit; then neither is complete.
 bool vplLightVisibly(const vplShading* shading, const vplPoints* points, const vplRayStarts* starts,
-                     const vplHalfMap* map, const vplShadeLight* light, float inverseBound,
+                     const vplHemiMap* map, const vplShadeLight* light, float inverseBound,
                      float part[3][VPL_LANES], float visible[VPL_LANES], int64_t* rays);
 
 // Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray.

@@ -91,7 +91,7 @@ static inline __attribute__((always_inline)) void fillRow(const Filling* restric
 static inline void fill(const Canvas* c, const Filling* f, Texels box)
 {
     const float scale = 1 / (float)c->size;
-    const size_t stride = (size_t)vplHalfMap_Blocks(c->size) * VPL_LANES;
+    const size_t stride = (size_t)vplHemiMap_Blocks(c->size) * VPL_LANES;
     for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
         const size_t at = (size_t)row * stride;
         if (c->triangles != NULL) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Paraboloid maps from the inside. They are drawn in blocks, in the order of half_map.h, and kept in rows, so that the
+// Paraboloid maps from the inside. They are drawn in blocks, in the order of hemi_map.h, and kept in rows, so that the
 // two texels beside a point are loaded at once.
 #ifndef VPL_VISIBILITY_PARABOLOID_MAP_H
 #define VPL_VISIBILITY_PARABOLOID_MAP_H
 
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
 // Texels of a hemisphere while it is drawn.
 static inline size_t vplParaboloidMap_Drawn(int size)
 {
-    const size_t blocks = (size_t)vplHalfMap_Blocks(size);
+    const size_t blocks = (size_t)vplHemiMap_Blocks(size);
     return blocks * blocks * VPL_LANES;
 }
 

@@ -172,7 +172,7 @@ static inline void finishBlock(const Canvas* c, int32_t column, int32_t row, flo
                                int32_t id[restrict VPL_LANES])
 {
     const float scale = 1 / (float)c->size, rim2 = c->rim * c->rim;
-    const size_t at = (size_t)vplHalfMap_Place(vplHalfMap_Blocks(c->size), column, row);
+    const size_t at = (size_t)vplHemiMap_Place(vplHemiMap_Blocks(c->size), column, row);
     memcpy(value, c->texels + at, VPL_LANES * sizeof *value);
     for (int l = 0; l < VPL_LANES; l++) {
         const float x = (float)(2 * (column + l % SIDE) + 1) * scale - 1;

@@ -4,7 +4,7 @@
 #define VPL_BAND_H
 
 #include "math/scalar.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 #include "visibility/paraboloid_map.h"
 
 #include <vpl/lights.h>
@@ -50,11 +50,11 @@ static inline bool isSureWithin(const vplGeometry* g, vplVec3 eye, vplVec3 point
     return same;
 }
 
-static inline bool isSure(const vplGeometry* g, const vplHalfMap* map, vplVec3 point, vplVec3 normal,
+static inline bool isSure(const vplGeometry* g, const vplHemiMap* map, vplVec3 point, vplVec3 normal,
                           bool dark)
 {
     float footprint;
-    const float band = vplHalfMap_Band(map, point, normal, &footprint);
+    const float band = vplHemiMap_Band(map, point, normal, &footprint);
     return isSureWithin(g, map->position, point, normal, footprint, band, dark);
 }
 

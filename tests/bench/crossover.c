@@ -4,7 +4,7 @@
 // shading with rays, and of drawing and shading with maps of 64 and 128 texels, alternated in one run. Without shadows the
 // same lights take what is said as `none`. Rays that would take more than MOST_MS are not cast (-).
 // Then points that the camera sees times lights: the share where the answers differ, and how much of that lies outside
-// the band that vplHalfMap_FactorBlock states.
+// the band that vplHemiMap_FactorBlock states.
 #include "band.h"
 #include "bench.h"
 
@@ -53,11 +53,11 @@ static void makeLights(Bench* b)
     vplLightSet_Destroy(set);
 }
 
-static void placesOf(const Bench* b, int first, int count, vplHalfMapPlace* places)
+static void placesOf(const Bench* b, int first, int count, vplHemiMapPlace* places)
 {
     for (int i = 0; i < count; i++) {
         const vplShadeLight* l = &b->lights[first + i];
-        places[i] = (vplHalfMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+        places[i] = (vplHemiMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
     }
 }
 
@@ -65,7 +65,7 @@ static void placesOf(const Bench* b, int first, int count, vplHalfMapPlace* plac
 
 // Without shadows (maps NULL, no rays), by rays, or by maps.
 static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int first, int lights,
-                      const vplHalfMaps* maps, bool rays)
+                      const vplHemiMaps* maps, bool rays)
 {
     vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.2f};
     def.accumulation = VPL_ACCUMULATE_DEFERRED;
@@ -86,22 +86,22 @@ typedef struct Cell {
 static void measureMaps(const Bench* b, const vplView* view, vplImage* image, int lights, int size,
                         double* drawMs, double* lookMs)
 {
-    const int room = (int)(VPL_LIGHT_MAP_BYTES / vplHalfMaps_BytesPerMap(size)),
+    const int room = (int)(VPL_LIGHT_MAP_BYTES / vplHemiMaps_BytesPerMap(size)),
               batch = room < lights ? room : lights;
-    vplHalfMaps* maps;
-    check(vplHalfMaps_Create(b->context, size, batch, &maps));
+    vplHemiMaps* maps;
+    check(vplHemiMaps_Create(b->context, size, batch, &maps));
     *drawMs = *lookMs = 0;
     for (int first = 0; first < lights; first += batch) {
         const int count = lights - first < batch ? lights - first : batch;
-        vplHalfMapPlace* places = malloc((size_t)count * sizeof *places);
+        vplHemiMapPlace* places = malloc((size_t)count * sizeof *places);
         placesOf(b, first, count, places);
         const double start = processorMs();
-        check(vplHalfMaps_Draw(maps, b->geometry, places, count, NULL, NULL));
+        check(vplHemiMaps_Draw(maps, b->geometry, places, count, NULL, NULL));
         *drawMs += processorMs() - start;
         *lookMs += shadeMs(b, view, image, first, count, maps, false);
         free(places);
     }
-    vplHalfMaps_Destroy(maps);
+    vplHemiMaps_Destroy(maps);
 }
 
 static Cell measure(const Bench* b, int width, int height, int lights, int runs)
@@ -178,7 +178,7 @@ typedef struct Agreement {
     int64_t pairs, acne, leaks, outside, texelWrong;
 } Agreement;
 
-static void addPair(const Bench* b, const vplShadeLight* light, const vplHalfMap* map, const vplHit* hit,
+static void addPair(const Bench* b, const vplShadeLight* light, const vplHemiMap* map, const vplHit* hit,
                     vplVec3 normal, Agreement* a)
 {
     vplSurface s;
@@ -195,7 +195,7 @@ static void addPair(const Bench* b, const vplShadeLight* light, const vplHalfMap
     if (!(vplDot(way, normal) > 0 && vplDot(way, map->forward) < 0)) {
         return;
     }
-    vplHalfMap_FactorBlock(map, &s, factor);
+    vplHemiMap_FactorBlock(map, &s, factor);
     const bool dark = isDark(b->geometry, hit, light), darkMap = factor[0] > 0;
     a->pairs++;
     if (dark != darkMap) {
@@ -209,13 +209,13 @@ static void printAgreement(const Bench* b, const char* name)
 {
     const vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), POINTS_X, POINTS_Y);
     const int lights = b->lightCount < AGREEMENT_LIGHTS ? b->lightCount : AGREEMENT_LIGHTS;
-    vplHalfMapPlace places[AGREEMENT_LIGHTS];
+    vplHemiMapPlace places[AGREEMENT_LIGHTS];
     placesOf(b, 0, lights, places);
     for (int k = 0; k < MAP_SIZES; k++) {
         Agreement a = {0};
-        vplHalfMaps* maps;
-        check(vplHalfMaps_Create(b->context, mapSizes[k], lights, &maps));
-        check(vplHalfMaps_Draw(maps, b->geometry, places, lights, NULL, NULL));
+        vplHemiMaps* maps;
+        check(vplHemiMaps_Create(b->context, mapSizes[k], lights, &maps));
+        check(vplHemiMaps_Draw(maps, b->geometry, places, lights, NULL, NULL));
         for (int i = 0; i < POINTS_X * POINTS_Y; i++) {
             const vplRay ray = {view.eye, rayThrough(&view, i % POINTS_X, i / POINTS_X), {0, 0}};
             vplHit hit;
@@ -233,7 +233,7 @@ static void printAgreement(const Bench* b, const char* name)
                "%.4f %%\n",
                name, mapSizes[k], (long long)a.pairs, (double)a.acne * share, (double)a.leaks * share,
                (double)a.outside * share);
-        vplHalfMaps_Destroy(maps);
+        vplHemiMaps_Destroy(maps);
     }
 }
 

@@ -27,7 +27,7 @@ typedef struct Known {
     vplRgb *vertexIrradiance, *vertexDirect; // [vertex][front, back]
 } Known;
 
-static vplResult find(vplJob* job, const vplRadiosityState* s, Known* k, float* worthOut)
+static vplResult find(vplJob* job, const vplRadiosityState* s, Known* k, float* priorityOut)
 {
     const vplRenderOptions* o = &job->options;
     vplRadiosity_FindReflected(s, k->reflected);
@@ -40,17 +40,17 @@ static vplResult find(vplJob* job, const vplRadiosityState* s, Known* k, float* 
         result = vplPatchMesh_Interpolate(s->mesh, o->vertexWeight, k->direct, k->vertexDirect);
     }
     if (result == VPL_SUCCESS) {
-        vplPatchWorthDef def = vplDefaultPatchWorthDef();
+        vplPatchPriorityDef def = vplDefaultPatchPriorityDef();
         def.irradiance = s->irradiance;
         def.vertexIrradiance = k->vertexIrradiance;
         def.vertexDirect = k->vertexDirect;
         def.directSpread = s->spread;
-        result = vplFindPatchWorth(s->mesh, &def, worthOut);
+        result = vplFindPatchPriority(s->mesh, &def, priorityOut);
     }
     return result;
 }
 
-vplResult vplRadiosity_FindWorth(vplJob* job, const vplRadiosityState* s, float* worthOut)
+vplResult vplRadiosity_FindPriority(vplJob* job, const vplRadiosityState* s, float* priorityOut)
 {
     const size_t sides = (size_t)s->sides->count, corners = 2 * (size_t)s->mesh->vertexCount;
     Known k = {.reflected = vplAlloc(job->context, sides, sizeof *k.reflected),
@@ -64,7 +64,7 @@ vplResult vplRadiosity_FindWorth(vplJob* job, const vplRadiosityState* s, float*
     }
     vplJob_BeginStage(job, 0.72);
     if (result == VPL_SUCCESS) {
-        result = find(job, s, &k, worthOut);
+        result = find(job, s, &k, priorityOut);
     }
     vplJob_EndStage(job, "worth of patches");
     for (int i = 0; i < 4; i++) {

@@ -6,17 +6,17 @@
 #include "base/isa.h"
 #include "math/scalar.h"
 #include "visibility/gather.h"
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 
-vplHalfMapFactorFcn VPL_KERNEL(vplHalfMapFactor);
+vplHemiMapFactorFcn VPL_KERNEL(vplHemiMapFactor);
 
-void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surface,
+void VPL_KERNEL(vplHemiMapFactor)(const vplHemiMap* map, const vplSurface* surface,
                                   float factor[restrict VPL_LANES])
 {
     const vplVec3 o = map->position, r = map->right, u = map->up, f = map->forward;
-    const int32_t size = map->size, last = size - 1, blocks = vplHalfMap_Blocks(size);
+    const int32_t size = map->size, last = size - 1, blocks = vplHemiMap_Blocks(size);
     const float half = 0.5f * (float)size, scale = 1 / (float)size;
-    const float tolerated = 1 + vplHalfMap_Tolerance(size);
+    const float tolerated = 1 + vplHemiMap_Tolerance(size);
     float limit[VPL_LANES], stored[VPL_LANES];
     int32_t place[VPL_LANES], lit[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
@@ -30,7 +30,7 @@ void VPL_KERNEL(vplHalfMapFactor)(const vplHalfMap* map, const vplSurface* surfa
                 row = (int32_t)(((x - y) * inverse + 1) * half);
         column = column < last ? column : last;
         row = row < last ? row : last;
-        place[l] = vplHalfMap_Place(blocks, column, row);
+        place[l] = vplHemiMap_Place(blocks, column, row);
         // The texel's centre, and 1/t of the fragment's plane there.
         const float cu = (float)(2 * column + 1) * scale - 1, cv = (float)(2 * row + 1) * scale - 1;
         const float cx = 0.5f * (cu + cv), cy = 0.5f * (cu - cv), cz = 1 - fabsf(cx) - fabsf(cy);

@@ -11,11 +11,11 @@
 
 #include <float.h>
 
-enum { WORTH_COOKIE = 0x56504ca2 };
+enum { PRIORITY_COOKIE = 0x56504ca2 };
 
-vplPatchWorthDef vplDefaultPatchWorthDef(void)
+vplPatchPriorityDef vplDefaultPatchPriorityDef(void)
 {
-    return (vplPatchWorthDef){.cookie = WORTH_COOKIE};
+    return (vplPatchPriorityDef){.cookie = PRIORITY_COOKIE};
 }
 
 // Weights of squares of relative errors. The bend, how far the mean of the interpolated corners is from the patch's own
@@ -39,7 +39,7 @@ typedef struct Corners {
     double area;
 } Corners;
 
-static void addTriangle(const vplPatchMesh* mesh, const vplPatchWorthDef* def, int triangle, bool back,
+static void addTriangle(const vplPatchMesh* mesh, const vplPatchPriorityDef* def, int triangle, bool back,
                         Corners* c)
 {
     const uint32_t* index = mesh->indices + 3 * (size_t)triangle;
@@ -65,7 +65,7 @@ static void addTriangle(const vplPatchMesh* mesh, const vplPatchWorthDef* def, i
 }
 
 // Of direct light over a side: what its corners and its samples know of it.
-static double directVariance(const vplPatchWorthDef* def, int index, const Corners* c)
+static double directVariance(const vplPatchPriorityDef* def, int index, const Corners* c)
 {
     const double mean = c->area > 0 ? c->direct / c->area : 0,
                  linear = c->area > 0 ? c->directSquare / c->area - mean * mean : 0,
@@ -74,7 +74,7 @@ static double directVariance(const vplPatchWorthDef* def, int index, const Corne
 }
 
 // Square of the relative error that a side is believed to have, summed over the channels.
-static double errorOf(const vplPatchWorthDef* def, const vplPatchSide* side, int index, const Corners* c,
+static double errorOf(const vplPatchPriorityDef* def, const vplPatchSide* side, int index, const Corners* c,
                       double floor)
 {
     const vplRgb e = def->irradiance[index];
@@ -101,21 +101,21 @@ static double meanIrradiance(const vplPatchSides* sides, const vplRgb* irradianc
     return area > 0 ? sum / area : 0;
 }
 
-static vplResult checkDef(const vplPatchMesh* mesh, const vplPatchWorthDef* def)
+static vplResult checkDef(const vplPatchMesh* mesh, const vplPatchPriorityDef* def)
 {
-    if (def->cookie != WORTH_COOKIE) {
+    if (def->cookie != PRIORITY_COOKIE) {
         return vplFail(mesh->context, VPL_INVALID_ARGUMENT,
-                       "vplPatchWorthDef was not made by vplDefaultPatchWorthDef");
+                       "vplPatchPriorityDef was not made by vplDefaultPatchPriorityDef");
     }
     if (mesh->sides->count > 0 && (def->irradiance == NULL || def->vertexIrradiance == NULL)) {
         return vplFail(
             mesh->context, VPL_INVALID_ARGUMENT,
-            "vplPatchWorthDef.irradiance and vertexIrradiance are NULL, must be given where there are sides");
+            "vplPatchPriorityDef.irradiance and vertexIrradiance are NULL, must be given where there are sides");
     }
     return VPL_SUCCESS;
 }
 
-vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* def, float* worthOut)
+vplResult vplFindPatchPriority(const vplPatchMesh* mesh, const vplPatchPriorityDef* def, float* priorityOut)
 {
     const vplPatchSides* sides = mesh->sides;
     const vplPatches* patches = sides->patches;
@@ -145,7 +145,7 @@ vplResult vplFindPatchWorth(const vplPatchMesh* mesh, const vplPatchWorthDef* de
                 worth += errorOf(def, &sides->sides[side], side, &corners[side], floor);
             }
         }
-        worthOut[i] = (float)(worth * vplPatches_Area(patches, i));
+        priorityOut[i] = (float)(worth * vplPatches_Area(patches, i));
     }
     vplFree(mesh->context, corners);
     return VPL_SUCCESS;

@@ -4,10 +4,10 @@
 // A texel at (u, v) in [-1, 1]^2 looks along d = (p, q, 1 - |p| - |q|), p = (u + v) / 2, q = (u - v) / 2, in the
 // light's frame; where p and q keep their signs d is linear in u and v. A point t d lies on a triangle's plane where
 // 1/t = n.d / n.corner, which is linear, too, and the nearest is the largest.
-#ifndef VPL_VISIBILITY_HALF_FILL_H
-#define VPL_VISIBILITY_HALF_FILL_H
+#ifndef VPL_VISIBILITY_HEMI_FILL_H
+#define VPL_VISIBILITY_HEMI_FILL_H
 
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 #include "visibility/map_fill.h"
 
 // ---- one triangle
@@ -80,10 +80,10 @@ static inline void fillRow(const Filling* restrict f, int32_t row, float scale, 
     }
 }
 
-static inline void fill(const vplHalfMap* map, const Filling* f, Texels box, bool whole, float* texels)
+static inline void fill(const vplHemiMap* map, const Filling* f, Texels box, bool whole, float* texels)
 {
     const float scale = 1 / (float)map->size;
-    const size_t stride = (size_t)vplHalfMap_Blocks(map->size) * VPL_LANES;
+    const size_t stride = (size_t)vplHemiMap_Blocks(map->size) * VPL_LANES;
     for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
         fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, whole, texels + (size_t)row * stride);
     }
@@ -142,7 +142,7 @@ static bool reaches(const vplVec3 corner[3], float right, float up)
            (corner[0].y * up > 0 || corner[1].y * up > 0 || corner[2].y * up > 0);
 }
 
-static void fillCut(const vplHalfMap* map, const vplVec3 corner[3], float* texels)
+static void fillCut(const vplHemiMap* map, const vplVec3 corner[3], float* texels)
 {
     for (int quadrant = 0; quadrant < 4; quadrant++) {
         const float right = quadrant & 1 ? -1 : 1, up = quadrant & 2 ? -1 : 1;

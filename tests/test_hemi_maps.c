@@ -7,15 +7,15 @@
 #include "base/rng.h"
 #include "math/vec.h"
 
-static vplHalfMaps* drawMaps(const vplGeometry* g, int size, const vplHalfMapPlace* places, int count)
+static vplHemiMaps* drawMaps(const vplGeometry* g, int size, const vplHemiMapPlace* places, int count)
 {
-    vplHalfMaps* maps;
-    assert_int_equal(vplHalfMaps_Create(g->context, size, count, &maps), VPL_SUCCESS);
-    assert_int_equal(vplHalfMaps_Draw(maps, g, places, count, NULL, NULL), VPL_SUCCESS);
+    vplHemiMaps* maps;
+    assert_int_equal(vplHemiMaps_Create(g->context, size, count, &maps), VPL_SUCCESS);
+    assert_int_equal(vplHemiMaps_Draw(maps, g, places, count, NULL, NULL), VPL_SUCCESS);
     return maps;
 }
 
-static float factorAt(const vplHalfMap* map, vplVec3 p, vplVec3 n)
+static float factorAt(const vplHemiMap* map, vplVec3 p, vplVec3 n)
 {
     vplSurface s;
     float factor[VPL_LANES];
@@ -27,12 +27,12 @@ static float factorAt(const vplHalfMap* map, vplVec3 p, vplVec3 n)
         s.ny[l] = n.y;
         s.nz[l] = n.z;
     }
-    vplHalfMap_FactorBlock(map, &s, factor);
+    vplHemiMap_FactorBlock(map, &s, factor);
     return factor[0];
 }
 
 // Where a texel's centre looks.
-static vplVec3 directionOf(const vplHalfMap* map, int column, int row)
+static vplVec3 directionOf(const vplHemiMap* map, int column, int row)
 {
     const float u = (float)(2 * column + 1) / (float)map->size - 1;
     const float v = (float)(2 * row + 1) / (float)map->size - 1;
@@ -41,7 +41,7 @@ static vplVec3 directionOf(const vplHalfMap* map, int column, int row)
                   vplScale(1 - fabsf(p) - fabsf(q), map->forward));
 }
 
-static float hitAlong(const vplGeometry* g, const vplHalfMap* map, vplVec3 direction)
+static float hitAlong(const vplGeometry* g, const vplHemiMap* map, vplVec3 direction)
 {
     const vplRay ray = {map->position, direction, {0, 0}};
     vplHit hit;
@@ -49,7 +49,7 @@ static float hitAlong(const vplGeometry* g, const vplHalfMap* map, vplVec3 direc
 }
 
 // Whether the ray, or one a hair beside it, meets something there: edges go to either side.
-static bool holdsRay(const vplGeometry* g, const vplHalfMap* map, vplVec3 d, float stored)
+static bool holdsRay(const vplGeometry* g, const vplHemiMap* map, vplVec3 d, float stored)
 {
     for (int i = 0; i < 9; i++) {
         const float a = 2e-6f * (float)(i % 3 - 1), b = 2e-6f * (float)(i / 3 - 1);
@@ -71,21 +71,21 @@ static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
         Dice dice = {7, 0};
         for (int light = 0; light < 40; light++) {
             vplHit hit;
-            const vplHalfMapPlace place = rollPlace(g, &dice, &hit);
+            const vplHemiMapPlace place = rollPlace(g, &dice, &hit);
             const int size = 1 + light; // whole blocks and parts of them
-            vplHalfMaps* maps = drawMaps(g, size, &place, 1);
-            const vplHalfMap* map = &maps->maps[0];
+            vplHemiMaps* maps = drawMaps(g, size, &place, 1);
+            const vplHemiMap* map = &maps->maps[0];
             for (int i = 0; i < size * size; i++) {
                 const vplVec3 d = directionOf(map, i % size, i / size);
                 const float stored =
-                    map->texels[vplHalfMap_Place(vplHalfMap_Blocks(size), i % size, i / size)];
+                    map->texels[vplHemiMap_Place(vplHemiMap_Blocks(size), i % size, i / size)];
                 // Along the horizon the light's own surface is met or not, as rounding wants.
                 if (vplDot(d, map->forward) > 1e-3f && !holdsRay(g, map, d, stored)) {
                     fail_msg("scene %d, light %d, texel %d of %d^2: 1/t is %.9g, a ray's %.9g", which, light,
                              i, size, (double)stored, (double)hitAlong(g, map, d));
                 }
             }
-            vplHalfMaps_Destroy(maps);
+            vplHemiMaps_Destroy(maps);
         }
         vplGeometry_Destroy(g);
     }
@@ -102,7 +102,7 @@ static void MapsAndRaysAgreeOutsideTheBand(void** state)
         int pairs = 0, dark = 0, apart = 0;
         for (int light = 0; light < 60; light++) {
             vplHit on, hit;
-            const vplHalfMapPlace place = rollPlace(g, &dice, &on);
+            const vplHemiMapPlace place = rollPlace(g, &dice, &on);
             const vplShadeLight shade = {place.position.x,
                                          place.position.y,
                                          place.position.z,
@@ -112,10 +112,10 @@ static void MapsAndRaysAgreeOutsideTheBand(void** state)
                                          1,
                                          1,
                                          1};
-            vplHalfMaps* maps = drawMaps(g, 16 << light % 4, &place, 1);
-            const vplHalfMap* map = &maps->maps[0];
+            vplHemiMaps* maps = drawMaps(g, 16 << light % 4, &place, 1);
+            const vplHemiMap* map = &maps->maps[0];
             for (int i = 0; i < 300; i++) {
-                const vplHalfMapPlace at = rollPlace(g, &dice, &hit);
+                const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
                 const vplVec3 way = vplSub(map->position, at.position);
                 if (!(vplDot(way, at.normal) > 0 && vplDot(way, map->forward) < 0)) {
                     assert_true(factorAt(map, at.position, at.normal) == 1); // light falls from nowhere
@@ -130,7 +130,7 @@ static void MapsAndRaysAgreeOutsideTheBand(void** state)
                     fail_msg("scene %d, light %d, point %d: the ray says %d", which, light, i, shadowed);
                 }
             }
-            vplHalfMaps_Destroy(maps);
+            vplHemiMaps_Destroy(maps);
         }
         printf("# %d pairs, %d dark, %d within the band\n", pairs, dark, apart);
         assert_true(dark > 500 && pairs > dark + 500);
@@ -149,16 +149,16 @@ static void APlaneNeverShadowsItself(void** state)
     Dice dice = {3, 0};
     for (int i = 0; i < 2000; i++) {
         const float high = 0.25f + 4 * powf(10, roll(&dice, -5, 0));
-        const vplHalfMapPlace place = {vplVec(3 + roll(&dice, -4, 4), high, -2 + roll(&dice, -4, 4)),
+        const vplHemiMapPlace place = {vplVec(3 + roll(&dice, -4, 4), high, -2 + roll(&dice, -4, 4)),
                                        vplNormalize(vplAdd(vplVec(0, -1.01f, 0), rollUnit(&dice)))};
-        vplHalfMaps* maps = drawMaps(g, 1 + i % 33, &place, 1);
+        vplHemiMaps* maps = drawMaps(g, 1 + i % 33, &place, 1);
         for (int k = 0; k < 20; k++) {
             const vplVec3 p = vplVec(3 + roll(&dice, -4.9f, 4.9f), 0.25f, -2 + roll(&dice, -4.9f, 4.9f));
             if (vplDot(vplSub(p, maps->maps[0].position), place.normal) > 0) {
                 assert_true(factorAt(&maps->maps[0], p, vplVec(0, 1, 0)) == 0);
             }
         }
-        vplHalfMaps_Destroy(maps);
+        vplHemiMaps_Destroy(maps);
     }
     vplGeometry_Destroy(g);
     closeTestContext(context);
@@ -184,19 +184,19 @@ static void LightsOnWallsEdgesAndCornersSeeTheWholeRoom(void** state)
             at.y = -n.y;
             at.x = light % 3 ? at.x : at.x > 0 ? 1 : -1; // on an edge
             at.z = light % 6 ? at.z : at.z > 0 ? 1 : -1; // in a corner
-            const vplHalfMapPlace place = {vplAdd(at, offsets[o]), n};
+            const vplHemiMapPlace place = {vplAdd(at, offsets[o]), n};
             const vplShadeLight shade = {
                 place.position.x, place.position.y, place.position.z, n.x, n.y, n.z, 1, 1, 1};
-            vplHalfMaps* maps = drawMaps(g, 64, &place, 1);
+            vplHemiMaps* maps = drawMaps(g, 64, &place, 1);
             for (int k = 0; k < 40; k++) {
                 vplHit hit;
-                const vplHalfMapPlace p = rollPlace(g, &dice, &hit);
+                const vplHemiMapPlace p = rollPlace(g, &dice, &hit);
                 const vplVec3 local = vplSub(p.position, offsets[o]),
                               way = vplSub(place.position, p.position);
                 // Two coordinates near 1: by an edge, where the map is in its band. A light in the point's own plane
                 // lights nothing.
                 float band, footprint;
-                band = vplHalfMap_Band(&maps->maps[0], p.position, p.normal, &footprint);
+                band = vplHemiMap_Band(&maps->maps[0], p.position, p.normal, &footprint);
                 const int close =
                     (fabsf(local.x) > 1 - band) + (fabsf(local.y) > 1 - band) + (fabsf(local.z) > 1 - band);
                 if (vplDot(way, p.normal) > 1e-3f && vplDot(way, n) < -1e-3f) {
@@ -204,7 +204,7 @@ static void LightsOnWallsEdgesAndCornersSeeTheWholeRoom(void** state)
                     assert_true(close > 1 || factorAt(&maps->maps[0], p.position, p.normal) == 0);
                 }
             }
-            vplHalfMaps_Destroy(maps);
+            vplHemiMaps_Destroy(maps);
         }
         vplGeometry_Destroy(g);
     }
@@ -216,10 +216,10 @@ static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
     (void)state;
     vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
-    const vplHalfMapPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0)};
-    vplHalfMaps* maps = drawMaps(g, 5, &place, 1);
+    const vplHemiMapPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0)};
+    vplHemiMaps* maps = drawMaps(g, 5, &place, 1);
     for (int i = 0; i < 25; i++) {
-        assert_true(maps->maps[0].texels[vplHalfMap_Place(2, i % 5, i / 5)] == 0);
+        assert_true(maps->maps[0].texels[vplHemiMap_Place(2, i % 5, i / 5)] == 0);
     }
     Dice dice = {1, 0};
     for (int i = 0; i < 100; i++) {
@@ -230,13 +230,13 @@ static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
     // The light itself: no number that is none.
     const float self = factorAt(&maps->maps[0], maps->maps[0].position, vplVec(0, -1, 0));
     assert_true(self == 0 || self == 1);
-    vplHalfMaps_Destroy(maps);
+    vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
     // Nothing at all.
     g = freezeScene(sceneOf(context, 0.5f));
     maps = drawMaps(g, 1, &place, 1);
     assert_true(maps->maps[0].texels[0] == 0);
-    vplHalfMaps_Destroy(maps);
+    vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
     closeTestContext(context);
 }
@@ -248,13 +248,13 @@ static void AMapOfOneTexelKnowsWhatIsStraightAbove(void** state)
     vplContext* context = openTestContext(1);
     for (int side = -1; side <= 1; side += 2) {
         vplGeometry* g = floorQuad(context, vplVec(0, 1, 0), 0.5f, 0.5f);
-        const vplHalfMapPlace place = {vplVec(0, (float)(1 - side), 0), vplVec(0, (float)side, 0)};
-        vplHalfMaps* maps = drawMaps(g, 1, &place, 1);
+        const vplHemiMapPlace place = {vplVec(0, (float)(1 - side), 0), vplVec(0, (float)side, 0)};
+        vplHemiMaps* maps = drawMaps(g, 1, &place, 1);
         assert_true(fabsf(maps->maps[0].texels[0] - 1) < 1e-5f);
         const vplVec3 n = vplVec(0, (float)-side, 0);
         assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 + 30 * side), 0), n) == 1);
         assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 - 0.5f * (float)side), 0), n) == 0);
-        vplHalfMaps_Destroy(maps);
+        vplHemiMaps_Destroy(maps);
         vplGeometry_Destroy(g);
     }
     closeTestContext(context);
@@ -264,19 +264,19 @@ static uint64_t hashOf(vplContext* context)
 {
     vplGeometry* g = clutter(context, 1);
     Dice dice = {9, 0};
-    vplHalfMapPlace places[9];
+    vplHemiMapPlace places[9];
     vplHit hit;
     for (int i = 0; i < 9; i++) {
         places[i] = rollPlace(g, &dice, &hit);
     }
-    vplHalfMaps* maps = drawMaps(g, 36, places, 9);
+    vplHemiMaps* maps = drawMaps(g, 36, places, 9);
     uint64_t hash = vplHashFloats(0, maps->texels, (size_t)9 * 36 * 36);
     for (int i = 0; i < 9 * 500; i++) {
-        const vplHalfMapPlace at = rollPlace(g, &dice, &hit);
+        const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
         const float factor = factorAt(&maps->maps[i % 9], at.position, at.normal);
         hash = vplHashFloats(hash, &factor, 1);
     }
-    vplHalfMaps_Destroy(maps);
+    vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
     closeTestContext(context);
     return hash;
@@ -293,30 +293,30 @@ static void MapsCanBeRefusedAndCancelled(void** state)
     (void)state;
     vplContext* context = openTestContext(1);
     vplGeometry* g = closedCube(context, 0.5f);
-    vplHalfMaps* maps = NULL;
-    assert_int_equal(vplHalfMaps_Create(context, 0, 1, &maps), VPL_INVALID_ARGUMENT);
+    vplHemiMaps* maps = NULL;
+    assert_int_equal(vplHemiMaps_Create(context, 0, 1, &maps), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "0 texels"));
-    assert_int_equal(vplHalfMaps_Create(context, VPL_MAX_SHADOW_MAP + 1, 1, &maps), VPL_INVALID_ARGUMENT);
-    assert_int_equal(vplHalfMaps_Create(context, 8, -1, &maps), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplHemiMaps_Create(context, VPL_MAX_SHADOW_MAP + 1, 1, &maps), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplHemiMaps_Create(context, 8, -1, &maps), VPL_INVALID_ARGUMENT);
     assert_null(maps);
-    assert_int_equal(vplHalfMaps_Create(context, 8, 8, &maps), VPL_SUCCESS);
-    vplHalfMapPlace places[9];
+    assert_int_equal(vplHemiMaps_Create(context, 8, 8, &maps), VPL_SUCCESS);
+    vplHemiMapPlace places[9];
     for (int i = 0; i < 9; i++) {
-        places[i] = (vplHalfMapPlace){vplVec(0, -1, 0), vplVec(0, 1, 0)};
+        places[i] = (vplHemiMapPlace){vplVec(0, -1, 0), vplVec(0, 1, 0)};
     }
-    assert_int_equal(vplHalfMaps_Draw(maps, g, places, 9, NULL, NULL), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplHemiMaps_Draw(maps, g, places, 9, NULL, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "room for 8"));
     int asked = 0;
-    assert_int_equal(vplHalfMaps_Draw(maps, g, places, 8, refuseThird, &asked), VPL_CANCELLED);
+    assert_int_equal(vplHemiMaps_Draw(maps, g, places, 8, refuseThird, &asked), VPL_CANCELLED);
     assert_true(asked == 3);
-    assert_int_equal(vplHalfMaps_Draw(maps, g, places, 0, NULL, NULL), VPL_SUCCESS);
-    vplHalfMaps_Destroy(maps);
-    vplHalfMaps_Destroy(NULL);
+    assert_int_equal(vplHemiMaps_Draw(maps, g, places, 0, NULL, NULL), VPL_SUCCESS);
+    vplHemiMaps_Destroy(maps);
+    vplHemiMaps_Destroy(NULL);
     vplGeometry_Destroy(g);
     closeTestContext(context);
 }
 
-TEST_SUITE(halfMaps, cmocka_unit_test(EachTexelHoldsWhatARayThroughItsCentreMeets),
+TEST_SUITE(hemiMaps, cmocka_unit_test(EachTexelHoldsWhatARayThroughItsCentreMeets),
            cmocka_unit_test(MapsAndRaysAgreeOutsideTheBand), cmocka_unit_test(APlaneNeverShadowsItself),
            cmocka_unit_test(LightsOnWallsEdgesAndCornersSeeTheWholeRoom),
            cmocka_unit_test(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where more patches are wanted: what vplFindPatchWorth says, and that following it pays.
+// Where more patches are wanted: what vplFindPatchPriority says, and that following it pays.
 #include "patch_model.h"
 
 #include "math/vec.h"
@@ -83,9 +83,9 @@ static void closeField(Field* f)
     closeTestContext(f->context);
 }
 
-static vplPatchWorthDef defOf(const Field* f)
+static vplPatchPriorityDef defOf(const Field* f)
 {
-    vplPatchWorthDef def = vplDefaultPatchWorthDef();
+    vplPatchPriorityDef def = vplDefaultPatchPriorityDef();
     def.irradiance = f->values;
     def.vertexIrradiance = f->corners;
     return def;
@@ -93,8 +93,8 @@ static vplPatchWorthDef defOf(const Field* f)
 
 static void findWorth(Field* f)
 {
-    const vplPatchWorthDef def = defOf(f);
-    assert_int_equal(vplFindPatchWorth(f->mesh, &def, f->worth), VPL_SUCCESS);
+    const vplPatchPriorityDef def = defOf(f);
+    assert_int_equal(vplFindPatchPriority(f->mesh, &def, f->worth), VPL_SUCCESS);
 }
 
 static double one(vplVec3 p)
@@ -149,12 +149,12 @@ static void AShadowsBoundaryIsWorthPatches(void** state)
 {
     (void)state;
     Field f = openField(0.5f, one);
-    vplPatchWorthDef def = defOf(&f);
+    vplPatchPriorityDef def = defOf(&f);
     float* spread = calloc((size_t)f.sides->count, sizeof *spread);
     spread[5] = 0.2f;
     spread[9] = 0.4f;
     def.directSpread = spread;
-    assert_int_equal(vplFindPatchWorth(f.mesh, &def, f.worth), VPL_SUCCESS);
+    assert_int_equal(vplFindPatchPriority(f.mesh, &def, f.worth), VPL_SUCCESS);
     const float plain = f.worth[f.sides->sides[0].patch];
     for (int i = 0; i < f.sides->count; i++) {
         assert_int_equal(f.worth[f.sides->sides[i].patch] > 1.01f * plain, i == 5 || i == 9);
@@ -172,7 +172,7 @@ static void ChangesOfDirectLightAreWorthPatches(void** state)
     const size_t corners = 2 * (size_t)f.mesh->vertexCount;
     vplRgb* direct = malloc(corners * sizeof *direct);
     float* plain = malloc((size_t)f.patches->patchCount * sizeof *plain);
-    vplPatchWorthDef def = defOf(&f);
+    vplPatchPriorityDef def = defOf(&f);
     findWorth(&f);
     memcpy(plain, f.worth, (size_t)f.patches->patchCount * sizeof *plain);
     def.vertexDirect = direct;
@@ -181,7 +181,7 @@ static void ChangesOfDirectLightAreWorthPatches(void** state)
             const float x = f.mesh->positions[i / 2].x, e = 10 + (slope ? fmaxf(x, 0) : 0);
             direct[i] = (vplRgb){e, e, e};
         }
-        assert_int_equal(vplFindPatchWorth(f.mesh, &def, f.worth), VPL_SUCCESS);
+        assert_int_equal(vplFindPatchPriority(f.mesh, &def, f.worth), VPL_SUCCESS);
         for (int i = 0; i < f.patches->patchCount; i++) {
             const vplPatchSide* s = &f.sides->sides[f.sides->ofPatch[2 * i]];
             const bool changes = slope && (s->corners[0].x > 0 || s->corners[1].x > 0 || s->corners[2].x > 0);
@@ -255,11 +255,11 @@ static void PatchesWhereTheyAreWorthMostHalveTheError(void** state)
     }
 }
 
-static void expectFailure(const Field* f, vplPatchWorthDef def, const char* sentence)
+static void expectFailure(const Field* f, vplPatchPriorityDef def, const char* sentence)
 {
     f->worth[0] = 7;
     takeMessage();
-    assert_int_equal(vplFindPatchWorth(f->mesh, &def, f->worth), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplFindPatchPriority(f->mesh, &def, f->worth), VPL_INVALID_ARGUMENT);
     assert_string_equal(takeMessage(), sentence);
     assert_true(f->worth[0] == 7);
 }
@@ -268,18 +268,18 @@ static void WrongDefsAreRefused(void** state)
 {
     (void)state;
     Field f = openField(1, one);
-    vplPatchWorthDef def = defOf(&f);
+    vplPatchPriorityDef def = defOf(&f);
     def.irradiance = NULL;
     expectFailure(
         &f, def,
-        "vplPatchWorthDef.irradiance and vertexIrradiance are NULL, must be given where there are sides");
+        "vplPatchPriorityDef.irradiance and vertexIrradiance are NULL, must be given where there are sides");
     def = defOf(&f);
     def.cookie = 1;
-    expectFailure(&f, def, "vplPatchWorthDef was not made by vplDefaultPatchWorthDef");
+    expectFailure(&f, def, "vplPatchPriorityDef was not made by vplDefaultPatchPriorityDef");
     closeField(&f);
 }
 
-TEST_SUITE(patchWorth, cmocka_unit_test(NoLightAndEvenLightNeedNoPatches),
+TEST_SUITE(patchPriority, cmocka_unit_test(NoLightAndEvenLightNeedNoPatches),
            cmocka_unit_test(SlopesAreWorthMoreThanPlains), cmocka_unit_test(AShadowsBoundaryIsWorthPatches),
            cmocka_unit_test(ChangesOfDirectLightAreWorthPatches),
            cmocka_unit_test(PatchesWhereTheyAreWorthMostHalveTheError),

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: MIT
 // Shadow maps of half spaces, many at once: one task draws one map, from start to end.
-#include "visibility/half_map.h"
+#include "visibility/hemi_map.h"
 #include "base/context.h"
 #include "base/isa.h"
 #include "geometry/ray_tree.h"
 
 #include <string.h>
 
-VPL_KERNEL_TABLE(DRAW, vplDrawHalfMapFcn, vplDrawHalfMap);
-VPL_KERNEL_TABLE(FACTOR, vplHalfMapFactorFcn, vplHalfMapFactor);
+VPL_KERNEL_TABLE(DRAW, vplDrawHemiMapFcn, vplDrawHemiMap);
+VPL_KERNEL_TABLE(FACTOR, vplHemiMapFactorFcn, vplHemiMapFactor);
 
 static size_t texelsOf(int size)
 {
-    const size_t blocks = (size_t)vplHalfMap_Blocks(size);
+    const size_t blocks = (size_t)vplHemiMap_Blocks(size);
     return blocks * blocks * VPL_LANES;
 }
 
-size_t vplHalfMaps_BytesPerMap(int size)
+size_t vplHemiMaps_BytesPerMap(int size)
 {
-    return texelsOf(size) * sizeof(float) + sizeof(vplHalfMap);
+    return texelsOf(size) * sizeof(float) + sizeof(vplHemiMap);
 }
 
-vplResult vplHalfMaps_Create(vplContext* context, int size, int capacity, vplHalfMaps** mapsOut)
+vplResult vplHemiMaps_Create(vplContext* context, int size, int capacity, vplHemiMaps** mapsOut)
 {
     if (size < 1 || size > VPL_MAX_SHADOW_MAP || capacity < 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "%d half-space maps of %d texels a side: must be 0 or more of [1, %d]", capacity, size,
                        VPL_MAX_SHADOW_MAP);
     }
-    vplHalfMaps* maps = vplAllocZero(context, 1, sizeof *maps);
-    vplHalfMap* list = vplAllocZero(context, (size_t)capacity, sizeof *list);
+    vplHemiMaps* maps = vplAllocZero(context, 1, sizeof *maps);
+    vplHemiMap* list = vplAllocZero(context, (size_t)capacity, sizeof *list);
     float* texels = vplAlloc(context, (size_t)capacity, texelsOf(size) * sizeof *texels);
     if (maps == NULL || list == NULL || texels == NULL) {
         vplFree(context, maps);
@@ -38,12 +38,12 @@ vplResult vplHalfMaps_Create(vplContext* context, int size, int capacity, vplHal
         return VPL_OUT_OF_MEMORY;
     }
     *maps =
-        (vplHalfMaps){.maps = list, .capacity = capacity, .size = size, .texels = texels, .context = context};
+        (vplHemiMaps){.maps = list, .capacity = capacity, .size = size, .texels = texels, .context = context};
     *mapsOut = maps;
     return VPL_SUCCESS;
 }
 
-void vplHalfMaps_Destroy(vplHalfMaps* maps)
+void vplHemiMaps_Destroy(vplHemiMaps* maps)
 {
     if (maps != NULL) {
         vplContext* context = maps->context;
@@ -54,7 +54,7 @@ void vplHalfMaps_Destroy(vplHalfMaps* maps)
 }
 
 typedef struct Drawing {
-    const vplHalfMaps* maps;
+    const vplHemiMaps* maps;
     const vplBvh* bvh;
 } Drawing;
 
@@ -62,13 +62,13 @@ static void drawMap(void* data, int index, int worker)
 {
     (void)worker;
     const Drawing* d = data;
-    const vplHalfMap* map = &d->maps->maps[index];
+    const vplHemiMap* map = &d->maps->maps[index];
     float* texels = d->maps->texels + (size_t)index * texelsOf(map->size);
     memset(texels, 0, texelsOf(map->size) * sizeof *texels);
     DRAW[d->maps->context->isa](d->bvh, map, texels);
 }
 
-vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const vplHalfMapPlace* places,
+vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const vplHemiMapPlace* places,
                            int count, vplProgressFcn* progress, void* user)
 {
     if (count < 0 || count > maps->capacity) {
@@ -80,9 +80,9 @@ vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const
         return result;
     }
     maps->count = count;
-    vplHalfMap* list = (vplHalfMap*)maps->maps;
+    vplHemiMap* list = (vplHemiMap*)maps->maps;
     for (int i = 0; i < count; i++) {
-        vplHalfMap* map = &list[i];
+        vplHemiMap* map = &list[i];
         const float lift = vplLightLift(vplLargestOf(places[i].position));
         map->position = vplAdd(places[i].position, vplScale(lift, places[i].normal));
         map->forward = places[i].normal;
@@ -95,7 +95,7 @@ vplResult vplHalfMaps_Draw(vplHalfMaps* maps, const vplGeometry* geometry, const
     return vplParallelForProgress(maps->context, count, drawMap, &drawing, progress, user, 0, 1);
 }
 
-int64_t vplHalfMap_TrianglesAbove(const vplGeometry* geometry, const vplHalfMapPlace* place)
+int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place)
 {
     const vplBvh* bvh = vplGeometry_GetBvh(geometry);
     if (bvh == NULL || bvh->nodes == NULL) {
@@ -120,7 +120,7 @@ int64_t vplHalfMap_TrianglesAbove(const vplGeometry* geometry, const vplHalfMapP
     return blocks * geometry->triangleCount / (bvh->blockCount > 0 ? bvh->blockCount : 1);
 }
 
-void vplHalfMap_FactorBlock(const vplHalfMap* map, const vplSurface* surface, float factorOut[VPL_LANES])
+void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES])
 {
     FACTOR[map->context->isa](map, surface, factorOut);
 }

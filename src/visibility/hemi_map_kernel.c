@@ -3,14 +3,14 @@
 // side by side. Compiled once per instruction set; all give the same bits.
 #include "base/isa.h"
 #include "math/scalar.h"
-#include "visibility/half_fill.h"
+#include "visibility/hemi_fill.h"
 
-vplDrawHalfMapFcn VPL_KERNEL(vplDrawHalfMap);
+vplDrawHemiMapFcn VPL_KERNEL(vplDrawHemiMap);
 
 // ---- sixteen triangles
 
 // Which texels' centres may lie in each triangle, and how it lies.
-static void bound(const vplHalfMap* map, const Sixteen* restrict s, int32_t box[restrict 4][VPL_LANES],
+static void bound(const vplHemiMap* map, const Sixteen* restrict s, int32_t box[restrict 4][VPL_LANES],
                   int32_t kind[restrict VPL_LANES])
 {
     const float half = 0.5f * (float)map->size, least = 0.5f - MARGIN, most = 0.5f + MARGIN;
@@ -70,13 +70,13 @@ static void setUpAll(const Sixteen* restrict s, int32_t kind[restrict VPL_LANES]
 }
 
 typedef struct Canvas {
-    const vplHalfMap* map;
+    const vplHemiMap* map;
     float* texels;
 } Canvas;
 
 static void draw(const void* data, Sixteen* s)
 {
-    const vplHalfMap* map = ((const Canvas*)data)->map;
+    const vplHemiMap* map = ((const Canvas*)data)->map;
     float* texels = ((const Canvas*)data)->texels;
     int32_t box[4][VPL_LANES], kind[VPL_LANES];
     Fillings all;
@@ -101,11 +101,11 @@ static void draw(const void* data, Sixteen* s)
 
 static inline uint32_t chooseAbove(const void* data, const vplBvhNode* node)
 {
-    const vplHalfMap* map = ((const Canvas*)data)->map;
+    const vplHemiMap* map = ((const Canvas*)data)->map;
     return vplChildrenAbove(node, map->position, map->forward);
 }
 
-void VPL_KERNEL(vplDrawHalfMap)(const vplBvh* bvh, const vplHalfMap* map, float* texels)
+void VPL_KERNEL(vplDrawHemiMap)(const vplBvh* bvh, const vplHemiMap* map, float* texels)
 {
     const Canvas canvas = {map, texels};
     walk(bvh, chooseAbove, draw, &canvas);

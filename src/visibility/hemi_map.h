@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shadow maps of half spaces from the inside.
-#ifndef VPL_VISIBILITY_HALF_MAP_H
-#define VPL_VISIBILITY_HALF_MAP_H
+#ifndef VPL_VISIBILITY_HEMI_MAP_H
+#define VPL_VISIBILITY_HEMI_MAP_H
 
 #include <vpl/visibility.h>
 
@@ -11,21 +11,21 @@
 #include <math.h>
 
 // Blocks of 4 x 4 texels along a side.
-static inline int32_t vplHalfMap_Blocks(int32_t size)
+static inline int32_t vplHemiMap_Blocks(int32_t size)
 {
     return (size + VPL_BLOCK_SIDE - 1) / VPL_BLOCK_SIDE;
 }
 
 // Where a texel is.
-static inline int32_t vplHalfMap_Place(int32_t blocks, int32_t column, int32_t row)
+static inline int32_t vplHemiMap_Place(int32_t blocks, int32_t column, int32_t row)
 {
     return ((row >> 2) * blocks + (column >> 2)) * VPL_LANES + (row & 3) * VPL_BLOCK_SIDE + (column & 3);
 }
 
 // Draws all triangles of a tree into a map of zeros.
-typedef void vplDrawHalfMapFcn(const vplBvh* bvh, const vplHalfMap* map, float* texels);
+typedef void vplDrawHemiMapFcn(const vplBvh* bvh, const vplHemiMap* map, float* texels);
 
-typedef void vplHalfMapFactorFcn(const vplHalfMap* map, const vplSurface* surface,
+typedef void vplHemiMapFactorFcn(const vplHemiMap* map, const vplSurface* surface,
                                  float factor[restrict VPL_LANES]);
 
 // Bit i: some of child i lies above a plane.
@@ -42,14 +42,14 @@ static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVe
 }
 
 // How many triangles a light's map draws: those in blocks of the tree that reach above its plane.
-int64_t vplHalfMap_TrianglesAbove(const vplGeometry* geometry, const vplHalfMapPlace* place);
+int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place);
 
 // What is nearer to the light than a fragment and its plane by less than this share of the distance, one and a half
 // footprints, does not shadow it: walls that meet in a corner. Pairs dark in the map only + in the ray only, in %, for
 // 0, 1/2, 1, 3/2, 2 footprints (bench/crossover, 128 texels): room 0.51 + 0.20, 0.38 + 0.20, 0.30 + 0.20, 0.26 + 0.20,
 // 0.23 + 0.20; Sibenik 5.72 + 3.82, 3.73 + 4.06, 2.96 + 4.38, 2.31 + 4.87, 1.90 + 5.50; Sponza 5.37 + 4.29,
 // 3.43 + 4.82, 2.39 + 5.30, 1.91 + 5.82, 1.62 + 6.40.
-static inline float vplHalfMap_Tolerance(int size)
+static inline float vplHemiMap_Tolerance(int size)
 {
     return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
 }
@@ -64,8 +64,8 @@ static inline float vplShadowBand(float r, float f, float cosT)
     return 2.5f * f + r * (1 - cosT / turned) + r * 0x1p-16f;
 }
 
-// The band of vplHalfMap_FactorBlock, and f.
-static inline float vplHalfMap_Band(const vplHalfMap* map, vplVec3 point, vplVec3 normal, float* footprintOut)
+// The band of vplHemiMap_FactorBlock, and f.
+static inline float vplHemiMap_Band(const vplHemiMap* map, vplVec3 point, vplVec3 normal, float* footprintOut)
 {
     const vplVec3 way = vplSub(point, map->position);
     const float x = fabsf(vplDot(way, map->right)), y = fabsf(vplDot(way, map->up));
