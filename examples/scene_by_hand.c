@@ -75,10 +75,10 @@ int main(int count, char** words)
     vplScene* scene = makeScene(context);
 
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.width = 480;
-    options.height = 360;
-    options.particles = 300;
-    options.sampler = VPL_SAMPLER_HALTON;
+    options.output.width = 480;
+    options.output.height = 360;
+    options.particles.count = 300;
+    options.particles.sampler = VPL_SAMPLER_HALTON;
     vplImage* image;
     vplRenderStats stats;
     check(vplRender(scene, &options, &image, &stats));

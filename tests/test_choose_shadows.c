@@ -86,9 +86,9 @@ static void TheRuleAgreesWithTheMeasuredTable(void** state)
 static vplRenderOptions autoOptions(void)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.particles = 20;
-    o.lightMapSize = 64;
-    o.lightShadows = VPL_LIGHT_SHADOWS_AUTO;
+    o.particles.count = 20;
+    o.lights.mapSize = 64;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_AUTO;
     return o;
 }
 
@@ -107,22 +107,22 @@ static void AutoRendersWhatItSaysItChose(void** state)
         vplScene* scene = loadScene(context, "room.json");
         vplRenderOptions o = autoOptions();
         vplRenderStats chosen, named;
-        o.width = o.height = cases[i].width;
-        o.accumulation = cases[i].accumulation;
-        o.interleave = cases[i].interleave;
+        o.output.width = o.output.height = cases[i].width;
+        o.pipeline.kind = cases[i].accumulation;
+        o.pipeline.interleave = cases[i].interleave;
         vplImage_Destroy(renderScene(scene, &o, &chosen));
         assert_int_equal(chosen.lightShadows, cases[i].wanted);
         assert_true((chosen.shadowMapEstimateMs < chosen.shadowRayEstimateMs) ==
                     (cases[i].wanted == VPL_LIGHT_SHADOWS_MAP));
-        o.lightShadows = cases[i].wanted;
-        if (o.lightShadows == VPL_LIGHT_SHADOWS_MAP) {
+        o.lights.shadows = cases[i].wanted;
+        if (o.lights.shadows == VPL_LIGHT_SHADOWS_MAP) {
             vplImage_Destroy(renderScene(scene, &o, &named));
             assert_true(named.imageHash == chosen.imageHash);
             assert_true(named.lightShadows == cases[i].wanted && named.shadowRayEstimateMs == 0);
         } else { // RAY alone also replaces the emitter's map: indirect light is the same
-            o.show = VPL_SHOW_INDIRECT;
+            o.output.show = VPL_SHOW_INDIRECT;
             vplImage_Destroy(renderScene(scene, &o, &named));
-            o.lightShadows = VPL_LIGHT_SHADOWS_AUTO;
+            o.lights.shadows = VPL_LIGHT_SHADOWS_AUTO;
             vplImage_Destroy(renderScene(scene, &o, &chosen));
             assert_true(named.imageHash == chosen.imageHash);
         }
@@ -139,26 +139,26 @@ static void LightsWhoseMapsDoNotFitAreAddedInBatches(void** state)
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = autoOptions();
     vplRenderStats stats;
-    o.width = 24;
-    o.height = 16;
-    o.particles = 8;
-    o.lightMapSize = 2048;
-    o.lightShadows = VPL_LIGHT_SHADOWS_MAP;
+    o.output.width = 24;
+    o.output.height = 16;
+    o.particles.count = 8;
+    o.lights.mapSize = 2048;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_MAP;
     vplImage* all = renderScene(scene, &o, &stats);
     assert_true(stats.virtualLights > 2 * 3 && stats.peakBytes <= VPL_LIGHT_MAP_BYTES + ((size_t)64 << 20));
-    o.show = VPL_SHOW_DIRECT;
+    o.output.show = VPL_SHOW_DIRECT;
     vplImage* direct = renderScene(scene, &o, NULL);
     vplImage* sum = direct;
-    o.show = VPL_SHOW_LIGHT;
-    o.minDistance = stats.minDistance;
-    for (o.showLight = 0; o.showLight < stats.virtualLights; o.showLight++) {
+    o.output.show = VPL_SHOW_LIGHT;
+    o.lights.minDistance = stats.minDistance;
+    for (o.output.showIndex = 0; o.output.showIndex < stats.virtualLights; o.output.showIndex++) {
         vplImage* one = renderScene(scene, &o, NULL);
-        for (int k = 0; k < 3 * o.width * o.height; k++) {
+        for (int k = 0; k < 3 * o.output.width * o.output.height; k++) {
             sum->pixels[k] += one->pixels[k];
         }
         vplImage_Destroy(one);
     }
-    for (int k = 0; k < 3 * o.width * o.height; k++) {
+    for (int k = 0; k < 3 * o.output.width * o.output.height; k++) {
         assert_true(fabsf(sum->pixels[k] - all->pixels[k]) <= 1e-5f * all->pixels[k]);
     }
     vplImage_Destroy(all);

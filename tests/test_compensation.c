@@ -140,11 +140,11 @@ static vplRenderOptions kellerOptions(int size, int particles, float distance)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_KELLER;
-    o.width = o.height = size;
-    o.particles = particles;
-    o.reflectivity = -1;
-    o.minDistance = distance;
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.output.width = o.output.height = size;
+    o.particles.count = particles;
+    o.particles.reflectivity = -1;
+    o.lights.minDistance = distance;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
     return o;
 }
 
@@ -173,7 +173,7 @@ static void FurnaceIsRightWhateverTheBound(void** state)
         vplRenderOptions o = kellerOptions(24, 2000, distances[i]);
         assertNear(meanOf(middle, &o, NULL), 2, 0.02, "middle", i);
         assertNear(meanOf(corner, &o, NULL), 2, 0.04, "corner", i);
-        o.compensation = VPL_COMPENSATION_NONE;
+        o.lights.compensation = VPL_COMPENSATION_NONE;
         assert_true(meanOf(corner, &o, NULL) < 1.9);
     }
     vplScene_Destroy(middle);
@@ -192,11 +192,11 @@ static void LossIsWhatCompensationAdds(void** state)
         vplRenderStats with, without;
         vplRenderOptions o = kellerOptions(64, 2000, distances[i]);
         meanOf(scene, &o, &with);
-        o.compensation = VPL_COMPENSATION_NONE;
+        o.lights.compensation = VPL_COMPENSATION_NONE;
         const double lost = 2 - meanOf(scene, &o, &without); // of 1 that virtual lights bring
         assertNear(without.clampLoss, lost, 0.03 + 0.05 * lost, "estimated without", i);
         assertNear(with.clampLoss, lost, 0.03 + 0.05 * lost, "estimated with", i);
-        o.show = VPL_SHOW_LIGHT;
+        o.output.show = VPL_SHOW_LIGHT;
         meanOf(scene, &o, &without);
         assert_true(without.clampLoss < 0);
     }
@@ -211,7 +211,7 @@ static void WhiteWallsAndAnEndlessBoundEnd(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = furnace(context, 1, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
     vplRenderOptions o = kellerOptions(2, 10, 1e15f);
-    o.reflectivity = 0.5;
+    o.particles.reflectivity = 0.5;
     const double mean = meanOf(scene, &o, NULL);
     assert_true(mean > 900 && mean < 1100); // a bounce, one more emission
     vplScene_Destroy(scene);
@@ -251,8 +251,8 @@ static void ThreadsAndInstructionSetsGiveTheSameBits(void** state)
     static const int threads[] = {2, 3, 7};
     for (int pipeline = 0; pipeline < 2; pipeline++) {
         vplRenderOptions o = kellerOptions(50, 30, -1);
-        o.accumulation = pipeline ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
-        o.passes = 2;
+        o.pipeline.kind = pipeline ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+        o.stop.passes = 2;
         const uint64_t wanted = hashWith(openTestContext(1), &o);
         for (int i = 0; i < 3; i++) {
             assert_true(hashWith(openTestContext(threads[i]), &o) == wanted);
@@ -261,7 +261,7 @@ static void ThreadsAndInstructionSetsGiveTheSameBits(void** state)
             vplContext* context = openIsaContext(2, (vplIsa)isa);
             assert_true(context == NULL || hashWith(context, &o) == wanted);
         }
-        o.compensation = VPL_COMPENSATION_NONE;
+        o.lights.compensation = VPL_COMPENSATION_NONE;
         assert_true(hashWith(openTestContext(1), &o) != wanted);
     }
 }
@@ -275,9 +275,9 @@ static void PipelinesGiveTheSameBits(void** state)
         vplScene* scene = loadExample(context, scenes[i]);
         vplRenderOptions o = kellerOptions(50, 70, -1);
         const uint64_t wanted = hashOf(scene, &o);
-        o.accumulation = VPL_ACCUMULATE_MULTIPASS;
+        o.pipeline.kind = VPL_ACCUMULATE_MULTIPASS;
         assert_true(hashOf(scene, &o) == wanted);
-        o.accumulation = VPL_ACCUMULATE_BATCHED;
+        o.pipeline.kind = VPL_ACCUMULATE_BATCHED;
         assert_true(hashOf(scene, &o) == wanted);
         vplScene_Destroy(scene);
     }
@@ -292,9 +292,9 @@ static void PartsAddUpOnAverage(void** state)
     vplScene* scene = loadExample(context, "room-area");
     vplRenderOptions o = kellerOptions(48, 300, 1);
     const double picture = meanOf(scene, &o, NULL);
-    o.show = VPL_SHOW_DIRECT;
+    o.output.show = VPL_SHOW_DIRECT;
     double parts = meanOf(scene, &o, NULL);
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.show = VPL_SHOW_INDIRECT;
     parts += meanOf(scene, &o, NULL);
     assertNear(parts, picture, 0.005 * picture, "direct + indirect", 0);
     vplScene_Destroy(scene);
@@ -305,9 +305,9 @@ static double pathMean(const vplScene* scene)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_PATH;
-    o.pixel = VPL_PIXEL_CENTRE;
-    o.width = o.height = 32;
-    o.samplesPerPixel = 256;
+    o.path.pixel = VPL_PIXEL_CENTRE;
+    o.output.width = o.output.height = 32;
+    o.path.samples = 256;
     return meanOf(scene, &o, NULL);
 }
 
@@ -333,13 +333,13 @@ static void EveryKindOfLightIsGivenBack(void** state)
         const double truth = pathMean(scene);
         vplRenderOptions o = kellerOptions(32, cases[i].shadows == VPL_LIGHT_SHADOWS_MAP ? 500 : 1000, 1.5f);
         o.method = cases[i].method;
-        o.lightShadows = cases[i].shadows;
-        o.lightMapSize = 48;
-        o.accumulation = cases[i].accumulation;
-        o.compensation = VPL_COMPENSATION_RAYS;
-        o.sampler = VPL_SAMPLER_HALTON;
+        o.lights.shadows = cases[i].shadows;
+        o.lights.mapSize = 48;
+        o.pipeline.kind = cases[i].accumulation;
+        o.lights.compensation = VPL_COMPENSATION_RAYS;
+        o.particles.sampler = VPL_SAMPLER_HALTON;
         assertNear(meanOf(scene, &o, NULL), truth, 0.01 * truth, cases[i].scene, i);
-        o.compensation = VPL_COMPENSATION_NONE;
+        o.lights.compensation = VPL_COMPENSATION_NONE;
         assert_true(meanOf(scene, &o, NULL) < 0.985 * truth);
         vplScene_Destroy(scene);
     }
@@ -356,7 +356,7 @@ static void PassesCastOtherRays(void** state)
     double errors[2];
     for (int i = 0; i < 2; i++) {
         vplRenderOptions o = kellerOptions(16, 10, 100);
-        o.passes = i ? 32 : 2;
+        o.stop.passes = i ? 32 : 2;
         vplImage* image = renderScene(scene, &o, NULL);
         errors[i] = 0;
         for (int k = 0; k < 3 * 16 * 16; k++) {

@@ -79,9 +79,9 @@ static void SpotAndSunAreAnalytic(void** state)
         addColoured(scene, sun ? VPL_EMITTER_DIRECTIONAL : VPL_EMITTER_SPOT, p, d, 3);
         vplRenderOptions o = vplDefaultRenderOptions();
         o.method = VPL_METHOD_DIRECT;
-        o.width = o.height = SIZE;
-        o.shadowMapSize = 64;
-        o.lightShadows = which & 2 ? VPL_LIGHT_SHADOWS_RAY : VPL_LIGHT_SHADOWS_NONE;
+        o.output.width = o.output.height = SIZE;
+        o.shadow.mapSize = 64;
+        o.lights.shadows = which & 2 ? VPL_LIGHT_SHADOWS_RAY : VPL_LIGHT_SHADOWS_NONE;
         vplImage* image = renderScene(scene, &o, NULL);
         const double inner = cos(20 * VPL_PI / 180), outer = cos(30 * VPL_PI / 180), length = sqrt(1.0125);
         int seen[3] = {0};
@@ -133,8 +133,8 @@ static void LampLightsConvergeToTheFormFactor(void** state)
     for (int n = 0; n < 4; n++) {
         vplRenderOptions o = vplDefaultRenderOptions();
         o.method = VPL_METHOD_DIRECT;
-        o.width = o.height = SIZE;
-        o.areaLightSamples = cases[n].count;
+        o.output.width = o.output.height = SIZE;
+        o.lights.areaLightSamples = cases[n].count;
         vplImage* image = renderScene(scene, &o, NULL);
         double worst = 0;
         for (int i = 0; i < SIZE * SIZE; i++) {
@@ -161,18 +161,18 @@ static void RayAndMapShadowsAgree(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.width = 64;
-    o.height = 48;
-    o.particles = 8;
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.width = 64;
+    o.output.height = 48;
+    o.particles.count = 8;
+    o.output.show = VPL_SHOW_INDIRECT;
     vplImage* none = renderScene(scene, &o, NULL);
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
     vplImage* rays = renderScene(scene, &o, NULL);
-    o.lightShadows = VPL_LIGHT_SHADOWS_MAP;
-    o.lightMapSize = 512;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_MAP;
+    o.lights.mapSize = 512;
     vplImage* maps = renderScene(scene, &o, NULL);
     double sum = 0, apart = 0, stopped = 0;
-    for (int i = 0; i < 3 * o.width * o.height; i++) {
+    for (int i = 0; i < 3 * o.output.width * o.output.height; i++) {
         sum += (double)rays->pixels[i];
         apart += fabs((double)rays->pixels[i] - (double)maps->pixels[i]);
         stopped += (double)none->pixels[i] - (double)rays->pixels[i];
@@ -263,11 +263,11 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     }
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_DIRECT;
-    o.width = o.height = VIEW;
-    o.shadowMapSize = 256;
+    o.output.width = o.output.height = VIEW;
+    o.shadow.mapSize = 256;
     o.shadow.pcfSamples = 1;
-    o.areaLightSamples = 1;
-    o.lightShadows = map ? VPL_LIGHT_SHADOWS_MAP : VPL_LIGHT_SHADOWS_RAY;
+    o.lights.areaLightSamples = 1;
+    o.lights.shadows = map ? VPL_LIGHT_SHADOWS_MAP : VPL_LIGHT_SHADOWS_RAY;
     image = renderScene(scene, &o, NULL);
     vplScene_Destroy(scene);
     return image;
@@ -373,8 +373,8 @@ static void SmoothMeshesShadeWithoutSeams(void** state)
         addColoured(scene, VPL_EMITTER_POINT, vplVec(1, 2, 0), vplVec(0, -1, 0), 10);
         vplRenderOptions o = vplDefaultRenderOptions();
         o.method = VPL_METHOD_DIRECT;
-        o.width = o.height = VIEW;
-        o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+        o.output.width = o.output.height = VIEW;
+        o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
         vplImage* image = renderScene(scene, &o, NULL);
         double across = 0, beside = 0;
         for (int row = 0; row < VIEW; row++) {
@@ -426,13 +426,13 @@ static vplScene* zoo(vplContext* context, float factor)
 static vplRenderOptions zooOptions(int shadows)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.width = 35;
-    o.height = 25;
-    o.particles = 36; // about 70 lights, more than a group of them
-    o.areaLightSamples = 9;
-    o.shadowMapSize = 32;
-    o.lightMapSize = 8;
-    o.lightShadows = (vplLightShadows)shadows;
+    o.output.width = 35;
+    o.output.height = 25;
+    o.particles.count = 36; // about 70 lights, more than a group of them
+    o.lights.areaLightSamples = 9;
+    o.shadow.mapSize = 32;
+    o.lights.mapSize = 8;
+    o.lights.shadows = (vplLightShadows)shadows;
     return o;
 }
 
@@ -441,8 +441,8 @@ static void checkAccumulations(vplContext* context, int shadows, uint64_t wanted
     vplScene* scene = zoo(context, 1);
     vplRenderOptions o = zooOptions(shadows);
     for (int way = VPL_ACCUMULATE_MULTIPASS; way <= VPL_ACCUMULATE_DEFERRED; way++) {
-        o.accumulation = (vplAccumulation)way;
-        o.batch = 13;
+        o.pipeline.kind = (vplAccumulation)way;
+        o.pipeline.batch = 13;
         assert_true(renderHash(scene, &o) == wanted);
     }
     vplScene_Destroy(scene);
@@ -484,7 +484,7 @@ static void DoublingEmittersDoublesEveryBit(void** state)
         vplImage *a = renderScene(one, &o, NULL), *b = renderScene(two, &o, NULL),
                  *c = renderScene(small, &o, NULL);
         int lit = 0;
-        for (int i = 0; i < 3 * o.width * o.height; i++) {
+        for (int i = 0; i < 3 * o.output.width * o.output.height; i++) {
             assert_true(b->pixels[i] == 2 * a->pixels[i] && c->pixels[i] == 0x1p-40f * a->pixels[i]);
             lit += a->pixels[i] > 0;
         }
@@ -702,21 +702,21 @@ static void EnergyIsThatOfPathTracing(void** state)
         vplScene* scene;
         assert_int_equal(vplScene_Load(context, scenes[i], &scene), VPL_SUCCESS);
         vplRenderOptions o = vplDefaultRenderOptions();
-        o.width = o.height = 16;
-        o.pixel = VPL_PIXEL_CENTRE;
+        o.output.width = o.output.height = 16;
+        o.path.pixel = VPL_PIXEL_CENTRE;
         o.method = VPL_METHOD_PATH;
-        o.samplesPerPixel = 1024;
+        o.path.samples = 1024;
         const double truth = energyOf(scene, &o);
         o.method = VPL_METHOD_INSTANT_RADIOSITY;
-        o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-        o.sampler = VPL_SAMPLER_HALTON;
-        o.particles = 512;
+        o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+        o.particles.sampler = VPL_SAMPLER_HALTON;
+        o.particles.count = 512;
         double sum = 0;
         for (o.seed = 1; o.seed <= 4; o.seed++) {
             sum += energyOf(scene, &o);
         }
         assertNear(sum / 4 / truth, 1, 0.025, scenes[i], i);
-        o.lightShadows = VPL_LIGHT_SHADOWS_NONE; // light through boxes is seen
+        o.lights.shadows = VPL_LIGHT_SHADOWS_NONE; // light through boxes is seen
         assert_true(energyOf(scene, &o) > 1.01 * sum / 4);
         vplScene_Destroy(scene);
     }

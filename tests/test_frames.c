@@ -155,15 +155,15 @@ static void PosesThatDegenerateAreRefused(void** state)
     keys[1].eye.z = -keys[0].eye.z; // through the target
     assert_int_equal(vplScene_SetCameraPath(scene, 0, keys, 2), VPL_SUCCESS);
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.width = options.height = 8;
-    options.shadowMapSize = 8;
-    options.frame = 1;
+    options.output.width = options.output.height = 8;
+    options.shadow.mapSize = 8;
+    options.sequence.frame = 1;
     vplImage* image = NULL;
     assert_int_equal(vplRender(scene, &options, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_null(image);
     assert_string_equal(takeMessage(),
                         "camera 0 at frame 1: target equals the eye (0, 2.5, 0), must differ from it");
-    options.frame = 0.5;
+    options.sequence.frame = 0.5;
     vplImage_Destroy(renderScene(scene, &options, NULL));
     vplScene_Destroy(scene);
 
@@ -229,16 +229,16 @@ static vplRenderOptions optionsOf(const Kind* kind)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = kind->method;
-    o.accumulation = kind->accumulation;
-    o.lightShadows = kind->shadows;
-    o.placement = kind->placement;
-    o.width = 40;
-    o.height = 30;
-    o.particles = 12;
-    o.samplesPerPixel = 2;
-    o.shadowMapSize = 32;
-    o.rsmSize = 32;
-    o.lightMapSize = 16;
+    o.pipeline.kind = kind->accumulation;
+    o.lights.shadows = kind->shadows;
+    o.particles.placement = kind->placement;
+    o.output.width = 40;
+    o.output.height = 30;
+    o.particles.count = 12;
+    o.path.samples = 2;
+    o.shadow.mapSize = 32;
+    o.shadow.rsmSize = 32;
+    o.lights.mapSize = 16;
     return o;
 }
 
@@ -287,7 +287,7 @@ static void AFrameIsThePictureOfItsPose(void** state)
         for (int k = 0; k < KINDS; k++) {
             vplRenderOptions options = optionsOf(&kinds[k]);
             const uint64_t wanted = hashOf(standing, &options), still = hashOf(moving, &options);
-            options.frame = frames[f];
+            options.sequence.frame = frames[f];
             assert_true(hashOf(moving, &options) == wanted);
             assert_true((still == wanted) == (frames[f] == 0));
         }
@@ -311,11 +311,11 @@ static void AHistoryChangesNoPicture(void** state)
         for (int k = 0; k < KINDS; k++) { // one history for all methods
             for (int f = 0; f < 6; f++) {
                 vplRenderOptions options = optionsOf(&kinds[k]);
-                options.frame = frames[f];
+                options.sequence.frame = frames[f];
                 if (w == 0) {
                     first[k][f] = hashOf(scene, &options);
                 }
-                options.history = history;
+                options.sequence.history = history;
                 assert_true(hashOf(scene, &options) == first[k][f]);
             }
         }
@@ -333,11 +333,11 @@ static void AHistoryFreezesTheSceneOnce(void** state)
     vplHistory* history = NULL;
     assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
     vplRenderOptions options = optionsOf(&kinds[0]);
-    options.history = history;
+    options.sequence.history = history;
     hashOf(scene, &options);
     const size_t held = vplContext_GetBytes(context);
     for (int f = 1; f < 4; f++) {
-        options.frame = f;
+        options.sequence.frame = f;
         hashOf(scene, &options);
         assert_true(vplContext_GetBytes(context) == held);
     }
@@ -366,7 +366,7 @@ static void AHistoryOfAnotherSceneIsRefused(void** state)
     vplHistory* history = NULL;
     assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
     vplRenderOptions options = optionsOf(&kinds[0]);
-    options.history = history;
+    options.sequence.history = history;
     hashOf(scene, &options);
     const char* const sentence =
         "vplRenderOptions.history is of another scene, or something was added to the scene since";

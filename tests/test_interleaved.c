@@ -172,15 +172,15 @@ static void NoLightLeaksOverAnEdge(void** state)
 static vplRenderOptions optionsOf(int side)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.width = 131;
-    o.height = 75;
-    o.particles = 150;
-    o.sampler = VPL_SAMPLER_HALTON;
-    o.shadowMapSize = 32;
-    o.lightMapSize = 8;
-    o.areaLightSamples = 4;
-    o.accumulation = side > 0 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
-    o.interleave = side > 0 ? side : 4;
+    o.output.width = 131;
+    o.output.height = 75;
+    o.particles.count = 150;
+    o.particles.sampler = VPL_SAMPLER_HALTON;
+    o.shadow.mapSize = 32;
+    o.lights.mapSize = 8;
+    o.lights.areaLightSamples = 4;
+    o.pipeline.kind = side > 0 ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    o.pipeline.interleave = side > 0 ? side : 4;
     return o;
 }
 
@@ -211,8 +211,8 @@ static void BlocksOfOnePixelAreDeferredBitForBit(void** state)
     for (int i = 0; i < 6; i++) {
         vplRenderOptions one = optionsOf(1), deferred = optionsOf(0);
         one.lighting = deferred.lighting = (vplLighting)(i % 2);
-        one.lightShadows = deferred.lightShadows = (vplLightShadows)(i / 2);
-        one.particles = deferred.particles = 40;
+        one.lights.shadows = deferred.lights.shadows = (vplLightShadows)(i / 2);
+        one.particles.count = deferred.particles.count = 40;
         assert_true(hashOf(openTestContext(2), &one) == hashOf(openTestContext(2), &deferred));
     }
 }
@@ -223,9 +223,9 @@ static void ThreadsAndInstructionSetsChangeNoBit(void** state)
     static const int workers[] = {2, 3, 7}, sides[] = {4, 3, 16};
     for (int i = 0; i < 5; i++) {
         vplRenderOptions o = optionsOf(sides[i % 3]);
-        o.lightShadows = (vplLightShadows)(i < 3 ? 0 : i - 2);
-        o.particles = i < 3 ? 150 : 20;
-        o.antialias = i == 0 ? 2 : 1;
+        o.lights.shadows = (vplLightShadows)(i < 3 ? 0 : i - 2);
+        o.particles.count = i < 3 ? 150 : 20;
+        o.output.antialias = i == 0 ? 2 : 1;
         o.lighting = i == 1 ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
         const uint64_t wanted = hashOf(openTestContext(1), &o);
         for (int k = 0; k < 3; k++) {
@@ -248,14 +248,14 @@ static void IndirectLightKeepsItsEnergy(void** state)
     for (int shadows = 0; shadows < 3; shadows++) {
         for (int side = shadows ? 4 : 2; side <= (shadows ? 4 : 8); side *= 2) {
             vplRenderOptions o = optionsOf(0);
-            o.width = 384;
-            o.height = 216;
-            o.show = VPL_SHOW_INDIRECT;
-            o.particles = shadows ? 20 : 345;
-            o.lightShadows = (vplLightShadows)shadows;
+            o.output.width = 384;
+            o.output.height = 216;
+            o.output.show = VPL_SHOW_INDIRECT;
+            o.particles.count = shadows ? 20 : 345;
+            o.lights.shadows = (vplLightShadows)shadows;
             vplImage* deferred = renderScene(scene, &o, NULL);
-            o.accumulation = VPL_ACCUMULATE_INTERLEAVED;
-            o.interleave = side;
+            o.pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
+            o.pipeline.interleave = side;
             vplImage* image = renderScene(scene, &o, NULL);
             vplComparison c;
             assert_int_equal(vplImage_Compare(image, deferred, &c), VPL_SUCCESS);
@@ -278,7 +278,7 @@ static void SizesOfBlocksOutOfRangeAreRefused(void** state)
     vplImage* image = NULL;
     for (int i = 0; i < 3; i++) {
         vplRenderOptions o = optionsOf(4);
-        o.interleave = wrong[i];
+        o.pipeline.interleave = wrong[i];
         assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
         assert_true(image == NULL && strstr(takeMessage(), "vplRenderOptions.interleave is ") != NULL);
     }

@@ -312,9 +312,9 @@ static vplRenderOptions smallOptions(void)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_KELLER;
-    o.width = 37;
-    o.height = 29;
-    o.shadowMapSize = 64;
+    o.output.width = 37;
+    o.output.height = 29;
+    o.shadow.mapSize = 64;
     return o;
 }
 
@@ -325,8 +325,8 @@ static void PointEmittersAreDrawnAsThemselves(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = smallOptions();
-    o.reflectivity = 0;
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.particles.reflectivity = 0;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
     vplImage* keller = renderScene(scene, &o, NULL);
     o.method = VPL_METHOD_DIRECT;
     vplImage* direct = renderScene(scene, &o, NULL);
@@ -344,13 +344,13 @@ static void PartsAddUp(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = lampRoom(context, 0.7f);
     vplRenderOptions o = smallOptions();
-    o.particles = 40;
-    o.compensation = VPL_COMPENSATION_NONE;
-    o.minDistance = 0.1f;
+    o.particles.count = 40;
+    o.lights.compensation = VPL_COMPENSATION_NONE;
+    o.lights.minDistance = 0.1f;
     vplImage* images[3];
     static const vplShow shows[3] = {VPL_SHOW_PICTURE, VPL_SHOW_DIRECT, VPL_SHOW_INDIRECT};
     for (int i = 0; i < 3; i++) {
-        o.show = shows[i];
+        o.output.show = shows[i];
         images[i] = renderScene(scene, &o, NULL);
     }
     for (int k = 0; k < 3 * 37 * 29; k++) {
@@ -376,7 +376,7 @@ static void OddRoomsGiveFinitePictures(void** state)
             addLamp(scene, vplVec(0, -50, 0), 1, 1e6f); // outside, looks away: takes all particles
         }
         vplRenderOptions o = smallOptions();
-        o.particles = i == 0 ? 0 : i == 1 ? 1 : 20;
+        o.particles.count = i == 0 ? 0 : i == 1 ? 1 : 20;
         vplRenderStats stats;
         vplImage* image = renderScene(scene, &o, &stats);
         for (int k = 0; k < 3 * 37 * 29; k++) {

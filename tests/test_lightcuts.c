@@ -440,16 +440,16 @@ static const char* const SCENES[] = {"examples/scenes/room.json", "examples/scen
 static vplRenderOptions optionsOf(int particles, vplLightShadows shadows)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.width = 68;
-    o.height = 51;
-    o.particles = particles;
-    o.sampler = VPL_SAMPLER_HALTON;
-    o.lightShadows = shadows;
-    o.shadowMapSize = 32;
-    o.lightMapSize = 16;
-    o.areaLightSamples = 4;
-    o.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
-    o.compensation = VPL_COMPENSATION_NONE; // its rays depend on how lights are added up
+    o.output.width = 68;
+    o.output.height = 51;
+    o.particles.count = particles;
+    o.particles.sampler = VPL_SAMPLER_HALTON;
+    o.lights.shadows = shadows;
+    o.shadow.mapSize = 32;
+    o.lights.mapSize = 16;
+    o.lights.areaLightSamples = 4;
+    o.pipeline.kind = VPL_ACCUMULATE_LIGHTCUTS;
+    o.lights.compensation = VPL_COMPENSATION_NONE; // its rays depend on how lights are added up
     return o;
 }
 
@@ -482,20 +482,20 @@ static void NoPixelErrsByMoreThanAsked(void** state)
         o.method = k % 2 ? VPL_METHOD_KELLER : VPL_METHOD_INSTANT_RADIOSITY;
         o.lighting = k >= 6 && k % 2 == 0 ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
         vplScene* scene = openScene(context, SCENES[k % 2]);
-        o.width = 40;
-        o.height = 30;
-        o.show = VPL_SHOW_INDIRECT;
+        o.output.width = 40;
+        o.output.height = 30;
+        o.output.show = VPL_SHOW_INDIRECT;
         plain = o;
-        plain.accumulation = VPL_ACCUMULATE_DEFERRED;
+        plain.pipeline.kind = VPL_ACCUMULATE_DEFERRED;
         vplImage* truth = renderScene(scene, &plain, NULL);
-        plain.lightShadows = VPL_LIGHT_SHADOWS_NONE;
+        plain.lights.shadows = VPL_LIGHT_SHADOWS_NONE;
         vplImage* open = renderScene(scene, &plain, NULL);
         for (int e = 0; e < 3; e++) {
-            o.cutError = errors[e];
+            o.pipeline.cutError = errors[e];
             vplImage* image = renderScene(scene, &o, NULL);
             const double worst = worstPixel(image, truth, open);
-            if (!(worst <= (double)o.cutError)) {
-                fail_msg("case %d: a pixel is off by %g, not %g", k, worst, (double)o.cutError);
+            if (!(worst <= (double)o.pipeline.cutError)) {
+                fail_msg("case %d: a pixel is off by %g, not %g", k, worst, (double)o.pipeline.cutError);
             }
             vplImage_Destroy(image);
         }
@@ -514,12 +514,12 @@ static void NoErrorIsTheSumOfAllLights(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = optionsOf(27000, VPL_LIGHT_SHADOWS_NONE);
-    o.width = o.height = 12;
-    o.show = VPL_SHOW_INDIRECT;
-    o.cutError = 1e-6f;
+    o.output.width = o.output.height = 12;
+    o.output.show = VPL_SHOW_INDIRECT;
+    o.pipeline.cutError = 1e-6f;
     vplRenderStats stats;
     vplImage* image = renderScene(scene, &o, &stats);
-    o.accumulation = VPL_ACCUMULATE_DEFERRED;
+    o.pipeline.kind = VPL_ACCUMULATE_DEFERRED;
     vplImage* truth = renderScene(scene, &o, NULL);
     assert_true(stats.virtualLights > 40000 && stats.largestCut > 36000);
     assert_true(stats.largestCut <= stats.virtualLights);
@@ -667,9 +667,9 @@ static void NoLightsAndOneLightAreDeferred(void** state)
     for (int particles = 0; particles < 2; particles++) {
         vplRenderOptions o = optionsOf(particles, VPL_LIGHT_SHADOWS_RAY);
         vplImage* image = renderScene(scene, &o, NULL);
-        o.accumulation = VPL_ACCUMULATE_DEFERRED;
+        o.pipeline.kind = VPL_ACCUMULATE_DEFERRED;
         vplImage* truth = renderScene(scene, &o, NULL);
-        for (int i = 0; i < 3 * o.width * o.height; i++) {
+        for (int i = 0; i < 3 * o.output.width * o.output.height; i++) {
             const double wanted = (double)truth->pixels[i];
             assertNear((double)image->pixels[i], wanted, 1e-6 * wanted, "radiance", i);
         }
@@ -726,17 +726,17 @@ static void CompensatedCutsKeepTheLight(void** state)
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_KELLER;
-    o.width = 48;
-    o.height = 36;
-    o.shadowMapSize = 64;
-    o.particles = 300;
-    o.minDistance = 3; // nearly all that virtual lights give
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.width = 48;
+    o.output.height = 36;
+    o.shadow.mapSize = 64;
+    o.particles.count = 300;
+    o.lights.minDistance = 3; // nearly all that virtual lights give
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o.output.show = VPL_SHOW_INDIRECT;
     vplImage* deferred = renderScene(scene, &o, NULL);
-    o.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
+    o.pipeline.kind = VPL_ACCUMULATE_LIGHTCUTS;
     vplImage* cut = renderScene(scene, &o, NULL);
-    o.compensation = VPL_COMPENSATION_NONE;
+    o.lights.compensation = VPL_COMPENSATION_NONE;
     vplImage* clamped = renderScene(scene, &o, NULL);
     vplComparison same, less;
     assert_int_equal(vplImage_Compare(cut, deferred, &same), VPL_SUCCESS);

@@ -96,12 +96,12 @@ static void failEveryAllocation(Work* work, const char* extension, int variant, 
 static vplRenderOptions smallOptions(int pipeline)
 {
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.width = 32;
-    options.height = 24;
-    options.shadowMapSize = 16;
-    options.particles = 6;
-    options.batch = 4;
-    options.accumulation = (vplAccumulation)pipeline;
+    options.output.width = 32;
+    options.output.height = 24;
+    options.shadow.mapSize = 16;
+    options.particles.count = 6;
+    options.pipeline.batch = 4;
+    options.pipeline.kind = (vplAccumulation)pipeline;
     return options;
 }
 
@@ -144,10 +144,10 @@ static void EveryFailedAllocationOfARenderIsReported(void** state)
 static vplResult compensateAndWrite(vplContext* context, const char* path, int variant)
 {
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.width = options.height = 20;
+    options.output.width = options.output.height = 20;
     options.method = VPL_METHOD_KELLER;
-    options.particles = 5;
-    options.accumulation = variant ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    options.particles.count = 5;
+    options.pipeline.kind = variant ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
     return renderFile(context, "examples/scenes/room-area.json", &options, NULL, path);
 }
 
@@ -155,7 +155,7 @@ static vplResult pathAndWrite(vplContext* context, const char* path, int variant
 {
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
     options.method = VPL_METHOD_PATH;
-    options.samplesPerPixel = 2;
+    options.path.samples = 2;
     return renderFile(context, variant ? "examples/scenes/room-area.json" : "examples/scenes/room.json",
                       &options, NULL, path);
 }
@@ -291,11 +291,11 @@ static vplResult renderBall(vplContext* context, const char* path, int variant)
     vplImage* image = NULL;
     Shape ball = icosphere(2);
     vplRenderOptions options = smallOptions(variant);
-    options.lightShadows = (vplLightShadows)variant;
-    options.width = options.height = 8;
-    options.particles = 2;
-    options.shadowMapSize = options.lightMapSize = 2;
-    options.areaLightSamples = 3;
+    options.lights.shadows = (vplLightShadows)variant;
+    options.output.width = options.output.height = 8;
+    options.particles.count = 2;
+    options.shadow.mapSize = options.lights.mapSize = 2;
+    options.lights.areaLightSamples = 3;
     vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
     if (result == VPL_SUCCESS) {
         result = addBall(scene, &ball);
@@ -316,11 +316,11 @@ static vplResult renderCuts(vplContext* context, const char* path, int variant)
     vplScene* scene = NULL;
     vplImage* image = NULL;
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.width = options.height = 4;
-    options.particles = variant ? 2000 : 1;
-    options.shadowMapSize = 2;
-    options.accumulation = VPL_ACCUMULATE_LIGHTCUTS;
-    options.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    options.output.width = options.output.height = 4;
+    options.particles.count = variant ? 2000 : 1;
+    options.shadow.mapSize = 2;
+    options.pipeline.kind = VPL_ACCUMULATE_LIGHTCUTS;
+    options.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
     vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplRender(scene, &options, &image, NULL);
@@ -338,19 +338,19 @@ static vplResult renderFrames(vplContext* context, const char* path, int variant
     vplHistory* history = NULL;
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
     if (variant) {
-        options.width = 480; // 1.4 MB of picture
-        options.height = 260;
+        options.output.width = 480; // 1.4 MB of picture
+        options.output.height = 260;
     }
-    options.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    options.particles = 1;
+    options.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    options.particles.count = 1;
     vplResult result = vplScene_Load(context, "examples/scenes/room-path.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplHistory_Create(context, &history);
     }
-    options.history = history;
+    options.sequence.history = history;
     for (int frame = 0; frame < 3 && result == VPL_SUCCESS; frame++) {
         vplImage* image = NULL;
-        options.frame = 10 * frame;
+        options.sequence.frame = 10 * frame;
         result = vplRender(scene, &options, &image, NULL);
         vplImage_Destroy(image);
     }
@@ -367,17 +367,17 @@ static vplResult renderRadiosity(vplContext* context, const char* path, int vari
     vplHistory* history = NULL;
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
     options.method = VPL_METHOD_RADIOSITY;
-    options.patches = 40;
-    options.patchPlacement = variant == 1 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
-    options.hierarchy = variant == 2 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
+    options.radiosity.patches = 40;
+    options.radiosity.placement = variant == 1 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+    options.radiosity.hierarchy = variant == 2 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
     vplResult result = vplScene_Load(context, "tests/data/corner-path.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplHistory_Create(context, &history);
     }
-    options.history = history;
+    options.sequence.history = history;
     for (int frame = 0; frame < 2 && result == VPL_SUCCESS; frame++) {
         vplImage* image = NULL;
-        options.frame = 10 * frame;
+        options.sequence.frame = 10 * frame;
         result = vplRender(scene, &options, &image, NULL);
         vplImage_Destroy(image);
     }
@@ -390,8 +390,8 @@ static vplResult bakeRoom(vplContext* context, const char* path, int variant)
 {
     vplScene* scene = NULL;
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.patches = 40;
-    options.solver = variant ? VPL_SOLVER_SHOOTING : VPL_SOLVER_JACOBI;
+    options.radiosity.patches = 40;
+    options.radiosity.solver = variant ? VPL_SOLVER_SHOOTING : VPL_SOLVER_JACOBI;
     vplResult result = vplScene_Load(context, "tests/data/corner-path.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplBake(scene, &options, 0, path, NULL);
@@ -612,8 +612,8 @@ static vplResult placeLights(vplContext* context, const char* path, int variant)
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
     vplParticleDef particles = vplDefaultParticleDef();
     vplPlacementDef def = vplDefaultPlacementDef();
-    options.placement = VPL_PLACEMENT_RSM;
-    options.rsmSize = 4;
+    options.particles.placement = VPL_PLACEMENT_RSM;
+    options.shadow.rsmSize = 4;
     def.oversampling = 2;
     def.pointCount = 1;
     vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
@@ -753,7 +753,7 @@ static void EveryFailedAllocationOfAGeometryIsReported(void** state)
 static vplResult showAndWrite(vplContext* context, const char* path, int show)
 {
     vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
-    options.show = (vplShow)show;
+    options.output.show = (vplShow)show;
     options.lighting = VPL_LIGHTING_DOCUMENTED;
     return renderFile(context, "tests/data/room-closed.json", &options, NULL, path);
 }

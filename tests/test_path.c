@@ -122,8 +122,8 @@ static vplRenderOptions pathOptions(int size, int samples)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_PATH;
-    o.width = o.height = size;
-    o.samplesPerPixel = samples;
+    o.output.width = o.output.height = size;
+    o.path.samples = samples;
     return o;
 }
 
@@ -315,7 +315,7 @@ static void OnlyTheFrontOfALampEmits(void** state)
         addCamera(scene, (vplVec3){0.3f, 0, -0.5f}, (vplVec3){0.3f, 0, -1}, NARROW);
         vplRenderOptions options = pathOptions(1, 16);
         assertNear(radianceOf(scene, &options, 0), behind ? 0 : 5, 0, "lamp", behind);
-        options.camera = 1;
+        options.output.camera = 1;
         assertNear(radianceOf(scene, &options, 0), 0, 0, "behind it", behind);
         vplScene_Destroy(scene);
     }
@@ -330,7 +330,7 @@ static void assertMean(const vplScene* scene, const vplRenderOptions* options, d
 {
     vplRenderStats stats;
     vplImage* image = renderScene(scene, options, &stats);
-    double deviations = 4 * stats.errorEstimate / options->width;
+    double deviations = 4 * stats.errorEstimate / options->output.width;
     assert_true(deviations < share * wanted);
     assertNear(meanOfImage(image, 0), wanted, fmax(deviations, 1e-6 * wanted), what, row);
     vplImage_Destroy(image);
@@ -350,13 +350,13 @@ static void CubeMatchesTheTableBounceByBounce(void** state)
         addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, 1);
         addCamera(scene, (vplVec3){u, 0, v}, (vplVec3){u, -1, v}, NARROW);
         vplRenderOptions options = pathOptions(8, 512);
-        options.show = VPL_SHOW_BOUNCE;
+        options.output.show = VPL_SHOW_BOUNCE;
         for (int k = 0; k < 4; k++) {
-            options.showBounce = k;
+            options.output.showIndex = k;
             double wanted = pow((double)rho, k + 1) / VPL_PI * number(&t, row, columns[k]);
             assertMean(scene, &options, wanted, k == 0 ? 1e-6 : k == 1 ? 0.01 : 0.025, columns[k], row);
         }
-        options.show = VPL_SHOW_INDIRECT;
+        options.output.show = VPL_SHOW_INDIRECT;
         double wanted = (double)rho / VPL_PI * number(&t, row, "E_indirect_total_rho0.5");
         assertMean(scene, &options, wanted, 0.015, "all bounces", row);
         vplScene_Destroy(scene);
@@ -387,7 +387,7 @@ static void SphereMatchesTheTable(void** state)
         vplRenderOptions options = pathOptions(16, 64);
         double total = number(&t, row, "radiance_total_phys");
         assertNear(radianceOf(scene, &options, 0), total, 5e-3 * total, "total", row);
-        options.show = VPL_SHOW_DIRECT;
+        options.output.show = VPL_SHOW_DIRECT;
         double direct = number(&t, row, "radiance_direct_phys");
         assertNear(radianceOf(scene, &options, 0), direct, 2e-3 * direct, "direct", row);
         vplScene_Destroy(scene);
@@ -411,8 +411,8 @@ static vplImage* renderShown(const vplScene* scene, vplShow show, int bounce)
 {
     vplRenderOptions options = pathOptions(32, 5);
     options.maxBounces = 3;
-    options.show = show;
-    options.showBounce = bounce;
+    options.output.show = show;
+    options.output.showIndex = bounce;
     return renderScene(scene, &options, NULL);
 }
 
@@ -496,7 +496,7 @@ static void ErrorEstimatePredictsTheDifferenceOfSeeds(void** state)
         }
         assertNear(sqrt(found / predicted), 1, 0.15, "found / predicted", s);
         vplRenderStats stats;
-        options.samplesPerPixel = 1;
+        options.path.samples = 1;
         vplImage_Destroy(renderScene(scene, &options, &stats));
         assert_true(stats.errorEstimate < 0); // nothing to compare with
         vplScene_Destroy(scene);
@@ -662,7 +662,7 @@ static void PixelsAreTheRasterizersPixels(void** state)
     camera.far = 6.5;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     vplRenderOptions options = pathOptions(96, 64);
-    options.width = 128;
+    options.output.width = 128;
     vplImage* paths = renderScene(scene, &options, NULL);
     options.method = VPL_METHOD_DIRECT;
     vplImage* raster = renderScene(scene, &options, NULL);
@@ -758,7 +758,7 @@ static void WhatIsNotAskedOfPathsIsRefused(void** state)
     assert_non_null(strstr(takeMessage(), "documented"));
     options.lighting = VPL_LIGHTING_PHYSICAL;
     for (size_t i = 0; i < sizeof shows / sizeof *shows; i++) {
-        options.show = shows[i];
+        options.output.show = shows[i];
         assert_int_equal(vplRender(scene, &options, &image, NULL), VPL_INVALID_ARGUMENT);
         assert_non_null(strstr(takeMessage(), "bounce:K"));
     }

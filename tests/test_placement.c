@@ -220,12 +220,12 @@ static void AllAreKeptWhereAllAreWanted(void** state)
 static vplRenderOptions viewOptions(int particles)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.width = o.height = 16;
-    o.particles = particles;
-    o.placement = VPL_PLACEMENT_VIEW;
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    o.minDistance = 0.5f;
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.width = o.output.height = 16;
+    o.particles.count = particles;
+    o.particles.placement = VPL_PLACEMENT_VIEW;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o.lights.minDistance = 0.5f;
+    o.output.show = VPL_SHOW_INDIRECT;
     return o;
 }
 
@@ -275,12 +275,12 @@ static void PicturesAreThoseOfPlainParticlesInTheMean(void** state)
         vplRenderOptions o = viewOptions(16);
         double apart[2], mean[2];
         o.method = variant == 1 || variant == 2 ? VPL_METHOD_KELLER : VPL_METHOD_INSTANT_RADIOSITY;
-        o.show = variant == 1 ? VPL_SHOW_PICTURE : VPL_SHOW_INDIRECT;
-        o.lightShadows = variant == 3 ? VPL_LIGHT_SHADOWS_NONE : VPL_LIGHT_SHADOWS_RAY;
+        o.output.show = variant == 1 ? VPL_SHOW_PICTURE : VPL_SHOW_INDIRECT;
+        o.lights.shadows = variant == 3 ? VPL_LIGHT_SHADOWS_NONE : VPL_LIGHT_SHADOWS_RAY;
         o.lighting = variant == 4 ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
-        o.compensation = VPL_COMPENSATION_NONE;
+        o.lights.compensation = VPL_COMPENSATION_NONE;
         for (int view = 0; view < 2; view++) {
-            o.placement = view ? VPL_PLACEMENT_VIEW : VPL_PLACEMENT_PARTICLES;
+            o.particles.placement = view ? VPL_PLACEMENT_VIEW : VPL_PLACEMENT_PARTICLES;
             mean[view] = meanEnergy(scene, o, &apart[view]);
         }
         assert_true(apart[1] < 0.03 * mean[1]);
@@ -300,7 +300,7 @@ static void LightsBehindWallsAreLeftOut(void** state)
     double share[2], count[2];
     for (int view = 0; view < 2; view++) {
         vplRenderOptions o = viewOptions(500);
-        o.placement = view ? VPL_PLACEMENT_VIEW : VPL_PLACEMENT_PARTICLES;
+        o.particles.placement = view ? VPL_PLACEMENT_VIEW : VPL_PLACEMENT_PARTICLES;
         vplLightSet* set = lightsOf(scene, &o);
         int near = 0;
         for (int i = 0; i < set->lightCount; i++) {
@@ -340,10 +340,10 @@ static void ChoicesDoNotDependOnThreadsOrIsa(void** state)
                 }
                 vplScene* scene = loadScene(context, "room.json");
                 vplRenderOptions o = viewOptions(20);
-                o.placement = (vplLightPlacement)placement;
-                o.sampler = (vplSampler)sampler;
-                o.passes = 2;
-                o.shadowMapSize = 64;
+                o.particles.placement = (vplLightPlacement)placement;
+                o.particles.sampler = (vplSampler)sampler;
+                o.stop.passes = 2;
+                o.shadow.mapSize = 64;
                 const uint64_t hash = hashOf(scene, &o);
                 wanted = i == 0 ? hash : wanted;
                 assert_true(hash == wanted);
@@ -403,7 +403,7 @@ static void ExtremesStayFinite(void** state)
     for (int i = 0; i < 3; i++) {
         vplScene* scene = pointInCube(context, intensities[i], 0.9f);
         vplRenderOptions o = viewOptions(30);
-        o.minDistance = 0;
+        o.lights.minDistance = 0;
         vplLightSet* set = lightsOf(scene, &o);
         assert_true(intensities[i] > 0 ? abs(set->lightCount - 56) <= 1 : set->lightCount == 0);
         for (int k = 0; k < set->lightCount; k++) {
@@ -411,7 +411,7 @@ static void ExtremesStayFinite(void** state)
         }
         vplLightSet_Destroy(set);
         assert_true(isfinite(energyOf(scene, &o)));
-        o.particles = 0;
+        o.particles.count = 0;
         assert_true(energyOf(scene, &o) == 0);
         vplScene_Destroy(scene);
     }
@@ -421,7 +421,7 @@ static void ExtremesStayFinite(void** state)
     vplCameraDef away = vplDefaultCameraDef();
     away.eye = vplVec(50, 0, 0);
     away.target = vplVec(100, 0, 0);
-    assert_int_equal(vplScene_AddCamera(black, &away, &o.camera), VPL_SUCCESS);
+    assert_int_equal(vplScene_AddCamera(black, &away, &o.output.camera), VPL_SUCCESS);
     assert_true(energyOf(black, &o) == 0);
     vplScene_Destroy(black);
     closeTestContext(context);

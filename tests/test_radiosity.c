@@ -28,15 +28,15 @@ static vplRenderOptions radiosityOptions(int patches)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_RADIOSITY;
-    o.width = 40;
-    o.height = 30;
-    o.patches = patches;
+    o.output.width = 40;
+    o.output.height = 30;
+    o.radiosity.patches = patches;
     return o;
 }
 
 static vplImage* showOf(const vplScene* scene, vplRenderOptions o, vplShow show)
 {
-    o.show = show;
+    o.output.show = show;
     return renderScene(scene, &o, NULL);
 }
 
@@ -53,8 +53,8 @@ static vplImage* pathsOf(const vplScene* scene, vplShow show, int spp)
 {
     vplRenderOptions o = radiosityOptions(1);
     o.method = VPL_METHOD_PATH;
-    o.pixel = VPL_PIXEL_CENTRE;
-    o.samplesPerPixel = spp;
+    o.path.pixel = VPL_PIXEL_CENTRE;
+    o.path.samples = spp;
     return showOf(scene, o, show);
 }
 
@@ -138,8 +138,8 @@ static void AdaptivePatchesAreBetterThanMoreUniformOnes(void** state)
     vplImage* truth[2];
     vplRenderOptions o = radiosityOptions(1);
     o.method = VPL_METHOD_PATH;
-    o.pixel = VPL_PIXEL_CENTRE;
-    o.samplesPerPixel = 512;
+    o.path.pixel = VPL_PIXEL_CENTRE;
+    o.path.samples = 512;
     for (int i = 0; i < 2; i++) {
         o.seed = (uint64_t)i;
         truth[i] = showOf(scene, o, VPL_SHOW_INDIRECT);
@@ -149,8 +149,8 @@ static void AdaptivePatchesAreBetterThanMoreUniformOnes(void** state)
     for (int adaptive = 0; adaptive < 2; adaptive++) {
         vplRenderStats stats;
         o = radiosityOptions(1000);
-        o.patchPlacement = adaptive ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
-        o.show = VPL_SHOW_INDIRECT;
+        o.radiosity.placement = adaptive ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+        o.output.show = VPL_SHOW_INDIRECT;
         vplImage* image = renderScene(scene, &o, &stats);
         errors[adaptive] = commonError(image, truth);
         patches[adaptive] = stats.patches;
@@ -176,10 +176,10 @@ static void FurnaceIsUniform(void** state)
         aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
         for (int incentre = 0; incentre < 2; incentre++) {
             vplRenderOptions o = radiosityOptions(300);
-            o.iterations = 3000;
-            o.residual = 1e-7;
-            o.rowSums = VPL_ROW_SUMS_NORMALISE;
-            o.formFactors = incentre ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
+            o.radiosity.iterations = 3000;
+            o.radiosity.residual = 1e-7;
+            o.radiosity.rowSums = VPL_ROW_SUMS_NORMALISE;
+            o.radiosity.formFactors = incentre ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
             vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
             const double wanted = (double)rhos[k] * (double)rhos[k] / (1 - (double)rhos[k]);
             for (int i = 0; i < 40 * 30; i++) {
@@ -201,8 +201,8 @@ static uint64_t hashOf(vplContext* context)
     vplRenderOptions o = radiosityOptions(200);
     uint64_t hash = 0;
     for (int k = 0; k < 3; k++) {
-        o.hierarchy = k == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
-        o.patchPlacement = k == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+        o.radiosity.hierarchy = k == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
+        o.radiosity.placement = k == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
         vplImage* image = renderScene(scene, &o, NULL);
         hash = hash * 31 + vplImage_Hash(image);
         vplImage_Destroy(image);
@@ -229,7 +229,7 @@ static void OneSampleFormFactorsSaturateAndOursDoNot(void** state)
     vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 256);
     vplRenderOptions o = radiosityOptions(60);
     vplImage* ours = showOf(scene, o, VPL_SHOW_INDIRECT);
-    o.formFactors = VPL_FORM_FACTORS_INCENTRE;
+    o.radiosity.formFactors = VPL_FORM_FACTORS_INCENTRE;
     vplImage* theirs = showOf(scene, o, VPL_SHOW_INDIRECT);
     const double ourEnergy = compare(ours, truth).energyRatio, energy = compare(theirs, truth).energyRatio;
     assertNear(ourEnergy, 1, 0.1, "energy of 60 patches", 0);
@@ -248,16 +248,16 @@ static void DivergenceIsASentence(void** state)
     vplScene* scene = closedCubeScene(context, 0.9f, 1);
     aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
     vplRenderOptions o = radiosityOptions(12); // spectral radius 1.55
-    o.formFactors = VPL_FORM_FACTORS_INCENTRE;
+    o.radiosity.formFactors = VPL_FORM_FACTORS_INCENTRE;
     vplImage* image = NULL;
     for (int solver = 0; solver <= VPL_SOLVER_SHOOTING; solver++) {
-        o.solver = (vplSolver)solver;
+        o.radiosity.solver = (vplSolver)solver;
         takeMessage();
         assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_LIMIT);
         assert_null(image);
         assert_non_null(strstr(takeMessage(), "row-sums"));
     }
-    o.rowSums = VPL_ROW_SUMS_CLAMP;
+    o.radiosity.rowSums = VPL_ROW_SUMS_CLAMP;
     vplRenderStats stats;
     image = renderScene(scene, &o, &stats);
     assert_true(stats.solve.spectralRadius < 0.91 && stats.solve.rowSumMax <= 1);
@@ -274,13 +274,13 @@ static void WhiteClosedRoomEndsWithAWarning(void** state)
     vplScene* scene = boxRoom(context, 1, false);
     vplRenderOptions o = radiosityOptions(100);
     vplRenderStats stats;
-    o.rowSums = VPL_ROW_SUMS_NORMALISE;
-    o.iterations = 7;
+    o.radiosity.rowSums = VPL_ROW_SUMS_NORMALISE;
+    o.radiosity.iterations = 7;
     takeMessage();
     vplImage* image = renderScene(scene, &o, &stats);
     assert_non_null(strstr(takeMessage(), "residual"));
     assert_int_equal(stats.solve.iterations, 7);
-    assert_true(isfinite(meanOf(image)) && stats.solve.residual > o.residual);
+    assert_true(isfinite(meanOf(image)) && stats.solve.residual > o.radiosity.residual);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
     closeTestContext(context);
@@ -304,17 +304,17 @@ static void LightThatJumpedArrivesSweepBySweep(void** state)
     vplScene* scene = boxRoom(context, 0.7f, false);
     movePath(scene);
     vplRenderOptions o = radiosityOptions(300);
-    o.frame = 1;
-    o.residual = 1e-7;
+    o.sequence.frame = 1;
+    o.radiosity.residual = 1e-7;
     vplImage* truth = showOf(scene, o, VPL_SHOW_INDIRECT);
-    assert_int_equal(vplHistory_Create(context, &o.history), VPL_SUCCESS);
-    o.frame = 0;
+    assert_int_equal(vplHistory_Create(context, &o.sequence.history), VPL_SUCCESS);
+    o.sequence.frame = 0;
     vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
     double last = compare(image, truth).rmse;
     assert_true(last > 0);
     vplImage_Destroy(image);
-    o.frame = 1;
-    o.iterations = 1;
+    o.sequence.frame = 1;
+    o.radiosity.iterations = 1;
     for (int i = 0; i < 12; i++) {
         image = showOf(scene, o, VPL_SHOW_INDIRECT);
         const double error = compare(image, truth).rmse;
@@ -322,7 +322,7 @@ static void LightThatJumpedArrivesSweepBySweep(void** state)
         last = error;
         vplImage_Destroy(image);
     }
-    vplHistory_Destroy(o.history);
+    vplHistory_Destroy(o.sequence.history);
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
     closeTestContext(context);
@@ -336,20 +336,20 @@ static void FormFactorsAreKeptAndNothingElseChanges(void** state)
     movePath(scene);
     vplRenderOptions o = radiosityOptions(300);
     vplRenderStats alone, kept;
-    o.coherence = VPL_COHERENCE_OFF;
-    o.frame = 1;
+    o.sequence.coherence = VPL_COHERENCE_OFF;
+    o.sequence.frame = 1;
     vplImage_Destroy(renderScene(scene, &o, &alone));
-    assert_int_equal(vplHistory_Create(context, &o.history), VPL_SUCCESS);
-    o.frame = 0;
+    assert_int_equal(vplHistory_Create(context, &o.sequence.history), VPL_SUCCESS);
+    o.sequence.frame = 0;
     vplImage_Destroy(renderScene(scene, &o, NULL));
-    o.frame = 1;
+    o.sequence.frame = 1;
     vplImage_Destroy(renderScene(scene, &o, &kept));
     assert_true(kept.imageHash == alone.imageHash);
     assert_true(kept.rays < alone.rays / 4);
-    o.patches = 200;
+    o.radiosity.patches = 200;
     vplImage_Destroy(renderScene(scene, &o, &kept)); // other patches are made anew
     assert_true(kept.patches < alone.patches);
-    vplHistory_Destroy(o.history);
+    vplHistory_Destroy(o.sequence.history);
     vplScene_Destroy(scene);
     closeTestContext(context);
 }
@@ -369,14 +369,14 @@ static void CancelledFramesLeaveNothingBehind(void** state)
     vplScene* scene = boxRoom(context, 0.7f, false);
     vplRenderOptions o = radiosityOptions(40);
     vplRenderStats alone, after;
-    o.shadowMapSize = 32;            // as many steps as ever, all of them short
-    o.coherence = VPL_COHERENCE_OFF; // light that was found before pixels were cancelled may be gone on from
+    o.shadow.mapSize = 32;            // as many steps as ever, all of them short
+    o.sequence.coherence = VPL_COHERENCE_OFF; // light that was found before pixels were cancelled may be gone on from
     vplImage_Destroy(renderScene(scene, &o, &alone));
     int cancelled = 0;
     for (int last = 1, done = 0; !done; last++) {
         int left = last;
         vplImage* image = NULL;
-        assert_int_equal(vplHistory_Create(context, &o.history), VPL_SUCCESS);
+        assert_int_equal(vplHistory_Create(context, &o.sequence.history), VPL_SUCCESS);
         o.progress = refuseLater;
         o.progressUser = &left;
         const vplResult result = vplRender(scene, &o, &image, NULL);
@@ -389,8 +389,8 @@ static void CancelledFramesLeaveNothingBehind(void** state)
             cancelled++;
         }
         done = result == VPL_SUCCESS;
-        vplHistory_Destroy(o.history);
-        o.history = NULL;
+        vplHistory_Destroy(o.sequence.history);
+        o.sequence.history = NULL;
     }
     assert_true(cancelled > 10);
     vplScene_Destroy(scene);
@@ -430,7 +430,7 @@ static void OneTriangleReflectsNothingToItself(void** state)
     addEmitter(scene, VPL_EMITTER_POINT, vplVec(0, 1, 0), vplVec(0, -1, 0), 1);
     vplRenderOptions o = radiosityOptions(50);
     vplRenderStats stats;
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.show = VPL_SHOW_INDIRECT;
     vplImage* image = renderScene(scene, &o, &stats);
     assert_true(meanOf(image) == 0 && stats.patches >= 50);
     vplImage_Destroy(image);
@@ -453,7 +453,7 @@ static void CoplanarDuplicatesDoNotDoubleLight(void** state)
             addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, -1, 0), -VPL_PI / 2, 0, vplVec(2, 2, 1));
         }
         vplRenderOptions o = radiosityOptions(300);
-        o.patchSize = 0.5f;
+        o.radiosity.patchSize = 0.5f;
         vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
         means[twice] = meanOf(image);
         vplImage_Destroy(image);
@@ -475,8 +475,8 @@ static void RoomsWithoutLightTakeNoPart(void** state)
             addThing(scene, VPL_OBJECT_BOX, 0, vplVec(10, 0, 0), 0, 0, vplVec(2, 2, 2));
         }
         vplRenderOptions o = radiosityOptions(1);
-        o.patchSize = 0.5f;
-        o.show = VPL_SHOW_INDIRECT; // shadow maps have the distance of the farthest corner for a unit
+        o.radiosity.patchSize = 0.5f;
+        o.output.show = VPL_SHOW_INDIRECT; // shadow maps have the distance of the farthest corner for a unit
         vplImage_Destroy(renderScene(scene, &o, &stats[other]));
         vplScene_Destroy(scene);
     }
@@ -500,8 +500,8 @@ static void NothingIsDarkBecauseItTouchesABox(void** state)
     vplRenderOptions o = radiosityOptions(150);
     double least[2];
     for (int equal = 0; equal < 2; equal++) {
-        o.vertexWeight = equal ? VPL_VERTEX_WEIGHT_EQUAL : VPL_VERTEX_WEIGHT_ANGLE;
-        o.formFactors = equal ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
+        o.radiosity.vertexWeight = equal ? VPL_VERTEX_WEIGHT_EQUAL : VPL_VERTEX_WEIGHT_ANGLE;
+        o.radiosity.formFactors = equal ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
         vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
         const double energy = compare(image, truth).energyRatio; // the document's is too bright as a whole
         least[equal] = 10;
@@ -533,20 +533,20 @@ static void WhatIsNotPossibleIsASentence(void** state)
     for (int i = 0; i < 11; i++) {
         o[i] = good;
     }
-    o[0].patches = 0;
-    o[1].patchSize = -1;
-    o[2].iterations = -1;
-    o[3].residual = 2;
-    o[4].linkError = 0;
+    o[0].radiosity.patches = 0;
+    o[1].radiosity.patchSize = -1;
+    o[2].radiosity.iterations = -1;
+    o[3].radiosity.residual = 2;
+    o[4].radiosity.linkError = 0;
     o[5].lighting = VPL_LIGHTING_DOCUMENTED;
-    o[6].show = VPL_SHOW_OVERLAY;
-    o[7].patchPlacement = VPL_PATCHES_ADAPTIVE;
-    o[7].patchSize = 0.1f;
-    o[8].formSamples = 0;
+    o[6].output.show = VPL_SHOW_OVERLAY;
+    o[7].radiosity.placement = VPL_PATCHES_ADAPTIVE;
+    o[7].radiosity.patchSize = 0.1f;
+    o[8].radiosity.formSamples = 0;
     o[9].method = VPL_METHOD_DIRECT;
-    o[9].show = VPL_SHOW_PATCHES;
-    o[10].patches = 40000;
-    o[10].hierarchy = VPL_HIERARCHY_OFF;
+    o[9].output.show = VPL_SHOW_PATCHES;
+    o[10].radiosity.patches = 40000;
+    o[10].radiosity.hierarchy = VPL_HIERARCHY_OFF;
     for (int i = 0; i < 11; i++) {
         vplImage* image = NULL;
         takeMessage();

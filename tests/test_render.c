@@ -7,9 +7,9 @@
 static vplRenderOptions smallOptions(void)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.width = 83;
-    o.height = 61;
-    o.shadowMapSize = 128;
+    o.output.width = 83;
+    o.output.height = 61;
+    o.shadow.mapSize = 128;
     return o;
 }
 
@@ -39,8 +39,8 @@ static void DrawCallsAreThoseOfTheDocument(void** state)
                  {VPL_ACCUMULATE_DEFERRED, 64, 56}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         vplRenderStats stats;
-        o.accumulation = cases[i].accumulation;
-        o.batch = cases[i].batch;
+        o.pipeline.kind = cases[i].accumulation;
+        o.pipeline.batch = cases[i].batch;
         vplImage_Destroy(renderScene(scene, &o, &stats));
         assert_int_equal(stats.drawCalls, cases[i].wanted);
         assert_int_equal(stats.virtualLights, 18);
@@ -90,13 +90,13 @@ static void EveryPipelineGivesTheSameBits(void** state)
             vplScene* scene = loadScene(context, "room.json");
             vplRenderOptions o = smallOptions();
             o.lighting = (vplLighting)lighting;
-            o.particles = 130;
-            o.sampler = VPL_SAMPLER_HALTON;
+            o.particles.count = 130;
+            o.particles.sampler = VPL_SAMPLER_HALTON;
             wanted = worker == 1 ? renderHash(scene, &o) : wanted;
             for (int p = 0; p < 3; p++) {
-                o.accumulation = (vplAccumulation)p;
+                o.pipeline.kind = (vplAccumulation)p;
                 for (int i = 0; i < (p == VPL_ACCUMULATE_BATCHED ? 6 : 1); i++) {
-                    o.batch = batches[i];
+                    o.pipeline.batch = batches[i];
                     assert_true(renderHash(scene, &o) == wanted);
                 }
             }
@@ -111,8 +111,8 @@ static void EveryPipelineGivesTheSameBits(void** state)
             vplScene* scene = loadScene(context, "room.json");
             vplRenderOptions o = smallOptions();
             o.lighting = (vplLighting)lighting;
-            o.particles = 130;
-            o.sampler = VPL_SAMPLER_HALTON;
+            o.particles.count = 130;
+            o.particles.sampler = VPL_SAMPLER_HALTON;
             assert_true(renderHash(scene, &o) == wanted);
             vplScene_Destroy(scene);
             closeTestContext(context);
@@ -146,13 +146,13 @@ static void CoplanarSurfacesAreLitOnce(void** state)
     vplContext* context = openTestContext(1);
     uint64_t hashes[3];
     vplRenderOptions o = smallOptions();
-    o.particles = 50;
+    o.particles.count = 50;
     for (int p = 0; p < 3; p++) {
         vplScene* scene = loadScene(context, "room.json");
         const vplObjectDef* floor = vplScene_GetObject(scene, 0);
         vplObjectDef copy = *floor;
         assert_int_equal(vplScene_AddObject(scene, &copy, NULL), VPL_SUCCESS);
-        o.accumulation = (vplAccumulation)p;
+        o.pipeline.kind = (vplAccumulation)p;
         hashes[p] = renderHash(scene, &o);
         vplScene_Destroy(scene);
     }
@@ -188,7 +188,7 @@ static vplImage* scaledRoom(vplContext* context, float scale, float intensity, v
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     vplRenderOptions o = smallOptions();
     o.lighting = lighting;
-    o.particles = 30;
+    o.particles.count = 30;
     vplImage* image = renderScene(scene, &o, NULL);
     vplScene_Destroy(scene);
     vplScene_Destroy(from);
@@ -253,9 +253,9 @@ static void APlaneUnderAPointLightIsLitAsInTheBook(void** state)
     o.method = VPL_METHOD_DIRECT;
     vplImage* image = renderScene(scene, &o, NULL);
     double half = tan(20 * VPL_PI / 180) * 4;
-    for (int i = 0; i < o.width * o.height; i++) {
-        double x = (2 * (i % o.width + 0.5) / o.width - 1) * half * o.width / o.height;
-        double z = -(1 - 2 * (i / o.width + 0.5) / o.height) * half;
+    for (int i = 0; i < o.output.width * o.output.height; i++) {
+        double x = (2 * (i % o.output.width + 0.5) / o.output.width - 1) * half * o.output.width / o.output.height;
+        double z = -(1 - 2 * (i / o.output.width + 0.5) / o.output.height) * half;
         double dx = x - 0.5, dz = z + 0.25, d2 = dx * dx + 4 + dz * dz;
         double wanted = 0.5 / VPL_PI * 3 * (2 / sqrt(d2)) / d2;
         assertNear((double)image->pixels[3 * i], wanted, 1e-6 * wanted, "red", i);
@@ -277,12 +277,12 @@ static void DocumentedDirectLightFallsWithN(void** state)
         for (int k = 0; k < 2; k++) {
             vplRenderOptions o = smallOptions();
             o.lighting = (vplLighting)lighting;
-            o.shadow.biasRule = VPL_BIAS_EXACT;
-            o.show = VPL_SHOW_DIRECT;
-            o.particles = k ? 20 : 10;
+            o.shadow.bias = VPL_BIAS_OPTION_EXACT;
+            o.output.show = VPL_SHOW_DIRECT;
+            o.particles.count = k ? 20 : 10;
             vplImage* image = renderScene(scene, &o, NULL);
             sums[lighting][k] = 0;
-            for (int i = 0; i < 3 * o.width * o.height; i++) {
+            for (int i = 0; i < 3 * o.output.width * o.output.height; i++) {
                 sums[lighting][k] += (double)image->pixels[i];
             }
             vplImage_Destroy(image);
@@ -300,19 +300,19 @@ static void DirectAndEachLightAddUpToThePicture(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room-closed.json");
     vplRenderOptions o = smallOptions();
-    o.minDistance = 0.5f;
+    o.lights.minDistance = 0.5f;
     vplImage* picture = renderScene(scene, &o, NULL);
-    o.show = VPL_SHOW_DIRECT;
+    o.output.show = VPL_SHOW_DIRECT;
     vplImage* sum = renderScene(scene, &o, NULL);
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.show = VPL_SHOW_INDIRECT;
     vplImage* indirect = renderScene(scene, &o, NULL);
-    int count = 3 * o.width * o.height;
+    int count = 3 * o.output.width * o.output.height;
     for (int i = 0; i < count; i++) {
         double wanted = (double)sum->pixels[i] + (double)indirect->pixels[i];
         assertNear((double)picture->pixels[i], wanted, 3e-7 * wanted, "direct + indirect", i);
     }
-    o.show = VPL_SHOW_LIGHT;
-    for (o.showLight = 0; o.showLight < 18; o.showLight++) {
+    o.output.show = VPL_SHOW_LIGHT;
+    for (o.output.showIndex = 0; o.output.showIndex < 18; o.output.showIndex++) {
         vplImage* one = renderScene(scene, &o, NULL);
         for (int i = 0; i < count; i++) {
             sum->pixels[i] += one->pixels[i];
@@ -323,7 +323,7 @@ static void DirectAndEachLightAddUpToThePicture(void** state)
         assertNear((double)sum->pixels[i], (double)picture->pixels[i], 2e-6 * (double)picture->pixels[i],
                    "sum", i);
     }
-    o.showLight = 18;
+    o.output.showIndex = 18;
     vplImage* none = NULL;
     assert_int_equal(vplRender(scene, &o, &none, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "light 18 does not exist"));
@@ -340,17 +340,17 @@ static void StagesShowWhatTheySay(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = smallOptions();
-    int middle = 3 * (o.height / 3 * o.width + 2 * o.width / 3), count = 3 * o.width * o.height;
-    o.show = VPL_SHOW_DEPTH;
+    int middle = 3 * (o.output.height / 3 * o.output.width + 2 * o.output.width / 3), count = 3 * o.output.width * o.output.height;
+    o.output.show = VPL_SHOW_DEPTH;
     vplImage* image = renderScene(scene, &o, NULL);
     assertNear((double)image->pixels[middle], 11, 1e-4, "depth of the back wall", 0);
     vplImage_Destroy(image);
-    o.show = VPL_SHOW_NORMALS;
+    o.output.show = VPL_SHOW_NORMALS;
     image = renderScene(scene, &o, NULL);
     assert_true(image->pixels[middle] == 0 && image->pixels[middle + 1] == 0 &&
                 image->pixels[middle + 2] == 1);
     vplImage_Destroy(image);
-    o.show = VPL_SHOW_SHADOW_FACTOR;
+    o.output.show = VPL_SHOW_SHADOW_FACTOR;
     image = renderScene(scene, &o, NULL);
     int lit = 0, dark = 0;
     for (int i = 0; i < count; i++) {
@@ -360,18 +360,18 @@ static void StagesShowWhatTheySay(void** state)
     }
     assert_true(lit > count / 3 && dark > count / 50);
     vplImage_Destroy(image);
-    o.show = VPL_SHOW_SHADOW_MAP;
+    o.output.show = VPL_SHOW_SHADOW_MAP;
     image = renderScene(scene, &o, NULL);
-    assert_int_equal(image->width, 4 * o.shadowMapSize);
-    assert_int_equal(image->height, 3 * o.shadowMapSize);
+    assert_int_equal(image->width, 4 * o.shadow.mapSize);
+    assert_int_equal(image->height, 3 * o.shadow.mapSize);
     // Straight up, in the middle of the upper face, is the ceiling, half a metre away.
-    int above = 3 * (o.shadowMapSize / 2 * image->width + o.shadowMapSize + o.shadowMapSize / 2);
+    int above = 3 * (o.shadow.mapSize / 2 * image->width + o.shadow.mapSize + o.shadow.mapSize / 2);
     assertNear((double)image->pixels[above], 0.5, 1e-3, "distance of the ceiling", 0);
     vplImage_Destroy(image);
-    o.show = VPL_SHOW_OVERLAY;
-    o.particles = 100;
+    o.output.show = VPL_SHOW_OVERLAY;
+    o.particles.count = 100;
     image = renderScene(scene, &o, NULL);
-    o.show = VPL_SHOW_PICTURE;
+    o.output.show = VPL_SHOW_PICTURE;
     vplImage* plain = renderScene(scene, &o, NULL);
     int marked = 0;
     for (int i = 0; i < count; i += 3) {
@@ -405,7 +405,7 @@ static void EmissionLeavesTheFrontOnly(void** state)
         vplRenderOptions o = smallOptions();
         o.method = VPL_METHOD_DIRECT;
         vplImage* image = renderScene(scene, &o, NULL);
-        for (int i = 0; i < 3 * o.width * o.height; i++) {
+        for (int i = 0; i < 3 * o.output.width * o.output.height; i++) {
             assert_true(image->pixels[i] == (back ? 0 : (float)(i % 3 + 1)));
         }
         vplImage_Destroy(image);
@@ -426,15 +426,15 @@ static void OptionsOutOfRangeAreNamed(void** state)
     for (int i = 0; i < 10; i++) {
         cases[i].o = smallOptions();
     }
-    cases[0].o.width = 0, cases[0].name = "width is 0, must be in [1, 16384]";
-    cases[1].o.height = 16385, cases[1].name = "height is 16385";
-    cases[2].o.camera = 1, cases[2].name = "camera is 1, must be in [0, 0]";
-    cases[3].o.particles = -1, cases[3].name = "particles is -1";
-    cases[4].o.reflectivity = 1, cases[4].name = "reflectivity is 1";
-    cases[5].o.shadowMapSize = 0, cases[5].name = "shadowMapSize is 0";
-    cases[6].o.minDistance = NAN, cases[6].name = "minDistance is ";
+    cases[0].o.output.width = 0, cases[0].name = "width is 0, must be in [1, 16384]";
+    cases[1].o.output.height = 16385, cases[1].name = "height is 16385";
+    cases[2].o.output.camera = 1, cases[2].name = "camera is 1, must be in [0, 0]";
+    cases[3].o.particles.count = -1, cases[3].name = "particles is -1";
+    cases[4].o.particles.reflectivity = 1, cases[4].name = "reflectivity is 1";
+    cases[5].o.shadow.mapSize = 0, cases[5].name = "shadowMapSize is 0";
+    cases[6].o.lights.minDistance = NAN, cases[6].name = "minDistance is ";
     cases[7].o.shadow.pcfSamples = 0, cases[7].name = "pcfSamples is 0";
-    cases[8].o.batch = 0, cases[8].name = "batch is 0";
+    cases[8].o.pipeline.batch = 0, cases[8].name = "batch is 0";
     cases[9].o.cookie = 0, cases[9].name = "vplDefaultRenderOptions";
     for (int i = 0; i < 10; i++) {
         vplImage* image = NULL;
@@ -469,7 +469,7 @@ static void ProgressRisesAndCancels(void** state)
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = smallOptions();
     Watch w = {0, -1, 0};
-    o.width = o.height = 300;
+    o.output.width = o.output.height = 300;
     o.progress = watch;
     o.progressUser = &w;
     vplImage_Destroy(renderScene(scene, &o, NULL));
@@ -503,10 +503,10 @@ static void OddScenesGiveFinitePictures(void** state)
             assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
             vplRenderOptions o = smallOptions();
             o.lighting = (vplLighting)lighting;
-            o.minDistance = 0;
-            o.particles = 60;
+            o.lights.minDistance = 0;
+            o.particles.count = 60;
             vplImage* image = renderScene(scene, &o, NULL);
-            for (int k = 0; k < 3 * o.width * o.height; k++) {
+            for (int k = 0; k < 3 * o.output.width * o.output.height; k++) {
                 assert_true(isfinite(image->pixels[k]) && image->pixels[k] >= 0);
             }
             vplImage_Destroy(image);
@@ -543,13 +543,13 @@ static void AntialiasingIsTheBoxFilter(void** state)
     object.transform.m[13] = -0.05f;
     vplScene_AddObject(scene, &object, NULL);
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.width = o.height = 8;
+    o.output.width = o.output.height = 8;
     o.method = VPL_METHOD_DIRECT;
     double worst[3];
     const int samples[3] = {1, 16, 256};
     for (int k = 0; k < 3; k++) {
         vplImage* image;
-        o.antialias = samples[k];
+        o.output.antialias = samples[k];
         assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_SUCCESS);
         worst[k] = 0;
         for (int i = 0; i < 64; i++) {
@@ -561,7 +561,7 @@ static void AntialiasingIsTheBoxFilter(void** state)
     assert_true(worst[0] > 0.4); // the centre alone is in or out
     assert_true(worst[1] < 0.1);
     assert_true(worst[2] < 0.012);
-    o.antialias = 0;
+    o.output.antialias = 0;
     assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);
     closeTestContext(context);

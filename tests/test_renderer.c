@@ -6,11 +6,11 @@ static vplRenderOptions progressiveOptions(void)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_KELLER;
-    o.width = 41;
-    o.height = 31;
-    o.shadowMapSize = 64;
-    o.particles = 20;
-    o.compensation = VPL_COMPENSATION_NONE;
+    o.output.width = 41;
+    o.output.height = 31;
+    o.shadow.mapSize = 64;
+    o.particles.count = 20;
+    o.lights.compensation = VPL_COMPENSATION_NONE;
     return o;
 }
 
@@ -54,8 +54,8 @@ static void StepsGiveTheBitsOfOneCall(void** state)
         vplScene* scene = loadScene(context, "room.json");
         vplRenderOptions o = progressiveOptions();
         o.method = methods[i % 4];
-        o.passes = i / 4 % 2 ? 5 : 0;
-        o.samplesPerPixel = i / 4 % 2 ? 70 : 20;
+        o.stop.passes = i / 4 % 2 ? 5 : 0;
+        o.path.samples = i / 4 % 2 ? 70 : 20;
         vplRenderStats stats;
         vplImage_Destroy(renderScene(scene, &o, &stats));
         int steps;
@@ -72,9 +72,9 @@ static vplImage* truthOf(const vplScene* scene, const vplRenderOptions* like)
 {
     vplRenderOptions o = *like;
     o.method = VPL_METHOD_PATH;
-    o.pixel = VPL_PIXEL_CENTRE;
-    o.samplesPerPixel = 1024;
-    o.passes = 0;
+    o.path.pixel = VPL_PIXEL_CENTRE;
+    o.path.samples = 1024;
+    o.stop.passes = 0;
     return renderScene(scene, &o, NULL);
 }
 
@@ -85,11 +85,11 @@ static void MorePassesAreBetterAndSaySo(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    o.reflectivity = -1;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o.particles.reflectivity = -1;
     vplImage* truth = truthOf(scene, &o);
     double before = INFINITY;
-    for (o.passes = 2; o.passes <= 128; o.passes *= 8) {
+    for (o.stop.passes = 2; o.stop.passes <= 128; o.stop.passes *= 8) {
         vplRenderStats stats;
         vplComparison m;
         vplImage* image = renderScene(scene, &o, &stats);
@@ -112,23 +112,23 @@ static void AnErrorOrATimeEndsIt(void** state)
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();
     vplRenderStats stats;
-    o.maxError = 0.08;
+    o.stop.maxError = 0.08;
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.passes > 2 && stats.relativeErrorEstimate <= 0.08);
     const int enough = stats.passes;
-    o.maxError = 0;
-    o.passes = enough - 1; // one less is not enough
+    o.stop.maxError = 0;
+    o.stop.passes = enough - 1; // one less is not enough
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.relativeErrorEstimate > 0.08);
-    o.maxError = 0.08; // whatever comes first
-    o.passes = enough + 10;
+    o.stop.maxError = 0.08; // whatever comes first
+    o.stop.passes = enough + 10;
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_int_equal(stats.passes, enough);
-    o.maxError = o.passes = 0;
-    o.budgetMs = 1e-6; // the first pass is always done
+    o.stop.maxError = o.stop.passes = 0;
+    o.stop.budgetMs = 1e-6; // the first pass is always done
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_int_equal(stats.passes, 1);
-    o.budgetMs = 300;
+    o.stop.budgetMs = 300;
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.passes > 1);
     vplScene_Destroy(scene);
@@ -143,8 +143,8 @@ static void PathsEndByTheirError(void** state)
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();
     o.method = VPL_METHOD_PATH;
-    o.samplesPerPixel = 4096;
-    o.maxError = 0.05;
+    o.path.samples = 4096;
+    o.stop.maxError = 0.05;
     vplRenderStats stats;
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.relativeErrorEstimate <= 0.05 && stats.passes < 128);
@@ -172,16 +172,16 @@ static void StepsAreCancelledAndNeedAFirst(void** state)
     vplRenderer_Destroy(r);
     vplRenderer_Destroy(NULL);
     double last = 0;
-    o.passes = 10;
+    o.stop.passes = 10;
     o.progress = stopAtHalf;
     o.progressUser = &last;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_CANCELLED);
     assert_true(last >= 0.5 && last < 0.62);
     assert_null(image);
-    o.passes = VPL_MAX_PASSES + 1;
+    o.stop.passes = VPL_MAX_PASSES + 1;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
-    o.passes = 0;
-    o.budgetMs = NAN;
+    o.stop.passes = 0;
+    o.stop.budgetMs = NAN;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);
     closeTestContext(context);

@@ -42,8 +42,8 @@ static vplRenderOptions ssvpOptions(int size)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_SSVP;
-    o.width = o.height = size;
-    o.rsmSize = 256;
+    o.output.width = o.output.height = size;
+    o.shadow.rsmSize = 256;
     return o;
 }
 
@@ -84,7 +84,7 @@ static double meanOfRender(const vplScene* scene, const vplRenderOptions* o)
 // Renders with such shadows of virtual lights.
 static vplImage* renderWith(const vplScene* scene, vplRenderOptions o, vplLightShadows shadows)
 {
-    o.lightShadows = shadows;
+    o.lights.shadows = shadows;
     return renderScene(scene, &o, NULL);
 }
 
@@ -97,10 +97,10 @@ static void AsManyClustersAsLightsAreInstantRadiosity(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(64);
-    o.show = VPL_SHOW_INDIRECT;
-    o.accumulation = VPL_ACCUMULATE_DEFERRED;
-    o.firstBounce = o.secondBounce = o.clusters = 128;
-    o.paraboloidSize = o.lightMapSize = 512;
+    o.output.show = VPL_SHOW_INDIRECT;
+    o.pipeline.kind = VPL_ACCUMULATE_DEFERRED;
+    o.ssvp.firstBounce = o.ssvp.secondBounce = o.ssvp.clusters = 128;
+    o.ssvp.paraboloidSize = o.lights.mapSize = 512;
     vplImage* rays = renderWith(scene, o, VPL_LIGHT_SHADOWS_RAY);
     vplImage* clusters = renderWith(scene, o, VPL_LIGHT_SHADOWS_CLUSTER);
     vplImage* maps = renderWith(scene, o, VPL_LIGHT_SHADOWS_MAP);
@@ -109,7 +109,7 @@ static void AsManyClustersAsLightsAreInstantRadiosity(void** state)
     assertNear(differenceOf(clusters, rays), 0, 0.01, "clusters and rays", 0);
     assertNear(differenceOf(clusters, maps), 0, 0.02, "clusters and maps", 0);
     assert_true(differenceOf(none, rays) > 5 * differenceOf(clusters, rays)); // shadows matter here
-    o.clusters = 8;
+    o.ssvp.clusters = 8;
     vplImage* few = renderWith(scene, o, VPL_LIGHT_SHADOWS_CLUSTER);
     assert_true(differenceOf(few, rays) > 2 * differenceOf(clusters, rays)); // and so does their number
     vplImage* all[5] = {rays, clusters, maps, none, few};
@@ -130,21 +130,21 @@ static void EachBounceHasTheLightOfPaths(void** state)
         vplScene* scene = corner(context, types[k]);
         for (int bounces = 1; bounces <= 2; bounces++) {
             vplRenderOptions o = ssvpOptions(32);
-            o.firstBounce = o.secondBounce = 8192;
-            o.clusters = 64;
-            o.minDistance = 0.01f;
-            o.accumulation = VPL_ACCUMULATE_DEFERRED; // sharing moves light at edges
+            o.ssvp.firstBounce = o.ssvp.secondBounce = 8192;
+            o.ssvp.clusters = 64;
+            o.lights.minDistance = 0.01f;
+            o.pipeline.kind = VPL_ACCUMULATE_DEFERRED; // sharing moves light at edges
             o.maxBounces = bounces;
-            o.show = VPL_SHOW_INDIRECT;
-            o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+            o.output.show = VPL_SHOW_INDIRECT;
+            o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
             const double found = meanOfRender(scene, &o);
             o = vplDefaultRenderOptions();
-            o.width = o.height = 32;
+            o.output.width = o.output.height = 32;
             o.method = VPL_METHOD_PATH;
-            o.pixel = VPL_PIXEL_CENTRE;
-            o.samplesPerPixel = 512;
+            o.path.pixel = VPL_PIXEL_CENTRE;
+            o.path.samples = 512;
             o.maxBounces = bounces;
-            o.show = VPL_SHOW_INDIRECT;
+            o.output.show = VPL_SHOW_INDIRECT;
             assertNear(found / meanOfRender(scene, &o), 1, 0.02, "energy", 10 * k + bounces);
         }
         vplScene_Destroy(scene);
@@ -160,9 +160,9 @@ static void PrintedWeightsMoveTheSecondBounce(void** state)
     vplContext* context = openTestContext(1);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(32);
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.show = VPL_SHOW_INDIRECT;
     vplImage* right = renderScene(scene, &o, NULL);
-    o.secondWeight = VPL_SECOND_WEIGHT_PRINTED;
+    o.ssvp.secondWeight = VPL_SECOND_WEIGHT_PRINTED;
     vplImage* printed = renderScene(scene, &o, NULL);
     assert_true(differenceOf(printed, right) > 0.01);
     vplImage_Destroy(right);
@@ -193,11 +193,11 @@ static void BouncesAreToggled(void** state)
     assert_true(meanOf(pictures[1]) < meanOf(pictures[2]));
     vplRenderStats other;
     o.maxBounces = 2;
-    o.secondBounce = 0;
+    o.ssvp.secondBounce = 0;
     vplImage_Destroy(renderScene(scene, &o, &other));
     assert_true(other.imageHash == stats[1].imageHash);
     o.maxBounces = -1;
-    o.show = VPL_SHOW_DIRECT;
+    o.output.show = VPL_SHOW_DIRECT;
     vplImage_Destroy(renderScene(scene, &o, &other));
     assert_true(other.imageHash == stats[0].imageHash);
     for (int i = 0; i < 4; i++) {
@@ -217,14 +217,14 @@ static void EveryStageIsShown(void** state)
     vplRenderStats plain, stats;
     vplImage_Destroy(renderScene(scene, &o, &plain));
     for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_DENOISED; show++) {
-        o.show = (vplShow)show;
+        o.output.show = (vplShow)show;
         vplImage* image = renderScene(scene, &o, &stats);
         assert_true(meanOf(image) > 0);
         vplImage_Destroy(image);
         assert_true(stats.imageHash != plain.imageHash);
     }
-    o.show = VPL_SHOW_PARABOLOID;
-    o.showLight = 8;
+    o.output.show = VPL_SHOW_PARABOLOID;
+    o.output.showIndex = 8;
     vplImage* nothing = NULL;
     assert_int_equal(vplRender(scene, &o, &nothing, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "cluster 8 does not exist, there are 8"));
@@ -258,8 +258,8 @@ static void BitsDependOnNeitherThreadsNorInstructions(void** state)
 static uint64_t hashOfFrame(vplScene* scene, vplRenderOptions o, vplHistory* history, double frame)
 {
     vplRenderStats stats;
-    o.history = history;
-    o.frame = frame;
+    o.sequence.history = history;
+    o.sequence.frame = frame;
     vplImage_Destroy(renderScene(scene, &o, &stats));
     return stats.imageHash;
 }
@@ -276,11 +276,11 @@ static void StillLightsKeepTheirBits(void** state)
     const uint64_t alone = hashOfFrame(scene, o, NULL, 0);
     assert_true(hashOfFrame(scene, o, history, 0) == alone);
     assert_true(hashOfFrame(scene, o, history, 1) == alone);
-    o.coherence = VPL_COHERENCE_OFF;
+    o.sequence.coherence = VPL_COHERENCE_OFF;
     assert_true(hashOfFrame(scene, o, history, 2) != alone);
     assert_true(hashOfFrame(scene, o, history, 2) == hashOfFrame(scene, o, NULL, 2));
-    o.coherence = VPL_COHERENCE_ON;
-    o.clusters = 5; // changes what is kept
+    o.sequence.coherence = VPL_COHERENCE_ON;
+    o.ssvp.clusters = 5; // changes what is kept
     const uint64_t five = hashOfFrame(scene, o, NULL, 0);
     vplHistory_Destroy(history);
     assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
@@ -299,7 +299,7 @@ static void MapsThatWereNotNeededAreDrawnWhenTheyAre(void** state)
     vplRenderOptions o = ssvpOptions(32);
     vplHistory* history;
     assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
     o.maxBounces = 0;
     hashOfFrame(scene, o, history, 0);
     o.maxBounces = 2;
@@ -316,9 +316,9 @@ static void PassesHaveNothingToDoWithEachOther(void** state)
     vplContext* context = openTestContext(2);
     vplScene* scene = corner(context, VPL_EMITTER_SPOT);
     vplRenderOptions o = ssvpOptions(32);
-    o.passes = 3;
+    o.stop.passes = 3;
     const uint64_t on = hashOfFrame(scene, o, NULL, 0);
-    o.coherence = VPL_COHERENCE_OFF;
+    o.sequence.coherence = VPL_COHERENCE_OFF;
     assert_true(hashOfFrame(scene, o, NULL, 0) == on);
     vplScene_Destroy(scene);
     closeTestContext(context);
@@ -342,16 +342,16 @@ static void FewerLightsThanClustersAndMapsOfOneTexel(void** state)
     vplRenderOptions o = ssvpOptions(32);
     const int counts[4] = {0, 1, 2, 7};
     for (int i = 0; i < 4; i++) {
-        o.firstBounce = o.secondBounce = counts[i];
-        o.clusters = 32;
+        o.ssvp.firstBounce = o.ssvp.secondBounce = counts[i];
+        o.ssvp.clusters = 32;
         assertFinite(scene, o);
     }
     o = ssvpOptions(32);
-    o.rsmSize = 1;
+    o.shadow.rsmSize = 1;
     assertFinite(scene, o);
-    o.paraboloidSize = 1;
+    o.ssvp.paraboloidSize = 1;
     assertFinite(scene, o);
-    o.interleave = 16;
+    o.pipeline.interleave = 16;
     assertFinite(scene, o);
     vplScene_Destroy(scene);
     closeTestContext(context);
@@ -371,12 +371,12 @@ static void CentroidsInMidAirLightTheBallTheyAreIn(void** state)
     addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.1f, 0.2f, 0), vplVec(0, -1, 0), 1);
     for (int place = 0; place <= 1; place++) {
         vplRenderOptions o = ssvpOptions(32);
-        o.show = VPL_SHOW_INDIRECT;
-        o.clusters = 2;
-        o.hemispheres = 2;
-        o.clusterPlace = (vplClusterPlace)place;
+        o.output.show = VPL_SHOW_INDIRECT;
+        o.ssvp.clusters = 2;
+        o.ssvp.hemispheres = 2;
+        o.ssvp.place = (vplClusterPlace)place;
         vplImage* clusters = renderScene(scene, &o, NULL);
-        o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
+        o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
         vplImage* rays = renderScene(scene, &o, NULL);
         assert_true(meanOf(clusters) > 0.9 * meanOf(rays)); // nothing is in the way inside a ball
         vplImage_Destroy(clusters);
@@ -392,7 +392,7 @@ static void BlackScenesAndLightsThatSeeNothingStayBlack(void** state)
     vplContext* context = openTestContext(2);
     vplScene* black = spotRoom(context, 0);
     vplRenderOptions o = ssvpOptions(32);
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.show = VPL_SHOW_INDIRECT;
     assertNear(meanOfRender(black, &o), 0, 0, "black walls", 0);
     vplScene_Destroy(black);
     vplScene* dark = closedCubeScene(context, 0.5f, 0);
@@ -417,19 +417,19 @@ static void LampsAreLightsToo(void** state)
     addThing(scene, VPL_OBJECT_QUAD, lamp, vplVec(0, 0.99f, 0), VPL_PI / 2, 0, vplVec(1, 1, 1));
     aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
     vplRenderOptions o = ssvpOptions(32);
-    o.firstBounce = 4096;
+    o.ssvp.firstBounce = 4096;
     o.maxBounces = 1;
-    o.show = VPL_SHOW_INDIRECT;
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    o.minDistance = 0.05f;
+    o.output.show = VPL_SHOW_INDIRECT;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o.lights.minDistance = 0.05f;
     const double found = meanOfRender(scene, &o);
     o = vplDefaultRenderOptions();
-    o.width = o.height = 32;
+    o.output.width = o.output.height = 32;
     o.method = VPL_METHOD_PATH;
-    o.pixel = VPL_PIXEL_CENTRE;
-    o.samplesPerPixel = 1024;
+    o.path.pixel = VPL_PIXEL_CENTRE;
+    o.path.samples = 1024;
     o.maxBounces = 1;
-    o.show = VPL_SHOW_INDIRECT;
+    o.output.show = VPL_SHOW_INDIRECT;
     assertNear(found / meanOfRender(scene, &o), 1, 0.03, "energy", 0);
     vplScene_Destroy(scene);
     closeTestContext(context);
@@ -447,21 +447,21 @@ static void WhatIsNotPossibleIsASentence(void** state)
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "physical"));
     o = ssvpOptions(16);
-    o.accumulation = VPL_ACCUMULATE_MULTIPASS;
+    o.pipeline.kind = VPL_ACCUMULATE_MULTIPASS;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_true(strlen(takeMessage()) > 0);
     o = vplDefaultRenderOptions();
-    o.width = o.height = 16;
-    o.lightShadows = VPL_LIGHT_SHADOWS_CLUSTER;
+    o.output.width = o.output.height = 16;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_CLUSTER;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "clusters"));
     const vplMethod others[3] = {VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_DIRECT, VPL_METHOD_PATH};
     for (int i = 0; i < 3; i++) {
         o = vplDefaultRenderOptions();
         o.method = others[i];
-        o.width = o.height = 16;
+        o.output.width = o.output.height = 16;
         for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_SECOND_BOUNCE; show++) {
-            o.show = (vplShow)show;
+            o.output.show = (vplShow)show;
             assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
             assert_non_null(strstr(takeMessage(), "only SSVP"));
         }

@@ -80,9 +80,9 @@ vplResult runPath(Bench* b, const Stage* stage, Outcome* outcome)
     (void)stage;
     vplRenderOptions options = vplDefaultRenderOptions();
     options.method = VPL_METHOD_PATH;
-    options.width = b->quarter->width;
-    options.height = b->quarter->height;
-    options.samplesPerPixel = 1;
+    options.output.width = b->quarter->width;
+    options.output.height = b->quarter->height;
+    options.path.samples = 1;
     vplImage* image;
     vplRenderStats stats;
     vplResult result = vplRender(b->scene, &options, &image, &stats);

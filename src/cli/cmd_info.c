@@ -138,23 +138,23 @@ enum { LIGHT_TREE_BYTES = 104 };
 // no map.
 static void countDraws(const vplRenderOptions* o, Info* info)
 {
-    const int64_t perPass = o->accumulation == VPL_ACCUMULATE_BATCHED ? o->batch : 1;
+    const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
     // Keller's lights of step 0 are drawn where they lie on lamps; elsewhere they are the emitter itself.
     const bool asEmitters = o->method == VPL_METHOD_KELLER && info->lampTriangles == 0;
     const int64_t drawn = info->virtualLights - (asEmitters ? info->particlesPerStep[0] : 0);
-    const int64_t passes = o->accumulation >= VPL_ACCUMULATE_DEFERRED ? 0 : (drawn + perPass - 1) / perPass;
+    const int64_t passes = o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : (drawn + perPass - 1) / perPass;
     const int64_t maps =
-        o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
-    const int64_t lightMaps = o->lightShadows == VPL_LIGHT_SHADOWS_MAP ? drawn : 0;
-    const int64_t size = o->shadowMapSize, lightSize = o->lightMapSize;
+        o->lights.shadows == VPL_LIGHT_SHADOWS_RAY ? 0 : info->emitters - info->emittersOfType[DIRECTIONALS];
+    const int64_t lightMaps = o->lights.shadows == VPL_LIGHT_SHADOWS_MAP ? drawn : 0;
+    const int64_t size = o->shadow.mapSize, lightSize = o->lights.mapSize;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
-    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->antialias) + patchDraws * o->antialias;
+    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->output.antialias) + patchDraws * o->output.antialias;
     const int64_t lightMapBytes = lightMaps * lightSize * lightSize * (int64_t)sizeof(float);
     info->shadowMapBytes = 6 * maps * size * size * (int64_t)sizeof(float) +
                            (lightMapBytes < VPL_LIGHT_MAP_BYTES ? lightMapBytes : VPL_LIGHT_MAP_BYTES);
-    const int64_t lamps = info->lampTriangles > 0 && o->method != VPL_METHOD_KELLER ? o->areaLightSamples : 0;
+    const int64_t lamps = info->lampTriangles > 0 && o->method != VPL_METHOD_KELLER ? o->lights.areaLightSamples : 0;
     const int64_t each = (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight)) +
-                         (o->accumulation == VPL_ACCUMULATE_LIGHTCUTS ? LIGHT_TREE_BYTES : 0);
+                         (o->pipeline.kind == VPL_ACCUMULATE_LIGHTCUTS ? LIGHT_TREE_BYTES : 0);
     info->lightBytes = info->virtualLights * each + lamps * (int64_t)sizeof(vplShadeLight);
 }
 
@@ -163,21 +163,21 @@ static void countDraws(const vplRenderOptions* o, Info* info)
 static void countSsvp(const vplRenderOptions* o, Info* info)
 {
     const bool clusters =
-        o->lightShadows == VPL_LIGHT_SHADOWS_USUAL || o->lightShadows == VPL_LIGHT_SHADOWS_CLUSTER;
+        o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL || o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER;
     const int bounces = o->maxBounces < 0 || o->maxBounces > 2 ? 2 : o->maxBounces;
-    const int lights[2] = {bounces > 0 ? o->firstBounce : 0, bounces > 1 ? o->secondBounce : 0};
+    const int lights[2] = {bounces > 0 ? o->ssvp.firstBounce : 0, bounces > 1 ? o->ssvp.secondBounce : 0};
     const int64_t faces = info->emitters + 5 * info->emittersOfType[POINTS];
-    const int64_t rsm = o->rsmSize > 0 ? o->rsmSize : 1024, map = o->paraboloidSize;
+    const int64_t rsm = o->shadow.rsmSize > 0 ? o->shadow.rsmSize : 1024, map = o->ssvp.paraboloidSize;
     int64_t texels = faces * rsm * rsm * 2; // distance and triangle
     for (int i = 0; i < 2; i++) {
-        const int64_t count = lights[i] < o->clusters ? lights[i] : o->clusters;
+        const int64_t count = lights[i] < o->ssvp.clusters ? lights[i] : o->ssvp.clusters;
         const bool sampled = i == 0 && lights[1] > 0;
         info->steps += lights[i] > 0;
         info->particlesPerStep[i] = lights[i];
         info->virtualLights += lights[i];
-        texels += clusters || sampled ? count * o->hemispheres * map * map * (sampled ? 2 : 1) : 0;
+        texels += clusters || sampled ? count * o->ssvp.hemispheres * map * map * (sampled ? 2 : 1) : 0;
     }
-    info->drawCalls = info->objects * (faces + o->antialias);
+    info->drawCalls = info->objects * (faces + o->output.antialias);
     info->shadowMapBytes = texels * (int64_t)sizeof(float);
     info->lightBytes = info->virtualLights * (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight));
 }
@@ -188,13 +188,13 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
     info->arguments = a;
     writeNamedOption("--method", a, info->method, sizeof info->method);
     writeNamedOption("--pipeline", a, info->pipeline, sizeof info->pipeline);
-    if (o->accumulation == VPL_ACCUMULATE_USUAL) {
+    if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
         strcpy(info->pipeline, o->method == VPL_METHOD_SSVP ? "interleaved" : "deferred");
     }
-    info->reflectivity = o->reflectivity >= 0 ? o->reflectivity : info->reflectance;
+    info->reflectivity = o->particles.reflectivity >= 0 ? o->particles.reflectivity : info->reflectance;
     if (o->method == VPL_METHOD_INSTANT_RADIOSITY || o->method == VPL_METHOD_KELLER) {
         vplResult result =
-            vplCountParticles(context, o->particles, info->reflectivity, info->particlesPerStep,
+            vplCountParticles(context, o->particles.count, info->reflectivity, info->particlesPerStep,
                               VPL_MAX_STEPS_REPORTED, &info->steps, &info->virtualLights);
         if (result != VPL_SUCCESS) {
             return result;
@@ -205,7 +205,7 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
     } else if (o->method != VPL_METHOD_PATH) {
         countDraws(o, info);
     }
-    info->pictureBytes = 3 * (int64_t)sizeof(float) * o->width * o->height;
+    info->pictureBytes = 3 * (int64_t)sizeof(float) * o->output.width * o->output.height;
     info->problem = findProblem(info, o);
     return VPL_SUCCESS;
 }
@@ -264,10 +264,10 @@ static void printText(const Info* info)
     printf("  %-16s %g m^2\n", "area", info->area);
     printf("  %-16s %.4f (mean over the area)\n", "reflectance", info->reflectance);
     if (o->method == VPL_METHOD_PATH) {
-        printf("\nto render it by path, at %dx%d\n", o->width, o->height);
-        printf("  %-16s %lld\n", "paths", (long long)o->width * o->height * o->samplesPerPixel);
+        printf("\nto render it by path, at %dx%d\n", o->output.width, o->output.height);
+        printf("  %-16s %lld\n", "paths", (long long)o->output.width * o->output.height * o->path.samples);
     } else {
-        printf("\nto render it by %s, %s, at %dx%d\n", info->method, info->pipeline, o->width, o->height);
+        printf("\nto render it by %s, %s, at %dx%d\n", info->method, info->pipeline, o->output.width, o->output.height);
         if (o->method == VPL_METHOD_RADIOSITY) {
             printPatches(&info->patches);
         } else {
@@ -297,7 +297,7 @@ static json_t* renderJson(const Info* info)
     }
     return json_pack(
         "{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:i, s:i, s:I, s:s?}", "method",
-        info->method, "pipeline", info->pipeline, "width", o->width, "height", o->height, "reflectivity",
+        info->method, "pipeline", info->pipeline, "width", o->output.width, "height", o->output.height, "reflectivity",
         info->reflectivity, "steps", info->steps, "lights_per_step", steps, "virtual_lights",
         (json_int_t)info->virtualLights, "draw_calls", (json_int_t)info->drawCalls, "shadow_map_bytes",
         (json_int_t)info->shadowMapBytes, "light_bytes", (json_int_t)info->lightBytes, "picture_bytes",

@@ -41,7 +41,7 @@ static bool endsWithPng(const char* path)
 
 static int writePicture(const Arguments* a, vplImage* image, const char* path)
 {
-    vplShow show = a->render.show;
+    vplShow show = a->render.output.show;
     bool metres = show == VPL_SHOW_DEPTH || show == VPL_SHOW_SHADOW_MAP;
     vplWriteOptions options = a->write;
     if (!a->tonemapGiven && a->render.method == VPL_METHOD_SSVP) {
@@ -134,12 +134,12 @@ static int renderScene(const Arguments* a, vplContext* context, const vplScene* 
     if (!isSequence(a)) {
         return renderPicture(a, context, scene, &options, a->output, a->stats);
     }
-    int code = exitCode(vplHistory_Create(context, &options.history), false);
+    int code = exitCode(vplHistory_Create(context, &options.sequence.history), false);
     sequence.count = a->frames[1] - a->frames[0] + 1;
     for (; code == EXIT_DONE && sequence.done < sequence.count; sequence.done++) {
         const int frame = a->frames[0] + sequence.done;
         char output[PATH_MAX], stats[PATH_MAX];
-        options.frame = frame;
+        options.sequence.frame = frame;
         if (a->verbose) {
             complain("frame %d", frame);
         }
@@ -147,7 +147,7 @@ static int renderScene(const Arguments* a, vplContext* context, const vplScene* 
         nameFrame(a->stats, a, frame, stats);
         code = renderPicture(a, context, scene, &options, output, a->stats ? stats : NULL);
     }
-    vplHistory_Destroy(options.history);
+    vplHistory_Destroy(options.sequence.history);
     return code;
 }
 

@@ -111,7 +111,7 @@ static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOu
 
 static int checkCamera(const Tradeoff* t)
 {
-    int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.camera;
+    int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.output.camera;
     if (camera >= cameras) {
         complain("--camera is %d, the scene has %d (from 0)", camera, cameras);
     }

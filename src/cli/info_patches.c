@@ -31,20 +31,20 @@ vplResult measurePatches(const vplScene* scene, const vplRenderOptions* o, const
     vplPatchDef def = vplDefaultPatchDef();
     vplPatches* patches = NULL;
     vplPatchSides* sides = NULL;
-    def.size = o->patchSize;
-    def.count = o->patches;
-    def.rounds = o->subdivisions;
+    def.size = o->radiosity.patchSize;
+    def.count = o->radiosity.patches;
+    def.rounds = o->radiosity.subdivisions;
     vplResult result = vplPatches_Create(geometry, &def, &patches);
     if (result == VPL_SUCCESS) {
         result = findSides(scene, patches, &sides);
     }
     if (result == VPL_SUCCESS) {
         const int64_t count = sides->count;
-        const bool many = o->hierarchy == VPL_HIERARCHY_AUTO && count > VPL_ALL_PAIRS;
+        const bool many = o->radiosity.hierarchy == VPL_HIERARCHY_AUTO && count > VPL_ALL_PAIRS;
         *infoOut = (PatchInfo){.patches = patches->patchCount,
                                .sides = sides->count,
                                .longestEdge = (double)patches->longestEdge,
-                               .linked = many || o->hierarchy == VPL_HIERARCHY_ON,
+                               .linked = many || o->radiosity.hierarchy == VPL_HIERARCHY_ON,
                                .formFactorBytes = count * count * (int64_t)sizeof(float)};
     }
     vplPatchSides_Destroy(sides);

@@ -91,7 +91,7 @@ bool readReflectivity(const Option* o, const char* value, Arguments* a)
         }
         return false;
     }
-    a->render.reflectivity = number;
+    a->render.particles.reflectivity = number;
     return true;
 }
 
@@ -191,10 +191,10 @@ bool readShow(const Option* o, const char* value, Arguments* a)
         long most;
         size_t offset;
     } indexed[] = {
-        {"light:", "a virtual light", VPL_SHOW_LIGHT, VPL_MAX_LIGHTS, offsetof(Arguments, render.showLight)},
-        {"bounce:", "a bounce", VPL_SHOW_BOUNCE, VPL_MAX_BOUNCES, offsetof(Arguments, render.showBounce)},
+        {"light:", "a virtual light", VPL_SHOW_LIGHT, VPL_MAX_LIGHTS, offsetof(Arguments, render.output.showIndex)},
+        {"bounce:", "a bounce", VPL_SHOW_BOUNCE, VPL_MAX_BOUNCES, offsetof(Arguments, render.output.showIndex)},
         {"paraboloid:", "a cluster", VPL_SHOW_PARABOLOID, VPL_MAX_LIGHTS,
-         offsetof(Arguments, render.showLight)},
+         offsetof(Arguments, render.output.showIndex)},
     };
     for (size_t i = 0; i < sizeof indexed / sizeof *indexed; i++) {
         if (strncmp(value, indexed[i].prefix, strlen(indexed[i].prefix)) == 0) {
@@ -205,7 +205,7 @@ bool readShow(const Option* o, const char* value, Arguments* a)
                 return false;
             }
             memcpy((char*)a + indexed[i].offset, &index, sizeof index);
-            a->render.show = indexed[i].show;
+            a->render.output.show = indexed[i].show;
             return true;
         }
     }
@@ -214,7 +214,7 @@ bool readShow(const Option* o, const char* value, Arguments* a)
         complain("%s is \"%s\", must be one of %s", o->name, value, o->choices);
         return false;
     }
-    a->render.show = (vplShow)choice;
+    a->render.output.show = (vplShow)choice;
     return true;
 }
 
@@ -240,7 +240,7 @@ static bool parsePair(const char* value, int* first, int* second)
 
 bool readSize(const Option* o, const char* value, Arguments* a)
 {
-    if (!parsePair(value, &a->render.width, &a->render.height)) {
+    if (!parsePair(value, &a->render.output.width, &a->render.output.height)) {
         complain("%s is \"%s\", must be WIDTHxHEIGHT, each in [1, %d]", o->name, value, VPL_MAX_IMAGE_SIZE);
         return false;
     }

@@ -57,13 +57,13 @@ bool writeOption(const Option* o, const Arguments* a, char* text, size_t size)
     memcpy(&wide, field, sizeof wide);
     text[0] = 0;
     if (o->read == readSize) {
-        snprintf(text, size, "%dx%d", a->render.width, a->render.height);
+        snprintf(text, size, "%dx%d", a->render.output.width, a->render.output.height);
     } else if (o->read == readSeed) {
         snprintf(text, size, "%llu", (unsigned long long)a->render.seed);
-    } else if (o->read == readReflectivity && a->render.reflectivity < 0) {
+    } else if (o->read == readReflectivity && a->render.particles.reflectivity < 0) {
         snprintf(text, size, "auto");
     } else if (o->read == readReflectivity) {
-        writeDouble(a->render.reflectivity, text, size);
+        writeDouble(a->render.particles.reflectivity, text, size);
     } else if (o->read == readBias || o->read == readBiasSlope) {
         writeBias(&a->render.shadow, o->read == readBiasSlope, text, size);
     } else if (o->offset < offsetof(Arguments, render) ||

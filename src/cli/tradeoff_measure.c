@@ -47,13 +47,13 @@ static double foresee(const Tradeoff* t, const Setting* s)
         const Setting* other = &t->settings[i];
         double far = fabs(log(other->work / s->work));
         if (isMeasured(other) && other->family == s->family &&
-            other->arguments.render.accumulation == o->accumulation && far < least) {
+            other->arguments.render.pipeline.kind == o->pipeline.kind && far < least) {
             nearest = other;
             least = far;
         }
     }
-    double pixels = (double)o->width * o->height;
-    double pipeline = o->accumulation >= VPL_ACCUMULATE_DEFERRED ? 1 : 10;
+    double pixels = (double)o->output.width * o->output.height;
+    double pipeline = o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 1 : 10;
     return nearest ? nearest->wallMs * s->work / nearest->work
                    : guess[s->family] * pixels * s->work * pipeline;
 }

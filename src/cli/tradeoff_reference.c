@@ -30,9 +30,9 @@ static int readPicture(Tradeoff* t, const char* path, vplImage** imageOut)
 {
     const vplRenderOptions* o = &t->arguments->render;
     int code = exitCode(vplImage_Read(t->context, path, imageOut), true);
-    if (code == EXIT_DONE && ((*imageOut)->width != o->width || (*imageOut)->height != o->height)) {
+    if (code == EXIT_DONE && ((*imageOut)->width != o->output.width || (*imageOut)->height != o->output.height)) {
         complain("%s: the reference has %dx%d pixels, must have %dx%d as the pictures (--size)", path,
-                 (*imageOut)->width, (*imageOut)->height, o->width, o->height);
+                 (*imageOut)->width, (*imageOut)->height, o->output.width, o->output.height);
         return EXIT_USAGE;
     }
     return code;
@@ -70,11 +70,11 @@ static vplResult traceHalf(Tradeoff* t, int samples, int half, vplImage** imageO
     vplRenderOptions o = vplDefaultRenderOptions();
     const vplRenderOptions* base = &t->arguments->render;
     o.method = VPL_METHOD_PATH;
-    o.pixel = VPL_PIXEL_CENTRE; // jagged edges are no error of a method that draws them so
-    o.width = base->width;
-    o.height = base->height;
-    o.camera = base->camera;
-    o.samplesPerPixel = samples;
+    o.path.pixel = VPL_PIXEL_CENTRE; // jagged edges are no error of a method that draws them so
+    o.output.width = base->output.width;
+    o.output.height = base->output.height;
+    o.output.camera = base->output.camera;
+    o.path.samples = samples;
     // Far from the seeds of the settings: a path-traced setting must not share paths with its own judge.
     o.seed = base->seed ^ (UINT64_C(0x7472757468000000) + (uint64_t)half);
     return renderQuietly(t, t->traced, &o, imageOut, stats);

@@ -42,7 +42,7 @@ static void addHead(const Tradeoff* t, Text* html)
             "<h1>Error against time</h1>\n<p>",
             vplGetVersion());
     addEscaped(html, t->arguments->positionals[0]);
-    addText(html, ", camera %d, %dx%d pixels.", o->camera, o->width, o->height);
+    addText(html, ", camera %d, %dx%d pixels.", o->output.camera, o->output.width, o->output.height);
     if (t->interrupted) {
         addText(html, " <strong>Interrupted: only what was measured until then is shown.</strong>");
     }

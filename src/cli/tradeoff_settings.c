@@ -144,20 +144,20 @@ static Family familyOf(const vplRenderOptions* o)
     case VPL_METHOD_INSTANT_RADIOSITY:
         break;
     }
-    return o->lightShadows == VPL_LIGHT_SHADOWS_MAP   ? FAMILY_MAP
-           : o->lightShadows == VPL_LIGHT_SHADOWS_RAY ? FAMILY_RAY
+    return o->lights.shadows == VPL_LIGHT_SHADOWS_MAP   ? FAMILY_MAP
+           : o->lights.shadows == VPL_LIGHT_SHADOWS_RAY ? FAMILY_RAY
                                                       : FAMILY_UNSHADOWED;
 }
 
 // Lights or paths, and a constant for what every picture costs.
 static double workOf(const vplRenderOptions* o)
 {
-    double reflectivity = o->reflectivity >= 0 ? o->reflectivity : 0.7;
-    return o->method == VPL_METHOD_PATH        ? o->samplesPerPixel
+    double reflectivity = o->particles.reflectivity >= 0 ? o->particles.reflectivity : 0.7;
+    return o->method == VPL_METHOD_PATH        ? o->path.samples
            : o->method == VPL_METHOD_DIRECT    ? 1
-           : o->method == VPL_METHOD_RADIOSITY ? 500 + o->patches
-           : o->method == VPL_METHOD_SSVP      ? 200 + o->firstBounce + o->secondBounce + 8 * o->clusters
-                                               : 50 + o->particles / (1 - reflectivity);
+           : o->method == VPL_METHOD_RADIOSITY ? 500 + o->radiosity.patches
+           : o->method == VPL_METHOD_SSVP      ? 200 + o->ssvp.firstBounce + o->ssvp.secondBounce + 8 * o->ssvp.clusters
+                                               : 50 + o->particles.count / (1 - reflectivity);
 }
 
 // The words that make `plain` into `a`.
@@ -188,12 +188,12 @@ static void forgetParticles(vplRenderOptions* o)
 {
     const vplRenderOptions plain = vplDefaultRenderOptions();
     o->lighting = plain.lighting;
-    o->particles = plain.particles;
-    o->reflectivity = plain.reflectivity;
-    o->sampler = plain.sampler;
-    o->bounce = plain.bounce;
-    o->placement = plain.placement;
-    o->particleGeometry = plain.particleGeometry;
+    o->particles.count = plain.particles;
+    o->particles.reflectivity = plain.particles.reflectivity;
+    o->particles.sampler = plain.particles.sampler;
+    o->particles.bounce = plain.particles.bounce;
+    o->particles.placement = plain.particles.placement;
+    o->particles.geometry = plain.particles.geometry;
 }
 
 // Options that the method never looks at go back to their defaults: equal settings look equal, and a command to
@@ -203,7 +203,7 @@ static void forgetUnused(vplRenderOptions* o)
     vplRenderOptions plain = vplDefaultRenderOptions();
     if (o->method == VPL_METHOD_SSVP) {
         forgetParticles(o);
-        o->shadowMapSize = plain.shadowMapSize;
+        o->shadow.mapSize = plain.shadow.mapSize;
         o->shadow = plain.shadow;
         return;
     }
@@ -215,14 +215,14 @@ static void forgetUnused(vplRenderOptions* o)
         return;
     }
     plain.method = o->method;
-    plain.width = o->width;
-    plain.height = o->height;
-    plain.camera = o->camera;
+    plain.output.width = o->output.width;
+    plain.output.height = o->output.height;
+    plain.output.camera = o->output.camera;
     plain.seed = o->seed;
-    plain.samplesPerPixel = o->samplesPerPixel;
-    plain.pixel = o->pixel;
+    plain.path.samples = o->path.samples;
+    plain.path.pixel = o->path.pixel;
     if (o->method == VPL_METHOD_DIRECT) {
-        plain.shadowMapSize = o->shadowMapSize;
+        plain.shadow.mapSize = o->shadow.mapSize;
         plain.shadow = o->shadow;
     }
     *o = plain;

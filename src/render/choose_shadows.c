@@ -86,13 +86,13 @@ vplShadowLoad vplMeasureShadowLoad(const vplGeometry* geometry, const vplView* v
 vplLightShadows vplChooseLightShadows(vplJob* job, const vplIngredients* in)
 {
     const vplRenderOptions* o = &job->options;
-    if (o->accumulation == VPL_ACCUMULATE_LIGHTCUTS || in->lightCount == 0) {
+    if (o->pipeline.kind == VPL_ACCUMULATE_LIGHTCUTS || in->lightCount == 0) {
         return VPL_LIGHT_SHADOWS_RAY; // a pixel asks about few of the lights, and nobody knows which
     }
-    const int side = o->accumulation == VPL_ACCUMULATE_INTERLEAVED ? o->interleave : 1;
-    const double pixels = (double)o->width * o->height * o->antialias / side / side;
+    const int side = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED ? o->pipeline.interleave : 1;
+    const double pixels = (double)o->output.width * o->output.height * o->output.antialias / side / side;
     const vplShadowLoad load =
-        vplMeasureShadowLoad(job->geometry, &job->view, pixels, in->lights, in->lightCount, o->lightMapSize);
+        vplMeasureShadowLoad(job->geometry, &job->view, pixels, in->lights, in->lightCount, o->lights.mapSize);
     const vplShadowCosts costs = vplEstimateShadows(&load);
     const bool map = costs.mapMs < costs.rayMs;
     job->stats.shadowMapEstimateMs = costs.mapMs;

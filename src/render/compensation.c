@@ -22,10 +22,10 @@ bool vplCompensates(const vplJob* job)
     const bool usual = keller && o->lighting == VPL_LIGHTING_PHYSICAL &&
                        vplJob_GetLightShadows(job) != VPL_LIGHT_SHADOWS_NONE;
     const bool wanted =
-        o->compensation == VPL_COMPENSATION_RAYS || (o->compensation == VPL_COMPENSATION_USUAL && usual);
-    const bool shown = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_INDIRECT ||
-                       o->show == VPL_SHOW_OVERLAY || (o->show == VPL_SHOW_DIRECT && keller);
-    return wanted && shown && o->minDistance != 0 && o->method != VPL_METHOD_DIRECT &&
+        o->lights.compensation == VPL_COMPENSATION_RAYS || (o->lights.compensation == VPL_COMPENSATION_USUAL && usual);
+    const bool shown = o->output.show == VPL_SHOW_PICTURE || o->output.show == VPL_SHOW_INDIRECT ||
+                       o->output.show == VPL_SHOW_OVERLAY || (o->output.show == VPL_SHOW_DIRECT && keller);
+    return wanted && shown && o->lights.minDistance != 0 && o->method != VPL_METHOD_DIRECT &&
            vplJob_GetShading(job) == VPL_LIGHTING_PHYSICAL;
 }
 
@@ -37,7 +37,7 @@ bool vplCompensates(const vplJob* job)
 
 vplResult vplJob_FindNear(vplJob* job)
 {
-    const bool wanted = job->nearDistance == 0 && job->options.minDistance < 0 && vplCompensates(job);
+    const bool wanted = job->nearDistance == 0 && job->options.lights.minDistance < 0 && vplCompensates(job);
     return wanted ? vplFindNearDistance(job->geometry, &job->view, NEAR_SHARE, &job->nearDistance)
                   : VPL_SUCCESS;
 }
@@ -46,8 +46,8 @@ vplResult vplJob_FindNear(vplJob* job)
 static double workOf(const vplJob* job, const vplIngredients* in)
 {
     const vplRenderOptions* o = &job->options;
-    const double classes = o->accumulation == VPL_ACCUMULATE_INTERLEAVED ? o->interleave * o->interleave : 1;
-    const double most = o->accumulation == VPL_ACCUMULATE_LIGHTCUTS ? 2048 : INFINITY;
+    const double classes = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED ? o->pipeline.interleave * o->pipeline.interleave : 1;
+    const double most = o->pipeline.kind == VPL_ACCUMULATE_LIGHTCUTS ? 2048 : INFINITY;
     const double each = in->lightShadows == VPL_LIGHT_SHADOWS_NONE ? 1.0 / 32 : 1;
     return fmin(in->lightCount / classes, most) * each;
 }
@@ -109,8 +109,8 @@ vplCompensationDef vplMakeCompensation(const vplJob* job, const vplIngredients* 
     if (o->lighting == VPL_LIGHTING_DOCUMENTED) {
         def.reflection = (float)(1 / VPL_PI);
     }
-    def.seesEmission = o->show != VPL_SHOW_INDIRECT;
-    def.seesReflection = !(keller && o->show == VPL_SHOW_DIRECT);
+    def.seesEmission = o->output.show != VPL_SHOW_INDIRECT;
+    def.seesReflection = !(keller && o->output.show == VPL_SHOW_DIRECT);
     return def;
 }
 
@@ -121,7 +121,7 @@ enum { POINT_SHARE = 40000, MIN_POINTS = 32, MAX_POINTS = 1024, POINT_RAYS = 4 }
 static int pointsToAsk(const vplJob* job, const vplIngredients* in)
 {
     const vplRenderOptions* o = &job->options;
-    const double work = (double)o->width * o->height * o->antialias * workOf(job, in);
+    const double work = (double)o->output.width * o->output.height * o->output.antialias * workOf(job, in);
     return (int)fmin(fmax(work / POINT_SHARE, MIN_POINTS), MAX_POINTS);
 }
 

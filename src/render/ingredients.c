@@ -30,7 +30,7 @@ static void freeMaps(vplJob* job, vplMaps* maps)
 static vplResult boundMap(vplJob* job, vplCubeMap* map, int samples)
 {
     const vplRenderOptions* o = &job->options;
-    const double lookedUp = (double)o->width * o->height * o->antialias * samples;
+    const double lookedUp = (double)o->output.width * o->output.height * o->output.antialias * samples;
     const bool pays = samples >= VPL_MIN_BOUND_SAMPLES && lookedUp > 3.0 * map->size * map->size;
     return pays ? vplCubeMap_FindBounds(map) : VPL_SUCCESS;
 }
@@ -57,10 +57,13 @@ static vplResult makeEmitterShadows(vplJob* job, vplIngredients* in)
 {
     const vplRenderOptions* o = &job->options;
     const bool documented = vplJob_GetShading(job) == VPL_LIGHTING_DOCUMENTED;
-    vplShadowDef shadowDef = o->shadow;
-    if (shadowDef.biasRule == VPL_BIAS_AUTO && documented) {
-        shadowDef.biasRule = VPL_BIAS_PAIR;
-    }
+    vplShadowDef shadowDef = vplDefaultShadowDef();
+    const bool pair = o->shadow.bias >= 0 || o->shadow.biasSlope >= 0;
+    shadowDef.biasRule = pair || (documented && o->shadow.bias != VPL_BIAS_OPTION_EXACT) ? VPL_BIAS_PAIR : VPL_BIAS_EXACT;
+    shadowDef.biasStatic = o->shadow.bias;
+    shadowDef.biasDynamic = o->shadow.biasSlope;
+    shadowDef.pcfSamples = o->shadow.pcfSamples;
+    shadowDef.pcfOffset = o->shadow.pcfOffset;
     vplResult result = allocateMaps(job, in->emitterCount, &in->emitterMaps);
     for (int i = 0; i < in->emitterCount && result == VPL_SUCCESS; i++) {
         if (documented && in->emitters[i].type != VPL_EMITTER_POINT) {
@@ -69,9 +72,9 @@ static vplResult makeEmitterShadows(vplJob* job, vplIngredients* in)
                 "light %d is not a point light, and documented lighting knows no others; use physical", i);
         }
         if (in->ssvp == NULL && in->emitters[i].type != VPL_EMITTER_DIRECTIONAL &&
-            o->lightShadows != VPL_LIGHT_SHADOWS_RAY) {
+            o->lights.shadows != VPL_LIGHT_SHADOWS_RAY) {
             result =
-                makeMap(job, in->emitters[i].position, o->shadowMapSize, &shadowDef, &in->emitterMaps, i);
+                makeMap(job, in->emitters[i].position, o->shadow.mapSize, &shadowDef, &in->emitterMaps, i);
         }
     }
     return result;
@@ -79,7 +82,7 @@ static vplResult makeEmitterShadows(vplJob* job, vplIngredients* in)
 
 int vplLightBatch(const vplJob* job, const vplIngredients* in)
 {
-    const size_t room = (size_t)VPL_LIGHT_MAP_BYTES / vplHemiMaps_BytesPerMap(job->options.lightMapSize);
+    const size_t room = (size_t)VPL_LIGHT_MAP_BYTES / vplHemiMaps_BytesPerMap(job->options.lights.mapSize);
     return room >= (size_t)in->lightCount ? in->lightCount : room > 0 ? (int)room : 1;
 }
 
@@ -88,7 +91,7 @@ vplResult vplMakeLightShadows(vplJob* job, vplIngredients* in, int first, int co
     vplHemiMapPlace* places = vplAlloc(job->context, (size_t)count, sizeof *places);
     vplResult result = places ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     if (result == VPL_SUCCESS && in->lightMaps == NULL) {
-        result = vplHemiMaps_Create(job->context, job->options.lightMapSize, count, &in->lightMaps);
+        result = vplHemiMaps_Create(job->context, job->options.lights.mapSize, count, &in->lightMaps);
     }
     for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
         const vplShadeLight* l = &in->lights[in->firstShown + first + i];
@@ -110,7 +113,7 @@ static vplResult makeLamps(vplJob* job, vplIngredients* in)
     }
     double area = 0;
     if (emission->sourceCount > 0) {
-        const int count = job->options.areaLightSamples;
+        const int count = job->options.lights.areaLightSamples;
         in->areaLights = vplAlloc(job->context, (size_t)count, sizeof *in->areaLights);
         in->areaLightCount = in->areaLights ? vplSampleAreaLights(emission, count, in->areaLights) : 0;
         result = in->areaLights ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
@@ -140,19 +143,19 @@ static vplResult choose(vplJob* job, vplIngredients* in, vplLightSet* shown)
     const vplRenderOptions* o = &job->options;
     const vplLightSet* set = in->set;
     in->emitterLightCount =
-        o->method == VPL_METHOD_KELLER && o->show != VPL_SHOW_LIGHT ? vplCountEmitterLights(set) : 0;
+        o->method == VPL_METHOD_KELLER && o->output.show != VPL_SHOW_LIGHT ? vplCountEmitterLights(set) : 0;
     in->firstShown = 0;
     *shown = *set;
-    if (o->show == VPL_SHOW_LIGHT) {
-        if (o->showLight >= set->lightCount) {
+    if (o->output.show == VPL_SHOW_LIGHT) {
+        if (o->output.showIndex >= set->lightCount) {
             return vplFail(job->context, VPL_INVALID_ARGUMENT,
-                           "virtual light %d does not exist, there are %d (from 0)", o->showLight,
+                           "virtual light %d does not exist, there are %d (from 0)", o->output.showIndex,
                            set->lightCount);
         }
-        shown->lights += o->showLight;
+        shown->lights += o->output.showIndex;
         shown->lightCount = 1;
     }
-    if (o->show == VPL_SHOW_INDIRECT && o->method == VPL_METHOD_KELLER && set->stepCount > 0) {
+    if (o->output.show == VPL_SHOW_INDIRECT && o->method == VPL_METHOD_KELLER && set->stepCount > 0) {
         if (vplCompensates(job)) {
             in->firstShown = in->emitterLightCount;
             return VPL_SUCCESS;
@@ -173,8 +176,8 @@ static vplResult choose(vplJob* job, vplIngredients* in, vplLightSet* shown)
 // noise of the nearest lights as it is.
 float vplJob_MinDistance(const vplJob* job, double lights)
 {
-    if (job->options.minDistance >= 0) {
-        return job->options.minDistance;
+    if (job->options.lights.minDistance >= 0) {
+        return job->options.lights.minDistance;
     }
     lights *= job->stepsDone + 1;
     const double area = vplGeometry_Area(job->geometry);

@@ -28,7 +28,7 @@ bool vplNeedsLights(const vplRenderOptions* o)
         (o->method == VPL_METHOD_SSVP && o->maxBounces == 0)) {
         return false;
     }
-    switch (o->show) {
+    switch (o->output.show) {
     case VPL_SHOW_PICTURE:
     case VPL_SHOW_INDIRECT:
     case VPL_SHOW_LIGHT:
@@ -49,7 +49,7 @@ bool vplNeedsLights(const vplRenderOptions* o)
 
 bool vplNeedsDirect(const vplRenderOptions* o)
 {
-    switch (o->show) {
+    switch (o->output.show) {
     case VPL_SHOW_DEPTH:
     case VPL_SHOW_NORMALS:
     case VPL_SHOW_INDIRECT:
@@ -70,8 +70,8 @@ bool vplNeedsDirect(const vplRenderOptions* o)
 
 static bool isProgressive(const vplRenderOptions* o)
 {
-    return o->show <= VPL_SHOW_OVERLAY && vplNeedsLights(o) &&
-           (o->passes > 1 || o->budgetMs > 0 || o->maxError > 0);
+    return o->output.show <= VPL_SHOW_OVERLAY && vplNeedsLights(o) &&
+           (o->stop.passes > 1 || o->stop.budgetMs > 0 || o->stop.maxError > 0);
 }
 
 // ---- shading
@@ -79,7 +79,7 @@ static bool isProgressive(const vplRenderOptions* o)
 // Patches alone, without light of pixels.
 static bool showsPatches(const vplRenderOptions* o)
 {
-    return o->show >= VPL_SHOW_PATCHES && o->show <= VPL_SHOW_RESIDUAL;
+    return o->output.show >= VPL_SHOW_PATCHES && o->output.show <= VPL_SHOW_RESIDUAL;
 }
 
 static void clear(vplImage* image)
@@ -122,7 +122,7 @@ static vplResult shadeSample(vplJob* job, const vplIngredients* in, const vplSha
 
 static vplResult shadeSamples(vplJob* job, const vplIngredients* in, const vplShadeDef* def)
 {
-    const int count = job->options.antialias;
+    const int count = job->options.output.antialias;
     const size_t values = 3 * (size_t)job->image->width * (size_t)job->image->height;
     if (count == 1) {
         return shadeSample(job, in, def, 0, 1);
@@ -149,7 +149,7 @@ static vplResult shadeSamples(vplJob* job, const vplIngredients* in, const vplSh
 static void addSsvp(const vplJob* job, const vplIngredients* in, int first, vplShadeDef* def)
 {
     const vplSsvpState* state = in->ssvp;
-    if (job->options.lightShadows !=
+    if (job->options.lights.shadows !=
         VPL_LIGHT_SHADOWS_RAY) { // as of shadow maps; lights are maybe not there yet
         def->emitterMaps = (const vplReflectiveMap* const*)state->maps;
     }
@@ -167,18 +167,18 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
     const bool direct = parts & PART_DIRECT && vplNeedsDirect(o);
     vplShadeDef def = {0};
     def.lighting = vplJob_GetShading(job);
-    def.accumulation = o->accumulation;
-    def.output = o->show == VPL_SHOW_DEPTH           ? VPL_OUTPUT_DEPTH
-                 : o->show == VPL_SHOW_NORMALS       ? VPL_OUTPUT_NORMALS
-                 : o->show == VPL_SHOW_SHADOW_FACTOR ? VPL_OUTPUT_SHADOW_FACTOR
-                 : o->show == VPL_SHOW_GATHER        ? VPL_OUTPUT_GATHER
-                 : o->show == VPL_SHOW_DENOISED      ? VPL_OUTPUT_DENOISED
+    def.accumulation = o->pipeline.kind;
+    def.output = o->output.show == VPL_SHOW_DEPTH           ? VPL_OUTPUT_DEPTH
+                 : o->output.show == VPL_SHOW_NORMALS       ? VPL_OUTPUT_NORMALS
+                 : o->output.show == VPL_SHOW_SHADOW_FACTOR ? VPL_OUTPUT_SHADOW_FACTOR
+                 : o->output.show == VPL_SHOW_GATHER        ? VPL_OUTPUT_GATHER
+                 : o->output.show == VPL_SHOW_DENOISED      ? VPL_OUTPUT_DENOISED
                                                      : VPL_OUTPUT_RADIANCE;
-    def.batch = o->batch;
-    def.interleave = o->interleave;
-    def.cutError = o->cutError;
+    def.batch = o->pipeline.batch;
+    def.interleave = o->pipeline.interleave;
+    def.cutError = o->pipeline.cutError;
     def.minDistance = in->minDistance;
-    def.particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles;
+    def.particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles.count;
     if (direct) {
         def.emitters = in->emitters;
         def.shadows = in->emitterMaps.shadows;
@@ -204,14 +204,14 @@ static vplResult shade(vplJob* job, const vplIngredients* in, int parts, int fir
         compensation = vplMakeCompensation(job, in);
         def.compensation = &compensation;
     }
-    vplResult result = vplImage_Create(job->context, o->width, o->height, &job->image);
+    vplResult result = vplImage_Create(job->context, o->output.width, o->output.height, &job->image);
     vplJob_BeginStage(
         job, 0.1 + 0.9 * (count > 0 ? (first + count) / (double)(in->lightCount - in->firstShown) : 1));
     if (result == VPL_SUCCESS) {
         result = shadeSamples(job, in, &def);
     }
     vplJob_EndStage(job, "shading");
-    const bool known = o->show != VPL_SHOW_LIGHT && o->history == NULL && // frames have no time for it
+    const bool known = o->output.show != VPL_SHOW_LIGHT && o->sequence.history == NULL && // frames have no time for it
                        (vplNeedsDirect(o) || vplCompensates(job));
     if (result == VPL_SUCCESS && near && known && def.lighting == VPL_LIGHTING_PHYSICAL) {
         vplJob_BeginStage(job, 1);
@@ -297,15 +297,15 @@ static vplResult cook(vplJob* job, vplIngredients* in, int parts)
     if (result != VPL_SUCCESS) {
         return result;
     }
-    if (o->show == VPL_SHOW_RSM || o->show == VPL_SHOW_PARABOLOID) {
+    if (o->output.show == VPL_SHOW_RSM || o->output.show == VPL_SHOW_PARABOLOID) {
         return vplSsvp_ShowMap(job, in->ssvp);
     }
-    if (o->show == VPL_SHOW_SHADOW_MAP || o->show == VPL_SHOW_SHADOW_FACTOR) {
+    if (o->output.show == VPL_SHOW_SHADOW_MAP || o->output.show == VPL_SHOW_SHADOW_FACTOR) {
         if (in->emitterCount == 0 || in->emitterMaps.maps[0] == NULL) {
             return vplFail(job->context, VPL_INVALID_ARGUMENT,
                            "the scene has no light with a shadow map, or the first casts shadows by rays");
         }
-        if (o->show == VPL_SHOW_SHADOW_MAP) {
+        if (o->output.show == VPL_SHOW_SHADOW_MAP) {
             return vplUnfoldCubeMap(in->emitterMaps.maps[0], &job->image);
         }
     }
@@ -336,7 +336,7 @@ static void takeImage(vplJob* job, vplImage** to)
 // Direct light once, then virtual lights: those of each pass make a picture, and the passes' mean counts.
 static vplResult addPass(vplJob* job, Recipe* r)
 {
-    const size_t values = 3 * (size_t)job->options.width * (size_t)job->options.height;
+    const size_t values = 3 * (size_t)job->options.output.width * (size_t)job->options.output.height;
     vplResult result = VPL_SUCCESS;
     if (job->stepsDone == 0) {
         result = cook(job, &r->in, PART_DIRECT);
@@ -364,11 +364,11 @@ static vplResult step(vplJob* job, bool* doneOut)
     Recipe* r = job->state;
     vplResult result;
     if (job->progressive) {
-        *doneOut = o->passes > 0 && job->stepsDone + 1 >= o->passes;
+        *doneOut = o->stop.passes > 0 && job->stepsDone + 1 >= o->stop.passes;
         return addPass(job, r);
     }
     result = cook(job, &r->in, PART_DIRECT | PART_INDIRECT);
-    if (result == VPL_SUCCESS && o->show == VPL_SHOW_OVERLAY && r->in.set != NULL) {
+    if (result == VPL_SUCCESS && o->output.show == VPL_SHOW_OVERLAY && r->in.set != NULL) {
         result = overlay(job, r->in.set);
     }
     if (result == VPL_SUCCESS && r->in.ssvp != NULL) {
@@ -416,7 +416,7 @@ static vplResult resolve(vplJob* job)
     }
     if (job->progressive) {
         estimateError(job, r);
-        if (job->options.show == VPL_SHOW_OVERLAY) {
+        if (job->options.output.show == VPL_SHOW_OVERLAY) {
             result = overlay(job, r->in.set);
         }
     }

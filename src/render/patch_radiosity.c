@@ -14,7 +14,7 @@ vplRadiosityNeed vplFindRadiosityNeed(const vplRenderOptions* o)
     if (o->method != VPL_METHOD_RADIOSITY) {
         return VPL_NEED_NOTHING;
     }
-    switch (o->show) {
+    switch (o->output.show) {
     case VPL_SHOW_PICTURE:
     case VPL_SHOW_INDIRECT:
     case VPL_SHOW_PATCH_RADIOSITY:
@@ -33,17 +33,17 @@ static vplRadiosityKey findKey(const vplRenderOptions* o)
 {
     vplRadiosityKey key;
     memset(&key, 0, sizeof key);
-    key.patchSize = o->patchSize;
-    key.patches = o->patches;
-    key.subdivisions = o->subdivisions;
-    key.patchPlacement = (int)o->patchPlacement;
-    key.formFactors = (int)o->formFactors;
-    key.formSamples = o->formSamples;
-    key.rowSums = (int)o->rowSums;
-    key.hierarchy = (int)o->hierarchy;
-    key.lightSamples = o->patchLightSamples;
-    key.camera = o->camera;
-    key.linkError = o->linkError;
+    key.patchSize = o->radiosity.patchSize;
+    key.patches = o->radiosity.patches;
+    key.subdivisions = o->radiosity.subdivisions;
+    key.patchPlacement = (int)o->radiosity.placement;
+    key.formFactors = (int)o->radiosity.formFactors;
+    key.formSamples = o->radiosity.formSamples;
+    key.rowSums = (int)o->radiosity.rowSums;
+    key.hierarchy = (int)o->radiosity.hierarchy;
+    key.lightSamples = o->radiosity.lightSamples;
+    key.camera = o->output.camera;
+    key.linkError = o->radiosity.linkError;
     key.seed = o->seed;
     return key;
 }
@@ -60,7 +60,7 @@ static vplResult makeSides(vplJob* job, vplRadiosityState* s)
         def.emitterCount = poses.emitterCount;
         def.eyes = poses.eyes;
         def.eyeCount = poses.eyeCount;
-        def.whole = job->options.formFactors == VPL_FORM_FACTORS_INCENTRE;
+        def.whole = job->options.radiosity.formFactors == VPL_FORM_FACTORS_INCENTRE;
         def.seed = job->options.seed;
         def.progress = vplJob_GetProgress(job);
         def.progressUser = job;
@@ -77,14 +77,14 @@ enum { DRAFT_SAMPLES = 1 };
 static vplResult makeFactors(vplJob* job, vplRadiosityState* s)
 {
     const vplRenderOptions* o = &job->options;
-    const bool link = o->hierarchy == VPL_HIERARCHY_ON ||
-                      (o->hierarchy == VPL_HIERARCHY_AUTO && s->sides->count > VPL_ALL_PAIRS);
+    const bool link = o->radiosity.hierarchy == VPL_HIERARCHY_ON ||
+                      (o->radiosity.hierarchy == VPL_HIERARCHY_AUTO && s->sides->count > VPL_ALL_PAIRS);
     vplLinkDef links = vplDefaultLinkDef();
     vplFormFactorDef factors = vplDefaultFormFactorDef();
-    factors.kind = o->formFactors;
-    factors.rowSums = links.rowSums = o->rowSums;
-    links.error = o->linkError;
-    factors.samples = links.samples = s->draft ? DRAFT_SAMPLES : o->formSamples;
+    factors.kind = o->radiosity.formFactors;
+    factors.rowSums = links.rowSums = o->radiosity.rowSums;
+    links.error = o->radiosity.linkError;
+    factors.samples = links.samples = s->draft ? DRAFT_SAMPLES : o->radiosity.formSamples;
     factors.seed = links.seed = o->seed;
     factors.progress = links.progress = vplJob_GetProgress(job);
     factors.progressUser = links.progressUser = job;
@@ -125,9 +125,9 @@ static const double ADAPTIVE_START = 0.25, ADAPTIVE_GROWTH = 1.5;
 static vplResult makePatches(const vplJob* job, int count, vplPatches** patchesOut)
 {
     vplPatchDef def = vplDefaultPatchDef();
-    def.size = job->options.patchSize;
+    def.size = job->options.radiosity.patchSize;
     def.count = count;
-    def.rounds = job->options.subdivisions;
+    def.rounds = job->options.radiosity.subdivisions;
     return vplPatches_Create(job->geometry, &def, patchesOut);
 }
 
@@ -160,7 +160,7 @@ static vplResult refine(vplJob* job, const vplRadiosityState* s, int count, vplP
 // The patches of the last round.
 static vplResult adapt(vplJob* job, vplPatches** patchesOut)
 {
-    const int wanted = job->options.patches;
+    const int wanted = job->options.radiosity.patches;
     double count = wanted * ADAPTIVE_START;
     vplPatches* patches;
     vplResult result = makePatches(job, count >= 1 ? (int)count : 1, &patches);
@@ -198,11 +198,11 @@ static vplResult create(vplJob* job, vplRadiosityNeed need, vplRadiosityState** 
     vplPatches* patches;
     vplRadiosityState* s;
     vplResult result;
-    if (job->options.patchPlacement == VPL_PATCHES_ADAPTIVE) {
+    if (job->options.radiosity.placement == VPL_PATCHES_ADAPTIVE) {
         result = adapt(job, &patches);
     } else {
         vplJob_BeginStage(job, 0.05);
-        result = makePatches(job, job->options.patches, &patches);
+        result = makePatches(job, job->options.radiosity.patches, &patches);
         vplJob_EndStage(job, "bisection");
     }
     if (result == VPL_SUCCESS) {
@@ -229,7 +229,7 @@ static bool isEnough(const vplRadiosityState* s, const vplRadiosityKey* key, vpl
 
 vplResult vplRadiosity_Begin(vplJob* job, vplRadiosityState** stateOut)
 {
-    vplHistory* history = job->options.history;
+    vplHistory* history = job->options.sequence.history;
     const vplRadiosityNeed need = vplFindRadiosityNeed(&job->options);
     const vplRadiosityKey key = findKey(&job->options);
     vplResult result = VPL_SUCCESS;
@@ -254,7 +254,7 @@ vplResult vplRadiosity_Begin(vplJob* job, vplRadiosityState** stateOut)
 
 void vplRadiosity_End(vplJob* job, vplRadiosityState* state)
 {
-    vplHistory* history = job->options.history;
+    vplHistory* history = job->options.sequence.history;
     if (history == NULL || state == NULL) {
         vplRadiosity_Destroy(state);
         return;

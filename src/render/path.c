@@ -10,17 +10,17 @@ static vplResult describe(vplJob* job, vplPathDef* def)
         return vplFail(job->context, VPL_INVALID_ARGUMENT,
                        "the path tracer knows physical lighting only, not documented");
     }
-    def->emission = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_DIRECT;
-    def->pixelCentres = o->pixel == VPL_PIXEL_CENTRE;
+    def->emission = o->output.show == VPL_SHOW_PICTURE || o->output.show == VPL_SHOW_DIRECT;
+    def->pixelCentres = o->path.pixel == VPL_PIXEL_CENTRE;
     def->lastBounce = o->maxBounces >= 0 ? o->maxBounces : VPL_MAX_BOUNCES;
-    if (o->show == VPL_SHOW_DIRECT) {
+    if (o->output.show == VPL_SHOW_DIRECT) {
         def->lastBounce = 0;
-    } else if (o->show == VPL_SHOW_INDIRECT) {
+    } else if (o->output.show == VPL_SHOW_INDIRECT) {
         def->firstBounce = 1;
-    } else if (o->show == VPL_SHOW_BOUNCE) {
-        def->firstBounce = o->showBounce;
-        def->lastBounce = def->lastBounce < o->showBounce ? def->lastBounce : o->showBounce;
-    } else if (o->show != VPL_SHOW_PICTURE) {
+    } else if (o->output.show == VPL_SHOW_BOUNCE) {
+        def->firstBounce = o->output.showIndex;
+        def->lastBounce = def->lastBounce < o->output.showIndex ? def->lastBounce : o->output.showIndex;
+    } else if (o->output.show != VPL_SHOW_PICTURE) {
         return vplFail(job->context, VPL_INVALID_ARGUMENT,
                        "the path tracer can show the picture, direct, indirect and bounce:K only");
     }
@@ -43,8 +43,8 @@ static vplResult begin(vplJob* job)
     def.camera = &job->camera;
     def.emitterCount = job->emitterCount;
     def.emitters = job->emitters;
-    def.width = o->width;
-    def.height = o->height;
+    def.width = o->output.width;
+    def.height = o->output.height;
     def.seed = o->seed;
     vplResult result = describe(job, &def);
     return result == VPL_SUCCESS ? vplPathTracer_Create(job->geometry, &def, &state->tracer) : result;
@@ -53,20 +53,20 @@ static vplResult begin(vplJob* job)
 static vplResult step(vplJob* job, bool* doneOut)
 {
     PathState* state = job->state;
-    const int left = job->options.samplesPerPixel - state->done;
+    const int left = job->options.path.samples - state->done;
     const int now = left > 0 && left < VPL_PATH_PASS ? left : VPL_PATH_PASS;
     vplJob_BeginStage(job, 1);
     vplResult result = vplPathTracer_Pass(state->tracer, now, vplJob_GetProgress(job), job, 0, 1);
     vplJob_EndStage(job, "paths");
     state->done += now;
-    *doneOut = state->done >= job->options.samplesPerPixel;
+    *doneOut = state->done >= job->options.path.samples;
     return result;
 }
 
 static vplResult resolve(vplJob* job)
 {
     const PathState* state = job->state;
-    vplResult result = vplImage_Create(job->context, job->options.width, job->options.height, &job->image);
+    vplResult result = vplImage_Create(job->context, job->options.output.width, job->options.output.height, &job->image);
     if (result != VPL_SUCCESS) {
         return result;
     }

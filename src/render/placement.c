@@ -7,7 +7,7 @@
 // shading 8192 pixels, so that in a picture of 512x512 64 of them take a sixteenth of its time.
 static int oversamplingFor(const vplRenderOptions* o)
 {
-    const double times = (double)o->width * o->height * o->antialias / 4096;
+    const double times = (double)o->output.width * o->output.height * o->output.antialias / 4096;
     return times < 32 ? 32 : times > 64 ? 64 : (int)times;
 }
 
@@ -25,8 +25,8 @@ static vplResult placeByView(vplJob* job, const vplEmitterDef* emitters, int emi
     }
     def.lighting = vplJob_GetShading(job);
     def.camera = job->camera;
-    def.width = o->width;
-    def.height = o->height;
+    def.width = o->output.width;
+    def.height = o->output.height;
     def.oversampling = oversamplingFor(o);
     def.minDistance = vplJob_MinDistance(job, (double)lights);
     def.shadows = vplJob_GetLightShadows(job) != VPL_LIGHT_SHADOWS_NONE;
@@ -52,7 +52,7 @@ vplResult vplJob_DrawReflectiveMaps(vplJob* job, const vplEmitterDef* emitters, 
         }
         vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
         def.emitter = emitters[i];
-        def.size = job->options.rsmSize;
+        def.size = job->options.shadow.rsmSize;
         result = vplReflectiveMap_Create(job->geometry, &def, vplJob_GetProgress(job), job, &maps[i]);
         if (result == VPL_SUCCESS) {
             vplJob_AddRaster(job, &maps[i]->stats);
@@ -84,7 +84,7 @@ static vplResult placeByMaps(vplJob* job, const vplEmitterDef* emitters, int emi
 vplResult vplJob_PlaceLights(vplJob* job, const vplEmitterDef* emitters, int emitterCount,
                              const vplParticleDef* particles, vplLightSet** setOut)
 {
-    switch (job->options.placement) {
+    switch (job->options.particles.placement) {
     case VPL_PLACEMENT_VIEW:
         return placeByView(job, emitters, emitterCount, particles, setOut);
     case VPL_PLACEMENT_RSM:

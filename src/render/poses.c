@@ -33,12 +33,12 @@ static vplResult poseEmitters(const vplJob* job, vplPoses* poses)
 static vplResult poseEyes(const vplJob* job, vplPoses* poses)
 {
     int keys;
-    const vplCameraKey* path = vplScene_GetCameraPath(job->scene, job->options.camera, &keys);
+    const vplCameraKey* path = vplScene_GetCameraPath(job->scene, job->options.output.camera, &keys);
     vplResult result = VPL_SUCCESS;
     for (int i = 0; i < poseCount(keys) && result == VPL_SUCCESS; i++) {
         vplCameraDef camera;
         const double frame = keys > 1 ? frameOf(path[0].frame, path[keys - 1].frame, i) : 0;
-        result = vplScene_PoseCamera(job->scene, job->options.camera, frame, &camera);
+        result = vplScene_PoseCamera(job->scene, job->options.output.camera, frame, &camera);
         poses->eyes[poses->eyeCount++] = camera.eye;
     }
     return result;

@@ -11,7 +11,7 @@ static vplResult findValues(const vplJob* job, const vplRadiosityState* s, vplRg
     const vplTransport transport = vplRadiosity_Transport(s);
     const int count = s->sides->count;
     const float scale = (float)(1 / VPL_PI);
-    switch (job->options.show) {
+    switch (job->options.output.show) {
     case VPL_SHOW_PATCHES:
         for (int i = 0; i < count; i++) {
             values[i] = s->sides->sides[i].reflectance;
@@ -43,8 +43,8 @@ static vplResult findValues(const vplJob* job, const vplRadiosityState* s, vplRg
 vplResult vplRadiosity_Draw(vplJob* job, const vplRadiosityState* s, const vplView* view, vplImage* image)
 {
     const vplRenderOptions* o = &job->options;
-    const bool light = o->show == VPL_SHOW_PICTURE || o->show == VPL_SHOW_INDIRECT;
-    const bool smooth = light && o->interpolation == VPL_INTERPOLATION_GOURAUD;
+    const bool light = o->output.show == VPL_SHOW_PICTURE || o->output.show == VPL_SHOW_INDIRECT;
+    const bool smooth = light && o->radiosity.interpolation == VPL_INTERPOLATION_GOURAUD;
     float(*clip)[4] = vplAlloc(job->context, (size_t)s->mesh->vertexCount, sizeof *clip);
     vplRgb* values = vplAllocZero(job->context, light ? 0 : (size_t)s->sides->count, sizeof *values);
     vplResult result = clip != NULL && values != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
@@ -56,7 +56,7 @@ vplResult vplRadiosity_Draw(vplJob* job, const vplRadiosityState* s, const vplVi
                                    .vertexValues = smooth ? s->corners : NULL,
                                    .values = light ? s->irradiance : values,
                                    .reflect = light,
-                                   .outlines = o->show == VPL_SHOW_PATCHES};
+                                   .outlines = o->output.show == VPL_SHOW_PATCHES};
         vplRasterStats stats = {0};
         vplView_ToClip(view, s->mesh->positions, s->mesh->vertexCount, clip);
         result = vplDrawPatches(&draw, (const float(*)[4])clip, NULL, NULL, image, &stats);
@@ -80,11 +80,11 @@ static vplResult writeMesh(vplJob* job, const vplRadiosityState* s, float scale,
         result = vplRadiosity_Receive(s, s->radiosity, all);
     }
     if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Interpolate(s->mesh, job->options.vertexWeight, all, vertices);
+        result = vplPatchMesh_Interpolate(s->mesh, job->options.radiosity.vertexWeight, all, vertices);
     }
     if (result == VPL_SUCCESS) {
         result =
-            vplPatchMesh_Sharpen(s->mesh, job->options.vertexWeight, all, job->options.sharpen, vertices);
+            vplPatchMesh_Sharpen(s->mesh, job->options.radiosity.vertexWeight, all, job->options.radiosity.sharpen, vertices);
     }
     if (result == VPL_SUCCESS) {
         result = vplPatchMesh_WritePly(s->mesh, vertices, scale, path);
@@ -119,7 +119,7 @@ vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float 
     vplJob job;
     const double start = vplClockMs(), cpuStart = vplCpuMs();
     o.method = VPL_METHOD_RADIOSITY;
-    o.show = VPL_SHOW_PICTURE;
+    o.output.show = VPL_SHOW_PICTURE;
     vplResult result = vplJob_Begin(scene, &o, &job);
     if (result == VPL_SUCCESS) {
         result = bake(&job, exposure, path);

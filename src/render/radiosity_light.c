@@ -36,8 +36,8 @@ typedef struct Chunk {
 
 static int samplesOf(const vplRenderOptions* o)
 {
-    return o->patchLightSamples > 0                      ? o->patchLightSamples
-           : o->formFactors == VPL_FORM_FACTORS_INCENTRE ? 1
+    return o->radiosity.lightSamples > 0                      ? o->radiosity.lightSamples
+           : o->radiosity.formFactors == VPL_FORM_FACTORS_INCENTRE ? 1
                                                          : VPL_PATCH_CELLS;
 }
 
@@ -149,11 +149,11 @@ static vplResult solve(vplJob* job, vplRadiosityState* s, bool first)
     const vplTransport transport = vplRadiosity_Transport(s);
     const vplSolveStats last = s->solve;
     vplSolveDef def = vplDefaultSolveDef();
-    def.solver = s->links != NULL ? VPL_SOLVER_JACOBI : o->solver;
-    def.iterations = o->iterations;
-    def.residual = s->draft ? fmax(o->residual, DRAFT_RESIDUAL) : o->residual;
+    def.solver = s->links != NULL ? VPL_SOLVER_JACOBI : o->radiosity.solver;
+    def.iterations = o->radiosity.iterations;
+    def.residual = s->draft ? fmax(o->radiosity.residual, DRAFT_RESIDUAL) : o->radiosity.residual;
     def.spectrum = first && !s->draft;
-    def.relaxes = o->history != NULL || s->draft;
+    def.relaxes = o->sequence.history != NULL || s->draft;
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
     vplResult result = vplSolveRadiosity(&transport, &def, s->source, s->radiosity, &s->solve);
@@ -228,7 +228,7 @@ static vplResult findLight(vplJob* job, vplRadiosityState* s, bool first)
             result = keepEmitters(job, s);
         }
     }
-    if (first || job->options.coherence == VPL_COHERENCE_OFF) {
+    if (first || job->options.sequence.coherence == VPL_COHERENCE_OFF) {
         memcpy(s->radiosity, s->source, (size_t)s->sides->count * sizeof *s->source);
     }
     vplJob_BeginStage(job, 0.7);
@@ -251,10 +251,10 @@ vplResult vplRadiosity_Light(vplJob* job, vplRadiosityState* s)
     }
     vplJob_BeginStage(job, 0.71);
     if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Interpolate(s->mesh, job->options.vertexWeight, s->irradiance, s->corners);
+        result = vplPatchMesh_Interpolate(s->mesh, job->options.radiosity.vertexWeight, s->irradiance, s->corners);
     }
     if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Sharpen(s->mesh, job->options.vertexWeight, s->irradiance, job->options.sharpen,
+        result = vplPatchMesh_Sharpen(s->mesh, job->options.radiosity.vertexWeight, s->irradiance, job->options.radiosity.sharpen,
                                       s->corners);
     }
     vplJob_EndStage(job, "corners");

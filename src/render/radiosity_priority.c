@@ -37,7 +37,7 @@ static vplResult find(vplJob* job, const vplRadiosityState* s, Known* k, float* 
         result = findDirect(job, s, k->direct);
     }
     if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Interpolate(s->mesh, o->vertexWeight, k->direct, k->vertexDirect);
+        result = vplPatchMesh_Interpolate(s->mesh, o->radiosity.vertexWeight, k->direct, k->vertexDirect);
     }
     if (result == VPL_SUCCESS) {
         vplPatchPriorityDef def = vplDefaultPatchPriorityDef();

@@ -43,8 +43,6 @@ enum { VPL_PATH_PASS = 32 };
 
 extern const vplMethodFcns vplVirtualLightMethod, vplPathMethod;
 
-vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
-
 // Whether the picture asks for virtual lights, and whether it does for what light comes without them.
 bool vplNeedsLights(const vplRenderOptions* options);
 bool vplNeedsDirect(const vplRenderOptions* options);

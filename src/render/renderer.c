@@ -41,17 +41,17 @@ static double shareOf(const vplRenderer* r, int steps)
 {
     const vplRenderOptions* o = &r->job.options;
     const int count =
-        o->method == VPL_METHOD_PATH ? (o->samplesPerPixel + VPL_PATH_PASS - 1) / VPL_PATH_PASS : o->passes;
+        o->method == VPL_METHOD_PATH ? (o->path.samples + VPL_PATH_PASS - 1) / VPL_PATH_PASS : o->stop.passes;
     double share = 0;
     if (count > 0) {
         share = (double)steps / count;
-    } else if (o->maxError > 0) {
+    } else if (o->stop.maxError > 0) {
         share = steps / (steps + 4.0);
-    } else if (o->budgetMs <= 0) {
+    } else if (o->stop.budgetMs <= 0) {
         share = steps;
     }
-    if (o->budgetMs > 0) {
-        const double spent = (vplClockMs() - r->start) / o->budgetMs;
+    if (o->stop.budgetMs > 0) {
+        const double spent = (vplClockMs() - r->start) / o->stop.budgetMs;
         share = spent > share ? spent : share;
     }
     return share < 1 ? share : 1;
@@ -59,7 +59,7 @@ static double shareOf(const vplRenderer* r, int steps)
 
 static bool isTimeUp(const vplRenderer* r)
 {
-    const double budget = r->job.options.budgetMs;
+    const double budget = r->job.options.stop.budgetMs;
     return budget > 0 && vplClockMs() - r->start + r->stepMs / r->job.stepsDone > budget;
 }
 
@@ -70,7 +70,7 @@ static vplResult checkError(vplRenderer* r, bool* doneOut)
     vplImage_Destroy(job->image);
     job->image = NULL;
     const double error = job->stats.relativeErrorEstimate;
-    *doneOut = *doneOut || (error >= 0 && error <= job->options.maxError);
+    *doneOut = *doneOut || (error >= 0 && error <= job->options.stop.maxError);
     return result;
 }
 
@@ -88,7 +88,7 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
     }
     r->stepMs += vplClockMs() - begin;
     job->stepsDone++;
-    if (!done && job->options.maxError > 0) {
+    if (!done && job->options.stop.maxError > 0) {
         result = checkError(r, &done);
     }
     *doneOut = done || isTimeUp(r);

@@ -54,7 +54,7 @@ static void drawClusters(const vplJob* job, const vplSsvpBounce* first)
 
 vplResult vplSsvp_ShowLights(vplJob* job, const vplSsvpState* state)
 {
-    const vplShow show = job->options.show;
+    const vplShow show = job->options.output.show;
     if ((show != VPL_SHOW_RSM_SAMPLES && show != VPL_SHOW_CLUSTERS && show != VPL_SHOW_SECOND_BOUNCE) ||
         state->lights == NULL) {
         return VPL_SUCCESS;
@@ -77,13 +77,13 @@ vplResult vplSsvp_ShowLights(vplJob* job, const vplSsvpState* state)
 vplResult vplSsvp_ShowMap(vplJob* job, const vplSsvpState* state)
 {
     const vplRenderOptions* o = &job->options;
-    if (o->show == VPL_SHOW_PARABOLOID) {
+    if (o->output.show == VPL_SHOW_PARABOLOID) {
         const vplParaboloidMaps* maps = state->lights ? state->lights->bounce[0].maps : NULL;
         const int count = maps ? maps->count : 0;
-        return o->showLight < count
-                   ? vplShowParaboloidMap(&maps->maps[o->showLight], job->geometry, &job->image)
+        return o->output.showIndex < count
+                   ? vplShowParaboloidMap(&maps->maps[o->output.showIndex], job->geometry, &job->image)
                    : vplFail(job->context, VPL_INVALID_ARGUMENT,
-                             "cluster %d does not exist, there are %d (from 0)", o->showLight, count);
+                             "cluster %d does not exist, there are %d (from 0)", o->output.showIndex, count);
     }
     for (int i = 0; i < state->emitterCount; i++) {
         if (state->maps[i] != NULL) {

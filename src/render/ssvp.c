@@ -99,7 +99,7 @@ static vplResult cook(vplSsvpMaking* m)
 vplResult vplSsvp_MakeLights(vplJob* job, vplSsvpState* state)
 {
     const vplSsvpKey key = vplSsvp_FindKey(job);
-    const vplHistory* history = job->options.history;
+    const vplHistory* history = job->options.sequence.history;
     if (state->lights != NULL && memcmp(&state->lights->key, &key, sizeof key) == 0) {
         return VPL_SUCCESS;
     }
@@ -114,7 +114,7 @@ vplResult vplSsvp_MakeLights(vplJob* job, vplSsvpState* state)
                                     ? history->ssvp->lights
                                     : state->lights;
     // Passes have other samples, which have nothing to do with those of the same number before.
-    if (job->options.coherence == VPL_COHERENCE_ON && last != NULL && last->key.shift == key.shift) {
+    if (job->options.sequence.coherence == VPL_COHERENCE_ON && last != NULL && last->key.shift == key.shift) {
         m.last = last;
     }
     m.sees = key.lightShadows == VPL_LIGHT_SHADOWS_CLUSTER;

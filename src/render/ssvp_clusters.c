@@ -14,13 +14,13 @@ vplResult vplSsvp_Cluster(vplSsvpMaking* m, int k)
         return VPL_SUCCESS;
     }
     vplClusterDef def = vplDefaultClusterDef();
-    def.count = o->clusters;
-    def.metric = o->clusterMetric;
-    def.w1 = o->w1;
-    def.w2 = o->w2;
+    def.count = o->ssvp.clusters;
+    def.metric = o->ssvp.metric;
+    def.w1 = o->ssvp.w1;
+    def.w2 = o->ssvp.w2;
     def.last = m->last != NULL ? m->last->bounce[k].clusters : NULL;
     float* weights = NULL;
-    vplResult result = o->oversampling > 1 ? vplSsvp_MeasureUse(m, bounce->lights, &weights) : VPL_SUCCESS;
+    vplResult result = o->ssvp.oversampling > 1 ? vplSsvp_MeasureUse(m, bounce->lights, &weights) : VPL_SUCCESS;
     if (result == VPL_SUCCESS) {
         def.weights = weights;
         result = vplFindClusters(bounce->lights, &def, &bounce->clusters);
@@ -36,7 +36,7 @@ static int findLooker(const vplSsvpMaking* m, int k, int cluster)
     const vplSsvpBounce* bounce = &m->lights->bounce[k];
     const vplSsvpBounce* last = m->last != NULL ? &m->last->bounce[k] : NULL;
     const vplLightClusters* clusters = bounce->clusters;
-    if (m->job->options.clusterPlace == VPL_CLUSTER_PLACE_MEAN) {
+    if (m->job->options.ssvp.place == VPL_CLUSTER_PLACE_MEAN) {
         return -1;
     }
     for (int i = 0;
@@ -59,7 +59,7 @@ static vplParaboloidPlace placeOf(const vplSsvpMaking* m, int k, int i)
     bounce->lookers[i] = light != NULL ? light->particle : -1;
     return (vplParaboloidPlace){.position = light != NULL ? light->position : c->position,
                                 .normal = c->normal,
-                                .hemispheres = m->sees && !c->flat ? m->job->options.hemispheres : 1,
+                                .hemispheres = m->sees && !c->flat ? m->job->options.ssvp.hemispheres : 1,
                                 .onSurface = true};
 }
 
@@ -76,7 +76,7 @@ vplResult vplSsvp_DrawMaps(vplSsvpMaking* m, bool triangles, int k)
         places[i] = placeOf(m, k, i);
     }
     if (result == VPL_SUCCESS) {
-        result = vplParaboloidMaps_Create(job->context, job->options.paraboloidSize, count, triangles,
+        result = vplParaboloidMaps_Create(job->context, job->options.ssvp.paraboloidSize, count, triangles,
                                           &bounce->maps);
     }
     if (result == VPL_SUCCESS) {

@@ -25,7 +25,7 @@ static vplResult countLampLights(const vplJob* job, int* countOut)
         lamps += vplRgbMean(emission->sources[i].power);
     }
     const double all = vplEmission_Power(emission);
-    *countOut = all > 0 ? (int)rint(job->options.firstBounce * (lamps / all)) : 0;
+    *countOut = all > 0 ? (int)rint(job->options.ssvp.firstBounce * (lamps / all)) : 0;
     vplEmission_Destroy(emission);
     return VPL_SUCCESS;
 }
@@ -116,11 +116,11 @@ static int oversample(const vplSsvpMaking* m, int count, double kept)
     const vplRenderOptions* o = &m->job->options;
     const int before = m->last != NULL && count > 0 ? m->last->sampleCount / count : 0;
     int factor = 1;
-    if (before > 0 && before * count == m->last->sampleCount && before <= o->oversampling &&
+    if (before > 0 && before * count == m->last->sampleCount && before <= o->ssvp.oversampling &&
         2 * before * kept >= count * 0.8 && before * kept <= 1.25 * count) {
         return before;
     }
-    while (kept > 0 && 2 * factor <= o->oversampling && 2 * factor * kept <= count &&
+    while (kept > 0 && 2 * factor <= o->ssvp.oversampling && 2 * factor * kept <= count &&
            (int64_t)2 * factor * count <= VPL_MAX_LIGHTS) {
         factor *= 2;
     }
@@ -156,8 +156,8 @@ vplResult vplSsvp_SampleFirstBounce(vplSsvpMaking* m)
     const vplRenderOptions* o = &m->job->options;
     vplResult result = countLampLights(m->job, &lampLights);
     if (result == VPL_SUCCESS) {
-        const int count = o->firstBounce - lampLights;
-        result = o->oversampling > 1 ? sampleMaps(m, count, &seen) : sampleAll(m, count, &seen);
+        const int count = o->ssvp.firstBounce - lampLights;
+        result = o->ssvp.oversampling > 1 ? sampleMaps(m, count, &seen) : sampleAll(m, count, &seen);
     }
     if (result == VPL_SUCCESS && lampLights == 0) {
         m->lights->bounce[0].lights = seen;
@@ -180,8 +180,8 @@ vplResult vplSsvp_SampleSecondBounce(vplSsvpMaking* m)
 {
     const vplSsvpBounce* first = &m->lights->bounce[0];
     vplSecondBounceDef def = vplDefaultSecondBounceDef();
-    def.count = m->twice ? m->job->options.secondBounce : 0;
-    def.weight = m->job->options.secondWeight;
+    def.count = m->twice ? m->job->options.ssvp.secondBounce : 0;
+    def.weight = m->job->options.ssvp.secondWeight;
     def.shift = m->lights->key.shift;
     return def.count > 0 ? vplSampleParaboloidMaps(m->job->geometry, first->clusters, first->maps, &def,
                                                    &m->lights->bounce[1].lights)

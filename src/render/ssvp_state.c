@@ -14,7 +14,7 @@ enum { SHIFT_STREAM = 0x80000004u };
 static uint64_t shiftOf(const vplJob* job)
 {
     const vplRenderOptions* o = &job->options;
-    double frame = o->coherence == VPL_COHERENCE_OFF ? o->frame : 0;
+    double frame = o->sequence.coherence == VPL_COHERENCE_OFF ? o->sequence.frame : 0;
     uint64_t bits = 0;
     frame = frame == 0 ? 0 : frame; // and not -0
     memcpy(&bits, &frame, sizeof bits);
@@ -31,21 +31,21 @@ vplSsvpKey vplSsvp_FindKey(const vplJob* job)
     const vplRenderOptions* o = &job->options;
     vplSsvpKey key;
     memset(&key, 0, sizeof key); // the gaps, too
-    key.clusters = o->clusters;
-    key.firstBounce = o->firstBounce;
-    key.oversampling = o->oversampling;
-    key.secondBounce = o->secondBounce;
-    key.paraboloidSize = o->paraboloidSize;
-    key.rsmSize = o->rsmSize;
+    key.clusters = o->ssvp.clusters;
+    key.firstBounce = o->ssvp.firstBounce;
+    key.oversampling = o->ssvp.oversampling;
+    key.secondBounce = o->ssvp.secondBounce;
+    key.paraboloidSize = o->ssvp.paraboloidSize;
+    key.rsmSize = o->shadow.rsmSize;
     key.maxBounces = o->maxBounces;
-    key.hemispheres = o->hemispheres;
-    key.clusterMetric = (int)o->clusterMetric;
-    key.clusterPlace = (int)o->clusterPlace;
-    key.secondWeight = (int)o->secondWeight;
+    key.hemispheres = o->ssvp.hemispheres;
+    key.clusterMetric = (int)o->ssvp.metric;
+    key.clusterPlace = (int)o->ssvp.place;
+    key.secondWeight = (int)o->ssvp.secondWeight;
     key.lightShadows = (int)vplJob_GetLightShadows(job);
-    key.shown = o->show == VPL_SHOW_PARABOLOID || o->show == VPL_SHOW_CLUSTERS;
-    key.w1 = o->w1;
-    key.w2 = o->w2;
+    key.shown = o->output.show == VPL_SHOW_PARABOLOID || o->output.show == VPL_SHOW_CLUSTERS;
+    key.w1 = o->ssvp.w1;
+    key.w2 = o->ssvp.w2;
     key.shift = shiftOf(job);
     return key;
 }
@@ -54,13 +54,13 @@ vplSsvpKey vplSsvp_FindKey(const vplJob* job)
 static bool needsMaps(const vplJob* job)
 {
     const vplRenderOptions* o = &job->options;
-    return o->lightShadows != VPL_LIGHT_SHADOWS_RAY || vplNeedsLights(o) || o->show == VPL_SHOW_RSM;
+    return o->lights.shadows != VPL_LIGHT_SHADOWS_RAY || vplNeedsLights(o) || o->output.show == VPL_SHOW_RSM;
 }
 
 // Whether the last frame's maps do: nothing that they depend on has changed, and they are there where they are needed.
 static bool isStill(const vplJob* job, const vplSsvpState* last)
 {
-    bool still = last->emitterCount == job->emitterCount && last->rsmSize == job->options.rsmSize &&
+    bool still = last->emitterCount == job->emitterCount && last->rsmSize == job->options.shadow.rsmSize &&
                  (last->drawn || !needsMaps(job));
     for (int i = 0; still && i < job->emitterCount; i++) {
         still = vplIsSameEmitter(&job->emitters[i], &last->emitters[i]);
@@ -85,7 +85,7 @@ static vplResult makeState(vplJob* job, vplSsvpState** stateOut)
         return VPL_OUT_OF_MEMORY;
     }
     state->emitterCount = job->emitterCount;
-    state->rsmSize = job->options.rsmSize;
+    state->rsmSize = job->options.shadow.rsmSize;
     for (size_t i = 0; i < count; i++) {
         state->emitters[i] = job->emitters[i];
     }
@@ -95,7 +95,7 @@ static vplResult makeState(vplJob* job, vplSsvpState** stateOut)
 
 vplResult vplSsvp_Begin(vplJob* job, vplSsvpState** stateOut)
 {
-    vplHistory* history = job->options.history;
+    vplHistory* history = job->options.sequence.history;
     if (job->options.lighting == VPL_LIGHTING_DOCUMENTED) {
         return vplFail(job->context, VPL_INVALID_ARGUMENT,
                        "the SSVP document prints no lighting formulas of its own; use physical lighting");
@@ -159,7 +159,7 @@ void vplSsvp_Destroy(vplSsvpState* state)
 
 void vplSsvp_End(vplJob* job, vplSsvpState* state)
 {
-    vplHistory* history = job->options.history;
+    vplHistory* history = job->options.sequence.history;
     if (history == NULL || state == NULL) {
         vplSsvp_Destroy(state);
         return;

@@ -70,10 +70,10 @@ static void measureScene(const char* path)
     vplLightSet* set;
     openScene(path, 1, VPL_ISA_AUTO, &context, &scene);
     vplRenderOptions o = vplDefaultRenderOptions();
-    o.placement = VPL_PLACEMENT_RSM;
-    o.sampler = VPL_SAMPLER_HAMMERSLEY;
-    o.particles = LIGHTS;
-    o.reflectivity = 0;
+    o.particles.placement = VPL_PLACEMENT_RSM;
+    o.particles.sampler = VPL_SAMPLER_HAMMERSLEY;
+    o.particles.count = LIGHTS;
+    o.particles.reflectivity = 0;
     check(vplMakeLights(scene, &o, &set));
     Outcome outcomes[SIZES][2] = {{{0, 0, 0}}};
     for (int k = 0; k < SIZES; k++) {

@@ -55,9 +55,9 @@ static Truth findTruth(const vplScene* scene, const char* path, const char* fold
         } else {
             vplRenderOptions o = vplDefaultRenderOptions();
             o.method = VPL_METHOD_PATH;
-            o.pixel = VPL_PIXEL_CENTRE;
-            o.width = o.height = size;
-            o.samplesPerPixel = spp;
+            o.path.pixel = VPL_PIXEL_CENTRE;
+            o.output.width = o.output.height = size;
+            o.path.samples = spp;
             o.seed = 1000001 + (uint64_t)i;
             check(vplRender(scene, &o, &truth.halves[i], NULL));
             check(vplImage_Write(truth.halves[i], file, NULL));
@@ -110,15 +110,15 @@ static void measure(const vplScene* scene, const Truth* truth, const Line* line,
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = line->method;
-    o.width = o.height = size;
-    o.pixel = VPL_PIXEL_CENTRE;
-    o.particles = o.samplesPerPixel = line->amount;
-    o.reflectivity = -1;
-    o.lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    o.accumulation = VPL_ACCUMULATE_INTERLEAVED;
-    o.interleave = line->interleave > 0 ? line->interleave : 1;
-    o.passes = line->passes;
-    o.compensation = line->compensation;
+    o.output.width = o.output.height = size;
+    o.path.pixel = VPL_PIXEL_CENTRE;
+    o.particles.count = o.path.samples = line->amount;
+    o.particles.reflectivity = -1;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o.pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
+    o.pipeline.interleave = line->interleave > 0 ? line->interleave : 1;
+    o.stop.passes = line->passes;
+    o.lights.compensation = line->compensation;
     double wall[RUNS], cpu[RUNS], errors[RUNS], rms[RUNS], largest[RUNS];
     vplRenderStats stats;
     for (int i = 0; i < RUNS; i++) {

@@ -73,7 +73,7 @@ static vplImage* show(const Bench* b, const vplRenderOptions* from, vplShow what
     vplRenderOptions o = *from;
     vplImage* image;
     o.method = VPL_METHOD_DIRECT;
-    o.show = what;
+    o.output.show = what;
     check(vplRender(b->scene, &o, &image, NULL));
     return image;
 }
@@ -81,25 +81,25 @@ static vplImage* show(const Bench* b, const vplRenderOptions* from, vplShow what
 static void renderFrames(Bench* b, bool coherent)
 {
     vplRenderOptions o = b->options;
-    check(vplHistory_Create(b->context, &o.history));
+    check(vplHistory_Create(b->context, &o.sequence.history));
     for (int t = 0; t < b->count; t++) {
         Frame* frame = &b->frames[t];
         vplCameraDef camera;
-        o.frame = t;
-        o.coherence = coherent ? VPL_COHERENCE_ON : VPL_COHERENCE_OFF;
+        o.sequence.frame = t;
+        o.sequence.coherence = coherent ? VPL_COHERENCE_ON : VPL_COHERENCE_OFF;
         o.seed = coherent || o.method == VPL_METHOD_SSVP ? 1 : 1 + (uint64_t)t;
         check(vplScene_PoseCamera(b->scene, 0, t, &camera));
-        frame->view = vplView_Create(&camera, o.width, o.height);
+        frame->view = vplView_Create(&camera, o.output.width, o.output.height);
         frame->depth = show(b, &o, VPL_SHOW_DEPTH);
         frame->normals = show(b, &o, VPL_SHOW_NORMALS);
         check(vplRender(b->scene, &o, &frame->light, NULL));
-        check(vplImage_Create(b->context, o.width, o.height, &frame->shown));
+        check(vplImage_Create(b->context, o.output.width, o.output.height, &frame->shown));
         memcpy(frame->shown->pixels, frame->light->pixels,
-               3 * sizeof(float) * (size_t)o.width * (size_t)o.height);
+               3 * sizeof(float) * (size_t)o.output.width * (size_t)o.output.height);
         const vplReinhardDef reinhard = vplDefaultReinhardDef();
         check(vplToneMap_Reinhard(frame->shown, &reinhard));
     }
-    vplHistory_Destroy(o.history);
+    vplHistory_Destroy(o.sequence.history);
 }
 
 static void freeFrames(Bench* b)
@@ -222,7 +222,7 @@ static void measureAll(Bench* b, const char* path, const char* what, bool cohere
     for (int t = 1; t + 1 < b->count; t++) {
         counted += measure(b, t, &linear, &mapped);
     }
-    const double pixels = (double)b->options.width * b->options.height * (b->count - 2);
+    const double pixels = (double)b->options.output.width * b->options.output.height * (b->count - 2);
     printf("%-7s %-9s %-9s %8.3f %8.3f %12.3f %8.3f %11.0f %%\n", path, what, coherent ? "on" : "off",
            100 * linear.change / linear.light, 100 * linear.flicker / linear.light,
            100 * mapped.change / mapped.light, 100 * mapped.flicker / mapped.light,
@@ -248,25 +248,25 @@ int main(int count, char** words)
     openScene(words[1], 0, VPL_ISA_AUTO, &b.context, &b.scene);
     b.options = vplDefaultRenderOptions();
     b.options.method = count > 2 ? readMethod(words[2]) : VPL_METHOD_INSTANT_RADIOSITY;
-    b.options.particles = 256;
-    b.options.width = count > 5 ? atoi(words[4]) : 320;
-    b.options.height = count > 5 ? atoi(words[5]) : 180;
-    b.options.shadowMapSize = 256;
-    b.options.sampler = VPL_SAMPLER_HALTON;
+    b.options.particles.count = 256;
+    b.options.output.width = count > 5 ? atoi(words[4]) : 320;
+    b.options.output.height = count > 5 ? atoi(words[5]) : 180;
+    b.options.shadow.mapSize = 256;
+    b.options.particles.sampler = VPL_SAMPLER_HALTON;
     b.count = count > 3 ? atoi(words[3]) : 60;
     if (b.count < 3 || b.count > MAX_FRAMES || vplScene_GetEmitterCount(b.scene) == 0) {
         fprintf(stderr, "flicker: needs a light and 3 to %d frames\n", MAX_FRAMES);
         return 2;
     }
     const double diagonal = diagonalOf(b.scene);
-    printf("%d frames of %s at %dx%d, %% of the mean\n", b.count, words[1], b.options.width,
-           b.options.height);
+    printf("%d frames of %s at %dx%d, %% of the mean\n", b.count, words[1], b.options.output.width,
+           b.options.output.height);
     printf("%-7s %-9s %-9s %8s %8s %12s %8s %13s\n", "path", "light", "coherence", "change", "flicker",
            "tone-mapped:", "flicker", "static pixels");
     for (int path = 0; path < 2; path++) {
         (path ? moveLight : moveCamera)(b.scene, diagonal);
         for (int indirect = 0; indirect < 2; indirect++) {
-            b.options.show = indirect ? VPL_SHOW_INDIRECT : VPL_SHOW_PICTURE;
+            b.options.output.show = indirect ? VPL_SHOW_INDIRECT : VPL_SHOW_PICTURE;
             for (int on = 0; on < 2; on++) {
                 measureAll(&b, path ? "light" : "camera", indirect ? "indirect" : "all", on);
             }

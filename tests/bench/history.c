@@ -30,8 +30,8 @@ static uint64_t runOnce(Way* way, vplRenderOptions options, int run)
     struct rusage before, after;
     vplImage* image;
     vplRenderStats stats;
-    options.history = way->history;
-    options.frame = run;
+    options.sequence.history = way->history;
+    options.sequence.frame = run;
     const double wall = vplClockMs(), cpu = vplCpuMs();
     getrusage(RUSAGE_SELF, &before);
     check(vplRender(way->scene, &options, &image, &stats));
@@ -60,12 +60,12 @@ int main(int count, char** words)
                      : strcmp(method, "ssvp") == 0 ? VPL_METHOD_SSVP
                                                    : VPL_METHOD_INSTANT_RADIOSITY;
     if (options.method == VPL_METHOD_INSTANT_RADIOSITY) {
-        options.accumulation = VPL_ACCUMULATE_INTERLEAVED;
-        options.placement = VPL_PLACEMENT_RSM;
-        options.particles = 256;
+        options.pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
+        options.particles.placement = VPL_PLACEMENT_RSM;
+        options.particles.count = 256;
     }
-    options.width = count > 4 ? atoi(words[3]) : 1920;
-    options.height = count > 4 ? atoi(words[4]) : 1080;
+    options.output.width = count > 4 ? atoi(words[3]) : 1920;
+    options.output.height = count > 4 ? atoi(words[4]) : 1080;
     const int runs = count > 5 && atoi(words[5]) < MAX_RUNS ? atoi(words[5]) : 15;
     for (int w = 0; w < WAYS; w++) {
         openScene(words[1], 0, VPL_ISA_AUTO, &ways[w].context, &ways[w].scene);
@@ -83,7 +83,7 @@ int main(int count, char** words)
             return 1;
         }
     }
-    printf("%s, %s, %dx%d, medians of %d frames\n", words[1], method, options.width, options.height, runs);
+    printf("%s, %s, %dx%d, medians of %d frames\n", words[1], method, options.output.width, options.output.height, runs);
     printf("%-17s %9s %9s %10s %8s %8s\n", "history of", "wall ms", "cpu ms", "kernel ms", "pages",
            "peak MB");
     for (int w = 0; w < WAYS; w++) {

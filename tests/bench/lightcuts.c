@@ -22,9 +22,9 @@ static Run runOnce(const Bench* b, vplAccumulation accumulation, vplLightShadows
 {
     Run run = {0};
     vplRenderOptions o = b->options;
-    o.accumulation = accumulation;
-    o.lightShadows = shadows;
-    o.show = show;
+    o.pipeline.kind = accumulation;
+    o.lights.shadows = shadows;
+    o.output.show = show;
     check(vplRender(b->scene, &o, &run.image, &run.stats));
     return run;
 }
@@ -73,7 +73,7 @@ static void measure(const Bench* b, vplLightShadows shadows)
            shadows == VPL_LIGHT_SHADOWS_RAY ? "ray" : "none",
            (double)picture.stats.lightEvaluations / (double)picture.stats.cutPixels,
            (double)s->lightEvaluations / (double)s->cutPixels, s->largestCut, picture.stats.cpuMs, s->cpuMs);
-    if (b->options.particles <= b->judged) {
+    if (b->options.particles.count <= b->judged) {
         Run all = runOnce(b, VPL_ACCUMULATE_DEFERRED, shadows, VPL_SHOW_INDIRECT);
         Run open = runOnce(b, VPL_ACCUMULATE_DEFERRED, VPL_LIGHT_SHADOWS_NONE, VPL_SHOW_INDIRECT);
         printf(" %9.0f %6.2fx", all.stats.cpuMs, all.stats.cpuMs / s->cpuMs);
@@ -96,20 +96,20 @@ int main(int count, char** words)
     Bench b = {.scene = scene, .options = vplDefaultRenderOptions()};
     b.options.method =
         count > 2 && strcmp(words[2], "keller") == 0 ? VPL_METHOD_KELLER : VPL_METHOD_INSTANT_RADIOSITY;
-    b.options.sampler = VPL_SAMPLER_HALTON;
-    b.options.compensation = VPL_COMPENSATION_NONE;
-    b.options.width = count > 4 ? atoi(words[3]) : 160;
-    b.options.height = count > 4 ? atoi(words[4]) : 120;
-    b.options.cutError = count > 7 ? (float)atof(words[7]) : b.options.cutError;
+    b.options.particles.sampler = VPL_SAMPLER_HALTON;
+    b.options.lights.compensation = VPL_COMPENSATION_NONE;
+    b.options.output.width = count > 4 ? atoi(words[3]) : 160;
+    b.options.output.height = count > 4 ? atoi(words[4]) : 120;
+    b.options.pipeline.cutError = count > 7 ? (float)atof(words[7]) : b.options.pipeline.cutError;
     const int most = count > 5 ? atoi(words[5]) : 100000;
     b.judged = count > 6 ? atoi(words[6]) : 10000;
     printf("%s, %dx%d, asked for %g %%; processor ms of whole renders; errors in %% of a pixel's light\n",
-           path, b.options.width, b.options.height, 100 * (double)b.options.cutError);
+           path, b.options.output.width, b.options.output.height, 100 * (double)b.options.pipeline.cutError);
     printf("%8s %-5s %8s %8s %7s %9s %9s %9s %7s %6s %6s %6s %6s %6s\n", "lights", "shad.", "picture",
            "indirect", "largest", "picture", "indirect", "deferred", "ratio", "rmse", "p95", "p99", "max",
            "own");
     for (int particles = 1000; particles <= most; particles *= 10) {
-        b.options.particles = particles;
+        b.options.particles.count = particles;
         measure(&b, VPL_LIGHT_SHADOWS_NONE);
         measure(&b, VPL_LIGHT_SHADOWS_RAY);
     }

@@ -18,9 +18,9 @@ static vplImage* show(const vplScene* scene, const vplImage* like, vplShow what)
     vplRenderOptions o = vplDefaultRenderOptions();
     vplImage* image;
     o.method = VPL_METHOD_DIRECT;
-    o.width = like->width;
-    o.height = like->height;
-    o.show = what;
+    o.output.width = like->width;
+    o.output.height = like->height;
+    o.output.show = what;
     check(vplRender(scene, &o, &image, NULL));
     return image;
 }
@@ -89,15 +89,15 @@ static void measure(const vplScene* scene, vplImage* const truth[2], const bool*
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_RADIOSITY;
-    o.show = VPL_SHOW_INDIRECT;
-    o.width = truth[0]->width;
-    o.height = truth[0]->height;
-    o.patches = patches;
-    o.patchPlacement = placement;
-    o.formFactors = strchr(letters, 'i') ? VPL_FORM_FACTORS_INCENTRE : o.formFactors;
-    o.hierarchy = strchr(letters, 'h') ? VPL_HIERARCHY_ON : o.hierarchy;
-    o.rowSums = strchr(letters, 'c') ? VPL_ROW_SUMS_CLAMP : o.rowSums;
-    o.interpolation = strchr(letters, 'n') ? VPL_INTERPOLATION_NONE : o.interpolation;
+    o.output.show = VPL_SHOW_INDIRECT;
+    o.output.width = truth[0]->width;
+    o.output.height = truth[0]->height;
+    o.radiosity.patches = patches;
+    o.radiosity.placement = placement;
+    o.radiosity.formFactors = strchr(letters, 'i') ? VPL_FORM_FACTORS_INCENTRE : o.radiosity.formFactors;
+    o.radiosity.hierarchy = strchr(letters, 'h') ? VPL_HIERARCHY_ON : o.radiosity.hierarchy;
+    o.radiosity.rowSums = strchr(letters, 'c') ? VPL_ROW_SUMS_CLAMP : o.radiosity.rowSums;
+    o.radiosity.interpolation = strchr(letters, 'n') ? VPL_INTERPOLATION_NONE : o.radiosity.interpolation;
     vplImage* image;
     vplRenderStats stats;
     check(vplRender(scene, &o, &image, &stats));

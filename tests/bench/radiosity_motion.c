@@ -43,15 +43,15 @@ static vplImage* renderFrame(vplHistory* history, int frame, int patches, bool i
     vplRenderOptions o = vplDefaultRenderOptions();
     vplImage* image;
     o.method = VPL_METHOD_RADIOSITY;
-    o.show = indirect ? VPL_SHOW_INDIRECT : VPL_SHOW_PICTURE;
-    o.width = width;
-    o.height = height;
-    o.patches = patches;
-    o.frame = frame;
-    o.history = history;
-    o.solver = solver;
-    o.iterations = history != NULL && frame > 0 ? 1 : 1000;
-    o.residual = history != NULL && frame > 0 ? o.residual : 1e-7;
+    o.output.show = indirect ? VPL_SHOW_INDIRECT : VPL_SHOW_PICTURE;
+    o.output.width = width;
+    o.output.height = height;
+    o.radiosity.patches = patches;
+    o.sequence.frame = frame;
+    o.sequence.history = history;
+    o.radiosity.solver = solver;
+    o.radiosity.iterations = history != NULL && frame > 0 ? 1 : 1000;
+    o.radiosity.residual = history != NULL && frame > 0 ? o.radiosity.residual : 1e-7;
     check(vplRender(scene, &o, &image, stats));
     return image;
 }

@@ -56,14 +56,14 @@ static vplImage* picture(const Bench* b, int size, uint64_t seed)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     vplImage* image;
-    o.width = o.height = SIDE;
-    o.particles = SHOWN;
-    o.sampler = VPL_SAMPLER_HALTON;
+    o.output.width = o.output.height = SIDE;
+    o.particles.count = SHOWN;
+    o.particles.sampler = VPL_SAMPLER_HALTON;
     o.seed = seed;
-    o.show = VPL_SHOW_INDIRECT;
-    o.lightShadows = VPL_LIGHT_SHADOWS_NONE;
-    o.placement = size > 0 ? VPL_PLACEMENT_RSM : VPL_PLACEMENT_PARTICLES;
-    o.rsmSize = size > 0 ? size : o.rsmSize;
+    o.output.show = VPL_SHOW_INDIRECT;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_NONE;
+    o.particles.placement = size > 0 ? VPL_PLACEMENT_RSM : VPL_PLACEMENT_PARTICLES;
+    o.shadow.rsmSize = size > 0 ? size : o.shadow.rsmSize;
     check(vplRender(b->scene, &o, &image, NULL));
     return image;
 }

@@ -11,9 +11,9 @@ static vplImage* renderClusters(const vplScene* scene, int width, int height, in
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_SSVP;
-    o.width = width;
-    o.height = height;
-    o.clusters = clusters;
+    o.output.width = width;
+    o.output.height = height;
+    o.ssvp.clusters = clusters;
     o.maxBounces = bounces;
     vplImage* image;
     check(vplRender(scene, &o, &image, NULL));

@@ -34,13 +34,13 @@ static void renderEveryWay(const vplScene* scene)
     vplResult first = VPL_SUCCESS;
     for (int way = VPL_ACCUMULATE_MULTIPASS; way <= VPL_ACCUMULATE_INTERLEAVED; way++) {
         vplRenderOptions options = vplDefaultRenderOptions();
-        options.width = 12;
-        options.height = 8;
-        options.particles = 4;
-        options.shadowMapSize = 4;
-        options.batch = 3;
-        options.interleave = 2;
-        options.accumulation = (vplAccumulation)way;
+        options.output.width = 12;
+        options.output.height = 8;
+        options.particles.count = 4;
+        options.shadow.mapSize = 4;
+        options.pipeline.batch = 3;
+        options.pipeline.interleave = 2;
+        options.pipeline.kind = (vplAccumulation)way;
         vplImage* image = NULL;
         vplRenderStats stats;
         vplResult result = vplRender(scene, &options, &image, &stats);

@@ -32,60 +32,59 @@ static void documented(vplRenderOptions* o)
 static void documentedMultipass(vplRenderOptions* o)
 {
     o->lighting = VPL_LIGHTING_DOCUMENTED;
-    o->accumulation = VPL_ACCUMULATE_MULTIPASS;
-    o->particles = 100;
-    o->sampler = VPL_SAMPLER_HALTON;
+    o->pipeline.kind = VPL_ACCUMULATE_MULTIPASS;
+    o->particles.count = 100;
+    o->particles.sampler = VPL_SAMPLER_HALTON;
 }
 
 static void manyLights(vplRenderOptions* o)
 {
-    o->particles = 1000;
-    o->sampler = VPL_SAMPLER_HALTON;
-    o->reflectivity = -1;
+    o->particles.count = 1000;
+    o->particles.sampler = VPL_SAMPLER_HALTON;
+    o->particles.reflectivity = -1;
 }
 
 static void manyLightsBatched(vplRenderOptions* o)
 {
     manyLights(o);
-    o->accumulation = VPL_ACCUMULATE_BATCHED;
-    o->batch = 100;
-    o->sampler = VPL_SAMPLER_HAMMERSLEY;
+    o->pipeline.kind = VPL_ACCUMULATE_BATCHED;
+    o->pipeline.batch = 100;
+    o->particles.sampler = VPL_SAMPLER_HAMMERSLEY;
 }
 
 static void interleaved(vplRenderOptions* o)
 {
     manyLights(o);
-    o->accumulation = VPL_ACCUMULATE_INTERLEAVED;
+    o->pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
 }
 
 static void lightMaps(vplRenderOptions* o)
 {
-    o->particles = 200;
-    o->sampler = VPL_SAMPLER_HALTON;
-    o->reflectivity = -1;
-    o->lightShadows = VPL_LIGHT_SHADOWS_MAP;
-    o->show = VPL_SHOW_INDIRECT;
+    o->particles.count = 200;
+    o->particles.sampler = VPL_SAMPLER_HALTON;
+    o->particles.reflectivity = -1;
+    o->lights.shadows = VPL_LIGHT_SHADOWS_MAP;
+    o->output.show = VPL_SHOW_INDIRECT;
 }
 
 static void unbounded(vplRenderOptions* o)
 {
-    o->particles = 200;
-    o->minDistance = 0;
+    o->particles.count = 200;
+    o->lights.minDistance = 0;
 }
 
 static void hardShadow(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_DIRECT;
     o->shadow.pcfSamples = 1;
-    o->shadowMapSize = 128;
+    o->shadow.mapSize = 128;
 }
 
 static void acne(vplRenderOptions* o)
 {
     hardShadow(o);
-    o->shadow.biasRule = VPL_BIAS_PAIR;
-    o->shadow.biasStatic = 0.002f;
-    o->shadow.biasDynamic = 0;
+    o->shadow.bias = 0.002f;
+    o->shadow.biasSlope = 0;
 }
 
 static void softShadow(vplRenderOptions* o)
@@ -97,183 +96,183 @@ static void softShadow(vplRenderOptions* o)
 
 static void depth(vplRenderOptions* o)
 {
-    o->show = VPL_SHOW_DEPTH;
+    o->output.show = VPL_SHOW_DEPTH;
 }
 
 static void normals(vplRenderOptions* o)
 {
-    o->show = VPL_SHOW_NORMALS;
+    o->output.show = VPL_SHOW_NORMALS;
 }
 
 static void shadowMap(vplRenderOptions* o)
 {
-    o->show = VPL_SHOW_SHADOW_MAP;
-    o->shadowMapSize = 24;
+    o->output.show = VPL_SHOW_SHADOW_MAP;
+    o->shadow.mapSize = 24;
 }
 
 static void shadowFactor(vplRenderOptions* o)
 {
-    o->show = VPL_SHOW_SHADOW_FACTOR;
+    o->output.show = VPL_SHOW_SHADOW_FACTOR;
 }
 
 static void lightcuts(vplRenderOptions* o)
 {
-    o->accumulation = VPL_ACCUMULATE_LIGHTCUTS;
-    o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
-    o->particles = 3000;
+    o->pipeline.kind = VPL_ACCUMULATE_LIGHTCUTS;
+    o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o->particles.count = 3000;
 }
 
 static void kellerDocumented(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_KELLER;
     o->lighting = VPL_LIGHTING_DOCUMENTED;
-    o->particles = 60;
+    o->particles.count = 60;
 }
 
 static void kellerPasses(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_KELLER;
-    o->reflectivity = -1;
-    o->particles = 300;
-    o->passes = 3;
-    o->accumulation = VPL_ACCUMULATE_INTERLEAVED;
+    o->particles.reflectivity = -1;
+    o->particles.count = 300;
+    o->stop.passes = 3;
+    o->pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
 }
 
 static void indirect(vplRenderOptions* o)
 {
-    o->show = VPL_SHOW_INDIRECT;
+    o->output.show = VPL_SHOW_INDIRECT;
 }
 
 static void oneLight(vplRenderOptions* o)
 {
     o->lighting = VPL_LIGHTING_DOCUMENTED;
-    o->show = VPL_SHOW_LIGHT;
-    o->showLight = 4;
+    o->output.show = VPL_SHOW_LIGHT;
+    o->output.showIndex = 4;
 }
 
 static void overlay(vplRenderOptions* o)
 {
-    o->show = VPL_SHOW_OVERLAY;
-    o->particles = 60;
+    o->output.show = VPL_SHOW_OVERLAY;
+    o->particles.count = 60;
 }
 
 static void viewPlacement(vplRenderOptions* o)
 {
-    o->placement = VPL_PLACEMENT_VIEW;
-    o->particles = 100;
-    o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o->particles.placement = VPL_PLACEMENT_VIEW;
+    o->particles.count = 100;
+    o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
 }
 
 static void rsmPlacement(vplRenderOptions* o)
 {
-    o->placement = VPL_PLACEMENT_RSM;
-    o->rsmSize = 64;
-    o->particles = 100;
+    o->particles.placement = VPL_PLACEMENT_RSM;
+    o->shadow.rsmSize = 64;
+    o->particles.count = 100;
 }
 
 static void paths(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_PATH;
-    o->samplesPerPixel = 32;
+    o->path.samples = 32;
 }
 
 static void secondBounce(vplRenderOptions* o)
 {
     paths(o);
-    o->show = VPL_SHOW_BOUNCE;
-    o->showBounce = 2;
+    o->output.show = VPL_SHOW_BOUNCE;
+    o->output.showIndex = 2;
     o->seed = 7;
 }
 
 static void compensated(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_KELLER;
-    o->particles = 100;
-    o->lightShadows = VPL_LIGHT_SHADOWS_RAY;
+    o->particles.count = 100;
+    o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
 }
 
 static void ssvp(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_SSVP;
-    o->rsmSize = 128;
+    o->shadow.rsmSize = 128;
 }
 
 // What the document prints where a later reading differs from it.
 static void ssvpPrinted(vplRenderOptions* o)
 {
     ssvp(o);
-    o->clusterMetric = VPL_CLUSTER_PRINTED;
-    o->clusterPlace = VPL_CLUSTER_PLACE_MEAN;
-    o->secondWeight = VPL_SECOND_WEIGHT_PRINTED;
-    o->oversampling = 1;
+    o->ssvp.metric = VPL_CLUSTER_PRINTED;
+    o->ssvp.place = VPL_CLUSTER_PLACE_MEAN;
+    o->ssvp.secondWeight = VPL_SECOND_WEIGHT_PRINTED;
+    o->ssvp.oversampling = 1;
 }
 
 static void ssvpGather(vplRenderOptions* o)
 {
     ssvp(o);
-    o->show = VPL_SHOW_GATHER;
+    o->output.show = VPL_SHOW_GATHER;
 }
 
 static void ssvpClusters(vplRenderOptions* o)
 {
     ssvp(o);
-    o->show = VPL_SHOW_CLUSTERS;
+    o->output.show = VPL_SHOW_CLUSTERS;
 }
 
 static void paraboloid(vplRenderOptions* o)
 {
     ssvp(o);
-    o->show = VPL_SHOW_PARABOLOID;
-    o->showLight = 2;
-    o->paraboloidSize = 48;
+    o->output.show = VPL_SHOW_PARABOLOID;
+    o->output.showIndex = 2;
+    o->ssvp.paraboloidSize = 48;
 }
 
 static void radiosity(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_RADIOSITY;
-    o->patchSize = 0.45f; // 784 patches of the report's box
+    o->radiosity.patchSize = 0.45f; // 784 patches of the report's box
 }
 
 static void radiosityIncentre(vplRenderOptions* o)
 {
     radiosity(o);
-    o->subdivisions = 3; // 192, and too bright
-    o->formFactors = VPL_FORM_FACTORS_INCENTRE;
-    o->vertexWeight = VPL_VERTEX_WEIGHT_EQUAL;
-    o->interpolation = VPL_INTERPOLATION_NONE;
+    o->radiosity.subdivisions = 3; // 192, and too bright
+    o->radiosity.formFactors = VPL_FORM_FACTORS_INCENTRE;
+    o->radiosity.vertexWeight = VPL_VERTEX_WEIGHT_EQUAL;
+    o->radiosity.interpolation = VPL_INTERPOLATION_NONE;
 }
 
 static void radiosityLinks(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_RADIOSITY;
-    o->patches = 500;
-    o->hierarchy = VPL_HIERARCHY_ON;
+    o->radiosity.patches = 500;
+    o->radiosity.hierarchy = VPL_HIERARCHY_ON;
 }
 
 static void radiosityAdaptive(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_RADIOSITY;
-    o->patches = 300;
-    o->patchPlacement = VPL_PATCHES_ADAPTIVE;
+    o->radiosity.patches = 300;
+    o->radiosity.placement = VPL_PATCHES_ADAPTIVE;
 }
 
 static void adaptivePatches(vplRenderOptions* o)
 {
     radiosityAdaptive(o);
-    o->show = VPL_SHOW_PATCHES;
+    o->output.show = VPL_SHOW_PATCHES;
 }
 
 static void patchRadiosity(vplRenderOptions* o)
 {
     radiosity(o);
-    o->show = VPL_SHOW_PATCH_RADIOSITY;
-    o->solver = VPL_SOLVER_SHOOTING;
+    o->output.show = VPL_SHOW_PATCH_RADIOSITY;
+    o->radiosity.solver = VPL_SOLVER_SHOOTING;
 }
 
 static void laterFrame(vplRenderOptions* o)
 {
     manyLights(o);
-    o->frame = 45;
+    o->sequence.frame = 45;
 }
 
 static const Case CASES[] = {
@@ -334,7 +333,7 @@ static vplImage* renderCase(vplContext* context, const Case* c)
     vplScene* scene = NULL;
     vplImage* image = NULL;
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.width = options.height = SIZE;
+    options.output.width = options.output.height = SIZE;
     c->adjust(&options);
     snprintf(path, sizeof path, "examples/scenes/%s.json", c->scene);
     if (vplScene_Load(context, path, &scene) == VPL_SUCCESS) {

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+// Options as text: vplRenderOptions_Set and its inverse.
+#include "render/options.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Where a value goes, and who is told why it does not.
+typedef struct Setting {
+    vplRenderOptions* options;
+    const vplOption* option;
+    const char* value;
+} Setting;
+
+__attribute__((format(printf, 2, 3))) static vplResult refuse(const Setting* s, const char* format, ...)
+{
+    char* problem = s->options->problem;
+    const size_t size = sizeof s->options->problem;
+    const int length = snprintf(problem, size, "%s is \"%.60s\", must be ", s->option->name, s->value);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(problem + length, size - (size_t)length, format, arguments);
+    va_end(arguments);
+    return VPL_INVALID_ARGUMENT;
+}
+
+static void store(const Setting* s, const void* value, size_t size)
+{
+    memcpy((char*)s->options + s->option->offset, value, size);
+}
+
+static bool isPast(const char* value, const char* end)
+{
+    return end == value || *end != 0;
+}
+
+// ---- numbers
+
+static vplResult setInt(const Setting* s)
+{
+    char* end;
+    errno = 0;
+    const long long number = strtoll(s->value, &end, 10);
+    const int stored = (int)number;
+    if (isPast(s->value, end) || errno == ERANGE || (double)number < s->option->low ||
+        (double)number > s->option->high) {
+        return refuse(s, "a whole number in [%.0f, %.0f]", s->option->low, s->option->high);
+    }
+    store(s, &stored, sizeof stored);
+    return VPL_SUCCESS;
+}
+
+static vplResult setSeed(const Setting* s)
+{
+    char* end;
+    errno = 0;
+    const unsigned long long number = strtoull(s->value, &end, 10);
+    const uint64_t stored = number;
+    if (isPast(s->value, end) || errno == ERANGE || strchr(s->value, '-') != NULL) {
+        return refuse(s, "a whole number in [0, 2^64)");
+    }
+    store(s, &stored, sizeof stored);
+    return VPL_SUCCESS;
+}
+
+static vplResult setReal(const Setting* s)
+{
+    const vplOption* o = s->option;
+    const bool below = o->kind == VPL_OPTION_BELOW_AUTO, bias = o->kind == VPL_OPTION_BIAS;
+    const bool automatic = below || bias || o->kind == VPL_OPTION_FLOAT_AUTO;
+    char* end;
+    double number = strtod(s->value, &end);
+    if (automatic && strcmp(s->value, "auto") == 0) {
+        number = -1;
+    } else if (bias && strcmp(s->value, "exact") == 0) {
+        number = (double)VPL_BIAS_OPTION_EXACT;
+    } else if (isPast(s->value, end) || !(number >= o->low && number <= o->high)) {
+        return refuse(s, "a number in [%g, %g%s%s", o->low, o->high, below ? ")" : "]",
+                      bias        ? ", auto or exact"
+                      : automatic ? " or auto"
+                                  : "");
+    } else if (below && number >= o->high) {
+        return refuse(s, "less than %g: with %g no particle would ever stop", o->high, o->high);
+    }
+    const float single = (float)number;
+    const bool wide = below || o->kind == VPL_OPTION_DOUBLE;
+    store(s, wide ? (const void*)&number : &single, wide ? sizeof number : sizeof single);
+    return VPL_SUCCESS;
+}
+
+static vplResult setSize(const Setting* s)
+{
+    int size[2], length = 0;
+    const char digit = s->value[0];
+    const bool read = digit >= '0' && digit <= '9' && strlen(s->value) < 16 &&
+                      sscanf(s->value, "%dx%d%n", &size[0], &size[1], &length) == 2 && s->value[length] == 0;
+    for (int i = 0; i < 2; i++) {
+        if (!read || size[i] < s->option->low || size[i] > s->option->high) {
+            return refuse(s, "WIDTHxHEIGHT, each in [1, %d]", VPL_MAX_IMAGE_SIZE);
+        }
+    }
+    store(s, size, sizeof size); // width and height follow each other
+    return VPL_SUCCESS;
+}
+
+// ---- choices
+
+// The number of the choice in "a|b|c:K" that `value` names, or -1. A choice that ends with ":K" takes an index, whose
+// text is stored in *indexOut; else it is NULL.
+static int findChoice(const char* choices, const char* value, const char** indexOut)
+{
+    for (int i = 0;; i++) {
+        const size_t length = strcspn(choices, "|");
+        const char* colon = memchr(choices, ':', length);
+        const size_t fixed = colon != NULL ? (size_t)(colon - choices) + 1 : length;
+        *indexOut = colon != NULL ? value + fixed : NULL;
+        if (strncmp(choices, value, fixed) == 0 && (colon != NULL || value[fixed] == 0)) {
+            return i;
+        }
+        if (choices[length] == 0) {
+            return -1;
+        }
+        choices += length + 1;
+    }
+}
+
+static vplResult setChoice(const Setting* s)
+{
+    const char* indexText;
+    const int choice = findChoice(s->option->value, s->value, &indexText);
+    if (choice < 0) {
+        return refuse(s, "one of %s", s->option->value);
+    }
+    if (indexText != NULL) {
+        char* end;
+        errno = 0;
+        const long index = strtol(indexText, &end, 10);
+        const long most = choice == VPL_SHOW_BOUNCE ? VPL_MAX_BOUNCES : VPL_MAX_LIGHTS;
+        if (isPast(indexText, end) || errno == ERANGE || index < 0 || index > most) {
+            return refuse(s, "%.*s and an index in [0, %ld]", (int)(indexText - s->value), s->value, most);
+        }
+        s->options->output.showIndex = (int)index;
+    }
+    store(s, &choice, sizeof choice);
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, const char* value)
+{
+    const Setting s = {options, vplFindOption(name), value};
+    options->problem[0] = 0;
+    if (s.option == NULL || s.option->kind == VPL_OPTION_PART) {
+        snprintf(options->problem, sizeof options->problem, "there is no option \"%.60s\"", name);
+        return VPL_INVALID_ARGUMENT;
+    }
+    if (*value == ' ' || *value == '\t') { // strtol and strtod would skip it
+        return refuse(&s, "%s", s.option->value);
+    }
+    switch (s.option->kind) {
+    case VPL_OPTION_INT:
+        return setInt(&s);
+    case VPL_OPTION_SEED:
+        return setSeed(&s);
+    case VPL_OPTION_SIZE:
+        return setSize(&s);
+    case VPL_OPTION_CHOICE:
+    case VPL_OPTION_SHOW:
+        return setChoice(&s);
+    default:
+        return setReal(&s);
+    }
+}
+
+// ---- the inverse
+
+// The shortest decimal that is read back as the same number.
+static void writeNumber(double value, bool single, char text[32])
+{
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(text, 32, "%.*g", digits, value);
+        if (single ? strtof(text, NULL) == (float)value : strtod(text, NULL) == value) {
+            return;
+        }
+    }
+}
+
+static void writeChoice(const vplOption* option, const vplRenderOptions* o, char text[64])
+{
+    const char* at = option->value;
+    for (int i = (int)vplOption_GetNumber(option, o); i > 0; i--) {
+        at = strchr(at, '|') + 1;
+    }
+    const int length = (int)strcspn(at, ":|");
+    snprintf(text, 64, at[length] == ':' ? "%.*s:%d" : "%.*s", length, at, o->output.showIndex);
+}
+
+vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char* textOut, size_t size)
+{
+    const vplOption* option = vplFindOption(name);
+    char text[64] = "";
+    if (option == NULL || option->kind == VPL_OPTION_PART) {
+        return VPL_INVALID_ARGUMENT;
+    }
+    const double value = vplOption_GetNumber(option, o);
+    switch (option->kind) {
+    case VPL_OPTION_INT:
+        snprintf(text, sizeof text, "%d", (int)value);
+        break;
+    case VPL_OPTION_SEED:
+        snprintf(text, sizeof text, "%llu", (unsigned long long)o->seed);
+        break;
+    case VPL_OPTION_SIZE:
+        snprintf(text, sizeof text, "%dx%d", o->output.width, o->output.height);
+        break;
+    case VPL_OPTION_CHOICE:
+    case VPL_OPTION_SHOW:
+        writeChoice(option, o, text);
+        break;
+    case VPL_OPTION_FLOAT:
+    case VPL_OPTION_DOUBLE:
+        writeNumber(value, option->kind == VPL_OPTION_FLOAT, text);
+        break;
+    default:
+        if (value >= 0) {
+            writeNumber(value, option->kind != VPL_OPTION_BELOW_AUTO, text);
+        } else {
+            const bool exact = option->kind == VPL_OPTION_BIAS && value == (double)VPL_BIAS_OPTION_EXACT;
+            strcpy(text, exact ? "exact" : "auto");
+        }
+    }
+    return snprintf(textOut, size, "%s", text) < (int)size ? VPL_SUCCESS : VPL_INVALID_ARGUMENT;
+}
+
+// ---- use
+
+bool vplRenderOptions_IsUsed(const vplRenderOptions* o, const char* name, char* reasonOut, size_t size)
+{
+    const vplOption* option = vplFindOption(name);
+    const int pipelines = option != NULL ? option->users & ~VPL_USE_ALL : 0;
+    const vplAccumulation usual =
+        o->method == VPL_METHOD_SSVP ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    const vplAccumulation kind = o->pipeline.kind == VPL_ACCUMULATE_USUAL ? usual : o->pipeline.kind;
+    const char* against = NULL;
+    if (option != NULL && (option->users & 1 << o->method) == 0) {
+        against = "method";
+    } else if (pipelines != 0 && (pipelines & 256 << kind) == 0) {
+        against = "pipeline";
+    }
+    if (against != NULL && reasonOut != NULL) {
+        char value[32] = "";
+        vplRenderOptions_Get(o, against, value, sizeof value);
+        snprintf(reasonOut, size, "--%s %s", against, value);
+    }
+    return against == NULL;
+}

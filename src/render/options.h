@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Options from the inside: the value of a table row, and the checks that need no scene geometry.
+#ifndef VPL_RENDER_OPTIONS_H
+#define VPL_RENDER_OPTIONS_H
+
+#include <vpl/options.h>
+
+// The value of a number or choice; 0 for a seed.
+double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* options);
+
+// Every option in its range, and a camera of the scene.
+vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
+
+#endif
