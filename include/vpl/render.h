@@ -3,7 +3,7 @@
 #ifndef VPL_RENDER_H
 #define VPL_RENDER_H
 
-#include <vpl/options.h>
+#include <vpl/plan.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -23,7 +23,7 @@ void vplHistory_Destroy(vplHistory* history);
 // same: then a batch costs another look at the scene.
 #define VPL_LIGHT_MAP_BYTES ((int64_t)32 << 20)
 
-enum { VPL_MAX_STAGES = 24, VPL_MAX_STEPS_REPORTED = 64 };
+enum { VPL_MAX_STAGES = 24 };
 
 typedef struct vplStage {
     const char* name; // static

@@ -13,6 +13,8 @@
 #include <vpl/lights.h>
 #include <vpl/shading.h>
 #include <vpl/radiosity.h>
+#include <vpl/options.h>
+#include <vpl/plan.h>
 #include <vpl/render.h>
 
 #endif

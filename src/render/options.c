@@ -78,7 +78,7 @@ static vplResult checkOption(const vplContext* context, const vplRenderOptions* 
     const bool automatic = option->kind == VPL_OPTION_FLOAT_AUTO || option->kind == VPL_OPTION_BELOW_AUTO ||
                            option->kind == VPL_OPTION_BIAS;
     const bool below = option->kind == VPL_OPTION_BELOW_AUTO;
-    const bool low = value >= option->low || (automatic && isfinite(value));
+    const bool low = value >= (double)(float)option->low || (automatic && isfinite(value));
     const bool high = below ? value < option->high : value <= option->high;
     if (low && high) {
         return VPL_SUCCESS;
