@@ -49,7 +49,7 @@ MOVES      := $(shell $(CC) -mavx2 -mmove-max=256 -mstore-max=256 -x c -c /dev/n
 ISA_avx2   := -mavx2 $(MOVES)
 ISA_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 
-LIB_SOURCES    := $(filter-out src/cli/%,$(wildcard src/*/*.c))
+LIB_SOURCES    := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
 KERNEL_SOURCES := $(filter %_kernel.c,$(LIB_SOURCES))
 PLAIN_SOURCES  := $(filter-out %_kernel.c,$(LIB_SOURCES))
 CLI_SOURCES    := $(wildcard src/cli/*.c)
