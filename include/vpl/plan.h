@@ -80,6 +80,7 @@ typedef struct vplPlan {
     // The costs that chose the shadows of virtual lights, ms of one core of the machine of bench/crossover; 0 if not asked.
     double shadowMapEstimateMs, shadowRayEstimateMs;
     char problem[VPL_PLAN_TEXT]; // why it cannot be rendered; empty: it can
+    vplResult refusal;           // what rendering then returns: VPL_INVALID_ARGUMENT or VPL_LIMIT
     struct vplArena* arena;      // owns the emitters
 } vplPlan;
 

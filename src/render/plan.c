@@ -305,8 +305,10 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
                   VPL_ALL_PAIRS);
     }
     if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
+        p->refusal = VPL_LIMIT;
         snprintf(p->problem, sizeof p->problem,
-                 "form factors of all pairs take more memory than is allowed; use --hierarchy on");
+                 "form factors of %d sides take %lld bytes, at most %lld are allowed; use --hierarchy on",
+                 p->patchSides, (long long)p->formFactorBytes, (long long)VPL_MAX_FORM_FACTOR_BYTES);
     }
     return VPL_SUCCESS;
 }
@@ -393,6 +395,7 @@ static vplResult pose(const vplScene* scene, vplPlan* p)
 
 static vplResult decideAll(vplRunner* r, vplPlan* p)
 {
+    p->refusal = VPL_INVALID_ARGUMENT;
     TRY(pose(r->run.scene, p));
     choosePicture(r->run.scene, p);
     choosePipeline(p);

@@ -106,7 +106,7 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     r->runner.stats.clampLoss = r->runner.stats.errorEstimate = r->runner.stats.relativeErrorEstimate = -1;
     vplResult result = vplMakePlan(&r->runner, options, NULL, &r->plan);
     if (result == VPL_SUCCESS && r->plan->problem[0] != 0) {
-        result = vplFail(context, VPL_INVALID_ARGUMENT, "%s", r->plan->problem);
+        result = vplFail(context, r->plan->refusal, "%s", r->plan->problem);
     }
     if (result != VPL_SUCCESS) {
         vplRenderer_Destroy(r);

@@ -166,7 +166,8 @@ static uint64_t hashView(uint64_t state, const vplView* v)
 }
 
 // Hashes the values that a stage's key names: options; the posed SCENE, its EMITTERS and the VIEW; the PASS; the SHIFT of
-// SSVP's patterns, and whether its clusters SEE; the BIAS rule; what PLACEMENT of particles depends on; and ALWAYS, which is never the same again.
+// SSVP's patterns, and whether its clusters SEE; the BIAS rule; what PLACEMENT of particles depends on; what drafts of ADAPTIVE patches are made with; and
+// ALWAYS, which is never the same again.
 static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
 {
     const vplRenderOptions* o = &run->plan->options;
@@ -191,6 +192,11 @@ static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
             state = vplHashWords(state, (const uint32_t[]){run->plan->biasRule}, 1);
         } else if (strcmp(word, "SEES") == 0) {
             state = vplHashWords(state, (const uint32_t[]){vplSsvpSees(run->plan)}, 1);
+        } else if (strcmp(word, "ADAPTIVE") == 0) {
+            const bool adaptive = o->radiosity.placement == VPL_PATCHES_ADAPTIVE;
+            const char* drafts = "form-factors form-samples row-sums link-error patch-light camera seed";
+            const uint64_t draft = adaptive ? findKey(run, drafts, build) : 0;
+            state = vplHashWords(state, (const uint32_t[]){(uint32_t)draft, (uint32_t)(draft >> 32)}, 2);
         } else if (strcmp(word, "ALWAYS") == 0) {
             state = vplHashWords(state, &build, 1);
         } else if (strcmp(word, "PLACEMENT") == 0) {

@@ -49,7 +49,9 @@ const vplShowRow VPL_SHOWS[] = {
 const char* vplRefuseShow(const vplRenderOptions* o)
 {
     const vplShowRow* row = &VPL_SHOWS[o->output.show];
-    return (row->methods & 1 << o->method) != 0 ? NULL
-           : o->method == VPL_METHOD_PATH       ? NO_PATHS
-                                                : row->otherwise;
+    if ((row->methods & 1 << o->method) != 0) {
+        return NULL;
+    }
+    const bool others = row->otherwise == NO_CLUSTERS || row->otherwise == NO_PATCHES;
+    return o->method == VPL_METHOD_PATH && !others ? NO_PATHS : row->otherwise;
 }

@@ -179,10 +179,7 @@ static bool needsPaths(const vplPlan* p, char* why)
 #define IN(stage) (1u << VPL_STAGE_##stage)
 #define SSVP_KEY  "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
 #define MAP_KEY   "paraboloid hemispheres cluster-place SEES show max-bounces second-bounce coherence SHIFT"
-#define PATCH_KEY                                                                                            \
-    "patch-size patches subdivisions patch-placement form-factors form-samples row-sums hierarchy "          \
-    "link-error "                                                                                            \
-    "patch-light camera seed"
+#define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"
 
 // clang-format off
 const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
@@ -232,7 +229,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "method lighting show show-index compensation min-distance PASS",
         needsVirtualLights, vplMakeVirtualLights, vplDestroyVirtualLights, .report = vplReportVirtualLights},
     [VPL_STAGE_PATCHES] = {
-        "patches", 0.05, IN(GEOMETRY), PATCH_KEY,
+        "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement ADAPTIVE",
         needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
     [VPL_STAGE_SIDES] = {
         "reachable sides", 0.1, IN(GEOMETRY) | IN(PATCHES), "form-factors camera seed",
@@ -241,7 +238,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "patch mesh", 0.11, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "",
         needsPatches, vplMakePatchMesh, vplDestroyPatchMesh},
     [VPL_STAGE_FORM_FACTORS] = {
-        "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), PATCH_KEY,
+        "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
     [VPL_STAGE_PATCH_LIGHT] = {
         "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed EMITTERS",
