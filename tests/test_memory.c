@@ -465,8 +465,8 @@ static vplResult findSides(vplContext* context, const char* path, int variant)
         priorities[i] = 1;
     }
     def.count = 50;
-    sidesDef.eyes = &eye;
-    sidesDef.eyeCount = variant;
+    sidesDef.viewpoints = &eye;
+    sidesDef.viewpointCount = variant;
     vplResult result = vplScene_Load(context, "examples/scenes/room-area.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplGeometry_Create(scene, &geometry);

@@ -58,9 +58,9 @@ static vplResult makeSides(vplJob* job, vplRadiosityState* s)
     if (result == VPL_SUCCESS) {
         def.emitters = poses.emitters;
         def.emitterCount = poses.emitterCount;
-        def.eyes = poses.eyes;
-        def.eyeCount = poses.eyeCount;
-        def.whole = job->options.formFactors == VPL_FORM_FACTORS_INCENTRE;
+        def.viewpoints = poses.eyes;
+        def.viewpointCount = poses.eyeCount;
+        def.wholeTriangles = job->options.formFactors == VPL_FORM_FACTORS_INCENTRE;
         def.seed = job->options.seed;
         def.progress = vplJob_GetProgress(job);
         def.progressUser = job;

@@ -2,7 +2,7 @@
 // One frame's light for patches: what emitters give to them, and what they then exchange.
 #include "base/rng.h"
 #include "geometry/triangle.h"
-#include "radiosity/side.h"
+#include "radiosity/sides/side.h"
 #include "render/history.h"
 #include "render/radiosity.h"
 
@@ -153,7 +153,7 @@ static vplResult solve(vplJob* job, vplRadiosityState* s, bool first)
     def.iterations = o->iterations;
     def.residual = s->draft ? fmax(o->residual, DRAFT_RESIDUAL) : o->residual;
     def.spectrum = first && !s->draft;
-    def.relaxes = o->history != NULL || s->draft;
+    def.continues = o->history != NULL || s->draft;
     def.progress = vplJob_GetProgress(job);
     def.progressUser = job;
     vplResult result = vplSolveRadiosity(&transport, &def, s->source, s->radiosity, &s->solve);

@@ -31,8 +31,8 @@ static vplResult find(vplJob* job, const vplRadiosityState* s, Known* k, float* 
 {
     const vplRenderOptions* o = &job->options;
     vplRadiosity_FindReflected(s, k->reflected);
-    vplResult result = vplPatchMesh_Gather(s->mesh, k->reflected, GATHER_RAYS, o->seed, k->vertexIrradiance,
-                                           vplJob_GetProgress(job), job, &job->stats.rays);
+    const vplVertexGather gather = {k->reflected, GATHER_RAYS, o->seed, vplJob_GetProgress(job), job};
+    vplResult result = vplPatchMesh_Gather(s->mesh, &gather, k->vertexIrradiance, &job->stats.rays);
     if (result == VPL_SUCCESS) {
         result = findDirect(job, s, k->direct);
     }
