@@ -177,8 +177,8 @@ vplLinkDef vplDefaultLinkDef(void);
 typedef struct vplLinks {
     int sideCount, groupCount;
     int64_t linkCount, rays;
-    const float*
-        rowSums; // of each side: the sum of its form factors before vplLinkDef.rowSums corrected them
+    // Of each side: the sum of its form factors before vplLinkDef.rowSums corrected them.
+    const float* rowSums;
     struct vplLinkTree* tree;
     struct vplArena* arena; // owns the arrays and the tree
     vplContext* context;
@@ -210,8 +210,8 @@ typedef struct vplSolveDef {
     // Stops when the largest change of a sweep is at most this fraction of the largest radiosity, [0, 1];
     // default 1e-4. 0: stops only when nothing changes, and never warns.
     double residual;
-    bool
-        continues; // the next frame goes on sweeping: stopping before `residual` is no warning; default false
+    // The next frame goes on sweeping: stopping before `residual` is no warning. Default false.
+    bool continues;
     // Compute the stats' spectral radius and row sums, which costs about ten sweeps; default true.
     bool spectrum;
     vplProgressFcn* progress;

@@ -6,11 +6,24 @@
 
 #include "base/isa.h"
 #include "geometry/bvh.h"
+#include "math/vec.h"
 
 #include <vpl/radiosity.h>
 
 // A kernel handles this many sides at a time: as many as a packet has rays.
 enum { VPL_SIDE_LANES = VPL_RAY_PACKET };
+
+static inline void vplSetLane(float to[3][VPL_SIDE_LANES], int lane, vplVec3 v)
+{
+    to[0][lane] = v.x;
+    to[1][lane] = v.y;
+    to[2][lane] = v.z;
+}
+
+static inline vplVec3 vplGetLane(const float from[3][VPL_SIDE_LANES], int lane)
+{
+    return vplVec(from[0][lane], from[1][lane], from[2][lane]);
+}
 
 // One value per side, channel by channel. Padded with zeros to a multiple of VPL_SIDE_LANES.
 typedef struct vplPlanes {

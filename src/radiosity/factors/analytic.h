@@ -10,6 +10,14 @@
 
 #include <stdbool.h>
 
+// out = a - b.
+static inline void vplSub3(const double a[3], const double b[3], double out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        out[k] = a[k] - b[k];
+    }
+}
+
 // ---- Gauss-Legendre quadrature (edge_integral.c)
 
 // A rule on [-1, 1] with an even number of nodes, of which these are the positive ones.

@@ -55,9 +55,7 @@ static double twiceIntegrated(double u, double h)
 static double project(const vplEdge* edge, const double point[3], double* heightOut)
 {
     double way[3], square = 0;
-    for (int k = 0; k < 3; k++) {
-        way[k] = point[k] - edge->from[k];
-    }
+    vplSub3(point, edge->from, way);
     const double at = vplDot3(way, edge->along);
     for (int k = 0; k < 3; k++) {
         const double off = way[k] - at * edge->along[k];
@@ -103,9 +101,7 @@ static void findSingularities(Inner* inner, double cosine, double sine2)
         inner->singular[i].im2 = h * h;
     }
     inner->singularCount = 2;
-    for (int k = 0; k < 3; k++) {
-        way[k] = a->from[k] - b->from[k];
-    }
+    vplSub3(a->from, b->from, way);
     const double d = vplDot3(a->along, way), e = vplDot3(b->along, way);
     const double s = (cosine * e - d) / sine2, t = (e - cosine * d) / sine2;
     if (t > 0 && t < b->length) {

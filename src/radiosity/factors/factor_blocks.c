@@ -3,7 +3,6 @@
 #include "base/context.h"
 #include "base/rng.h"
 #include "math/scalar.h"
-#include "math/vec.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/sides/side.h"
 
@@ -11,13 +10,6 @@
 enum { SAMPLE_STREAM = 0x46460000 };
 
 enum { ALL_CELLS = (1 << VPL_PATCH_CELLS) - 1 };
-
-static void put(float to[3][VPL_SIDE_LANES], int lane, vplVec3 v)
-{
-    to[0][lane] = v.x;
-    to[1][lane] = v.y;
-    to[2][lane] = v.z;
-}
 
 static int listOpen(const vplPatchSide* side, int cells[VPL_PATCH_CELLS])
 {
@@ -53,8 +45,8 @@ static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorS
         const float place = ((float)stratum + vplUnitFloat(r.v[0])) * (float)open / VPL_FACTOR_SAMPLES;
         const int cell = cells[vplMini((int)place, open - 1)];
         const vplVec3 at = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
-        put(samples->at[p], lane, at);
-        put(samples->origin[p], lane, leave(work->sides, side, at).origin);
+        vplSetLane(samples->at[p], lane, at);
+        vplSetLane(samples->origin[p], lane, leave(work->sides, side, at).origin);
     }
 }
 
@@ -77,7 +69,7 @@ static void fillWhole(const vplPatchSide* side, int lane, vplFactorBlock* block)
         for (int c = 0; c < 3; c++) {
             sum = vplAdd(sum, vplScale(c == q ? 2.0f / 3 : 1.0f / 6, side->corners[c]));
         }
-        put(block->quadrature[q], lane, sum);
+        vplSetLane(block->quadrature[q], lane, sum);
     }
 }
 
@@ -96,7 +88,7 @@ static void fillPart(const vplPatchSide* side, int lane, vplFactorBlock* block)
                 sum = vplAdd(sum, vplScale((float)(high - low) / (float)open, at));
             }
         }
-        put(block->quadrature[q], lane, sum);
+        vplSetLane(block->quadrature[q], lane, sum);
     }
 }
 
@@ -108,11 +100,11 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
     const int lane = index % VPL_SIDE_LANES;
     vplVec3 centre = {0, 0, 0};
     for (int c = 0; c < 3; c++) {
-        put(block->corner[c], lane, side->corners[c]);
+        vplSetLane(block->corner[c], lane, side->corners[c]);
         centre = vplAdd(centre, vplScale(1.0f / 3, side->corners[c]));
     }
-    put(block->centre, lane, centre);
-    put(block->normal, lane, side->normal);
+    vplSetLane(block->centre, lane, centre);
+    vplSetLane(block->normal, lane, side->normal);
     for (int c = 0; c < 3; c++) {
         const vplVec3 way = vplSub(side->corners[c], centre);
         block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
@@ -121,8 +113,8 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
     block->skipFirst[lane] = ray.skip.first;
     block->skipCount[lane] = ray.skip.count;
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
-        put(block->samples.at[0], lane, side->incentre);
-        put(block->samples.origin[0], lane, ray.origin);
+        vplSetLane(block->samples.at[0], lane, side->incentre);
+        vplSetLane(block->samples.origin[0], lane, ray.origin);
         const vplVec3 cross =
             vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
         block->area[lane] = 0.5f * vplLength(cross);

@@ -121,35 +121,22 @@ static uint32_t findBlocked(const Tile* tile, const vplRayPacket* packet)
     return blocked;
 }
 
-// A point of one side with the origin of rays from it.
-typedef struct Start {
-    float point[3], origin[3];
-} Start;
-
-static Start startOf(const vplFactorSamples* samples, int index, int lane)
-{
-    Start start;
-    for (int k = 0; k < 3; k++) {
-        start.point[k] = samples->at[index][k][lane];
-        start.origin[k] = samples->origin[index][k][lane];
-    }
-    return start;
-}
-
-// Joins a point of side i of the row with one point of each side of the column that `asked` names.
-static void joinPoints(Tile* tile, int i, uint32_t asked, Start from, const float to[3][LANES])
+// Joins sample `index` of side i of the row with one point of each side of the column that `asked` names.
+static void joinPoints(Tile* tile, int i, uint32_t asked, const vplFactorSamples* from, int index,
+                       const float to[3][LANES])
 {
     const vplFactorBlock* a = tile->a;
+    const float point[3] = {from->at[index][0][i], from->at[index][1][i], from->at[index][2][i]};
     const float normal[3] = {a->normal[0][i], a->normal[1][i], a->normal[2][i]};
     float term[LANES];
     vplRayPacket packet;
-    tile->shared->work->kernels->pointTerms(from.point, normal, to, tile->b->normal, term, packet.direction);
+    tile->shared->work->kernels->pointTerms(point, normal, to, tile->b->normal, term, packet.direction);
     packet.active = 0;
     for (int l = 0; l < LANES; l++) {
         packet.active |= (uint32_t)(term[l] > 0) << l;
-        packet.origin[0][l] = from.origin[0];
-        packet.origin[1][l] = from.origin[1];
-        packet.origin[2][l] = from.origin[2];
+        packet.origin[0][l] = from->origin[index][0][i];
+        packet.origin[1][l] = from->origin[index][1][i];
+        packet.origin[2][l] = from->origin[index][2][i];
         packet.skipFirst[l] = a->skipFirst[i];
         packet.skipCount[l] = a->skipCount[i];
     }
@@ -195,7 +182,7 @@ static void joinChunk(Tile* tile, int chunk, const vplFactorSamples* from, const
             asked ? vplRandomAt(work->def.seed, PAIR_STREAM + (uint32_t)chunk, index) : (vplRandom4){{0}};
         for (uint32_t k = 0; k < VPL_FACTOR_SAMPLES && asked != 0; k++) {
             const int p = (int)((r.v[0] + k) % VPL_FACTOR_SAMPLES);
-            joinPoints(tile, i, asked, startOf(from, p, i), to->at[(r.v[1] + 5 * k) % VPL_FACTOR_SAMPLES]);
+            joinPoints(tile, i, asked, from, p, to->at[(r.v[1] + 5 * k) % VPL_FACTOR_SAMPLES]);
             if ((int)k + 1 >= samples) {
                 asked = work->def.analytic ? notJoined(tile, i) : 0;
             }
@@ -209,7 +196,7 @@ static void joinAll(Tile* tile, int worker)
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
         for (int i = 0; i < LANES; i++) {
             if (tile->pairs[i] != 0) {
-                joinPoints(tile, i, tile->pairs[i], startOf(&tile->a->samples, 0, i), tile->b->samples.at[0]);
+                joinPoints(tile, i, tile->pairs[i], &tile->a->samples, 0, tile->b->samples.at[0]);
             }
         }
         return;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Form factors between one side and sixteen, and operations on rows of the matrix.
-#include "math/vec.h"
 #include "radiosity/radiosity_kernels.h"
 
 #include <string.h>
@@ -20,25 +19,20 @@ static inline float termOf(vplVec3 way, vplVec3 n, vplVec3 m)
     return ((a > 0) & (b > 0)) ? product : 0;
 }
 
-static inline vplVec3 laneOf(const float v[3][LANES], int lane)
-{
-    return vplVec(v[0][lane], v[1][lane], v[2][lane]);
-}
-
 // The heights of the highest corners of b over a's plane, and of a over b's planes.
 static inline void findHeights(const vplFactorBlock* a, int lane, const vplFactorBlock* b, float over[LANES],
                                float under[LANES])
 {
-    const vplVec3 n = laneOf(a->normal, lane), centre = laneOf(a->centre, lane);
+    const vplVec3 n = vplGetLane(a->normal, lane), centre = vplGetLane(a->centre, lane);
     float most[LANES], least[LANES];
     for (int l = 0; l < LANES; l++) {
         most[l] = least[l] = -INFINITY;
     }
     for (int c = 0; c < 3; c++) {
-        const vplVec3 corner = laneOf(a->corner[c], lane);
+        const vplVec3 corner = vplGetLane(a->corner[c], lane);
         for (int l = 0; l < LANES; l++) {
-            const float h = vplDot(n, vplSub(laneOf(b->corner[c], l), centre));
-            const float g = vplDot(laneOf(b->normal, l), vplSub(corner, laneOf(b->centre, l)));
+            const float h = vplDot(n, vplSub(vplGetLane(b->corner[c], l), centre));
+            const float g = vplDot(vplGetLane(b->normal, l), vplSub(corner, vplGetLane(b->centre, l)));
             most[l] = h > most[l] ? h : most[l];
             least[l] = g > least[l] ? g : least[l];
         }
@@ -50,13 +44,13 @@ static inline void findHeights(const vplFactorBlock* a, int lane, const vplFacto
 void VPL_KERNEL(vplEstimateFactors)(const vplFactorBlock* a, int lane, const vplFactorBlock* b,
                                     float tolerance, float near2, vplFactorEstimate* estimate)
 {
-    const vplVec3 n = laneOf(a->normal, lane), centre = laneOf(a->centre, lane);
+    const vplVec3 n = vplGetLane(a->normal, lane), centre = vplGetLane(a->centre, lane);
     const float radius2 = a->radius2[lane];
     float over[LANES], under[LANES], sum[LANES] = {0};
     int32_t facing[LANES], near[LANES];
     findHeights(a, lane, b, over, under);
     for (int l = 0; l < LANES; l++) {
-        const vplVec3 way = vplSub(laneOf(b->centre, l), centre);
+        const vplVec3 way = vplSub(vplGetLane(b->centre, l), centre);
         const float other = b->radius2[l], larger = other > radius2 ? other : radius2;
         facing[l] = (over[l] > tolerance) & (under[l] > tolerance);
         near[l] = vplDot(way, way) < near2 * larger;
@@ -70,10 +64,10 @@ void VPL_KERNEL(vplEstimateFactors)(const vplFactorBlock* a, int lane, const vpl
         return;
     }
     for (int p = 0; p < VPL_QUADRATURE_POINTS; p++) {
-        const vplVec3 from = laneOf(a->quadrature[p], lane);
+        const vplVec3 from = vplGetLane(a->quadrature[p], lane);
         for (int q = 0; q < VPL_QUADRATURE_POINTS; q++) {
             for (int l = 0; l < LANES; l++) {
-                sum[l] += termOf(vplSub(laneOf(b->quadrature[q], l), from), n, laneOf(b->normal, l));
+                sum[l] += termOf(vplSub(vplGetLane(b->quadrature[q], l), from), n, vplGetLane(b->normal, l));
             }
         }
     }
@@ -119,9 +113,10 @@ void VPL_KERNEL(vplPairTerms)(const vplPointPairs* restrict pairs, float termOut
 {
     const float scale = (float)(1 / VPL_PI);
     for (int l = 0; l < LANES; l++) {
-        const vplVec3 way = vplSub(laneOf(pairs->y, l), laneOf(pairs->x, l));
+        const vplVec3 way = vplSub(vplGetLane(pairs->y, l), vplGetLane(pairs->x, l));
         const float square = vplDot(way, way);
-        const float there = vplDot(way, laneOf(pairs->nx, l)), back = -vplDot(way, laneOf(pairs->ny, l));
+        const float there = vplDot(way, vplGetLane(pairs->nx, l)),
+                    back = -vplDot(way, vplGetLane(pairs->ny, l));
         const float least = square > 1e-37f ? square : 1e-37f;
         const float term = scale * (there / least) * (back / least);
         const bool facing = (there > 0) & (back > 0);

@@ -56,11 +56,9 @@ static double heightOver(const vplPolygon* triangle, const double point[3])
 
 static bool isFar(const vplPolygon* polygon, const double point[3])
 {
-    double way[3];
-    const double extent = vplPolygonExtent(polygon, way);
-    for (int k = 0; k < 3; k++) {
-        way[k] -= point[k];
-    }
+    double middle[3], way[3];
+    const double extent = vplPolygonExtent(polygon, middle);
+    vplSub3(middle, point, way);
     return vplDot3(way, way) > FAR * FAR * extent * extent;
 }
 
@@ -71,9 +69,7 @@ static double alongEdges(const vplPolygon* polygon, const double normal[3])
     for (int i = 0; i < polygon->count; i++) {
         const double *a = polygon->p[i], *b = polygon->p[i + 1 < polygon->count ? i + 1 : 0];
         double edge[3], across[3];
-        for (int k = 0; k < 3; k++) {
-            edge[k] = a[k] - b[k];
-        }
+        vplSub3(a, b, edge);
         // b x a, without the cancellation where the corners are near each other or one is near the origin.
         vplCross3(vplDot3(a, a) < vplDot3(b, b) ? a : b, edge, across);
         const double length = sqrt(vplDot3(across, across));
@@ -91,9 +87,7 @@ static double overArea(const vplPolygon* polygon, const double point[3], const d
     double sum = 0;
     for (int i = 0; i < points.count; i++) {
         double way[3];
-        for (int k = 0; k < 3; k++) {
-            way[k] = points.p[i][k] - point[k];
-        }
+        vplSub3(points.p[i], point, way);
         const double square = vplDot3(way, way);
         sum += points.weight[i] * (vplDot3(way, normal) / square) * (height / square);
     }

@@ -9,10 +9,8 @@
 void vplTwiceArea(const double a[3], const double b[3], const double c[3], double out[3])
 {
     double u[3], v[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-    }
+    vplSub3(b, a, u);
+    vplSub3(c, a, v);
     vplCross3(u, v, out);
 }
 
@@ -49,11 +47,9 @@ double vplPolygonExtent(const vplPolygon* polygon, double middle[3])
     memset(middle, 0, 3 * sizeof *middle);
     for (int i = 0; i < polygon->count; i++) {
         for (int j = 0; j < i; j++) {
-            double square = 0;
-            for (int k = 0; k < 3; k++) {
-                const double d = polygon->p[i][k] - polygon->p[j][k];
-                square += d * d;
-            }
+            double d[3];
+            vplSub3(polygon->p[i], polygon->p[j], d);
+            const double square = vplDot3(d, d);
             longest = square > longest ? square : longest;
         }
         for (int k = 0; k < 3; k++) {
@@ -68,10 +64,8 @@ static void addPoints(const double* a, const double* b, const double* c, vplArea
 {
     const vplGaussRule* g = &vplGauss6;
     double u[3], v[3], n[3];
-    for (int k = 0; k < 3; k++) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - b[k];
-    }
+    vplSub3(b, a, u);
+    vplSub3(c, b, v);
     vplCross3(u, v, n);
     const double twice = sqrt(vplDot3(n, n));
     for (int i = 0; i < 4 * g->pairs * g->pairs; i++) {

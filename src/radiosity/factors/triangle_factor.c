@@ -21,7 +21,7 @@ static const double FAR = 3;
 // is then below half of this value.
 static const double SAME_PLANE = 0x1p-36;
 
-// ---- the pair, moved to the mean of all corners and scaled to about 1 against cancellation, overflow and underflow
+// ---- the pair, moved to its centre and scaled to about 1 against cancellation, overflow and underflow
 
 typedef struct Pair {
     vplPolygon polygon[2];
@@ -84,9 +84,7 @@ static int findEdges(const vplPolygon* polygon, vplEdge edges[4])
     for (int i = 0; i < polygon->count; i++) {
         const double *p = polygon->p[i], *q = polygon->p[i + 1 < polygon->count ? i + 1 : 0];
         double way[3];
-        for (int k = 0; k < 3; k++) {
-            way[k] = q[k] - p[k];
-        }
+        vplSub3(q, p, way);
         const double length = sqrt(vplDot3(way, way));
         if (length > 0) {
             edges[count].length = length;
@@ -125,9 +123,7 @@ static double overAreas(const Pair* pair)
         double part = 0;
         for (int j = 0; j < b.count; j++) {
             double d[3];
-            for (int k = 0; k < 3; k++) {
-                d[k] = b.p[j][k] - a.p[i][k];
-            }
+            vplSub3(b.p[j], a.p[i], d);
             const double square = vplDot3(d, d), ca = vplDot3(d, pair->plane[0].n),
                          cb = -vplDot3(d, pair->plane[1].n);
             part += ca > 0 && cb > 0 ? b.weight[j] * (ca / square) * (cb / square) : 0;
@@ -154,9 +150,7 @@ double vplTriangleExchange(const vplVec3 a[3], const vplVec3 b[3], const vplEdge
     }
     double middle[2][3], way[3];
     const double extent[2] = {vplPolygonExtent(&p[0], middle[0]), vplPolygonExtent(&p[1], middle[1])};
-    for (int k = 0; k < 3; k++) {
-        way[k] = middle[1][k] - middle[0][k];
-    }
+    vplSub3(middle[1], middle[0], way);
     const int small = extent[1] < extent[0];
     const bool isFar = sqrt(vplDot3(way, way)) - 2.0 / 3 * (extent[0] + extent[1]) > FAR * extent[1 - small];
     const double exchange = isFar ? overAreas(&pair) : alongEdges(&p[small], &p[1 - small], rule);

@@ -3,7 +3,6 @@
 #include "base/rng.h"
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
-#include "math/vec.h"
 #include "radiosity/links/links.h"
 #include "radiosity/sides/side.h"
 #include "visibility/hemi_map.h"
@@ -51,13 +50,6 @@ void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplL
 
 // ---- pairs
 
-static void setLane(float to[3][VPL_SIDE_LANES], int lane, vplVec3 v)
-{
-    to[0][lane] = v.x;
-    to[1][lane] = v.y;
-    to[2][lane] = v.z;
-}
-
 void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoints* p, const vplLinkPoints* q,
                       vplLinkTerms* out)
 {
@@ -70,10 +62,10 @@ void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoints* p, const vpl
         float terms[VPL_SIDE_LANES];
         for (int l = 0; l < VPL_SIDE_LANES; l++) {
             const int at = first + l < n * n ? first + l : n * n - 1, i = at / n, k = at % n;
-            setLane(pairs.x, l, p->at[i]);
-            setLane(pairs.nx, l, sides[p->side[i]].normal);
-            setLane(pairs.y, l, q->at[k]);
-            setLane(pairs.ny, l, sides[q->side[k]].normal);
+            vplSetLane(pairs.x, l, p->at[i]);
+            vplSetLane(pairs.nx, l, sides[p->side[i]].normal);
+            vplSetLane(pairs.y, l, q->at[k]);
+            vplSetLane(pairs.ny, l, sides[q->side[k]].normal);
         }
         kernels->pairTerms(&pairs, terms);
         for (int l = 0; l < VPL_SIDE_LANES && first + l < n * n; l++) {

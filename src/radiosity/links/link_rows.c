@@ -11,8 +11,8 @@
 #include "radiosity/sides/side.h"
 
 enum {
-    RAYS =
-        32, // per side; a side that sees an opening in 10 % of its hemisphere counts as enclosed in 3 % of all cases
+    // Per side. A side that sees an opening in 10 % of its hemisphere counts as enclosed in 3 % of all cases.
+    RAYS = 32,
     STREAM = 0x4d00, // of random numbers; one per ray
     TASK = 64,       // sides
     ROUNDS = 10      // always the same number, since a gather over links costs little

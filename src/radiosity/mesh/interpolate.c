@@ -45,17 +45,11 @@ static vplRgb meanAt(const Means* m, int vertex, int face)
         const int side = around->list[i].side[face];
         if (side >= 0) {
             const double weight = weightOf(m, &around->list[i], face);
-            const vplRgb value = m->values[side];
-            sum[0] += weight * (double)value.r;
-            sum[1] += weight * (double)value.g;
-            sum[2] += weight * (double)value.b;
+            vplAddRgb(sum, weight, m->values[side]);
             total += weight;
         }
     }
-    if (!(total > 0)) {
-        return (vplRgb){0, 0, 0};
-    }
-    return (vplRgb){(float)(sum[0] / total), (float)(sum[1] / total), (float)(sum[2] / total)};
+    return total > 0 ? vplDivideRgb(sum, total) : (vplRgb){0, 0, 0};
 }
 
 static void interpolateChunk(void* data, int chunk, int worker)
@@ -99,10 +93,7 @@ static void addFace(const Sharpening* s, const vplMeshFace* face, const vplRgb* 
     const double area = sqrt((double)vplDot(face->cross, face->cross));
     double* sum = s->sums[face->side];
     for (int k = 0; k < 3; k++) {
-        const vplRgb value = vertexValues[face->at[k]];
-        sum[0] += area / 3 * (double)value.r;
-        sum[1] += area / 3 * (double)value.g;
-        sum[2] += area / 3 * (double)value.b;
+        vplAddRgb(sum, area / 3, vertexValues[face->at[k]]);
     }
     sum[3] += area;
 }

@@ -69,12 +69,10 @@ static vplRgb gatherAt(const Gathering* g, const vplPatchSide* side, vplVec3 fro
         const int met =
             vplGeometry_ClosestHit(geometry, &ray, &hit) ? vplPatchSides_Find(sides, &hit, way) : -1;
         if (met >= 0) {
-            sum[0] += (double)g->def->radiosity[met].r;
-            sum[1] += (double)g->def->radiosity[met].g;
-            sum[2] += (double)g->def->radiosity[met].b;
+            vplAddRgb(sum, 1, g->def->radiosity[met]);
         }
     }
-    return (vplRgb){(float)(sum[0] / rays), (float)(sum[1] / rays), (float)(sum[2] / rays)};
+    return vplDivideRgb(sum, rays);
 }
 
 static void gatherChunk(void* data, int chunk, int worker)

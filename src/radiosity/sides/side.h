@@ -38,6 +38,19 @@ int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 di
 // The reflectance of a patch. `side`: the patch's side, or -1.
 vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side);
 
+// sum += weight * value, per channel.
+static inline void vplAddRgb(double sum[3], double weight, vplRgb value)
+{
+    sum[0] += weight * (double)value.r;
+    sum[1] += weight * (double)value.g;
+    sum[2] += weight * (double)value.b;
+}
+
+static inline vplRgb vplDivideRgb(const double sum[3], double by)
+{
+    return (vplRgb){(float)(sum[0] / by), (float)(sum[1] / by), (float)(sum[2] / by)};
+}
+
 // x, clamped to the range of float.
 float vplClampToFloat(double x);
 
