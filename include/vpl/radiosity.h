@@ -177,7 +177,7 @@ vplLinkDef vplDefaultLinkDef(void);
 typedef struct vplLinks {
     int sideCount, groupCount;
     int64_t linkCount, rays;
-    // Of each side: the sum of its form factors before vplLinkDef.rowSums corrected them.
+    // The sum of each side's form factors before vplLinkDef.rowSums corrected them.
     const float* rowSums;
     struct vplLinkTree* tree;
     struct vplArena* arena; // owns the arrays and the tree
@@ -225,8 +225,8 @@ typedef struct vplSolveStats {
     vplSolver solver; // the one used: Jacobi for links, whatever the def says
     int iterations;
     double residual; // of the last sweep, as in vplSolveDef; 0 where there was none
-    // Of rho F, estimated from below: one sweep of Jacobi shrinks errors by this factor. At 1 and above there
-    // is no solution. 0: no light is exchanged, or vplSolveDef.spectrum is false.
+    // The spectral radius of rho F, estimated from below: one sweep of Jacobi shrinks errors by this factor.
+    // At 1 and above there is no solution. 0: no light is exchanged, or vplSolveDef.spectrum is false.
     double spectralRadius;
     double rowSumMin, rowSumMean, rowSumMax; // of F as used; the mean is weighted by area
 } vplSolveStats;

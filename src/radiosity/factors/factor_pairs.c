@@ -24,7 +24,7 @@ enum { PAIR_STREAM = 0x4a4f0000 };
 // (bench/form_factors).
 static const float NEAR = 1.5f;
 
-// What all tasks share.
+// The state that all tasks share.
 typedef struct PairWork {
     const vplFactorWork* work;
     const vplGeometry* geometry;

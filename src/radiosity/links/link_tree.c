@@ -138,7 +138,7 @@ static int divideAt(const Build* b, const vplLinkNode* node, int key, float midd
     return before;
 }
 
-// Of three keys, the one with the widest range.
+// The key with the widest range among three.
 static int longestOf(const Range* range, int first)
 {
     int best = first;

@@ -68,7 +68,7 @@ typedef struct vplNodePoints {
     int side[VPL_JUDGE_POINTS];
 } vplNodePoints;
 
-// What refinement works on.
+// The input of refinement.
 typedef struct vplLinkWork {
     const vplPatchSides* sides;
     const struct vplLinkTree* tree;
@@ -131,7 +131,7 @@ vplLinkAnswer vplJudgePair(const vplLinkWork* work, const vplLinkPair* pair);
 
 // ---- light over links (link_gather.c)
 
-// What vplLinks_Gather needs per node.
+// Values of nodes that vplLinks_Gather computes.
 typedef struct vplLinkScratch {
     double (*received)[3];
     float (*sent)[4]; // the last is 0, so that four floats are loaded at once

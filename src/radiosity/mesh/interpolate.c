@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From one value per side of a patch to values at vertices.
+// Turns one value per side of a patch into values at vertices.
 //
 // Interpolation is based on: Hemgren, Radiosity in Realtime Rendering, 4 ("averaging the color of each vertex
 // based on the color of adjacent patches"). Departs: weights, since otherwise a patch counts for more if it

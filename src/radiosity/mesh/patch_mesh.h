@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From patches to triangles with shared vertices.
+// Turns patches into triangles with shared vertices.
 #ifndef VPL_RADIOSITY_PATCH_MESH_H
 #define VPL_RADIOSITY_PATCH_MESH_H
 
