@@ -6,7 +6,7 @@
 #include "base/context.h"
 #include "base/isa.h"
 #include "base/rng.h"
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/form_factors.h"
@@ -304,7 +304,7 @@ vplResult vplFormFactors_Fill(const vplPatchSides* sides, const vplFormFactorDef
                  .tolerance = toleranceOf(sides->patches->geometry),
                  .first = FIRST[context->isa],
                  .weights = WEIGHTS[context->isa],
-                 .trace = vplGetTraceAnyPacket(context->isa),
+                 .trace = vplGetRayKernels(context->isa)->anyPacket,
                  .rows = (float*)factors->rows};
     const size_t pointCount = def->samples > VPL_FACTOR_POINTS ? 2 * (size_t)context->workerCount : 0;
     f.rays = vplAllocZero(context, (size_t)f.blockCount, sizeof *f.rays);

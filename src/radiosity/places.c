@@ -9,7 +9,7 @@
 int vplCell_Find(const vplVec3 corners[3], vplVec3 point)
 {
     double w[3];
-    vplTriangle_Weigh(corners, point, w);
+    vplTriangle_Barycentrics(corners, point, w);
     const int part = vplCell_Inward(w);
     return 4 * part + vplCell_Inward(w);
 }

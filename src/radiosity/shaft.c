@@ -4,7 +4,7 @@
 // no obstacle.
 #include "radiosity/shaft.h"
 
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 #include "math/scalar.h"
 
 enum { MOST_PLANES = 12 };
@@ -190,7 +190,7 @@ static bool searchTree(const vplGeometry* g, const vplBvh* bvh, const Shaft* sha
 void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFactorBlock* b, float tolerance,
                       vplBlockers* out)
 {
-    const vplBvh* bvh = vplGeometry_GetBvh(g);
+    const vplBvh* bvh = g->rayTree;
     Shaft shaft;
     makeShaft(a, b, &shaft);
     out->count = 0;
