@@ -4,7 +4,7 @@
 // the pairs by A_i F_ij = A_j F_ji. Departs: the unoccluded exchange of two sides is computed, and rays only
 // estimate the visible fraction.
 #include "base/rng.h"
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/factors/analytic.h"
@@ -300,7 +300,7 @@ vplResult vplFactorWork_FillRows(vplFactorWork* work)
     PairWork shared = {.work = work,
                        .geometry = g,
                        .tolerance = toleranceOf(g),
-                       .trace = vplGetTraceAnyPacket(work->context->isa),
+                       .trace = vplGetRayKernels(work->context->isa)->anyPacket,
                        .rays = vplArena_AllocZero(work->scratch, tasks, sizeof *shared.rays),
                        .analyticPairs = vplArena_AllocZero(work->scratch, tasks, sizeof(int64_t)),
                        .samples = vplArena_AllocZero(work->scratch, samples, sizeof *shared.samples)};

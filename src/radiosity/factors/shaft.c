@@ -4,7 +4,7 @@
 // room, is no blocker.
 #include "radiosity/factors/shaft.h"
 
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 #include "math/scalar.h"
 
 enum { MOST_PLANES = 12 };
@@ -177,7 +177,7 @@ static bool searchTree(const Shaft* shaft, const vplBvh* bvh)
 void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFactorBlock* b, float tolerance,
                       vplBlockers* out)
 {
-    const vplBvh* bvh = vplGeometry_GetBvh(g);
+    const vplBvh* bvh = g->rayTree;
     Shaft shaft = {.geometry = g, .a = a, .b = b, .tolerance = tolerance, .out = out};
     addPlanes(&shaft);
     out->count = 0;

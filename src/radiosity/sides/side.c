@@ -61,7 +61,7 @@ static int toPart(double w[3])
 int vplCell_Find(const vplVec3 corners[3], vplVec3 point)
 {
     double w[3];
-    vplTriangle_Weigh(corners, point, w);
+    vplTriangle_Barycentrics(corners, point, w);
     const int part = toPart(w);
     return 4 * part + toPart(w);
 }

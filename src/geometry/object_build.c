@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Every quad becomes two world-space triangles, every box twelve, a mesh its own. Corners are rounded from
+// Turns objects into world-space triangles: two for a quad, twelve for a box, those of a mesh. Corners are rounded from
 // double once and shared by the faces that meet there, so edges are watertight.
-#include "geometry/freeze.h"
+#include "geometry/object_build.h"
 #include "geometry/triangle.h"
 #include "math/matrix.h"
 #include "math/vec.h"
@@ -26,8 +26,7 @@ static const uint32_t BOX_INDICES[36] = {
     0, 2, 3, 0, 3, 1, // -z
 };
 
-// The shape of an object in its own space.
-static vplMeshDef shapeOf(const vplScene* scene, const vplObjectDef* def)
+vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def)
 {
     if (def->type == VPL_OBJECT_MESH) {
         return scene->meshes[def->mesh];
@@ -39,16 +38,6 @@ static vplMeshDef shapeOf(const vplScene* scene, const vplObjectDef* def)
     shape.vertexCount = quad ? 4 : 8;
     shape.triangleCount = quad ? 2 : 12;
     return shape;
-}
-
-int vplCountVertices(const vplScene* scene, const vplObjectDef* def)
-{
-    return shapeOf(scene, def).vertexCount;
-}
-
-int vplCountTriangles(const vplScene* scene, const vplObjectDef* def)
-{
-    return shapeOf(scene, def).triangleCount;
 }
 
 static vplVec3 toWorld(const vplAffine* world, vplVec3 p)
@@ -75,7 +64,7 @@ static vplVec3 unit(const double v[3])
     return vplVec((float)(x / length), (float)(y / length), (float)(z / length));
 }
 
-// A normal is a row vector: it goes through the inverse from the left.
+// Transforms a normal by the inverse transpose.
 static vplVec3 normalToWorld(const vplPlacement* placement, vplVec3 n)
 {
     double v[3];
@@ -86,6 +75,7 @@ static vplVec3 normalToWorld(const vplPlacement* placement, vplVec3 n)
     return unit(v);
 }
 
+// Whether a placement turns counter-clockwise triangles into clockwise ones.
 static bool mirrors(const vplPlacement* p)
 {
     const double(*m)[4] = p->toWorld;
@@ -95,51 +85,53 @@ static bool mirrors(const vplPlacement* p)
            0;
 }
 
-static void fillVertices(const vplFreezer* f, const vplObjectDef* def, const vplMeshDef* shape,
+static void fillVertices(const vplGeometryBuilder* b, const vplObjectDef* def, const vplMeshDef* shape,
                          const vplGeometryObject* object)
 {
     const vplAffine world = vplAffine_FromMat4(&def->transform);
     for (int i = 0; i < shape->vertexCount; i++) {
-        f->positions[object->firstVertex + i] = toWorld(&world, shape->positions[i]);
+        b->positions[object->firstVertex + i] = toWorld(&world, shape->positions[i]);
     }
-    for (int i = 0; f->shadingNormals != NULL && i < shape->vertexCount; i++) {
-        f->shadingNormals[object->firstVertex + i] =
+    for (int i = 0; b->shadingNormals != NULL && i < shape->vertexCount; i++) {
+        b->shadingNormals[object->firstVertex + i] =
             object->smooth ? normalToWorld(&object->placement, shape->normals[i]) : vplVec(0, 0, 0);
     }
 }
 
-static void fillTriangles(const vplFreezer* f, const vplMeshDef* shape, int owner)
+static vplVec3 normalOf(const vplGeometryObject* object, int triangle, const vplTriangleCorners* corners)
 {
-    vplGeometryObject* object = &f->objects[owner];
-    const bool turn = mirrors(&object->placement); // counter-clockwise became clockwise
-    const vplVec3* positions = f->positions + object->firstVertex;
+    if (object->type == VPL_OBJECT_MESH) {
+        double cross[3];
+        vplTriangle_Cross(corners, cross);
+        return unit(cross);
+    }
+    const float* n = object->placement.normal[object->type == VPL_OBJECT_QUAD ? VPL_FACE_QUAD : triangle / 2];
+    return vplVec(n[0], n[1], n[2]);
+}
+
+static void fillTriangles(const vplGeometryBuilder* b, const vplMeshDef* shape, int owner)
+{
+    vplGeometryObject* object = &b->objects[owner];
+    const bool mirrored = mirrors(&object->placement);
     double area = 0, sums[3] = {0, 0, 0};
     for (int i = 0; i < shape->triangleCount; i++) {
         const size_t at = (size_t)object->firstTriangle + (size_t)i;
         const uint32_t* from = shape->indices + 3 * (size_t)i;
-        uint32_t* index = f->indices + 3 * at;
+        uint32_t* index = b->indices + 3 * at;
         index[0] = from[0];
-        index[1] = from[turn ? 2 : 1];
-        index[2] = from[turn ? 1 : 2];
+        index[1] = from[mirrored ? 2 : 1];
+        index[2] = from[mirrored ? 1 : 2];
         const int material = object->material >= 0 ? object->material : shape->materials[i];
-        const vplRgb rho = f->scene->materials[material].diffuse;
-        const vplTriangleCorners corners = vplCornersOf(positions, index);
+        const vplRgb rho = b->scene->materials[material].diffuse;
+        const vplTriangleCorners corners = vplCornersOf(b->positions + object->firstVertex, index);
         const double a = vplTriangle_Area(&corners);
         area += a;
         sums[0] += a * rho.r;
         sums[1] += a * rho.g;
         sums[2] += a * rho.b;
-        f->owners[at] = owner;
-        f->materials[at] = material;
-        if (object->type == VPL_OBJECT_MESH) {
-            double cross[3];
-            vplTriangle_Cross(&corners, cross);
-            f->normals[at] = unit(cross);
-        } else {
-            const float* n =
-                object->placement.normal[object->type == VPL_OBJECT_QUAD ? VPL_FACE_QUAD : i / 2];
-            f->normals[at] = vplVec(n[0], n[1], n[2]);
-        }
+        b->owners[at] = owner;
+        b->triangleMaterials[at] = material;
+        b->normals[at] = normalOf(object, i, &corners);
     }
     if (area > 0) {
         object->reflectance =
@@ -147,7 +139,8 @@ static void fillTriangles(const vplFreezer* f, const vplMeshDef* shape, int owne
     }
 }
 
-// The box of a mesh in its own axes, taken along with the object. Flat meshes get a thin one.
+// Finds the oriented bounding box of a mesh: its box in local space, transformed with the object. Flat meshes get a thin
+// one.
 static void findOrientedBox(const vplObjectDef* def, const vplMeshDef* shape, vplGeometryObject* object)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, largest = 0;
@@ -174,13 +167,13 @@ static void findOrientedBox(const vplObjectDef* def, const vplMeshDef* shape, vp
     }
 }
 
-void vplFreezeObject(const vplFreezer* freezer, int index)
+void vplBuildObject(const vplGeometryBuilder* b, int index)
 {
-    const vplObjectDef* def = &freezer->scene->objects[index];
-    const vplMeshDef shape = shapeOf(freezer->scene, def);
-    vplGeometryObject* object = &freezer->objects[index];
-    fillVertices(freezer, def, &shape, object);
-    fillTriangles(freezer, &shape, index);
+    const vplObjectDef* def = &b->scene->objects[index];
+    const vplMeshDef shape = vplShapeOf(b->scene, def);
+    vplGeometryObject* object = &b->objects[index];
+    fillVertices(b, def, &shape, object);
+    fillTriangles(b, &shape, index);
     object->bounds = object->placement; // stays for a mesh without a box: no vertices, or all in one point
     if (def->type == VPL_OBJECT_MESH) {
         findOrientedBox(def, &shape, object);
