@@ -13,8 +13,6 @@
 
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 // Triangles whose middle is this many times as far as they are wide are integrated over their area. At this
 // distance both methods err by about 1e-14: cancellation along the edges grows with d / size, the error of
 // six by six points falls as (d / size)^-14.
@@ -119,6 +117,6 @@ double vplPointFormFactor(vplVec3 point, vplVec3 normal, const vplVec3 triangle[
     far = far || isFar(&polygon, from);
     const double irradiance = far ? overArea(&polygon, from, ahead.n, height) : alongEdges(&polygon, ahead.n);
     // A float normal is unit to 1e-7 only.
-    const double f = irradiance / (PI * sqrt(vplDot3(ahead.n, ahead.n)));
+    const double f = irradiance / (VPL_PI * sqrt(vplDot3(ahead.n, ahead.n)));
     return f > 0 ? (f < 1 ? f : 1) : 0;
 }

@@ -11,8 +11,6 @@
 // Relative errors of 2e-12 and 4e-4 per part; a part at a singularity errs by least^2 of the edge's integral.
 const vplEdgeRule vplEdgesExact = {&vplGauss10, 2, 0x1p-18}, vplEdgesQuick = {&vplGauss4, 1.5, 0x1p-5};
 
-static const double PI = 3.14159265358979323846;
-
 // Triangles are integrated over their areas if they are this many times as far apart as the larger is wide:
 // sums along edges cancel there, while six by six points err by 1e-9 (tests/test_form_factors.c).
 static const double FAR = 3;
@@ -108,7 +106,7 @@ static double alongEdges(const vplPolygon* small, const vplPolygon* large, const
             sum += vplEdgeIntegral(&outer[i], &inner[k], rule);
         }
     }
-    return sum / (2 * PI);
+    return sum / (2 * VPL_PI);
 }
 
 // ---- far triangles: over the areas
@@ -130,7 +128,7 @@ static double overAreas(const Pair* pair)
         }
         sum += a.weight[i] * part;
     }
-    return sum / PI;
+    return sum / VPL_PI;
 }
 
 // ---- either
