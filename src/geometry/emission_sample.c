@@ -9,7 +9,7 @@
 
 vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, float u, float v)
 {
-    // The square is folded along its diagonal onto the triangle: strata stay compact.
+    // Folds the square along its diagonal onto the triangle, so that strata stay compact.
     float b, c;
     if (v > u) {
         b = 0.5f * u;
@@ -43,7 +43,7 @@ static vplVec3 directionAround(vplVec3 axis, double cosine, float v)
     return vplNormalize(vplAdd(side, vplScale((float)cosine, axis)));
 }
 
-// From a disc just outside the sphere around the geometry.
+// A point on a disc just outside the sphere around the geometry.
 static vplVec3 startOutside(const vplEmission* e, vplVec3 direction, float u, float v)
 {
     float x, y, radius = (float)e->radius;
