@@ -2,8 +2,8 @@
 // How errors travel and who owns memory, everywhere in the library.
 //
 // Errors: a function that can fail returns vplResult, and TRY passes a failure on to the caller.
-// Memory: an object has one arena, and so has a call that needs scratch memory. Several allocations are followed by one
-// check, and vplArena_Destroy frees them all.
+// Memory: an object has one arena, and so has a call that needs scratch memory. Several allocations are
+// followed by one check, and vplArena_Destroy frees them all.
 //
 //     vplResult vplThing_Create(vplContext* context, int count, vplThing** thingOut)
 //     {
@@ -42,7 +42,8 @@ vplArena* vplArena_Create(vplContext* context);
 // Frees the arena and everything in it. NULL is allowed.
 void vplArena_Destroy(vplArena* arena);
 
-// Memory for `count` elements of `size` bytes, aligned to 64 bytes: uninitialised, or zeros. NULL when out of memory.
+// Memory for `count` elements of `size` bytes, aligned to 64 bytes: uninitialised, or zeros. NULL when out of
+// memory.
 void* vplArena_Alloc(vplArena* arena, size_t count, size_t size);
 void* vplArena_AllocZero(vplArena* arena, size_t count, size_t size);
 
@@ -50,8 +51,8 @@ void* vplArena_AllocZero(vplArena* arena, size_t count, size_t size);
 void* vplArena_Copy(vplArena* arena, const void* elements, size_t count, size_t size);
 char* vplArena_CopyString(vplArena* arena, const char* text);
 
-// Makes *array, a block of this arena or NULL, hold at least `count` elements; grows by half, so that appending takes
-// linear time. On failure *array is as it was.
+// Makes *array, a block of this arena or NULL, hold at least `count` elements; grows by half, so that
+// appending takes linear time. On failure *array is as it was.
 vplResult vplArena_Reserve(vplArena* arena, void* array, size_t* capacity, size_t count, size_t size);
 
 // Frees one block of this arena early. NULL is allowed.
@@ -63,8 +64,8 @@ void vplArena_Absorb(vplArena* arena, vplArena* source);
 // VPL_OUT_OF_MEMORY if the arena is NULL or any of its allocations failed so far.
 vplResult vplArena_Check(const vplArena* arena);
 
-// Ends the creation of an object: on success stores it in *objectOut (a pointer to a pointer), else destroys the arena.
-// Returns `result`.
+// Ends the creation of an object: on success stores it in *objectOut (a pointer to a pointer), else destroys
+// the arena. Returns `result`.
 vplResult vplArena_Deliver(vplArena* arena, vplResult result, void* object, void* objectOut);
 
 #endif

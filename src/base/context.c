@@ -49,8 +49,8 @@ static void* defaultAlloc(void* user, void* memory, size_t oldSize, size_t newSi
         return NULL;
     }
 #ifdef MADV_HUGEPAGE
-    // Huge pages save page faults: `vpl render examples/scenes/room.json --size 1920x1080` takes 21 % less processor
-    // time with them.
+    // Huge pages save page faults: `vpl render examples/scenes/room.json --size 1920x1080` takes 21 % less
+    // processor time with them.
     const size_t huge = 2u << 20;
     if (memory == NULL && newSize >= 2 * huge && posix_memalign(&memory, huge, newSize) == 0) {
         (void)madvise(memory, newSize, MADV_HUGEPAGE); // may fail: 4 KB pages do as well
@@ -134,7 +134,8 @@ int vplContext_GetWorkerCount(const vplContext* context)
     return context->workerCount;
 }
 
-// Replaces control characters and broken UTF-8 by '?': messages quote files, and terminals obey control characters.
+// Replaces control characters and broken UTF-8 by '?': messages quote files, and terminals obey control
+// characters.
 static void makePrintable(char* text)
 {
     unsigned char* p = (unsigned char*)text;

@@ -32,13 +32,13 @@ vplResult vplFail(const vplContext* context, vplResult result, const char* forma
 
 // ---- memory: 64-byte aligned, counted, overflow-checked
 
-// Memory for `count` elements of `size` bytes: uninitialised, or zeros. Logs and returns NULL when out of memory.
-// A count of 0 gives a valid pointer.
+// Memory for `count` elements of `size` bytes: uninitialised, or zeros. Logs and returns NULL when out of
+// memory. A count of 0 gives a valid pointer.
 void* vplAlloc(vplContext* context, size_t count, size_t size);
 void* vplAllocZero(vplContext* context, size_t count, size_t size);
 
-// Makes *array hold at least `count` elements; grows by half, so that appending takes linear time. On failure *array
-// is as it was.
+// Makes *array hold at least `count` elements; grows by half, so that appending takes linear time. On failure
+// *array is as it was.
 vplResult vplReserve(vplContext* context, void* array, size_t* capacity, size_t count, size_t size);
 
 // The new capacity of an array that must hold `count` elements and holds `capacity` now.
@@ -52,8 +52,8 @@ void vplFree(vplContext* context, void* memory);
 // Runs task(data, i, worker) for i in [0, count), on the calling thread if there is one worker or one task.
 void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data);
 
-// The same, and calls `progress` (may be NULL) on the calling thread as tasks end, with fractions that grow from
-// `from` to `to`. Returns VPL_CANCELLED if it returned false, else VPL_SUCCESS.
+// The same, and calls `progress` (may be NULL) on the calling thread as tasks end, with fractions that grow
+// from `from` to `to`. Returns VPL_CANCELLED if it returned false, else VPL_SUCCESS.
 vplResult vplParallelForProgress(vplContext* context, int count, vplTaskFcn* task, void* data,
                                  vplProgressFcn* progress, void* user, double from, double to);
 

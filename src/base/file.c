@@ -113,7 +113,8 @@ static vplResult writeDirectly(vplContext* context, const char* path, const void
                : vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(errno));
 }
 
-// Opens a new file beside `path` and writes its name to `name`. The umask decides its mode, unlike with mkstemp.
+// Opens a new file beside `path` and writes its name to `name`. The umask decides its mode, unlike with
+// mkstemp.
 static int openBeside(const char* path, char* name, size_t size)
 {
     int fd = -1;

@@ -11,8 +11,8 @@ vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, si
 // True if `path` names a regular file, not a folder, device or pipe.
 bool vplIsRegularFile(const char* path);
 
-// Resolves `name` (length bytes) relative to the folder of the file `from`; absolute names stay as they are. Freed with
-// vplFree; NULL when out of memory.
+// Resolves `name` (length bytes) relative to the folder of the file `from`; absolute names stay as they are.
+// Freed with vplFree; NULL when out of memory.
 char* vplPathBeside(vplContext* context, const char* from, const char* name, size_t length);
 
 // The part of a path behind its last '/'.

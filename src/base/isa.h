@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Instruction sets and kernels. A file named *_kernel.c is compiled once per instruction set. It defines its functions
-// through VPL_KERNEL(name), and a table indexed by vplIsa picks a variant at run time.
+// Instruction sets and kernels. A file named *_kernel.c is compiled once per instruction set. It defines its
+// functions through VPL_KERNEL(name), and a table indexed by vplIsa picks a variant at run time.
 #ifndef VPL_BASE_ISA_H
 #define VPL_BASE_ISA_H
 

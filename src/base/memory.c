@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each block is preceded by its size: callers free it by its pointer alone, and the allocator still gets the size
-// that its contract (vplAllocFcn) promises.
+// Each block is preceded by its size: callers free it by its pointer alone, and the allocator still gets the
+// size that its contract (vplAllocFcn) promises.
 #include "base/context.h"
 
 #include <string.h>

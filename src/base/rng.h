@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Counter-based random numbers: a pure function of (seed, stream, index), so any thread can draw any of them.
-// Based on: Salmon, Moraes, Dror and Shaw, Parallel Random Numbers: As Easy as 1, 2, 3, SC 2011 (Philox 4x32, ten
-// rounds, the published constants).
+// Based on: Salmon, Moraes, Dror and Shaw, Parallel Random Numbers: As Easy as 1, 2, 3, SC 2011 (Philox 4x32,
+// ten rounds, the published constants).
 #ifndef VPL_BASE_RNG_H
 #define VPL_BASE_RNG_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tasks run in any order on any worker, and no result may depend on either: each task writes to its own slots, and
-// sums over tasks are taken afterwards, in task order.
+// Tasks run in any order on any worker, and no result may depend on either: each task writes to its own
+// slots, and sums over tasks are taken afterwards, in task order.
 #include "base/context.h"
 
 #include <stdatomic.h>

@@ -25,8 +25,8 @@ vplRgb vplFalseColour(float t)
     return mixStops(stops, 6, t);
 }
 
-// Every 16th colour of matplotlib's magma (Smith and van der Walt, 2015, CC0), in sRGB. Interpolation stays within 0.01
-// of the others.
+// Every 16th colour of matplotlib's magma (Smith and van der Walt, 2015, CC0), in sRGB. Interpolation stays
+// within 0.01 of the others.
 vplRgb vplMagma(float t)
 {
     static const vplRgb stops[17] = {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// OpenEXR pictures by OpenEXRCore. Writes float RGB scanlines with ZIP compression; reads half or float, RGB or grey (Y)
-// scanlines with any compression that OpenEXRCore knows. Pixels and the encoded file are in context memory.
-// OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks take no user data. It never touches
-// files itself, because vplWriteFile writes them whole or not at all.
+// OpenEXR pictures by OpenEXRCore. Writes float RGB scanlines with ZIP compression; reads half or float, RGB
+// or grey (Y) scanlines with any compression that OpenEXRCore knows. Pixels and the encoded file are in
+// context memory. OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks take no
+// user data. It never touches files itself, because vplWriteFile writes them whole or not at all.
 #include "base/arena.h"
 #include "image/image_file.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Based on: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, FLIP: A Difference Evaluator for
-// Alternating Images, High Performance Graphics 2020, for pictures of low dynamic range. Same formulas and constants.
-// Each filter of the paper is a sum of products of filters along x and y (a Gaussian, its derivatives, or for blue-yellow
-// two Gaussians) and is applied in that separable form.
+// Based on: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, FLIP: A Difference
+// Evaluator for Alternating Images, High Performance Graphics 2020, for pictures of low dynamic range. Same
+// formulas and constants. Each filter of the paper is a sum of products of filters along x and y (a Gaussian,
+// its derivatives, or for blue-yellow two Gaussians) and is applied in that separable form.
 #include "base/arena.h"
 #include "image/flip_colour.h"
 #include "image/metrics.h"
@@ -63,8 +63,8 @@ static double sumOfGaussian(int radius, double ppd, double b)
     return sum;
 }
 
-// The blue-yellow filter is a sum of two products of Gaussians. It is normalised as a whole; the square root gives each
-// axis the same factor.
+// The blue-yellow filter is a sum of two products of Gaussians. It is normalised as a whole; the square root
+// gives each axis the same factor.
 static void setColourKernels(Flip* f, double ppd)
 {
     int radius = (int)ceil(3 * sqrt(B_BY[0] / (2 * VPL_PI * VPL_PI)) * ppd);

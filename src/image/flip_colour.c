@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Based on: Andersson and others, FLIP, High Performance Graphics 2020, section 4.1: YCxCz of Zhang and Wandell's
-// S-CIELAB, CIE L*a*b*, the Hunt effect (Hunt 1952) and the HyAB distance (Abasi and others 2020).
+// Based on: Andersson and others, FLIP, High Performance Graphics 2020, section 4.1: YCxCz of Zhang and
+// Wandell's S-CIELAB, CIE L*a*b*, the Hunt effect (Hunt 1952) and the HyAB distance (Abasi and others 2020).
 #include "image/flip_colour.h"
 
 #include "math/scalar.h"
 
 #include <math.h>
 
-// Linear sRGB to XYZ, as exact fractions: the primaries of ITU-R BT.709 and its D65 white (x 0.3127, y 0.3290).
+// Linear sRGB to XYZ, as exact fractions: the primaries of ITU-R BT.709 and its D65 white (x 0.3127, y
+// 0.3290).
 static const double TO_XYZ[3][3] = {
     {10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Reads Radiance HDR pictures: a text header, a size line, then rows of RGBE pixels, plain or run-length coded.
-// Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991. Departs: it refuses the run-length coding from before 1991 and
-// orientations other than "-Y height +X width".
+// Reads Radiance HDR pictures: a text header, a size line, then rows of RGBE pixels, plain or run-length
+// coded.
+// Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991. Departs: it refuses the run-length coding from
+// before 1991 and orientations other than "-Y height +X width".
 #include "base/arena.h"
 #include "image/image_file.h"
 
@@ -18,7 +19,8 @@ static size_t left(const Reader* r)
     return (size_t)(r->end - r->at);
 }
 
-// Reads the next line without its end. False at the end of the file, or if the line has more than 255 characters.
+// Reads the next line without its end. False at the end of the file, or if the line has more than 255
+// characters.
 static bool readLine(Reader* r, char line[256])
 {
     const uint8_t* stop = memchr(r->at, '\n', left(r));
@@ -132,7 +134,8 @@ vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* byt
                        "-Y height +X width)",
                        path);
     }
-    // Checks the size before allocating: a coded row has at least 4 bytes, and 2 per 127 pixels of a component.
+    // Checks the size before allocating: a coded row has at least 4 bytes, and 2 per 127 pixels of a
+    // component.
     size_t least = (size_t)height * (4 + 8 * (((size_t)width + 126) / 127));
     if (left(&reader) < (width < 8 ? 4 * (size_t)width * (size_t)height : least)) {
         return vplFail(context, VPL_PARSE_ERROR, "%s: HDR picture of %dx%d ends early: %zu bytes of pixels",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Encoders and decoders of picture formats. vplImage_Write and vplImage_Read choose one by the file's extension.
+// Encoders and decoders of picture formats. vplImage_Write and vplImage_Read choose one by the file's
+// extension.
 #ifndef VPL_IMAGE_IMAGE_FILE_H
 #define VPL_IMAGE_IMAGE_FILE_H
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Differences between two pictures. Sums run in row order in double, so they are the same on every machine.
-// Based on: relmse by Rousselle, Knaus and Zwicker, Adaptive Sampling and Reconstruction using Greedy Error Minimization,
-// SIGGRAPH Asia 2011. Departs: we add 0.01, in the pictures' unit, to b before squaring.
+// Based on: relmse by Rousselle, Knaus and Zwicker, Adaptive Sampling and Reconstruction using Greedy Error
+// Minimization, SIGGRAPH Asia 2011. Departs: we add 0.01, in the pictures' unit, to b before squaring.
 #include "image/metrics.h"
 
 #include "base/arena.h"
@@ -35,7 +35,8 @@ void vplSetGrey(vplImage* image, int x, int y, float value)
     p[0] = p[1] = p[2] = value;
 }
 
-// A sum without its `capacity` largest terms. A min-heap holds these, so that they never enter the sum, however large.
+// A sum without its `capacity` largest terms. A min-heap holds these, so that they never enter the sum,
+// however large.
 typedef struct TrimmedSum {
     double* heap;
     size_t capacity, size;
@@ -105,7 +106,7 @@ static vplComparison compare(const vplImage* a, const vplImage* b, TrimmedSum* t
     c.relativeRmse = square == 0 ? 0 : c.rmse / (sumB / n);
     c.relmse = relative / n;
     c.trimmedRelmse = trimmed->sum / (n - 3 * (double)trimmed->capacity);
-    c.psnr = encoded > 0 ? -10 / 2.30258509299404568402 * vplLog1(encoded / n) : INFINITY;
+    c.psnr = encoded > 0 ? -10 / 2.30258509299404568402 * vplLn(encoded / n) : INFINITY;
     c.energyRatio = sumA == sumB ? 1 : sumA / sumB;
     return c;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Based on: IEC 61966-2-1 (sRGB). The table holds the 255 thresholds between codes. No slot has more than one of them:
-// they are densest just below 1, with 67 per octave of 128 slots.
+// Based on: IEC 61966-2-1 (sRGB). The table holds the 255 thresholds between codes. No slot has more than one
+// of them: they are densest just below 1, with 67 per octave of 128 slots.
 #include "image/srgb.h"
 
 #include "math/scalar.h"

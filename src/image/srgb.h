@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// vplSrgb_Code by table, with the same result: the 6.2 million codes of 1920x1080 pixels take 8 ms instead of 300.
+// vplSrgb_Code by table, with the same result: the 6.2 million codes of 1920x1080 pixels take 8 ms instead of
+// 300.
 #ifndef VPL_IMAGE_SRGB_H
 #define VPL_IMAGE_SRGB_H
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Based on: Wang, Bovik, Sheikh and Simoncelli, Image Quality Assessment: From Error Visibility to Structural Similarity,
-// IEEE Transactions on Image Processing 13(4), 2004, with its Gaussian window (11 pixels, sigma 1.5), K1 = 0.01 and
-// K2 = 0.03. Departs: the paper compares grey levels. We compare each channel and take the mean, because colours of equal
-// luminance may differ.
+// Based on: Wang, Bovik, Sheikh and Simoncelli, Image Quality Assessment: From Error Visibility to Structural
+// Similarity, IEEE Transactions on Image Processing 13(4), 2004, with its Gaussian window (11 pixels, sigma
+// 1.5), K1 = 0.01 and K2 = 0.03. Departs: the paper compares grey levels. We compare each channel and take
+// the mean, because colours of equal luminance may differ.
 #include "base/arena.h"
 #include "image/metrics.h"
 #include "math/scalar.h"
@@ -22,8 +22,8 @@ typedef struct Ssim {
     int insetX, insetY; // width of the borders that do not count
 } Ssim;
 
-// Mirrors positions beyond a border, including the border pixel: -1 becomes 0, -2 becomes 1. A picture narrower than
-// the window is mirrored several times.
+// Mirrors positions beyond a border, including the border pixel: -1 becomes 0, -2 becomes 1. A picture
+// narrower than the window is mirrored several times.
 static int mirror(int at, int count)
 {
     while (at < 0 || at >= count) {
@@ -58,7 +58,8 @@ static void encodeRow(void* data, int y, int worker)
     }
 }
 
-// Computes, for every x, the weighted sums of a, b, a^2, b^2 and ab over a column of the window; then mirrors borders.
+// Computes, for every x, the weighted sums of a, b, a^2, b^2 and ab over a column of the window; then mirrors
+// borders.
 static void sumColumns(const Ssim* s, int y, double* moments, int stride)
 {
     memset(moments, 0, sizeof *moments * MOMENTS * (size_t)stride);

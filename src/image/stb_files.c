@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// PNG and HDR written, and PNG, JPEG, BMP and TGA read, by stb. Both stb headers are compiled here only, as static code,
-// and their global switches (vertical flip, gamma) stay untouched. stb reports success on a full disk, so it writes to
-// memory only. Its HDR reader is not used, because a run of length 0 makes it loop for ever; see hdr.c.
+// PNG and HDR written, and PNG, JPEG, BMP and TGA read, by stb. Both stb headers are compiled here only, as
+// static code, and their global switches (vertical flip, gamma) stay untouched. stb reports success on a full
+// disk, so it writes to memory only. Its HDR reader is not used, because a run of length 0 makes it loop for
+// ever; see hdr.c.
 #include "base/arena.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
@@ -11,7 +12,9 @@
 #include <string.h>
 
 #pragma GCC diagnostic ignored "-Wunused-function" // most of stb's
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC

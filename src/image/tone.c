@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Based on: Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for Digital Images, SIGGRAPH 2002.
-// Departs: the paper prints the log average with 1/N outside the exponential. We use the geometric mean, because
-// otherwise a uniform picture would not map to the key.
+// Based on: Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for Digital Images,
+// SIGGRAPH 2002.
+// Departs: the paper prints the log average with 1/N outside the exponential. We use the geometric mean,
+// because otherwise a uniform picture would not map to the key.
 #include "base/arena.h"
 #include "image/image_file.h"
 #include "math/scalar.h"
@@ -67,7 +68,7 @@ static void findLogs(void* data, int row, int worker)
     for (int x = 0; x < width; x++) {
         const double y = luminance(pixels + 3 * (size_t)x);
         const bool counts = isfinite(y) && y + (r->skipBlack ? 0 : r->delta) > 0;
-        logs[x] = counts ? vplLog1(y + r->delta) : 0;
+        logs[x] = counts ? vplLn(y + r->delta) : 0;
         found.counted += counts;
         found.largest = counts && y > found.largest ? y : found.largest;
     }

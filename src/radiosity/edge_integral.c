@@ -40,7 +40,7 @@ static double onceIntegrated(double u, double h)
     if (!(square > 0)) {
         return 0;
     }
-    return 0.5 * u * vplLog1(square) - u + (h > 0 ? h * vplAtan2(u, h) : 0);
+    return 0.5 * u * vplLn(square) - u + (h > 0 ? h * vplAtan2(u, h) : 0);
 }
 
 // The integral of that.
@@ -50,7 +50,7 @@ static double twiceIntegrated(double u, double h)
     if (!(square > 0)) {
         return 0;
     }
-    return 0.25 * (u * u - h * h) * vplLog1(square) - 0.75 * u * u + (h > 0 ? h * u * vplAtan2(u, h) : 0);
+    return 0.25 * (u * u - h * h) * vplLn(square) - 0.75 * u * u + (h > 0 ? h * u * vplAtan2(u, h) : 0);
 }
 
 // Along the line of `edge`: where `point` is, and how far from it.

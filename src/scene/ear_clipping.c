@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Based on: Gary Meisters, Polygons Have Ears, American Mathematical Monthly 1975; David Eberly, Triangulation by Ear
-// Clipping, 2002 (only the neighbours of a clipped ear can change); Martin Newell's sum for the normal.
-// Departs: a corner on the edge of an ear forbids the ear, so that corners on a straight edge become corners of triangles
-// and leave no gaps. A corner that coincides with one of the ear's (a hole joined by a double edge) is judged by the
-// direction of its edges. An outline that crosses itself is cut somehow, in time quadratic in its corners.
+// Based on: Gary Meisters, Polygons Have Ears, American Mathematical Monthly 1975; David Eberly,
+// Triangulation by Ear Clipping, 2002 (only the neighbours of a clipped ear can change); Martin Newell's sum
+// for the normal.
+// Departs: a corner on the edge of an ear forbids the ear, so that corners on a straight edge become corners
+// of triangles and leave no gaps. A corner that coincides with one of the ear's (a hole joined by a double
+// edge) is judged by the direction of its edges. An outline that crosses itself is cut somehow, in time
+// quadratic in its corners.
 #include "scene/ear_clipping.h"
 
 #include "math/double3.h"
@@ -23,9 +25,9 @@ static double turn(const double* a, const double* b, const double* c)
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-// Projects the polygon along the largest component of its normal, which keeps straight lines, turns and ratios of areas.
-// Swaps the axes if the normal points away, so that every polygon turns left. False if there is no normal: the corners
-// are collinear, or the outline turns as much to the left as to the right.
+// Projects the polygon along the largest component of its normal, which keeps straight lines, turns and
+// ratios of areas. Swaps the axes if the normal points away, so that every polygon turns left. False if there
+// is no normal: the corners are collinear, or the outline turns as much to the left as to the right.
 static bool project(vplEarClipper* g, const vplVec3* corners, int count)
 {
     double n[3] = {0, 0, 0};

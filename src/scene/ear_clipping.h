@@ -17,8 +17,8 @@ typedef struct vplEarClipper {
     bool simple; // false: the outline crosses itself or has no area, so the triangles may overlap
 } vplEarClipper;
 
-// Cuts a polygon of 3 to VPL_MAX_CORNERS corners into count - 2 triangles that cover it without overlap. It may be concave
-// and have corners on its edges. The same corners give the same triangles on every machine.
+// Cuts a polygon of 3 to VPL_MAX_CORNERS corners into count - 2 triangles that cover it without overlap. It
+// may be concave and have corners on its edges. The same corners give the same triangles on every machine.
 void vplEarClipper_Triangulate(vplEarClipper* clipper, const vplVec3* corners, int count);
 
 #endif

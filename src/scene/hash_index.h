@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A hash index of elements that are numbered 0, 1, 2 ... in the order of their addition, and a set of names on top of it.
+// A hash index of elements that are numbered 0, 1, 2 ... in the order of their addition, and a set of names
+// on top of it.
 #ifndef VPL_SCENE_HASH_INDEX_H
 #define VPL_SCENE_HASH_INDEX_H
 
@@ -20,8 +21,8 @@ typedef struct vplHashIndex {
     uint32_t count;
 } vplHashIndex;
 
-// The first element with this hash, and the one after `entry`; VPL_NO_ENTRY if there is none. The caller compares the
-// elements themselves.
+// The first element with this hash, and the one after `entry`; VPL_NO_ENTRY if there is none. The caller
+// compares the elements themselves.
 uint32_t vplHashIndex_First(const vplHashIndex* index, uint32_t hash);
 uint32_t vplHashIndex_Next(const vplHashIndex* index, uint32_t entry);
 

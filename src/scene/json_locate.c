@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks a text without NUL bytes that jansson has accepted: the syntax is valid, so only strings, which may contain any
-// bracket, and nesting matter. Runs when an error is reported.
+// Walks a text without NUL bytes that jansson has accepted: the syntax is valid, so only strings, which may
+// contain any bracket, and nesting matter. Runs when an error is reported.
 #include "scene/json_locate.h"
 
 #include <stdio.h>
@@ -60,7 +60,8 @@ static bool keyEquals(const char* at, const char* end, const char* key)
     return (size_t)(end - at) > length + 1 && strncmp(at + 1, key, length) == 0 && at[length + 1] == '"';
 }
 
-// Moves from an opening bracket to the value, or the key, of one of its children. False if there is no such child.
+// Moves from an opening bracket to the value, or the key, of one of its children. False if there is no such
+// child.
 static bool enter(Cursor* c, const vplJsonPath* step, bool atKey)
 {
     bool object = *c->at == '{';

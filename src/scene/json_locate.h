@@ -18,8 +18,8 @@ typedef struct vplJsonPlace {
     int line, column;
 } vplJsonPlace;
 
-// The place of the value at `path` in a syntactically valid text, or of its key. If the path leads nowhere, the place of
-// the innermost value that exists.
+// The place of the value at `path` in a syntactically valid text, or of its key. If the path leads nowhere,
+// the place of the innermost value that exists.
 vplJsonPlace vplJson_Locate(const char* text, size_t size, const vplJsonPath* path, bool atKey);
 
 // The place of a byte in any text.

@@ -31,7 +31,8 @@ void vplJsonFile_Close(vplJsonFile* file);
 
 vplJson vplJson_Root(const vplJsonFile* file);
 
-// A member of an object or an element of an array; `parent` must live at least as long. value is NULL if there is none.
+// A member of an object or an element of an array; `parent` must live at least as long. value is NULL if
+// there is none.
 vplJson vplJson_Member(const vplJson* parent, const char* key);
 vplJson vplJson_Element(const vplJson* parent, int index);
 
@@ -42,11 +43,12 @@ vplResult vplJson_Fail(const vplJson* at, const char* format, ...) VPL_PRINTF(2,
 vplResult vplJson_RequireObject(const vplJson* at);
 vplResult vplJson_RequireArray(const vplJson* at);
 
-// Fails unless the value is an object that has all the keys marked "!" and no others than those listed. NULL ends the
-// list.
+// Fails unless the value is an object that has all the keys marked "!" and no others than those listed. NULL
+// ends the list.
 vplResult vplJson_CheckKeys(const vplJson* object, const char* const* keys);
 
-// Each reads the member `key` of an object. A missing member leaves *out as it is. Arrays must have `count` numbers.
+// Each reads the member `key` of an object. A missing member leaves *out as it is. Arrays must have `count`
+// numbers.
 vplResult vplJson_ReadNumber(const vplJson* object, const char* key, double* out);
 vplResult vplJson_ReadDoubles(const vplJson* object, const char* key, int count, double* out);
 vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, float* out);

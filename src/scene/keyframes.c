@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cameras and emitters that move, by linear interpolation between keyframes. The formula a + t (b - a) gives a value
-// that two keys share exactly, and the keys themselves exactly.
+// Cameras and emitters that move, by linear interpolation between keyframes. The formula a + t (b - a)
+// reproduces the keys, and values that both keys share, exactly.
 #include "math/vec.h"
 #include "scene/scene.h"
 

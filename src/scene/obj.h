@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the three sweeps over an OBJ file share. The first counts and reads the MTL files, the second reads points and
-// normals, the third faces.
+// What the three sweeps over an OBJ file share. The first counts and reads the MTL files, the second reads
+// points and normals, the third faces.
 #ifndef VPL_SCENE_OBJ_H
 #define VPL_SCENE_OBJ_H
 
@@ -48,8 +48,8 @@ typedef struct vplObj {
 
 // A mesh that grows triangle by triangle. A vertex is made when a triangle first needs it.
 typedef struct vplObjMesh {
-    vplArena*
-        arena; // owns indices, materials and cornerNormal, for the scene; the rest is in the scratch arena
+    // Owns indices, materials and cornerNormal, for the scene. The scratch arena owns the rest.
+    vplArena* arena;
     uint32_t* indices;
     int* materials; // numbers in vplObjMaterials; -1: none
     int64_t triangleCount;

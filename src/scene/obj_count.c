@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The first sweep over an OBJ file: counts, so that each array is allocated once and at its size, and materials, because
-// a face may use one before the file that defines it is named.
+// The first sweep over an OBJ file: counts, so that each array is allocated once and at its size, and
+// materials, because a face may use one before the file that defines it is named.
 #include "scene/obj.h"
 #include "base/file.h"
 

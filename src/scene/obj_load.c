@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads Wavefront OBJ files in three sweeps over the text. Memory is freed after each step: at its peak it holds the
-// text and one copy of the mesh.
+// Reads Wavefront OBJ files in three sweeps over the text. Memory is freed after each step: at its peak it
+// holds the text and one copy of the mesh.
 #include "scene/obj.h"
 #include "base/file.h"
 
@@ -26,8 +26,8 @@ static void warnOfUndefined(const vplObj* obj)
     }
 }
 
-// A prefix for the names of a file's materials that no name in the scene has: "room.obj:", or with the number of the
-// mesh, from 1, "room.obj(2):". Files may share material names, and one file may be read twice.
+// A prefix for the names of a file's materials that no name in the scene has: "room.obj:", or with the number
+// of the mesh, from 1, "room.obj(2):". Files may share material names, and one file may be read twice.
 static char* makePrefix(const vplScene* scene, const char* path, vplArena* scratch)
 {
     const char* base = vplBaseName(path);

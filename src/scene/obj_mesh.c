@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Makes a mesh of the triangles. Those without area are left out; corners with the same point and normal share a vertex.
+// Makes a mesh of the triangles. Those without area are left out; corners with the same point and normal
+// share a vertex.
 #include "scene/obj.h"
 
 #include "math/double3.h"
@@ -7,8 +8,8 @@
 
 #include <string.h>
 
-// The triangle's unit normal, by the order of its corners; false if it has no area. Double: no triangle of floats
-// underflows, and floats of similar size give an exact 0.
+// The triangle's unit normal, by the order of its corners; false if it has no area. Double: no triangle of
+// floats underflows, and floats of similar size give an exact 0.
 static bool findNormal(vplVec3 a, vplVec3 b, vplVec3 c, vplVec3* out)
 {
     double u[3], v[3], n[3];

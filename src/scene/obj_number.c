@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Based on: William D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990. It computes in double, and
-// compares exactly, in integers, where the error could change the answer. Departs: the answer is a float, so double has
-// 29 spare bits and one number in 60 million needs the exact comparison.
+// Based on: William D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990. It computes in
+// double, and compares exactly, in integers, where the error could change the answer. Departs: the answer is
+// a float, so double has 29 spare bits and one number in 60 million needs the exact comparison.
 #include "scene/obj_number.h"
 
 #include <math.h>
@@ -68,7 +68,8 @@ static int compare(const BigInteger* a, const BigInteger* b)
     return 0;
 }
 
-// The digits as an integer times 10^*exponent. If a digit beyond MOST_DIGITS is not 0, a single 1 replaces them all.
+// The digits as an integer times 10^*exponent. If a digit beyond MOST_DIGITS is not 0, a single 1 replaces
+// them all.
 static BigInteger integerOf(const Decimal* d, int64_t* exponent)
 {
     BigInteger w = {{0}, 0};
@@ -161,8 +162,8 @@ static float nearestFloat(const Decimal* d)
     if (value > 1e39 || value < 1e-46) {
         return value > 1 ? INFINITY : 0;
     }
-    // The 29 bits that a float lacks round up or down clearly unless they are close to one half. Denormal floats lack
-    // more bits.
+    // The 29 bits that a float lacks round up or down clearly unless they are close to one half. Denormal
+    // floats lack more bits.
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     int64_t overHalf = (int64_t)(bits & 0x1FFFFFFF) - 0x10000000;

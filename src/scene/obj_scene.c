@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Reads an OBJ file as a whole scene. It has no camera and seldom a light: we add both and log them.
 //
-// Let c be the centre of the bounds and r half their diagonal. The camera is at c + 3.2 r along (0.3, 0.25, 1) and looks
-// at c with a field of view of 40 degrees. From there the bounding sphere is 36 degrees wide and fits the picture. The
-// light is at c + 2 r along (1, 2, 2), above the camera's shoulder. Its intensity gives a surface at c the irradiance
-// pi, so a white surface there has the radiance 1.
+// Let c be the centre of the bounds and r half their diagonal. The camera is at c + 3.2 r along (0.3, 0.25,
+// 1) and looks at c with a field of view of 40 degrees. From there the bounding sphere is 36 degrees wide and
+// fits the picture. The light is at c + 2 r along (1, 2, 2), above the camera's shoulder. Its intensity gives
+// a surface at c the irradiance pi, so a white surface there has the radiance 1.
 #include "base/file.h"
 #include "math/vec.h"
 #include "scene/scene.h"

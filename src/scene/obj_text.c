@@ -25,8 +25,8 @@ static size_t endLine(vplText* t, size_t i, char mark)
     return i;
 }
 
-// Makes line ends uniform in place, so that offsets still give lines and columns. A backslash does not continue a
-// comment: one that ends in a Windows path would swallow the next line.
+// Makes line ends uniform in place, so that offsets still give lines and columns. A backslash does not
+// continue a comment: one that ends in a Windows path would swallow the next line.
 static vplResult normalise(vplText* t)
 {
     char* b = t->bytes;

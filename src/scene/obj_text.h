@@ -19,8 +19,8 @@ typedef struct vplWord {
     const char* end;
 } vplWord;
 
-// Reads a file. Afterwards every line ends with '\n'. A '\v' replaces the end of a line that a backslash continues: it is
-// a blank to readers, but counts as a line. A NUL byte is an error.
+// Reads a file. Afterwards every line ends with '\n'. A '\v' replaces the end of a line that a backslash
+// continues: it is a blank to readers, but counts as a line. A NUL byte is an error.
 vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut);
 void vplText_Close(vplText* text);
 
@@ -35,8 +35,8 @@ vplWord vplRestOfLine(vplWord line);
 
 bool vplWord_Is(vplWord word, const char* text);
 
-// Logs "file:line:column: found ..., expected ..." for a word, or for the end of the line if it is empty. Returns
-// VPL_PARSE_ERROR.
+// Logs "file:line:column: found ..., expected ..." for a word, or for the end of the line if it is empty.
+// Returns VPL_PARSE_ERROR.
 vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format, ...) VPL_PRINTF(3, 4);
 
 // Logs "file:line:column: sentence" for a place in the text. FailAt returns `result`.

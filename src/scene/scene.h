@@ -35,8 +35,8 @@ struct vplScene {
     vplTrackList cameraTracks, emitterTracks;
 };
 
-// Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure it is
-// destroyed. Fails, too, if an allocation of `arena` failed.
+// Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure
+// it is destroyed. Fails, too, if an allocation of `arena` failed.
 vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* arena, int* indexOut);
 
 // Adds a material without checking it or copying its name.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scene files. There is one function for each type of thing, and it fills the same def that a C program would, so that
-// files and programs share every check. Angles are in degrees in files and in radians in defs.
+// Scene files. There is one function for each type of thing, and it fills the same def that a C program
+// would, so that files and programs share every check. Angles are in degrees in files and in radians in defs.
 #include "scene/scene_json.h"
 
 #include <string.h>
@@ -33,15 +33,15 @@ vplResult vplJson_ReportFault(const vplJson* object, const char* key, const vplF
     return vplJson_Fail(fault->index >= 0 ? &component : &member, "%s", fault->text);
 }
 
-const char* vplSceneLoader_StrengthKey(vplEmitterType type)
+const char* vplJson_IntensityKey(vplEmitterType type)
 {
     return type == VPL_EMITTER_DIRECTIONAL ? "irradiance" : "intensity";
 }
 
 vplResult vplJson_ReportEmitterFault(const vplJson* object, vplEmitterType type, const vplFault* fault)
 {
-    const bool strength = fault->field != NULL && strcmp(fault->field, "intensity") == 0;
-    return vplJson_ReportFault(object, strength ? vplSceneLoader_StrengthKey(type) : NULL, fault);
+    const bool intensity = fault->field != NULL && strcmp(fault->field, "intensity") == 0;
+    return vplJson_ReportFault(object, intensity ? vplJson_IntensityKey(type) : NULL, fault);
 }
 
 // Reads an angle in degrees, in the open interval (above, below), into radians.
@@ -143,11 +143,10 @@ static vplResult readEmitter(vplSceneLoader* l, const vplJson* emitter)
     TRY(vplJson_ReadString(emitter, "name", &name));
     TRY(vplJson_ReadVec3(emitter, "position", &def.position));
     TRY(vplJson_ReadVec3(emitter, "direction", &def.direction));
-    TRY(vplJson_ReadRgb(emitter, vplSceneLoader_StrengthKey(def.type), &def.intensity));
+    TRY(vplJson_ReadRgb(emitter, vplJson_IntensityKey(def.type), &def.intensity));
     TRY(readAngle(emitter, "outer_angle", 0, 90, &def.outerAngle));
     TRY(readAngle(emitter, "inner_angle", -1e-300, 90, &def.innerAngle));
-    if (def.type == VPL_EMITTER_SPOT &&
-        def.innerAngle > def.outerAngle) { // vplCheckEmitter would say it in radians
+    if (def.type == VPL_EMITTER_SPOT && def.innerAngle > def.outerAngle) { // vplCheckEmitter reports radians
         const vplJson member = vplJson_Member(emitter, "inner_angle");
         return vplJson_Fail(&member, "is %g degrees, must be at most outer_angle (%g)",
                             def.innerAngle / DEGREE, def.outerAngle / DEGREE);

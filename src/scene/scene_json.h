@@ -15,21 +15,21 @@ typedef struct vplSceneLoader {
     vplNames meshFiles; // paths of the scene's meshes, in their order
 } vplSceneLoader;
 
-// Logs a fault, if there is one, as "file:line:column: path sentence" of a member of `object`. `key` overrides the
-// field's own.
+// Logs a fault, if there is one, as "file:line:column: path sentence" of a member of `object`. `key`
+// overrides the field's own.
 vplResult vplJson_ReportFault(const vplJson* object, const char* key, const vplFault* fault);
 
-// The key of an emitter's strength: "irradiance" for directional emitters, else "intensity".
-const char* vplSceneLoader_StrengthKey(vplEmitterType type);
-
-// The same for an emitter.
+// The same for an emitter, whose intensity has the key below.
 vplResult vplJson_ReportEmitterFault(const vplJson* object, vplEmitterType type, const vplFault* fault);
+
+// The key of an emitter's intensity: "irradiance" for directional emitters, else "intensity".
+const char* vplJson_IntensityKey(vplEmitterType type);
 
 // Reads "fov_y", degrees, into radians.
 vplResult vplJson_ReadFieldOfView(const vplJson* object, double* out);
 
-// Reads "type", before all other keys: it decides which of them are known. *out is its index among `names`, which NULL
-// ends; `expected` completes "must be ...".
+// Reads "type", before all other keys: it decides which of them are known. *out is its index among `names`,
+// which NULL ends; `expected` completes "must be ...".
 vplResult vplJson_ReadType(const vplJson* object, const char* const* names, const char* expected, int* out);
 
 // Reads one of "objects" and adds it to the scene.

@@ -66,7 +66,7 @@ static vplResult readTransform(const vplJson* object, vplMat4* out)
     const vplAffine a = vplAffine_FromParts(translate, quarters, scale);
     *out = vplAffine_ToMat4(&a);
     vplFault fault = vplCheckTransform(out);
-    const bool translation = fault.index >= 12; // the last column of the matrix: else the scale is to blame
+    const bool translation = fault.index >= 12; // in the last column; otherwise the scale is at fault
     fault.index = translation ? fault.index - 12 : -1;
     return vplJson_ReportFault(object, translation ? "translate" : "scale", &fault);
 }

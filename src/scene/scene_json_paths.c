@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reads "path" of a camera or a light in a scene file: an array of keys, each with its frame and the values that change.
-// Other values are as declared.
+// Reads "path" of a camera or a light in a scene file: an array of keys, each with its frame and the values
+// that change. Other values are as declared.
 #include "scene/scene_json.h"
 
 #include <math.h>
@@ -69,7 +69,7 @@ static vplResult readEmitterKey(const vplJson* at, const vplEmitterDef* def, dou
     TRY(vplJson_ReadNumber(at, "frame", &key->frame));
     TRY(vplJson_ReadVec3(at, "position", &key->position));
     TRY(vplJson_ReadVec3(at, "direction", &key->direction));
-    TRY(vplJson_ReadRgb(at, vplSceneLoader_StrengthKey(def->type), &key->intensity));
+    TRY(vplJson_ReadRgb(at, vplJson_IntensityKey(def->type), &key->intensity));
     const vplEmitterDef posed = vplApplyEmitterKey(def, key);
     vplFault fault = vplCheckKeyFrame(before, key->frame);
     fault = fault.field ? fault : vplCheckEmitter(&posed);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One check per number. The API puts "vplCameraDef." before the sentence, the file reader "scene.json:3:14: camera.".
+// One check per number. The API puts "vplCameraDef." before the sentence, the file reader "scene.json:3:14:
+// camera.".
 #include "scene/scene.h"
 #include "math/matrix.h"
 #include "math/scalar.h"
