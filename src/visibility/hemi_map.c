@@ -86,7 +86,7 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
         const float lift = vplLightLift(vplLargestOf(places[i].position));
         map->position = vplAdd(places[i].position, vplScale(lift, places[i].normal));
         map->forward = places[i].normal;
-        vplFrame(map->forward, &map->right, &map->up);
+        vplTangentFrame(map->forward, &map->right, &map->up);
         map->size = maps->size;
         map->texels = maps->texels + (size_t)i * texelsOf(maps->size);
         map->context = maps->context;

@@ -82,7 +82,7 @@ static void place(const vplParaboloidMaps* maps, int index, const vplParaboloidP
     const size_t first = (size_t)index * 2 * vplParaboloidMap_Texels(maps->size);
     map->position = vplAdd(p->position, vplScale(lift, p->normal));
     map->forward = p->normal;
-    vplFrame(map->forward, &map->right, &map->up);
+    vplTangentFrame(map->forward, &map->right, &map->up);
     map->size = maps->size;
     map->hemispheres = p->hemispheres;
     map->texels = maps->texels + first;

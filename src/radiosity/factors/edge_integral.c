@@ -38,7 +38,7 @@ static double onceIntegrated(double u, double h)
     if (!(square > 0)) {
         return 0;
     }
-    return 0.5 * u * vplLog1(square) - u + (h > 0 ? h * vplAtan2(u, h) : 0);
+    return 0.5 * u * vplLn(square) - u + (h > 0 ? h * vplAtan2(u, h) : 0);
 }
 
 // The integral of onceIntegrated(u, h) du.
@@ -48,7 +48,7 @@ static double twiceIntegrated(double u, double h)
     if (!(square > 0)) {
         return 0;
     }
-    return 0.25 * (u * u - h * h) * vplLog1(square) - 0.75 * u * u + (h > 0 ? h * u * vplAtan2(u, h) : 0);
+    return 0.25 * (u * u - h * h) * vplLn(square) - 0.75 * u * u + (h > 0 ? h * u * vplAtan2(u, h) : 0);
 }
 
 // The position of `point` along the line of `edge`, and its distance from that line.

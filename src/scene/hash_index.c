@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene/obj_index.h"
+#include "scene/hash_index.h"
 
 #include <string.h>
 
@@ -33,21 +33,20 @@ static void link(vplHashIndex* index, uint32_t entry)
 
 vplResult vplHashIndex_Reserve(vplHashIndex* index, size_t count)
 {
-    vplResult result =
-        vplReserve(index->context, &index->entries, &index->capacity, count, sizeof *index->entries);
-    if (result != VPL_SUCCESS || count <= index->headCount) {
-        return result;
+    TRY(vplArena_Reserve(index->arena, &index->entries, &index->capacity, count, sizeof *index->entries));
+    if (count <= index->headCount) {
+        return VPL_SUCCESS;
     }
     size_t headCount = 16;
     while (headCount < count) {
         headCount *= 2;
     }
-    uint32_t* heads = vplAlloc(index->context, headCount, sizeof *heads);
+    uint32_t* heads = vplArena_Alloc(index->arena, headCount, sizeof *heads);
     if (heads == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     memset(heads, 0xFF, headCount * sizeof *heads); // VPL_NO_ENTRY
-    vplFree(index->context, index->heads);
+    vplArena_Free(index->arena, index->heads);
     index->heads = heads;
     index->headCount = headCount;
     for (uint32_t i = 0; i < index->count; i++) {
@@ -58,19 +57,17 @@ vplResult vplHashIndex_Reserve(vplHashIndex* index, size_t count)
 
 vplResult vplHashIndex_Add(vplHashIndex* index, uint32_t hash)
 {
-    vplResult result = vplHashIndex_Reserve(index, (size_t)index->count + 1);
-    if (result == VPL_SUCCESS) {
-        index->entries[index->count].hash = hash;
-        link(index, index->count++);
-    }
-    return result;
+    TRY(vplHashIndex_Reserve(index, (size_t)index->count + 1));
+    index->entries[index->count].hash = hash;
+    link(index, index->count++);
+    return VPL_SUCCESS;
 }
 
 void vplHashIndex_Close(vplHashIndex* index)
 {
-    vplFree(index->context, index->entries);
-    vplFree(index->context, index->heads);
-    *index = (vplHashIndex){.context = index->context};
+    vplArena_Free(index->arena, index->entries);
+    vplArena_Free(index->arena, index->heads);
+    *index = (vplHashIndex){.arena = index->arena};
 }
 
 uint32_t vplHashKey(const uint32_t* words, int count)
@@ -107,33 +104,16 @@ int vplNames_Find(const vplNames* names, const char* start, size_t length)
 
 vplResult vplNames_Add(vplNames* names, const char* start, size_t length, int* out)
 {
-    vplContext* context = names->index.context;
-    uint32_t count = names->index.count;
-    vplResult result =
-        vplReserve(context, &names->names, &names->capacity, (size_t)count + 1, sizeof *names->names);
-    char* copy = result == VPL_SUCCESS ? vplAlloc(context, length + 1, 1) : NULL;
+    vplArena* arena = names->index.arena;
+    const uint32_t count = names->index.count;
+    TRY(vplArena_Reserve(arena, &names->names, &names->capacity, (size_t)count + 1, sizeof *names->names));
+    char* copy = vplArena_Alloc(arena, length + 1, 1);
     if (copy == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     memcpy(copy, start, length);
     copy[length] = 0;
-    result = vplHashIndex_Add(&names->index, hashName(start, length));
-    if (result != VPL_SUCCESS) {
-        vplFree(context, copy);
-        return result;
-    }
     names->names[count] = copy;
     *out = (int)count;
-    return VPL_SUCCESS;
-}
-
-void vplNames_Close(vplNames* names)
-{
-    for (uint32_t i = 0; i < names->index.count; i++) {
-        vplFree(names->index.context, names->names[i]);
-    }
-    vplFree(names->index.context, names->names);
-    vplHashIndex_Close(&names->index);
-    names->names = NULL;
-    names->capacity = 0;
+    return vplHashIndex_Add(&names->index, hashName(start, length));
 }
