@@ -68,9 +68,9 @@ static inline vplLightTerm vplLightTermOf(float x, float y, float z, float nx, f
 }
 
 // cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is 0, not infinity / infinity.
-static inline float vplBoundedGeometry(vplLightTerm t, float inverseBound)
+static inline float vplClampedGeometry(vplLightTerm t, float inverseClamp)
 {
-    const float bounded = vplSmallerOf(t.inverse, inverseBound);
+    const float bounded = vplSmallerOf(t.inverse, inverseClamp);
     return (t.here * t.inverse) * (t.there * bounded);
 }
 

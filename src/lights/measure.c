@@ -26,7 +26,7 @@ typedef struct Measuring {
     const vplSeenBlock* blocks;
     int blockCount;
     vplReflectFcn* reflect;
-    float inverseBound;
+    float inverseClamp;
     float* contributions; // per light
     int* rays;            // per chunk
 } Measuring;
@@ -57,7 +57,7 @@ static float measure(const Measuring* m, const vplVirtualLight* v, int* rays)
     double squares = 0;
     for (int i = 0; i < m->blockCount && v->object >= 0; i++) {
         float reflected[VPL_LANES];
-        m->reflect(&m->blocks[i], &light, m->inverseBound, reflected);
+        m->reflect(&m->blocks[i], &light, m->inverseClamp, reflected);
         float most = 0;
         for (int l = 0; l < VPL_LANES; l++) {
             most = reflected[l] > most ? reflected[l] : most;
@@ -104,7 +104,7 @@ vplResult vplMeasureLights(const vplGeometry* geometry, const vplLightSet* set, 
     }
     m.blocks = blocks;
     m.reflect = documented ? DOCUMENTED[context->isa] : PHYSICAL[context->isa];
-    m.inverseBound = def->minDistance > 0 ? 1 / (def->minDistance * def->minDistance) : INFINITY;
+    m.inverseClamp = def->minDistance > 0 ? 1 / (def->minDistance * def->minDistance) : INFINITY;
     m.rays = vplAlloc(context, (size_t)chunks, sizeof *m.rays);
     result = m.rays ? vplParallelForProgress(context, chunks, measureChunk, &m, def->progress,
                                              def->progressUser, 0.2, 1)

@@ -21,9 +21,9 @@ vplResult vplPlacementDef_Check(const vplContext* context, const vplPlacementDef
 vplResult vplFindSeen(const vplGeometry* geometry, const vplPlacementDef* def, vplSeenBlock** blocksOut,
                       int* countOut);
 
-// What 16 points reflect of one light, without shadow, as the sum of three channels. inverseBound is
+// What 16 points reflect of one light, without shadow, as the sum of three channels. inverseClamp is
 // 1 / minDistance^2, infinity for no bound; it is not used by documented lighting.
-typedef void vplReflectFcn(const vplSeenBlock* block, const vplShadeLight* light, float inverseBound,
+typedef void vplReflectFcn(const vplSeenBlock* block, const vplShadeLight* light, float inverseClamp,
                            float reflectedOut[VPL_LANES]);
 
 #endif
