@@ -70,6 +70,7 @@ typedef struct vplReflectiveMap {
     vplVec3 origin;   // the emitter; directional: the middle of where the view begins
     vplRasterStats stats;
     vplContext* context;
+    struct vplArena* arena; // owns the map
 } vplReflectiveMap;
 
 // Draws every object once per face. Source: Dachsbacher and Stamminger, Reflective Shadow Maps, I3D 2005.
@@ -173,6 +174,7 @@ typedef struct vplLightSet {
     int64_t rayObjectTests; // objects tested; where a hierarchy is used, blocks of 8 triangles
     int particleCount;      // N
     vplContext* context;
+    struct vplArena* arena; // owns the set
 } vplLightSet;
 
 // Shoots particles from the scene's emitters, and for physical lighting or Keller's start also from triangles that
@@ -316,6 +318,7 @@ typedef struct vplLightClusters {
     int emptyCount; // clusters without lights: they keep their places
     vplClusterEnd end;
     vplContext* context;
+    struct vplArena* arena; // owns the clusters
 } vplLightClusters;
 
 // K-means in double precision; equal distances go to the lowest index. Lights of object -1 must not be among them. 256

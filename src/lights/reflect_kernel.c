@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// One light against sixteen points that a camera sees: one number per point, which only steers a choice.
-#include "base/isa.h"
+// One light and sixteen points that a camera sees: one number per point, which steers the choice of lights.
+#include "lights/kernels.h"
 #include "lights/light_term.h"
 #include "lights/placement.h"
 
-vplReflectFcn VPL_KERNEL(vplReflectDocumented), VPL_KERNEL(vplReflectPhysical);
-
-void VPL_KERNEL(vplReflectDocumented)(const vplSeenBlock* block, const vplShadeLight* light,
+void VPL_KERNEL(vplReflectDocumented)(const vplViewBlock* block, const vplShadeLight* light,
                                       float inverseClamp, float reflectedOut[VPL_LANES])
 {
     (void)inverseClamp;
@@ -21,7 +19,7 @@ void VPL_KERNEL(vplReflectDocumented)(const vplSeenBlock* block, const vplShadeL
     memcpy(reflectedOut, out, sizeof out);
 }
 
-void VPL_KERNEL(vplReflectPhysical)(const vplSeenBlock* block, const vplShadeLight* light, float inverseClamp,
+void VPL_KERNEL(vplReflectPhysical)(const vplViewBlock* block, const vplShadeLight* light, float inverseClamp,
                                     float reflectedOut[VPL_LANES])
 {
     const vplShadeLight v = *light;

@@ -3,7 +3,7 @@
 // let through.
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
-#include "lights/prepare.h"
+#include "lights/light_set.h"
 #include "math/vec.h"
 #include "shading/shading.h"
 #include "visibility/hemi_map.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Emitters share the particles by power. Documented lighting of a point light: its intensity, uniform directions.
-// Otherwise whatever emits, as vplEmission_SampleParticle says.
-#include "lights/starts.h"
+// Where particles start. Emitters share them by power. Documented: point lights, with their intensity, in
+// uniform directions. Otherwise everything that emits, by vplEmission_SampleParticle.
+#include "lights/particles.h"
 
 #include "geometry/triangle.h"
 #include "math/sampling.h"
@@ -46,7 +46,7 @@ static const vplEmitterDef* chooseEmitter(const vplStarts* s, int particle, floa
     return &s->emitters[chosen];
 }
 
-// The surface that a particle comes from.
+// The surface that a particle leaves.
 static vplHit sourceOf(const vplStarts* s, const vplParticle* p)
 {
     const vplGeometry* g = s->geometry;
