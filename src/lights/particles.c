@@ -18,17 +18,6 @@
 #include "math/sampling.h"
 #include "math/vec.h"
 
-enum { PARTICLE_COOKIE = 0x56504c60 };
-
-vplParticleDef vplDefaultParticleDef(void)
-{
-    vplParticleDef def = {0};
-    def.particleCount = 10;
-    def.reflectivity = 0.5;
-    def.cookie = PARTICLE_COOKIE;
-    return def;
-}
-
 typedef struct Simulation {
     const vplGeometry* geometry;
     vplParticleDef def;
@@ -183,52 +172,9 @@ static void collect(const Simulation* s, int* lightsInStep, vplLightSet* set)
     }
 }
 
-// Franchi and Ferrante's formulas know point lights only.
-static bool needsPoints(const vplParticleDef* def)
-{
-    return def->lighting == VPL_LIGHTING_DOCUMENTED && def->start == VPL_START_FIRST_HIT;
-}
-
 static vplParticlePass passOf(const vplParticleDef* def)
 {
     return (vplParticlePass){def->pass ? def->firstParticle : 0, def->particleCount, def->reflectivity};
-}
-
-static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
-                          const vplParticleDef* def)
-{
-    if (def->firstParticle < 0 || def->firstParticle > (INT64_C(1) << 40)) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplParticleDef.firstParticle is %lld, must be in [0, 2^40]",
-                       (long long)def->firstParticle);
-    }
-    if (def->cookie != PARTICLE_COOKIE) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef was not made by vplDefaultParticleDef");
-    }
-    const bool pointsOnly = needsPoints(def);
-    for (int i = 0; pointsOnly && i < emitterCount; i++) {
-        if (emitters[i].type != VPL_EMITTER_POINT) {
-            return vplFail(
-                context, VPL_INVALID_ARGUMENT,
-                "light %d is not a point light, and documented lighting knows no others; use physical", i);
-        }
-    }
-    if (pointsOnly && emitterCount < 1) {
-        return vplFail(
-            context, VPL_INVALID_ARGUMENT,
-            "the scene has no emitter to shoot particles from: documented lighting needs a point light");
-    }
-    if (def->maps != NULL && def->geometry != VPL_PARTICLE_GEOMETRY_EXACT) {
-        return vplFail(
-            context, VPL_INVALID_ARGUMENT,
-            "reflective shadow maps show triangles, not bounding boxes: use exact particle geometry");
-    }
-    for (int i = 0; def->directions != NULL && i < def->particleCount; i++) {
-        if (!vplIsFiniteVec(def->directions[i])) {
-            return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef.directions[%d] is not finite", i);
-        }
-    }
-    return VPL_SUCCESS;
 }
 
 static vplResult prepare(Simulation* s, vplContext* context, vplArena* scratch)
@@ -286,9 +232,9 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     const vplParticlePass pass = passOf(def);
     vplStepTotals totals;
     vplEmission* emission = NULL;
-    TRY(checkDef(context, emitters, emitterCount, def));
+    TRY(vplParticleDef_Check(context, emitters, emitterCount, def));
     TRY(vplCountPass(context, &pass, NULL, 0, &totals));
-    if (!needsPoints(def)) {
+    if (!vplParticleDef_NeedsPoints(def)) {
         TRY(vplEmission_Create(geometry, emitters, emitterCount, &emission));
     }
     vplResult result = VPL_SUCCESS;

@@ -6,6 +6,14 @@
 
 #include <vpl/lights.h>
 
+// ---- the definition
+
+// Documented lighting of first hits: point emitters only.
+bool vplParticleDef_NeedsPoints(const vplParticleDef* def);
+
+vplResult vplParticleDef_Check(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
+                               const vplParticleDef* def);
+
 // ---- counts
 
 // N particles that follow `first` others of the same walk.
