@@ -36,7 +36,7 @@ typedef enum vplParticleStart {
     VPL_START_EMITTER        // Keller: where the N particles start are lights, too, and are step 0
 } vplParticleStart;
 
-// What stops a particle.
+// The geometry that stops particles.
 typedef enum vplParticleGeometry {
     VPL_PARTICLE_GEOMETRY_EXACT = 0, // the triangles
     VPL_PARTICLE_GEOMETRY_OBB        // objects' oriented bounding boxes (Franchi and Ferrante, "Improving")
@@ -160,7 +160,7 @@ vplParticleDef vplDefaultParticleDef(void);
 vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts,
                             int capacity, int* stepsOut, int64_t* totalOut);
 
-// What a simulation made. Read only.
+// A set of virtual lights. Read only.
 typedef struct vplLightSet {
     const vplVirtualLight* lights; // by step, then by particle
     int lightCount;

@@ -67,7 +67,7 @@ typedef enum vplAccumulation {
     VPL_ACCUMULATE_USUAL          // vplRender chooses by the method
 } vplAccumulation;
 
-// What the picture shows.
+// The content of the picture.
 typedef enum vplShadeOutput {
     VPL_OUTPUT_RADIANCE = 0,
     VPL_OUTPUT_DEPTH,         // distance along the view axis, metres; 0 where nothing is

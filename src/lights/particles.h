@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the particle simulation is made of: how many particles reach each step, their numbers in [0, 1), and
+// Parts of the particle simulation: how many particles reach each step, their numbers in [0, 1), and
 // where they start.
 #ifndef VPL_LIGHTS_PARTICLES_H
 #define VPL_LIGHTS_PARTICLES_H

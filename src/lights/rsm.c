@@ -103,7 +103,7 @@ static void shadeVertices(const void* uniforms, int first, int count, const vplV
 
 // ---- drawing
 
-// What drawing a map needs besides it.
+// A map while it is drawn.
 typedef struct Drawing {
     vplReflectiveMap* map;
     const vplGeometry* geometry;

@@ -69,7 +69,7 @@ static void castRays(const vplGeometry* g, const vplLitPoint* p, const vplShadeL
     *rays += vplGeometry_Darken(g, &packet, 1, amount);
 }
 
-// What the `count` lights of `indices` contribute per unit of intensity, without shadows; 0 in other lanes.
+// Unshadowed contributions of the first `count` of `indices`, per unit of intensity; 0 in other lanes.
 static void evaluate(const vplShading* s, const vplLightDraw* draw, const vplLitPoint* point,
                      const int indices[VPL_LANES], int count, float amount[VPL_LANES])
 {

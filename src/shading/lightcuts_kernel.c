@@ -16,7 +16,7 @@ static const double SHARE = 1.0 / 8;
 // room is 10,733 lights, with 1/32 124,833 (bench/lightcuts).
 static const double DARK = 1.0 / 16;
 
-// What the steps of one cut share.
+// State of one cut.
 typedef struct Work {
     const vplShading* shading;
     const vplLightTree* tree;

@@ -154,7 +154,7 @@ typedef struct vplPassUniforms {
     int first, count; // virtual lights of this pass
 } vplPassUniforms;
 
-// What the shading of a triangle needs besides positions.
+// A triangle as it is shaded, besides positions.
 typedef struct vplFacet {
     vplVec3 normal; // as shaded: towards the eye for physical lighting, as declared for documented
     float offset;   // of its plane from the eye: normal . (point - eye), metres
