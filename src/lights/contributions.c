@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
+// The importance of lights: their contribution to points that the camera sees.
 // Based on: Georgiev and Slusallek, Simple and Robust Iterative Importance Sampling of Virtual Point Lights,
-// Eurographics 2010: a light is worth what it gives to points that the camera sees. Departs: the points are few and
-// the same for all lights, so that light by light sixteen shadow rays go as one packet; a light's worth is the root
-// of its mean square, because the error of a picture is: the least error for a number of independently chosen
-// lights has probabilities like that (0.84 of the error that the mean leaves; room, sponza-sun).
+// Eurographics 2010. Departs: the points are few and the same for all lights, so that sixteen shadow rays of
+// a light form one packet; importance is the root of the mean square, which gives the least error for a
+// number of independently chosen lights (0.84 of the error that the mean gives; room, sponza-sun).
 #include "lights/placement.h"
 
-#include "base/context.h"
-#include "base/isa.h"
-#include "lights/prepare.h"
-#include "math/vec.h"
+#include "lights/kernels.h"
+#include "lights/light_set.h"
 #include "visibility/hemi_map.h"
 
 #include <float.h>
-
-VPL_KERNEL_TABLE(DOCUMENTED, vplReflectFcn, vplReflectDocumented);
-VPL_KERNEL_TABLE(PHYSICAL, vplReflectFcn, vplReflectPhysical);
 
 enum { CHUNK = 32 }; // lights per task
 
@@ -23,16 +18,16 @@ typedef struct Measuring {
     const vplGeometry* geometry;
     const vplLightSet* set;
     const vplPlacementDef* def;
-    const vplSeenBlock* blocks;
+    const vplViewBlock* blocks;
     int blockCount;
     vplReflectFcn* reflect;
-    float inverseBound;
+    float inverseClamp;
     float* contributions; // per light
     int* rays;            // per chunk
 } Measuring;
 
-// Sets what does not arrive to 0.
-static void castShadows(const Measuring* m, const vplSeenBlock* b, const vplShadeLight* light,
+// Sets reflected light to 0 where something is between.
+static void castShadows(const Measuring* m, const vplViewBlock* b, const vplShadeLight* light,
                         float reflected[VPL_LANES], int* rays)
 {
     const vplVec3 n = {light->nx, light->ny, light->nz}, at = {light->px, light->py, light->pz};
@@ -57,7 +52,7 @@ static float measure(const Measuring* m, const vplVirtualLight* v, int* rays)
     double squares = 0;
     for (int i = 0; i < m->blockCount && v->object >= 0; i++) {
         float reflected[VPL_LANES];
-        m->reflect(&m->blocks[i], &light, m->inverseBound, reflected);
+        m->reflect(&m->blocks[i], &light, m->inverseClamp, reflected);
         float most = 0;
         for (int l = 0; l < VPL_LANES; l++) {
             most = reflected[l] > most ? reflected[l] : most;
@@ -86,37 +81,37 @@ static void measureChunk(void* data, int chunk, int worker)
     }
 }
 
+static vplResult measureAll(Measuring* m, vplArena* scratch, int64_t* raysOut)
+{
+    vplContext* context = m->geometry->context;
+    const vplLightsKernels kernels = vplGetLightsKernels(context->isa);
+    const int chunks = (m->set->lightCount + CHUNK - 1) / CHUNK;
+    const float distance = m->def->minDistance;
+    TRY(vplSampleView(m->geometry, m->def, scratch, &m->blocks, &m->blockCount));
+    m->reflect =
+        m->def->lighting == VPL_LIGHTING_DOCUMENTED ? kernels.reflectDocumented : kernels.reflectPhysical;
+    m->inverseClamp = distance > 0 ? 1 / (distance * distance) : INFINITY;
+    m->rays = vplArena_Alloc(scratch, (size_t)chunks, sizeof *m->rays);
+    TRY(vplArena_Check(scratch));
+    TRY(vplParallelForProgress(context, chunks, measureChunk, m, m->def->progress, m->def->progressUser, 0.2,
+                               1));
+    for (int i = 0; i < chunks; i++) {
+        *raysOut += m->rays[i];
+    }
+    return VPL_SUCCESS;
+}
+
 vplResult vplMeasureLights(const vplGeometry* geometry, const vplLightSet* set, const vplPlacementDef* def,
                            float* contributionsOut, int64_t* raysOut)
 {
-    vplContext* context = geometry->context;
-    const bool documented = def->lighting == VPL_LIGHTING_DOCUMENTED;
-    const int chunks = (set->lightCount + CHUNK - 1) / CHUNK;
     Measuring m = {.geometry = geometry, .set = set, .def = def, .contributions = contributionsOut};
-    vplResult result = vplPlacementDef_Check(context, def);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplSeenBlock* blocks;
-    result = vplFindSeen(geometry, def, &blocks, &m.blockCount);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    m.blocks = blocks;
-    m.reflect = documented ? DOCUMENTED[context->isa] : PHYSICAL[context->isa];
-    m.inverseBound = def->minDistance > 0 ? 1 / (def->minDistance * def->minDistance) : INFINITY;
-    m.rays = vplAlloc(context, (size_t)chunks, sizeof *m.rays);
-    result = m.rays ? vplParallelForProgress(context, chunks, measureChunk, &m, def->progress,
-                                             def->progressUser, 0.2, 1)
-                    : VPL_OUT_OF_MEMORY;
     int64_t rays = 0;
-    for (int i = 0; i < chunks && result == VPL_SUCCESS; i++) {
-        rays += m.rays[i];
-    }
+    TRY(vplPlacementDef_Check(geometry->context, def));
+    vplArena* scratch = vplArena_Create(geometry->context);
+    const vplResult result = measureAll(&m, scratch, &rays);
+    vplArena_Destroy(scratch);
     if (raysOut != NULL && result == VPL_SUCCESS) {
         *raysOut = rays;
     }
-    vplFree(context, m.rays);
-    vplFree(context, blocks);
     return result;
 }

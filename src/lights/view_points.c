@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Points that a camera sees: Sobol points in each cell of a grid over the picture, sixteen per cell, so that the
-// shadow rays of a packet have their beginnings in common, too.
+// Points that a camera sees: sixteen Sobol points in each cell of a grid over the picture, so that the shadow
+// rays of a packet start close together.
 #include "lights/placement.h"
 
-#include "base/context.h"
 #include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/sobol.h"
@@ -11,19 +10,18 @@
 
 #include <string.h>
 
-// Of random numbers: not those of particles.
-enum { SEEN_STREAM = 0x80000002u };
+enum { VIEW_STREAM = 0x80000002u }; // of random numbers; differs from those of particles
 
-typedef struct Seeing {
+typedef struct ViewSampling {
     const vplGeometry* geometry;
     const vplPlacementDef* def;
-    vplVec3 right, up, forward; // the camera's; right and up are half a picture long, one metre away
+    vplVec3 right, up, forward; // the camera's; right and up span half a picture at a distance of one metre
     int columns, rows;          // of cells
     const vplSobol* sobol;
-    vplSeenBlock* blocks;
-} Seeing;
+    vplViewBlock* blocks;
+} ViewSampling;
 
-static void aimCamera(Seeing* s)
+static void aimCamera(ViewSampling* s)
 {
     const vplCameraDef* camera = &s->def->camera;
     double sine, cosine;
@@ -35,8 +33,8 @@ static void aimCamera(Seeing* s)
     s->right = vplScale((float)(tangent * aspect), right);
 }
 
-// Cells about as wide as they are high.
-static void divide(Seeing* s)
+// Makes cells about as wide as they are high.
+static void divide(ViewSampling* s)
 {
     const int cells = (s->def->pointCount + VPL_LANES - 1) / VPL_LANES;
     const double rows = rint(sqrt((double)cells * s->def->height / s->def->width));
@@ -44,7 +42,7 @@ static void divide(Seeing* s)
     s->columns = (cells + s->rows - 1) / s->rows;
 }
 
-static void putPoint(const Seeing* s, const vplHit* hit, vplVec3 from, vplSeenBlock* b, int l)
+static void putPoint(const ViewSampling* s, const vplHit* hit, vplVec3 from, vplViewBlock* b, int l)
 {
     const vplGeometry* g = s->geometry;
     const vplVec3 shading = vplGeometry_ShadingNormal(g, hit);
@@ -69,21 +67,22 @@ static void putPoint(const Seeing* s, const vplHit* hit, vplVec3 from, vplSeenBl
 }
 
 // A task: the points of one cell.
-static void lookAtCell(void* data, int cell, int worker)
+static void sampleCell(void* data, int cell, int worker)
 {
     (void)worker;
-    const Seeing* s = data;
+    const ViewSampling* s = data;
     const vplCameraDef* camera = &s->def->camera;
     const uint64_t cells = (uint64_t)s->columns * (uint64_t)s->rows;
-    vplSeenBlock* b = &s->blocks[cell];
+    vplViewBlock* b = &s->blocks[cell];
     memset(b, 0, sizeof *b);
     for (int l = 0; l < VPL_LANES; l++) {
         float u[VPL_SOBOL_DIMENSIONS];
-        vplSobol_Sample(s->sobol, s->def->seed, (uint64_t)s->def->index * cells + (uint64_t)cell, SEEN_STREAM,
+        vplSobol_Sample(s->sobol, s->def->seed, (uint64_t)s->def->index * cells + (uint64_t)cell, VIEW_STREAM,
                         (uint32_t)l, u);
         const float x = 2 * ((float)(cell % s->columns) + u[0]) / (float)s->columns - 1;
         const float y = 1 - 2 * ((float)(cell / s->columns) + u[1]) / (float)s->rows;
-        // One metre along the view's axis, so that the ray's t is a depth; it begins where depths do.
+        // The direction is one metre along the view axis, so that t is a depth; the ray starts at the near
+        // plane.
         const vplVec3 way = vplAdd(s->forward, vplAdd(vplScale(x, s->right), vplScale(y, s->up)));
         const vplRay ray = {vplAdd(camera->eye, vplScale((float)camera->near, way)), way, {0, 0}};
         vplHit hit;
@@ -93,24 +92,16 @@ static void lookAtCell(void* data, int cell, int worker)
     }
 }
 
-vplResult vplFindSeen(const vplGeometry* geometry, const vplPlacementDef* def, vplSeenBlock** blocksOut,
-                      int* countOut)
+vplResult vplSampleView(const vplGeometry* geometry, const vplPlacementDef* def, vplArena* arena,
+                        const vplViewBlock** blocksOut, int* countOut)
 {
-    Seeing s = {.geometry = geometry, .def = def};
     const vplSobol sobol = vplSobol_Make();
-    s.sobol = &sobol;
+    ViewSampling s = {.geometry = geometry, .def = def, .sobol = &sobol};
     aimCamera(&s);
     divide(&s);
-    s.blocks = vplAlloc(geometry->context, (size_t)s.columns * (size_t)s.rows, sizeof *s.blocks);
-    if (s.blocks == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    vplResult result = vplGeometry_PrepareRays(geometry);
-    if (result != VPL_SUCCESS) {
-        vplFree(geometry->context, s.blocks);
-        return result;
-    }
-    vplParallelFor(geometry->context, s.columns * s.rows, lookAtCell, &s);
+    s.blocks = vplArena_Alloc(arena, (size_t)s.columns * (size_t)s.rows, sizeof *s.blocks);
+    TRY(vplArena_Check(arena));
+    vplParallelFor(geometry->context, s.columns * s.rows, sampleCell, &s);
     *blocksOut = s.blocks;
     *countOut = s.columns * s.rows;
     return VPL_SUCCESS;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The second step of interleaved shading: every pixel takes the mean indirect irradiance of the pixels less than K away
-// that lie on about the same surface, and reflects it. Sums go along the rows first, then over the rows. Where a run of
-// 16 pixels and all their windows show one triangle, nothing is tested; the bits are those of tests that all pass.
+// The filter of interleaved shading: every pixel takes the mean indirect irradiance of the pixels less than K
+// away that lie on about the same surface, and reflects it. Rows are summed first, then columns. Where a run
+// of 16 pixels and all their windows show one triangle, no surface is tested; the bits are those of tests
+// that all pass.
 #include "base/isa.h"
-#include "shading/gather_mixed.h"
+#include "shading/interleave_filter_mixed.h"
 
-vplTaskFcn VPL_KERNEL(vplGatherTile);
-
-// Rows are short and a picture's width apart: no processor guesses what comes next. This many rows before they are read.
+// Rows are short and a picture's width apart, which hardware does not prefetch: they are fetched this many
+// rows early.
 enum { AHEAD = 8, LINE = 64 / sizeof(float) };
 
 static void prefetch(const float* from, int count)
@@ -17,16 +17,16 @@ static void prefetch(const float* from, int count)
     }
 }
 
-// Copies a plane's rows, 0 outside the picture. `to` has VPL_GATHER_COLUMNS values per row.
+// Copies a plane's rows; 0 outside the picture. `to` has VPL_FILTER_COLUMNS values per row.
 static void loadPlane(const vplImage* image, const float* plane, const Part* part, int reach, float* to)
 {
     int first = reach - part->x, end = image->width - part->x + reach; // columns of the picture
     first = first > 0 ? first : 0;
     end = end < part->columns ? end : part->columns;
-    for (int row = 0; row < part->rows; row++, to += VPL_GATHER_COLUMNS) {
+    for (int row = 0; row < part->rows; row++, to += VPL_FILTER_COLUMNS) {
         const int y = part->y - reach + row;
         if (y < 0 || y >= image->height) {
-            memset(to, 0, VPL_GATHER_COLUMNS * sizeof *to);
+            memset(to, 0, VPL_FILTER_COLUMNS * sizeof *to);
             continue;
         }
         const float* from = plane + (size_t)y * (size_t)image->width + (part->x - reach + first);
@@ -35,38 +35,39 @@ static void loadPlane(const vplImage* image, const float* plane, const Part* par
         }
         memset(to, 0, (size_t)first * sizeof *to);
         memcpy(to + first, from, (size_t)(end - first) * sizeof *to);
-        memset(to + end, 0, (size_t)(VPL_GATHER_COLUMNS - end) * sizeof *to);
+        memset(to + end, 0, (size_t)(VPL_FILTER_COLUMNS - end) * sizeof *to);
     }
 }
 
-static void findUniform(int side, vplGatherRoom* room, Part* part)
+// Finds the runs whose windows show one triangle.
+static void findUniform(int side, vplFilterScratch* scratch, Part* part)
 {
     part->mixed = part->any = false;
     for (int row = 0; row < part->rows; row++) {
-        for (int run = 0; run < VPL_GATHER_RUNS; run++) {
-            const int32_t* at = room->triangle[row] + run * VPL_LANES;
+        for (int run = 0; run < VPL_FILTER_RUNS; run++) {
+            const int32_t* at = scratch->triangle[row] + run * VPL_LANES;
             int32_t different = 0, any = 0;
             for (int i = 0; i < VPL_LANES + tapsOf(side) - 1; i++) {
                 different |= at[i] ^ at[0];
                 any |= at[i];
             }
-            room->uniform[row][run] = different ? 0 : at[0];
+            scratch->uniform[row][run] = different ? 0 : at[0];
             part->mixed |= different != 0;
             part->any |= any != 0;
         }
     }
     for (int row = 1; row < part->rows; row++) {
-        for (int run = 0; run < VPL_GATHER_RUNS; run++) {
-            part->mixed |= room->uniform[row][run] != room->uniform[row - 1][run];
+        for (int run = 0; run < VPL_FILTER_RUNS; run++) {
+            part->mixed |= scratch->uniform[row][run] != scratch->uniform[row - 1][run];
         }
     }
 }
 
-// Sums the rows of windows that show one triangle.
-static void sumRow(int side, vplGatherRoom* room, int row, int x)
+// Row sums of 16 windows that show one triangle.
+static void sumRow(int side, vplFilterScratch* scratch, int row, int x)
 {
     for (int c = 0; c < 3; c++) {
-        const float* from = room->indirect[c][row] + x;
+        const float* from = scratch->indirect[c][row] + x;
         float sum[VPL_LANES] = {0};
         for (int k = 0; k < tapsOf(side); k++) {
             const float weight = weightOf(side, k);
@@ -74,10 +75,10 @@ static void sumRow(int side, vplGatherRoom* room, int row, int x)
                 sum[l] += weight * from[k + l];
             }
         }
-        memcpy(room->rowSums[c][row] + x, sum, sizeof sum);
+        memcpy(scratch->rowSums[c][row] + x, sum, sizeof sum);
     }
     for (int l = 0; l < VPL_LANES; l++) {
-        room->rowCounts[row][x + l] = (float)(side * side);
+        scratch->rowCounts[row][x + l] = (float)(side * side);
     }
 }
 
@@ -90,28 +91,27 @@ static bool isEmpty(const int32_t triangles[VPL_LANES])
     return any == 0;
 }
 
-static void sumRows(const vplShading* s, vplGatherRoom* room, const Part* part)
+static void sumRows(const vplShading* s, int side, vplFilterScratch* scratch, const Part* part)
 {
-    const int side = s->interleave->side;
-    for (int i = 0; i < part->rows * VPL_GATHER_RUNS; i++) {
-        const int row = i / VPL_GATHER_RUNS, x = i % VPL_GATHER_RUNS * VPL_LANES;
-        if (room->uniform[row][i % VPL_GATHER_RUNS] != 0) {
-            sumRow(side, room, row, x);
+    for (int i = 0; i < part->rows * VPL_FILTER_RUNS; i++) {
+        const int row = i / VPL_FILTER_RUNS, x = i % VPL_FILTER_RUNS * VPL_LANES;
+        if (scratch->uniform[row][i % VPL_FILTER_RUNS] != 0) {
+            sumRow(side, scratch, row, x);
         } else {
-            sumMixedRow(s->view, room, side, row, x);
+            sumMixedRow(s->view, scratch, side, row, x);
         }
     }
 }
 
-// Mean over the windows of 16 pixels of one triangle.
-static void meanOfUniform(const vplGatherRoom* room, int side, int row, int x, float mean[3][VPL_LANES])
+// Means of 16 windows that show one triangle.
+static void meanOfUniform(const vplFilterScratch* scratch, int side, int row, int x, float mean[3][VPL_LANES])
 {
     const float inverse = 1 / (float)(side * side * side * side);
     for (int c = 0; c < 3; c++) {
         float sum[VPL_LANES] = {0};
         for (int i = 0; i < tapsOf(side); i++) {
             const float weight = weightOf(side, i);
-            const float* from = room->rowSums[c][row + i] + x;
+            const float* from = scratch->rowSums[c][row + i] + x;
             for (int l = 0; l < VPL_LANES; l++) {
                 sum[l] += weight * from[l];
             }
@@ -123,13 +123,13 @@ static void meanOfUniform(const vplGatherRoom* room, int side, int row, int x, f
 }
 
 // Turns irradiance into radiance.
-static void reflect(const vplShading* s, const int32_t triangles[VPL_LANES], vplSeen* seen,
+static void reflect(const vplShading* s, const int32_t triangles[VPL_LANES], vplFacetCache* cache,
                     float mean[3][VPL_LANES])
 {
     float factor[3][VPL_LANES];
     for (int l = 0; l < VPL_LANES;) {
         const int32_t triangle = triangles[l];
-        const vplSeenFacet* facet = triangle == 0 ? NULL : vplSee(s, triangle - 1, seen);
+        const vplCachedFacet* facet = triangle == 0 ? NULL : vplFacetCache_Get(s, triangle - 1, cache);
         const float r = facet ? (float)facet->reflector.factor[0] : 0,
                     g = facet ? (float)facet->reflector.factor[1] : 0,
                     b = facet ? (float)facet->reflector.factor[2] : 0;
@@ -165,69 +165,70 @@ static void addToPixels(float values[3][VPL_LANES], float* pixels, int count)
     }
 }
 
-static bool isUniform(const vplGatherRoom* room, int side, int row, int x)
+static bool isUniform(const vplFilterScratch* scratch, int side, int row, int x)
 {
-    bool uniform = room->uniform[row][x / VPL_LANES] != 0;
+    bool uniform = scratch->uniform[row][x / VPL_LANES] != 0;
     for (int i = 1; i < tapsOf(side); i++) {
-        uniform &= room->uniform[row + i][x / VPL_LANES] == room->uniform[row][x / VPL_LANES];
+        uniform &= scratch->uniform[row + i][x / VPL_LANES] == scratch->uniform[row][x / VPL_LANES];
     }
     return uniform;
 }
 
-// Pixels x .. x + 15 of one row of the part.
-static void gatherRun(const vplShading* s, vplGatherRoom* room, const Part* part, int row, int x)
+// Filters pixels x .. x + 15 of one row of the part.
+static void filterRun(const vplShading* s, vplFilterScratch* scratch, const Part* part, int row, int x)
 {
-    const int side = s->interleave->side;
-    const int32_t* triangles = room->triangle[row + side - 1] + x + side - 1;
+    const vplInterleave* w = s->state;
+    const int side = w->side;
+    const int32_t* triangles = scratch->triangle[row + side - 1] + x + side - 1;
     float mean[3][VPL_LANES];
-    if (isUniform(room, side, row, x)) {
-        meanOfUniform(room, side, row, x, mean);
+    if (isUniform(scratch, side, row, x)) {
+        meanOfUniform(scratch, side, row, x, mean);
     } else if (isEmpty(triangles)) {
         return;
     } else {
-        meanOfMixed(s->view, room, side, row, x, mean);
+        meanOfMixed(s->view, scratch, side, row, x, mean);
     }
     if (!s->irradiance) {
-        reflect(s, triangles, &room->seen, mean);
+        reflect(s, triangles, &scratch->facets, mean);
     }
     const size_t pixel = (size_t)(part->y + row) * (size_t)s->image->width + (size_t)(part->x + x);
     addToPixels(mean, s->image->pixels + 3 * pixel, part->width - x);
 }
 
-void VPL_KERNEL(vplGatherTile)(void* data, int task, int worker)
+void VPL_KERNEL(vplFilterTask)(void* data, int task, int worker)
 {
     const vplShading* s = data;
-    const vplInterleave* w = s->interleave;
+    const vplInterleave* w = s->state;
     const vplImage* image = s->image;
-    vplGatherRoom* room = &w->rooms[worker];
+    vplFilterScratch* scratch = &w->scratch[worker];
     const int side = w->side, reach = side - 1;
-    Part part = {.x = task % w->tilesX * VPL_GATHER_WIDTH, .y = task / w->tilesX * VPL_GATHER_HEIGHT};
-    part.width = image->width - part.x < VPL_GATHER_WIDTH ? image->width - part.x : VPL_GATHER_WIDTH;
-    part.height = image->height - part.y < VPL_GATHER_HEIGHT ? image->height - part.y : VPL_GATHER_HEIGHT;
-    part.columns = VPL_GATHER_WIDTH + tapsOf(side) - 1;
+    Part part = {.x = task % w->tilesX * VPL_FILTER_WIDTH, .y = task / w->tilesX * VPL_FILTER_HEIGHT};
+    part.width = image->width - part.x < VPL_FILTER_WIDTH ? image->width - part.x : VPL_FILTER_WIDTH;
+    part.height = image->height - part.y < VPL_FILTER_HEIGHT ? image->height - part.y : VPL_FILTER_HEIGHT;
+    part.columns = VPL_FILTER_WIDTH + tapsOf(side) - 1;
     part.rows = part.height + tapsOf(side) - 1;
-    loadPlane(image, vplGatherPlane(w, VPL_GATHER_TRIANGLE), &part, reach, (float*)room->triangle[0]);
-    findUniform(side, room, &part);
+    loadPlane(image, vplFilterPlane(w, VPL_FILTER_TRIANGLE), &part, reach, (float*)scratch->triangle[0]);
+    findUniform(side, scratch, &part);
     if (!part.any) {
         return;
     }
     for (int c = 0; c < 3; c++) {
-        loadPlane(image, vplGatherPlane(w, VPL_GATHER_INDIRECT + c), &part, reach, room->indirect[c][0]);
+        loadPlane(image, vplFilterPlane(w, VPL_FILTER_INDIRECT + c), &part, reach, scratch->indirect[c][0]);
     }
     if (part.mixed) {
-        findSight(s->view, &part, reach, room);
+        findLinesOfSight(s->view, &part, reach, scratch);
         for (int row = 0; row < part.rows; row++) {
-            findPlanes(s, row, part.columns, room);
+            findPlanes(s, row, part.columns, scratch);
         }
     }
-    sumRows(s, room, &part);
+    sumRows(s, side, scratch, &part);
     for (int row = 0; row < part.height; row++) {
         if (row + AHEAD < part.height) {
             const size_t ahead = (size_t)(part.y + row + AHEAD) * (size_t)image->width + (size_t)part.x;
             prefetch(image->pixels + 3 * ahead, 3 * part.width);
         }
         for (int x = 0; x < part.width; x += VPL_LANES) {
-            gatherRun(s, room, &part, row, x);
+            filterRun(s, scratch, &part, row, x);
         }
     }
 }

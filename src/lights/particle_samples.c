@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Because only the first floor(rho^k N) particles go on, the first few of them must cover all directions, too.
-// Random and Halton points do. Hammersley points come sorted by their first coordinate, so particle i takes
-// the point (i + 1) * stride mod N, where stride/N is near the golden ratio: any first few of those are spread out.
-// Counting begins at 1, because point 0 is 0 in every dimension and the first particle goes furthest: with 100
-// particles the last steps, which it takes alone, sent all light along one edge (145 % error in cornell-area).
-#include "lights/samples.h"
+// The numbers of particles. Only the first floor(rho^k N) particles reach step k, so the first few must cover
+// all directions, too. Random and Halton points do. Hammersley points are sorted by their first coordinate,
+// so particle i takes point (i + 1) * stride mod N, where stride/N is near the golden ratio: any first few of
+// those are spread evenly. Counting starts at 1 because point 0 is 0 in every dimension, and particle 0 makes
+// the most steps: all light of the last ones left along one edge (145 % error in cornell-area with 100
+// particles).
+#include "lights/particles.h"
 #include "base/rng.h"
 #include "math/sampling.h"
 
@@ -32,7 +33,7 @@ vplSampleSource vplSampleSource_Make(const vplParticleDef* def)
     }
     source.reserved = keller && source.sampler == VPL_SAMPLER_HALTON;
     if (source.sampler == VPL_SAMPLER_HAMMERSLEY && source.first > 0) {
-        // A set of N points does not go on: another N are the same, shifted.
+        // A Hammersley set cannot be extended: another N points are the same ones, shifted.
         vplRandom4 r = vplRandomAt(source.seed, SHIFT_STREAM, (uint64_t)source.first);
         source.seed = (uint64_t)r.v[0] << 32 | r.v[1];
     }
@@ -74,7 +75,7 @@ static void pairOf(const vplSampleSource* s, int particle, int pair, float* u, f
 
 void vplSampleSource_Direction(const vplSampleSource* source, int particle, int step, float* u, float* v)
 {
-    // Halton points in primes beyond the 64th need more points than there are particles to look uniform.
+    // Halton points in primes beyond the 64th are uniform only for more points than there are particles.
     const int pair = step + source->reserved;
     if (source->sampler == VPL_SAMPLER_RANDOM || 2 * pair + 1 >= VPL_PRIME_COUNT) {
         vplRandom4 r = vplRandomAt(source->seed, (uint32_t)step, (uint64_t)(source->first + particle));
@@ -107,7 +108,7 @@ void vplSampleSource_Place(const vplSampleSource* source, int particle, float* u
         pairOf(source, particle, 0, u, v);
         return;
     }
-    // Powers of 1 over the plastic number.
+    // R2: powers of the inverse plastic number.
     const double i = (double)(source->first + particle) + 0.5;
     const double x = i * 0.75487766624669276, y = i * 0.56984029099805327;
     *u = shifted((float)(x - floor(x)) * 0x1.fffffep-1f, source->seed, VPL_PRIME_COUNT);

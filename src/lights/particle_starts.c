@@ -1,11 +1,71 @@
 // SPDX-License-Identifier: MIT
-// Emitters share the particles by power. Documented lighting of a point light: its intensity, uniform directions.
-// Otherwise whatever emits, as vplEmission_SampleParticle says.
-#include "lights/starts.h"
+// The definition of a simulation, and where its particles start. Emitters share them by power. Documented:
+// point lights, with their intensity, in uniform directions. Otherwise everything that emits, by
+// vplEmission_SampleParticle.
+#include "lights/particles.h"
 
+#include "base/context.h"
 #include "geometry/triangle.h"
 #include "math/sampling.h"
 #include "math/vec.h"
+
+// ---- the definition
+
+enum { PARTICLE_COOKIE = 0x56504c60 };
+
+vplParticleDef vplDefaultParticleDef(void)
+{
+    vplParticleDef def = {0};
+    def.particleCount = 10;
+    def.reflectivity = 0.5;
+    def.cookie = PARTICLE_COOKIE;
+    return def;
+}
+
+// Franchi and Ferrante's formulas know point lights only.
+bool vplParticleDef_NeedsPoints(const vplParticleDef* def)
+{
+    return def->lighting == VPL_LIGHTING_DOCUMENTED && def->start == VPL_START_FIRST_HIT;
+}
+
+vplResult vplParticleDef_Check(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
+                               const vplParticleDef* def)
+{
+    if (def->firstParticle < 0 || def->firstParticle > (INT64_C(1) << 40)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplParticleDef.firstParticle is %lld, must be in [0, 2^40]",
+                       (long long)def->firstParticle);
+    }
+    if (def->cookie != PARTICLE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef was not made by vplDefaultParticleDef");
+    }
+    const bool pointsOnly = vplParticleDef_NeedsPoints(def);
+    for (int i = 0; pointsOnly && i < emitterCount; i++) {
+        if (emitters[i].type != VPL_EMITTER_POINT) {
+            return vplFail(
+                context, VPL_INVALID_ARGUMENT,
+                "light %d is not a point light, and documented lighting knows no others; use physical", i);
+        }
+    }
+    if (pointsOnly && emitterCount < 1) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "the scene has no emitter to shoot particles from: documented lighting needs a point light");
+    }
+    if (def->maps != NULL && def->geometry != VPL_PARTICLE_GEOMETRY_EXACT) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "reflective shadow maps show triangles, not bounding boxes: use exact particle geometry");
+    }
+    for (int i = 0; def->directions != NULL && i < def->particleCount; i++) {
+        if (!vplIsFiniteVec(def->directions[i])) {
+            return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef.directions[%d] is not finite", i);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- starts
 
 static double powerOf(const vplEmitterDef* e)
 {
@@ -46,7 +106,7 @@ static const vplEmitterDef* chooseEmitter(const vplStarts* s, int particle, floa
     return &s->emitters[chosen];
 }
 
-// The surface that a particle comes from.
+// The surface that a particle leaves.
 static vplHit sourceOf(const vplStarts* s, const vplParticle* p)
 {
     const vplGeometry* g = s->geometry;

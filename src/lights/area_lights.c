@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Based on: Alexander Keller, Instant Radiosity, SIGGRAPH 1997, section 3: points on the area light source, each
-// with its share of the flux, are the lights of direct illumination.
-// Departs: they are as many as are asked for, not one per particle, and spread by area and power.
+// Samples of area lights.
+// Based on: Alexander Keller, Instant Radiosity, SIGGRAPH 1997, section 3: points on the area light, each
+// with its share of the flux, are the lights of direct illumination. Departs: their number does not depend on
+// particles, and they are spread by area and power.
 #include <vpl/lights.h>
 
 #include "geometry/emission.h"
@@ -24,7 +25,7 @@ int vplSampleAreaLights(const vplEmission* emission, int count, vplShadeLight* o
         const vplEmissionSource* source = &emission->sources[chosen];
         const double share = total / (sums[chosen + 1] - sums[chosen]) / count / VPL_PI;
         const vplRgb intensity = vplScaleRadiometric(share, source->power);
-        // Half a step on, so that a single light is in the middle: 0.80 instead of 1.42 of error, 64: 0.055, not 0.063.
+        // Shifted by half a step, so that a single sample is in the middle: error 0.80 instead of 1.42.
         const double v = vplVanDerCorput((uint32_t)i) + 0.5 / count;
         vplHit at = vplGeometry_SampleTriangle(emission->geometry, source->triangle, (float)rest,
                                                (float)(v - floor(v)));
