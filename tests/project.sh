@@ -87,13 +87,13 @@ two_screens() {
     [ "$(wc -l <README.md)" -le 150 ]
 }
 for readme in $(find . -name README.md -not -path './build*' | sort); do
-    name=$(dirname "${readme#./}" | tr / _)
-    check "Readme_${name}_LinksLeadSomewhere" tests/readme_check.sh links "$build/vpl" "$readme"
-    check "Readme_${name}_CommandsExist" tests/readme_check.sh commands "$build/vpl" "$readme"
-    check "Readme_${name}_StaysInTheRepository" tests/readme_check.sh places "$build/vpl" "$readme"
+    folder=$(dirname "$readme" | sed 's/^\.$/.\/top/; s/^\.\///' | tr / _)
+    check "Readme_${folder}_LinksLeadSomewhere" tests/readme_check.sh links "$build/vpl" "$readme"
+    check "Readme_${folder}_CommandsExist" tests/readme_check.sh commands "$build/vpl" "$readme"
+    check "Readme_${folder}_StaysInTheRepository" tests/readme_check.sh places "$build/vpl" "$readme"
     least=0
     [ "$readme" != ./README.md ] || least=1
-    [ -n "$SANITIZE_FLAGS" ] || check "Readme_${name}_ProgramsRun" readme_programs "$readme" $least
+    [ -n "$SANITIZE_FLAGS" ] || check "Readme_${folder}_ProgramsRun" readme_programs "$readme" $least
 done
 check ReadmeCommandsRun readme_commands
 check ReadmeSceneIsRead readme_scenes
