@@ -54,4 +54,4 @@ shot best-instant-radiosity 3 "--antialias 4" $particles --sampler halton $share
 shot best-keller 3 "--antialias 4" --method keller $particles $shared
 shot best-radiosity 3 "--antialias 4" --method radiosity --patches 4000 $shared
 shot best-ssvp 3 "--antialias 4" --method ssvp --clusters 32
-shot best-path 1 "--pixel area" --method path --spp 64 --pixel centre
+shot best-path 1 "--pixel area" --method path --spp 256 --pixel centre
