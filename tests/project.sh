@@ -49,6 +49,17 @@ check ExampleHelloRuns writes "$scratch/hello.png" "$build/examples/hello" $scen
 check ExampleStagesRuns writes "$scratch/stages.png" "$build/examples/stages" $scene "$scratch/stages.png"
 check ExampleSceneByHandRuns writes "$scratch/hand.png" "$build/examples/scene_by_hand" "$scratch/hand.png"
 check ExampleRasterizerRuns writes "$scratch/raster.png" "$build/examples/rasterizer" "$scratch/raster.png"
+examples_name_failures() {
+    for example in hello stages; do
+        ! "$build/examples/$example" nowhere.json "$scratch/nowhere.png" 2>"$scratch/errors" &&
+            grep -q nowhere.json "$scratch/errors" || return 1
+    done
+    for example in scene_by_hand rasterizer; do
+        ! "$build/examples/$example" "$scratch/no/folder.png" 2>"$scratch/errors" &&
+            grep -q no/folder.png "$scratch/errors" || return 1
+    done
+}
+check ExamplesNameWhatFailed examples_name_failures
 
 # README files: C blocks are programs that compile and run, sh blocks of README.md run, commands, options and links exist.
 # Scenes are beside what runs.
