@@ -136,13 +136,13 @@ fuzz: deps
 	@tests/fuzz/run.sh $(FUZZERS)
 
 ## make install     library, headers, program, man page and libvpl.pc under PREFIX (/usr/local)
-install: programs
+install: programs $(BUILD)/vpl.1
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/vpl $(DESTDIR)$(PREFIX)/lib/pkgconfig \
 	  $(DESTDIR)$(PREFIX)/share/man/man1
 	install $(BUILD)/vpl $(DESTDIR)$(PREFIX)/bin
-	install -m 644 include/vpl/*.h $(DESTDIR)$(PREFIX)/include/vpl
+	install -m 644 include/vpl/*.h include/vpl/*.def $(DESTDIR)$(PREFIX)/include/vpl
 	install -m 644 $(BUILD)/libvpl.a $(DESTDIR)$(PREFIX)/lib
-	install -m 644 src/cli/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 $(BUILD)/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl/base.h)|' \
 	  -e 's|@OMP@|$(OMP)|' -e 's|@LIBS@|$(LDLIBS)|' src/libvpl.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libvpl.pc
 
@@ -168,6 +168,10 @@ $(BUILD)/libvpl.a: $(LIB_OBJECTS)
 $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+# The program writes the options of its man page.
+$(BUILD)/vpl.1: src/cli/vpl.1.in $(BUILD)/vpl
+	$(Q)$(BUILD)/vpl help --man | sed -e '/^@OPTIONS@$$/{r /dev/stdin' -e 'd' -e '}' $< > $@
 
 $(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff_math.o %/bench_fit.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
