@@ -3,7 +3,7 @@
 #include "scenes.h"
 
 #include "base/context.h"
-#include "render/history.h"
+
 
 #include <stdlib.h>
 
@@ -388,29 +388,6 @@ static void AHistoryOfAnotherSceneIsRefused(void** state)
     closeTestContext(context);
 }
 
-struct vplSsvpState {
-    int destroyed;
-};
-
-static void countDestroyed(struct vplSsvpState* ssvp)
-{
-    ssvp->destroyed++;
-}
-
-static void AHistoryDestroysWhatAMethodLeftWithIt(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    vplHistory* history = NULL;
-    struct vplSsvpState ssvp = {0};
-    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
-    history->ssvp = &ssvp;
-    history->destroySsvp = countDestroyed;
-    vplHistory_Destroy(history);
-    assert_int_equal(ssvp.destroyed, 1);
-    closeTestContext(context);
-}
-
 TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
            cmocka_unit_test(EmittersMoveTurnAndFade),
            cmocka_unit_test(OneKeyIsAConstantAndNoKeyTheDeclaration),
@@ -418,5 +395,4 @@ TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
            cmocka_unit_test(PosesThatDegenerateAreRefused),
            cmocka_unit_test(FilesSayWhatChangesAndTheRestIsAsDeclared),
            cmocka_unit_test(AFrameIsThePictureOfItsPose), slow_unit_test(AHistoryChangesNoPicture),
-           cmocka_unit_test(AHistoryFreezesTheSceneOnce), cmocka_unit_test(AHistoryOfAnotherSceneIsRefused),
-           cmocka_unit_test(AHistoryDestroysWhatAMethodLeftWithIt));
+           cmocka_unit_test(AHistoryFreezesTheSceneOnce), cmocka_unit_test(AHistoryOfAnotherSceneIsRefused));

@@ -5,7 +5,7 @@
 #include "shapes.h"
 #include "sides_fixture.h"
 
-#include "render/show_maps.h"
+#include "render/stages/show.h"
 
 #include <jansson.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/show_maps.h"
+#include "render/stages/show.h"
 
 #include "base/context.h"
 #include "math/scalar.h"
