@@ -173,7 +173,7 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 $(BUILD)/vpl.1: src/cli/vpl.1.in $(BUILD)/vpl
 	$(Q)$(BUILD)/vpl help --man | sed -e '/^@OPTIONS@$$/{r /dev/stdin' -e 'd' -e '}' $< > $@
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff_math.o %/bench_fit.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff/math.o %/bench/fit.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -186,7 +186,7 @@ EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
 ROOFLINE := $(foreach part,roofline roofline/loops roofline/work roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
-              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench_cover.o,$(CLI_OBJECTS))
+              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench/cover.o,$(CLI_OBJECTS))
 $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"

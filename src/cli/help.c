@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The help and the option sections of the man page: commands and both option tables, as text.
 #include "cli/options.h"
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <ctype.h>
 #include <stdio.h>

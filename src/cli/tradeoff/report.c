@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // report.html: one file that needs no other, no network and no scripts.
-#include "cli/tradeoff_report.h"
+#include "cli/tradeoff/report.h"
 
 #include <math.h>
 #include <stdio.h>

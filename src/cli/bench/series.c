@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/bench_series.h"
+#include "cli/bench/series.h"
 
 #include <math.h>
 

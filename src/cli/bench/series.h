@@ -3,7 +3,7 @@
 #ifndef VPL_CLI_BENCH_SERIES_H
 #define VPL_CLI_BENCH_SERIES_H
 
-#include "cli/bench.h"
+#include "cli/bench/bench.h"
 
 enum { MAX_POINTS = 16 };
 

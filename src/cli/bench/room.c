@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What vpl bench looks at, made here so that the program needs no files: a room, and a field of bumpy spheres
 // where many triangles are wanted.
-#include "cli/bench.h"
+#include "cli/bench/bench.h"
 
 #include <math.h>
 #include <stdlib.h>

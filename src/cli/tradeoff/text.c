@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/tradeoff_text.h"
+#include "cli/tradeoff/text.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Renders the settings, cheapest first, until all are done or the time is up.
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdio.h>

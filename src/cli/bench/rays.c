@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stages of rays: building what they go through, and sending them.
-#include "cli/bench.h"
+#include "cli/bench/bench.h"
 
 #include <string.h>
 

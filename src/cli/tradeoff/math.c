@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/tradeoff_math.h"
+#include "cli/tradeoff/math.h"
 
 #include <math.h>
 #include <stdio.h>

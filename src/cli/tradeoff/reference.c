@@ -3,7 +3,7 @@
 // judges by (x - a)^2, which counts its own noise; two judge by (x - a)(x - b), in which noise cancels.
 // Based on: Fabrice Rousselle, Claude Knaus and Matthias Zwicker, Adaptive Rendering with Non-Local Means
 // Filtering, SIGGRAPH Asia 2012, section 4: two buffers, so that the noise of one is independent of the other's.
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <limits.h>
 #include <math.h>

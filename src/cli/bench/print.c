@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/bench.h"
+#include "cli/bench/bench.h"
 
 #include <jansson.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Times every stage on the benchmark room. Each figure is a median of runs that alternate between the thread
 // counts; speed-ups compare medians of one call. Hashes show that all thread counts gave the same bits.
-#include "cli/bench.h"
-#include "cli/tradeoff_math.h"
+#include "cli/bench/bench.h"
+#include "cli/tradeoff/math.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #ifndef VPL_CLI_TRADEOFF_REPORT_H
 #define VPL_CLI_TRADEOFF_REPORT_H
 
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 void addAnswers(const Tradeoff* t, Text* html);  // words and table: which settings for 5 % error
 void addPictures(const Tradeoff* t, Text* html); // the front beside the truth

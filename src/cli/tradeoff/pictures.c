@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The front in pictures: each beside the truth and the difference.
-#include "cli/tradeoff_report.h"
+#include "cli/tradeoff/report.h"
 
 #include <math.h>
 #include <stdio.h>

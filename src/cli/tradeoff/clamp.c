@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Error and energy against --min-distance: the larger the bound, the fewer bright blotches, the less light.
-#include "cli/tradeoff_report.h"
+#include "cli/tradeoff/report.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tradeoff.csv: one row per setting and seed, with every option and every figure (RFC 4180).
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <stdio.h>
 #include <string.h>

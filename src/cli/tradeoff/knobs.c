@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What each knob buys: every sweep of one option is compared with the base, seed by seed.
-#include "cli/tradeoff_report.h"
+#include "cli/tradeoff/report.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Measures error against time: which settings for 5 % error, and what do they cost?
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // "Which settings for 5 % error, and what do they cost?"
-#include "cli/tradeoff_report.h"
+#include "cli/tradeoff/report.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -4,8 +4,8 @@
 #define VPL_CLI_TRADEOFF_H
 
 #include "cli/cli.h"
-#include "cli/tradeoff_math.h"
-#include "cli/tradeoff_text.h"
+#include "cli/tradeoff/math.h"
+#include "cli/tradeoff/text.h"
 
 // What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures, enough
 // particles to see something, the sampler and hard shadows that the truth of a point light wants, and a seed other

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The stages that vpl bench times. Each makes all it needs but what Bench holds, so that any may run alone.
-#include "cli/bench.h"
+#include "cli/bench/bench.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/bench_cover.h"
+#include "cli/bench/cover.h"
 
 static const uint32_t INDICES[3] = {0, 1, 2};
 const vplMesh COVER = {INDICES, 3, 1};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // tradeoff.svg: error against processor time, both logarithmic.
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdio.h>

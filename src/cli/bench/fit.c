@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/bench_fit.h"
+#include "cli/bench/fit.h"
 
 #include <math.h>
 #include <stdbool.h>

@@ -3,9 +3,9 @@
 // flattened by the part of the time that does not grow. So two figures stand beside it: the exponent of the upper
 // half of the points, where that part weighs least, and the part itself, by fitting a + b n^p where p is what is
 // expected; how far that fit is off says whether to believe it.
-#include "cli/bench_fit.h"
-#include "cli/bench_series.h"
-#include "cli/tradeoff_math.h"
+#include "cli/bench/fit.h"
+#include "cli/bench/series.h"
+#include "cli/tradeoff/math.h"
 
 #include <jansson.h>
 #include <math.h>

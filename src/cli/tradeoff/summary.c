@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From runs to medians, bands, the front, the cheapest setting for an error, and the floor of a family.
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 

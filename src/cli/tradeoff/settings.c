@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which settings are measured: a table of sweeps. A new option of `vpl render` is measured by a new row.
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The rasterizer by itself: how fast it fills, and what triangles cost that fill nothing.
-#include "cli/bench.h"
-#include "cli/bench_cover.h"
+#include "cli/bench/bench.h"
+#include "cli/bench/cover.h"
 
 #include <stdlib.h>
 #include <string.h>
