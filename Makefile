@@ -173,7 +173,7 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 $(BUILD)/vpl.1: src/cli/vpl.1.in $(BUILD)/vpl
 	$(Q)$(BUILD)/vpl help --man | sed -e '/^@OPTIONS@$$/{r /dev/stdin' -e 'd' -e '}' $< > $@
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff/math.o %/bench/fit.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff/math.o %/bench/fit.o %/bench/measure.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 

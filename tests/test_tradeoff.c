@@ -2,6 +2,7 @@
 // The arithmetic of vpl tradeoff, and the PNG that its report embeds.
 #include "test.h"
 
+#include "cli/bench/measure.h"
 #include "cli/tradeoff/math.h"
 
 static void MedianIsTheMiddleOrTheMeanOfTwo(void** state)

@@ -9,6 +9,15 @@
 
 enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
 
+// Returns the result of a call if it failed.
+#define TRY(call)                                                                                            \
+    do {                                                                                                     \
+        const vplResult tryResult = (call);                                                                  \
+        if (tryResult != VPL_SUCCESS) {                                                                      \
+            return tryResult;                                                                                \
+        }                                                                                                    \
+    } while (0)
+
 enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8, MAX_FRAMES = 100000 };
 
 typedef struct Arguments Arguments;
@@ -102,9 +111,6 @@ int runOnScene(const Arguments* arguments, SceneWork* work);
 
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
 int finishOutput(int code);
-
-// Of a clock that never goes back.
-double secondsNow(void);
 
 // Progress bar with the time left, on stderr if that is a terminal; also notices SIGINT. Both take a Progress.
 typedef struct Progress {

@@ -1,96 +1,58 @@
 // SPDX-License-Identifier: MIT
-// Times every stage on the benchmark room. Each figure is a median of runs that alternate between the thread
-// counts; speed-ups compare medians of one call. Hashes show that all thread counts gave the same bits.
+// vpl bench: every stage on the benchmark room. Speed-ups compare medians of one call; hashes show that all thread counts
+// gave the same bits.
 #include "cli/bench/bench.h"
-#include "cli/tradeoff/math.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-// A stage is not run again after this time in all its runs, but three times at least. A first run shorter than
-// WARM_UP warms up and does not count.
+// A stage is not run again after this time in all its runs. A first run shorter than WARM_UP does not count. Seconds.
 #define SECONDS_PER_STAGE 4.0
 #define WARM_UP           0.5
-enum { LEAST_RUNS = 3 };
 
 bool isAskedFor(const Arguments* a, const char* name)
 {
     return a->stage == NULL || strstr(name, a->stage) != NULL;
 }
 
-double processorSeconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+typedef struct Work {
+    Bench* benches;
+    Row* row;
+} Work;
 
-// libgomp's threads spin for some milliseconds after a parallel section.
-void settle(void)
+static vplResult runStage(void* user, int column)
 {
-    nanosleep(&(struct timespec){0, 10000000}, NULL);
-}
-
-static vplResult runOnce(const Stage* stage, Bench* b, double* seconds, double* processor, Outcome* outcome)
-{
+    const Work* w = user;
+    Outcome* outcome = &w->row->outcomes[column];
     memset(outcome, 0, sizeof *outcome);
-    settle();
-    *processor = processorSeconds();
-    *seconds = secondsNow();
-    vplResult result = stage->run(b, stage, outcome);
-    *seconds = secondsNow() - *seconds;
-    *processor = processorSeconds() - *processor;
-    if (result == VPL_SUCCESS && outcome->image != NULL) {
-        outcome->hash = vplImage_Hash(outcome->image);
-    }
-    return result;
+    return w->row->stage->run(&w->benches[column], w->row->stage, outcome);
 }
 
-// One stage under all thread counts, in turn, so that a machine that slows down slows all of them.
-static vplResult measureStage(const Arguments* a, Bench* benches, int columns, Row* row)
+static vplResult measureRow(const Arguments* a, Bench* benches, int columns, Row* row)
 {
-    static double wall[MAX_THREAD_COUNTS][MAX_RUNS], processor[MAX_THREAD_COUNTS][MAX_RUNS];
-    double spent = 0;
-    int runs = 0;
-    for (bool first = true; runs < a->runs && (spent < SECONDS_PER_STAGE || runs < LEAST_RUNS);
-         first = false) {
-        double longest = 0;
-        for (int c = 0; c < columns; c++) {
-            double seconds, used;
-            vplResult result = runOnce(row->stage, &benches[c], &seconds, &used, &row->figure[c].outcome);
-            if (result != VPL_SUCCESS) {
-                return result;
-            }
-            wall[c][runs] = 1e3 * seconds;
-            processor[c][runs] = 1e3 * used;
-            spent += seconds;
-            longest = seconds > longest ? seconds : longest;
-        }
-        runs += !first || longest > WARM_UP;
-    }
+    Work work = {benches, row};
+    const Contest contest = {runStage, &work, columns, a->runs, SECONDS_PER_STAGE, WARM_UP};
+    TRY(measureInTurn(&contest, row->times, &row->runs));
     for (int c = 0; c < columns; c++) {
-        row->figure[c].ms = medianOf(wall[c], runs);
-        row->figure[c].cpuMs = medianOf(processor[c], runs);
-        row->figure[c].runs = runs;
+        Outcome* outcome = &row->outcomes[c];
+        outcome->hash = outcome->image != NULL ? vplImage_Hash(outcome->image) : outcome->hash;
     }
     return VPL_SUCCESS;
 }
 
-static vplResult measureAll(const Arguments* a, int width, int height, int* threads, int columns, Row* rows,
-                            int rowCount)
+static vplResult measureAll(const Arguments* a, Table* t)
 {
     static Bench benches[MAX_THREAD_COUNTS];
     vplResult result = VPL_SUCCESS;
     int opened = 0;
-    for (; opened < columns && result == VPL_SUCCESS; opened++) {
-        result = openBench(a, threads[opened], width, height, &benches[opened]);
+    for (; opened < t->columns && result == VPL_SUCCESS; opened++) {
+        result = openBench(a, t->threads[opened], t->width, t->height, &benches[opened]);
         if (result == VPL_SUCCESS) {
-            threads[opened] = vplContext_GetWorkerCount(benches[opened].context);
+            t->threads[opened] = vplContext_GetWorkerCount(benches[opened].context);
         }
     }
-    for (int i = 0; i < rowCount && result == VPL_SUCCESS; i++) {
-        result = measureStage(a, benches, columns, &rows[i]);
+    for (int i = 0; i < t->rowCount && result == VPL_SUCCESS; i++) {
+        result = measureRow(a, benches, t->columns, &t->rows[i]);
     }
     for (int c = 0; c < opened; c++) {
         closeBench(&benches[c]);
@@ -98,40 +60,24 @@ static vplResult measureAll(const Arguments* a, int width, int height, int* thre
     return result;
 }
 
-static int chooseStages(const Arguments* a, Row* rows)
+static int runStages(const Arguments* a, Table* t)
 {
-    int count = 0;
     for (int i = 0; i < STAGE_COUNT; i++) {
-        const Stage* s = &STAGES[i];
-        bool slow = (s->flags & STAGE_SLOW) != 0;
-        if (isAskedFor(a, s->name) && (!slow || a->all || a->stage != NULL)) {
-            rows[count++].stage = s;
+        const bool slow = (STAGES[i].flags & STAGE_SLOW) != 0;
+        if (isAskedFor(a, STAGES[i].name) && (!slow || a->all || a->stage != NULL)) {
+            t->rows[t->rowCount++].stage = &STAGES[i];
         }
     }
-    return count;
-}
-
-static int runStages(const Arguments* a, Row* rows)
-{
-    int threads[MAX_THREAD_COUNTS] = {1, 2}, columns = 2;
-    if (a->threadsCount > 0) {
-        columns = a->threadsCount;
-        memcpy(threads, a->threads, sizeof threads);
-    }
-    const int width = isGiven(a, "size") ? a->render.output.width : 1920,
-              height = isGiven(a, "size") ? a->render.output.height : 1080;
-    const int count = chooseStages(a, rows);
-    if (count == 0) {
+    if (t->rowCount == 0) {
         complain("no stage of bench has \"%s\" in its name", a->stage);
         return EXIT_USAGE;
     }
-    double load = 0;
-    load = getloadavg(&load, 1) == 1 ? load : 0;
-    int code = exitCode(measureAll(a, width, height, threads, columns, rows, count), true);
+    t->load = getloadavg(&t->load, 1) == 1 ? t->load : 0;
+    const int code = exitCode(measureAll(a, t), true);
     if (code == EXIT_DONE && a->json) {
-        printStagesJson(rows, count, threads, columns);
+        printTableJson(t);
     } else if (code == EXIT_DONE) {
-        printStages(a, width, height, load, rows, count, threads, columns);
+        printTable(a, t);
     }
     return code;
 }
@@ -141,12 +87,21 @@ int runBench(const Arguments* a)
     if (a->scaling) {
         return runScaling(a);
     }
-    Row* rows = calloc((size_t)STAGE_COUNT, sizeof *rows);
-    if (rows == NULL) {
+    const bool sized = isGiven(a, "size");
+    Table table = {.width = sized ? a->render.output.width : 1920,
+                   .height = sized ? a->render.output.height : 1080,
+                   .threads = {1, 2},
+                   .columns = 2,
+                   .rows = calloc((size_t)STAGE_COUNT, sizeof *table.rows)};
+    if (a->threadsCount > 0) {
+        table.columns = a->threadsCount;
+        memcpy(table.threads, a->threads, sizeof table.threads);
+    }
+    if (table.rows == NULL) {
         complain("out of memory");
         return EXIT_COULD_NOT;
     }
-    int code = runStages(a, rows);
-    free(rows);
+    const int code = runStages(a, &table);
+    free(table.rows);
     return code;
 }

@@ -3,9 +3,10 @@
 #ifndef VPL_CLI_BENCH_H
 #define VPL_CLI_BENCH_H
 
+#include "cli/bench/measure.h"
 #include "cli/cli.h"
 
-enum { MAX_RUNS = 1000 };
+#include <string.h>
 
 // What the stages work on, one for each thread count.
 typedef struct Bench {
@@ -56,20 +57,24 @@ enum {
 extern const Stage STAGES[];
 extern const int STAGE_COUNT;
 
-// What was measured of one stage under one thread count.
-typedef struct Figure {
-    double ms, cpuMs; // medians: of the wall clock, of the processors
-    int runs;
-    Outcome outcome;
-} Figure;
-
-// A stage that ran.
+// A stage that ran, and what came of it for each thread count.
 typedef struct Row {
     const Stage* stage;
-    Figure figure[MAX_THREAD_COUNTS];
+    int runs;
+    Times times[MAX_THREAD_COUNTS]; // medians
+    Outcome outcomes[MAX_THREAD_COUNTS];
 } Row;
 
-// ---- bench_room.c
+// All stages that ran.
+typedef struct Table {
+    int width, height;
+    double load; // average of the minute before it began
+    int threads[MAX_THREAD_COUNTS], columns;
+    Row* rows;
+    int rowCount;
+} Table;
+
+// ---- room.c
 
 // Makes the room, its lights and images. `threads` 0 is one per processor. A Bench of zeros may be closed.
 vplResult openBench(const Arguments* a, int threads, int width, int height, Bench* b);
@@ -83,45 +88,44 @@ vplResult needShadow(Bench* b);
 vplResult needPicture(Bench* b);
 vplResult needField(Bench* b);
 
-// ---- bench_stages.c, bench_raster.c, bench_rays.c
+// ---- stages.c, raster.c, rays.c
 
 vplResult runFill(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runAdditiveFill(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runSmallTriangles(Bench* b, const Stage* stage, Outcome* outcome);
-// Geometry with the tree that rays go through.
-vplResult freezeForRays(vplScene* scene, vplGeometry** geometryOut);
 vplResult runGeometry(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runClosestHits(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runPath(Bench* b, const Stage* stage, Outcome* outcome);
 vplResult runShading(Bench* b, const Stage* stage, Outcome* outcome);
+
+// Mixes bits into a hash.
+static inline void addHash(uint64_t* hash, uint64_t bits)
+{
+    *hash = (*hash ^ bits) * 0x9E3779B97F4A7C15u;
+}
+
+static inline void addFloat(uint64_t* hash, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    addHash(hash, bits);
+}
 
 // Draws b->geometry's virtual lights as the stage says, into `image`.
 vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, vplImage* image,
                     Outcome* outcome);
 
 // The closest hits of one ray per pixel of a camera's view.
-vplResult hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
-                    Outcome* outcome);
+void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
+               Outcome* outcome);
 
-// ---- cmd_bench.c
+// ---- bench.c, print.c, scaling.c
 
 // Whether --stage asks for a thing of this name.
 bool isAskedFor(const Arguments* a, const char* name);
 
-// Processor time of all threads, s.
-double processorSeconds(void);
-
-// Lets threads that still look out for work after a run go to sleep, so that they take nothing from the next.
-void settle(void);
-
-// ---- bench_print.c
-
-// `load`: average of the last minute, before it began.
-void printStages(const Arguments* a, int width, int height, double load, const Row* rows, int rowCount,
-                 const int* threads, int columns);
-void printStagesJson(const Row* rows, int rowCount, const int* threads, int columns);
-
-// ---- bench_scaling.c
+void printTable(const Arguments* a, const Table* table);
+void printTableJson(const Table* table);
 
 int runScaling(const Arguments* a);
 

@@ -10,19 +10,7 @@
 
 enum { LAYERS = 8 };
 
-static uint64_t hashFloats(const float* values, size_t count)
-{
-    uint64_t hash = 0;
-    for (size_t i = 0; i < count; i += 97) {
-        uint32_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        hash = (hash ^ bits) * 0x9E3779B97F4A7C15u;
-    }
-    return hash;
-}
-
-// The end of a stage: runs what was recorded, unless that failed, and lets go of it. The picture's
-// floats hold its first plane.
+// Runs what was recorded, unless that failed, and destroys the raster. The picture's floats hold its first plane.
 static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Outcome* outcome)
 {
     vplRasterStats stats;
@@ -30,12 +18,15 @@ static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Out
         result = vplRaster_Run(raster, NULL, NULL, &stats);
     }
     if (result == VPL_SUCCESS) {
+        const int count = b->image->width * b->image->height;
         outcome->drawCalls = stats.drawCalls;
         outcome->fragments = stats.fragments;
         outcome->triangles = stats.trianglesIn;
-        outcome->hash = hashFloats(b->image->pixels, (size_t)b->image->width * (size_t)b->image->height);
         outcome->work = (double)outcome->fragments;
         outcome->unit = "fragments";
+        for (int i = 0; i < count; i += 97) {
+            addFloat(&outcome->hash, b->image->pixels[i]);
+        }
     }
     vplRaster_Destroy(raster);
     return result;
@@ -44,15 +35,12 @@ static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Out
 vplResult runFill(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
-    const int width = b->image->width, height = b->image->height;
     float depths[LAYERS];
-    vplFramebuffer framebuffer = vplDefaultFramebuffer(width, height);
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(b->image->width, b->image->height);
     framebuffer.depth.pixels = b->image->pixels; // room for three
     vplRaster* raster;
-    vplResult result = vplRaster_Create(b->context, &framebuffer, &raster);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    vplResult result = VPL_SUCCESS;
+    TRY(vplRaster_Create(b->context, &framebuffer, &raster));
     vplPipeline pipeline = vplDefaultPipeline();
     pipeline.vertex = coverVertices;
     for (int i = 0; i < LAYERS && result == VPL_SUCCESS; i++) {
@@ -66,16 +54,13 @@ vplResult runFill(Bench* b, const Stage* stage, Outcome* outcome)
 vplResult runAdditiveFill(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
-    const int width = b->image->width, height = b->image->height;
     const float depth = 0.5f;
-    vplFramebuffer framebuffer = vplDefaultFramebuffer(width, height);
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(b->image->width, b->image->height);
     framebuffer.planeCount = 4;
     framebuffer.planes[0].pixels = b->image->pixels;
     vplRaster* raster;
-    vplResult result = vplRaster_Create(b->context, &framebuffer, &raster);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    vplResult result = VPL_SUCCESS;
+    TRY(vplRaster_Create(b->context, &framebuffer, &raster));
     vplPipeline pipeline = vplDefaultPipeline();
     pipeline.vertex = coverVertices;
     pipeline.vertexUniforms = &depth;

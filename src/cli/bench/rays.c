@@ -4,41 +4,24 @@
 
 #include <string.h>
 
-vplResult freezeForRays(vplScene* scene, vplGeometry** geometryOut)
-{
-    vplResult result = vplGeometry_Create(scene, geometryOut);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_PrepareRays(*geometryOut);
-        if (result != VPL_SUCCESS) {
-            vplGeometry_Destroy(*geometryOut);
-            *geometryOut = NULL;
-        }
-    }
-    return result;
-}
-
 vplResult runGeometry(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
-    vplResult result = needField(b);
-    vplGeometry* geometry = NULL;
-    if (result == VPL_SUCCESS) {
-        result = freezeForRays(b->field, &geometry);
-    }
-    if (result == VPL_SUCCESS) {
-        hitPixels(geometry, vplScene_GetCamera(b->field, 0), 16, 16, outcome); // shows that the tree is right
-        outcome->rays = 0;
-        outcome->triangles = geometry->triangleCount;
-        outcome->work = geometry->triangleCount;
-        outcome->unit = "triangles";
-        vplGeometry_Destroy(geometry);
-    }
-    return result;
+    vplGeometry* geometry;
+    TRY(needField(b));
+    TRY(vplGeometry_Create(b->field, &geometry));
+    hitPixels(geometry, vplScene_GetCamera(b->field, 0), 16, 16, outcome); // shows that the tree is right
+    outcome->rays = 0;
+    outcome->triangles = geometry->triangleCount;
+    outcome->work = geometry->triangleCount;
+    outcome->unit = "triangles";
+    vplGeometry_Destroy(geometry);
+    return VPL_SUCCESS;
 }
 
 // One ray through each pixel's centre; the hash is of what they hit and where.
-vplResult hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
-                    Outcome* outcome)
+void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
+               Outcome* outcome)
 {
     const vplView v = vplView_Create(camera, width, height);
     for (int i = 0; i < width * height; i++) {
@@ -55,24 +38,21 @@ vplResult hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int
             memcpy(&bits, &hit.t, sizeof bits);
             found = (uint64_t)bits << 32 | (uint32_t)hit.triangle;
         }
-        outcome->hash = (outcome->hash ^ found) * 0x9E3779B97F4A7C15u;
+        addHash(&outcome->hash, found);
     }
     outcome->rays = (int64_t)width * height;
     outcome->work = (double)outcome->rays;
     outcome->unit = "rays";
-    return VPL_SUCCESS;
 }
 
 // On one thread whatever was asked for: the stage shows the tree, not the tasks.
 vplResult runClosestHits(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
-    vplResult result = needField(b);
-    if (result == VPL_SUCCESS) {
-        result = hitPixels(b->fieldGeometry, vplScene_GetCamera(b->field, 0), b->quarter->width,
-                           b->quarter->height, outcome);
-    }
-    return result;
+    TRY(needField(b));
+    hitPixels(b->fieldGeometry, vplScene_GetCamera(b->field, 0), b->quarter->width, b->quarter->height,
+              outcome);
+    return VPL_SUCCESS;
 }
 
 vplResult runPath(Bench* b, const Stage* stage, Outcome* outcome)
@@ -85,13 +65,11 @@ vplResult runPath(Bench* b, const Stage* stage, Outcome* outcome)
     options.path.samples = 1;
     vplImage* image;
     vplRenderStats stats;
-    vplResult result = vplRender(b->scene, &options, &image, &stats);
-    if (result == VPL_SUCCESS) {
-        outcome->rays = stats.rays;
-        outcome->work = (double)stats.rays;
-        outcome->unit = "rays";
-        outcome->hash = stats.imageHash;
-        vplImage_Destroy(image);
-    }
-    return result;
+    TRY(vplRender(b->scene, &options, &image, &stats));
+    outcome->rays = stats.rays;
+    outcome->work = (double)stats.rays;
+    outcome->unit = "rays";
+    outcome->hash = stats.imageHash;
+    vplImage_Destroy(image);
+    return VPL_SUCCESS;
 }

@@ -126,11 +126,36 @@ vplResult buildField(vplContext* context, int triangleCount, vplScene** sceneOut
 
 vplResult needField(Bench* b)
 {
-    if (b->fieldGeometry != NULL) {
-        return VPL_SUCCESS;
+    if (b->fieldGeometry == NULL) {
+        TRY(buildField(b->context, 1 << 18, &b->field));
+        TRY(vplGeometry_Create(b->field, &b->fieldGeometry));
     }
-    vplResult result = buildField(b->context, 1 << 18, &b->field);
-    return result == VPL_SUCCESS ? freezeForRays(b->field, &b->fieldGeometry) : result;
+    return VPL_SUCCESS;
+}
+
+vplResult needShadow(Bench* b)
+{
+    if (b->map == NULL) {
+        vplCubeMapDef def = vplDefaultCubeMapDef();
+        const vplShadowDef shadowDef = vplDefaultShadowDef();
+        def.position = vplScene_GetEmitter(b->scene, 0)->position;
+        TRY(vplCubeMap_Create(b->geometry, &def, NULL, NULL, &b->map));
+        TRY(vplCubeMap_FindBounds(b->map));
+        TRY(vplShadow_Create(b->map, &shadowDef, &b->shadow));
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult needPicture(Bench* b)
+{
+    if (b->picture == NULL) {
+        const Stage lit = {
+            .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = 18, .batch = 1, .flags = STAGE_DIRECT};
+        Outcome outcome;
+        TRY(vplImage_Create(b->context, b->image->width, b->image->height, &b->picture));
+        TRY(shadeInto(b, b->geometry, &lit, b->picture, &outcome));
+    }
+    return VPL_SUCCESS;
 }
 
 static vplResult makeLights(Bench* b)
@@ -138,52 +163,13 @@ static vplResult makeLights(Bench* b)
     vplParticleDef def = vplDefaultParticleDef();
     def.particleCount = 3000;
     def.sampler = VPL_SAMPLER_HALTON;
-    vplResult result = vplSimulateParticles(b->geometry, vplScene_GetEmitter(b->scene, 0), 1, &def, &b->set);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplSimulateParticles(b->geometry, vplScene_GetEmitter(b->scene, 0), 1, &def, &b->set));
     b->lights = malloc((size_t)b->set->lightCount * sizeof *b->lights);
     if (b->lights == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     vplPrepareLights(b->set, VPL_LIGHTING_PHYSICAL, b->lights);
     return VPL_SUCCESS;
-}
-
-vplResult needShadow(Bench* b)
-{
-    if (b->map != NULL) {
-        return VPL_SUCCESS;
-    }
-    vplCubeMapDef def = vplDefaultCubeMapDef();
-    def.position = vplScene_GetEmitter(b->scene, 0)->position;
-    vplResult result = vplCubeMap_Create(b->geometry, &def, NULL, NULL, &b->map);
-    if (result == VPL_SUCCESS) {
-        result = vplCubeMap_FindBounds(b->map);
-    }
-    vplShadowDef shadowDef = vplDefaultShadowDef();
-    return result == VPL_SUCCESS ? vplShadow_Create(b->map, &shadowDef, &b->shadow) : result;
-}
-
-vplResult needPicture(Bench* b)
-{
-    if (b->picture != NULL) {
-        return VPL_SUCCESS;
-    }
-    const Stage lit = {
-        .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = 18, .batch = 1, .flags = STAGE_DIRECT};
-    Outcome outcome;
-    vplResult result = vplImage_Create(b->context, b->image->width, b->image->height, &b->picture);
-    return result == VPL_SUCCESS ? shadeInto(b, b->geometry, &lit, b->picture, &outcome) : result;
-}
-
-static vplResult makeImages(Bench* b, int width, int height)
-{
-    vplResult result = vplImage_Create(b->context, width, height, &b->image);
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Create(b->context, (width + 3) / 4, (height + 3) / 4, &b->quarter);
-    }
-    return result;
 }
 
 vplResult openBench(const Arguments* a, int threads, int width, int height, Bench* b)
@@ -195,17 +181,11 @@ vplResult openBench(const Arguments* a, int threads, int width, int height, Benc
     if (b->context == NULL) {
         return VPL_INVALID_ARGUMENT;
     }
-    vplResult result = buildRoom(b->context, &b->scene);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(b->scene, &b->geometry);
-    }
-    if (result == VPL_SUCCESS) {
-        result = makeImages(b, width, height);
-    }
-    if (result == VPL_SUCCESS) {
-        result = makeLights(b);
-    }
-    return result;
+    TRY(buildRoom(b->context, &b->scene));
+    TRY(vplGeometry_Create(b->scene, &b->geometry));
+    TRY(vplImage_Create(b->context, width, height, &b->image));
+    TRY(vplImage_Create(b->context, (width + 3) / 4, (height + 3) / 4, &b->quarter));
+    return makeLights(b);
 }
 
 void closeBench(Bench* b)

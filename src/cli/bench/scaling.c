@@ -5,7 +5,6 @@
 // expected; how far that fit is off says whether to believe it.
 #include "cli/bench/fit.h"
 #include "cli/bench/series.h"
-#include "cli/tradeoff/math.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -26,17 +25,6 @@ typedef struct Measured {
     FixedFit fit;
 } Measured;
 
-static void closeSweep(Sweep* s)
-{
-    for (int i = 0; i < s->points; i++) {
-        vplGeometry_Destroy(s->geometries[i]);
-        vplScene_Destroy(s->scenes[i]);
-        vplImage_Destroy(s->images[i]);
-        closeBench(&s->benches[i]);
-    }
-    closeBench(&s->bench);
-}
-
 // Threads go up to the number of processors, by doubling, and to that number itself.
 static void choosePoints(const Series* series, Sweep* s)
 {
@@ -54,48 +42,32 @@ static vplResult openSweep(const Arguments* a, const Series* series, Sweep* s)
 {
     memset(s, 0, sizeof *s);
     s->arguments = a;
-    const int width = isGiven(a, "size") ? a->render.output.width : 640,
-              height = isGiven(a, "size") ? a->render.output.height : 360;
-    vplResult result = openBench(a, a->threadsCount > 0 ? a->threads[0] : 1, width, height, &s->bench);
-    if (result == VPL_SUCCESS) {
-        s->threads = vplContext_GetWorkerCount(s->bench.context);
-        choosePoints(series, s);
-    }
-    for (int i = 0; i < s->points && result == VPL_SUCCESS && series->prepare != NULL; i++) {
-        result = series->prepare(s, i);
-    }
-    return result;
-}
-
-// Rounds over all points, so that a machine that slows down slows all of them; the first warms up.
-static vplResult measureSweep(Sweep* s, Measured* m)
-{
-    static double wall[MAX_POINTS][MAX_RUNS], processor[MAX_POINTS][MAX_RUNS];
-    double start = secondsNow();
-    int run = -1;
-    for (; run < s->arguments->runs && (run < 3 || secondsNow() - start < SECONDS_PER_SERIES); run++) {
-        for (int i = 0; i < s->points; i++) {
-            settle();
-            double used = processorSeconds(), begun = secondsNow();
-            vplResult result = m->series->run(s, i);
-            if (result != VPL_SUCCESS) {
-                return result;
-            }
-            if (run >= 0) {
-                wall[i][run] = 1e3 * (secondsNow() - begun);
-                processor[i][run] = 1e3 * (processorSeconds() - used);
-            }
-        }
-    }
-    m->runs = run;
-    m->points = s->points;
-    m->oneThread = s->threads == 1 && m->series->most > 0;
-    for (int i = 0; i < s->points; i++) {
-        m->n[i] = s->n[i];
-        m->ms[i] = medianOf(wall[i], run);
-        m->cpuMs[i] = medianOf(processor[i], run);
+    s->series = series;
+    const bool sized = isGiven(a, "size");
+    TRY(openBench(a, a->threadsCount > 0 ? a->threads[0] : 1, sized ? a->render.output.width : 640,
+                  sized ? a->render.output.height : 360, &s->bench));
+    choosePoints(series, s);
+    for (int i = 0; i < s->points && series->prepare != NULL; i++) {
+        TRY(series->prepare(s, i));
     }
     return VPL_SUCCESS;
+}
+
+static void closeSweep(Sweep* s)
+{
+    for (int i = 0; i < s->points; i++) {
+        vplGeometry_Destroy(s->geometries[i]);
+        vplScene_Destroy(s->scenes[i]);
+        vplImage_Destroy(s->images[i]);
+        closeBench(&s->benches[i]);
+    }
+    closeBench(&s->bench);
+}
+
+static vplResult runPoint(void* user, int point)
+{
+    Sweep* s = user;
+    return s->series->run(s, point);
 }
 
 // On one thread processor time is what the wall clock would show if nothing else ran.
@@ -108,17 +80,28 @@ static void fitSeries(Measured* m)
     m->fit = fitFixed(m->n, times, m->points, m->series->expected);
 }
 
+static vplResult measureSweep(const Arguments* a, Sweep* s, Measured* m)
+{
+    Times times[MAX_POINTS];
+    TRY(openSweep(a, m->series, s));
+    const Contest contest = {runPoint, s, s->points, a->runs, SECONDS_PER_SERIES, INFINITY};
+    TRY(measureInTurn(&contest, times, &m->runs));
+    m->points = s->points;
+    m->oneThread = vplContext_GetWorkerCount(s->bench.context) == 1 && m->series->most > 0;
+    for (int i = 0; i < s->points; i++) {
+        m->n[i] = s->n[i];
+        m->ms[i] = times[i].wall;
+        m->cpuMs[i] = times[i].cpu;
+    }
+    fitSeries(m);
+    return VPL_SUCCESS;
+}
+
 static vplResult measureSeries(const Arguments* a, Measured* m)
 {
     static Sweep sweep;
-    vplResult result = openSweep(a, m->series, &sweep);
-    if (result == VPL_SUCCESS) {
-        result = measureSweep(&sweep, m);
-    }
+    const vplResult result = measureSweep(a, &sweep, m);
     closeSweep(&sweep);
-    if (result == VPL_SUCCESS) {
-        fitSeries(m);
-    }
     return result;
 }
 

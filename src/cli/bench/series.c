@@ -29,24 +29,18 @@ static vplResult shadePixels(Sweep* s, int point)
 
 static vplResult makeField(Sweep* s, int point)
 {
-    vplResult result = buildField(s->bench.context, (int)s->n[point], &s->scenes[point]);
-    if (result == VPL_SUCCESS) {
-        result = freezeForRays(s->scenes[point], &s->geometries[point]);
-    }
-    if (result == VPL_SUCCESS) {
-        s->n[point] = s->geometries[point]->triangleCount;
-    }
-    return result;
+    TRY(buildField(s->bench.context, (int)s->n[point], &s->scenes[point]));
+    TRY(vplGeometry_Create(s->scenes[point], &s->geometries[point]));
+    s->n[point] = s->geometries[point]->triangleCount;
+    return VPL_SUCCESS;
 }
 
 static vplResult buildTree(Sweep* s, int point)
 {
     vplGeometry* geometry;
-    vplResult result = freezeForRays(s->scenes[point], &geometry);
-    if (result == VPL_SUCCESS) {
-        vplGeometry_Destroy(geometry);
-    }
-    return result;
+    TRY(vplGeometry_Create(s->scenes[point], &geometry));
+    vplGeometry_Destroy(geometry);
+    return VPL_SUCCESS;
 }
 
 static vplResult drawTriangles(Sweep* s, int point)
@@ -59,7 +53,8 @@ static vplResult drawTriangles(Sweep* s, int point)
 static vplResult traceTriangles(Sweep* s, int point)
 {
     Outcome outcome = {0};
-    return hitPixels(s->geometries[point], vplScene_GetCamera(s->scenes[point], 0), 256, 144, &outcome);
+    hitPixels(s->geometries[point], vplScene_GetCamera(s->scenes[point], 0), 256, 144, &outcome);
+    return VPL_SUCCESS;
 }
 
 static vplResult openThreads(Sweep* s, int point)
@@ -83,11 +78,9 @@ static vplResult drawCubeMap(Sweep* s, int point)
     def.position = vplScene_GetEmitter(s->bench.scene, 0)->position;
     def.size = (int)s->n[point];
     vplCubeMap* map;
-    vplResult result = vplCubeMap_Create(s->bench.geometry, &def, NULL, NULL, &map);
-    if (result == VPL_SUCCESS) {
-        vplCubeMap_Destroy(map);
-    }
-    return result;
+    TRY(vplCubeMap_Create(s->bench.geometry, &def, NULL, NULL, &map));
+    vplCubeMap_Destroy(map);
+    return VPL_SUCCESS;
 }
 
 const Series SERIES[] = {

@@ -7,11 +7,13 @@
 
 enum { MAX_POINTS = 16 };
 
+typedef struct Series Series;
+
 // One series at work.
 typedef struct Sweep {
     const Arguments* arguments;
+    const Series* series;
     Bench bench;
-    int threads;          // of bench
     double n[MAX_POINTS]; // what is varied
     int points;
     vplScene* scenes[MAX_POINTS]; // each series uses one of these
@@ -20,7 +22,7 @@ typedef struct Sweep {
     Bench benches[MAX_POINTS];
 } Sweep;
 
-typedef struct Series {
+struct Series {
     const char* name;
     const char* unit; // what n counts
     double expected;  // exponent of n in the time
@@ -29,7 +31,7 @@ typedef struct Series {
     double factor;                             // ...in such steps
     vplResult (*prepare)(Sweep* s, int point); // NULL: nothing to do; may replace n by what it really is
     vplResult (*run)(Sweep* s, int point);
-} Series;
+};
 
 extern const Series SERIES[];
 extern const int SERIES_COUNT;

@@ -2,23 +2,19 @@
 // The stages that vpl bench times. Each makes all it needs but what Bench holds, so that any may run alone.
 #include "cli/bench/bench.h"
 
-#include <string.h>
-
 static vplResult runParticles(Bench* b, const Stage* stage, Outcome* outcome)
 {
     vplParticleDef def = vplDefaultParticleDef();
     def.particleCount = stage->lights;
     def.sampler = VPL_SAMPLER_HALTON;
     vplLightSet* set;
-    vplResult result = vplSimulateParticles(b->geometry, vplScene_GetEmitter(b->scene, 0), 1, &def, &set);
-    if (result == VPL_SUCCESS) {
-        outcome->hash = (uint64_t)set->lightCount << 32 | (uint64_t)set->escaped;
-        outcome->rays = set->rays;
-        outcome->work = (double)set->rays;
-        outcome->unit = "rays";
-        vplLightSet_Destroy(set);
-    }
-    return result;
+    TRY(vplSimulateParticles(b->geometry, vplScene_GetEmitter(b->scene, 0), 1, &def, &set));
+    outcome->hash = (uint64_t)set->lightCount << 32 | (uint64_t)set->escaped;
+    outcome->rays = set->rays;
+    outcome->work = (double)set->rays;
+    outcome->unit = "rays";
+    vplLightSet_Destroy(set);
+    return VPL_SUCCESS;
 }
 
 static vplResult runCubeMap(Bench* b, const Stage* stage, Outcome* outcome)
@@ -27,43 +23,34 @@ static vplResult runCubeMap(Bench* b, const Stage* stage, Outcome* outcome)
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.position = vplScene_GetEmitter(b->scene, 0)->position;
     vplCubeMap* map;
-    vplResult result = vplCubeMap_Create(b->geometry, &def, NULL, NULL, &map);
-    if (result == VPL_SUCCESS) {
-        outcome->drawCalls = map->stats.drawCalls;
-        outcome->fragments = map->stats.fragments;
-        outcome->triangles = map->stats.trianglesIn;
-        outcome->work = 6.0 * def.size * def.size;
-        outcome->unit = "texels";
-        for (int i = 0; i < 6 * def.size * def.size; i += 997) {
-            uint32_t bits;
-            memcpy(&bits, &map->texels[i], sizeof bits);
-            outcome->hash = (outcome->hash ^ bits) * 0x9E3779B97F4A7C15u;
-        }
-        vplCubeMap_Destroy(map);
+    TRY(vplCubeMap_Create(b->geometry, &def, NULL, NULL, &map));
+    outcome->drawCalls = map->stats.drawCalls;
+    outcome->fragments = map->stats.fragments;
+    outcome->triangles = map->stats.trianglesIn;
+    outcome->work = 6.0 * def.size * def.size;
+    outcome->unit = "texels";
+    for (int i = 0; i < 6 * def.size * def.size; i += 997) {
+        addFloat(&outcome->hash, map->texels[i]);
     }
-    return result;
+    vplCubeMap_Destroy(map);
+    return VPL_SUCCESS;
 }
 
 // Once per map, for the soft shadows of direct light.
 static vplResult runMapBounds(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
-    vplResult result = needShadow(b);
-    if (result == VPL_SUCCESS) {
-        result = vplCubeMap_FindBounds(b->map);
-        outcome->work = 6.0 * b->map->size * b->map->size;
-        outcome->unit = "texels";
-    }
-    return result;
+    TRY(needShadow(b));
+    outcome->work = 6.0 * b->map->size * b->map->size;
+    outcome->unit = "texels";
+    return vplCubeMap_FindBounds(b->map);
 }
 
 vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, vplImage* image,
                     Outcome* outcome)
 {
-    vplResult result = stage->flags & STAGE_DIRECT ? needShadow(b) : VPL_SUCCESS;
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    const bool rays = (stage->flags & STAGE_RAYS) != 0, direct = (stage->flags & STAGE_DIRECT) != 0;
+    TRY(direct ? needShadow(b) : VPL_SUCCESS);
     vplShadeDef def = {0};
     def.lighting = stage->lighting;
     def.accumulation = stage->accumulation;
@@ -72,19 +59,15 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
     def.minDistance = 0.2f;
     def.emitters = vplScene_GetEmitter(b->scene, 0);
     def.shadows = &b->shadow;
-    def.emitterCount = (stage->flags & STAGE_DIRECT) != 0;
+    def.emitterCount = direct;
     def.particleCount = 10;
     def.lights = b->lights;
     def.lightCount = stage->lights;
-    const bool rays = (stage->flags & STAGE_RAYS) != 0;
     def.lightRays = rays;
     def.output = stage->flags & STAGE_NORMALS ? VPL_OUTPUT_NORMALS : VPL_OUTPUT_RADIANCE;
     vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), image->width, image->height);
     vplShadeStats stats;
-    result = vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats));
     const double pixels = (double)image->width * image->height;
     outcome->drawCalls = stats.raster.drawCalls;
     outcome->fragments = stats.raster.fragments;
@@ -104,13 +87,11 @@ vplResult runShading(Bench* b, const Stage* stage, Outcome* outcome)
 
 static vplResult runFieldView(Bench* b, const Stage* stage, Outcome* outcome)
 {
-    vplResult result = needField(b);
-    if (result == VPL_SUCCESS) {
-        result = shadeInto(b, b->fieldGeometry, stage, b->image, outcome);
-    }
+    TRY(needField(b));
+    TRY(shadeInto(b, b->fieldGeometry, stage, b->image, outcome));
     outcome->work = (double)outcome->triangles;
     outcome->unit = "triangles";
-    return result;
+    return VPL_SUCCESS;
 }
 
 static vplResult runPng(Bench* b, const Stage* stage, Outcome* outcome)
@@ -120,19 +101,15 @@ static vplResult runPng(Bench* b, const Stage* stage, Outcome* outcome)
     options.tonemap = VPL_TONEMAP_REINHARD;
     uint8_t* bytes;
     size_t size;
-    vplResult result = needPicture(b);
-    if (result == VPL_SUCCESS) {
-        result = vplImage_EncodePng(b->picture, &options, &bytes, &size);
+    TRY(needPicture(b));
+    TRY(vplImage_EncodePng(b->picture, &options, &bytes, &size));
+    for (size_t i = 0; i < size; i++) {
+        outcome->hash = (outcome->hash ^ bytes[i]) * 0x100000001B3u;
     }
-    if (result == VPL_SUCCESS) {
-        for (size_t i = 0; i < size; i++) {
-            outcome->hash = (outcome->hash ^ bytes[i]) * 0x100000001B3u;
-        }
-        outcome->work = (double)b->picture->width * b->picture->height;
-        outcome->unit = "pixels";
-        vplPng_Free(b->context, bytes);
-    }
-    return result;
+    outcome->work = (double)b->picture->width * b->picture->height;
+    outcome->unit = "pixels";
+    vplPng_Free(b->context, bytes);
+    return VPL_SUCCESS;
 }
 
 static vplResult runToneMap(Bench* b, const Stage* stage, Outcome* outcome)
@@ -140,15 +117,12 @@ static vplResult runToneMap(Bench* b, const Stage* stage, Outcome* outcome)
     (void)stage;
     const size_t bytes = 3 * sizeof(float) * (size_t)b->image->width * (size_t)b->image->height;
     vplReinhardDef def = vplDefaultReinhardDef();
-    vplResult result = needPicture(b);
-    if (result == VPL_SUCCESS) {
-        memcpy(b->image->pixels, b->picture->pixels, bytes);
-        result = vplToneMap_Reinhard(b->image, &def);
-    }
+    TRY(needPicture(b));
+    memcpy(b->image->pixels, b->picture->pixels, bytes);
     outcome->work = (double)b->image->width * b->image->height;
     outcome->unit = "pixels";
     outcome->image = b->image;
-    return result;
+    return vplToneMap_Reinhard(b->image, &def);
 }
 
 #define SLOW       STAGE_SLOW

@@ -4,31 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 
-// The value of a given rank. Counting is quadratic, which seeds, a few dozen at most, do not notice.
-static double ofRank(const double* values, int count, int rank)
-{
-    for (int i = 0; i < count; i++) {
-        int below = 0, equal = 0;
-        for (int j = 0; j < count; j++) {
-            below += values[j] < values[i];
-            equal += values[j] == values[i];
-        }
-        if (below <= rank && rank < below + equal) {
-            return values[i];
-        }
-    }
-    return NAN;
-}
-
-double medianOf(const double* values, int count)
-{
-    if (count == 0) {
-        return NAN;
-    }
-    double upper = ofRank(values, count, count / 2);
-    return count % 2 ? upper : 0.5 * (ofRank(values, count, count / 2 - 1) + upper);
-}
-
 // The next point by cost, then by error, then by index, whose error is below the limit; -1: none.
 static int nextOnFront(const double* cost, const double* error, int count, double limit)
 {

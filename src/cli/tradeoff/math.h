@@ -6,9 +6,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// The middle value, or the mean of the two middle ones; NAN of none. `values` may be in any order and stays so.
-double medianOf(const double* values, int count);
-
 // Marks the Pareto front, thinned: by ascending cost, each point whose error is less than (1 - gain) times that of
 // all points marked before. A gain of 0 is the whole front. Of equal points the first counts; a point with a NAN
 // is never marked. Returns how many are.

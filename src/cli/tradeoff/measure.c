@@ -11,7 +11,7 @@
 static bool watch(void* user, double fraction)
 {
     Tradeoff* t = user;
-    double now = secondsNow(), used = (now - t->start) / (t->deadline - t->start);
+    double now = 1e-3 * wallMs(), used = (now - t->start) / (t->deadline - t->start);
     (void)fraction;
     if (!showProgress(&t->progress, used < 0.999 ? used : 0.999)) {
         t->interrupted = true;
@@ -158,7 +158,7 @@ static void measureRound(Tradeoff* t, int round, double end)
 {
     double ms = 0;
     for (Setting* s = findNext(t, round, &ms); s != NULL && !t->interrupted; s = findNext(t, round, &ms)) {
-        if (secondsNow() + 1e-3 * ms < end) {
+        if (1e-3 * wallMs() + 1e-3 * ms < end) {
             measureSeed(t, s);
         } else {
             s->exhausted = true; // and so will be the rest, which is dearer
@@ -212,7 +212,7 @@ int measureSettings(Tradeoff* t)
     for (int round = 0; round < t->arguments->seeds; round++) {
         // The first seed gets more than its share: it is better to know a dear setting by one seed than not at
         // all, and the dearer a setting, the less its seeds differ.
-        double now = secondsNow(), left = t->deadline - now;
+        double now = 1e-3 * wallMs(), left = t->deadline - now;
         int rounds = t->arguments->seeds - round;
         measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.6 : 1.0 / rounds));
     }

@@ -89,7 +89,7 @@ static int writeResults(Tradeoff* t)
 
 static int measure(Tradeoff* t)
 {
-    t->start = secondsNow();
+    t->start = 1e-3 * wallMs();
     t->deadline = t->start + t->arguments->seconds;
     t->progress = beginProgress(t->arguments->quiet);
     int code = makeReference(t);

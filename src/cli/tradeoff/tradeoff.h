@@ -3,6 +3,7 @@
 #ifndef VPL_CLI_TRADEOFF_H
 #define VPL_CLI_TRADEOFF_H
 
+#include "cli/bench/measure.h"
 #include "cli/cli.h"
 #include "cli/tradeoff/math.h"
 #include "cli/tradeoff/text.h"
