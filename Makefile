@@ -185,8 +185,9 @@ $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
 EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
+MEASURE := $(BUILD)/obj/src/cli/bench/measure.o
 ROOFLINE := $(foreach part,roofline roofline/loops roofline/work roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
-              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench/cover.o,$(CLI_OBJECTS))
+              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench/cover.o,$(CLI_OBJECTS)) $(MEASURE)
 $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
@@ -195,7 +196,7 @@ $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 PEER_HEADERS := /usr/include/EGL/egl.h /usr/include/GL/glcorearb.h
 PEER_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/bench/peers/*.c))
 ifeq ($(words $(wildcard $(PEER_HEADERS))),2)
-$(BUILD)/bench/peers: $(PEER_OBJECTS) $(BUILD)/libvpl.a
+$(BUILD)/bench/peers: $(PEER_OBJECTS) $(MEASURE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ -lEGL -lOpenGL $(LDLIBS)
@@ -203,7 +204,7 @@ else
 $(BUILD)/bench/peers:
 	@echo "bench-peers needs EGL and OpenGL to build: $(PEER_HEADERS)" >&2; exit 1
 endif
-$(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
+$(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(MEASURE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
