@@ -12,6 +12,7 @@
 // One line per test file.
 // clang-format off
 #define ALL_SUITES(X) \
+    X(arena) \
     X(bench) \
     X(bounds) \
     X(chooseShadows) \

@@ -465,8 +465,8 @@ static vplResult findSides(vplContext* context, const char* path, int variant)
         priorities[i] = 1;
     }
     def.count = 50;
-    sidesDef.eyes = &eye;
-    sidesDef.eyeCount = variant;
+    sidesDef.viewpoints = &eye;
+    sidesDef.viewpointCount = variant;
     vplResult result = vplScene_Load(context, "examples/scenes/room-area.json", &scene);
     if (result == VPL_SUCCESS) {
         result = vplGeometry_Create(scene, &geometry);
@@ -683,8 +683,8 @@ static void EveryFailedAllocationOfAReflectiveMapIsReported(void** state)
     }
 }
 
-// Only the geometry of a mesh, and its tree.
-static vplResult freezeBall(vplContext* context, const char* path, int variant)
+// Only the geometry of a mesh, and its ray tree.
+static vplResult buildBall(vplContext* context, const char* path, int variant)
 {
     (void)path;
     (void)variant;
@@ -697,9 +697,6 @@ static vplResult freezeBall(vplContext* context, const char* path, int variant)
     }
     if (result == VPL_SUCCESS) {
         result = vplGeometry_Create(scene, &geometry);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_PrepareRays(geometry);
     }
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
@@ -745,8 +742,8 @@ static void EveryFailedAllocationOfParaboloidMapsIsReported(void** state)
 static void EveryFailedAllocationOfAGeometryIsReported(void** state)
 {
     (void)state;
-    failEveryAllocation(freezeBall, "png", 0, false);
-    failEveryAllocation(freezeBall, "png", 0, true);
+    failEveryAllocation(buildBall, "png", 0, false);
+    failEveryAllocation(buildBall, "png", 0, true);
 }
 
 // Everything that `show` can ask for.

@@ -52,7 +52,7 @@ static void NoPlaneShadowsItselfAtAnyAngle(void** state)
         vplGeometry* plane = freezeScene(scene);
         const vplVec3 n = plane->normals[0], middle = plane->positions[3 * 48];
         vplVec3 tangent, bitangent;
-        vplFrame(n, &tangent, &bitangent);
+        vplTangentFrame(n, &tangent, &bitangent);
         for (size_t d = 0; d < sizeof degrees / sizeof *degrees; d++) {
             const double angle = degrees[d] * VPL_PI / 180;
             const vplVec3 from = vplAdd(vplScale((float)cos(angle), n), vplScale((float)sin(angle), tangent));
