@@ -146,13 +146,13 @@ fuzz: deps
 	@tests/fuzz/run.sh $(FUZZERS)
 
 ## make install     library, headers, program, man page and libvpl.pc under PREFIX (/usr/local)
-install: programs
+install: programs $(BUILD)/vpl.1
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/vpl $(DESTDIR)$(PREFIX)/lib/pkgconfig \
 	  $(DESTDIR)$(PREFIX)/share/man/man1
 	install $(BUILD)/vpl $(DESTDIR)$(PREFIX)/bin
 	install -m 644 include/vpl/*.h include/vpl/*.def $(DESTDIR)$(PREFIX)/include/vpl
 	install -m 644 $(BUILD)/libvpl.a $(DESTDIR)$(PREFIX)/lib
-	install -m 644 src/cli/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 $(BUILD)/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl/base.h)|' \
 	  -e 's|@OMP@|$(OMP)|' -e 's|@LIBS@|$(LDLIBS)|' src/libvpl.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libvpl.pc
 
@@ -179,7 +179,11 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff_math.o %/bench_fit.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
+# The program writes the options of its man page.
+$(BUILD)/vpl.1: src/cli/vpl.1.in $(BUILD)/vpl
+	$(Q)$(BUILD)/vpl help --man | sed -e '/^@OPTIONS@$$/{r /dev/stdin' -e 'd' -e '}' $< > $@
+
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff/math.o %/bench/fit.o %/bench/measure.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -191,8 +195,9 @@ $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
 EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
+MEASURE := $(BUILD)/obj/src/cli/bench/measure.o
 ROOFLINE := $(foreach part,roofline roofline/loops roofline/work roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
-              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench_cover.o,$(CLI_OBJECTS))
+              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench/cover.o,$(CLI_OBJECTS)) $(MEASURE)
 $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
@@ -201,7 +206,7 @@ $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 PEER_HEADERS := /usr/include/EGL/egl.h /usr/include/GL/glcorearb.h
 PEER_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/bench/peers/*.c))
 ifeq ($(words $(wildcard $(PEER_HEADERS))),2)
-$(BUILD)/bench/peers: $(PEER_OBJECTS) $(BUILD)/libvpl.a
+$(BUILD)/bench/peers: $(PEER_OBJECTS) $(MEASURE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ -lEGL -lOpenGL $(LDLIBS)
@@ -209,7 +214,7 @@ else
 $(BUILD)/bench/peers:
 	@echo "bench-peers needs EGL and OpenGL to build: $(PEER_HEADERS)" >&2; exit 1
 endif
-$(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
+$(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(MEASURE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)

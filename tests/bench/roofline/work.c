@@ -2,7 +2,7 @@
 // The hot loops at work on one thread, and variants of them with one thing changed.
 #include "work.h"
 
-#include "cli/bench_cover.h"
+#include "cli/bench/cover.h"
 #include "geometry/bvh.h"
 #include "shading/shading.h"
 
