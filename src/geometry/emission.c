@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023, chapter 12,
-// for the powers and the spot's falloff.
+// Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023,
+// chapter 12, for the powers and the spot's falloff.
 #include "geometry/emission.h"
 #include "base/arena.h"
 #include "geometry/triangle.h"
@@ -54,8 +54,8 @@ double vplSpot_SampleCosine(const vplEmitterDef* spot, double u)
     if (at <= plain || ring <= 0) {
         return 1 - at;
     }
-    // In the ring the integral of the smooth step from the outer edge to x is x^3 - x^4/2. Bisection inverts it to the
-    // last bit of a float, always along the same path.
+    // In the ring the integral of the smooth step from the outer edge to x is x^3 - x^4/2. Bisection inverts
+    // it to the last bit of a float, always along the same path.
     double wanted = (plain + ring - at) / (2 * ring), low = 0, high = 1;
     for (int i = 0; i < 30; i++) {
         double x = (low + high) / 2;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Intersection Tests". Rays are tested
-// in local space without renormalising the direction, so that t means the same for all objects. Departs: t must be
-// above 0, and a ray from inside a box hits its exit; otherwise a particle would hit the surface it just left.
+// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Intersection Tests". Rays are
+// tested in local space without renormalising the direction, so that t means the same for all objects.
+// Departs: t must be above 0, and a ray from inside a box hits its exit; otherwise a particle would hit the
+// surface it just left.
 #include "geometry/triangle.h"
 #include "math/matrix.h"
 #include "math/vec.h"
@@ -64,7 +65,7 @@ static bool fillHit(const vplPlacement* p, const double at[3], double t, int fac
     return hit->t > 0 && isfinite(hit->t);
 }
 
-// Intersects a local ray with the plane at coordinate `side` of an axis. False where it is parallel, or behind.
+// Intersects a local ray with the plane at coordinate `side` of an axis. False if parallel to it or behind it.
 static bool hitPlane(const LocalRay* r, int axis, double side, double* t, double at[3])
 {
     if (r->d[axis] == 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Turns objects into world-space triangles: two for a quad, twelve for a box, those of a mesh. Corners are rounded from
-// double once and shared by the faces that meet there, so edges are watertight.
+// Turns objects into world-space triangles: two for a quad, twelve for a box, those of a mesh. Corners are
+// rounded from double once and shared by the faces that meet there, so edges are watertight.
 #include "geometry/object_build.h"
 #include "geometry/triangle.h"
 #include "math/double3.h"
@@ -138,8 +138,8 @@ static void fillTriangles(const vplGeometryBuilder* b, const vplMeshDef* shape, 
     }
 }
 
-// Finds the oriented bounding box of a mesh: its box in local space, transformed with the object. Flat meshes get a thin
-// one.
+// Finds the oriented bounding box of a mesh: its box in local space, transformed with the object. Flat meshes
+// get a thin one.
 static void findOrientedBox(const vplObjectDef* def, const vplMeshDef* shape, vplGeometryObject* object)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, largest = 0;

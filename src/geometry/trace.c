@@ -155,7 +155,7 @@ vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3
     } else if (object->type == VPL_OBJECT_BOX) {
         ray.skip = (vplSkip){object->firstTriangle + 2 * hit->face, 2};
     } else {
-        // Rounding moves the point off the triangle, and the neighbours are not coplanar: step clear of all of them.
+        // Rounding moves the point off the triangle, and its neighbours are not coplanar: clear them all.
         vplVec3 p = hit->position;
         float largest = fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
         ray.origin = vplAdd(p, vplScale((outward ? 1 : -1) * largest * 0x1p-20f, hit->normal));

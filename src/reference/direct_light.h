@@ -5,8 +5,8 @@
 
 #include "reference/path_scene.h"
 
-// Radiance that the vertex reflects from one point on a triangle and one emitter, weighted as light sampling. u chooses
-// the point; set `set` of the path's numbers the emitter, where there are several.
+// Radiance that the vertex reflects from one point on a triangle and one emitter, weighted as light sampling.
+// u chooses the point; set `set` of the path's numbers the emitter, where there are several.
 vplRadiance vplSampleDirect(vplPathState* path, const vplPathVertex* vertex, const float u[2], uint32_t set);
 
 // Radiance of a triangle that a path from `vertex` has hit, weighted as BSDF sampling.
@@ -28,7 +28,8 @@ typedef struct vplLandedParticle {
 
 vplLandedParticle vplShootParticle(vplPathState* path, double choice, const float u[4]);
 
-// Radiance that is reflected where the particle has landed and again at the vertex, weighted as particle sampling.
+// Radiance that is reflected where the particle has landed and again at the vertex, weighted as particle
+// sampling.
 vplRadiance vplConnectToParticle(vplPathState* path, const vplPathVertex* vertex,
                                  const vplLandedParticle* particle);
 

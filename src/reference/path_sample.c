@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Based on: James T. Kajiya, The Rendering Equation, SIGGRAPH 1986: a path from the camera is reflected at random and
-// gathers light at each vertex. Directions have the density of the reflected light, so a reflection only multiplies the
-// throughput by rho. James Arvo and David Kirk, Particle Transport and Image Synthesis, SIGGRAPH 1990: Russian roulette.
-// Nothing is clamped: without the rare bright paths the mean would be biased.
+// Based on: James T. Kajiya, The Rendering Equation, SIGGRAPH 1986: a path from the camera is reflected at
+// random and gathers light at each vertex. Directions have the density of the reflected light, so a
+// reflection only multiplies the throughput by rho. James Arvo and David Kirk, Particle Transport and Image
+// Synthesis, SIGGRAPH 1990: Russian roulette. Nothing is clamped: without the rare bright paths the mean
+// would be biased.
 #include "reference/path_sample.h"
 #include "math/sampling.h"
 #include "math/vec.h"
@@ -42,8 +43,8 @@ static vplPathVertex arrive(const vplPathScene* s, const vplPathVertex* from, co
     return v;
 }
 
-// Follows the bounces after the camera's first hit. The path is the same for every range of bounces, so that pictures of
-// single bounces add up exactly.
+// Follows the bounces after the camera's first hit. The path is the same for every range of bounces, so that
+// pictures of single bounces add up exactly.
 static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLandedParticle* particle,
                           vplRadiance* sum)
 {

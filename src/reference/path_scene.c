@@ -46,8 +46,9 @@ void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4])
 vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float offset[2])
 {
     const vplCameraDef* camera = s->def.camera;
-    // Pixel centres are moved slightly right and down, so that an edge through a centre belongs to the surface that the
-    // rasterizer's top-left rule gives it to. In a symmetric room whole rows of centres lie on edges.
+    // Pixel centres are moved slightly right and down, so that an edge through a centre belongs to the
+    // surface that the rasterizer's top-left rule gives it to. In a symmetric room whole rows of centres lie
+    // on edges.
     double px = x + (s->def.pixelCentres ? 0.5 + 0x1p-10 : (double)offset[0]);
     double py = y + (s->def.pixelCentres ? 0.5 + 0x1p-12 : (double)offset[1]);
     double across = s->scaleX * (2 * px / s->def.width - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all paths of a picture share, the numbers that a path draws, and the vertices it consists of.
+// The inputs shared by all paths of a picture, the random numbers of a path, and its vertices.
 #ifndef VPL_REFERENCE_PATH_SCENE_H
 #define VPL_REFERENCE_PATH_SCENE_H
 
@@ -7,8 +7,8 @@
 
 #include "math/sobol.h"
 
-// Techniques for sampling the last steps of a path to a light. Where several can find the same path, multiple importance
-// sampling weights their results.
+// Techniques for sampling the last steps of a path to a light. Where several can find the same path, multiple
+// importance sampling weights their results.
 enum {
     VPL_PATH_LIGHT_SAMPLING = 1, // choose a point on a light (next-event estimation)
     VPL_PATH_BSDF_SAMPLING = 2,  // reflect the path and see whether it hits a light
@@ -23,12 +23,14 @@ typedef struct vplPathDef {
     int width, height; // pixels
     bool emission;     // show surfaces that emit; default true
     bool pixelCentres; // start paths at the centres of pixels, where the rasterizer samples; default false
-    int firstBounce,
-        lastBounce; // of those before the eye's, the range that the picture sums; default 0, 1 << 16
+    // The picture sums light of this range of bounces, counted before the one towards the camera; default 0,
+    // 1 << 16.
+    int firstBounce, lastBounce;
     uint64_t seed;
-    int techniques; // VPL_PATH_...; light sampling is always used for lights that a path cannot hit; default ALL
+    // VPL_PATH_..., default VPL_PATH_ALL. Lights that a path cannot hit are sampled in any case.
+    int techniques;
     bool balanceHeuristic; // weight by the balance heuristic instead of the power heuristic; default false
-    bool random;           // use independent random numbers instead of Sobol's points; default false
+    bool random;           // independent random numbers instead of Sobol's points; default false
     double rouletteFrom;   // paths with a throughput below this may end; default 0.25
 } vplPathDef;
 
@@ -44,7 +46,8 @@ typedef struct vplPathScene {
     double power, trianglePower; // W, of all sources and of the triangles among them
 } vplPathScene;
 
-// The geometry, the camera and the emitters must outlive the scene. vplEmission_Destroy(scene.emission) frees it.
+// The geometry, the camera and the emitters must outlive the scene. vplEmission_Destroy(scene.emission) frees
+// it.
 vplResult vplPathScene_Init(vplPathScene* scene, const vplGeometry* geometry, const vplPathDef* def);
 
 // One path while it is followed.
@@ -58,8 +61,8 @@ typedef struct vplPathState {
 // Draws the four numbers in [0, 1) of set `set` of the path.
 void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4]);
 
-// The ray through a position in pixel (x, y), from the near plane. t counts the depth beyond that plane, so the camera
-// sees hits with t <= far - near.
+// The ray through a position in pixel (x, y), from the near plane. t counts the depth beyond that plane, so
+// the camera sees hits with t <= far - near.
 vplRay vplPathScene_CameraRay(const vplPathScene* scene, int x, int y, const float offset[2]);
 
 // A point where a path is reflected.
@@ -73,7 +76,7 @@ typedef struct vplPathVertex {
 
 vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
 
-// What the surface emits against `direction`.
+// The radiance that the surface emits against `direction`.
 vplRgb vplPathScene_EmissionAt(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
 
 // Radiance, or a part of it.

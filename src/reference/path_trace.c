@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pixels, passes and the error estimate. Even and odd samples of a pixel come from two independently scrambled sequences;
-// the difference of their means estimates the error.
+// Pixels, passes and the error estimate. Even and odd samples of a pixel come from two independently
+// scrambled sequences; the difference of their means estimates the error.
 #include "reference/path_trace.h"
 #include "base/arena.h"
 #include "reference/path_sample.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The reference: unbiased path tracing of diffuse scenes, in passes. However the samples are divided into passes, the
-// picture has the same bits.
+// The reference: unbiased path tracing of diffuse scenes, in passes. However the samples are divided into
+// passes, the picture has the same bits.
 #ifndef VPL_REFERENCE_PATH_TRACE_H
 #define VPL_REFERENCE_PATH_TRACE_H
 
