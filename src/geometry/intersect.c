@@ -65,7 +65,7 @@ static bool fillHit(const vplPlacement* p, const double at[3], double t, int fac
     return hit->t > 0 && isfinite(hit->t);
 }
 
-// Intersects a local ray with the plane at coordinate `side` of an axis. False if parallel to it or behind it.
+// Intersects a local ray with the plane at coordinate `side` of an axis. False if parallel or behind.
 static bool hitPlane(const LocalRay* r, int axis, double side, double* t, double at[3])
 {
     if (r->d[axis] == 0) {

