@@ -45,7 +45,7 @@ typedef struct vplCubeMap {
     float near, far;
     const float*
         texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
-    const struct vplCubeBounds* bounds; // NULL before vplCubeMap_FindBounds
+    struct vplCubeBounds* bounds; // NULL before vplCubeMap_FindBounds
     vplRasterStats stats;
     vplContext* context;
 } vplCubeMap;

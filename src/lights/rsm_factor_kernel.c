@@ -10,7 +10,7 @@
 #include "base/isa.h"
 #include "lights/rsm.h"
 #include "math/scalar.h"
-#include "visibility/gather.h"
+#include "visibility/map_gather.h"
 
 // Points and their planes in the frame of the face that sees them.
 typedef struct Seen {

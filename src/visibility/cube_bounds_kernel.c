@@ -1,219 +1,328 @@
 // SPDX-License-Identifier: MIT
-// What one tile of a cube map shows. Compiled once per instruction set; all give the same bits.
+// Bounds of regions of a cube map, and the test of 16 points against them. Compiled once per instruction set; all give
+// the same bits.
 //
-// A plane whose points obey plane . p = 1 has the inverse view depth plane . (s, u, 1) in direction (s, u, 1):
-// linear in columns and rows. It bounds a tile where no texel's inverse depth exceeds it.
+// Let p be a point seen from the light, r its distance, R the reach of the samples' offsets, which are perpendicular to
+// p, and m the largest of p's components, which picks the face.
+// Texels: a sample at p + d, |d| <= R, lies in the face's plane at a distance of at most |d| sqrt(1 + s^2) / (m - R) from
+// p's own s = right / m, and the same with u = up / m; sqrt(1 + s^2) is at most 1 + s^2 / 2. If that square lies inside
+// the face, so do all samples. The regions that meet the squares of all 16 points bound every texel that is sampled.
+// Shadowed: all samples are if the limit exceeds the farthest distance times far, the expression that every sample
+// compares, which is monotone. Lit: the same with the nearest distance.
+// Lit by the receiver's plane: let n be its normal and h > 0 the least n.q of all points q in the regions' box. A texel
+// in direction d shows q = D d, so D >= h / n.d, and limit (n.d) <= h is enough. The angle between p and d is at most
+// that of the offset, whose tangent is k = R / r, and that between the sample and its texel's centre. The latter has a
+// tangent of at most e / (|c| - e sin c) where e = texelTangent, c = (s, u, 1) at the sample, and sin c is the sine of
+// its angle to the middle of the face. The sample's |c| is at least p's own, r / m, less sin p times the R / (m - R) r / m
+// that they are apart at most, because |c| is convex. With t the tangent of the latter, the angle a of both has
+// tan a = (t + k) / (1 - t k) and cos a = (1 - t k) / sqrt((1 + t^2) (1 + k^2)). If n is further from p than a, n.d is at
+// most along cos a + across sin a, with the normal's parts along p and across, otherwise at most its length.
+// Rounding: the direction of a sample is known to some ten roundings of 2^-24 (9 of the angle, 8192 texels: 2^-9 texel),
+// the frame of offsets to 2^-18 of their length (`reach` has 1e-5 more), `most` and `length` to twelve roundings of the
+// normal's length, h to three of its terms. The margins below are 16 each, 4 for h.
+#include "math/scalar.h"
 #include "visibility/cube_bounds.h"
+#include "visibility/cube_texel.h"
+#include "visibility/kernels.h"
 
-#include <math.h>
 #include <string.h>
 
-// Change per column and per row.
-typedef struct Slope {
-    float column, row;
-} Slope;
-
-static inline float maxOf(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-vplFlatTileFcn VPL_KERNEL(vplFlatTile);
-vplTileRaisesFcn VPL_KERNEL(vplTileRaises);
-
-// The largest of 16, by halves: a chain would wait for each step.
-static inline float largestLane(const float* restrict values)
+// The least of 16, by halves: a chain would wait for each step.
+static inline float leastLane(const float* restrict values)
 {
     float a[8], b[4];
     for (int l = 0; l < 8; l++) {
-        a[l] = maxOf(values[l], values[l + 8]);
+        a[l] = vplMinf(values[l], values[l + 8]);
     }
     for (int l = 0; l < 4; l++) {
-        b[l] = maxOf(a[l], a[l + 4]);
+        b[l] = vplMinf(a[l], a[l + 4]);
     }
-    return maxOf(maxOf(b[0], b[2]), maxOf(b[1], b[3]));
+    return vplMinf(vplMinf(b[0], b[2]), vplMinf(b[1], b[3]));
 }
 
-// The inverse view depths of 16 columns. At most five roundings of 2^-24 each are made up for. Columns outside
-// the face repeat the last one inside, which can only raise the bound. Returns the largest stored distance.
-static float invertColumns(const vplCubeTile* t, int first, float* restrict values)
+// ---- building
+
+// Regions side by side whose directions are found at once, for all six faces.
+enum { GROUP = 4, GROUP_TEXELS = GROUP * VPL_REGION_SIDE };
+
+// Directions of a group's texels: (s, u, 1) and the depth per distance. Texels outside of the face repeat the last ones.
+typedef struct Directions {
+    _Alignas(64) float s[GROUP_TEXELS], z[VPL_REGION_SIDE][GROUP_TEXELS];
+    float u[VPL_REGION_SIDE];
+    int column, row, rows;
+} Directions;
+
+static void findDirections(int size, Directions* restrict d)
 {
-    const float step = 2 / (float)t->size, far = t->far;
-    const bool inside = first + VPL_LANES <= t->width;
-    float s2[VPL_LANES], largest[VPL_LANES];
+    const float step = 2 / (float)size;
+    for (int l = 0; l < GROUP_TEXELS; l++) {
+        d->s[l] = ((float)vplMini(d->column + l, size - 1) + 0.5f) * step - 1;
+    }
+    for (int j = 0; j < d->rows; j++) {
+        const float u = 1 - ((float)(d->row + j) + 0.5f) * step;
+        d->u[j] = u;
+        for (int l = 0; l < GROUP_TEXELS; l++) {
+            d->z[j][l] = 1 / sqrtf(1 + d->s[l] * d->s[l] + u * u);
+        }
+    }
+}
+
+// Sixteen texels of a row from `column` on; those outside of the face repeat the last one.
+static inline void loadTexels(const float* restrict row, int size, int column,
+                              float stored[restrict VPL_LANES])
+{
+    if (column + VPL_LANES <= size) {
+        // The next region's: a row of texels is about a page, and processors prefetch within pages.
+        __builtin_prefetch(row + column + VPL_LANES, 0, 2);
+        memcpy(stored, row + column, VPL_LANES * sizeof *stored);
+        return;
+    }
     for (int l = 0; l < VPL_LANES; l++) {
-        const float s = ((float)(t->column + first + l) + 0.5f) * step - 1;
-        s2[l] = 1 + s * s;
-        largest[l] = 0;
+        stored[l] = row[vplMini(column + l, size - 1)];
     }
-    for (int row = 0; row < t->height; row++) {
-        const float u = 1 - ((float)(t->row + row) + 0.5f) * step, u2 = u * u;
-        const float* texels = t->texels + (size_t)row * (size_t)t->size;
-        float* restrict out = values + row * t->side + first;
+}
+
+// Rounds down by more than the roundings of x, y and z: six of their value, and one of z because s and u are
+// differences.
+static void roundDown(vplCubeRegion* region)
+{
+    const float deepest = -region->least[VPL_LEAST_NEGATED + 2];
+    for (int k = 0; k < VPL_LEAST_DISTANCE && deepest > 0; k++) {
+        region->least[k] -= fabsf(region->least[k]) * 0x1p-21f + deepest * 0x1p-23f;
+    }
+}
+
+static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, const Directions* d)
+{
+    const int size = map->size;
+    const float far = map->far;
+    const float* texels = map->texels + ((size_t)face * (size_t)size + (size_t)d->row) * (size_t)size;
+    _Alignas(64) float least[VPL_REGION_VALUES][VPL_LANES];
+    vplCubeRegion region;
+    for (int k = 0; k < VPL_REGION_VALUES; k++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            least[k][l] = INFINITY;
+        }
+    }
+    for (int j = 0; j < d->rows; j++) {
+        const float* restrict rowZ = d->z[j] + offset;
+        const float u = d->u[j];
         float stored[VPL_LANES];
-        if (inside) {
-            memcpy(stored, texels + first, sizeof stored);
-        } else {
-            for (int l = 0; l < VPL_LANES; l++) {
-                stored[l] = texels[first + l < t->width ? first + l : t->width - 1];
-            }
-        }
+        loadTexels(texels + (size_t)j * (size_t)size, size, d->column + offset, stored);
         for (int l = 0; l < VPL_LANES; l++) {
-            largest[l] = maxOf(largest[l], stored[l]);
-        }
-        for (int l = 0; l < VPL_LANES; l++) {
-            out[l] = sqrtf(s2[l] + u2) / (stored[l] * far) * (1 + 0x1p-21f);
-        }
-    }
-    return largestLane(largest);
-}
-
-static float invertTile(const vplCubeTile* t, float* restrict values)
-{
-    float farthest = 0;
-    for (int first = 0; first < t->side; first += VPL_LANES) {
-        farthest = maxOf(farthest, invertColumns(t, first, values));
-    }
-    return farthest;
-}
-
-// From a value at the first texel and a slope to a plane in the face's axes. The slopes are rounded first; what
-// that changes within the tile, and the rounding of the last step, is below 2^-23 of the terms.
-static void toPlane(const vplCubeTile* t, double level, Slope slope, float plane[3])
-{
-    const double half = 0.5 * t->size, column = half - t->column - 0.5, row = half - t->row - 0.5;
-    plane[0] = (float)(slope.column * half);
-    plane[1] = (float)(-slope.row * half);
-    const double middle = 0.5 * t->side, change = fabs((double)slope.column) + fabs((double)slope.row);
-    const double at = level + slope.column * middle + slope.row * middle;
-    const double s = (middle - column) / half, u = -(middle - row) / half;
-    const double ahead = at - (double)plane[0] * s - (double)plane[1] * u;
-    plane[2] = (float)(ahead + (fabs(ahead) + change * t->side) * 0x1p-23);
-}
-
-// The inverse view depth of one texel.
-static float invertTexel(const vplCubeTile* t, int column, int row)
-{
-    const float step = 2 / (float)t->size;
-    const float s = ((float)(t->column + column) + 0.5f) * step - 1;
-    const float u = 1 - ((float)(t->row + row) + 0.5f) * step;
-    return sqrtf(1 + s * s + u * u) / (t->texels[row * t->size + column] * t->far);
-}
-
-// The largest |c|^2 - (f D)^2, at least 0: c = (s, u, 1), D the distance and f a function on the tile.
-static float findMissing(const vplCubeTile* t, float level, Slope slope, float* farthestOut)
-{
-    const float step = 2 / (float)t->size, far = t->far;
-    float largest[VPL_LANES] = {0}, missing[VPL_LANES] = {0}, s2[VPL_LANES], across[VPL_LANES];
-    for (int first = 0; first < t->width; first += VPL_LANES) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            const float s = ((float)(t->column + first + l) + 0.5f) * step - 1;
-            s2[l] = 1 + s * s;
-            across[l] = level + slope.column * (float)(first + l);
-        }
-        for (int row = 0; row < t->height; row++) {
-            const float u = 1 - ((float)(t->row + row) + 0.5f) * step, u2 = u * u;
-            const float down = slope.row * (float)row;
-            const float* restrict texels = t->texels + (size_t)row * (size_t)t->size + first;
-            // The next tile's: a row of texels is about a page, and processors prefetch within pages.
-            // 1.3x for the whole of vplCubeMap_FindBounds, 6 * 1024^2 texels.
-            __builtin_prefetch(texels + t->side, 0, 2);
-            for (int l = 0; l < VPL_LANES; l++) {
-                const float stored = texels[l], ratio = (across[l] + down) * (stored * far);
-                largest[l] = maxOf(stored, largest[l]);
-                missing[l] = maxOf(s2[l] + u2 - ratio * ratio, missing[l]);
+            const float distance = stored[l] * far, z = distance * rowZ[l], x = d->s[offset + l] * z,
+                        y = u * z;
+            const bool shown = distance < INFINITY;
+            // Infinity leaves a minimum as it is.
+            const float value[VPL_REGION_VALUES] = {shown ? x : INFINITY,
+                                                    shown ? y : INFINITY,
+                                                    shown ? z : INFINITY,
+                                                    shown ? -x : INFINITY,
+                                                    shown ? -y : INFINITY,
+                                                    shown ? -z : INFINITY,
+                                                    stored[l],
+                                                    -stored[l]};
+            for (int k = 0; k < VPL_REGION_VALUES; k++) {
+                least[k][l] = vplMinf(value[k], least[k][l]);
             }
         }
     }
-    *farthestOut = largestLane(largest);
-    return largestLane(missing);
+    for (int k = 0; k < VPL_REGION_VALUES; k++) {
+        region.least[k] = leastLane(least[k]);
+    }
+    roundDown(&region);
+    return region;
 }
 
-// The square of the nearest distance to 0 in a column or row of the tile.
-static float leastSquare(const vplCubeTile* t, int first, int count)
+void VPL_KERNEL(vplBoundRegions)(const vplCubeMap* map, int row, vplCubeBounds* restrict bounds)
 {
-    const float step = 2 / (float)t->size, begin = (float)first * step - 1, end = begin + (float)count * step;
-    return begin > 0 ? begin * begin : end < 0 ? end * end : 0;
-}
-
-// Most tiles show one plane, and need neither roots nor divisions. With f through three of their corners, no more
-// than m missing, and c, D as above: f must be raised by (|c| - f D) / D = (|c|^2 - (f D)^2) f / ((|c| + f D) f D)
-// at most, where that is positive, and both |c| and f D are at least sqrt(|c|^2 - m). Roundings of |c|^2 and
-// (f D)^2 are below 2^-20 of them, those of f below 2^-22 of its terms. Where D is infinite and f = 0, NaN is not larger
-// than anything.
-bool VPL_KERNEL(vplFlatTile)(const vplCubeTile* t, vplCubeBound* boundOut)
-{
-    const int right = t->width - 1, last = t->height - 1;
-    if (t->width % VPL_LANES > 0) {
-        return false;
-    }
-    const float level = invertTexel(t, 0, 0), corner = invertTexel(t, right, last);
-    const float middle = invertTexel(t, right / 2, last / 2);
-    const Slope slope = {(invertTexel(t, right, 0) - level) / (float)right,
-                         (invertTexel(t, 0, last) - level) / maxOf((float)last, 1)};
-    const float across = slope.column * (float)right, down = slope.row * (float)last;
-    const float same = level * 0x1p-18f;
-    if (!(fabsf(level + across + down - corner) <= same) ||
-        !(fabsf(level + slope.column * (float)(right / 2) + slope.row * (float)(last / 2) - middle) <=
-          same)) {
-        return false;
-    }
-    float farthest;
-    const float missing = findMissing(t, level, slope, &farthest);
-    const float least = level + (across < 0 ? across : 0) + (down < 0 ? down : 0);
-    const float most = level + maxOf(across, 0) + maxOf(down, 0);
-    if (!(missing <= 0x1p-17f) || !(least >= 0) || !(most < INFINITY)) {
-        return false;
-    }
-    const float c2 = 1 + leastSquare(t, t->column, t->width) + leastSquare(t, t->row, t->height);
-    const float raised = most * (0.5f * missing / (c2 - missing) + 0x1p-21f);
-    const float rounding = (fabsf(slope.column) + fabsf(slope.row)) * (float)t->side + most;
-    toPlane(t, (double)level + (double)raised + (double)rounding * 0x1p-22, slope, boundOut->planes[0]);
-    memcpy(boundOut->planes[1], boundOut->planes[0], sizeof boundOut->planes[0]);
-    boundOut->farthest = farthest;
-    boundOut->kind = VPL_BOUND_ONE;
-    return isfinite(boundOut->planes[0][0] + boundOut->planes[0][1] + boundOut->planes[0][2]);
-}
-
-// How far the values exceed the higher of two planes at most, rounded up.
-static float raisePlanes(const vplCubeTile* t, const float* restrict values, const float a[3],
-                         const float b[3])
-{
-    const float step = 2 / (float)t->size;
-    float raised = 0;
-    for (int first = 0; first < t->side; first += VPL_LANES) {
-        float highest[VPL_LANES], s[VPL_LANES];
-        for (int l = 0; l < VPL_LANES; l++) {
-            highest[l] = 0;
-            s[l] = ((float)(t->column + first + l) + 0.5f) * step - 1;
-        }
-        for (int row = 0; row < t->height; row++) {
-            const float u = 1 - ((float)(t->row + row) + 0.5f) * step;
-            const float a0 = a[1] * u + a[2], b0 = b[1] * u + b[2];
-            const float* restrict v = values + row * t->side + first;
-            for (int l = 0; l < VPL_LANES; l++) {
-                highest[l] = maxOf(v[l] - maxOf(a[0] * s[l] + a0, b[0] * s[l] + b0), highest[l]);
+    const int side = bounds->side[0], first = row * VPL_REGION_SIDE;
+    Directions d = {.row = first, .rows = vplMini(VPL_REGION_SIDE, map->size - first)};
+    for (int group = 0; group < side; group += GROUP) {
+        d.column = group * VPL_REGION_SIDE;
+        findDirections(map->size, &d);
+        for (int face = 0; face < 6; face++) {
+            for (int i = 0; i < vplMini(GROUP, side - group); i++) {
+                bounds->regions[(face * side + row) * side + group + i] =
+                    boundRegion(map, face, i * VPL_REGION_SIDE, &d);
             }
         }
-        raised = maxOf(largestLane(highest), raised);
     }
-    float rounding = raised;
-    for (int c = 0; c < 3; c++) {
-        rounding += maxOf(fabsf(a[c]), fabsf(b[c]));
-    }
-    return raised + rounding * 0x1p-21f;
 }
 
-float VPL_KERNEL(vplTileRaises)(const vplCubeTile* t, const float planes[][3], int count,
-                                vplRaises* raisesOut)
+// ---- testing
+
+// Points in the axes of the faces that they fall on, and the squares of texels that their samples reach.
+typedef struct Squares {
+    float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES];
+    float left[VPL_LANES], top[VPL_LANES];     // first column and row, in texels
+    float right[VPL_LANES], bottom[VPL_LANES]; // last ones, negated
+    float spread[VPL_LANES];                   // least radius in units of the distance to the face's plane
+} Squares;
+
+static void findSquares(const vplShadow* shadow, vplShadowPoints* restrict p, Squares* restrict q)
 {
-    float values[VPL_MAX_CUBE_TILE * VPL_MAX_CUBE_TILE];
-    const float farthest = invertTile(t, values);
-    for (int i = 0; i < count; i++) {
-        raisesOut->one[i] = (double)raisePlanes(t, values, planes[i], planes[i]);
-        for (int k = i + 1; k < count; k++) {
-            raisesOut->two[i][k] = (double)raisePlanes(t, values, planes[i], planes[k]);
+    const float reach = shadow->reach, size = (float)shadow->map->size, half = 0.5f * size;
+    const float slack = 0x1p-6f; // texels
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float x = p->x[l], y = p->y[l], z = p->z[l];
+        const float ax = fabsf(x), ay = fabsf(y), az = fabsf(z);
+        const int32_t isZ = (az >= ax) & (az >= ay), isY = !isZ & (ay >= ax);
+        const float major = isZ ? az : isY ? ay : ax;
+        const int32_t negative = (isZ ? z : isY ? y : x) < 0;
+        const float sign = negative ? -1.0f : 1.0f; // a product vectorises where a choice of -x or x does not
+        const float right = isZ ? x * sign : isY ? x : -z * sign, up = isY ? -z * sign : y;
+        const float inverse = 1 / vplMaxf(major, 1e-30f);
+        const float s = right * inverse, u = up * inverse, k = reach * inverse;
+        // 1 / (1 - k) <= 1 + 4/3 k for k <= 1/4
+        const float spread = k * (1 + 1.3334f * k);
+        const float reachS = spread * (1 + 0.5f * s * s), reachU = spread * (1 + 0.5f * u * u);
+        const float column = (s + 1 - reachS) * half - slack, columnEnd = (s + 1 + reachS) * half + slack;
+        const float row = (1 - u - reachU) * half - slack, rowEnd = (1 - u + reachU) * half + slack;
+        const int32_t inside = (vplMinf(column, row) >= 0) & (vplMaxf(columnEnd, rowEnd) <= size) &
+                               (k <= 0.25f) & (major > 1e-30f);
+        const int32_t face = (isZ ? 4 : isY ? 2 : 0) + negative;
+        q->x[l] = right;
+        q->y[l] = up;
+        q->z[l] = major;
+        q->left[l] = column;
+        q->top[l] = row;
+        q->right[l] = -columnEnd;
+        q->bottom[l] = -rowEnd;
+        q->spread[l] = spread;
+        p->face[l] = inside ? face : -1;
+    }
+}
+
+// Regions along a side that are read at most: fewer are larger and bound less tightly.
+enum { READ_SIDE = 4 };
+
+// Bounds all texels that the points' samples may reach. False where these do not lie in one face.
+static bool findRegion(const vplCubeMap* map, const vplShadowPoints* p, const Squares* q,
+                       vplCubeRegion* restrict region)
+{
+    int32_t different = p->face[0] < 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        different |= p->face[l] ^ p->face[0];
+    }
+    if (different) {
+        return false;
+    }
+    const vplCubeBounds* bounds = map->bounds;
+    const int last = map->size - 1, i0 = (int)leastLane(q->left), j0 = (int)leastLane(q->top);
+    const int i1 = vplMini((int)-leastLane(q->right), last), j1 = vplMini((int)-leastLane(q->bottom), last);
+    int shift = VPL_REGION_SHIFT, level = 0;
+    while ((i1 >> shift) - (i0 >> shift) >= READ_SIDE || (j1 >> shift) - (j0 >> shift) >= READ_SIDE) {
+        shift++;
+        level++;
+    }
+    const int side = bounds->side[level];
+    const vplCubeRegion* first = bounds->regions + bounds->first[level] + p->face[0] * side * side;
+    float all[VPL_REGION_VALUES];
+    memcpy(all, first[(j0 >> shift) * side + (i0 >> shift)].least, sizeof all);
+    for (int j = j0 >> shift; j <= j1 >> shift; j++) {
+        for (int i = i0 >> shift; i <= i1 >> shift; i++) {
+            const float* restrict least = first[j * side + i].least;
+            for (int k = 0; k < VPL_REGION_VALUES; k++) {
+                all[k] = vplMinf(least[k], all[k]);
+            }
         }
     }
-    return farthest;
+    memcpy(region->least, all, sizeof all);
+    return true;
+}
+
+// What planes are compared with, by lane: see the top of the file.
+typedef struct Cones {
+    float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES]; // unit direction of the point, in the axes of its face
+    float cosine[VPL_LANES], sine[VPL_LANES];       // of a, times `length`
+    float length[VPL_LANES];
+    int32_t usable[VPL_LANES];
+} Cones;
+
+static void findCones(const vplShadow* shadow, const vplShadowPoints* p, const Squares* q, Cones* restrict c)
+{
+    const float texel = shadow->texelTangent, reach = shadow->reach;
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float inverse = p->inverse[l];
+        const float dx = q->x[l] * inverse, dy = q->y[l] * inverse, dz = q->z[l] * inverse;
+        // The face is nearest in its middle: a step towards it brings it nearer by the step times the slant.
+        // sqrt(a^2 + b^2) <= a + 0.4143 b for a >= b >= 0
+        const float ax = fabsf(dx), ay = fabsf(dy);
+        const float oblique = vplMaxf(ax, ay) + 0.4143f * vplMinf(ax, ay), moved = q->spread[l] + texel * dz;
+        const float nearer = (oblique + texel) * moved + 0x1p-20f;
+        const float t = texel * dz * (1 + 1.3334f * nearer) + 0x1p-20f, k = reach * inverse;
+        const float more = t * t + k * k * (1 + t * t);
+        c->x[l] = dx;
+        c->y[l] = dy;
+        c->z[l] = dz;
+        c->cosine[l] = 1 - t * k;
+        c->sine[l] = t + k;
+        c->length[l] = 1 + more * (0.5f - 0.125f * more); // not more than sqrt(1 + more)
+        c->usable[l] = nearer <= 0.25f;
+    }
+}
+
+// Whether the receiver's plane at each point lies before all points of the region, as seen from the light.
+static void testPlanes(const vplShadowPoints* p, const Cones* c, const vplSurface* axes,
+                       const vplCubeRegion* region, int32_t lit[restrict VPL_LANES])
+{
+    const float* low = region->least + VPL_LEAST_POINT;
+    const float* high = region->least + VPL_LEAST_NEGATED; // negated
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float dx = c->x[l], dy = c->y[l], dz = c->z[l];
+        const float towards = axes->nx[l] * dx + axes->ny[l] * dy + axes->nz[l] * dz;
+        const float sign = towards < 0 ? -1.0f : 1.0f; // away from the light
+        const float nx = axes->nx[l] * sign, ny = axes->ny[l] * sign, nz = axes->nz[l] * sign;
+        const float along = towards * sign;
+        const float cx = nx - along * dx, cy = ny - along * dy, cz = nz - along * dz;
+        const float square = cx * cx + cy * cy + cz * cz, across = sqrtf(square);
+        const bool steep = across * c->cosine[l] >= along * c->sine[l];
+        const float slanted = along * c->cosine[l] + across * c->sine[l];
+        const float whole = sqrtf(along * along + square) * c->length[l];
+        const float most = (steep ? slanted : whole) + (along + across) * 0x1p-21f;
+        const float hx = vplMinf(nx * low[0], -nx * high[0]), hy = vplMinf(ny * low[1], -ny * high[1]);
+        const float hz = vplMinf(nz * low[2], -nz * high[2]);
+        const float h = hx + hy + hz - (fabsf(hx) + fabsf(hy) + fabsf(hz)) * 0x1p-22f;
+        lit[l] = (h > 1e-30f) & (p->limit[l] * most <= c->length[l] * h * (1 - 0x1p-21f));
+    }
+}
+
+// The surface's normals in the axes of a face.
+static void turnNormals(int32_t face, const vplSurface* surface, vplSurface* restrict axes)
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        const vplInFace n = vplTurnToFace(face, surface->nx[l], surface->ny[l], surface->nz[l]);
+        axes->nx[l] = n.right;
+        axes->ny[l] = n.up;
+        axes->nz[l] = n.major;
+    }
+}
+
+int VPL_KERNEL(vplTestBounds)(const vplShadow* shadow, const vplSurface* surface, vplShadowPoints* restrict p,
+                              int32_t known[restrict VPL_LANES], float shadowed[restrict VPL_LANES])
+{
+    Squares q;
+    vplCubeRegion region;
+    findSquares(shadow, p, &q);
+    memset(known, 0, VPL_LANES * sizeof *known);
+    if (shadow->map->bounds == NULL || !findRegion(shadow->map, p, &q, &region)) {
+        return 0;
+    }
+    Cones cones;
+    vplSurface axes;
+    int32_t lit[VPL_LANES], count = 0;
+    findCones(shadow, p, &q, &cones);
+    turnNormals(p->face[0], surface, &axes);
+    testPlanes(p, &cones, &axes, &region, lit);
+    const float nearest = region.least[VPL_LEAST_DISTANCE] * shadow->map->far;
+    const float farthest = -region.least[VPL_LEAST_NEGATED_DISTANCE] * shadow->map->far,
+                samples = (float)shadow->def.pcfSamples;
+    for (int l = 0; l < VPL_LANES; l++) {
+        const int32_t dark = p->limit[l] > farthest, free = p->limit[l] <= nearest;
+        known[l] = dark | free | (lit[l] & cones.usable[l]);
+        shadowed[l] = dark ? samples : 0;
+        count += known[l];
+    }
+    return count;
 }

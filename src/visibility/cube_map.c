@@ -185,7 +185,7 @@ vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const 
         return vplFail(map->context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be the map's %d",
                        def->size, map->size);
     }
-    vplFree(map->context, (void*)map->bounds);
+    vplFree(map->context, map->bounds);
     map->bounds = NULL;
     place(map, geometry, def);
     return drawFaces(geometry, map, progress, user);
@@ -194,7 +194,7 @@ vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const 
 void vplCubeMap_Destroy(vplCubeMap* map)
 {
     if (map != NULL) {
-        vplFree(map->context, (void*)map->bounds);
+        vplFree(map->context, map->bounds);
         vplFree(map->context, (void*)map->texels);
         vplFree(map->context, map);
     }

@@ -2,13 +2,10 @@
 // Shadow maps of half spaces, many at once: one task draws one map, from start to end.
 #include "visibility/hemi_map.h"
 #include "base/context.h"
-#include "base/isa.h"
 #include "geometry/ray_tree.h"
+#include "visibility/kernels.h"
 
 #include <string.h>
-
-VPL_KERNEL_TABLE(DRAW, vplDrawHemiMapFcn, vplDrawHemiMap);
-VPL_KERNEL_TABLE(FACTOR, vplHemiMapFactorFcn, vplHemiMapFactor);
 
 static size_t texelsOf(int size)
 {
@@ -65,7 +62,7 @@ static void drawMap(void* data, int index, int worker)
     const vplHemiMap* map = &d->maps->maps[index];
     float* texels = d->maps->texels + (size_t)index * texelsOf(map->size);
     memset(texels, 0, texelsOf(map->size) * sizeof *texels);
-    DRAW[d->maps->context->isa](d->bvh, map, texels);
+    vplVisibilityKernels_Get(d->maps->context->isa)->drawHemiMap(d->bvh, map, texels);
 }
 
 vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const vplHemiMapPlace* places,
@@ -122,5 +119,5 @@ int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapP
 
 void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES])
 {
-    FACTOR[map->context->isa](map, surface, factorOut);
+    vplVisibilityKernels_Get(map->context->isa)->hemiMapFactor(map, surface, factorOut);
 }

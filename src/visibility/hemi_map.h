@@ -22,12 +22,6 @@ static inline int32_t vplHemiMap_Place(int32_t blocks, int32_t column, int32_t r
     return ((row >> 2) * blocks + (column >> 2)) * VPL_LANES + (row & 3) * VPL_BLOCK_SIDE + (column & 3);
 }
 
-// Draws all triangles of a tree into a map of zeros.
-typedef void vplDrawHemiMapFcn(const vplBvh* bvh, const vplHemiMap* map, float* texels);
-
-typedef void vplHemiMapFactorFcn(const vplHemiMap* map, const vplSurface* surface,
-                                 float factor[restrict VPL_LANES]);
-
 // Bit i: some of child i lies above a plane.
 static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVec3 n)
 {

@@ -5,12 +5,10 @@
 // the fragment itself, whichever is nearer: a plane never shadows itself at any angle. In texel (i, j) the plane is at
 //     1/t = n.d / n.way, d = (2 x_i, 2 y_j, 1 - x_i^2 - y_j^2), |d| = 1 + x_i^2 + y_j^2,
 // so both are sums of a number of the column and one of the row.
-#include "base/isa.h"
 #include "math/scalar.h"
-#include "visibility/gather.h"
+#include "visibility/kernels.h"
+#include "visibility/map_gather.h"
 #include "visibility/paraboloid_map.h"
-
-vplParaboloidFactorFcn VPL_KERNEL(vplParaboloidFactor);
 
 // 16 fragments as the map sees them.
 typedef struct Look {

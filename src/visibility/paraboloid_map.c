@@ -2,12 +2,9 @@
 // Paraboloid maps, many at once: one task draws one hemisphere, from start to end.
 #include "visibility/paraboloid_map.h"
 #include "base/context.h"
-#include "base/isa.h"
 #include "geometry/ray_tree.h"
+#include "visibility/kernels.h"
 #include "geometry/triangle.h"
-
-VPL_KERNEL_TABLE(DRAW, vplDrawParaboloidFcn, vplDrawParaboloid);
-VPL_KERNEL_TABLE(FACTOR, vplParaboloidFactorFcn, vplParaboloidFactor);
 
 vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, bool triangles,
                                    vplParaboloidMaps** mapsOut)
@@ -68,10 +65,11 @@ static void drawHemisphere(void* data, int index, int worker)
     const bool ids = map->triangles != NULL;
     float* scratch = d->maps->scratch + (ids ? 2 : 1) * (size_t)worker * drawn;
     if (hemisphere < map->hemispheres) {
-        DRAW[map->context->isa](d->bvh, map, hemisphere,
-                                (vplParaboloidTexels){scratch, ids ? (int32_t*)(scratch + drawn) : NULL},
-                                (vplParaboloidTexels){(float*)map->texels + first,
-                                                      ids ? (int32_t*)map->triangles + first : NULL});
+        vplVisibilityKernels_Get(map->context->isa)
+            ->drawParaboloid(d->bvh, map, hemisphere,
+                             (vplParaboloidTexels){scratch, ids ? (int32_t*)(scratch + drawn) : NULL},
+                             (vplParaboloidTexels){(float*)map->texels + first,
+                                                   ids ? (int32_t*)map->triangles + first : NULL});
     }
 }
 
@@ -148,5 +146,5 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
 void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES])
 {
-    FACTOR[map->context->isa](map, surface, factorOut);
+    vplVisibilityKernels_Get(map->context->isa)->paraboloidFactor(map, surface, factorOut);
 }

@@ -38,19 +38,6 @@ static inline float vplParaboloidMap_Rim(int size, int hemispheres)
     return hemispheres == 2 ? 1 + 3 / (float)size : 1;
 }
 
-// Texels of a hemisphere; `triangles` may be NULL.
-typedef struct vplParaboloidTexels {
-    float* texels;
-    int32_t* triangles;
-} vplParaboloidTexels;
-
-// Draws a hemisphere of a map, with a back or without; `scratch` has room for the blocks.
-typedef void vplDrawParaboloidFcn(const vplBvh* bvh, const vplParaboloidMap* map, int hemisphere,
-                                  vplParaboloidTexels scratch, vplParaboloidTexels out);
-
-typedef void vplParaboloidFactorFcn(const vplParaboloidMap* map, const vplSurface* surface,
-                                    float factor[restrict VPL_LANES]);
-
 // What is nearer to the place than a fragment and its plane by less than this share of the distance does not shadow
 // it: one footprint of a texel on the axis, where its centre is 2 sqrt(2) / size from its corner. Points dark in the map
 // only + in the ray only, in %, and the mean difference, for 1/2, 1, 3/2, 2 footprints (bench/paraboloid --agree, 256

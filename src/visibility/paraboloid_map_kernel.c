@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Draws a hemisphere of a paraboloid map: down a tree of triangles as far as they lie above the plane, sixteen side by
 // side. Compiled once per instruction set; all give the same bits.
-#include "base/isa.h"
 #include "math/scalar.h"
+#include "visibility/kernels.h"
 #include "visibility/paraboloid_fill.h"
-
-vplDrawParaboloidFcn VPL_KERNEL(vplDrawParaboloid);
 
 // The numbers of sixteen Fillings, side by side, and which texels each may cover.
 typedef struct Fillings {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "visibility/shadow.h"
 #include "base/context.h"
-#include "base/isa.h"
 #include "math/sampling.h"
+#include "visibility/kernels.h"
 
 #include <math.h>
-
-VPL_KERNEL_TABLE(BIAS, vplShadowBiasFcn, vplShadowBias);
-VPL_KERNEL_TABLE(FACTOR, vplShadowFactorFcn, vplShadowFactor);
 
 enum { SHADOW_COOKIE = 0x56504c51 };
 
@@ -83,18 +80,19 @@ float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine)
         distances[l] = distance;
         cosines[l] = cosine;
     }
-    BIAS[shadow->map->context->isa](shadow, distances, cosines, bias);
+    vplVisibilityKernels_Get(shadow->map->context->isa)->shadowBias(shadow, distances, cosines, bias);
     return bias[0];
 }
 
-int vplShadow_FactorBlockTold(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
+int vplShadow_FactorBlockCounted(const vplShadow* shadow, const vplSurface* surface,
+                                 float factorOut[VPL_LANES])
 {
-    return FACTOR[shadow->map->context->isa](shadow, surface, factorOut);
+    return vplVisibilityKernels_Get(shadow->map->context->isa)->shadowFactor(shadow, surface, factorOut);
 }
 
 void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
 {
-    vplShadow_FactorBlockTold(shadow, surface, factorOut);
+    vplShadow_FactorBlockCounted(shadow, surface, factorOut);
 }
 
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal)

@@ -7,17 +7,10 @@
 // a sample whose ray is off by at most a. On that plane the sample's ray is shortest when it is turned by a
 // towards the normal, where it has length r cos t / cos(t - a) (and r cos t where a > t: then the normal itself
 // is within reach). A bias of r minus that never shadows the plane by itself.
-#include "base/isa.h"
+#include "math/scalar.h"
 #include "visibility/cube_texel.h"
-#include "visibility/gather.h"
-#include "visibility/shadow.h"
-
-static inline float maxOf(float a, float b)
-{
-    return a > b ? a : b;
-}
-
-vplShadowBiasFcn VPL_KERNEL(vplShadowBias);
+#include "visibility/kernels.h"
+#include "visibility/map_gather.h"
 
 void VPL_KERNEL(vplShadowBias)(const vplShadow* shadow, const float* restrict distance,
                                const float* restrict cosine, float* restrict bias)
@@ -32,14 +25,14 @@ void VPL_KERNEL(vplShadowBias)(const vplShadow* shadow, const float* restrict di
     const float texel = shadow->texelTangent;
     const float radius = d->pcfSamples > 1 ? d->pcfOffset : 0;
     for (int l = 0; l < VPL_LANES; l++) {
-        float r = maxOf(distance[l], 1e-30f);
+        float r = vplMaxf(distance[l], 1e-30f);
         float kernel = radius / r;
         float rest = 1 - texel * kernel;
-        float tangent = (texel + kernel) / maxOf(rest, 1e-6f); // of the sum of both angles
+        float tangent = (texel + kernel) / vplMaxf(rest, 1e-6f); // of the sum of both angles
         float cosA = 1 / sqrtf(1 + tangent * tangent);
         float sinA = tangent * cosA;
         float cosT = cosine[l];
-        float sinT = sqrtf(maxOf(1 - cosT * cosT, 0));
+        float sinT = sqrtf(vplMaxf(1 - cosT * cosT, 0));
         float turned = sinT * cosA <= cosT * sinA ? 1 : cosT * cosA + sinT * sinA;
         // 2^-20 of the distance covers the rounding of both distances.
         bias[l] = r * (1 - cosT / turned) + r * 0x1p-20f;
@@ -150,23 +143,6 @@ static float countPoint(const vplShadow* shadow, const vplShadowPoints* restrict
     return (float)count;
 }
 
-// A point or an axis in the axes of a face. Only signs change, so that sums keep their bits.
-typedef struct InFace {
-    float right, up, major;
-} InFace;
-
-static InFace turn(int32_t face, float x, float y, float z)
-{
-    const bool negative = face & 1;
-    if (face >= 4) {
-        return (InFace){negative ? -x : x, y, negative ? -z : z};
-    }
-    if (face >= 2) {
-        return (InFace){x, negative ? z : -z, negative ? -y : y};
-    }
-    return (InFace){negative ? z : -z, y, negative ? -x : x};
-}
-
 // The same where all samples lie in one face, without finding out for each which one.
 static float countPointInFace(const vplShadow* shadow, const vplShadowPoints* restrict p, int lane,
                               const float axis[6][VPL_LANES], const Disc* restrict disc)
@@ -175,9 +151,9 @@ static float countPointInFace(const vplShadow* shadow, const vplShadowPoints* re
     const int32_t size = map->size, last = size - 1, samples = shadow->def.pcfSamples, face = p->face[lane];
     const float* restrict texels = map->texels + (size_t)face * (size_t)size * (size_t)size;
     const float sizeF = (float)size, far = map->far, limit = p->limit[lane];
-    const InFace at = turn(face, p->x[lane], p->y[lane], p->z[lane]);
-    const InFace alongU = turn(face, axis[0][lane], axis[1][lane], axis[2][lane]);
-    const InFace alongV = turn(face, axis[3][lane], axis[4][lane], axis[5][lane]);
+    const vplInFace at = vplTurnToFace(face, p->x[lane], p->y[lane], p->z[lane]);
+    const vplInFace alongU = vplTurnToFace(face, axis[0][lane], axis[1][lane], axis[2][lane]);
+    const vplInFace alongV = vplTurnToFace(face, axis[3][lane], axis[4][lane], axis[5][lane]);
     int32_t count = 0;
     for (int32_t first = 0; first < samples; first += VPL_LANES) {
         const float* restrict u = disc->u + first;
@@ -210,9 +186,6 @@ static void countUnknown(const vplShadow* shadow, const vplShadowPoints* p, cons
     }
 }
 
-vplShadowFactorFcn VPL_KERNEL(vplShadowFactor);
-extern vplShadowWindowFcn VPL_KERNEL(vplShadowWindow);
-
 int VPL_KERNEL(vplShadowFactor)(const vplShadow* shadow, const vplSurface* surface, float* restrict factor)
 {
     const vplVec3 light = shadow->map->position;
@@ -223,7 +196,7 @@ int VPL_KERNEL(vplShadowFactor)(const vplShadow* shadow, const vplSurface* surfa
     for (int l = 0; l < VPL_LANES; l++) {
         const float x = surface->px[l] - light.x, y = surface->py[l] - light.y, z = surface->pz[l] - light.z;
         distance[l] = sqrtf(x * x + y * y + z * z);
-        float inverse = 1 / maxOf(distance[l], 1e-30f); // a fragment in the light itself is not shadowed
+        float inverse = 1 / vplMaxf(distance[l], 1e-30f); // a fragment in the light itself is not shadowed
         lx[l] = -x * inverse;
         ly[l] = -y * inverse;
         lz[l] = -z * inverse;
@@ -240,11 +213,11 @@ int VPL_KERNEL(vplShadowFactor)(const vplShadow* shadow, const vplSurface* surfa
         p.limit[l] = distance[l] - bias[l];
     }
     int told = 0;
-    if (shadow->map->bounds == NULL || shadow->def.pcfSamples < VPL_MIN_BOUND_SAMPLES) {
+    if (shadow->def.pcfSamples < VPL_MIN_BOUND_SAMPLES) {
         discFrame(lx, ly, lz, axis);
         countShadowed(shadow, &p, axis, shadowed);
     } else {
-        told = VPL_KERNEL(vplShadowWindow)(shadow, &p, known, shadowed);
+        told = VPL_KERNEL(vplTestBounds)(shadow, surface, &p, known, shadowed);
         if (told < VPL_LANES) {
             discFrame(lx, ly, lz, axis);
             countUnknown(shadow, &p, axis, known, shadowed);

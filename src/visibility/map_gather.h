@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sixteen table entries at once. gcc 12 makes sixteen scalar loads and compares of the plain loop.
-#ifndef VPL_VISIBILITY_GATHER_H
-#define VPL_VISIBILITY_GATHER_H
+#ifndef VPL_VISIBILITY_MAP_GATHER_H
+#define VPL_VISIBILITY_MAP_GATHER_H
 
 #include <vpl/raster.h>
 
