@@ -13,9 +13,9 @@ vplShadowDef vplDefaultShadowDef(void)
     return (vplShadowDef){VPL_BIAS_AUTO, -1, -1, 16, -1, SHADOW_COOKIE};
 }
 
-// The document asks for S random offsets without a distribution. Ours are uniform on the disc: the concentric
-// map of Hammersley points on one half, and their opposites, so that a straight edge through the centre
-// shadows exactly half of an even S; an odd S has one sample in the centre.
+// The document asks for S random offsets without a distribution. These are uniform on the disc: Hammersley points mapped
+// concentrically to one half, and their opposites, so that a straight edge through the centre shadows exactly half of an
+// even S. An odd S has one sample in the centre.
 static void makeOffsets(vplShadow* shadow)
 {
     int pairs = shadow->def.pcfSamples / 2;
@@ -66,7 +66,7 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
     makeOffsets(&shadow);
     for (int i = 0; i < def->pcfSamples; i++) {
         const float x = shadow.offsets[i][0], y = shadow.offsets[i][1];
-        // A hair longer, for the rounding here and where a sample is placed.
+        // Slightly longer, for the rounding here and where a sample is placed.
         shadow.reach = fmaxf(shadow.reach, sqrtf(x * x + y * y) * shadow.def.pcfOffset * 1.00001f);
     }
     *shadowOut = shadow;
