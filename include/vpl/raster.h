@@ -2,9 +2,9 @@
 // A programmable tile rasterizer. Draws are recorded, then run tile by tile: all draws of one tile before the
 // next tile, so that a tile's pixels stay in cache however many passes there are.
 //
-// Rules: 8 bits of sub-pixel precision, vertices snapped to nearest even, top-left rule: a pixel centre on a shared edge is
-// covered exactly once. Depth is z/w in [0, 1], linear in screen space, and computed by one function for all passes, so
-// that a LESS pass and an EQUAL pass get the same bits.
+// Rules: 8 bits of sub-pixel precision, vertices snapped to nearest even, top-left rule: a pixel centre on a
+// shared edge is covered exactly once. Depth is z/w in [0, 1], linear in screen space, and computed by one
+// function for all passes, so that a LESS pass and an EQUAL pass get the same bits.
 #ifndef VPL_RASTER_H
 #define VPL_RASTER_H
 
@@ -32,7 +32,8 @@ typedef struct vplVertices {
 // Shades vertices first .. first + count - 1. Called from any worker.
 typedef void vplVertexFcn(const void* uniforms, int first, int count, const vplVertices* out);
 
-// A block of fragments of one triangle. Lanes that are not covered hold finite numbers that are never written to planes.
+// A block of fragments of one triangle. Lanes that are not covered hold finite numbers that are never written
+// to planes.
 typedef struct vplFragments {
     int32_t covered[VPL_LANES];                 // -1 where the lane is a fragment, else 0
     float depth[VPL_LANES];                     // z/w; a shader with writesDepth sets it
@@ -48,8 +49,9 @@ typedef struct vplFragments {
 // Shades one block. Called from any worker.
 typedef void vplFragmentFcn(const void* uniforms, vplFragments* fragments);
 
-// Shades one block by `count` fused passes, in order, with the uniforms of each. fragments->plane holds the framebuffer;
-// the shader adds to it what the passes add one after another. The bits must be the same for any split into calls.
+// Shades one block by `count` fused passes, in order, with the uniforms of each. fragments->plane holds the
+// framebuffer; the shader adds to it what the passes add one after another. The bits must be the same for any
+// split into calls.
 typedef void vplPassesFcn(const void* const* uniforms, int count, vplFragments* fragments);
 
 typedef enum vplDepthCompare {
@@ -77,26 +79,26 @@ typedef struct vplPipeline {
     int varyingCount;             // [0, VPL_MAX_VARYINGS]; default 0
     vplFragmentFcn* fragment;     // NULL (default): depth only
     const void* fragmentUniforms; // passed to it
-    // Runs before the fragment shader, with vertexUniforms; may change and add varyings. Runs once per block for all
-    // passes (ownerTest) over it. Default NULL.
+    // Runs before the fragment shader, with vertexUniforms; may change and add varyings. Runs once per block
+    // for all passes (ownerTest) over it. Default NULL.
     vplFragmentFcn* surface;
     int surfaceCount; // varyings after the surface shader, [varyingCount, VPL_MAX_VARYINGS]
-    // Replaces `fragment` in draws with ownerTest, EQUAL, no depth write, ADD and no culling: one call then shades a block
-    // for all such draws in a row. Default NULL.
+    // Replaces `fragment` in draws with ownerTest, EQUAL, no depth write, ADD and no culling: one call then
+    // shades a block for all such draws in a row. Default NULL.
     vplPassesFcn* passes;
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
-    // Not 0: depth is the distance from the eye of a view of 90 by 90 degrees, times this, instead of z/w. Only for draws
-    // without fragment shader and with depthCompare LESS. Default 0.
+    // Not 0: depth is the distance from the eye of a view of 90 by 90 degrees, times this, instead of z/w.
+    // Only for draws without fragment shader and with depthCompare LESS. Default 0.
     float distanceScale;
-    // With distanceScale, for any view: the distance is that along the view axis, and lies on the triangle's plane also
-    // where snapping covers a pixel whose centre is outside of the triangle. Default false.
+    // With distanceScale, for any view: the distance is that along the view axis, and lies on the triangle's
+    // plane also where snapping covers a pixel whose centre is outside of the triangle. Default false.
     bool distanceAlongAxis;
     bool writesDepth; // the fragment shader replaces depth before the depth test; default false
     bool needsW;      // shaders read w; without it w is valid only where there are varyings; default false
     bool readsPlanes; // the fragment shader reads the framebuffer and blends by itself; default false
-    // Draws only where the same triangle of the same mesh wrote depth last, so that one of coplanar surfaces counts.
-    // Default false.
+    // Draws only where the same triangle of the same mesh wrote depth last, so that one of coplanar surfaces
+    // counts. Default false.
     bool ownerTest;
     vplBlend blend;     // default VPL_BLEND_REPLACE
     vplCull cull;       // default VPL_CULL_NONE
@@ -117,9 +119,8 @@ typedef struct vplMesh {
 typedef struct vplPlane {
     float* pixels; // width * height floats; NULL: exists only while its tile is drawn
     bool load;     // starts from `pixels` instead of `clear`; default false
-    bool
-        scratch; // starts undefined, because draws write it before they read it; not for depth; default false
-    float clear; // default 1 for depth, 0 for colours
+    bool scratch;  // starts undefined: draws write it before they read it; not for depth; default false
+    float clear;   // default 1 for depth, 0 for colours
 } vplPlane;
 
 typedef struct vplFramebuffer {
@@ -127,8 +128,8 @@ typedef struct vplFramebuffer {
     vplPlane depth;
     vplPlane planes[VPL_MAX_PLANES];
     int planeCount; // [0, VPL_MAX_PLANES]
-    // Out, one per pixel: the triangle that wrote depth last, numbered through the meshes in the order in which they are
-    // first drawn; -1: none. Not with ownerTest. NULL (default): not wanted.
+    // Out, one per pixel: the triangle that wrote depth last, numbered through the meshes in the order in
+    // which they are first drawn; -1: none. Not with ownerTest. NULL (default): not wanted.
     int32_t* triangles;
     size_t scratchBytes; // private memory of a tile, zeroed at its start, for tile tasks; default 0
     uint32_t cookie;     // set by vplDefaultFramebuffer
@@ -174,11 +175,12 @@ vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeli
 // Records work on every tile.
 vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data);
 
-// Runs everything recorded, in order. `progress` (may be NULL) gets fractions from 0 to 1. May be called again. statsOut
-// may be NULL.
+// Runs everything recorded, in order. `progress` (may be NULL) gets fractions from 0 to 1. May be called
+// again. statsOut may be NULL.
 vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut);
 
-// The same for several rasters of one context, whose tiles run in parallel. statsOut: one per raster, or NULL.
+// The same for several rasters of one context, whose tiles run in parallel. statsOut: one per raster, or
+// NULL.
 vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
                            vplRasterStats* statsOut);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shadow maps: does light reach x from y? Cube maps for point lights, hemi-octahedral maps for virtual lights, paraboloid
-// maps for clusters of virtual lights. They know nothing of lights but their position.
+// Shadow maps: does light reach x from y? Cube maps for point lights, hemi-octahedral maps for virtual
+// lights, paraboloid maps for clusters of virtual lights. They know nothing of lights but their position.
 #ifndef VPL_VISIBILITY_H
 #define VPL_VISIBILITY_H
 
@@ -16,8 +16,8 @@ extern "C" {
 // With fewer samples per point a shadow does not use the map's bounds.
 #define VPL_MIN_BOUND_SAMPLES 8
 
-// A face of a cube around a point, 90 degrees of view. Faces are numbered +x, -x, +y, -y, +z, -z. Frames are those of
-// Direct3D: left-handed, right x up = forward.
+// A face of a cube around a point, 90 degrees of view. Faces are numbered +x, -x, +y, -y, +z, -z. Frames are
+// those of Direct3D: left-handed, right x up = forward.
 typedef struct vplCubeFrame {
     vplVec3 right, up, forward;
 } vplCubeFrame;
@@ -32,8 +32,8 @@ typedef struct vplCubePoint {
     int column, row; // in [0, size - 1]
 } vplCubePoint;
 
-// Finds the point where a direction of any length meets the cube, for a map with `size` texels a side. Ties go to z, then
-// y, then x. Returns false for the zero vector.
+// Finds the point where a direction of any length meets the cube, for a map with `size` texels a side. Ties
+// go to z, then y, then x. Returns false for the zero vector.
 bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut);
 
 typedef struct vplCubeMapDef {
@@ -58,19 +58,20 @@ typedef struct vplCubeMap {
     struct vplArena* arena; // owns the map and its texels
 } vplCubeMap;
 
-// Draws every object into the six faces. Source: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow
-// Map". Departs: distances are not clamped to far, because that falsely shadows the corners of the cube.
+// Draws every object into the six faces. Source: Franchi and Ferrante, Virtual Point Lights, "Rendering the
+// Cube Shadow Map". Departs: distances are not clamped to far, because that falsely shadows the corners of
+// the cube.
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
                             void* user, vplCubeMap** mapOut);
 
-// Draws the map again, for a light that moved. The size must be the same; no texels are allocated, and bounds are freed.
-// On failure the map's contents are undefined.
+// Draws the map again, for a light that moved. The size must be the same; no texels are allocated, and bounds
+// are freed. On failure the map's contents are undefined.
 vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
                             vplProgressFcn* progress, void* user);
 
-// Finds bounds of the texels in each region, so that for most points one test replaces all samples of a soft shadow.
-// Shadows keep their bits. It costs about as much as half a sample per texel, and pays where points times samples are
-// more than half the texels (bench/shadow). On failure the map is as it was.
+// Finds bounds of the texels in each region, so that for most points one test replaces all samples of a soft
+// shadow. Shadows keep their bits. It costs about as much as half a sample per texel, and pays where points
+// times samples are more than half the texels (bench/shadow). On failure the map is as it was.
 vplResult vplCubeMap_FindBounds(vplCubeMap* map);
 
 // NULL is allowed.
@@ -87,11 +88,11 @@ typedef enum vplBiasRule {
 
 typedef struct vplShadowDef {
     vplBiasRule biasRule; // default VPL_BIAS_AUTO
-    float biasStatic;     // b_s, metres, for the pair; negative (default): far * texel half-angle + pcfOffset
-    float biasDynamic; // b_dmax, metres, for the pair; negative (default): 5.6 b_s, no acne up to 80 degrees
-    int pcfSamples;    // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
-    float
-        pcfOffset; // off: radius of the disc of samples at the fragment, metres, >= 0; negative (default): far / 128
+    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): far * texel half-angle + pcfOffset, and
+    // 5.6 b_s, which is free of acne up to 80 degrees.
+    float biasStatic, biasDynamic;
+    int pcfSamples;  // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
+    float pcfOffset; // off: radius of the disc of samples, metres, >= 0; negative (default): far / 128
     uint32_t cookie; // set by vplDefaultShadowDef
 } vplShadowDef;
 
@@ -113,8 +114,8 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
 // Shadows"; VPL_BIAS_EXACT from the geometry of a plane, derived in src/visibility/shadow_kernel.c.
 float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine);
 
-// The shadow factor s in [0, 1] at a surface point: the fraction of samples with something nearer to the light. The
-// samples lie on a disc perpendicular to the light, so that no seams show at the cube's edges.
+// The shadow factor s in [0, 1] at a surface point: the fraction of samples with something nearer to the
+// light. The samples lie on a disc perpendicular to the light, so that no seams show at the cube's edges.
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal);
 
 // 16 points at once: the positions and unit normals of a block.
@@ -125,18 +126,22 @@ typedef struct vplSurface {
 
 void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES]);
 
-// ---- hemi-octahedral maps: many small shadow maps of virtual lights, which shine to one side of their surface
+// ---- hemi-octahedral maps: many small shadow maps of virtual lights, which shine to one side of their
+// surface
 
-// The half space above a surface, mapped to the upper half of an octahedron, seen from above and turned by 45 degrees:
-// the direction (x, y, z) in the frame below maps to (u, v) = (x + y, x - y) / (|x| + |y| + z) in [-1, 1]^2. Straight
-// edges stay straight except for kinks where x or y is 0. One square replaces a half cube's three.
-// Source: Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003 (the octahedron); Zina
-// Cigolle and others, A Survey of Efficient Representations for Independent Unit Vectors, JCGT 2014 (its half).
+// The half space above a surface, mapped to the upper half of an octahedron, seen from above and turned by 45
+// degrees: the direction (x, y, z) in the frame below maps to (u, v) = (x + y, x - y) / (|x| + |y| + z) in
+// [-1, 1]^2. Straight edges stay straight except for kinks where x or y is 0. One square replaces a half
+// cube's three.
+// Source: Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003 (the
+// octahedron); Zina Cigolle and others, A Survey of Efficient Representations for Independent Unit Vectors,
+// JCGT 2014 (its half).
 typedef struct vplHemiMap {
     vplVec3 position;           // metres; slightly above the surface
     vplVec3 right, up, forward; // right-handed, unit; forward is the surface's normal
     int size;                   // texels along a side
-    // 1 / (|x| + |y| + z) of the nearest surface, 1/metres; 0 where nothing is. Blocks of 4 x 4 columns (u) and rows (v).
+    // 1 / (|x| + |y| + z) of the nearest surface, 1/metres; 0 where nothing is. Blocks of 4 x 4 columns (u)
+    // and rows (v).
     const float* texels;
     vplContext* context;
 } vplHemiMap;
@@ -168,41 +173,42 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
 // NULL is allowed.
 void vplHemiMaps_Destroy(vplHemiMaps* maps);
 
-// The shadow factor of 16 points: 1 where something nearer to the map's position hides it, and where the position lies
-// behind the point's surface; else 0.
-// A ray gives the same answer except within a band. The centre of a texel is off a point at distance r, in the direction
-// (x, y, z), by at most the footprint f = sqrt(2) (|x| + |y| + z) / size. Along the point's plane, at the angle T to the
-// light, it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r, as in VPL_BIAS_EXACT. Blockers nearer to
-// the point than 1.5 f are ignored. So map and ray agree where every blocker is further than 2.5 f + b from the point and
-// blocks either all or none of the rays to the point's plane within f around it.
+// The shadow factor of 16 points: 1 where something nearer to the map's position hides it, and where the
+// position lies behind the point's surface; else 0.
+// A ray gives the same answer except within a band. The centre of a texel is off a point at distance r, in
+// the direction (x, y, z), by at most the footprint f = sqrt(2) (|x| + |y| + z) / size. Along the point's
+// plane, at the angle T to the light, it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r,
+// as in VPL_BIAS_EXACT. Blockers nearer to the point than 1.5 f are ignored. So map and ray agree where every
+// blocker is further than 2.5 f + b from the point and blocks either all or none of the rays to the point's
+// plane within f around it.
 void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
 
 // ---- paraboloid maps: shadow maps of clusters of virtual lights
 
-// Projects a direction of any length, in a map's frame (z along its axis), to the map of the front hemisphere: p = (x, y)
-// / (|d| + z), inside the unit disk where z >= 0. Returns false where z is -|d|, and for the zero vector. It is the
-// stereographic projection: circles stay circles, and an area of the disk covers 4 / (1 + p^2)^2 times as much solid
-// angle.
+// Projects a direction of any length, in a map's frame (z along its axis), to the map of the front
+// hemisphere: p = (x, y) / (|d| + z), inside the unit disk where z >= 0. Returns false where z is -|d|, and
+// for the zero vector. It is the stereographic projection: circles stay circles, and an area of the disk
+// covers 4 / (1 + p^2)^2 times as much solid angle.
 // Source: Wolfgang Heidrich and Hans-Peter Seidel, View-independent Environment Maps, Graphics Hardware 1998.
 bool vplParaboloid_Project(vplVec3 direction, double* x, double* y);
 
 // The unit direction of a point of the map: the inverse.
 vplVec3 vplParaboloid_Unproject(double x, double y);
 
-// The flux that a diffuse light sends through a point of the unit disk, as a multiple of the mean over the disk:
-// 4 (1 - p^2) / (1 + p^2)^3, the cosine times the solid angle. 0 outside of the disk.
+// The flux that a diffuse light sends through a point of the unit disk, as a multiple of the mean over the
+// disk: 4 (1 - p^2) / (1 + p^2)^3, the cosine times the solid angle. 0 outside of the disk.
 double vplParaboloid_Weight(double x, double y);
 
-// The surfaces around one position. Hemisphere 0 looks along `forward`, hemisphere 1 (if there are two) back, with z
-// reversed: p = (x, y) / (|d| - z).
+// The surfaces around one position. Hemisphere 0 looks along `forward`, hemisphere 1 (if there are two) back,
+// with z reversed: p = (x, y) / (|d| - z).
 typedef struct vplParaboloidMap {
     vplVec3 position;           // metres
     vplVec3 right, up, forward; // right-handed, unit
     int size;                   // texels along a side; the disk touches the sides of the square
     int hemispheres;            // 1 or 2
-    // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is, and outside of the disk
-    // (with two hemispheres: by more than a texel's diagonal). [hemisphere][row + 1 (y)][column + 1 (x)], size + 2 rows
-    // and columns: those at the sides are stored twice.
+    // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is, and outside
+    // of the disk (with two hemispheres: by more than a texel's diagonal). [hemisphere][row + 1 (y)][column +
+    // 1 (x)], size + 2 rows and columns: those at the sides are stored twice.
     const float* texels;
     // Index of that surface in the geometry, in the same order; -1 where nothing is. NULL: not kept.
     const int32_t* triangles;
@@ -224,19 +230,19 @@ typedef struct vplParaboloidPlace {
     vplVec3 position; // metres
     vplVec3 normal;   // unit: the axis
     int hemispheres;  // 1: nothing behind the plane is needed; 2
-    bool
-        onSurface; // the position lies on a surface, which must not hide it: the map is drawn from slightly above
+    // The position lies on a surface, which must not hide it: the map is drawn from slightly above.
+    bool onSurface;
 } vplParaboloidPlace;
 
-// Makes room for `capacity` maps of two hemispheres with `size` texels a side, [1, VPL_MAX_SHADOW_MAP]. `triangles`:
-// keeps the surfaces that vplParaboloidMap_GetHit needs.
+// Makes room for `capacity` maps of two hemispheres with `size` texels a side, [1, VPL_MAX_SHADOW_MAP].
+// `triangles`: keeps the surfaces that vplParaboloidMap_GetHit needs.
 vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, bool triangles,
                                    vplParaboloidMaps** mapsOut);
 
-// Draws maps from `count` places, at most the capacity, in parallel. They replace all maps drawn before. One pass over
-// the triangles per hemisphere. Edges are drawn as the circles that they are: the planes through an edge and the eye
-// decide whether a texel's centre lies in a triangle. The document's rasterizer draws straight edges, up to 169 of 512
-// texels off.
+// Draws maps from `count` places, at most the capacity, in parallel. They replace all maps drawn before. One
+// pass over the triangles per hemisphere. Edges are drawn as the circles that they are: the planes through an
+// edge and the eye decide whether a texel's centre lies in a triangle. The document's rasterizer draws
+// straight edges, up to 169 of 512 texels off.
 vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geometry,
                                  const vplParaboloidPlace* places, int count, vplProgressFcn* progress,
                                  void* user);
@@ -248,20 +254,21 @@ typedef struct vplParaboloidTexel {
     int hemisphere, column, row;
 } vplParaboloidTexel;
 
-// Finds the surface in a texel: the hit of the ray through its centre, and that ray's unit direction in the world.
-// Returns false where nothing is and outside of the disk. The map must have triangles.
+// Finds the surface in a texel: the hit of the ray through its centre, and that ray's unit direction in the
+// world. Returns false where nothing is and outside of the disk. The map must have triangles.
 bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry,
                              vplParaboloidTexel texel, vplHit* hitOut, vplVec3* directionOut);
 
-// The shadow factor in [0, 1] of 16 points: the bilinear weight of those of the four texels around the point that show
-// something nearer to the map's position than the point's own plane. The plane may face either way, because lights beside
-// the map's position may be in front of it. Points in a hemisphere that was not drawn get 1. Texels beyond the rim of a
-// single hemisphere hide nothing.
-// A ray gives the same answer except within a band. The centres of the texels are off a point at distance r by at most a
-// texel's diagonal f = 2 sqrt(2) (r + |z|) / size, z along the axis. Along the point's plane, at the angle T to the light,
-// they are nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r. Blockers nearer to the point than f / 2 are
-// ignored. So map and ray agree where every blocker is further than 2.5 f + b from the point and blocks either all or
-// none of the rays to the point's plane within f around it.
+// The shadow factor in [0, 1] of 16 points: the bilinear weight of those of the four texels around the point
+// that show something nearer to the map's position than the point's own plane. The plane may face either way,
+// because lights beside the map's position may be in front of it. Points in a hemisphere that was not drawn
+// get 1. Texels beyond the rim of a single hemisphere hide nothing.
+// A ray gives the same answer except within a band. The centres of the texels are off a point at distance r
+// by at most a texel's diagonal f = 2 sqrt(2) (r + |z|) / size, z along the axis. Along the point's plane, at
+// the angle T to the light, they are nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r.
+// Blockers nearer to the point than f / 2 are ignored. So map and ray agree where every blocker is further
+// than 2.5 f + b from the point and blocks either all or none of the rays to the point's plane within f
+// around it.
 void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES]);
 

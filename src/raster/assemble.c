@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Makes references to the triangles that may be visible, in drawing order. Chunks of triangles run in parallel; each
-// knows beforehand where its results go, so that the order does not depend on threads.
+// Makes references to the triangles that may be visible, in drawing order. Chunks of triangles run in
+// parallel; each knows beforehand where its results go, so that the order does not depend on threads.
 #include "raster/raster.h"
 
 #include <string.h>
 
-// Moves *mesh to the mesh of triangle `first`. Returns where its part of the triangles `first` to `end` - 1 ends.
+// Moves *mesh to the mesh of triangle `first`. Returns where its part of the triangles `first` to `end` - 1
+// ends.
 static int meshPart(const vplRaster* r, int first, int end, int* mesh)
 {
     while (*mesh + 1 < r->shadedCount && r->shaded[*mesh + 1].firstTriangle <= first) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Barycentrics: perspective-correct interpolation within a triangle. Included by the tile kernel only.
-// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D Homogeneous Coordinates, Graphics Hardware
-// 1997: with corners (X, Y, w) in homogeneous pixels, barycentric coordinate i of the point seen at pixel p is proportional
-// to (corner j x corner k) . (p, 1). Corners are neither divided by w nor snapped: snapping decides coverage only and
-// moves no surface.
+// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D Homogeneous Coordinates, Graphics
+// Hardware 1997: with corners (X, Y, w) in homogeneous pixels, barycentric coordinate i of the point seen at
+// pixel p is proportional to (corner j x corner k) . (p, 1). Corners are neither divided by w nor snapped:
+// snapping decides coverage only and moves no surface.
 #ifndef VPL_RASTER_BARYCENTRICS_H
 #define VPL_RASTER_BARYCENTRICS_H
 
@@ -74,8 +74,8 @@ static inline void setUpBarycentrics(const vplRaster* r, const Batch* t, int pla
     }
 }
 
-// Weights of corner i in a block. The barycentrics are the weights divided by their sum. They are clamped at 0, so that
-// points of the outline stay within the triangle and lanes that are not covered finite.
+// Weights of corner i in a block. The barycentrics are the weights divided by their sum. They are clamped at
+// 0, so that points of the outline stay within the triangle and lanes that are not covered finite.
 static inline void cornerWeights(const Barycentrics* s, int i, int x, int y, float weight[VPL_LANES])
 {
     const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);

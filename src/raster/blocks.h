@@ -43,8 +43,8 @@ static inline int32_t passes(vplDepthCompare compare, float depth, float old)
     return -1;
 }
 
-// Leaves the lanes covered that pass the owner and depth tests. Returns 0 if there are none. Callers pass a constant
-// `compare`, so that each test is a loop without branches.
+// Leaves the lanes covered that pass the owner and depth tests. Returns 0 if there are none. Callers pass a
+// constant `compare`, so that each test is a loop without branches.
 static inline int32_t testLanes(vplTileState* state, vplDepthCompare compare, bool ownerTest, int owner,
                                 int at)
 {
@@ -123,7 +123,8 @@ static void keepBlock(vplTileState* state)
     memcpy(to + 2 * VPL_LANES, f->varying, (size_t)keptVaryings(state) * sizeof f->varying[0]);
 }
 
-// Counters of fragments by lane. Neighbouring blocks use different ones, so that no block waits for the one before.
+// Counters of fragments by lane. Neighbouring blocks use different ones, so that no block waits for the one
+// before.
 static inline int32_t* countersOf(vplTileState* state, int at)
 {
     return state->fragmentLanes[at / VPL_LANES % VPL_COUNTERS];
@@ -146,8 +147,8 @@ static inline void writeNearerOwner(vplTileState* state, int owner, int at, cons
     memcpy(state->owner + at, owners, sizeof owners);
 }
 
-// Ends draws that write depth only: keeps the nearer of two depths. `filled`: all lanes are covered. Lanes are copied
-// first, so that the compiler knows that arrays do not overlap.
+// Ends draws that write depth only: keeps the nearer of two depths. `filled`: all lanes are covered. Lanes
+// are copied first, so that the compiler knows that arrays do not overlap.
 static inline void writeNearer(vplTileState* state, int owner, int at, const float drawn[VPL_LANES],
                                bool filled)
 {
@@ -177,8 +178,8 @@ static inline void drawDepth(const Draw* d, const Setup* s, double z, int at, bo
     writeNearer(d->state, d->owner, at, drawn, filled);
 }
 
-// Draws the distance from the eye. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow
-// Map". Departs: w is turned into a distance by the texel's own direction.
+// Draws the distance from the eye. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube
+// Shadow Map". Departs: w is turned into a distance by the texel's own direction.
 static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
 {
     const float scale = d->pipeline->distanceScale, texel = d->texel;
@@ -275,7 +276,8 @@ static void drawFragments(Draw* d, const Setup* s, double z)
     }
 }
 
-// z: depth in lane 0. `edge`: edge functions in lane 0, or NULL: all lanes are inside the triangle and the picture.
+// z: depth in lane 0. `edge`: edge functions in lane 0, or NULL: all lanes are inside the triangle and the
+// picture.
 static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y, double z,
                                                             const int32_t edge[3])
 {

@@ -14,8 +14,8 @@ static inline void edgesAt(const Setup* s, int x, int y, int32_t edge[3])
     }
 }
 
-// Finds the lanes of the block at (x, y) that are inside the triangle and the picture. Returns 0 if there are none.
-// `edge`: the edge functions in lane 0.
+// Finds the lanes of the block at (x, y) that are inside the triangle and the picture. Returns 0 if there are
+// none. `edge`: the edge functions in lane 0.
 static inline int32_t cover(const vplTile* tile, const Setup* s, const int32_t edge[3], int x, int y,
                             int32_t covered[restrict VPL_LANES])
 {
@@ -47,8 +47,9 @@ static inline double least3(double a, double b, double c)
     return ab < c ? ab : c;
 }
 
-// Finds which of 4 x 4 cells of `side` pixels, the first at (x, y), a triangle touches and which it fills. Doubles hold
-// these integers exactly, and unlike 64-bit integers they have a minimum in every instruction set.
+// Finds which of 4 x 4 cells of `side` pixels, the first at (x, y), a triangle touches and which it fills.
+// Doubles hold these integers exactly, and unlike 64-bit integers they have a minimum in every instruction
+// set.
 static inline Cells classify(const Setup* s, int x, int y, int side)
 {
     double e[3], right[3], down[3], most[3], least[3];

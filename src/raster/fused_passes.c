@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Passes are draws that change neither depth nor owner and shade the visible fragments, as Franchi and Ferrante draw the
-// scene once per virtual light with depth EQUAL. All passes over a mesh see the same fragments, so coverage, depth and
-// interpolation are done once per tile; each pass only runs its shader. A pixel has one owner, so the order of the
-// meshes does not matter, only that of the passes.
+// Passes are draws that change neither depth nor owner and shade the visible fragments, as Franchi and
+// Ferrante draw the scene once per virtual light with depth EQUAL. All passes over a mesh see the same
+// fragments, so coverage, depth and interpolation are done once per tile; each pass only runs its shader. A
+// pixel has one owner, so the order of the meshes does not matter, only that of the passes.
 //
-// A row is a run of passes in the list of commands; a chain is the passes of a row over one mesh. The passes of a chain
-// are fused, that is shaded by one call, where they share a shader that takes several passes.
+// A row is a run of passes in the list of commands; a chain is the passes of a row over one mesh. The passes
+// of a chain are fused, that is shaded by one call, where they share a shader that takes several passes.
 #include "raster/raster.h"
 
 bool vplIsPass(const vplPipeline* p)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Shades kept blocks by all passes over them; see fused_passes.c. Compiled once per instruction set; all give the same
-// bits.
+// Shades kept blocks by all passes over them; see fused_passes.c. Compiled once per instruction set; all give
+// the same bits.
 #include "raster/kernels.h"
 #include "raster/shaders.h"
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// All kernels of the rasterizer: one list, from which prototypes and a table for each instruction set are made.
+// All kernels of the rasterizer: one list, from which prototypes and a table for each instruction set are
+// made.
 #ifndef VPL_RASTER_KERNELS_H
 #define VPL_RASTER_KERNELS_H
 
 #include "base/isa.h"
 #include "raster/raster.h"
 
-// Draws the triangles refs[list[0]] to refs[list[count - 1]] of one command into one tile. `keep` stores the blocks for
-// the passes instead of shading them.
+// Draws the triangles refs[list[0]] to refs[list[count - 1]] of one command into one tile. `keep` stores the
+// blocks for the passes instead of shading them.
 typedef void vplDrawTileFcn(vplTileState* state, const vplRaster* raster, const vplCommand* command,
                             const int* list, int count, bool keep);
 

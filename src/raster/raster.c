@@ -100,8 +100,8 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
     return VPL_SUCCESS;
 }
 
-// Draws of one mesh with one vertex shader and uniforms share their vertex work. Scenes draw their objects round and
-// round, so the search starts behind the one found last. Returns -1 where there is none.
+// Draws of one mesh with one vertex shader and uniforms share their vertex work. Scenes draw their objects
+// round and round, so the search starts behind the one found last. Returns -1 where there is none.
 static int findShaded(const vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
 {
     const int last = raster->commandCount > 0 ? raster->commands[raster->commandCount - 1].shaded : -1;

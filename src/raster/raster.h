@@ -19,8 +19,8 @@ typedef struct vplScreenVertex {
     float z;      // z/w
 } vplScreenVertex;
 
-// A triangle that may be visible. Each tile that it touches looks its corners up again: this writes 8 bytes instead of
-// 52, and a million small triangles are limited by memory.
+// A triangle that may be visible. Each tile that it touches looks its corners up again: this writes 8 bytes
+// instead of 52, and a million small triangles are limited by memory.
 typedef struct vplTriangleRef {
     uint32_t source;        // number among all meshes' triangles, or VPL_CLIPPED | index in `clipped`
     uint8_t x0, y0, x1, y1; // tiles that its pixel box touches
@@ -35,8 +35,8 @@ typedef struct vplClippedTriangle {
     int32_t primitive;
 } vplClippedTriangle;
 
-// Pixels whose centres may lie in a triangle: columns x0 to x1, rows y0 to y1; empty if x1 < x0 or y1 < y0. The
-// centre of pixel i lies at 256 i + 128.
+// Pixels whose centres may lie in a triangle: columns x0 to x1, rows y0 to y1; empty if x1 < x0 or y1 < y0.
+// The centre of pixel i lies at 256 i + 128.
 typedef struct vplPixelBox {
     int x0, x1, y0, y1;
 } vplPixelBox;
@@ -159,8 +159,8 @@ typedef struct vplTriangleStage {
     int* counts; // [chunk][tile]; after the prefix sum: where the chunk's next entry goes
 } vplTriangleStage;
 
-// Tasks of vplParallelFor. The first counts a chunk's triangles that may have to be clipped; the second makes its refs,
-// clips, and counts refs by tile.
+// Tasks of vplParallelFor. The first counts a chunk's triangles that may have to be clipped; the second makes
+// its refs, clips, and counts refs by tile.
 void vplCountCuts(void* stage, int chunk, int worker);
 void vplAssembleChunk(void* stage, int chunk, int worker);
 
@@ -172,8 +172,8 @@ vplResult vplFindPasses(vplRaster* raster);
 
 bool vplIsPass(const vplPipeline* pipeline);
 
-// A block that passed depth and owner tests, stored for the passes over it. Depths, w and varyings follow, 16 floats
-// each.
+// A block that passed depth and owner tests, stored for the passes over it. Depths, w and varyings follow, 16
+// floats each.
 typedef struct vplKeptBlock {
     int32_t x, y, element, primitive, count;
     _Alignas(64) int32_t covered[VPL_LANES];
@@ -186,8 +186,8 @@ typedef struct vplTileState {
     vplTile tile;
     float* depth;    // the tile's
     float* farthest; // one per block, square by square: not less than any depth in it
-    // The triangle that wrote depth last: index of its ref, or where the framebuffer wants triangles, its number among
-    // all meshes'. -1: none. NULL where nobody asks.
+    // The triangle that wrote depth last: index of its ref, or where the framebuffer wants triangles, its
+    // number among all meshes'. -1: none. NULL where nobody asks.
     int32_t* owner;
     int* meshStart; // [shadedCount + 1] into the tile's bin
     char* kept;     // vplKeptBlocks of `keptStride` bytes, at most one per pixel

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Sets triangles up for a tile, 16 at a time, so that the arithmetic of small ones is vectorised. Included by the tile
-// kernel only, so that it is compiled for each instruction set.
+// Sets triangles up for a tile, 16 at a time, so that the arithmetic of small ones is vectorised. Included by
+// the tile kernel only, so that it is compiled for each instruction set.
 // Based on: Juan Pineda, A Parallel Algorithm for Polygon Rasterization, SIGGRAPH 1988: edge functions. Ours
-// are exact integers, so coverage cannot depend on where a block or a tile starts. Doubles hold them: products of
-// 24-bit numbers and sums of a few of them stay below 2^53, and all instruction sets multiply doubles.
+// are exact integers, so coverage cannot depend on where a block or a tile starts. Doubles hold them:
+// products of 24-bit numbers and sums of a few of them stay below 2^53, and all instruction sets multiply
+// doubles.
 #ifndef VPL_RASTER_SETUP_H
 #define VPL_RASTER_SETUP_H
 
@@ -18,8 +19,8 @@ typedef struct Batch {
     // Corners, 24.8 fixed point; oriented by setUpBatch.
     _Alignas(64) int32_t x[3][BATCH], y[3][BATCH];
     _Alignas(64) float z[3][BATCH];
-    // Edge functions at the centre of the tile's first pixel, with the bias of setUpBatch, and their growth per sub-pixel
-    // in x and y.
+    // Edge functions at the centre of the tile's first pixel, with the bias of setUpBatch, and their growth
+    // per sub-pixel in x and y.
     _Alignas(64) double e[3][BATCH], a[3][BATCH], b[3][BATCH];
     // Depth at the same place, and its growth per pixel.
     _Alignas(64) double planeZ[BATCH], zx[BATCH], zy[BATCH];
@@ -110,8 +111,8 @@ static inline void orientBatch(Batch* t)
     }
 }
 
-// Rounds an edge function to whole pixels. Within a block it grows by less than 2^28, so beyond 2^30 only the sign
-// matters.
+// Rounds an edge function to whole pixels. Within a block it grows by less than 2^28, so beyond 2^30 only the
+// sign matters.
 static inline int32_t edgeOf(double e)
 {
     double v = e * 0x1p-8;

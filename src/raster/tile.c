@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs all commands on one tile after another. A tile's pixels live in its worker's memory, in 4 x 4 blocks, and are
-// copied from and to the row-major planes only at the start and the end.
+// Runs all commands on one tile after another. A tile's pixels live in its worker's memory, in 4 x 4 blocks,
+// and are copied from and to the row-major planes only at the start and the end.
 #include "raster/kernels.h"
 
 #include <math.h>
@@ -228,8 +228,8 @@ static void* take(char* memory, size_t* at, size_t bytes)
     return taken;
 }
 
-// Places a worker's arrays in `memory` (NULL: only measures) and returns how many bytes they take. All start at a cache
-// line, so that no vector straddles two.
+// Places a worker's arrays in `memory` (NULL: only measures) and returns how many bytes they take. All start
+// at a cache line, so that no vector straddles two.
 static size_t layOut(const Sizes* n, vplTileState* state, char* memory)
 {
     const size_t plane = VPL_TILE_PIXELS * sizeof(float), perMesh = (n->meshes + 1) * sizeof(int);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Draws triangles into one tile: 4 x 4 squares of 4 x 4 blocks of 4 x 4 pixels. Squares and blocks that a triangle does
-// not touch are skipped; in those that it fills no pixel is tested for coverage. Compiled once per instruction set; all
-// give the same bits.
-// Based on: Michael Abrash, Rasterization on Larrabee, Game Developers Conference 2009: three levels of 4 x 4.
-// Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility, SIGGRAPH 1993: a block stores a bound of
-// its depths, and triangles behind that are skipped.
+// Draws triangles into one tile: 4 x 4 squares of 4 x 4 blocks of 4 x 4 pixels. Squares and blocks that a
+// triangle does not touch are skipped; in those that it fills no pixel is tested for coverage. Compiled once
+// per instruction set; all give the same bits.
+// Based on: Michael Abrash, Rasterization on Larrabee, Game Developers Conference 2009: three levels of 4 x
+// 4. Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility, SIGGRAPH 1993: a block
+// stores a bound of its depths, and triangles behind that are skipped.
 #include "raster/blocks.h"
 #include "raster/kernels.h"
 

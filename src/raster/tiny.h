@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Draws triangles whose pixel box has at most 2 x 2 centres: the lanes are 16 triangles, because a block of 16 pixels
-// would use 4 of its lanes at most. Included by the tile kernel only.
+// Draws triangles whose pixel box has at most 2 x 2 centres: the lanes are 16 triangles, because a block of
+// 16 pixels would use 4 of its lanes at most. Included by the tile kernel only.
 #ifndef VPL_RASTER_TINY_H
 #define VPL_RASTER_TINY_H
 

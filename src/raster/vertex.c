@@ -16,8 +16,8 @@ static Pixel toPixel(const vplRaster* raster, double x, double y, double w)
                    (0.5 - y / w * 0.5) * raster->framebuffer.height};
 }
 
-// Rounds to the nearest even, as Direct3D snaps, so that both sides of an edge agree. Adding 1.5 * 2^52 leaves no bits
-// below 1; rint does the same, but is a function call on plain x86-64.
+// Rounds to the nearest even, as Direct3D snaps, so that both sides of an edge agree. Adding 1.5 * 2^52
+// leaves no bits below 1; rint does the same, but is a function call on plain x86-64.
 static int32_t nearest(double v)
 {
     return (int32_t)((v + 0x1.8p52) - 0x1.8p52);

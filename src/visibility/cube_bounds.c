@@ -2,7 +2,6 @@
 // Builds the bounds of a cube map: the regions of level 0 from texels, each further level from the one below.
 #include "visibility/cube_bounds.h"
 #include "base/context.h"
-#include "math/scalar.h"
 #include "visibility/kernels.h"
 
 #include <string.h>

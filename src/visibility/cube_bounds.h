@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Bounds of what square regions of a cube map show, so that one test often replaces all samples of 16 points.
-// Based on: the depth pyramid of Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility, SIGGRAPH
-// 1993. Departs: a region has the bounding box of its surface points besides its nearest and farthest distance. A floor
-// seen at a slant spans more distance within a region than any bias, but its box is as flat as the floor, so that the
-// test against the receiver's plane finds that the floor does not shadow itself.
+// Based on: the depth pyramid of Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility,
+// SIGGRAPH 1993. Departs: a region has the bounding box of its surface points besides its nearest and
+// farthest distance. A floor seen at a slant spans more distance within a region than any bias, but its box
+// is as flat as the floor, so that the test against the receiver's plane finds that the floor does not shadow
+// itself.
 #ifndef VPL_VISIBILITY_CUBE_BOUNDS_H
 #define VPL_VISIBILITY_CUBE_BOUNDS_H
 
 #include <vpl/visibility.h>
 
-// A texel shows the surface point D d: D is its stored distance times far, d the unit direction of its centre, and the
-// axes are the face's right, up and forward.
+#include "math/scalar.h"
+
+// A texel shows the surface point D d: D is its stored distance times far, d the unit direction of its
+// centre, and the axes are the face's right, up and forward.
 enum {
     VPL_LEAST_POINT,                            // smallest x, y, z of the region's points, rounded down
     VPL_LEAST_NEGATED = VPL_LEAST_POINT + 3,    // smallest -x, -y, -z, rounded down
@@ -19,7 +22,8 @@ enum {
     VPL_REGION_VALUES
 };
 
-// Only minima, so that eight of them are merged by one vector operation. Texels that show nothing have no point.
+// Only minima, so that eight of them are merged by one vector operation. Texels that show nothing have no
+// point.
 typedef struct vplCubeRegion {
     float least[VPL_REGION_VALUES];
 } vplCubeRegion;
@@ -35,5 +39,18 @@ typedef struct vplCubeBounds {
     int first[VPL_REGION_LEVELS];
     vplCubeRegion regions[];
 } vplCubeBounds;
+
+// The least of 16, by halves: a chain would wait for each step.
+static inline float vplLeastLane(const float* restrict values)
+{
+    float a[8], b[4];
+    for (int l = 0; l < 8; l++) {
+        a[l] = vplMinf(values[l], values[l + 8]);
+    }
+    for (int l = 0; l < 4; l++) {
+        b[l] = vplMinf(a[l], a[l + 4]);
+    }
+    return vplMinf(vplMinf(b[0], b[2]), vplMinf(b[1], b[3]));
+}
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow Map": six views with 90 degrees each,
-// depth = world distance / far. Departs: the view depth w is turned into a distance by the texel's own direction instead
-// of interpolating world positions; distances are not clamped at far.
+// Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow Map": six views with 90
+// degrees each, depth = world distance / far. Departs: the view depth w is turned into a distance by the
+// texel's own direction instead of interpolating world positions; distances are not clamped at far.
 #include "base/arena.h"
 #include "math/vec.h"
 #include "visibility/cube_texel.h"

@@ -38,16 +38,16 @@ static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVe
 // How many triangles a place's map draws: those in blocks of the tree that reach above its plane.
 int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place);
 
-// Blockers that are nearer to the light than a fragment and its plane by less than this fraction of the distance, one and
-// a half footprints, do not shadow it: walls that meet in a corner. More footprints lose shadows, fewer find false ones
-// (bench/crossover).
+// Blockers that are nearer to the light than a fragment and its plane by less than this fraction of the
+// distance, one and a half footprints, do not shadow it: walls that meet in a corner. More footprints lose
+// shadows, fewer find false ones (bench/crossover).
 static inline float vplHemiMap_Tolerance(int size)
 {
     return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
 }
 
-// 2.5 f + b, metres: the largest distance between blocker and point at which map and ray may disagree. r is the point's
-// distance, f its footprint, cosT the cosine of its plane to the light.
+// 2.5 f + b, metres: the largest distance between blocker and point at which map and ray may disagree. r is
+// the point's distance, f its footprint, cosT the cosine of its plane to the light.
 static inline float vplShadowBand(float r, float f, float cosT)
 {
     const float sinT = sqrtf(1 - cosT * cosT);
@@ -78,10 +78,10 @@ static inline float vplLightLift(float largest)
     return largest * 0x1p-18f;
 }
 
-// The ray from a point to a virtual light, which lies on a surface and maybe in a corner: neither must shadow it. The ray
-// aims slightly above the surface and ends before the light, by the rounding of the larger end. The rounding of the
-// light's own coordinates is not enough: in a Cornell box whose floor is at 0, the floor would hide lights near the origin
-// from the ceiling (0.46 % of all pairs).
+// The ray from a point to a virtual light, which lies on a surface and maybe in a corner: neither must shadow
+// it. The ray aims slightly above the surface and ends before the light, by the rounding of the larger end.
+// The rounding of the light's own coordinates is not enough: in a Cornell box whose floor is at 0, the floor
+// would hide lights near the origin from the ceiling (0.46 % of all pairs).
 static inline vplVec3 vplWayToLight(vplVec3 light, vplVec3 n, vplVec3 from)
 {
     const float lift = vplLightLift(fmaxf(vplLargestOf(light), vplLargestOf(from)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Draws the shadow map of a half space: down a tree of triangles as far as they lie above the light's plane, sixteen
-// side by side. Compiled once per instruction set; all give the same bits.
+// Draws a hemi-octahedral map: down a tree of triangles as far as they lie above the light's plane,
+// sixteen side by side. Compiled once per instruction set; all give the same bits.
 #include "math/scalar.h"
 #include "visibility/kernels.h"
 #include "visibility/hemi_fill.h"

@@ -26,8 +26,8 @@ typedef void vplShadowBiasFcn(const vplShadow* shadow, const float* restrict dis
 // Returns how many points needed no samples.
 typedef int vplShadowFactorFcn(const vplShadow* shadow, const vplSurface* surface, float* restrict factor);
 
-// Sets the points' faces, known where the map's bounds decide all samples, and shadowed to how many lie in shadow there.
-// Returns how many points are known.
+// Sets the points' faces, known where the map's bounds decide all samples, and shadowed to how many lie in
+// shadow there. Returns how many points are known.
 typedef int vplTestBoundsFcn(const vplShadow* shadow, const vplSurface* surface,
                              vplShadowPoints* restrict points, int32_t known[restrict VPL_LANES],
                              float shadowed[restrict VPL_LANES]);

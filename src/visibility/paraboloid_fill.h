@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// One triangle in a paraboloid map. Included by the kernel that draws them.
+// Fills one triangle into a paraboloid map. Included by the kernel that draws them.
 //
-// A texel at p = (x, y) in [-1, 1]^2 looks along d = (2x, 2y, 1 - p^2) in the map's frame, |d| = 1 + p^2. So a plane
-// e.d is the function e.z (1 - p^2) + 2 e.x x + 2 e.y y: edges are exact circles, and nothing is subdivided. While
-// triangles are drawn a texel holds 1/t of the nearest t d, which needs no division; at the end that of distance.
+// A texel at p = (x, y) in [-1, 1]^2 looks along d = (2x, 2y, 1 - p^2) in the map's frame, |d| = 1 + p^2. So
+// a plane e.d is the function e.z (1 - p^2) + 2 e.x x + 2 e.y y: edges are exact circles, and nothing is
+// subdivided. While triangles are drawn a texel holds 1/t of the nearest t d, which needs no division; at the
+// end that of distance.
 #ifndef VPL_VISIBILITY_PARABOLOID_FILL_H
 #define VPL_VISIBILITY_PARABOLOID_FILL_H
 
@@ -11,8 +12,8 @@
 #include "visibility/map_fill.h"
 #include "visibility/paraboloid_map.h"
 
-// p x q as that of the nearer end and the difference: right to rounding also where one end is 10^5 times as far as the
-// other, which moves edges by a hundredth where sum and difference are multiplied.
+// p x q as that of the nearer end and the difference: right to rounding also where one end is 10^5 times as
+// far as the other, which moves edges by a hundredth where sum and difference are multiplied.
 static inline vplVec3 edgeOf(vplVec3 p, vplVec3 q)
 {
     const float pp = vplDot(p, p), qq = vplDot(q, q);
@@ -114,8 +115,8 @@ static inline void widen(Box* box, int axis, double at)
     box->high[axis] = at > box->high[axis] ? at : box->high[axis];
 }
 
-// The image of the edge from a to b lies on the circle around (e.x, e.y) / e.z of radius |e| / |e.z|, e = a x b. Its
-// ends on each axis count where they lie between a and b.
+// The image of the edge from a to b lies on the circle around (e.x, e.y) / e.z of radius |e| / |e.z|, e = a x
+// b. Its ends on each axis count where they lie between a and b.
 static inline void widenByArc(Box* box, const double a[3], const double b[3], const double e[3])
 {
     const double length = sqrt(vplDot3(e, e));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Paraboloid maps, many at once: one task draws one hemisphere.
-// Based on: Wolfgang Heidrich and Hans-Peter Seidel, View-independent Environment Maps, Graphics Hardware 1998.
+// Based on: Wolfgang Heidrich and Hans-Peter Seidel, View-independent Environment Maps, Graphics Hardware
+// 1998.
 #include "visibility/paraboloid_map.h"
 #include "base/arena.h"
 #include "geometry/ray_tree.h"

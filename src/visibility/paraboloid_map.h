@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Paraboloid maps from the inside. They are drawn in the blocks of hemi_map.h and then stored in rows, so that the two
-// texels beside a point are loaded at once.
+// Paraboloid maps from the inside. They are drawn in the blocks of hemi_map.h and then stored in rows, so
+// that the two texels beside a point are loaded at once.
 #ifndef VPL_VISIBILITY_PARABOLOID_MAP_H
 #define VPL_VISIBILITY_PARABOLOID_MAP_H
 
@@ -13,7 +13,8 @@ static inline size_t vplParaboloidMap_Drawn(int size)
     return blocks * blocks * VPL_LANES;
 }
 
-// Texels from one row to the next. Rows and columns at the sides are stored twice, so that a point always has two.
+// Texels from one row to the next. Rows and columns at the sides are stored twice, so that a point always has
+// two.
 static inline int32_t vplParaboloidMap_Stride(int size)
 {
     return size + 2;
@@ -31,23 +32,24 @@ static inline size_t vplParaboloidMap_Place(int size, int column, int row)
     return (size_t)(row + 1) * (size_t)vplParaboloidMap_Stride(size) + (size_t)(column + 1);
 }
 
-// How far from the middle texels hold surfaces. With a back hemisphere they do so beyond the rim of the disk, by more than
-// a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the rim are valid.
+// How far from the middle texels hold surfaces. With a back hemisphere they do so beyond the rim of the disk,
+// by more than a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the rim are
+// valid.
 static inline float vplParaboloidMap_Rim(int size, int hemispheres)
 {
     return hemispheres == 2 ? 1 + 3 / (float)size : 1;
 }
 
-// Blockers that are nearer to the place than a fragment and its plane by less than this fraction of the distance do not
-// shadow it: one footprint of a texel on the axis, whose centre is 2 sqrt(2) / size from its corner. More footprints lose
-// shadows, fewer find false ones (bench/paraboloid --agree).
+// Blockers that are nearer to the place than a fragment and its plane by less than this fraction of the
+// distance do not shadow it: one footprint of a texel on the axis, whose centre is 2 sqrt(2) / size from its
+// corner. More footprints lose shadows, fewer find false ones (bench/paraboloid --agree).
 static inline float vplParaboloidMap_Tolerance(int size)
 {
     return 2 * 1.41421356f / (float)size;
 }
 
-// The band of vplParaboloidMap_FactorBlock, 2.5 f + b, metres, and the footprint f, a texel's diagonal: the four centres
-// around a point are no further from it.
+// The band of vplParaboloidMap_FactorBlock, 2.5 f + b, metres, and the footprint f, a texel's diagonal: the
+// four centres around a point are no further from it.
 static inline float vplParaboloidMap_Band(const vplParaboloidMap* map, vplVec3 point, vplVec3 normal,
                                           float* footprintOut)
 {

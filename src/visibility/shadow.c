@@ -13,9 +13,9 @@ vplShadowDef vplDefaultShadowDef(void)
     return (vplShadowDef){VPL_BIAS_AUTO, -1, -1, 16, -1, SHADOW_COOKIE};
 }
 
-// The document asks for S random offsets without a distribution. These are uniform on the disc: Hammersley points mapped
-// concentrically to one half, and their opposites, so that a straight edge through the centre shadows exactly half of an
-// even S. An odd S has one sample in the centre.
+// The document asks for S random offsets without a distribution. These are uniform on the disc: Hammersley
+// points mapped concentrically to one half, and their opposites, so that a straight edge through the centre
+// shadows exactly half of an even S. An odd S has one sample in the centre.
 static void makeOffsets(vplShadow* shadow)
 {
     int pairs = shadow->def.pcfSamples / 2;

@@ -3,10 +3,10 @@
 // Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Point Light with Shadows"; William
 // Reeves, David Salesin and Robert Cook, Rendering Antialiased Shadows with Depth Maps, SIGGRAPH 1987 (PCF).
 //
-// The exact bias: a fragment at distance r on a plane whose normal is at angle t to the light is compared with
-// a sample whose ray is off by at most a. On that plane the sample's ray is shortest when it is turned by a
-// towards the normal, where it has length r cos t / cos(t - a) (and r cos t where a > t: then the normal itself
-// is within reach). A bias of r minus that never shadows the plane by itself.
+// The exact bias: a fragment at distance r on a plane whose normal is at angle t to the light is compared
+// with a sample whose ray is off by at most a. On that plane the sample's ray is shortest when it is turned
+// by a towards the normal, where it has length r cos t / cos(t - a) (and r cos t where a > t: then the normal
+// itself is within reach). A bias of r minus that never shadows the plane by itself.
 #include "math/scalar.h"
 #include "visibility/cube_texel.h"
 #include "visibility/kernels.h"
