@@ -24,6 +24,12 @@ typedef struct Texels {
     int32_t i0, i1, j0, j1;
 } Texels;
 
+// Blocks `first` to `last` of a row of blocks; scale is 1 / size.
+typedef struct BlockRow {
+    int32_t row, first, last;
+    float scale;
+} BlockRow;
+
 // Bounds are wider by this much of a texel, which covers the rounding of projected corners.
 static const float MARGIN = 0x1p-9f;
 

@@ -48,10 +48,12 @@ typedef struct Canvas {
 } Canvas;
 
 // One row of blocks.
-static inline __attribute__((always_inline)) void fillRow(const Filling* restrict f, int32_t row, float scale,
-                                                          int32_t first, int32_t last, bool ids,
-                                                          float* restrict texels, int32_t* restrict triangles)
+static inline __attribute__((always_inline)) void fillRow(const Filling* restrict f, BlockRow blocks,
+                                                          bool ids, float* restrict texels,
+                                                          int32_t* restrict triangles)
 {
+    const int32_t row = blocks.row;
+    const float scale = blocks.scale;
     const Quadric q0 = f->edge[0], q1 = f->edge[1], q2 = f->edge[2], qn = f->near;
     const int32_t triangle = f->triangle;
     float e0[VPL_LANES], e1[VPL_LANES], e2[VPL_LANES], near[VPL_LANES];
@@ -62,7 +64,7 @@ static inline __attribute__((always_inline)) void fillRow(const Filling* restric
         e2[l] = q2.a * above + q2.c * y;
         near[l] = qn.a * above + qn.c * y;
     }
-    for (int32_t i = first; i <= last; i++) {
+    for (int32_t i = blocks.first; i <= blocks.last; i++) {
         float old[VPL_LANES], now[VPL_LANES];
         int32_t oldId[VPL_LANES], nowId[VPL_LANES];
         memcpy(old, texels + (size_t)i * VPL_LANES, sizeof old);
@@ -95,10 +97,11 @@ static inline void fill(const Canvas* c, const Filling* f, Texels box)
     const size_t stride = (size_t)vplHemiMap_Blocks(c->size) * VPL_LANES;
     for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
         const size_t at = (size_t)row * stride;
+        const BlockRow blocks = {row, box.i0 / SIDE, box.i1 / SIDE, scale};
         if (c->triangles != NULL) {
-            fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, true, c->texels + at, c->triangles + at);
+            fillRow(f, blocks, true, c->texels + at, c->triangles + at);
         } else {
-            fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, false, c->texels + at, NULL);
+            fillRow(f, blocks, false, c->texels + at, NULL);
         }
     }
 }
