@@ -74,18 +74,11 @@ static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, co
         float stored[VPL_LANES];
         loadTexels(texels + (size_t)j * (size_t)size, size, d->column + offset, stored);
         for (int l = 0; l < VPL_LANES; l++) {
-            const float distance = stored[l] * far, z = distance * rowZ[l], x = d->s[offset + l] * z,
+            const float distance = stored[l] * far;
+            // NaN leaves a minimum as it is.
+            const float z = distance < INFINITY ? distance * rowZ[l] : NAN, x = d->s[offset + l] * z,
                         y = u * z;
-            const bool shown = distance < INFINITY;
-            // Infinity leaves a minimum as it is.
-            const float value[VPL_REGION_VALUES] = {shown ? x : INFINITY,
-                                                    shown ? y : INFINITY,
-                                                    shown ? z : INFINITY,
-                                                    shown ? -x : INFINITY,
-                                                    shown ? -y : INFINITY,
-                                                    shown ? -z : INFINITY,
-                                                    stored[l],
-                                                    -stored[l]};
+            const float value[VPL_REGION_VALUES] = {x, y, z, -x, -y, -z, stored[l], -stored[l]};
             for (int k = 0; k < VPL_REGION_VALUES; k++) {
                 least[k][l] = vplMinf(value[k], least[k][l]);
             }

@@ -99,6 +99,7 @@ static bool findRegion(const vplCubeMap* map, const vplShadowPoints* p, const Sq
     for (int j = j0 >> shift; j <= j1 >> shift; j++) {
         for (int i = i0 >> shift; i <= i1 >> shift; i++) {
             const float* restrict least = first[j * side + i].least;
+#pragma GCC unroll 1 // gcc would unroll it before it thinks of a vector
             for (int k = 0; k < VPL_REGION_VALUES; k++) {
                 all[k] = vplMinf(least[k], all[k]);
             }
