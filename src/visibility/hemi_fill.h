@@ -75,7 +75,7 @@ static inline void fillRow(const Filling* restrict f, BlockRow blocks, bool whol
             const float abc = ab < c ? ab : c;
             const float before = old[l];
             const float nearer = value > before ? value : before;
-            now[l] = (abc >= 0) & (pq >= 0) ? nearer : before;
+            now[l] = ((abc >= 0) & (pq >= 0)) ? nearer : before;
         }
         memcpy(texels + (size_t)i * VPL_LANES, now, sizeof now);
     }

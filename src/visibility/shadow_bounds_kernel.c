@@ -54,8 +54,8 @@ static void findSquares(const vplShadow* shadow, vplShadowPoints* restrict p, Sq
         const float reachS = spread * (1 + 0.5f * s * s), reachU = spread * (1 + 0.5f * u * u);
         const float column = (s + 1 - reachS) * half - slack, columnEnd = (s + 1 + reachS) * half + slack;
         const float row = (1 - u - reachU) * half - slack, rowEnd = (1 - u + reachU) * half + slack;
-        const int32_t inside = (vplMinf(column, row) >= 0) & (vplMaxf(columnEnd, rowEnd) <= size) &
-                               (k <= 0.25f) & (major > 1e-30f);
+        const float first = vplMinf(column, row), end = vplMaxf(columnEnd, rowEnd);
+        const int32_t inside = (first >= 0) & (end <= size) & (k <= 0.25f) & (major > 1e-30f);
         const int32_t face = (isZ ? 4 : isY ? 2 : 0) + negative;
         q->x[l] = right;
         q->y[l] = up;
