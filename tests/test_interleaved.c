@@ -280,7 +280,7 @@ static void SizesOfBlocksOutOfRangeAreRefused(void** state)
         vplRenderOptions o = optionsOf(4);
         o.pipeline.interleave = wrong[i];
         assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
-        assert_true(image == NULL && strstr(takeMessage(), "vplRenderOptions.interleave is ") != NULL);
+        assert_true(image == NULL && strstr(takeMessage(), "vplRenderOptions.pipeline.interleave is ") != NULL);
     }
     vplGeometry* g = stage(context);
     const vplView view = stageView(vplVec(0, 2, 5), 4, 4);
