@@ -77,10 +77,8 @@ static void checkWindow(const vplCubeMap* map, int face, int column, int row, in
     }
 }
 
-static void BoundsHoldForEveryTexel(void** state)
+TEST(BoundsHoldForEveryTexel, 3, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(3);
     const int sizes[] = {1, 2, 7, 15, 16, 17, 33, 64, 100, 257, 1025};
     int kinds[3] = {0};
     for (int k = 0; k < 11; k++) {
@@ -97,7 +95,6 @@ static void BoundsHoldForEveryTexel(void** state)
         vplCubeMap_Destroy(map);
     }
     assert_true(kinds[VPL_BOUND_ONE] > 100 && kinds[VPL_BOUND_EITHER] > 100 && kinds[VPL_BOUND_BOTH] > 100);
-    closeTestContext(context);
 }
 
 static double pick(uint64_t seed, uint64_t* index)
@@ -171,9 +168,8 @@ static vplShadow makeShadow(const vplCubeMap* map, int variant)
     return shadow;
 }
 
-static void BoundsNeverChangeAShadowOfRandomMaps(void** state)
+TEST_ALONE(BoundsNeverChangeAShadowOfRandomMaps, SLOW)
 {
-    (void)state;
     const int sizes[] = {1, 40, 128, 300, 1024};
     for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
         vplContext* context = openIsaContext(2, (vplIsa)isa);
@@ -196,10 +192,8 @@ static void BoundsNeverChangeAShadowOfRandomMaps(void** state)
 }
 
 // On surfaces as they are: planes must be told where samples come within a rounding of the limit.
-static void BoundsTellMostOfARoom(void** state)
+TEST(BoundsTellMostOfARoom, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = tableRoom(context);
     vplCubeMapDef def = vplDefaultCubeMapDef();
     vplCubeMap* map;
@@ -231,8 +225,4 @@ static void BoundsTellMostOfARoom(void** state)
     assert_null(map->bounds); // they were the old texels'
     vplCubeMap_Destroy(map);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
-
-TEST_SUITE(bounds, slow_unit_test(BoundsHoldForEveryTexel),
-           slow_unit_test(BoundsNeverChangeAShadowOfRandomMaps), cmocka_unit_test(BoundsTellMostOfARoom));

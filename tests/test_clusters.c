@@ -101,10 +101,8 @@ static void compareWithTruth(const Lights* l, const json_t* set, const char* met
     vplLightClusters_Destroy(clusters);
 }
 
-static void AssignmentsCentresAndIterationsAreThoseOfTheTable(void** state)
+TEST(AssignmentsCentresAndIterationsAreThoseOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     json_t* root = json_load_file("tests/data/kmeans.json", 0, NULL);
     assert_non_null(root);
     const char* name;
@@ -130,7 +128,6 @@ static void AssignmentsCentresAndIterationsAreThoseOfTheTable(void** state)
     }
     json_decref(root);
     assert_int_equal(compared, 16);
-    closeTestContext(context);
 }
 
 // Lights of a row of kmeans.csv. kmeans.json has some sets only, but corner's lights are the first of the same, those of
@@ -182,10 +179,8 @@ static void compareWithRow(const Lights* l, const Table* t, int row)
 }
 
 // X106 and X107 among them.
-static void RowsOfTheTableWhoseLightsAreKnownAreMet(void** state)
+TEST(RowsOfTheTableWhoseLightsAreKnownAreMet, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     json_t* root = json_load_file("tests/data/kmeans.json", 0, NULL);
     assert_non_null(root);
     Table t = loadTable("kmeans.csv");
@@ -201,12 +196,10 @@ static void RowsOfTheTableWhoseLightsAreKnownAreMet(void** state)
     assert_int_equal(rows, 28); // of 32
     freeTable(&t);
     json_decref(root);
-    closeTestContext(context);
 }
 
-static void DistancesAreThoseOfTheTable(void** state)
+TEST_ALONE(DistancesAreThoseOfTheTable)
 {
-    (void)state;
     static const char* const names[] = {"printed", "one_minus_clamped", "one_minus", "angle"};
     Table t = loadTable("metric_examples.csv");
     for (int row = 0; row < t.rows; row++) {
@@ -250,10 +243,8 @@ static void fillRoom(Lights* l, uint64_t room)
 }
 
 // kmeans_cycles.csv, whose rooms are not given: 10, 0 and 0 of 300 (X107). The metric without clamping is not in it.
-static void OnlyThePrintedMetricGoesRoundInCircles(void** state)
+TEST(OnlyThePrintedMetricGoesRoundInCircles, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     int ends[4][3] = {{0}};
     Lights l;
     for (uint64_t room = 0; room < 300; room++) {
@@ -275,7 +266,6 @@ static void OnlyThePrintedMetricGoesRoundInCircles(void** state)
         assert_int_equal(ends[metric][VPL_CLUSTERS_STOPPED], 0);
         assert_true(metric == VPL_CLUSTER_PRINTED ? cycles >= 1 && cycles <= 30 : cycles == 0);
     }
-    closeTestContext(context);
 }
 
 // The slow way: every light looks at every cluster each time.
@@ -319,10 +309,8 @@ static void searchPlainly(const vplLightSet* set, const vplClusterDef* def, int*
     }
 }
 
-static void WhoLooksAtMovedClustersOnlyMissesNone(void** state)
+TEST(WhoLooksAtMovedClustersOnlyMissesNone, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     for (uint64_t room = 0; room < 60; room++) {
         beginLights(&l, context, 200);
@@ -342,7 +330,6 @@ static void WhoLooksAtMovedClustersOnlyMissesNone(void** state)
         assert_memory_equal(clusters->of, wanted, 200 * sizeof(int));
         vplLightClusters_Destroy(clusters);
     }
-    closeTestContext(context);
 }
 
 static void assertSame(const vplLightClusters* a, const vplLightClusters* b)
@@ -357,9 +344,8 @@ static void assertSame(const vplLightClusters* a, const vplLightClusters* b)
     }
 }
 
-static void ThreadsFindTheSame(void** state)
+TEST_ALONE(ThreadsFindTheSame)
 {
-    (void)state;
     enum { COUNT = 3000 };
     vplVirtualLight* lights = test_calloc(COUNT, sizeof *lights);
     for (int i = 0; i < COUNT; i++) {
@@ -395,10 +381,8 @@ static void ThreadsFindTheSame(void** state)
 
 // ---- what is handed on
 
-static void FluxIsThatOfTheLightsAndTheNearestIsOneOfThem(void** state)
+TEST(FluxIsThatOfTheLightsAndTheNearestIsOneOfThem, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 120);
     fillRoom(&l, 77);
@@ -441,7 +425,6 @@ static void FluxIsThatOfTheLightsAndTheNearestIsOneOfThem(void** state)
     assertNear(sum, wanted, 1e-6 * wanted, "flux", 0);
     assert_int_equal(lights, 120);
     vplLightClusters_Destroy(clusters);
-    closeTestContext(context);
 }
 
 static bool isFlat(Lights* l)
@@ -454,10 +437,8 @@ static bool isFlat(Lights* l)
     return flat;
 }
 
-static void FlatClustersLieOnOnePlaneWithOneNormal(void** state)
+TEST(FlatClustersLieOnOnePlaneWithOneNormal, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 50);
     const float tilt = 0.6f; // a plane at an angle, far from the origin, so that its points are rounded
@@ -472,7 +453,6 @@ static void FlatClustersLieOnOnePlaneWithOneNormal(void** state)
     l.lights[3].position.y -= 0.002f;
     l.lights[3].normal = (vplVec3){-0.6012f, 0.7991f, 0};
     assert_false(isFlat(&l));
-    closeTestContext(context);
 }
 
 // ---- extremes
@@ -492,10 +472,8 @@ static void assertSound(const vplLightClusters* clusters)
 }
 
 // X092
-static void NoLightsMakeNoClusters(void** state)
+TEST(NoLightsMakeNoClusters, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Lights l;
     beginLights(&l, context, 0);
     vplClusterDef def = vplDefaultClusterDef();
@@ -503,14 +481,11 @@ static void NoLightsMakeNoClusters(void** state)
     assert_true(clusters->count == 0 && clusters->emptyCount == 0 && clusters->lightCount == 0);
     assert_int_equal(clusters->end, VPL_CLUSTERS_CONVERGED);
     vplLightClusters_Destroy(clusters);
-    closeTestContext(context);
 }
 
 // X105
-static void FewerLightsThanClustersAreEachTheirOwn(void** state)
+TEST(FewerLightsThanClustersAreEachTheirOwn, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     for (int count = 1; count <= 20; count++) {
         beginLights(&l, context, count);
@@ -527,14 +502,11 @@ static void FewerLightsThanClustersAreEachTheirOwn(void** state)
         }
         vplLightClusters_Destroy(clusters);
     }
-    closeTestContext(context);
 }
 
 // X105
-static void LightsAtOnePlaceLeaveClustersEmptyWhereTheyWere(void** state)
+TEST(LightsAtOnePlaceLeaveClustersEmptyWhereTheyWere, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 30);
     for (int i = 0; i < 30; i++) {
@@ -552,14 +524,11 @@ static void LightsAtOnePlaceLeaveClustersEmptyWhereTheyWere(void** state)
         }
         vplLightClusters_Destroy(clusters);
     }
-    closeTestContext(context);
 }
 
 // X106
-static void NormalsThatCancelLeaveTheOldOne(void** state)
+TEST(NormalsThatCancelLeaveTheOldOne, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 10);
     for (int i = 0; i < 10; i++) { // 0.6f and 0.8f are rounded: their sum is not 0 to the last bit in general
@@ -575,14 +544,11 @@ static void NormalsThatCancelLeaveTheOldOne(void** state)
     assert_false(clusters->clusters[0].flat);
     assertSound(clusters);
     vplLightClusters_Destroy(clusters);
-    closeTestContext(context);
 }
 
 // X108
-static void InASphereTheNearestLightIsOnItsWall(void** state)
+TEST(InASphereTheNearestLightIsOnItsWall, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 200);
     for (int i = 0; i < 200; i++) {
@@ -605,13 +571,10 @@ static void InASphereTheNearestLightIsOnItsWall(void** state)
         assert_false(c->flat);
     }
     vplLightClusters_Destroy(clusters);
-    closeTestContext(context);
 }
 
-static void HugeNumbersStayFinite(void** state)
+TEST(HugeNumbersStayFinite, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 64);
     fillRoom(&l, 3);
@@ -631,15 +594,12 @@ static void HugeNumbersStayFinite(void** state)
         assertSound(clusters);
         vplLightClusters_Destroy(clusters);
     }
-    closeTestContext(context);
 }
 
 // ---- where they start
 
-static void ClustersFarFromEachOtherStartBetterThanEveryNthLight(void** state)
+TEST(ClustersFarFromEachOtherStartBetterThanEveryNthLight, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const vplClusterDistance distance = {VPL_CLUSTER_ONE_MINUS, 0.6, 0.4};
     double sums[2] = {0, 0};
     Lights l;
@@ -669,13 +629,10 @@ static void ClustersFarFromEachOtherStartBetterThanEveryNthLight(void** state)
         }
     }
     assert_true(sums[0] < 0.98 * sums[1]); // 0.96 when it was written
-    closeTestContext(context);
 }
 
-static void ClustersOfTheLastFrameAreFoundAgainAtOnce(void** state)
+TEST(ClustersOfTheLastFrameAreFoundAgainAtOnce, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 256);
     fillRoom(&l, 21);
@@ -709,13 +666,10 @@ static void ClustersOfTheLastFrameAreFoundAgainAtOnce(void** state)
         vplLightClusters_Destroy(again);
     }
     vplLightClusters_Destroy(first);
-    closeTestContext(context);
 }
 
-static void EmptyClustersOfTheLastFrameStartAnew(void** state)
+TEST(EmptyClustersOfTheLastFrameStartAnew, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 100);
     vplClusterDef def = vplDefaultClusterDef();
@@ -727,7 +681,6 @@ static void EmptyClustersOfTheLastFrameStartAnew(void** state)
     assert_int_equal(apart->emptyCount, 0);
     vplLightClusters_Destroy(apart);
     vplLightClusters_Destroy(together);
-    closeTestContext(context);
 }
 
 // ---- mistakes
@@ -741,10 +694,8 @@ static void refuse(const vplLightSet* set, const vplClusterDef* def, const char*
 }
 
 // A light of weight 3 counts as three, one of 0 as none; where all weigh alike nothing changes.
-static void WeightsMoveMeans(void** state)
+TEST(WeightsMoveMeans, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 4);
     for (int i = 0; i < 4; i++) {
@@ -768,13 +719,10 @@ static void WeightsMoveMeans(void** state)
     clusters = NULL;
     assert_int_equal(vplFindClusters(&l.set, &def, &clusters), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "weights[1]"));
-    closeTestContext(context);
 }
 
-static void MistakesAreNamed(void** state)
+TEST(MistakesAreNamed, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Lights l;
     beginLights(&l, context, 10);
     vplClusterDef def = {0};
@@ -802,21 +750,4 @@ static void MistakesAreNamed(void** state)
     l.lights[7].object = -1;
     refuse(&l.set, &def, "light 7 is an emitter itself, clusters are of lights on surfaces");
     vplLightClusters_Destroy(NULL);
-    closeTestContext(context);
 }
-
-TEST_SUITE(clusters, cmocka_unit_test(AssignmentsCentresAndIterationsAreThoseOfTheTable),
-           cmocka_unit_test(RowsOfTheTableWhoseLightsAreKnownAreMet),
-           cmocka_unit_test(DistancesAreThoseOfTheTable),
-           cmocka_unit_test(OnlyThePrintedMetricGoesRoundInCircles),
-           cmocka_unit_test(WhoLooksAtMovedClustersOnlyMissesNone), cmocka_unit_test(ThreadsFindTheSame),
-           cmocka_unit_test(FluxIsThatOfTheLightsAndTheNearestIsOneOfThem),
-           cmocka_unit_test(FlatClustersLieOnOnePlaneWithOneNormal), cmocka_unit_test(NoLightsMakeNoClusters),
-           cmocka_unit_test(FewerLightsThanClustersAreEachTheirOwn),
-           cmocka_unit_test(LightsAtOnePlaceLeaveClustersEmptyWhereTheyWere),
-           cmocka_unit_test(NormalsThatCancelLeaveTheOldOne),
-           cmocka_unit_test(InASphereTheNearestLightIsOnItsWall), cmocka_unit_test(HugeNumbersStayFinite),
-           cmocka_unit_test(ClustersFarFromEachOtherStartBetterThanEveryNthLight),
-           cmocka_unit_test(ClustersOfTheLastFrameAreFoundAgainAtOnce),
-           cmocka_unit_test(EmptyClustersOfTheLastFrameStartAnew), cmocka_unit_test(WeightsMoveMeans),
-           cmocka_unit_test(MistakesAreNamed));

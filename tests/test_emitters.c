@@ -65,11 +65,9 @@ static void addColoured(vplScene* scene, vplEmitterType type, vplVec3 position, 
 }
 
 // rho/pi E: E = I cos / d^2 times 3x^2 - 2x^3 of the cosine's way between the angles, or the irradiance times cos.
-static void SpotAndSunAreAnalytic(void** state)
+TEST(SpotAndSunAreAnalytic, 1)
 {
-    (void)state;
     enum { SIZE = 64 };
-    vplContext* context = openTestContext(1);
     for (int which = 0; which < 4; which++) { // spot and sun, by maps and by rays
         const bool sun = which & 1;
         vplScene* scene = sceneOf(context, 0.5f);
@@ -104,7 +102,6 @@ static void SpotAndSunAreAnalytic(void** state)
         vplImage_Destroy(image);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // From a point to the rectangle [0, a] x [0, b] in a plane parallel to it at distance 1, the point below a corner.
@@ -116,16 +113,14 @@ static double cornerFactor(double a, double b)
 }
 
 // A lamp of 1 x 1 m, 1 m above the floor: the radiance of the floor is rho L F.
-static void LampLightsConvergeToTheFormFactor(void** state)
+TEST(LampLightsConvergeToTheFormFactor, 1)
 {
-    (void)state;
     enum { SIZE = 8 };
     // Largest relative error below the lamp and 0.1 m around; it falls as 1 / count.
     const struct {
         int count;
         double error;
     } cases[] = {{1, 1.42}, {16, 0.18}, {64, 0.063}, {1024, 0.0061}};
-    vplContext* context = openTestContext(1);
     vplScene* scene = sceneOf(context, 0.5f);
     addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
     addLevel(scene, vplVec(0, 1, 0), 1, true, addGlow(scene, (vplRgb){4, 4, 4}, 0));
@@ -150,15 +145,12 @@ static void LampLightsConvergeToTheFormFactor(void** state)
         vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Indirect light of the room: maps of 512 x 512 texels (as many as 6 of 209 x 209) are 0.1 % of it off, where shadows
 // stop 10 %.
-static void RayAndMapShadowsAgree(void** state)
+TEST(RayAndMapShadowsAgree, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = vplDefaultRenderOptions();
     o.output.width = 64;
@@ -184,7 +176,6 @@ static void RayAndMapShadowsAgree(void** state)
     vplImage_Destroy(rays);
     vplImage_Destroy(maps);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- stages with lights given by hand
@@ -274,10 +265,8 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
 }
 
 // A square of 1 m halfway between the light and the floor: nothing in its shadow, the unshadowed bits beside it.
-static void RayShadowsAreExact(void** state)
+TEST(RayShadowsAreExact, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplCameraDef camera = vplDefaultCameraDef();
     const double height = 0.9, half = 1.7;
     camera.eye = vplVec(0, (float)height, 0);
@@ -306,16 +295,13 @@ static void RayShadowsAreExact(void** state)
         vplImage_Destroy(with);
         vplImage_Destroy(without);
     }
-    closeTestContext(context);
 }
 
 // ---- smooth surfaces
 
 // Light is received with the interpolated normal, but from the triangle's own side only, by every kind of light.
-static void SmoothTrianglesAreDarkFromBehind(void** state)
+TEST(SmoothTrianglesAreDarkFromBehind, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplCameraDef camera = vplDefaultCameraDef();
     camera.up = vplVec(0, 0, -1);
     // In the plane y = 0, around (0, 0, 0.1); as its own normals the corners point up to 80 degrees away.
@@ -345,15 +331,12 @@ static void SmoothTrianglesAreDarkFromBehind(void** state)
         }
     }
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // A roof of two triangles that share their ridge, and normals there. Across it the light goes on as it goes on
 // beside it; without normals it jumps.
-static void SmoothMeshesShadeWithoutSeams(void** state)
+TEST(SmoothMeshesShadeWithoutSeams, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const vplVec3 corners[4] = {{0, 0, -1}, {0, 0, 1}, {-1, -0.3f, 0}, {1, -0.3f, 0}};
     const vplVec3 normals[4] = {{0, 1, 0}, {0, 1, 0}, {-0.3f, 1, 0}, {0.3f, 1, 0}};
     double jump[2];
@@ -388,7 +371,6 @@ static void SmoothMeshesShadeWithoutSeams(void** state)
         vplScene_Destroy(scene);
     }
     assert_true(jump[1] < 1.05 && jump[0] > 20);
-    closeTestContext(context);
 }
 
 // ---- all kinds of emitters at once
@@ -449,9 +431,8 @@ static void checkAccumulations(vplContext* context, int shadows, uint64_t wanted
     closeTestContext(context);
 }
 
-static void AccumulationsAgreeWithEveryShadow(void** state)
+TEST_ALONE(AccumulationsAgreeWithEveryShadow, SLOW)
 {
-    (void)state;
     static const int workers[] = {1, 2, 3, 7};
     uint64_t hashes[1 + VPL_LIGHT_SHADOWS_RAY];
     for (int shadows = VPL_LIGHT_SHADOWS_NONE; shadows <= VPL_LIGHT_SHADOWS_RAY; shadows++) {
@@ -474,10 +455,8 @@ static void AccumulationsAgreeWithEveryShadow(void** state)
     assert_true(hashes[1] != hashes[2] && hashes[2] != hashes[3] && hashes[1] != hashes[3]);
 }
 
-static void DoublingEmittersDoublesEveryBit(void** state)
+TEST(DoublingEmittersDoublesEveryBit, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int shadows = 0; shadows < 3; shadows++) {
         vplScene *one = zoo(context, 1), *two = zoo(context, 2), *small = zoo(context, 0x1p-40f);
         const vplRenderOptions o = zooOptions(shadows);
@@ -496,13 +475,10 @@ static void DoublingEmittersDoublesEveryBit(void** state)
         vplScene_Destroy(two);
         vplScene_Destroy(small);
     }
-    closeTestContext(context);
 }
 
-static void DocumentedLightingRefusesOtherEmitters(void** state)
+TEST(DocumentedLightingRefusesOtherEmitters, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int type = VPL_EMITTER_SPOT; type <= VPL_EMITTER_DIRECTIONAL; type++) {
         vplScene* scene = sceneOf(context, 0.5f);
         addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
@@ -524,7 +500,6 @@ static void DocumentedLightingRefusesOtherEmitters(void** state)
         }
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // ---- particles
@@ -561,11 +536,9 @@ static vplScene* lampCube(vplContext* context, int lamps, float rho)
 
 // All that lamps send out reaches a wall, and rho of it goes on: of the flux of the lights of step 0 the mean of
 // the channels is exact for every single particle, the colour within what N choices of a source leave open.
-static void LampsShootTheirPower(void** state)
+TEST(LampsShootTheirPower, 2)
 {
-    (void)state;
     enum { N = 20000 };
-    vplContext* context = openTestContext(2);
     for (int lamps = 1; lamps <= 2; lamps++) {
         vplGeometry* g = freezeScene(lampCube(context, lamps, 0.5f));
         vplEmission* emission;
@@ -600,14 +573,11 @@ static void LampsShootTheirPower(void** state)
         vplEmission_Destroy(emission);
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // Where all objects are boxes and quads, they are their own bounding boxes.
-static void BoxesInsteadOfBoxesGiveTheSameLights(void** state)
+TEST(BoxesInsteadOfBoxesGiveTheSameLights, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = freezeScene(lampCube(context, 2, 0.5f));
     vplLightSet* exact = simulate(g, 5000, VPL_PARTICLE_GEOMETRY_EXACT);
     vplLightSet* boxes = simulate(g, 5000, VPL_PARTICLE_GEOMETRY_OBB);
@@ -625,14 +595,11 @@ static void BoxesInsteadOfBoxesGiveTheSameLights(void** state)
     vplLightSet_Destroy(exact);
     vplLightSet_Destroy(boxes);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // A ball is met at its box, all around; a ball that glows lets its own light out.
-static void ParticlesStopAtTheBoxOfAMesh(void** state)
+TEST(ParticlesStopAtTheBoxOfAMesh, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int glows = 0; glows < 2; glows++) {
         vplScene* scene = lampCube(context, glows ? 0 : 1, 0.5f);
         Shape ball = icosphere(2);
@@ -676,7 +643,6 @@ static void ParticlesStopAtTheBoxOfAMesh(void** state)
         vplGeometry_Destroy(g);
         freeShape(&ball);
     }
-    closeTestContext(context);
 }
 
 static double energyOf(const vplScene* scene, const vplRenderOptions* options)
@@ -693,11 +659,9 @@ static double energyOf(const vplScene* scene, const vplRenderOptions* options)
 
 // Virtual lights with shadows by rays and path tracing are two estimates of one picture. Four seeds of 512
 // particles leave about 1 % of noise in the mean (tests/bench/energy.sh: larger pictures, more particles).
-static void EnergyIsThatOfPathTracing(void** state)
+TEST(EnergyIsThatOfPathTracing, 2, SLOW)
 {
-    (void)state;
     static const char* const scenes[] = {"examples/scenes/room.json", "examples/scenes/room-area.json"};
-    vplContext* context = openTestContext(2);
     for (int i = 0; i < 2; i++) {
         vplScene* scene;
         assert_int_equal(vplScene_Load(context, scenes[i], &scene), VPL_SUCCESS);
@@ -720,14 +684,4 @@ static void EnergyIsThatOfPathTracing(void** state)
         assert_true(energyOf(scene, &o) > 1.01 * sum / 4);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
-
-TEST_SUITE(emitters, slow_unit_test(EnergyIsThatOfPathTracing), cmocka_unit_test(SpotAndSunAreAnalytic),
-           cmocka_unit_test(LampLightsConvergeToTheFormFactor), cmocka_unit_test(RayAndMapShadowsAgree),
-           cmocka_unit_test(RayShadowsAreExact), cmocka_unit_test(SmoothTrianglesAreDarkFromBehind),
-           cmocka_unit_test(SmoothMeshesShadeWithoutSeams), slow_unit_test(AccumulationsAgreeWithEveryShadow),
-           cmocka_unit_test(DoublingEmittersDoublesEveryBit),
-           cmocka_unit_test(DocumentedLightingRefusesOtherEmitters), cmocka_unit_test(LampsShootTheirPower),
-           cmocka_unit_test(BoxesInsteadOfBoxesGiveTheSameLights),
-           cmocka_unit_test(ParticlesStopAtTheBoxOfAMesh));

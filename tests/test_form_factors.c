@@ -147,10 +147,8 @@ static void compareIncentres(const vplPatchSides* sides, const Table* t, int row
     vplFormFactors_Destroy(f);
 }
 
-static void IncentresOfACubeAreThoseOfTheTable(void** state)
+TEST(IncentresOfACubeAreThoseOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplVec3 corners[36];
     boxCorners(1, 1, 1, corners);
     Table t = loadTable("incentre_estimator.csv");
@@ -161,7 +159,6 @@ static void IncentresOfACubeAreThoseOfTheTable(void** state)
         freeSides(&s);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // All fronts of the report's box: the lab's normals point out of the room, so that these are backs.
@@ -179,10 +176,8 @@ static vplPatchSides* sidesOf(const vplPatches* patches)
 }
 
 // X094.
-static void IncentresOfTheReportsBoxAreThoseOfTheTable(void** state)
+TEST(IncentresOfTheReportsBoxAreThoseOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* geometry = openTestModel(context);
     Table t = loadTable("incentre_estimator.csv");
     for (int row = 9; row < t.rows; row++) {
@@ -194,16 +189,13 @@ static void IncentresOfTheReportsBoxAreThoseOfTheTable(void** state)
     }
     freeTable(&t);
     vplGeometry_Destroy(geometry);
-    closeTestContext(context);
 }
 
 // ---- closed rooms
 
 // Measured: at most 0.0025, by three points for a side where pairs are not near.
-static void ClosedBoxesClose(void** state)
+TEST(ClosedBoxesClose, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int rounds = 0; rounds <= 6; rounds++) {
         SidesFixture s;
         makeBox(context, 4, 2.5f, 5, rounds, &s);
@@ -217,13 +209,10 @@ static void ClosedBoxesClose(void** state)
         vplFormFactors_Destroy(f);
         freeSides(&s);
     }
-    closeTestContext(context);
 }
 
-static void NormalisedRowsSumToOneAndStayReciprocal(void** state)
+TEST(NormalisedRowsSumToOneAndStayReciprocal, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     SidesFixture s;
     makeBox(context, 4, 2.5f, 5, 4, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
@@ -239,14 +228,11 @@ static void NormalisedRowsSumToOneAndStayReciprocal(void** state)
         vplFormFactors_Destroy(f);
     }
     freeSides(&s);
-    closeTestContext(context);
 }
 
 // Sums that were too large come down, those that were not may only fall; `keep` changes nothing.
-static void ClampedRowsNeverSumToMoreThanOne(void** state)
+TEST(ClampedRowsNeverSumToMoreThanOne, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     SidesFixture s;
     makeBox(context, 4, 2.5f, 5, 3, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
@@ -267,7 +253,6 @@ static void ClampedRowsNeverSumToMoreThanOne(void** state)
     vplFormFactors_Destroy(kept);
     vplFormFactors_Destroy(clamped);
     freeSides(&s);
-    closeTestContext(context);
 }
 
 // ---- what the estimators find
@@ -293,10 +278,8 @@ static double meanOfSeeds(const SidesFixture* s, vplFormFactorDef def, int seeds
 static const vplVec3 PARALLEL[6] = {{0, 0, 0},    {1, 0, 0},    {0, 1, 0},
                                     {0.2f, 0, 2}, {0.2f, 1, 2}, {1.2f, 0, 2}};
 
-static void PairsOfPointsFindTheIntegralWhateverTheirNumber(void** state)
+TEST(PairsOfPointsFindTheIntegralWhateverTheirNumber, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     SidesFixture s;
     assert_true(makeSides(context, PARALLEL, 2, 1, 0, &s));
     const double wanted = vplTriangleFormFactor(PARALLEL, PARALLEL + 3);
@@ -317,14 +300,11 @@ static void PairsOfPointsFindTheIntegralWhateverTheirNumber(void** state)
     assertNear(factorAt(f, 0, 1), wanted, 0.01 * wanted, "known", 0);
     vplFormFactors_Destroy(f);
     freeSides(&s);
-    closeTestContext(context);
 }
 
 // A screen between the two: all of it, and a part that hides about a half.
-static void WhatStandsBetweenTakesItsShare(void** state)
+TEST(WhatStandsBetweenTakesItsShare, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplVec3 corners[9];
     memcpy(corners, PARALLEL, sizeof PARALLEL);
     static const float edges[2] = {-5, 0.4f};
@@ -350,14 +330,11 @@ static void WhatStandsBetweenTakesItsShare(void** state)
     assert_true(shares[0][0] == 0 && shares[0][1] == 0);
     assert_true(shares[1][0] > 0.3 && shares[1][0] < 0.7);
     assertNear(shares[1][1], shares[1][0], 0.005, "share", 1);
-    closeTestContext(context);
 }
 
 // Of a side whose cells at corner 0 are open, only that quarter takes part.
-static void ClosedCellsExchangeNothing(void** state)
+TEST(ClosedCellsExchangeNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int near = 0; near < 2; near++) {
         vplVec3 corners[6];
         memcpy(corners, PARALLEL, sizeof PARALLEL);
@@ -385,16 +362,13 @@ static void ClosedCellsExchangeNothing(void** state)
         }
         freeSides(&s);
     }
-    closeTestContext(context);
 }
 
 // ---- extremes
 
 // X095: two triangles with an edge in common and any angle between them, at any size.
-static void TouchingAndCoplanarSidesAreNumbers(void** state)
+TEST(TouchingAndCoplanarSidesAreNumbers, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int degrees = 0; degrees <= 180; degrees += 10) {
         for (int power = -20; power <= 20; power += 20) {
             const float size = ldexpf(1, power), c = size * (float)cos(degrees * 3.14159265358979 / 180),
@@ -415,14 +389,11 @@ static void TouchingAndCoplanarSidesAreNumbers(void** state)
             freeSides(&s);
         }
     }
-    closeTestContext(context);
 }
 
 // A box that is 2^20 times as large or as small has the same bits.
-static void FactorsDoNotDependOnTheSizeOfTheScene(void** state)
+TEST(FactorsDoNotDependOnTheSizeOfTheScene, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     uint64_t hashes[3];
     for (int k = 0; k < 3; k++) {
         const float size = ldexpf(1, 20 * (k - 1));
@@ -435,7 +406,6 @@ static void FactorsDoNotDependOnTheSizeOfTheScene(void** state)
         freeSides(&s);
     }
     assert_true(hashes[0] == hashes[1] && hashes[2] == hashes[1]);
-    closeTestContext(context);
 }
 
 // ---- same bits, refusals
@@ -467,16 +437,13 @@ static uint64_t hashOfBox(vplContext* context)
     return hash;
 }
 
-static void FactorsAreTheSameEverywhere(void** state)
+TEST_ALONE(FactorsAreTheSameEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOfBox);
 }
 
-static void DefsOutOfRangeAreRefusedByName(void** state)
+TEST(DefsOutOfRangeAreRefusedByName, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     SidesFixture s;
     makeBox(context, 1, 1, 1, 0, &s);
     vplFormFactors* untouched = NULL;
@@ -508,13 +475,10 @@ static void DefsOutOfRangeAreRefusedByName(void** state)
     vplFormFactors_Destroy(none);
     vplFormFactors_Destroy(NULL);
     freeSides(&s);
-    closeTestContext(context);
 }
 
-static void FactorsCanBeCancelled(void** state)
+TEST(FactorsCanBeCancelled, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     SidesFixture s;
     makeBox(context, 1, 1, 1, 4, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
@@ -525,16 +489,4 @@ static void FactorsCanBeCancelled(void** state)
     assert_int_equal(vplFormFactors_Create(&s.sides, &def, &untouched), VPL_CANCELLED);
     assert_null(untouched);
     freeSides(&s);
-    closeTestContext(context);
 }
-
-TEST_SUITE(formFactors, cmocka_unit_test(IncentresOfACubeAreThoseOfTheTable),
-           cmocka_unit_test(IncentresOfTheReportsBoxAreThoseOfTheTable), cmocka_unit_test(ClosedBoxesClose),
-           cmocka_unit_test(NormalisedRowsSumToOneAndStayReciprocal),
-           cmocka_unit_test(ClampedRowsNeverSumToMoreThanOne),
-           cmocka_unit_test(PairsOfPointsFindTheIntegralWhateverTheirNumber),
-           cmocka_unit_test(WhatStandsBetweenTakesItsShare), cmocka_unit_test(ClosedCellsExchangeNothing),
-           cmocka_unit_test(TouchingAndCoplanarSidesAreNumbers),
-           cmocka_unit_test(FactorsDoNotDependOnTheSizeOfTheScene),
-           cmocka_unit_test(FactorsAreTheSameEverywhere), cmocka_unit_test(DefsOutOfRangeAreRefusedByName),
-           cmocka_unit_test(FactorsCanBeCancelled));

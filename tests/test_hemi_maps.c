@@ -62,10 +62,8 @@ static bool holdsRay(const vplGeometry* g, const vplHemiMap* map, vplVec3 d, flo
     return false;
 }
 
-static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
+TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int which = 0; which < 2; which++) {
         vplGeometry* g = clutter(context, which);
         Dice dice = {7, 0};
@@ -89,13 +87,10 @@ static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
-static void MapsAndRaysAgreeOutsideTheBand(void** state)
+TEST(MapsAndRaysAgreeOutsideTheBand, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int which = 0; which < 2; which++) {
         vplGeometry* g = clutter(context, which);
         Dice dice = {11, 0};
@@ -137,14 +132,11 @@ static void MapsAndRaysAgreeOutsideTheBand(void** state)
         assert_true(apart > 0 && apart < pairs / 20);
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // Also where light grazes it, and with one texel for all directions.
-static void APlaneNeverShadowsItself(void** state)
+TEST(APlaneNeverShadowsItself, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
     Dice dice = {3, 0};
     for (int i = 0; i < 2000; i++) {
@@ -161,15 +153,12 @@ static void APlaneNeverShadowsItself(void** state)
         vplHemiMaps_Destroy(maps);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Nothing in a convex room hides one wall from another: not the surface that a light lies on, nor those that meet it
 // in an edge or a corner, wherever the room is.
-static void LightsOnWallsEdgesAndCornersSeeTheWholeRoom(void** state)
+TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     static const vplVec3 offsets[] = {{0, 0, 0}, {1, 1, 1}, {-1, 1, 0}, {300, -20, 7}};
     for (int o = 0; o < 4; o++) {
         vplScene* scene = sceneOf(context, 0.5f);
@@ -208,13 +197,10 @@ static void LightsOnWallsEdgesAndCornersSeeTheWholeRoom(void** state)
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
-static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
+TEST(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
     const vplHemiMapPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0)};
     vplHemiMaps* maps = drawMaps(g, 5, &place, 1);
@@ -238,14 +224,11 @@ static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
     assert_true(maps->maps[0].texels[0] == 0);
     vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // One texel looks straight up.
-static void AMapOfOneTexelKnowsWhatIsStraightAbove(void** state)
+TEST(AMapOfOneTexelKnowsWhatIsStraightAbove, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int side = -1; side <= 1; side += 2) {
         vplGeometry* g = floorQuad(context, vplVec(0, 1, 0), 0.5f, 0.5f);
         const vplHemiMapPlace place = {vplVec(0, (float)(1 - side), 0), vplVec(0, (float)side, 0)};
@@ -257,7 +240,6 @@ static void AMapOfOneTexelKnowsWhatIsStraightAbove(void** state)
         vplHemiMaps_Destroy(maps);
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 static uint64_t hashOf(vplContext* context)
@@ -282,16 +264,13 @@ static uint64_t hashOf(vplContext* context)
     return hash;
 }
 
-static void MapsHaveTheSameBitsEverywhere(void** state)
+TEST_ALONE(MapsHaveTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOf);
 }
 
-static void MapsCanBeRefusedAndCancelled(void** state)
+TEST(MapsCanBeRefusedAndCancelled, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = closedCube(context, 0.5f);
     vplHemiMaps* maps = NULL;
     assert_int_equal(vplHemiMaps_Create(context, 0, 1, &maps), VPL_INVALID_ARGUMENT);
@@ -313,12 +292,4 @@ static void MapsCanBeRefusedAndCancelled(void** state)
     vplHemiMaps_Destroy(maps);
     vplHemiMaps_Destroy(NULL);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
-
-TEST_SUITE(hemiMaps, cmocka_unit_test(EachTexelHoldsWhatARayThroughItsCentreMeets),
-           cmocka_unit_test(MapsAndRaysAgreeOutsideTheBand), cmocka_unit_test(APlaneNeverShadowsItself),
-           cmocka_unit_test(LightsOnWallsEdgesAndCornersSeeTheWholeRoom),
-           cmocka_unit_test(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot),
-           cmocka_unit_test(AMapOfOneTexelKnowsWhatIsStraightAbove),
-           cmocka_unit_test(MapsHaveTheSameBitsEverywhere), cmocka_unit_test(MapsCanBeRefusedAndCancelled));

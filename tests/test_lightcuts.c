@@ -112,10 +112,8 @@ static int checkTree(const vplLightTree* tree, vplCluster c)
     return 1 + (a > b ? a : b);
 }
 
-static void EveryClusterHoldsItsLights(void** state)
+TEST(EveryClusterHoldsItsLights, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     static const int counts[] = {1, 2, 3, 17, 400, 5000};
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         for (int k = 0; k < 6; k++) {
@@ -134,7 +132,6 @@ static void EveryClusterHoldsItsLights(void** state)
             free(lights);
         }
     }
-    closeTestContext(context);
 }
 
 static uint64_t hashTree(vplContext* context, int count)
@@ -151,9 +148,8 @@ static uint64_t hashTree(vplContext* context, int count)
     return hash;
 }
 
-static void TreesAreTheSameForAnyNumberOfWorkers(void** state)
+TEST_ALONE(TreesAreTheSameForAnyNumberOfWorkers)
 {
-    (void)state;
     enum { COUNT = 50000 };
     const uint64_t wanted = hashTree(openTestContext(1), COUNT);
     assert_true(hashTree(openTestContext(2), COUNT) == wanted);
@@ -163,11 +159,9 @@ static void TreesAreTheSameForAnyNumberOfWorkers(void** state)
 
 // Over many trees, the
 // place of the root's representative is the mean of all places by intensity.
-static void RepresentativesAreDrawnByIntensity(void** state)
+TEST(RepresentativesAreDrawnByIntensity, 1)
 {
-    (void)state;
     enum { COUNT = 64, TREES = 4000 };
-    vplContext* context = openTestContext(1);
     int bright = 0;
     for (int t = 0; t < TREES; t++) {
         vplShadeLight* lights = rollLights(KIND_CLOUD, COUNT, 100 + (uint64_t)t);
@@ -181,7 +175,6 @@ static void RepresentativesAreDrawnByIntensity(void** state)
     }
     // Half of the light is theirs; four standard deviations are 0.032.
     assertNear((double)bright / TREES, 0.5, 0.032, "share", 0);
-    closeTestContext(context);
 }
 
 // ---- the bound
@@ -230,11 +223,9 @@ static void checkBound(vplContext* context, const vplLightTree* tree, vplCluster
     }
 }
 
-static void NoLightGivesMoreThanTheBoundOfItsCluster(void** state)
+TEST(NoLightGivesMoreThanTheBoundOfItsCluster, 1)
 {
-    (void)state;
     enum { COUNT = 300, ROUNDS = 400 };
-    vplContext* context = openTestContext(1);
     static const float distances[] = {0, 1e-6f, 0.3f, 1e3f};
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         vplShadeLight* lights = rollLights((Kind)kind, COUNT, 7);
@@ -257,15 +248,12 @@ static void NoLightGivesMoreThanTheBoundOfItsCluster(void** state)
         vplLightTree_Destroy(tree);
         free(lights);
     }
-    closeTestContext(context);
 }
 
 // Two lights 1 cm apart, seen from a metre and more: the bound is at most 8 % above what they give, and 0 behind
 // them and where they are behind.
-static void BoundsOfSmallClustersAreTight(void** state)
+TEST(BoundsOfSmallClustersAreTight, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplShadeLight lights[2] = {{0, 0, 0, 0, 1, 0, 1, 1, 1}, {0.01f, 0, 0, 0, 1, 0, 1, 1, 1}};
     vplLightTree* tree = plant(context, lights, 2);
     Dice dice = {3, 0};
@@ -293,12 +281,10 @@ static void BoundsOfSmallClustersAreTight(void** state)
     }
     assert_true(lit > 100 && dark > 100);
     vplLightTree_Destroy(tree);
-    closeTestContext(context);
 }
 
-static void InstructionSetsBoundAlike(void** state)
+TEST_ALONE(InstructionSetsBoundAlike)
 {
-    (void)state;
     vplContext* context = openTestContext(1);
     vplShadeLight* lights = rollLights(KIND_CLOUD, 50, 9);
     vplLightTree* tree = plant(context, lights, 50);
@@ -382,11 +368,9 @@ static void judge(const vplShading* s, const vplLightTree* tree, vplCluster c, c
     }
 }
 
-static void RepresentativesErrByLessThanTheBoundAlsoInShadow(void** state)
+TEST(RepresentativesErrByLessThanTheBoundAlsoInShadow, 2)
 {
-    (void)state;
     enum { COUNT = 600, ROUNDS = 150 };
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplGeometry* g;
     assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
@@ -423,7 +407,6 @@ static void RepresentativesErrByLessThanTheBoundAlsoInShadow(void** state)
     assert_true(worst > 0.25); // the bound is worth something
     vplGeometry_Destroy(g);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- pictures
@@ -471,11 +454,9 @@ static double worstPixel(const vplImage* image, const vplImage* truth, const vpl
 }
 
 // Every pixel, each kind of shadow, both models of lighting, three errors.
-static void NoPixelErrsByMoreThanAsked(void** state)
+TEST(NoPixelErrsByMoreThanAsked, 2, SLOW)
 {
-    (void)state;
     static const float errors[] = {0.01f, 0.02f, 0.1f};
-    vplContext* context = openTestContext(2);
     for (int k = 0; k < 12; k++) {
         const vplLightShadows shadows = (vplLightShadows)(1 + k / 2 % 3);
         vplRenderOptions o = optionsOf(shadows == VPL_LIGHT_SHADOWS_MAP ? 80 : 2000, shadows), plain;
@@ -503,15 +484,12 @@ static void NoPixelErrsByMoreThanAsked(void** state)
         vplImage_Destroy(truth);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // With next to no error every light is reached, also where the cut's memory ends first: 40,000 lights are more than
 // twice what it holds.
-static void NoErrorIsTheSumOfAllLights(void** state)
+TEST(NoErrorIsTheSumOfAllLights, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = optionsOf(27000, VPL_LIGHT_SHADOWS_NONE);
     o.output.width = o.output.height = 12;
@@ -530,13 +508,10 @@ static void NoErrorIsTheSumOfAllLights(void** state)
     vplImage_Destroy(truth);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void TenfoldLightsAreLessThanTwofoldWork(void** state)
+TEST(TenfoldLightsAreLessThanTwofoldWork, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int k = 0; k < 2; k++) {
         vplScene* scene = openScene(context, SCENES[k]);
         double before = 0;
@@ -552,15 +527,12 @@ static void TenfoldLightsAreLessThanTwofoldWork(void** state)
         }
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // Doubling all lights doubles every bit: errors are shares.
-static void TwiceTheLightIsTwiceThePicture(void** state)
+TEST(TwiceTheLightIsTwiceThePicture, 2)
 {
-    (void)state;
     enum { COUNT = 3000, SIZE = 24 };
-    vplContext* context = openTestContext(2);
     vplGeometry* g = closedCube(context, 0.5f);
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0, 0, 0.9f);
@@ -589,16 +561,13 @@ static void TwiceTheLightIsTwiceThePicture(void** state)
     vplImage_Destroy(images[0]);
     free(lights);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Every kind of lights, unbounded, some of them on what they light: finite, not negative, and where a picture by all
 // lights is 0 so is this.
-static void NastyLightsLeaveNoNan(void** state)
+TEST(NastyLightsLeaveNoNan, 2)
 {
-    (void)state;
     enum { COUNT = 500, SIZE = 20 };
-    vplContext* context = openTestContext(2);
     vplGeometry* g = closedCube(context, 0.5f);
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0.2f, 0.1f, 0.9f);
@@ -628,7 +597,6 @@ static void NastyLightsLeaveNoNan(void** state)
         free(lights);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 static uint64_t hashOf(vplContext* context, const vplRenderOptions* o)
@@ -641,9 +609,8 @@ static uint64_t hashOf(vplContext* context, const vplRenderOptions* o)
     return stats.imageHash ^ (uint64_t)stats.lightEvaluations << 20 ^ (uint64_t)stats.largestCut;
 }
 
-static void ThreadsAndInstructionSetsChangeNoBit(void** state)
+TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)
 {
-    (void)state;
     static const int workers[] = {2, 3, 7};
     for (int i = 0; i < 4; i++) {
         vplRenderOptions o = optionsOf(i == 1 ? 60 : 3000, (vplLightShadows)(1 + i % 3));
@@ -659,10 +626,8 @@ static void ThreadsAndInstructionSetsChangeNoBit(void** state)
     }
 }
 
-static void NoLightsAndOneLightAreDeferred(void** state)
+TEST(NoLightsAndOneLightAreDeferred, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     for (int particles = 0; particles < 2; particles++) {
         vplRenderOptions o = optionsOf(particles, VPL_LIGHT_SHADOWS_RAY);
@@ -677,7 +642,6 @@ static void NoLightsAndOneLightAreDeferred(void** state)
         vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static bool stopAtOnce(void* user, double fraction)
@@ -687,10 +651,8 @@ static bool stopAtOnce(void* user, double fraction)
     return false;
 }
 
-static void CutsCanBeCancelledAndWrongErrorsAreRefused(void** state)
+TEST(CutsCanBeCancelledAndWrongErrorsAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = closedCube(context, 0.5f);
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0, 0, 0.9f);
@@ -715,14 +677,11 @@ static void CutsCanBeCancelledAndWrongErrorsAreRefused(void** state)
     vplImage_Destroy(image);
     free(lights);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Light that the bound takes away comes back in cuts, too: by the same short rays as in deferred shading.
-static void CompensatedCutsKeepTheLight(void** state)
+TEST(CompensatedCutsKeepTheLight, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = vplDefaultRenderOptions();
     o.method = VPL_METHOD_KELLER;
@@ -747,19 +706,4 @@ static void CompensatedCutsKeepTheLight(void** state)
     vplImage_Destroy(cut);
     vplImage_Destroy(clamped);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(lightcuts, cmocka_unit_test(CompensatedCutsKeepTheLight),
-           cmocka_unit_test(EveryClusterHoldsItsLights),
-           cmocka_unit_test(TreesAreTheSameForAnyNumberOfWorkers),
-           cmocka_unit_test(RepresentativesAreDrawnByIntensity),
-           cmocka_unit_test(NoLightGivesMoreThanTheBoundOfItsCluster),
-           cmocka_unit_test(BoundsOfSmallClustersAreTight), cmocka_unit_test(InstructionSetsBoundAlike),
-           cmocka_unit_test(RepresentativesErrByLessThanTheBoundAlsoInShadow),
-           slow_unit_test(NoPixelErrsByMoreThanAsked), cmocka_unit_test(NoErrorIsTheSumOfAllLights),
-           slow_unit_test(TenfoldLightsAreLessThanTwofoldWork),
-           cmocka_unit_test(TwiceTheLightIsTwiceThePicture), cmocka_unit_test(NastyLightsLeaveNoNan),
-           cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),
-           cmocka_unit_test(NoLightsAndOneLightAreDeferred),
-           cmocka_unit_test(CutsCanBeCancelledAndWrongErrorsAreRefused));

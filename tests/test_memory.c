@@ -131,9 +131,8 @@ static vplResult renderAndWrite(vplContext* context, const char* path, int pipel
     return renderFile(context, "tests/data/room.json", &options, &write, path);
 }
 
-static void EveryFailedAllocationOfARenderIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfARenderIsReported)
 {
-    (void)state;
     const char* const extensions[] = {"png", vplImage_CanWrite("a.exr") ? "exr" : "hdr", "pfm", "pfm"};
     for (int pipeline = VPL_ACCUMULATE_MULTIPASS; pipeline <= VPL_ACCUMULATE_INTERLEAVED; pipeline++) {
         failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, false);
@@ -160,17 +159,15 @@ static vplResult pathAndWrite(vplContext* context, const char* path, int variant
                       &options, NULL, path);
 }
 
-static void EveryFailedAllocationOfCompensationIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfCompensationIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(compensateAndWrite, "png", variant, false);
     }
 }
 
-static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfThePathTracerIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(pathAndWrite, "pfm", variant, variant);
     }
@@ -247,9 +244,8 @@ static vplResult meshAndWrite(vplContext* context, const char* path, int variant
     return result;
 }
 
-static void EveryFailedAllocationOfPatchMeshesIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfPatchMeshesIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(meshAndWrite, "ply", variant, variant);
     }
@@ -400,9 +396,8 @@ static vplResult bakeRoom(vplContext* context, const char* path, int variant)
     return result;
 }
 
-static void EveryFailedAllocationOfRadiosityIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfRadiosityIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 3; variant++) {
         failEveryAllocation(renderRadiosity, "png", variant, true);
     }
@@ -411,9 +406,8 @@ static void EveryFailedAllocationOfRadiosityIsReported(void** state)
 }
 
 // While blocks are kept one failure is none: they are given back, and the block is asked for again.
-static void EveryFailedAllocationOfFramesIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfFramesIsReported)
 {
-    (void)state;
     failEveryAllocation(renderFrames, "png", 0, false);
     failEveryAllocation(renderFrames, "png", 0, true);
     failEveryAllocation(renderFrames, "png", 1, true);
@@ -440,9 +434,8 @@ static vplResult findClusters(vplContext* context, const char* path, int variant
     return result;
 }
 
-static void EveryFailedAllocationOfClustersIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfClustersIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(findClusters, "png", variant, false);
         failEveryAllocation(findClusters, "png", variant, true);
@@ -489,18 +482,16 @@ static vplResult findSides(vplContext* context, const char* path, int variant)
     return result;
 }
 
-static void EveryFailedAllocationOfPatchesIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfPatchesIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(findSides, "png", variant, false);
         failEveryAllocation(findSides, "png", variant, true);
     }
 }
 
-static void EveryFailedAllocationOfLightcutsIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfLightcutsIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(renderCuts, "png", variant, false);
         failEveryAllocation(renderCuts, "png", variant, true);
@@ -526,9 +517,8 @@ static vplResult findFactors(vplContext* context, const char* path, int variant)
     return result;
 }
 
-static void EveryFailedAllocationOfFormFactorsIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfFormFactorsIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(findFactors, "png", variant, false);
         failEveryAllocation(findFactors, "png", variant, true);
@@ -585,18 +575,16 @@ static vplResult shadeClusters(vplContext* context, const char* path, int varian
     return result;
 }
 
-static void EveryFailedAllocationOfLightsInClustersIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfLightsInClustersIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(shadeClusters, "png", variant, false);
         failEveryAllocation(shadeClusters, "png", variant, true);
     }
 }
 
-static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 3; variant++) {
         failEveryAllocation(renderBall, "png", variant, false);
     }
@@ -631,9 +619,8 @@ static vplResult placeLights(vplContext* context, const char* path, int variant)
     return result;
 }
 
-static void EveryFailedAllocationOfAPlacementIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfAPlacementIsReported)
 {
-    (void)state;
     for (int variant = VPL_PLACEMENT_RSM; variant <= VPL_PLACEMENT_VIEW; variant++) {
         failEveryAllocation(placeLights, "png", variant, false);
         failEveryAllocation(placeLights, "png", variant, true);
@@ -674,9 +661,8 @@ static vplResult sampleReflectiveMap(vplContext* context, const char* path, int 
     return result;
 }
 
-static void EveryFailedAllocationOfAReflectiveMapIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfAReflectiveMapIsReported)
 {
-    (void)state;
     for (int variant = VPL_EMITTER_POINT; variant <= VPL_EMITTER_DIRECTIONAL; variant++) {
         failEveryAllocation(sampleReflectiveMap, "png", variant, false);
         failEveryAllocation(sampleReflectiveMap, "png", variant, true);
@@ -734,17 +720,15 @@ static vplResult drawParaboloids(vplContext* context, const char* path, int vari
     return result;
 }
 
-static void EveryFailedAllocationOfParaboloidMapsIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfParaboloidMapsIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 2; variant++) {
         failEveryAllocation(drawParaboloids, "png", variant, false);
     }
 }
 
-static void EveryFailedAllocationOfAGeometryIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfAGeometryIsReported)
 {
-    (void)state;
     failEveryAllocation(freezeBall, "png", 0, false);
     failEveryAllocation(freezeBall, "png", 0, true);
 }
@@ -758,9 +742,8 @@ static vplResult showAndWrite(vplContext* context, const char* path, int show)
     return renderFile(context, "tests/data/room-closed.json", &options, NULL, path);
 }
 
-static void EveryFailedAllocationOfAShownStageIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfAShownStageIsReported)
 {
-    (void)state;
     for (int show = VPL_SHOW_DEPTH; show <= VPL_SHOW_OVERLAY; show++) {
         failEveryAllocation(showAndWrite, "pfm", show, false);
     }
@@ -794,9 +777,8 @@ static vplResult readCompareAndMap(vplContext* context, const char* path, int fo
     return result;
 }
 
-static void EveryFailedAllocationOfAComparisonIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfAComparisonIsReported)
 {
-    (void)state;
     for (int format = 0; format < 3; format++) {
         failEveryAllocation(readCompareAndMap, "png", format, false);
         failEveryAllocation(readCompareAndMap, "png", format, true);
@@ -817,9 +799,8 @@ static vplResult readMeshes(vplContext* context, const char* path, int variant)
     return result;
 }
 
-static void EveryFailedAllocationOfTheObjReaderIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfTheObjReaderIsReported)
 {
-    (void)state;
     for (int variant = 0; variant < 3; variant++) {
         failEveryAllocation(readMeshes, "png", variant, false);
         failEveryAllocation(readMeshes, "png", variant, true);
@@ -836,9 +817,8 @@ static void* failingJsonAlloc(size_t size)
 }
 
 // When it has no memory for a key, jansson itself believes that there is none, and calls it a syntax error.
-static void EveryFailedAllocationOfTheJsonReaderIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfTheJsonReaderIsReported)
 {
-    (void)state;
     vplResult result = VPL_OUT_OF_MEMORY;
     json_set_alloc_funcs(failingJsonAlloc, free);
     for (jsonFailAt = 0; result != VPL_SUCCESS; jsonFailAt++) {
@@ -878,31 +858,8 @@ static vplResult encodePng(vplContext* context, const char* path, int variant)
     return result;
 }
 
-static void EveryFailedAllocationOfAnEncodedPngIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfAnEncodedPngIsReported)
 {
-    (void)state;
     failEveryAllocation(encodePng, "png", 0, false);
     failEveryAllocation(encodePng, "png", 0, true);
 }
-
-TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfPatchesIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfRadiosityIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfFormFactorsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAReflectiveMapIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfParaboloidMapsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfPatchMeshesIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfTheJsonReaderIsReported));

@@ -75,10 +75,8 @@ static float valueAt(const vplImage* map, int x, int y)
 
 // Other implementations agree to 1e-8 (SSIM) and 2e-5 (FLIP, which they and we compute in float: where nothing
 // but rounding makes an edge, its square root shows).
-static void SsimAndFlipAreThoseOfOtherImplementations(void** state)
+TEST(SsimAndFlipAreThoseOfOtherImplementations, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("metrics.csv");
     assert_true(t.rows >= 30);
     for (int row = 0; row < t.rows; row++) {
@@ -100,13 +98,10 @@ static void SsimAndFlipAreThoseOfOtherImplementations(void** state)
         freePair(p);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
-static void APictureIsEqualToItself(void** state)
+TEST(APictureIsEqualToItself, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     static const int sizes[][2] = {{64, 48}, {12, 40}, {10, 11}, {3, 2}, {1, 1}, {1, 30}, {30, 1}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         for (int kind = 0; kind < 3; kind++) {
@@ -120,13 +115,10 @@ static void APictureIsEqualToItself(void** state)
             freePair(p);
         }
     }
-    closeTestContext(context);
 }
 
-static void SsimAndFlipAreSymmetric(void** state)
+TEST(SsimAndFlipAreSymmetric, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int kind = 0; kind < 3; kind++) {
         Pair p = makePair(context, kind, 40, 30);
         double ssim[2], flip[2];
@@ -138,7 +130,6 @@ static void SsimAndFlipAreSymmetric(void** state)
         assert_true(ssim[0] < 1 && flip[0] > 0);
         freePair(p);
     }
-    closeTestContext(context);
 }
 
 static vplImage* makeFlat(vplContext* context, int width, int height, float r, float g, float b)
@@ -155,10 +146,8 @@ static vplImage* makeFlat(vplContext* context, int width, int height, float r, f
 
 // Two flat pictures have no variance: SSIM is (2 m n + C1) / (m^2 + n^2 + C1) of the encoded values, whatever
 // the size, though below 11 pixels borders are mirrored.
-static void SsimOfFlatPicturesIsItsLuminanceTerm(void** state)
+TEST(SsimOfFlatPicturesIsItsLuminanceTerm, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     static const int sizes[][2] = {{20, 20}, {11, 5}, {4, 30}, {1, 1}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         vplImage* a = makeFlat(context, sizes[i][0], sizes[i][1], 0.5f, 0.5f, 0.5f);
@@ -172,14 +161,11 @@ static void SsimOfFlatPicturesIsItsLuminanceTerm(void** state)
         vplImage_Destroy(a);
         vplImage_Destroy(b);
     }
-    closeTestContext(context);
 }
 
 // Beyond the window's reach a local change has no effect, and the borders do not count in the mean.
-static void SsimSeesWithinItsWindowOnly(void** state)
+TEST(SsimSeesWithinItsWindowOnly, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Pair p = makePair(context, 1, 32, 32);
     memcpy(p.a->pixels, p.b->pixels, 3 * 32 * 32 * sizeof(float));
     p.a->pixels[3 * (16 * 32 + 16)] += 0.25f;
@@ -197,15 +183,12 @@ static void SsimSeesWithinItsWindowOnly(void** state)
     assertNear(ssim, sum / (22 * 22), 1e-7, "mean", 0);
     vplImage_Destroy(map);
     freePair(p);
-    closeTestContext(context);
 }
 
 // Green and blue are the two colours that are farthest apart, so by definition their colour error is 1; away
 // from edges that is all there is. Clamping makes 9 the same as 1.
-static void FlipOfGreenAndBlueIsOne(void** state)
+TEST(FlipOfGreenAndBlueIsOne, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage *green = makeFlat(context, 24, 24, 0, 9, -3), *blue = makeFlat(context, 24, 24, 0, 0, 1);
     double flip;
     assert_int_equal(vplImage_Flip(green, blue, VPL_DEFAULT_PPD, &flip, NULL), VPL_SUCCESS);
@@ -222,13 +205,10 @@ static void FlipOfGreenAndBlueIsOne(void** state)
     assertNear(flip, wanted, 5e-5, "black and white", 0);
     vplImage_Destroy(black);
     vplImage_Destroy(white);
-    closeTestContext(context);
 }
 
-static void AFlipMapIsInRangeAndItsMeanIsTheMean(void** state)
+TEST(AFlipMapIsInRangeAndItsMeanIsTheMean, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int kind = 0; kind < 3; kind++) {
         Pair p = makePair(context, kind, 37, 23);
         double flip, sum = 0;
@@ -243,14 +223,11 @@ static void AFlipMapIsInRangeAndItsMeanIsTheMean(void** state)
         vplImage_Destroy(map);
         freePair(p);
     }
-    closeTestContext(context);
 }
 
 // The farther the eye, the less is seen of grain.
-static void FlipOfGrainFallsWithDistance(void** state)
+TEST(FlipOfGrainFallsWithDistance, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Pair p = makePair(context, 0, 48, 48);
     double last = 1, flip;
     for (double ppd = 15; ppd < 300; ppd *= 2) {
@@ -259,7 +236,6 @@ static void FlipOfGrainFallsWithDistance(void** state)
         last = flip;
     }
     freePair(p);
-    closeTestContext(context);
 }
 
 typedef struct Bits {
@@ -295,9 +271,8 @@ static Bits measureBits(vplContext* context)
 }
 
 // The numbers written here hold for every compiler, optimisation and machine as well.
-static void ThreadsAndMachinesChangeNoBitOfAMetric(void** state)
+TEST_ALONE(ThreadsAndMachinesChangeNoBitOfAMetric)
 {
-    (void)state;
     Bits first = {0};
     for (int workers = 1; workers <= 7; workers += workers < 3 ? 1 : 4) {
         vplContext* context = openTestContext(workers);
@@ -319,10 +294,8 @@ static int compareDoubles(const void* a, const void* b)
 }
 
 // Against sorting, for sizes around the thousands, with ties and with fireflies.
-static void TrimmedRelmseLeavesOutTheLargestThousandth(void** state)
+TEST(TrimmedRelmseLeavesOutTheLargestThousandth, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     static const int widths[] = {1, 999, 1000, 1001, 1999, 2000, 7777, 12000};
     for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
         int n = widths[i];
@@ -350,13 +323,10 @@ static void TrimmedRelmseLeavesOutTheLargestThousandth(void** state)
         free(values);
         freePair(p);
     }
-    closeTestContext(context);
 }
 
-static void RegionsCoverEveryPixelOnce(void** state)
+TEST(RegionsCoverEveryPixelOnce, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Pair p = makePair(context, 0, 37, 23);
     vplComparison c;
     assert_int_equal(vplImage_Compare(p.a, p.b, &c), VPL_SUCCESS);
@@ -387,13 +357,10 @@ static void RegionsCoverEveryPixelOnce(void** state)
         assertNear(sumA / sumB, c.energyRatio, 1e-12, "energy", (int)g);
     }
     freePair(p);
-    closeTestContext(context);
 }
 
-static void BlackRegionsHaveARatio(void** state)
+TEST(BlackRegionsHaveARatio, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage *black = makeFlat(context, 4, 4, 0, 0, 0), *grey = makeFlat(context, 4, 4, 1, 1, 1);
     vplRegion region;
     assert_int_equal(vplImage_CompareRegions(black, black, 1, 1, &region), VPL_SUCCESS);
@@ -402,13 +369,10 @@ static void BlackRegionsHaveARatio(void** state)
     assert_true(isinf(region.ratio) && region.rmse == 1);
     vplImage_Destroy(black);
     vplImage_Destroy(grey);
-    closeTestContext(context);
 }
 
-static void ACropIsItsRectangle(void** state)
+TEST(ACropIsItsRectangle, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Pair p = makePair(context, 2, 13, 9);
     vplImage* crop = NULL;
     assert_int_equal(vplImage_Crop(p.a, 3, 2, 10, 7, &crop), VPL_SUCCESS);
@@ -427,14 +391,11 @@ static void ACropIsItsRectangle(void** state)
         assert_null(crop);
     }
     freePair(p);
-    closeTestContext(context);
 }
 
 // Each kind is black where nothing differs and bright where much does; FLIP's bright end is pale yellow.
-static void HeatMapsShowWhatTheyAreOf(void** state)
+TEST(HeatMapsShowWhatTheyAreOf, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Pair p = makePair(context, 1, 200, 60);
     memcpy(p.a->pixels, p.b->pixels, (size_t)3 * 200 * 60 * sizeof(float));
     for (int i = 0; i < 3 * 60; i++) { // the top left 20x20 is turned around
@@ -457,13 +418,10 @@ static void HeatMapsShowWhatTheyAreOf(void** state)
         vplImage_Destroy(map);
     }
     freePair(p);
-    closeTestContext(context);
 }
 
-static void BadArgumentsAreRefusedInASentence(void** state)
+TEST(BadArgumentsAreRefusedInASentence, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Pair p = makePair(context, 0, 8, 8);
     double mean = -1;
     vplImage* map = NULL;
@@ -490,14 +448,11 @@ static void BadArgumentsAreRefusedInASentence(void** state)
     assert_int_equal(vplImage_HeatmapOf(p.a, p.b, &def, &map), VPL_INVALID_ARGUMENT);
     assert_true(mean == -1 && map == NULL);
     freePair(p);
-    closeTestContext(context);
 }
 
 // By every metric, whichever picture it is in, naming the pixel.
-static void PicturesThatAreNotFiniteAreRefused(void** state)
+TEST(PicturesThatAreNotFiniteAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     static const float bad[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 6; i++) {
         Pair p = makePair(context, 0, 6, 5);
@@ -519,13 +474,10 @@ static void PicturesThatAreNotFiniteAreRefused(void** state)
         }
         freePair(p);
     }
-    closeTestContext(context);
 }
 
-static void PicturesOfDifferentSizeAreRefused(void** state)
+TEST(PicturesOfDifferentSizeAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Pair p = makePair(context, 0, 6, 5), q = makePair(context, 0, 5, 6);
     double mean;
     vplRegion region;
@@ -535,14 +487,11 @@ static void PicturesOfDifferentSizeAreRefused(void** state)
     assert_non_null(strstr(takeMessage(), "differ in size: 6x5 and 5x6"));
     freePair(p);
     freePair(q);
-    closeTestContext(context);
 }
 
 // Values that a renderer may well make: metrics stay finite and in range.
-static void HugeAndNegativeValuesGiveFiniteMetrics(void** state)
+TEST(HugeAndNegativeValuesGiveFiniteMetrics, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Pair p = makePair(context, 2, 20, 20);
     static const float values[] = {3e38f, -3e38f, 1e-42f, -1e-42f, -0.01f, 1e20f, 0, 1};
     for (int i = 0; i < 3 * 400; i++) {
@@ -567,20 +516,4 @@ static void HugeAndNegativeValuesGiveFiniteMetrics(void** state)
         vplImage_Destroy(map);
     }
     freePair(p);
-    closeTestContext(context);
 }
-
-TEST_SUITE(metrics, cmocka_unit_test(SsimAndFlipAreThoseOfOtherImplementations),
-           cmocka_unit_test(APictureIsEqualToItself), cmocka_unit_test(SsimAndFlipAreSymmetric),
-           cmocka_unit_test(SsimOfFlatPicturesIsItsLuminanceTerm),
-           cmocka_unit_test(SsimSeesWithinItsWindowOnly), cmocka_unit_test(FlipOfGreenAndBlueIsOne),
-           cmocka_unit_test(AFlipMapIsInRangeAndItsMeanIsTheMean),
-           cmocka_unit_test(FlipOfGrainFallsWithDistance),
-           cmocka_unit_test(ThreadsAndMachinesChangeNoBitOfAMetric),
-           cmocka_unit_test(TrimmedRelmseLeavesOutTheLargestThousandth),
-           cmocka_unit_test(RegionsCoverEveryPixelOnce), cmocka_unit_test(BlackRegionsHaveARatio),
-           cmocka_unit_test(ACropIsItsRectangle), cmocka_unit_test(HeatMapsShowWhatTheyAreOf),
-           cmocka_unit_test(BadArgumentsAreRefusedInASentence),
-           cmocka_unit_test(PicturesThatAreNotFiniteAreRefused),
-           cmocka_unit_test(PicturesOfDifferentSizeAreRefused),
-           cmocka_unit_test(HugeAndNegativeValuesGiveFiniteMetrics));

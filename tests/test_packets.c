@@ -65,9 +65,8 @@ static void comparePacket(const vplGeometry* g, int kind, Dice* dice, int* hits,
 }
 
 // A tree of 1280 triangles, and 20 that are tested without.
-static void SixteenRaysSayWhatEachSaysAlone(void** state)
+TEST_ALONE(SixteenRaysSayWhatEachSaysAlone)
 {
-    (void)state;
     for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
         if (!vplHasIsa((vplIsa)isa)) {
             continue;
@@ -120,9 +119,8 @@ static uint64_t hashTree(const vplBvh* bvh)
 }
 
 // 20480 triangles are several waves of tasks.
-static void TheTreeIsTheSameForAnyNumberOfWorkers(void** state)
+TEST_ALONE(TheTreeIsTheSameForAnyNumberOfWorkers)
 {
-    (void)state;
     uint64_t first = 0;
     for (int workers = 1; workers <= 7; workers += workers == 3 ? 4 : 1) {
         vplContext* context = openTestContext(workers);
@@ -166,10 +164,8 @@ static void castOne(void* data, int index, int worker)
 }
 
 // Nobody prepared rays: the first to come builds the tree, whatever thread it is on.
-static void RaysNeedNoPreparation(void** state)
+TEST(RaysNeedNoPreparation, 4)
 {
-    (void)state;
-    vplContext* context = openTestContext(4);
     vplGeometry *prepared = freezeBall(context, 4), *g = freezeBall(context, 4);
     const size_t before = vplContext_GetBytes(context);
     assert_int_equal(vplGeometry_PrepareRays(prepared), VPL_SUCCESS);
@@ -183,7 +179,6 @@ static void RaysNeedNoPreparation(void** state)
     assert_memory_equal(wanted.t, found.t, sizeof wanted.t);
     vplGeometry_Destroy(prepared);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 static void* allocUnlessTold(void* user, void* memory, size_t oldSize, size_t newSize)
@@ -196,9 +191,8 @@ static void* allocUnlessTold(void* user, void* memory, size_t oldSize, size_t ne
     return *(bool*)user ? NULL : realloc(memory, newSize);
 }
 
-static void WithoutMemoryForATreeRaysAreRight(void** state)
+TEST_ALONE(WithoutMemoryForATreeRaysAreRight)
 {
-    (void)state;
     bool empty = false;
     vplContextDef def = vplDefaultContextDef();
     def.alloc = allocUnlessTold;
@@ -227,7 +221,3 @@ static void WithoutMemoryForATreeRaysAreRight(void** state)
     vplGeometry_Destroy(g);
     vplContext_Destroy(context);
 }
-
-TEST_SUITE(packets, cmocka_unit_test(SixteenRaysSayWhatEachSaysAlone),
-           cmocka_unit_test(TheTreeIsTheSameForAnyNumberOfWorkers), cmocka_unit_test(RaysNeedNoPreparation),
-           cmocka_unit_test(WithoutMemoryForATreeRaysAreRight));

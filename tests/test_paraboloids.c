@@ -54,9 +54,8 @@ static vplVec3 toWorld(const vplParaboloidMap* map, vplVec3 d)
 
 // ---- the projection
 
-static void ProjectionFollowsTheTable(void** state)
+TEST_ALONE(ProjectionFollowsTheTable)
 {
-    (void)state;
     Table t = loadTable("paraboloid.csv");
     for (int row = 0; row < t.rows; row++) {
         const vplVec3 d = vectorOf(&t, row, "d");
@@ -87,9 +86,8 @@ static void ProjectionFollowsTheTable(void** state)
     assertNear(x / 2e8, 1, 1e-7, "almost behind", 0);
 }
 
-static void UnprojectionIsTheInverse(void** state)
+TEST_ALONE(UnprojectionIsTheInverse)
 {
-    (void)state;
     Table t = loadTable("paraboloid_inverse.csv");
     for (int row = 0; row < t.rows; row++) {
         const double px = number(&t, row, "px"), py = number(&t, row, "py");
@@ -103,9 +101,8 @@ static void UnprojectionIsTheInverse(void** state)
 }
 
 // X043: the first Hammersley point and those next to 1 among them; X104: the mean over the disk is 1.
-static void WeightsOfDiskSamplesFollowTheTable(void** state)
+TEST_ALONE(WeightsOfDiskSamplesFollowTheTable)
 {
-    (void)state;
     Table t = loadTable("disk_maps.csv");
     for (int row = 0; row < t.rows; row++) {
         const double x = number(&t, row, "polar_x"), y = number(&t, row, "polar_y");
@@ -193,10 +190,8 @@ static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int w
     }
 }
 
-static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
+TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int which = 0; which < 2; which++) {
         vplGeometry* g = clutter(context, which);
         Dice dice = {7, 0};
@@ -208,7 +203,6 @@ static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // ---- bounds: nothing that lies in a triangle is lost, and nothing beside it is drawn
@@ -282,10 +276,8 @@ static double heightOf(const vplVec3 corner[3])
     return nearest > 0 ? fabs(dot(n, p[0])) / sqrt(dot(n, n) * nearest) : 0;
 }
 
-static void BoundsOfTrianglesLoseNoTexel(void** state)
+TEST(BoundsOfTrianglesLoseNoTexel, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Dice dice = {21, 0};
     int64_t inside = 0, outside = 0;
     for (int i = 0; i < 6000; i++) {
@@ -333,13 +325,10 @@ static void BoundsOfTrianglesLoseNoTexel(void** state)
     }
     printf("# %lld texels covered, %lld not\n", (long long)inside, (long long)outside);
     assert_true(inside > 100000 && outside > 100000);
-    closeTestContext(context);
 }
 
-static void SharedEdgesLeaveNoHoles(void** state)
+TEST(SharedEdgesLeaveNoHoles, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Dice dice = {13, 0};
     for (int i = 0; i < 24; i++) {
         Shape shape = i % 3 == 0 ? icosphere(i / 3 % 4) : i % 3 == 1 ? ringSphere(20 + i) : gridBox(1 + i);
@@ -362,15 +351,12 @@ static void SharedEdgesLeaveNoHoles(void** state)
         vplParaboloidMaps_Destroy(maps);
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // A thin band along an edge covers the image of its middle, and not the middle of the chord between its ends, which is
 // up to 169 of 512 texels off.
-static void EdgesBendAsTheyShould(void** state)
+TEST(EdgesBendAsTheyShould, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("paraboloid_edge_error.csv");
     int bent = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -412,7 +398,6 @@ static void EdgesBendAsTheyShould(void** state)
     }
     assert_true(bent >= 4);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- shadows
@@ -455,10 +440,8 @@ static void comparePairs(const vplGeometry* g, Dice* dice, const vplParaboloidMa
     }
 }
 
-static void MapsAndRaysAgreeOutsideTheBand(void** state)
+TEST(MapsAndRaysAgreeOutsideTheBand, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int which = 0; which < 2; which++) {
         vplGeometry* g = clutter(context, which);
         Dice dice = {11, 0};
@@ -474,14 +457,11 @@ static void MapsAndRaysAgreeOutsideTheBand(void** state)
         assert_true(tally.apart > 0 && tally.apart < tally.pairs / 20);
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // Also where light grazes it, from both sides, and with one texel for all directions.
-static void APlaneNeverShadowsItself(void** state)
+TEST(APlaneNeverShadowsItself, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
     Dice dice = {3, 0};
     for (int i = 0; i < 2000; i++) {
@@ -500,13 +480,10 @@ static void APlaneNeverShadowsItself(void** state)
         vplParaboloidMaps_Destroy(maps);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
-static void AnEmptyHemisphereIsLitAndOneThatIsNotDrawnIsDark(void** state)
+TEST(AnEmptyHemisphereIsLitAndOneThatIsNotDrawnIsDark, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
     const vplParaboloidPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0), 1, true};
     vplParaboloidMaps* maps = drawMaps(g, 5, &place, 1);
@@ -535,14 +512,11 @@ static void AnEmptyHemisphereIsLitAndOneThatIsNotDrawnIsDark(void** state)
     assert_true(maps->maps[0].texels[0] == 0);
     vplParaboloidMaps_Destroy(maps);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Means of clusters may lie anywhere: in a solid, on a vertex, an edge or a surface.
-static void PlacesInMidAirGiveNumbersAnywhere(void** state)
+TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = clutter(context, 1);
     Dice dice = {17, 0};
     for (int i = 0; i < 60; i++) {
@@ -567,7 +541,6 @@ static void PlacesInMidAirGiveNumbersAnywhere(void** state)
         vplParaboloidMaps_Destroy(maps);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // ---- everywhere, and not at all
@@ -601,16 +574,13 @@ static uint64_t hashOf(vplContext* context)
     return hash;
 }
 
-static void MapsHaveTheSameBitsEverywhere(void** state)
+TEST_ALONE(MapsHaveTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOf);
 }
 
-static void MapsCanBeRefusedAndCancelled(void** state)
+TEST(MapsCanBeRefusedAndCancelled, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = closedCube(context, 0.5f);
     vplParaboloidMaps* maps = NULL;
     assert_int_equal(vplParaboloidMaps_Create(context, 0, 1, false, &maps), VPL_INVALID_ARGUMENT);
@@ -637,15 +607,4 @@ static void MapsCanBeRefusedAndCancelled(void** state)
     vplParaboloidMaps_Destroy(maps);
     vplParaboloidMaps_Destroy(NULL);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
-
-TEST_SUITE(paraboloids, cmocka_unit_test(ProjectionFollowsTheTable),
-           cmocka_unit_test(UnprojectionIsTheInverse), cmocka_unit_test(WeightsOfDiskSamplesFollowTheTable),
-           cmocka_unit_test(EachTexelHoldsWhatARayThroughItsCentreMeets),
-           cmocka_unit_test(BoundsOfTrianglesLoseNoTexel), cmocka_unit_test(SharedEdgesLeaveNoHoles),
-           cmocka_unit_test(EdgesBendAsTheyShould), cmocka_unit_test(MapsAndRaysAgreeOutsideTheBand),
-           cmocka_unit_test(APlaneNeverShadowsItself),
-           cmocka_unit_test(AnEmptyHemisphereIsLitAndOneThatIsNotDrawnIsDark),
-           cmocka_unit_test(PlacesInMidAirGiveNumbersAnywhere),
-           cmocka_unit_test(MapsHaveTheSameBitsEverywhere), cmocka_unit_test(MapsCanBeRefusedAndCancelled));

@@ -109,9 +109,8 @@ static vplPatchSide sideOf(vplVec3 a, vplVec3 b, vplVec3 c)
 
 // Sixteen triangles that tile theirs: points of a cell are found in it again, their mean is where its centre is, and the
 // means of all cells have the patch's.
-static void CellsTileThePatch(void** state)
+TEST_ALONE(CellsTileThePatch)
 {
-    (void)state;
     const vplPatchSide s = sideOf(vplVec(1, 2, 3), vplVec(4, 2, 1), vplVec(0, 5, 2));
     double total[3] = {0};
     for (int k = 0; k < VPL_PATCH_CELLS; k++) {
@@ -137,9 +136,8 @@ static void CellsTileThePatch(void** state)
 }
 
 // Cell 0 is at corner 0, 5 at corner 1, 10 at corner 2, 15 in the middle; extreme u and v stay within.
-static void CellsAreInTheStatedOrder(void** state)
+TEST_ALONE(CellsAreInTheStatedOrder)
 {
-    (void)state;
     const vplPatchSide s = sideOf(vplVec(0, 0, 0), vplVec(4, 0, 0), vplVec(0, 4, 0));
     const float ends[2] = {0, 1 - 0x1p-24f};
     for (int i = 0; i < 4; i++) {
@@ -173,10 +171,8 @@ static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g
 
 // Fronts of all 784 patches but for those of the floor that a block stands on; no backs, and no cell that a block
 // covers whole. Cells of which most is free are open, and of those alone.
-static void TheReportsBoxHasItsFrontsButUnderBlocks(void** state)
+TEST(TheReportsBoxHasItsFrontsButUnderBlocks, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
     vplPatches* p = openPatches(g, 1.25f, VPL_MAX_PATCH_ROUNDS);
     vplPatchSides* s = sidesOf(p, &NEAR_CEILING);
@@ -212,7 +208,6 @@ static void TheReportsBoxHasItsFrontsButUnderBlocks(void** state)
     vplPatchSides_Destroy(s);
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 static void assertSide(const vplPatchSides* s, int index)
@@ -235,10 +230,8 @@ static void assertSide(const vplPatchSides* s, int index)
     assertNear(distances[2], distances[0], 2e-6, "incentre", index);
 }
 
-static void SidesAreWhatTheHeaderSays(void** state)
+TEST(SidesAreWhatTheHeaderSays, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene;
     vplGeometry* g;
     assert_int_equal(vplScene_Load(context, "examples/scenes/room-area.json", &scene), VPL_SUCCESS);
@@ -267,16 +260,14 @@ static void SidesAreWhatTheHeaderSays(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- what light does not reach
 
 // A crate on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside is dark, and so is what it
 // stands on: open cells make up the floor less its base, but for those that it covers in part.
-static void TheInsideOfACrateAndTheFloorUnderItAreDark(void** state)
+TEST_ALONE(TheInsideOfACrateAndTheFloorUnderItAreDark)
 {
-    (void)state;
     for (int sunk = 0; sunk < 3; sunk++) { // on the floor, into it, and a hair above
         Shape shape = {0};
         addFloor(&shape);
@@ -295,10 +286,8 @@ static void TheInsideOfACrateAndTheFloorUnderItAreDark(void** state)
 }
 
 // Twenty seeds and other sizes: rounding lets no light through a wall.
-static void NoSeedLightsTheBackOfAWall(void** state)
+TEST(NoSeedLightsTheBackOfAWall, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
     for (uint64_t seed = 0; seed < 20; seed++) {
         vplPatches* p = openPatches(g, 2.0f - 0.07f * (float)seed, VPL_MAX_PATCH_ROUNDS);
@@ -319,13 +308,11 @@ static void NoSeedLightsTheBackOfAWall(void** state)
         vplPatches_Destroy(p);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Two closed rooms beside each other, a lamp in one.
-static void ARoomWithoutALampTakesNoPart(void** state)
+TEST_ALONE(ARoomWithoutALampTakesNoPart)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(2, 0, 0), vplVec(4, 2, 2), true);
@@ -336,9 +323,8 @@ static void ARoomWithoutALampTakesNoPart(void** state)
     closeCase(&c);
 }
 
-static void WithoutLightThereAreNoSides(void** state)
+TEST_ALONE(WithoutLightThereAreNoSides)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     Case c = openCase(&shape, 1, NULL);
@@ -350,9 +336,8 @@ static void WithoutLightThereAreNoSides(void** state)
 }
 
 // What an eye sees takes part, dark as it is.
-static void WhatAnEyeSeesTakesPart(void** state)
+TEST_ALONE(WhatAnEyeSeesTakesPart)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(3, 0, 0), vplVec(5, 2, 2), true);
@@ -373,9 +358,8 @@ static void WhatAnEyeSeesTakesPart(void** state)
 
 // ---- what it reaches
 
-static void OneTriangleHasTheSideThatFacesTheLamp(void** state)
+TEST_ALONE(OneTriangleHasTheSideThatFacesTheLamp)
 {
-    (void)state;
     for (int back = 0; back < 2; back++) {
         Shape shape = {0};
         addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 0, 0), vplVec(0, 1, 0));
@@ -388,10 +372,8 @@ static void OneTriangleHasTheSideThatFacesTheLamp(void** state)
     }
 }
 
-static void ALampAloneIsASide(void** state)
+TEST(ALampAloneIsASide, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shape = {0};
     addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 0, 0), vplVec(0, 1, 0));
     vplGeometry* g = geometryOf(context, &shape, 0, 2);
@@ -408,13 +390,11 @@ static void ALampAloneIsASide(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // A curtain that hangs in a lit room: light on one side, and from the walls on the other.
-static void ACurtainHasBothSides(void** state)
+TEST_ALONE(ACurtainHasBothSides)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addFlat(&shape, vplVec(0.4f, 0.3f, 1), vplVec(1.6f, 0.3f, 1), vplVec(1.6f, 1.7f, 1),
@@ -428,9 +408,8 @@ static void ACurtainHasBothSides(void** state)
 }
 
 // Of triangles in one place rays meet the first: it has the light of both sides, the other has none.
-static void OfTwoTrianglesInOnePlaceTheFirstHasTheLight(void** state)
+TEST_ALONE(OfTwoTrianglesInOnePlaceTheFirstHasTheLight)
 {
-    (void)state;
     for (int turned = 0; turned < 2; turned++) {
         Shape shape = {0};
         addFloor(&shape);
@@ -450,9 +429,8 @@ static void OfTwoTrianglesInOnePlaceTheFirstHasTheLight(void** state)
 
 // Five rooms in a row with doors a tenth of the wall, which do not face each other; the lamp is in the first. All walls
 // of all rooms are met, at few patches and at many.
-static void LightGoesThroughDoorsToTheLastRoom(void** state)
+TEST_ALONE(LightGoesThroughDoorsToTheLastRoom)
 {
-    (void)state;
     for (int fine = 0; fine < 2; fine++) {
         Shape shape = {0};
         addBox(&shape, vplVec(0, 0, 0), vplVec(20, 4, 4), true);
@@ -476,10 +454,8 @@ static void LightGoesThroughDoorsToTheLastRoom(void** state)
 }
 
 // A lamp of a millionth of another's power, alone in its room, and the only one of a hundred triangles.
-static void AWeakLampLightsItsRoom(void** state)
+TEST(AWeakLampLightsItsRoom, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(3, 0, 0), vplVec(5, 2, 2), true);
@@ -500,13 +476,11 @@ static void AWeakLampLightsItsRoom(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // A poster half a millimetre off the wall (triangles 0 and 1) covers it; the wall around it is light.
-static void APosterCoversItsWall(void** state)
+TEST_ALONE(APosterCoversItsWall)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     addFlat(&shape, vplVec(-1, 5e-4f, -1), vplVec(-1, 5e-4f, 1), vplVec(1, 5e-4f, 1), vplVec(1, 5e-4f, -1));
@@ -524,9 +498,8 @@ static void APosterCoversItsWall(void** state)
 // ---- the rest
 
 // `whole`: of each triangle that light reaches, all patches on that side, none of them in part.
-static void WholeSidesAreThoseOfWholeTriangles(void** state)
+TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     addBox(&shape, vplVec(-0.9f, 0, -0.7f), vplVec(0.8f, 1, 0.9f), false);
@@ -577,9 +550,8 @@ static uint64_t hashOfModel(vplContext* context)
     return hash;
 }
 
-static void SidesAreTheSameEverywhere(void** state)
+TEST_ALONE(SidesAreTheSameEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOfModel);
 }
 
@@ -593,9 +565,8 @@ static void expectFailure(const vplPatches* p, vplPatchSidesDef def, vplResult w
     assert_string_equal(takeMessage(), sentence);
 }
 
-static void WrongDefsAreRefused(void** state)
+TEST_ALONE(WrongDefsAreRefused)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     Case c = openCase(&shape, 1, NULL);
@@ -618,9 +589,8 @@ static void WrongDefsAreRefused(void** state)
     closeCase(&c);
 }
 
-static void ARefusedProgressCancels(void** state)
+TEST_ALONE(ARefusedProgressCancels)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     Case c = openCase(&shape, 0.2f, NULL);
@@ -636,17 +606,3 @@ static void ARefusedProgressCancels(void** state)
     assert_int_equal(asked, 3);
     closeCase(&c);
 }
-
-TEST_SUITE(patchSides, cmocka_unit_test(CellsTileThePatch), cmocka_unit_test(CellsAreInTheStatedOrder),
-           cmocka_unit_test(TheReportsBoxHasItsFrontsButUnderBlocks),
-           cmocka_unit_test(SidesAreWhatTheHeaderSays),
-           cmocka_unit_test(TheInsideOfACrateAndTheFloorUnderItAreDark),
-           slow_unit_test(NoSeedLightsTheBackOfAWall), cmocka_unit_test(ARoomWithoutALampTakesNoPart),
-           cmocka_unit_test(WithoutLightThereAreNoSides), cmocka_unit_test(WhatAnEyeSeesTakesPart),
-           cmocka_unit_test(OneTriangleHasTheSideThatFacesTheLamp), cmocka_unit_test(ALampAloneIsASide),
-           cmocka_unit_test(ACurtainHasBothSides),
-           cmocka_unit_test(OfTwoTrianglesInOnePlaceTheFirstHasTheLight),
-           cmocka_unit_test(LightGoesThroughDoorsToTheLastRoom), cmocka_unit_test(AWeakLampLightsItsRoom),
-           cmocka_unit_test(APosterCoversItsWall), cmocka_unit_test(WholeSidesAreThoseOfWholeTriangles),
-           cmocka_unit_test(SidesAreTheSameEverywhere), cmocka_unit_test(WrongDefsAreRefused),
-           cmocka_unit_test(ARefusedProgressCancels));

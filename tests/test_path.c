@@ -147,9 +147,8 @@ static double radianceOf(const vplScene* scene, const vplRenderOptions* options,
 
 // ---- a furnace: where all walls reflect rho and emit E, everything is E / (1 - rho)
 
-static void FurnaceGlowsEverywhereAlike(void** state)
+TEST_ALONE(FurnaceGlowsEverywhereAlike, SLOW)
 {
-    (void)state;
     static const struct {
         float rho;
         int samples;
@@ -179,9 +178,8 @@ static void FurnaceGlowsEverywhereAlike(void** state)
 
 // A perfect reflector among walls that emit E shows E, or it makes or loses energy. Interpolated normals may lose
 // what would have to be reflected into the surface, but never gain.
-static void WhiteBodyInAFurnaceVanishes(void** state)
+TEST_ALONE(WhiteBodyInAFurnaceVanishes)
 {
-    (void)state;
     for (int smooth = 0; smooth < 2; smooth++) {
         vplContext* context = openTestContext(2);
         vplScene* scene = newScene(context);
@@ -207,10 +205,8 @@ static void WhiteBodyInAFurnaceVanishes(void** state)
 
 static const double NARROW = 1e-7; // angle of view: what one small pixel sees is a point
 
-static void PointLightFollowsTheInverseSquare(void** state)
+TEST(PointLightFollowsTheInverseSquare, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int i = 0; i < 5; i++) {
         const float x = 0.7f * (float)i;
         vplScene* scene = newScene(context);
@@ -224,16 +220,13 @@ static void PointLightFollowsTheInverseSquare(void** state)
         assertNear(radianceOf(scene, &options, 2), 0, 0, "blue", i);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
-static void SpotFadesSmoothlyBetweenItsAngles(void** state)
+TEST(SpotFadesSmoothlyBetweenItsAngles, 1)
 {
-    (void)state;
     static const struct {
         double angle, share; // degrees; 3x^2 - 2x^3 of the cosine
     } cases[] = {{0, 1}, {15, 1}, {19.9, 1}, {25, -1}, {28, -1}, {30.1, 0}, {45, 0}};
-    vplContext* context = openTestContext(1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double angle = cases[i].angle * VPL_PI / 180, inner = cos(VPL_PI / 9), outer = cos(VPL_PI / 6);
         const float x = (float)(2 * tan(angle));
@@ -248,13 +241,10 @@ static void SpotFadesSmoothlyBetweenItsAngles(void** state)
         assertNear(radianceOf(scene, &options, 0), wanted, 4e-6 * wanted, "red", (int)i);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
-static void DirectionalLightGoesByTheCosine(void** state)
+TEST(DirectionalLightGoesByTheCosine, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = newScene(context);
     addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
     vplEmitterDef sun = vplDefaultEmitterDef();
@@ -267,7 +257,6 @@ static void DirectionalLightGoesByTheCosine(void** state)
     double wanted = 0.5 / VPL_PI * 7 * 0.8;
     assertNear(radianceOf(scene, &options, 0), wanted, 1e-6 * wanted, "red", 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Form factor of a rectangle from a parallel surface element under one corner; a, b sides over the distance.
@@ -277,14 +266,12 @@ static double cornerFactor(double a, double b)
     return (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * VPL_PI);
 }
 
-static void SquareLampGivesItsFormFactor(void** state)
+TEST(SquareLampGivesItsFormFactor, 1)
 {
-    (void)state;
     static const struct {
         float size, height;
         double bound;
     } cases[] = {{1, 1, 5e-4}, {1, 4, 5e-4}, {4, 0.25f, 2e-3}, {1, 0.01f, 2e-3}};
-    vplContext* context = openTestContext(1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         vplScene* scene = newScene(context);
         addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, 0}, -1, 20);
@@ -300,13 +287,10 @@ static void SquareLampGivesItsFormFactor(void** state)
         assertNear(radianceOf(scene, &options, 0), wanted, cases[i].bound * wanted, "radiance", (int)i);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
-static void OnlyTheFrontOfALampEmits(void** state)
+TEST(OnlyTheFrontOfALampEmits, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int behind = 0; behind < 2; behind++) {
         vplScene* scene = newScene(context);
         addQuad(scene, addGrey(scene, 0, 5), (vplVec3){0, 0, 0}, 0, 1);
@@ -319,7 +303,6 @@ static void OnlyTheFrontOfALampEmits(void** state)
         assertNear(radianceOf(scene, &options, 0), 0, 0, "behind it", behind);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // ---- bounces with known answers
@@ -336,13 +319,11 @@ static void assertMean(const vplScene* scene, const vplRenderOptions* options, d
     vplImage_Destroy(image);
 }
 
-static void CubeMatchesTheTableBounceByBounce(void** state)
+TEST(CubeMatchesTheTableBounceByBounce, 2, SLOW)
 {
-    (void)state;
     static const char* const columns[] = {"E_direct", "E1_over_rho", "E2_over_rho^2", "E3_over_rho^3"};
     const float rho = 0.5f;
     Table t = loadTable("cube_physical.csv");
-    vplContext* context = openTestContext(2);
     for (int row = 0; row < t.rows; row++) {
         const float u = (float)number(&t, row, "u"), v = (float)number(&t, row, "v");
         vplScene* scene = newScene(context);
@@ -362,16 +343,13 @@ static void CubeMatchesTheTableBounceByBounce(void** state)
         vplScene_Destroy(scene);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // A light in the middle of a sphere: rho/pi I/R^2 / (1 - rho) everywhere. The mesh is inside the sphere by up to
 // 1 - cos(its edges' half angle), 0.05 %, and R^2 twice that.
-static void SphereMatchesTheTable(void** state)
+TEST(SphereMatchesTheTable, 2, SLOW)
 {
-    (void)state;
     Table t = loadTable("furnace_sphere.csv");
-    vplContext* context = openTestContext(2);
     for (int row = 0; row < t.rows; row++) {
         const float radius = (float)number(&t, row, "R"), rho = (float)number(&t, row, "rho");
         vplScene* scene = newScene(context);
@@ -393,7 +371,6 @@ static void SphereMatchesTheTable(void** state)
         vplScene_Destroy(scene);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 static vplScene* loadExample(vplContext* context, const char* path)
@@ -417,11 +394,9 @@ static vplImage* renderShown(const vplScene* scene, vplShow show, int bounce)
 }
 
 // Whatever is shown, the same paths are followed, so parts add up to the whole but for rounding.
-static void PartsAddUpToThePicture(void** state)
+TEST(PartsAddUpToThePicture, 2)
 {
-    (void)state;
     static const char* const scenes[] = {ROOM, LAMP_ROOM};
-    vplContext* context = openTestContext(2);
     for (int s = 0; s < 2; s++) {
         vplScene* scene = loadExample(context, scenes[s]);
         vplImage* picture = renderShown(scene, VPL_SHOW_PICTURE, 0);
@@ -452,7 +427,6 @@ static void PartsAddUpToThePicture(void** state)
         }
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // ---- error, bits, pixels
@@ -468,11 +442,9 @@ static double squaredDifference(const vplImage* a, const vplImage* b)
 }
 
 // Few bright pixels make most of the error, so a single pair of pictures says little: twelve pairs are taken.
-static void ErrorEstimatePredictsTheDifferenceOfSeeds(void** state)
+TEST(ErrorEstimatePredictsTheDifferenceOfSeeds, 2, SLOW)
 {
-    (void)state;
     static const char* const scenes[] = {ROOM, LAMP_ROOM};
-    vplContext* context = openTestContext(2);
     for (int s = 0; s < 2; s++) {
         vplScene* scene = loadExample(context, scenes[s]);
         vplRenderOptions options = pathOptions(40, 15); // odd: the halves differ in size
@@ -501,7 +473,6 @@ static void ErrorEstimatePredictsTheDifferenceOfSeeds(void** state)
         assert_true(stats.errorEstimate < 0); // nothing to compare with
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 static vplImage* traceWith(const vplScene* scene, const vplGeometry* geometry, const vplPathDef* def,
@@ -524,10 +495,8 @@ static vplImage* traceWith(const vplScene* scene, const vplGeometry* geometry, c
 
 // Every emitter type, a lamp, and a smooth sphere: what each way finds is the same light. Pictures differ by no more
 // than their error estimates say, and so do their means.
-static void AllWaysOfFindingLightAgree(void** state)
+TEST(AllWaysOfFindingLightAgree, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = newScene(context);
     vplGeometry* geometry;
     addRoom(scene, addGrey(scene, 0.6f, 0));
@@ -567,7 +536,6 @@ static void AllWaysOfFindingLightAgree(void** state)
     vplImage_Destroy(all);
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static uint64_t hashOf(vplContext* context, const char* path)
@@ -581,9 +549,8 @@ static uint64_t hashOf(vplContext* context, const char* path)
     return stats.imageHash;
 }
 
-static void SameBitsForAllThreadsAndInstructionSets(void** state)
+TEST_ALONE(SameBitsForAllThreadsAndInstructionSets)
 {
-    (void)state;
     static const char* const scenes[] = {ROOM, LAMP_ROOM};
     for (int s = 0; s < 2; s++) {
         uint64_t wanted = hashOf(openTestContext(1), scenes[s]);
@@ -600,11 +567,9 @@ static void SameBitsForAllThreadsAndInstructionSets(void** state)
     }
 }
 
-static void PassesOfAnySizeEndInTheSameBits(void** state)
+TEST(PassesOfAnySizeEndInTheSameBits, 2)
 {
-    (void)state;
     static const int passes[3][4] = {{7}, {1, 6}, {3, 1, 2, 1}};
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadExample(context, LAMP_ROOM);
     vplGeometry* geometry;
     uint64_t hashes[3];
@@ -631,14 +596,11 @@ static void PassesOfAnySizeEndInTheSameBits(void** state)
     assert_int_equal(hashes[0], hashes[2]);
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Where all samples of a pixel show one surface, the rasterizer must show it there, too; and most pixels are so.
-static void PixelsAreTheRasterizersPixels(void** state)
+TEST(PixelsAreTheRasterizersPixels, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = newScene(context);
     for (int i = 0; i < 40; i++) {
         vplObjectDef def = vplDefaultObjectDef();
@@ -678,15 +640,12 @@ static void PixelsAreTheRasterizersPixels(void** state)
     vplImage_Destroy(paths);
     vplImage_Destroy(raster);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- what must not break it
 
-static void LightsOnSurfacesAndEdgesGiveNumbers(void** state)
+TEST(LightsOnSurfacesAndEdgesGiveNumbers, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = newScene(context);
     int grey = addGrey(scene, 1, 0), lamp = addGrey(scene, 0.5f, 1e15f);
     addRoom(scene, grey);
@@ -709,14 +668,11 @@ static void LightsOnSurfacesAndEdgesGiveNumbers(void** state)
     assert_true(isfinite(stats.errorEstimate) && isfinite(stats.relativeErrorEstimate));
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Nothing absorbs and nothing lets out: paths end all the same.
-static void PerfectMirrorRoomEnds(void** state)
+TEST(PerfectMirrorRoomEnds, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = newScene(context);
     addRoom(scene, addGrey(scene, 1, 0));
     addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 0, 0}, 1);
@@ -725,13 +681,10 @@ static void PerfectMirrorRoomEnds(void** state)
     double mean = radianceOf(scene, &options, 0);
     assert_true(mean > 1e3 && mean < 1e5);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void NothingToSeeIsBlack(void** state)
+TEST(NothingToSeeIsBlack, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = newScene(context);
     addCamera(scene, (vplVec3){0, 0, 1}, (vplVec3){0, 0, 0}, 1);
     vplRenderOptions options = pathOptions(8, 2);
@@ -741,15 +694,12 @@ static void NothingToSeeIsBlack(void** state)
     assertNear(stats.relativeErrorEstimate, 0, 0, "relative error", 0);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void WhatIsNotAskedOfPathsIsRefused(void** state)
+TEST(WhatIsNotAskedOfPathsIsRefused, 1)
 {
-    (void)state;
     static const vplShow shows[] = {VPL_SHOW_DEPTH,         VPL_SHOW_NORMALS, VPL_SHOW_SHADOW_MAP,
                                     VPL_SHOW_SHADOW_FACTOR, VPL_SHOW_LIGHT,   VPL_SHOW_OVERLAY};
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadExample(context, ROOM);
     vplImage* image = NULL;
     vplRenderOptions options = pathOptions(8, 1);
@@ -764,7 +714,6 @@ static void WhatIsNotAskedOfPathsIsRefused(void** state)
     }
     assert_null(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static bool stopAtOnce(void* user, double fraction)
@@ -774,10 +723,8 @@ static bool stopAtOnce(void* user, double fraction)
     return --*calls > 0;
 }
 
-static void ProgressCanCancel(void** state)
+TEST(ProgressCanCancel, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadExample(context, ROOM);
     vplImage* image = NULL;
     vplRenderOptions options = pathOptions(64, 1 << 24); // would take hours
@@ -788,19 +735,4 @@ static void ProgressCanCancel(void** state)
     assert_null(image);
     assert_int_equal(calls, 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(path, slow_unit_test(FurnaceGlowsEverywhereAlike), cmocka_unit_test(WhiteBodyInAFurnaceVanishes),
-           cmocka_unit_test(PointLightFollowsTheInverseSquare),
-           cmocka_unit_test(SpotFadesSmoothlyBetweenItsAngles),
-           cmocka_unit_test(DirectionalLightGoesByTheCosine), cmocka_unit_test(SquareLampGivesItsFormFactor),
-           cmocka_unit_test(OnlyTheFrontOfALampEmits), slow_unit_test(CubeMatchesTheTableBounceByBounce),
-           slow_unit_test(SphereMatchesTheTable), cmocka_unit_test(PartsAddUpToThePicture),
-           slow_unit_test(ErrorEstimatePredictsTheDifferenceOfSeeds),
-           slow_unit_test(AllWaysOfFindingLightAgree),
-           cmocka_unit_test(SameBitsForAllThreadsAndInstructionSets),
-           cmocka_unit_test(PassesOfAnySizeEndInTheSameBits), cmocka_unit_test(PixelsAreTheRasterizersPixels),
-           cmocka_unit_test(LightsOnSurfacesAndEdgesGiveNumbers), cmocka_unit_test(PerfectMirrorRoomEnds),
-           cmocka_unit_test(NothingToSeeIsBlack), cmocka_unit_test(WhatIsNotAskedOfPathsIsRefused),
-           cmocka_unit_test(ProgressCanCancel));

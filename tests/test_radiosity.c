@@ -67,10 +67,8 @@ static vplComparison compare(const vplImage* a, const vplImage* b)
 
 // ---- what a picture is
 
-static void PictureIsDirectLightAndPatches(void** state)
+TEST(PictureIsDirectLightAndPatches, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int lamp = 0; lamp < 2; lamp++) {
         vplScene* scene = boxRoom(context, 0.6f, lamp);
         vplRenderOptions o = radiosityOptions(200), plain = o;
@@ -89,13 +87,10 @@ static void PictureIsDirectLightAndPatches(void** state)
         vplImage_Destroy(same);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
-static void PicturesComeNearerToPathsAsPatchesShrink(void** state)
+TEST(PicturesComeNearerToPathsAsPatchesShrink, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int lamp = 0; lamp < 2; lamp++) {
         vplScene* scene = boxRoom(context, 0.7f, lamp);
         vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 512);
@@ -113,7 +108,6 @@ static void PicturesComeNearerToPathsAsPatchesShrink(void** state)
         vplImage_Destroy(truth);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // What errors against two truths of independent noise have in common.
@@ -130,10 +124,8 @@ static double commonError(const vplImage* image, vplImage* const truth[2])
 }
 
 // Measured: 0.00071 with 980 patches, where 1624 of one size give 0.00092 (bench/radiosity_error has more, off edges).
-static void AdaptivePatchesAreBetterThanMoreUniformOnes(void** state)
+TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "../../examples/scenes/room-area.json");
     vplImage* truth[2];
     vplRenderOptions o = radiosityOptions(1);
@@ -161,16 +153,13 @@ static void AdaptivePatchesAreBetterThanMoreUniformOnes(void** state)
     vplImage_Destroy(truth[0]);
     vplImage_Destroy(truth[1]);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // In a closed room whose walls all emit, light is the same everywhere: Le / (1 - rho), of which Le rho^2 / (1 - rho) was
 // reflected at least twice, the eye's last reflection counted.
-static void FurnaceIsUniform(void** state)
+TEST(FurnaceIsUniform, 2)
 {
-    (void)state;
     static const float rhos[] = {0, 0.1f, 0.5f, 0.9f, 0.99f};
-    vplContext* context = openTestContext(2);
     for (int k = 0; k < 5; k++) {
         vplScene* scene = closedCubeScene(context, rhos[k], 1);
         aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
@@ -189,7 +178,6 @@ static void FurnaceIsUniform(void** state)
         }
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 static uint64_t hashOf(vplContext* context)
@@ -212,19 +200,16 @@ static uint64_t hashOf(vplContext* context)
     return hash;
 }
 
-static void PicturesHaveTheSameBitsEverywhere(void** state)
+TEST_ALONE(PicturesHaveTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOf);
 }
 
 // ---- the report's saturation
 
 // X094. With the document's estimator and few patches there is too much light, or no solution; with ours there is not.
-static void OneSampleFormFactorsSaturateAndOursDoNot(void** state)
+TEST(OneSampleFormFactorsSaturateAndOursDoNot, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = boxRoom(context, 0.75f, false);
     vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 256);
     vplRenderOptions o = radiosityOptions(60);
@@ -238,13 +223,10 @@ static void OneSampleFormFactorsSaturateAndOursDoNot(void** state)
     vplImage_Destroy(theirs);
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void DivergenceIsASentence(void** state)
+TEST(DivergenceIsASentence, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = closedCubeScene(context, 0.9f, 1);
     aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
     vplRenderOptions o = radiosityOptions(12); // spectral radius 1.55
@@ -263,14 +245,11 @@ static void DivergenceIsASentence(void** state)
     assert_true(stats.solve.spectralRadius < 0.91 && stats.solve.rowSumMax <= 1);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X096: no solution, but as many sweeps as were asked for, and a warning.
-static void WhiteClosedRoomEndsWithAWarning(void** state)
+TEST(WhiteClosedRoomEndsWithAWarning, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = boxRoom(context, 1, false);
     vplRenderOptions o = radiosityOptions(100);
     vplRenderStats stats;
@@ -283,7 +262,6 @@ static void WhiteClosedRoomEndsWithAWarning(void** state)
     assert_true(isfinite(meanOf(image)) && stats.solve.residual > o.radiosity.residual);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- a light that moves
@@ -297,10 +275,8 @@ static void movePath(vplScene* scene)
 }
 
 // Frame 0, then frame 1 again and again: one sweep each time.
-static void LightThatJumpedArrivesSweepBySweep(void** state)
+TEST(LightThatJumpedArrivesSweepBySweep, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = boxRoom(context, 0.7f, false);
     movePath(scene);
     vplRenderOptions o = radiosityOptions(300);
@@ -325,13 +301,10 @@ static void LightThatJumpedArrivesSweepBySweep(void** state)
     vplHistory_Destroy(o.sequence.history);
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void FormFactorsAreKeptAndNothingElseChanges(void** state)
+TEST(FormFactorsAreKeptAndNothingElseChanges, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = boxRoom(context, 0.7f, false);
     movePath(scene);
     vplRenderOptions o = radiosityOptions(300);
@@ -351,7 +324,6 @@ static void FormFactorsAreKeptAndNothingElseChanges(void** state)
     assert_true(kept.patches < alone.patches);
     vplHistory_Destroy(o.sequence.history);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // A vplProgressFcn that refuses from the n-th time on; `user` is an int that counts down.
@@ -362,15 +334,14 @@ static bool refuseLater(void* user, double fraction)
 }
 
 // Wherever the first frame was cancelled, the next of the same history is as if it had not been.
-static void CancelledFramesLeaveNothingBehind(void** state)
+TEST(CancelledFramesLeaveNothingBehind, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = boxRoom(context, 0.7f, false);
     vplRenderOptions o = radiosityOptions(40);
     vplRenderStats alone, after;
-    o.shadow.mapSize = 32;            // as many steps as ever, all of them short
-    o.sequence.coherence = VPL_COHERENCE_OFF; // light that was found before pixels were cancelled may be gone on from
+    o.shadow.mapSize = 32; // as many steps as ever, all of them short
+    o.sequence.coherence =
+        VPL_COHERENCE_OFF; // light that was found before pixels were cancelled may be gone on from
     vplImage_Destroy(renderScene(scene, &o, &alone));
     int cancelled = 0;
     for (int last = 1, done = 0; !done; last++) {
@@ -394,15 +365,12 @@ static void CancelledFramesLeaveNothingBehind(void** state)
     }
     assert_true(cancelled > 10);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- extremes
 
-static void NoLightIsBlack(void** state)
+TEST(NoLightIsBlack, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = closedCubeScene(context, 0.5f, 0);
     aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
     vplRenderOptions o = radiosityOptions(100);
@@ -414,13 +382,10 @@ static void NoLightIsBlack(void** state)
         vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void OneTriangleReflectsNothingToItself(void** state)
+TEST(OneTriangleReflectsNothingToItself, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = sceneOf(context, 0.5f);
     Shape shape = {0};
     addTriangle(&shape, vplVec(-1, 0, 1), vplVec(1, 0, 1), vplVec(0, 0, -1));
@@ -438,14 +403,11 @@ static void OneTriangleReflectsNothingToItself(void** state)
     assert_true(meanOf(image) > 0.001);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Two walls in the same place: each patch is there twice, light is not.
-static void CoplanarDuplicatesDoNotDoubleLight(void** state)
+TEST(CoplanarDuplicatesDoNotDoubleLight, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     double means[2];
     for (int twice = 0; twice < 2; twice++) {
         vplScene* scene = boxRoom(context, 0.6f, false);
@@ -460,14 +422,11 @@ static void CoplanarDuplicatesDoNotDoubleLight(void** state)
         vplScene_Destroy(scene);
     }
     assertNear(means[1], means[0], 0.05 * means[0], "light of a floor that is there twice", 0);
-    closeTestContext(context);
 }
 
 // The inside of another closed box has no light, and takes no part.
-static void RoomsWithoutLightTakeNoPart(void** state)
+TEST(RoomsWithoutLightTakeNoPart, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplRenderStats stats[2];
     for (int other = 0; other < 2; other++) {
         vplScene* scene = boxRoom(context, 0.6f, false);
@@ -483,15 +442,12 @@ static void RoomsWithoutLightTakeNoPart(void** state)
     assert_true(stats[1].patches > stats[0].patches);
     assert_int_equal(stats[1].patchSides, stats[0].patchSides);
     assert_true(stats[1].imageHash == stats[0].imageHash);
-    closeTestContext(context);
 }
 
 // X101. Corners of floor patches under the box have no light; nothing near it may be dark for that. Compared are flat
 // patches beside the box, of which none is much darker than paths say.
-static void NothingIsDarkBecauseItTouchesABox(void** state)
+TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = closedCubeScene(context, 0.7f, 0);
     addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0, -0.8f, 0), 0, 0.6, vplVec(0.7f, 0.4f, 0.7f));
     aim(scene, vplVec(0, 0.95f, 0.01f), vplVec(0, -1, 0)); // straight down
@@ -515,15 +471,12 @@ static void NothingIsDarkBecauseItTouchesABox(void** state)
     assert_true(least[1] < 0.7); // its figure 7
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- what is refused
 
-static void WhatIsNotPossibleIsASentence(void** state)
+TEST(WhatIsNotPossibleIsASentence, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = boxRoom(context, 0.5f, false);
     const vplRenderOptions good = radiosityOptions(100);
     vplRenderOptions o[11];
@@ -555,19 +508,4 @@ static void WhatIsNotPossibleIsASentence(void** state)
         assert_non_null(strstr(takeMessage(), words[i]));
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(radiosity, cmocka_unit_test(PictureIsDirectLightAndPatches),
-           slow_unit_test(PicturesComeNearerToPathsAsPatchesShrink),
-           slow_unit_test(AdaptivePatchesAreBetterThanMoreUniformOnes), cmocka_unit_test(FurnaceIsUniform),
-           cmocka_unit_test(PicturesHaveTheSameBitsEverywhere),
-           slow_unit_test(OneSampleFormFactorsSaturateAndOursDoNot), cmocka_unit_test(DivergenceIsASentence),
-           cmocka_unit_test(WhiteClosedRoomEndsWithAWarning),
-           cmocka_unit_test(LightThatJumpedArrivesSweepBySweep),
-           cmocka_unit_test(FormFactorsAreKeptAndNothingElseChanges),
-           cmocka_unit_test(CancelledFramesLeaveNothingBehind), cmocka_unit_test(NoLightIsBlack),
-           cmocka_unit_test(OneTriangleReflectsNothingToItself),
-           cmocka_unit_test(CoplanarDuplicatesDoNotDoubleLight),
-           cmocka_unit_test(RoomsWithoutLightTakeNoPart), slow_unit_test(NothingIsDarkBecauseItTouchesABox),
-           cmocka_unit_test(WhatIsNotPossibleIsASentence));

@@ -55,10 +55,8 @@ static void openTwoPatches(Exchange* e, vplContext* context, const Table* t, int
     e->rows[2] = (float)number(t, row, "F21");
 }
 
-static void TwoPatchesAreThoseOfTheTable(void** state)
+TEST(TwoPatchesAreThoseOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("two_patch.csv");
     const struct {
         vplSolver solver;
@@ -88,14 +86,11 @@ static void TwoPatchesAreThoseOfTheTable(void** state)
     }
     assert_int_equal(compared, 8 * 7);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // X096
-static void WithoutASolutionIterationsEndItAndTheResidualIsReported(void** state)
+TEST(WithoutASolutionIterationsEndItAndTheResidualIsReported, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("two_patch.csv");
     int singular = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -118,15 +113,12 @@ static void WithoutASolutionIterationsEndItAndTheResidualIsReported(void** state
     }
     assert_int_equal(singular, 3);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- closed rooms
 
-static void AFurnaceGlowsByTheGeometricSeries(void** state)
+TEST(AFurnaceGlowsByTheGeometricSeries, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("furnace.csv");
     static const int iterations[] = {1, 2, 5, 10, 100};
     enum { COUNT = 37 };
@@ -156,7 +148,6 @@ static void AFurnaceGlowsByTheGeometricSeries(void** state)
         freeExchange(&e);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // The unit cube's faces; opposite ones: Howell's catalogue, C-11; both as in ff_analytic.csv.
@@ -172,10 +163,8 @@ static void openCube(Exchange* e, vplContext* context, float rho)
     }
 }
 
-static void AlgorithmOneOnACubeIsThatOfTheTable(void** state)
+TEST(AlgorithmOneOnACubeIsThatOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("gs_cube6.csv");
     static const char* const columns[] = {"B_-z", "B_+z", "B_-y", "B_+y", "B_-x", "B_+x"};
     for (int row = 0; row < t.rows; row++) {
@@ -196,7 +185,6 @@ static void AlgorithmOneOnACubeIsThatOfTheTable(void** state)
     }
     assert_int_equal(t.rows, 42);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // Sweeps from darkness, as the table counts, until all are within 1e-3 of the solution. The row sums' last bits are worth some sweeps at 0.99, so the solution
@@ -221,10 +209,8 @@ static int sweepsNeeded(const Exchange* e, vplSolver solver)
     }
 }
 
-static void GaussSeidelNeedsHalfTheSweepsOfJacobi(void** state)
+TEST(GaussSeidelNeedsHalfTheSweepsOfJacobi, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("gs_rates.csv");
     for (int row = 0; row < t.rows; row++) {
         Exchange e;
@@ -236,7 +222,6 @@ static void GaussSeidelNeedsHalfTheSweepsOfJacobi(void** state)
         freeExchange(&e);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- all solvers
@@ -265,10 +250,8 @@ static double sphereIrradiance(const Exchange* e, const vplRgb* source, int chan
     return emitted / area / (1 - kept / area);
 }
 
-static void EverySolverFindsTheSameSolution(void** state)
+TEST(EverySolverFindsTheSameSolution, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Exchange e;
     vplRgb source[MANY], b[MANY], residual[MANY], received[MANY];
     openExchange(&e, context, MANY);
@@ -291,13 +274,10 @@ static void EverySolverFindsTheSameSolution(void** state)
         }
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void AMovedLightStartsFromTheOldSolution(void** state)
+TEST(AMovedLightStartsFromTheOldSolution, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb before[MANY], after[MANY], old[MANY], b[MANY], fresh[MANY];
     openExchange(&e, context, MANY);
@@ -323,13 +303,10 @@ static void AMovedLightStartsFromTheOldSolution(void** state)
         }
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void ResidualsEndIt(void** state)
+TEST(ResidualsEndIt, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[MANY], b[MANY];
     openExchange(&e, context, MANY);
@@ -352,15 +329,12 @@ static void ResidualsEndIt(void** state)
         assert_true(last > 2);
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
 // ---- what diverges (X094)
 
-static void WhatDivergesIsRefusedWithItsRadius(void** state)
+TEST(WhatDivergesIsRefusedWithItsRadius, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int k = 0; k < 3; k++) {
         for (int large = 0; large < 2; large++) {
             Exchange e;
@@ -384,14 +358,11 @@ static void WhatDivergesIsRefusedWithItsRadius(void** state)
             freeExchange(&e);
         }
     }
-    closeTestContext(context);
 }
 
 // Few sweeps do not hide it.
-static void AFewSweepsOfWhatDivergesAreRefusedToo(void** state)
+TEST(AFewSweepsOfWhatDivergesAreRefusedToo, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[MANY], b[MANY];
     openExchange(&e, context, MANY);
@@ -409,13 +380,10 @@ static void AFewSweepsOfWhatDivergesAreRefusedToo(void** state)
         assert_memory_equal(b, source, sizeof b);
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void WhatIsBeyondFloatIsRefused(void** state)
+TEST(WhatIsBeyondFloatIsRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[6], b[6], received[6];
     openCube(&e, context, 0.5f);
@@ -435,15 +403,12 @@ static void WhatIsBeyondFloatIsRefused(void** state)
         assert_true(isfinite(received[i].r) && b[i].r == source[i].r);
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
 // ---- extremes
 
-static void NoSidesOneSideAndNoLight(void** state)
+TEST(NoSidesOneSideAndNoLight, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int k = 0; k < 3; k++) {
         Exchange e;
         vplRgb source[MANY] = {{0, 0, 0}}, b[MANY];
@@ -471,13 +436,10 @@ static void NoSidesOneSideAndNoLight(void** state)
         assert_true(stats.residual == 0 && stats.iterations == 1);
         freeExchange(&e);
     }
-    closeTestContext(context);
 }
 
-static void NoSweepsChangeNothing(void** state)
+TEST(NoSweepsChangeNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[6], b[6];
     openCube(&e, context, 0.5f);
@@ -493,14 +455,11 @@ static void NoSweepsChangeNothing(void** state)
         assertNear(stats.spectralRadius, 0.5, 1e-6, "radius", 0);
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void TheBrightestSideShootsFirst(void** state)
+TEST(TheBrightestSideShootsFirst, 1)
 {
-    (void)state;
     // Progress at once is what shooting is for: one sweep takes most of the light further than one of Jacobi's does.
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[MANY], shot[MANY], gathered[MANY], exact[MANY];
     openExchange(&e, context, MANY);
@@ -520,13 +479,10 @@ static void TheBrightestSideShootsFirst(void** state)
     }
     assert_true(shotError < 0.8 * gatheredError);
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void WrongArgumentsAreRefused(void** state)
+TEST(WrongArgumentsAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[6] = {{0, 0, 0}}, b[6] = {{0, 0, 0}};
     openCube(&e, context, 0.5f);
@@ -568,13 +524,10 @@ static void WrongArgumentsAreRefused(void** state)
     assert_int_equal(vplRadiosityResidual(&e.transport, source, source, b), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "6 sides, but its form factors were made for 5"));
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void CancellingLeavesTheRadiosities(void** state)
+TEST(CancellingLeavesTheRadiosities, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[6], b[6];
     openCube(&e, context, 0.5f);
@@ -588,7 +541,6 @@ static void CancellingLeavesTheRadiosities(void** state)
     assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_CANCELLED);
     assert_true(asked == 3 && b[0].r == 1);
     freeExchange(&e);
-    closeTestContext(context);
 }
 
 // ---- bits
@@ -616,22 +568,7 @@ static uint64_t solveHash(vplContext* context)
     return hash;
 }
 
-static void SolutionsAreTheSameBitsEverywhere(void** state)
+TEST_ALONE(SolutionsAreTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(solveHash);
 }
-
-TEST_SUITE(radiositySolve, cmocka_unit_test(TwoPatchesAreThoseOfTheTable),
-           cmocka_unit_test(WithoutASolutionIterationsEndItAndTheResidualIsReported),
-           cmocka_unit_test(AFurnaceGlowsByTheGeometricSeries),
-           cmocka_unit_test(AlgorithmOneOnACubeIsThatOfTheTable),
-           cmocka_unit_test(GaussSeidelNeedsHalfTheSweepsOfJacobi),
-           cmocka_unit_test(EverySolverFindsTheSameSolution),
-           cmocka_unit_test(AMovedLightStartsFromTheOldSolution), cmocka_unit_test(ResidualsEndIt),
-           cmocka_unit_test(WhatDivergesIsRefusedWithItsRadius),
-           cmocka_unit_test(AFewSweepsOfWhatDivergesAreRefusedToo),
-           cmocka_unit_test(WhatIsBeyondFloatIsRefused), cmocka_unit_test(NoSidesOneSideAndNoLight),
-           cmocka_unit_test(NoSweepsChangeNothing), cmocka_unit_test(TheBrightestSideShootsFirst),
-           cmocka_unit_test(WrongArgumentsAreRefused), cmocka_unit_test(CancellingLeavesTheRadiosities),
-           cmocka_unit_test(SolutionsAreTheSameBitsEverywhere));

@@ -31,12 +31,10 @@ static vplVec3 rollOn(const vplGeometry* g, int triangle, Dice* dice)
 }
 
 // A square of many triangles, turned anyhow; emitters that shine on it at all angles, down to a hundredth of a degree.
-static void NoPlaneShadowsItselfAtAnyAngle(void** state)
+TEST(NoPlaneShadowsItselfAtAnyAngle, 2, SLOW)
 {
-    (void)state;
     static const double degrees[] = {0, 30, 60, 80, 88, 89.5, 89.9, 89.99};
     static const int sizes[] = {1, 3, 64, 1000};
-    vplContext* context = openTestContext(2);
     Dice dice = {11, 0};
     for (int turn = 0; turn < 6; turn++) {
         vplScene* scene = sceneOf(context, 0.5f);
@@ -78,7 +76,6 @@ static void NoPlaneShadowsItselfAtAnyAngle(void** state)
         vplGeometry_Destroy(plane);
         freeShape(&square);
     }
-    closeTestContext(context);
 }
 
 static vplEmitterDef someEmitter(int k)
@@ -89,11 +86,9 @@ static vplEmitterDef someEmitter(int k)
 }
 
 // Points of all triangles that face the emitter. Where all rays nearby agree so does the map; elsewhere rarely not.
-static void RaysSayTheSameBeyondTheBand(void** state)
+TEST(RaysSayTheSameBeyondTheBand, 2)
 {
-    (void)state;
     enum { SIZE = 200, BLOCKS = 400 };
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = someEmitter(k);
@@ -137,14 +132,11 @@ static void RaysSayTheSameBeyondTheBand(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Behind a spot, outside of its square and beyond everything; also for points that are no numbers.
-static void NothingIsShadowedOutsideOfTheView(void** state)
+TEST(NothingIsShadowedOutsideOfTheView, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* floor = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = emitterOf((vplEmitterType)k, vplVec(0, 2, 0), vplVec(0, -1, 0));
@@ -165,12 +157,10 @@ static void NothingIsShadowedOutsideOfTheView(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(floor);
-    closeTestContext(context);
 }
 
-static void FactorsDoNotDependOnIsa(void** state)
+TEST_ALONE(FactorsDoNotDependOnIsa)
 {
-    (void)state;
     for (int k = 0; k < 3; k++) {
         float wanted[100][VPL_LANES];
         for (int i = VPL_ISA_SCALAR; i < VPL_ISA_COUNT; i++) {
@@ -222,10 +212,8 @@ static vplImage* shaded(const vplGeometry* g, const vplShadeDef* def, vplShadeSt
 }
 
 // Direct light by the map: no ray, no cube map, the same bits in all pipelines, and little that differs from rays.
-static void EmittersTakeTheirShadowsFromTheirMaps(void** state)
+TEST(EmittersTakeTheirShadowsFromTheirMaps, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = someEmitter(k);
@@ -263,10 +251,4 @@ static void EmittersTakeTheirShadowsFromTheirMaps(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
-
-TEST_SUITE(rsmShadow, slow_unit_test(NoPlaneShadowsItselfAtAnyAngle),
-           cmocka_unit_test(RaysSayTheSameBeyondTheBand), cmocka_unit_test(NothingIsShadowedOutsideOfTheView),
-           cmocka_unit_test(FactorsDoNotDependOnIsa),
-           cmocka_unit_test(EmittersTakeTheirShadowsFromTheirMaps));

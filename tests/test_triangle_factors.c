@@ -33,9 +33,8 @@ static void assertRelative(double value, double wanted, double tolerance, const 
     assertNear(value / wanted, 1, tolerance, what, row);
 }
 
-static void FactorsOfPairsAreThoseOfTheTable(void** state)
+TEST_ALONE(FactorsOfPairsAreThoseOfTheTable)
 {
-    (void)state;
     Table t = loadTable("ff_triangles.csv");
     for (int row = 0; row < t.rows; row++) {
         vplVec3 a[3], b[3];
@@ -50,9 +49,8 @@ static void FactorsOfPairsAreThoseOfTheTable(void** state)
     freeTable(&t);
 }
 
-static void RowsOfACubeAreThoseOfTheTableAndSumToOne(void** state)
+TEST_ALONE(RowsOfACubeAreThoseOfTheTableAndSumToOne)
 {
-    (void)state;
     Table t = loadTable("ff_cube12.csv");
     vplVec3 corners[12][3];
     for (int i = 0; i < 12; i++) {
@@ -118,9 +116,8 @@ static double factorOfPerpendicular(float w, float l, float h)
 }
 
 // Lengths are floats: 0.001 is wrong by 5e-8 of it. Those that are exact agree to 1e-11.
-static void RectanglesAreThoseOfTheClosedForms(void** state)
+TEST_ALONE(RectanglesAreThoseOfTheClosedForms)
 {
-    (void)state;
     Table t = loadTable("ff_analytic.csv");
     int compared = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -149,9 +146,8 @@ static void RectanglesAreThoseOfTheClosedForms(void** state)
     freeTable(&t);
 }
 
-static void BoxesCloseAsTheTableSays(void** state)
+TEST_ALONE(BoxesCloseAsTheTableSays)
 {
-    (void)state;
     static const float sizes[5][3] = {{1, 1, 1}, {5, 5, 5}, {1, 2, 3}, {1, 1, 100}, {1, 100, 100}};
     Table t = loadTable("ff_closure.csv");
     for (int row = 0; row < t.rows; row++) {
@@ -198,9 +194,8 @@ static double areaOf(const vplVec3 t[3])
 
 enum { MOST_CASES = 2000 };
 
-static void BothDirectionsExchangeTheSame(void** state)
+TEST_ALONE(BothDirectionsExchangeTheSame)
 {
-    (void)state;
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
@@ -217,9 +212,8 @@ static void BothDirectionsExchangeTheSame(void** state)
 }
 
 // Halves are smaller than the whole, so that other formulas and other cuts do for them: all must agree.
-static void HalvesSumToTheWhole(void** state)
+TEST_ALONE(HalvesSumToTheWhole)
 {
-    (void)state;
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
@@ -242,9 +236,8 @@ static void HalvesSumToTheWhole(void** state)
 }
 
 // Of every size that floats have: the same share, and a number.
-static void FactorsDoNotDependOnTheUnit(void** state)
+TEST_ALONE(FactorsDoNotDependOnTheUnit)
 {
-    (void)state;
     for (uint64_t seed = 0; seed < 100; seed++) {
         vplVec3 a[3], b[3];
         rollPair(seed, a, b);
@@ -261,9 +254,8 @@ static void FactorsDoNotDependOnTheUnit(void** state)
 }
 
 // X093, X095, and whatever touches.
-static void PlanesTouchesAndDuplicatesAreNumbers(void** state)
+TEST_ALONE(PlanesTouchesAndDuplicatesAreNumbers)
 {
-    (void)state;
     const vplVec3 floor[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, over[3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
     const vplVec3 beside[3] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, point[3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
     const vplVec3 line[3] = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}},
@@ -279,9 +271,8 @@ static void PlanesTouchesAndDuplicatesAreNumbers(void** state)
 }
 
 // Two triangles with an edge in common, folded: from 1 where they lie on each other to 0 where they are in one plane.
-static void FoldedPairsFallFromOneToZero(void** state)
+TEST_ALONE(FoldedPairsFallFromOneToZero)
 {
-    (void)state;
     double last = 1;
     for (int degrees = 1; degrees < 180; degrees++) {
         double sine, cosine;
@@ -319,9 +310,8 @@ static double pointFactorOfCorner(vplVec3 normal, const float v[3])
 
 // Lengths are floats: 0.001 is wrong by 5e-8 of it, and the smallest factors by as much. In millimetres all lengths are
 // exact, and 4e-16 are measured.
-static void CornersOfRectanglesAreThoseOfTheClosedForms(void** state)
+TEST_ALONE(CornersOfRectanglesAreThoseOfTheClosedForms)
 {
-    (void)state;
     Table t = loadTable("ff_analytic.csv");
     int compared = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -368,9 +358,8 @@ static double pointFactorOfRing(double radius, float h, int count)
 // A disk lies between polygons in it and around it, whatever their corners' rounding, which is less than the 2^-22 that
 // they are moved. One of the same area has the same factor to (pi / count)^4 and the mean of the corners' rounding:
 // 8e-10 of it are measured.
-static void DisksAreThoseOfTheClosedForm(void** state)
+TEST_ALONE(DisksAreThoseOfTheClosedForm)
 {
-    (void)state;
     enum { CORNERS = 4096 };
     const double part = 3.14159265358979323846 / CORNERS;
     Table t = loadTable("ff_analytic.csv");
@@ -412,9 +401,8 @@ static double heightAbove(vplVec3 point, vplVec3 normal, vplVec3 p)
 }
 
 // Of two windings one is seen, and none of what is below the horizon.
-static void PointsSeeOneSideAndNothingBehindThem(void** state)
+TEST_ALONE(PointsSeeOneSideAndNothingBehindThem)
 {
-    (void)state;
     int seen = 0, behind = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
@@ -441,9 +429,8 @@ static void PointsSeeOneSideAndNothingBehindThem(void** state)
 
 // Whatever the element's direction, a closed box is all it sees: triangles are cut at its horizon so that nothing is
 // lost and nothing is counted twice.
-static void BoxesAroundAPointSumToOne(void** state)
+TEST_ALONE(BoxesAroundAPointSumToOne)
 {
-    (void)state;
     // Corner i of the box has the upper x, y, z where bits 0, 1, 2 of i are set; counter-clockwise seen from inside.
     static const int faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
                                     {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
@@ -474,9 +461,8 @@ static void BoxesAroundAPointSumToOne(void** state)
 }
 
 // The part of a triangle that is seen ends at the horizon: where its edges end below is all the same.
-static void WhatIsBelowTheHorizonChangesNothing(void** state)
+TEST_ALONE(WhatIsBelowTheHorizonChangesNothing)
 {
-    (void)state;
     const vplVec3 point = {0, 0, 0}, up = {0, 0, 1}, left = {-0.25f, 1, -1.5f}, right = {-0.5f, -1, -2};
     for (uint64_t seed = 0; seed < 500; seed++) {
         // Multiples of 2^-10, so that the longer edges are exact.
@@ -502,9 +488,8 @@ static void WhatIsBelowTheHorizonChangesNothing(void** state)
 }
 
 // The same bits, of whatever size and wherever: near and far, cut and whole.
-static void PointFactorsDoNotDependOnTheUnitOrThePlace(void** state)
+TEST_ALONE(PointFactorsDoNotDependOnTheUnitOrThePlace)
 {
-    (void)state;
     static const int powers[6] = {-100, -33, -30, 30, 33, 100};
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
@@ -537,9 +522,8 @@ static void PointFactorsDoNotDependOnTheUnitOrThePlace(void** state)
 }
 
 // Seen at an angle: along its edges almost all cancels, at 2^20 sizes 6 digits and at 2^60 all that doubles have.
-static void FarTrianglesAreTheirAreaOverTheSquare(void** state)
+TEST_ALONE(FarTrianglesAreTheirAreaOverTheSquare)
 {
-    (void)state;
     // Its middle is the origin, so that what follows the first term has the square of the distance below it.
     const vplVec3 triangle[3] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}}, normal = {0.6f, 0, -0.8f};
     const double length = sqrt((double)normal.x * normal.x + (double)normal.z * normal.z);
@@ -555,9 +539,8 @@ static void FarTrianglesAreTheirAreaOverTheSquare(void** state)
 }
 
 // Halves are nearer for their size than the whole, so that one is along edges and the other over the area.
-static void HalvesSeenFromAPointSumToTheWhole(void** state)
+TEST_ALONE(HalvesSeenFromAPointSumToTheWhole)
 {
-    (void)state;
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
@@ -598,9 +581,8 @@ static double meanOfPointFactors(const vplVec3 a[3], vplVec3 normal, const vplVe
 
 // What a triangle sends is the mean of what its points send. The middle of a part errs by its size squared, which the
 // difference of two such means takes away, and by the rounding of points to floats.
-static void MeansOverPointsAreFactorsOfTriangles(void** state)
+TEST_ALONE(MeansOverPointsAreFactorsOfTriangles)
 {
-    (void)state;
     int compared = 0, cut = 0;
     for (uint64_t seed = 0; seed < 400; seed++) {
         vplVec3 a[3], b[3];
@@ -631,9 +613,8 @@ static void MeansOverPointsAreFactorsOfTriangles(void** state)
 }
 
 // Over the middle of a triangle all is seen, over its edges half, over a corner the corner's share of the turn.
-static void PointsOnATriangleSeeItsShareOfTheTurn(void** state)
+TEST_ALONE(PointsOnATriangleSeeItsShareOfTheTurn)
 {
-    (void)state;
     const vplVec3 triangle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, down = {0, 0, -1};
     static const struct {
         float x, y;
@@ -653,9 +634,8 @@ static void PointsOnATriangleSeeItsShareOfTheTurn(void** state)
 }
 
 // Corners and middles of edges, which are exact, in planes at any angle; and what has no area, or no direction.
-static void PointsInThePlaneAndNoAreaSeeNothing(void** state)
+TEST_ALONE(PointsInThePlaneAndNoAreaSeeNothing)
 {
-    (void)state;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 t[3];
         for (uint64_t i = 0; i < 3; i++) {
@@ -687,21 +667,3 @@ static void PointsInThePlaneAndNoAreaSeeNothing(void** state)
     assert_true(vplPointFormFactor(origin, (vplVec3){0, 0, -1}, over) == 0);
     assert_true(vplPointFormFactor(origin, up, (const vplVec3[3]){{1, 0, 0}, {1, 1, 0}, {1, 0, -1}}) == 0);
 }
-
-TEST_SUITE(triangleFactors, cmocka_unit_test(FactorsOfPairsAreThoseOfTheTable),
-           cmocka_unit_test(RowsOfACubeAreThoseOfTheTableAndSumToOne),
-           cmocka_unit_test(RectanglesAreThoseOfTheClosedForms), cmocka_unit_test(BoxesCloseAsTheTableSays),
-           cmocka_unit_test(BothDirectionsExchangeTheSame), cmocka_unit_test(HalvesSumToTheWhole),
-           cmocka_unit_test(FactorsDoNotDependOnTheUnit),
-           cmocka_unit_test(PlanesTouchesAndDuplicatesAreNumbers),
-           cmocka_unit_test(FoldedPairsFallFromOneToZero),
-           cmocka_unit_test(CornersOfRectanglesAreThoseOfTheClosedForms),
-           cmocka_unit_test(DisksAreThoseOfTheClosedForm),
-           cmocka_unit_test(PointsSeeOneSideAndNothingBehindThem),
-           cmocka_unit_test(BoxesAroundAPointSumToOne), cmocka_unit_test(WhatIsBelowTheHorizonChangesNothing),
-           cmocka_unit_test(PointFactorsDoNotDependOnTheUnitOrThePlace),
-           cmocka_unit_test(FarTrianglesAreTheirAreaOverTheSquare),
-           cmocka_unit_test(HalvesSeenFromAPointSumToTheWhole),
-           cmocka_unit_test(MeansOverPointsAreFactorsOfTriangles),
-           cmocka_unit_test(PointsOnATriangleSeeItsShareOfTheTurn),
-           cmocka_unit_test(PointsInThePlaneAndNoAreaSeeNothing));

@@ -6,9 +6,8 @@
 
 #include <stdlib.h>
 
-static void FramesAreThoseOfTheTable(void** state)
+TEST_ALONE(FramesAreThoseOfTheTable)
 {
-    (void)state;
     Table t = loadTable("cube_frames.csv");
     for (int face = 0; face < 6; face++) {
         vplCubeFrame f = vplCube_GetFrame(face);
@@ -24,9 +23,8 @@ static void FramesAreThoseOfTheTable(void** state)
     freeTable(&t);
 }
 
-static void EveryDirectionOfTheTableFindsItsTexel(void** state)
+TEST_ALONE(EveryDirectionOfTheTableFindsItsTexel)
 {
-    (void)state;
     static const char* const faces[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
     static const int sizes[4] = {1, 2, 16, 1024};
     Table t = loadTable("cube_dirs.csv");
@@ -72,10 +70,8 @@ static vplCubeMap* makeMap(const vplGeometry* g, vplVec3 position, int size)
 }
 
 // X053 to X056: in the cube [-1, 1]^3 the distance along any direction is known, and no texel is left out.
-static void TexelsHoldTheDistanceOfTheWall(void** state)
+TEST(TexelsHoldTheDistanceOfTheWall, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     const int sizes[] = {1, 2, 7, 64, 257};
     for (int k = 0; k < 5; k++) {
@@ -98,14 +94,11 @@ static void TexelsHoldTheDistanceOfTheWall(void** state)
         vplCubeMap_Destroy(map);
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // shadow_distance.csv: a small quad at the point, facing the light, is found at its distance.
-static void StoredDistancesAreRadialAndUnclamped(void** state)
+TEST(StoredDistancesAreRadialAndUnclamped, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("shadow_distance.csv");
     static const char* const faces[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
     int clamped = 0;
@@ -151,7 +144,6 @@ static void StoredDistancesAreRadialAndUnclamped(void** state)
     }
     assert_true(clamped > 0);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // A map whose six texels all hold one stored value.
@@ -169,10 +161,8 @@ static void makeFlatMap(FlatMap* flat, vplContext* context, vplVec3 light, float
         (vplCubeMap){.position = light, .size = 1, .far = far, .texels = flat->texels, .context = context};
 }
 
-static void EveryShadowVerdictOfTheTable(void** state)
+TEST(EveryShadowVerdictOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("shadow_compare.csv");
     for (int row = 0; row < t.rows; row++) {
         FlatMap flat;
@@ -193,7 +183,6 @@ static void EveryShadowVerdictOfTheTable(void** state)
                    number(&t, row, "bias_clamped"), 2e-8, "bias", row);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 static vplShadow exactShadow(const vplCubeMap* map, int samples, float offset)
@@ -207,10 +196,8 @@ static vplShadow exactShadow(const vplCubeMap* map, int samples, float offset)
     return shadow;
 }
 
-static void ExactBiasIsThatOfTheTable(void** state)
+TEST(ExactBiasIsThatOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("bias_angle.csv");
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
@@ -223,15 +210,12 @@ static void ExactBiasIsThatOfTheTable(void** state)
         assertNear(bias, wanted, 4e-7 + 6e-8 / number(&t, row, "alpha"), "bias", row);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // bias_texel.csv: a fragment in the worst corner of a texel against the distance at the texel's centre. Ours
 // must be enough (no acne), and is at most the table's closed form with the largest texel's angle.
-static void ExactBiasIsEnoughInEveryTexelOfTheTable(void** state)
+TEST(ExactBiasIsEnoughInEveryTexelOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("bias_texel.csv");
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
@@ -250,14 +234,11 @@ static void ExactBiasIsEnoughInEveryTexelOfTheTable(void** state)
     }
     assert_true(tested > 200);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // bias_pair.csv: our automatic pair, b_s = alpha r and b_dmax = 5.6 b_s, is enough up to 80 degrees.
-static void AutomaticPairIsEnoughUpTo80Degrees(void** state)
+TEST(AutomaticPairIsEnoughUpTo80Degrees, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("bias_pair.csv");
     int tested = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -278,14 +259,11 @@ static void AutomaticPairIsEnoughUpTo80Degrees(void** state)
     assertNear((double)shadow.def.biasStatic, 10 * sqrt(2) / 512, 3e-4, "b_s", 0);
     assertNear((double)(shadow.def.biasDynamic / shadow.def.biasStatic), 5.6, 1e-5, "b_dmax", 0);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // No point of a plane shadows itself under the exact rule, however coarse the map, hard or filtered.
-static void ExactBiasLeavesNoAcneOnAPlane(void** state)
+TEST(ExactBiasLeavesNoAcneOnAPlane, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = floorQuad(context, (vplVec3){0, 0, 0}, 200, 0.5f);
     const int sizes[] = {1, 2, 3, 16, 128, 1000};
     for (int k = 0; k < 6; k++) {
@@ -301,7 +279,6 @@ static void ExactBiasLeavesNoAcneOnAPlane(void** state)
         vplCubeMap_Destroy(map);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // A wall standing on the floor at x = x0, and the floor.
@@ -325,10 +302,8 @@ static vplGeometry* wallOnFloor(vplContext* context, float x0)
 }
 
 // peter_panning.csv: how far behind a wall light leaks, to the size of a texel on the floor.
-static void LightLeaksBehindAWallAsFarAsTheTableSays(void** state)
+TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("peter_panning.csv");
     enum { SIZE = 1024 };
     int tested = 0;
@@ -361,7 +336,6 @@ static void LightLeaksBehindAWallAsFarAsTheTableSays(void** state)
     }
     assert_true(tested >= 6);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // A quad that shadows the half-space x < edge (measured on the floor, 2 below the light), halfway down.
@@ -372,10 +346,8 @@ static vplCubeMap* halfPlaneMap(vplContext* context, float edge, int size, vplGe
     return makeMap(g, (vplVec3){0, 0, 0}, size);
 }
 
-static void PcfGivesTheExpectationOfADisc(void** state)
+TEST(PcfGivesTheExpectationOfADisc, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("pcf_halfplane.csv");
     const float e = 0.2f;
     for (int row = 0; row < t.rows; row++) {
@@ -398,14 +370,11 @@ static void PcfGivesTheExpectationOfADisc(void** state)
         vplGeometry_Destroy(g);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // pcf_grid.csv with the table's own offsets put in place of ours: exact counts.
-static void PcfCountsTheGridsOfTheTable(void** state)
+TEST(PcfCountsTheGridsOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("pcf_grid.csv");
     const float e = 0.2f;
     for (int row = 0; row < t.rows; row++) {
@@ -427,14 +396,11 @@ static void PcfCountsTheGridsOfTheTable(void** state)
         vplGeometry_Destroy(g);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // X057, X059, X067, X069: nothing there, fragment in the light, one texel, kernel wider than the distance.
-static void DegenerateShadowsAreDefined(void** state)
+TEST(DegenerateShadowsAreDefined, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, INFINITY);
     vplShadow shadow = exactShadow(&flat.map, 16, 0.1f);
@@ -447,13 +413,10 @@ static void DegenerateShadowsAreDefined(void** state)
     double wide = (double)vplShadow_Factor(&shadow, (vplVec3){0.01f, 0, 0}, (vplVec3){-1, 0, 0});
     assert_true(wide >= 0 && wide <= 1);
     assert_true(isinf(vplCubeMap_Distance(&flat.map, (vplVec3){0, 0, 0})));
-    closeTestContext(context);
 }
 
-static void OffsetsLieOnTheDiscInPairs(void** state)
+TEST(OffsetsLieOnTheDiscInPairs, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
     for (int samples = 1; samples <= VPL_MAX_PCF_SAMPLES; samples++) {
@@ -472,12 +435,10 @@ static void OffsetsLieOnTheDiscInPairs(void** state)
             assertNear(square, 0.5, 0.08, "mean square of the uniform disc", samples);
         }
     }
-    closeTestContext(context);
 }
 
-static void ShadowBitsDoNotDependOnInstructionSet(void** state)
+TEST_ALONE(ShadowBitsDoNotDependOnInstructionSet)
 {
-    (void)state;
     float wanted[200];
     for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
         vplContext* context = openIsaContext(1 + isa, (vplIsa)isa);
@@ -502,10 +463,8 @@ static void ShadowBitsDoNotDependOnInstructionSet(void** state)
     }
 }
 
-static void ShadowMapsRefuseBadDefs(void** state)
+TEST(ShadowMapsRefuseBadDefs, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, (vplVec3){0, 0, 0}, 1, 0.5f);
     vplCubeMap* map = NULL;
     vplCubeMapDef def = vplDefaultCubeMapDef();
@@ -529,14 +488,11 @@ static void ShadowMapsRefuseBadDefs(void** state)
     shadowDef.biasStatic = NAN;
     assert_int_equal(vplShadow_Create(&flat.map, &shadowDef, &shadow), VPL_INVALID_ARGUMENT);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Also with bounds, which belong to what was drawn before.
-static void RedrawnMapsAreThoseOfNewOnes(void** state)
+TEST(RedrawnMapsAreThoseOfNewOnes, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* room = wallOnFloor(context, 0.5f);
     const size_t texels = (size_t)6 * 100 * 100;
     vplCubeMapDef def = vplDefaultCubeMapDef();
@@ -558,16 +514,4 @@ static void RedrawnMapsAreThoseOfNewOnes(void** state)
     vplCubeMap_Destroy(moved);
     vplCubeMap_Destroy(fresh);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
-
-TEST_SUITE(
-    visibility, cmocka_unit_test(RedrawnMapsAreThoseOfNewOnes), cmocka_unit_test(FramesAreThoseOfTheTable),
-    cmocka_unit_test(EveryDirectionOfTheTableFindsItsTexel), cmocka_unit_test(TexelsHoldTheDistanceOfTheWall),
-    cmocka_unit_test(StoredDistancesAreRadialAndUnclamped), cmocka_unit_test(EveryShadowVerdictOfTheTable),
-    cmocka_unit_test(ExactBiasIsThatOfTheTable), cmocka_unit_test(ExactBiasIsEnoughInEveryTexelOfTheTable),
-    cmocka_unit_test(AutomaticPairIsEnoughUpTo80Degrees), cmocka_unit_test(ExactBiasLeavesNoAcneOnAPlane),
-    cmocka_unit_test(LightLeaksBehindAWallAsFarAsTheTableSays),
-    cmocka_unit_test(PcfGivesTheExpectationOfADisc), cmocka_unit_test(PcfCountsTheGridsOfTheTable),
-    cmocka_unit_test(DegenerateShadowsAreDefined), cmocka_unit_test(OffsetsLieOnTheDiscInPairs),
-    cmocka_unit_test(ShadowBitsDoNotDependOnInstructionSet), cmocka_unit_test(ShadowMapsRefuseBadDefs));
