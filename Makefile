@@ -49,10 +49,10 @@ MOVES      := $(shell $(CC) -mavx2 -mmove-max=256 -mstore-max=256 -x c -c /dev/n
 ISA_avx2   := -mavx2 $(MOVES)
 ISA_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 
-LIB_SOURCES    := $(filter-out src/cli/%,$(wildcard src/*/*.c))
+LIB_SOURCES    := $(filter-out src/cli/%,$(wildcard src/*/*.c src/*/*/*.c))
 KERNEL_SOURCES := $(filter %_kernel.c,$(LIB_SOURCES))
 PLAIN_SOURCES  := $(filter-out %_kernel.c,$(LIB_SOURCES))
-CLI_SOURCES    := $(wildcard src/cli/*.c)
+CLI_SOURCES    := $(wildcard src/cli/*.c src/cli/*/*.c)
 LIB_OBJECTS    := $(PLAIN_SOURCES:%.c=$(BUILD)/obj/%.o) \
                   $(foreach isa,$(ISAS),$(KERNEL_SOURCES:%.c=$(BUILD)/obj/%.$(isa).o))
 CLI_OBJECTS    := $(CLI_SOURCES:%.c=$(BUILD)/obj/%.o)
@@ -169,8 +169,7 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(BUILD)/obj/src/cli/tradeoff_math.o \
-                    $(BUILD)/obj/src/cli/bench_fit.o $(BUILD)/libvpl.a
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff_math.o %/bench_fit.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -183,7 +182,7 @@ EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
 ROOFLINE := $(foreach part,roofline roofline/loops roofline/work roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
-              $(BUILD)/obj/tests/bench/$(part).o) $(BUILD)/obj/src/cli/bench_cover.o
+              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench_cover.o,$(CLI_OBJECTS))
 $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"

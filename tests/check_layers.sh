@@ -1,6 +1,7 @@
 #!/bin/sh
 # Each folder of src may include only the layers below it. Names file, line and both folders.
 # Public headers <vpl/x.h> count as the folder that implements them.
+# A folder may have sub-folders: each may include itself, files of the folder and the sub-folders listed before it.
 cd "${1:-.}" || exit 2
 awk '
 BEGIN {
@@ -19,12 +20,19 @@ BEGIN {
     allowed["render"] = "render base math image scene geometry raster visibility lights shading radiosity reference"
     allowed["cli"] = "cli public"
     layer["vecmath"] = "math"
+    inner["radiosity"] = "sides factors links solve mesh draw"
 }
 {
     split(FILENAME, path, "/")
     folder = path[2]
     if (match($0, /^#include "[a-z]+\//)) {
         target = substr($0, 11, RLENGTH - 11)
+        split(substr($0, 11), part, "/")
+        if (target == folder && (folder in inner) && path[4] != "" && part[3] != "" &&
+            index(inner[folder], part[2]) > index(inner[folder], path[3])) {
+            printf "%s:%d: %s/%s must not include %s/%s\n", FILENAME, FNR, folder, path[3], target, part[2]
+            bad++
+        }
     } else if (match($0, /^#include <vpl\/[a-z]+\.h>/)) {
         target = substr($0, 15, RLENGTH - 17)
         target = target in layer ? layer[target] : target

@@ -3,7 +3,7 @@
 // chose. Lights whose maps do not fit into memory at the same time.
 #include "scenes.h"
 
-#include "render/choose_shadows.h"
+#include "render/stages/shadow_choice.h"
 
 static const vplShadowLoad plain = {64, 1e5, 0.4, 1e4, 2e4, 128};
 

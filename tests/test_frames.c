@@ -3,7 +3,6 @@
 #include "scenes.h"
 
 #include "base/context.h"
-#include "render/history.h"
 
 #include <stdlib.h>
 
@@ -360,24 +359,4 @@ TEST_ALONE(AHistoryOfAnotherSceneIsRefused)
     vplScene_Destroy(abroad);
     closeTestContext(foreign);
     closeTestContext(context);
-}
-
-struct vplSsvpState {
-    int destroyed;
-};
-
-static void countDestroyed(struct vplSsvpState* ssvp)
-{
-    ssvp->destroyed++;
-}
-
-TEST(AHistoryDestroysWhatAMethodLeftWithIt, 1)
-{
-    vplHistory* history = NULL;
-    struct vplSsvpState ssvp = {0};
-    assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
-    history->ssvp = &ssvp;
-    history->destroySsvp = countDestroyed;
-    vplHistory_Destroy(history);
-    assert_int_equal(ssvp.destroyed, 1);
 }

@@ -3,7 +3,7 @@
 #include "failing.h"
 #include "patch_support.h"
 
-#include "render/show_maps.h"
+#include "render/stages/show.h"
 
 #include <jansson.h>
 #include <stdlib.h>

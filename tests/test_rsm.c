@@ -5,7 +5,7 @@
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
-#include "render/show_maps.h"
+#include "render/stages/show.h"
 
 static size_t texelsOf(const vplReflectiveMap* map)
 {

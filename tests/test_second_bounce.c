@@ -4,7 +4,7 @@
 
 #include "base/hash.h"
 #include "math/vec.h"
-#include "render/show_maps.h"
+#include "render/stages/show.h"
 
 // Clusters on the floor of the cube [-1, 1]^3, of flux (4, 2, 1) W each.
 enum { CLUSTERS = 5 };

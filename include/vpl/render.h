@@ -25,13 +25,13 @@ void vplHistory_Destroy(vplHistory* history);
 
 enum { VPL_MAX_STAGES = 24 };
 
-typedef struct vplStage {
+typedef struct vplStageTime {
     const char* name; // static
     double ms;        // wall-clock
-} vplStage;
+} vplStageTime;
 
 typedef struct vplRenderStats {
-    vplStage stages[VPL_MAX_STAGES]; // in the order they ran
+    vplStageTime stages[VPL_MAX_STAGES]; // in the order they ran
     int stageCount;
     double totalMs;
     int64_t drawCalls, fragments;

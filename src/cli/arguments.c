@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Words of the command line to options.
-#include "cli/option.h"
+#include "cli/options.h"
+#include "cli/tradeoff.h"
 
 #include <stdio.h>
 #include <string.h>
 
-void printOptions(const char* command)
-{
-    int bit = commandBit(command);
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        if (OPTIONS[i].commands & bit) {
-            char left[40];
-            snprintf(left, sizeof left, "%s%s%s", OPTIONS[i].name, OPTIONS[i].value ? " " : "",
-                     OPTIONS[i].value ? OPTIONS[i].value : "");
-            printf("  %-20s %s\n", left, OPTIONS[i].help);
-        }
-    }
-}
+// ---- names
 
 // Edit distance, to guess what was meant by a misspelt option.
 static int distance(const char* a, const char* b)
@@ -42,102 +32,185 @@ static int distance(const char* a, const char* b)
     return row[n];
 }
 
-static const Option* findOption(const char* command, const char* word, size_t length)
+// A word that names an option: one of the program's own, or one of rendering, or neither.
+typedef struct Found {
+    const Option* own;
+    const vplOption* render;
+} Found;
+
+typedef struct Guess {
+    const char* name; // as typed
+    char nearest[48];
+    int least;
+} Guess;
+
+static void consider(Guess* g, const char* dashes, const char* candidate)
 {
-    const Option *nearest = NULL, *elsewhere = NULL;
-    int bit = commandBit(command), least = 3;
-    char name[64];
-    snprintf(name, sizeof name, "%.*s", (int)length, word);
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        const Option* o = &OPTIONS[i];
-        bool equal = strcmp(o->name, name) == 0;
-        if (equal && (o->commands & bit) != 0) {
-            return o;
-        }
-        elsewhere = equal ? o : elsewhere;
-        bool begun = strncmp(name, o->name, strlen(name)) == 0; // "--reflect" for "--reflectivity"
-        int far = begun ? 1 : distance(name, o->name);
-        if ((o->commands & bit) != 0 && strlen(name) > 3 && far < least) {
-            least = far;
-            nearest = o;
-        }
+    char name[48];
+    snprintf(name, sizeof name, "%s%s", dashes, candidate);
+    const bool begun = strncmp(g->name, name, strlen(g->name)) == 0; // "--reflect" for "--reflectivity"
+    const int far = begun ? 1 : distance(g->name, name);
+    if (strlen(g->name) > 3 && far < g->least) {
+        g->least = far;
+        strcpy(g->nearest, name);
     }
-    if (elsewhere != NULL) {
-        complain("%s has no option %s", command, name);
-        return NULL;
-    }
-    complain("unknown option %s%s%s%s", name, nearest ? ", did you mean " : "", nearest ? nearest->name : "",
-             nearest ? "?" : "");
-    return NULL;
 }
+
+// `word` is the name and perhaps "=value". Complains if the command has no such option.
+static Found findOption(const Command* command, const char* word)
+{
+    char name[48];
+    snprintf(name, sizeof name, "%.*s", (int)(word[1] == '-' ? strcspn(word, "=") : strlen(word)), word);
+    Found found = {NULL, NULL};
+    Guess guess = {.name = name, .least = 3};
+    bool elsewhere = false;
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        const bool equal = strcmp(OPTIONS[i].name, name) == 0;
+        if ((OPTIONS[i].commands & command->bit) != 0) {
+            found.own = equal ? &OPTIONS[i] : found.own;
+            consider(&guess, "", OPTIONS[i].name);
+        }
+        elsewhere |= equal;
+    }
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        const bool equal = strncmp(name, "--", 2) == 0 && strcmp(options[i].name, name + 2) == 0;
+        if (takesOption(command, &options[i])) {
+            found.render = equal ? &options[i] : found.render;
+            consider(&guess, "--", options[i].name);
+        }
+        elsewhere |= equal && options[i].kind != VPL_OPTION_PART;
+    }
+    if (found.own == NULL && found.render == NULL && elsewhere) {
+        complain("%s has no option %s", command->name, name);
+    } else if (found.own == NULL && found.render == NULL) {
+        complain("unknown option %s%s%s%s", name, guess.nearest[0] ? ", did you mean " : "", guess.nearest,
+                 guess.nearest[0] ? "?" : "");
+    }
+    return found;
+}
+
+bool isGiven(const Arguments* a, const char* name)
+{
+    const size_t length = strlen(name);
+    for (int i = 2; i < a->wordCount; i++) { // values do not begin with two dashes
+        const char* word = a->words[i];
+        if (strncmp(word, "--", 2) == 0 && strncmp(word + 2, name, length) == 0 &&
+            (word[2 + length] == 0 || word[2 + length] == '=')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// ---- words
 
 static Arguments defaultArguments(const char* command)
 {
-    Arguments a = {.command = command};
+    Arguments a = {.command = findCommand(command), .frames = {0, -1}, .ppd = VPL_DEFAULT_PPD};
     a.render = vplDefaultRenderOptions();
     a.context = vplDefaultContextDef();
-    a.write = vplDefaultWriteOptions();
-    a.heat = vplDefaultHeatmapDef();
-    a.runs = 5;
-    a.frames[1] = -1;
-    a.seeds = 3;
-    a.seconds = 300;
-    if (strcmp(command, "tradeoff") == 0) {
-        changeArguments(TRADEOFF_BASE, &a);
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        if (OPTIONS[i].default_ != NULL) {
+            OPTIONS[i].read(&OPTIONS[i], OPTIONS[i].default_, &a);
+        }
     }
+    if (a.command->bit == TRADEOFF) {
+        setOptions(&a.render, TRADEOFF_BASE);
+    }
+    a.render.method = a.command->bit == BAKE ? VPL_METHOD_RADIOSITY : a.render.method;
     return a;
 }
 
-bool parseArguments(int count, char** words, Arguments* arguments)
+static bool setOption(Arguments* a, const Found* found, const char* value)
 {
-    Arguments a = defaultArguments(words[1]);
-    int bit = commandBit(words[1]);
-    int most = commandBit("compare") == bit ? 2 : commandBit("bench") == bit ? 0 : 1;
-    for (int i = 2; i < count; i++) {
-        const char* word = words[i];
-        if (word[0] != '-' || word[1] == 0) {
-            if (a.positionalCount == most) {
-                complain("%s: one word too many: \"%s\"", a.command, word);
-                return false;
-            }
-            a.positionals[a.positionalCount++] = word;
+    if (found->own != NULL) {
+        return found->own->read(found->own, value, a);
+    }
+    if (vplRenderOptions_Set(&a->render, found->render->name, value) != VPL_SUCCESS) {
+        complain("--%s", a->render.problem);
+        return false;
+    }
+    return true;
+}
+
+// Reads the option at word *i, and its value if that is the next word.
+static bool readOption(Arguments* a, int* i)
+{
+    const char* word = a->words[*i];
+    const Found found = findOption(a->command, word);
+    if (found.own == NULL && found.render == NULL) {
+        return false;
+    }
+    const char* equals = word[1] == '-' ? strchr(word, '=') : NULL;
+    const char* wanted = found.own != NULL ? found.own->value : found.render->value;
+    const int length = equals != NULL ? (int)(equals - word) : (int)strlen(word);
+    if (wanted == NULL && equals != NULL) {
+        complain("%.*s takes no value", length, word);
+        return false;
+    }
+    if (wanted == NULL || equals != NULL) {
+        return setOption(a, &found, equals != NULL ? equals + 1 : NULL);
+    }
+    if (*i + 1 >= a->wordCount || strncmp(a->words[*i + 1], "--", 2) == 0) { // a file so named: --name=--file
+        complain("%.*s needs a value: %s", length, word, wanted);
+        return false;
+    }
+    *i += 1;
+    return setOption(a, &found, a->words[*i]);
+}
+
+static void warnOfUnused(const Arguments* a)
+{
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count && !a->quiet; i++) {
+        const char* name = options[i].name;
+        char reason[64], padded[48];
+        if ((a->command->bit & (ON_SCENES & ~TRADEOFF)) == 0 || !isGiven(a, name)) {
             continue;
         }
-        const char* equals = word[1] == '-' ? strchr(word, '=') : NULL;
-        const Option* o = findOption(a.command, word, equals ? (size_t)(equals - word) : strlen(word));
-        if (o == NULL) {
-            return false;
-        }
-        const char* value = equals ? equals + 1 : NULL;
-        if (o->value == NULL && value != NULL) {
-            complain("%s takes no value", o->name);
-            return false;
-        }
-        if (o->value != NULL && value == NULL) {
-            if (i + 1 >= count || strncmp(words[i + 1], "--", 2) == 0) { // a file so named: --name=--file
-                complain("%s needs a value: %s", o->name, o->value);
-                return false;
-            }
-            value = words[++i];
-        }
-        if (!o->read(o, value, &a)) {
-            return false;
+        snprintf(padded, sizeof padded, " %s ", name);
+        if (!vplRenderOptions_IsUsed(&a->render, name, reason, sizeof reason)) {
+            complain("warning: --%s has no effect with %s", name, reason);
+        } else if (a->command->unused != NULL && strstr(a->command->unused, padded) != NULL) {
+            complain("warning: --%s has no effect with vpl %s", name, a->command->name);
         }
     }
+}
+
+bool parseArguments(int count, const char* const* words, Arguments* arguments)
+{
+    Arguments a = defaultArguments(words[1]);
+    a.words = words;
+    a.wordCount = count;
+    for (int i = 2; i < count; i++) {
+        if (words[i][0] == '-' && words[i][1] != 0) {
+            if (!readOption(&a, &i)) {
+                return false;
+            }
+        } else if (a.positionalCount == a.command->positionals) {
+            complain("%s: one word too many: \"%s\"", a.command->name, words[i]);
+            return false;
+        } else {
+            a.positionals[a.positionalCount++] = words[i];
+        }
+    }
+    warnOfUnused(&a);
     *arguments = a;
     return true;
 }
 
-bool changeArguments(const char* words, Arguments* arguments)
+bool setOptions(vplRenderOptions* options, const char* words)
 {
     char name[64], value[64];
     int length;
-    while (sscanf(words, " %63s %63s%n", name, value, &length) == 2) {
-        const Option* o = findOption("render", name, strlen(name));
-        if (o == NULL || !o->read(o, value, arguments)) {
+    for (; sscanf(words, " --%63s %63s%n", name, value, &length) == 2; words += length) {
+        if (vplRenderOptions_Set(options, name, value) != VPL_SUCCESS) {
+            complain("--%s", options->problem);
             return false;
         }
-        words += length;
     }
     return true;
 }

@@ -54,7 +54,8 @@ static vplResult openSweep(const Arguments* a, const Series* series, Sweep* s)
 {
     memset(s, 0, sizeof *s);
     s->arguments = a;
-    const int width = a->sizeGiven ? a->render.output.width : 640, height = a->sizeGiven ? a->render.output.height : 360;
+    const int width = isGiven(a, "size") ? a->render.output.width : 640,
+              height = isGiven(a, "size") ? a->render.output.height : 360;
     vplResult result = openBench(a, a->threadsCount > 0 ? a->threads[0] : 1, width, height, &s->bench);
     if (result == VPL_SUCCESS) {
         s->threads = vplContext_GetWorkerCount(s->bench.context);

@@ -9,52 +9,74 @@ enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
 
 enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8, MAX_FRAMES = 100000 };
 
-// What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures,
-// enough particles to see something, the sampler and hard shadows that the truth of a point light wants, and a
-// seed other than 0, with which the first Halton point is the origin in all dimensions: the particle that it
-// drives goes on to the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error, else 18 %).
-#define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --seed 1 --shadow-map 256 --pcf 1"
+typedef struct Arguments Arguments;
 
-// All options of all commands.
-typedef struct Arguments {
-    const char* command;
+// Bits of commands, for tables.
+enum {
+    RENDER = 1,
+    BAKE = 2,
+    LIGHTS = 4,
+    INFO = 8,
+    TRADEOFF = 16,
+    COMPARE = 32,
+    BENCH = 64,
+    ON_SCENES = RENDER | BAKE | LIGHTS | INFO | TRADEOFF // they take the options of rendering
+};
+
+typedef struct Command {
+    const char* name;
+    int bit;
+    int positionals;
+    int (*run)(const Arguments* arguments);
+    const char *usage, *summary, *text; // for the help
+    const char* unused; // render options without effect here, with spaces around each; or NULL
+} Command;
+
+extern const Command COMMANDS[];
+extern const int COMMAND_COUNT;
+
+// NULL if there is none of that name.
+const Command* findCommand(const char* name);
+
+// What the words of a command line ask for.
+struct Arguments {
+    const Command* command;
+    const char* const* words; // the whole line
+    int wordCount;
     const char* positionals[MAX_POSITIONALS];
     int positionalCount;
     vplRenderOptions render;
     vplContextDef context;
-    vplWriteOptions write;
     const char* output;  // -o
     const char* stats;   // --stats
     const char* heatmap; // --heatmap
-    vplHeatmapDef heat;
-    int frames[2];     // --frames: first and last; [1] < 0: one picture without a number
-    int region[4];     // --region: x, y, width, height; width 0: all of the picture
-    int columns, rows; // --regions; 0: none
-    int threads[MAX_THREAD_COUNTS];
-    int threadsCount;
-    int runs;
-    const char* stage; // --stage; NULL: all
-    bool all, scaling;
-    const char* reference; // --reference
-    const char* sweeps;    // --sweeps
-    int seeds;
+    int heatmapOf;       // a vplHeat
+    double heatScale;    // 0: automatic
+    double ppd;          // pixels per degree of vision
+    double exposure;     // stops
+    int tonemap;         // 0: as usual with the method; else 1 + a vplTonemap
+    int frames[2];       // first and last; [1] < 0: one picture without a number
+    int region[4];       // x, y, width, height; width 0: all of the picture
+    int regions[2];      // columns and rows; 0: none
+    int threads[MAX_THREAD_COUNTS], threadsCount;
+    int runs, seeds, referenceSpp;
     double seconds; // --time
-    int referenceSpp;
-    bool json, quiet, verbose, help;
-    bool sizeGiven, tonemapGiven;
-} Arguments;
+    const char *stage, *reference, *sweeps;
+    bool all, scaling, json, explain, dryRun, quiet, verbose, help;
+};
 
 // Fills `arguments`, or prints one sentence to stderr and returns false.
-bool parseArguments(int count, char** words, Arguments* arguments);
+bool parseArguments(int count, const char* const* words, Arguments* arguments);
 
-// Applies more words of `vpl render`, separated by spaces, or complains and returns false.
-bool changeArguments(const char* words, Arguments* arguments);
+// Whether the command line names an option; without dashes.
+bool isGiven(const Arguments* arguments, const char* name);
 
-// Prints the general help (command NULL) or that of one command. False if there is no such command.
-bool printHelp(const char* command);
+// Sets options by words "--name value --name value"; complains and returns false if one is wrong.
+bool setOptions(vplRenderOptions* options, const char* words);
 
-// Prints the options of a command.
-void printOptions(const char* command);
+// vpl help WORD WORD: `topic` may be NULL, a command or "options"; `subject` is one of the latter. False after
+// complaining.
+bool printHelp(const char* topic, const char* subject);
 
 // One sentence on stderr, starting with "vpl: ".
 #if defined(__GNUC__)

@@ -118,7 +118,8 @@ static int runStages(const Arguments* a, Row* rows)
         columns = a->threadsCount;
         memcpy(threads, a->threads, sizeof threads);
     }
-    const int width = a->sizeGiven ? a->render.output.width : 1920, height = a->sizeGiven ? a->render.output.height : 1080;
+    const int width = isGiven(a, "size") ? a->render.output.width : 1920,
+              height = isGiven(a, "size") ? a->render.output.height : 1080;
     const int count = chooseStages(a, rows);
     if (count == 0) {
         complain("no stage of bench has \"%s\" in its name", a->stage);

@@ -89,14 +89,15 @@ static void printJson(const Findings* f, double ppd)
 static vplResult compareRegions(const Arguments* a, const vplImage* first, const vplImage* second,
                                 Findings* findings)
 {
-    bool fits = a->columns <= first->width && a->rows <= first->height; // or the library says what is wrong
-    findings->regionCount = a->columns * a->rows;
+    bool fits =
+        a->regions[0] <= first->width && a->regions[1] <= first->height; // or the library says what is wrong
+    findings->regionCount = a->regions[0] * a->regions[1];
     findings->regions = fits ? calloc((size_t)findings->regionCount, sizeof *findings->regions) : NULL;
     if (fits && findings->regions == NULL) {
         complain("out of memory: %d regions", findings->regionCount);
         return VPL_OUT_OF_MEMORY;
     }
-    return vplImage_CompareRegions(first, second, a->columns, a->rows, findings->regions);
+    return vplImage_CompareRegions(first, second, a->regions[0], a->regions[1], findings->regions);
 }
 
 // Places are those of the whole pictures, though a cut-out was measured.
@@ -118,9 +119,9 @@ static vplResult measure(const Arguments* a, const vplImage* first, const vplIma
         result = vplImage_Ssim(first, second, &findings->ssim, NULL);
     }
     if (result == VPL_SUCCESS) {
-        result = vplImage_Flip(first, second, a->heat.ppd, &findings->flip, NULL);
+        result = vplImage_Flip(first, second, a->ppd, &findings->flip, NULL);
     }
-    if (result == VPL_SUCCESS && a->columns > 0) {
+    if (result == VPL_SUCCESS && a->regions[0] > 0) {
         result = compareRegions(a, first, second, findings);
     }
     return result;
@@ -129,7 +130,11 @@ static vplResult measure(const Arguments* a, const vplImage* first, const vplIma
 static int writeHeatmap(const Arguments* a, const vplImage* first, const vplImage* second)
 {
     vplImage* map = NULL;
-    int code = exitCode(vplImage_HeatmapOf(first, second, &a->heat, &map), true);
+    vplHeatmapDef def = vplDefaultHeatmapDef();
+    def.of = (vplHeat)a->heatmapOf;
+    def.scale = (float)a->heatScale;
+    def.ppd = a->ppd;
+    int code = exitCode(vplImage_HeatmapOf(first, second, &def, &map), true);
     if (code == EXIT_DONE) {
         catchInterrupts(); // no temporary file stays behind
         code = exitCode(vplImage_Write(map, a->heatmap, NULL), false);
@@ -145,7 +150,7 @@ static int compare(const Arguments* a, const vplImage* first, const vplImage* se
     if (code == EXIT_DONE) {
         movePlaces(&findings, a->region);
         if (a->json) {
-            printJson(&findings, a->heat.ppd);
+            printJson(&findings, a->ppd);
         } else {
             printText(&findings);
         }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What is in a scene, and what a render with the same options would need. Nothing is rendered: counts follow
 // from floor(rho^k N) and from the passes over the objects, as --stats reports them afterwards.
+#include "cli/cli.h"
 #include "cli/info_patches.h"
-#include "cli/option.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -148,11 +148,13 @@ static void countDraws(const vplRenderOptions* o, Info* info)
     const int64_t lightMaps = o->lights.shadows == VPL_LIGHT_SHADOWS_MAP ? drawn : 0;
     const int64_t size = o->shadow.mapSize, lightSize = o->lights.mapSize;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
-    info->drawCalls = info->objects * (6 * maps + (1 + passes) * o->output.antialias) + patchDraws * o->output.antialias;
+    info->drawCalls =
+        info->objects * (6 * maps + (1 + passes) * o->output.antialias) + patchDraws * o->output.antialias;
     const int64_t lightMapBytes = lightMaps * lightSize * lightSize * (int64_t)sizeof(float);
     info->shadowMapBytes = 6 * maps * size * size * (int64_t)sizeof(float) +
                            (lightMapBytes < VPL_LIGHT_MAP_BYTES ? lightMapBytes : VPL_LIGHT_MAP_BYTES);
-    const int64_t lamps = info->lampTriangles > 0 && o->method != VPL_METHOD_KELLER ? o->lights.areaLightSamples : 0;
+    const int64_t lamps =
+        info->lampTriangles > 0 && o->method != VPL_METHOD_KELLER ? o->lights.areaLightSamples : 0;
     const int64_t each = (int64_t)(sizeof(vplVirtualLight) + sizeof(vplShadeLight)) +
                          (o->pipeline.kind == VPL_ACCUMULATE_LIGHTCUTS ? LIGHT_TREE_BYTES : 0);
     info->lightBytes = info->virtualLights * each + lamps * (int64_t)sizeof(vplShadeLight);
@@ -186,8 +188,8 @@ static vplResult describeRender(vplContext* context, const Arguments* a, Info* i
 {
     const vplRenderOptions* o = &a->render;
     info->arguments = a;
-    writeNamedOption("--method", a, info->method, sizeof info->method);
-    writeNamedOption("--pipeline", a, info->pipeline, sizeof info->pipeline);
+    vplRenderOptions_Get(o, "method", info->method, sizeof info->method);
+    vplRenderOptions_Get(o, "pipeline", info->pipeline, sizeof info->pipeline);
     if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
         strcpy(info->pipeline, o->method == VPL_METHOD_SSVP ? "interleaved" : "deferred");
     }
@@ -267,7 +269,8 @@ static void printText(const Info* info)
         printf("\nto render it by path, at %dx%d\n", o->output.width, o->output.height);
         printf("  %-16s %lld\n", "paths", (long long)o->output.width * o->output.height * o->path.samples);
     } else {
-        printf("\nto render it by %s, %s, at %dx%d\n", info->method, info->pipeline, o->output.width, o->output.height);
+        printf("\nto render it by %s, %s, at %dx%d\n", info->method, info->pipeline, o->output.width,
+               o->output.height);
         if (o->method == VPL_METHOD_RADIOSITY) {
             printPatches(&info->patches);
         } else {
@@ -297,8 +300,8 @@ static json_t* renderJson(const Info* info)
     }
     return json_pack(
         "{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:i, s:i, s:I, s:s?}", "method",
-        info->method, "pipeline", info->pipeline, "width", o->output.width, "height", o->output.height, "reflectivity",
-        info->reflectivity, "steps", info->steps, "lights_per_step", steps, "virtual_lights",
+        info->method, "pipeline", info->pipeline, "width", o->output.width, "height", o->output.height,
+        "reflectivity", info->reflectivity, "steps", info->steps, "lights_per_step", steps, "virtual_lights",
         (json_int_t)info->virtualLights, "draw_calls", (json_int_t)info->drawCalls, "shadow_map_bytes",
         (json_int_t)info->shadowMapBytes, "light_bytes", (json_int_t)info->lightBytes, "picture_bytes",
         (json_int_t)info->pictureBytes, "patches", info->patches.patches, "patch_sides", info->patches.sides,

@@ -43,10 +43,10 @@ static int writePicture(const Arguments* a, vplImage* image, const char* path)
 {
     vplShow show = a->render.output.show;
     bool metres = show == VPL_SHOW_DEPTH || show == VPL_SHOW_SHADOW_MAP;
-    vplWriteOptions options = a->write;
-    if (!a->tonemapGiven && a->render.method == VPL_METHOD_SSVP) {
-        options.tonemap = VPL_TONEMAP_REINHARD;
-    }
+    const vplToneMap usual = a->render.method == VPL_METHOD_SSVP ? VPL_TONEMAP_REINHARD : VPL_TONEMAP_NONE;
+    vplWriteOptions options = vplDefaultWriteOptions();
+    options.exposure = (float)a->exposure;
+    options.tonemap = a->tonemap > 0 ? (vplToneMap)(a->tonemap - 1) : usual;
     if (endsWithPng(path) && (metres || show == VPL_SHOW_NORMALS)) {
         prepareForEyes(image, show);
     }
@@ -64,7 +64,7 @@ static void sayMore(const vplRenderStats* stats)
     complain("%d virtual lights, %lld draw calls, hash %016llx", stats->virtualLights,
              (long long)stats->drawCalls, (unsigned long long)stats->imageHash);
     if (stats->clampLoss >= 0) {
-        complain("the bound at %g m takes about %.3g %% of the virtual lights' light away",
+        complain("the clamp at %g m takes about %.3g %% of the virtual lights' light away",
                  (double)stats->minDistance, 100 * stats->clampLoss);
     }
 }

@@ -1,97 +1,342 @@
 // SPDX-License-Identifier: MIT
-#include "cli/cli.h"
+// The help and the option sections of the man page: commands and both option tables, as text.
+#include "cli/options.h"
 #include "cli/tradeoff.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
-typedef struct Topic {
-    const char *name, *usage, *summary, *text;
-} Topic;
+enum { WIDTH = 110, INDENT = 6, TEXT = 1024 };
 
-static const Topic TOPICS[] = {
-    {"render", "vpl render SCENE -o FILE [options]", "renders a picture",
+// What most pictures need.
+static const char ESSENTIALS[] =
+    " method size particles spp patches light-shadows pipeline budget max-error seed camera "
+    "show ";
+
+const Command COMMANDS[] = {
+    {"render", RENDER, 1, runRender, "vpl render SCENE -o FILE [options]", "renders a picture",
      "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
-     "or a\n"
-     "mesh (.obj), which gets a camera that sees all of it and, if nothing emits, a light."},
-    {"bake", "vpl bake SCENE -o FILE [options]", "writes the patches of radiosity as a mesh",
+     "or a mesh "
+     "(.obj), which gets a camera that sees all of it and, if nothing emits, a light.",
+     NULL},
+    {"bake", BAKE, 1, runBake, "vpl bake SCENE -o FILE [options]",
+     "writes the patches of radiosity as a mesh",
      "Finds the light of SCENE by --method radiosity and writes its patches as a binary PLY mesh with "
-     "colours "
-     "at\n"
-     "the vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity as properties r, g, b."},
-    {"lights", "vpl lights SCENE [options]", "lists the virtual lights",
-     "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of\n"
-     "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "
-     "in\n"
-     "watts that the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N."},
-    {"compare", "vpl compare A B [options]", "measures how far picture A is from reference B",
+     "colours at the "
+     "vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity in W/m^2 as properties r, g, "
+     "b.",
+     " size antialias show interpolation "},
+    {"lights", LIGHTS, 1, runLights, "vpl lights SCENE [options]", "lists the virtual lights",
+     "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of "
+     "--show "
+     "light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux in "
+     "watts that "
+     "the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N.",
+     " antialias show pipeline batch interleave cut-error passes budget max-error "},
+    {"compare", COMPARE, 2, runCompare, "vpl compare A B [options]",
+     "measures how far picture A is from reference B",
      "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), trimmed_relmse "
-     "(the\n"
-     "same without the 0.1 % of the pixels where it is largest), psnr (dB), ssim and flip (all three of "
-     "values\n"
-     "clamped to [0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and max_difference\n"
-     "with its pixel. --regions adds a table of blocks."},
-    {"info", "vpl info SCENE [options]", "says what is in a scene, and what rendering it requires",
-     "Prints counts, bounds, mean reflectance, and the lights, draw calls and memory that a render with the "
-     "same\n"
-     "options would need."},
-    {"tradeoff", "vpl tradeoff SCENE -o DIR [options]", "measures error against time",
-     "Renders SCENE with many settings and several seeds, compares each picture with a reference, and "
-     "writes\n"
-     "to DIR: report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot),\n"
-     "tradeoff.csv (every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options\n"
-     "given here change the base that the sweeps start from: " TRADEOFF_BASE ".\n"
-     "Physical lighting only: the documented formulas have no truth to compare with."},
-    {"bench", "vpl bench [options]", "times every stage",
+     "(the same "
+     "without the 0.1 % of the pixels where it is largest), psnr (dB), ssim and flip (all three of values "
+     "clamped to "
+     "[0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and max_difference with its "
+     "pixel. "
+     "--regions adds a table of blocks.",
+     NULL},
+    {"info", INFO, 1, runInfo, "vpl info SCENE [options]",
+     "says what is in a scene, and what rendering it requires",
+     "Prints counts, bounds, mean reflectance, and the plan of a render with the same options: decisions, "
+     "stages and "
+     "memory.",
+     NULL},
+    {"tradeoff", TRADEOFF, 1, runTradeoff, "vpl tradeoff SCENE -o DIR [options]",
+     "measures error against time",
+     "Renders SCENE with many settings and several seeds, compares each picture with a reference, and writes "
+     "to DIR: "
+     "report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot), "
+     "tradeoff.csv "
+     "(every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options given here "
+     "change the "
+     "base that the sweeps start from: " TRADEOFF_BASE
+     ". Physical lighting only: the documented formulas have no "
+     "truth to compare with.",
+     NULL},
+    {"bench", BENCH, 0, runBench, "vpl bench [options]", "times every stage",
      "Times the stages on the built-in room: medians of the wall clock and of processor time, counts, "
-     "hashes,\n"
-     "and what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. With\n"
-     "--scaling, how time grows with lights, pixels, triangles, threads and the shadow map's size: "
-     "exponents\n"
-     "fitted over all points and over the upper half, and the part of the time that does not grow."},
+     "hashes, and "
+     "what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. With "
+     "--scaling, how "
+     "time grows with lights, pixels, triangles, threads and the shadow map's size: exponents fitted over "
+     "all points "
+     "and over the upper half, and the part of the time that does not grow.",
+     NULL},
 };
 
-// Their names, each once, in the order of the table.
-static void printSweeps(void)
+const int COMMAND_COUNT = sizeof COMMANDS / sizeof *COMMANDS;
+
+const Command* findCommand(const char* name)
 {
-    printf("\n\nSweeps:");
-    for (int i = 0, column = 7; i < SWEEP_COUNT; i++) {
-        if (i > 0 && strcmp(SWEEPS[i].name, SWEEPS[i - 1].name) == 0) {
-            continue;
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        if (strcmp(COMMANDS[i].name, name) == 0) {
+            return &COMMANDS[i];
         }
-        const int length = (int)strlen(SWEEPS[i].name) + 1;
-        if (column + length > 110) {
-            printf("\n ");
-            column = 1;
+    }
+    return NULL;
+}
+
+// ---- text
+
+// Prints words from `column` on and breaks lines at spaces and behind "|"; further lines begin at `indent`.
+static void printWrapped(const char* text, int column, int indent)
+{
+    while (*text != 0) {
+        const size_t length = strcspn(text, " |"), whole = length + (text[length] == '|');
+        if (column + (int)whole > WIDTH) {
+            printf("\n%*s", indent, "");
+            column = indent;
         }
-        printf(" %s", SWEEPS[i].name);
-        column += length;
+        const bool space = text[whole] == ' ' || (text[length] == ' ');
+        printf("%.*s%s", (int)whole, text, space ? " " : "");
+        column += (int)whole + space;
+        text += whole + space;
+    }
+    putchar('\n');
+}
+
+// Adds the words of "a|b|c" whose bits are set, with commas between.
+static void appendWords(char* text, const char* words, int bits)
+{
+    const char* between = "";
+    for (int bit = 1;; bit <<= 1) {
+        const int length = (int)strcspn(words, "|");
+        if ((bits & bit) != 0) {
+            sprintf(text + strlen(text), "%s%.*s", between, length, words);
+            between = ", ";
+        }
+        if (words[length] == 0) {
+            return;
+        }
+        words += length + 1;
     }
 }
 
-bool printHelp(const char* command)
+// The help of an option of rendering, its default, and who uses it if not all do.
+static void describeOption(const vplOption* o, char text[TEXT])
 {
-    if (command == NULL) {
-        printf("vpl %s - indirect light with many virtual lights, on the CPU, the same bits everywhere\n\n",
-               vplGetVersion());
-        for (size_t i = 0; i < sizeof TOPICS / sizeof *TOPICS; i++) {
-            printf("  %-36s %s\n", TOPICS[i].usage, TOPICS[i].summary);
-        }
-        printf("  %-36s %s\n", "vpl help [command]", "explains a command and its options");
-        printf("  %-36s %s\n", "vpl --version", "prints the version");
-        printf("\nExit codes: 0 done; 1 could not (disk, memory, cancelled); 2 wrong usage or bad input.\n");
-        return true;
+    const vplRenderOptions defaults = vplDefaultRenderOptions();
+    char value[64] = "";
+    vplRenderOptions_Get(&defaults, o->name, value, sizeof value);
+    snprintf(text, TEXT, "%s; default %s", o->help, value);
+    const int methods = o->users & VPL_USE_ALL;
+    if (methods != VPL_USE_ALL) {
+        strcat(text, " [");
+        appendWords(text, vplFindOption("method")->value, methods);
+        strcat(text, "]");
     }
-    for (size_t i = 0; i < sizeof TOPICS / sizeof *TOPICS; i++) {
-        if (strcmp(TOPICS[i].name, command) == 0) {
-            printf("%s\n\n%s", TOPICS[i].usage, TOPICS[i].text);
-            if (strcmp(command, "tradeoff") == 0) {
-                printSweeps();
-            }
-            printf("\n\nOptions (--name VALUE or --name=VALUE):\n");
-            printOptions(command);
+    if (o->users >> 8 != 0) {
+        strcat(text, " [--pipeline ");
+        appendWords(text, vplFindOption("pipeline")->value, o->users >> 8);
+        strcat(text, "]");
+    }
+}
+
+static void describeOwn(const Option* o, bool commands, char text[TEXT])
+{
+    snprintf(text, TEXT, "%s%s%s", o->help, o->default_ != NULL ? "; default " : "",
+             o->default_ != NULL ? o->default_ : "");
+    const char* between = " (";
+    for (int i = 0; i < COMMAND_COUNT && commands && o->commands != ~0; i++) {
+        if ((o->commands & COMMANDS[i].bit) != 0) {
+            sprintf(text + strlen(text), "%s%s", between, COMMANDS[i].name);
+            between = ", ";
+        }
+    }
+    strcat(text, between[0] == ',' ? ")" : "");
+}
+
+// Text of a man page: dashes that are no hyphens.
+static void printManual(const char* text)
+{
+    for (; *text != 0; text++) {
+        fputs(*text == '-' ? "\\-" : (char[]){*text, 0}, stdout);
+    }
+}
+
+static void printOption(const char* dashes, const char* name, const char* value, const char* text,
+                        bool manual)
+{
+    if (manual) {
+        printf(".TP\n.BI ");
+        printManual(dashes);
+        printManual(name);
+        printf(value != NULL ? " \" " : "");
+        printManual(value != NULL ? value : "");
+        puts(value != NULL ? "\"" : "");
+        printManual(text);
+        putchar('\n');
+        return;
+    }
+    char line[TEXT];
+    snprintf(line, sizeof line, "%s%s%s%s", dashes, name, value != NULL ? " " : "",
+             value != NULL ? value : "");
+    printf("  ");
+    printWrapped(line, 2, INDENT + 2 + (int)strlen(name));
+    printf("%*s", INDENT, "");
+    printWrapped(text, INDENT, INDENT);
+}
+
+static void printOwn(const Command* command, bool manual)
+{
+    for (int i = 0; i < OPTION_COUNT; i++) {
+        char text[TEXT];
+        if (command == NULL || (OPTIONS[i].commands & command->bit) != 0) {
+            describeOwn(&OPTIONS[i], command == NULL, text);
+            printOption("", OPTIONS[i].name, OPTIONS[i].value, text, manual);
+        }
+    }
+}
+
+// ---- options of rendering, by subject
+
+static bool contains(const char* text, const char* word)
+{
+    for (; *text != 0; text++) {
+        if (strncasecmp(text, word, strlen(word)) == 0) {
             return true;
         }
     }
     return false;
+}
+
+// Prints the options of the groups whose heading contains the subject (NULL: all), or the option of that name, under
+// their headings. Returns how many there were.
+static int printSubject(const char* subject, bool manual)
+{
+    int count, printed = 0;
+    const vplOption* options = vplGetOptions(&count);
+    const vplOption* named =
+        subject != NULL ? vplFindOption(subject + 2 * (strncmp(subject, "--", 2) == 0)) : NULL;
+    const char* group = "";
+    for (int i = 0; i < count; i++) {
+        const vplOption* o = &options[i];
+        if (o->kind == VPL_OPTION_PART || (named != NULL && o != named) ||
+            (named == NULL && subject != NULL && !contains(o->group, subject))) {
+            continue;
+        }
+        if (strcmp(group, o->group) != 0) {
+            printf(manual ? ".SS %s\n" : "\n%s\n", o->group);
+            group = o->group;
+        }
+        char text[TEXT];
+        describeOption(o, text);
+        printOption("--", o->name, o->value, text, manual);
+        printed++;
+    }
+    return printed;
+}
+
+static void printEssentials(void)
+{
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        char padded[48], text[TEXT];
+        snprintf(padded, sizeof padded, " %s ", options[i].name);
+        if (strstr(ESSENTIALS, padded) != NULL) {
+            describeOption(&options[i], text);
+            printOption("--", options[i].name, options[i].value, text, false);
+        }
+    }
+}
+
+// The names of all options under their headings.
+static void printSubjects(void)
+{
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    puts("\nAll options of rendering; vpl help options SUBJECT (or NAME) explains them:");
+    for (int i = 0; i < count;) {
+        const char* group = options[i].group;
+        char text[TEXT];
+        int length = 0;
+        for (; i < count && strcmp(options[i].group, group) == 0; i++) {
+            if (options[i].kind != VPL_OPTION_PART) {
+                length += snprintf(text + length, sizeof text - (size_t)length, "%s--%s",
+                                   length > 0 ? " " : "", options[i].name);
+            }
+        }
+        printf("  %s\n%*s", group, INDENT, "");
+        printWrapped(text, INDENT, INDENT);
+    }
+}
+
+// Names of sweeps, each once, in the order of the table.
+static void printSweeps(void)
+{
+    char text[TEXT] = "Sweeps:";
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        if (i == 0 || strcmp(SWEEPS[i].name, SWEEPS[i - 1].name) != 0) {
+            snprintf(text + strlen(text), sizeof text - strlen(text), " %s", SWEEPS[i].name);
+        }
+    }
+    putchar('\n');
+    printWrapped(text, 0, 2);
+}
+
+// ---- topics
+
+static void printCommand(const Command* c)
+{
+    printf("%s\n\n", c->usage);
+    printWrapped(c->text, 0, 0);
+    if (c->bit == TRADEOFF) {
+        printSweeps();
+    }
+    puts("\nOptions (--name VALUE or --name=VALUE):");
+    if (c->bit == RENDER) {
+        printEssentials();
+    }
+    printOwn(c, false);
+    if (c->bit == BENCH) {
+        puts("  --size WxH\n      pixels; default 1920x1080, with --scaling 640x360");
+    }
+    if ((c->bit & ON_SCENES) != 0) {
+        printSubjects();
+    }
+}
+
+static void printOverview(void)
+{
+    printf("vpl %s - indirect light with many virtual lights, on the CPU, the same bits everywhere\n\n",
+           vplGetVersion());
+    for (int i = 0; i < COMMAND_COUNT; i++) {
+        printf("  %-36s %s\n", COMMANDS[i].usage, COMMANDS[i].summary);
+    }
+    printf("  %-36s %s\n", "vpl help [command]", "explains a command and its options");
+    printf("  %-36s %s\n", "vpl help options [subject]", "explains the options of rendering");
+    printf("  %-36s %s\n", "vpl --version", "prints the version");
+    printf("\nExit codes: 0 done; 1 could not (disk, memory, cancelled); 2 wrong usage or bad input.\n");
+}
+
+bool printHelp(const char* topic, const char* subject)
+{
+    const Command* command = topic != NULL ? findCommand(topic) : NULL;
+    if (topic == NULL) {
+        printOverview();
+    } else if (command != NULL) {
+        printCommand(command);
+    } else if (strcmp(topic, "--man") == 0) { // for vpl.1.in
+        puts(".SS Files and running");
+        printOwn(NULL, true);
+        printSubject(NULL, true);
+    } else if (strcmp(topic, "options") != 0) {
+        complain("no command \"%s\"; vpl help lists them", topic);
+        return false;
+    } else if (printSubject(subject, false) == 0) {
+        complain("no option and no subject \"%s\"; vpl help render lists them", subject);
+        return false;
+    }
+    return true;
 }

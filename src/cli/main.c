@@ -83,54 +83,45 @@ int finishOutput(int code)
     return code;
 }
 
+static int runCommand(const Command* command, int count, const char* const* words)
+{
+    Arguments arguments;
+    if (!parseArguments(count, words, &arguments)) {
+        return EXIT_USAGE;
+    }
+    if (arguments.help) {
+        printHelp(command->name, NULL);
+        return finishOutput(EXIT_DONE);
+    }
+    if (arguments.positionalCount < command->positionals) {
+        complain("%s needs %s; vpl help %s", command->name,
+                 command->positionals == 2 ? "two pictures" : "a scene file", command->name);
+        return EXIT_USAGE;
+    }
+    return finishOutput(command->run(&arguments));
+}
+
 int main(int count, char** words)
 {
-    static const struct {
-        const char* name;
-        int (*run)(const Arguments* arguments);
-        int positionals;
-    } commands[] = {
-        {"render", runRender, 1}, {"lights", runLights, 1}, {"compare", runCompare, 2},
-        {"info", runInfo, 1},     {"bench", runBench, 0},   {"tradeoff", runTradeoff, 1},
-        {"bake", runBake, 1},
-    };
     signal(SIGPIPE, SIG_IGN); // a closed pipe is a failed write, and said so
     signal(SIGXFSZ, SIG_IGN); // so is a file beyond the size limit
-    const char* command = count > 1 ? words[1] : NULL;
-    if (command == NULL) {
+    const char* word = count > 1 ? words[1] : NULL;
+    if (word == NULL) {
         complain("no command; vpl help lists them");
         return EXIT_USAGE;
     }
-    if (strcmp(command, "--version") == 0) {
+    if (strcmp(word, "--version") == 0) {
         printf("vpl %s\n", vplGetVersion());
         return finishOutput(EXIT_DONE);
     }
-    if (strcmp(command, "help") == 0 || strcmp(command, "--help") == 0 || strcmp(command, "-h") == 0) {
-        if (!printHelp(count > 2 ? words[2] : NULL)) {
-            complain("no command \"%s\"; vpl help lists them", words[2]);
-            return EXIT_USAGE;
-        }
-        return finishOutput(EXIT_DONE);
+    if (strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
+        const bool done = printHelp(count > 2 ? words[2] : NULL, count > 3 ? words[3] : NULL);
+        return finishOutput(done ? EXIT_DONE : EXIT_USAGE);
     }
-    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
-        if (strcmp(command, commands[i].name) != 0) {
-            continue;
-        }
-        Arguments arguments;
-        if (!parseArguments(count, words, &arguments)) {
-            return EXIT_USAGE;
-        }
-        if (arguments.help) {
-            printHelp(command);
-            return finishOutput(EXIT_DONE);
-        }
-        if (arguments.positionalCount < commands[i].positionals) {
-            complain("%s needs %s; vpl help %s", command,
-                     commands[i].positionals == 2 ? "two pictures" : "a scene file", command);
-            return EXIT_USAGE;
-        }
-        return finishOutput(commands[i].run(&arguments));
+    const Command* command = findCommand(word);
+    if (command == NULL) {
+        complain("no command \"%s\"; vpl help lists them", word);
+        return EXIT_USAGE;
     }
-    complain("no command \"%s\"; vpl help lists them", command);
-    return EXIT_USAGE;
+    return runCommand(command, count, (const char* const*)words);
 }

@@ -112,7 +112,7 @@ static void addSummary(const Tradeoff* t, double limit, const Setting* s, Text* 
     addText(html, "<p class=\"answer\">");
     if (s->error <= limit && isJudged(t, limit)) {
         addText(html, "<strong>%g %% error costs %s</strong> of processor time per %dx%d picture",
-                100 * limit, cpu, s->arguments.render.output.width, s->arguments.render.output.height);
+                100 * limit, cpu, s->options.output.width, s->options.output.height);
     } else {
         addText(html, "<strong>%g %% error %s.</strong> The least error was %s for %s of processor time",
                 100 * limit,

@@ -127,7 +127,7 @@ static void addLegend(const Clamp* c)
 static void addDistances(const Clamp* c, int y)
 {
     for (int i = 0; i < c->count; i++) {
-        bool automatic = c->points[i]->arguments.render.lights.minDistance < 0;
+        bool automatic = c->points[i]->options.lights.minDistance < 0;
         if (i > 0 && c->column[i] == c->column[i - 1]) {
             continue;
         }

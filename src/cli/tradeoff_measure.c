@@ -40,14 +40,14 @@ vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptio
 static double foresee(const Tradeoff* t, const Setting* s)
 {
     static const double guess[FAMILY_COUNT] = {1e-4, 1e-7, 1e-5, 1e-5, 1e-5, 1e-6, 1e-7, 1e-3};
-    const vplRenderOptions* o = &s->arguments.render;
+    const vplRenderOptions* o = &s->options;
     const Setting* nearest = NULL;
     double least = INFINITY;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* other = &t->settings[i];
         double far = fabs(log(other->work / s->work));
         if (isMeasured(other) && other->family == s->family &&
-            other->arguments.render.pipeline.kind == o->pipeline.kind && far < least) {
+            other->options.pipeline.kind == o->pipeline.kind && far < least) {
             nearest = other;
             least = far;
         }
@@ -91,7 +91,7 @@ static vplResult compare(const Tradeoff* t, const vplImage* image, Run* run)
 static void measureSeed(Tradeoff* t, Setting* s)
 {
     Run* run = &s->runs[s->runCount];
-    vplRenderOptions options = s->arguments.render;
+    vplRenderOptions options = s->options;
     run->seed = options.seed += (uint64_t)s->runCount;
     vplImage* image = NULL;
     vplResult result = renderQuietly(t, t->scene, &options, &image, &run->stats);
@@ -189,7 +189,7 @@ static void restorePictures(Tradeoff* t)
         Setting* s = &t->settings[i];
         if (s->onFront && s->image == NULL) {
             vplRenderStats stats;
-            renderQuietly(t, t->scene, &s->arguments.render, &s->image, &stats);
+            renderQuietly(t, t->scene, &s->options, &s->image, &stats);
         }
     }
 }
@@ -198,7 +198,7 @@ static void restorePictures(Tradeoff* t)
 static void warmUp(Tradeoff* t)
 {
     vplImage* image = NULL;
-    renderQuietly(t, t->scene, &t->settings[0].arguments.render, &image, NULL);
+    renderQuietly(t, t->scene, &t->settings[0].options, &image, NULL);
     vplImage_Destroy(image);
 }
 

@@ -91,8 +91,8 @@ static int choosePoints(const Tradeoff* t, const Setting** chosen)
 void addPictures(const Tradeoff* t, Text* html)
 {
     const Setting* chosen[MAX_PICTURES];
-    vplWriteOptions options = t->arguments->write;
-    options.exposure = options.exposure != 0 ? options.exposure : chooseExposure(t);
+    vplWriteOptions options = vplDefaultWriteOptions();
+    options.exposure = t->arguments->exposure != 0 ? (float)t->arguments->exposure : chooseExposure(t);
     int count = choosePoints(t, chosen);
     addText(
         html,

@@ -30,7 +30,8 @@ static int readPicture(Tradeoff* t, const char* path, vplImage** imageOut)
 {
     const vplRenderOptions* o = &t->arguments->render;
     int code = exitCode(vplImage_Read(t->context, path, imageOut), true);
-    if (code == EXIT_DONE && ((*imageOut)->width != o->output.width || (*imageOut)->height != o->output.height)) {
+    if (code == EXIT_DONE &&
+        ((*imageOut)->width != o->output.width || (*imageOut)->height != o->output.height)) {
         complain("%s: the reference has %dx%d pixels, must have %dx%d as the pictures (--size)", path,
                  (*imageOut)->width, (*imageOut)->height, o->output.width, o->output.height);
         return EXIT_USAGE;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Which settings are measured: a table of sweeps. A new option of `vpl render` is measured by a new row.
-#include "cli/option.h"
 #include "cli/tradeoff.h"
 
 #include <math.h>
@@ -81,8 +80,8 @@ const Sweep SWEEPS[] = {
     {"pipeline", "--pipeline", "usual batched multipass", "How virtual lights are added up"},
     {"cut-error", "--pipeline lightcuts --light-shadows ray --particles 10000 --cut-error",
      "0.005 0.01 0.02 0.05 0.1 0.2", "Error of lightcuts"},
-    {"lamp-lights", "--lamp-lights", "4 16 64 256", "Lights that stand for lamps"},
-    {"lamp-lights", "--lamp-lights 16 --particles", "300 1000 3000", NULL},
+    {"area-light-samples", "--area-light-samples", "4 16 64 256", "Samples of area lights"},
+    {"area-light-samples", "--area-light-samples 16 --particles", "300 1000 3000", NULL},
     {"light-map", "--light-shadows map --light-map", "32 64 128 256 512", "Size of virtual lights' maps"},
     {"particle-geometry", "--particle-geometry", "exact obb", "What stops a particle"},
 };
@@ -146,7 +145,7 @@ static Family familyOf(const vplRenderOptions* o)
     }
     return o->lights.shadows == VPL_LIGHT_SHADOWS_MAP   ? FAMILY_MAP
            : o->lights.shadows == VPL_LIGHT_SHADOWS_RAY ? FAMILY_RAY
-                                                      : FAMILY_UNSHADOWED;
+                                                        : FAMILY_UNSHADOWED;
 }
 
 // Lights or paths, and a constant for what every picture costs.
@@ -156,21 +155,26 @@ static double workOf(const vplRenderOptions* o)
     return o->method == VPL_METHOD_PATH        ? o->path.samples
            : o->method == VPL_METHOD_DIRECT    ? 1
            : o->method == VPL_METHOD_RADIOSITY ? 500 + o->radiosity.patches
-           : o->method == VPL_METHOD_SSVP      ? 200 + o->ssvp.firstBounce + o->ssvp.secondBounce + 8 * o->ssvp.clusters
-                                               : 50 + o->particles.count / (1 - reflectivity);
+           : o->method == VPL_METHOD_SSVP
+               ? 200 + o->ssvp.firstBounce + o->ssvp.secondBounce + 8 * o->ssvp.clusters
+               : 50 + o->particles.count / (1 - reflectivity);
 }
 
-// The words that make `plain` into `a`.
-static void writeDifference(const Arguments* plain, const Arguments* a, char* words, size_t size)
+// The words that make `plain` into `o`; options that the method of `o` makes no use of need none.
+static void writeDifference(const vplRenderOptions* plain, const vplRenderOptions* o, char* words,
+                            size_t size)
 {
+    int count;
+    const vplOption* options = vplGetOptions(&count);
     size_t used = 0;
     words[0] = 0;
-    for (int i = 0; i < OPTION_COUNT; i++) {
+    for (int i = 0; i < count; i++) {
         char value[64], usual[64];
-        if (writeOption(&OPTIONS[i], a, value, sizeof value) && value[0] != 0 &&
-            writeOption(&OPTIONS[i], plain, usual, sizeof usual) && strcmp(value, usual) != 0) {
-            int length =
-                snprintf(words + used, size - used, "%s%s %s", used ? " " : "", OPTIONS[i].name, value);
+        const char* name = options[i].name;
+        if (vplRenderOptions_Get(o, name, value, sizeof value) == VPL_SUCCESS &&
+            vplRenderOptions_Get(plain, name, usual, sizeof usual) == VPL_SUCCESS &&
+            strcmp(value, usual) != 0 && vplRenderOptions_IsUsed(o, name, NULL, 0)) {
+            int length = snprintf(words + used, size - used, "%s--%s %s", used ? " " : "", name, value);
             used += length > 0 && (size_t)length < size - used ? (size_t)length : 0;
         }
     }
@@ -178,64 +182,33 @@ static void writeDifference(const Arguments* plain, const Arguments* a, char* wo
 
 void writeCommand(const Setting* s, char* words, size_t size)
 {
-    Arguments plain = s->arguments;
-    plain.render = vplDefaultRenderOptions();
-    writeDifference(&plain, &s->arguments, words, size);
-}
-
-// SSVP has samples of maps instead of particles, radiosity has patches.
-static void forgetParticles(vplRenderOptions* o)
-{
     const vplRenderOptions plain = vplDefaultRenderOptions();
-    o->lighting = plain.lighting;
-    o->particles.count = plain.particles;
-    o->particles.reflectivity = plain.particles.reflectivity;
-    o->particles.sampler = plain.particles.sampler;
-    o->particles.bounce = plain.particles.bounce;
-    o->particles.placement = plain.particles.placement;
-    o->particles.geometry = plain.particles.geometry;
+    writeDifference(&plain, &s->options, words, size);
 }
 
-// Options that the method never looks at go back to their defaults: equal settings look equal, and a command to
-// copy says only what matters.
+// Options that the method makes no use of go back to their defaults: equal settings look equal.
 static void forgetUnused(vplRenderOptions* o)
 {
-    vplRenderOptions plain = vplDefaultRenderOptions();
-    if (o->method == VPL_METHOD_SSVP) {
-        forgetParticles(o);
-        o->shadow.mapSize = plain.shadow.mapSize;
-        o->shadow = plain.shadow;
-        return;
+    const vplRenderOptions plain = vplDefaultRenderOptions();
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        char usual[64];
+        if (!vplRenderOptions_IsUsed(o, options[i].name, NULL, 0) &&
+            vplRenderOptions_Get(&plain, options[i].name, usual, sizeof usual) == VPL_SUCCESS) {
+            vplRenderOptions_Set(o, options[i].name, usual);
+        }
     }
-    if (o->method == VPL_METHOD_RADIOSITY) {
-        forgetParticles(o);
-        return;
-    }
-    if (o->method == VPL_METHOD_INSTANT_RADIOSITY || o->method == VPL_METHOD_KELLER) {
-        return;
-    }
-    plain.method = o->method;
-    plain.output.width = o->output.width;
-    plain.output.height = o->output.height;
-    plain.output.camera = o->output.camera;
-    plain.seed = o->seed;
-    plain.path.samples = o->path.samples;
-    plain.path.pixel = o->path.pixel;
-    if (o->method == VPL_METHOD_DIRECT) {
-        plain.shadow.mapSize = o->shadow.mapSize;
-        plain.shadow = o->shadow;
-    }
-    *o = plain;
 }
 
 // Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too.
 static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
 {
-    Setting s = {.arguments = *t->arguments, .sweeps = sweep};
-    if (!changeArguments(words, &s.arguments)) {
+    Setting s = {.options = t->arguments->render, .sweeps = sweep};
+    if (!setOptions(&s.options, words)) {
         return false;
     }
-    forgetUnused(&s.arguments.render);
+    forgetUnused(&s.options);
     char command[SENTENCE], other[SENTENCE];
     writeCommand(&s, command, sizeof command);
     for (int i = 0; i < t->settingCount; i++) {
@@ -249,14 +222,9 @@ static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
         complain("more than %d settings", MAX_SETTINGS);
         return false;
     }
-    s.family = familyOf(&s.arguments.render);
-    if (s.family == FAMILY_DIRECT || s.family == FAMILY_PATH || s.family == FAMILY_SSVP ||
-        s.family == FAMILY_RADIOSITY) {
-        snprintf(s.change, sizeof s.change, "%s", words); // what it does not use is no difference
-    } else {
-        writeDifference(t->arguments, &s.arguments, s.change, sizeof s.change);
-    }
-    s.work = workOf(&s.arguments.render);
+    writeDifference(&t->arguments->render, &s.options, s.change, sizeof s.change);
+    s.family = familyOf(&s.options);
+    s.work = workOf(&s.options);
     t->settings[t->settingCount++] = s;
     return true;
 }

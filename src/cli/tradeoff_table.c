@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // tradeoff.csv: one row per setting and seed, with every option and every figure (RFC 4180).
-#include "cli/option.h"
 #include "cli/tradeoff.h"
 
 #include <stdio.h>
@@ -25,19 +24,20 @@ static void addStages(Stages* stages, const vplRenderStats* stats)
     }
 }
 
-// What decides about the picture; the rest of the options is the same for all rows or has a column of its own.
-static bool isColumn(const Option* o, const Arguments* a, char* value, size_t size)
+// Every option has a column; the seed has its own.
+static bool isColumn(const vplOption* o)
 {
-    return o->read != readSeed && writeOption(o, a, value, size);
+    return o->kind != VPL_OPTION_PART && o->kind != VPL_OPTION_SEED;
 }
 
-static void addHeader(const Tradeoff* t, const Stages* stages, Text* csv)
+static void addHeader(const Stages* stages, Text* csv)
 {
     addText(csv, "setting,family,sweeps,on_front,seed,");
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        char value[64];
-        if (isColumn(&OPTIONS[i], t->arguments, value, sizeof value)) {
-            for (const char* c = OPTIONS[i].name + 2; *c; c++) {
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        if (isColumn(&options[i])) {
+            for (const char* c = options[i].name; *c; c++) {
                 addText(csv, "%c", *c == '-' ? '_' : *c);
             }
             addText(csv, ",");
@@ -94,16 +94,19 @@ static void addRow(const Tradeoff* t, int index, const Run* run, const Stages* s
     addText(csv, "%d,%s,", index, FAMILY_NAMES[s->family]);
     addSweeps(s, csv);
     addText(csv, "%d,%llu,", s->onFront, (unsigned long long)run->seed);
-    for (int i = 0; i < OPTION_COUNT; i++) {
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
         char value[64];
-        if (isColumn(&OPTIONS[i], &s->arguments, value, sizeof value)) {
+        if (isColumn(&options[i])) {
+            vplRenderOptions_Get(&s->options, options[i].name, value, sizeof value);
             addCell(csv, value);
         }
     }
     addFigures(run, stages, csv);
     char command[SENTENCE];
     Setting seeded = *s;
-    seeded.arguments.render.seed = run->seed;
+    seeded.options.seed = run->seed;
     writeCommand(&seeded, command, sizeof command);
     addText(csv, "%s\n", command);
 }
@@ -116,7 +119,7 @@ void writeTable(const Tradeoff* t, Text* csv)
             addStages(&stages, &t->settings[i].runs[k].stats);
         }
     }
-    addHeader(t, &stages, csv);
+    addHeader(&stages, csv);
     for (int i = 0; i < t->settingCount; i++) {
         for (int k = 0; k < t->settings[i].runCount; k++) {
             addRow(t, i, &t->settings[i].runs[k], &stages, csv);

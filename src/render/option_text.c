@@ -32,9 +32,10 @@ static void store(const Setting* s, const void* value, size_t size)
     memcpy((char*)s->options + s->option->offset, value, size);
 }
 
+// Whether strtol or strtod stopped before the end, or skipped blanks at the beginning.
 static bool isPast(const char* value, const char* end)
 {
-    return end == value || *end != 0;
+    return end == value || *end != 0 || *value == ' ' || (*value >= '\t' && *value <= '\r');
 }
 
 // ---- numbers
@@ -156,9 +157,6 @@ vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, cons
         snprintf(options->problem, sizeof options->problem, "there is no option \"%.60s\"", name);
         return VPL_INVALID_ARGUMENT;
     }
-    if (*value == ' ' || *value == '\t') { // strtol and strtod would skip it
-        return refuse(&s, "%s", s.option->value);
-    }
     switch (s.option->kind) {
     case VPL_OPTION_INT:
         return setInt(&s);
@@ -244,6 +242,8 @@ bool vplRenderOptions_IsUsed(const vplRenderOptions* o, const char* name, char* 
         o->method == VPL_METHOD_SSVP ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
     const vplAccumulation kind = o->pipeline.kind == VPL_ACCUMULATE_USUAL ? usual : o->pipeline.kind;
     const char* against = NULL;
+    vplRenderOptions resolved = *o;
+    resolved.pipeline.kind = kind;
     if (option != NULL && (option->users & 1 << o->method) == 0) {
         against = "method";
     } else if (pipelines != 0 && (pipelines & 256 << kind) == 0) {
@@ -251,7 +251,7 @@ bool vplRenderOptions_IsUsed(const vplRenderOptions* o, const char* name, char* 
     }
     if (against != NULL && reasonOut != NULL) {
         char value[32] = "";
-        vplRenderOptions_Get(o, against, value, sizeof value);
+        vplRenderOptions_Get(&resolved, against, value, sizeof value);
         snprintf(reasonOut, size, "--%s %s", against, value);
     }
     return against == NULL;

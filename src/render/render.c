@@ -1,227 +1,345 @@
 // SPDX-License-Identifier: MIT
-// Checks, freezes the scene, counts and times what methods do.
+// The public calls: a plan, then its stages pass by pass until a count, a time or an error estimate ends them.
 #include "base/clock.h"
-#include "render/options.h"
-#include "render/history.h"
-#include "render/ssvp.h"
+#include "math/scalar.h"
+#include "render/passes.h"
+#include "render/plan.h"
+#include "render/show.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+#include "scene/scene.h"
 
-#include <string.h>
+// ---- what frames hand on
 
-void vplJob_BeginStage(vplJob* job, double to)
+struct vplHistory {
+    vplContext* context;
+    uint64_t sceneStamp; // of the scene of the first frame; 0: none yet
+    vplStore* store;     // NULL while a renderer has it
+};
+
+vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut)
 {
-    job->progressFrom = job->progressTo;
-    job->progressTo = to;
-    job->stageStart = vplClockMs();
+    vplHistory* history = vplAllocZero(context, 1, sizeof *history);
+    if (history == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    history->context = context;
+    *historyOut = history;
+    return VPL_SUCCESS;
 }
 
-void vplJob_EndStage(vplJob* job, const char* name)
+void vplHistory_Destroy(vplHistory* history)
 {
-    const double ms = vplClockMs() - job->stageStart;
-    vplRenderStats* stats = &job->stats;
-    for (int i = 0; i < stats->stageCount; i++) {
-        if (strcmp(stats->stages[i].name, name) == 0) {
-            stats->stages[i].ms += ms;
-            return;
+    if (history != NULL) {
+        vplStore_Destroy(history->store);
+        vplFree(history->context, history);
+    }
+}
+
+// The store of the frame before, or a new one.
+static vplResult takeStore(const vplScene* scene, const vplRenderOptions* options, vplStore** storeOut)
+{
+    vplHistory* history = options->sequence.history;
+    if (history != NULL) {
+        if (history->context != scene->context) {
+            return vplFail(
+                scene->context, VPL_INVALID_ARGUMENT,
+                "vplRenderOptions.sequence.history was made with another context than the scene's");
+        }
+        if (history->sceneStamp != 0 && history->sceneStamp != scene->stamp) {
+            return vplFail(
+                scene->context, VPL_INVALID_ARGUMENT,
+                "vplRenderOptions.sequence.history is of another scene, or something was added to the "
+                "scene since");
+        }
+        if (history->store != NULL) {
+            *storeOut = history->store;
+            history->store = NULL;
+            return VPL_SUCCESS;
         }
     }
-    if (stats->stageCount < VPL_MAX_STAGES) {
-        stats->stages[stats->stageCount++] = (vplStage){name, ms};
+    return vplStore_Create(scene->context, storeOut);
+}
+
+static void giveStore(const vplScene* scene, vplHistory* history, vplStore* store)
+{
+    if (history == NULL) {
+        vplStore_Destroy(store);
+        return;
     }
+    vplStore_Destroy(history->store);
+    history->store = store;
+    history->sceneStamp = scene->stamp;
 }
 
-bool vplJob_Progress(void* job, double fraction)
-{
-    const vplJob* j = job;
-    double done = j->progressFrom + (j->progressTo - j->progressFrom) * fraction;
-    return j->options.progress(j->options.progressUser, j->stepFrom + (j->stepTo - j->stepFrom) * done);
-}
+// ---- a render as a loop of steps
 
-vplProgressFcn* vplJob_GetProgress(const vplJob* job)
-{
-    return job->options.progress ? vplJob_Progress : NULL;
-}
+struct vplRenderer {
+    vplRunner runner;
+    vplPlan* plan;
+    vplPasses passes;
+    vplHistory* history;
+    int done;               // passes
+    double start, cpuStart; // ms
+    double passMs;          // of all passes
+};
 
-void vplJob_AddRaster(vplJob* job, const vplRasterStats* stats)
+vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
+                             vplRenderer** rendererOut)
 {
-    job->stats.drawCalls += stats->drawCalls;
-    job->stats.fragments += stats->fragments;
-}
-
-vplLightShadows vplJob_GetLightShadows(const vplJob* job)
-{
-    const vplRenderOptions* o = &job->options;
-    return o->lights.shadows != VPL_LIGHT_SHADOWS_USUAL ? o->lights.shadows
-           : o->method == VPL_METHOD_KELLER           ? VPL_LIGHT_SHADOWS_AUTO
-           : o->method == VPL_METHOD_SSVP             ? VPL_LIGHT_SHADOWS_CLUSTER
-                                                      : VPL_LIGHT_SHADOWS_NONE;
-}
-
-vplLighting vplJob_GetShading(const vplJob* job)
-{
-    return job->options.method == VPL_METHOD_KELLER ? VPL_LIGHTING_PHYSICAL : job->options.lighting;
-}
-
-void vplJob_CountLights(vplJob* job, const vplLightSet* set)
-{
-    vplRenderStats* stats = &job->stats;
-    stats->virtualLights += set->lightCount;
-    stats->escaped += set->escaped;
-    stats->rays += set->rays;
-    stats->rayObjectTests += set->rayObjectTests;
-    stats->stepCount = set->stepCount < VPL_MAX_STEPS_REPORTED ? set->stepCount : VPL_MAX_STEPS_REPORTED;
-    for (int i = 0; i < stats->stepCount; i++) {
-        stats->particlesPerStep[i] += set->stepCounts[i];
-        stats->lightsPerStep[i] += set->lightsInStep[i];
+    vplContext* context = vplScene_GetContext(scene);
+    const double start = vplClockMs(), cpuStart = vplCpuMs();
+    vplStore* store;
+    TRY(takeStore(scene, options, &store));
+    vplRenderer* r = vplAllocZero(context, 1, sizeof *r);
+    if (r == NULL) {
+        vplStore_Destroy(store);
+        return VPL_OUT_OF_MEMORY;
     }
-}
-
-vplResult vplJob_MakeLights(vplJob* job, vplLightSet** setOut)
-{
-    const vplRenderOptions* o = &job->options;
-    vplParticleDef def = vplDefaultParticleDef();
-    const bool keller = o->method == VPL_METHOD_KELLER;
-    def.lighting = o->lighting;
-    def.start = keller ? VPL_START_EMITTER : VPL_START_FIRST_HIT;
-    def.particleCount = o->particles.count;
-    def.pass = job->progressive;
-    def.firstParticle = (int64_t)job->stepsDone * o->particles.count;
-    def.reflectivity = o->particles.reflectivity >= 0 ? o->particles.reflectivity : vplGeometry_MeanReflectance(job->geometry);
-    if (keller && o->output.show == VPL_SHOW_DIRECT) {
-        def.reflectivity = 0; // the lights on the emitters are all there is
-    }
-    def.sampler = o->particles.sampler;
-    def.bounce = o->particles.bounce;
-    def.geometry = o->particles.geometry;
-    def.seed = o->seed;
-    def.progress = vplJob_GetProgress(job);
-    def.progressUser = job;
-    vplResult result = vplJob_FindNear(job);
-    if (result == VPL_SUCCESS) {
-        result = vplJob_PlaceLights(job, job->emitters, job->emitterCount, &def, setOut);
+    r->history = options->sequence.history;
+    r->start = start;
+    r->cpuStart = cpuStart;
+    r->passes.context = context;
+    r->runner = vplRunner_Begin(scene, store);
+    r->runner.progress = options->progress;
+    r->runner.progressUser = options->progressUser;
+    r->runner.stats.clampLoss = r->runner.stats.errorEstimate = r->runner.stats.relativeErrorEstimate = -1;
+    vplResult result = vplMakePlan(&r->runner, options, NULL, &r->plan);
+    if (result == VPL_SUCCESS && r->plan->problem[0] != 0) {
+        result = vplFail(context, r->plan->refusal, "%s", r->plan->problem);
     }
     if (result != VPL_SUCCESS) {
+        vplRenderer_Destroy(r);
         return result;
     }
-    job->stats.reflectivity = def.reflectivity;
-    vplJob_CountLights(job, *setOut);
+    *rendererOut = r;
     return VPL_SUCCESS;
 }
 
-// What the method's document uses.
-static void chooseUsual(vplRenderOptions* o)
+// The share of the whole that so many passes are, as far as it can be told.
+static double shareOf(const vplRenderer* r, int passes)
 {
-    const bool ssvp = o->method == VPL_METHOD_SSVP;
-    if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
-        o->pipeline.kind = ssvp ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    const vplStopOptions* o = &r->plan->options.stop;
+    const bool paths = r->plan->options.method == VPL_METHOD_PATH;
+    const int count = paths ? vplCountPathPasses(r->plan) : o->passes;
+    double share = 0;
+    if (count > 0) {
+        share = (double)passes / count;
+    } else if (o->maxError > 0) {
+        share = passes / (passes + 4.0);
+    } else if (o->budgetMs <= 0) {
+        share = passes;
     }
-    if (o->shadow.rsmSize == 0) {
-        o->shadow.rsmSize = ssvp ? 1024 : 256;
+    if (o->budgetMs > 0) {
+        const double spent = (vplClockMs() - r->start) / o->budgetMs;
+        share = spent > share ? spent : share;
+    }
+    return share < 1 ? share : 1;
+}
+
+// Direct light in the first pass, then virtual lights: those of each pass make a picture, and the passes' mean counts.
+static vplResult addPass(vplRenderer* r)
+{
+    if (r->done == 0) {
+        r->runner.run.parts = VPL_PART_DIRECT;
+        TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
+        r->passes.base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+        TRY(vplPasses_Open(&r->passes, r->passes.base));
+        r->runner.run.parts = VPL_PART_INDIRECT;
+        TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
+    } else {
+        r->runner.run.parts = VPL_PART_INDIRECT;
+        TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
+    }
+    vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+    vplPasses_Add(&r->passes, r->done, image);
+    vplImage_Destroy(image);
+    return VPL_SUCCESS;
+}
+
+static vplResult runPass(vplRenderer* r)
+{
+    vplRun* run = &r->runner.run;
+    run->pass = r->done;
+    if (r->plan->progressive) {
+        return addPass(r);
+    }
+    run->parts = VPL_PART_DIRECT | VPL_PART_INDIRECT;
+    TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_COUNT));
+    if (r->plan->options.method != VPL_METHOD_PATH) {
+        const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
+        vplImage_Destroy(r->passes.base);
+        r->passes.base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+        return show->drawOver != NULL ? show->drawOver(run, r->passes.base) : VPL_SUCCESS;
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult resolve(vplRenderer* r, vplImage** imageOut)
+{
+    vplRun* run = &r->runner.run;
+    const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
+    if (r->plan->options.method == VPL_METHOD_PATH) {
+        return vplResolvePaths(run, imageOut);
+    }
+    TRY(vplPasses_Resolve(&r->passes, r->done, imageOut, &r->runner.stats));
+    return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
+}
+
+// Whether the options' count of passes, error or time is reached.
+static vplResult isDone(vplRenderer* r, bool* doneOut)
+{
+    const vplRenderOptions* o = &r->plan->options;
+    const bool paths = o->method == VPL_METHOD_PATH;
+    bool done = paths                  ? r->done >= vplCountPathPasses(r->plan)
+                : r->plan->progressive ? o->stop.passes > 0 && r->done >= o->stop.passes
+                                       : true;
+    if (!done && o->stop.maxError > 0) {
+        vplImage* image = NULL;
+        const vplResult result = resolve(r, &image);
+        vplImage_Destroy(image);
+        TRY(result);
+        const double error = r->runner.stats.relativeErrorEstimate;
+        done = error >= 0 && error <= o->stop.maxError;
+    }
+    const double budget = o->stop.budgetMs;
+    *doneOut = done || (budget > 0 && vplClockMs() - r->start + r->passMs / r->done > budget);
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
+{
+    const double begin = vplClockMs();
+    r->runner.stepFrom = shareOf(r, r->done);
+    r->runner.stepTo = shareOf(r, r->done + 1);
+    TRY(runPass(r));
+    r->passMs += vplClockMs() - begin;
+    r->done++;
+    return isDone(r, doneOut);
+}
+
+static void finishStats(vplRenderer* r, const vplImage* image, vplRenderStats* statsOut)
+{
+    vplRenderStats* stats = &r->runner.stats;
+    stats->passes = r->done;
+    stats->totalMs = vplClockMs() - r->start;
+    stats->cpuMs = vplCpuMs() - r->cpuStart;
+    stats->peakBytes = vplRunner_PeakBytes(&r->runner);
+    stats->imageHash = image != NULL ? vplImage_Hash(image) : 0;
+    *statsOut = *stats;
+}
+
+vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
+{
+    vplImage* image = NULL;
+    if (r->done == 0) {
+        return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
+                       "a renderer has no picture before its first step");
+    }
+    const vplResult result = resolve(r, &image);
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(image);
+        return result;
+    }
+    if (statsOut != NULL) {
+        finishStats(r, image, statsOut);
+    }
+    *imageOut = image;
+    return VPL_SUCCESS;
+}
+
+void vplRenderer_Destroy(vplRenderer* r)
+{
+    if (r != NULL) {
+        vplContext* context = r->runner.run.context;
+        vplPasses_Free(&r->passes);
+        vplPlan_Destroy(r->plan);
+        giveStore(r->runner.run.scene, r->history, r->runner.store);
+        vplFree(context, r);
     }
 }
 
-static vplResult pose(vplJob* job)
+// ---- in one call
+
+// The last picture: it may be given away where no pass follows.
+static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
-    const vplRenderOptions* o = &job->options;
-    vplResult result = vplScene_PoseCamera(job->scene, o->output.camera, o->sequence.frame, &job->camera);
-    if (result != VPL_SUCCESS) {
-        return result;
+    if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH) {
+        return vplRenderer_GetImage(r, imageOut, statsOut);
     }
-    job->view = vplView_Create(&job->camera, o->output.width, o->output.height);
-    job->emitterCount = vplScene_GetEmitterCount(job->scene);
-    job->emitters = vplAlloc(job->context, (size_t)job->emitterCount, sizeof *job->emitters);
-    result = job->emitters != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    for (int i = 0; i < job->emitterCount && result == VPL_SUCCESS; i++) {
-        result = vplScene_PoseEmitter(job->scene, i, o->sequence.frame, &job->emitters[i]);
+    *imageOut = r->passes.base;
+    r->passes.base = NULL;
+    if (statsOut != NULL) {
+        finishStats(r, *imageOut, statsOut);
     }
+    return VPL_SUCCESS;
+}
+
+vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
+                    vplRenderStats* statsOut)
+{
+    vplRenderer* r;
+    TRY(vplRenderer_Create(scene, options, &r));
+    vplResult result = VPL_SUCCESS;
+    for (bool done = false; !done && result == VPL_SUCCESS;) {
+        result = vplRenderer_Step(r, &done);
+    }
+    if (result == VPL_SUCCESS) {
+        result = takeImage(r, imageOut, statsOut);
+    }
+    const vplRenderStats* stats = &r->runner.stats;
+    if (result == VPL_SUCCESS && stats->errorEstimate >= 0) {
+        vplLog(r->runner.run.context, VPL_LOG_INFO,
+               "remaining error about %.3g W/(m^2 sr), %.3g %% of the mean", stats->errorEstimate,
+               100 * stats->relativeErrorEstimate);
+    }
+    vplRenderer_Destroy(r);
     return result;
 }
 
-// What only SSVP has.
-static vplResult checkSsvp(const vplContext* context, const vplRenderOptions* o)
-{
-    if (o->method == VPL_METHOD_SSVP) {
-        return VPL_SUCCESS;
-    }
-    if (o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "only SSVP's lights have clusters to cast shadows by");
-    }
-    if (o->output.show >= VPL_SHOW_RSM && o->output.show <= VPL_SHOW_SECOND_BOUNCE) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "only SSVP has maps, samples and clusters to show");
-    }
-    return VPL_SUCCESS;
-}
-
-// What only radiosity has, and what it has not.
-static vplResult checkRadiosity(const vplContext* context, const vplRenderOptions* o)
-{
-    if (o->method != VPL_METHOD_RADIOSITY) {
-        return o->output.show >= VPL_SHOW_PATCHES ? vplFail(context, VPL_INVALID_ARGUMENT,
-                                                     "only radiosity has patches and form factors to show")
-                                           : VPL_SUCCESS;
-    }
-    if (o->lighting == VPL_LIGHTING_DOCUMENTED) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "radiosity's document prints no lighting formulas of its own; use physical lighting");
-    }
-    if (o->radiosity.placement == VPL_PATCHES_ADAPTIVE && o->radiosity.patchSize > 0) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "adaptive patches are counted, not measured: set vplRenderOptions.patches and leave "
-                       "patchSize at 0");
-    }
-    if (o->output.show == VPL_SHOW_LIGHT || o->output.show == VPL_SHOW_OVERLAY || o->output.show == VPL_SHOW_GATHER ||
-        o->output.show == VPL_SHOW_DENOISED) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "radiosity has no virtual lights to show");
-    }
-    return VPL_SUCCESS;
-}
-
-vplResult vplJob_Begin(const vplScene* scene, const vplRenderOptions* options, vplJob* job)
-{
-    memset(job, 0, sizeof *job);
-    job->context = vplScene_GetContext(scene);
-    vplResult result = vplCheckOptions(scene, options);
-    if (result == VPL_SUCCESS) {
-        result = checkSsvp(job->context, options);
-    }
-    if (result == VPL_SUCCESS) {
-        result = checkRadiosity(job->context, options);
-    }
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    job->scene = scene;
-    job->options = *options;
-    job->stepTo = 1;
-    job->stats.clampLoss = -1;
-    job->stats.errorEstimate = job->stats.relativeErrorEstimate = -1;
-    chooseUsual(&job->options);
-    vplContext_ResetPeakBytes(job->context);
-    vplJob_BeginStage(job, 0);
-    result = pose(job);
-    if (result == VPL_SUCCESS) {
-        result = options->sequence.history != NULL ? vplHistory_Open(options->sequence.history, scene, &job->geometry)
-                                          : vplGeometry_Create(scene, &job->geometry);
-    }
-    vplJob_EndStage(job, "geometry");
-    return result;
-}
-
-void vplJob_End(vplJob* job)
-{
-    vplFree(job->context, job->emitters);
-    if (job->options.sequence.history == NULL) {
-        vplGeometry_Destroy(job->geometry);
-    }
-}
+// ---- other results of the same stages
 
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)
 {
-    vplJob job;
-    vplResult result = vplJob_Begin(scene, options, &job);
-    if (result == VPL_SUCCESS) {
-        result = options->method == VPL_METHOD_SSVP ? vplSsvp_TakeLights(&job, setOut)
-                                                    : vplJob_MakeLights(&job, setOut);
+    vplRenderOptions o = *options;
+    const bool ssvp = o.method == VPL_METHOD_SSVP;
+    const vplStageId stage = ssvp ? VPL_STAGE_CLUSTERED_LIGHTS : VPL_STAGE_PARTICLES;
+    vplRenderer* r;
+    if (!ssvp && o.method != VPL_METHOD_KELLER) {
+        o.method = VPL_METHOD_INSTANT_RADIOSITY;
     }
-    vplJob_End(&job);
+    o.output.show = VPL_SHOW_PICTURE;
+    TRY(vplRenderer_Create(scene, &o, &r));
+    const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, stage);
+    if (result == VPL_SUCCESS && ssvp) {
+        vplClusteredLights* lights = r->runner.store->slots[stage].result;
+        *setOut = lights->set;
+        lights->set = NULL;
+    } else if (result == VPL_SUCCESS) {
+        *setOut = vplRunner_Take(&r->runner, stage);
+    }
+    vplRenderer_Destroy(r);
+    return result;
+}
+
+vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float exposure, const char* path,
+                  vplRenderStats* statsOut)
+{
+    vplRenderOptions o = *options;
+    const float scale = (float)(vplPow(2, (double)exposure) / VPL_PI); // radiance, as pictures have it
+    vplRenderer* r;
+    o.method = VPL_METHOD_RADIOSITY;
+    o.output.show = VPL_SHOW_PICTURE;
+    TRY(vplRenderer_Create(scene, &o, &r));
+    vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_SOLUTION);
+    if (result == VPL_SUCCESS) {
+        vplArena* scratch = vplArena_Create(r->runner.run.context);
+        result = vplWritePatchMesh(&r->runner.run, scratch, scale, path);
+        vplArena_Destroy(scratch);
+    }
+    if (result == VPL_SUCCESS && statsOut != NULL) {
+        finishStats(r, NULL, statsOut);
+    }
+    vplRenderer_Destroy(r);
     return result;
 }

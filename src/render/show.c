@@ -1,55 +1,57 @@
 // SPDX-License-Identifier: MIT
-// Pictures for looking into the works.
-#include "image/draw.h"
-#include "math/vec.h"
-#include "render/render.h"
+#include "render/show.h"
 
-vplResult vplUnfoldCubeMap(const vplCubeMap* map, vplImage** imageOut)
-{
-    // Column and row of each face in the cross: +x, -x, +y, -y, +z, -z.
-    static const int columns[6] = {2, 0, 1, 1, 1, 3}, rows[6] = {1, 1, 0, 2, 1, 1};
-    if (4 * map->size > VPL_MAX_IMAGE_SIZE) {
-        return vplFail(map->context, VPL_LIMIT, "a shadow map of %d texels is too large to show, at most %d",
-                       map->size, VPL_MAX_IMAGE_SIZE / 4);
-    }
-    vplImage* image;
-    vplResult result = vplImage_Create(map->context, 4 * map->size, 3 * map->size, &image);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    const size_t size = (size_t)map->size;
-    for (size_t face = 0; face < 6; face++) {
-        for (size_t i = 0; i < size * size; i++) {
-            size_t x = (size_t)columns[face] * size + i % size, y = (size_t)rows[face] * size + i / size;
-            float* pixel = image->pixels + 3 * (y * (size_t)image->width + x);
-            float stored = map->texels[face * size * size + i];
-            pixel[0] = pixel[1] = pixel[2] = isfinite(stored) ? stored * map->far : 0;
-        }
-    }
-    *imageOut = image;
-    return VPL_SUCCESS;
-}
+#include "render/stages/show.h"
 
-bool vplView_IsHidden(const vplView* view, const vplGeometry* geometry, vplVec3 position)
-{
-    const vplVec3 way = vplSub(position, view->eye);
-    const float begin = (float)view->near / vplDot(view->forward, way); // where the view begins
-    const vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way), {0, 0}};
-    return vplGeometry_IsOccluded(geometry, &ray, 0.9999f);
-}
+static const char NO_PATHS[] = "the path tracer can show the picture, direct, indirect and bounce:K only";
+static const char NO_LIGHTS[] = "radiosity has no virtual lights to show";
+static const char NO_CLUSTERS[] = "only SSVP has maps, samples and clusters to show";
+static const char NO_PATCHES[] = "only radiosity has patches and form factors to show";
 
-void vplDrawLights(vplImage* image, const vplGeometry* geometry, const vplView* view, const vplLightSet* set)
+enum {
+    NOT_PATH = VPL_USE_ALL & ~VPL_USE_PATH,
+    VIRTUAL = NOT_PATH & ~VPL_USE_RADIOSITY,
+    SSVP = VPL_USE_SSVP,
+    RADIOSITY = VPL_USE_RADIOSITY
+};
+
+#define MEAN .passes = true
+// clang-format off
+const vplShowRow VPL_SHOWS[] = {
+    [VPL_SHOW_PICTURE] = {.direct = true, .lights = true, MEAN, .patches = VPL_PATCH_LIGHT, .methods = VPL_USE_ALL},
+    [VPL_SHOW_DEPTH] = {.methods = NOT_PATH, .output = VPL_OUTPUT_DEPTH},
+    [VPL_SHOW_NORMALS] = {.methods = NOT_PATH, .output = VPL_OUTPUT_NORMALS},
+    [VPL_SHOW_SHADOW_MAP] = {.direct = true, .methods = NOT_PATH, .draw = vplShowCubeMap},
+    [VPL_SHOW_SHADOW_FACTOR] = {.direct = true, .methods = NOT_PATH, .output = VPL_OUTPUT_SHADOW_FACTOR},
+    [VPL_SHOW_DIRECT] = {.direct = true, .lights = true, MEAN, .methods = VPL_USE_ALL}, // lights: Keller's only
+    [VPL_SHOW_INDIRECT] = {.lights = true, MEAN, .patches = VPL_PATCH_LIGHT, .methods = VPL_USE_ALL},
+    [VPL_SHOW_LIGHT] = {.lights = true, MEAN, .methods = VIRTUAL, .otherwise = NO_LIGHTS},
+    [VPL_SHOW_OVERLAY] = {.direct = true, .lights = true, MEAN, .methods = VIRTUAL, .otherwise = NO_LIGHTS,
+                          .drawOver = vplDrawVirtualLights},
+    [VPL_SHOW_BOUNCE] = {.direct = true, .methods = VPL_USE_ALL},
+    [VPL_SHOW_RSM] = {.methods = SSVP, .otherwise = NO_CLUSTERS, .draw = vplShowReflectiveMaps},
+    [VPL_SHOW_RSM_SAMPLES] = {.direct = true, .lights = true, .methods = SSVP, .otherwise = NO_CLUSTERS,
+                              .drawOver = vplDrawFirstBounce},
+    [VPL_SHOW_CLUSTERS] = {.direct = true, .lights = true, .methods = SSVP, .otherwise = NO_CLUSTERS,
+                           .drawOver = vplDrawClusters},
+    [VPL_SHOW_PARABOLOID] = {.lights = true, .methods = SSVP, .otherwise = NO_CLUSTERS, .draw = vplShowClusterMap},
+    [VPL_SHOW_SECOND_BOUNCE] = {.direct = true, .lights = true, .methods = SSVP, .otherwise = NO_CLUSTERS,
+                                .drawOver = vplDrawSecondBounce},
+    [VPL_SHOW_GATHER] = {.lights = true, .methods = VIRTUAL, .otherwise = NO_LIGHTS, .output = VPL_OUTPUT_GATHER},
+    [VPL_SHOW_DENOISED] = {.lights = true, .methods = VIRTUAL, .otherwise = NO_LIGHTS, .output = VPL_OUTPUT_DENOISED},
+    [VPL_SHOW_PATCHES] = {.patches = VPL_PATCHES_ONLY, .methods = RADIOSITY, .otherwise = NO_PATCHES},
+    [VPL_SHOW_PATCH_RADIOSITY] = {.patches = VPL_PATCH_LIGHT, .methods = RADIOSITY, .otherwise = NO_PATCHES},
+    [VPL_SHOW_FORM_FACTOR_SUMS] = {.patches = VPL_PATCH_FACTORS, .methods = RADIOSITY, .otherwise = NO_PATCHES},
+    [VPL_SHOW_RESIDUAL] = {.patches = VPL_PATCH_LIGHT, .methods = RADIOSITY, .otherwise = NO_PATCHES},
+};
+// clang-format on
+
+const char* vplRefuseShow(const vplRenderOptions* o)
 {
-    static const vplRgb colours[4] = {
-        {1, 0.8f, 0.05f}, {1, 0.15f, 0.05f}, {0.1f, 0.4f, 1}, {0.7f, 0.1f, 0.9f}};
-    float radius = fmaxf(3, 0.009f * (float)view->height);
-    for (int i = 0; i < set->lightCount; i++) {
-        const vplVirtualLight* light = &set->lights[i];
-        float x, y;
-        if (!vplView_Project(view, light->position, &x, &y)) {
-            continue;
-        }
-        const bool hidden = vplView_IsHidden(view, geometry, light->position); // is drawn small
-        vplDrawDisc(image, x, y, hidden ? 0.5f * radius : radius, colours[light->step < 3 ? light->step : 3]);
+    const vplShowRow* row = &VPL_SHOWS[o->output.show];
+    if ((row->methods & 1 << o->method) != 0) {
+        return NULL;
     }
+    const bool others = row->otherwise == NO_CLUSTERS || row->otherwise == NO_PATCHES;
+    return o->method == VPL_METHOD_PATH && !others ? NO_PATHS : row->otherwise;
 }

@@ -8,7 +8,7 @@
 #include "band.h"
 #include "bench.h"
 
-#include "render/choose_shadows.h"
+#include "render/stages/shadow_choice.h"
 
 #include <string.h>
 #include <time.h>

@@ -45,7 +45,7 @@ for pipeline in multipass "batched --batch 7" deferred interleaved lightcuts; do
     for method in instant-radiosity direct path "instant-radiosity --antialias 3" \
         "instant-radiosity --light-shadows map --light-map 8" "instant-radiosity --light-shadows ray" keller \
         "keller --light-shadows ray"; do
-        words="$counted --shadow-map 16 --pipeline $pipeline --method $method"
+        words="$counted --shadow-map 16 --pipeline $pipeline --method $method --quiet" # some have no effect
         stats "Foretold: $method $pipeline" "$closed" $words --size 16x12
         succeeds "Info: $method $pipeline" "$vpl" info "$closed" --json $words
         for key in draw_calls virtual_lights triangles; do

@@ -132,7 +132,7 @@ check PathsTellTheirError test "$(field "$out/h.json" error_estimate)" != null
 check MoreBouncesAreAnotherPicture test "$(hash_of $paths --max-bounces 0)" != "$(hash_of $paths --max-bounces 1)"
 equals NoBouncesAreDirectLight "$(hash_of $paths --max-bounces 0)" "$(hash_of $paths --show direct)"
 for show in indirect bounce:0 bounce:2; do
-    succeeds "PathsShow_$show" "$vpl" render "$room" $base $paths -o "$out/h.png" --show $show
+    succeeds "PathsShow_$show" "$vpl" render "$room" $base $paths -o "$out/h.png" --show $show --quiet
 done
 "$vpl" render "$room" $base $paths -o "$out/h.png" -v 2>"$scratch/told"
 check PathsSayTheirError grep -q "remaining error about" "$scratch/told"

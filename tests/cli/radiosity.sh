@@ -54,5 +54,7 @@ check PlyHasItsPatches test "$faces" -ge 200 -a "$vertices" -ge 100
 refuses BakeNeedsAName 2 "bake needs -o FILE" "$vpl" bake "$room"
 refuses BakeWritesPlyOnly 2 "ends in .ply" "$vpl" bake "$room" -o "$out/room.obj"
 refuses BakeFindsNoFolder 1 "cannot write" "$vpl" bake "$room" -o "$out/none/room.ply"
-refuses BakeHasNoSize 2 "bake has no option --size" "$vpl" bake "$room" -o "$out/b.ply" --size 8x8
+refuses BakeHasOneMethod 2 "bake writes the patches of --method radiosity alone" "$vpl" bake "$room" -o "$out/b.ply" --method keller
+"$vpl" bake "$room" -o "$out/b.ply" --patches 50 --size 8x8 2>"$scratch/stderr"
+equals BakeHasNoSize "0 vpl: warning: --size has no effect with vpl bake" "$? $(cat "$scratch/stderr")"
 rm -f "$out"/*

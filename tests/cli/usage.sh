@@ -31,7 +31,7 @@ wrong "unknown option --thread, did you mean --threads?" lights "$room" --thread
 wrong "unknown option --reflect, did you mean --reflectivity?" lights "$room" --reflect 0.5
 wrong "unknown option --xyzzy" render "$room" -o "$png" --xyzzy
 wrong "unknown option -x" info "$room" -x
-wrong "lights has no option --size" lights "$room" --size 8x8
+wrong "lights has no option --stats" lights "$room" --stats x.json
 wrong "compare has no option --seed" compare a.png b.png --seed 1
 wrong "--particles needs a value: N" render "$room" -o "$png" --particles
 wrong "--particles needs a value: N" render "$room" -o "$png" --particles --quiet
@@ -46,7 +46,7 @@ wrong "--particles is \"ten\"" lights "$room" --particles ten
 wrong "--particles is \"10.5\"" lights "$room" --particles 10.5
 wrong "--particles is \"\"" lights "$room" --particles=
 wrong "--reflectivity is \"1\", must be less than 1" lights "$room" --reflectivity 1
-wrong "--reflectivity is \"-0.1\", must be a number in [0, 1] or auto" lights "$room" --reflectivity -0.1
+wrong "--reflectivity is \"-0.1\", must be a number in [0, 1) or auto" lights "$room" --reflectivity -0.1
 wrong "--reflectivity is \"nan\"" lights "$room" --reflectivity nan
 wrong "--reflectivity is \"often\"" lights "$room" --reflectivity often
 wrong "needs more than" lights "$room" --particles 10 --reflectivity 0.99999999

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Stages: what a picture is made of. A stage is a function from the plan and the results of other stages to a new value,
+// which later stages read and nobody changes.
+#ifndef VPL_RENDER_STAGE_H
+#define VPL_RENDER_STAGE_H
+
+#include <vpl/plan.h>
+#include <vpl/render.h>
+
+#include "base/arena.h"
+
+typedef enum vplStageId {
+    VPL_STAGE_GEOMETRY,
+    VPL_STAGE_NEAR_DISTANCE,
+    VPL_STAGE_EMITTER_MAPS,
+    VPL_STAGE_AREA_LIGHTS,
+    VPL_STAGE_REFLECTIVE_MAPS,
+    VPL_STAGE_PARTICLES,
+    VPL_STAGE_FIRST_BOUNCE,
+    VPL_STAGE_CLUSTERS,
+    VPL_STAGE_PARABOLOIDS,
+    VPL_STAGE_SECOND_BOUNCE,
+    VPL_STAGE_SECOND_CLUSTERS,
+    VPL_STAGE_SECOND_PARABOLOIDS,
+    VPL_STAGE_CLUSTERED_LIGHTS,
+    VPL_STAGE_VIRTUAL_LIGHTS,
+    VPL_STAGE_PATCHES,
+    VPL_STAGE_SIDES,
+    VPL_STAGE_PATCH_MESH,
+    VPL_STAGE_FORM_FACTORS,
+    VPL_STAGE_PATCH_LIGHT,
+    VPL_STAGE_SOLUTION,
+    VPL_STAGE_VERTEX_LIGHT,
+    VPL_STAGE_PICTURE,
+    VPL_STAGE_PATHS,
+    VPL_STAGE_COUNT
+} vplStageId;
+
+// The parts of a picture that the picture stage adds up.
+typedef enum vplPart {
+    VPL_PART_DIRECT = 1,  // emission, and light from emitters, area lights and patches
+    VPL_PART_INDIRECT = 2 // light of virtual lights
+} vplPart;
+
+// What a stage reads. Results are indexed by vplStageId; NULL where a stage did not run.
+typedef struct vplRun {
+    vplContext* context;
+    const vplScene* scene;
+    const vplPlan* plan;
+    const void* results[VPL_STAGE_COUNT];
+    void*
+        before; // of a stage that continues: its result of the frame or pass before, which it may change and return
+    uint32_t builds[VPL_STAGE_COUNT]; // how often each result was made: tells two results of a stage apart
+    int pass;
+    int parts;                // vplPart: what the picture stage adds up
+    bool draft;               // of a round of adaptive patches before the last
+    struct vplRunner* runner; // for timing of parts of a stage, progress and nested runs
+    vplRenderStats* stats;    // counts of work are added here
+} vplRun;
+
+typedef struct vplStage {
+    const char* name; // as in vplRenderStats.stages
+    double progress;  // share of a pass that is done when the stage ends
+    uint32_t inputs;  // bits: 1 << vplStageId
+    // What the result depends on besides its inputs: names of options, and words in capitals, see findKey.
+    const char* key;
+    // Whether the picture needs it; writes the reason for either into `why`, VPL_PLAN_TEXT bytes.
+    bool (*isNeeded)(const vplPlan* plan, char* why);
+    vplResult (*make)(const vplRun* run, void** resultOut); // a result is destroyed also where it failed
+    void (*destroy)(void* result);                          // NULL is allowed
+    void (*report)(const vplRun* run); // what statistics tell of the result, kept or new; may be NULL
+    bool continues;                    // it wants its result of before
+} vplStage;
+
+// One row per vplStageId.
+extern const vplStage VPL_STAGES[VPL_STAGE_COUNT];
+
+// The recipes of the methods: stages in the order in which they run, ended by VPL_STAGE_COUNT.
+extern const vplStageId VPL_DIRECT_RECIPE[], VPL_INSTANT_RADIOSITY_RECIPE[], VPL_KELLER_RECIPE[],
+    VPL_SSVP_RECIPE[], VPL_RADIOSITY_RECIPE[], VPL_PATH_RECIPE[];
+
+// Progress within the stage under way; pass both to calls that take a progress callback. NULL where nobody listens.
+vplProgressFcn* vplRun_Progress(const vplRun* run);
+void* vplRun_ProgressUser(const vplRun* run);
+
+// Part i of `count` of the stage under way begins: progress is that of the part.
+void vplRun_BeginPart(const vplRun* run, int i, int count);
+
+// Time since `start` (vplClockMs) counts as that of `name`, and not of the stage under way.
+void vplRun_AddTime(const vplRun* run, const char* name, double start);
+
+static inline void vplRun_AddRaster(const vplRun* run, const vplRasterStats* stats)
+{
+    run->stats->drawCalls += stats->drawCalls;
+    run->stats->fragments += stats->fragments;
+}
+
+// Writes a reason into `why` and is `needed`.
+#define BECAUSE(needed, ...) (snprintf(why, VPL_PLAN_TEXT, __VA_ARGS__), (needed))
+
+#endif

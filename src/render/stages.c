@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+// The table of stages, and when a picture needs each.
+#include "render/show.h"
+#include "render/stages/make.h"
+#include "render/stages/ssvp.h"
+
+#include <stdio.h>
+
+// ---- needs: true or false, and the reason
+
+static bool needsGeometry(const vplPlan* p, char* why)
+{
+    return BECAUSE(true, p->castsRays ? "all stages read it; rays are cast, so it has a ray tree"
+                                      : "all stages read it; no ray is cast, so it has no ray tree");
+}
+
+static bool needsNearDistance(const vplPlan* p, char* why)
+{
+    if (p->compensates && p->clampArea > 0) {
+        return BECAUSE(true, "short rays give back what the clamp takes away, so lights are clamped where "
+                             "surfaces are near to each other");
+    }
+    return BECAUSE(false, p->compensates ? "--min-distance is given" : "no short rays give light back");
+}
+
+static bool needsEmitterMaps(const vplPlan* p, char* why)
+{
+    int casting = 0;
+    for (int i = 0; i < p->emitterCount; i++) {
+        casting += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL;
+    }
+    if (!p->showsDirect && !p->compensates) {
+        return BECAUSE(false, "the picture shows no direct light");
+    }
+    if (p->options.method == VPL_METHOD_SSVP) {
+        return BECAUSE(false, "reflective maps serve as shadow maps");
+    }
+    if (p->emitterRays || casting == 0) {
+        return BECAUSE(false, casting == 0 ? "no emitter is a point or a spot" : "rays replace shadow maps");
+    }
+    return BECAUSE(true, "shadows of %d emitter%s with 6 faces of %d^2 texels", casting,
+                   casting > 1 ? "s" : "", p->options.shadow.mapSize);
+}
+
+static bool needsAreaLights(const vplPlan* p, char* why)
+{
+    if (!p->showsDirect && !p->compensates) {
+        return BECAUSE(false, "the picture shows no direct light");
+    }
+    if (!p->hasAreaLights || p->options.lighting == VPL_LIGHTING_DOCUMENTED) {
+        return BECAUSE(false,
+                       p->hasAreaLights ? "documented lighting has no area lights" : "no material emits");
+    }
+    if (p->options.method == VPL_METHOD_KELLER) {
+        return BECAUSE(false, "virtual lights stand for area lights, too");
+    }
+    return BECAUSE(true, "%d points stand for all area lights in direct light",
+                   p->options.lights.areaLightSamples);
+}
+
+static bool needsReflectiveMaps(const vplPlan* p, char* why)
+{
+    if (p->options.method != VPL_METHOD_SSVP) {
+        const bool placed = p->showsVirtual && p->options.particles.placement == VPL_PLACEMENT_RSM;
+        return BECAUSE(placed,
+                       placed ? "first hits of particles are its texels" : "particles find first hits");
+    }
+    if (p->showsVirtual || p->options.output.show == VPL_SHOW_RSM) {
+        return BECAUSE(true, "first-bounce lights are samples of it");
+    }
+    return BECAUSE(!p->emitterRays,
+                   p->emitterRays ? "rays replace shadow maps" : "shadows of emitters are taken from it");
+}
+
+static bool needsParticles(const vplPlan* p, char* why)
+{
+    return BECAUSE(p->showsVirtual, "%s",
+                   p->showsVirtual ? "virtual lights are where particles land"
+                                   : "the picture shows no virtual lights");
+}
+
+static bool needsFirstBounce(const vplPlan* p, char* why)
+{
+    return BECAUSE(p->showsVirtual, "%s",
+                   p->showsVirtual              ? "light that was reflected once"
+                   : p->options.maxBounces == 0 ? "--max-bounces is 0"
+                                                : "the picture shows no virtual lights");
+}
+
+static bool needsClusters(const vplPlan* p, char* why)
+{
+    if (!p->showsVirtual) {
+        return BECAUSE(false, "there are no virtual lights");
+    }
+    const bool needed = vplSsvpSees(p) || vplSsvpHasSecondBounce(p) || vplSsvpShowsClusters(p);
+    return BECAUSE(needed, "%s",
+                   vplSsvpSees(p) ? "lights of a cluster share what it sees"
+                   : needed       ? "the second bounce begins from clusters"
+                                  : "lights do not see by clusters, and there is no second bounce");
+}
+
+static bool needsParaboloids(const vplPlan* p, char* why)
+{
+    const bool needed = needsClusters(p, why);
+    return needed ? BECAUSE(true, "what each of %d clusters sees", p->options.ssvp.clusters) : false;
+}
+
+static bool needsSecondBounce(const vplPlan* p, char* why)
+{
+    const bool needed = p->showsVirtual && vplSsvpHasSecondBounce(p);
+    return BECAUSE(needed, "%s", needed ? "light that was reflected twice" : "there is no second bounce");
+}
+
+static bool needsSecondClusters(const vplPlan* p, char* why)
+{
+    if (!p->showsVirtual || !vplSsvpHasSecondBounce(p)) {
+        return BECAUSE(false, "there is no second bounce");
+    }
+    return BECAUSE(vplSsvpSees(p), "%s",
+                   vplSsvpSees(p) ? "second-bounce lights of a cluster share what it sees"
+                                  : "lights do not see by clusters");
+}
+
+static bool needsVirtualLights(const vplPlan* p, char* why)
+{
+    return BECAUSE(p->showsVirtual, "%s",
+                   p->showsVirtual ? "the lights that shading adds up"
+                                   : "the picture shows no virtual lights");
+}
+
+static bool needsPatches(const vplPlan* p, char* why)
+{
+    return BECAUSE(p->showsPatches, "%s",
+                   p->showsPatches ? "surfaces exchange light as patches"
+                                   : "the picture shows no light of patches");
+}
+
+static bool needsFormFactors(const vplPlan* p, char* why)
+{
+    const bool needed = VPL_SHOWS[p->options.output.show].patches >= VPL_PATCH_FACTORS;
+    return BECAUSE(needed, "%s",
+                   !needed     ? "the picture shows no exchange of light"
+                   : p->linked ? "groups of patches exchange light by links"
+                               : "shares of light between all pairs of sides");
+}
+
+static bool needsPatchLight(const vplPlan* p, char* why)
+{
+    const bool needed = VPL_SHOWS[p->options.output.show].patches == VPL_PATCH_LIGHT;
+    return BECAUSE(needed, "%s",
+                   needed ? "light from emitters to sides and between them"
+                          : "the picture shows no light of patches");
+}
+
+static bool needsVertexLight(const vplPlan* p, char* why)
+{
+    const vplShow show = p->options.output.show;
+    const bool lit = show == VPL_SHOW_PICTURE || show == VPL_SHOW_INDIRECT;
+    const bool smooth = p->options.radiosity.interpolation == VPL_INTERPOLATION_GOURAUD;
+    return BECAUSE(lit && smooth, "%s",
+                   lit && smooth ? "light is interpolated between the vertices of patches"
+                                 : "light of patches is shown as it is");
+}
+
+static bool needsPicture(const vplPlan* p, char* why)
+{
+    return BECAUSE(true, "%dx%d pixels, %d sample%s each", p->options.output.width, p->options.output.height,
+                   p->options.output.antialias, p->options.output.antialias > 1 ? "s" : "");
+}
+
+static bool needsPaths(const vplPlan* p, char* why)
+{
+    return BECAUSE(true, "%d paths for each of %dx%d pixels", p->options.path.samples,
+                   p->options.output.width, p->options.output.height);
+}
+
+// ---- the table
+
+#define IN(stage) (1u << VPL_STAGE_##stage)
+#define SSVP_KEY  "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
+#define MAP_KEY   "paraboloid hemispheres cluster-place SEES show max-bounces second-bounce coherence SHIFT"
+#define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"
+
+// clang-format off
+const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
+    [VPL_STAGE_GEOMETRY] = {
+        "geometry", 0.02, 0, "SCENE",
+        needsGeometry, vplMakeGeometry, vplDestroyGeometry, .report = vplReportGeometry},
+    [VPL_STAGE_NEAR_DISTANCE] = {
+        "clamp distance", 0.03, IN(GEOMETRY), "VIEW",
+        needsNearDistance, vplMakeNearDistance, vplDestroyNearDistance},
+    [VPL_STAGE_EMITTER_MAPS] = {
+        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS BIAS shadow-map bias bias-slope pcf pcf-offset size antialias",
+        needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps},
+    [VPL_STAGE_AREA_LIGHTS] = {
+        "area lights", 0.15, IN(GEOMETRY), "area-light-samples",
+        needsAreaLights, vplMakeAreaLights, vplDestroyAreaLights},
+    [VPL_STAGE_REFLECTIVE_MAPS] = {
+        "reflective map", 0.05, IN(GEOMETRY), "EMITTERS rsm-size",
+        needsReflectiveMaps, vplMakeReflectiveMaps, vplDestroyReflectiveMaps},
+    [VPL_STAGE_PARTICLES] = {
+        "particles", 0.1, IN(GEOMETRY) | IN(REFLECTIVE_MAPS) | IN(NEAR_DISTANCE),
+        "method lighting particles reflectivity sampler bounce particle-geometry seed EMITTERS PASS PLACEMENT",
+        needsParticles, vplMakeParticles, vplDestroyLightSet, .report = vplReportParticles},
+    [VPL_STAGE_FIRST_BOUNCE] = {
+        "first bounce", 0.06, IN(GEOMETRY) | IN(REFLECTIVE_MAPS), "first-bounce oversampling coherence EMITTERS SHIFT",
+        needsFirstBounce, vplMakeFirstBounce, vplDestroyBounce, .continues = true},
+    [VPL_STAGE_CLUSTERS] = {
+        "clusters", 0.07, IN(GEOMETRY) | IN(FIRST_BOUNCE), SSVP_KEY,
+        needsClusters, vplMakeClusters, vplDestroyClusters, .continues = true},
+    [VPL_STAGE_PARABOLOIDS] = {
+        "paraboloid", 0.12, IN(GEOMETRY) | IN(FIRST_BOUNCE) | IN(CLUSTERS), MAP_KEY,
+        needsParaboloids, vplMakeParaboloids, vplDestroyParaboloids, .continues = true},
+    [VPL_STAGE_SECOND_BOUNCE] = {
+        "second bounce", 0.13, IN(GEOMETRY) | IN(CLUSTERS) | IN(PARABOLOIDS), "second-bounce second-weight SHIFT",
+        needsSecondBounce, vplMakeSecondBounce, vplDestroyBounce, .continues = true},
+    [VPL_STAGE_SECOND_CLUSTERS] = {
+        "second clusters", 0.14, IN(GEOMETRY) | IN(SECOND_BOUNCE), SSVP_KEY,
+        needsSecondClusters, vplMakeSecondClusters, vplDestroyClusters, .continues = true},
+    [VPL_STAGE_SECOND_PARABOLOIDS] = {
+        "second paraboloid", 0.19, IN(GEOMETRY) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS), MAP_KEY,
+        needsSecondClusters, vplMakeSecondParaboloids, vplDestroyParaboloids, .continues = true},
+    [VPL_STAGE_CLUSTERED_LIGHTS] = {
+        "list", 0.2, IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) |
+            IN(SECOND_PARABOLOIDS), "SEES",
+        needsFirstBounce, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
+    [VPL_STAGE_VIRTUAL_LIGHTS] = {
+        "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),
+        "method lighting show show-index compensation min-distance PASS",
+        needsVirtualLights, vplMakeVirtualLights, vplDestroyVirtualLights, .report = vplReportVirtualLights},
+    [VPL_STAGE_PATCHES] = {
+        "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement ADAPTIVE",
+        needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
+    [VPL_STAGE_SIDES] = {
+        "reachable sides", 0.1, IN(GEOMETRY) | IN(PATCHES), "form-factors camera seed",
+        needsPatches, vplMakeSides, vplDestroySides, .report = vplReportSides},
+    [VPL_STAGE_PATCH_MESH] = {
+        "patch mesh", 0.11, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "",
+        needsPatches, vplMakePatchMesh, vplDestroyPatchMesh},
+    [VPL_STAGE_FORM_FACTORS] = {
+        "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
+        needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
+    [VPL_STAGE_PATCH_LIGHT] = {
+        "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed EMITTERS",
+        needsPatchLight, vplMakePatchLight, vplDestroyPatchLight},
+    [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
+        "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
+        needsPatchLight, vplMakeSolution, vplDestroySolution, .report = vplReportSolution, .continues = true},
+    [VPL_STAGE_VERTEX_LIGHT] = {
+        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
+        needsVertexLight, vplMakeVertexLight, vplDestroyVertexLight},
+    [VPL_STAGE_PICTURE] = { // its result is taken away each time
+        "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
+            IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(SOLUTION) | IN(VERTEX_LIGHT), "ALWAYS",
+        needsPicture, vplMakePicture, vplDestroyImage},
+    [VPL_STAGE_PATHS] = {
+        "paths", 1, IN(GEOMETRY), "ALWAYS",
+        needsPaths, vplMakePaths, vplDestroyPaths, .continues = true},
+};
+// clang-format on

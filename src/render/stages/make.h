@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// What the table of stages refers to.
+#ifndef VPL_RENDER_STAGES_MAKE_H
+#define VPL_RENDER_STAGES_MAKE_H
+
+#include "render/stage.h"
+
+typedef vplResult vplMakeFcn(const vplRun* run, void** resultOut);
+typedef void vplDestroyFcn(void* result); // NULL is allowed
+typedef void vplReportFcn(const vplRun* run);
+
+vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeAreaLights, vplMakeReflectiveMaps,
+    vplMakeParticles, vplMakeFirstBounce, vplMakeClusters, vplMakeParaboloids, vplMakeSecondBounce,
+    vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeClusteredLights, vplMakeVirtualLights,
+    vplMakePatches, vplMakeSides, vplMakePatchMesh, vplMakeFormFactors, vplMakePatchLight, vplMakeSolution,
+    vplMakeVertexLight, vplMakePicture, vplMakePaths;
+
+vplDestroyFcn vplDestroyGeometry, vplDestroyNearDistance, vplDestroyEmitterMaps, vplDestroyAreaLights,
+    vplDestroyReflectiveMaps, vplDestroyLightSet, vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids,
+    vplDestroyClusteredLights, vplDestroyVirtualLights, vplDestroyPatches, vplDestroySides,
+    vplDestroyPatchMesh, vplDestroyFormFactors, vplDestroyPatchLight, vplDestroySolution,
+    vplDestroyVertexLight, vplDestroyImage, vplDestroyPaths;
+
+vplReportFcn vplReportGeometry, vplReportParticles, vplReportClusteredLights, vplReportVirtualLights,
+    vplReportPatches, vplReportSides, vplReportFormFactors, vplReportSolution;
+
+// Adds a set of lights to the statistics.
+void vplReportLights(const vplLightSet* set, vplRenderStats* stats);
+
+// Passes of a path-traced picture, and the mean of those so far.
+int vplCountPathPasses(const vplPlan* plan);
+vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
+
+// Writes patches with all their light as a mesh; `scale` turns radiosity into what is shown.
+vplResult vplWritePatchMesh(const vplRun* run, vplArena* scratch, float scale, const char* path);
+
+#endif

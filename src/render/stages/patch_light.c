@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// Light of patches: what emitters give to them, and what they then exchange.
+#include "base/rng.h"
+#include "geometry/triangle.h"
+#include "radiosity/side.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { PATCH_LIGHT_STREAM = 0x706c6974, CHUNK_SIDES = 4096 };
+
+// ---- emitters' light
+
+// Sides of one chunk, the points where their light is found, and what these receive.
+typedef struct Chunk {
+    vplSurfacePoint* points;
+    vplRgb* irradiance;
+    vplPatchLight* light; // of all sides
+    int firstPoint[CHUNK_SIDES + 1];
+} Chunk;
+
+// Points of `samples` open cells, spread evenly over their numbers; a single one is the incentre where it can be reached.
+static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint* points)
+{
+    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
+    const vplPatchSide* p = &sides->sides[side];
+    const int triangle = vplPatches_TriangleOf(run->results[VPL_STAGE_PATCHES], p->patch);
+    const int open = __builtin_popcount(p->open), count = open < samples ? open : samples;
+    for (int i = 0; i < count; i++) {
+        const int k = vplPatchSide_OpenCell(p, (2 * i + 1) * open / (2 * count));
+        const vplRandom4 r = vplRandomAt(run->plan->options.seed, PATCH_LIGHT_STREAM,
+                                         (uint64_t)side * VPL_PATCH_CELLS + (uint64_t)k);
+        points[i] = (vplSurfacePoint){
+            vplPatchSide_SampleCell(p, k, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1])), p->normal, triangle};
+    }
+    if (samples == 1 && open == VPL_PATCH_CELLS) {
+        points[0].position = p->incentre;
+    }
+    return count;
+}
+
+static void sumSide(const Chunk* chunk, int i, vplRgb* meanOut, float* spreadOut)
+{
+    const int first = chunk->firstPoint[i], count = chunk->firstPoint[i + 1] - first;
+    double sum[3] = {0, 0, 0}, squares = 0;
+    for (int k = 0; k < count; k++) {
+        const vplRgb e = chunk->irradiance[first + k];
+        const double mean = ((double)e.r + e.g + e.b) / 3;
+        sum[0] += (double)e.r;
+        sum[1] += (double)e.g;
+        sum[2] += (double)e.b;
+        squares += mean * mean;
+    }
+    const double mean = (sum[0] + sum[1] + sum[2]) / (3 * count), variance = squares / count - mean * mean;
+    *meanOut = (vplRgb){(float)(sum[0] / count), (float)(sum[1] / count), (float)(sum[2] / count)};
+    *spreadOut = variance > 0 ? (float)sqrt(variance) : 0;
+}
+
+static vplResult lightChunk(const vplRun* run, const vplShadeDef* def, int first, int count, Chunk* chunk)
+{
+    vplPatchLight* light = chunk->light;
+    chunk->firstPoint[0] = 0;
+    for (int i = 0; i < count; i++) {
+        const int at = chunk->firstPoint[i];
+        chunk->firstPoint[i + 1] =
+            at + placePoints(run, first + i, run->plan->options.radiosity.lightSamples, chunk->points + at);
+    }
+    TRY(vplShadePoints(run->results[VPL_STAGE_GEOMETRY], def, chunk->points, chunk->firstPoint[count],
+                       chunk->irradiance, &run->stats->rays));
+    for (int i = 0; i < count; i++) {
+        sumSide(chunk, i, &light->direct[first + i], &light->spread[first + i]);
+    }
+    return VPL_SUCCESS;
+}
+
+// Shadows come by rays, since there are fewer patches than texels.
+static vplResult lightSides(const vplRun* run, int sideCount, vplArena* scratch, vplPatchLight* light)
+{
+    const int room = sideCount < CHUNK_SIDES ? sideCount : CHUNK_SIDES;
+    const size_t points = (size_t)room * (size_t)run->plan->options.radiosity.lightSamples;
+    const int emitterCount = run->plan->emitterCount;
+    vplShadow* shadows = vplArena_AllocZero(scratch, (size_t)emitterCount, sizeof *shadows);
+    Chunk* chunk = vplArena_AllocZero(scratch, 1, sizeof *chunk);
+    vplSurfacePoint* places = vplArena_Alloc(scratch, points, sizeof *places);
+    vplRgb* irradiance = vplArena_Alloc(scratch, points, sizeof *irradiance);
+    TRY(vplArena_Check(scratch));
+    *chunk = (Chunk){.points = places, .irradiance = irradiance, .light = light};
+    const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
+                             .emitters = run->plan->emitters,
+                             .shadows = shadows,
+                             .emitterCount = emitterCount};
+    for (int first = 0; first < sideCount; first += CHUNK_SIDES) {
+        const int left = sideCount - first;
+        TRY(lightChunk(run, &def, first, left < CHUNK_SIDES ? left : CHUNK_SIDES, chunk));
+    }
+    return VPL_SUCCESS;
+}
+
+static void findSource(const vplPatchSides* sides, vplPatchLight* light)
+{
+    for (int i = 0; i < sides->count; i++) {
+        const vplPatchSide* p = &sides->sides[i];
+        const vplRgb d = light->direct[i];
+        light->source[i] =
+            (vplRgb){p->emission.r + p->reflectance.r * d.r, p->emission.g + p->reflectance.g * d.g,
+                     p->emission.b + p->reflectance.b * d.b};
+    }
+}
+
+vplResult vplMakePatchLight(const vplRun* run, void** resultOut)
+{
+    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
+    const size_t count = (size_t)sides->count;
+    vplArena* arena = vplArena_Create(run->context);
+    vplPatchLight* light = vplArena_Alloc(arena, 1, sizeof *light);
+    vplRgb* direct = vplArena_AllocZero(arena, count, sizeof *direct);
+    float* spread = vplArena_AllocZero(arena, count, sizeof *spread);
+    vplRgb* source = vplArena_AllocZero(arena, count, sizeof *source);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        vplArena* scratch = vplArena_Create(run->context);
+        *light = (vplPatchLight){direct, spread, source, arena};
+        result = lightSides(run, sides->count, scratch, light);
+        vplArena_Destroy(scratch);
+    }
+    if (result == VPL_SUCCESS) {
+        findSource(sides, light);
+    }
+    return vplArena_Deliver(arena, result, light, resultOut);
+}
+
+void vplDestroyPatchLight(void* result)
+{
+    vplPatchLight* light = result;
+    vplArena_Destroy(light != NULL ? light->arena : NULL);
+}
+
+// ---- exchange
+
+void vplFindReflected(const vplPatchSides* sides, const vplRgb* radiosity, vplRgb* reflectedOut)
+{
+    for (int i = 0; i < sides->count; i++) {
+        const vplRgb b = radiosity[i], e = sides->sides[i].emission;
+        reflectedOut[i] = (vplRgb){b.r - e.r, b.g - e.g, b.b - e.b};
+    }
+}
+
+vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOut)
+{
+    const vplTransport transport = vplTransportOf(run);
+    const vplPatchLight* light = run->results[VPL_STAGE_PATCH_LIGHT];
+    TRY(vplGatherRadiosity(&transport, sent, irradianceOut));
+    for (int i = 0; i < transport.sides->count; i++) {
+        const vplRgb e = irradianceOut[i], d = light->direct[i];
+        irradianceOut[i] = (vplRgb){e.r + d.r, e.g + d.g, e.b + d.b};
+    }
+    return VPL_SUCCESS;
+}
+
+// Solutions of drafts are loose, which saves a fifth of the time; with 0.01 patches are placed less well.
+static const double DRAFT_RESIDUAL = 0.003;
+
+// How fast light dies away is asked once: it depends on form factors alone, which are kept.
+static vplResult solve(const vplRun* run, bool first, vplSolution* s)
+{
+    const vplRadiosityOptions* o = &run->plan->options.radiosity;
+    const vplTransport transport = vplTransportOf(run);
+    const vplPatchLight* light = run->results[VPL_STAGE_PATCH_LIGHT];
+    const vplSolveStats last = s->stats;
+    vplSolveDef def = vplDefaultSolveDef();
+    def.solver = transport.links != NULL ? VPL_SOLVER_JACOBI : o->solver;
+    def.iterations = o->iterations;
+    def.residual = run->draft ? fmax(o->residual, DRAFT_RESIDUAL) : o->residual;
+    def.spectrum = first && !run->draft;
+    def.relaxes = run->plan->options.sequence.history != NULL || run->draft;
+    def.progress = vplRun_Progress(run);
+    def.progressUser = vplRun_ProgressUser(run);
+    TRY(vplSolveRadiosity(&transport, &def, light->source, s->radiosity, &s->stats));
+    if (!first) {
+        s->stats.spectralRadius = last.spectralRadius;
+        s->stats.rowSumMin = last.rowSumMin;
+        s->stats.rowSumMean = last.rowSumMean;
+        s->stats.rowSumMax = last.rowSumMax;
+    }
+    return VPL_SUCCESS;
+}
+
+// What was reflected at least once arrives here; light of area lights themselves is direct.
+static vplResult gather(const vplRun* run, vplSolution* s)
+{
+    const vplTransport transport = vplTransportOf(run);
+    vplRgb* reflected = vplAlloc(run->context, (size_t)transport.sides->count, sizeof *reflected);
+    if (reflected == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    vplFindReflected(transport.sides, s->radiosity, reflected);
+    const vplResult result = vplGatherRadiosity(&transport, reflected, s->irradiance);
+    vplFree(run->context, reflected);
+    return result;
+}
+
+// The document's "slight lag": the sweeps of a frame begin with the radiosities of the frame before, as long as form
+// factors are the same.
+vplResult vplMakeSolution(const vplRun* run, void** resultOut)
+{
+    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
+    const vplPatchLight* light = run->results[VPL_STAGE_PATCH_LIGHT];
+    const size_t count = (size_t)sides->count;
+    const uint32_t build = run->builds[VPL_STAGE_FORM_FACTORS];
+    vplSolution* s = run->before;
+    const bool first = s == NULL || s->factorBuild != build;
+    if (first) {
+        vplArena* arena = vplArena_Create(run->context);
+        s = vplArena_AllocZero(arena, 1, sizeof *s);
+        vplRgb* radiosity = vplArena_AllocZero(arena, count, sizeof *radiosity);
+        vplRgb* irradiance = vplArena_AllocZero(arena, count, sizeof *irradiance);
+        if (vplArena_Check(arena) != VPL_SUCCESS) {
+            vplArena_Destroy(arena);
+            return VPL_OUT_OF_MEMORY;
+        }
+        *s = (vplSolution){
+            .radiosity = radiosity, .irradiance = irradiance, .factorBuild = build, .arena = arena};
+    }
+    *resultOut = s;
+    if (first || run->plan->options.sequence.coherence == VPL_COHERENCE_OFF) {
+        memcpy(s->radiosity, light->source, count * sizeof *s->radiosity);
+    }
+    TRY(solve(run, first, s));
+    return gather(run, s);
+}
+
+void vplDestroySolution(void* result)
+{
+    vplSolution* s = result;
+    vplArena_Destroy(s != NULL ? s->arena : NULL);
+}
+
+void vplReportSolution(const vplRun* run)
+{
+    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    run->stats->solve = s->stats;
+}
+
+// ---- at vertices
+
+vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
+{
+    const vplRadiosityOptions* o = &run->plan->options.radiosity;
+    const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
+    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    vplArena* arena = vplArena_Create(run->context);
+    vplVertexLight* light = vplArena_Alloc(arena, 1, sizeof *light);
+    vplRgb* corners = vplArena_Alloc(arena, 2 * (size_t)mesh->vertexCount, sizeof *corners);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *light = (vplVertexLight){corners, arena};
+        result = vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners);
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
+    }
+    return vplArena_Deliver(arena, result, light, resultOut);
+}
+
+void vplDestroyVertexLight(void* result)
+{
+    vplVertexLight* light = result;
+    vplArena_Destroy(light != NULL ? light->arena : NULL);
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Patches on pictures: smooth indirect light, or a stage to look at; and as a mesh for other tools.
+#include "math/scalar.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+
+#include <math.h>
+
+// What --show form-factor-sums and residual show of a side; values are zero before.
+static vplResult findSums(const vplRun* run, vplRgb* values)
+{
+    const vplTransport transport = vplTransportOf(run);
+    for (int i = 0; i < transport.sides->count; i++) {
+        const float sum = transport.factors != NULL ? transport.factors->rowSums[i] : 1;
+        values[i] = (vplRgb){sum, sum, sum};
+    }
+    return transport.factors != NULL ? VPL_SUCCESS : vplGatherRadiosity(&transport, values, values);
+}
+
+static vplResult findResidual(const vplRun* run, vplRgb* values)
+{
+    const vplTransport transport = vplTransportOf(run);
+    const vplPatchLight* light = run->results[VPL_STAGE_PATCH_LIGHT];
+    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    const float scale = (float)(1 / VPL_PI);
+    TRY(vplRadiosityResidual(&transport, light->source, s->radiosity, values));
+    for (int i = 0; i < transport.sides->count; i++) {
+        values[i] =
+            (vplRgb){scale * fabsf(values[i].r), scale * fabsf(values[i].g), scale * fabsf(values[i].b)};
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult findValues(const vplRun* run, vplRgb* values)
+{
+    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
+    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    const vplShow show = run->plan->options.output.show;
+    const float scale = (float)(1 / VPL_PI);
+    if (show == VPL_SHOW_FORM_FACTOR_SUMS) {
+        return findSums(run, values);
+    }
+    if (show == VPL_SHOW_RESIDUAL) {
+        return findResidual(run, values);
+    }
+    for (int i = 0; i < sides->count; i++) {
+        if (show == VPL_SHOW_PATCHES) {
+            values[i] = sides->sides[i].reflectance;
+        } else {
+            const vplRgb b = s->radiosity[i];
+            values[i] = (vplRgb){scale * b.r, scale * b.g, scale * b.b};
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult draw(const vplRun* run, const vplView* view, vplArena* scratch, vplImage* image)
+{
+    const vplRenderOptions* o = &run->plan->options;
+    const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
+    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
+    const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
+    const vplVertexLight* vertices = run->results[VPL_STAGE_VERTEX_LIGHT];
+    const bool light = o->output.show == VPL_SHOW_PICTURE || o->output.show == VPL_SHOW_INDIRECT;
+    const bool smooth = light && o->radiosity.interpolation == VPL_INTERPOLATION_GOURAUD;
+    float(*clip)[4] = vplArena_Alloc(scratch, (size_t)mesh->vertexCount, sizeof *clip);
+    vplRgb* values = vplArena_AllocZero(scratch, light ? 0 : (size_t)sides->count, sizeof *values);
+    TRY(vplArena_Check(scratch));
+    if (!light) {
+        TRY(findValues(run, values));
+    }
+    const vplPatchDraw def = {.mesh = mesh,
+                              .vertexValues = smooth ? vertices->corners : NULL,
+                              .values = light ? solution->irradiance : values,
+                              .reflect = light,
+                              .outlines = o->output.show == VPL_SHOW_PATCHES};
+    vplRasterStats stats = {0};
+    vplView_ToClip(view, mesh->positions, mesh->vertexCount, clip);
+    const vplResult result = vplDrawPatches(&def, (const float(*)[4])clip, NULL, NULL, image, &stats);
+    vplRun_AddRaster(run, &stats);
+    return result;
+}
+
+vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* image)
+{
+    vplArena* scratch = vplArena_Create(run->context);
+    const vplResult result = draw(run, view, scratch, image);
+    vplArena_Destroy(scratch);
+    return result;
+}
+
+// All light: direct light, too, is the mean of a patch here.
+vplResult vplWritePatchMesh(const vplRun* run, vplArena* scratch, float scale, const char* path)
+{
+    const vplRadiosityOptions* o = &run->plan->options.radiosity;
+    const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
+    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    vplRgb* all = vplArena_Alloc(scratch, (size_t)mesh->sides->count, sizeof *all);
+    vplRgb* vertices = vplArena_Alloc(scratch, 2 * (size_t)mesh->vertexCount, sizeof *vertices);
+    TRY(vplArena_Check(scratch));
+    TRY(vplReceive(run, s->radiosity, all));
+    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, all, vertices));
+    TRY(vplPatchMesh_Sharpen(mesh, o->vertexWeight, all, o->sharpen, vertices));
+    return vplPatchMesh_WritePly(mesh, vertices, scale, path);
+}

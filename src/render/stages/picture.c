@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+// The picture: direct light, virtual lights and patches, added up for every sample of every pixel.
+#include "base/clock.h"
+#include "math/sampling.h"
+#include "render/show.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+
+#include <math.h>
+#include <string.h>
+
+// ---- one view
+
+static vplResult shadeView(const vplRun* run, const vplView* view, const vplShadeDef* def, vplImage* image)
+{
+    const bool patches = run->plan->showsPatches && (run->parts & VPL_PART_DIRECT) != 0;
+    vplShadeStats stats = {0};
+    if (vplShowsPatchesAlone(run->plan->options.output.show)) {
+        memset(image->pixels, 0, vplValueCount(image) * sizeof *image->pixels);
+    } else {
+        TRY(vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, def, vplRun_Progress(run),
+                         vplRun_ProgressUser(run), image, &stats));
+    }
+    vplRun_AddRaster(run, &stats.raster);
+    run->stats->rays += stats.shadowRays;
+    run->stats->lightEvaluations += stats.lightEvaluations;
+    run->stats->cutPixels += stats.cutPixels;
+    if (stats.largestCut > run->stats->largestCut) {
+        run->stats->largestCut = stats.largestCut;
+    }
+    return patches ? vplDrawPatchView(run, view, image) : VPL_SUCCESS;
+}
+
+// Sample i of `count` of every pixel: Hammersley points, so that edges along the axes, too, are cut at as many places as
+// there are samples.
+static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i, int count, vplImage* image)
+{
+    vplShadeDef def = *plain;
+    vplCompensationDef compensation;
+    if (def.compensation != NULL) { // short rays of all samples and passes are one sequence
+        compensation = *def.compensation;
+        compensation.firstRay = (uint32_t)(run->pass * count + i) * (uint32_t)compensation.rayCount;
+        def.compensation = &compensation;
+    }
+    const double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
+    const vplView view = vplView_At(&run->plan->view, (i + 0.5) / count, y - floor(y));
+    return shadeView(run, &view, &def, image);
+}
+
+static vplResult shadeSamples(const vplRun* run, const vplShadeDef* def, double* sums, vplImage* image)
+{
+    const int count = run->plan->options.output.antialias;
+    const size_t values = vplValueCount(image);
+    if (count == 1) {
+        return shadeSample(run, def, 0, 1, image);
+    }
+    for (int i = 0; i < count; i++) {
+        vplRun_BeginPart(run, i, count);
+        TRY(shadeSample(run, def, i, count, image));
+        for (size_t k = 0; k < values; k++) {
+            sums[k] += (double)image->pixels[k];
+        }
+    }
+    for (size_t k = 0; k < values; k++) {
+        image->pixels[k] = (float)(sums[k] / count);
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- what it shades with
+
+static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* def)
+{
+    const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
+    def->emitters = run->plan->emitters;
+    def->shadows = shadows;
+    def->emitterCount = run->plan->emitterCount;
+    def->emission = true;
+    if (area != NULL) {
+        def->areaLights = area->lights;
+        def->areaLightCount = area->count;
+        def->areaLightMinDistance = area->minDistance;
+    }
+}
+
+// Virtual lights v->first + first .. + count - 1.
+static void addVirtual(const vplRun* run, const vplVirtualLights* v, const vplHemiMaps* maps, int first,
+                       int count, vplShadeDef* def)
+{
+    const vplClusteredLights* clustered = run->results[VPL_STAGE_CLUSTERED_LIGHTS];
+    def->lights = v->lights + v->first + first;
+    def->lightCount = count;
+    def->lightShadows = maps != NULL ? maps->maps : NULL;
+    def->lightRays = run->plan->options.lights.shadows == VPL_LIGHT_SHADOWS_RAY;
+    if (v->clusters != NULL) {
+        def->lightClusters = v->clusters + first;
+        def->clusterShadows = clustered->shadows;
+        def->clusterCount = clustered->shadowCount;
+    }
+}
+
+static vplShadeDef describe(const vplRun* run)
+{
+    const vplRenderOptions* o = &run->plan->options;
+    const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
+    const vplReflectiveMaps* maps = run->results[VPL_STAGE_REFLECTIVE_MAPS];
+    const bool mapped = maps != NULL && o->method == VPL_METHOD_SSVP && !run->plan->emitterRays;
+    return (vplShadeDef){.lighting = run->plan->shading,
+                         .accumulation = o->pipeline.kind,
+                         .output = VPL_SHOWS[o->output.show].output,
+                         .batch = o->pipeline.batch,
+                         .interleave = o->pipeline.interleave,
+                         .cutError = o->pipeline.cutError,
+                         .minDistance = v != NULL ? v->minDistance : 0,
+                         .particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles.count,
+                         .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL};
+}
+
+// What a call of the stage holds besides its picture.
+typedef struct Shading {
+    vplArena* arena;
+    const vplShadow* shadows; // of emitters
+    double* sums;             // of samples; NULL for one
+    vplHemiMaps* lightMaps;   // of a batch of virtual lights; NULL if they have none
+} Shading;
+
+static vplResult shade(const vplRun* run, const Shading* s, int parts, int first, int count, vplImage* image)
+{
+    const vplPlan* plan = run->plan;
+    const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
+    vplShadeDef def = describe(run);
+    vplCompensationDef compensation;
+    if ((parts & VPL_PART_DIRECT) != 0 && plan->showsDirect) {
+        addDirect(run, s->shadows, &def);
+    }
+    if (count > 0) {
+        addVirtual(run, v, s->lightMaps, first, count, &def);
+    }
+    // Of all lights at once, whatever batch is shown.
+    const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
+    if (near) {
+        compensation = vplMakeCompensation(run, v, s->shadows);
+        def.compensation = plan->compensates ? &compensation : NULL;
+    }
+    if (s->sums != NULL) {
+        memset(s->sums, 0, vplValueCount(image) * sizeof *s->sums);
+    }
+    TRY(shadeSamples(run, &def, s->sums, image));
+    return near && plan->estimatesLoss ? vplEstimateLoss(run, v, &def, compensation) : VPL_SUCCESS;
+}
+
+// ---- virtual lights with maps
+
+static vplResult drawLightMaps(const vplRun* run, Shading* s, int first, int count)
+{
+    const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
+    const double start = vplClockMs();
+    vplHemiMapPlace* places = vplAlloc(run->context, (size_t)count, sizeof *places);
+    vplResult result = places != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    for (int i = 0; i < count && places != NULL; i++) {
+        const vplShadeLight* l = &v->lights[v->first + first + i];
+        places[i] = (vplHemiMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+    }
+    if (result == VPL_SUCCESS) {
+        result = vplHemiMaps_Draw(s->lightMaps, run->results[VPL_STAGE_GEOMETRY], places, count,
+                                  vplRun_Progress(run), vplRun_ProgressUser(run));
+    }
+    vplFree(run->context, places);
+    vplRun_AddTime(run, "light shadow maps", start);
+    return result;
+}
+
+// As many lights have maps at the same time as fit into memory; each such batch is added to the picture.
+static vplResult shadeBatches(const vplRun* run, Shading* s, int total, vplImage* image)
+{
+    const size_t values = vplValueCount(image);
+    const size_t room =
+        (size_t)VPL_LIGHT_MAP_BYTES / vplHemiMaps_BytesPerMap(run->plan->options.lights.mapSize);
+    const int batch = room >= (size_t)total ? total : room > 0 ? (int)room : 1;
+    float* sum = vplArena_Alloc(s->arena, batch < total ? values : 0, sizeof *sum);
+    TRY(vplArena_Check(s->arena));
+    TRY(vplHemiMaps_Create(run->context, run->plan->options.lights.mapSize, batch, &s->lightMaps));
+    for (int first = 0; first < total; first += batch) {
+        const int count = total - first < batch ? total - first : batch;
+        TRY(drawLightMaps(run, s, first, count));
+        TRY(shade(run, s, first == 0 ? run->parts : VPL_PART_INDIRECT, first, count, image));
+        for (size_t k = 0; k < values && batch < total; k++) {
+            sum[k] = first == 0 ? image->pixels[k] : image->pixels[k] + sum[k];
+            image->pixels[k] = sum[k];
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- the stage
+
+static vplResult shadePicture(const vplRun* run, Shading* s, vplImage* image)
+{
+    const vplPlan* plan = run->plan;
+    const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
+    const vplEmitterMaps* maps = run->results[VPL_STAGE_EMITTER_MAPS];
+    const bool many = plan->options.output.antialias > 1;
+    const int lights = v != NULL && (run->parts & VPL_PART_INDIRECT) != 0 ? v->count - v->first : 0;
+    s->shadows = maps != NULL ? maps->shadows
+                              : vplArena_AllocZero(s->arena, (size_t)plan->emitterCount, sizeof(vplShadow));
+    s->sums = many ? vplArena_Alloc(s->arena, vplValueCount(image), sizeof *s->sums) : NULL;
+    TRY(vplArena_Check(s->arena));
+    return lights > 0 && plan->options.lights.shadows == VPL_LIGHT_SHADOWS_MAP
+               ? shadeBatches(run, s, lights, image)
+               : shade(run, s, run->parts, 0, lights, image);
+}
+
+vplResult vplMakePicture(const vplRun* run, void** resultOut)
+{
+    const vplOutputOptions* o = &run->plan->options.output;
+    const vplShowRow* show = &VPL_SHOWS[o->show];
+    vplImage* image = NULL;
+    if (show->draw != NULL) {
+        TRY(show->draw(run, &image));
+        *resultOut = image;
+        return VPL_SUCCESS;
+    }
+    TRY(vplImage_Create(run->context, o->width, o->height, &image));
+    *resultOut = image;
+    Shading shading = {.arena = vplArena_Create(run->context)};
+    const vplResult result = shading.arena != NULL ? shadePicture(run, &shading, image) : VPL_OUT_OF_MEMORY;
+    vplHemiMaps_Destroy(shading.lightMaps);
+    vplArena_Destroy(shading.arena);
+    return result;
+}
+
+void vplDestroyImage(void* result)
+{
+    vplImage_Destroy(result);
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// Lights of SSVP: samples of reflective shadow maps whose light stays in the scene, and samples of what clusters see.
+#include "base/rng.h"
+#include "lights/light_set.h"
+#include "math/vec.h"
+#include "render/stages/make.h"
+#include "render/stages/ssvp.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SHIFT_STREAM = 0x80000004u };
+
+uint64_t vplSsvpShift(const vplRun* run)
+{
+    const vplRenderOptions* o = &run->plan->options;
+    double frame = o->sequence.coherence == VPL_COHERENCE_OFF ? o->sequence.frame : 0;
+    uint64_t bits = 0;
+    frame = frame == 0 ? 0 : frame; // and not -0
+    memcpy(&bits, &frame, sizeof bits);
+    if (o->seed == 0 && run->pass == 0 && bits == 0) {
+        return 0;
+    }
+    const vplRandom4 r = vplRandomAt(o->seed, SHIFT_STREAM, bits ^ (uint64_t)run->pass * 0x9e3779b97f4a7c15u);
+    return ((uint64_t)r.v[0] << 32 | r.v[1]) | 1;
+}
+
+// ---- of what use lights are
+
+// Rays per light: weights change by sixteenths.
+enum { USE_RAYS = 16 };
+
+vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, vplArena* arena, float** useOut)
+{
+    *useOut = vplArena_Alloc(arena, (size_t)set->lightCount, sizeof **useOut);
+    TRY(vplArena_Check(arena));
+    TRY(vplMeasureUse(run->results[VPL_STAGE_GEOMETRY], set, USE_RAYS, *useOut));
+    run->stats->rays += USE_RAYS * (int64_t)set->lightCount;
+    return VPL_SUCCESS;
+}
+
+// The use of a light that moves a little changes by a ray or two of sixteen. If weights followed at once, the picture
+// would flicker: they follow within some frames.
+static const float FOLLOW = 0.1f;
+
+// Samples of the frame or pass before, if they are the same.
+static const vplBounceLights* lastOf(const vplRun* run, uint64_t shift)
+{
+    const vplBounceLights* last = run->before;
+    const bool follows = run->plan->options.sequence.coherence == VPL_COHERENCE_ON;
+    return follows && last != NULL && last->shift == shift ? last : NULL;
+}
+
+// Moves the use of each sample from its last value towards the measured one, and keeps it for the next frame.
+static vplResult followUse(const vplBounceLights* last, const vplLightSet* set, int count, float* use,
+                           vplBounceLights* b)
+{
+    const bool follows = last != NULL && last->use != NULL && last->sampleCount == count;
+    b->sampleCount = count;
+    b->use = vplArena_Alloc(b->arena, (size_t)count, sizeof *b->use);
+    TRY(vplArena_Check(b->arena));
+    for (int i = 0; i < count; i++) {
+        b->use[i] = follows ? last->use[i] : -1;
+    }
+    for (int i = 0; i < set->lightCount; i++) {
+        float* known = &b->use[set->lights[i].particle];
+        use[i] = *known >= 0 ? *known + FOLLOW * (use[i] - *known) : use[i];
+        *known = use[i];
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- the first bounce
+
+// How many of the first-bounce lights come from area lights: their share of the power.
+static vplResult countAreaLightSamples(const vplRun* run, int* countOut)
+{
+    vplEmission* emission;
+    TRY(vplEmission_Create(run->results[VPL_STAGE_GEOMETRY], run->plan->emitters, run->plan->emitterCount,
+                           &emission));
+    double area = 0;
+    for (int i = emission->firstTriangle; i < emission->sourceCount; i++) {
+        area += vplRgbMean(emission->sources[i].power);
+    }
+    const double all = vplEmission_Power(emission);
+    *countOut = all > 0 ? (int)rint(run->plan->options.ssvp.firstBounce * (area / all)) : 0;
+    vplEmission_Destroy(emission);
+    return VPL_SUCCESS;
+}
+
+static vplResult shootFromAreaLights(const vplRun* run, int count, uint64_t shift, vplLightSet** setOut)
+{
+    vplParticleDef def = vplDefaultParticleDef();
+    def.particleCount = count;
+    def.reflectivity = 0; // the first hits are all there is
+    def.sampler = VPL_SAMPLER_HALTON;
+    def.seed = shift;
+    return vplSimulateParticles(run->results[VPL_STAGE_GEOMETRY], NULL, 0, &def, setOut);
+}
+
+// As the document takes them.
+static vplResult sampleAll(const vplRun* run, int count, uint64_t shift, vplLightSet** setOut)
+{
+    const vplReflectiveMaps* maps = run->results[VPL_STAGE_REFLECTIVE_MAPS];
+    vplRsmSampleDef def = vplDefaultRsmSampleDef();
+    def.count = count;
+    def.shift = shift;
+    return vplSampleReflectiveMaps(run->results[VPL_STAGE_GEOMETRY],
+                                   (const vplReflectiveMap* const*)maps->maps, maps->count, &def, setOut);
+}
+
+// How many times as many samples as lights are taken: a power of two, and that of the last frame as long as it leaves half
+// to five quarters of the lights, since samples must not all move with every move of the light.
+static int oversample(const vplBounceLights* last, int most, int count, double kept)
+{
+    const int before = last != NULL && count > 0 ? last->sampleCount / count : 0;
+    int factor = 1;
+    if (before > 0 && before * count == last->sampleCount && before <= most &&
+        2 * before * kept >= count * 0.8 && before * kept <= 1.25 * count) {
+        return before;
+    }
+    while (kept > 0 && 2 * factor <= most && 2 * factor * kept <= count &&
+           (int64_t)2 * factor * count <= VPL_MAX_LIGHTS) {
+        factor *= 2;
+    }
+    return factor;
+}
+
+// So many samples, and of what use each is. The set is the caller's also on failure.
+static vplResult sampleAndMeasure(const vplRun* run, int count, vplBounceLights* b, vplArena* scratch,
+                                  vplLightSet** setOut, float** useOut)
+{
+    vplLightSet_Destroy(*setOut);
+    *setOut = NULL;
+    TRY(sampleAll(run, count, b->shift, setOut));
+    TRY(vplMeasureLightUse(run, *setOut, scratch, useOut));
+    return followUse(lastOf(run, b->shift), *setOut, count, *useOut, b);
+}
+
+static vplResult keepUseful(const vplRun* run, int count, vplBounceLights* b, vplArena* scratch,
+                            vplLightSet** all, vplLightSet** setOut)
+{
+    float* use;
+    TRY(sampleAndMeasure(run, count, b, scratch, all, &use));
+    const int factor = oversample(lastOf(run, b->shift), run->plan->options.ssvp.oversampling, count,
+                                  vplCountUseful(*all, use));
+    if (factor > 1) {
+        TRY(sampleAndMeasure(run, factor * count, b, scratch, all, &use));
+    }
+    return vplKeepUseful(*all, use, b->shift, setOut);
+}
+
+static vplResult sampleMaps(const vplRun* run, int count, vplBounceLights* b, vplLightSet** setOut)
+{
+    if (run->plan->options.ssvp.oversampling <= 1) {
+        return sampleAll(run, count, b->shift, setOut);
+    }
+    vplArena* scratch = vplArena_Create(run->context);
+    vplLightSet* all = NULL;
+    const vplResult result = keepUseful(run, count, b, scratch, &all, setOut);
+    vplLightSet_Destroy(all);
+    vplArena_Destroy(scratch);
+    return result;
+}
+
+static vplResult sampleFirst(const vplRun* run, vplBounceLights* b)
+{
+    int fromArea = 0;
+    vplLightSet *seen = NULL, *shot = NULL;
+    TRY(countAreaLightSamples(run, &fromArea));
+    TRY(sampleMaps(run, run->plan->options.ssvp.firstBounce - fromArea, b, &seen));
+    if (fromArea == 0) {
+        b->lights = seen;
+        return VPL_SUCCESS;
+    }
+    vplResult result = shootFromAreaLights(run, fromArea, b->shift, &shot);
+    if (result == VPL_SUCCESS) {
+        result = vplLightSet_Join(seen, shot, &b->lights);
+    }
+    vplLightSet_Destroy(seen);
+    vplLightSet_Destroy(shot);
+    return result;
+}
+
+static vplResult beginBounce(const vplRun* run, void** resultOut)
+{
+    vplArena* arena = vplArena_Create(run->context);
+    vplBounceLights* b = vplArena_AllocZero(arena, 1, sizeof *b);
+    if (b != NULL) {
+        b->arena = arena;
+        b->shift = vplSsvpShift(run);
+    }
+    return vplArena_Deliver(arena, vplArena_Check(arena), b, resultOut);
+}
+
+vplResult vplMakeFirstBounce(const vplRun* run, void** resultOut)
+{
+    TRY(beginBounce(run, resultOut));
+    return sampleFirst(run, *resultOut);
+}
+
+// ---- the second
+
+vplResult vplMakeSecondBounce(const vplRun* run, void** resultOut)
+{
+    const vplBounceClusters* clusters = run->results[VPL_STAGE_CLUSTERS];
+    const vplBounceMaps* maps = run->results[VPL_STAGE_PARABOLOIDS];
+    TRY(beginBounce(run, resultOut));
+    vplBounceLights* b = *resultOut;
+    vplSecondBounceDef def = vplDefaultSecondBounceDef();
+    def.count = run->plan->options.ssvp.secondBounce;
+    def.weight = run->plan->options.ssvp.secondWeight;
+    def.shift = b->shift;
+    return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], clusters->clusters, maps->maps, &def,
+                                   &b->lights);
+}
+
+void vplDestroyBounce(void* result)
+{
+    vplBounceLights* b = result;
+    if (b != NULL) {
+        vplLightSet_Destroy(b->lights);
+        vplArena_Destroy(b->arena);
+    }
+}
