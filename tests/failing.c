@@ -58,7 +58,7 @@ static void discard(Attempt* a)
     vplPatches_Destroy(a->finer);
     vplPatches_Destroy(a->patches);
     vplCubeMap_Destroy(a->cube);
-    vplHemiMaps_Destroy(a->hemiMaps);
+    closeMap(&a->map);
     vplParaboloidMaps_Destroy(a->paraboloids);
     vplReflectiveMap_Destroy(a->reflective);
     vplLightClusters_Destroy(a->nextClusters);

@@ -4,7 +4,7 @@
 #ifndef VPL_TESTS_FAILING_H
 #define VPL_TESTS_FAILING_H
 
-#include "shapes.h"
+#include "shadow_maps.h"
 
 #include "base/arena.h" // TRY
 
@@ -25,8 +25,8 @@ typedef struct Attempt {
     vplFormFactors* factors;
     vplReflectiveMap* reflective;
     vplParaboloidMaps* paraboloids;
-    vplHemiMaps* hemiMaps;
     vplCubeMap* cube;
+    ShadowMap map;
     Shape shape;
     void* blocks[4]; // of malloc
 } Attempt;

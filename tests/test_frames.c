@@ -342,7 +342,7 @@ TEST_ALONE(AHistoryOfAnotherSceneIsRefused)
     options.sequence.history = history;
     hashOf(scene, &options);
     const char* const sentence =
-        "vplRenderOptions.history is of another scene, or something was added to the scene since";
+        "vplRenderOptions.sequence.history is of another scene, or something was added to the scene since";
     refuseHistory(other, &options, sentence);
     refuseHistory(abroad, &options,
                   "vplRenderOptions.history was made with another context than the scene's");

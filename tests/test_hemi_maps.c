@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shadow maps of half spaces: what a texel holds, where they agree with rays, and what they do at extremes.
 #include "bench/band.h"
-#include "shapes.h"
+#include "shadow_maps.h"
 
 #include "base/hash.h"
 #include "base/rng.h"
@@ -15,17 +15,12 @@ static vplHemiMaps* drawMaps(const vplGeometry* g, int size, const vplHemiMapPla
     return maps;
 }
 
-static float factorAt(const vplHemiMap* map, vplVec3 p, vplVec3 n)
+static float factorOf(const vplHemiMap* map, vplVec3 p, vplVec3 n)
 {
     vplSurface s;
     float factor[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        s.px[l] = p.x;
-        s.py[l] = p.y;
-        s.pz[l] = p.z;
-        s.nx[l] = n.x;
-        s.ny[l] = n.y;
-        s.nz[l] = n.z;
+        setPoint(&s, l, p, n);
     }
     vplHemiMap_FactorBlock(map, &s, factor);
     return factor[0];
@@ -89,72 +84,6 @@ TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
     }
 }
 
-TEST(MapsAndRaysAgreeOutsideTheBand, 2)
-{
-    for (int which = 0; which < 2; which++) {
-        vplGeometry* g = clutter(context, which);
-        Dice dice = {11, 0};
-        int pairs = 0, dark = 0, apart = 0;
-        for (int light = 0; light < 60; light++) {
-            vplHit on, hit;
-            const vplHemiMapPlace place = rollPlace(g, &dice, &on);
-            const vplShadeLight shade = {place.position.x,
-                                         place.position.y,
-                                         place.position.z,
-                                         place.normal.x,
-                                         place.normal.y,
-                                         place.normal.z,
-                                         1,
-                                         1,
-                                         1};
-            vplHemiMaps* maps = drawMaps(g, 16 << light % 4, &place, 1);
-            const vplHemiMap* map = &maps->maps[0];
-            for (int i = 0; i < 300; i++) {
-                const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
-                const vplVec3 way = vplSub(map->position, at.position);
-                if (!(vplDot(way, at.normal) > 0 && vplDot(way, map->forward) < 0)) {
-                    assert_true(factorAt(map, at.position, at.normal) == 1); // light falls from nowhere
-                    continue;
-                }
-                const bool shadowed = isDark(g, &hit, &shade);
-                const bool differs = shadowed != (factorAt(map, at.position, at.normal) > 0);
-                pairs++;
-                dark += shadowed;
-                apart += differs;
-                if (differs && isSure(g, map, at.position, at.normal, shadowed)) {
-                    fail_msg("scene %d, light %d, point %d: the ray says %d", which, light, i, shadowed);
-                }
-            }
-            vplHemiMaps_Destroy(maps);
-        }
-        printf("# %d pairs, %d dark, %d within the band\n", pairs, dark, apart);
-        assert_true(dark > 500 && pairs > dark + 500);
-        assert_true(apart > 0 && apart < pairs / 20);
-        vplGeometry_Destroy(g);
-    }
-}
-
-// Also where light grazes it, and with one texel for all directions.
-TEST(APlaneNeverShadowsItself, 1)
-{
-    vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
-    Dice dice = {3, 0};
-    for (int i = 0; i < 2000; i++) {
-        const float high = 0.25f + 4 * powf(10, roll(&dice, -5, 0));
-        const vplHemiMapPlace place = {vplVec(3 + roll(&dice, -4, 4), high, -2 + roll(&dice, -4, 4)),
-                                       vplNormalize(vplAdd(vplVec(0, -1.01f, 0), rollUnit(&dice)))};
-        vplHemiMaps* maps = drawMaps(g, 1 + i % 33, &place, 1);
-        for (int k = 0; k < 20; k++) {
-            const vplVec3 p = vplVec(3 + roll(&dice, -4.9f, 4.9f), 0.25f, -2 + roll(&dice, -4.9f, 4.9f));
-            if (vplDot(vplSub(p, maps->maps[0].position), place.normal) > 0) {
-                assert_true(factorAt(&maps->maps[0], p, vplVec(0, 1, 0)) == 0);
-            }
-        }
-        vplHemiMaps_Destroy(maps);
-    }
-    vplGeometry_Destroy(g);
-}
-
 // Nothing in a convex room hides one wall from another: not the surface that a light lies on, nor those that meet it
 // in an edge or a corner, wherever the room is.
 TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
@@ -190,7 +119,7 @@ TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
                     (fabsf(local.x) > 1 - band) + (fabsf(local.y) > 1 - band) + (fabsf(local.z) > 1 - band);
                 if (vplDot(way, p.normal) > 1e-3f && vplDot(way, n) < -1e-3f) {
                     assert_false(isDark(g, &hit, &shade));
-                    assert_true(close > 1 || factorAt(&maps->maps[0], p.position, p.normal) == 0);
+                    assert_true(close > 1 || factorOf(&maps->maps[0], p.position, p.normal) == 0);
                 }
             }
             vplHemiMaps_Destroy(maps);
@@ -210,11 +139,11 @@ TEST(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot, 1)
     Dice dice = {1, 0};
     for (int i = 0; i < 100; i++) {
         const vplVec3 p = vplVec(roll(&dice, -9, 9), roll(&dice, 0.1f, 9), roll(&dice, -9, 9));
-        assert_true(factorAt(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
-        assert_true(factorAt(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
+        assert_true(factorOf(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
+        assert_true(factorOf(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
     }
     // The light itself: no number that is none.
-    const float self = factorAt(&maps->maps[0], maps->maps[0].position, vplVec(0, -1, 0));
+    const float self = factorOf(&maps->maps[0], maps->maps[0].position, vplVec(0, -1, 0));
     assert_true(self == 0 || self == 1);
     vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
@@ -235,38 +164,11 @@ TEST(AMapOfOneTexelKnowsWhatIsStraightAbove, 1)
         vplHemiMaps* maps = drawMaps(g, 1, &place, 1);
         assert_true(fabsf(maps->maps[0].texels[0] - 1) < 1e-5f);
         const vplVec3 n = vplVec(0, (float)-side, 0);
-        assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 + 30 * side), 0), n) == 1);
-        assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 - 0.5f * (float)side), 0), n) == 0);
+        assert_true(factorOf(&maps->maps[0], vplVec(0, (float)(1 + 30 * side), 0), n) == 1);
+        assert_true(factorOf(&maps->maps[0], vplVec(0, (float)(1 - 0.5f * (float)side), 0), n) == 0);
         vplHemiMaps_Destroy(maps);
         vplGeometry_Destroy(g);
     }
-}
-
-static uint64_t hashOf(vplContext* context)
-{
-    vplGeometry* g = clutter(context, 1);
-    Dice dice = {9, 0};
-    vplHemiMapPlace places[9];
-    vplHit hit;
-    for (int i = 0; i < 9; i++) {
-        places[i] = rollPlace(g, &dice, &hit);
-    }
-    vplHemiMaps* maps = drawMaps(g, 36, places, 9);
-    uint64_t hash = vplHashFloats(0, maps->texels, (size_t)9 * 36 * 36);
-    for (int i = 0; i < 9 * 500; i++) {
-        const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
-        const float factor = factorAt(&maps->maps[i % 9], at.position, at.normal);
-        hash = vplHashFloats(hash, &factor, 1);
-    }
-    vplHemiMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-    return hash;
-}
-
-TEST_ALONE(MapsHaveTheSameBitsEverywhere)
-{
-    assertSameEverywhere(hashOf);
 }
 
 TEST(MapsCanBeRefusedAndCancelled, 1)

@@ -263,23 +263,15 @@ static vplResult shadeClusters(Attempt* a)
     return vplShadeView(a->geometry, &view, &def, NULL, NULL, a->image, NULL);
 }
 
-// ---- shadow maps
+// ---- what is done with shadow maps (all kinds themselves: tests/test_shadow_maps.c)
 
-static vplResult drawCube(Attempt* a)
+static vplResult boundCube(Attempt* a)
 {
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.size = 16;
     TRY(openScene(a, "tests/data/room.json"));
     TRY(vplCubeMap_Create(a->geometry, &def, NULL, NULL, &a->cube));
     return vplCubeMap_FindBounds(a->cube);
-}
-
-static vplResult drawHemiMaps(Attempt* a)
-{
-    const vplHemiMapPlace place = {{0, 1, 0}, {0, 1, 0}};
-    TRY(openScene(a, "tests/data/room.json"));
-    TRY(vplHemiMaps_Create(a->context, 4, 1, &a->hemiMaps));
-    return vplHemiMaps_Draw(a->hemiMaps, a->geometry, &place, 1, NULL, NULL);
 }
 
 // Variants: without triangles, and with them and lights of the second bounce.
@@ -431,8 +423,7 @@ EVERY_FAILED_ALLOCATION(ABake, bake, "ply", 2)
 EVERY_FAILED_ALLOCATION(APlacement, placeLights, "png", 2)
 EVERY_FAILED_ALLOCATION(Clusters, findClusters, "png", 2)
 EVERY_FAILED_ALLOCATION(LightsInClusters, shadeClusters, "png", 2)
-EVERY_FAILED_ALLOCATION(ACubeMap, drawCube, "png", 1)
-EVERY_FAILED_ALLOCATION(HemiMaps, drawHemiMaps, "png", 1)
+EVERY_FAILED_ALLOCATION(BoundsOfACubeMap, boundCube, "png", 1)
 EVERY_FAILED_ALLOCATION(ParaboloidMaps, drawParaboloids, "png", 2)
 EVERY_FAILED_ALLOCATION(AReflectiveMap, sampleReflectiveMap, "png", 3)
 EVERY_FAILED_ALLOCATION(PatchSides, findSides, "png", 2)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Paraboloid maps: the projection, what a texel holds, where they agree with rays, and what they do at extremes.
 #include "bench/band.h"
-#include "shapes.h"
+#include "shadow_maps.h"
 
 #include "base/hash.h"
 #include "geometry/triangle.h"
@@ -16,17 +16,12 @@ static vplParaboloidMaps* drawMaps(const vplGeometry* g, int size, const vplPara
     return maps;
 }
 
-static float factorAt(const vplParaboloidMap* map, vplVec3 p, vplVec3 n)
+static float factorOf(const vplParaboloidMap* map, vplVec3 p, vplVec3 n)
 {
     vplSurface s;
     float factor[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        s.px[l] = p.x;
-        s.py[l] = p.y;
-        s.pz[l] = p.z;
-        s.nx[l] = n.x;
-        s.ny[l] = n.y;
-        s.nz[l] = n.z;
+        setPoint(&s, l, p, n);
     }
     vplParaboloidMap_FactorBlock(map, &s, factor);
     return factor[0];
@@ -402,118 +397,6 @@ TEST(EdgesBendAsTheyShould, 1)
 
 // ---- shadows
 
-typedef struct Tally {
-    int pairs, dark, apart;
-} Tally;
-
-static void comparePairs(const vplGeometry* g, Dice* dice, const vplParaboloidMap* map, int which,
-                         Tally* tally)
-{
-    for (int i = 0; i < 300; i++) {
-        vplHit hit;
-        const vplHemiMapPlace at = rollPlace(g, dice, &hit);
-        const vplVec3 way = vplSub(map->position, at.position);
-        const float factor = factorAt(map, at.position, at.normal);
-        assert_true(factor >= 0 && factor <= 1 + 1e-6f);
-        if (map->hemispheres == 1 && vplDot(way, map->forward) > 0) {
-            assert_true(factor == 1);
-            continue;
-        }
-        // Within a texel of the only hemisphere's rim nothing is known of what lies beyond it.
-        const float rim = 4 * 1.41421356f / (float)map->size;
-        if (map->hemispheres == 1 && -vplDot(way, map->forward) < rim * vplLength(way)) {
-            continue;
-        }
-        if (!(vplDot(way, at.normal) > 0)) {
-            continue; // no light falls here from the map's place, maybe from others of its cluster
-        }
-        const vplRay ray = vplGeometry_Leave(g, &hit, way);
-        const bool shadowed = vplGeometry_IsOccluded(g, &ray, 1 - 0x1p-16f);
-        const bool differs = shadowed ? factor < 1 : factor > 0;
-        tally->pairs++;
-        tally->dark += shadowed;
-        tally->apart += shadowed != (factor > 0.5f);
-        if (differs && fabsf(factor - (float)shadowed) > 1e-6f &&
-            isSureParaboloid(g, map, at.position, at.normal, shadowed)) {
-            fail_msg("scene %d, point %d: the ray says %d, the map %g", which, i, shadowed, (double)factor);
-        }
-    }
-}
-
-TEST(MapsAndRaysAgreeOutsideTheBand, 2)
-{
-    for (int which = 0; which < 2; which++) {
-        vplGeometry* g = clutter(context, which);
-        Dice dice = {11, 0};
-        Tally tally = {0};
-        for (int i = 0; i < 60; i++) {
-            const vplParaboloidPlace place = rollPlaceOf(g, &dice, i % 2);
-            vplParaboloidMaps* maps = drawMaps(g, 16 << i % 4, &place, 1);
-            comparePairs(g, &dice, &maps->maps[0], which, &tally);
-            vplParaboloidMaps_Destroy(maps);
-        }
-        printf("# %d pairs, %d dark, %d within the band\n", tally.pairs, tally.dark, tally.apart);
-        assert_true(tally.dark > 500 && tally.pairs > tally.dark + 500);
-        assert_true(tally.apart > 0 && tally.apart < tally.pairs / 20);
-        vplGeometry_Destroy(g);
-    }
-}
-
-// Also where light grazes it, from both sides, and with one texel for all directions.
-TEST(APlaneNeverShadowsItself, 1)
-{
-    vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
-    Dice dice = {3, 0};
-    for (int i = 0; i < 2000; i++) {
-        const float high = 0.25f + 4 * powf(10, roll(&dice, -5, 0));
-        const vplParaboloidPlace place = {vplVec(3 + roll(&dice, -4, 4), high, -2 + roll(&dice, -4, 4)),
-                                          vplNormalize(vplAdd(vplVec(0, -1.01f, 0), rollUnit(&dice))),
-                                          1 + i % 2, false};
-        vplParaboloidMaps* maps = drawMaps(g, 1 + i % 33, &place, 1);
-        for (int k = 0; k < 20; k++) {
-            const vplVec3 p = vplVec(3 + roll(&dice, -4.9f, 4.9f), 0.25f, -2 + roll(&dice, -4.9f, 4.9f));
-            if (place.hemispheres == 2 || vplDot(vplSub(p, maps->maps[0].position), place.normal) > 0) {
-                assert_true(factorAt(&maps->maps[0], p, vplVec(0, 1, 0)) == 0);
-                assert_true(factorAt(&maps->maps[0], p, vplVec(0, -1, 0)) == 0);
-            }
-        }
-        vplParaboloidMaps_Destroy(maps);
-    }
-    vplGeometry_Destroy(g);
-}
-
-TEST(AnEmptyHemisphereIsLitAndOneThatIsNotDrawnIsDark, 1)
-{
-    vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
-    const vplParaboloidPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0), 1, true};
-    vplParaboloidMaps* maps = drawMaps(g, 5, &place, 1);
-    for (int i = 0; i < 25; i++) {
-        assert_true(maps->maps[0].texels[placeOf(&maps->maps[0], 0, i)] == 0);
-        assert_true(maps->maps[0].triangles[placeOf(&maps->maps[0], 0, i)] == -1);
-    }
-    Dice dice = {1, 0};
-    for (int i = 0; i < 100; i++) {
-        const vplVec3 p = vplVec(roll(&dice, -9, 9), roll(&dice, 0.1f, 9), roll(&dice, -9, 9));
-        assert_true(factorAt(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
-        assert_true(factorAt(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
-    }
-    // The place itself, and what is no place: no number that is none, and nothing outside of the map is read.
-    const vplVec3 odd[] = {
-        maps->maps[0].position, {NAN, 0, 0}, {INFINITY, 0, 0}, {0, 1e30f, 0}, {3e38f, 3e38f, 0}};
-    for (int i = 0; i < 5; i++) {
-        const float self = factorAt(&maps->maps[0], odd[i], vplVec(0, -1, 0));
-        assert_true(self >= 0 && self <= 1);
-    }
-    vplParaboloidMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-    // Nothing at all.
-    g = freezeScene(sceneOf(context, 0.5f));
-    maps = drawMaps(g, 1, &place, 1);
-    assert_true(maps->maps[0].texels[0] == 0);
-    vplParaboloidMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-}
-
 // Means of clusters may lie anywhere: in a solid, on a vertex, an edge or a surface.
 TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
 {
@@ -535,7 +418,7 @@ TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
         for (int k = 0; k < 20; k++) {
             vplHit hit;
             const vplHemiMapPlace p = rollPlace(g, &dice, &hit);
-            const float factor = factorAt(map, p.position, p.normal);
+            const float factor = factorOf(map, p.position, p.normal);
             assert_true(factor >= 0 && factor <= 1 + 1e-6f);
         }
         vplParaboloidMaps_Destroy(maps);
@@ -544,40 +427,6 @@ TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
 }
 
 // ---- everywhere, and not at all
-
-static uint64_t hashOf(vplContext* context)
-{
-    vplGeometry* g = clutter(context, 1);
-    Dice dice = {9, 0};
-    vplParaboloidPlace places[9];
-    vplHit hit;
-    for (int i = 0; i < 9; i++) {
-        places[i] = rollPlaceOf(g, &dice, i % 2);
-    }
-    vplParaboloidMaps* maps = drawMaps(g, 37, places, 9);
-    uint64_t hash = 0;
-    for (int i = 0; i < 9 * 2 * 37 * 37; i++) {
-        const vplParaboloidMap* map = &maps->maps[i % 9];
-        const int hemisphere = i / 9 / (37 * 37) % map->hemispheres;
-        const size_t at = placeOf(map, hemisphere, i / 9 % (37 * 37));
-        hash = vplHashFloats(hash, map->texels + at, 1);
-        hash = vplHashFloats(hash, (const float*)map->triangles + at, 1);
-    }
-    for (int i = 0; i < 9 * 500; i++) {
-        const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
-        const float factor = factorAt(&maps->maps[i % 9], at.position, at.normal);
-        hash = vplHashFloats(hash, &factor, 1);
-    }
-    vplParaboloidMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-    return hash;
-}
-
-TEST_ALONE(MapsHaveTheSameBitsEverywhere)
-{
-    assertSameEverywhere(hashOf);
-}
 
 TEST(MapsCanBeRefusedAndCancelled, 1)
 {

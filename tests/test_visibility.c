@@ -261,26 +261,6 @@ TEST(AutomaticPairIsEnoughUpTo80Degrees, 1)
     freeTable(&t);
 }
 
-// No point of a plane shadows itself under the exact rule, however coarse the map, hard or filtered.
-TEST(ExactBiasLeavesNoAcneOnAPlane, 2)
-{
-    vplGeometry* g = floorQuad(context, (vplVec3){0, 0, 0}, 200, 0.5f);
-    const int sizes[] = {1, 2, 3, 16, 128, 1000};
-    for (int k = 0; k < 6; k++) {
-        vplCubeMap* map = makeMap(g, (vplVec3){0.1f, 1.3f, -0.2f}, sizes[k]);
-        for (int samples = 1; samples <= 16; samples += 15) {
-            vplShadow shadow = exactShadow(map, samples, 0.05f);
-            for (int i = 0; i < 20000; i++) {
-                double r = 30 * pow(uniformAt(3, (uint64_t)i), 3), angle = 6.2832 * uniformAt(4, (uint64_t)i);
-                vplVec3 p = {(float)(r * cos(angle)), 0, (float)(r * sin(angle))};
-                assertNear((double)vplShadow_Factor(&shadow, p, (vplVec3){0, 1, 0}), 0, 0, "s", i);
-            }
-        }
-        vplCubeMap_Destroy(map);
-    }
-    vplGeometry_Destroy(g);
-}
-
 // A wall standing on the floor at x = x0, and the floor.
 static vplGeometry* wallOnFloor(vplContext* context, float x0)
 {
@@ -434,32 +414,6 @@ TEST(OffsetsLieOnTheDiscInPairs, 1)
         if (samples >= 16) {
             assertNear(square, 0.5, 0.08, "mean square of the uniform disc", samples);
         }
-    }
-}
-
-TEST_ALONE(ShadowBitsDoNotDependOnInstructionSet)
-{
-    float wanted[200];
-    for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
-        vplContext* context = openIsaContext(1 + isa, (vplIsa)isa);
-        if (context == NULL) {
-            continue;
-        }
-        vplGeometry* room = tableRoom(context);
-        vplCubeMap* map = makeMap(room, (vplVec3){0, 4.5f, 0}, 200);
-        vplShadow shadow = exactShadow(map, 16, 0.1f);
-        for (int i = 0; i < 200; i++) {
-            vplVec3 p = {(float)(5 * uniformAt(1, (uint64_t)i) - 2.5), 0,
-                         (float)(5 * uniformAt(2, (uint64_t)i) - 2.5)};
-            float s = vplShadow_Factor(&shadow, p, (vplVec3){0, 1, 0});
-            if (isa == VPL_ISA_SCALAR) {
-                wanted[i] = s;
-            }
-            assert_true(s == wanted[i]);
-        }
-        vplCubeMap_Destroy(map);
-        vplGeometry_Destroy(room);
-        closeTestContext(context);
     }
 }
 

@@ -176,7 +176,7 @@ static void measureAgreement(const Bench* b, const vplView* view, const vplRefle
         s.ny[0] = n.y;
         s.nz[0] = n.z;
         vplReflectiveMap_FactorBlock(map, &s, factor);
-        const bool must = isSure(b->geometry, map, hit.position, n, dark);
+        const bool must = isSureReflective(b->geometry, map, hit.position, n, dark);
         points++;
         sure += must;
         mapOnly += factor[0] > 0.5f && !dark;
