@@ -195,8 +195,8 @@ static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
         } else if (strcmp(word, "ADAPTIVE") == 0) {
             const bool adaptive = o->radiosity.placement == VPL_PATCHES_ADAPTIVE;
             const char* drafts = "form-factors form-samples row-sums link-error patch-light camera seed";
-            const uint64_t draft = adaptive ? findKey(run, drafts, build) : 0;
-            state = vplHashWords(state, (const uint32_t[]){(uint32_t)draft, (uint32_t)(draft >> 32)}, 2);
+            const uint64_t drafted = adaptive ? findKey(run, drafts, build) : 0;
+            state = vplHashWords(state, (const uint32_t[]){(uint32_t)drafted, (uint32_t)(drafted >> 32)}, 2);
         } else if (strcmp(word, "ALWAYS") == 0) {
             state = vplHashWords(state, &build, 1);
         } else if (strcmp(word, "PLACEMENT") == 0) {
