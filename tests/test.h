@@ -96,6 +96,9 @@ double uniformAt(uint64_t seed, uint64_t index);
 // The benchmark room (tests/data/room.json), or the same with a front wall and the camera inside.
 vplScene* loadScene(vplContext* context, const char* name);
 
+// A scene from a file, or a failed test with the library's sentence.
+vplScene* openScene(vplContext* context, const char* path);
+
 // vplRender, or a failed test with the library's sentence. statsOut may be NULL.
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);
 

@@ -208,15 +208,6 @@ TEST(WhiteWallsAndAnEndlessBoundEnd, 2)
 
 // ---- a room
 
-static vplScene* loadExample(vplContext* context, const char* name)
-{
-    char path[128];
-    vplScene* scene;
-    snprintf(path, sizeof path, "examples/scenes/%s.json", name);
-    assert_int_equal(vplScene_Load(context, path, &scene), VPL_SUCCESS);
-    return scene;
-}
-
 static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* options)
 {
     vplRenderStats stats;
@@ -226,7 +217,7 @@ static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* options)
 
 static uint64_t hashWith(vplContext* context, const vplRenderOptions* options)
 {
-    vplScene* scene = loadExample(context, "room-area");
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     const uint64_t hash = hashOf(scene, options);
     vplScene_Destroy(scene);
     closeTestContext(context);
@@ -255,9 +246,9 @@ TEST_ALONE(ThreadsAndInstructionSetsGiveTheSameBits)
 
 TEST(PipelinesGiveTheSameBits, 2)
 {
-    static const char* const scenes[] = {"room", "room-area"};
+    static const char* const scenes[] = {"examples/scenes/room.json", "examples/scenes/room-area.json"};
     for (int i = 0; i < 2; i++) {
-        vplScene* scene = loadExample(context, scenes[i]);
+        vplScene* scene = openScene(context, scenes[i]);
         vplRenderOptions o = kellerOptions(50, 70, -1);
         const uint64_t wanted = hashOf(scene, &o);
         o.pipeline.kind = VPL_ACCUMULATE_MULTIPASS;
@@ -271,7 +262,7 @@ TEST(PipelinesGiveTheSameBits, 2)
 // Direct light of lamps and the rest are found by different rays, and must still be parts of one picture.
 TEST(PartsAddUpOnAverage, 2)
 {
-    vplScene* scene = loadExample(context, "room-area");
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     vplRenderOptions o = kellerOptions(48, 300, 1);
     const double picture = meanOf(scene, &o, NULL);
     o.output.show = VPL_SHOW_DIRECT;
@@ -301,14 +292,17 @@ TEST(EveryKindOfLightIsGivenBack, 2, SLOW)
         vplLightShadows shadows;
         vplAccumulation accumulation;
     } cases[] = {
-        {"room", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
-        {"room-area", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
-        {"room", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
-        {"room-area", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_MAP, VPL_ACCUMULATE_DEFERRED},
-        {"room-area", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_INTERLEAVED},
+        {"examples/scenes/room.json", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY,
+         VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room-area.json", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY,
+         VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room.json", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room-area.json", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_MAP, VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room-area.json", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY,
+         VPL_ACCUMULATE_INTERLEAVED},
     };
     for (int i = 0; i < 5; i++) {
-        vplScene* scene = loadExample(context, cases[i].scene);
+        vplScene* scene = openScene(context, cases[i].scene);
         const double truth = pathMean(scene);
         vplRenderOptions o = kellerOptions(32, cases[i].shadows == VPL_LIGHT_SHADOWS_MAP ? 500 : 1000, 1.5f);
         o.method = cases[i].method;

@@ -24,7 +24,7 @@ static vplResult readMeshes(Attempt* a)
     return vplScene_LoadObj(a->scene, scenes[a->variant ? a->variant : 1], NULL);
 }
 
-static vplResult openScene(Attempt* a, const char* path)
+static vplResult openRoom(Attempt* a, const char* path)
 {
     TRY(vplScene_Load(a->context, path, &a->scene));
     return vplGeometry_Create(a->scene, &a->geometry);
@@ -206,7 +206,7 @@ static vplResult placeLights(Attempt* a)
     options.shadow.rsmSize = 4;
     def.oversampling = 2;
     def.pointCount = 1;
-    TRY(openScene(a, "tests/data/room.json"));
+    TRY(openRoom(a, "tests/data/room.json"));
     return a->variant == 0 ? vplMakeLights(a->scene, &options, &a->lights)
                            : vplPlaceLights(a->geometry, vplScene_GetEmitter(a->scene, 0), 1, &particles,
                                             &def, &a->lights);
@@ -257,7 +257,7 @@ static vplResult shadeClusters(Attempt* a)
                              .lightClusters = clusters,
                              .clusterShadows = maps,
                              .clusterCount = CLUSTERS};
-    TRY(openScene(a, "tests/data/room.json"));
+    TRY(openRoom(a, "tests/data/room.json"));
     TRY(vplImage_Create(a->context, 8, 6, &a->image));
     const vplView view = vplView_Create(vplScene_GetCamera(a->scene, 0), 8, 6);
     return vplShadeView(a->geometry, &view, &def, NULL, NULL, a->image, NULL);
@@ -269,7 +269,7 @@ static vplResult boundCube(Attempt* a)
 {
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.size = 16;
-    TRY(openScene(a, "tests/data/room.json"));
+    TRY(openRoom(a, "tests/data/room.json"));
     TRY(vplCubeMap_Create(a->geometry, &def, NULL, NULL, &a->cube));
     return vplCubeMap_FindBounds(a->cube);
 }
@@ -282,7 +282,7 @@ static vplResult drawParaboloids(Attempt* a)
     const vplLightClusters clusters = {.clusters = &cluster, .count = 1};
     vplSecondBounceDef def = vplDefaultSecondBounceDef();
     def.count = 4;
-    TRY(openScene(a, "tests/data/room.json"));
+    TRY(openRoom(a, "tests/data/room.json"));
     TRY(vplParaboloidMaps_Create(a->context, 4, 1, a->variant > 0, &a->paraboloids));
     TRY(vplParaboloidMaps_Draw(a->paraboloids, a->geometry, &place, 1, NULL, NULL));
     return a->variant == 0
@@ -297,7 +297,7 @@ static vplResult sampleReflectiveMap(Attempt* a)
     const vplRsmSampleDef sampling = vplDefaultRsmSampleDef();
     def.size = 3;
     def.emitter.type = (vplEmitterType)a->variant;
-    TRY(openScene(a, "tests/data/room.json"));
+    TRY(openRoom(a, "tests/data/room.json"));
     TRY(vplReflectiveMap_Create(a->geometry, &def, NULL, NULL, &a->reflective));
     const vplReflectiveMap* const maps[] = {a->reflective};
     TRY(vplSampleReflectiveMaps(a->geometry, maps, 1, &sampling, &a->lights));
@@ -310,7 +310,7 @@ static vplResult openPatchesOf(Attempt* a, const char* path, int count)
 {
     vplPatchDef def = vplDefaultPatchDef();
     def.count = count;
-    TRY(openScene(a, path));
+    TRY(openRoom(a, path));
     return vplPatches_Create(a->geometry, &def, &a->patches);
 }
 

@@ -336,6 +336,20 @@ TEST(FieldsOutOfTheirRangeAreNamedByTheCheck, 1)
     }
     const Options usual = vplDefaultRenderOptions();
     assert_int_equal(vplCheckOptions(scene, &usual), VPL_SUCCESS);
+    Options other = usual; // a camera that the scene has not
+    other.output.camera = 1;
+    assert_int_equal(vplCheckOptions(scene, &other), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "output.camera is 1, must be in [0, 0]"));
+    vplImage* image = NULL;
+    other = usual;
+    other.cookie = 0;
+    assert_int_equal(vplRender(scene, &other, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "vplDefaultRenderOptions"));
+    other = usual;
+    other.output.width = 0;
+    assert_int_equal(vplRender(scene, &other, &image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "output.width is 0, must be in [1, 16384]"));
+    assert_null(image);
     vplScene_Destroy(scene);
 }
 

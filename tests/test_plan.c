@@ -19,15 +19,6 @@ static vplRenderOptions optionsOf(const char* const* words)
 
 #define OPTIONS(...) optionsOf((const char* const[]){__VA_ARGS__, NULL})
 
-static vplScene* openScene(vplContext* context, const char* path)
-{
-    vplScene* scene = NULL;
-    if (vplScene_Load(context, path, &scene) != VPL_SUCCESS) {
-        fail_msg("%s: %s", path, takeMessage());
-    }
-    return scene;
-}
-
 static vplPlan* planOf(const vplScene* scene, const vplRenderOptions* options)
 {
     vplPlan* plan = NULL;

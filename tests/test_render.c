@@ -384,39 +384,6 @@ TEST(EmissionLeavesTheFrontOnly, 1)
     }
 }
 
-TEST(OptionsOutOfRangeAreNamed, 1)
-{
-    vplScene* scene = loadScene(context, "room.json");
-    struct {
-        vplRenderOptions o;
-        const char* name;
-    } cases[10];
-    for (int i = 0; i < 10; i++) {
-        cases[i].o = smallOptions();
-    }
-    cases[0].o.output.width = 0, cases[0].name = "output.width is 0, must be in [1, 16384]";
-    cases[1].o.output.height = 16385, cases[1].name = "output.height is 16385";
-    cases[2].o.output.camera = 1, cases[2].name = "output.camera is 1, must be in [0, 0]";
-    cases[3].o.particles.count = -1,
-    cases[3].name = "vplRenderOptions.particles.count is -1, must be in [0, 16777216]";
-    cases[4].o.particles.reflectivity = 1, cases[4].name = "particles.reflectivity is 1";
-    cases[5].o.shadow.mapSize = 0, cases[5].name = "shadow.mapSize is 0";
-    cases[6].o.lights.minDistance = NAN, cases[6].name = "lights.minDistance is ";
-    cases[7].o.shadow.pcfSamples = 0, cases[7].name = "shadow.pcfSamples is 0";
-    cases[8].o.pipeline.batch = 0, cases[8].name = "pipeline.batch is 0";
-    cases[9].o.cookie = 0, cases[9].name = "vplDefaultRenderOptions";
-    for (int i = 0; i < 10; i++) {
-        vplImage* image = NULL;
-        assert_int_equal(vplRender(scene, &cases[i].o, &image, NULL), VPL_INVALID_ARGUMENT);
-        assert_null(image);
-        const char* message = takeMessage();
-        if (strstr(message, cases[i].name) == NULL) {
-            fail_msg("\"%s\" lacks \"%s\"", message, cases[i].name);
-        }
-    }
-    vplScene_Destroy(scene);
-}
-
 typedef struct Watch {
     int calls, stopAt;
     double last;
