@@ -7,7 +7,7 @@
 
 #include "base/hash.h"
 #include "math/vec.h"
-#include "radiosity/cells.h"
+#include "radiosity/sides/side.h"
 
 #include <stdlib.h>
 

@@ -62,7 +62,6 @@ static double givenBack(const vplGeometry* g, const vplShadeDef* def)
         points.triangle[l] = 0;
         pixels[l] = (uint32_t)l;
     }
-    assert_int_equal(vplGeometry_PrepareRays(g), VPL_SUCCESS);
     assert_int_equal(vplOpenNearLight(&shading), VPL_SUCCESS);
     vplAddNearLight(&shading, &points, pixels, irradiance, &rays);
     vplCloseNearLight(&shading);

@@ -4,7 +4,7 @@
 #include "stage.h"
 
 #include "math/vec.h"
-#include "radiosity/mesh.h"
+#include "radiosity/mesh/patch_mesh.h"
 #include "shading/shading.h"
 
 #include <stdlib.h>

@@ -172,7 +172,7 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     if (kind == BY_LAMP) { // so small that one light stands for it
         Shape lamp = {0};
         vplVec3 t, b;
-        vplFrame(d, &t, &b);
+        vplTangentFrame(d, &t, &b);
         addTriangle(&lamp, vplAdd(place, vplScale(-1e-4f, t)), vplAdd(place, vplScale(1e-4f, t)),
                     vplAdd(place, vplScale(1e-4f, b)));
         vplMeshDef mesh = vplDefaultMeshDef();

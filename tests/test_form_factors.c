@@ -170,7 +170,7 @@ static vplPatchSides* sidesOf(const vplPatches* patches)
     lamp.position = vplVec(278, 416, 84);
     def.emitters = &lamp;
     def.emitterCount = 1;
-    def.whole = true;
+    def.wholeTriangles = true;
     assert_int_equal(vplPatchSides_Create(patches, &def, &sides), VPL_SUCCESS);
     return sides;
 }

@@ -345,7 +345,7 @@ TEST_ALONE(AHistoryOfAnotherSceneIsRefused)
         "vplRenderOptions.sequence.history is of another scene, or something was added to the scene since";
     refuseHistory(other, &options, sentence);
     refuseHistory(abroad, &options,
-                  "vplRenderOptions.history was made with another context than the scene's");
+                  "vplRenderOptions.sequence.history was made with another context than the scene's");
     hashOf(scene, &options); // still good
     vplScene_SetCameraPath(scene, 0, NULL, 0);
     hashOf(scene, &options); // how things move may change

@@ -4,7 +4,7 @@
 
 #include "base/hash.h"
 #include "math/vec.h"
-#include "radiosity/mesh.h"
+#include "radiosity/mesh/patch_mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -45,7 +45,8 @@ static vplRgb* lightWall(const vplPatchMesh* m)
 static vplRgb* gatherOf(const vplPatchMesh* m, const vplRgb* values, int rays, int64_t* cast)
 {
     vplRgb* out = malloc(2 * (size_t)m->vertexCount * sizeof *out);
-    if (vplPatchMesh_Gather(m, values, rays, 0, out, NULL, NULL, cast) != VPL_SUCCESS) {
+    if (vplPatchMesh_Gather(m, &(vplVertexGather){.radiosity = values, .rays = rays}, out, cast) !=
+        VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
     return out;
@@ -178,14 +179,21 @@ TEST(WrongGathersAreRefused, 1)
     vplPatchMesh* m = openCorner(context, 1);
     vplRgb* values = lightWall(m);
     vplRgb* out = malloc(2 * (size_t)m->vertexCount * sizeof *out);
-    assert_int_equal(vplPatchMesh_Gather(m, values, 0, 0, out, NULL, NULL, NULL), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplPatchMesh_Gather(m, &(vplVertexGather){.radiosity = values, .rays = 0}, out, NULL),
+                     VPL_INVALID_ARGUMENT);
     assert_string_equal(takeMessage(), "rays is 0, must be in [1, 65536]");
-    assert_int_equal(vplPatchMesh_Gather(m, values, 65537, 0, out, NULL, NULL, NULL), VPL_INVALID_ARGUMENT);
+    assert_int_equal(
+        vplPatchMesh_Gather(m, &(vplVertexGather){.radiosity = values, .rays = 65537}, out, NULL),
+        VPL_INVALID_ARGUMENT);
     values[1].g = NAN;
-    assert_int_equal(vplPatchMesh_Gather(m, values, 1, 0, out, NULL, NULL, NULL), VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplPatchMesh_Gather(m, &(vplVertexGather){.radiosity = values, .rays = 1}, out, NULL),
+                     VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "radiosity[1]"));
     values[1].g = 0;
-    assert_int_equal(vplPatchMesh_Gather(m, values, 1, 0, out, refuse, NULL, NULL), VPL_CANCELLED);
+    assert_int_equal(
+        vplPatchMesh_Gather(m, &(vplVertexGather){.radiosity = values, .rays = 1, .progress = refuse}, out,
+                            NULL),
+        VPL_CANCELLED);
     free(out);
     free(values);
     closeMesh(m);

@@ -2,7 +2,7 @@
 // Pictures: files, tone, comparison. Covers extremes X109 to X112.
 #include "test.h"
 
-#include "image/srgb_table.h"
+#include "image/srgb.h"
 
 #include <float.h>
 #include <math.h>

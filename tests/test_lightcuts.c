@@ -66,7 +66,6 @@ TEST(RepresentativesErrByLessThanTheBoundAlsoInShadow, 2)
     vplScene* scene = loadScene(context, "room.json");
     vplGeometry* g;
     assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
-    assert_int_equal(vplGeometry_PrepareRays(g), VPL_SUCCESS);
     Dice dice = {21, 0};
     double worst = 0;
     for (int kind = 0; kind < KIND_FAR; kind++) {

@@ -46,8 +46,7 @@ static vplResult buildGeometry(Attempt* a)
 {
     TRY(vplScene_Create(a->context, &a->scene));
     TRY(addBall(a));
-    TRY(vplGeometry_Create(a->scene, &a->geometry));
-    return vplGeometry_PrepareRays(a->geometry);
+    return vplGeometry_Create(a->scene, &a->geometry);
 }
 
 // ---- pictures
@@ -329,8 +328,8 @@ static vplResult findSides(Attempt* a)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
     const vplVec3 eye = {0, 0, 0};
-    def.eyes = &eye;
-    def.eyeCount = a->variant;
+    def.viewpoints = &eye;
+    def.viewpointCount = a->variant;
     TRY(openPatchesOf(a, "examples/scenes/room-area.json", 50));
     TRY(refine(a, 1, 70));
     return vplPatchSides_Create(a->finer, &def, &a->sides);

@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "base/rng.h"
 #include "scene/obj_number.h"
-#include "scene/obj_polygon.h"
+#include "scene/ear_clipping.h"
 
 #include <stdlib.h>
 
@@ -95,7 +95,7 @@ TEST_ALONE(WhatIsNoNumberIsRefused)
 
 // ---- polygons: whole numbers as coordinates make areas exact
 
-static vplPolygon polygon;
+static vplEarClipper polygon;
 
 static double dotAxis(const double* a, const double* b)
 {
@@ -122,7 +122,7 @@ static uint64_t assertCovered(const vplVec3* corners, int count, const char* wha
         addArea(outline, &corners[0], &corners[i], &corners[i + 1]);
     }
     double size = sqrt(dotAxis(outline, outline));
-    vplPolygon_Triangulate(&polygon, corners, count);
+    vplEarClipper_Triangulate(&polygon, corners, count);
     if (polygon.triangleCount != count - 2 || !polygon.simple) {
         fail_msg("%s, row %d: %d triangles of %d corners%s", what, row, polygon.triangleCount, count,
                  polygon.simple ? "" : ", called crossing");
@@ -302,7 +302,7 @@ TEST_ALONE(CrossingOutlinesEnd)
             corners[i] =
                 (vplVec3){(float)(r.v[0] % 5), (float)(r.v[1] % 5), (float)(r.v[2] % (1 + seed % 3))};
         }
-        vplPolygon_Triangulate(&polygon, corners, count);
+        vplEarClipper_Triangulate(&polygon, corners, count);
         assert_int_equal(polygon.triangleCount, count - 2);
         for (int i = 0; i < count - 2; i++) {
             const int* t = polygon.triangles[i];

@@ -43,7 +43,7 @@ TEST_ALONE(ManyMissingThingsAreNotAllTold)
     assert_int_equal(countOf(d.said, "is not defined, taken as grey"), 8);
     assert_int_equal(countOf(d.said, "40 materials in all are not defined"), 1);
     assert_int_equal(countOf(d.said, "is not supported and has no effect"), 16);
-    assert_int_equal(countOf(d.said, "further such statements are not told"), 1);
+    assert_int_equal(countOf(d.said, "further such statements are not reported"), 1);
     closeDesk(&d);
 }
 

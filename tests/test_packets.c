@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Rays by sixteens, and the tree that is made when rays are cast: by whomever, with any number of workers, or not
-// at all.
+// Packets of sixteen rays; the ray tree: built with any number of workers, later, or not at all.
 #include "shapes.h"
 
 #include "base/context.h"
 #include "base/hash.h"
 #include "base/isa.h"
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 #include "math/vec.h"
 
 #include <stdlib.h>
@@ -64,7 +63,7 @@ static void comparePacket(const vplGeometry* g, int kind, Dice* dice, int* hits,
     }
 }
 
-// A tree of 1280 triangles, and 20 that are tested without.
+// A tree of 1280 triangles, and 20 triangles that are tested without one.
 TEST_ALONE(SixteenRaysSayWhatEachSaysAlone)
 {
     for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
@@ -77,7 +76,7 @@ TEST_ALONE(SixteenRaysSayWhatEachSaysAlone)
             vplScene* scene = sceneOf(context, 0.5f);
             addShape(scene, &ball, false, NULL);
             vplGeometry* g = freezeScene(scene);
-            assert_int_equal(vplGeometry_GetBvh(g)->nodes == NULL, level == 0);
+            assert_int_equal(g->rayTree->nodes == NULL, level == 0);
             Dice dice = {11, 0};
             int hits = 0, rays = 0;
             for (int i = 0; i < 600; i++) {
@@ -95,12 +94,14 @@ TEST_ALONE(SixteenRaysSayWhatEachSaysAlone)
 
 // ---- the tree
 
-static vplGeometry* freezeBall(vplContext* context, int level)
+static vplGeometry* ballOf(vplContext* context, int level, bool forRaster)
 {
     Shape ball = icosphere(level);
     vplScene* scene = sceneOf(context, 0.5f);
     addShape(scene, &ball, false, NULL);
-    vplGeometry* g = freezeScene(scene);
+    vplGeometry* g;
+    assert_int_equal((forRaster ? vplGeometry_CreateForRaster : vplGeometry_Create)(scene, &g), VPL_SUCCESS);
+    vplScene_Destroy(scene);
     freeShape(&ball);
     return g;
 }
@@ -118,22 +119,16 @@ static uint64_t hashTree(const vplBvh* bvh)
                         (size_t)bvh->blockCount * sizeof *bvh->blocks / sizeof(uint32_t));
 }
 
-// 20480 triangles are several waves of tasks.
+// 20480 triangles are several waves of splits.
 TEST_ALONE(TheTreeIsTheSameForAnyNumberOfWorkers)
 {
     uint64_t first = 0;
     for (int workers = 1; workers <= 7; workers += workers == 3 ? 4 : 1) {
         vplContext* context = openTestContext(workers);
-        vplGeometry* g = freezeBall(context, 5);
-        for (int alone = 0; alone < 2; alone++) {
-            vplBvh* bvh;
-            const vplResult result = vplBvh_Create(g, 0, alone, &bvh);
-            assert_int_equal(result, VPL_SUCCESS);
-            const uint64_t hash = hashTree(bvh);
-            first = first ? first : hash;
-            assert_true(hash == first && bvh->nodeCount > 300);
-            vplBvh_Destroy(context, bvh);
-        }
+        vplGeometry* g = ballOf(context, 5, false);
+        const uint64_t hash = hashTree(g->rayTree);
+        first = first ? first : hash;
+        assert_true(hash == first && g->rayTree->nodeCount > 300);
         vplGeometry_Destroy(g);
         closeTestContext(context);
     }
@@ -163,22 +158,56 @@ static void castOne(void* data, int index, int worker)
     crowd->t[index] = met != any ? -2 : met ? hit.t : -1;
 }
 
-// Nobody prepared rays: the first to come builds the tree, whatever thread it is on.
-TEST(RaysNeedNoPreparation, 4)
+static vplRayPacket packetOfCrowd(void)
 {
-    vplGeometry *prepared = freezeBall(context, 4), *g = freezeBall(context, 4);
+    vplRayPacket packet = {.active = 0};
+    for (int lane = 0; lane < VPL_RAY_PACKET; lane++) {
+        const vplRay ray = rayOfCrowd(lane);
+        vplRayPacket_Set(&packet, lane, &ray);
+    }
+    return packet;
+}
+
+// Hits have the same bits without a tree, with one that is built later, and with one that was built at once.
+TEST(RaysNeedNoTree, 4)
+{
+    vplGeometry *whole = ballOf(context, 4, false), *g = ballOf(context, 4, true);
+    assert_true(whole->rayTree->nodes != NULL && g->rayTree == NULL);
+    Crowd wanted = {whole, {0}}, without = {g, {0}}, with = {g, {0}};
+    const vplRayPacket packet = packetOfCrowd();
+    vplParallelFor(context, RAYS, castOne, &wanted);
+    vplParallelFor(context, RAYS, castOne, &without);
+    assert_memory_equal(wanted.t, without.t, sizeof wanted.t);
+    const uint32_t hits = vplGeometry_AreOccluded(whole, &packet, INFINITY);
+    assert_int_equal(vplGeometry_AreOccluded(g, &packet, INFINITY), hits);
     const size_t before = vplContext_GetBytes(context);
-    assert_int_equal(vplGeometry_PrepareRays(prepared), VPL_SUCCESS);
+    assert_int_equal(vplGeometry_BuildRayTree(g), VPL_SUCCESS);
     const size_t after = vplContext_GetBytes(context);
     assert_true(after > before + 5120 * sizeof(float[9]));
-    assert_int_equal(vplGeometry_PrepareRays(prepared), VPL_SUCCESS);
-    assert_true(vplContext_GetBytes(context) == after);
-    Crowd wanted = {prepared, {0}}, found = {g, {0}};
-    vplParallelFor(context, RAYS, castOne, &wanted);
-    vplParallelFor(context, RAYS, castOne, &found);
-    assert_memory_equal(wanted.t, found.t, sizeof wanted.t);
-    vplGeometry_Destroy(prepared);
+    assert_int_equal(vplGeometry_BuildRayTree(g), VPL_SUCCESS); // does nothing
+    assert_true(vplContext_GetBytes(context) == after && hashTree(g->rayTree) == hashTree(whole->rayTree));
+    vplParallelFor(context, RAYS, castOne, &with);
+    assert_memory_equal(wanted.t, with.t, sizeof wanted.t);
+    vplGeometry_Destroy(whole);
     vplGeometry_Destroy(g);
+}
+
+// Twelve triangles make two blocks, 320 make more than VPL_COUNTED_BLOCKS.
+TEST(CountedRaysTestEveryObjectOfSmallScenes, 1)
+{
+    for (int level = 0; level < 4; level++) {
+        for (int forRaster = 0; forRaster < 2; forRaster++) {
+            vplGeometry* g = ballOf(context, level, forRaster);
+            int tests = 0;
+            vplHit hit;
+            const vplRay ray = {{0, 0, 0}, {1, 2, 3}, {0, 0}};
+            assert_true(vplClosestHit(g, &ray, &hit, &tests));
+            const bool everyObject = forRaster || g->rayTree->blockCount <= VPL_COUNTED_BLOCKS;
+            assert_true(everyObject == (forRaster || level == 0));
+            assert_true(everyObject ? tests == g->objectCount : tests < g->rayTree->blockCount);
+            vplGeometry_Destroy(g);
+        }
+    }
 }
 
 static void* allocUnlessTold(void* user, void* memory, size_t oldSize, size_t newSize)
@@ -191,7 +220,7 @@ static void* allocUnlessTold(void* user, void* memory, size_t oldSize, size_t ne
     return *(bool*)user ? NULL : realloc(memory, newSize);
 }
 
-TEST_ALONE(WithoutMemoryForATreeRaysAreRight)
+TEST_ALONE(AFailedTreeLeavesTheGeometryAsItWas)
 {
     bool empty = false;
     vplContextDef def = vplDefaultContextDef();
@@ -200,24 +229,18 @@ TEST_ALONE(WithoutMemoryForATreeRaysAreRight)
     def.workerCount = 1;
     vplContext* context;
     assert_int_equal(vplContext_Create(&def, &context), VPL_SUCCESS);
-    vplGeometry* g = freezeBall(context, 3);
+    vplGeometry* g = ballOf(context, 3, true);
     Crowd without = {g, {0}}, with = {g, {0}};
+    const size_t before = vplContext_GetBytes(context);
     empty = true;
-    assert_int_equal(vplGeometry_PrepareRays(g), VPL_OUT_OF_MEMORY);
+    assert_int_equal(vplGeometry_BuildRayTree(g), VPL_OUT_OF_MEMORY);
+    assert_true(g->rayTree == NULL && vplContext_GetBytes(context) == before);
     vplParallelFor(context, RAYS, castOne, &without);
-    vplRayPacket packet = {.active = 0};
-    for (int lane = 0; lane < VPL_RAY_PACKET; lane++) {
-        const vplRay ray = rayOfCrowd(lane);
-        vplRayPacket_Set(&packet, lane, &ray);
-    }
-    const uint32_t hits = vplGeometry_AreOccluded(g, &packet, INFINITY);
-    assert_true(vplGeometry_GetBvh(g) == NULL);
     empty = false;
-    assert_int_equal(vplGeometry_PrepareRays(g), VPL_SUCCESS);
-    assert_true(vplGeometry_GetBvh(g)->nodes != NULL);
+    assert_int_equal(vplGeometry_BuildRayTree(g), VPL_SUCCESS);
+    assert_true(g->rayTree->nodes != NULL);
     vplParallelFor(context, RAYS, castOne, &with);
     assert_memory_equal(with.t, without.t, sizeof with.t);
-    assert_int_equal(vplGeometry_AreOccluded(g, &packet, INFINITY), hits);
     vplGeometry_Destroy(g);
     vplContext_Destroy(context);
 }

@@ -4,7 +4,7 @@
 
 #include "base/hash.h"
 #include "math/vec.h"
-#include "radiosity/mesh.h"
+#include "radiosity/mesh/patch_mesh.h"
 
 #include <stdlib.h>
 

@@ -85,8 +85,8 @@ TEST_ALONE(WhatAnEyeSeesTakesPart)
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
     const vplVec3 eye = {1, 1, 1};
     vplPatchSides* s;
-    def.eyes = &eye;
-    def.eyeCount = 1;
+    def.viewpoints = &eye;
+    def.viewpointCount = 1;
     assert_int_equal(vplPatchSides_Create(c.patches, &def, &s), VPL_SUCCESS);
     assertAll(s, 0, 12, false);
     assertNone(s, 0, 12, true);
@@ -250,7 +250,7 @@ TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
     lamp.position = vplVec(1, 3, 1);
     def.emitters = &lamp;
     def.emitterCount = 1;
-    def.whole = true;
+    def.wholeTriangles = true;
     assert_int_equal(vplPatchSides_Create(c.patches, &def, &s), VPL_SUCCESS);
     assert_true(s->count > c.sides->count); // what is under the box
     for (int i = 0; i < 2 * c.patches->patchCount; i++) {
@@ -316,12 +316,13 @@ TEST_ALONE(WrongDefsAreRefused)
     expectFailure(c.patches, def, VPL_INVALID_ARGUMENT,
                   "vplPatchSidesDef.emitterCount is 2, must be at least 0, and 0 where emitters is NULL");
     def = vplDefaultPatchSidesDef();
-    def.eyeCount = -1;
-    expectFailure(c.patches, def, VPL_INVALID_ARGUMENT,
-                  "vplPatchSidesDef.eyeCount is -1, must be at least 0, and 0 where eyes is NULL");
-    def.eyes = eyes;
-    def.eyeCount = 2;
-    expectFailure(c.patches, def, VPL_INVALID_ARGUMENT, "vplPatchSidesDef.eyes[1] is not finite");
+    def.viewpointCount = -1;
+    expectFailure(
+        c.patches, def, VPL_INVALID_ARGUMENT,
+        "vplPatchSidesDef.viewpointCount is -1, must be at least 0, and 0 where viewpoints is NULL");
+    def.viewpoints = eyes;
+    def.viewpointCount = 2;
+    expectFailure(c.patches, def, VPL_INVALID_ARGUMENT, "vplPatchSidesDef.viewpoints[1] is not finite");
     def.cookie = 0;
     expectFailure(c.patches, def, VPL_INVALID_ARGUMENT,
                   "vplPatchSidesDef was not made by vplDefaultPatchSidesDef");

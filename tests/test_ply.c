@@ -3,7 +3,7 @@
 #include "patch_support.h"
 
 #include "math/vec.h"
-#include "radiosity/mesh.h"
+#include "radiosity/mesh/patch_mesh.h"
 
 #include <stdlib.h>
 #include <unistd.h>

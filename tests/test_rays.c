@@ -5,7 +5,7 @@
 #include "base/context.h"
 #include "base/hash.h"
 #include "base/isa.h"
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 #include "math/vec.h"
 
 #include <limits.h>
@@ -101,17 +101,17 @@ static uint64_t compareOne(const vplBvh* tree, const vplBvh* all, const vplRay* 
                            uint64_t state, int* hits)
 {
     vplRawHit a, b;
-    vplGetTraceClosest(isa)(tree, ray, INFINITY, &a);
-    vplGetTraceClosest(isa)(all, ray, INFINITY, &b);
+    vplGetRayKernels(isa)->closest(tree, ray, INFINITY, &a);
+    vplGetRayKernels(isa)->closest(all, ray, INFINITY, &b);
     assert_true(a.triangle == b.triangle);
     assert_true(memcmp(&a, &b, offsetof(vplRawHit, triangle)) == 0);
     *hits += a.triangle >= 0;
     const float limits[] = {INFINITY, a.t, nextafterf(a.t, INFINITY), 0.5f * a.t};
     for (int i = 0; i < 4; i++) {
         const bool wanted = a.triangle >= 0 && a.t < limits[i];
-        assert_true(vplGetTraceAny(isa)(tree, ray, limits[i]) == wanted);
-        assert_true(vplGetTraceAny(isa)(all, ray, limits[i]) == wanted);
-        vplGetTraceClosest(isa)(tree, ray, limits[i], &b);
+        assert_true(vplGetRayKernels(isa)->any(tree, ray, limits[i]) == wanted);
+        assert_true(vplGetRayKernels(isa)->any(all, ray, limits[i]) == wanted);
+        vplGetRayKernels(isa)->closest(tree, ray, limits[i], &b);
         assert_true(b.triangle == (wanted ? a.triangle : -1) && b.t == (wanted ? a.t : limits[i]));
     }
     state = vplHashWords(state, (const uint32_t*)&a.triangle, 1);
@@ -128,8 +128,8 @@ TEST(TreeAgreesWithAllTriangles, 1)
         addShape(scene, &soup, false, NULL);
         vplGeometry* g = freezeScene(scene);
         vplBvh *tree, *all;
-        assert_int_equal(vplBvh_Create(g, 0, false, &tree), VPL_SUCCESS);
-        assert_int_equal(vplBvh_Create(g, INT_MAX, false, &all), VPL_SUCCESS);
+        assert_int_equal(vplBvh_Create(g, 0, &tree), VPL_SUCCESS);
+        assert_int_equal(vplBvh_Create(g, INT_MAX, &all), VPL_SUCCESS);
         assert_true(tree->nodeCount > 1 && all->nodes == NULL && all->blockCount >= 25);
         const float extent = vplGeometry_Diagonal(g);
         int hits = 0;
@@ -143,8 +143,8 @@ TEST(TreeAgreesWithAllTriangles, 1)
             }
         }
         assert_true(hits > RAYS / 4);
-        vplBvh_Destroy(context, tree);
-        vplBvh_Destroy(context, all);
+        vplBvh_Destroy(tree);
+        vplBvh_Destroy(all);
         vplGeometry_Destroy(g);
         freeShape(&soup);
     }
@@ -269,7 +269,7 @@ TEST(EqualDistancesGoToTheLowestTriangle, 1)
         addShape(scene, &wall, false, NULL);
     }
     vplGeometry* g = freezeScene(scene);
-    assert_true(vplGeometry_GetBvh(g)->nodes != NULL);
+    assert_true(g->rayTree->nodes != NULL);
     Dice dice = {5, 0};
     for (int i = 0; i < 1000; i++) {
         vplVec3 target = rollVec(&dice, 0.5f);
@@ -296,13 +296,13 @@ TEST(AThousandCopiesOfATriangleAreATreeOfHalves, 1)
     addShape(scene, &copies, false, NULL);
     vplGeometry* g = freezeScene(scene);
     int triangles = 0;
-    for (int i = 0; i < vplGeometry_GetBvh(g)->blockCount; i++) {
+    for (int i = 0; i < g->rayTree->blockCount; i++) {
         for (int lane = 0; lane < VPL_BVH_WIDTH; lane++) {
-            triangles += vplGeometry_GetBvh(g)->blocks[i].id[lane] >= 0;
+            triangles += g->rayTree->blocks[i].id[lane] >= 0;
         }
     }
     assert_int_equal(triangles, 1000);
-    assert_true(vplGeometry_GetBvh(g)->nodeCount > 1 && vplGeometry_GetBvh(g)->blockCount <= 256);
+    assert_true(g->rayTree->nodeCount > 1 && g->rayTree->blockCount <= 256);
     for (int first = 0; first < 1000; first += 37) {
         vplRay ray = {{0.1f, 0.2f, 3}, {0, 0, -1}, {0, first}};
         vplHit hit;

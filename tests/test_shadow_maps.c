@@ -44,7 +44,7 @@ TEST(APlaneNeverShadowsItself, 2, SLOW)
     for (int turn = 0; turn < 6; turn++) {
         vplVec3 n, middle, tangent, bitangent;
         vplGeometry* g = plane(context, turn, rollVec(&dice, turn < 3 ? 3 : 300), &n, &middle);
-        vplFrame(n, &tangent, &bitangent);
+        vplTangentFrame(n, &tangent, &bitangent);
         for (int k = 0; k < 4 * MAP_KINDS; k++) {
             // Maps of half spaces and cubes hold distances, of which rounding at 300 m is a hundredth of 2.6 mm above.
             const bool rounded = turn >= 3 && k / 4 < MAP_REFLECTIVE_POINT;

@@ -181,11 +181,11 @@ TEST(WrongArgumentsAreRefused, 1)
     def = sweeps(VPL_SOLVER_JACOBI, 1);
     source[4].g = INFINITY;
     assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_INVALID_ARGUMENT);
-    assert_non_null(strstr(takeMessage(), "source of side 4 is (0, inf, 0), must be finite"));
+    assert_non_null(strstr(takeMessage(), "source[4] is (0, inf, 0), must be finite"));
     source[4].g = 0;
     b[3].b = NAN;
     assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_INVALID_ARGUMENT);
-    assert_non_null(strstr(takeMessage(), "radiosity of side 3"));
+    assert_non_null(strstr(takeMessage(), "radiosity[3]"));
     assert_int_equal(vplGatherRadiosity(&e.transport, b, source), VPL_INVALID_ARGUMENT);
     e.transport.factors = NULL;
     assert_int_equal(vplGatherRadiosity(&e.transport, source, b), VPL_INVALID_ARGUMENT);

@@ -119,7 +119,7 @@ TEST(StoredDistancesAreRadialAndUnclamped, 1)
         vplScene_AddMaterial(scene, &material, NULL);
         vplObjectDef object = vplDefaultObjectDef();
         vplVec3 n = vplNormalize(d), tangent, bitangent;
-        vplFrame(n, &tangent, &bitangent);
+        vplTangentFrame(n, &tangent, &bitangent);
         float size = (float)dist * 0.2f;
         const vplVec3 columns[4] = {vplScale(size, tangent), vplScale(size, bitangent), vplScale(size, n), p};
         for (int c = 0; c < 4; c++) {

@@ -25,16 +25,16 @@ extern "C" {
 // Most worker threads one context may use.
 #define VPL_MAX_WORKERS 1024
 
-// What became of a call. Unless it is VPL_SUCCESS, every output parameter is untouched and one sentence that
-// names the cause was given to the context's log first.
+// The result of a call. On failure, all output parameters are untouched, and the context's log has received
+// one sentence that names the cause.
 typedef enum vplResult {
     VPL_SUCCESS = 0,
     VPL_CANCELLED,        // the progress callback returned false
     VPL_OUT_OF_MEMORY,    // the allocator returned NULL
     VPL_INVALID_ARGUMENT, // a value is out of its documented range
-    VPL_LIMIT,            // valid, but beyond a stated limit (lights, steps, triangles, bytes)
-    VPL_FILE_ERROR,       // could not be opened, read, written or renamed
-    VPL_PARSE_ERROR       // read, but its contents are not what they must be
+    VPL_LIMIT,            // a value is valid but exceeds a limit (lights, steps, triangles, bytes)
+    VPL_FILE_ERROR,       // a file could not be opened, read, written or renamed
+    VPL_PARSE_ERROR       // a file was read, but its contents are invalid
 } vplResult;
 
 // The name of a result, such as "out of memory". Never NULL.
@@ -42,30 +42,30 @@ const char* vplResult_GetName(vplResult result);
 
 typedef enum vplLogLevel { VPL_LOG_ERROR = 0, VPL_LOG_WARNING, VPL_LOG_INFO } vplLogLevel;
 
-// Receives one message: a sentence without a line break, valid during the call only.
+// Receives one message, a sentence without a line break. The text is valid during the call only.
 typedef void vplLogFcn(void* user, vplLogLevel level, const char* message);
 
-// Lua's allocator contract. newSize 0 frees `memory` and returns NULL; `memory` NULL allocates; otherwise
-// resizes. oldSize is the size `memory` was given. Alignment as malloc's. NULL means out of memory, and then
-// the old block stays valid.
+// An allocator with the contract of Lua's. If newSize is 0, frees `memory` and returns NULL; if `memory` is
+// NULL, allocates; otherwise resizes. oldSize is the size that `memory` has. Blocks are aligned like
+// malloc's. Returns NULL when out of memory; the old block then stays valid.
 typedef void* vplAllocFcn(void* user, void* memory, size_t oldSize, size_t newSize);
 
 // Runs one task. `worker` is in [0, workerCount) and no two tasks run under one worker at the same time.
 typedef void vplTaskFcn(void* data, int task, int worker);
 
 // Runs task(data, i, worker) for every i in [0, taskCount), in any order, on up to workerCount threads, and
-// returns when all have ended. For hosts that have a job system of their own.
+// returns when all tasks have ended. For hosts with a job system of their own.
 typedef void vplParallelForFcn(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data);
 
-// Asked between steps of work, always on the thread that made the call. `fraction` is in [0, 1].
-// Return false to cancel: the call then returns VPL_CANCELLED soon.
+// Called between steps of work, always on the thread that made the call. `fraction` is in [0, 1]. Return
+// false to cancel: the call then returns VPL_CANCELLED soon.
 typedef bool vplProgressFcn(void* user, double fraction);
 
-// Instruction sets that the hot loops are compiled for. All give the same bits.
+// Instruction sets that hot loops are compiled for. All give the same bits.
 typedef enum vplIsa {
-    VPL_ISA_AUTO = 0, // the widest that this machine has
-    VPL_ISA_SCALAR,   // plain C without vector instructions
-    VPL_ISA_SSE2,     // the baseline of x86-64; on other machines, their own baseline
+    VPL_ISA_AUTO = 0, // the widest that the machine has
+    VPL_ISA_SCALAR,   // no vector instructions
+    VPL_ISA_SSE2,     // the baseline of x86-64; elsewhere the machine's own baseline
     VPL_ISA_AVX2,
     VPL_ISA_AVX512,
     VPL_ISA_COUNT
@@ -80,39 +80,41 @@ typedef struct vplContextDef {
     vplLogFcn* log;                 // NULL (default): silence
     void* logUser;                  // passed to log
     int workerCount;                // threads, [0, VPL_MAX_WORKERS]; 0 (default): one per processor
-    vplIsa isa;                     // default VPL_ISA_AUTO; one this machine lacks is an error
-    vplParallelForFcn* parallelFor; // NULL (default): OpenMP, or a plain loop where built without it
+    vplIsa isa;                     // default VPL_ISA_AUTO; an error if the machine lacks it
+    vplParallelForFcn* parallelFor; // NULL (default): OpenMP, or a plain loop in a build without it
     void* parallelForUser;          // passed to parallelFor
-    uint32_t cookie;                // set by vplDefaultContextDef; catches a def that was never filled in
+    uint32_t cookie;                // set by vplDefaultContextDef; detects defs that were not initialised
 } vplContextDef;
 
 // A def with every field at its default.
 vplContextDef vplDefaultContextDef(void);
 
-// Owns memory, messages and threads. Everything else is made from a context and must be destroyed before it.
-// One context may be used by one thread at a time; several contexts are independent.
+// Owns memory, messages and threads. Other objects are created from a context and must be destroyed before
+// it. Only one thread at a time may use a context; contexts are independent of each other.
 typedef struct vplContext vplContext;
 
-// Makes a context. `def` NULL means all defaults.
+// Creates a context. `def` NULL means all defaults. VPL_INVALID_ARGUMENT for a def out of range,
+// VPL_OUT_OF_MEMORY.
 vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut);
 
 // Destroys a context. NULL is allowed.
 void vplContext_Destroy(vplContext* context);
 
-// Bytes held now, and the most that were held at once since creation or the last reset.
+// Bytes held now, and the most held at once since creation or the last reset.
 size_t vplContext_GetBytes(const vplContext* context);
 size_t vplContext_GetPeakBytes(const vplContext* context);
 void vplContext_ResetPeakBytes(vplContext* context);
 
-// The instruction set chosen (never AUTO) and the number of workers (never 0).
+// The instruction set in use (never VPL_ISA_AUTO) and the number of workers (never 0).
 vplIsa vplContext_GetIsa(const vplContext* context);
 int vplContext_GetWorkerCount(const vplContext* context);
 
-// Writes a whole file: to a temporary name beside the target, checked, then renamed, so that the target is
-// either its old self or complete. What is not a regular file (a device, a pipe) is written directly.
+// Writes a whole file. It writes to a temporary file beside the target, checks it and renames it, so that the
+// target is either unchanged or complete. Devices and pipes are written directly. VPL_FILE_ERROR,
+// VPL_OUT_OF_MEMORY.
 vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes, size_t size);
 
-// "0.1.0"
+// The version of the library, VPL_VERSION_STRING of its headers.
 const char* vplGetVersion(void);
 
 #ifdef __cplusplus

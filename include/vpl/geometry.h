@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scene frozen in world space: placements, triangles, and the closest hit of a ray.
+// The scene in world space: placements, triangles, rays, everything that emits, and patches for radiosity.
 #ifndef VPL_GEOMETRY_H
 #define VPL_GEOMETRY_H
 
@@ -9,8 +9,10 @@
 extern "C" {
 #endif
 
-// A model matrix with what intersection and shading need of it; rows of 3x4 and 3x3 matrices.
-// In double: a wall grazed at a tenth of its angle makes ten times the rounding of a hit.
+// ---- placements, rays and hits
+
+// A model matrix with what intersection and shading derive from it; rows of 3x4 and 3x3 matrices.
+// Matrices are in double, because grazing angles magnify the rounding of a hit: tenfold at a tenth of a radian.
 typedef struct vplPlacement {
     double toWorld[3][4];
     double toLocal[3][4]; // the inverse
@@ -20,14 +22,14 @@ typedef struct vplPlacement {
 // Fails with VPL_INVALID_ARGUMENT on a singular, non-affine or non-finite matrix.
 vplResult vplPlacement_Create(vplContext* context, const vplMat4* transform, vplPlacement* placementOut);
 
-// Triangles first .. first + count - 1 are invisible to the ray: those it starts on. {0, 0} hides none.
+// A ray never hits triangles first .. first + count - 1: those it starts on. {0, 0} skips none.
 typedef struct vplSkip {
     int first, count;
 } vplSkip;
 
 typedef struct vplRay {
     vplVec3 origin;    // metres
-    vplVec3 direction; // any length but 0; t counts in its units
+    vplVec3 direction; // any length but 0; distances t are in units of this length
     vplSkip skip;
 } vplRay;
 
@@ -39,20 +41,22 @@ typedef struct vplHit {
     int object;       // index in the geometry
     int face;         // 2 * axis + (0: +, 1: -); VPL_FACE_QUAD for quads; VPL_FACE_NONE for meshes
     int triangle;     // index in the geometry's triangles; for quads and boxes one of the face
-    float u, v;       // mesh: weights of corners 1 and 2
+    float u, v;       // mesh: barycentrics of corners 1 and 2
     vplVec3 position; // on the surface to rounding
     vplVec3 normal;   // unit, of the front side (a quad's +z, a box's outside), also when hit from behind
 } vplHit;
 
-// Ray against the quad [-0.5, 0.5]^2 at z = 0 in local space: t > 0, closed edges, both sides.
+// Intersects a ray with the quad [-0.5, 0.5]^2 at z = 0 in local space: t > 0, closed edges, both sides.
 // Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Quad".
 bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hitOut);
 
-// Ray against the box [-0.5, 0.5]^3 by the slab method: the entry at t > 0, or from inside the exit. A ray
-// that leaves the box from its face `fromFace` never hits that face again; VPL_FACE_NONE if it does not.
-// Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Box"; departs at t = 0, which is a miss here, or
-// every reflected particle would hit the face it stands on.
+// Intersects a ray with the box [-0.5, 0.5]^3 by the slab method: the entry at t > 0, or from inside the exit. A ray that
+// leaves the box from its face `fromFace` never hits that face again; VPL_FACE_NONE: the ray does not start on the box.
+// Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Box". Departs: t = 0 is a miss, or every reflected particle
+// would hit the face it starts on.
 bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFace, vplHit* hitOut);
+
+// ---- the geometry
 
 typedef struct vplGeometryObject {
     vplObjectType type;
@@ -60,7 +64,7 @@ typedef struct vplGeometryObject {
     vplRgb reflectance; // mean over its area
     bool smooth;        // has shading normals
     vplPlacement placement;
-    vplPlacement bounds; // mesh: the unit box onto its oriented bounding box
+    vplPlacement bounds; // mesh: maps the unit box onto its oriented bounding box
     int firstVertex, vertexCount;
     int firstTriangle, triangleCount;
 } vplGeometryObject;
@@ -79,41 +83,50 @@ typedef struct vplGeometry {
     int objectCount, materialCount, vertexCount, triangleCount;
     vplVec3 boundsMin, boundsMax; // of all positions; both 0 when there are none
     double area;                  // of all triangles, square metres
-    double meanReflectance;       // over the area, mean of the channels; 0 where there is none
-    bool emits;                   // some triangle may
-    struct vplRayTree* rayTree;   // what rays are traced through, once there are any
+    double meanReflectance;       // area-weighted, mean of the channels; 0 where there is no area
+    bool emits;                   // some triangle may emit
+    struct vplBvh* rayTree;       // accelerates rays; NULL: there is none
+    struct vplArena* arena;       // owns the arrays
     vplContext* context;
 } vplGeometry;
 
+// Builds the geometry of a scene and its ray tree, with all workers. The scene may be destroyed before the geometry.
+// Errors: VPL_LIMIT for more than VPL_MAX_TRIANGLES triangles or vertices, VPL_OUT_OF_MEMORY.
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut);
+
+// The same without the ray tree, for pictures that cast no rays. Rays work and have the same hits, but test every
+// triangle.
+vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geometryOut);
+
+// Builds the ray tree, with all workers; does nothing if there is one. Not to be called from a task or while rays are
+// being cast. On VPL_OUT_OF_MEMORY the geometry stays as it was.
+vplResult vplGeometry_BuildRayTree(vplGeometry* geometry);
+
+#define vplGeometry_PrepareRays(geometry) VPL_SUCCESS // removed at the merge
 
 // NULL is allowed.
 void vplGeometry_Destroy(vplGeometry* geometry);
 
-// Builds what rays are traced through, with all workers; of no effect when repeated. Whoever casts a ray without it
-// waits while one thread does the same. Stages that cast rays call it themselves. Not to be called from a task.
-vplResult vplGeometry_PrepareRays(const vplGeometry* geometry);
-
-// The closest hit; among equal distances the lowest triangle. False if there is none. Quads and boxes are hit
-// as vplRay_HitQuad and vplRay_HitBox say, to the last digits of position and normal; mesh triangles by the
-// watertight test of Woop, Benthin and Wald, JCGT 2013: a ray through a shared edge meets one of its triangles.
+// Finds the closest hit; among equal distances the lowest triangle. False if there is none. Hits of quads and boxes are
+// those of vplRay_HitQuad and vplRay_HitBox, to the last digits of position and normal. Mesh triangles are tested by the
+// watertight test of Woop, Benthin and Wald, JCGT 2013: a ray through a shared edge hits one of its triangles.
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut);
 
-// True if something lies in (0, tMax) along the ray. tMax in units of the direction.
+// True if the ray hits something with t in (0, tMax). tMax in units of the direction.
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax);
 
-// A ray that leaves a hit point in `direction` and does not meet what it leaves: the quad, the box (or from
-// inside its face), the triangle. From a mesh it starts a few units in the last place off the surface, because
-// the neighbours of its triangle are not in one plane with it.
+// A ray that leaves a hit point in `direction` and does not hit the surface it leaves: the quad, the box (towards its
+// inside only the face), the triangle. From a mesh it starts a few units in the last place off the surface, because
+// neighbouring triangles are not coplanar.
 vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction);
 
-// The normal to shade with: interpolated on smooth objects, else the hit's own.
+// The normal for shading, unit: interpolated on smooth objects, else the hit's own.
 vplVec3 vplGeometry_ShadingNormal(const vplGeometry* geometry, const vplHit* hit);
 
-// The closest hit among the objects' oriented bounding boxes (quads stay quads): the cheap stand-in for meshes
-// that Franchi and Ferrante propose under "Improving the Particle Simulation". `from` is the hit that the ray
-// leaves, NULL in free space; a mesh that is left from one of its own triangles is not met. ray->skip is not
-// used. hitOut->triangle is the object's first.
+// Finds the closest hit among the objects' oriented bounding boxes (quads stay quads): the cheap stand-in for meshes
+// that Franchi and Ferrante propose under "Improving the Particle Simulation". `from` is the hit that the ray leaves,
+// NULL in free space; the box of a mesh is not hit by a ray that leaves one of the mesh's own triangles. Ignores
+// ray->skip. hitOut->triangle is the object's first.
 bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, const vplHit* from,
                             vplHit* hitOut);
 
@@ -127,7 +140,7 @@ double vplGeometry_MeanReflectance(const vplGeometry* geometry);
 // Length of the diagonal of the bounding box, metres.
 float vplGeometry_Diagonal(const vplGeometry* geometry);
 
-// ---- everything that emits
+// ---- emission
 
 // An emitter of the scene, or a triangle whose material emits (from its front only).
 typedef struct vplEmissionSource {
@@ -136,47 +149,48 @@ typedef struct vplEmissionSource {
     vplRgb power; // W
 } vplEmissionSource;
 
-// One list of all sources with power, for path tracing and for shooting particles. Read only. A source is
-// chosen with the probability of its share of the power, taken as the mean of the three channels.
+// The list of all sources with power, for path tracing and for shooting particles. Read only. Sources are chosen with a
+// probability proportional to power, the mean of its three channels.
 typedef struct vplEmission {
     const vplGeometry* geometry;
     const vplEmitterDef* emitters;    // a copy; directions are unit vectors
-    const vplEmissionSource* sources; // emitters first, in the scene's order, then triangles in theirs
-    const double* cumulative; // W: sum of the powers of all sources before this one; one more than sources
+    const vplEmissionSource* sources; // emitters in the scene's order, then triangles in theirs
+    const double* cumulative; // W: power of all sources before this one; one more than there are sources
     int emitterCount, sourceCount;
-    int firstTriangle; // index of the first source that is a triangle
-    vplVec3 centre;    // of the sphere around the geometry, which directional emitters cover
-    double radius;     // metres; 0 where there is no geometry
+    int firstTriangle;      // index of the first source that is a triangle
+    vplVec3 centre;         // of the sphere around the geometry, which directional emitters cover
+    double radius;          // metres; 0 where there is no geometry
+    struct vplArena* arena; // owns the arrays
     vplContext* context;
 } vplEmission;
 
 // Powers: point 4 pi I; spot I times the solid angle weighted by the falloff; directional E pi radius^2;
-// triangle pi L area. `emitters` may be NULL if emitterCount is 0.
+// triangle pi L area. `emitters` may be NULL if emitterCount is 0. The geometry must outlive the emission.
 vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                              vplEmission** emissionOut);
 
 // NULL is allowed.
 void vplEmission_Destroy(vplEmission* emission);
 
-// Square metres of all triangles that emit.
+// Area of all triangles that emit, square metres.
 double vplEmission_Area(const vplEmission* emission);
 
-// W; mean of the three channels; all sources.
+// Power of all sources, mean of the three channels, W.
 double vplEmission_Power(const vplEmission* emission);
 
-// How much of a spot's full intensity goes where the angle to its axis has this cosine: 1 inside the inner
-// angle, 0 outside the outer, between them 3x^2 - 2x^3 of the cosine's way from outer to inner.
+// The share of a spot's full intensity in a direction, by the cosine of its angle to the axis: 1 inside the inner angle,
+// 0 outside the outer, between them 3x^2 - 2x^3, where x goes from 0 to 1 linearly in the cosine.
 // Source: Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.2.1 (SmoothStep).
 double vplSpot_Falloff(const vplEmitterDef* spot, double cosine);
 
-// Intensity of a point or spot emitter in a direction (unit vector away from it), W/sr; the irradiance of a
-// directional emitter, W/m^2.
+// Intensity of a point or spot emitter in a direction (unit vector away from it), W/sr; irradiance of a directional
+// emitter, W/m^2.
 vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction);
 
 // A point on a triangle, uniform over its area for u, v uniform in [0, 1).
 vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, float u, float v);
 
-// A particle on its way. It carries the flux of all sources: divide by the number of particles.
+// A particle that leaves a source. Its flux is that of all sources: divide by the number of particles.
 typedef struct vplParticle {
     vplRay ray;     // unit direction; of a directional emitter from outside the geometry
     vplVec3 normal; // unit: of the triangle, else the direction
@@ -184,32 +198,32 @@ typedef struct vplParticle {
     int source;     // index
 } vplParticle;
 
-// A particle from five numbers in [0, 1): `choice` takes the source, u[0], u[1] the place (triangle,
+// Samples a particle from five numbers in [0, 1): `choice` chooses the source, u[0], u[1] the position (triangle,
 // directional), u[2], u[3] the direction (cosine-distributed from a triangle, uniform from a point, by the
 // falloff from a spot). False where nothing emits.
 bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
                                 vplParticle* particleOut);
 
-// ---- patches: what radiosity divides surfaces into
+// ---- patches: the elements of radiosity
 
 // Most patches, and most rounds of bisection of one triangle.
 enum { VPL_MAX_PATCHES = 1 << 24, VPL_MAX_PATCH_ROUNDS = 40 };
 
 typedef struct vplPatchDef {
-    float
-        size; // T, metres, > 0: each round bisects every triangle whose longest edge is longer than this, at
-              // the middle of that edge; 0 (default): as long as there are fewer than `count`, those with the
-              // longest edges first, all of a length together
-    int count; // about so many patches, [1, VPL_MAX_PATCHES]; default 1000; only where size is 0. Never fewer
-               // than triangles
-    int rounds;      // at most so many, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
+    // T, metres, >= 0: each round bisects every triangle whose longest edge is longer than T, at the middle of that edge.
+    // 0 (default): T is chosen for `count`.
+    float size;
+    // About as many patches as this, [1, VPL_MAX_PATCHES]; default 1000. Used where size is 0. Triangles are bisected
+    // longest edge first, all of equal length together; there are never fewer patches than triangles.
+    int count;
+    int rounds;      // of bisection at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
     uint32_t cookie; // set by vplDefaultPatchDef
 } vplPatchDef;
 
 vplPatchDef vplDefaultPatchDef(void);
 
-// A triangle of the geometry or a half of another node, counter-clockwise seen from the front. Corner 0 is opposite to
-// the edge that is, or would be, bisected: the longest; of equally long ones the first in the order 01, 12, 20 of the
+// A triangle of the geometry or a half of another node, counter-clockwise seen from the front. Corner 0 is opposite the
+// edge that is, or would be, bisected: the longest, and of equally long ones the first in the order 01, 12, 20 of the
 // parent's corners.
 typedef struct vplPatchNode {
     uint32_t corners[3]; // indices in vplPatches.positions
@@ -219,9 +233,9 @@ typedef struct vplPatchNode {
     int patch;           // index in vplPatches.patches; -1: none
 } vplPatchNode;
 
-// Triangles bisected at their longest edges. Read only. Node t, t < geometry->triangleCount, is triangle t. Middles are
-// the same bits for both triangles at an edge. Triangles whose area is 0 have no patch (X093).
-// Source: Hemgren, Radiosity in Realtime Rendering, 3.1; "longer than", not "as long as" (EXTREMES.md, X097).
+// Triangles bisected at their longest edges. Read only. Node t, t < geometry->triangleCount, is triangle t. The middle of
+// a shared edge has the same bits for both triangles. Triangles whose area is 0 have no patch.
+// Source: Hemgren, Radiosity in Realtime Rendering, 3.1. Edges exactly as long as T stay whole.
 typedef struct vplPatches {
     const vplGeometry* geometry;
     const vplVec3* positions; // all different: patches that meet at a point share its index
@@ -230,25 +244,28 @@ typedef struct vplPatches {
     int nodeCount;
     const int* patches; // nodes that are patches: triangle by triangle, each in the order of its tree
     int patchCount;
-    float longestEdge; // of all patches, metres; rounded up, so as T it gives the same patches
+    float longestEdge;      // of all patches, metres; rounded up, so that as T it gives the same patches
+    struct vplArena* arena; // owns the arrays
     vplContext* context;
 } vplPatches;
 
+// The geometry must outlive the patches. Errors: VPL_INVALID_ARGUMENT, VPL_LIMIT for more than VPL_MAX_PATCHES patches,
+// VPL_OUT_OF_MEMORY.
 vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def, vplPatches** patchesOut);
 
 // Bisects the patches of the largest priorities, one priority per patch, until there are `count` patches or no priority
-// above 0 is left; halves of a patch are not bisected again. New patches; the old ones stay.
+// above 0 is left; halves of a patch are not bisected again. Makes new patches; the old ones stay.
 vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, int count,
                             vplPatches** patchesOut);
 
 // NULL is allowed.
 void vplPatches_Destroy(vplPatches* patches);
 
-// The patch of a triangle that a point on it lies in, or nearly; of two that meet there, the first. -1: the triangle has
-// none.
+// The patch of a triangle that contains a point on it, to rounding; of two that meet there, the first. -1: the triangle
+// has none.
 int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position);
 
-// Square metres.
+// Area of a patch, square metres.
 double vplPatches_Area(const vplPatches* patches, int patch);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Radiosity: surfaces in patches, form factors between them, and the light that all of them exchange.
-// Follows Dan Hemgren, Radiosity in Realtime Rendering, and the improvements that it names.
+// Radiosity: surfaces divided into patches, form factors between them, and the light that they exchange.
+// Source: Dan Hemgren, Radiosity in Realtime Rendering, and the improvements that it suggests.
 #ifndef VPL_RADIOSITY_H
 #define VPL_RADIOSITY_H
 
@@ -12,34 +12,36 @@
 extern "C" {
 #endif
 
-// ---- sides of patches: what the equations are about
+// ---- sides of patches: the unknowns of the radiosity equations
 
-// A patch's cells are the 16 triangles that two rounds of joining the middles of its edges make. Which, and in which
-// order: vplPatchSides_SampleCell.
+// Two rounds of joining the midpoints of a triangle's edges divide each patch into 16 cells.
+// vplPatchSides_SampleCell defines their order.
 enum { VPL_PATCH_CELLS = 16 };
 
-// One side of a patch. Surfaces reflect on both sides, and only sides that light can reach are in the equations.
+// One side of a patch. Surfaces reflect on both sides, and only sides that light can reach are in the
+// equations.
 typedef struct vplPatchSide {
     int patch;
     bool back;          // the side that the patch's normal points away from
     uint16_t open;      // bit k: light can reach cell k; never 0
-    float area;         // of open cells, m^2; the patch's whole area where none is closed
+    float area;         // m^2, of the open cells; the patch's whole area where all are open
     vplVec3 corners[3]; // counter-clockwise seen from this side
     vplVec3 normal;     // unit, of this side
-    vplVec3 incentre;   // the centre of the circle that touches the three edges
+    vplVec3 incentre;   // the centre of the inscribed circle
     vplRgb reflectance;
     vplRgb emission; // radiosity, W/m^2: pi times the material's radiance, 0 on the back
 } vplPatchSide;
 
 typedef struct vplPatchSidesDef {
-    const vplEmitterDef* emitters; // light that is not geometry's; NULL where emitterCount is 0
+    // Light sources that are not part of the geometry; NULL where emitterCount is 0 (default).
+    const vplEmitterDef* emitters;
     int emitterCount;
-    const vplVec3*
-        eyes; // places that are looked from: what they see counts as reached; NULL where eyeCount is 0
-    int eyeCount;
-    bool
-        whole; // as the document has it: all of a triangle's side takes part, cells and patches under boxes, too,
-               // where light reaches some of it; default false
+    // Camera positions: sides that they see count as reached. NULL where viewpointCount is 0 (default).
+    const vplVec3* viewpoints;
+    int viewpointCount;
+    // Keep all cells and patches of a triangle's side where light reaches any of it, also those under boxes,
+    // as Hemgren does. Default false.
+    bool wholeTriangles;
     uint64_t seed; // default 0
     vplProgressFcn* progress;
     void* progressUser;
@@ -48,20 +50,24 @@ typedef struct vplPatchSidesDef {
 
 vplPatchSidesDef vplDefaultPatchSidesDef(void);
 
-// The sides that light can reach, and where on them: found by particles from everything that emits, from the eyes, and
-// by rays from sides that no particle met to others that are reached. The inside of a box, the floor under it and a room
-// without a lamp take no part, and do not darken what is beside them (X101). A cell is open where light reaches half of
-// it; a patch of less than 1/32 of the mean area is one cell. Of triangles in one place the first has the light. Without
-// light, what the eyes see, and what is seen from there, is all that takes part. Read only.
+// The sides, and their cells, that light can reach. Read only.
 typedef struct vplPatchSides {
     const vplPatches* patches;
     const vplPatchSide* sides; // in the order of patches, front before back
     int count;
-    const int* ofPatch; // [patch][front, back]: index in sides, -1: not among them
-    int64_t rays;       // that it took
+    const int* ofPatch;     // [patch][front, back]: index in sides, -1: light does not reach that side
+    int64_t rays;           // cast to find the sides
+    struct vplArena* arena; // owns the arrays
     vplContext* context;
 } vplPatchSides;
 
+// Finds the sides that light reaches: by particles from all light sources, by rays from the viewpoints, and
+// by rays from sides that no particle hit to sides that are reached. The inside of a box, the floor under it
+// and a room without a light source are left out and do not darken what is beside them. A cell is open where
+// light reaches half of it; a patch smaller than 1/32 of the mean area has one cell. Of coplanar triangles
+// that overlap, the first receives the light. Without light sources, only what the viewpoints see, and what
+// is visible from there, is kept. VPL_INVALID_ARGUMENT for a def with a wrong cookie, a negative count, a
+// missing array or a viewpoint that is not finite.
 vplResult vplPatchSides_Create(const vplPatches* patches, const vplPatchSidesDef* def,
                                vplPatchSides** sidesOut);
 
@@ -74,31 +80,32 @@ vplVec3 vplPatchSide_SampleCell(const vplPatchSide* side, int k, float u, float 
 // ---- form factors
 
 typedef enum vplFormFactorKind {
-    VPL_FORM_FACTORS_MONTE_CARLO =
-        0,                    // stratified pairs of points with a shadow ray each; near pairs: see `analytic`
-    VPL_FORM_FACTORS_INCENTRE // one pair, the incentres: A_j cos cos / (pi r^2) V, as the document has it
+    // Stratified pairs of points with a shadow ray each; `analytic` decides about the unoccluded part.
+    VPL_FORM_FACTORS_MONTE_CARLO = 0,
+    // One pair of points, the incentres: A_j cos cos / (pi r^2) V, as Hemgren has it.
+    VPL_FORM_FACTORS_INCENTRE
 } vplFormFactorKind;
 
-// What becomes of rows whose sum is not what it can be.
+// How rows of form factors are corrected whose sum is not what it should be.
 typedef enum vplRowSums {
     VPL_ROW_SUMS_USUAL = 0, // clamped for Monte Carlo, kept for incentres
     VPL_ROW_SUMS_KEEP,
-    VPL_ROW_SUMS_CLAMP,    // factors are scaled, alike in both directions, until no row's sum is above 1
-    VPL_ROW_SUMS_NORMALISE // until every row's sum that is not 0 is 1: for closed rooms
+    VPL_ROW_SUMS_CLAMP,    // scale factors, alike in both directions, until no row's sum is above 1
+    VPL_ROW_SUMS_NORMALISE // scale until the sum of every row that is not 0 is 1: for closed rooms
 } vplRowSums;
 
-// Most memory that form factors of all pairs take; above it there is the hierarchy.
+// The largest matrix of form factors; larger scenes need the hierarchy (vplLinks).
 #define VPL_MAX_FORM_FACTOR_BYTES ((int64_t)1 << 30)
 
 typedef struct vplFormFactorDef {
     vplFormFactorKind kind; // default VPL_FORM_FACTORS_MONTE_CARLO
     int samples;            // pairs of points per pair of patches, [1, 1024]; default 4; Monte Carlo only
-    bool
-        analytic; // Monte Carlo: what a pair would exchange with nothing between is known: by the integral along
-    // the edges of near ones, by three points on each side of others; rays only say which share of it
-    // is seen. false: the mean over the pairs of points, as the document has it; default true
+    // Monte Carlo only. true (default): the unoccluded form factor is computed, by the contour integral for
+    // near pairs and by quadrature with three points per side for others, and rays only estimate the visible
+    // fraction. false: the mean over the pairs of points, as Hemgren has it.
+    bool analytic;
     vplRowSums rowSums; // default VPL_ROW_SUMS_USUAL
-    bool bruteForce;    // rays test every triangle: for measuring what the ray tree is worth; default false
+    bool bruteForce;    // rays test every triangle, to measure what the ray tree saves; default false
     uint64_t seed;      // default 0
     vplProgressFcn* progress;
     void* progressUser;
@@ -107,50 +114,55 @@ typedef struct vplFormFactorDef {
 
 vplFormFactorDef vplDefaultFormFactorDef(void);
 
-// F[i][j]: the share of what side i emits that arrives at side j. Read only.
+// F[i][j]: the fraction of what side i emits that arrives at side j. Read only.
 typedef struct vplFormFactors {
     int count;
     const float* rows;    // [i][j]
-    const float* rowSums; // before `rowSums` of the def changed them
+    const float* rowSums; // before vplFormFactorDef.rowSums corrected them
     int64_t rays, analyticPairs;
+    struct vplArena* arena; // owns the arrays
     vplContext* context;
 } vplFormFactors;
 
-// Half of the pairs are computed, the others by A_i F_ij = A_j F_ji. Factors are 0 within a plane, and, but for
-// incentres, never above 1 (X095). Rays are cast only where something can stand between; bruteForce casts all. VPL_LIMIT where all take more than
-// VPL_MAX_FORM_FACTOR_BYTES. Source: Hemgren, 3.3.1.
+// Computes half of the pairs, and the others by A_i F_ij = A_j F_ji. Factors are 0 within a plane and, except
+// for incentres, never above 1. Rays are cast only where a triangle can be in the way; bruteForce casts all.
+// VPL_LIMIT where the matrix takes more than VPL_MAX_FORM_FACTOR_BYTES, VPL_INVALID_ARGUMENT for a wrong def.
+// Source: Hemgren, 3.3.1.
 vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorDef* def,
                                 vplFormFactors** factorsOut);
 
 // NULL is allowed.
 void vplFormFactors_Destroy(vplFormFactors* factors);
 
-// The form factor from triangle a to triangle b with nothing between them, by the integral along their edges; what lies
-// behind the other's plane is cut off. Sides are those from which the corners are counter-clockwise.
-// Source: Hottel and Sarofim, Radiative Transfer, 1967 (after Stokes). Relative error below 1e-11 against closed forms of
-// squares 2^-7 to 10^6 sides apart, of touching and of thin triangles, below 2e-8 for any above 1e-6 (tests/test_triangle_factors.c).
+// The unoccluded form factor from triangle a to triangle b by the contour integral; each triangle is clipped
+// at the other's plane. Corners are counter-clockwise on the sides that exchange light. Relative error below
+// 1e-11 against closed forms of squares 2^-7 to 10^6 sides apart and of touching and thin triangles, below
+// 2e-8 for any factor above 1e-6 (tests/test_triangle_factors.c).
+// Source: Hottel and Sarofim, Radiative Transfer, 1967, chapter 2 (after Stokes).
 double vplTriangleFormFactor(const vplVec3 a[3], const vplVec3 b[3]);
 
-// The form factor from a surface element to a triangle with nothing between them: the share of what leaves the element at
-// `point`, diffuse, that arrives at the side from which the corners are counter-clockwise; that is what the triangle's
-// radiosity is multiplied by in the element's irradiance. What lies behind the element's plane is cut off. `normal` is
-// unit; only its direction counts. In [0, 1]; 0 where the point is behind the triangle's plane, or in it as far as double
-// can tell, where the triangle has no area, and where numbers are not finite.
-// Source: Lambert, Photometria, 1760; Hottel and Sarofim, Radiative Transfer, 1967, chapter 2; Baum, Rushmeier and Winget,
-// SIGGRAPH 1989. Error below 1e-15, or that times the triangle's size over the distance from its edges; from five sizes
-// away, relative error below 1e-13 over the lesser of both cosines (300,000 random cases in quadruple precision).
+// The unoccluded form factor from a surface element to a triangle, in [0, 1]: the fraction of the element's
+// diffuse emission that arrives at the side on which the corners are counter-clockwise, which is also the
+// factor of the triangle's radiosity in the element's irradiance. The triangle is clipped at the element's
+// plane; only the direction of `normal` counts. 0 where the point is behind the triangle's plane, or in it to
+// the precision of double, where the triangle has no area, and where numbers are not finite. Error below
+// 1e-15, or that times the triangle's size over the distance from its edges; from five sizes away, relative
+// error below 1e-13 over the lesser of both cosines (300,000 random cases in quadruple precision).
+// Source: Lambert, Photometria, 1760; Hottel and Sarofim, Radiative Transfer, 1967, chapter 2; Baum,
+// Rushmeier and Winget, Improving Radiosity Solutions through the Use of Analytically Determined
+// Form-Factors, SIGGRAPH 1989.
 double vplPointFormFactor(vplVec3 point, vplVec3 normal, const vplVec3 triangle[3]);
 
-// ---- the hierarchy: form factors of near pairs between patches, of far ones between groups of them
+// ---- the hierarchy: form factors between patches, and between groups of patches that are far apart
 
 typedef struct vplLinkDef {
-    double
-        error; // links are divided until the error of what they carry is below this share of what their receiver
-               // gets of all, (0, 1]; default 0.002
+    // Links are divided until the error of the light that they carry is below this fraction of all that their
+    // receiver gets, (0, 1]; default 0.002.
+    double error;
     int samples; // pairs of points with a shadow ray per link, [1, 1024]; default 4
-    vplRowSums
-        rowSums;   // default VPL_ROW_SUMS_USUAL: 1 for sides from which all of 32 rays meet sides, others
-                   // clamped; links err by some percent, and what is clamped alone grows darker by that
+    // Default VPL_ROW_SUMS_USUAL: normalise sides from which all of 32 rays hit sides, clamp others. Links
+    // err by some percent, and a clamp alone would darken the room by that much.
+    vplRowSums rowSums;
     uint64_t seed; // default 0
     vplProgressFcn* progress;
     void* progressUser;
@@ -159,17 +171,20 @@ typedef struct vplLinkDef {
 
 vplLinkDef vplDefaultLinkDef(void);
 
-// Source: Hanrahan, Salzman and Aupperle, A Rapid Hierarchical Radiosity Algorithm, SIGGRAPH 1991; Smits, Arvo and
-// Greenberg, A Clustering Algorithm for Radiosity in Complex Environments, SIGGRAPH 1994 (groups of surfaces).
+// Source: Hanrahan, Salzman and Aupperle, A Rapid Hierarchical Radiosity Algorithm, SIGGRAPH 1991; Smits,
+// Arvo and Greenberg, A Clustering Algorithm for Radiosity in Complex Environments, SIGGRAPH 1994 (groups of
+// surfaces).
 typedef struct vplLinks {
     int sideCount, groupCount;
     int64_t linkCount, rays;
-    const float*
-        rowSums; // of each side: the sum of its form factors before `rowSums` of the def changed them
+    // The sum of each side's form factors before vplLinkDef.rowSums corrected them.
+    const float* rowSums;
     struct vplLinkTree* tree;
+    struct vplArena* arena; // owns the arrays and the tree
     vplContext* context;
 } vplLinks;
 
+// VPL_INVALID_ARGUMENT for a wrong def.
 vplResult vplLinks_Create(const vplPatchSides* sides, const vplLinkDef* def, vplLinks** linksOut);
 
 // NULL is allowed.
@@ -178,24 +193,27 @@ void vplLinks_Destroy(vplLinks* links);
 // ---- solvers of B = E + rho F B
 
 typedef enum vplSolver {
-    VPL_SOLVER_GAUSS_SEIDEL =
-        0,              // each side uses what the sides before it have just got (the document's Algorithm 1)
-    VPL_SOLVER_JACOBI,  // one sweep is one bounce; the only one of links
-    VPL_SOLVER_SHOOTING // the side with the most unshot power sends it to all others; as many shots as there
-                        // are sides count as a sweep
+    // Each side uses the new values of the sides before it. Source: Hemgren, Algorithm 1.
+    VPL_SOLVER_GAUSS_SEIDEL = 0,
+    // One sweep is one bounce. Links are always solved by Jacobi.
+    VPL_SOLVER_JACOBI,
+    // Progressive refinement: the side with the most unshot power sends it to all others. As many shots as
+    // there are sides count as one sweep.
+    VPL_SOLVER_SHOOTING
 } vplSolver;
 
 enum { VPL_MAX_SWEEPS = 1 << 20 };
 
 typedef struct vplSolveDef {
     vplSolver solver; // default VPL_SOLVER_GAUSS_SEIDEL
-    int iterations;   // sweeps, at most, [0, VPL_MAX_SWEEPS]; default 100
-    double residual;  // ends when the largest change of a sweep is below this share of the largest radiosity,
-                      // [0, 1]; default 1e-4. 0: only where nothing changes, and without a warning
-    bool
-        relaxes; // more sweeps follow in the next frame: to end before `residual` is no warning; default false
-    bool spectrum; // find the stats' spectral radius and sums of rows, which costs some ten sweeps: for light
-                   // that moves, once; default true
+    int iterations;   // the most sweeps, [0, VPL_MAX_SWEEPS]; default 100
+    // Stops when the largest change of a sweep is at most this fraction of the largest radiosity, [0, 1];
+    // default 1e-4. 0: stops only when nothing changes, and never warns.
+    double residual;
+    // The next frame goes on sweeping: stopping before `residual` is no warning. Default false.
+    bool continues;
+    // Compute the stats' spectral radius and row sums, which costs about ten sweeps; default true.
+    bool spectrum;
     vplProgressFcn* progress;
     void* progressUser;
     uint32_t cookie; // set by vplDefaultSolveDef
@@ -204,30 +222,32 @@ typedef struct vplSolveDef {
 vplSolveDef vplDefaultSolveDef(void);
 
 typedef struct vplSolveStats {
-    vplSolver solver; // that was used: for links it is Jacobi's whatever the def says
+    vplSolver solver; // the one used: Jacobi for links, whatever the def says
     int iterations;
-    double residual; // as above, of the last sweep; 0 where there was none
-    double
-        spectralRadius; // of rho F, an estimate from below: errors shrink by this factor in a sweep of Jacobi's; 1
-    // and more: there is no solution; 0: no light is exchanged, or vplSolveDef.spectrum is off
-    double rowSumMin, rowSumMean, rowSumMax; // of F, as used; the mean weighted by area
+    double residual; // of the last sweep, as in vplSolveDef; 0 where there was none
+    // The spectral radius of rho F, estimated from below: one sweep of Jacobi shrinks errors by this factor.
+    // At 1 and above there is no solution. 0: no light is exchanged, or vplSolveDef.spectrum is false.
+    double spectralRadius;
+    double rowSumMin, rowSumMean, rowSumMax; // of F as used; the mean is weighted by area
 } vplSolveStats;
 
-// What is exchanged: one of both.
+// How light is exchanged: by form factors or by links.
 typedef struct vplTransport {
     const vplPatchSides* sides;
     const vplFormFactors* factors; // NULL: by links
-    const vplLinks* links;
+    const vplLinks* links;         // NULL: by form factors
 } vplTransport;
 
-// B starts from radiosity[] as it is: `source` for a solution from nothing, that of the frame before for a light that
-// moved. Both W/m^2, one per side. VPL_LIMIT, with a sentence, where it diverges; then radiosity[] is as it was.
-// It does where changes grow, sweep for sweep, and the spectral radius is above 1.0001; and where radiosities leave the
-// range of float. VPL_SUCCESS with a warning where `iterations` end it before `residual` does. Shooting relies on A_i F_ij = A_j F_ji.
+// Solves for radiosity[], which also holds the start value: `source` for a solution from scratch, the
+// previous frame's solution where light has moved. Both in W/m^2, one per side. VPL_LIMIT where the solution
+// diverges; radiosity[] then keeps its start value. It diverges where changes grow from sweep to sweep and
+// the spectral radius is above 1.0001, or where a radiosity leaves the range of float. VPL_INVALID_ARGUMENT
+// where a value is not finite or the transport does not fit the sides. Ending by `iterations` before
+// `residual` is a success with a warning. Shooting relies on A_i F_ij = A_j F_ji.
 vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* def, const vplRgb* source,
                             vplRgb* radiosity, vplSolveStats* statsOut);
 
-// What arrives at each side, W/m^2: F B.
+// The irradiance of each side, W/m^2: F B.
 vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radiosity, vplRgb* irradianceOut);
 
 // The residual of each side, W/m^2: source + rho F B - B.
@@ -236,96 +256,110 @@ vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* sour
 
 // ---- from patches to pictures
 
-// How sides that meet at a vertex are weighted there.
+// The weights of the sides that meet at a vertex.
 typedef enum vplVertexWeight {
-    VPL_VERTEX_WEIGHT_ANGLE = 0, // by the angle of their corner, times the share of their cells that is open
-    VPL_VERTEX_WEIGHT_AREA,      // by their area, times that share
-    VPL_VERTEX_WEIGHT_EQUAL      // all alike, closed cells and all: as the document has it
+    VPL_VERTEX_WEIGHT_ANGLE = 0, // the angle of their corner, times the fraction of their cells that is open
+    VPL_VERTEX_WEIGHT_AREA,      // the area of their open cells
+    VPL_VERTEX_WEIGHT_EQUAL      // equal weights, whether cells are open or not, as Hemgren has it
 } vplVertexWeight;
 
-// Triangles to be drawn instead of the geometry's: the patches, cut where vertices of others lie on their edges, so
-// that nothing shines through and light is continuous (X100). Vertices are shared by patches in about one plane, or of
-// one smooth object.
+// The triangles that are drawn: the patches, cut where vertices of others lie on their edges, so that there
+// are no cracks and light is continuous. Patches share a vertex if their planes are within 20 degrees or they
+// belong to one smooth object.
 typedef struct vplPatchMesh {
     const vplPatchSides* sides;
     const vplVec3* positions; // metres
-    const vplVec3* normals;   // unit: the mean of the patches around, of shading normals on smooth objects
-    const uint32_t* indices;  // three per triangle
-    const int* patchOf;       // of each triangle
-    const uint8_t* edges;     // of each triangle: bit k: from corner k on runs an edge of the patch, no cut
+    const vplVec3*
+        normals; // unit: the mean over the patches at a vertex, of shading normals on smooth objects
+    const uint32_t* indices; // three per triangle
+    const int* patchOf;      // of each triangle
+    const uint8_t*
+        edges; // of each triangle: bit k: the edge from corner k on is an edge of the patch, no cut
     int vertexCount, triangleCount;
-    int hangingVertices;             // places where some patch's edge was cut
+    int hangingVertices;             // positions at which some patch's edge was cut
     struct vplPatchesAround* around; // the patches at each vertex
+    struct vplArena* arena;          // owns the arrays
     vplContext* context;
 } vplPatchMesh;
 
-// Edges are cut where the middles that bisection makes are vertices of other patches. Vertices of the scene that lie
-// elsewhere on another triangle's edge stay as the scene has them: 46 of the conference room, 802 of Sibenik, 4 of
-// Sponza, none of the boxes.
+// Edges are cut where bisection put another patch's vertex at their midpoint. T-vertices that the scene
+// itself has stay: 46 in the conference room, 802 in Sibenik, 4 in Sponza.
+// Source: Baum, Mann, Smith and Winget, Making Radiosity Usable, SIGGRAPH 1991.
 vplResult vplPatchMesh_Create(const vplPatchSides* sides, vplPatchMesh** meshOut);
 
 // NULL is allowed.
 void vplPatchMesh_Destroy(vplPatchMesh* mesh);
 
-// Means at the vertices of one value per side: [vertex][front, back]. Sides that are not among `sides` do not count, so
-// that what no light reaches darkens nothing (X101); 0 where none does, which is at no corner of a side that is among
-// them. A vertex on the edge of a patch has its share, too. `values` and the result in any unit; finite.
+// Means at the vertices of one finite value per side: [vertex][front, back], in the unit of `values`. Sides
+// that light does not reach are ignored, so that they do not darken others; a vertex without any side gets 0.
+// A patch whose edge was cut at a vertex counts there, too. Source: Hemgren, 4.
 vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                    vplRgb* vertexValuesOut);
 
-// Irradiance at the vertices from all that radiosities send there, found by `rays` rays in [1, 65536] from each: unlike
-// means of patches around it, it knows that a corner is dark, and its patches need not. Where sides around a vertex end,
-// at a wall or under a box, the place is moved a 32nd of the way into them. `radiosity`, W/m^2, one per side; out:
-// [vertex][front, back], W/m^2, with the standard deviation of what the rays meet over sqrt(rays), or less; 0 at
-// vertices of no side. raysOut, if given, grows by what it took. Source: Reichert, A Two-Pass Radiosity Method Driven by
-// Lights and Viewer Position, Cornell 1992.
-vplResult vplPatchMesh_Gather(const vplPatchMesh* mesh, const vplRgb* radiosity, int rays, uint64_t seed,
-                              vplRgb* vertexIrradianceOut, vplProgressFcn* progress, void* user,
-                              int64_t* raysOut);
+typedef struct vplVertexGather {
+    const vplRgb* radiosity; // W/m^2, one per side
+    int rays;                // from each vertex, [1, 65536]
+    uint64_t seed;
+    vplProgressFcn* progress;
+    void* progressUser;
+} vplVertexGather;
 
-// Moves such means, not below 0, so that what interpolation shows of each side comes nearer to its value, `rounds` times.
+// Gathers irradiance at the vertices by rays to the sides: unlike an interpolated mean, it knows dark corners
+// inside patches. Where the sides at a vertex end, at a wall or under a box, rays start 1/32 of the way into
+// them. Out: [vertex][front, back], W/m^2, 0 where a vertex has no side; its standard deviation is at most
+// that of what the rays hit, over sqrt(rays). *raysOut grows by the rays cast; it may be NULL.
+// Source: Reichert, A Two-Pass Radiosity Method Driven by Lights and Viewer Position, Cornell 1992.
+vplResult vplPatchMesh_Gather(const vplPatchMesh* mesh, const vplVertexGather* gather,
+                              vplRgb* vertexIrradianceOut, int64_t* raysOut);
+
+// Sharpens interpolated values: `rounds` times, changes vertex values, not below 0, so that the mean of the
+// interpolated values over each side comes nearer to the side's own value.
+// Source: van Cittert, Zum Einfluss der Spaltbreite auf die Intensitaetsverteilung in Spektrallinien II,
+// 1931.
 vplResult vplPatchMesh_Sharpen(const vplPatchMesh* mesh, vplVertexWeight weight, const vplRgb* values,
                                int rounds, vplRgb* vertexValues);
 
-// What is drawn on the patches.
 typedef struct vplPatchDraw {
     const vplPatchMesh* mesh;
-    const vplRgb*
-        vertexValues; // [vertex][front, back], interpolated over triangles (Gouraud); NULL: `values`, flat
-    const vplRgb* values; // one per side; sides without: 0
-    bool reflect;         // values are irradiance: multiplied by the patch's reflectance / pi
-    bool outlines;        // edges of patches are drawn dark
+    const vplRgb* vertexValues; // [vertex][front, back], interpolated (Gouraud); NULL: draw `values` flat
+    const vplRgb* values;       // one per side
+    bool reflect;               // values are irradiance: multiply by the patch's reflectance / pi
+    bool outlines;              // draw edges of patches dark
 } vplPatchDraw;
 
-// Adds to an image: one draw per side of all triangles, fronts first. Sides that are not among the mesh's hide what is
-// behind them: flat they are black, interpolated they show what their corners have from the sides beside them. `clip` are x, y, z, w of the mesh's vertices in clip space (vplView_ToClip). Within a
-// triangle all values lie between those of its corners. Cancelled, it has added to a part of the image.
+// Adds the mesh to an image: one draw of all fronts, one of all backs. Sides that light does not reach hide
+// what is behind them; drawn flat they are black, interpolated they show the values at their corners. `clip`:
+// x, y, z, w of the mesh's vertices in clip space (vplView_ToClip). Values within a triangle lie between
+// those of its corners. If cancelled, part of the image is drawn.
 // Source: Hemgren, 4.
 vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplProgressFcn* progress,
                          void* user, vplImage* image, vplRasterStats* statsOut);
 
-// Writes the mesh as binary little-endian PLY with a colour per vertex: all fronts, and the backs, turned round, that
-// are among `sides`. W/m^2 irradiance, [vertex][front, back]; colours are linear radiosity rho E as float r, g, b, and
-// 8-bit sRGB red, green, blue of it times `scale`, >= 0. Vertices are written twice where reflectances meet.
+// Writes the mesh as binary little-endian PLY with a colour per vertex: all fronts, and the backs that light
+// reaches, with reversed orientation. `vertexIrradiance`: W/m^2, [vertex][front, back]. Colours are linear
+// radiosity rho E as float r, g, b, and rho E times `scale`, >= 0, as 8-bit sRGB red, green, blue. A vertex
+// is written once per reflectance.
 vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIrradiance, float scale,
                                 const char* path);
 
-// ---- where more patches are wanted
+// ---- adaptive subdivision
 
 typedef struct vplPatchPriorityDef {
     const vplRgb* irradiance;       // W/m^2, indirect, one per side
-    const vplRgb* vertexIrradiance; // the same at the mesh's vertices: [vertex][front, back]
-    const vplRgb* vertexDirect;     // W/m^2, direct irradiance there, of lamps, too; NULL: not known
-    const float* directSpread; // standard deviation of direct irradiance over each side, W/m^2: large where a
-                               // shadow's boundary crosses it; NULL: not known
-    uint32_t cookie;           // set by vplDefaultPatchPriorityDef
+    const vplRgb* vertexIrradiance; // W/m^2, indirect, at the mesh's vertices: [vertex][front, back]
+    const vplRgb* vertexDirect;     // W/m^2, direct, at the vertices, from area lights, too; NULL: unknown
+    // Standard deviation of direct irradiance over each side, W/m^2, which is large across shadow boundaries;
+    // NULL: unknown.
+    const float* directSpread;
+    uint32_t cookie; // set by vplDefaultPatchPriorityDef
 } vplPatchPriorityDef;
 
 vplPatchPriorityDef vplDefaultPatchPriorityDef(void);
 
-// How much is to be won by bisecting each patch, for vplPatches_Refine: by the gradient of light across it, by contact
-// with another surface, by a shadow's boundary. Contact shows only if light at vertices was gathered there. Comparable
-// among patches of one call only.
+// The refinement priority of each patch, for vplPatches_Refine: how much its bisection is expected to lower
+// the error, judged by the gradient of light across it, by contact with other surfaces and by shadow
+// boundaries. Contact shows only in vertex irradiance from vplPatchMesh_Gather. Priorities are comparable
+// within one call only. VPL_INVALID_ARGUMENT for a wrong cookie or missing irradiance.
 vplResult vplFindPatchPriority(const vplPatchMesh* mesh, const vplPatchPriorityDef* def, float* priorityOut);
 
 #ifdef __cplusplus

@@ -5,15 +5,15 @@
 
 enum { ALIGNMENT = 64 };
 
-// Precedes each allocation, padded so that what follows is aligned.
-typedef union Node {
-    union Node* older;
-    char padding[ALIGNMENT];
-} Node;
+// Precedes each allocation; as long as the alignment, so that the memory behind it is aligned.
+typedef struct Block {
+    _Alignas(ALIGNMENT) struct Block* older;
+    struct Block* newer;
+} Block;
 
 struct vplArena {
     vplContext* context;
-    Node* newest;
+    Block* newest;
     bool failed;
 };
 
@@ -29,9 +29,9 @@ vplArena* vplArena_Create(vplContext* context)
 void vplArena_Destroy(vplArena* arena)
 {
     if (arena != NULL) {
-        for (Node *node = arena->newest, *older; node != NULL; node = older) {
-            older = node->older;
-            vplFree(arena->context, node);
+        for (Block *block = arena->newest, *older; block != NULL; block = older) {
+            older = block->older;
+            vplFree(arena->context, block);
         }
         vplFree(arena->context, arena);
     }
@@ -43,26 +43,84 @@ void* vplArena_Alloc(vplArena* arena, size_t count, size_t size)
         return NULL;
     }
     size_t bytes;
-    // On overflow vplAlloc is asked for the impossible, and logs it.
     const bool fits =
-        !__builtin_mul_overflow(count, size, &bytes) && !__builtin_add_overflow(bytes, sizeof(Node), &bytes);
-    Node* node = vplAlloc(arena->context, fits ? bytes : SIZE_MAX, 1);
-    if (node == NULL) {
+        !__builtin_mul_overflow(count, size, &bytes) && !__builtin_add_overflow(bytes, sizeof(Block), &bytes);
+    Block* block = vplAlloc(arena->context, fits ? bytes : SIZE_MAX, 1); // SIZE_MAX fails and is logged
+    if (block == NULL) {
         arena->failed = true;
         return NULL;
     }
-    node->older = arena->newest;
-    arena->newest = node;
-    return node + 1;
+    *block = (Block){.older = arena->newest};
+    if (arena->newest != NULL) {
+        arena->newest->newer = block;
+    }
+    arena->newest = block;
+    return block + 1;
 }
 
 void* vplArena_AllocZero(vplArena* arena, size_t count, size_t size)
 {
     void* memory = vplArena_Alloc(arena, count, size);
-    if (memory != NULL) {
-        memset(memory, 0, count * size);
+    return memory != NULL ? memset(memory, 0, count * size) : NULL;
+}
+
+void* vplArena_Copy(vplArena* arena, const void* elements, size_t count, size_t size)
+{
+    void* copy = vplArena_Alloc(arena, count, size);
+    return copy != NULL && count > 0 ? memcpy(copy, elements, count * size) : copy;
+}
+
+char* vplArena_CopyString(vplArena* arena, const char* text)
+{
+    return vplArena_Copy(arena, text, strlen(text) + 1, 1);
+}
+
+vplResult vplArena_Reserve(vplArena* arena, void* array, size_t* capacity, size_t count, size_t size)
+{
+    if (count <= *capacity) {
+        return VPL_SUCCESS;
     }
-    return memory;
+    const size_t wanted = vplGrownCapacity(*capacity, count);
+    void *old, *grown = vplArena_Alloc(arena, wanted, size);
+    if (grown == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    memcpy(&old, array, sizeof old); // `array` is the address of a pointer of any type
+    if (old != NULL) {
+        memcpy(grown, old, *capacity * size);
+        vplArena_Free(arena, old);
+    }
+    memcpy(array, &grown, sizeof grown);
+    *capacity = wanted;
+    return VPL_SUCCESS;
+}
+
+void vplArena_Free(vplArena* arena, void* memory)
+{
+    if (memory != NULL) {
+        Block* block = (Block*)memory - 1;
+        *(block->newer != NULL ? &block->newer->older : &arena->newest) = block->older;
+        if (block->older != NULL) {
+            block->older->newer = block->newer;
+        }
+        vplFree(arena->context, block);
+    }
+}
+
+void vplArena_Absorb(vplArena* arena, vplArena* source)
+{
+    Block* oldest = source->newest;
+    if (oldest != NULL) {
+        while (oldest->older != NULL) {
+            oldest = oldest->older;
+        }
+        oldest->older = arena->newest;
+        if (arena->newest != NULL) {
+            arena->newest->newer = oldest;
+        }
+        arena->newest = source->newest;
+    }
+    vplFree(source->context, source);
 }
 
 vplResult vplArena_Check(const vplArena* arena)

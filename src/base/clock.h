@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Time for statistics: of the wall clock and of the processors. Never for results.
+// Wall-clock and processor time, for statistics only: no result may depend on them.
 #ifndef VPL_BASE_CLOCK_H
 #define VPL_BASE_CLOCK_H
 
 #include <time.h>
 
-static inline double vplClockMs(void)
+static inline double vplReadClockMs(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+static inline double vplClockMs(void)
+{
+    return vplReadClockMs(CLOCK_MONOTONIC);
 }
 
 // Processor time of all threads of the process.
 static inline double vplCpuMs(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+    return vplReadClockMs(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 #endif

@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Reads until the end rather than trusting a size, so that pipes and /dev/stdin work.
+// Reads to the end of the file: pipes and /dev/stdin have no size.
 static vplResult readAll(vplContext* context, const char* path, int fd, vplByteBuffer* buffer)
 {
     char chunk[1 << 16];
@@ -37,15 +37,13 @@ vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, si
     if (fd < 0) {
         return vplFail(context, VPL_FILE_ERROR, "%s: cannot open: %s", path, strerror(errno));
     }
-    vplByteBuffer buffer = {context, NULL, 0, 0, false};
+    vplByteBuffer buffer = {.context = context};
     struct stat info;
-    vplResult result = VPL_SUCCESS;
-    if (fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) { // one allocation for the usual case
-        result = vplReserve(context, &buffer.bytes, &buffer.capacity, (size_t)info.st_size + 1, 1);
+    if (fstat(fd, &info) == 0 && S_ISREG(info.st_mode)) { // one allocation for a regular file
+        buffer.failed =
+            vplReserve(context, &buffer.bytes, &buffer.capacity, (size_t)info.st_size + 1, 1) != VPL_SUCCESS;
     }
-    if (result == VPL_SUCCESS) {
-        result = readAll(context, path, fd, &buffer);
-    }
+    vplResult result = buffer.failed ? VPL_OUT_OF_MEMORY : readAll(context, path, fd, &buffer);
     close(fd);
     size_t size = buffer.size;
     if (result == VPL_SUCCESS) {
@@ -85,21 +83,23 @@ char* vplPathBeside(vplContext* context, const char* from, const char* name, siz
     return path;
 }
 
-static bool writeAll(int fd, const void* bytes, size_t size)
+// Writes and closes; on failure errno tells why.
+static bool writeAndClose(int fd, const void* bytes, size_t size, bool flush)
 {
     const char* at = bytes;
-    while (size > 0) {
+    bool written = true;
+    while (written && size > 0) {
         ssize_t put = write(fd, at, size);
-        if (put < 0 && errno == EINTR) {
-            continue;
-        }
-        if (put <= 0) {
-            return false;
-        }
-        at += put;
-        size -= (size_t)put;
+        written = put > 0 || (put < 0 && errno == EINTR);
+        at += put > 0 ? put : 0;
+        size -= put > 0 ? (size_t)put : 0;
     }
-    return true;
+    // A full disk may show only when the pages are flushed.
+    written = written && (!flush || fsync(fd) == 0 || errno == EINVAL);
+    const int cause = errno;
+    const bool closed = close(fd) == 0;
+    errno = written ? errno : cause;
+    return written && closed;
 }
 
 static vplResult writeDirectly(vplContext* context, const char* path, const void* bytes, size_t size)
@@ -108,24 +108,20 @@ static vplResult writeDirectly(vplContext* context, const char* path, const void
     if (fd < 0) {
         return vplFail(context, VPL_FILE_ERROR, "%s: cannot open for writing: %s", path, strerror(errno));
     }
-    bool written = writeAll(fd, bytes, size);
-    int cause = errno;
-    if (close(fd) != 0 && written) {
-        written = false;
-        cause = errno;
-    }
-    return written ? VPL_SUCCESS
-                   : vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(cause));
+    return writeAndClose(fd, bytes, size, false)
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(errno));
 }
 
-// A new file beside `path`, its name written to `name`. Unlike mkstemp this lets the umask decide the mode.
+// Opens a new file beside `path` and writes its name to `name`. The umask decides its mode, unlike with
+// mkstemp.
 static int openBeside(const char* path, char* name, size_t size)
 {
     int fd = -1;
-    for (int attempt = 0; attempt < 100; attempt++) {
+    for (int attempt = 0; attempt < 100 && fd < 0; attempt++) {
         snprintf(name, size, "%s.%ld-%d.tmp", path, (long)getpid(), attempt);
         fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST) {
+        if (fd < 0 && errno != EEXIST) {
             break;
         }
     }
@@ -134,32 +130,18 @@ static int openBeside(const char* path, char* name, size_t size)
 
 static vplResult writeBeside(vplContext* context, const char* path, const void* bytes, size_t size)
 {
-    size_t room = strlen(path) + 40;
-    char* temporary = vplAlloc(context, room, 1);
+    size_t capacity = strlen(path) + 40;
+    char* temporary = vplAlloc(context, capacity, 1);
     if (temporary == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     vplResult result = VPL_SUCCESS;
-    int fd = openBeside(path, temporary, room);
+    int fd = openBeside(path, temporary, capacity);
     if (fd < 0) {
         result = vplFail(context, VPL_FILE_ERROR, "%s: cannot create: %s", path, strerror(errno));
-        vplFree(context, temporary);
-        return result;
-    }
-    // fsync: a full disk may only be noticed when the pages really go out.
-    bool written = writeAll(fd, bytes, size) && (fsync(fd) == 0 || errno == EINVAL);
-    int cause = errno;
-    if (close(fd) != 0 && written) {
-        written = false;
-        cause = errno;
-    }
-    if (written && rename(temporary, path) != 0) {
-        written = false;
-        cause = errno;
-    }
-    if (!written) {
+    } else if (!writeAndClose(fd, bytes, size, true) || rename(temporary, path) != 0) {
+        result = vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(errno));
         unlink(temporary);
-        result = vplFail(context, VPL_FILE_ERROR, "%s: cannot write: %s", path, strerror(cause));
     }
     vplFree(context, temporary);
     return result;
@@ -175,7 +157,7 @@ vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes,
     if (exists && !S_ISREG(info.st_mode)) {
         return writeDirectly(context, path, bytes, size);
     }
-    char* resolved = exists ? realpath(path, NULL) : NULL; // renaming must not replace a symbolic link
+    char* resolved = exists ? realpath(path, NULL) : NULL; // keep symbolic links: rename their target
     vplResult result = writeBeside(context, resolved ? resolved : path, bytes, size);
     free(resolved);
     return result;

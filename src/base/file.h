@@ -8,17 +8,17 @@
 // Reads a whole file and adds a 0 byte behind it. *bytesOut is freed with vplFree.
 vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut);
 
-// True if there is a regular file of this name: no folder, device or pipe.
+// True if `path` names a regular file, not a folder, device or pipe.
 bool vplIsRegularFile(const char* path);
 
-// The path of `name` (length bytes) as seen from the folder of the file `from`: absolute names stay as they are.
+// Resolves `name` (length bytes) relative to the folder of the file `from`; absolute names stay as they are.
 // Freed with vplFree; NULL when out of memory.
 char* vplPathBeside(vplContext* context, const char* from, const char* name, size_t length);
 
 // The part of a path behind its last '/'.
 const char* vplBaseName(const char* path);
 
-// A buffer that grows as an encoder appends to it. Start with {context}.
+// A growing buffer of bytes, for encoders. Initialise with {.context = context}.
 typedef struct vplByteBuffer {
     vplContext* context;
     uint8_t* bytes;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Eight interleaved multiply-xor lanes (so that a compiler can run them side by side), folded with the
-// finaliser of Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
+// Eight interleaved multiply-xor lanes, which compilers vectorise, folded by the finaliser of
+// Steele, Lea and Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
 #include "base/hash.h"
 
 #include <string.h>
@@ -39,7 +39,7 @@ uint64_t vplHashWords(uint64_t state, const uint32_t* words, size_t count)
 
 uint64_t vplHashFloats(uint64_t state, const float* values, size_t count)
 {
-    // In pieces, so that the bits are read through memcpy and no second copy of an image is needed.
+    // Copies 4 KB at a time: memcpy reinterprets the floats without a second copy of a whole image.
     uint32_t words[1024];
     for (size_t i = 0; i < count; i += 1024) {
         size_t n = count - i < 1024 ? count - i : 1024;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// 64-bit hashes of words, the same on machines of either byte order. For goldens, not for security.
+// 64-bit hashes of words, the same for either byte order. They identify pictures and are not cryptographic.
 #ifndef VPL_BASE_HASH_H
 #define VPL_BASE_HASH_H
 
@@ -8,7 +8,7 @@
 
 enum { VPL_HASH_LANES = 8 };
 
-// Hash of `count` 32-bit words, continuing from `state` (0 to start).
+// Hash of `count` 32-bit words. `state` is 0, or the hash of what came before.
 uint64_t vplHashWords(uint64_t state, const uint32_t* words, size_t count);
 
 // Hash of the bit patterns of floats.

@@ -16,7 +16,7 @@ bool vplHasIsa(vplIsa isa)
 #if defined(__x86_64__)
     case VPL_ISA_AVX2:
         return __builtin_cpu_supports("avx2");
-    case VPL_ISA_AVX512: // the subset every AVX-512 server and Zen 4 has
+    case VPL_ISA_AVX512: // the subset common to AVX-512 servers and Zen 4
         return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
 #endif

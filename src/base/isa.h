@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kernels are files named *_kernel.c, compiled once per instruction set. Each defines its functions through
-// VPL_KERNEL(name), and a table indexed by vplIsa picks one at run time.
+// Instruction sets and kernels. A file named *_kernel.c is compiled once per instruction set. It defines its
+// functions through VPL_KERNEL(name), and a table indexed by vplIsa picks a variant at run time.
 #ifndef VPL_BASE_ISA_H
 #define VPL_BASE_ISA_H
 
@@ -15,9 +15,9 @@ bool vplHasIsa(vplIsa isa);
 #define VPL_KERNEL(name) VPL_JOIN(name, VPL_KERNEL_ISA)
 #endif
 
-// Declares the variants of a kernel and builds its table: VPL_KERNEL_TABLE(myTable, MyFcn, myKernel);
-// The Makefile compiles all four for x86-64; elsewhere `scalar` and the baseline, called sse2, are all there is.
-// VPL_NARROW_KERNEL_TABLE: for AVX-512, too, takes the kernel of AVX2.
+// Declares the variants of a kernel and defines their table: VPL_KERNEL_TABLE(myTable, MyFcn, myKernel);
+// x86-64 has all four variants; other machines have `scalar` and their baseline, which is called sse2.
+// VPL_NARROW_KERNEL_TABLE uses the AVX2 variant for AVX-512, too.
 #if defined(__x86_64__)
 #define VPL_KERNEL_TABLE(table, type, name)                                                                  \
     extern type name##_scalar, name##_sse2, name##_avx2, name##_avx512;                                      \

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Every block is preceded by its own size, so that callers free with one pointer while the allocator still
-// gets the sizes that Lua's contract promises it.
+// Each block is preceded by its size: callers free it by its pointer alone, and the allocator still gets the
+// size that its contract (vplAllocFcn) promises.
 #include "base/context.h"
 
 #include <string.h>
 
-// Wide enough for any vector load and for one cache line.
+// One cache line, and the widest vector.
 enum { ALIGNMENT = 64 };
 
 typedef struct Header {
-    void* raw;    // what the allocator returned
-    size_t total; // what it was asked for
+    void* raw;    // from the allocator
+    size_t total; // bytes asked from it
 } Header;
 
 static Header* headerOf(void* memory)
@@ -64,14 +64,18 @@ void vplFree(vplContext* context, void* memory)
     }
 }
 
+size_t vplGrownCapacity(size_t capacity, size_t count)
+{
+    const size_t grown = capacity + capacity / 2 > count ? capacity + capacity / 2 : count;
+    return grown < 8 ? 8 : grown;
+}
+
 vplResult vplReserve(vplContext* context, void* array, size_t* capacity, size_t count, size_t size)
 {
     if (count <= *capacity) {
         return VPL_SUCCESS;
     }
-    size_t wanted = *capacity + *capacity / 2;
-    wanted = wanted < count ? count : wanted;
-    wanted = wanted < 8 ? 8 : wanted;
+    const size_t wanted = vplGrownCapacity(*capacity, count);
     void* grown = vplAlloc(context, wanted, size);
     if (grown == NULL) {
         return VPL_OUT_OF_MEMORY;
@@ -85,14 +89,4 @@ vplResult vplReserve(vplContext* context, void* array, size_t* capacity, size_t 
     memcpy(array, &grown, sizeof grown);
     *capacity = wanted;
     return VPL_SUCCESS;
-}
-
-char* vplCopyString(vplContext* context, const char* text)
-{
-    size_t length = strlen(text) + 1;
-    char* copy = vplAlloc(context, length, 1);
-    if (copy != NULL) {
-        memcpy(copy, text, length);
-    }
-    return copy;
 }

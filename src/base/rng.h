@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Counter-based random numbers: a pure function of (seed, stream, index), so any thread can draw any of them.
-// Based on: Salmon, Moraes, Dror and Shaw, Parallel Random Numbers: As Easy as 1, 2, 3, SC 2011: Philox 4x32
-// with its ten rounds and published constants.
+// Based on: Salmon, Moraes, Dror and Shaw, Parallel Random Numbers: As Easy as 1, 2, 3, SC 2011 (Philox 4x32,
+// ten rounds, the published constants).
 #ifndef VPL_BASE_RNG_H
 #define VPL_BASE_RNG_H
 
@@ -27,14 +27,14 @@ static inline vplRandom4 vplPhilox(const uint32_t counter[4], uint32_t key0, uin
     return (vplRandom4){{c0, c1, c2, c3}};
 }
 
-// Four random words of place `index` in stream `stream` of seed `seed`.
+// Random words number `index` of stream `stream` for `seed`.
 static inline vplRandom4 vplRandomAt(uint64_t seed, uint32_t stream, uint64_t index)
 {
     const uint32_t counter[4] = {(uint32_t)index, (uint32_t)(index >> 32), stream, 0};
     return vplPhilox(counter, (uint32_t)seed, (uint32_t)(seed >> 32));
 }
 
-// Uniform in [0, 1): 24 bits, so the largest is 1 - 2^-24 and never rounds to 1.
+// Uniform in [0, 1): 24 bits fit a float exactly, so the largest is 1 - 2^-24.
 static inline float vplUnitFloat(uint32_t word)
 {
     return (float)(word >> 8) * 0x1p-24f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tasks run in any order on any worker, so no result may depend on either: each task writes its own slots,
-// and sums over tasks are taken afterwards, in task order.
+// Tasks run in any order on any worker, and no result may depend on either: each task writes to its own
+// slots, and sums over tasks are taken afterwards, in task order.
 #include "base/context.h"
 
 #include <stdatomic.h>
@@ -12,6 +12,9 @@
 void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data)
 {
     int workers = context->workerCount < count ? context->workerCount : count;
+#ifndef _OPENMP
+    workers = context->def.parallelFor != NULL ? workers : 1;
+#endif
     if (workers <= 1) {
         for (int i = 0; i < count; i++) {
             task(data, i, 0);
@@ -27,10 +30,6 @@ void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data
     for (int i = 0; i < count; i++) {
         task(data, i, omp_get_thread_num());
     }
-#else
-    for (int i = 0; i < count; i++) {
-        task(data, i, 0);
-    }
 #endif
 }
 
@@ -45,7 +44,7 @@ typedef struct Watched {
     atomic_bool cancelled;
 } Watched;
 
-// Worker 0 is the calling thread, so it alone asks the host.
+// Worker 0 is the calling thread, so it alone calls `progress`.
 static void watchedTask(void* data, int index, int worker)
 {
     Watched* w = data;
@@ -62,7 +61,7 @@ static void watchedTask(void* data, int index, int worker)
 vplResult vplParallelForProgress(vplContext* context, int count, vplTaskFcn* task, void* data,
                                  vplProgressFcn* progress, void* user, double from, double to)
 {
-    // A host's own scheduler need not run worker 0 on the calling thread: it is asked before and after only.
+    // A host's scheduler may run worker 0 on any thread: `progress` is called before and after only.
     bool hosted = context->def.parallelFor != NULL && context->workerCount > 1;
     if (progress == NULL || hosted) {
         if (progress != NULL && !progress(user, from)) {

@@ -17,8 +17,8 @@ static vplResult findSides(const vplScene* scene, const vplPatches* patches, vpl
     def.emitters = emitters;
     def.emitterCount = count;
     if (vplScene_GetCameraCount(scene) > 0) {
-        def.eyes = &vplScene_GetCamera(scene, 0)->eye;
-        def.eyeCount = 1;
+        def.viewpoints = &vplScene_GetCamera(scene, 0)->eye;
+        def.viewpointCount = 1;
     }
     vplResult result = vplPatchSides_Create(patches, &def, sidesOut);
     free(emitters);

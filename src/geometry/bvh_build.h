@@ -1,99 +1,74 @@
 // SPDX-License-Identifier: MIT
-// A hierarchy while it is built: triangles are split into a binary tree, which becomes the wide one.
+// The hierarchy while it is built: ranges of triangles are split into a binary tree, which is collapsed into the wide
+// one.
 #ifndef VPL_GEOMETRY_BVH_BUILD_H
 #define VPL_GEOMETRY_BVH_BUILD_H
 
+#include "base/arena.h"
+#include "geometry/box.h"
 #include "geometry/bvh.h"
-#include "geometry/four.h"
-
-#include <math.h>
 
 enum {
     VPL_BINARY_LEAF = 2,   // ranges of up to this many triangles are not split
-    VPL_BUILD_TASKS = 64,  // subtrees that are built side by side
-    VPL_TASK_LEAST = 1024, // triangles; smaller ranges make no tasks of their own
-    VPL_BUILD_CHUNK = 4096 // triangles that one task boxes, and blocks that one task fills
+    VPL_BUILD_CHUNK = 4096 // triangles that one task bounds, and blocks that one task fills
 };
 
-// The last of each four is ignored.
-typedef struct vplBuildBox {
-    vplFour low, high;
-} vplBuildBox;
-
-// A part of the items, with the boxes of their boxes and of their centres.
+// Some of the items, with the bounds of their boxes and of the centres of these.
 typedef struct vplBuildRange {
-    vplBuildBox box, centres;
+    vplBox box, centres;
     int first, count;
 } vplBuildRange;
 
-// Expected work for a binary subtree that becomes at most 1 .. 8 children of some wide node, by this many less one.
+// Expected cost of a binary subtree that becomes at most 1 .. 8 children of one wide node: cost[children - 1].
 typedef struct vplBuildCosts {
     float cost[VPL_BVH_WIDTH];
 } vplBuildCosts;
 
-// A node of the binary tree, with the ways in which it can become part of a wide one.
+// A node of the binary tree, with the cheapest ways to collapse it.
 typedef struct vplBinary {
-    vplBuildBox box;
+    vplBox box;
     int first, count;
-    int left, right;            // -1: none
-    float promise;              // what any-hit rays expect of it: see vplFindCosts
-    float surface;              // square metres of its triangles, in units of the builder
-    int8_t take[VPL_BVH_WIDTH]; // of at most i + 1 children, so many are the left half's; 0: as of at most i
-    int8_t wide;                // the same of its own eight, should it be a wide node
+    int left, right;   // -1: none
+    float hitsPerCost; // expected hits of any-hit rays for the work spent on this subtree
+    float surface;     // area of its triangles, scaled as vplHalfSurface
+    int8_t
+        leftShare[VPL_BVH_WIDTH]; // of at most i + 1 children, the left half's; 0: as with at most i children
+    int8_t wideShare;             // the left half's share of its own eight children, should it be a wide node
     bool isBlock;
 } vplBinary;
 
-typedef struct vplBuilder {
+typedef struct vplBvhBuilder {
     const vplGeometry* geometry;
-    vplBuildBox* items; // of triangles; high[3] is the area in square metres
-    int32_t* ids;       // of the same triangles
+    vplArena* scratch; // owns the arrays below
+    vplBox* items;     // bounds of triangles; high[3] is the area in square metres
+    int32_t* ids;      // of the same triangles
     vplBinary* binary;
-    bool alone; // on one thread
-    float unit; // 1 / the longest side of all: areas are taken in this unit, and stay far from overflow
-} vplBuilder;
+    float scale; // 1 / the longest side of the scene: keeps areas far from overflow
+} vplBvhBuilder;
 
-static inline vplBuildBox vplNoBox(void)
+// Half the surface area of a scaled box.
+static inline float vplHalfSurface(const vplBvhBuilder* b, const vplBox* box)
 {
-    return (vplBuildBox){vplFour_Of(INFINITY), vplFour_Of(-INFINITY)};
-}
-
-static inline vplBuildBox vplJoinBoxes(vplBuildBox a, vplBuildBox b)
-{
-    return (vplBuildBox){vplFour_Min(a.low, b.low), vplFour_Max(a.high, b.high)};
-}
-
-// Half the surface.
-static inline float vplHalfSurface(const vplBuilder* b, const vplBuildBox* box)
-{
-    const vplFour side = box->high * b->unit - box->low * b->unit;
+    const vplFour side = box->high * b->scale - box->low * b->scale;
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 
-static inline vplFour vplCentre(const vplBuildBox* item)
-{
-    return 0.5f * item->low + 0.5f * item->high;
-}
+// Fills items and ids with the triangles that can be hit.
+vplResult vplCollectItems(vplBvhBuilder* builder, vplBuildRange* allOut);
 
-// Items first .. first + count - 1 with the boxes around them.
-vplBuildRange vplMakeRange(const vplBuilder* builder, int first, int count);
+// Splits a range where the surface area heuristic is least; in halves where no plane separates centres or the tree gets
+// too deep. Reorders the items of the range.
+void vplSplitRange(const vplBvhBuilder* builder, const vplBuildRange* range, int depth,
+                   vplBuildRange halvesOut[2]);
 
-// Runs tasks on all workers, or on this one.
-void vplBuilder_Run(const vplBuilder* builder, int count, vplTaskFcn* task, void* data);
+// Decides how a node collapses, from the costs of its children, which are not read for a leaf.
+void vplFinishNode(const vplBvhBuilder* builder, vplBinary* node, const vplBuildCosts* left,
+                   const vplBuildCosts* right, vplBuildCosts* costsOut);
 
-// Fills in items and ids, for which there is room.
-vplResult vplCollectItems(const vplBuilder* builder, vplBuildRange* allOut);
+// Makes the nodes and blocks of the hierarchy from the binary tree at `root`.
+vplResult vplCollapse(const vplBvhBuilder* builder, int root, vplBvh* bvh);
 
-// Cuts a range in two; in halves where no plane separates centres, or where the tree gets too deep.
-void vplCutRange(const vplBuilder* builder, vplBuildRange* range, vplBuildRange* otherOut, int depth);
-
-// What becomes of a node is found from its children's costs (NULL: it has none).
-void vplFindCosts(const vplBuilder* builder, vplBinary* node, const vplBuildCosts* left,
-                  const vplBuildCosts* right, vplBuildCosts* costsOut);
-
-// Makes nodes and blocks of bvh from the binary tree at `root`.
-vplResult vplWiden(const vplBuilder* builder, int root, vplBvh* bvh);
-
-// The same without a tree: blocks of eight items in their order.
-vplResult vplMakeBlocks(const vplBuilder* builder, int itemCount, vplBvh* bvh);
+// Makes only blocks, of eight items each.
+vplResult vplMakeBlocks(const vplBvhBuilder* builder, int itemCount, vplBvh* bvh);
 
 #endif

@@ -2,35 +2,112 @@
 // Based on: Ingo Wald, On Fast Construction of SAH-Based Bounding Volume Hierarchies, RT 2007: ranges of
 // triangles are split where the surface area heuristic, sampled at bins of centroids, is least.
 #include "geometry/bvh_build.h"
+#include "geometry/triangle.h"
+
+#include <string.h>
 
 enum { BINS = 16, FEWER_BINS = 8, FEW_ITEMS = 16, HALVING_DEPTH = VPL_BVH_DEPTH - 32 };
+
+static inline vplFour centreOf(const vplBox* item)
+{
+    return 0.5f * item->low + 0.5f * item->high;
+}
+
+static vplBuildRange makeRange(const vplBvhBuilder* b, int first, int count)
+{
+    vplBuildRange range = {vplBox_Empty(), vplBox_Empty(), first, count};
+    for (int i = first; i < first + count; i++) {
+        const vplFour centre = centreOf(&b->items[i]);
+        range.box = vplBox_Join(range.box, b->items[i]);
+        range.centres = vplBox_Join(range.centres, (vplBox){centre, centre});
+    }
+    return range;
+}
+
+// ---- items
+
+typedef struct Collection {
+    const vplBvhBuilder* builder;
+    vplBuildRange* ranges; // by chunk of triangles; items of a chunk begin at the index of its first triangle
+} Collection;
+
+static vplBox boundItem(const vplGeometry* g, int triangle)
+{
+    const vplTriangleCorners t = vplGeometry_Corners(g, triangle);
+    vplFour corner[3];
+    for (int i = 0; i < 3; i++) {
+        corner[i] = (vplFour){t.corner[i].x, t.corner[i].y, t.corner[i].z, 0};
+    }
+    vplBox box = vplBoundTriangle(corner);
+    box.low[3] = 0;
+    box.high[3] = (float)vplTriangle_Area(&t);
+    return box;
+}
+
+static void collectChunk(void* data, int chunk, int worker)
+{
+    (void)worker;
+    const Collection* c = data;
+    const vplGeometry* g = c->builder->geometry;
+    const int first = chunk * VPL_BUILD_CHUNK;
+    int count = 0;
+    for (int i = first; i < g->triangleCount && i < first + VPL_BUILD_CHUNK; i++) {
+        if (vplCanBeHit(g, i)) {
+            c->builder->items[first + count] = boundItem(g, i);
+            c->builder->ids[first + count++] = i;
+        }
+    }
+    c->ranges[chunk] = makeRange(c->builder, first, count);
+}
+
+// Moves the items of all chunks together.
+static vplBuildRange joinChunks(const Collection* c, int chunks)
+{
+    const vplBvhBuilder* b = c->builder;
+    vplBuildRange all = {vplBox_Empty(), vplBox_Empty(), 0, 0};
+    for (int i = 0; i < chunks; i++) {
+        const vplBuildRange* part = &c->ranges[i];
+        if (part->first != all.count) {
+            memmove(b->items + all.count, b->items + part->first, (size_t)part->count * sizeof *b->items);
+            memmove(b->ids + all.count, b->ids + part->first, (size_t)part->count * sizeof *b->ids);
+        }
+        all.box = vplBox_Join(all.box, part->box);
+        all.centres = vplBox_Join(all.centres, part->centres);
+        all.count += part->count;
+    }
+    return all;
+}
+
+vplResult vplCollectItems(vplBvhBuilder* b, vplBuildRange* allOut)
+{
+    const size_t triangles = (size_t)b->geometry->triangleCount;
+    const int chunks = (b->geometry->triangleCount + VPL_BUILD_CHUNK - 1) / VPL_BUILD_CHUNK;
+    b->items = vplArena_Alloc(b->scratch, triangles, sizeof *b->items);
+    b->ids = vplArena_Alloc(b->scratch, triangles, sizeof *b->ids);
+    Collection c = {b, vplArena_Alloc(b->scratch, (size_t)chunks, sizeof *c.ranges)};
+    TRY(vplArena_Check(b->scratch));
+    vplParallelFor(b->geometry->context, chunks, collectChunk, &c);
+    *allOut = joinChunks(&c, chunks);
+    return VPL_SUCCESS;
+}
+
+// ---- splits
 
 typedef struct Split {
     float cost;
     int axis, bin; // bins up to this one go left
 } Split;
 
-// Which bin an item falls into, on all axes.
+// Maps centres to bins: (centre - from) * scale.
 typedef struct Binning {
-    vplFour from, scale; // scale 0: all are in one place
+    vplFour from, scale; // scale 0: all centres are in one place
     int count;
 } Binning;
 
 typedef struct Bins {
-    vplBuildBox boxes[3][BINS];
+    vplBox boxes[3][BINS];
     int counts[3][BINS];
 } Bins;
-
-vplBuildRange vplMakeRange(const vplBuilder* b, int first, int count)
-{
-    vplBuildRange range = {vplNoBox(), vplNoBox(), first, count};
-    for (int i = first; i < first + count; i++) {
-        const vplFour centre = vplCentre(&b->items[i]);
-        range.box = vplJoinBoxes(range.box, b->items[i]);
-        range.centres = vplJoinBoxes(range.centres, (vplBuildBox){centre, centre});
-    }
-    return range;
-}
 
 static Binning makeBinning(const vplBuildRange* range)
 {
@@ -43,54 +120,55 @@ static Binning makeBinning(const vplBuildRange* range)
     return b;
 }
 
-// The same on one axis.
-static inline int binOf(const Binning* b, const vplBuildBox* item, int axis)
+// The bin of an item along one axis.
+static inline int binOf(const Binning* b, const vplBox* item, int axis)
 {
     const float low = item->low[axis], high = item->high[axis];
     const float bin = (0.5f * low + 0.5f * high - b->from[axis]) * b->scale[axis];
     return (int)bin < b->count - 1 ? (int)bin : b->count - 1;
 }
 
-static inline vplFourInts binsOf(const Binning* b, const vplBuildBox* item)
+// The bins of an item along all axes.
+static inline vplFourInts binsOf(const Binning* b, const vplBox* item)
 {
     const vplFour last = vplFour_Of((float)(b->count - 1)), none = {0, 0, 0, 0};
-    const vplFour bins = (vplCentre(item) - b->from) * b->scale;
+    const vplFour bins = (centreOf(item) - b->from) * b->scale;
     return __builtin_convertvector(vplFour_Max(vplFour_Min(bins, last), none), vplFourInts);
 }
 
-static void fillBins(const vplBuilder* b, const vplBuildRange* range, const Binning* binning, Bins* bins)
+static void fillBins(const vplBvhBuilder* b, const vplBuildRange* range, const Binning* binning, Bins* bins)
 {
     for (int axis = 0; axis < 3; axis++) {
         for (int i = 0; i < binning->count; i++) {
-            bins->boxes[axis][i] = vplNoBox();
+            bins->boxes[axis][i] = vplBox_Empty();
             bins->counts[axis][i] = 0;
         }
     }
     for (int i = range->first; i < range->first + range->count; i++) {
-        const vplBuildBox item = b->items[i];
+        const vplBox item = b->items[i];
         const vplFourInts at = binsOf(binning, &item);
         for (int axis = 0; axis < 3; axis++) {
-            vplBuildBox* box = &bins->boxes[axis][at[axis]];
-            *box = vplJoinBoxes(*box, item);
+            vplBox* box = &bins->boxes[axis][at[axis]];
+            *box = vplBox_Join(*box, item);
             bins->counts[axis][at[axis]]++;
         }
     }
 }
 
-// The cheapest plane between bins along one axis, if it is cheaper than `best`.
-static void splitAlong(const vplBuilder* b, const Bins* bins, int count, int axis, Split* best)
+// Finds the cheapest plane between bins along one axis, if it is cheaper than `best`.
+static void splitAlong(const vplBvhBuilder* b, const Bins* bins, int count, int axis, Split* best)
 {
-    const vplBuildBox* boxes = bins->boxes[axis];
+    const vplBox* boxes = bins->boxes[axis];
     const int* counts = bins->counts[axis];
     float rightCost[BINS];
-    vplBuildBox right = vplNoBox(), left = vplNoBox();
+    vplBox right = vplBox_Empty(), left = vplBox_Empty();
     for (int i = count - 1, items = 0; i > 0; i--) {
-        right = vplJoinBoxes(right, boxes[i]);
+        right = vplBox_Join(right, boxes[i]);
         items += counts[i];
         rightCost[i] = items ? vplHalfSurface(b, &right) * (float)items : INFINITY;
     }
     for (int i = 0, items = 0; i < count - 1; i++) {
-        left = vplJoinBoxes(left, boxes[i]);
+        left = vplBox_Join(left, boxes[i]);
         items += counts[i];
         const float cost = items ? vplHalfSurface(b, &left) * (float)items + rightCost[i + 1] : INFINITY;
         if (cost < best->cost) {
@@ -99,14 +177,14 @@ static void splitAlong(const vplBuilder* b, const Bins* bins, int count, int axi
     }
 }
 
-// Moves the items that go left to the front and returns how many they are. Without a branch that would be
-// mispredicted half of the time.
-static int partition(const vplBuilder* b, const vplBuildRange* range, const Binning* binning,
+// Moves the items that go left to the front and returns their number. Has no branch on the side: it would be mispredicted
+// half of the time.
+static int partition(const vplBvhBuilder* b, const vplBuildRange* range, const Binning* binning,
                      const Split* split)
 {
     int left = range->first;
     for (int i = range->first; i < range->first + range->count; i++) {
-        const vplBuildBox item = b->items[i];
+        const vplBox item = b->items[i];
         const int32_t id = b->ids[i];
         b->items[i] = b->items[left];
         b->ids[i] = b->ids[left];
@@ -117,7 +195,7 @@ static int partition(const vplBuilder* b, const vplBuildRange* range, const Binn
     return left - range->first;
 }
 
-void vplCutRange(const vplBuilder* b, vplBuildRange* range, vplBuildRange* otherOut, int depth)
+void vplSplitRange(const vplBvhBuilder* b, const vplBuildRange* range, int depth, vplBuildRange halvesOut[2])
 {
     Split split = {INFINITY, 0, 0};
     int left = range->count / 2;
@@ -129,8 +207,8 @@ void vplCutRange(const vplBuilder* b, vplBuildRange* range, vplBuildRange* other
             splitAlong(b, &bins, binning.count, axis, &split);
         }
         const int parted = split.cost < INFINITY ? partition(b, range, &binning, &split) : 0;
-        left = parted > 0 && parted < range->count ? parted : left; // boxes beyond all floats have no centre
+        left = parted > 0 && parted < range->count ? parted : left; // centres of boxes near FLT_MAX overflow
     }
-    *otherOut = vplMakeRange(b, range->first + left, range->count - left);
-    *range = vplMakeRange(b, range->first, left);
+    halvesOut[0] = makeRange(b, range->first, left);
+    halvesOut[1] = makeRange(b, range->first + left, range->count - left);
 }

@@ -2,12 +2,10 @@
 // Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023, chapter 12,
 // for the powers and the spot's falloff.
 #include "geometry/emission.h"
+#include "base/arena.h"
 #include "geometry/triangle.h"
-#include "base/context.h"
 #include "math/scalar.h"
 #include "math/vec.h"
-
-#include <string.h>
 
 vplRgb vplScaleRadiometric(double s, vplRgb c)
 {
@@ -39,7 +37,7 @@ double vplSpot_Falloff(const vplEmitterDef* spot, double cosine)
     return x * x * (3 - 2 * x);
 }
 
-// The smooth step is symmetric, so the ring between the angles counts half.
+// The smooth step is symmetric, so the ring between the two angles counts half.
 double vplSpot_SolidAngle(const vplEmitterDef* spot)
 {
     double inner, outer;
@@ -56,8 +54,8 @@ double vplSpot_SampleCosine(const vplEmitterDef* spot, double u)
     if (at <= plain || ring <= 0) {
         return 1 - at;
     }
-    // In the ring the integral of the smooth step up to x is x^3 - x^4/2; what is left of u is measured from
-    // the outer edge. Bisection to the last bit of a float needs no derivative and always takes the same path.
+    // In the ring the integral of the smooth step from the outer edge to x is x^3 - x^4/2. Bisection inverts it to the
+    // last bit of a float, always along the same path.
     double wanted = (plain + ring - at) / (2 * ring), low = 0, high = 1;
     for (int i = 0; i < 30; i++) {
         double x = (low + high) / 2;
@@ -75,7 +73,7 @@ vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction)
     return vplRgbScale((float)vplSpot_Falloff(emitter, cosine), emitter->intensity);
 }
 
-// ---- the list
+// ---- the list of sources
 
 // Counts the sources, or fills in as many as were counted.
 typedef struct Lister {
@@ -126,28 +124,22 @@ static void coverGeometry(vplEmission* e)
 
 static vplResult fill(vplEmission* e, const vplEmitterDef* emitters)
 {
-    vplContext* context = e->context;
-    vplEmitterDef* copies = vplAlloc(context, (size_t)e->emitterCount, sizeof *copies);
-    e->emitters = copies;
-    if (copies == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    vplEmitterDef* copies = vplArena_Alloc(e->arena, (size_t)e->emitterCount, sizeof *copies);
+    TRY(vplArena_Check(e->arena));
     for (int i = 0; i < e->emitterCount; i++) {
         copies[i] = emitters[i];
         copies[i].direction = vplNormalize(emitters[i].direction);
     }
-    Lister counter = {NULL, NULL, 0};
-    listSources(e, &counter, &e->firstTriangle);
-    e->sourceCount = counter.count;
-    vplEmissionSource* sources = vplAlloc(context, (size_t)e->sourceCount, sizeof *sources);
-    e->sources = sources;
-    double* sums = sources ? vplAlloc(context, (size_t)e->sourceCount + 1, sizeof *sums) : NULL;
-    e->cumulative = sums;
-    if (sums == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    sums[0] = 0;
-    Lister lister = {sources, sums, 0};
+    e->emitters = copies;
+    coverGeometry(e);
+    Lister lister = {NULL, NULL, 0};
+    listSources(e, &lister, &e->firstTriangle);
+    e->sourceCount = lister.count;
+    e->sources = lister.sources = vplArena_Alloc(e->arena, (size_t)lister.count, sizeof *lister.sources);
+    e->cumulative = lister.sums = vplArena_Alloc(e->arena, (size_t)lister.count + 1, sizeof *lister.sums);
+    TRY(vplArena_Check(e->arena));
+    lister.sums[0] = 0;
+    lister.count = 0;
     listSources(e, &lister, &e->firstTriangle);
     return VPL_SUCCESS;
 }
@@ -155,31 +147,20 @@ static vplResult fill(vplEmission* e, const vplEmitterDef* emitters)
 vplResult vplEmission_Create(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                              vplEmission** emissionOut)
 {
-    vplEmission* e = vplAllocZero(geometry->context, 1, sizeof *e);
-    if (e == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    vplArena* arena = vplArena_Create(geometry->context);
+    vplEmission* e = vplArena_AllocZero(arena, 1, sizeof *e);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *e = (vplEmission){
+            .geometry = geometry, .emitterCount = emitterCount, .arena = arena, .context = geometry->context};
+        result = fill(e, emitters);
     }
-    e->context = geometry->context;
-    e->geometry = geometry;
-    e->emitterCount = emitterCount;
-    coverGeometry(e);
-    vplResult result = fill(e, emitters);
-    if (result != VPL_SUCCESS) {
-        vplEmission_Destroy(e);
-        return result;
-    }
-    *emissionOut = e;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, e, emissionOut);
 }
 
 void vplEmission_Destroy(vplEmission* emission)
 {
-    if (emission != NULL) {
-        vplFree(emission->context, (void*)emission->emitters);
-        vplFree(emission->context, (void*)emission->sources);
-        vplFree(emission->context, (void*)emission->cumulative);
-        vplFree(emission->context, emission);
-    }
+    vplArena_Destroy(emission != NULL ? emission->arena : NULL);
 }
 
 double vplEmission_Area(const vplEmission* emission)
@@ -200,7 +181,7 @@ int vplEmission_Choose(const vplEmission* e, int first, double choice, double* r
 {
     const double* sums = e->cumulative;
     double start = sums[first], place = start + choice * (sums[e->sourceCount] - start);
-    int low = first, high = e->sourceCount - 1; // sums[low] <= place < sums[high + 1], but for rounding
+    int low = first, high = e->sourceCount - 1; // sums[low] <= place < sums[high + 1], to rounding
     while (low < high) {
         int middle = low + (high - low) / 2;
         if (place < sums[middle + 1]) {
@@ -210,7 +191,7 @@ int vplEmission_Choose(const vplEmission* e, int first, double choice, double* r
         }
     }
     while (low > first && sums[low + 1] == sums[low]) {
-        low--; // a source too weak to be felt in the sum; reached when `place` was rounded up to the total
+        low--; // skips sources too weak to change the sum; reached when `place` was rounded up to the total
     }
     double rest = (place - sums[low]) / (sums[low + 1] - sums[low]);
     *restOut = rest > 0 ? (rest < 1 ? rest : 0x1.fffffep-1) : 0;

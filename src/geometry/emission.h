@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The list of sources from the inside.
+// Sampling of the list of sources, shared with the folders that make virtual lights.
 #ifndef VPL_GEOMETRY_EMISSION_H
 #define VPL_GEOMETRY_EMISSION_H
 
 #include <vpl/geometry.h>
 
-// s c in double, cut at the largest float: radiances and sizes of up to 1e15 reach beyond it together.
+// s c, computed in double and clamped to the largest float, which the product of an allowed radiance and an allowed area
+// (each up to 1e15) may exceed.
 vplRgb vplScaleRadiometric(double s, vplRgb c);
 
-// Steradians, weighted by the falloff.
+// The spot's solid angle weighted by its falloff, steradians.
 double vplSpot_SolidAngle(const vplEmitterDef* spot);
 
-// Cosine of the angle to the axis with a density proportional to the falloff, for u in [0, 1).
+// Samples the cosine of the angle to the axis with a density proportional to the falloff; u in [0, 1).
 double vplSpot_SampleCosine(const vplEmitterDef* spot, double u);
 
-// The source among first .. sourceCount - 1, of which there must be one, that `choice` in [0, 1) takes, with
-// probability by power; *restOut in [0, 1) is how far it went into that source, as good as a fresh number.
+// Chooses a source among first .. sourceCount - 1, which must not be empty, with a probability proportional to power.
+// `choice` is in [0, 1); *restOut in [0, 1) is its position within the chosen source's share, a random number again.
 int vplEmission_Choose(const vplEmission* emission, int first, double choice, double* restOut);
 
 #endif

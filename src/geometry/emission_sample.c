@@ -9,7 +9,7 @@
 
 vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, float u, float v)
 {
-    // The square is folded along its diagonal onto the triangle: strata stay compact.
+    // Folds the square along its diagonal onto the triangle, so that strata stay compact.
     float b, c;
     if (v > u) {
         b = 0.5f * u;
@@ -36,20 +36,20 @@ static vplVec3 directionAround(vplVec3 axis, double cosine, float v)
     vplVec3 tangent, bitangent;
     double sine2 = 1 - cosine * cosine, along, across;
     float radius = (float)sqrt(sine2 > 0 ? sine2 : 0);
-    vplFrame(axis, &tangent, &bitangent);
+    vplTangentFrame(axis, &tangent, &bitangent);
     vplSinCosQuarters(4.0 * v, &across, &along);
     vplVec3 side =
         vplAdd(vplScale(radius * (float)along, tangent), vplScale(radius * (float)across, bitangent));
     return vplNormalize(vplAdd(side, vplScale((float)cosine, axis)));
 }
 
-// From a disc just outside the sphere around the geometry.
+// A point on a disc just outside the sphere around the geometry.
 static vplVec3 startOutside(const vplEmission* e, vplVec3 direction, float u, float v)
 {
     float x, y, radius = (float)e->radius;
     vplVec3 tangent, bitangent;
     vplSampleConcentricDisc(u, v, &x, &y);
-    vplFrame(direction, &tangent, &bitangent);
+    vplTangentFrame(direction, &tangent, &bitangent);
     vplVec3 onDisc = vplAdd(vplScale(radius * x, tangent), vplScale(radius * y, bitangent));
     return vplAdd(e->centre, vplSub(onDisc, vplScale(1.001f * radius, direction)));
 }

@@ -1,85 +1,87 @@
 // SPDX-License-Identifier: MIT
-// The frozen scene: world-space arrays of all triangles.
-#include "geometry/freeze.h"
-#include "geometry/ray_tree.h"
+// The scene as read-only world-space arrays of triangles.
+#include "base/arena.h"
+#include "geometry/bvh.h"
+#include "geometry/object_build.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
 #include <math.h>
-
-static void findBounds(vplGeometry* g)
-{
-    if (g->vertexCount == 0) {
-        return;
-    }
-    g->boundsMin = g->boundsMax = g->positions[0];
-    for (int i = 1; i < g->vertexCount; i++) {
-        vplVec3 p = g->positions[i];
-        g->boundsMin =
-            vplVec(fminf(g->boundsMin.x, p.x), fminf(g->boundsMin.y, p.y), fminf(g->boundsMin.z, p.z));
-        g->boundsMax =
-            vplVec(fmaxf(g->boundsMax.x, p.x), fmaxf(g->boundsMax.y, p.y), fmaxf(g->boundsMax.z, p.z));
-    }
-}
-
-static vplResult allocate(vplGeometry* g, vplFreezer* f, bool smooth)
-{
-    vplContext* context = g->context;
-    const size_t vertices = (size_t)g->vertexCount, triangles = (size_t)g->triangleCount;
-    g->objects = f->objects = vplAllocZero(context, (size_t)g->objectCount, sizeof *f->objects);
-    g->positions = f->positions = vplAlloc(context, vertices, sizeof *f->positions);
-    g->indices = f->indices = vplAlloc(context, 3 * triangles, sizeof *f->indices);
-    g->normals = f->normals = vplAlloc(context, triangles, sizeof *f->normals);
-    g->owners = f->owners = vplAlloc(context, triangles, sizeof *f->owners);
-    g->triangleMaterials = f->materials = vplAlloc(context, triangles, sizeof *f->materials);
-    g->materials = vplAlloc(context, (size_t)g->materialCount, sizeof *g->materials);
-    bool complete =
-        f->objects && f->positions && f->indices && f->normals && f->owners && f->materials && g->materials;
-    if (smooth && complete) {
-        g->shadingNormals = f->shadingNormals = vplAlloc(context, vertices, sizeof *f->shadingNormals);
-        complete = f->shadingNormals != NULL;
-    }
-    return complete ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-}
 
 static bool isSmooth(const vplScene* scene, const vplObjectDef* def)
 {
     return def->type == VPL_OBJECT_MESH && scene->meshes[def->mesh].normals != NULL;
 }
 
-static vplResult fill(const vplScene* scene, vplGeometry* g, const vplFreezer* f)
+// Counts vertices and triangles, and allocates the arrays.
+static vplResult allocate(const vplScene* scene, vplGeometry* g, vplGeometryBuilder* b)
 {
+    int64_t vertexCount = 0, triangleCount = 0;
+    bool smooth = false;
+    for (int i = 0; i < scene->objectCount; i++) {
+        const vplMeshDef shape = vplShapeOf(scene, &scene->objects[i]);
+        vertexCount += shape.vertexCount;
+        triangleCount += shape.triangleCount;
+        smooth = smooth || isSmooth(scene, &scene->objects[i]);
+    }
+    if (triangleCount > VPL_MAX_TRIANGLES || vertexCount > VPL_MAX_TRIANGLES) {
+        return vplFail(scene->context, VPL_LIMIT, "the scene has %lld triangles, at most %d are allowed",
+                       (long long)triangleCount, VPL_MAX_TRIANGLES);
+    }
+    g->objectCount = scene->objectCount;
+    g->materialCount = scene->materialCount;
+    g->vertexCount = (int)vertexCount;
+    g->triangleCount = (int)triangleCount;
+    const size_t vertices = (size_t)vertexCount, triangles = (size_t)triangleCount;
+    g->objects = b->objects = vplArena_AllocZero(g->arena, (size_t)g->objectCount, sizeof *b->objects);
+    g->positions = b->positions = vplArena_Alloc(g->arena, vertices, sizeof *b->positions);
+    g->indices = b->indices = vplArena_Alloc(g->arena, 3 * triangles, sizeof *b->indices);
+    g->normals = b->normals = vplArena_Alloc(g->arena, triangles, sizeof *b->normals);
+    g->owners = b->owners = vplArena_Alloc(g->arena, triangles, sizeof *b->owners);
+    g->triangleMaterials = b->triangleMaterials =
+        vplArena_Alloc(g->arena, triangles, sizeof *b->triangleMaterials);
+    g->materials = b->materials = vplArena_Alloc(g->arena, (size_t)g->materialCount, sizeof *b->materials);
+    if (smooth) {
+        g->shadingNormals = b->shadingNormals = vplArena_Alloc(g->arena, vertices, sizeof *b->shadingNormals);
+    }
+    return vplArena_Check(g->arena);
+}
+
+static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
+{
+    const vplScene* scene = b->scene;
     int vertex = 0, triangle = 0;
     for (int i = 0; i < g->objectCount; i++) {
         const vplObjectDef* def = &scene->objects[i];
-        vplGeometryObject* object = &f->objects[i];
+        const vplMeshDef shape = vplShapeOf(scene, def);
+        vplGeometryObject* object = &b->objects[i];
         *object = (vplGeometryObject){.type = def->type,
                                       .material = def->material,
                                       .smooth = isSmooth(scene, def),
                                       .firstVertex = vertex,
-                                      .vertexCount = vplCountVertices(scene, def),
+                                      .vertexCount = shape.vertexCount,
                                       .firstTriangle = triangle,
-                                      .triangleCount = vplCountTriangles(scene, def)};
-        vplResult result = vplPlacement_Create(g->context, &def->transform, &object->placement);
-        if (result != VPL_SUCCESS) {
-            return result;
-        }
-        vplFreezeObject(f, i);
+                                      .triangleCount = shape.triangleCount};
+        TRY(vplPlacement_Create(g->context, &def->transform, &object->placement));
+        vplBuildObject(b, i);
         vertex += object->vertexCount;
         triangle += object->triangleCount;
     }
     for (int i = 0; i < g->materialCount; i++) {
-        vplMaterialDef* material = (vplMaterialDef*)&g->materials[i];
-        *material = scene->materials[i];
-        material->name = NULL; // the scene may be destroyed before the geometry
+        b->materials[i] = scene->materials[i];
+        b->materials[i].name = NULL; // the scene may be destroyed before the geometry
     }
-    findBounds(g);
-    return vplRayTree_Create(g->context, &g->rayTree);
+    return VPL_SUCCESS;
 }
 
-// What renders ask for again and again, over all triangles in order.
-static void sumUp(vplGeometry* g)
+// Finds bounds, area, mean reflectance and whether anything emits.
+static void summarise(vplGeometry* g)
 {
+    for (int i = 0; i < g->vertexCount; i++) {
+        const vplVec3 p = g->positions[i], low = i > 0 ? g->boundsMin : p, high = i > 0 ? g->boundsMax : p;
+        g->boundsMin = vplVec(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
+        g->boundsMax = vplVec(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
+    }
     double reflecting = 0;
     for (int i = 0; i < g->triangleCount; i++) {
         const vplMaterialDef* material = &g->materials[g->triangleMaterials[i]];
@@ -92,41 +94,43 @@ static void sumUp(vplGeometry* g)
     g->meanReflectance = g->area > 0 ? reflecting / g->area : 0;
 }
 
+static vplResult build(const vplScene* scene, vplGeometry* g)
+{
+    vplGeometryBuilder builder = {.scene = scene};
+    TRY(allocate(scene, g, &builder));
+    TRY(fill(g, &builder));
+    summarise(g);
+    return VPL_SUCCESS;
+}
+
+vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geometryOut)
+{
+    vplArena* arena = vplArena_Create(scene->context);
+    vplGeometry* g = vplArena_AllocZero(arena, 1, sizeof *g);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        g->context = scene->context;
+        g->arena = arena;
+        result = build(scene, g);
+    }
+    return vplArena_Deliver(arena, result, g, geometryOut);
+}
+
+vplResult vplGeometry_BuildRayTree(vplGeometry* geometry)
+{
+    return geometry->rayTree != NULL ? VPL_SUCCESS
+                                     : vplBvh_Create(geometry, VPL_BRUTE_BLOCKS, &geometry->rayTree);
+}
+
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
 {
-    vplContext* context = scene->context;
-    vplGeometry* g = vplAllocZero(context, 1, sizeof *g);
-    if (g == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    g->context = context;
-    g->objectCount = scene->objectCount;
-    g->materialCount = scene->materialCount;
-    int64_t vertices = 0, triangles = 0;
-    bool smooth = false;
-    for (int i = 0; i < scene->objectCount; i++) {
-        vertices += vplCountVertices(scene, &scene->objects[i]);
-        triangles += vplCountTriangles(scene, &scene->objects[i]);
-        smooth = smooth || isSmooth(scene, &scene->objects[i]);
-    }
-    vplFreezer freezer = {.scene = scene};
-    vplResult result = VPL_SUCCESS;
-    if (triangles > VPL_MAX_TRIANGLES || vertices > VPL_MAX_TRIANGLES) {
-        result = vplFail(context, VPL_LIMIT, "the scene has %lld triangles, at most %d are allowed",
-                         (long long)triangles, VPL_MAX_TRIANGLES);
-    } else {
-        g->vertexCount = (int)vertices;
-        g->triangleCount = (int)triangles;
-        result = allocate(g, &freezer, smooth);
-    }
-    if (result == VPL_SUCCESS) {
-        result = fill(scene, g, &freezer);
-    }
+    vplGeometry* g;
+    TRY(vplGeometry_CreateForRaster(scene, &g));
+    const vplResult result = vplGeometry_BuildRayTree(g);
     if (result != VPL_SUCCESS) {
         vplGeometry_Destroy(g);
         return result;
     }
-    sumUp(g);
     *geometryOut = g;
     return VPL_SUCCESS;
 }
@@ -134,17 +138,8 @@ vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut)
 void vplGeometry_Destroy(vplGeometry* geometry)
 {
     if (geometry != NULL) {
-        vplContext* context = geometry->context;
-        vplFree(context, (void*)geometry->objects);
-        vplFree(context, (void*)geometry->positions);
-        vplFree(context, (void*)geometry->indices);
-        vplFree(context, (void*)geometry->normals);
-        vplFree(context, (void*)geometry->owners);
-        vplFree(context, (void*)geometry->shadingNormals);
-        vplFree(context, (void*)geometry->triangleMaterials);
-        vplRayTree_Destroy(context, geometry->rayTree);
-        vplFree(context, (void*)geometry->materials);
-        vplFree(context, geometry);
+        vplBvh_Destroy(geometry->rayTree);
+        vplArena_Destroy(geometry->arena);
     }
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Intersection Tests". Rays are tested
-// in local space without renormalising the direction, so that t means the same for all objects. Departs where
-// the text would let a particle hit the surface it just left: t must be > 0, and a box hit from inside
-// reports its exit.
+// in local space without renormalising the direction, so that t means the same for all objects. Departs: t must be
+// above 0, and a ray from inside a box hits its exit; otherwise a particle would hit the surface it just left.
 #include "geometry/intersect.h"
 #include "math/matrix.h"
 #include "math/vec.h"
@@ -48,7 +47,7 @@ static LocalRay toLocal(const vplRay* ray, const vplPlacement* p)
     return local;
 }
 
-// False where t is not a float: a hit that far away is a miss (X017).
+// False where t overflows a float: a hit that far away counts as a miss.
 static bool fillHit(const vplPlacement* p, const double at[3], double t, int face, vplHit* hit)
 {
     float world[3];
@@ -77,7 +76,7 @@ bool vplRay_HitFace(const vplRay* ray, const vplPlacement* placement, int face, 
         double p = r.o[i] + t * r.d[i];
         at[i] = p < -0.5 ? -0.5 : p > 0.5 ? 0.5 : p;
     }
-    at[axis] = side; // known, not rounded
+    at[axis] = side; // exact, not rounded
     return t > 0 && fillHit(placement, at, t, face, hitOut);
 }
 
@@ -95,7 +94,7 @@ bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hi
     return fillHit(placement, at, t, VPL_FACE_QUAD, hitOut);
 }
 
-// The part of a ray inside the three slabs, and the faces where it begins and ends.
+// The part of a ray inside all three slabs, and the faces where it begins and ends.
 typedef struct Span {
     double entry, exit;
     int entryFace, exitFace;
@@ -106,15 +105,15 @@ static bool intersectSlabs(const LocalRay* r, Span* span)
     *span = (Span){-INFINITY, INFINITY, VPL_FACE_NONE, VPL_FACE_NONE};
     for (int axis = 0; axis < 3; axis++) {
         double o = r->o[axis], d = r->d[axis];
-        if (d == 0) { // before dividing: (1/2 - 1/2) / 0 is no number
+        if (d == 0) { // avoids (1/2 - 1/2) / 0, which is NaN
             if (fabs(o) > 0.5) {
                 return false;
             }
             continue;
         }
-        int nearFace = 2 * axis + (d > 0); // moving towards +, the - side comes first
+        int nearFace = 2 * axis + (d > 0); // a ray towards + enters by the - face
         double tNear = ((d > 0 ? -0.5 : 0.5) - o) / d, tFar = ((d > 0 ? 0.5 : -0.5) - o) / d;
-        if (tNear > span->entry) { // strictly: of faces met at one t the lowest axis is named
+        if (tNear > span->entry) { // strictly: at equal t the lowest axis wins
             span->entry = tNear;
             span->entryFace = nearFace;
         }
@@ -136,9 +135,9 @@ bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFac
     if (fromFace != VPL_FACE_NONE) {
         double outward = fromFace & 1 ? -r.d[fromFace >> 1] : r.d[fromFace >> 1];
         if (outward >= 0) {
-            return false; // a convex box is not met again
+            return false; // a convex box is not hit again
         }
-        span.entry = -INFINITY; // it starts on the surface and crosses the inside
+        span.entry = -INFINITY; // starts on the surface and crosses the inside
     }
     bool outside = span.entry > 0;
     double t = outside ? span.entry : span.exit;
@@ -151,6 +150,6 @@ bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFac
         double p = r.o[axis] + t * r.d[axis];
         at[axis] = p < -0.5 ? -0.5 : p > 0.5 ? 0.5 : p;
     }
-    at[face >> 1] = face & 1 ? -0.5 : 0.5; // the face is known, not guessed from the rounded point
+    at[face >> 1] = face & 1 ? -0.5 : 0.5; // exact, not rounded
     return fillHit(placement, at, t, face, hitOut);
 }

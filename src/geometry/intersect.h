@@ -4,8 +4,8 @@
 
 #include <vpl/geometry.h>
 
-// Where a ray meets the plane of a face at local coordinate `side`, moved into the face. For rays that are known
-// to hit it. False where t is not positive and finite.
+// Intersects a ray that is known to hit a face with its plane, at local coordinate `side`, and clamps the point to the
+// face. False where t is not positive and finite.
 bool vplRay_HitFace(const vplRay* ray, const vplPlacement* placement, int face, double side, vplHit* hitOut);
 
 #endif

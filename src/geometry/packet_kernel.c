@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Sixteen rays through the hierarchy together: whether each meets anything, as vplTraceAny says.
+// vplTraceAny for packets of sixteen rays.
 // Based on: Ingo Wald, Philipp Slusallek, Carsten Benthin and Markus Wagner, Interactive Rendering with Coherent Ray
-// Tracing, Eurographics 2001 (packets). Departs: where few rays are left they go on alone.
+// Tracing, Eurographics 2001 (packets). Departs: the last few rays of a subtree or block are traced one by one.
 #include "geometry/packet_tests.h"
 
-// Up to so many rays go on one by one: through the tree, and in a block. Twice as many or half as many changed
-// bench/rays by 0 to 5 %.
+// Up to this many rays are traced one by one through a subtree or block. Twice or half as many change bench/rays by
+// 0 to 5 %.
 enum { FEW = 3, FEW_AT_BLOCK = 2 };
 
-// A subtree and the rays that enter it.
+// A subtree and the rays that enter it: bit i is ray i.
 typedef struct Visit {
     int32_t child;
     uint32_t lanes;
@@ -16,7 +16,7 @@ typedef struct Visit {
 
 // ---- preparing
 
-// As prepare() does. Rays that are not there become copies of one that is.
+// prepare() for all lanes. Inactive lanes become copies of an active one.
 static void prepareLanes(const vplRayPacket* rays, Packet* restrict p)
 {
     const int first = __builtin_ctz(rays->active);
@@ -54,7 +54,7 @@ static void prepareLanes(const vplRayPacket* rays, Packet* restrict p)
     }
 }
 
-// The least and the most of all lanes, in halves.
+// The minimum and maximum over all lanes, by halves.
 static inline void findRange(const float values[LANES], float* leastOut, float* mostOut)
 {
     float least[LANES], most[LANES];
@@ -77,7 +77,7 @@ static void prepareIntervals(Packet* p)
         findRange(p->origin[axis], &low, &high);
         findRange(p->inverse[axis], &p->least[axis], &p->most[axis]);
         const bool down = p->most[axis] < 0;
-        p->tells[axis] = down || p->least[axis] > 0;
+        p->sameSign[axis] = down || p->least[axis] > 0;
         p->enterOrigin[axis] = down ? low : high;
         p->leaveOrigin[axis] = down ? high : low;
         p->enterRow[axis] = down ? axis + 3 : axis;
@@ -85,7 +85,7 @@ static void prepareIntervals(Packet* p)
     }
 }
 
-// One of the rays alone.
+// Extracts one ray.
 static Prepared takeLane(const Packet* p, int lane)
 {
     Prepared r = {.sx = p->sx[lane], .sy = p->sy[lane], .sz = p->sz[lane], .kz = p->kz[lane]};
@@ -138,7 +138,7 @@ static uint32_t finishAlone(const Packet* p, const vplBvh* bvh, const Visit* vis
     return hits;
 }
 
-// Rays that meet something in the tree.
+// Bit i of the result: ray i hits something in the tree.
 static uint32_t traceTree(const Packet* p, const vplBvh* bvh, uint32_t active)
 {
     Visit stack[VPL_BVH_DEPTH * (WIDTH - 1) + WIDTH];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sixteen rays against the children of a node and against a triangle, with the arithmetic of ray_tests.h.
+// Sixteen rays against the children of a node and against a triangle, by the arithmetic of ray_tests.h.
 // Based on: Solomon Boulos, Ingo Wald and Peter Shirley, Geometric and Arithmetic Culling Methods for Entire Ray
 // Packets, University of Utah, 2006 (intervals).
 #ifndef VPL_GEOMETRY_PACKET_TESTS_H
@@ -13,13 +13,13 @@ typedef struct Packet {
     float origin[3][LANES], inverse[3][LANES];
     float sx[LANES], sy[LANES], sz[LANES];
     int32_t kz[LANES], skipFirst[LANES], skipCount[LANES];
-    uint32_t along[3]; // rays by kz
+    uint32_t along[3]; // bit i: ray i has this kz
     float limit;
-    // All rays at once: intervals of origins and inverse directions, for the planes that they enter a box by and
-    // those that they leave it by. Axes in which they do not all go the same way tell nothing.
+    // Intervals over all rays: of the origins, towards the planes by which rays enter and leave a box, and of the
+    // inverse directions. They bound nothing along an axis in which the directions differ in sign.
     float enterOrigin[3], leaveOrigin[3], least[3], most[3];
     int enterRow[3], leaveRow[3];
-    bool tells[3];
+    bool sameSign[3];
 } Packet;
 
 static inline uint32_t collectLanes(const int32_t flags[LANES])
@@ -29,8 +29,7 @@ static inline uint32_t collectLanes(const int32_t flags[LANES])
 
 // ---- boxes
 
-// Bit i of the result: some ray may meet child i. Each operation rounds monotonously, so what the intervals miss all
-// rays miss.
+// Bit i of the result: some ray may meet child i. Rounding is monotone, so every ray misses what the intervals miss.
 static inline uint32_t testIntervals(const Packet* p, const vplBvhNode* node)
 {
     float in[WIDTH], out[WIDTH];
@@ -44,7 +43,7 @@ static inline uint32_t testIntervals(const Packet* p, const vplBvhNode* node)
         const float* restrict leave = node->planes[p->leaveRow[axis]];
         const float from = p->enterOrigin[axis], to = p->leaveOrigin[axis];
         const float least = p->least[axis], most = p->most[axis];
-        for (int i = 0; p->tells[axis] && i < WIDTH; i++) {
+        for (int i = 0; p->sameSign[axis] && i < WIDTH; i++) {
             const float a = (enter[i] - from) * least, b = (enter[i] - from) * most;
             const float c = (leave[i] - to) * least, d = (leave[i] - to) * most;
             const float soonest = a < b ? a : b, latest = c > d ? c : d;
@@ -58,7 +57,7 @@ static inline uint32_t testIntervals(const Packet* p, const vplBvhNode* node)
     return collectBits(met) & ((1u << node->count) - 1);
 }
 
-// Where each ray enters a box and where it leaves it.
+// The distances at which each ray enters and leaves a box.
 static inline void crossBox(const Packet* p, const float low[3], const float high[3], float* restrict in,
                             float* restrict out)
 {
@@ -89,14 +88,14 @@ static inline uint32_t testLanes(const Packet* p, const vplBvhNode* node, int ch
 
 // ---- triangles
 
-// What each ray sees of one triangle: the corners' distances, and the edge functions of the others.
-typedef struct Seen {
+// One triangle in the sheared space of each ray: depths of the corners and edge functions.
+typedef struct Sheared {
     float z[3][LANES], u[LANES], v[LANES], w[LANES];
-} Seen;
+} Sheared;
 
-// As testBlock does, for rays of the same kz.
-static inline void seeTriangle(const Packet* p, const vplTriangleBlock* block, int lane, int kz,
-                               Seen* restrict s)
+// The first half of testBlock, for rays of the same kz.
+static inline void shearTriangle(const Packet* p, const vplTriangleBlock* block, int lane, int kz,
+                                 Sheared* restrict s)
 {
     const int kx = kz == 2 ? 0 : kz + 1, ky = kx == 2 ? 0 : kx + 1;
     const float* restrict ox = p->origin[kx], * restrict oy = p->origin[ky], * restrict oz = p->origin[kz];
@@ -125,8 +124,8 @@ static inline void seeTriangle(const Packet* p, const vplTriangleBlock* block, i
     }
 }
 
-// Rays inside of all edges that are to see the triangle.
-static inline uint32_t areInside(const Packet* p, const Seen* s, uint32_t id)
+// Bit i of the result: ray i passes inside all edges and does not skip the triangle.
+static inline uint32_t areInside(const Packet* p, const Sheared* s, uint32_t id)
 {
     int32_t flags[LANES];
     for (int i = 0; i < LANES; i++) {
@@ -140,21 +139,24 @@ static inline uint32_t areInside(const Packet* p, const Seen* s, uint32_t id)
     return collectLanes(flags);
 }
 
-// One triangle against all rays, which have the same kz. Bit i of the result: ray i has a hit before the limit.
+// Bit i of the result: ray i hits the triangle before the limit. All rays have the same kz.
 static uint32_t testTriangle(const Packet* p, const vplTriangleBlock* block, int lane, int kz)
 {
-    Seen s;
-    seeTriangle(p, block, lane, kz, &s);
+    Sheared s;
+    shearTriangle(p, block, lane, kz, &s);
     const uint32_t inside = areInside(p, &s, (uint32_t)block->id[lane]);
     if (inside == 0) {
         return 0;
     }
-    float corner[3][3], low[3], high[3], in[LANES], out[LANES];
+    vplFour corner[3];
+    float in[LANES], out[LANES];
     int32_t flags[LANES];
-    for (int i = 0; i < 9; i++) {
-        corner[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
+    for (int i = 0; i < 3; i++) {
+        corner[i] = (vplFour){block->p[i][0][lane], block->p[i][1][lane], block->p[i][2][lane], 0};
     }
-    vplBoundTriangle(corner, low, high);
+    const vplBox box = vplBoundTriangle(corner);
+    const float low[3] = {box.low[0], box.low[1], box.low[2]};
+    const float high[3] = {box.high[0], box.high[1], box.high[2]};
     crossBox(p, low, high, in, out);
     for (int i = 0; i < LANES; i++) {
         const float det = s.u[i] + s.v[i] + s.w[i];

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// More patches where they are wanted.
-#include "base/context.h"
+// Bisects the patches of the highest refinement priority.
 #include "geometry/patch_tree.h"
 #include "math/scalar.h"
 
 #include <string.h>
 
-// Patches as a heap: the largest priority first, among equal ones the first patch.
+// A heap of patches: the largest priority first, among equal ones the patch with the lowest index.
 typedef struct Heap {
     const float* priorities;
     int* patches;
@@ -18,7 +17,7 @@ static bool comesBefore(const Heap* heap, int a, int b)
     return heap->priorities[a] > heap->priorities[b] || (heap->priorities[a] == heap->priorities[b] && a < b);
 }
 
-static void sink(Heap* heap, int at)
+static void siftDown(Heap* heap, int at)
 {
     const int patch = heap->patches[at];
     for (int child = 2 * at + 1; child < heap->count; child = 2 * at + 1) {
@@ -36,7 +35,7 @@ static int takeFirst(Heap* heap)
 {
     const int patch = heap->patches[0];
     heap->patches[0] = heap->patches[--heap->count];
-    sink(heap, 0);
+    siftDown(heap, 0);
     return patch;
 }
 
@@ -48,7 +47,7 @@ static void fillHeap(Heap* heap, int patchCount)
         }
     }
     for (int i = heap->count / 2; i-- > 0;) {
-        sink(heap, i);
+        siftDown(heap, i);
     }
 }
 
@@ -69,10 +68,7 @@ static vplResult check(const vplPatches* patches, const float* priorities, int c
 static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tree)
 {
     const size_t positions = (size_t)patches->positionCount, nodes = (size_t)patches->nodeCount;
-    vplResult result = vplPatchTree_Reserve(tree, positions + (size_t)more, nodes + 2 * (size_t)more);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplPatchTree_Reserve(tree, positions + (size_t)more, nodes + 2 * (size_t)more));
     for (size_t i = 0; i < positions; i++) {
         vplPatchTree_Intern(tree, patches->positions[i]);
     }
@@ -84,27 +80,29 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
     return VPL_SUCCESS;
 }
 
+static void bisectFirst(const vplPatches* patches, int count, Heap* heap, vplPatchTree* tree)
+{
+    for (int i = patches->patchCount; i < count && heap->count > 0;) {
+        i += vplPatchTree_Bisect(tree, patches->patches[takeFirst(heap)], 0);
+    }
+}
+
 vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, int count,
                             vplPatches** patchesOut)
 {
-    vplContext* context = patches->context;
-    vplResult result = check(patches, priorities, count);
+    TRY(check(patches, priorities, count));
     Heap heap = {.priorities = priorities};
-    if (result == VPL_SUCCESS) {
-        heap.patches = vplAlloc(context, (size_t)patches->patchCount, sizeof *heap.patches);
-        result = heap.patches ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    heap.patches = vplAlloc(patches->context, (size_t)patches->patchCount, sizeof *heap.patches);
+    if (heap.patches == NULL) {
+        return VPL_OUT_OF_MEMORY;
     }
+    fillHeap(&heap, patches->patchCount);
     vplPatchTree tree = {.geometry = patches->geometry};
+    const int more = vplMaxi(0, vplMini(heap.count, count - patches->patchCount));
+    const vplResult result = copyTree(patches, more, &tree);
     if (result == VPL_SUCCESS) {
-        fillHeap(&heap, patches->patchCount);
-        result = copyTree(patches, vplMaxi(0, vplMini(heap.count, count - patches->patchCount)), &tree);
+        bisectFirst(patches, count, &heap, &tree);
     }
-    if (result == VPL_SUCCESS) {
-        for (int i = patches->patchCount; i < count && heap.count > 0;) {
-            i += vplPatchTree_Bisect(&tree, patches->patches[takeFirst(&heap)], 0);
-        }
-        result = vplPatchTree_Finish(&tree, patchesOut);
-    }
-    vplFree(context, heap.patches);
-    return result;
+    vplFree(patches->context, heap.patches);
+    return vplPatchTree_Finish(&tree, result, patchesOut);
 }

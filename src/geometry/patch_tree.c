@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1; the bisection of longest edges is Rivara's, Algorithms for
-// Refining Triangular Grids, 1984, without her care for neighbours: hanging vertices are the mesh's (X100).
+// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1; Maria-Cecilia Rivara, Algorithms for Refining Triangular
+// Grids, 1984 (longest-edge bisection). Departs: neighbours are not refined along; the radiosity mesh handles hanging
+// vertices.
 #include "geometry/patch_tree.h"
 
-#include "base/context.h"
 #include "geometry/bvh.h"
 #include "math/vec.h"
 
@@ -17,7 +17,8 @@ static double squareBetween(vplVec3 a, vplVec3 b)
     return x * x + y * y + z * z;
 }
 
-int vplPatch_FirstCorner(const vplTriangleCorners* triangle)
+// The corner opposite the longest edge.
+static int firstCorner(const vplTriangleCorners* triangle)
 {
     const vplVec3* c = triangle->corner;
     const double s01 = squareBetween(c[0], c[1]), s12 = squareBetween(c[1], c[2]),
@@ -25,21 +26,21 @@ int vplPatch_FirstCorner(const vplTriangleCorners* triangle)
     return s01 >= s12 && s01 >= s20 ? 2 : s12 >= s20 ? 0 : 1;
 }
 
-vplTriangleCorners vplPatch_Turn(const vplTriangleCorners* triangle)
+vplTriangleCorners vplPatch_Rotate(const vplTriangleCorners* triangle)
 {
     const vplVec3* c = triangle->corner;
-    const int first = vplPatch_FirstCorner(triangle);
+    const int first = firstCorner(triangle);
     return (vplTriangleCorners){{c[first], c[(first + 1) % 3], c[(first + 2) % 3]}};
 }
 
-double vplPatch_Square(const vplTriangleCorners* turned)
+double vplPatch_SquaredEdge(const vplTriangleCorners* rotated)
 {
-    return squareBetween(turned->corner[1], turned->corner[2]);
+    return squareBetween(rotated->corner[1], rotated->corner[2]);
 }
 
-vplTriangleCorners vplPatch_Half(const vplTriangleCorners* turned, vplVec3 middle, int second)
+vplTriangleCorners vplPatch_Half(const vplTriangleCorners* rotated, vplVec3 middle, int second)
 {
-    const vplVec3* c = turned->corner;
+    const vplVec3* c = rotated->corner;
     return second ? (vplTriangleCorners){{middle, c[2], c[0]}} : (vplTriangleCorners){{c[1], middle, c[0]}};
 }
 
@@ -50,13 +51,13 @@ static bool facesAlong(const vplTriangleCorners* triangle, vplVec3 normal)
     return c[0] * (double)normal.x + c[1] * (double)normal.y + c[2] * (double)normal.z > 0;
 }
 
-// Halves are added, not sums halved: the sum of two large coordinates may be none.
-bool vplPatch_Middle(const vplTriangleCorners* turned, vplVec3 normal, vplVec3* middleOut)
+// Adds halves instead of halving the sum, which overflows for two large coordinates.
+bool vplPatch_Middle(const vplTriangleCorners* rotated, vplVec3 normal, vplVec3* middleOut)
 {
-    const vplVec3 a = turned->corner[1], b = turned->corner[2];
+    const vplVec3 a = rotated->corner[1], b = rotated->corner[2];
     *middleOut = vplAdd(vplScale(0.5f, a), vplScale(0.5f, b));
-    const vplTriangleCorners first = vplPatch_Half(turned, *middleOut, 0),
-                             second = vplPatch_Half(turned, *middleOut, 1);
+    const vplTriangleCorners first = vplPatch_Half(rotated, *middleOut, 0),
+                             second = vplPatch_Half(rotated, *middleOut, 1);
     return facesAlong(&first, normal) && facesAlong(&second, normal);
 }
 
@@ -72,7 +73,7 @@ static uint32_t hashOf(const uint32_t bits[3])
 
 uint32_t vplPatchTree_Intern(vplPatchTree* tree, vplVec3 position)
 {
-    const vplVec3 p = vplVec(position.x + 0.0f, position.y + 0.0f, position.z + 0.0f); // -0 is 0
+    const vplVec3 p = vplVec(position.x + 0.0f, position.y + 0.0f, position.z + 0.0f); // turns -0 into 0
     uint32_t bits[3];
     memcpy(bits, &p, sizeof bits);
     uint32_t slot = hashOf(bits) & tree->slotMask;
@@ -88,26 +89,23 @@ uint32_t vplPatchTree_Intern(vplPatchTree* tree, vplVec3 position)
 
 vplResult vplPatchTree_Reserve(vplPatchTree* tree, size_t positions, size_t nodes)
 {
-    vplContext* context = tree->geometry->context;
     size_t slots = 16;
     while (slots < 2 * positions) {
         slots *= 2;
     }
     tree->slotMask = (uint32_t)(slots - 1);
-    tree->positions = vplAlloc(context, positions, sizeof *tree->positions);
-    tree->nodes = tree->positions ? vplAlloc(context, nodes, sizeof *tree->nodes) : NULL;
-    tree->slots = tree->nodes ? vplAllocZero(context, slots, sizeof *tree->slots) : NULL;
-    if (tree->slots == NULL) {
-        vplFree(context, tree->positions);
-        vplFree(context, tree->nodes);
-        return VPL_OUT_OF_MEMORY;
-    }
-    return VPL_SUCCESS;
+    tree->arena = vplArena_Create(tree->geometry->context);
+    tree->scratch = vplArena_Create(tree->geometry->context);
+    tree->positions = vplArena_Alloc(tree->arena, positions, sizeof *tree->positions);
+    tree->nodes = vplArena_Alloc(tree->arena, nodes, sizeof *tree->nodes);
+    tree->slots = vplArena_AllocZero(tree->scratch, slots, sizeof *tree->slots);
+    TRY(vplArena_Check(tree->arena));
+    return vplArena_Check(tree->scratch);
 }
 
 // ---- nodes
 
-vplTriangleCorners vplPatchTree_Corners(const vplPatchTree* tree, int node)
+static vplTriangleCorners cornersOf(const vplPatchTree* tree, int node)
 {
     return vplCornersOf(tree->positions, tree->nodes[node].corners);
 }
@@ -115,7 +113,7 @@ vplTriangleCorners vplPatchTree_Corners(const vplPatchTree* tree, int node)
 static void addNode(vplPatchTree* tree, const uint32_t corners[3], int triangle, int parent)
 {
     const vplTriangleCorners at = vplCornersOf(tree->positions, corners);
-    const int first = vplPatch_FirstCorner(&at);
+    const int first = firstCorner(&at);
     vplPatchNode* node = &tree->nodes[tree->nodeCount++];
     *node = (vplPatchNode){.triangle = triangle, .parent = parent, .children = -1, .patch = -1};
     for (int k = 0; k < 3; k++) {
@@ -138,9 +136,9 @@ void vplPatchTree_AddTriangles(vplPatchTree* tree)
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square)
 {
     const vplPatchNode whole = tree->nodes[node];
-    const vplTriangleCorners at = vplPatchTree_Corners(tree, node);
+    const vplTriangleCorners at = cornersOf(tree, node);
     vplVec3 middle;
-    if (!(vplPatch_Square(&at) > square) ||
+    if (!(vplPatch_SquaredEdge(&at) > square) ||
         !vplPatch_Middle(&at, tree->geometry->normals[whole.triangle], &middle)) {
         return false;
     }
@@ -161,7 +159,7 @@ static int firstLeaf(const vplPatchNode* nodes, int node)
     return node;
 }
 
-// The leaf after one in the order of the tree, -1 after the last. Without a stack: trees may be refined to any depth.
+// The next leaf in the order of the tree, -1 after the last. Has no stack: trees may be refined to any depth.
 static int nextLeaf(const vplPatchNode* nodes, int node)
 {
     while (nodes[node].parent >= 0 && nodes[nodes[node].parent].children != node) {
@@ -170,7 +168,7 @@ static int nextLeaf(const vplPatchNode* nodes, int node)
     return nodes[node].parent < 0 ? -1 : firstLeaf(nodes, node + 1);
 }
 
-// Rounded up, so that it is a T that bisects none of these patches.
+// The square root rounded up, so that as T it bisects none of these patches.
 static float lengthOf(double square)
 {
     const float length = (float)sqrt(square);
@@ -183,8 +181,8 @@ static void listPatches(const vplPatchTree* tree, vplPatches* patches, int* list
     for (int t = 0; t < tree->geometry->triangleCount; t++) {
         for (int i = vplCanBeHit(tree->geometry, t) ? firstLeaf(tree->nodes, t) : -1; i >= 0;
              i = nextLeaf(tree->nodes, i)) {
-            const vplTriangleCorners at = vplPatchTree_Corners(tree, i);
-            longest = fmax(longest, vplPatch_Square(&at));
+            const vplTriangleCorners at = cornersOf(tree, i);
+            longest = fmax(longest, vplPatch_SquaredEdge(&at));
             tree->nodes[i].patch = patches->patchCount;
             list[patches->patchCount++] = i;
         }
@@ -192,27 +190,29 @@ static void listPatches(const vplPatchTree* tree, vplPatches* patches, int* list
     patches->longestEdge = lengthOf(longest);
 }
 
-vplResult vplPatchTree_Finish(vplPatchTree* tree, vplPatches** patchesOut)
+static vplResult makePatches(vplPatchTree* tree, vplPatches** patchesOut)
 {
-    vplContext* context = tree->geometry->context;
     const size_t leaves = ((size_t)tree->nodeCount + (size_t)tree->geometry->triangleCount) / 2;
-    vplPatches* patches = vplAllocZero(context, 1, sizeof *patches);
-    int* list = patches ? vplAlloc(context, leaves, sizeof *list) : NULL;
-    vplFree(context, tree->slots);
-    if (list == NULL) {
-        vplFree(context, patches);
-        vplFree(context, tree->positions);
-        vplFree(context, tree->nodes);
-        return VPL_OUT_OF_MEMORY;
-    }
+    vplPatches* patches = vplArena_Alloc(tree->arena, 1, sizeof *patches);
+    int* list = vplArena_Alloc(tree->arena, leaves, sizeof *list);
+    TRY(vplArena_Check(tree->arena));
     *patches = (vplPatches){.geometry = tree->geometry,
                             .positions = tree->positions,
                             .positionCount = tree->positionCount,
                             .nodes = tree->nodes,
                             .nodeCount = tree->nodeCount,
                             .patches = list,
-                            .context = context};
+                            .arena = tree->arena,
+                            .context = tree->geometry->context};
     listPatches(tree, patches, list);
     *patchesOut = patches;
     return VPL_SUCCESS;
+}
+
+vplResult vplPatchTree_Finish(vplPatchTree* tree, vplResult result, vplPatches** patchesOut)
+{
+    vplPatches* patches = NULL;
+    vplArena_Destroy(tree->scratch);
+    result = result == VPL_SUCCESS ? makePatches(tree, &patches) : result;
+    return vplArena_Deliver(tree->arena, result, patches, patchesOut);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Single rays through the hierarchy.
+// Traversal of the hierarchy by single rays.
 // Based on: Holger Dammertz, Johannes Hanika and Alexander Keller, Shallow Bounding Volume Hierarchies, EGSR 2008
 // (wide nodes).
 #include "geometry/ray_tests.h"
 
-// Lanes in order, so among equal t of a block the lowest triangle stays; across blocks it is compared.
+// Lanes go in order, so among equal t within a block the lowest triangle stays; across blocks the ids are compared.
 static inline void keepClosest(const Prepared* r, const vplTriangleBlock* block, vplRawHit* best)
 {
     float t[WIDTH], b1[WIDTH], b2[WIDTH];
@@ -20,7 +20,8 @@ static inline void keepClosest(const Prepared* r, const vplTriangleBlock* block,
     }
 }
 
-// A child and the distance at which it is entered, in one number that sorts by distance: those are not negative.
+// The distance at which a child is entered and the child, in one number that sorts by distance. Distances are not
+// negative, so their bits sort as they do.
 typedef uint64_t Entry;
 
 static inline Entry makeEntry(float t, int32_t child)
@@ -38,8 +39,7 @@ static inline float distanceOf(Entry entry)
     return t;
 }
 
-// Pushes the children that were hit but the nearest, which is returned; there must be one. Two are in order; more
-// are sorted by one pass of exchanges without branches, which is nearly as good as all.
+// Pushes all children that were hit except the nearest, which it returns, sorted by distance. There must be a hit.
 static inline Entry pushOthers(const vplBvhNode* node, uint32_t hits, const float entry[WIDTH], Entry* stack,
                                int* height)
 {
@@ -72,7 +72,7 @@ void VPL_KERNEL(vplTraceClosest)(const vplBvh* bvh, const vplRay* ray, float tMa
     }
     Entry stack[VPL_BVH_DEPTH * (WIDTH - 1) + 2];
     int height = 1;
-    stack[0] = UINT64_MAX; // further than all
+    stack[0] = UINT64_MAX; // sentinel: further than all
     Entry top = 0;
     for (bool more = bvh->nodes != NULL; more;) {
         const int32_t child = (int32_t)(uint32_t)top;

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-// A ray against the triangles of a block and against the children of a node: what the ray kernels share. Included
-// by kernels only, so that it is compiled once per instruction set; all give the same bits.
+// One ray against the triangles of a block and against the children of a node. Included by kernels only, so it is
+// compiled once per instruction set; all give the same bits.
 // Based on: Sven Woop, Carsten Benthin and Ingo Wald, Watertight Ray/Triangle Intersection, JCGT 2013; Thiago
 // Ize, Robust BVH Ray Traversal, JCGT 2013 (rounding of the box test).
-// Departs: a hit must also lie in its triangle's own box, by the very arithmetic that tests nodes. That
-// arithmetic is monotone, so the box of a node is never missed by a ray that meets a box inside: the tree
-// gives the same bits as testing every triangle, for all rays.
+// Departs: a hit must also lie in its triangle's own bounds, by the arithmetic that tests nodes. That arithmetic is
+// monotone, so a ray that meets a box never misses the box around it: the tree gives the same bits as testing every
+// triangle, for all rays.
 #ifndef VPL_GEOMETRY_RAY_TESTS_H
 #define VPL_GEOMETRY_RAY_TESTS_H
 
 #include "base/isa.h"
+#include "geometry/box.h"
 #include "geometry/bvh.h"
-#include "geometry/four.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { WIDTH = VPL_BVH_WIDTH };
 
-// Bit i of the result: flags[i], which is 0 or -1, is -1.
+// Bit i of the result: flags[i] is -1. Flags are 0 or -1.
 static inline uint32_t collectBits(const int32_t flags[WIDTH])
 {
     static const int32_t place[WIDTH] = {1, 2, 4, 8, 16, 32, 64, 128};
@@ -29,10 +29,10 @@ static inline uint32_t collectBits(const int32_t flags[WIDTH])
     return (uint32_t)bits;
 }
 
-// A ray prepared for both tests. The triangle test works in axes (kx, ky, kz) where the ray runs along z.
+// A ray prepared for both tests. The triangle test permutes the axes so that kz is the ray's longest.
 typedef struct Prepared {
-    vplFour origin, inverse;   // the last is not used
-    int nearRow[3], farRow[3]; // offsets in bytes of rows of vplBvhNode.planes
+    vplFour origin, inverse;   // of the direction; the fourth lane is not used
+    int nearRow[3], farRow[3]; // byte offsets of rows of vplBvhNode.planes
     float sx, sy, sz;
     int kx, ky, kz;
     int skipFirst, skipCount;
@@ -46,7 +46,7 @@ static inline void setRows(Prepared* p, int axis)
     p->farRow[axis] = ROW * (p->inverse[axis] < 0 ? axis : axis + 3);
 }
 
-// The axis of the largest component. Without branches: those of random rays would be mispredicted.
+// The axis of the largest component. Has no branches: they would be mispredicted for random rays.
 static inline int longestAxis(float x, float y, float z)
 {
     x = fabsf(x);
@@ -71,7 +71,7 @@ static inline Prepared prepare(const vplRay* ray)
     p.sz = shear[2];
     vplFour divisor = {1, 1, 1, 1};
     for (int k = 0; k < 3; k++) {
-        // Not 1/0: 0 times infinity is no number. A slab that the ray does not leave is made too wide to decide.
+        // Avoids 1/0, because 0 times infinity is NaN. A slab parallel to the ray becomes too wide to decide.
         divisor[k] = fabsf(d[k]) > 0x1p-126f ? d[k] : copysignf(0x1p-126f, d[k]);
     }
     p.inverse = 1 / divisor;
@@ -83,8 +83,8 @@ static inline Prepared prepare(const vplRay* ray)
     return p;
 }
 
-// Edge functions of one triangle again in double where a float came out as exactly 0: rounding never turns a
-// sign, but it can hide one.
+// Recomputes the edge functions of a triangle in double where one came out as 0 in float: rounding never flips a sign,
+// but it can hide one.
 static void edgesInDouble(const float a[2], const float b[2], const float c[2], float* u, float* v, float* w)
 {
     *u = (float)((double)c[0] * b[1] - (double)c[1] * b[0]);
@@ -92,7 +92,7 @@ static void edgesInDouble(const float a[2], const float b[2], const float c[2], 
     *w = (float)((double)b[0] * a[1] - (double)b[1] * a[0]);
 }
 
-// Tests the triangles of a block. Bit i of the result: lane i was hit; without bits the outputs are not set.
+// Tests the triangles of a block. Bit i of the result: lane i was hit. Without hits the outputs are not set.
 static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vplTriangleBlock* block,
                                                     float* restrict t, float* restrict b1, float* restrict b2)
 {
@@ -127,7 +127,7 @@ static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vpl
         float least = u[i] < v[i] ? u[i] : v[i], most = u[i] > v[i] ? u[i] : v[i];
         least = least < w[i] ? least : w[i];
         most = most > w[i] ? most : w[i];
-        uint32_t id = (uint32_t)block->id[i]; // unused lanes: beyond all
+        uint32_t id = (uint32_t)block->id[i]; // -1, unused: above all
         flags[i] = -(((least >= 0) | (most <= 0)) & (id - first >= count) & (id < 0x80000000u));
     }
     if (collectBits(flags) == 0) { // most blocks
@@ -145,7 +145,7 @@ static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vpl
     return collectBits(flags);
 }
 
-// Where a ray enters a box and where it leaves it: planes minus origin times the inverse of the direction.
+// The distance at which a ray enters a box, from those at which it crosses the near planes.
 static inline float slabEntry(float x, float y, float z)
 {
     float t = x > y ? x : y;
@@ -153,9 +153,9 @@ static inline float slabEntry(float x, float y, float z)
     return t > 0 ? t : 0;
 }
 
-// Later by 16 rounding units than the planes say: slabs are off by 6, the corners in the triangle test by 6 more
-// (and by what vplBoundTriangle adds). Without it a ray from afar that the triangle test gives to one side of an
-// edge misses the box of that side: 204 of the 96000 rays of SharedEdgesLetNothingThrough fell through.
+// The distance at which it leaves the box, enlarged by 16 rounding units: the slabs err by 6 and the corners in the
+// triangle test by 6 more, on top of the padding of vplBoundTriangle. Without it 204 of the 96000 rays of the test
+// SharedEdgesLetNothingThrough fall through an edge: they miss the box of the triangle that they hit.
 static inline float slabExit(float x, float y, float z)
 {
     float t = x < y ? x : y;
@@ -167,7 +167,7 @@ static inline const float* rowAt(const vplBvhNode* node, int offset)
     return (const float*)((const char*)node + offset);
 }
 
-// Entry distances of a node's children. Bit i of the result: child i is met, and before `limit`.
+// Finds the entry distances of a node's children. Bit i of the result: the ray meets child i before `limit`.
 static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, float limit,
                                  float* restrict entry)
 {
@@ -189,7 +189,7 @@ static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, floa
     return collectBits(met);
 }
 
-// Moves a hit into its triangle's box, which is that of vplBoundTriangle; +infinity where the ray misses the box.
+// Clamps a hit distance to the triangle's bounds; +infinity where the ray misses them.
 static __attribute__((noinline)) float clampToBox(const Prepared* r, const vplTriangleBlock* block, int lane,
                                                   float t)
 {
@@ -197,15 +197,8 @@ static __attribute__((noinline)) float clampToBox(const Prepared* r, const vplTr
     for (int i = 0; i < 3; i++) {
         corner[i] = (vplFour){block->p[i][0][lane], block->p[i][1][lane], block->p[i][2][lane], 0};
     }
-    const vplFour low = vplFour_Min(corner[0], vplFour_Min(corner[1], corner[2]));
-    const vplFour high = vplFour_Max(corner[0], vplFour_Max(corner[1], corner[2]));
-    const vplFour size = high - low, magnitude = vplFour_Max(-low, high);
-    float extent = size[0] > size[1] ? size[0] : size[1];
-    float largest = magnitude[0] > magnitude[1] ? magnitude[0] : magnitude[1];
-    extent = extent > size[2] ? extent : size[2];
-    largest = largest > magnitude[2] ? largest : magnitude[2];
-    const float pad = extent * 0x1p-20f + largest * 0x1p-22f;
-    const vplFour a = (low - pad - r->origin) * r->inverse, b = (high + pad - r->origin) * r->inverse;
+    const vplBox box = vplBoundTriangle(corner);
+    const vplFour a = (box.low - r->origin) * r->inverse, b = (box.high - r->origin) * r->inverse;
     const vplFour in = vplFour_Min(a, b), out = vplFour_Max(a, b);
     const float entry = slabEntry(in[0], in[1], in[2]), exit = slabExit(out[0], out[1], out[2]);
     t = t > entry ? t : entry;
@@ -225,8 +218,7 @@ static inline bool hasHitBelow(const Prepared* r, const vplTriangleBlock* block,
     return false;
 }
 
-// Whether the subtree of `child` has a hit. In the order of the children: to sort by distance costs more than it
-// saves.
+// Whether the subtree of `child` has a hit. Visits children in their order: sorting by distance costs more than it saves.
 static inline bool hasHitInTree(const Prepared* r, const vplBvh* bvh, int32_t child, float limit)
 {
     int32_t stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1];

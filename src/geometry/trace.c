@@ -1,15 +1,61 @@
 // SPDX-License-Identifier: MIT
-// Rays through the frozen scene: triangles find what is hit, the object's own shape says where.
+// Rays through the scene: the tree of triangles finds what is hit, the object's own shape says where.
 #include "base/context.h"
 #include "geometry/bvh.h"
 #include "geometry/intersect.h"
-#include "geometry/ray_tree.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
 #include <math.h>
 
-// Point and normal of a mesh triangle.
+// ---- without a tree
+
+// Makes a hierarchy of one block of the triangles first .. first + 7.
+static void makeBlock(const vplGeometry* g, int first, vplTriangleBlock* block, vplBvh* bvh)
+{
+    int32_t ids[VPL_BVH_WIDTH];
+    int count = 0;
+    for (int i = first; i < first + VPL_BVH_WIDTH && i < g->triangleCount; i++) {
+        if (vplCanBeHit(g, i)) {
+            ids[count++] = i;
+        }
+    }
+    if (count > 0) {
+        vplTriangleBlock_Fill(block, g, ids, count);
+    }
+    *bvh = (vplBvh){.blocks = block, .blockCount = count > 0};
+}
+
+static void testAll(const vplGeometry* g, const vplRay* ray, float tMax, vplRawHit* best)
+{
+    const vplRayKernels* kernels = vplGetRayKernels(g->context->isa);
+    *best = (vplRawHit){.t = tMax, .triangle = -1};
+    for (int i = 0; i < g->triangleCount; i += VPL_BVH_WIDTH) {
+        vplTriangleBlock block;
+        vplBvh bvh;
+        vplRawHit hit;
+        makeBlock(g, i, &block, &bvh);
+        kernels->closest(&bvh, ray, best->t, &hit);
+        *best = hit.triangle >= 0 ? hit : *best; // ascending: of equal distances the first stays
+    }
+}
+
+bool vplAnyOfTriangles(const vplGeometry* g, const vplRay* ray, float tMax)
+{
+    const vplRayKernels* kernels = vplGetRayKernels(g->context->isa);
+    bool found = false;
+    for (int i = 0; i < g->triangleCount && !found; i += VPL_BVH_WIDTH) {
+        vplTriangleBlock block;
+        vplBvh bvh;
+        makeBlock(g, i, &block, &bvh);
+        found = kernels->any(&bvh, ray, tMax);
+    }
+    return found;
+}
+
+// ---- hits
+
+// Sets distance, position and normal of a hit on a mesh triangle.
 static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
 {
     const vplTriangleCorners t = vplGeometry_Corners(g, raw->triangle);
@@ -25,7 +71,7 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
     hit->t = raw->t;
 }
 
-// Where a triangle that was found is hit: by the formula of its object's own shape, where that has one.
+// Locates the hit on a triangle: by the formula of the quad or box that it belongs to, if any.
 static vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vplRawHit* raw)
 {
     const int index = geometry->owners[raw->triangle], face = vplGeometry_FaceOf(geometry, raw->triangle);
@@ -44,70 +90,66 @@ static vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vp
     return hit;
 }
 
-bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests)
+// Casts a ray up to tMax. Adds to *tests, which may be NULL, as vplClosestHit says.
+static bool castRay(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
 {
     vplRawHit raw;
-    const vplBvh* tree = vplGeometry_GetBvh(geometry);
-    if (tree != NULL) {
-        vplBvh bvh = *tree;
+    bool everyObject = true;
+    if (g->rayTree != NULL) {
+        vplBvh bvh = *g->rayTree;
         if (tests != NULL && bvh.blockCount <= VPL_COUNTED_BLOCKS) {
             bvh.nodes = NULL;
         }
-        vplGetTraceClosest(geometry->context->isa)(&bvh, ray, INFINITY, &raw);
-        if (tests != NULL) {
-            *tests += bvh.nodes ? raw.blocks : geometry->objectCount;
-        }
+        everyObject = bvh.nodes == NULL;
+        vplGetRayKernels(g->context->isa)->closest(&bvh, ray, tMax, &raw);
     } else {
-        vplClosestOfTriangles(geometry, ray, &raw);
+        testAll(g, ray, tMax, &raw);
     }
-    if (raw.triangle < 0) {
-        return false;
+    if (tests != NULL) {
+        *tests += everyObject ? g->objectCount : raw.blocks;
     }
-    *hitOut = finishHit(geometry, ray, &raw);
-    return true;
+    if (raw.triangle >= 0) {
+        *hitOut = finishHit(g, ray, &raw);
+    }
+    return raw.triangle >= 0;
+}
+
+bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests)
+{
+    return castRay(geometry, ray, INFINITY, tests, hitOut);
 }
 
 bool vplClosestHitWithin(const vplGeometry* geometry, const vplRay* ray, float tMax, vplHit* hitOut)
 {
-    vplRawHit raw;
-    const vplBvh* tree = vplGeometry_GetBvh(geometry);
-    if (tree != NULL) {
-        vplGetTraceClosest(geometry->context->isa)(tree, ray, tMax, &raw);
-    } else {
-        vplClosestOfTriangles(geometry, ray, &raw);
-    }
-    if (raw.triangle < 0 || !(raw.t < tMax)) {
-        return false;
-    }
-    *hitOut = finishHit(geometry, ray, &raw);
-    return true;
+    return castRay(geometry, ray, tMax, NULL, hitOut);
 }
 
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)
 {
-    return vplClosestHit(geometry, ray, hitOut, NULL);
+    return castRay(geometry, ray, INFINITY, NULL, hitOut);
 }
 
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)
 {
-    const vplBvh* bvh = vplGeometry_GetBvh(geometry);
-    return bvh ? vplGetTraceAny(geometry->context->isa)(bvh, ray, tMax)
-               : vplAnyOfTriangles(geometry, ray, tMax);
+    return geometry->rayTree ? vplGetRayKernels(geometry->context->isa)->any(geometry->rayTree, ray, tMax)
+                             : vplAnyOfTriangles(geometry, ray, tMax);
 }
 
 uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax)
 {
-    const vplBvh* bvh = vplGeometry_GetBvh(geometry);
-    if (bvh != NULL) {
-        return vplGetTraceAnyPacket(geometry->context->isa)(bvh, rays, tMax);
+    if (geometry->rayTree != NULL) {
+        return vplGetRayKernels(geometry->context->isa)->anyPacket(geometry->rayTree, rays, tMax);
     }
     uint32_t hits = 0;
-    for (int i = 0; i < VPL_RAY_PACKET; i++) {
-        const vplRay ray = vplRayPacket_Get(rays, i);
-        hits |= (uint32_t)((rays->active >> i & 1) && vplAnyOfTriangles(geometry, &ray, tMax)) << i;
+    for (uint32_t active = rays->active; active != 0; active &= active - 1) {
+        const int lane = __builtin_ctz(active);
+        const vplRay ray = vplRayPacket_Get(rays, lane);
+        hits |= (uint32_t)vplAnyOfTriangles(geometry, &ray, tMax) << lane;
     }
     return hits;
 }
+
+// ---- leaving a surface, shading, bounding boxes
 
 vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction)
 {
@@ -115,11 +157,12 @@ vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3
     const bool outward = vplDot(direction, hit->normal) >= 0;
     vplRay ray = {hit->position, direction, {hit->triangle, 1}};
     if (object->type == VPL_OBJECT_QUAD || (object->type == VPL_OBJECT_BOX && outward)) {
-        ray.skip = (vplSkip){object->firstTriangle, object->triangleCount}; // flat or convex: not met again
+        ray.skip =
+            (vplSkip){object->firstTriangle, object->triangleCount}; // flat or convex: cannot be hit again
     } else if (object->type == VPL_OBJECT_BOX) {
         ray.skip = (vplSkip){object->firstTriangle + 2 * hit->face, 2};
     } else {
-        // The point is off the triangle by rounding, and its neighbours meet it at an angle: step clear of both.
+        // Rounding moves the point off the triangle, and the neighbours are not coplanar: step clear of all of them.
         vplVec3 p = hit->position;
         float largest = fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
         ray.origin = vplAdd(p, vplScale((outward ? 1 : -1) * largest * 0x1p-20f, hit->normal));
@@ -141,7 +184,7 @@ vplVec3 vplGeometry_ShadingNormal(const vplGeometry* geometry, const vplHit* hit
     if (!(length > 0)) {
         return hit->normal;
     }
-    float sign = vplDot(sum, hit->normal) < 0 ? -1 : 1; // normals that disagree with the winding
+    float sign = vplDot(sum, hit->normal) < 0 ? -1 : 1; // the normals may disagree with the winding
     return vplScale(sign / length, sum);
 }
 
@@ -157,7 +200,7 @@ bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, cons
         if (object->type == VPL_OBJECT_QUAD) {
             met = !left && vplRay_HitQuad(ray, &object->placement, &hit);
         } else if (left && from->face == VPL_FACE_NONE) {
-            met = false; // from a triangle inside the box: on its way out
+            met = false; // leaves a triangle inside the box
         } else {
             met = vplRay_HitBox(ray, object->type == VPL_OBJECT_BOX ? &object->placement : &object->bounds,
                                 left ? from->face : VPL_FACE_NONE, &hit);

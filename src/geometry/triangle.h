@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked of one triangle of the frozen scene.
+// Corners, areas and barycentrics of single triangles.
 #ifndef VPL_GEOMETRY_TRIANGLE_H
 #define VPL_GEOMETRY_TRIANGLE_H
 
@@ -14,35 +14,35 @@ static inline vplTriangleCorners vplCornersOf(const vplVec3* positions, const ui
     return (vplTriangleCorners){{positions[index[0]], positions[index[1]], positions[index[2]]}};
 }
 
-// World space.
+// The corners of a triangle in world space.
 static inline vplTriangleCorners vplGeometry_Corners(const vplGeometry* g, int triangle)
 {
     return vplCornersOf(g->positions + g->objects[g->owners[triangle]].firstVertex,
                         g->indices + 3 * (size_t)triangle);
 }
 
-// Twice the area, along the normal of the counter-clockwise side. Differences of floats keep all digits here.
+// The cross product of two edges: twice the area, along the normal of the counter-clockwise side. Computed in double,
+// where differences of floats lose nothing.
 void vplTriangle_Cross(const vplTriangleCorners* triangle, double cross[3]);
 
-// In double from the rounded corners.
+// Area in square metres, computed in double from the rounded corners.
 double vplTriangle_Area(const vplTriangleCorners* triangle);
 
-// Square metres.
 double vplGeometry_TriangleArea(const vplGeometry* geometry, int triangle);
 
-// The face that a triangle belongs to, as in vplHit.
+// The face that a triangle belongs to, as in vplHit.face.
 int vplGeometry_FaceOf(const vplGeometry* geometry, int triangle);
 
-// The point of a triangle nearest to `point` by clamped weights, a hair inside: for points that were interpolated
-// from pixels, which may lie beyond an edge and then behind the surface that meets it there.
+// Moves a point of a triangle's plane just inside the triangle, by clamping its barycentrics. Points that are
+// interpolated from pixels may lie beyond an edge, and so behind the surface that meets the triangle there.
 vplVec3 vplGeometry_Inside(const vplGeometry* geometry, int triangle, vplVec3 point);
 
-// The same with the weights of corners 1 and 2.
-vplVec3 vplGeometry_InsideAt(const vplGeometry* geometry, int triangle, vplVec3 point, float* weight1Out,
-                             float* weight2Out);
+// The same, with the barycentrics of corners 1 and 2.
+vplVec3 vplGeometry_InsideAt(const vplGeometry* geometry, int triangle, vplVec3 point, float* uOut,
+                             float* vOut);
 
-// Weights of a triangle's corners at a point in its plane, or at the point's foot there; of one without area 1, 0, 0.
-void vplTriangle_Weigh(const vplVec3 corners[3], vplVec3 point, double weightsOut[3]);
+// Barycentrics of a point in a triangle's plane, or of its projection onto the plane; 1, 0, 0 without area.
+void vplTriangle_Barycentrics(const vplVec3 corners[3], vplVec3 point, double barycentricsOut[3]);
 
 static inline int vplPatches_TriangleOf(const vplPatches* patches, int patch)
 {

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Straight lines between `count` colours at equal steps.
+// Interpolates linearly between `count` colours at equal steps.
 static vplRgb mixStops(const vplRgb* stops, int count, float t)
 {
     float at = (float)(count - 1) * vplClampf(t == t ? t : 0, 0, 1);
@@ -25,8 +25,8 @@ vplRgb vplFalseColour(float t)
     return mixStops(stops, 6, t);
 }
 
-// Every 16th colour of matplotlib's magma (Smith and van der Walt, 2015, CC0), in sRGB; the lines between them
-// stay within 0.01 of it.
+// Every 16th colour of matplotlib's magma (Smith and van der Walt, 2015, CC0), in sRGB. Interpolation stays
+// within 0.01 of the others.
 vplRgb vplMagma(float t)
 {
     static const vplRgb stops[17] = {
@@ -67,17 +67,14 @@ static const Glyph GLYPHS[] = {
     {'%', {24, 25, 2, 4, 8, 19, 3}},
 };
 
-void vplDrawText(vplImage* image, int x, int y, int zoom, vplRgb colour, const char* text)
+// Writes digits and "+-.e%" with their top left corner at (x, y); a glyph is 5 by 7 pixels.
+static void drawText(vplImage* image, int x, int y, vplRgb colour, const char* text)
 {
-    for (; *text; text++, x += 6 * zoom) {
+    for (; *text; text++, x += 6) {
         for (size_t g = 0; g < sizeof GLYPHS / sizeof *GLYPHS; g++) {
-            if (GLYPHS[g].character != *text) {
-                continue;
-            }
-            for (int i = 0; i < 35 * zoom * zoom; i++) {
-                int px = i % (5 * zoom), py = i / (5 * zoom);
-                if (GLYPHS[g].rows[py / zoom] >> (4 - px / zoom) & 1) {
-                    setPixel(image, x + px, y + py, colour);
+            for (int i = 0; GLYPHS[g].character == *text && i < 35; i++) {
+                if (GLYPHS[g].rows[i / 5] >> (4 - i % 5) & 1) {
+                    setPixel(image, x + i % 5, y + i / 5, colour);
                 }
             }
         }
@@ -106,7 +103,7 @@ void vplColourBar_Draw(vplImage* image, int top, int height, float largest, vplC
         snprintf(text, sizeof text, value != 0 && (value < 0.001 || value >= 1e5) ? "%.1e" : "%.4g", value);
         int wide = 6 * (int)strlen(text) - 1;
         int x = (image->width - 1) * i / (labels - 1) - wide * i / (labels - 1);
-        vplDrawText(image, x, top + 17, 1, (vplRgb){1, 1, 1}, text);
+        drawText(image, x, top + 17, (vplRgb){1, 1, 1}, text);
     }
 }
 
@@ -136,18 +133,4 @@ void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour)
 void vplDrawSquare(vplImage* image, float x, float y, float half, vplRgb colour)
 {
     drawMark(image, x, y, half, true, colour);
-}
-
-void vplDrawLine(vplImage* image, float x0, float y0, float x1, float y1, vplRgb colour)
-{
-    float dx = x1 - x0, dy = y1 - y0;
-    float steps = vplMaxf(fabsf(dx), fabsf(dy));
-    if (!(steps < 1e5f)) {
-        return; // off the picture by far, or not a number
-    }
-    int count = (int)steps + 1;
-    for (int i = 0; i <= count; i++) {
-        float t = (float)i / (float)count;
-        setPixel(image, (int)floorf(x0 + t * dx), (int)floorf(y0 + t * dy), colour);
-    }
 }

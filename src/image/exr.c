@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// OpenEXR pictures by OpenEXRCore: written as float RGB in scanlines with ZIP; read as half or float, RGB or
-// grey (Y), in scanlines with any compression that OpenEXRCore knows. Its allocation hooks take no user data,
-// so without globals its own scratch memory (a few scanlines) cannot come from the context; pixels and the
-// encoded file do. Everything goes through memory: files are written whole or not at all by vplWriteFile.
+// OpenEXR pictures by OpenEXRCore. Writes float RGB scanlines with ZIP compression; reads half or float, RGB
+// or grey (Y) scanlines with any compression that OpenEXRCore knows. Pixels and the encoded file are in
+// context memory. OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks take no
+// user data. It never touches files itself, because vplWriteFile writes them whole or not at all.
+#include "base/arena.h"
 #include "image/image_file.h"
 
 #if !VPL_EXR
@@ -32,9 +33,8 @@ vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* byt
 
 #else
 
-#include <OpenEXR/openexr.h>
+#include "image/exr_stream.h"
 
-#include <stdio.h>
 #include <string.h>
 
 bool vplHasExr(void)
@@ -42,114 +42,21 @@ bool vplHasExr(void)
     return true;
 }
 
-// What OpenEXRCore's callbacks see.
-typedef struct Stream {
-    const uint8_t* bytes; // reading
-    size_t size;
-    vplByteBuffer* buffer; // writing
-    char reason[160];      // the first error; OpenEXRCore would print it
-} Stream;
-
-static void keepReason(exr_const_context_t exr, exr_result_t code, const char* message)
-{
-    (void)code;
-    void* user;
-    if (exr == NULL || exr_get_user_data(exr, &user) != EXR_ERR_SUCCESS || user == NULL) {
-        return;
-    }
-    Stream* s = user;
-    if (s->reason[0] != 0) {
-        return;
-    }
-    // It quotes names from the file, which may hold anything.
-    size_t length = 0;
-    for (; message[length] != 0 && length + 1 < sizeof s->reason; length++) {
-        bool printable = message[length] >= 0x20 && message[length] < 0x7F;
-        s->reason[length] = printable ? message[length] : '?';
-    }
-    s->reason[length] = 0;
-}
-
-static int64_t readStream(exr_const_context_t exr, void* user, void* to, uint64_t size, uint64_t offset,
-                          exr_stream_error_func_ptr_t fail)
-{
-    (void)exr;
-    (void)fail;
-    const Stream* s = user;
-    if (offset >= s->size) {
-        return 0;
-    }
-    uint64_t count = s->size - offset < size ? s->size - offset : size;
-    memcpy(to, s->bytes + offset, count);
-    return (int64_t)count;
-}
-
-static int64_t sizeStream(exr_const_context_t exr, void* user)
-{
-    (void)exr;
-    return (int64_t)((const Stream*)user)->size;
-}
-
-// Mostly appends; the table of chunks is written over at the end.
-static int64_t writeStream(exr_const_context_t exr, void* user, const void* from, uint64_t size,
-                           uint64_t offset, exr_stream_error_func_ptr_t fail)
-{
-    (void)exr;
-    (void)fail;
-    static const uint8_t zeros[256];
-    vplByteBuffer* buffer = ((Stream*)user)->buffer;
-    while (buffer->size < offset && !buffer->failed) {
-        uint64_t gap = offset - buffer->size;
-        vplByteBuffer_Append(buffer, zeros, gap < sizeof zeros ? gap : sizeof zeros);
-    }
-    if (buffer->failed) {
-        return -1;
-    }
-    uint64_t over = buffer->size - offset < size ? buffer->size - offset : size;
-    if (over > 0) {
-        memcpy(buffer->bytes + offset, from, over);
-    }
-    vplByteBuffer_Append(buffer, (const uint8_t*)from + over, size - over);
-    return buffer->failed ? -1 : (int64_t)size;
-}
-
-static void closeStream(exr_const_context_t exr, void* user, int failed)
-{
-    (void)exr;
-    (void)user;
-    (void)failed;
-}
-
-static exr_context_initializer_t describeStream(Stream* s)
-{
-    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    init.error_handler_fn = keepReason;
-    init.user_data = s;
-    init.read_fn = s->buffer ? NULL : readStream;
-    init.size_fn = s->buffer ? NULL : sizeStream;
-    init.write_fn = s->buffer ? writeStream : NULL;
-    init.destroy_fn = closeStream;
-    init.max_image_width = init.max_image_height = VPL_MAX_IMAGE_SIZE;
-    return init;
-}
-
 // ---- writing
 
 static exr_result_t writeHeader(exr_context_t exr, const vplImage* image)
 {
-    static const char* const names[] = {"B", "G", "R"}; // in the order of the alphabet, as the format wants
+    static const char* const names[] = {"B", "G", "R"}; // the format wants alphabetical order
     int part;
-    exr_result_t r = exr_add_part(exr, "picture", EXR_STORAGE_SCANLINE, &part);
-    if (r == EXR_ERR_SUCCESS) {
-        r = exr_initialize_required_attr_simple(exr, part, image->width, image->height, EXR_COMPRESSION_ZIP);
+    TRY_EXR(exr_add_part(exr, "picture", EXR_STORAGE_SCANLINE, &part));
+    TRY_EXR(exr_initialize_required_attr_simple(exr, part, image->width, image->height, EXR_COMPRESSION_ZIP));
+    for (int i = 0; i < 3; i++) {
+        TRY_EXR(exr_add_channel(exr, part, names[i], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
     }
-    for (int i = 0; i < 3 && r == EXR_ERR_SUCCESS; i++) {
-        r = exr_add_channel(exr, part, names[i], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
-    }
-    return r == EXR_ERR_SUCCESS ? exr_write_header(exr) : r;
+    return exr_write_header(exr);
 }
 
-// Offset of a channel in our pixels, or -1. Grey goes to red first.
+// Offset of a channel in our pixels, or -1. Grey is stored in red first.
 static int channelIndex(const char* name)
 {
     static const char order[] = "RGB";
@@ -165,52 +72,49 @@ static void describeChannel(exr_coding_channel_info_t* channel, int width)
     channel->user_line_stride = 3 * 4 * width;
 }
 
-static exr_result_t writeRows(exr_context_t exr, const vplImage* image)
+static exr_result_t writeRows(exr_context_t exr, const vplImage* image, exr_encode_pipeline_t* pipeline)
 {
-    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
     int32_t step = 1;
-    exr_result_t r = exr_get_scanlines_per_chunk(exr, 0, &step);
-    for (int y = 0; y < image->height && r == EXR_ERR_SUCCESS; y += step) {
+    TRY_EXR(exr_get_scanlines_per_chunk(exr, 0, &step));
+    for (int y = 0; y < image->height; y += step) {
         exr_chunk_info_t chunk;
-        r = exr_write_scanline_chunk_info(exr, 0, y, &chunk);
-        if (r == EXR_ERR_SUCCESS) {
-            r = y == 0 ? exr_encoding_initialize(exr, 0, &chunk, &pipeline)
-                       : exr_encoding_update(exr, 0, &chunk, &pipeline);
+        TRY_EXR(exr_write_scanline_chunk_info(exr, 0, y, &chunk));
+        TRY_EXR((y == 0 ? exr_encoding_initialize : exr_encoding_update)(exr, 0, &chunk, pipeline));
+        for (int c = 0; c < pipeline->channel_count; c++) {
+            exr_coding_channel_info_t* channel = &pipeline->channels[c];
+            describeChannel(channel, image->width);
+            channel->encode_from_ptr = (const uint8_t*)(image->pixels + 3 * (size_t)y * (size_t)image->width +
+                                                        channelIndex(channel->channel_name));
         }
-        for (int c = 0; c < pipeline.channel_count && r == EXR_ERR_SUCCESS; c++) {
-            const float* from = image->pixels + 3 * (size_t)y * (size_t)image->width;
-            describeChannel(&pipeline.channels[c], image->width);
-            pipeline.channels[c].encode_from_ptr =
-                (const uint8_t*)(from + channelIndex(pipeline.channels[c].channel_name));
+        if (y == 0) {
+            TRY_EXR(exr_encoding_choose_default_routines(exr, 0, pipeline));
         }
-        if (r == EXR_ERR_SUCCESS && y == 0) {
-            r = exr_encoding_choose_default_routines(exr, 0, &pipeline);
-        }
-        if (r == EXR_ERR_SUCCESS) {
-            r = exr_encoding_run(exr, 0, &pipeline);
-        }
+        TRY_EXR(exr_encoding_run(exr, 0, pipeline));
     }
-    exr_encoding_destroy(exr, &pipeline);
-    return r;
+    return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t encode(exr_context_t* exr, const vplImage* image, exr_encode_pipeline_t* pipeline,
+                           const exr_context_initializer_t* init)
+{
+    TRY_EXR(exr_start_write(exr, "picture.exr", EXR_WRITE_FILE_DIRECTLY, init));
+    TRY_EXR(writeHeader(*exr, image));
+    return writeRows(*exr, image, pipeline);
 }
 
 vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
 {
     (void)options;
-    Stream stream = {.buffer = buffer};
-    exr_context_initializer_t init = describeStream(&stream);
+    vplExrStream stream = {.buffer = buffer};
+    const exr_context_initializer_t init = vplExrStream_Describe(&stream);
     exr_context_t exr = NULL;
-    exr_result_t r = exr_start_write(&exr, "picture.exr", EXR_WRITE_FILE_DIRECTLY, &init);
-    if (r == EXR_ERR_SUCCESS) {
-        r = writeHeader(exr, image);
-    }
-    if (r == EXR_ERR_SUCCESS) {
-        r = writeRows(exr, image);
-    }
-    exr_result_t finished = exr_finish(&exr);
+    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_result_t r = encode(&exr, image, &pipeline, &init);
+    exr_encoding_destroy(exr, &pipeline);
+    const exr_result_t finished = exr_finish(&exr);
     r = r == EXR_ERR_SUCCESS ? finished : r;
     if (r == EXR_ERR_SUCCESS || buffer->failed) {
-        return VPL_SUCCESS; // the caller looks at the buffer
+        return VPL_SUCCESS; // the caller checks the buffer
     }
     if (r == EXR_ERR_OUT_OF_MEMORY) {
         return vplFail(image->context, VPL_OUT_OF_MEMORY, "out of memory while encoding an EXR picture");
@@ -226,7 +130,7 @@ typedef struct Layout {
     bool grey;
 } Layout;
 
-// What is wrong with the kind of picture, or NULL.
+// Describes the picture; returns why it cannot be read, or NULL.
 static const char* findLayout(exr_const_context_t exr, Layout* layout)
 {
     int parts = 0;
@@ -264,48 +168,40 @@ static const char* findLayout(exr_const_context_t exr, Layout* layout)
     return layout->grey || found == 7 ? NULL : "its channels must be R, G and B, or Y";
 }
 
-static exr_result_t readRows(exr_context_t exr, const Layout* layout, vplImage* image)
+static exr_result_t readRows(exr_context_t exr, const Layout* layout, vplImage* image,
+                             exr_decode_pipeline_t* pipeline)
 {
-    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
     int32_t step = 1;
-    exr_result_t r = exr_get_scanlines_per_chunk(exr, 0, &step);
-    for (int y = 0; y < layout->height && r == EXR_ERR_SUCCESS; y += step) {
+    TRY_EXR(exr_get_scanlines_per_chunk(exr, 0, &step));
+    for (int y = 0; y < layout->height; y += step) {
         exr_chunk_info_t chunk;
-        r = exr_read_scanline_chunk_info(exr, 0, layout->firstRow + y, &chunk);
-        // Rows and columns are where the loop believes them, or nothing is written.
-        if (r == EXR_ERR_SUCCESS && (chunk.start_y != layout->firstRow + y || chunk.width != layout->width ||
-                                     chunk.height > layout->height - y)) {
-            r = EXR_ERR_BAD_CHUNK_LEADER;
+        TRY_EXR(exr_read_scanline_chunk_info(exr, 0, layout->firstRow + y, &chunk));
+        // Refuses a chunk that would write outside the rows and columns expected here.
+        if (chunk.start_y != layout->firstRow + y || chunk.width != layout->width ||
+            chunk.height > layout->height - y) {
+            return EXR_ERR_BAD_CHUNK_LEADER;
         }
-        if (r == EXR_ERR_SUCCESS) {
-            r = y == 0 ? exr_decoding_initialize(exr, 0, &chunk, &pipeline)
-                       : exr_decoding_update(exr, 0, &chunk, &pipeline);
-        }
-        for (int c = 0; c < pipeline.channel_count && r == EXR_ERR_SUCCESS; c++) {
-            int index = channelIndex(pipeline.channels[c].channel_name);
+        TRY_EXR((y == 0 ? exr_decoding_initialize : exr_decoding_update)(exr, 0, &chunk, pipeline));
+        for (int c = 0; c < pipeline->channel_count; c++) {
+            exr_coding_channel_info_t* channel = &pipeline->channels[c];
+            const int index = channelIndex(channel->channel_name);
             float* to = image->pixels + 3 * (size_t)y * (size_t)image->width + (index > 0 ? index : 0);
-            describeChannel(&pipeline.channels[c], image->width);
-            pipeline.channels[c].decode_to_ptr = index < 0 ? NULL : (uint8_t*)to;
+            describeChannel(channel, image->width);
+            channel->decode_to_ptr = index < 0 ? NULL : (uint8_t*)to;
         }
-        if (r == EXR_ERR_SUCCESS && y == 0) {
-            r = exr_decoding_choose_default_routines(exr, 0, &pipeline);
+        if (y == 0) {
+            TRY_EXR(exr_decoding_choose_default_routines(exr, 0, pipeline));
         }
-        if (r == EXR_ERR_SUCCESS) {
-            r = exr_decoding_run(exr, 0, &pipeline);
-        }
+        TRY_EXR(exr_decoding_run(exr, 0, pipeline));
     }
-    exr_decoding_destroy(exr, &pipeline);
-    return r;
-}
-
-static void spreadGrey(vplImage* image)
-{
-    for (size_t i = 0; i < (size_t)image->width * (size_t)image->height; i++) {
+    for (size_t i = 0; layout->grey && i < (size_t)image->width * (size_t)image->height; i++) {
         image->pixels[3 * i + 1] = image->pixels[3 * i + 2] = image->pixels[3 * i];
     }
+    return EXR_ERR_SUCCESS;
 }
 
-static vplResult failReading(vplContext* context, const char* path, const Stream* stream, exr_result_t r)
+static vplResult failReading(vplContext* context, const char* path, const vplExrStream* stream,
+                             exr_result_t r)
 {
     if (r == EXR_ERR_OUT_OF_MEMORY) {
         return vplFail(context, VPL_OUT_OF_MEMORY, "%s: out of memory while decoding", path);
@@ -314,36 +210,40 @@ static vplResult failReading(vplContext* context, const char* path, const Stream
                    stream->reason[0] ? stream->reason : exr_get_default_error_message(r));
 }
 
-vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut)
+static vplResult decode(vplContext* context, exr_context_t exr, const char* path, const vplExrStream* stream,
+                        vplImage** imageOut)
 {
-    Stream stream = {.bytes = bytes, .size = size};
-    exr_context_initializer_t init = describeStream(&stream);
-    exr_context_t exr = NULL;
-    exr_result_t r = exr_start_read(&exr, "picture.exr", &init);
-    if (r != EXR_ERR_SUCCESS) {
-        return failReading(context, path, &stream, r);
-    }
-    Layout layout = {0, 0, 0, false};
+    Layout layout;
     const char* wrong = findLayout(exr, &layout);
-    vplImage* image = NULL;
-    vplResult result =
-        wrong ? vplFail(context, VPL_PARSE_ERROR, "%s: cannot read this kind of EXR picture: %s", path, wrong)
-              : vplImage_Create(context, layout.width, layout.height, &image);
-    if (result == VPL_SUCCESS) {
-        r = readRows(exr, &layout, image);
-        result = r == EXR_ERR_SUCCESS ? VPL_SUCCESS : failReading(context, path, &stream, r);
+    if (wrong != NULL) {
+        return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read this kind of EXR picture: %s", path, wrong);
     }
-    exr_finish(&exr);
-    if (result != VPL_SUCCESS) {
+    vplImage* image;
+    TRY(vplImage_Create(context, layout.width, layout.height, &image));
+    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+    const exr_result_t r = readRows(exr, &layout, image, &pipeline);
+    exr_decoding_destroy(exr, &pipeline);
+    if (r != EXR_ERR_SUCCESS) {
         vplImage_Destroy(image);
-        return result;
-    }
-    if (layout.grey) {
-        spreadGrey(image);
+        return failReading(context, path, stream, r);
     }
     *imageOut = image;
     return VPL_SUCCESS;
+}
+
+vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut)
+{
+    vplExrStream stream = {.bytes = bytes, .size = size};
+    const exr_context_initializer_t init = vplExrStream_Describe(&stream);
+    exr_context_t exr = NULL;
+    const exr_result_t r = exr_start_read(&exr, "picture.exr", &init);
+    if (r != EXR_ERR_SUCCESS) {
+        return failReading(context, path, &stream, r);
+    }
+    const vplResult result = decode(context, exr, path, &stream, imageOut);
+    exr_finish(&exr);
+    return result;
 }
 
 #endif

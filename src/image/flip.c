@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Based on: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, FLIP: A Difference Evaluator
-// for Alternating Images, High Performance Graphics 2020: its formulas and constants, for pictures of low
-// dynamic range. Departs: none in meaning; every filter of the paper is a sum of products of filters along x
-// and y (a Gaussian, its derivatives, or for blue-yellow two Gaussians), and is applied as such.
-#include "base/context.h"
+// Based on: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, FLIP: A Difference
+// Evaluator for Alternating Images, High Performance Graphics 2020, for pictures of low dynamic range. Same
+// formulas and constants. Each filter of the paper is a sum of products of filters along x and y (a Gaussian,
+// its derivatives, or for blue-yellow two Gaussians) and is applied in that separable form.
+#include "base/arena.h"
 #include "image/flip_colour.h"
 #include "image/metrics.h"
 #include "math/scalar.h"
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-// Contrast sensitivity: a sqrt(pi / b) e^(-pi^2 z^2 / b) with z in degrees, table 1 of the paper.
+// Contrast sensitivity functions, table 1: a sqrt(pi / b) e^(-pi^2 z^2 / b) with z in degrees.
 static const double A_BY[2] = {34.1, 13.5}, B_BY[2] = {0.04, 0.025};
 static const double B_ACHROMATIC = 0.0047, B_RED_GREEN = 0.0053;
 static const double EDGE_WIDTH = 0.082; // degrees from peak to trough of human edge detection
@@ -27,19 +27,19 @@ typedef struct Kernel {
     float weights[2 * MAX_RADIUS + 1];
 } Kernel;
 
-// Filters along one axis, and the seven filtered pictures that they make.
+// Filters along one axis, and the filtered pictures that they give.
 enum { ACHROMATIC, RED_GREEN, BLUE_YELLOW, BLUE_YELLOW_2, BLUR, EDGE, POINT, KERNELS };
 enum { OUT_Y, OUT_CX, OUT_CZ, EDGE_X, EDGE_Y, POINT_X, POINT_Y, OUTPUTS };
 
 typedef struct Flip {
     const vplImage* images[2];
-    float* planes[2]; // Y, Cx, Cz, one after the other
+    float* planes[2]; // Y, Cx and Cz, one after the other
     float* scratch;   // per worker: KERNELS padded rows, then OUTPUTS rows for each picture
-    double* rows;     // sum of each row
-    vplImage* map;    // NULL: only the mean is wanted
+    double* rows;     // sum of the errors of each row
+    vplImage* map;    // or NULL
     Kernel kernels[KERNELS];
     int width, height, pad;
-    double largestColour; // HyAB distance of green and blue to the power of COLOUR_EXPONENT
+    double largestColour; // HyAB distance between green and blue, to the power of COLOUR_EXPONENT
 } Flip;
 
 // ---- filters
@@ -63,7 +63,8 @@ static double sumOfGaussian(int radius, double ppd, double b)
     return sum;
 }
 
-// The whole filter sums to 1; each of its two products of Gaussians takes its share, half of it on each axis.
+// The blue-yellow filter is a sum of two products of Gaussians. It is normalised as a whole; the square root
+// gives each axis the same factor.
 static void setColourKernels(Flip* f, double ppd)
 {
     int radius = (int)ceil(3 * sqrt(B_BY[0] / (2 * VPL_PI * VPL_PI)) * ppd);
@@ -82,7 +83,7 @@ static void setColourKernels(Flip* f, double ppd)
     }
 }
 
-// Divides positive weights by their sum and negative weights by theirs.
+// Divides positive weights by their sum and negative weights by the magnitude of theirs.
 static void setNormalised(Kernel* k, int radius, const double* weights)
 {
     double positive = 0, negative = 0;
@@ -111,7 +112,7 @@ static void setFeatureKernels(Flip* f, double ppd)
     setNormalised(&f->kernels[POINT], radius, point);
 }
 
-// ---- pixels to opponent colours
+// ---- conversion to opponent colours
 
 static void convertRow(void* data, int y, int worker)
 {
@@ -130,14 +131,14 @@ static void convertRow(void* data, int y, int worker)
     }
 }
 
-// ---- filtering a row: down the columns first, then along
+// ---- filtering of a row: along columns, then along the row
 
 static void filterColumns(const Flip* f, const float* plane, int y, const Kernel* k, float* restrict padded)
 {
     float* out = padded + f->pad;
     memset(out, 0, sizeof *out * (size_t)f->width);
     for (int i = -k->radius; i <= k->radius; i++) {
-        int row = vplMaxi(0, vplMini(y + i, f->height - 1)); // borders repeat
+        int row = vplMaxi(0, vplMini(y + i, f->height - 1)); // repeats borders
         const float* in = plane + (size_t)row * (size_t)f->width;
         float w = k->weights[k->radius + i];
         for (int x = 0; x < f->width; x++) {
@@ -161,12 +162,12 @@ static void filterAlong(const Flip* f, const float* padded, const Kernel* k, flo
     }
 }
 
-// Makes the OUTPUTS rows of one picture.
+// Computes the OUTPUTS rows of one picture.
 static void filterRow(const Flip* f, const float* planes, int y, float* padded, float* outputs)
 {
-    static const int channels[KERNELS] = {0, 1, 2, 2, 0, 0, 0}; // that a kernel filters down the columns
+    static const int channels[KERNELS] = {0, 1, 2, 2, 0, 0, 0}; // input of each kernel along columns
     static const int steps[][3] = {
-        // rows filtered down, kernel along, output
+        // kernel along columns, kernel along the row, output
         {ACHROMATIC, ACHROMATIC, OUT_Y},
         {RED_GREEN, RED_GREEN, OUT_CX},
         {BLUE_YELLOW, BLUE_YELLOW, OUT_CZ},
@@ -190,7 +191,7 @@ static void filterRow(const Flip* f, const float* planes, int y, float* padded, 
 
 // ---- the error of a pixel
 
-// Maps [0, 0.4 of the largest] to [0, 0.95], and the rest, which is rare, to what is left.
+// Maps [0, 0.4 largest] to [0, 0.95], and the rest, which is rare, to [0.95, 1].
 static double compress(double error, double largest)
 {
     double knee = COMPRESS_FROM * largest;
@@ -202,7 +203,7 @@ static double featureDifference(const float* a, const float* b, size_t x, size_t
 {
     double ax = a[(size_t)first * width + x], ay = a[(size_t)(first + 1) * width + x];
     double bx = b[(size_t)first * width + x], by = b[(size_t)(first + 1) * width + x];
-    // The features are those of (Y + 16) / 116; their filters sum to zero, so the 16 has no effect.
+    // The paper filters (Y + 16) / 116. The filters sum to zero, so the 16 has no effect.
     return fabs(sqrt(ax * ax + ay * ay) - sqrt(bx * bx + by * by)) / 116;
 }
 
@@ -236,23 +237,21 @@ static void compareRow(void* data, int y, int worker)
     f->rows[y] = sum;
 }
 
-// ----
+// ---- the whole picture
 
-static vplResult prepare(Flip* f, vplContext* context, double ppd, bool wantsMap)
+static vplResult prepare(Flip* f, vplArena* scratch, int workers, double ppd)
 {
     setColourKernels(f, ppd);
     setFeatureKernels(f, ppd);
     f->pad = vplMaxi(f->kernels[ACHROMATIC].radius, f->kernels[BLUR].radius);
     f->largestColour = vplPow(vplHuntHyabOfGreenAndBlue(), COLOUR_EXPONENT);
-    size_t width = (size_t)f->width, count = 3 * width * (size_t)f->height;
-    size_t scratch = KERNELS * (width + 2 * (size_t)f->pad) + 2 * OUTPUTS * width;
-    bool ready =
-        (!wantsMap || vplImage_Create(context, f->width, f->height, &f->map) == VPL_SUCCESS) &&
-        (f->planes[0] = vplAlloc(context, count, sizeof(float))) != NULL &&
-        (f->planes[1] = vplAlloc(context, count, sizeof(float))) != NULL &&
-        (f->rows = vplAlloc(context, (size_t)f->height, sizeof(double))) != NULL &&
-        (f->scratch = vplAlloc(context, scratch * (size_t)context->workerCount, sizeof(float))) != NULL;
-    return ready ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    const size_t width = (size_t)f->width, count = 3 * width * (size_t)f->height;
+    const size_t perWorker = KERNELS * (width + 2 * (size_t)f->pad) + 2 * OUTPUTS * width;
+    f->planes[0] = vplArena_Alloc(scratch, count, sizeof(float));
+    f->planes[1] = vplArena_Alloc(scratch, count, sizeof(float));
+    f->rows = vplArena_Alloc(scratch, (size_t)f->height, sizeof(double));
+    f->scratch = vplArena_Alloc(scratch, perWorker * (size_t)workers, sizeof(float));
+    return vplArena_Check(scratch);
 }
 
 vplResult vplImage_Flip(const vplImage* a, const vplImage* b, double ppd, double* meanOut, vplImage** mapOut)
@@ -262,25 +261,21 @@ vplResult vplImage_Flip(const vplImage* a, const vplImage* b, double ppd, double
         return vplFail(context, VPL_INVALID_ARGUMENT, "FLIP's pixels per degree are %g, must be in [%d, %d]",
                        ppd, VPL_MIN_PPD, VPL_MAX_PPD);
     }
-    vplResult result = vplRequirePair(a, b);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplRequirePair(a, b));
+    vplArena* scratch = vplArena_Create(context);
     Flip f = {.images = {a, b}, .width = a->width, .height = a->height};
-    result = prepare(&f, context, ppd, mapOut != NULL);
+    vplResult result = prepare(&f, scratch, context->workerCount, ppd);
+    if (result == VPL_SUCCESS && mapOut != NULL) {
+        result = vplImage_Create(context, f.width, f.height, &f.map);
+    }
     if (result == VPL_SUCCESS) {
         vplParallelFor(context, f.height, convertRow, &f);
         vplParallelFor(context, f.height, compareRow, &f);
         *meanOut = vplSumInOrder(f.rows, f.height) / f.width / f.height;
         if (mapOut != NULL) {
             *mapOut = f.map;
-            f.map = NULL;
         }
     }
-    vplImage_Destroy(f.map);
-    vplFree(context, f.planes[0]);
-    vplFree(context, f.planes[1]);
-    vplFree(context, f.rows);
-    vplFree(context, f.scratch);
+    vplArena_Destroy(scratch);
     return result;
 }

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Based on: Andersson and others, FLIP, High Performance Graphics 2020, section 4.1: YCxCz of Zhang and
-// Wandell's S-CIELAB, CIE L*a*b*, the Hunt effect of Hunt 1952 and the HyAB distance of Abasi and others 2020.
+// Wandell's S-CIELAB, CIE L*a*b*, the Hunt effect (Hunt 1952) and the HyAB distance (Abasi and others 2020).
 #include "image/flip_colour.h"
 
 #include "math/scalar.h"
 
 #include <math.h>
 
-// Linear sRGB to XYZ, exact fractions of the primaries and D65 white of ITU-R BT.709 (x 0.3127, y 0.3290).
+// Linear sRGB to XYZ, as exact fractions: the primaries of ITU-R BT.709 and its D65 white (x 0.3127, y
+// 0.3290).
 static const double TO_XYZ[3][3] = {
     {10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
     {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382},
 };
 
-// XYZ divided by that of white, so that white is (1, 1, 1).
+// XYZ divided by the XYZ of white.
 static void toRelativeXyz(const double rgb[3], double xyz[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -23,7 +24,7 @@ static void toRelativeXyz(const double rgb[3], double xyz[3])
     }
 }
 
-// Cramer's rule on TO_XYZ.
+// The inverse, by Cramer's rule.
 static void fromRelativeXyz(const double relative[3], double rgb[3])
 {
     const double(*m)[3] = TO_XYZ;
@@ -56,7 +57,7 @@ void vplToOpponent(const float rgb[3], float opponent[3])
     opponent[2] = (float)(200 * (xyz[1] - xyz[2]));
 }
 
-// L*a*b* of a linear colour; a and b shrink with L, as colours look paler in the dark (Hunt).
+// L*a*b* of a linear colour. Scales a and b by L, because dark colours look paler (Hunt).
 static void toHuntLab(const double rgb[3], double lab[3])
 {
     const double delta = 6.0 / 29;

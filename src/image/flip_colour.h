@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The colour spaces of FLIP, all from and to floats of one pixel.
+// The colour spaces of FLIP.
 #ifndef VPL_IMAGE_FLIP_COLOUR_H
 #define VPL_IMAGE_FLIP_COLOUR_H
 
-// Linear RGB, clamped to [0, 1], to YCxCz: luminance from -16 to 100, red-green, blue-yellow.
+// Converts linear RGB, clamped to [0, 1], to YCxCz: luminance in [-16, 100], red-green, blue-yellow.
 void vplToOpponent(const float rgb[3], float opponent[3]);
 
-// Distance of two YCxCz colours as seen: clamped to the RGB cube, in L*a*b* with Hunt's effect, |dL| + |d(a, b)|.
+// Perceived distance between two YCxCz colours: HyAB, |dL| + |d(a, b)|, in Hunt-adjusted L*a*b*, after
+// clamping to the RGB cube.
 double vplHuntHyab(const float a[3], const float b[3]);
 
-// The largest distance that there is.
+// The same between linear green and blue, which is the largest distance.
 double vplHuntHyabOfGreenAndBlue(void);
 
 #endif

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Radiance HDR pictures: a text header, a size line, then rows of RGBE pixels, plain or run-length coded.
-// Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991. Departs: old run-length coding (before 1991) is
-// refused, and only the usual orientation "-Y height +X width" is read.
+// Reads Radiance HDR pictures: a text header, a size line, then rows of RGBE pixels, plain or run-length
+// coded.
+// Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991. Departs: it refuses the run-length coding from
+// before 1991 and orientations other than "-Y height +X width".
+#include "base/arena.h"
 #include "image/image_file.h"
 
 #include <math.h>
@@ -17,7 +19,8 @@ static size_t left(const Reader* r)
     return (size_t)(r->end - r->at);
 }
 
-// The next line without its end; false at the end of the file or beyond 255 characters.
+// Reads the next line without its end. False at the end of the file, or if the line has more than 255
+// characters.
 static bool readLine(Reader* r, char line[256])
 {
     const uint8_t* stop = memchr(r->at, '\n', left(r));
@@ -46,8 +49,7 @@ static bool readHeader(Reader* r, int* width, int* height)
            *height <= VPL_MAX_IMAGE_SIZE;
 }
 
-// One component of one row: counts above 128 repeat the next byte, others copy that many. Every step reads at
-// least two bytes, so a damaged file ends soon.
+// Reads one component of one row. Counts above 128 repeat the next byte; others copy as many bytes.
 static bool readRuns(Reader* r, uint8_t* out, int width)
 {
     for (int x = 0; x < width;) {
@@ -71,7 +73,7 @@ static bool readRuns(Reader* r, uint8_t* out, int width)
     return true;
 }
 
-// Fills rows of all r, then all g, b and e.
+// Reads one row into all r, then all g, all b and all e.
 static bool readRow(Reader* r, uint8_t* row, int width)
 {
     size_t w = (size_t)width;
@@ -96,16 +98,19 @@ static bool readRow(Reader* r, uint8_t* row, int width)
     return true;
 }
 
-static vplResult readPixels(Reader* r, const char* path, uint8_t* row, vplImage* image)
+static vplResult readPixels(Reader* r, const char* path, vplImage* image)
 {
     const size_t w = (size_t)image->width;
-    for (int y = 0; y < image->height; y++) {
+    uint8_t* row = vplAlloc(image->context, 4 * w, 1);
+    vplResult result = row != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    float* pixel = image->pixels;
+    for (int y = 0; y < image->height && result == VPL_SUCCESS; y++) {
         if (!readRow(r, row, image->width)) {
-            return vplFail(image->context, VPL_PARSE_ERROR,
-                           "%s: HDR picture is damaged or ends early in row %d of %d", path, y,
-                           image->height);
+            result =
+                vplFail(image->context, VPL_PARSE_ERROR,
+                        "%s: HDR picture is damaged or ends early in row %d of %d", path, y, image->height);
+            break;
         }
-        float* pixel = image->pixels + 3 * (size_t)y * w;
         for (size_t x = 0; x < w; x++, pixel += 3) {
             int exponent = row[3 * w + x];
             float scale = exponent ? ldexpf(1, exponent - 136) : 0;
@@ -114,7 +119,8 @@ static vplResult readPixels(Reader* r, const char* path, uint8_t* row, vplImage*
             }
         }
     }
-    return VPL_SUCCESS;
+    vplFree(image->context, row);
+    return result;
 }
 
 vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
@@ -128,23 +134,20 @@ vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* byt
                        "-Y height +X width)",
                        path);
     }
-    // A coded row takes at least 8 bytes and 2 more per 127 pixels and component: check before allocating.
+    // Checks the size before allocating: a coded row has at least 4 bytes, and 2 per 127 pixels of a
+    // component.
     size_t least = (size_t)height * (4 + 8 * (((size_t)width + 126) / 127));
     if (left(&reader) < (width < 8 ? 4 * (size_t)width * (size_t)height : least)) {
         return vplFail(context, VPL_PARSE_ERROR, "%s: HDR picture of %dx%d ends early: %zu bytes of pixels",
                        path, width, height, left(&reader));
     }
     vplImage* image;
-    vplResult result = vplImage_Create(context, width, height, &image);
-    uint8_t* row = result == VPL_SUCCESS ? vplAlloc(context, 4 * (size_t)width, 1) : NULL;
-    if (result == VPL_SUCCESS) {
-        result = row ? readPixels(&reader, path, row, image) : VPL_OUT_OF_MEMORY;
-        vplFree(context, row);
-        if (result == VPL_SUCCESS) {
-            *imageOut = image;
-        } else {
-            vplImage_Destroy(image);
-        }
+    TRY(vplImage_Create(context, width, height, &image));
+    const vplResult result = readPixels(&reader, path, image);
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(image);
+        return result;
     }
-    return result;
+    *imageOut = image;
+    return VPL_SUCCESS;
 }

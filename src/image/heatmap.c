@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of where two pictures differ.
-#include "base/context.h"
+// False-colour maps of the difference between two pictures.
+#include "base/arena.h"
 #include "image/draw.h"
 #include "image/image_file.h"
 #include "image/metrics.h"
@@ -29,7 +29,7 @@ static vplResult checkDef(const vplContext* context, const vplHeatmapDef* def)
     return VPL_SUCCESS;
 }
 
-// Mean of |a - b| over the channels, each divided by |b + 0.01| if it is relative.
+// The mean of |a - b| over the channels, each divided by |b + 0.01| if `relative`.
 static float differenceAt(const float* a, const float* b, bool relative)
 {
     double sum = 0;
@@ -40,19 +40,7 @@ static float differenceAt(const float* a, const float* b, bool relative)
     return (float)fmin(sum / 3, 3e38);
 }
 
-static vplResult measureDifference(const vplImage* a, const vplImage* b, bool relative, vplImage** mapOut)
-{
-    vplResult result = vplImage_Create(a->context, a->width, a->height, mapOut);
-    for (int y = 0; result == VPL_SUCCESS && y < a->height; y++) {
-        for (int x = 0; x < a->width; x++) {
-            size_t at = 3 * ((size_t)y * (size_t)a->width + (size_t)x);
-            vplSetGrey(*mapOut, x, y, differenceAt(a->pixels + at, b->pixels + at, relative));
-        }
-    }
-    return result;
-}
-
-// The values to be shown, the same in all channels.
+// Computes the values to be shown, the same in all channels.
 static vplResult measureHeat(const vplImage* a, const vplImage* b, const vplHeatmapDef* def,
                              vplImage** mapOut)
 {
@@ -60,15 +48,20 @@ static vplResult measureHeat(const vplImage* a, const vplImage* b, const vplHeat
     if (def->of == VPL_HEAT_FLIP) {
         return vplImage_Flip(a, b, def->ppd, &mean, mapOut);
     }
-    if (def->of != VPL_HEAT_SSIM) {
-        return measureDifference(a, b, def->of == VPL_HEAT_RELATIVE, mapOut);
+    const size_t count = (size_t)a->width * (size_t)a->height;
+    if (def->of == VPL_HEAT_SSIM) {
+        TRY(vplImage_Ssim(a, b, &mean, mapOut));
+        for (size_t i = 0; i < 3 * count; i++) {
+            (*mapOut)->pixels[i] = 1 - (*mapOut)->pixels[i];
+        }
+        return VPL_SUCCESS;
     }
-    vplResult result = vplImage_Ssim(a, b, &mean, mapOut);
-    size_t count = result == VPL_SUCCESS ? 3 * (size_t)a->width * (size_t)a->height : 0;
-    for (size_t i = 0; i < count; i++) {
-        (*mapOut)->pixels[i] = 1 - (*mapOut)->pixels[i];
+    TRY(vplImage_Create(a->context, a->width, a->height, mapOut));
+    for (size_t i = 0; i < 3 * count; i += 3) {
+        float* p = (*mapOut)->pixels + i;
+        p[0] = p[1] = p[2] = differenceAt(a->pixels + i, b->pixels + i, def->of == VPL_HEAT_RELATIVE);
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
 static float scaleOf(const vplImage* map, const vplHeatmapDef* def)
@@ -83,37 +76,32 @@ static float scaleOf(const vplImage* map, const vplHeatmapDef* def)
     return largest;
 }
 
-static void colour(const vplImage* map, float scale, vplColourFcn* colours, vplImage* image)
+static vplResult colour(const vplImage* map, float scale, vplColourFcn* colours, vplImage** imageOut)
 {
+    const int barHeight = vplColourBar_GetHeight(map->width);
+    vplImage* image;
+    TRY(vplImage_Create(map->context, map->width, map->height + barHeight, &image));
     for (size_t i = 0; i < (size_t)map->width * (size_t)map->height; i++) {
         vplRgb c = colours(scale > 0 ? map->pixels[3 * i] / scale : 0);
         image->pixels[3 * i] = c.r;
         image->pixels[3 * i + 1] = c.g;
         image->pixels[3 * i + 2] = c.b;
     }
-    vplColourBar_Draw(image, map->height, image->height - map->height, scale, colours);
+    vplColourBar_Draw(image, map->height, barHeight, scale, colours);
+    *imageOut = image;
+    return VPL_SUCCESS;
 }
 
 vplResult vplImage_HeatmapOf(const vplImage* a, const vplImage* b, const vplHeatmapDef* def,
                              vplImage** imageOut)
 {
-    vplHeatmapDef settings = def ? *def : vplDefaultHeatmapDef();
-    vplResult result = checkDef(a->context, &settings);
-    if (result == VPL_SUCCESS) {
-        result = vplRequirePair(a, b);
-    }
-    vplImage *map = NULL, *image;
-    if (result == VPL_SUCCESS) {
-        result = measureHeat(a, b, &settings, &map);
-    }
-    if (result == VPL_SUCCESS) {
-        int barHeight = vplColourBar_GetHeight(a->width);
-        result = vplImage_Create(a->context, a->width, a->height + barHeight, &image);
-    }
-    if (result == VPL_SUCCESS) {
-        colour(map, scaleOf(map, &settings), settings.of == VPL_HEAT_FLIP ? vplMagma : vplFalseColour, image);
-        *imageOut = image;
-    }
+    const vplHeatmapDef settings = def ? *def : vplDefaultHeatmapDef();
+    vplImage* map;
+    TRY(checkDef(a->context, &settings));
+    TRY(vplRequirePair(a, b));
+    TRY(measureHeat(a, b, &settings, &map));
+    const vplResult result = colour(map, scaleOf(map, &settings),
+                                    settings.of == VPL_HEAT_FLIP ? vplMagma : vplFalseColour, imageOut);
     vplImage_Destroy(map);
     return result;
 }

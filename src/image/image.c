@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "base/context.h"
+#include "base/arena.h"
 #include "base/hash.h"
 #include "image/image_file.h"
 
@@ -111,11 +111,9 @@ static vplResult encode(const Format* format, const vplImage* image, const char*
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "vplWriteOptions.exposure is %g, must be in [-64, 64]", (double)settings.exposure);
     }
-    vplResult result = vplImage_RequireFinite(image, what);
-    if (result == VPL_SUCCESS) {
-        result = format->encode(image, &settings, buffer);
-    }
-    return result == VPL_SUCCESS && buffer->failed ? VPL_OUT_OF_MEMORY : result;
+    TRY(vplImage_RequireFinite(image, what));
+    TRY(format->encode(image, &settings, buffer));
+    return buffer->failed ? VPL_OUT_OF_MEMORY : VPL_SUCCESS;
 }
 
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
@@ -125,7 +123,7 @@ vplResult vplImage_Write(const vplImage* image, const char* path, const vplWrite
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "%s: unknown picture format; the name must end in %s", path, vplImage_GetExtensions());
     }
-    vplByteBuffer buffer = {image->context, NULL, 0, 0, false};
+    vplByteBuffer buffer = {.context = image->context};
     vplResult result = encode(format, image, path, options, &buffer);
     if (result == VPL_SUCCESS) {
         result = vplWriteFile(image->context, path, buffer.bytes, buffer.size);
@@ -137,7 +135,7 @@ vplResult vplImage_Write(const vplImage* image, const char* path, const vplWrite
 vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* options, uint8_t** bytesOut,
                              size_t* sizeOut)
 {
-    vplByteBuffer buffer = {image->context, NULL, 0, 0, false};
+    vplByteBuffer buffer = {.context = image->context};
     vplResult result = encode(findFormat(".png"), image, "PNG", options, &buffer);
     if (result != VPL_SUCCESS) {
         vplFree(image->context, buffer.bytes);
@@ -163,10 +161,8 @@ vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageO
     }
     char* bytes;
     size_t size;
-    vplResult result = vplReadFile(context, path, &bytes, &size);
-    if (result == VPL_SUCCESS) {
-        result = format->decode(context, path, (const uint8_t*)bytes, size, imageOut);
-        vplFree(context, bytes);
-    }
+    TRY(vplReadFile(context, path, &bytes, &size));
+    const vplResult result = format->decode(context, path, (const uint8_t*)bytes, size, imageOut);
+    vplFree(context, bytes);
     return result;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Encoders and decoders of the picture formats; vplImage_Write and vplImage_Read choose among them.
+// Encoders and decoders of picture formats. vplImage_Write and vplImage_Read choose one by the file's
+// extension.
 #ifndef VPL_IMAGE_IMAGE_FILE_H
 #define VPL_IMAGE_IMAGE_FILE_H
 
@@ -23,10 +24,10 @@ vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* byt
 vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
                        vplImage** imageOut);
 
-// True if OpenEXR is built in; otherwise the two above only say that it is not.
+// True if OpenEXR is built in. If not, vplEncodeExr and vplDecodeExr fail with a message.
 bool vplHasExr(void);
 
-// Fails, naming `what` and the first pixel that is NaN or infinite.
+// Fails if a pixel is NaN or infinite, with a message that names `what` and the first such pixel.
 vplResult vplImage_RequireFinite(const vplImage* image, const char* what);
 
 #endif

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// How far one picture is from another. Sums run in row order in double: the same on every machine.
-// Based on: for relmse, Rousselle, Knaus and Zwicker, Adaptive Sampling and Reconstruction using Greedy Error
-// Minimization, SIGGRAPH Asia 2011. Departs: the small constant is 0.01 and is added to b before squaring, in
-// the pictures' unit.
+// Differences between two pictures. Sums run in row order in double, so they are the same on every machine.
+// Based on: relmse by Rousselle, Knaus and Zwicker, Adaptive Sampling and Reconstruction using Greedy Error
+// Minimization, SIGGRAPH Asia 2011. Departs: we add 0.01, in the pictures' unit, to b before squaring.
 #include "image/metrics.h"
 
-#include "base/context.h"
+#include "base/arena.h"
 #include "image/image_file.h"
 #include "math/scalar.h"
 
@@ -17,8 +16,8 @@ vplResult vplRequirePair(const vplImage* a, const vplImage* b)
         return vplFail(a->context, VPL_INVALID_ARGUMENT, "the pictures differ in size: %dx%d and %dx%d",
                        a->width, a->height, b->width, b->height);
     }
-    vplResult result = vplImage_RequireFinite(a, "first picture");
-    return result == VPL_SUCCESS ? vplImage_RequireFinite(b, "second picture") : result;
+    TRY(vplImage_RequireFinite(a, "first picture"));
+    return vplImage_RequireFinite(b, "second picture");
 }
 
 double vplSumInOrder(const double* values, int count)
@@ -36,11 +35,11 @@ void vplSetGrey(vplImage* image, int x, int y, float value)
     p[0] = p[1] = p[2] = value;
 }
 
-// A sum without the largest `room` of its terms. Those wait in a heap, the least of them first, so that no term
-// that is left out, however large, ever touches the sum.
+// A sum without its `capacity` largest terms. A min-heap holds these, so that they never enter the sum,
+// however large.
 typedef struct TrimmedSum {
     double* heap;
-    size_t room, size;
+    size_t capacity, size;
     double sum;
 } TrimmedSum;
 
@@ -68,9 +67,9 @@ static void siftDown(double* heap, size_t size, double value)
 
 static void addTrimmed(TrimmedSum* t, double value)
 {
-    if (t->size < t->room) {
+    if (t->size < t->capacity) {
         siftUp(t->heap, t->size++, value);
-    } else if (t->room > 0 && value > t->heap[0]) {
+    } else if (t->capacity > 0 && value > t->heap[0]) {
         t->sum += t->heap[0];
         siftDown(t->heap, t->size, value);
     } else {
@@ -81,7 +80,7 @@ static void addTrimmed(TrimmedSum* t, double value)
 static vplComparison compare(const vplImage* a, const vplImage* b, TrimmedSum* trimmed)
 {
     size_t count = 3 * (size_t)a->width * (size_t)a->height;
-    double square = 0, relative = 0, encoded = 0, sumA = 0, sumB = 0, ofPixel = 0;
+    double square = 0, relative = 0, encoded = 0, sumA = 0, sumB = 0, pixelSum = 0;
     vplComparison c = {0};
     for (size_t i = 0; i < count; i++) {
         double va = a->pixels[i], vb = b->pixels[i];
@@ -97,29 +96,26 @@ static vplComparison compare(const vplImage* a, const vplImage* b, TrimmedSum* t
             c.maxX = (int)(i / 3 % (size_t)a->width);
             c.maxY = (int)(i / 3 / (size_t)a->width);
         }
-        ofPixel = i % 3 == 0 ? r * r : ofPixel + r * r;
+        pixelSum = i % 3 == 0 ? r * r : pixelSum + r * r;
         if (i % 3 == 2) {
-            addTrimmed(trimmed, ofPixel);
+            addTrimmed(trimmed, pixelSum);
         }
     }
     double n = (double)count;
     c.rmse = sqrt(square / n);
     c.relativeRmse = square == 0 ? 0 : c.rmse / (sumB / n);
     c.relmse = relative / n;
-    c.trimmedRelmse = trimmed->sum / (n - 3 * (double)trimmed->room);
-    c.psnr = encoded > 0 ? -10 / 2.30258509299404568402 * vplLog1(encoded / n) : INFINITY;
+    c.trimmedRelmse = trimmed->sum / (n - 3 * (double)trimmed->capacity);
+    c.psnr = encoded > 0 ? -10 / 2.30258509299404568402 * vplLn(encoded / n) : INFINITY;
     c.energyRatio = sumA == sumB ? 1 : sumA / sumB;
     return c;
 }
 
 vplResult vplImage_Compare(const vplImage* a, const vplImage* b, vplComparison* comparisonOut)
 {
-    vplResult result = vplRequirePair(a, b);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    TrimmedSum trimmed = {.room = (size_t)a->width * (size_t)a->height / 1000};
-    trimmed.heap = vplAlloc(a->context, trimmed.room, sizeof(double));
+    TRY(vplRequirePair(a, b));
+    TrimmedSum trimmed = {.capacity = (size_t)a->width * (size_t)a->height / 1000};
+    trimmed.heap = vplAlloc(a->context, trimmed.capacity, sizeof(double));
     if (trimmed.heap == NULL) {
         return VPL_OUT_OF_MEMORY;
     }

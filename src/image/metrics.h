@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What the metrics share.
+// Helpers of the picture metrics.
 #ifndef VPL_IMAGE_METRICS_H
 #define VPL_IMAGE_METRICS_H
 
 #include <vpl/image.h>
 
-// Fails unless both pictures have one size and finite pixels.
+// Fails unless both pictures have the same size and finite pixels.
 vplResult vplRequirePair(const vplImage* a, const vplImage* b);
 
-// Adds numbers from first to last: the one order of summation that all metrics have.
+// Adds numbers from first to last, the order of summation of all metrics.
 double vplSumInOrder(const double* values, int count);
 
 // Sets all three channels of a pixel.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Portable float map: "PF" (RGB) or "Pf" (grey), size, scale (its sign is the byte order), rows bottom-up.
+#include "base/arena.h"
 #include "image/image_file.h"
 
 #include <math.h>
@@ -46,7 +47,7 @@ typedef struct Header {
     size_t offset; // of the first pixel
 } Header;
 
-// The three header lines are parsed by hand: scanf would skip white space that is already pixel data.
+// Reads the three header lines. Not with scanf, which would skip white space that belongs to the pixels.
 static bool readHeader(const uint8_t* bytes, size_t size, Header* header)
 {
     char text[128];
@@ -91,10 +92,7 @@ vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* byt
                        header.height, size - header.offset, wanted);
     }
     vplImage* image;
-    vplResult result = vplImage_Create(context, header.width, header.height, &image);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplImage_Create(context, header.width, header.height, &image));
     const uint8_t* at = bytes + header.offset;
     for (int y = header.height - 1; y >= 0; y--) {
         float* row = image->pixels + 3 * (size_t)y * (size_t)header.width;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Parts of pictures: a rectangle cut out, and a comparison block by block.
-#include "base/context.h"
+// Parts of pictures: cropping, and comparison block by block.
+#include "base/arena.h"
 #include "image/metrics.h"
 
 #include <math.h>
@@ -16,10 +16,7 @@ vplResult vplImage_Crop(const vplImage* image, int x, int y, int width, int heig
                        x, y, image->width, image->height);
     }
     vplImage* crop;
-    vplResult result = vplImage_Create(image->context, width, height, &crop);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplImage_Create(image->context, width, height, &crop));
     size_t row = 3 * (size_t)width;
     for (int i = 0; i < height; i++) {
         size_t first = 3 * ((size_t)(y + i) * (size_t)image->width + (size_t)x);
@@ -48,7 +45,7 @@ static void measure(const vplImage* a, const vplImage* b, vplRegion* region)
     region->rmse = sqrt(square / count);
 }
 
-// Where block `index` of `count` begins along a side: whole blocks differ by one pixel at most.
+// The first pixel of block `index` of `count` along a side. Blocks differ by one pixel at most.
 static int beginOf(int index, int count, int side)
 {
     return (int)((int64_t)index * side / count);
@@ -57,10 +54,7 @@ static int beginOf(int index, int count, int side)
 vplResult vplImage_CompareRegions(const vplImage* a, const vplImage* b, int columns, int rows,
                                   vplRegion* regionsOut)
 {
-    vplResult result = vplRequirePair(a, b);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplRequirePair(a, b));
     if (columns < 1 || columns > a->width || rows < 1 || rows > a->height) {
         return vplFail(a->context, VPL_INVALID_ARGUMENT,
                        "regions are %dx%d, must be in [1, %d] and [1, %d]: one pixel each at least", columns,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Based on: Wang, Bovik, Sheikh and Simoncelli, Image Quality Assessment: From Error Visibility to Structural
-// Similarity, IEEE Transactions on Image Processing 13(4), 2004, with its Gaussian window (11 pixels, sigma 1.5),
-// K1 = 0.01 and K2 = 0.03. Departs: the paper compares grey levels; here each channel is compared and the mean
-// taken, because two colours of one luminance are not the same light.
-#include "base/context.h"
+// Similarity, IEEE Transactions on Image Processing 13(4), 2004, with its Gaussian window (11 pixels, sigma
+// 1.5), K1 = 0.01 and K2 = 0.03. Departs: the paper compares grey levels. We compare each channel and take
+// the mean, because colours of equal luminance may differ.
+#include "base/arena.h"
 #include "image/metrics.h"
 #include "math/scalar.h"
 
@@ -15,14 +15,14 @@ typedef struct Ssim {
     const vplImage* images[2];
     float* planes[2];           // one channel, sRGB-encoded
     double* scratch;            // MOMENTS padded rows per worker
-    double* rows;               // sum of each row
-    vplImage* map;              // NULL: only the mean is wanted
-    double weights[RADIUS + 1]; // by distance; both sides sum to 1
+    double* rows;               // sum of the similarities of each row
+    vplImage* map;              // or NULL
+    double weights[RADIUS + 1]; // by distance; the whole window sums to 1
     int width, height, channel;
-    int insetX, insetY; // pixels along the border that do not count
+    int insetX, insetY; // width of the borders that do not count
 } Ssim;
 
-// Positions beyond a border mirror those inside, the border pixel included: -1 is 0, -2 is 1. A picture
+// Mirrors positions beyond a border, including the border pixel: -1 becomes 0, -2 becomes 1. A picture
 // narrower than the window is mirrored several times.
 static int mirror(int at, int count)
 {
@@ -58,7 +58,8 @@ static void encodeRow(void* data, int y, int worker)
     }
 }
 
-// Weighted sums of a, b, a^2, b^2 and ab over a column of the window, for every x; then their mirrored borders.
+// Computes, for every x, the weighted sums of a, b, a^2, b^2 and ab over a column of the window; then mirrors
+// borders.
 static void sumColumns(const Ssim* s, int y, double* moments, int stride)
 {
     memset(moments, 0, sizeof *moments * MOMENTS * (size_t)stride);
@@ -69,7 +70,7 @@ static void sumColumns(const Ssim* s, int y, double* moments, int stride)
         const float *rowA = s->planes[0] + first, *rowB = s->planes[1] + first;
         double w = s->weights[k < 0 ? -k : k];
         for (int x = 0; x < s->width; x++) {
-            double a = rowA[x], b = rowB[x]; // floats: their products are exact, and symmetric
+            double a = rowA[x], b = rowB[x]; // products of floats are exact in double
             ma[x] += w * a;
             mb[x] += w * b;
             maa[x] += w * (a * a);
@@ -124,7 +125,7 @@ static void compareRow(void* data, int y, int worker)
     }
 }
 
-// A channel's values lie in separate channels of the map until all are there.
+// Replaces the similarities of the three channels of each pixel of the map by their mean.
 static void averageMap(vplImage* map)
 {
     for (int y = 0; y < map->height; y++) {
@@ -152,33 +153,28 @@ static double compareChannels(Ssim* s, vplContext* context)
 
 vplResult vplImage_Ssim(const vplImage* a, const vplImage* b, double* meanOut, vplImage** mapOut)
 {
-    vplResult result = vplRequirePair(a, b);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplRequirePair(a, b));
     vplContext* context = a->context;
+    vplArena* scratch = vplArena_Create(context);
     Ssim s = {.images = {a, b}, .width = a->width, .height = a->height};
     s.insetX = a->width > 2 * RADIUS ? RADIUS : 0;
     s.insetY = a->height > 2 * RADIUS ? RADIUS : 0;
-    size_t count = (size_t)a->width * (size_t)a->height;
-    size_t padded = MOMENTS * ((size_t)a->width + 2 * RADIUS);
-    bool ready =
-        (mapOut == NULL || vplImage_Create(context, a->width, a->height, &s.map) == VPL_SUCCESS) &&
-        (s.planes[0] = vplAlloc(context, count, sizeof(float))) != NULL &&
-        (s.planes[1] = vplAlloc(context, count, sizeof(float))) != NULL &&
-        (s.rows = vplAlloc(context, (size_t)a->height, sizeof(double))) != NULL &&
-        (s.scratch = vplAlloc(context, padded * (size_t)context->workerCount, sizeof(double))) != NULL;
-    if (ready) {
+    const size_t count = (size_t)a->width * (size_t)a->height;
+    const size_t padded = MOMENTS * ((size_t)a->width + 2 * RADIUS);
+    s.planes[0] = vplArena_Alloc(scratch, count, sizeof(float));
+    s.planes[1] = vplArena_Alloc(scratch, count, sizeof(float));
+    s.rows = vplArena_Alloc(scratch, (size_t)a->height, sizeof(double));
+    s.scratch = vplArena_Alloc(scratch, padded * (size_t)context->workerCount, sizeof(double));
+    vplResult result = vplArena_Check(scratch);
+    if (result == VPL_SUCCESS && mapOut != NULL) {
+        result = vplImage_Create(context, a->width, a->height, &s.map);
+    }
+    if (result == VPL_SUCCESS) {
         *meanOut = compareChannels(&s, context);
         if (mapOut != NULL) {
             *mapOut = s.map;
-            s.map = NULL;
         }
     }
-    vplImage_Destroy(s.map);
-    vplFree(context, s.planes[0]);
-    vplFree(context, s.planes[1]);
-    vplFree(context, s.rows);
-    vplFree(context, s.scratch);
-    return ready ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    vplArena_Destroy(scratch);
+    return result;
 }

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT
-// PNG, HDR (written) and the formats that are only read, by stb. Both stb headers are compiled into this file
-// alone and static, and their global switches (vertical flip, gamma) are never touched. stb reports success on
-// a full disk, so it only ever writes to memory here. Its HDR reader is not used: a run of length 0 keeps it
-// busy forever (hdr.c reads them).
+// PNG and HDR written, and PNG, JPEG, BMP and TGA read, by stb. Both stb headers are compiled here only, as
+// static code, and their global switches (vertical flip, gamma) stay untouched. stb reports success on a full
+// disk, so it writes to memory only. Its HDR reader is not used, because a run of length 0 makes it loop for
+// ever; see hdr.c.
+#include "base/arena.h"
 #include "image/image_file.h"
-#include "image/srgb_table.h"
+#include "image/srgb.h"
 #include "math/scalar.h"
 
 #include <limits.h>
 #include <string.h>
 
-#pragma GCC diagnostic ignored "-Wunused-function" // stb's, of which we call few
+#pragma GCC diagnostic ignored "-Wunused-function" // most of stb's
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -34,56 +37,51 @@ static void append(void* buffer, void* bytes, int size)
     vplByteBuffer_Append(buffer, bytes, (size_t)size);
 }
 
-// Exposure and tone map on a copy; the picture itself stays linear.
-static vplResult applyDisplay(const vplImage* image, const vplWriteOptions* options, vplImage** displayOut)
+// Applies exposure and tone map to `display`, a copy of the picture.
+static vplResult applyDisplay(const vplImage* image, const vplWriteOptions* options, vplImage* display)
 {
-    vplImage* display;
-    vplResult result = vplImage_Create(image->context, image->width, image->height, &display);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    size_t count = 3 * (size_t)image->width * (size_t)image->height;
-    float gain = (float)vplExp(options->exposure * 0.69314718055994530942);
+    const size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    const float gain = (float)vplExp(options->exposure * 0.69314718055994530942);
     for (size_t i = 0; i < count; i++) {
         display->pixels[i] = options->exposure == 0 ? image->pixels[i] : gain * image->pixels[i];
     }
-    if (options->tonemap == VPL_TONEMAP_REINHARD) {
-        vplReinhardDef def = vplDefaultReinhardDef();
-        def.skipBlack = true;
-        result = vplToneMap_Reinhard(display, &def);
+    if (options->tonemap != VPL_TONEMAP_REINHARD) {
+        return VPL_SUCCESS;
     }
-    if (result != VPL_SUCCESS) {
-        vplImage_Destroy(display);
-        return result;
+    vplReinhardDef def = vplDefaultReinhardDef();
+    def.skipBlack = true;
+    return vplToneMap_Reinhard(display, &def);
+}
+
+static vplResult encodeCodes(const vplImage* display, vplByteBuffer* buffer)
+{
+    const size_t count = 3 * (size_t)display->width * (size_t)display->height;
+    uint8_t* codes = vplAlloc(display->context, count, 1);
+    if (codes == NULL) {
+        return VPL_OUT_OF_MEMORY;
     }
-    *displayOut = display;
-    return VPL_SUCCESS;
+    vplSrgbTable table;
+    vplSrgbTable_Fill(&table);
+    vplSrgbTable_Encode(&table, display->pixels, count, codes);
+    const int written =
+        stbi_write_png_to_func(append, buffer, display->width, display->height, 3, codes, 3 * display->width);
+    vplFree(display->context, codes);
+    return written ? VPL_SUCCESS
+                   : vplFail(display->context, VPL_OUT_OF_MEMORY, "out of memory while encoding a PNG");
 }
 
 vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
 {
-    vplContext* context = image->context;
-    size_t count = 3 * (size_t)image->width * (size_t)image->height;
-    if (count > INT_MAX / 2) { // stb counts bytes in int
-        return vplFail(context, VPL_LIMIT, "a PNG of %dx%d pixels is too large; write .pfm instead",
+    if ((size_t)image->width * (size_t)image->height > INT_MAX / 6) { // stb counts bytes in int
+        return vplFail(image->context, VPL_LIMIT, "a PNG of %dx%d pixels is too large; write .pfm instead",
                        image->width, image->height);
     }
-    vplImage* display = NULL;
-    vplResult result = applyDisplay(image, options, &display);
-    uint8_t* codes = result == VPL_SUCCESS ? vplAlloc(context, count, 1) : NULL;
-    if (result == VPL_SUCCESS && codes == NULL) {
-        result = VPL_OUT_OF_MEMORY;
-    }
+    vplImage* display;
+    TRY(vplImage_Create(image->context, image->width, image->height, &display));
+    vplResult result = applyDisplay(image, options, display);
     if (result == VPL_SUCCESS) {
-        vplSrgbTable table;
-        vplSrgbTable_Fill(&table);
-        vplSrgbTable_Encode(&table, display->pixels, count, codes);
-        if (!stbi_write_png_to_func(append, buffer, image->width, image->height, 3, codes,
-                                    3 * image->width)) {
-            result = vplFail(context, VPL_OUT_OF_MEMORY, "out of memory while encoding a PNG");
-        }
+        result = encodeCodes(display, buffer);
     }
-    vplFree(context, codes);
     vplImage_Destroy(display);
     return result;
 }

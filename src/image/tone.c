@@ -1,44 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Based on: IEC 61966-2-1 (sRGB); Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for
-// Digital Images, SIGGRAPH 2002. Departs: the paper prints the log average with 1/N outside the exponential;
-// the geometric mean is meant, or a flat picture would not map to the key.
-#include "base/context.h"
+// Based on: Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for Digital Images,
+// SIGGRAPH 2002.
+// Departs: the paper prints the log average with 1/N outside the exponential. We use the geometric mean,
+// because otherwise a uniform picture would not map to the key.
+#include "base/arena.h"
 #include "image/image_file.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 
 #include <math.h>
-
-static double encode(double linear)
-{
-    if (!(linear > 0)) {
-        return 0;
-    }
-    if (linear >= 1) {
-        return 1;
-    }
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * vplPow(linear, 1 / 2.4) - 0.055;
-}
-
-static double decode(double encoded)
-{
-    return encoded <= 0.04045 ? encoded / 12.92 : vplPow((encoded + 0.055) / 1.055, 2.4);
-}
-
-float vplSrgb_Encode(float linear)
-{
-    return (float)encode(linear);
-}
-
-float vplSrgb_Decode(float encoded)
-{
-    return (float)decode(vplClampf(encoded, 0, 1));
-}
-
-uint8_t vplSrgb_Code(float linear)
-{
-    return (uint8_t)(255 * encode(linear) + 0.5);
-}
 
 vplReinhardDef vplDefaultReinhardDef(void)
 {
@@ -70,7 +40,7 @@ static double luminance(const float* pixel)
     return 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
 }
 
-// Rows worked on side by side; what is summed over pixels is summed afterwards, in their order.
+// Rows per parallel section. Sums over pixels are taken after it, in the order of the pixels.
 enum { BAND = 64 };
 
 typedef struct Row {
@@ -83,7 +53,7 @@ typedef struct Reinhard {
     double delta, scale, white;
     bool skipBlack;
     int firstRow;
-    double* logs; // of a band; 0 where a pixel does not count
+    double* logs; // of a band's pixels; 0 for those that do not count
     Row rows[BAND];
 } Reinhard;
 
@@ -98,7 +68,7 @@ static void findLogs(void* data, int row, int worker)
     for (int x = 0; x < width; x++) {
         const double y = luminance(pixels + 3 * (size_t)x);
         const bool counts = isfinite(y) && y + (r->skipBlack ? 0 : r->delta) > 0;
-        logs[x] = counts ? vplLog1(y + r->delta) : 0;
+        logs[x] = counts ? vplLn(y + r->delta) : 0;
         found.counted += counts;
         found.largest = counts && y > found.largest ? y : found.largest;
     }
@@ -118,7 +88,7 @@ static void mapRow(void* data, int row, int worker)
             continue;
         }
         const double l = r->scale * y;
-        // Each factor divided by 1 + l on its own: l can be 1e30, and its square beyond double after more.
+        // Divides twice by `white` and once by 1 + l: squares of large values would overflow.
         const double mapped = l / (1 + l) * (1 + l / r->white / r->white);
         for (int c = 0; c < 3; c++) {
             pixel[c] = (float)(pixel[c] * (mapped / y));
@@ -148,10 +118,7 @@ static void sumBand(Reinhard* r, Sums* sums)
 vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def)
 {
     const vplReinhardDef settings = def ? *def : vplDefaultReinhardDef();
-    const vplResult result = checkReinhard(image->context, &settings);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(checkReinhard(image->context, &settings));
     Reinhard r = {.image = image, .delta = settings.delta, .skipBlack = settings.skipBlack};
     r.logs = vplAlloc(image->context, (size_t)BAND * (size_t)image->width, sizeof *r.logs);
     if (r.logs == NULL) {
@@ -162,7 +129,7 @@ vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def)
         sumBand(&r, &sums);
     }
     vplFree(image->context, r.logs);
-    if (sums.counted > 0 && sums.largest > 0) { // black stays black
+    if (sums.counted > 0 && sums.largest > 0) { // a black picture stays black
         r.scale = settings.key / vplExp(sums.log / (double)sums.counted);
         r.white = settings.white > 0 ? settings.white : r.scale * sums.largest;
         vplParallelFor(image->context, image->height, mapRow, &r);

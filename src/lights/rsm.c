@@ -30,7 +30,7 @@ static float aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
         vplSinCos(e->outerAngle, &sine, &cosine);
         map->extent[0] = map->extent[1] = sine / cosine;
         map->forward[0] = vplNormalize(e->direction);
-        vplFrame(map->forward[0], &map->right[0], &map->up[0]);
+        vplTangentFrame(map->forward[0], &map->right[0], &map->up[0]);
         map->right[0] = vplNegate(map->right[0]); // a frame is right-handed
     } else {
         for (int i = 0; i < 6; i++) {
@@ -48,7 +48,7 @@ static float aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
 static void aimParallel(vplReflectiveMap* map, const vplGeometry* g)
 {
     map->forward[0] = vplNormalize(map->emitter.direction);
-    vplFrame(map->forward[0], &map->right[0], &map->up[0]);
+    vplTangentFrame(map->forward[0], &map->right[0], &map->up[0]);
     map->right[0] = vplNegate(map->right[0]);
     const vplVec3 axes[3] = {map->right[0], map->up[0], map->forward[0]};
     const vplVec3 centre = vplScale(0.5f, vplAdd(g->boundsMin, g->boundsMax));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Vectors of double, for what floats are too short for.
+// Vectors of double, where float is not precise enough.
 #ifndef VPL_MATH_DOUBLE3_H
 #define VPL_MATH_DOUBLE3_H
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "math/matrix.h"
+#include "math/double3.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 
 vplMat4 vplMat4_Identity(void)
 {
-    vplMat4 m = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-    return m;
+    return (vplMat4){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
 }
 
 vplMat4 vplMat4_Multiply(const vplMat4* a, const vplMat4* b)
@@ -46,20 +46,16 @@ vplMat4 vplAffine_ToMat4(const vplAffine* a)
     return m;
 }
 
-// Cofactor rows of the 3x3 part: row i is the cross product of the other two columns.
+// The cofactor matrix; row i is the cross product of the other two columns. Returns the determinant.
 static double cofactors(const double c[3][3], double rows[3][3])
 {
     for (int i = 0; i < 3; i++) {
-        const double* u = c[(i + 1) % 3];
-        const double* v = c[(i + 2) % 3];
-        rows[i][0] = u[1] * v[2] - u[2] * v[1];
-        rows[i][1] = u[2] * v[0] - u[0] * v[2];
-        rows[i][2] = u[0] * v[1] - u[1] * v[0];
+        vplCross3(c[(i + 1) % 3], c[(i + 2) % 3], rows[i]);
     }
-    return c[0][0] * rows[0][0] + c[0][1] * rows[0][1] + c[0][2] * rows[0][2];
+    return vplDot3(c[0], rows[0]);
 }
 
-// Columns divided by their lengths, so that scales from 1e-30 to 1e30 neither under- nor overflow.
+// Divides the columns by their lengths, so that scales from 1e-30 to 1e30 neither underflow nor overflow.
 static void unitColumns(const vplAffine* a, double columns[3][3], double lengths[3])
 {
     for (int j = 0; j < 3; j++) {
@@ -102,7 +98,7 @@ vplAffine vplAffine_FromParts(vplVec3 translate, const double quarters[3], vplVe
     for (int i = 0; i < 3; i++) {
         vplSinCosQuarters(quarters[i], &s[i], &c[i]);
     }
-    // Rz * Ry * Rx, written out.
+    // Rz * Ry * Rx.
     const double r[3][3] = {
         {c[2] * c[1], c[2] * s[1] * s[0] - s[2] * c[0], c[2] * s[1] * c[0] + s[2] * s[0]},
         {s[2] * c[1], s[2] * s[1] * s[0] + c[2] * c[0], s[2] * s[1] * c[0] - c[2] * s[0]},

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Based on: J. G. van der Corput 1935; J. H. Halton, On the efficiency of certain quasi-random sequences of
-// points, Numerische Mathematik 1960; the sequences that Keller's Instant Radiosity and SSVP ask for.
+// Based on: J. G. van der Corput, Verteilungsfunktionen, 1935; J. H. Halton, On the efficiency of certain
+// quasi-random sequences of points, Numerische Mathematik 1960. Keller's Instant Radiosity and SSVP use these
+// sequences.
 #include "math/sampling.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 
 float vplVanDerCorput(uint32_t k)
 {
-    k = (k << 16) | (k >> 16);
-    k = ((k & 0x00ff00ffu) << 8) | ((k & 0xff00ff00u) >> 8);
-    k = ((k & 0x0f0f0f0fu) << 4) | ((k & 0xf0f0f0f0u) >> 4);
-    k = ((k & 0x33333333u) << 2) | ((k & 0xccccccccu) >> 2);
-    k = ((k & 0x55555555u) << 1) | ((k & 0xaaaaaaaau) >> 1);
-    return (float)(k >> 8) * 0x1p-24f;
+    return (float)(vplReverseBits(k) >> 8) * 0x1p-24f;
 }
 
 float vplHalton(uint64_t k, int dimension)
@@ -24,13 +20,13 @@ float vplHalton(uint64_t k, int dimension)
         227, 229, 233, 239, 241, 251, 257, 263, 269, 271, 277, 281, 283, 293, 307, 311};
     uint64_t base = primes[dimension];
     uint64_t digits = 0, scale = 1;
-    while (k > 0 && scale < (UINT64_C(1) << 52) / base) { // beyond 52 bits a float cannot see the digits
+    while (k > 0 && scale < (UINT64_C(1) << 52) / base) { // a float has no use for more than 52 bits
         digits = digits * base + k % base;
         scale *= base;
         k /= base;
     }
     double value = (double)digits / (double)scale;
-    return (float)(value < 1 - 0x1p-24 ? value : 1 - 0x1p-24); // rounding to float must not reach 1
+    return (float)(value < 1 - 0x1p-24 ? value : 1 - 0x1p-24); // must not round to 1
 }
 
 void vplSamplePolarDisc(float u, float v, float* x, float* y)
@@ -83,7 +79,7 @@ vplVec3 vplSampleCosine(float u, float v)
 vplVec3 vplSampleCosineAround(vplVec3 n, float u, float v)
 {
     vplVec3 d = vplSampleCosine(u, v), tangent, bitangent;
-    vplFrame(n, &tangent, &bitangent);
+    vplTangentFrame(n, &tangent, &bitangent);
     vplVec3 side = vplAdd(vplScale(d.x, tangent), vplScale(d.y, bitangent));
     return vplNormalize(vplAdd(side, vplScale(d.z, n)));
 }

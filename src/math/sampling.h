@@ -7,27 +7,38 @@
 
 #include <stdint.h>
 
-// Radical inverse of k in base 2 (van der Corput), truncated to 24 bits so that it stays below 1 (X044).
+// Reverses the order of the bits.
+static inline uint32_t vplReverseBits(uint32_t x)
+{
+    x = (x << 16) | (x >> 16);
+    x = ((x & 0x00ff00ffu) << 8) | ((x & 0xff00ff00u) >> 8);
+    x = ((x & 0x0f0f0f0fu) << 4) | ((x & 0xf0f0f0f0u) >> 4);
+    x = ((x & 0x33333333u) << 2) | ((x & 0xccccccccu) >> 2);
+    return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
+}
+
+// Radical inverse of k in base 2 (van der Corput), truncated to 24 bits so that it stays below 1.
 float vplVanDerCorput(uint32_t k);
 
-// Radical inverse of k in the n-th prime, n in [0, VPL_PRIME_COUNT): Halton's n-th dimension.
+// Radical inverse of k in prime number `dimension`, in [0, VPL_PRIME_COUNT): that dimension of Halton's
+// sequence.
 enum { VPL_PRIME_COUNT = 64 };
 float vplHalton(uint64_t k, int dimension);
 
-// Disc of radius 1 by r = sqrt(u), angle 2 pi v.
+// Uniform in the unit disc: r = sqrt(u), angle 2 pi v.
 void vplSamplePolarDisc(float u, float v, float* x, float* y);
 
-// Disc of radius 1 by the concentric map of Shirley and Chiu, A Low Distortion Map Between Disk and Square,
-// JGT 1997. The centre of the square maps to the centre of the disc.
+// Uniform in the unit disc, by the concentric map of Shirley and Chiu, A Low Distortion Map Between Disk and
+// Square, JGT 1997. The centre of the square maps to the centre of the disc.
 void vplSampleConcentricDisc(float u, float v, float* x, float* y);
 
-// Unit sphere, uniform: z = 1 - 2u, longitude 2 pi v.
+// Uniform on the unit sphere: z = 1 - 2u, longitude 2 pi v.
 vplVec3 vplSampleSphere(float u, float v);
 
-// Hemisphere around +z with density cos/pi: Malley's method on the polar disc.
+// On the hemisphere around +z with density cos / pi: Malley's method with the polar disc.
 vplVec3 vplSampleCosine(float u, float v);
 
-// The same around the unit vector n.
+// The same for the hemisphere around the unit vector n.
 vplVec3 vplSampleCosineAround(vplVec3 n, float u, float v);
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reduce the argument to a small interval, then sum a series there. Taylor series (not minimax fits): their
-// coefficients can be checked by eye, and in double the few extra terms cost nothing that matters here.
+// Each function reduces its argument to a small interval and sums a Taylor series there. Minimax polynomials
+// would save a few terms, but Taylor coefficients can be checked by eye.
 #include "math/scalar.h"
 
 #include <vpl/vecmath.h>
@@ -60,11 +60,11 @@ double vplExp(double x)
     for (int i = 14; i >= 1; i--) { // 0.35^15/15! < 2e-19
         sum = (1 + sum) * (r / i);
     }
-    int half = (int)k / 2; // two steps, so that results near both ends of the range do not overflow early
+    int half = (int)k / 2; // scales in two steps: 2^k itself may overflow
     return ldexp(ldexp(1 + sum, half), (int)k - half);
 }
 
-double vplLog1(double x)
+double vplLn(double x)
 {
     if (!(x > 0)) {
         return x == 0 ? -INFINITY : NAN;
@@ -89,17 +89,18 @@ double vplLog1(double x)
 
 double vplPow(double x, double y)
 {
-    return x > 0 ? vplExp(y * vplLog1(x)) : 0;
+    return x > 0 ? vplExp(y * vplLn(x)) : 0;
 }
 
-// A third of the exponent is a first guess within 6 %; each of Halley's steps cubes the error, so the third
-// leaves less than rounding. The constant is two thirds of the exponent's bias, moved to centre the error.
+// Dividing the bits of x by three gives a guess within 6 %. Halley's method cubes the error in each step, so
+// three steps reach rounding error. The constant is two thirds of the exponent's bias, adjusted to centre the
+// error of the guess.
 double vplCbrt(double x)
 {
     if (!(x > 0) || x > DBL_MAX) {
         return x > 0 ? x : 0;
     }
-    if (x < DBL_MIN || x > 0x1p1020) { // its exponent says nothing, or 3x would overflow below
+    if (x < DBL_MIN || x > 0x1p1020) { // denormal, or 3x overflows below
         return x < 1 ? vplCbrt(x * 0x1p54) * 0x1p-18 : vplCbrt(x * 0x1p-54) * 0x1p18;
     }
     uint64_t bits;
@@ -114,7 +115,7 @@ double vplCbrt(double x)
     return y;
 }
 
-// atan x for 0 <= x <= 1: two half-angle steps bring x under 0.2, where the series is short.
+// atan x for 0 <= x <= 1. Two half-angle steps bring x below 0.2, where the series is short.
 static double atanUnit(double x)
 {
     for (int i = 0; i < 2; i++) {
@@ -123,7 +124,7 @@ static double atanUnit(double x)
     double x2 = x * x;
     double sum = 0;
     for (int k = 25; k >= 3; k -= 2) {
-        sum = (1.0 / k - sum) * x2; // alternating series, from the small end
+        sum = (1.0 / k - sum) * x2; // alternating series, smallest terms first
     }
     return 4 * (x - x * sum);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Elementary functions made of + - * / only, so that every machine gives the same bits. All work in double;
-// their errors, tested against libm, are a few units in the last place.
+// Elementary functions made of + - * / and sqrt only, so that every machine gives the same bits. They compute
+// in double; tests compare them with libm: their errors are a few units in the last place.
 #ifndef VPL_MATH_SCALAR_H
 #define VPL_MATH_SCALAR_H
 
@@ -17,7 +17,7 @@ void vplSinCos(double radians, double* sine, double* cosine);
 double vplExp(double x);
 
 // Natural logarithm: -infinity at 0, NaN below.
-double vplLog1(double x);
+double vplLn(double x);
 
 // x^y for x > 0; 0 for x <= 0.
 double vplPow(double x, double y);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Points of Sobol's sequence with Owen's scrambling, four dimensions at a time; any point of any stream by itself.
+// Sobol's sequence with Owen scrambling, four dimensions at a time, with random access to any point of any
+// stream.
 #ifndef VPL_MATH_SOBOL_H
 #define VPL_MATH_SOBOL_H
 
@@ -7,23 +8,20 @@
 
 enum { VPL_SOBOL_DIMENSIONS = 4 };
 
-// What index bits contribute to a point, four of them at a time. Indices and fractions have their bits in reverse,
-// because that is how scrambling needs them.
+// The contribution of each 4 bits of an index to each dimension. Indices and fractions are bit-reversed, as
+// scrambling needs them.
 typedef struct vplSobol {
-    uint32_t share[8][16][VPL_SOBOL_DIMENSIONS];
+    uint32_t table[8][16][VPL_SOBOL_DIMENSIONS];
 } vplSobol;
 
 vplSobol vplSobol_Make(void);
 
-// Point `index` as 32-bit fractions, not scrambled.
+// Point `index` without scrambling, as 32-bit fractions.
 void vplSobol_Point(const vplSobol* sobol, uint32_t index, uint32_t fractionsOut[VPL_SOBOL_DIMENSIONS]);
 
-// Owen's scrambling by a hash: flips each bit as `seed` and the bits above it say.
-uint32_t vplOwenScramble(uint32_t fraction, uint32_t seed);
-
-// Point `index` of stream `stream` of seed `seed`, in [0, 1)^4. Each stream is scrambled and shuffled by itself, so
-// streams can be put side by side to cover more dimensions. The first 2^k points of a stream cover each pair of
-// its first two dimensions like a grid and each dimension like 2^k strata.
+// Point `index` of stream (seed, stream, dimension), in [0, 1)^4. Each stream is scrambled and shuffled
+// independently, so that streams can be combined to cover more dimensions. The first 2^k points of a stream
+// are stratified in each dimension and, in its first two dimensions, in every elementary interval.
 void vplSobol_Sample(const vplSobol* sobol, uint64_t seed, uint64_t stream, uint32_t dimension,
                      uint32_t index, float sampleOut[VPL_SOBOL_DIMENSIONS]);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Inline vector arithmetic. Sums are written out in one order, so every caller gets the same bits.
+// Inline vector arithmetic. Each sum has one fixed order, so all callers get the same bits.
 #ifndef VPL_MATH_VEC_H
 #define VPL_MATH_VEC_H
 
@@ -47,8 +47,8 @@ static inline float vplLength(vplVec3 a)
     return sqrtf(vplDot(a, a));
 }
 
-// The unit vector along a; 0 for the zero vector. The largest component is brought to 1 first, so that
-// neither tiny nor huge vectors lose their direction to underflow or overflow of the square.
+// The unit vector along a; 0 for the zero vector. Scales the largest component to 1 first, so that the
+// squares of tiny and huge vectors neither underflow nor overflow.
 static inline vplVec3 vplNormalize(vplVec3 a)
 {
     float largest = fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
@@ -80,27 +80,16 @@ static inline vplRgb vplRgbMul(vplRgb a, vplRgb b)
     return (vplRgb){a.r * b.r, a.g * b.g, a.b * b.b};
 }
 
-static inline vplRgb vplRgbAdd(vplRgb a, vplRgb b)
-{
-    return (vplRgb){a.r + b.r, a.g + b.g, a.b + b.b};
-}
-
-// Mean of the channels, by which sources share particles.
+// The mean of the channels: the weight by which emitters are sampled.
 static inline double vplRgbMean(vplRgb c)
 {
     return ((double)c.r + c.g + c.b) / 3;
 }
 
-// Luminance with the weights of Rec. 709.
-static inline float vplLuminance(vplRgb c)
-{
-    return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
-}
-
-// An orthonormal frame around the unit vector n: tangent, bitangent and n are right-handed.
+// A right-handed orthonormal basis: tangent, bitangent and the unit vector n.
 // Based on: Duff, Burgess, Christensen, Hery, Kensler, Liani and Villemin, Building an Orthonormal Basis,
-// Revisited, JCGT 2017: no division by 1 + n_z near 0.
-static inline void vplFrame(vplVec3 n, vplVec3* tangent, vplVec3* bitangent)
+// Revisited, JCGT 2017, which never divides by a number near 0.
+static inline void vplTangentFrame(vplVec3 n, vplVec3* tangent, vplVec3* bitangent)
 {
     float sign = copysignf(1.0f, n.z);
     float a = -1.0f / (sign + n.z);

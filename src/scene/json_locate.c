@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Walks a text without NUL bytes that jansson has already accepted, so the syntax need not be checked again: only
-// strings (which may contain any bracket) and nesting matter. Runs on the error path only.
+// Walks a text without NUL bytes that jansson has accepted: the syntax is valid, so only strings, which may
+// contain any bracket, and nesting matter. Runs when an error is reported.
 #include "scene/json_locate.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -54,14 +53,15 @@ static void skipValue(Cursor* c)
     } while (depth > 0 && c->at < c->end);
 }
 
-// Keys with escapes are compared as written; a scene's keys have none.
+// Compares keys as written: the keys of scene files have no escapes.
 static bool keyEquals(const char* at, const char* end, const char* key)
 {
     size_t length = strlen(key);
     return (size_t)(end - at) > length + 1 && strncmp(at + 1, key, length) == 0 && at[length + 1] == '"';
 }
 
-// From the opening bracket to the wanted child's value, or to its key. False if there is no such child.
+// Moves from an opening bracket to the value, or the key, of one of its children. False if there is no such
+// child.
 static bool enter(Cursor* c, const vplJsonPath* step, bool atKey)
 {
     bool object = *c->at == '{';
@@ -109,25 +109,26 @@ static bool descend(Cursor* c, const vplJsonPath* path, bool atKey)
     return true;
 }
 
-void vplJson_Locate(const char* text, size_t size, const vplJsonPath* path, int atKey, int* line, int* column)
+vplJsonPlace vplJson_Locate(const char* text, size_t size, const vplJsonPath* path, bool atKey)
 {
     Cursor c = {text, text + size};
     skipSpace(&c);
-    descend(&c, path, atKey != 0);
-    vplJson_CountLines(text, (size_t)((c.at < c.end ? c.at : c.end) - text), line, column);
+    descend(&c, path, atKey);
+    return vplJson_PlaceOf(text, (size_t)((c.at < c.end ? c.at : c.end) - text));
 }
 
-void vplJson_CountLines(const char* text, size_t offset, int* line, int* column)
+vplJsonPlace vplJson_PlaceOf(const char* text, size_t offset)
 {
-    *line = *column = 1;
+    vplJsonPlace place = {1, 1};
     for (const char* p = text; p < text + offset; p++) {
         if (*p == '\n') {
-            ++*line;
-            *column = 1;
-        } else if ((*p & 0xC0) != 0x80) { // characters, as jansson and editors count them, not bytes
-            ++*column;
+            place.line++;
+            place.column = 1;
+        } else if ((*p & 0xC0) != 0x80) { // counts characters, as jansson and editors do, not bytes
+            place.column++;
         }
     }
+    return place;
 }
 
 void vplJson_FormatPath(const vplJsonPath* path, char* buffer, size_t size)

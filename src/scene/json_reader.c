@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/json_reader.h"
+#include "base/arena.h"
 #include "base/file.h"
 
 #include <float.h>
@@ -10,110 +11,114 @@
 
 static const char* typeName(const json_t* value)
 {
-    switch (json_typeof(value)) {
-    case JSON_OBJECT:
-        return "an object";
-    case JSON_ARRAY:
-        return "an array";
-    case JSON_STRING:
-        return "a string";
-    case JSON_INTEGER:
-    case JSON_REAL:
-        return "a number";
-    case JSON_TRUE:
-    case JSON_FALSE:
-        return "a boolean";
-    case JSON_NULL:
-        break;
-    }
-    return "null";
+    static const char* const names[] = {
+        [JSON_OBJECT] = "an object", [JSON_ARRAY] = "an array", [JSON_STRING] = "a string",
+        [JSON_INTEGER] = "a number", [JSON_REAL] = "a number",  [JSON_TRUE] = "a boolean",
+        [JSON_FALSE] = "a boolean",  [JSON_NULL] = "null",
+    };
+    return names[json_typeof(value)];
 }
 
-// jansson skips a NUL byte behind a number as if it were not there (its lexer takes it for an empty buffer).
-static vplResult rejectNul(const vplJsonReader* reader)
+// jansson ignores a NUL byte behind a number: its lexer takes it for an empty buffer.
+static vplResult rejectNul(const vplJsonFile* file)
 {
-    const char* nul = memchr(reader->text, 0, reader->size);
+    const char* nul = memchr(file->text, 0, file->size);
     if (nul == NULL) {
         return VPL_SUCCESS;
     }
-    int line, column;
-    vplJson_CountLines(reader->text, (size_t)(nul - reader->text), &line, &column);
-    return vplFail(reader->context, VPL_PARSE_ERROR, "%s:%d:%d: a NUL byte, must be text (JSON in UTF-8)",
-                   reader->file, line, column);
+    const vplJsonPlace place = vplJson_PlaceOf(file->text, (size_t)(nul - file->text));
+    return vplFail(file->context, VPL_PARSE_ERROR, "%s:%d:%d: a NUL byte, must be text (JSON in UTF-8)",
+                   file->name, place.line, place.column);
 }
 
-static vplResult failSyntax(vplContext* context, const char* file, json_error_t* error)
+static vplResult parse(vplJsonFile* file)
 {
-    if (error->text[0] == 0 || json_error_code(error) == json_error_out_of_memory) {
-        return vplFail(context, VPL_OUT_OF_MEMORY, "%s: out of memory while reading JSON", file);
+    TRY(rejectNul(file));
+    json_error_t error;
+    // Reads integers as reals, so that those beyond 64 bits are no error.
+    const size_t flags = JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL;
+    file->root = json_loadb(file->text, file->size, flags, &error);
+    if (file->root != NULL) {
+        return VPL_SUCCESS;
     }
-    return vplFail(context, VPL_PARSE_ERROR, "%s:%d:%d: %s", file, error->line > 0 ? error->line : 1,
-                   error->column > 0 ? error->column : 1, error->text);
+    if (error.text[0] == 0 || json_error_code(&error) == json_error_out_of_memory) {
+        return vplFail(file->context, VPL_OUT_OF_MEMORY, "%s: out of memory while reading JSON", file->name);
+    }
+    return vplFail(file->context, VPL_PARSE_ERROR, "%s:%d:%d: %s", file->name,
+                   error.line > 0 ? error.line : 1, error.column > 0 ? error.column : 1, error.text);
 }
 
-vplResult vplJsonReader_Open(vplContext* context, const char* file, vplJsonReader* readerOut)
+vplResult vplJsonFile_Open(vplContext* context, const char* name, vplJsonFile* fileOut)
 {
-    vplJsonReader reader = {context, file, NULL, 0, NULL};
-    vplResult result = vplReadFile(context, file, &reader.text, &reader.size);
+    vplJsonFile file = {.context = context, .name = name};
+    TRY(vplReadFile(context, name, &file.text, &file.size));
+    const vplResult result = parse(&file);
     if (result != VPL_SUCCESS) {
+        vplFree(context, file.text);
         return result;
     }
-    result = rejectNul(&reader);
-    if (result == VPL_SUCCESS) {
-        json_error_t error;
-        // Integers as real: 64 bits are no limit of a scene's numbers.
-        const size_t flags = JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL;
-        reader.root = json_loadb(reader.text, reader.size, flags, &error);
-        result = reader.root != NULL ? VPL_SUCCESS : failSyntax(context, file, &error);
-    }
-    if (result != VPL_SUCCESS) {
-        vplFree(context, reader.text);
-        return result;
-    }
-    *readerOut = reader;
+    *fileOut = file;
     return VPL_SUCCESS;
 }
 
-void vplJsonReader_Close(vplJsonReader* reader)
+void vplJsonFile_Close(vplJsonFile* file)
 {
-    json_decref(reader->root);
-    vplFree(reader->context, reader->text);
+    json_decref(file->root);
+    vplFree(file->context, file->text);
 }
 
-static vplResult failAt(const vplJsonReader* reader, const vplJsonPath* path, bool atKey, char* message)
+vplJson vplJson_Root(const vplJsonFile* file)
 {
-    char name[256];
-    int line, column;
-    vplJson_FormatPath(path, name, sizeof name);
-    vplJson_Locate(reader->text, reader->size, path, atKey, &line, &column);
-    return vplFail(reader->context, VPL_PARSE_ERROR, "%s:%d:%d: %s %s", reader->file, line, column,
-                   name[0] ? name : "the scene", message);
+    return (vplJson){.file = file, .value = file->root};
 }
 
-vplResult vplJsonReader_Fail(const vplJsonReader* reader, const vplJsonPath* path, const char* format, ...)
+// The root has no step of its own.
+static const vplJsonPath* pathOf(const vplJson* at)
+{
+    return at->value == at->file->root ? NULL : &at->path;
+}
+
+vplJson vplJson_Member(const vplJson* parent, const char* key)
+{
+    return (vplJson){parent->file, json_object_get(parent->value, key), {pathOf(parent), key, 0}};
+}
+
+vplJson vplJson_Element(const vplJson* parent, int index)
+{
+    return (vplJson){
+        parent->file, json_array_get(parent->value, (size_t)index), {pathOf(parent), NULL, index}};
+}
+
+static vplResult failAt(const vplJson* at, bool atKey, const char* message)
+{
+    const vplJsonFile* file = at->file;
+    char path[256];
+    vplJson_FormatPath(pathOf(at), path, sizeof path);
+    const vplJsonPlace place = vplJson_Locate(file->text, file->size, pathOf(at), atKey);
+    return vplFail(file->context, VPL_PARSE_ERROR, "%s:%d:%d: %s %s", file->name, place.line, place.column,
+                   path[0] ? path : "the scene", message);
+}
+
+vplResult vplJson_Fail(const vplJson* at, const char* format, ...)
 {
     char message[512];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    return failAt(reader, path, false, message);
+    return failAt(at, false, message);
 }
 
-vplResult vplJsonReader_RequireObject(const vplJsonReader* reader, const json_t* value,
-                                      const vplJsonPath* path)
+vplResult vplJson_RequireObject(const vplJson* at)
 {
-    return json_is_object(value)
-               ? VPL_SUCCESS
-               : vplJsonReader_Fail(reader, path, "is %s, must be an object", typeName(value));
+    return json_is_object(at->value) ? VPL_SUCCESS
+                                     : vplJson_Fail(at, "is %s, must be an object", typeName(at->value));
 }
 
-vplResult vplJsonReader_RequireArray(const vplJsonReader* reader, const json_t* value,
-                                     const vplJsonPath* path)
+vplResult vplJson_RequireArray(const vplJson* at)
 {
-    return json_is_array(value)
-               ? VPL_SUCCESS
-               : vplJsonReader_Fail(reader, path, "is %s, must be an array", typeName(value));
+    return json_is_array(at->value) ? VPL_SUCCESS
+                                    : vplJson_Fail(at, "is %s, must be an array", typeName(at->value));
 }
 
 static bool isListed(const char* const* keys, const char* key)
@@ -126,16 +131,12 @@ static bool isListed(const char* const* keys, const char* key)
     return false;
 }
 
-vplResult vplJsonReader_CheckKeys(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                                  const char* const* keys)
+vplResult vplJson_CheckKeys(const vplJson* object, const char* const* keys)
 {
-    vplResult result = vplJsonReader_RequireObject(reader, object, path);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplJson_RequireObject(object));
     const char* key;
     json_t* value;
-    json_object_foreach((json_t*)object, key, value)
+    json_object_foreach(object->value, key, value)
     {
         if (!isListed(keys, key)) {
             char message[256] = "is not a known key; known here:";
@@ -144,92 +145,95 @@ vplResult vplJsonReader_CheckKeys(const vplJsonReader* reader, const json_t* obj
                 snprintf(message + used, sizeof message - used, "%s %s", i ? "," : "",
                          keys[i] + (keys[i][0] == '!'));
             }
-            vplJsonPath member = {path, key, 0};
-            return failAt(reader, &member, true, message);
+            const vplJson member = vplJson_Member(object, key);
+            return failAt(&member, true, message);
         }
     }
     for (int i = 0; keys[i] != NULL; i++) {
-        if (keys[i][0] == '!' && json_object_get(object, keys[i] + 1) == NULL) {
-            return vplJsonReader_Fail(reader, path, "lacks the key \"%s\"", keys[i] + 1);
+        if (keys[i][0] == '!' && json_object_get(object->value, keys[i] + 1) == NULL) {
+            return vplJson_Fail(object, "lacks the key \"%s\"", keys[i] + 1);
         }
     }
     return VPL_SUCCESS;
 }
 
-static vplResult readNumber(const vplJsonReader* reader, const json_t* value, const vplJsonPath* path,
-                            double* out)
+static vplResult readNumber(const vplJson* at, double* out)
 {
-    if (!json_is_number(value)) {
-        return vplJsonReader_Fail(reader, path, "is %s, must be a number", typeName(value));
+    if (!json_is_number(at->value)) {
+        return vplJson_Fail(at, "is %s, must be a number", typeName(at->value));
     }
-    double number = json_number_value(value);
+    double number = json_number_value(at->value);
     if (!(fabs(number) <= FLT_MAX)) {
-        return vplJsonReader_Fail(reader, path, "is %g, beyond the range of a float (%g)", number,
-                                  (double)FLT_MAX);
+        return vplJson_Fail(at, "is %g, beyond the range of a float (%g)", number, (double)FLT_MAX);
     }
     *out = number;
     return VPL_SUCCESS;
 }
 
-vplResult vplJsonReader_Number(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                               const char* key, double* out)
+vplResult vplJson_ReadNumber(const vplJson* object, const char* key, double* out)
 {
-    const json_t* value = json_object_get(object, key);
-    vplJsonPath member = {path, key, 0};
-    return value == NULL ? VPL_SUCCESS : readNumber(reader, value, &member, out);
+    const vplJson member = vplJson_Member(object, key);
+    return member.value == NULL ? VPL_SUCCESS : readNumber(&member, out);
 }
 
-vplResult vplJsonReader_Doubles(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                                const char* key, int count, double* out)
+vplResult vplJson_ReadDoubles(const vplJson* object, const char* key, int count, double* out)
 {
-    const json_t* value = json_object_get(object, key);
-    vplJsonPath member = {path, key, 0};
-    if (value == NULL) {
+    const vplJson member = vplJson_Member(object, key);
+    if (member.value == NULL) {
         return VPL_SUCCESS;
     }
-    if (!json_is_array(value)) {
-        return vplJsonReader_Fail(reader, &member, "is %s, must be an array of %d numbers", typeName(value),
-                                  count);
+    if (!json_is_array(member.value)) {
+        return vplJson_Fail(&member, "is %s, must be an array of %d numbers", typeName(member.value), count);
     }
-    if (json_array_size(value) != (size_t)count) {
-        return vplJsonReader_Fail(reader, &member, "has %zu elements, must be an array of %d numbers",
-                                  json_array_size(value), count);
+    if (json_array_size(member.value) != (size_t)count) {
+        return vplJson_Fail(&member, "has %zu elements, must be an array of %d numbers",
+                            json_array_size(member.value), count);
     }
     for (int i = 0; i < count; i++) {
-        vplJsonPath element = {&member, NULL, i};
-        vplResult result = readNumber(reader, json_array_get(value, (size_t)i), &element, &out[i]);
-        if (result != VPL_SUCCESS) {
-            return result;
-        }
+        const vplJson element = vplJson_Element(&member, i);
+        TRY(readNumber(&element, &out[i]));
     }
     return VPL_SUCCESS;
 }
 
-vplResult vplJsonReader_Floats(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                               const char* key, int count, float* out)
+vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, float* out)
 {
     double values[16];
     for (int i = 0; i < count; i++) {
         values[i] = out[i];
     }
-    vplResult result = vplJsonReader_Doubles(reader, object, path, key, count, values);
-    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+    TRY(vplJson_ReadDoubles(object, key, count, values));
+    for (int i = 0; i < count; i++) {
         out[i] = (float)values[i];
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
-vplResult vplJsonReader_String(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                               const char* key, const char** out)
+vplResult vplJson_ReadVec3(const vplJson* object, const char* key, vplVec3* out)
 {
-    const json_t* value = json_object_get(object, key);
-    vplJsonPath member = {path, key, 0};
-    if (value == NULL) {
+    float v[3] = {out->x, out->y, out->z};
+    TRY(vplJson_ReadFloats(object, key, 3, v));
+    *out = (vplVec3){v[0], v[1], v[2]};
+    return VPL_SUCCESS;
+}
+
+vplResult vplJson_ReadRgb(const vplJson* object, const char* key, vplRgb* out)
+{
+    float v[3] = {out->r, out->g, out->b};
+    TRY(vplJson_ReadFloats(object, key, 3, v));
+    *out = (vplRgb){v[0], v[1], v[2]};
+    return VPL_SUCCESS;
+}
+
+vplResult vplJson_ReadString(const vplJson* object, const char* key, const char** out)
+{
+    const vplJson member = vplJson_Member(object, key);
+    if (member.value == NULL) {
         return VPL_SUCCESS;
     }
-    if (!json_is_string(value)) {
-        return vplJsonReader_Fail(reader, &member, "is %s, must be a string", typeName(value));
+    if (!json_is_string(member.value)) {
+        return vplJson_Fail(&member, "is %s, must be a string", typeName(member.value));
     }
-    *out = json_string_value(value);
+    *out = json_string_value(member.value);
     return VPL_SUCCESS;
 }

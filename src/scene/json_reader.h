@@ -1,47 +1,59 @@
 // SPDX-License-Identifier: MIT
-// Typed reading of a JSON tree with errors that name file, line, column and path.
+// Typed reading of a JSON file, with errors that name file, line, column and path.
 #ifndef VPL_SCENE_JSON_READER_H
 #define VPL_SCENE_JSON_READER_H
+
+#include <vpl/vecmath.h>
 
 #include "base/context.h"
 #include "scene/json_locate.h"
 
 #include <jansson.h>
 
-typedef struct vplJsonReader {
+typedef struct vplJsonFile {
     vplContext* context;
-    const char* file;
+    const char* name;
     char* text;
     size_t size;
     json_t* root;
-} vplJsonReader;
+} vplJsonFile;
 
-// Reads and parses a file; duplicate keys, trailing text and numbers beyond double are errors.
-vplResult vplJsonReader_Open(vplContext* context, const char* file, vplJsonReader* readerOut);
-void vplJsonReader_Close(vplJsonReader* reader);
+// A value of a file and the way to it, linked on the caller's stack.
+typedef struct vplJson {
+    const vplJsonFile* file;
+    json_t* value; // NULL: there is none
+    vplJsonPath path;
+} vplJson;
 
-// "file:line:column: path message"; returns VPL_PARSE_ERROR. `path` NULL means the whole file.
-vplResult vplJsonReader_Fail(const vplJsonReader* reader, const vplJsonPath* path, const char* format, ...)
-    VPL_PRINTF(3, 4);
+// Reads and parses a file. Duplicate keys, trailing text, NUL bytes and numbers beyond double are errors.
+vplResult vplJsonFile_Open(vplContext* context, const char* name, vplJsonFile* fileOut);
+void vplJsonFile_Close(vplJsonFile* file);
 
-// The object must have the keys marked "!" and no others than those listed (NULL ends the list).
-vplResult vplJsonReader_CheckKeys(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                                  const char* const* keys);
+vplJson vplJson_Root(const vplJsonFile* file);
 
-// Each reads member `key` of an object. A missing member leaves *out untouched. `count` numbers fill v.
-vplResult vplJsonReader_Number(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                               const char* key, double* out);
-vplResult vplJsonReader_Floats(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                               const char* key, int count, float* out);
-vplResult vplJsonReader_Doubles(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                                const char* key, int count, double* out);
-vplResult vplJsonReader_String(const vplJsonReader* reader, const json_t* object, const vplJsonPath* path,
-                               const char* key, const char** out);
+// A member of an object or an element of an array; `parent` must live at least as long. value is NULL if
+// there is none.
+vplJson vplJson_Member(const vplJson* parent, const char* key);
+vplJson vplJson_Element(const vplJson* parent, int index);
 
-// The value must be an object or array; says what it is instead.
-vplResult vplJsonReader_RequireObject(const vplJsonReader* reader, const json_t* value,
-                                      const vplJsonPath* path);
-vplResult vplJsonReader_RequireArray(const vplJsonReader* reader, const json_t* value,
-                                     const vplJsonPath* path);
+// Logs "file:line:column: path message" and returns VPL_PARSE_ERROR.
+vplResult vplJson_Fail(const vplJson* at, const char* format, ...) VPL_PRINTF(2, 3);
+
+// Fails unless the value has this type.
+vplResult vplJson_RequireObject(const vplJson* at);
+vplResult vplJson_RequireArray(const vplJson* at);
+
+// Fails unless the value is an object that has all the keys marked "!" and no others than those listed. NULL
+// ends the list.
+vplResult vplJson_CheckKeys(const vplJson* object, const char* const* keys);
+
+// Each reads the member `key` of an object. A missing member leaves *out as it is. Arrays must have `count`
+// numbers.
+vplResult vplJson_ReadNumber(const vplJson* object, const char* key, double* out);
+vplResult vplJson_ReadDoubles(const vplJson* object, const char* key, int count, double* out);
+vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, float* out);
+vplResult vplJson_ReadVec3(const vplJson* object, const char* key, vplVec3* out);
+vplResult vplJson_ReadRgb(const vplJson* object, const char* key, vplRgb* out);
+vplResult vplJson_ReadString(const vplJson* object, const char* key, const char** out);
 
 #endif

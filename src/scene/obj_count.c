@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The first sweep over an OBJ file: counts, so that every array is allocated once and at its size, and materials,
-// which may be used before the file that defines them is named.
+// The first sweep over an OBJ file: counts, so that each array is allocated once and at its size, and
+// materials, because a face may use one before the file that defines it is named.
 #include "scene/obj.h"
 #include "base/file.h"
 
 #include <string.h>
 
-enum { MOST_MISSING = 8 }; // MTL files told one by one
+enum { MOST_MISSING = 8 }; // warnings about missing MTL files
 
 vplObjStatement vplObj_ReadKeyword(vplWord* line, vplWord* keywordOut)
 {
@@ -25,7 +25,7 @@ vplObjStatement vplObj_ReadKeyword(vplWord* line, vplWord* keywordOut)
     return VPL_OBJ_UNSUPPORTED;
 }
 
-// Corners of a face; whether one of them names a normal.
+// Counts the triangles of a face and notes whether a corner names a normal.
 static vplResult countFace(vplObj* obj, vplWord line, vplWord keyword)
 {
     int corners = 0;
@@ -44,47 +44,34 @@ static vplResult countFace(vplObj* obj, vplWord line, vplWord keyword)
     return VPL_SUCCESS;
 }
 
-// Reads one MTL file unless it was read before.
-static vplResult readLibrary(vplObj* obj, const char* path)
+// Reads the MTL file of this name, unless it was read before; *foundOut says whether there is one.
+static vplResult readLibraryAt(vplObj* obj, const char* path, vplWord name, bool warn, bool* foundOut)
 {
     int number;
-    size_t length = strlen(path);
-    if (vplNames_Find(&obj->libraries, path, length) >= 0) {
+    const size_t length = strlen(path);
+    *foundOut = vplIsRegularFile(path); // a pipe or device would make us wait
+    if ((!*foundOut && !warn) || vplNames_Find(&obj->libraries, path, length) >= 0) {
         return VPL_SUCCESS;
     }
-    vplResult result = vplNames_Add(&obj->libraries, path, length, &number);
-    return result == VPL_SUCCESS ? vplMtl_Read(obj->context, path, &obj->materials) : result;
-}
-
-static vplResult warnOfMissing(vplObj* obj, vplWord name, const char* path)
-{
-    int number;
-    size_t length = strlen(path);
-    if (vplNames_Find(&obj->libraries, path, length) >= 0) {
-        return VPL_SUCCESS;
-    }
-    if (obj->libraries.index.count < MOST_MISSING) {
+    if (!*foundOut && obj->libraries.index.count < MOST_MISSING) {
         vplText_WarnAt(&obj->text, name.start, "there is no file %s; its materials are grey", path);
     }
-    return vplNames_Add(&obj->libraries, path, length, &number);
+    TRY(vplNames_Add(&obj->libraries, path, length, &number));
+    return *foundOut ? vplMtl_Read(obj->context, path, &obj->materials) : VPL_SUCCESS;
 }
 
-// Reads the MTL file of this name; *foundOut says whether there is one.
-static vplResult tryLibrary(vplObj* obj, vplWord name, bool warn, bool* foundOut)
+static vplResult readLibrary(vplObj* obj, vplWord name, bool warn, bool* foundOut)
 {
     char* path = vplPathBeside(obj->context, obj->text.file, name.start, (size_t)(name.end - name.start));
     if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    *foundOut = vplIsRegularFile(path); // no pipe or device: an mtllib must not make us wait
-    vplResult result = *foundOut ? readLibrary(obj, path)
-                       : warn    ? warnOfMissing(obj, name, path)
-                                 : VPL_SUCCESS;
+    const vplResult result = readLibraryAt(obj, path, name, warn, foundOut);
     vplFree(obj->context, path);
     return result;
 }
 
-// One name with blanks in it or several names: what the files in the folder say.
+// Reads the rest of the line as one name, which may have blanks; if there is no such file, as several names.
 static vplResult readLibraries(vplObj* obj, vplWord line)
 {
     vplWord all = vplRestOfLine(line), name;
@@ -92,12 +79,12 @@ static vplResult readLibraries(vplObj* obj, vplWord line)
         return vplText_FailWord(&obj->text, all, "the name of an MTL file");
     }
     bool found = false, several = memchr(all.start, ' ', (size_t)(all.end - all.start)) != NULL;
-    vplResult result = tryLibrary(obj, all, !several, &found);
-    while (result == VPL_SUCCESS && several && !found && vplNextWord(&line, &name)) {
+    TRY(readLibrary(obj, all, !several, &found));
+    while (several && !found && vplNextWord(&line, &name)) {
         bool ignored;
-        result = tryLibrary(obj, name, true, &ignored);
+        TRY(readLibrary(obj, name, true, &ignored));
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
 static vplResult noteMaterial(vplObj* obj, vplWord line)
@@ -137,12 +124,8 @@ vplResult vplObj_Count(vplObj* obj)
 {
     const char* at = NULL;
     vplWord line;
-    vplResult result = VPL_SUCCESS;
-    while (result == VPL_SUCCESS && vplText_NextLine(&obj->text, &at, &line)) {
-        result = countLine(obj, line);
-    }
-    if (result != VPL_SUCCESS) {
-        return result;
+    while (vplText_NextLine(&obj->text, &at, &line)) {
+        TRY(countLine(obj, line));
     }
     if (obj->pointCount > VPL_MAX_TRIANGLES || obj->triangleCount > VPL_MAX_TRIANGLES) {
         return vplFail(obj->context, VPL_LIMIT,

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The third sweep over an OBJ file: faces, cut into triangles.
+// The third sweep over an OBJ file: faces, which are cut into triangles.
 #include "scene/obj.h"
 
 #include <string.h>
 
-// What the sweep knows at a line.
+// The state of the sweep.
 typedef struct Sweep {
     vplObj* obj;
     vplObjMesh* mesh;
-    int64_t points, normals; // v and vn met so far: negative indices count back from them
+    int64_t points, normals; // counts of v and vn so far: negative indices count back from them
     int material;
-    vplPolygon polygon;
+    vplEarClipper polygon;
     uint32_t cornerPoints[VPL_MAX_CORNERS];
     int64_t cornerNormals[VPL_MAX_CORNERS]; // -1: none
     vplVec3 positions[VPL_MAX_CORNERS];
@@ -18,7 +18,7 @@ typedef struct Sweep {
     int64_t crossingCount;
 } Sweep;
 
-// One index of a corner up to the next '/'. Saturates; false if there are no digits.
+// Reads one index of a corner, up to the next '/'. Large values saturate. False if there are no digits.
 static bool readInteger(vplWord* word, vplWord* numberOut, int64_t* out)
 {
     const char* p = word->start;
@@ -39,44 +39,47 @@ static bool readInteger(vplWord* word, vplWord* numberOut, int64_t* out)
     return good;
 }
 
-// An index as a number from 0. `before` is how many of its kind stand above the line, `total` how many there are.
-static vplResult readIndex(const Sweep* s, vplWord corner, vplWord* word, const char* kind, int64_t before,
-                           int64_t total, int64_t* out)
+// The elements that an index may refer to.
+typedef struct Range {
+    const char* kind;
+    int64_t before; // the line
+    int64_t total;
+} Range;
+
+// Reads an index of a corner into a number from 0.
+static vplResult readIndex(const Sweep* s, vplWord corner, vplWord* word, Range range, int64_t* out)
 {
     int64_t index;
     vplWord number;
     bool good = readInteger(word, &number, &index);
-    int64_t place = index > 0 ? index - 1 : before + index;
-    if (good && index != 0 && place >= 0 && place < total) {
+    int64_t place = index > 0 ? index - 1 : range.before + index;
+    if (good && index != 0 && place >= 0 && place < range.total) {
         *out = place;
         return VPL_SUCCESS;
     }
-    number = number.start == number.end ? corner : number; // "/3" or "3//": nothing stands where it must
-    if (total == 0) {
-        return vplText_FailWord(&s->obj->text, number, "no index of a %s: there are none", kind);
+    number = number.start == number.end ? corner : number; // "/3" or "3//": there is no index
+    if (range.total == 0) {
+        return vplText_FailWord(&s->obj->text, number, "no index of a %s: there are none", range.kind);
     }
-    return vplText_FailWord(&s->obj->text, number, "an index of a %s: 1 to %lld, or -1 to -%lld", kind,
-                            (long long)total, (long long)before);
+    return vplText_FailWord(&s->obj->text, number, "an index of a %s: 1 to %lld, or -1 to -%lld", range.kind,
+                            (long long)range.total, (long long)range.before);
 }
 
-// v, v/vt, v//vn or v/vt/vn.
+// Reads v, v/vt, v//vn or v/vt/vn.
 static vplResult readCorner(Sweep* s, vplWord corner, int i)
 {
     const vplObj* obj = s->obj;
     vplWord word = corner, number;
     int64_t point = 0, ignored;
     s->cornerNormals[i] = -1;
-    vplResult result = readIndex(s, corner, &word, "point (v)", s->points, obj->pointCount, &point);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(readIndex(s, corner, &word, (Range){"point (v)", s->points, obj->pointCount}, &point));
     s->cornerPoints[i] = obj->pointOf[point];
     if (word.start == word.end) {
         return VPL_SUCCESS;
     }
     word.start++;
     bool noTexture = word.start < word.end && *word.start == '/';
-    if (!noTexture && !readInteger(&word, &number, &ignored)) { // any index will do: none is used
+    if (!noTexture && !readInteger(&word, &number, &ignored)) { // any index will do: it is not used
         return vplText_FailWord(&obj->text, number.start < number.end ? number : corner,
                                 "an index of a texture coordinate (vt)");
     }
@@ -84,47 +87,42 @@ static vplResult readCorner(Sweep* s, vplWord corner, int i)
         return VPL_SUCCESS;
     }
     word.start++;
-    result = readIndex(s, corner, &word, "normal (vn)", s->normals, obj->normalCount, &s->cornerNormals[i]);
-    return result == VPL_SUCCESS && word.start < word.end
-               ? vplText_FailWord(&obj->text, word, "the end of the corner")
-               : result;
+    TRY(readIndex(s, corner, &word, (Range){"normal (vn)", s->normals, obj->normalCount},
+                  &s->cornerNormals[i]));
+    return word.start < word.end ? vplText_FailWord(&obj->text, word, "the end of the corner") : VPL_SUCCESS;
 }
 
 static vplResult addTriangle(Sweep* s, int a, int b, int c)
 {
-    const uint32_t points[3] = {s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]};
-    const int64_t normals[3] = {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]};
-    return vplObjMesh_AddTriangle(s->obj, s->mesh, points, normals, s->material);
+    const vplObjCorners corners = {{s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]},
+                                   {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]}};
+    return vplObjMesh_AddTriangle(s->obj, s->mesh, &corners, s->material);
 }
 
 static vplResult addPolygon(Sweep* s, int corners, const char* face)
 {
-    vplResult result = VPL_SUCCESS;
-    int64_t emptyBefore = s->mesh->emptyCount;
+    const int64_t emptyBefore = s->mesh->emptyCount;
     for (int i = 0; i < corners; i++) {
         s->positions[i] = s->obj->points[s->cornerPoints[i]];
     }
-    vplPolygon_Triangulate(&s->polygon, s->positions, corners);
-    for (int i = 0; i < s->polygon.triangleCount && result == VPL_SUCCESS; i++) {
+    vplEarClipper_Triangulate(&s->polygon, s->positions, corners);
+    for (int i = 0; i < s->polygon.triangleCount; i++) {
         const int* t = s->polygon.triangles[i];
-        result = addTriangle(s, t[0], t[1], t[2]);
+        TRY(addTriangle(s, t[0], t[1], t[2]));
     }
-    bool hasArea = s->mesh->emptyCount < emptyBefore + s->polygon.triangleCount;
+    const bool hasArea = s->mesh->emptyCount < emptyBefore + s->polygon.triangleCount;
     if (!s->polygon.simple && hasArea) {
         s->firstCrossing = s->crossingCount++ == 0 ? face : s->firstCrossing;
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
 static vplResult readFace(Sweep* s, vplWord line, const char* face)
 {
     int corners = 0;
     vplWord word;
-    while (vplNextWord(&line, &word)) { // at most VPL_MAX_CORNERS: the first sweep counted
-        vplResult result = readCorner(s, word, corners++);
-        if (result != VPL_SUCCESS) {
-            return result;
-        }
+    while (vplNextWord(&line, &word)) { // at most VPL_MAX_CORNERS: the first sweep checked
+        TRY(readCorner(s, word, corners++));
     }
     return corners == 3 ? addTriangle(s, 0, 1, 2) : addPolygon(s, corners, face);
 }
@@ -153,33 +151,13 @@ static vplResult readLines(Sweep* s)
 {
     const char* at = NULL;
     vplWord line;
-    vplResult result = VPL_SUCCESS;
-    while (result == VPL_SUCCESS && vplText_NextLine(&s->obj->text, &at, &line)) {
-        result = readLine(s, line);
+    while (vplText_NextLine(&s->obj->text, &at, &line)) {
+        TRY(readLine(s, line));
     }
-    if (result == VPL_SUCCESS && s->crossingCount > 0) {
+    if (s->crossingCount > 0) {
         vplText_WarnAt(&s->obj->text, s->firstCrossing,
                        "the outline of this face crosses itself; its triangles may overlap (%lld such faces)",
                        (long long)s->crossingCount);
-    }
-    return result;
-}
-
-static vplResult allocate(const vplObj* obj, vplObjMesh* mesh)
-{
-    size_t triangles = (size_t)obj->triangleCount;
-    *mesh = (vplObjMesh){.corners = {.context = obj->context}};
-    mesh->indices = vplAlloc(obj->context, triangles, 3 * sizeof *mesh->indices);
-    mesh->materials = vplAlloc(obj->context, triangles, sizeof *mesh->materials);
-    if (mesh->indices == NULL || mesh->materials == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    if (!obj->hasNormals) {
-        mesh->vertexOf = vplAlloc(obj->context, obj->differentPoints, sizeof *mesh->vertexOf);
-        if (mesh->vertexOf == NULL) {
-            return VPL_OUT_OF_MEMORY;
-        }
-        memset(mesh->vertexOf, 0xFF, obj->differentPoints * sizeof *mesh->vertexOf); // VPL_NO_ENTRY
     }
     return VPL_SUCCESS;
 }
@@ -190,15 +168,20 @@ vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
         return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size, VPL_PARSE_ERROR,
                               "found the end of the file, expected a face (f)");
     }
-    vplResult result = allocate(obj, mesh);
-    Sweep* sweep = result == VPL_SUCCESS ? vplAllocZero(obj->context, 1, sizeof *sweep) : NULL;
-    if (sweep == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    const size_t triangles = (size_t)obj->triangleCount;
+    mesh->corners.arena = obj->scratch;
+    mesh->indices = vplArena_Alloc(mesh->arena, triangles, 3 * sizeof *mesh->indices);
+    mesh->materials = vplArena_Alloc(mesh->arena, triangles, sizeof *mesh->materials);
+    TRY(vplArena_Check(mesh->arena));
+    if (!obj->hasNormals) {
+        mesh->vertexOf = vplArena_Alloc(obj->scratch, obj->differentPoints, sizeof *mesh->vertexOf);
+        TRY(vplArena_Check(obj->scratch));
+        memset(mesh->vertexOf, 0xFF, obj->differentPoints * sizeof *mesh->vertexOf); // VPL_NO_ENTRY
     }
+    Sweep* sweep = vplArena_AllocZero(obj->scratch, 1, sizeof *sweep);
+    TRY(vplArena_Check(obj->scratch));
     sweep->obj = obj;
     sweep->mesh = mesh;
     sweep->material = -1;
-    result = readLines(sweep);
-    vplFree(obj->context, sweep);
-    return result;
+    return readLines(sweep);
 }

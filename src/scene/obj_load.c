@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// OBJ files, as Wavefront's Advanced Visualizer wrote them: three sweeps over the text, then a mesh. Memory is
-// freed as soon as a step is done, so that the most held at once is the text and one copy of the mesh.
+// Reads Wavefront OBJ files in three sweeps over the text. Memory is freed after each step: at its peak it
+// holds the text and one copy of the mesh.
 #include "scene/obj.h"
 #include "base/file.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_UNDEFINED = 8 }; // materials told one by one
+enum { MOST_UNDEFINED = 8 }; // warnings about undefined materials
 
-// Says which materials the triangles use but no MTL file defines.
+// Warns about the materials that triangles use but no MTL file defines.
 static void warnOfUndefined(const vplObj* obj)
 {
     int count = 0;
@@ -26,17 +26,17 @@ static void warnOfUndefined(const vplObj* obj)
     }
 }
 
-// A start for the names of a file's materials that no name in the scene has: "room.obj:", else with the number of
-// the mesh, from 1: "room.obj(2):". Files may share material names, and one file may be read twice.
-static char* makePrefix(const vplScene* scene, const char* path)
+// A prefix for the names of a file's materials that no name in the scene has: "room.obj:", or with the number
+// of the mesh, from 1, "room.obj(2):". Files may share material names, and one file may be read twice.
+static char* makePrefix(const vplScene* scene, const char* path, vplArena* scratch)
 {
     const char* base = vplBaseName(path);
-    size_t room = strlen(base) + 24;
-    char* prefix = vplAlloc(scene->context, room, 1);
+    size_t size = strlen(base) + 24;
+    char* prefix = vplArena_Alloc(scratch, size, 1);
     if (prefix == NULL) {
         return NULL;
     }
-    snprintf(prefix, room, "%s:", base);
+    snprintf(prefix, size, "%s:", base);
     bool taken = true;
     for (int number = scene->meshCount + 1; taken; number++) {
         taken = false;
@@ -45,25 +45,23 @@ static char* makePrefix(const vplScene* scene, const char* path)
             taken = name != NULL && strncmp(name, prefix, strlen(prefix)) == 0;
         }
         if (taken) {
-            snprintf(prefix, room, "%s(%d):", base, number);
+            snprintf(prefix, size, "%s(%d):", base, number);
         }
     }
     return prefix;
 }
 
-// Adds one material to the scene. `material` NULL: the grey of faces that name none.
-static vplResult addMaterial(vplScene* scene, const char* prefix, const char* name, vplObjMaterial* material)
+// Adds one material to the scene, its name in `arena`.
+static vplResult addMaterial(vplScene* scene, vplArena* arena, const char* prefix, const char* name,
+                             vplObjMaterial* material)
 {
-    vplMaterialDef def = vplDefaultMaterialDef();
-    if (material == NULL) {
-        return vplScene_AdoptMaterial(scene, &def, NULL);
-    }
-    size_t room = strlen(prefix) + strlen(name) + 1;
-    char* whole = vplAlloc(scene->context, room, 1);
+    size_t size = strlen(prefix) + strlen(name) + 1;
+    char* whole = vplArena_Alloc(arena, size, 1);
     if (whole == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    snprintf(whole, room, "%s%s", prefix, name);
+    snprintf(whole, size, "%s%s", prefix, name);
+    vplMaterialDef def = vplDefaultMaterialDef();
     def.name = whole;
     def.diffuse = material->diffuse;
     def.emission = material->emission;
@@ -71,39 +69,36 @@ static vplResult addMaterial(vplScene* scene, const char* prefix, const char* na
 }
 
 // Adds the materials that triangles use, in the order of their first use, and renumbers the triangles.
-static vplResult addMaterials(vplScene* scene, vplObj* obj, vplObjMesh* mesh, const char* prefix)
+static vplResult addMaterials(vplScene* scene, const vplObj* obj, vplObjMesh* mesh)
 {
-    vplResult result = VPL_SUCCESS;
+    const char* prefix = makePrefix(scene, obj->text.file, obj->scratch);
+    if (prefix == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    const vplMaterialDef unnamed = vplDefaultMaterialDef(); // of faces without usemtl
     int grey = -1;
-    for (int64_t i = 0; i < mesh->triangleCount && result == VPL_SUCCESS; i++) {
-        int number = mesh->materials[i];
-        vplObjMaterial* material = number >= 0 ? &obj->materials.list[number] : NULL;
-        int* index = material ? &material->sceneIndex : &grey;
-        if (*index < 0) {
-            int next = scene->materialCount;
-            result =
-                addMaterial(scene, prefix, material ? obj->materials.names.names[number] : NULL, material);
-            *index = next;
+    for (int64_t i = 0; i < mesh->triangleCount; i++) {
+        const int number = mesh->materials[i];
+        int* index = number >= 0 ? &obj->materials.list[number].sceneIndex : &grey;
+        if (*index < 0 && number >= 0) {
+            TRY(addMaterial(scene, mesh->arena, prefix, obj->materials.names.names[number],
+                            &obj->materials.list[number]));
+        } else if (*index < 0) {
+            TRY(vplScene_AdoptMaterial(scene, &unnamed, &grey));
         }
         mesh->materials[i] = *index;
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
 // The positions of a mesh's vertices; NULL when out of memory.
 static vplVec3* placeVertices(const vplObj* obj, const vplObjMesh* mesh)
 {
-    vplVec3* positions = vplAlloc(obj->context, mesh->vertexCount, sizeof *positions);
-    if (positions == NULL) {
-        return NULL;
+    vplVec3* positions = vplArena_Alloc(mesh->arena, mesh->vertexCount, sizeof *positions);
+    for (uint32_t i = 0; positions != NULL && obj->hasNormals && i < mesh->vertexCount; i++) {
+        positions[i] = obj->points[mesh->cornerPoint[i]];
     }
-    if (obj->hasNormals) {
-        for (uint32_t i = 0; i < mesh->vertexCount; i++) {
-            positions[i] = obj->points[mesh->cornerPoint[i]];
-        }
-        return positions;
-    }
-    for (uint32_t i = 0; i < obj->differentPoints; i++) {
+    for (uint32_t i = 0; positions != NULL && !obj->hasNormals && i < obj->differentPoints; i++) {
         if (mesh->vertexOf[i] != VPL_NO_ENTRY) {
             positions[mesh->vertexOf[i]] = obj->points[i];
         }
@@ -111,69 +106,37 @@ static vplVec3* placeVertices(const vplObj* obj, const vplObjMesh* mesh)
     return positions;
 }
 
-// Replaces an array by one of exactly `count` elements, if that is less than it has.
-static vplResult shrink(vplContext* context, void* array, size_t capacity, size_t count, size_t size)
+// Replaces an array by one of exactly `count` elements; failures show in vplArena_Check.
+static void* shrink(vplArena* arena, void* array, size_t capacity, size_t count, size_t size)
 {
-    if (count == capacity) {
-        return VPL_SUCCESS;
+    void* copy = count < capacity ? vplArena_Copy(arena, array, count, size) : NULL;
+    if (copy != NULL) {
+        vplArena_Free(arena, array);
     }
-    void *old, *copy = vplAlloc(context, count, size);
-    if (copy == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    memcpy(&old, array, sizeof old); // `array` is the address of a pointer of any type
-    memcpy(copy, old, count * size);
-    vplFree(context, old);
-    memcpy(array, &copy, sizeof copy);
-    return VPL_SUCCESS;
+    return copy != NULL ? copy : array;
 }
 
-static vplResult shrinkArrays(vplObj* obj, vplObjMesh* mesh)
-{
-    size_t triangles = (size_t)mesh->triangleCount, most = (size_t)obj->triangleCount;
-    vplContext* context = obj->context;
-    vplResult result = shrink(context, &mesh->indices, most, triangles, 3 * sizeof *mesh->indices);
-    if (result == VPL_SUCCESS) {
-        result = shrink(context, &mesh->materials, most, triangles, sizeof *mesh->materials);
-    }
-    if (result == VPL_SUCCESS && obj->hasNormals) {
-        result = shrink(context, &mesh->cornerNormal, mesh->normalCapacity, mesh->vertexCount,
-                        sizeof *mesh->cornerNormal);
-    }
-    return result;
-}
-
-// All but the materials' names is done: the arrays move into the scene.
+// Moves the mesh and its materials to the scene.
 static vplResult addMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int* indexOut)
 {
-    vplMeshDef def = {.vertexCount = (int)mesh->vertexCount, .triangleCount = (int)mesh->triangleCount};
     vplHashIndex_Close(&mesh->corners);
-    vplVec3* positions = placeVertices(obj, mesh);
-    vplResult result = positions ? shrinkArrays(obj, mesh) : VPL_OUT_OF_MEMORY;
-    char* prefix = result == VPL_SUCCESS ? makePrefix(scene, obj->text.file) : NULL;
-    int materialCount = scene->materialCount;
-    result = prefix ? addMaterials(scene, obj, mesh, prefix) : VPL_OUT_OF_MEMORY;
-    vplFree(obj->context, prefix);
-    if (result == VPL_SUCCESS) {
-        warnOfUndefined(obj);
-        def.positions = positions;
-        def.normals = mesh->cornerNormal;
-        def.indices = mesh->indices;
-        def.materials = mesh->materials;
-        mesh->cornerNormal = NULL;
-        mesh->indices = NULL;
-        mesh->materials = NULL;
-        positions = NULL;
-        result = vplScene_AdoptMesh(scene, &def, indexOut);
-    }
-    if (result != VPL_SUCCESS) {
-        vplScene_DropMaterials(scene, materialCount);
-    }
-    vplFree(obj->context, positions);
-    return result;
+    const size_t triangles = (size_t)mesh->triangleCount, capacity = (size_t)obj->triangleCount;
+    vplMeshDef def = {.vertexCount = (int)mesh->vertexCount, .triangleCount = (int)mesh->triangleCount};
+    def.positions = placeVertices(obj, mesh);
+    def.indices = shrink(mesh->arena, mesh->indices, capacity, triangles, 3 * sizeof *mesh->indices);
+    def.normals = shrink(mesh->arena, mesh->cornerNormal, mesh->normalCapacity, mesh->vertexCount,
+                         sizeof *mesh->cornerNormal);
+    mesh->materials = shrink(mesh->arena, mesh->materials, capacity, triangles, sizeof *mesh->materials);
+    def.materials = mesh->materials;
+    TRY(vplArena_Check(mesh->arena));
+    TRY(addMaterials(scene, obj, mesh));
+    warnOfUndefined(obj);
+    vplArena* arena = mesh->arena;
+    mesh->arena = NULL; // the scene's from now on
+    return vplScene_AdoptMesh(scene, &def, arena, indexOut);
 }
 
-static vplResult finishMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int* indexOut)
+static vplResult checkMesh(const vplObj* obj, const vplObjMesh* mesh)
 {
     if (mesh->triangleCount == 0) {
         return vplFail(obj->context, VPL_PARSE_ERROR,
@@ -187,42 +150,42 @@ static vplResult finishMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int*
         vplLog(obj->context, VPL_LOG_INFO, "%s: left out %lld triangles without area", obj->text.file,
                (long long)mesh->emptyCount);
     }
-    return addMesh(scene, obj, mesh, indexOut);
+    return VPL_SUCCESS;
 }
 
-static void closeObj(vplObj* obj)
+static vplResult readText(vplObj* obj, vplObjMesh* mesh)
 {
+    TRY(vplObj_Count(obj));
+    TRY(vplObj_ReadPoints(obj));
+    return vplObj_ReadFaces(obj, mesh);
+}
+
+static vplResult loadObj(vplScene* scene, vplObj* obj, const char* path, vplObjMesh* mesh, int* indexOut)
+{
+    TRY(vplArena_Check(obj->scratch));
+    TRY(vplArena_Check(mesh->arena));
+    TRY(vplText_Open(obj->context, path, &obj->text));
+    const vplResult result = readText(obj, mesh);
     vplText_Close(&obj->text);
-    vplObjMaterials_Close(&obj->materials);
-    vplNames_Close(&obj->libraries);
-    vplFree(obj->context, obj->points);
-    vplFree(obj->context, obj->pointOf);
-    vplFree(obj->context, obj->normals);
+    TRY(result);
+    TRY(checkMesh(obj, mesh));
+    return addMesh(scene, obj, mesh, indexOut);
 }
 
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut)
 {
-    vplContext* context = scene->context;
-    vplObj obj = {.context = context,
-                  .materials = {.names = {.index = {.context = context}}},
-                  .libraries = {.index = {.context = context}}};
-    vplObjMesh mesh = {.corners = {.context = context}};
-    vplResult result = vplText_Open(context, path, &obj.text);
+    vplArena* scratch = vplArena_Create(scene->context);
+    vplObj obj = {.context = scene->context,
+                  .scratch = scratch,
+                  .materials = {.names = {.index = {.arena = scratch}}},
+                  .libraries = {.index = {.arena = scratch}}};
+    vplObjMesh mesh = {.arena = scratch != NULL ? vplArena_Create(scene->context) : NULL};
+    const int materialCount = scene->materialCount;
+    const vplResult result = loadObj(scene, &obj, path, &mesh, indexOut);
     if (result != VPL_SUCCESS) {
-        return result;
+        scene->materialCount = materialCount; // drops the new ones; their names are in the mesh's arena
     }
-    result = vplObj_Count(&obj);
-    if (result == VPL_SUCCESS) {
-        result = vplObj_ReadPoints(&obj);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplObj_ReadFaces(&obj, &mesh);
-    }
-    vplText_Close(&obj.text);
-    if (result == VPL_SUCCESS) {
-        result = finishMesh(scene, &obj, &mesh, indexOut);
-    }
-    vplObjMesh_Close(context, &mesh);
-    closeObj(&obj);
+    vplArena_Destroy(mesh.arena);
+    vplArena_Destroy(scratch);
     return result;
 }

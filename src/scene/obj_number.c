@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Based on: William D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990: try double arithmetic,
-// and only where its error could change the answer compare exactly, in integers. Departs: the answer is a float,
-// so double has 29 bits to spare and the exact way is taken by one number in 60 million.
+// Based on: William D. Clinger, How to Read Floating Point Numbers Accurately, PLDI 1990. It computes in
+// double, and compares exactly, in integers, where the error could change the answer. Departs: the answer is
+// a float, so double has 29 spare bits and one number in 60 million needs the exact comparison.
 #include "scene/obj_number.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
 
-// A decimal number: its digits as a whole number, times 10^exponent.
+// A decimal number: its digits as an integer, times 10^exponent.
 typedef struct Decimal {
     const char* first;       // first significant digit
     const char* end;         // behind the last digit; a point may lie between
@@ -20,7 +20,7 @@ typedef struct Decimal {
 
 enum {
     MOST_DIGITS = 120, // a midpoint of two floats has at most 113
-    WORDS = 32         // of a whole number: 10^167 times 2^25 needs 580 bits, 121 digits times 2^150 552
+    WORDS = 32         // of a BigInteger: 10^167 times 2^25 needs 580 bits, 121 digits times 2^150 need 552
 };
 
 static bool isDigit(char c)
@@ -30,12 +30,12 @@ static bool isDigit(char c)
 
 // ---- exact comparison
 
-typedef struct Whole {
+typedef struct BigInteger {
     uint32_t words[WORDS]; // least significant first
     int count;
-} Whole;
+} BigInteger;
 
-static void multiplyAdd(Whole* w, uint32_t factor, uint32_t summand)
+static void multiplyAdd(BigInteger* w, uint32_t factor, uint32_t summand)
 {
     uint64_t carry = summand;
     for (int i = 0; i < w->count; i++) {
@@ -48,14 +48,14 @@ static void multiplyAdd(Whole* w, uint32_t factor, uint32_t summand)
     }
 }
 
-static void multiplyPower(Whole* w, uint32_t base, int64_t exponent)
+static void multiplyPower(BigInteger* w, uint32_t base, int64_t exponent)
 {
     for (; exponent > 0; exponent--) {
         multiplyAdd(w, base, 0);
     }
 }
 
-static int compare(const Whole* a, const Whole* b)
+static int compare(const BigInteger* a, const BigInteger* b)
 {
     if (a->count != b->count) {
         return a->count < b->count ? -1 : 1;
@@ -68,10 +68,11 @@ static int compare(const Whole* a, const Whole* b)
     return 0;
 }
 
-// The digits as a whole number times 10^*exponent. Beyond MOST_DIGITS a single 1 stands for all that is not 0.
-static Whole wholeOf(const Decimal* d, int64_t* exponent)
+// The digits as an integer times 10^*exponent. If a digit beyond MOST_DIGITS is not 0, a single 1 replaces
+// them all.
+static BigInteger integerOf(const Decimal* d, int64_t* exponent)
 {
-    Whole w = {{0}, 0};
+    BigInteger w = {{0}, 0};
     int digits = 0;
     int64_t skipped = 0;
     bool more = false;
@@ -95,11 +96,11 @@ static Whole wholeOf(const Decimal* d, int64_t* exponent)
     return w;
 }
 
-// Which side of the midpoint between the float of `bits` and the next the decimal lies on: -1, 0, 1.
+// The sign of the decimal minus the midpoint between the float of `bits` and the next float.
 static int compareWithMidpoint(const Decimal* d, uint32_t bits)
 {
     int64_t ten;
-    Whole left = wholeOf(d, &ten), right = {{0}, 0};
+    BigInteger left = integerOf(d, &ten), right = {{0}, 0};
     uint32_t exponent = bits >> 23, mantissa = bits & 0x7FFFFF;
     mantissa |= exponent ? 0x800000 : 0;
     int two = (int)(exponent ? exponent : 1) - 151; // of the midpoint (2 mantissa + 1) * 2^two
@@ -132,7 +133,7 @@ static float refine(const Decimal* d, float guess)
     return guess;
 }
 
-// ---- the fast way
+// ---- approximation in double
 
 // leading * 10^exponent within 4 units in the last place of a double.
 static double approximate(uint64_t leading, int64_t exponent)
@@ -161,17 +162,18 @@ static float nearestFloat(const Decimal* d)
     if (value > 1e39 || value < 1e-46) {
         return value > 1 ? INFINITY : 0;
     }
-    // The 29 bits that a float lacks: near half of them the last few decide. Below 2^-126 floats have fewer.
+    // The 29 bits that a float lacks round up or down clearly unless they are close to one half. Denormal
+    // floats lack more bits.
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
-    int64_t beside = (int64_t)(bits & 0x1FFFFFFF) - 0x10000000;
-    bool clear = (beside > 16 || beside < -16) && value >= 0x1p-126 && value < 0x1p128;
+    int64_t overHalf = (int64_t)(bits & 0x1FFFFFFF) - 0x10000000;
+    bool clear = (overHalf > 16 || overHalf < -16) && value >= 0x1p-126 && value < 0x1p128;
     return clear ? (float)value : refine(d, (float)value);
 }
 
 // ---- syntax
 
-// Digits around an optional point; false if there is none.
+// Reads digits around an optional point; false if there is no digit.
 static bool readDigits(const char** at, const char* end, Decimal* d)
 {
     const char* p = *at;
@@ -203,7 +205,7 @@ static bool readDigits(const char** at, const char* end, Decimal* d)
     return any;
 }
 
-// An exponent, saturated far beyond what any number of digits in a file can undo.
+// Reads an exponent. It saturates beyond anything that the number of digits in a file could compensate.
 static bool readExponent(const char** at, const char* end, int64_t* out)
 {
     const char* p = *at;
@@ -240,6 +242,6 @@ bool vplReadNumber(const char* start, const char* end, float* out)
     d.exponent += exponent;
     d.leadingExponent += exponent;
     float value = nearestFloat(&d);
-    *out = d.negative && value != 0 ? -value : value; // -0 would be another point than 0 when welding
+    *out = d.negative && value != 0 ? -value : value; // -0 and 0 are the same point
     return true;
 }

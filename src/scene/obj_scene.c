@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// An OBJ file as a whole scene: it has no camera and seldom a light, so we add our own and say so.
+// Reads an OBJ file as a whole scene. It has no camera and seldom a light: we add both and log them.
 //
-// Let c be the middle of the bounds and r half their diagonal. The camera stands at c + 3.2 r along (0.3, 0.25, 1)
-// and looks at c, with a field of view of 40 degrees: the sphere around the bounds, 36 degrees wide from there,
-// fits into square and wide pictures. The light stands at c + 2 r along (1, 2, 2), above the camera's shoulder,
-// with the intensity that gives a surface at c the irradiance pi: what is white there has the radiance 1.
+// Let c be the centre of the bounds and r half their diagonal. The camera is at c + 3.2 r along (0.3, 0.25,
+// 1) and looks at c with a field of view of 40 degrees. From there the bounding sphere is 36 degrees wide and
+// fits the picture. The light is at c + 2 r along (1, 2, 2), above the camera's shoulder. Its intensity gives
+// a surface at c the irradiance pi, so a white surface there has the radiance 1.
 #include "base/file.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -46,7 +46,7 @@ static vplResult addCamera(vplScene* scene, const char* path, const Bounds* b)
     vplCameraDef def = vplDefaultCameraDef();
     def.eye = pointAround(b, 3.2f, vplVec(0.3f, 0.25f, 1));
     def.target = b->centre;
-    def.near = 1.1 * (double)b->radius; // half the way to the sphere
+    def.near = 1.1 * (double)b->radius; // half way to the sphere
     def.far = 4.4 * (double)b->radius;
     vplFault fault = vplCheckCamera(&def);
     if (fault.field != NULL) {
@@ -79,32 +79,19 @@ static vplResult addLight(vplScene* scene, const char* path, const Bounds* b)
 static vplResult fill(vplScene* scene, const char* path)
 {
     vplObjectDef object = vplDefaultObjectDef();
-    vplResult result = vplScene_LoadObj(scene, path, &object.mesh);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplScene_LoadObj(scene, path, &object.mesh));
     object.name = vplBaseName(path);
     object.type = VPL_OBJECT_MESH;
     object.material = -1;
-    result = vplScene_AddObject(scene, &object, NULL);
-    Bounds bounds = boundsOf(&scene->meshes[object.mesh]);
-    if (result == VPL_SUCCESS) {
-        result = addCamera(scene, path, &bounds);
-    }
-    return result == VPL_SUCCESS && !emits(scene) ? addLight(scene, path, &bounds) : result;
+    TRY(vplScene_AddObject(scene, &object, NULL));
+    const Bounds bounds = boundsOf(&scene->meshes[object.mesh]);
+    TRY(addCamera(scene, path, &bounds));
+    return emits(scene) ? VPL_SUCCESS : addLight(scene, path, &bounds);
 }
 
 vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, vplScene** sceneOut)
 {
-    vplScene* scene = NULL;
-    vplResult result = vplScene_Create(context, &scene);
-    if (result == VPL_SUCCESS) {
-        result = fill(scene, path);
-    }
-    if (result != VPL_SUCCESS) {
-        vplScene_Destroy(scene);
-        return result;
-    }
-    *sceneOut = scene;
-    return VPL_SUCCESS;
+    vplScene* scene;
+    TRY(vplScene_Create(context, &scene));
+    return vplArena_Deliver(scene->arena, fill(scene, path), scene, sceneOut);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scene/obj_text.h"
+#include "base/arena.h"
 #include "base/file.h"
 #include "scene/obj_number.h"
 
@@ -13,7 +14,7 @@ static bool isBlank(char c)
     return c == ' ' || c == '\t' || c == '\v';
 }
 
-// Turns the line end at bytes[i] into '\n' (or '\v' behind a backslash) and gives the index of its last byte.
+// Replaces the line end at bytes[i] by `mark` and returns the index of its last byte.
 static size_t endLine(vplText* t, size_t i, char mark)
 {
     char* b = t->bytes;
@@ -24,8 +25,8 @@ static size_t endLine(vplText* t, size_t i, char mark)
     return i;
 }
 
-// Makes line ends alike in place, so that offsets still tell lines and columns. Comments are not continued: one
-// that ends in a Windows path would swallow the line below.
+// Makes line ends uniform in place, so that offsets still give lines and columns. A backslash does not
+// continue a comment: one that ends in a Windows path would swallow the next line.
 static vplResult normalise(vplText* t)
 {
     char* b = t->bytes;
@@ -58,14 +59,11 @@ static vplResult normalise(vplText* t)
 vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
 {
     vplText text = {context, file, NULL, 0};
-    vplResult result = vplReadFile(context, file, &text.bytes, &text.size);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(vplReadFile(context, file, &text.bytes, &text.size));
     if (text.size >= 3 && memcmp(text.bytes, "\xEF\xBB\xBF", 3) == 0) { // a byte order mark
         memset(text.bytes, ' ', 3);
     }
-    result = normalise(&text);
+    const vplResult result = normalise(&text);
     if (result != VPL_SUCCESS) {
         vplText_Close(&text);
         return result;
@@ -137,13 +135,13 @@ bool vplWord_Is(vplWord word, const char* text)
     return (size_t)(word.end - word.start) == length && memcmp(word.start, text, length) == 0;
 }
 
-// Line and column, from 1, in bytes.
+// Line and column from 1; columns count bytes.
 static void locate(const vplText* text, const char* at, long long* line, long long* column)
 {
     const char* start = text->bytes;
     *line = 1;
     for (const char* p = text->bytes; p < at; p++) {
-        if (*p == '\n' || *p == '\v' || (*p == '\r' && p[1] != '\n')) { // '\r': not normalised so far
+        if (*p == '\n' || *p == '\v' || (*p == '\r' && p[1] != '\n')) { // '\r': not yet normalised
             ++*line;
             start = p + 1;
         }
@@ -231,5 +229,5 @@ void vplText_WarnOnce(const vplText* text, vplUnknownWords* unknown, vplWord wor
     unknown->words[unknown->count++] = word;
     vplText_WarnAt(text, word.start, "%.*s is not supported and has no effect%s",
                    length > 60 ? 60 : (int)length, word.start,
-                   unknown->count == VPL_MOST_UNKNOWN ? "; further such statements are not told" : "");
+                   unknown->count == VPL_MOST_UNKNOWN ? "; further such statements are not reported" : "");
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// OBJ and MTL files as text: logical lines, words, numbers, and sentences that name file, line and column.
+// OBJ and MTL files as text: logical lines, words, numbers, and messages that name file, line and column.
 #ifndef VPL_SCENE_OBJ_TEXT_H
 #define VPL_SCENE_OBJ_TEXT_H
 
 #include "base/context.h"
 
-// A whole file with its line ends made alike (see vplText_Open).
+// A whole file with uniform line ends (see vplText_Open).
 typedef struct vplText {
     vplContext* context;
     const char* file; // its name in messages
@@ -13,33 +13,33 @@ typedef struct vplText {
     size_t size;
 } vplText;
 
-// A piece of a text: one word, or what is left of a line.
+// A part of a text: one word, or the rest of a line.
 typedef struct vplWord {
     const char* start;
     const char* end;
 } vplWord;
 
-// Reads a file. Afterwards every line ends with '\n', whatever it was; where a backslash continued a line, '\v'
-// stands, which is a blank to readers and a line to those who count. A NUL byte is an error.
+// Reads a file. Afterwards every line ends with '\n'. A '\v' replaces the end of a line that a backslash
+// continues: it is a blank to readers, but counts as a line. A NUL byte is an error.
 vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut);
 void vplText_Close(vplText* text);
 
-// The next line with something on it but blanks and comment; *at starts at NULL. False at the end.
+// Finds the next line that is not blank or a comment; *at starts at NULL. False at the end.
 bool vplText_NextLine(const vplText* text, const char** at, vplWord* lineOut);
 
-// Cuts the next word off a line. False, with an empty word where the line ends, if there is none.
+// Cuts the next word off a line. If there is none, returns false and an empty word at the end of the line.
 bool vplNextWord(vplWord* line, vplWord* wordOut);
 
-// All that is left of a line, for names that may hold blanks.
+// The rest of a line without blanks around it, for names that may contain blanks.
 vplWord vplRestOfLine(vplWord line);
 
 bool vplWord_Is(vplWord word, const char* text);
 
-// "file:line:column: found ..., expected ..." for a word, or the end of the line if it is empty. Returns
-// VPL_PARSE_ERROR.
+// Logs "file:line:column: found ..., expected ..." for a word, or for the end of the line if it is empty.
+// Returns VPL_PARSE_ERROR.
 vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format, ...) VPL_PRINTF(3, 4);
 
-// "file:line:column: sentence" for a place in the text.
+// Logs "file:line:column: sentence" for a place in the text. FailAt returns `result`.
 vplResult vplText_FailAt(const vplText* text, const char* at, vplResult result, const char* format, ...)
     VPL_PRINTF(4, 5);
 void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...) VPL_PRINTF(3, 4);
@@ -48,17 +48,17 @@ void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...
 vplResult vplText_Number(const vplText* text, vplWord* line, const char* what, float low, float high,
                          float* out);
 
-// Nothing may be left of the line.
+// Fails if anything is left of the line.
 vplResult vplText_RequireEnd(const vplText* text, vplWord line);
 
-// Words that were met and not understood: each is told once.
+// Unknown words. Each is reported once.
 enum { VPL_MOST_UNKNOWN = 16 };
 typedef struct vplUnknownWords {
     vplWord words[VPL_MOST_UNKNOWN];
     int count;
 } vplUnknownWords;
 
-// Warns "file:line:column: WORD ..." unless it did so before; after VPL_MOST_UNKNOWN words it stays silent.
+// Warns "file:line:column: WORD ...", once per word and for VPL_MOST_UNKNOWN words at most.
 void vplText_WarnOnce(const vplText* text, vplUnknownWords* unknown, vplWord word);
 
 #endif

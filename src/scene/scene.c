@@ -29,44 +29,30 @@ vplObjectDef vplDefaultObjectDef(void)
 
 vplEmitterDef vplDefaultEmitterDef(void)
 {
-    return (vplEmitterDef){VPL_EMITTER_POINT, {0, 0, 0},   {0, -1, 0},    {1, 1, 1},
-                           20 * DEGREE,       30 * DEGREE, EMITTER_COOKIE};
+    return (vplEmitterDef){.type = VPL_EMITTER_POINT,
+                           .direction = {0, -1, 0},
+                           .intensity = {1, 1, 1},
+                           .innerAngle = 20 * DEGREE,
+                           .outerAngle = 30 * DEGREE,
+                           .cookie = EMITTER_COOKIE};
 }
 
 vplResult vplScene_Create(vplContext* context, vplScene** sceneOut)
 {
-    vplScene* scene = vplAllocZero(context, 1, sizeof *scene);
-    if (scene == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    vplArena* arena = vplArena_Create(context);
+    vplScene* scene = vplArena_AllocZero(arena, 1, sizeof *scene);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        scene->context = context;
+        scene->arena = arena;
+        scene->stamp = vplNextStamp(context);
     }
-    scene->context = context;
-    scene->stamp = vplNextStamp(context);
-    *sceneOut = scene;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, scene, sceneOut);
 }
 
 void vplScene_Destroy(vplScene* scene)
 {
-    if (scene == NULL) {
-        return;
-    }
-    vplContext* context = scene->context;
-    for (int i = 0; i < scene->materialCount; i++) {
-        vplFree(context, (char*)scene->materials[i].name);
-    }
-    for (int i = 0; i < scene->objectCount; i++) {
-        vplFree(context, (char*)scene->objects[i].name);
-    }
-    for (int i = 0; i < scene->meshCount; i++) {
-        vplFreeMesh(context, &scene->meshes[i]);
-    }
-    vplFreePaths(scene);
-    vplFree(context, scene->meshes);
-    vplFree(context, scene->cameras);
-    vplFree(context, scene->materials);
-    vplFree(context, scene->objects);
-    vplFree(context, scene->emitters);
-    vplFree(context, scene);
+    vplArena_Destroy(scene != NULL ? scene->arena : NULL);
 }
 
 static vplResult report(const vplScene* scene, const char* type, bool initialised, const vplFault* fault)
@@ -84,60 +70,53 @@ static vplResult report(const vplScene* scene, const char* type, bool initialise
     return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s.%s %s", type, fault->field, fault->text);
 }
 
-// Room for one more element at *array; NULL when out of memory.
-static void* grow(vplScene* scene, void* array, int* count, size_t* capacity, size_t size)
-{
-    if (vplReserve(scene->context, array, capacity, (size_t)*count + 1, size) != VPL_SUCCESS) {
-        return NULL;
-    }
-    scene->stamp = vplNextStamp(scene->context);
-    char* base;
-    memcpy(&base, array, sizeof base);
-    return base + (size_t)*count * size;
-}
+// One of the scene's growing arrays.
+typedef struct List {
+    void* array; // address of the pointer to its elements
+    size_t* capacity;
+    int* count;
+    size_t size; // of an element
+} List;
 
-static void finish(int* count, int* indexOut)
+#define LIST(scene, one, many)                                                                               \
+    ((List){&(scene)->many, &(scene)->one##Capacity, &(scene)->one##Count, sizeof *(scene)->many})
+
+static vplResult append(vplScene* scene, List list, const void* element, int* indexOut)
 {
+    const size_t count = (size_t)*list.count;
+    TRY(vplArena_Reserve(scene->arena, list.array, list.capacity, count + 1, list.size));
+    char* elements;
+    memcpy(&elements, list.array, sizeof elements);
+    memcpy(elements + count * list.size, element, list.size);
     if (indexOut != NULL) {
-        *indexOut = *count;
+        *indexOut = *list.count;
     }
-    ++*count;
+    ++*list.count;
+    scene->stamp = vplNextStamp(scene->context);
+    return VPL_SUCCESS;
 }
 
-// Copies an optional name into the scene; false when out of memory.
-static bool keepName(vplScene* scene, const char** name)
+// Replaces a name, or NULL, by a copy in the scene.
+static vplResult copyName(vplScene* scene, const char** name)
 {
     if (*name != NULL) {
-        *name = vplCopyString(scene->context, *name);
-        return *name != NULL;
+        *name = vplArena_CopyString(scene->arena, *name);
+        return *name != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     }
-    return true;
+    return VPL_SUCCESS;
 }
 
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut)
 {
-    vplFault fault = vplCheckCamera(def);
-    vplResult result = report(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE, &fault);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplCameraDef* slot =
-        grow(scene, &scene->cameras, &scene->cameraCount, &scene->cameraCapacity, sizeof *scene->cameras);
-    if (slot == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    *slot = *def;
-    finish(&scene->cameraCount, indexOut);
-    return VPL_SUCCESS;
+    const vplFault fault = vplCheckCamera(def);
+    TRY(report(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE, &fault));
+    return append(scene, LIST(scene, camera, cameras), def, indexOut);
 }
 
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
 {
-    vplFault fault = vplCheckMaterial(def);
-    vplResult result = report(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE, &fault);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    const vplFault fault = vplCheckMaterial(def);
+    TRY(report(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE, &fault));
     for (int i = 0; def->name != NULL && i < scene->materialCount; i++) {
         if (scene->materials[i].name != NULL && strcmp(scene->materials[i].name, def->name) == 0) {
             return vplFail(scene->context, VPL_INVALID_ARGUMENT,
@@ -145,90 +124,53 @@ vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* 
         }
     }
     vplMaterialDef copy = *def;
-    return keepName(scene, &copy.name) ? vplScene_AdoptMaterial(scene, &copy, indexOut) : VPL_OUT_OF_MEMORY;
+    TRY(copyName(scene, &copy.name));
+    return vplScene_AdoptMaterial(scene, &copy, indexOut);
 }
 
 vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut)
 {
-    vplMaterialDef* slot = grow(scene, &scene->materials, &scene->materialCount, &scene->materialCapacity,
-                                sizeof *scene->materials);
-    if (slot == NULL) {
-        vplFree(scene->context, (char*)material->name);
-        return VPL_OUT_OF_MEMORY;
-    }
-    *slot = *material;
-    finish(&scene->materialCount, indexOut);
-    return VPL_SUCCESS;
+    return append(scene, LIST(scene, material, materials), material, indexOut);
 }
 
-void vplScene_DropMaterials(vplScene* scene, int count)
+vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* arena, int* indexOut)
 {
-    while (scene->materialCount > count) {
-        vplFree(scene->context, (char*)scene->materials[--scene->materialCount].name);
+    vplMeshDef adopted = *mesh;
+    adopted.cookie = MESH_COOKIE;
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        result = append(scene, LIST(scene, mesh, meshes), &adopted, indexOut);
     }
+    if (result == VPL_SUCCESS) {
+        vplArena_Absorb(scene->arena, arena);
+    } else {
+        vplArena_Destroy(arena);
+    }
+    return result;
 }
 
-void vplFreeMesh(vplContext* context, const vplMeshDef* mesh)
+static void* copyArray(vplArena* arena, const void* from, int count, size_t size)
 {
-    vplFree(context, (void*)mesh->positions);
-    vplFree(context, (void*)mesh->normals);
-    vplFree(context, (void*)mesh->indices);
-    vplFree(context, (void*)mesh->materials);
-}
-
-vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, int* indexOut)
-{
-    vplMeshDef* slot =
-        grow(scene, &scene->meshes, &scene->meshCount, &scene->meshCapacity, sizeof *scene->meshes);
-    if (slot == NULL) {
-        vplFreeMesh(scene->context, mesh);
-        return VPL_OUT_OF_MEMORY;
-    }
-    *slot = *mesh;
-    slot->cookie = MESH_COOKIE;
-    finish(&scene->meshCount, indexOut);
-    return VPL_SUCCESS;
-}
-
-// A copy in context memory; NULL stays NULL. Clears *good when out of memory.
-static void* copyArray(vplContext* context, const void* from, int count, size_t size, bool* good)
-{
-    void* copy = from ? vplAlloc(context, (size_t)count, size) : NULL;
-    if (copy != NULL) {
-        memcpy(copy, from, (size_t)count * size);
-    }
-    *good = *good && (copy != NULL || from == NULL);
-    return copy;
+    return from != NULL ? vplArena_Copy(arena, from, (size_t)count, size) : NULL;
 }
 
 vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut)
 {
-    vplFault fault = vplCheckMesh(def, scene->materialCount);
-    vplResult result = report(scene, "vplMeshDef", def->cookie == MESH_COOKIE, &fault);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    bool good = true;
-    vplContext* context = scene->context;
+    const vplFault fault = vplCheckMesh(def, scene->materialCount);
+    TRY(report(scene, "vplMeshDef", def->cookie == MESH_COOKIE, &fault));
+    vplArena* arena = vplArena_Create(scene->context);
     vplMeshDef copy = *def;
-    copy.positions = copyArray(context, def->positions, def->vertexCount, sizeof *def->positions, &good);
-    copy.normals = copyArray(context, def->normals, def->vertexCount, sizeof *def->normals, &good);
-    copy.indices = copyArray(context, def->indices, def->triangleCount, 3 * sizeof *def->indices, &good);
-    copy.materials = copyArray(context, def->materials, def->triangleCount, sizeof *def->materials, &good);
-    if (!good) {
-        vplFreeMesh(context, &copy);
-        return VPL_OUT_OF_MEMORY;
-    }
-    return vplScene_AdoptMesh(scene, &copy, indexOut);
+    copy.positions = copyArray(arena, def->positions, def->vertexCount, sizeof *def->positions);
+    copy.normals = copyArray(arena, def->normals, def->vertexCount, sizeof *def->normals);
+    copy.indices = copyArray(arena, def->indices, def->triangleCount, 3 * sizeof *def->indices);
+    copy.materials = copyArray(arena, def->materials, def->triangleCount, sizeof *def->materials);
+    return vplScene_AdoptMesh(scene, &copy, arena, indexOut);
 }
 
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut)
 {
-    vplFault fault = vplCheckTransform(&def->transform);
-    vplResult result = report(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE, &fault);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    const vplFault fault = vplCheckTransform(&def->transform);
+    TRY(report(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE, &fault));
     if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX && def->type != VPL_OBJECT_MESH) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                        "vplObjectDef.type is %d, must be a vplObjectType", (int)def->type);
@@ -245,83 +187,34 @@ vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* inde
                        "vplObjectDef.material is %d, must be one of the scene's %d materials", def->material,
                        scene->materialCount);
     }
-    vplObjectDef* slot =
-        grow(scene, &scene->objects, &scene->objectCount, &scene->objectCapacity, sizeof *scene->objects);
     vplObjectDef copy = *def;
-    if (slot == NULL || !keepName(scene, &copy.name)) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    *slot = copy;
-    finish(&scene->objectCount, indexOut);
-    return VPL_SUCCESS;
+    TRY(copyName(scene, &copy.name));
+    return append(scene, LIST(scene, object, objects), &copy, indexOut);
 }
 
 vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut)
 {
-    vplFault fault = vplCheckEmitter(def);
-    vplResult result = report(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE, &fault);
-    if (result != VPL_SUCCESS) {
-        return result;
+    const vplFault fault = vplCheckEmitter(def);
+    TRY(report(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE, &fault));
+    return append(scene, LIST(scene, emitter, emitters), def, indexOut);
+}
+
+// Defines vplScene_GetThingCount and vplScene_GetThing.
+#define GETTERS(Thing, one, many)                                                                            \
+    int vplScene_Get##Thing##Count(const vplScene* scene)                                                    \
+    {                                                                                                        \
+        return scene->one##Count;                                                                            \
+    }                                                                                                        \
+    const vpl##Thing##Def* vplScene_Get##Thing(const vplScene* scene, int index)                             \
+    {                                                                                                        \
+        return &scene->many[index];                                                                          \
     }
-    vplEmitterDef* slot =
-        grow(scene, &scene->emitters, &scene->emitterCount, &scene->emitterCapacity, sizeof *scene->emitters);
-    if (slot == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    *slot = *def;
-    finish(&scene->emitterCount, indexOut);
-    return VPL_SUCCESS;
-}
 
-int vplScene_GetCameraCount(const vplScene* scene)
-{
-    return scene->cameraCount;
-}
-
-int vplScene_GetMaterialCount(const vplScene* scene)
-{
-    return scene->materialCount;
-}
-
-int vplScene_GetMeshCount(const vplScene* scene)
-{
-    return scene->meshCount;
-}
-
-int vplScene_GetObjectCount(const vplScene* scene)
-{
-    return scene->objectCount;
-}
-
-int vplScene_GetEmitterCount(const vplScene* scene)
-{
-    return scene->emitterCount;
-}
-
-const vplCameraDef* vplScene_GetCamera(const vplScene* scene, int index)
-{
-    return &scene->cameras[index];
-}
-
-const vplMaterialDef* vplScene_GetMaterial(const vplScene* scene, int index)
-{
-    return &scene->materials[index];
-}
-
-const vplMeshDef* vplScene_GetMesh(const vplScene* scene, int index)
-{
-    return &scene->meshes[index];
-}
-
-const vplObjectDef* vplScene_GetObject(const vplScene* scene, int index)
-{
-    return &scene->objects[index];
-}
-
-const vplEmitterDef* vplScene_GetEmitter(const vplScene* scene, int index)
-{
-    return &scene->emitters[index];
-}
+GETTERS(Camera, camera, cameras)
+GETTERS(Material, material, materials)
+GETTERS(Mesh, mesh, meshes)
+GETTERS(Object, object, objects)
+GETTERS(Emitter, emitter, emitters)
 
 vplContext* vplScene_GetContext(const vplScene* scene)
 {

@@ -1,60 +1,54 @@
 // SPDX-License-Identifier: MIT
-// The declared scene from the inside, and the checks that the API and the file reader share.
+// The declared scene from the inside, and the checks that the API and the file readers share.
 #ifndef VPL_SCENE_SCENE_H
 #define VPL_SCENE_SCENE_H
 
 #include <vpl/scene.h>
 
-#include "base/context.h"
+#include "base/arena.h"
 
-// How one camera or emitter moves.
-typedef struct vplPath {
+// The keyframes of one camera or emitter.
+typedef struct vplTrack {
     int index; // of the camera or emitter
     int count; // of keys, at least 1
     void* keys;
-} vplPath;
+} vplTrack;
 
-// Those that move, in no order.
-typedef struct vplPathList {
-    vplPath* paths;
+// The tracks of all cameras, or of all emitters, that move; in no order.
+typedef struct vplTrackList {
+    vplTrack* tracks;
     size_t capacity;
     int count;
-} vplPathList;
+} vplTrackList;
 
 struct vplScene {
     vplContext* context;
-    uint64_t stamp; // another one after each addition
+    vplArena* arena; // owns the scene and everything in it
+    uint64_t stamp;  // changes with each addition
     vplCameraDef* cameras;
     vplMaterialDef* materials;
-    vplMeshDef* meshes; // their arrays are the scene's own
+    vplMeshDef* meshes;
     vplObjectDef* objects;
     vplEmitterDef* emitters;
     int cameraCount, materialCount, meshCount, objectCount, emitterCount;
-    vplPathList cameraPaths, emitterPaths;
     size_t cameraCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
+    vplTrackList cameraTracks, emitterTracks;
 };
 
-// Adds a mesh whose arrays were made by vplAlloc and now belong to the scene, also on failure. Nothing is
-// checked: readers make valid meshes.
-vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, int* indexOut);
+// Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure
+// it is destroyed. Fails, too, if an allocation of `arena` failed.
+vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* arena, int* indexOut);
 
-// Adds a material whose name (or NULL) was made by vplAlloc and now belongs to the scene, also on failure.
-// Nothing is checked: the name must be unique.
+// Adds a material without checking it or copying its name.
 vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut);
 
-// Takes back the materials from number `count` on; nothing may refer to them.
-void vplScene_DropMaterials(vplScene* scene, int count);
-
-void vplFreeMesh(vplContext* context, const vplMeshDef* mesh);
-
-// Reads a scene file, or an OBJ file with a camera and a light of our own.
-vplResult vplScene_LoadJson(vplContext* context, const char* path, vplScene** sceneOut);
+// Reads an OBJ file as a whole scene, with a camera and a light of our own.
 vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, vplScene** sceneOut);
 
-// What is wrong with a def: which field, and the rest of the sentence after "<field> ".
+// The first thing that is wrong with a def: its field, and the rest of the sentence after "<field> ".
 typedef struct vplFault {
     const char* field; // as in the def; NULL: nothing is wrong
-    int index;         // of a vector's component, or -1
+    int index;         // of a vector's component or an array's element, or -1
     char text[160];
 } vplFault;
 
@@ -64,13 +58,11 @@ vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
 
-// The declared thing with what the key says instead.
-vplCameraDef vplApplyCameraKey(const vplCameraDef* def, const vplCameraKey* key);
-vplEmitterDef vplApplyEmitterKey(const vplEmitterDef* def, const vplEmitterKey* key);
-
-// Whether a key may follow one of frame `before`.
+// Checks that a key may follow one at frame `before`.
 vplFault vplCheckKeyFrame(double before, double frame);
 
-void vplFreePaths(vplScene* scene);
+// The def with the values of the key.
+vplCameraDef vplApplyCameraKey(const vplCameraDef* def, const vplCameraKey* key);
+vplEmitterDef vplApplyEmitterKey(const vplEmitterDef* def, const vplEmitterKey* key);
 
 #endif

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Scene files: one function per kind of thing, each filling the same def that a C program would, so that files
-// and programs share every check. Angles are degrees here and radians there.
+// Scene files. There is one function for each type of thing, and it fills the same def that a C program
+// would, so that files and programs share every check. Angles are in degrees in files and in radians in defs.
 #include "scene/scene_json.h"
 
-#include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 static const double DEGREE = VPL_PI / 180;
 
-// The key in a scene file of a def's field.
+// The key in a scene file for a def's field.
 static const char* keyOf(const char* field)
 {
     static const char* const pairs[][2] = {{"fovY", "fov_y"},
@@ -23,212 +23,214 @@ static const char* keyOf(const char* field)
     return field;
 }
 
-vplResult vplSceneLoader_ReportFault(const vplSceneLoader* l, const vplJsonPath* path, const char* key,
-                                     const vplFault* fault)
+vplResult vplJson_ReportFault(const vplJson* object, const char* key, const vplFault* fault)
 {
     if (fault->field == NULL) {
         return VPL_SUCCESS;
     }
-    vplJsonPath member = {path, key ? key : keyOf(fault->field), 0};
-    vplJsonPath component = {&member, NULL, fault->index};
-    return vplJsonReader_Fail(&l->json, fault->index >= 0 ? &component : &member, "%s", fault->text);
+    const vplJson member = vplJson_Member(object, key ? key : keyOf(fault->field));
+    const vplJson component = vplJson_Element(&member, fault->index);
+    return vplJson_Fail(fault->index >= 0 ? &component : &member, "%s", fault->text);
 }
 
-vplResult vplSceneLoader_ReportEmitterFault(const vplSceneLoader* l, const vplJsonPath* path,
-                                            vplEmitterType type, const vplFault* fault)
+const char* vplJson_IntensityKey(vplEmitterType type)
 {
-    const bool ofStrength = fault->field != NULL && strcmp(fault->field, "intensity") == 0;
-    return vplSceneLoader_ReportFault(
-        l, path, ofStrength && type == VPL_EMITTER_DIRECTIONAL ? "irradiance" : NULL, fault);
+    return type == VPL_EMITTER_DIRECTIONAL ? "irradiance" : "intensity";
 }
 
-// An angle in degrees, read into radians. Open or closed bounds as the sentence says.
-static vplResult readAngle(const vplSceneLoader* l, const json_t* object, const vplJsonPath* path,
-                           const char* key, double above, double below, const char* range, double* out)
+vplResult vplJson_ReportEmitterFault(const vplJson* object, vplEmitterType type, const vplFault* fault)
 {
-    const json_t* value = json_object_get(object, key);
+    const bool intensity = fault->field != NULL && strcmp(fault->field, "intensity") == 0;
+    return vplJson_ReportFault(object, intensity ? vplJson_IntensityKey(type) : NULL, fault);
+}
+
+// Reads an angle in degrees, in the open interval (above, below), into radians.
+static vplResult readAngle(const vplJson* object, const char* key, double above, double below, double* out)
+{
+    const vplJson member = vplJson_Member(object, key);
     double degrees = 0;
-    vplResult result = vplJsonReader_Number(&l->json, object, path, key, &degrees);
-    if (result != VPL_SUCCESS || value == NULL) {
-        return result;
+    TRY(vplJson_ReadNumber(object, key, &degrees));
+    if (member.value == NULL) {
+        return VPL_SUCCESS;
     }
     if (!(degrees > above && degrees < below)) {
-        vplJsonPath member = {path, key, 0};
-        return vplJsonReader_Fail(&l->json, &member, "is %g, must be in %s degrees", degrees, range);
+        return vplJson_Fail(&member, "is %g, must be in %s0, %g) degrees", degrees, above < 0 ? "[" : "(",
+                            below);
     }
     *out = degrees * DEGREE;
     return VPL_SUCCESS;
 }
 
-vplResult vplSceneLoader_ReadFieldOfView(const vplSceneLoader* l, const json_t* object,
-                                         const vplJsonPath* path, double* out)
+vplResult vplJson_ReadFieldOfView(const vplJson* object, double* out)
 {
-    return readAngle(l, object, path, "fov_y", 0, 180, "(0, 180)", out);
+    return readAngle(object, "fov_y", 0, 180, out);
 }
 
-static vplResult readCamera(vplSceneLoader* l, const json_t* value, const vplJsonPath* path)
+static vplResult readCamera(vplSceneLoader* l, const vplJson* camera)
 {
     static const char* const keys[] = {"!eye", "!target", "up", "fov_y", "near", "far", "path", NULL};
     vplCameraDef def = vplDefaultCameraDef();
-    const vplJsonReader* json = &l->json;
-    TRY(vplJsonReader_CheckKeys(json, value, path, keys));
-    TRY(vplJsonReader_Floats(json, value, path, "eye", 3, &def.eye.x));
-    TRY(vplJsonReader_Floats(json, value, path, "target", 3, &def.target.x));
-    TRY(vplJsonReader_Floats(json, value, path, "up", 3, &def.up.x));
-    TRY(vplSceneLoader_ReadFieldOfView(l, value, path, &def.fovY));
-    TRY(vplJsonReader_Number(json, value, path, "near", &def.near));
-    TRY(vplJsonReader_Number(json, value, path, "far", &def.far));
-    vplFault fault = vplCheckCamera(&def);
-    TRY(vplSceneLoader_ReportFault(l, path, NULL, &fault));
+    TRY(vplJson_CheckKeys(camera, keys));
+    TRY(vplJson_ReadVec3(camera, "eye", &def.eye));
+    TRY(vplJson_ReadVec3(camera, "target", &def.target));
+    TRY(vplJson_ReadVec3(camera, "up", &def.up));
+    TRY(vplJson_ReadFieldOfView(camera, &def.fovY));
+    TRY(vplJson_ReadNumber(camera, "near", &def.near));
+    TRY(vplJson_ReadNumber(camera, "far", &def.far));
+    const vplFault fault = vplCheckCamera(&def);
+    TRY(vplJson_ReportFault(camera, NULL, &fault));
     int index;
     TRY(vplScene_AddCamera(l->scene, &def, &index));
-    return vplSceneLoader_ReadCameraPath(l, value, path, index);
+    return vplSceneLoader_ReadCameraPath(l, camera, index);
 }
 
-static vplResult readCameras(vplSceneLoader* l)
-{
-    const json_t* one = json_object_get(l->json.root, "camera");
-    const json_t* many = json_object_get(l->json.root, "cameras");
-    vplJsonPath path = {NULL, one ? "camera" : "cameras", 0};
-    if (one != NULL && many != NULL) {
-        return vplJsonReader_Fail(&l->json, &path, "and \"cameras\" are both given, must be one of them");
-    }
-    if (one != NULL) {
-        return readCamera(l, one, &path);
-    }
-    if (many == NULL) {
-        return vplJsonReader_Fail(&l->json, NULL, "lacks the key \"camera\"");
-    }
-    TRY(vplJsonReader_RequireArray(&l->json, many, &path));
-    if (json_array_size(many) == 0) {
-        return vplJsonReader_Fail(&l->json, &path, "is empty, must hold at least one camera");
-    }
-    for (size_t i = 0; i < json_array_size(many); i++) {
-        vplJsonPath element = {&path, NULL, (int)i};
-        TRY(readCamera(l, json_array_get(many, i), &element));
-    }
-    return VPL_SUCCESS;
-}
-
-static vplResult readMaterials(vplSceneLoader* l)
+static vplResult readMaterials(vplSceneLoader* l, const vplJson* root)
 {
     static const char* const keys[] = {"diffuse", "emission", NULL};
-    json_t* materials = json_object_get(l->json.root, "materials");
-    vplJsonPath path = {NULL, "materials", 0};
-    if (materials == NULL) {
+    const vplJson materials = vplJson_Member(root, "materials");
+    if (materials.value == NULL) {
         return VPL_SUCCESS;
     }
-    TRY(vplJsonReader_RequireObject(&l->json, materials, &path));
+    TRY(vplJson_RequireObject(&materials));
     const char* name;
     json_t* value;
-    json_object_foreach(materials, name, value)
+    json_object_foreach(materials.value, name, value)
     {
-        vplJsonPath member = {&path, name, 0};
+        const vplJson material = vplJson_Member(&materials, name);
         vplMaterialDef def = vplDefaultMaterialDef();
         def.name = name;
-        TRY(vplJsonReader_CheckKeys(&l->json, value, &member, keys));
-        TRY(vplJsonReader_Floats(&l->json, value, &member, "diffuse", 3, &def.diffuse.r));
-        TRY(vplJsonReader_Floats(&l->json, value, &member, "emission", 3, &def.emission.r));
-        vplFault fault = vplCheckMaterial(&def);
-        TRY(vplSceneLoader_ReportFault(l, &member, NULL, &fault));
+        TRY(vplJson_CheckKeys(&material, keys));
+        TRY(vplJson_ReadRgb(&material, "diffuse", &def.diffuse));
+        TRY(vplJson_ReadRgb(&material, "emission", &def.emission));
+        const vplFault fault = vplCheckMaterial(&def);
+        TRY(vplJson_ReportFault(&material, NULL, &fault));
         TRY(vplScene_AddMaterial(l->scene, &def, NULL));
     }
     return VPL_SUCCESS;
 }
 
-vplResult vplSceneLoader_ReadType(vplSceneLoader* l, const json_t* value, const vplJsonPath* path,
-                                  const char** out)
+vplResult vplJson_ReadType(const vplJson* object, const char* const* names, const char* expected, int* out)
 {
-    TRY(vplJsonReader_RequireObject(&l->json, value, path));
-    TRY(vplJsonReader_String(&l->json, value, path, "type", out));
-    return *out != NULL ? VPL_SUCCESS : vplJsonReader_Fail(&l->json, path, "lacks the key \"type\"");
-}
-
-static vplResult readEmitter(vplSceneLoader* l, const json_t* value, const vplJsonPath* path)
-{
-    static const char* const pointKeys[] = {"!type", "name", "!position", "!intensity", "path", NULL};
-    static const char* const spotKeys[] = {
-        "!type", "name", "!position", "!direction", "!intensity", "inner_angle", "outer_angle", "path", NULL};
-    static const char* const directionalKeys[] = {"!type", "name", "!direction", "!irradiance", "path", NULL};
-    const vplJsonReader* json = &l->json;
     const char* type = NULL;
-    const char* name = NULL;
-    TRY(vplSceneLoader_ReadType(l, value, path, &type));
-    vplEmitterDef def = vplDefaultEmitterDef();
-    const char* const* keys = pointKeys;
-    if (strcmp(type, "spot") == 0) {
-        def.type = VPL_EMITTER_SPOT;
-        keys = spotKeys;
-    } else if (strcmp(type, "directional") == 0) {
-        def.type = VPL_EMITTER_DIRECTIONAL;
-        keys = directionalKeys;
-    } else if (strcmp(type, "point") != 0) {
-        vplJsonPath member = {path, "type", 0};
-        return vplJsonReader_Fail(json, &member,
-                                  "is \"%.80s\", must be \"point\", \"spot\" or \"directional\"", type);
+    TRY(vplJson_RequireObject(object));
+    TRY(vplJson_ReadString(object, "type", &type));
+    if (type == NULL) {
+        return vplJson_Fail(object, "lacks the key \"type\"");
     }
-    TRY(vplJsonReader_CheckKeys(json, value, path, keys));
-    TRY(vplJsonReader_String(json, value, path, "name", &name));
-    TRY(vplJsonReader_Floats(json, value, path, "position", 3, &def.position.x));
-    TRY(vplJsonReader_Floats(json, value, path, "direction", 3, &def.direction.x));
-    const char* strength = def.type == VPL_EMITTER_DIRECTIONAL ? "irradiance" : "intensity";
-    TRY(vplJsonReader_Floats(json, value, path, strength, 3, &def.intensity.r));
-    TRY(readAngle(l, value, path, "outer_angle", 0, 90, "(0, 90)", &def.outerAngle));
-    TRY(readAngle(l, value, path, "inner_angle", -1e-300, 90, "[0, 90)", &def.innerAngle));
-    if (def.type == VPL_EMITTER_SPOT && def.innerAngle > def.outerAngle) { // said in degrees here
-        vplJsonPath member = {path, "inner_angle", 0};
-        return vplJsonReader_Fail(json, &member, "is %g degrees, must be at most outer_angle (%g)",
-                                  def.innerAngle / DEGREE, def.outerAngle / DEGREE);
+    for (*out = 0; names[*out] != NULL; ++*out) {
+        if (strcmp(type, names[*out]) == 0) {
+            return VPL_SUCCESS;
+        }
     }
-    vplFault fault = vplCheckEmitter(&def);
-    int index;
-    TRY(vplSceneLoader_ReportEmitterFault(l, path, def.type, &fault));
-    TRY(vplScene_AddEmitter(l->scene, &def, &index));
-    return vplSceneLoader_ReadEmitterPath(l, value, path, index);
+    const vplJson member = vplJson_Member(object, "type");
+    return vplJson_Fail(&member, "is \"%.80s\", must be %s", type, expected);
 }
 
-// Reads every element of the array at the root's `key`, if there is one.
-static vplResult readArray(vplSceneLoader* l, const char* key,
-                           vplResult (*read)(vplSceneLoader*, const json_t*, const vplJsonPath*))
+static vplResult readEmitter(vplSceneLoader* l, const vplJson* emitter)
 {
-    const json_t* array = json_object_get(l->json.root, key);
-    vplJsonPath path = {NULL, key, 0};
-    if (array == NULL) {
+    static const char* const types[] = {"point", "spot", "directional", NULL};
+    static const char* const keys[][9] = {
+        [VPL_EMITTER_POINT] = {"!type", "name", "!position", "!intensity", "path", NULL},
+        [VPL_EMITTER_SPOT] = {"!type", "name", "!position", "!direction", "!intensity", "inner_angle",
+                              "outer_angle", "path", NULL},
+        [VPL_EMITTER_DIRECTIONAL] = {"!type", "name", "!direction", "!irradiance", "path", NULL}};
+    const char* name = NULL;
+    int type, index;
+    TRY(vplJson_ReadType(emitter, types, "\"point\", \"spot\" or \"directional\"", &type));
+    vplEmitterDef def = vplDefaultEmitterDef();
+    def.type = (vplEmitterType)type;
+    TRY(vplJson_CheckKeys(emitter, keys[type]));
+    TRY(vplJson_ReadString(emitter, "name", &name));
+    TRY(vplJson_ReadVec3(emitter, "position", &def.position));
+    TRY(vplJson_ReadVec3(emitter, "direction", &def.direction));
+    TRY(vplJson_ReadRgb(emitter, vplJson_IntensityKey(def.type), &def.intensity));
+    TRY(readAngle(emitter, "outer_angle", 0, 90, &def.outerAngle));
+    TRY(readAngle(emitter, "inner_angle", -1e-300, 90, &def.innerAngle));
+    if (def.type == VPL_EMITTER_SPOT && def.innerAngle > def.outerAngle) { // vplCheckEmitter reports radians
+        const vplJson member = vplJson_Member(emitter, "inner_angle");
+        return vplJson_Fail(&member, "is %g degrees, must be at most outer_angle (%g)",
+                            def.innerAngle / DEGREE, def.outerAngle / DEGREE);
+    }
+    const vplFault fault = vplCheckEmitter(&def);
+    TRY(vplJson_ReportEmitterFault(emitter, def.type, &fault));
+    TRY(vplScene_AddEmitter(l->scene, &def, &index));
+    return vplSceneLoader_ReadEmitterPath(l, emitter, index);
+}
+
+typedef vplResult ReadFcn(vplSceneLoader* l, const vplJson* at);
+
+// Reads every element of the root's array `key`, if there is one.
+static vplResult readArray(vplSceneLoader* l, const vplJson* root, const char* key, ReadFcn* read)
+{
+    const vplJson array = vplJson_Member(root, key);
+    if (array.value == NULL) {
         return VPL_SUCCESS;
     }
-    TRY(vplJsonReader_RequireArray(&l->json, array, &path));
-    for (size_t i = 0; i < json_array_size(array); i++) {
-        vplJsonPath element = {&path, NULL, (int)i};
-        TRY(read(l, json_array_get(array, i), &element));
+    TRY(vplJson_RequireArray(&array));
+    for (size_t i = 0; i < json_array_size(array.value); i++) {
+        const vplJson element = vplJson_Element(&array, (int)i);
+        TRY(read(l, &element));
     }
     return VPL_SUCCESS;
+}
+
+static vplResult readCameras(vplSceneLoader* l, const vplJson* root)
+{
+    const vplJson one = vplJson_Member(root, "camera"), many = vplJson_Member(root, "cameras");
+    if (one.value != NULL && many.value != NULL) {
+        return vplJson_Fail(&one, "and \"cameras\" are both given, must be one of them");
+    }
+    if (one.value != NULL) {
+        return readCamera(l, &one);
+    }
+    if (many.value == NULL) {
+        return vplJson_Fail(root, "lacks the key \"camera\"");
+    }
+    if (json_is_array(many.value) && json_array_size(many.value) == 0) {
+        return vplJson_Fail(&many, "is empty, must hold at least one camera");
+    }
+    return readArray(l, root, "cameras", readCamera);
 }
 
 static vplResult readScene(vplSceneLoader* l)
 {
     static const char* const keys[] = {"camera", "cameras", "materials", "!objects", "lights", NULL};
-    TRY(vplJsonReader_CheckKeys(&l->json, l->json.root, NULL, keys));
-    TRY(readCameras(l));
-    TRY(readMaterials(l));
+    const vplJson root = vplJson_Root(&l->json);
+    TRY(vplJson_CheckKeys(&root, keys));
+    TRY(readCameras(l, &root));
+    TRY(readMaterials(l, &root));
     l->materialCount = l->scene->materialCount;
-    TRY(readArray(l, "objects", vplSceneLoader_ReadObject));
-    return readArray(l, "lights", readEmitter);
+    TRY(readArray(l, &root, "objects", vplSceneLoader_ReadObject));
+    return readArray(l, &root, "lights", readEmitter);
 }
 
-vplResult vplScene_LoadJson(vplContext* context, const char* path, vplScene** sceneOut)
+static vplResult loadJson(vplContext* context, const char* path, vplScene** sceneOut)
 {
-    vplSceneLoader loader = {.meshFiles = {.index = {.context = context}}};
-    TRY(vplJsonReader_Open(context, path, &loader.json));
-    vplResult result = vplScene_Create(context, &loader.scene);
+    vplSceneLoader loader = {.scratch = vplArena_Create(context)};
+    loader.meshFiles.index.arena = loader.scratch;
+    vplResult result = vplArena_Check(loader.scratch);
     if (result == VPL_SUCCESS) {
-        result = readScene(&loader);
+        result = vplJsonFile_Open(context, path, &loader.json);
     }
-    vplNames_Close(&loader.meshFiles);
-    vplJsonReader_Close(&loader.json);
+    if (result == VPL_SUCCESS) {
+        result = vplScene_Create(context, &loader.scene);
+        if (result == VPL_SUCCESS) {
+            result = readScene(&loader);
+        }
+        vplJsonFile_Close(&loader.json);
+    }
+    vplArena_Destroy(loader.scratch);
     if (result != VPL_SUCCESS) {
         vplScene_Destroy(loader.scene);
         return result;
     }
     *sceneOut = loader.scene;
     return VPL_SUCCESS;
+}
+
+vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)
+{
+    const size_t length = strlen(path);
+    const bool obj = length >= 4 && strcasecmp(path + length - 4, ".obj") == 0;
+    return (obj ? vplScene_LoadObjAlone : loadJson)(context, path, sceneOut);
 }

@@ -6,74 +6,75 @@
 
 #include <string.h>
 
-static vplResult readMaterialReference(vplSceneLoader* l, const json_t* object, const vplJsonPath* path,
-                                       int* out)
+static vplResult readMaterialReference(const vplSceneLoader* l, const vplJson* object, int* out)
 {
     const char* name = NULL;
-    TRY(vplJsonReader_String(&l->json, object, path, "material", &name));
+    TRY(vplJson_ReadString(object, "material", &name));
     for (int i = 0; name != NULL && i < l->materialCount; i++) {
         if (strcmp(l->scene->materials[i].name, name) == 0) {
             *out = i;
             return VPL_SUCCESS;
         }
     }
-    vplJsonPath member = {path, "material", 0};
-    return vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", which is not among the materials",
-                              name ? name : "");
+    const vplJson member = vplJson_Member(object, "material");
+    return vplJson_Fail(&member, "is \"%.80s\", which is not among the materials", name ? name : "");
 }
 
-// Translate, rotate and scale. A flaw of the matrix they make is named by the key that caused it.
-static vplResult readParts(vplSceneLoader* l, const json_t* object, const vplJsonPath* path, vplMat4* out)
+static vplResult readScale(const vplJson* object, vplVec3* out)
 {
-    const vplJsonReader* json = &l->json;
-    const json_t* scaleValue = json_object_get(object, "scale");
-    float translate[3] = {0, 0, 0}, scale[3] = {1, 1, 1};
-    double quarters[3] = {0, 0, 0};
-    TRY(vplJsonReader_Floats(json, object, path, "translate", 3, translate));
-    TRY(vplJsonReader_Doubles(json, object, path, "rotate", 3, quarters));
-    if (json_is_number(scaleValue)) {
+    if (json_is_number(json_object_get(object->value, "scale"))) {
         double uniform = 1;
-        TRY(vplJsonReader_Number(json, object, path, "scale", &uniform));
-        scale[0] = scale[1] = scale[2] = (float)uniform;
-    } else {
-        TRY(vplJsonReader_Floats(json, object, path, "scale", 3, scale));
+        TRY(vplJson_ReadNumber(object, "scale", &uniform));
+        *out = (vplVec3){(float)uniform, (float)uniform, (float)uniform};
+        return VPL_SUCCESS;
     }
+    return vplJson_ReadVec3(object, "scale", out);
+}
+
+// Reads "rotate", degrees, into quarter turns.
+static vplResult readRotation(const vplJson* object, double quarters[3])
+{
+    const vplJson rotate = vplJson_Member(object, "rotate");
+    TRY(vplJson_ReadDoubles(object, "rotate", 3, quarters));
     for (int i = 0; i < 3; i++) {
-        vplJsonPath rotate = {path, "rotate", 0}, angle = {&rotate, NULL, i};
         if (!(quarters[i] >= -1e6 && quarters[i] <= 1e6)) {
-            return vplJsonReader_Fail(json, &angle, "is %g, must be in [-1e6, 1e6] degrees", quarters[i]);
+            const vplJson angle = vplJson_Element(&rotate, i);
+            return vplJson_Fail(&angle, "is %g, must be in [-1e6, 1e6] degrees", quarters[i]);
         }
         quarters[i] /= 90;
     }
-    vplAffine a = vplAffine_FromParts((vplVec3){translate[0], translate[1], translate[2]}, quarters,
-                                      (vplVec3){scale[0], scale[1], scale[2]});
+    return VPL_SUCCESS;
+}
+
+static vplResult readTransform(const vplJson* object, vplMat4* out)
+{
+    const vplJson matrix = vplJson_Member(object, "matrix");
+    if (matrix.value != NULL) {
+        if (json_object_get(object->value, "translate") || json_object_get(object->value, "rotate") ||
+            json_object_get(object->value, "scale")) {
+            return vplJson_Fail(&matrix, "excludes \"translate\", \"rotate\" and \"scale\"");
+        }
+        TRY(vplJson_ReadFloats(object, "matrix", 16, out->m));
+        const vplFault fault = vplCheckTransform(out);
+        return vplJson_ReportFault(object, NULL, &fault);
+    }
+    vplVec3 translate = {0, 0, 0}, scale = {1, 1, 1};
+    double quarters[3] = {0, 0, 0};
+    TRY(vplJson_ReadVec3(object, "translate", &translate));
+    TRY(readRotation(object, quarters));
+    TRY(readScale(object, &scale));
+    const vplAffine a = vplAffine_FromParts(translate, quarters, scale);
     *out = vplAffine_ToMat4(&a);
     vplFault fault = vplCheckTransform(out);
-    bool translation = fault.index >= 12; // the matrix's last column
+    const bool translation = fault.index >= 12; // in the last column; otherwise the scale is at fault
     fault.index = translation ? fault.index - 12 : -1;
-    return vplSceneLoader_ReportFault(l, path, translation ? "translate" : "scale", &fault);
+    return vplJson_ReportFault(object, translation ? "translate" : "scale", &fault);
 }
 
-static vplResult readTransform(vplSceneLoader* l, const json_t* object, const vplJsonPath* path, vplMat4* out)
-{
-    const vplJsonReader* json = &l->json;
-    if (json_object_get(object, "matrix") != NULL) {
-        if (json_object_get(object, "translate") || json_object_get(object, "rotate") ||
-            json_object_get(object, "scale")) {
-            vplJsonPath member = {path, "matrix", 0};
-            return vplJsonReader_Fail(json, &member, "excludes \"translate\", \"rotate\" and \"scale\"");
-        }
-        TRY(vplJsonReader_Floats(json, object, path, "matrix", 16, out->m));
-        vplFault fault = vplCheckTransform(out);
-        return vplSceneLoader_ReportFault(l, path, NULL, &fault);
-    }
-    return readParts(l, object, path, out);
-}
-
-// Reads the file of a mesh, unless an object above has it, too.
+// Reads the file of a mesh, unless an earlier object named the same file.
 static vplResult readMeshFile(vplSceneLoader* l, const char* path, int* out)
 {
-    size_t length = strlen(path);
+    const size_t length = strlen(path);
     *out = vplNames_Find(&l->meshFiles, path, length);
     if (*out >= 0) {
         return VPL_SUCCESS;
@@ -83,58 +84,44 @@ static vplResult readMeshFile(vplSceneLoader* l, const char* path, int* out)
     return vplNames_Add(&l->meshFiles, path, length, out);
 }
 
-static vplResult readMesh(vplSceneLoader* l, const json_t* object, const vplJsonPath* path, int* out)
+static vplResult readMesh(vplSceneLoader* l, const vplJson* object, int* out)
 {
     const char* name = NULL;
-    vplJsonPath member = {path, "file", 0};
-    TRY(vplJsonReader_String(&l->json, object, path, "file", &name));
-    char* whole = vplPathBeside(l->json.context, l->json.file, name, strlen(name));
-    if (whole == NULL) {
+    const vplJson member = vplJson_Member(object, "file");
+    TRY(vplJson_ReadString(object, "file", &name));
+    char* path = vplPathBeside(l->json.context, l->json.name, name, strlen(name));
+    if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    vplResult result =
-        vplIsRegularFile(whole)
-            ? readMeshFile(l, whole, out)
-            : vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", but there is no file %.200s", name, whole);
-    vplFree(l->json.context, whole);
+    const vplResult result =
+        vplIsRegularFile(path)
+            ? readMeshFile(l, path, out)
+            : vplJson_Fail(&member, "is \"%.80s\", but there is no file %.200s", name, path);
+    vplFree(l->json.context, path);
     return result;
 }
 
-static vplResult readObjectType(vplSceneLoader* l, const json_t* value, const vplJsonPath* path,
-                                vplObjectType* out)
+vplResult vplSceneLoader_ReadObject(vplSceneLoader* l, const vplJson* object)
 {
-    static const char* const types[] = {"quad", "box", "mesh"};
-    const char* type = NULL;
-    TRY(vplSceneLoader_ReadType(l, value, path, &type));
-    for (int i = 0; i < 3; i++) {
-        if (strcmp(type, types[i]) == 0) {
-            *out = (vplObjectType)i;
-            return VPL_SUCCESS;
-        }
-    }
-    vplJsonPath member = {path, "type", 0};
-    return vplJsonReader_Fail(&l->json, &member, "is \"%.80s\", must be \"quad\", \"box\" or \"mesh\"", type);
-}
-
-vplResult vplSceneLoader_ReadObject(vplSceneLoader* l, const json_t* value, const vplJsonPath* path)
-{
+    static const char* const types[] = {"quad", "box", "mesh", NULL};
     static const char* const shapeKeys[] = {"!type",  "name",  "!material", "translate",
                                             "rotate", "scale", "matrix",    NULL};
     static const char* const meshKeys[] = {"!type",  "name",  "material", "!file", "translate",
                                            "rotate", "scale", "matrix",   NULL};
     vplObjectDef def = vplDefaultObjectDef();
-    TRY(readObjectType(l, value, path, &def.type));
-    bool mesh = def.type == VPL_OBJECT_MESH;
-    TRY(vplJsonReader_CheckKeys(&l->json, value, path, mesh ? meshKeys : shapeKeys));
-    TRY(vplJsonReader_String(&l->json, value, path, "name", &def.name));
-    if (!mesh || json_object_get(value, "material") != NULL) {
-        TRY(readMaterialReference(l, value, path, &def.material));
-    } else {
-        def.material = -1;
+    int type;
+    TRY(vplJson_ReadType(object, types, "\"quad\", \"box\" or \"mesh\"", &type));
+    def.type = (vplObjectType)type;
+    const bool mesh = def.type == VPL_OBJECT_MESH;
+    TRY(vplJson_CheckKeys(object, mesh ? meshKeys : shapeKeys));
+    TRY(vplJson_ReadString(object, "name", &def.name));
+    def.material = -1;
+    if (!mesh || json_object_get(object->value, "material") != NULL) {
+        TRY(readMaterialReference(l, object, &def.material));
     }
-    TRY(readTransform(l, value, path, &def.transform));
+    TRY(readTransform(object, &def.transform));
     if (mesh) {
-        TRY(readMesh(l, value, path, &def.mesh));
+        TRY(readMesh(l, object, &def.mesh));
     }
     return vplScene_AddObject(l->scene, &def, NULL);
 }

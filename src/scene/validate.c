@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One check per number. The API prefixes "vplCameraDef.", the file reader "scene.json:3:14: camera.".
+// One check per number. The API puts "vplCameraDef." before the sentence, the file reader "scene.json:3:14:
+// camera.".
 #include "scene/scene.h"
 #include "math/matrix.h"
 #include "math/scalar.h"
@@ -22,8 +23,9 @@ static vplFault fault(const char* field, int index, const char* format, ...)
     return f;
 }
 
-static vplFault checkComponents(const char* field, const float* v, float low, float high)
+static vplFault checkComponents(const char* field, vplVec3 p, float low, float high)
 {
+    const float v[3] = {p.x, p.y, p.z};
     for (int i = 0; i < 3; i++) {
         if (!(v[i] >= low && v[i] <= high)) {
             return fault(field, i, "is %g, must be in [%g, %g]", (double)v[i], (double)low, (double)high);
@@ -34,7 +36,12 @@ static vplFault checkComponents(const char* field, const float* v, float low, fl
 
 static vplFault checkPoint(const char* field, vplVec3 p)
 {
-    return checkComponents(field, &p.x, -VPL_MAX_MAGNITUDE, VPL_MAX_MAGNITUDE);
+    return checkComponents(field, p, -VPL_MAX_MAGNITUDE, VPL_MAX_MAGNITUDE);
+}
+
+static vplFault checkColour(const char* field, vplRgb c, float high)
+{
+    return checkComponents(field, vplVec(c.r, c.g, c.b), 0, high);
 }
 
 static vplFault checkDirection(const char* field, vplVec3 d)
@@ -78,8 +85,8 @@ vplFault vplCheckCamera(const vplCameraDef* def)
 
 vplFault vplCheckMaterial(const vplMaterialDef* def)
 {
-    vplFault f = checkComponents("diffuse", &def->diffuse.r, 0, 1);
-    return f.field ? f : checkComponents("emission", &def->emission.r, 0, VPL_MAX_MAGNITUDE);
+    vplFault f = checkColour("diffuse", def->diffuse, 1);
+    return f.field ? f : checkColour("emission", def->emission, VPL_MAX_MAGNITUDE);
 }
 
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount)
@@ -133,7 +140,7 @@ vplFault vplCheckTransform(const vplMat4* m)
         }
     }
     vplAffine a = vplAffine_FromMat4(m);
-    if (!(vplAffine_Orthogonality(&a) >= 1e-10)) { // below, the inverse has no correct digit in float
+    if (!(vplAffine_Orthogonality(&a) >= 1e-10)) { // below that, no digit of the inverse is right in float
         return fault("transform", -1, "is singular: its axes lie in one plane");
     }
     return FINE;
@@ -146,7 +153,7 @@ vplFault vplCheckEmitter(const vplEmitterDef* def)
         return fault("type", -1, "is %d, must be a vplEmitterType", (int)def->type);
     }
     vplFault f = checkPoint("position", def->position);
-    f = f.field ? f : checkComponents("intensity", &def->intensity.r, 0, VPL_MAX_MAGNITUDE);
+    f = f.field ? f : checkColour("intensity", def->intensity, VPL_MAX_MAGNITUDE);
     if (f.field == NULL && def->type != VPL_EMITTER_POINT) {
         f = checkDirection("direction", def->direction);
     }

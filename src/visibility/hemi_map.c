@@ -3,7 +3,7 @@
 #include "visibility/hemi_map.h"
 #include "base/context.h"
 #include "base/isa.h"
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 
 #include <string.h>
 
@@ -86,18 +86,18 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
         const float lift = vplLightLift(vplLargestOf(places[i].position));
         map->position = vplAdd(places[i].position, vplScale(lift, places[i].normal));
         map->forward = places[i].normal;
-        vplFrame(map->forward, &map->right, &map->up);
+        vplTangentFrame(map->forward, &map->right, &map->up);
         map->size = maps->size;
         map->texels = maps->texels + (size_t)i * texelsOf(maps->size);
         map->context = maps->context;
     }
-    Drawing drawing = {maps, vplGeometry_GetBvh(geometry)};
+    Drawing drawing = {maps, geometry->rayTree};
     return vplParallelForProgress(maps->context, count, drawMap, &drawing, progress, user, 0, 1);
 }
 
 int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place)
 {
-    const vplBvh* bvh = vplGeometry_GetBvh(geometry);
+    const vplBvh* bvh = geometry->rayTree;
     if (bvh == NULL || bvh->nodes == NULL) {
         return geometry->triangleCount;
     }

@@ -3,7 +3,7 @@
 #include "visibility/paraboloid_map.h"
 #include "base/context.h"
 #include "base/isa.h"
-#include "geometry/ray_tree.h"
+#include "geometry/bvh.h"
 #include "geometry/triangle.h"
 
 VPL_KERNEL_TABLE(DRAW, vplDrawParaboloidFcn, vplDrawParaboloid);
@@ -82,7 +82,7 @@ static void place(const vplParaboloidMaps* maps, int index, const vplParaboloidP
     const size_t first = (size_t)index * 2 * vplParaboloidMap_Texels(maps->size);
     map->position = vplAdd(p->position, vplScale(lift, p->normal));
     map->forward = p->normal;
-    vplFrame(map->forward, &map->right, &map->up);
+    vplTangentFrame(map->forward, &map->right, &map->up);
     map->size = maps->size;
     map->hemispheres = p->hemispheres;
     map->texels = maps->texels + first;
@@ -113,7 +113,7 @@ vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geo
     for (int i = 0; i < count; i++) {
         place(maps, i, &places[i]);
     }
-    Drawing drawing = {maps, vplGeometry_GetBvh(geometry)};
+    Drawing drawing = {maps, geometry->rayTree};
     return vplParallelForProgress(maps->context, 2 * count, drawHemisphere, &drawing, progress, user, 0, 1);
 }
 

@@ -34,7 +34,7 @@ static inline bool isSureWithin(const vplGeometry* g, vplVec3 eye, vplVec3 point
     const float distance = vplLength(way);
     bool same = band < distance;
     vplVec3 t, u;
-    vplFrame(vplScale(1 / distance, way), &t, &u);
+    vplTangentFrame(vplScale(1 / distance, way), &t, &u);
     for (int i = 0; i < RIM * RINGS && same; i++) {
         const double angle = (i % RIM + 0.5 * (double)(i / RIM)) * (2 * VPL_PI / RIM);
         const float size = footprint * (float)(i / RIM + 1) / RINGS;

@@ -56,7 +56,7 @@ static void moveLight(vplScene* scene, double diagonal)
     const vplEmitterDef* def = vplScene_GetEmitter(scene, 0);
     vplEmitterKey keys[] = {vplMakeEmitterKey(def, 0), vplMakeEmitterKey(def, 60)};
     vplVec3 across, other;
-    vplFrame(vplNormalize(def->direction), &across, &other);
+    vplTangentFrame(vplNormalize(def->direction), &across, &other);
     if (def->type == VPL_EMITTER_DIRECTIONAL) {
         keys[1].direction = vplAdd(vplNormalize(def->direction), vplScale(0.105f, across));
     } else {

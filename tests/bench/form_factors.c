@@ -158,8 +158,8 @@ int main(int argc, char** argv)
         check(vplPatches_Create(geometry, &patchDef, &patches));
         vplPatchSidesDef sidesDef = vplDefaultPatchSidesDef();
         const vplVec3 eye = vplScene_GetCamera(scene, 0)->eye;
-        sidesDef.eyes = &eye;
-        sidesDef.eyeCount = 1;
+        sidesDef.viewpoints = &eye;
+        sidesDef.viewpointCount = 1;
         sidesDef.emitters = emitters > 0 ? vplScene_GetEmitter(scene, 0) : NULL;
         sidesDef.emitterCount = emitters;
         vplPatchSides* sides;

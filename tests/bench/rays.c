@@ -103,11 +103,11 @@ static int traceAll(const Bench* b, const vplBvh* bvh, Kind kind, int count)
     int hits = 0;
     for (int i = 0; i < count && kind <= RANDOM; i++) {
         vplRawHit hit;
-        vplGetTraceClosest(isa)(bvh, &b->rays[i], INFINITY, &hit);
+        vplGetRayKernels(isa)->closest(bvh, &b->rays[i], INFINITY, &hit);
         hits += hit.triangle >= 0;
     }
     for (int i = 0; i < count && (kind == RANDOM_ANY || kind == SHADOW); i++) {
-        hits += vplGetTraceAny(isa)(bvh, &b->rays[i], 1);
+        hits += vplGetRayKernels(isa)->any(bvh, &b->rays[i], 1);
     }
     for (int i = 0; i < count && kind == SHADOW_16; i += VPL_RAY_PACKET) {
         const int lanes = count - i < VPL_RAY_PACKET ? count - i : VPL_RAY_PACKET;
@@ -115,7 +115,7 @@ static int traceAll(const Bench* b, const vplBvh* bvh, Kind kind, int count)
         for (int lane = 0; lane < lanes; lane++) {
             vplRayPacket_Set(&packet, lane, &b->rays[i + lane]);
         }
-        hits += __builtin_popcount(vplGetTraceAnyPacket(isa)(bvh, &packet, 1));
+        hits += __builtin_popcount(vplGetRayKernels(isa)->anyPacket(bvh, &packet, 1));
     }
     return hits;
 }
@@ -186,9 +186,9 @@ static void measureBuild(const char* path, int workers, int runs)
 #endif
     for (int run = 0; run < runs; run++) {
         double start = now();
-        check(vplBvh_Create(b.geometry, 0, false, &b.tree));
+        check(vplBvh_Create(b.geometry, 0, &b.tree));
         ms[0][run] = now() - start;
-        vplBvh_Destroy(b.context, b.tree);
+        vplBvh_Destroy(b.tree);
 #ifdef HAVE_EMBREE
         RTCScene embree = makeEmbree(device, b.geometry, RTC_BUILD_QUALITY_MEDIUM);
         start = now();
@@ -235,15 +235,15 @@ int main(int argc, char** argv)
     const char* path = argc > 1 ? argv[1] : "examples/scenes/room.json";
     openScene(path, 0, isa, &b.context, &b.scene);
     check(vplGeometry_Create(b.scene, &b.geometry));
-    check(vplBvh_Create(b.geometry, 0, false, &b.tree));
-    check(vplBvh_Create(b.geometry, 1 << 30, false, &b.all));
+    check(vplBvh_Create(b.geometry, 0, &b.tree));
+    check(vplBvh_Create(b.geometry, 1 << 30, &b.all));
     printf("%s, %s: %d triangles, %d nodes, %d blocks\n", path, vplIsa_GetName(vplContext_GetIsa(b.context)),
            b.geometry->triangleCount, b.tree->nodeCount, b.tree->blockCount);
     b.rays = malloc(MOST_RAYS * sizeof *b.rays);
     measure(&b, runs, brute, only);
     free(b.rays);
-    vplBvh_Destroy(b.context, b.tree);
-    vplBvh_Destroy(b.context, b.all);
+    vplBvh_Destroy(b.tree);
+    vplBvh_Destroy(b.all);
     vplGeometry_Destroy(b.geometry);
     vplScene_Destroy(b.scene);
     vplContext_Destroy(b.context);

@@ -7,7 +7,7 @@ vplResult vplMakeGeometry(const vplRun* run, void** resultOut)
 {
     vplGeometry* geometry;
     TRY(run->plan->castsRays ? vplGeometry_Create(run->scene, &geometry)
-                             : vplGeometry_Create(run->scene, &geometry));
+                             : vplGeometry_CreateForRaster(run->scene, &geometry));
     *resultOut = geometry;
     return VPL_SUCCESS;
 }

@@ -2,7 +2,7 @@
 // Light of patches: what emitters give to them, and what they then exchange.
 #include "base/rng.h"
 #include "geometry/triangle.h"
-#include "radiosity/side.h"
+#include "radiosity/sides/side.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
@@ -174,7 +174,7 @@ static vplResult solve(const vplRun* run, bool first, vplSolution* s)
     def.iterations = o->iterations;
     def.residual = run->draft ? fmax(o->residual, DRAFT_RESIDUAL) : o->residual;
     def.spectrum = first && !run->draft;
-    def.relaxes = run->plan->options.sequence.history != NULL || run->draft;
+    def.continues = run->plan->options.sequence.history != NULL || run->draft;
     def.progress = vplRun_Progress(run);
     def.progressUser = vplRun_ProgressUser(run);
     TRY(vplSolveRadiosity(&transport, &def, light->source, s->radiosity, &s->stats));

@@ -22,8 +22,12 @@ vplResult vplFindPriorities(const vplRun* run, vplArena* scratch, float* priorit
     vplRgb* vertexDirect = vplArena_Alloc(scratch, corners, sizeof *vertexDirect);
     TRY(vplArena_Check(scratch));
     vplFindReflected(sides, solution->radiosity, reflected);
-    TRY(vplPatchMesh_Gather(mesh, reflected, GATHER_RAYS, o->seed, vertexIrradiance, vplRun_Progress(run),
-                            vplRun_ProgressUser(run), &run->stats->rays));
+    const vplVertexGather gather = {.radiosity = reflected,
+                                    .rays = GATHER_RAYS,
+                                    .seed = o->seed,
+                                    .progress = vplRun_Progress(run),
+                                    .progressUser = vplRun_ProgressUser(run)};
+    TRY(vplPatchMesh_Gather(mesh, &gather, vertexIrradiance, &run->stats->rays));
     for (size_t i = 0; i < count; i++) {
         emission[i] = sides->sides[i].emission;
     }

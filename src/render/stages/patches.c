@@ -156,10 +156,10 @@ static vplResult findSides(const vplRun* run, vplArena* scratch, vplPatchSides**
     vplVec3* eyes = vplArena_Alloc(scratch, POSES, sizeof *eyes);
     TRY(vplArena_Check(scratch));
     TRY(poseEmitters(run, emitters, &def.emitterCount));
-    TRY(poseEyes(run, eyes, &def.eyeCount));
+    TRY(poseEyes(run, eyes, &def.viewpointCount));
     def.emitters = emitters;
-    def.eyes = eyes;
-    def.whole = run->plan->options.radiosity.formFactors == VPL_FORM_FACTORS_INCENTRE;
+    def.viewpoints = eyes;
+    def.wholeTriangles = run->plan->options.radiosity.formFactors == VPL_FORM_FACTORS_INCENTRE;
     def.seed = run->plan->options.seed;
     def.progress = vplRun_Progress(run);
     def.progressUser = vplRun_ProgressUser(run);

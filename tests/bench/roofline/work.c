@@ -224,7 +224,7 @@ double traceRays(void* work, int which)
 {
     Work* w = work;
     const vplBvh* bvh = which == RAY_CHAIN ? &w->chain : which == RAY_SINGLE ? &w->single : &w->blocks;
-    vplTraceAnyFcn* any = vplGetTraceAny(w->context->isa);
+    vplTraceAnyFcn* any = vplGetRayKernels(w->context->isa)->any;
     int hits = 0;
     for (int i = 0; i < RAYS; i++) {
         hits += any(bvh, &w->rays[i], INFINITY);

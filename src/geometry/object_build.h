@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#ifndef VPL_GEOMETRY_OBJECT_BUILD_H
+#define VPL_GEOMETRY_OBJECT_BUILD_H
+
+#include <vpl/geometry.h>
+
+#include "scene/scene.h"
+
+// The arrays of a geometry while they are filled.
+typedef struct vplGeometryBuilder {
+    const vplScene* scene;
+    vplGeometryObject* objects;
+    vplVec3* positions;
+    vplVec3* shadingNormals; // NULL: no object is smooth
+    uint32_t* indices;
+    vplVec3* normals;
+    int* owners;
+    int* triangleMaterials;
+    vplMaterialDef* materials;
+} vplGeometryBuilder;
+
+// The shape of an object in its own space: the mesh, or the triangles of the unit quad or box.
+vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def);
+
+// Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set.
+void vplBuildObject(const vplGeometryBuilder* builder, int index);
+
+#endif

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// Writes a lit mesh with baked vertex colours.
+// Based on: Turk, The PLY Polygon File Format, 1994. Numbers are written as they are in memory, so the
+// machine must be little-endian.
+#include "base/arena.h"
+#include "math/vec.h"
+#include "radiosity/sides/side.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// A vertex as in the file: 39 bytes without padding.
+typedef struct __attribute__((packed)) PlyVertex {
+    float position[3], normal[3];
+    uint8_t code[3]; // sRGB
+    float colour[3]; // linear
+} PlyVertex;
+
+typedef struct __attribute__((packed)) PlyFace {
+    uint8_t count; // 3
+    int32_t vertices[3];
+} PlyFace;
+
+// A list of the file's vertices for one vertex of the mesh, each with another reflectance.
+typedef struct Entry {
+    vplRgb reflectance;
+    int next; // -1: the last
+} Entry;
+
+typedef struct Baker {
+    vplContext* context;
+    const vplPatchMesh* mesh;
+    const vplRgb* irradiance;
+    float scale;
+    int* heads; // per vertex of the mesh: the first entry for the face that is being written; -1: none
+    PlyVertex* vertices;
+    Entry* entries;
+    size_t vertexCount, vertexCapacity, entryCapacity;
+    PlyFace* faces;
+    size_t faceCount, faceCapacity;
+} Baker;
+
+// ---- vertices
+
+static bool sameRgb(vplRgb a, vplRgb b)
+{
+    return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+
+static PlyVertex makeVertex(const Baker* b, uint32_t vertex, int face, vplRgb reflectance)
+{
+    const vplPatchMesh* m = b->mesh;
+    const vplVec3 p = m->positions[vertex],
+                  n = face == 0 ? m->normals[vertex] : vplNegate(m->normals[vertex]);
+    const vplRgb c = vplRgbMul(reflectance, b->irradiance[2 * (size_t)vertex + (size_t)face]);
+    return (PlyVertex){
+        {p.x, p.y, p.z},
+        {n.x, n.y, n.z},
+        {vplSrgb_Code(b->scale * c.r), vplSrgb_Code(b->scale * c.g), vplSrgb_Code(b->scale * c.b)},
+        {c.r, c.g, c.b}};
+}
+
+// Finds or adds the file's vertex for a vertex of the mesh and a reflectance.
+static vplResult findVertex(Baker* b, uint32_t vertex, int face, vplRgb reflectance, int32_t* indexOut)
+{
+    for (int at = b->heads[vertex]; at >= 0; at = b->entries[at].next) {
+        if (sameRgb(b->entries[at].reflectance, reflectance)) {
+            *indexOut = at;
+            return VPL_SUCCESS;
+        }
+    }
+    if (b->vertexCount == INT32_MAX) {
+        return vplFail(b->context, VPL_LIMIT, "a PLY file has at most %d vertices", INT32_MAX);
+    }
+    const size_t count = b->vertexCount + 1;
+    TRY(vplReserve(b->context, &b->vertices, &b->vertexCapacity, count, sizeof *b->vertices));
+    TRY(vplReserve(b->context, &b->entries, &b->entryCapacity, count, sizeof *b->entries));
+    const int index = (int)b->vertexCount++;
+    b->vertices[index] = makeVertex(b, vertex, face, reflectance);
+    b->entries[index] = (Entry){reflectance, b->heads[vertex]};
+    b->heads[vertex] = *indexOut = index;
+    return VPL_SUCCESS;
+}
+
+// ---- faces
+
+// Adds a face of a triangle. Backs that light does not reach are left out; such fronts take the values at
+// their corners.
+static vplResult addTriangle(Baker* b, int triangle, int face)
+{
+    const vplPatchMesh* m = b->mesh;
+    const int side = vplSideOf(m->sides, m->patchOf[triangle], face);
+    if (side < 0 && face == 1) {
+        return VPL_SUCCESS;
+    }
+    const vplRgb reflectance = vplReflectanceOf(m->sides, m->patchOf[triangle], side);
+    PlyFace out = {.count = 3};
+    for (int k = 0; k < 3; k++) {
+        const int corner = face == 0 ? k : 2 - k;
+        int32_t index = 0;
+        TRY(findVertex(b, m->indices[3 * (size_t)triangle + (size_t)corner], face, reflectance, &index));
+        out.vertices[k] = index;
+    }
+    TRY(vplReserve(b->context, &b->faces, &b->faceCapacity, b->faceCount + 1, sizeof *b->faces));
+    b->faces[b->faceCount++] = out;
+    return VPL_SUCCESS;
+}
+
+static vplResult addFaces(Baker* b)
+{
+    b->heads = vplAlloc(b->context, (size_t)b->mesh->vertexCount, sizeof *b->heads);
+    if (b->heads == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int face = 0; face < 2; face++) {
+        for (int v = 0; v < b->mesh->vertexCount; v++) {
+            b->heads[v] = -1;
+        }
+        for (int t = 0; t < b->mesh->triangleCount; t++) {
+            TRY(addTriangle(b, t, face));
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- the file
+
+static vplResult writeFile(const Baker* b, const char* path)
+{
+    char head[512];
+    const int length = snprintf(head, sizeof head,
+                                "ply\n"
+                                "format binary_little_endian 1.0\n"
+                                "comment radiosity in W/m^2, linear in r g b\n"
+                                "element vertex %zu\n"
+                                "property float x\nproperty float y\nproperty float z\n"
+                                "property float nx\nproperty float ny\nproperty float nz\n"
+                                "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                                "property float r\nproperty float g\nproperty float b\n"
+                                "element face %zu\n"
+                                "property list uchar int vertex_indices\n"
+                                "end_header\n",
+                                b->vertexCount, b->faceCount);
+    const size_t vertexBytes = b->vertexCount * sizeof *b->vertices,
+                 faceBytes = b->faceCount * sizeof *b->faces;
+    const size_t size = (size_t)length + vertexBytes + faceBytes;
+    char* bytes = vplAlloc(b->context, size, 1);
+    if (bytes == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    memcpy(bytes, head, (size_t)length);
+    if (vertexBytes > 0) {
+        memcpy(bytes + length, b->vertices, vertexBytes);
+        memcpy(bytes + length + vertexBytes, b->faces, faceBytes);
+    }
+    const vplResult result = vplWriteFile(b->context, path, bytes, size);
+    vplFree(b->context, bytes);
+    return result;
+}
+
+vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIrradiance, float scale,
+                                const char* path)
+{
+    Baker baker = {.context = mesh->context, .mesh = mesh, .irradiance = vertexIrradiance, .scale = scale};
+    if (!(scale >= 0 && isfinite(scale))) {
+        return vplFail(mesh->context, VPL_INVALID_ARGUMENT,
+                       "the scale of a PLY file's colours is %g, must be finite and at least 0",
+                       (double)scale);
+    }
+    TRY(vplCheckRgb(mesh->context, "vertexIrradiance", vertexIrradiance, 2 * (size_t)mesh->vertexCount));
+    vplResult result = addFaces(&baker);
+    if (result == VPL_SUCCESS) {
+        result = writeFile(&baker, path);
+    }
+    vplFree(mesh->context, baker.heads);
+    vplFree(mesh->context, baker.vertices);
+    vplFree(mesh->context, baker.entries);
+    vplFree(mesh->context, baker.faces);
+    return result;
+}

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// Sides in blocks of sixteen, and the points at which they are sampled.
+#include "base/context.h"
+#include "base/rng.h"
+#include "math/scalar.h"
+#include "radiosity/factors/form_factors.h"
+#include "radiosity/sides/side.h"
+
+// The first stream of random numbers; each chunk of sixteen samples takes the next.
+enum { SAMPLE_STREAM = 0x46460000 };
+
+enum { ALL_CELLS = (1 << VPL_PATCH_CELLS) - 1 };
+
+static int listOpen(const vplPatchSide* side, int cells[VPL_PATCH_CELLS])
+{
+    int count = 0;
+    for (int k = 0; k < VPL_PATCH_CELLS; k++) {
+        if (side->open >> k & 1) {
+            cells[count++] = k;
+        }
+    }
+    return count;
+}
+
+// A ray that leaves the side at a point: its origin, and the triangles that it must not hit.
+static vplRay leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 from)
+{
+    const vplHit start = vplPatchSide_HitAt(sides, side, from);
+    return vplGeometry_Leave(sides->patches->geometry, &start, side->normal);
+}
+
+// ---- samples
+
+// Sixteen strata of equal area: the cells of a side whose cells are all open.
+static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorSamples* samples)
+{
+    const vplPatchSide* side = &work->sides->sides[index];
+    const int lane = index % VPL_SIDE_LANES;
+    int cells[VPL_PATCH_CELLS];
+    const int open = listOpen(side, cells);
+    for (int p = 0; p < VPL_FACTOR_SAMPLES; p++) {
+        const vplRandom4 r = vplRandomAt(work->def.seed, SAMPLE_STREAM + (uint32_t)chunk,
+                                         (uint64_t)index * VPL_FACTOR_SAMPLES + (uint64_t)p);
+        const int stratum = p % 4 * 4 + p / 4;
+        const float place = ((float)stratum + vplUnitFloat(r.v[0])) * (float)open / VPL_FACTOR_SAMPLES;
+        const int cell = cells[vplMini((int)place, open - 1)];
+        const vplVec3 at = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
+        vplSetLane(samples->at[p], lane, at);
+        vplSetLane(samples->origin[p], lane, leave(work->sides, side, at).origin);
+    }
+}
+
+void vplFactorSamples_Fill(const vplFactorWork* work, int block, int chunk, vplFactorSamples* samples)
+{
+    const int first = block * VPL_SIDE_LANES;
+    for (int i = first; i < vplMini(first + VPL_SIDE_LANES, work->count); i++) {
+        fillLane(work, i, chunk, samples);
+    }
+}
+
+// ---- quadrature points
+
+// Three points of a triangle, exact for polynomials of degree 2.
+// Source: Strang and Fix, An Analysis of the Finite Element Method, 1973.
+static void fillWhole(const vplPatchSide* side, int lane, vplFactorBlock* block)
+{
+    for (int q = 0; q < VPL_QUADRATURE_POINTS; q++) {
+        vplVec3 sum = {0, 0, 0};
+        for (int c = 0; c < 3; c++) {
+            sum = vplAdd(sum, vplScale(c == q ? 2.0f / 3 : 1.0f / 6, side->corners[c]));
+        }
+        vplSetLane(block->quadrature[q], lane, sum);
+    }
+}
+
+// For a side with closed cells: the centroid of each third of the open cells, taken in order. A cell that
+// belongs to two thirds counts in both, by its fractions.
+static void fillPart(const vplPatchSide* side, int lane, vplFactorBlock* block)
+{
+    int cells[VPL_PATCH_CELLS];
+    const int open = listOpen(side, cells);
+    for (int q = 0; q < VPL_QUADRATURE_POINTS; q++) {
+        vplVec3 sum = {0, 0, 0};
+        for (int c = 0; c < open; c++) {
+            const int low = vplMaxi(3 * c, q * open), high = vplMini(3 * c + 3, (q + 1) * open);
+            if (high > low) {
+                const vplVec3 at = vplPatchSide_CellCentre(side, cells[c]);
+                sum = vplAdd(sum, vplScale((float)(high - low) / (float)open, at));
+            }
+        }
+        vplSetLane(block->quadrature[q], lane, sum);
+    }
+}
+
+// ---- blocks
+
+static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block)
+{
+    const vplPatchSide* side = &work->sides->sides[index];
+    const int lane = index % VPL_SIDE_LANES;
+    vplVec3 centre = {0, 0, 0};
+    for (int c = 0; c < 3; c++) {
+        vplSetLane(block->corner[c], lane, side->corners[c]);
+        centre = vplAdd(centre, vplScale(1.0f / 3, side->corners[c]));
+    }
+    vplSetLane(block->centre, lane, centre);
+    vplSetLane(block->normal, lane, side->normal);
+    for (int c = 0; c < 3; c++) {
+        const vplVec3 way = vplSub(side->corners[c], centre);
+        block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
+    }
+    const vplRay ray = leave(work->sides, side, side->incentre);
+    block->skipFirst[lane] = ray.skip.first;
+    block->skipCount[lane] = ray.skip.count;
+    if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
+        vplSetLane(block->samples.at[0], lane, side->incentre);
+        vplSetLane(block->samples.origin[0], lane, ray.origin);
+        const vplVec3 cross =
+            vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
+        block->area[lane] = 0.5f * vplLength(cross);
+    } else {
+        (side->open == ALL_CELLS ? fillWhole : fillPart)(side, lane, block);
+        block->area[lane] = side->area;
+    }
+}
+
+static void findBounds(vplFactorBlock* block)
+{
+    for (int k = 0; k < 3; k++) {
+        block->low[k] = INFINITY;
+        block->high[k] = -INFINITY;
+        for (int i = 0; i < 3 * VPL_SIDE_LANES; i++) {
+            const float at = block->corner[i / VPL_SIDE_LANES][k][i % VPL_SIDE_LANES];
+            if (block->area[i % VPL_SIDE_LANES] > 0) {
+                block->low[k] = vplMinf(block->low[k], at);
+                block->high[k] = vplMaxf(block->high[k], at);
+            }
+        }
+    }
+}
+
+static void fillBlock(void* data, int index, int worker)
+{
+    (void)worker;
+    const vplFactorWork* work = data;
+    vplFactorBlock* block = &work->blocks[index];
+    const int first = index * VPL_SIDE_LANES;
+    for (int i = first; i < vplMini(first + VPL_SIDE_LANES, work->count); i++) {
+        fillSide(work, i, block);
+    }
+    findBounds(block);
+    if (work->def.kind == VPL_FORM_FACTORS_MONTE_CARLO) {
+        vplFactorSamples_Fill(work, index, 0, &block->samples);
+    }
+}
+
+vplResult vplFactorWork_MakeBlocks(vplFactorWork* work)
+{
+    work->blockCount = (work->count + VPL_SIDE_LANES - 1) / VPL_SIDE_LANES;
+    work->blocks = vplArena_AllocZero(work->scratch, (size_t)work->blockCount, sizeof *work->blocks);
+    TRY(vplArena_Check(work->scratch));
+    vplParallelFor(work->context, work->blockCount, fillBlock, work);
+    return VPL_SUCCESS;
+}

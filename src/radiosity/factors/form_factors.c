@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.3.1.
+#include "radiosity/factors/form_factors.h"
+
+enum { FORM_FACTOR_COOKIE = 0x56504cb0, MOST_SAMPLES = 1024 };
+
+vplFormFactorDef vplDefaultFormFactorDef(void)
+{
+    return (vplFormFactorDef){.samples = 4, .analytic = true, .cookie = FORM_FACTOR_COOKIE};
+}
+
+static vplResult checkDef(const vplPatchSides* sides, const vplFormFactorDef* def)
+{
+    vplContext* context = sides->context;
+    if (def->cookie != FORM_FACTOR_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplFormFactorDef was not made by vplDefaultFormFactorDef");
+    }
+    if ((int)def->kind < 0 || def->kind > VPL_FORM_FACTORS_INCENTRE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "vplFormFactorDef.kind is %d, must be a vplFormFactorKind", (int)def->kind);
+    }
+    if (def->samples < 1 || def->samples > MOST_SAMPLES) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplFormFactorDef.samples is %d, must be in [1, %d]",
+                       def->samples, MOST_SAMPLES);
+    }
+    if ((int)def->rowSums < 0 || def->rowSums > VPL_ROW_SUMS_NORMALISE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplFormFactorDef.rowSums is %d, must be a vplRowSums",
+                       (int)def->rowSums);
+    }
+    const int64_t bytes = (int64_t)sides->count * sides->count * (int64_t)sizeof(float);
+    if (bytes > VPL_MAX_FORM_FACTOR_BYTES) {
+        return vplFail(
+            context, VPL_LIMIT,
+            "form factors of %d sides take %lld bytes, at most %lld are allowed: use fewer patches "
+            "or the hierarchy",
+            sides->count, (long long)bytes, (long long)VPL_MAX_FORM_FACTOR_BYTES);
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult compute(vplFactorWork* work, vplFormFactors* factors)
+{
+    const size_t count = (size_t)work->count;
+    work->rows = vplArena_AllocZero(factors->arena, count * count, sizeof *work->rows);
+    work->rowSums = vplArena_Alloc(factors->arena, count, sizeof *work->rowSums);
+    TRY(vplArena_Check(factors->arena));
+    TRY(vplFactorWork_MakeBlocks(work));
+    TRY(vplFactorWork_FillRows(work));
+    TRY(vplFactorWork_CorrectRows(work));
+    factors->rows = work->rows;
+    factors->rowSums = work->rowSums;
+    factors->rays = work->rays;
+    factors->analyticPairs = work->analyticPairs;
+    return VPL_SUCCESS;
+}
+
+vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorDef* def,
+                                vplFormFactors** factorsOut)
+{
+    TRY(checkDef(sides, def));
+    vplContext* context = sides->context;
+    vplFactorWork work = {.sides = sides,
+                          .def = *def,
+                          .kernels = vplGetRadiosityKernels(context->isa),
+                          .context = context,
+                          .scratch = vplArena_Create(context),
+                          .count = sides->count};
+    if (def->kind == VPL_FORM_FACTORS_INCENTRE) { // one point per side, and factors as they are
+        work.def.samples = 1;
+        work.def.analytic = false;
+    }
+    vplArena* arena = vplArena_Create(context);
+    vplFormFactors* factors = vplArena_AllocZero(arena, 1, sizeof *factors);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *factors = (vplFormFactors){.count = sides->count, .arena = arena, .context = context};
+        result = compute(&work, factors);
+    }
+    vplArena_Destroy(work.scratch);
+    return vplArena_Deliver(arena, result, factors, factorsOut);
+}
+
+void vplFormFactors_Destroy(vplFormFactors* factors)
+{
+    vplArena_Destroy(factors != NULL ? factors->arena : NULL);
+}

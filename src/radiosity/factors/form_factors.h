@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// The steps that compute a matrix of form factors.
+#ifndef VPL_RADIOSITY_FORM_FACTORS_H
+#define VPL_RADIOSITY_FORM_FACTORS_H
+
+#include "base/arena.h"
+#include "radiosity/radiosity_kernels.h"
+
+// The matrix in the making.
+typedef struct vplFactorWork {
+    const vplPatchSides* sides;
+    vplFormFactorDef def;
+    const vplRadiosityKernels* kernels;
+    vplContext* context;
+    vplArena* scratch;      // freed at the end
+    vplFactorBlock* blocks; // of all sides
+    int blockCount;
+    int count;             // of sides
+    float *rows, *rowSums; // as in vplFormFactors
+    int64_t rays, analyticPairs;
+} vplFactorWork;
+
+// Fills `blocks`.
+vplResult vplFactorWork_MakeBlocks(vplFactorWork* work);
+
+// The samples of a block for pairs of points 16 * chunk to 16 * chunk + 15.
+void vplFactorSamples_Fill(const vplFactorWork* work, int block, int chunk, vplFactorSamples* samples);
+
+// Fills rows, rays and analyticPairs.
+vplResult vplFactorWork_FillRows(vplFactorWork* work);
+
+// Fills rowSums and corrects the rows as def.rowSums says.
+vplResult vplFactorWork_CorrectRows(vplFactorWork* work);
+
+#endif

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Corrects the sums of rows by factors s_i s_j, which keep A_i F_ij = A_j F_ji.
+// Based on: Richard Sinkhorn and Paul Knopp, Concerning Nonnegative Matrices and Doubly Stochastic Matrices,
+// Pacific Journal of Mathematics 1967; Philip Knight, Daniel Ruiz and Bora Ucar, A Symmetry Preserving
+// Algorithm for Matrix Scaling, SIAM Journal on Matrix Analysis and Applications 2014 (steps by the square
+// root of the sum).
+#include "math/scalar.h"
+#include "radiosity/factors/form_factors.h"
+
+// Rounds end when no scale changes by more than this or, since some matrices cannot be normalised, after so
+// many.
+static const double ENOUGH = 1e-6;
+enum { MOST_ROUNDS = 24 };
+
+// Leaves room for the rounding of scaled floats, so that no sum ends above 1.
+static const double MARGIN = 1 - 0x1p-22;
+
+typedef struct Scaling {
+    const vplFactorWork* work;
+    double *scale, *sum; // per row: s_i, and the sum of F_ij s_j
+} Scaling;
+
+static void sumRow(void* data, int row, int worker)
+{
+    (void)worker;
+    const Scaling* s = data;
+    const int count = s->work->count;
+    s->sum[row] = s->work->kernels->scaledSum(s->work->rows + (size_t)row * (size_t)count, s->scale, count);
+}
+
+static void scaleRow(void* data, int row, int worker)
+{
+    (void)worker;
+    const Scaling* s = data;
+    const int count = s->work->count;
+    s->work->kernels->scaleRow(s->work->rows + (size_t)row * (size_t)count, s->scale[row], s->scale, count);
+}
+
+// Moves the sum of each row half of the way to 1; a clamp only moves rows above 1. Returns the largest change
+// of a scale.
+static double improve(Scaling* s, bool clamp)
+{
+    double largest = 0;
+    for (int i = 0; i < s->work->count; i++) {
+        const double sum = s->scale[i] * s->sum[i];
+        if (sum > 0) {
+            const double before = s->scale[i], wanted = before / sqrt(sum);
+            s->scale[i] = clamp && wanted > 1 ? 1 : wanted;
+            const double step = fabs(s->scale[i] / before - 1);
+            largest = step > largest ? step : largest;
+        }
+    }
+    return largest;
+}
+
+// Moves all rows above 1 the whole way at once: since no scale grows, no other row rises above 1.
+static void finish(Scaling* s)
+{
+    for (int i = 0; i < s->work->count; i++) {
+        const double sum = s->scale[i] * s->sum[i];
+        s->scale[i] *= sum > MARGIN ? MARGIN / sum : 1;
+    }
+}
+
+static void scaleRows(Scaling* s, bool clamp)
+{
+    vplContext* context = s->work->context;
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        const double step = improve(s, clamp);
+        vplParallelFor(context, s->work->count, sumRow, s);
+        if (step < ENOUGH) {
+            break;
+        }
+    }
+    finish(s);
+    vplParallelFor(context, s->work->count, scaleRow, s);
+}
+
+vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
+{
+    const size_t count = (size_t)work->count;
+    const vplFormFactorDef* def = &work->def;
+    Scaling s = {.work = work,
+                 .scale = vplArena_Alloc(work->scratch, count, sizeof *s.scale),
+                 .sum = vplArena_Alloc(work->scratch, count, sizeof *s.sum)};
+    TRY(vplArena_Check(work->scratch));
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        s.scale[i] = 1;
+    }
+    vplParallelFor(work->context, work->count, sumRow, &s);
+    for (size_t i = 0; i < count; i++) {
+        work->rowSums[i] = (float)s.sum[i];
+        most = s.sum[i] > most ? s.sum[i] : most;
+    }
+    const bool clamp = def->rowSums == VPL_ROW_SUMS_CLAMP ||
+                       (def->rowSums == VPL_ROW_SUMS_USUAL && def->kind == VPL_FORM_FACTORS_MONTE_CARLO);
+    if (def->rowSums == VPL_ROW_SUMS_NORMALISE || (clamp && most > MARGIN)) {
+        scaleRows(&s, clamp);
+    }
+    return VPL_SUCCESS;
+}

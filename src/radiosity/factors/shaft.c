@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+// Based on: Eric Haines and John Wallace, Shaft Culling for Efficient Ray-Cast Radiosity, Eurographics
+// Workshop on Rendering 1991. Departs: a triangle that has both blocks on one side, such as a wall of their
+// room, is no blocker.
+#include "radiosity/factors/shaft.h"
+
+#include "geometry/bvh.h"
+#include "math/scalar.h"
+
+enum { MOST_PLANES = 12 };
+
+// A plane parallel to one axis that touches both boxes and has them behind it.
+typedef struct ShaftPlane {
+    int u, v; // the other axes
+    double nu, nv, offset;
+} ShaftPlane;
+
+// The space between two blocks: inside the bounds of both, and behind all planes.
+typedef struct Shaft {
+    const vplGeometry* geometry;
+    const vplFactorBlock *a, *b;
+    float tolerance;
+    float low[3], high[3];
+    ShaftPlane planes[MOST_PLANES];
+    int planeCount;
+    vplBlockers* out;
+} Shaft;
+
+// Adds the plane through the same corner of both boxes, if both lie behind it.
+static void addPlane(Shaft* shaft, int u, int v, int corner)
+{
+    const vplFactorBlock *a = shaft->a, *b = shaft->b;
+    const double au = (double)(corner & 1 ? a->high : a->low)[u],
+                 av = (double)(corner & 2 ? a->high : a->low)[v];
+    const double du = (double)(corner & 1 ? b->high : b->low)[u] - au,
+                 dv = (double)(corner & 2 ? b->high : b->low)[v] - av;
+    const double outU = corner & 1 ? 1 : -1, outV = corner & 2 ? 1 : -1;
+    if (du * outU * (dv * outV) < 0) {
+        const double nu = fabs(dv) * outU, nv = fabs(du) * outV;
+        shaft->planes[shaft->planeCount++] = (ShaftPlane){u, v, nu, nv, nu * au + nv * av};
+    }
+}
+
+static void addPlanes(Shaft* shaft)
+{
+    for (int k = 0; k < 3; k++) {
+        shaft->low[k] = vplMinf(shaft->a->low[k], shaft->b->low[k]);
+        shaft->high[k] = vplMaxf(shaft->a->high[k], shaft->b->high[k]);
+        for (int corner = 0; corner < 4; corner++) {
+            addPlane(shaft, k, (k + 1) % 3, corner);
+        }
+    }
+}
+
+static bool missesBox(const Shaft* shaft, const float low[3], const float high[3])
+{
+    for (int k = 0; k < 3; k++) {
+        if (low[k] > shaft->high[k] || high[k] < shaft->low[k]) {
+            return true;
+        }
+    }
+    for (int i = 0; i < shaft->planeCount; i++) {
+        const ShaftPlane* p = &shaft->planes[i];
+        const double u = (double)(p->nu > 0 ? low : high)[p->u], v = (double)(p->nv > 0 ? low : high)[p->v];
+        if (p->nu * u + p->nv * v > p->offset) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool missesTriangle(const Shaft* shaft, const float p[3][3])
+{
+    for (int k = 0; k < 3; k++) {
+        if ((p[0][k] > shaft->high[k] && p[1][k] > shaft->high[k] && p[2][k] > shaft->high[k]) ||
+            (p[0][k] < shaft->low[k] && p[1][k] < shaft->low[k] && p[2][k] < shaft->low[k])) {
+            return true;
+        }
+    }
+    for (int i = 0; i < shaft->planeCount; i++) {
+        const ShaftPlane* s = &shaft->planes[i];
+        bool all = true;
+        for (int c = 0; c < 3; c++) {
+            all = all && s->nu * (double)p[c][s->u] + s->nv * (double)p[c][s->v] > s->offset;
+        }
+        if (all) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Extends `range` by the signed distances of a block's corners from a plane.
+static void extendRange(const vplFactorBlock* block, const float n[3], const float at[3], float range[2])
+{
+    for (int c = 0; c < 3; c++) {
+        for (int l = 0; l < VPL_SIDE_LANES; l++) {
+            const float h = n[0] * (block->corner[c][0][l] - at[0]) +
+                            n[1] * (block->corner[c][1][l] - at[1]) + n[2] * (block->corner[c][2][l] - at[2]);
+            const bool counts = block->area[l] > 0;
+            range[0] = counts && h < range[0] ? h : range[0];
+            range[1] = counts && h > range[1] ? h : range[1];
+        }
+    }
+}
+
+static bool isBlocker(const Shaft* shaft, const vplTriangleBlock* block, int lane)
+{
+    float p[3][3], range[2] = {0, 0};
+    for (int i = 0; i < 9; i++) {
+        p[i / 3][i % 3] = block->p[i / 3][i % 3][lane];
+    }
+    if (missesTriangle(shaft, p)) {
+        return false;
+    }
+    const vplVec3 normal = shaft->geometry->normals[block->id[lane]];
+    const float n[3] = {normal.x, normal.y, normal.z};
+    extendRange(shaft->a, n, p[0], range);
+    extendRange(shaft->b, n, p[0], range);
+    return range[0] < -shaft->tolerance && range[1] > shaft->tolerance;
+}
+
+// False if there are too many blockers.
+static bool addBlockers(const Shaft* shaft, const vplTriangleBlock* block)
+{
+    vplBlockers* out = shaft->out;
+    for (int lane = 0; lane < VPL_BVH_WIDTH && block->id[lane] >= 0; lane++) {
+        if (!isBlocker(shaft, block, lane)) {
+            continue;
+        }
+        if (out->count == VPL_MOST_BLOCKERS) {
+            return false;
+        }
+        int k = out->count++;
+        for (; k > 0 && out->ids[k - 1] > block->id[lane]; k--) {
+            out->ids[k] = out->ids[k - 1];
+        }
+        out->ids[k] = block->id[lane];
+    }
+    return true;
+}
+
+static bool searchAll(const Shaft* shaft, const vplBvh* bvh)
+{
+    for (int i = 0; i < bvh->blockCount; i++) {
+        if (!addBlockers(shaft, &bvh->blocks[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool searchTree(const Shaft* shaft, const vplBvh* bvh)
+{
+    int32_t stack[VPL_BVH_DEPTH * (VPL_BVH_WIDTH - 1) + 1] = {0};
+    int count = 1;
+    while (count > 0) {
+        const int32_t next = stack[--count];
+        if (next < 0) {
+            if (!addBlockers(shaft, &bvh->blocks[~next])) {
+                return false;
+            }
+            continue;
+        }
+        const vplBvhNode* node = &bvh->nodes[next];
+        for (int k = 0; k < node->count; k++) {
+            const float low[3] = {node->planes[0][k], node->planes[1][k], node->planes[2][k]};
+            const float high[3] = {node->planes[3][k], node->planes[4][k], node->planes[5][k]};
+            if (!missesBox(shaft, low, high)) {
+                stack[count++] = node->child[k];
+            }
+        }
+    }
+    return true;
+}
+
+void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFactorBlock* b, float tolerance,
+                      vplBlockers* out)
+{
+    const vplBvh* bvh = g->rayTree;
+    Shaft shaft = {.geometry = g, .a = a, .b = b, .tolerance = tolerance, .out = out};
+    addPlanes(&shaft);
+    out->count = 0;
+    if (bvh == NULL || !(bvh->nodes ? searchTree : searchAll)(&shaft, bvh)) {
+        out->count = -1;
+        return;
+    }
+    out->bvh = (vplBvh){.blocks = out->blocks};
+    for (int first = 0; first < out->count; first += VPL_BVH_WIDTH) {
+        vplTriangleBlock_Fill(&out->blocks[out->bvh.blockCount++], g, out->ids + first,
+                              vplMini(VPL_BVH_WIDTH, out->count - first));
+    }
+}

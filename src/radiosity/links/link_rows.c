@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// Corrects the sums of rows of form factors that links stand for.
+// Based on: Sinkhorn and Knopp, Concerning Nonnegative Matrices and Doubly Stochastic Matrices, 1967, as in
+// factors/row_sums.c.
+#include "base/rng.h"
+#include "math/sampling.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+#include "radiosity/links/links.h"
+#include "radiosity/sides/planes.h"
+#include "radiosity/sides/side.h"
+
+enum {
+    // Per side. A side that sees an opening in 10 % of its hemisphere counts as enclosed in 3 % of all cases.
+    RAYS = 32,
+    STREAM = 0x4d00, // of random numbers; one per ray
+    TASK = 64,       // sides
+    ROUNDS = 10      // always the same number, since a gather over links costs little
+};
+
+// Leaves room for the rounding of scales and sums, so that no sum ends above 1.
+static const double MARGIN = 1 - 0x1p-21;
+
+// ---- enclosed sides: their form factors sum to 1
+
+typedef struct EnclosedTest {
+    const vplPatchSides* sides;
+    const vplLinkDef* def;
+    bool* enclosed;
+    int* rays; // per side
+} EnclosedTest;
+
+static bool hitsSide(const vplPatchSides* sides, const vplRay* ray)
+{
+    vplHit hit;
+    return vplGeometry_ClosestHit(sides->patches->geometry, ray, &hit) &&
+           vplPatchSides_Find(sides, &hit, ray->direction) >= 0;
+}
+
+// Directions are stratified on a grid of 4 x 8 cells over the hemisphere, so that none misses a large
+// opening.
+static bool isEnclosed(const EnclosedTest* t, int i)
+{
+    const vplPatchSide* side = &t->sides->sides[i];
+    for (int k = 0; k < RAYS; k++) {
+        const vplRandom4 r = vplRandomAt(t->def->seed, STREAM + (uint32_t)k, (uint64_t)i);
+        const float u = ((float)(k / 8) + vplUnitFloat(r.v[0])) / 4,
+                    v = ((float)(k % 8) + vplUnitFloat(r.v[1])) / 8;
+        const int cell =
+            vplPatchSide_OpenCell(side, (int)(r.v[2] % (uint32_t)__builtin_popcount(side->open)));
+        const vplVec3 from = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[2]), vplUnitFloat(r.v[3]));
+        const vplHit start = vplPatchSide_HitAt(t->sides, side, from);
+        const vplRay ray =
+            vplGeometry_Leave(t->sides->patches->geometry, &start, vplSampleCosineAround(side->normal, u, v));
+        t->rays[i]++;
+        if (!hitsSide(t->sides, &ray)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void testTask(void* data, int task, int worker)
+{
+    (void)worker;
+    const EnclosedTest* t = data;
+    for (int i = task * TASK; i < vplMini((task + 1) * TASK, t->sides->count); i++) {
+        t->enclosed[i] = isEnclosed(t, i);
+    }
+}
+
+static vplResult findEnclosed(EnclosedTest* t, vplArena* scratch, int64_t* rays)
+{
+    const int count = t->sides->count;
+    t->rays = vplArena_AllocZero(scratch, (size_t)count, sizeof *t->rays);
+    TRY(vplArena_Check(scratch));
+    const vplResult result =
+        vplParallelForProgress(t->sides->context, (count + TASK - 1) / TASK, testTask, t, t->def->progress,
+                               t->def->progressUser, VPL_LINKS_PROGRESS, 1);
+    for (int i = 0; i < count; i++) {
+        *rays += t->rays[i];
+    }
+    return result;
+}
+
+// ---- scales
+
+// One round: moves the sum of each row half of the way to 1; sides that are not enclosed only move if above
+// 1. The last round moves rows above 1 the whole way, which leaves none above, since no scale grows.
+static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, const bool* enclosed, bool last)
+{
+    for (int i = 0; i < count; i++) {
+        const double sum = sums[i][0], scale = (double)tree->scale[i];
+        if (last) {
+            tree->scale[i] = (float)(sum > MARGIN ? scale * MARGIN / sum : scale);
+        } else if (sum > 0) {
+            const double wanted = scale / sqrt(sum);
+            tree->scale[i] = (float)(!enclosed[i] && wanted > 1 ? 1 : wanted);
+        }
+    }
+}
+
+static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const bool* enclosed, float* rowSums)
+{
+    const int count = links->sideCount, rounds = keep ? 0 : ROUNDS;
+    vplPlanes ones = vplPlanes_Alloc(scratch, count);
+    const vplLinkScratch nodes = vplLinkScratch_Alloc(scratch, links);
+    double(*sums)[3] = vplArena_Alloc(scratch, (size_t)count, sizeof *sums);
+    TRY(vplArena_Check(scratch));
+    for (int i = 0; i < count; i++) {
+        ones.c[0][i] = 1;
+        links->tree->scale[i] = 1;
+    }
+    for (int round = 0; round <= rounds; round++) {
+        vplLinks_Gather(links, &ones, &nodes, sums);
+        for (int i = 0; i < count && round == 0; i++) {
+            rowSums[i] = (float)sums[i][0];
+        }
+        if (rounds > 0) {
+            fitScales(links->tree, sums, count, enclosed, round == rounds);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult findAndFit(vplLinks* links, EnclosedTest* test, vplArena* scratch, float* rowSums)
+{
+    const vplRowSums rows = test->def->rowSums;
+    test->enclosed = vplArena_Alloc(scratch, (size_t)links->sideCount, sizeof *test->enclosed);
+    TRY(vplArena_Check(scratch));
+    for (int i = 0; i < links->sideCount; i++) {
+        test->enclosed[i] = rows == VPL_ROW_SUMS_NORMALISE;
+    }
+    if (rows == VPL_ROW_SUMS_USUAL) {
+        TRY(findEnclosed(test, scratch, &links->rays));
+    }
+    return fitRows(links, scratch, rows == VPL_ROW_SUMS_KEEP, test->enclosed, rowSums);
+}
+
+vplResult vplLinks_FitRows(vplLinks* links, const vplPatchSides* sides, const vplLinkDef* def,
+                           float* rowSumsOut)
+{
+    EnclosedTest test = {.sides = sides, .def = def};
+    vplArena* scratch = vplArena_Create(links->context);
+    const vplResult result = findAndFit(links, &test, scratch, rowSumsOut);
+    vplArena_Destroy(scratch);
+    return result;
+}

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// Builds the tree of groups: a group is halved by brightness if that is uneven, else by normals if they
+// differ, else along its longest axis.
+// Based on: Smits, Arvo and Greenberg, A Clustering Algorithm for Radiosity in Complex Environments, SIGGRAPH
+// 1994, 3. Departs: groups are divided by normals as well, so that the cosine term applies to groups, too.
+#include "math/vec.h"
+#include "radiosity/links/links.h"
+
+#include <float.h>
+#include <math.h>
+
+enum {
+    HALVES_DEPTH = 48, // deeper groups are halved by count, which limits the depth to 48 + log2(n)
+    STACK = 128
+};
+
+// Groups whose normals differ by more than this in one component are halved by that component. 0.3 is 17
+// degrees.
+static const float TURNED = 0.3f;
+
+// Emission above this fraction of the expected radiosity is uneven if it differs by a factor of two.
+// Otherwise the light of an area light that is flush with a ceiling would come from the whole ceiling.
+static const double UNEVEN = 0.1;
+
+// Sides of a group lie in one plane if their corners are within this fraction of its radius of it.
+static const double FLAT = 1e-5;
+
+typedef struct Build {
+    const vplPatchSide* sides;
+    struct vplLinkTree* tree;
+    double mean; // expected radiosity, W/m^2; 0: nothing emits
+} Build;
+
+// The keys that groups can be divided by: centre, normal and emission of a side.
+enum { KEYS = 7, NORMAL = 3, EMISSION = 6 };
+
+typedef struct Range {
+    float low[KEYS], high[KEYS];
+} Range;
+
+static float keyOf(const vplPatchSide* side, int k)
+{
+    return k < NORMAL     ? vplComponent(side->incentre, k)
+           : k < EMISSION ? vplComponent(side->normal, k - NORMAL)
+                          : (float)vplRgbMean(side->emission);
+}
+
+static Range rangeOf(const Build* b, const vplLinkNode* node)
+{
+    Range range;
+    for (int k = 0; k < KEYS; k++) {
+        range.low[k] = INFINITY;
+        range.high[k] = -INFINITY;
+        for (int i = 0; i < node->count; i++) {
+            const float key = keyOf(&b->sides[b->tree->order[node->first + i]], k);
+            range.low[k] = key < range.low[k] ? key : range.low[k];
+            range.high[k] = key > range.high[k] ? key : range.high[k];
+        }
+    }
+    return range;
+}
+
+// ---- properties of a node
+
+// Area, brightness, bounds and mean normal.
+static void sumNode(const Build* b, vplLinkNode* node)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double normal[3] = {0}, area = 0, emitted = 0;
+    for (int i = 0; i < node->count; i++) {
+        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
+        area += (double)s->area;
+        emitted += (double)s->area * vplRgbMean(s->emission);
+        for (int axis = 0; axis < 3; axis++) {
+            normal[axis] += (double)s->area * (double)vplComponent(s->normal, axis);
+            for (int k = 0; k < 3; k++) {
+                const float x = vplComponent(s->corners[k], axis);
+                low[axis] = x < low[axis] ? x : low[axis];
+                high[axis] = x > high[axis] ? x : high[axis];
+            }
+        }
+    }
+    node->area = (float)area;
+    node->brightness = emitted > b->mean * area ? (float)(emitted / (b->mean * area)) : 1;
+    node->low = vplVec(low[0], low[1], low[2]);
+    node->high = vplVec(high[0], high[1], high[2]);
+    node->centre = vplVec(0.5f * low[0] + 0.5f * high[0], 0.5f * low[1] + 0.5f * high[1],
+                          0.5f * low[2] + 0.5f * high[2]);
+    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    node->normal = length > 1e-3 * area ? vplVec((float)(normal[0] / length), (float)(normal[1] / length),
+                                                 (float)(normal[2] / length))
+                                        : b->sides[b->tree->order[node->first]].normal;
+}
+
+// Radius, spread of normals and flatness.
+static void measureNode(const Build* b, vplLinkNode* node)
+{
+    const vplPatchSide* firstSide = &b->sides[b->tree->order[node->first]];
+    double radius = 0, cosine = 1, height = 0, turned = 0;
+    for (int i = 0; i < node->count; i++) {
+        const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
+        const double c = (double)vplDot(s->normal, node->normal);
+        cosine = c < cosine ? c : cosine;
+        const double off = (double)vplLength(vplSub(s->normal, firstSide->normal));
+        turned = off > turned ? off : turned;
+        for (int k = 0; k < 3; k++) {
+            const double r = (double)vplLength(vplSub(s->corners[k], node->centre));
+            radius = r > radius ? r : radius;
+            const double h =
+                fabs((double)vplDot(vplSub(s->corners[k], firstSide->corners[0]), firstSide->normal));
+            height = h > height ? h : height;
+        }
+    }
+    cosine = cosine < -1 ? -1 : cosine;
+    node->radius = (float)radius;
+    node->cosSpread = (float)cosine;
+    node->sinSpread = (float)sqrt(1 - cosine * cosine);
+    node->flat = node->count == 1 || (turned <= FLAT && height <= FLAT * radius);
+}
+
+// ---- halving
+
+// Partitions a node's sides, stably: those with a key below `middle` first. Returns how many these are.
+static int divideAt(const Build* b, const vplLinkNode* node, int key, float middle, int* scratch)
+{
+    int* order = b->tree->order + node->first;
+    int before = 0, after = 0;
+    for (int i = 0; i < node->count; i++) {
+        if (keyOf(&b->sides[order[i]], key) < middle) {
+            order[before++] = order[i];
+        } else {
+            scratch[after++] = order[i];
+        }
+    }
+    for (int i = 0; i < after; i++) {
+        order[before + i] = scratch[i];
+    }
+    return before;
+}
+
+// The key with the widest range among three.
+static int longestOf(const Range* range, int first)
+{
+    int best = first;
+    for (int k = first + 1; k < first + 3; k++) {
+        best = range->high[k] - range->low[k] > range->high[best] - range->low[best] ? k : best;
+    }
+    return best;
+}
+
+// How many of the node's sides the first child gets.
+static int halve(const Build* b, const vplLinkNode* node, int depth, int* scratch)
+{
+    const Range range = rangeOf(b, node);
+    const bool uneven =
+        (double)range.high[EMISSION] > UNEVEN * b->mean && range.high[EMISSION] > 2 * range.low[EMISSION];
+    const int turn = longestOf(&range, NORMAL), length = longestOf(&range, 0);
+    const int key = uneven ? EMISSION : range.high[turn] - range.low[turn] > TURNED ? turn : length;
+    const float middle = 0.5f * range.low[key] + 0.5f * range.high[key];
+    const int before = depth < HALVES_DEPTH ? divideAt(b, node, key, middle, scratch) : 0;
+    return before > 0 && before < node->count ? before : node->count / 2;
+}
+
+static void divideAll(const Build* b, int count, int* scratch)
+{
+    struct vplLinkTree* tree = b->tree;
+    struct {
+        int node, depth;
+    } stack[STACK], top;
+    int height = 0;
+    tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = count};
+    tree->nodeCount = 1;
+    stack[height].node = 0;
+    stack[height++].depth = 0;
+    while (height > 0) {
+        top = stack[--height];
+        vplLinkNode* node = &tree->nodes[top.node];
+        sumNode(b, node);
+        measureNode(b, node);
+        if (node->count == 1) {
+            continue;
+        }
+        const int before = halve(b, node, top.depth, scratch);
+        node->children = tree->nodeCount;
+        vplLinkNode* child = &tree->nodes[tree->nodeCount];
+        child[0] = (vplLinkNode){.children = -1, .first = node->first, .count = before};
+        child[1] =
+            (vplLinkNode){.children = -1, .first = node->first + before, .count = node->count - before};
+        tree->nodeCount += 2;
+        for (int k = 1; k >= 0; k--) {
+            stack[height].node = node->children + k;
+            stack[height++].depth = top.depth + 1;
+        }
+    }
+}
+
+// The radiosity of a closed room in which reflectance and light are even.
+static double expectedRadiosity(const vplPatchSides* sides)
+{
+    double emitted = 0, kept = 0, area = 0;
+    for (int i = 0; i < sides->count; i++) {
+        const vplPatchSide* s = &sides->sides[i];
+        emitted += (double)s->area * vplRgbMean(s->emission);
+        kept += (double)s->area * vplRgbMean(s->reflectance);
+        area += (double)s->area;
+    }
+    const double lost = area - kept;
+    return emitted > 0 ? emitted / (lost > 0.1 * area ? lost : 0.1 * area) : 0;
+}
+
+vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct vplLinkTree* tree)
+{
+    vplContext* context = sides->context;
+    const size_t count = (size_t)sides->count, nodes = count > 0 ? 2 * count - 1 : 0;
+    tree->nodes = vplArena_Alloc(arena, nodes, sizeof *tree->nodes);
+    tree->order = vplArena_Alloc(arena, count, sizeof *tree->order);
+    tree->areaUpTo = vplArena_Alloc(arena, count + 1, sizeof *tree->areaUpTo);
+    tree->scale = vplArena_Alloc(arena, count, sizeof *tree->scale);
+    TRY(vplArena_Check(arena));
+    int* scratch = vplAlloc(context, count, sizeof *scratch);
+    if (scratch == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    for (int i = 0; i < sides->count; i++) {
+        tree->order[i] = i;
+    }
+    if (sides->count > 0) {
+        divideAll(&(Build){sides->sides, tree, expectedRadiosity(sides)}, sides->count, scratch);
+    }
+    tree->areaUpTo[0] = 0;
+    for (int i = 0; i < sides->count; i++) {
+        tree->areaUpTo[i + 1] = tree->areaUpTo[i] + (double)sides->sides[tree->order[i]].area;
+    }
+    vplFree(context, scratch);
+    return VPL_SUCCESS;
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// Gathers irradiance at vertices by rays to the sides that it comes from.
+// Based on: Mark Reichert, A Two-Pass Radiosity Method Driven by Lights and Viewer Position, Cornell 1992
+// (the final gather, which he does at pixels).
+#include "base/rng.h"
+#include "math/sampling.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+#include "radiosity/mesh/patch_mesh.h"
+
+enum { CHUNK = 64, MOST_RAYS = 65536, GATHER_STREAM = 0x67617468 };
+
+// Rays start this fraction of the way from the vertex to the centroid of the open cells at it.
+static const float INSET = 0x1p-5f;
+
+typedef struct Gathering {
+    const vplPatchMesh* mesh;
+    const vplVertexGather* def;
+    vplRgb* out;
+    int64_t* cast; // one per task
+} Gathering;
+
+static vplVec3 openCentroid(const vplPatchSide* side)
+{
+    const int open = __builtin_popcount(side->open);
+    vplVec3 sum = {0, 0, 0};
+    for (int k = 0; k < open; k++) {
+        sum = vplAdd(sum, vplPatchSide_CellCentre(side, vplPatchSide_OpenCell(side, k)));
+    }
+    return vplScale(1 / (float)open, sum);
+}
+
+// The start of rays: the vertex, moved towards the sides at it, weighted by their angles. A vertex inside a
+// surface stays in place, one at a wall moves away from it. Returns one of the sides, NULL if there is none.
+static const vplPatchSide* findStart(const vplPatchMesh* mesh, int vertex, int face, vplVec3* startOut)
+{
+    const struct vplPatchesAround* around = mesh->around;
+    const vplVec3 at = mesh->positions[vertex];
+    const vplPatchSide* any = NULL;
+    vplVec3 sum = {0, 0, 0};
+    float total = 0;
+    for (size_t i = around->first[vertex]; i < around->first[vertex + 1]; i++) {
+        const vplPatchAround* a = &around->list[i];
+        if (a->side[face] >= 0) {
+            const float weight = a->angle * (float)a->open[face];
+            any = &mesh->sides->sides[a->side[face]];
+            sum = vplAdd(sum, vplScale(weight, vplSub(openCentroid(any), at)));
+            total += weight;
+        }
+    }
+    *startOut = total > 0 ? vplAdd(at, vplScale(INSET / total, sum)) : at;
+    return any;
+}
+
+static vplRgb gatherAt(const Gathering* g, const vplPatchSide* side, vplVec3 from, uint64_t index)
+{
+    const vplPatchSides* sides = g->mesh->sides;
+    const vplGeometry* geometry = sides->patches->geometry;
+    const vplHit start = vplPatchSide_HitAt(sides, side, from);
+    const vplRandom4 r = vplRandomAt(g->def->seed, GATHER_STREAM, index);
+    const int rays = g->def->rays;
+    double sum[3] = {0, 0, 0};
+    for (int i = 0; i < rays; i++) {
+        const float u = ((float)i + 0.5f) / (float)rays + vplUnitFloat(r.v[0]),
+                    v = vplVanDerCorput((uint32_t)i) + vplUnitFloat(r.v[1]);
+        const vplVec3 way = vplSampleCosineAround(side->normal, u < 1 ? u : u - 1, v < 1 ? v : v - 1);
+        const vplRay ray = vplGeometry_Leave(geometry, &start, way);
+        vplHit hit;
+        const int met =
+            vplGeometry_ClosestHit(geometry, &ray, &hit) ? vplPatchSides_Find(sides, &hit, way) : -1;
+        if (met >= 0) {
+            vplAddRgb(sum, 1, g->def->radiosity[met]);
+        }
+    }
+    return vplDivideRgb(sum, rays);
+}
+
+static void gatherChunk(void* data, int chunk, int worker)
+{
+    (void)worker;
+    const Gathering* g = data;
+    const int end = vplMini((chunk + 1) * CHUNK, g->mesh->vertexCount);
+    for (int i = 2 * chunk * CHUNK; i < 2 * end; i++) {
+        vplVec3 from;
+        const vplPatchSide* side = findStart(g->mesh, i / 2, i % 2, &from);
+        g->out[i] = side != NULL ? gatherAt(g, side, from, (uint64_t)i) : (vplRgb){0, 0, 0};
+        g->cast[chunk] += side != NULL ? g->def->rays : 0;
+    }
+}
+
+vplResult vplPatchMesh_Gather(const vplPatchMesh* mesh, const vplVertexGather* gather,
+                              vplRgb* vertexIrradianceOut, int64_t* raysOut)
+{
+    vplContext* context = mesh->context;
+    const int chunks = (mesh->vertexCount + CHUNK - 1) / CHUNK;
+    if (gather->rays < 1 || gather->rays > MOST_RAYS) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "rays is %d, must be in [1, %d]", gather->rays,
+                       MOST_RAYS);
+    }
+    TRY(vplCheckRgb(context, "vplVertexGather.radiosity", gather->radiosity, (size_t)mesh->sides->count));
+    Gathering g = {mesh, gather, vertexIrradianceOut, vplAllocZero(context, (size_t)chunks, sizeof *g.cast)};
+    if (g.cast == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    const vplResult result = vplParallelForProgress(context, chunks, gatherChunk, &g, gather->progress,
+                                                    gather->progressUser, 0, 1);
+    for (int i = 0; i < chunks && raysOut != NULL; i++) {
+        *raysOut += g.cast[i];
+    }
+    vplFree(context, g.cast);
+    return result;
+}

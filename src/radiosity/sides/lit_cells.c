@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// The open cells of lit sides: those that light reaches.
+#include "geometry/bvh.h"
+#include "geometry/triangle.h"
+#include "math/vec.h"
+#include "radiosity/sides/lit_search.h"
+#include "radiosity/sides/side.h"
+
+enum {
+    LIT_POINTS = 4, // remembered per side
+    GATHERS = 4,    // rays from each sample that sees none of them
+    FEW = VPL_LIT_SAMPLES / 2
+};
+
+_Static_assert((int)VPL_PATCH_CELLS == (int)VPL_RAY_PACKET, "one ray for each cell");
+
+// Whether the lit point is visible from all cells and nothing covers them. Two packets of rays decide that
+// for most sides.
+static bool isWhole(const vplLitSearch* s, int side, int64_t* rays)
+{
+    vplRayPacket down = {.active = 0}, across = {.active = 0};
+    const vplVec3 up = vplScale(s->heights[side / 2], vplLitSearch_Normal(s, side));
+    const int triangle = vplPatches_TriangleOf(s->patches, side / 2);
+    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
+        const vplLitSample sample = {.side = side, .cell = cell};
+        const vplVec3 offset = vplAdd(vplLitSample_OnSide(s, &sample), up);
+        vplRayPacket_Set(&down, cell, &(vplRay){offset, vplNegate(up), {triangle, 1}});
+        vplRayPacket_Set(&across, cell, &(vplRay){offset, vplSub(s->litPoint[side], offset), {0, 0}});
+    }
+    *rays += VPL_PATCH_CELLS;
+    if (vplGeometry_AreOccluded(s->geometry, &down, 1 + VPL_COPLANAR) != 0) {
+        return false;
+    }
+    *rays += VPL_PATCH_CELLS;
+    return vplGeometry_AreOccluded(s->geometry, &across, 1) == 0;
+}
+
+// The search on one side.
+typedef struct CellSearch {
+    const vplLitSearch* search;
+    vplVec3 litPoints[LIT_POINTS]; // more than one where something stands on the side
+    int side, litCount;
+    int64_t* rays;
+} CellSearch;
+
+static bool seesLitPoint(const CellSearch* c, vplVec3 point)
+{
+    for (int i = 0; i < c->litCount; i++) {
+        if (vplLitSearch_IsVisible(c->search, point, c->litPoints[i], c->rays)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// `gather`: also cast rays where none of the lit points is visible.
+static bool isReached(CellSearch* c, int cell, int index, bool gather)
+{
+    vplLitSample sample = {.side = c->side, .cell = cell, .index = index};
+    vplVec3 from;
+    if (!vplLitSample_Offset(c->search, &sample, c->rays)) {
+        return false;
+    }
+    if (seesLitPoint(c, sample.point)) {
+        return true;
+    }
+    if (!gather || !vplLitSample_IsLit(c->search, &sample, GATHERS, c->rays, &from)) {
+        return false;
+    }
+    if (c->litCount < LIT_POINTS) {
+        c->litPoints[c->litCount++] = vplLitSearch_MoveTowards(c->search, c->side / 2, sample.point, from);
+    }
+    return true;
+}
+
+// Tests those of samples first .. first + FEW - 1 of a cell that are not in `reached`, and adds those that
+// are reached.
+static unsigned testSamples(CellSearch* c, int cell, int first, bool gather, unsigned reached)
+{
+    for (int index = first; index < first + FEW; index++) {
+        if (!(reached >> index & 1) && isReached(c, cell, index, gather)) {
+            reached |= 1u << index;
+        }
+    }
+    return reached;
+}
+
+// The cells of which light reaches at least half or, if there are none, those that it reaches at all: a
+// covered point of an open cell gets no light in the equations and would darken the patch. Four samples
+// decide, eight where these disagree; samples that missed are tested again once the side has further lit
+// points.
+static unsigned findOpenCells(CellSearch* c)
+{
+    unsigned half = 0, some = 0, reached[VPL_PATCH_CELLS] = {0};
+    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
+        reached[cell] = testSamples(c, cell, 0, true, 0);
+    }
+    for (int cell = 0; cell < VPL_PATCH_CELLS; cell++) {
+        int tested = FEW;
+        if (c->litCount > 1) {
+            reached[cell] = testSamples(c, cell, 0, false, reached[cell]);
+        }
+        if (reached[cell] != 0 && reached[cell] != (1u << FEW) - 1) {
+            reached[cell] = testSamples(c, cell, FEW, true, reached[cell]);
+            tested = 2 * FEW;
+        }
+        half |= (unsigned)(2 * __builtin_popcount(reached[cell]) >= tested) << cell;
+        some |= (unsigned)(reached[cell] != 0) << cell;
+    }
+    return half != 0 ? half : some;
+}
+
+// A small patch has one cell.
+static bool isSmall(const vplLitSearch* s, int patch)
+{
+    return vplPatches_Area(s->patches, patch) * 32 < s->meanArea;
+}
+
+static void findCells(const vplLitSearch* s, int side, int64_t* rays)
+{
+    if (s->open[side] == 0 || isSmall(s, side / 2) || isWhole(s, side, rays)) {
+        s->nextOpen[side] = s->open[side];
+        return;
+    }
+    CellSearch c = {.search = s, .litPoints = {s->litPoint[side]}, .side = side, .litCount = 1, .rays = rays};
+    s->nextOpen[side] = (uint16_t)findOpenCells(&c);
+}
+
+vplResult vplLitSearch_FindCells(vplLitSearch* s)
+{
+    int added;
+    TRY(vplLitSearch_ForAllSides(s, findCells, (const double[2]){0.7, 1}, &added));
+    uint16_t* cells = s->nextOpen; // a pass keeps a side of which no cell is left, so take its own results
+    s->nextOpen = s->open;
+    s->open = cells;
+    return VPL_SUCCESS;
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// The search for the sides of patches, and their cells, that light can reach: the lit sides and the open
+// cells.
+//
+// All visibility tests run between offset points, which lie a small height above a side. An offset point is
+// lit if a particle comes there, or if nothing blocks the segment to another lit point. Light therefore
+// neither creeps under what stands on a surface nor leaks through a wall whose position is rounded.
+#ifndef VPL_RADIOSITY_LIT_SEARCH_H
+#define VPL_RADIOSITY_LIT_SEARCH_H
+
+#include "base/arena.h"
+
+#include <vpl/radiosity.h>
+
+// Sides are numbered 2 * patch + back here.
+typedef struct vplLitSearch {
+    const vplPatches* patches;
+    const vplGeometry* geometry;
+    const vplPatchSidesDef* def;
+    const vplEmission* emission;
+    float* heights;     // of offset points, per patch, metres
+    uint16_t* open;     // per side: 0: not lit so far; else lit, and in the end its open cells
+    uint16_t* nextOpen; // as found in the current pass
+    vplVec3* litPoint;  // per side: an offset point that is lit; undefined where `open` is 0
+    vplVec3* nextLitPoint;
+    int64_t* taskRays;
+    double meanArea; // of patches
+    int pass;        // selects other random numbers in each pass
+    int64_t rays;
+    vplContext* context;
+} vplLitSearch;
+
+// Patches per task of a pass, and tasks per batch of particles: taskRays has room for either.
+enum { VPL_LIT_TASK_PATCHES = 32, VPL_LIT_PARTICLE_TASKS = 32 };
+
+// Triangles overlap if their distance is at most this fraction of an offset point's height. Rounding decides
+// which of them a ray hits, so the triangle with the lowest index stands for all.
+#define VPL_COPLANAR 0x1p-6f
+
+// ---- the three steps (lit_particles.c, lit_sides.c, lit_cells.c)
+
+// Marks the sides that particles from all light sources hit.
+vplResult vplLitSearch_ShootParticles(vplLitSearch* search);
+
+// Finds lit sides among those that no particle hit.
+vplResult vplLitSearch_FindSides(vplLitSearch* search);
+
+// Finds the open cells of all lit sides.
+vplResult vplLitSearch_FindCells(vplLitSearch* search);
+
+// Runs `examine` for all sides in parallel; progress runs over range[0] .. range[1]. Results take effect
+// after the pass, so the order of tasks does not matter. *newOut: how many sides became lit.
+typedef void vplExamineFcn(const vplLitSearch* search, int side, int64_t* rays);
+vplResult vplLitSearch_ForAllSides(vplLitSearch* search, vplExamineFcn* examine, const double range[2],
+                                   int* newOut);
+
+// ---- rays between offset points (lit_rays.c)
+
+// The unit normal of a side.
+vplVec3 vplLitSearch_Normal(const vplLitSearch* search, int side);
+
+// The offset point above a point of a side. False if another surface is between the two, or if an overlapping
+// triangle has a lower index.
+bool vplLitSearch_Offset(const vplLitSearch* search, int side, vplVec3 point, int64_t* rays,
+                         vplVec3* offsetOut);
+
+// Moves an offset point of a patch by its height towards a point that it sees. An offset point that lies
+// exactly in the plane of a wall, where its side of the wall is undefined, is then on the right side. (At
+// 205,824 patches one such point lit the inside of a block of cornell-area.)
+vplVec3 vplLitSearch_MoveTowards(const vplLitSearch* search, int patch, vplVec3 offset, vplVec3 towards);
+
+bool vplLitSearch_IsVisible(const vplLitSearch* search, vplVec3 a, vplVec3 b, int64_t* rays);
+
+// Where a ray hit a side.
+typedef struct vplLitHit {
+    vplVec3 point;  // the offset point there
+    vplVec3 normal; // of the side
+    int side;       // -1: none
+} vplLitHit;
+
+// False if the ray hits nothing.
+bool vplLitSearch_Trace(const vplLitSearch* search, vplVec3 from, vplVec3 direction, int64_t* rays,
+                        vplLitHit* hitOut);
+
+// Moves a hit to the first of the triangles that overlap there.
+void vplLitSearch_ResolveOverlap(const vplLitSearch* search, vplLitHit* hit, int64_t* rays);
+
+// ---- random points of sides (lit_rays.c)
+
+enum { VPL_LIT_SAMPLES = 8 }; // per cell
+
+// Sample `index`, in [0, VPL_LIT_SAMPLES), of a cell.
+typedef struct vplLitSample {
+    int side, cell, index;
+    vplVec3 point; // the offset point
+} vplLitSample;
+
+// The sample's point on the side: stratified, and clear of the patch's edges, where walls meet.
+vplVec3 vplLitSample_OnSide(const vplLitSearch* search, const vplLitSample* sample);
+
+// Fills sample->point. False as in vplLitSearch_Offset.
+bool vplLitSample_Offset(const vplLitSearch* search, vplLitSample* sample, int64_t* rays);
+
+// Whether light comes to the sample: tests one random point of one light source and `gathers` rays to other
+// sides. *fromOut: where the light comes from.
+bool vplLitSample_IsLit(const vplLitSearch* search, const vplLitSample* sample, int gathers, int64_t* rays,
+                        vplVec3* fromOut);
+
+#endif

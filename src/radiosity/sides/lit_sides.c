@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// Sides that no particle hit: a side is lit if it sees a light source or a lit side.
+#include "base/context.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+#include "radiosity/sides/lit_search.h"
+#include "radiosity/sides/side.h"
+
+enum {
+    QUARTERS = 4, // of a side: one sample in each
+    GATHERS = 4,  // rays from each sample
+    LEAST_PASSES = 4,
+    MOST_PASSES = 16 // one more room behind rooms is found in each
+};
+
+// ---- one side
+
+static void markLit(const vplLitSearch* s, const vplLitSample* sample, vplVec3 from)
+{
+    s->nextOpen[sample->side] = 0xffff;
+    s->nextLitPoint[sample->side] = vplLitSearch_MoveTowards(s, sample->side / 2, sample->point, from);
+}
+
+// Whether a viewpoint sees a side that is not lit so far.
+static void testViewpoints(const vplLitSearch* s, int side, int64_t* rays)
+{
+    const vplVec3 n = vplLitSearch_Normal(s, side);
+    for (int i = 0; i < QUARTERS && s->open[side] == 0; i++) {
+        vplLitSample sample = {.side = side, .cell = 5 * i};
+        if (!vplLitSample_Offset(s, &sample, rays)) {
+            continue;
+        }
+        for (int k = 0; k < s->def->viewpointCount && s->nextOpen[side] == 0; k++) {
+            const vplVec3 viewpoint = s->def->viewpoints[k];
+            if (vplDot(vplSub(viewpoint, sample.point), n) > 0 &&
+                vplLitSearch_IsVisible(s, sample.point, viewpoint, rays)) {
+                markLit(s, &sample, viewpoint);
+            }
+        }
+    }
+}
+
+// Whether all geometry lies behind a side, as for the outsides of most walls, half of all sides.
+static bool facesOutside(const vplLitSearch* s, int side)
+{
+    const vplGeometry* g = s->geometry;
+    const vplVec3 n = vplLitSearch_Normal(s, side), low = g->boundsMin, high = g->boundsMax;
+    const vplVec3 farthest =
+        vplVec(n.x > 0 ? high.x : low.x, n.y > 0 ? high.y : low.y, n.z > 0 ? high.z : low.z);
+    vplVec3 corners[3];
+    vplSide_GetCorners(s->patches, side / 2, side & 1, corners);
+    return vplDot(vplSub(farthest, corners[0]), n) < s->heights[side / 2];
+}
+
+// Whether light comes to a side that is not lit so far. Each pass takes other samples.
+static void testLight(const vplLitSearch* s, int side, int64_t* rays)
+{
+    for (int i = 0; i < QUARTERS && s->open[side] == 0 && s->nextOpen[side] == 0; i++) {
+        vplLitSample sample = {.side = side, .cell = 4 * i + s->pass % 4};
+        vplVec3 from;
+        if (vplLitSample_Offset(s, &sample, rays) &&
+            vplLitSample_IsLit(s, &sample, facesOutside(s, side) ? 0 : GATHERS, rays, &from)) {
+            markLit(s, &sample, from);
+        }
+    }
+}
+
+// ---- all sides
+
+typedef struct Pass {
+    vplLitSearch* search;
+    vplExamineFcn* examine;
+} Pass;
+
+static void examineTask(void* data, int task, int worker)
+{
+    (void)worker;
+    const Pass* pass = data;
+    vplLitSearch* s = pass->search;
+    const int end = vplMini((task + 1) * VPL_LIT_TASK_PATCHES, s->patches->patchCount);
+    int64_t rays = 0;
+    for (int side = 2 * task * VPL_LIT_TASK_PATCHES; side < 2 * end; side++) {
+        pass->examine(s, side, &rays);
+    }
+    s->taskRays[task] = rays;
+}
+
+// Makes the results of a pass effective. Returns how many sides became lit.
+static int adopt(vplLitSearch* s, int tasks)
+{
+    int added = 0;
+    for (int side = 0; side < 2 * s->patches->patchCount; side++) {
+        if (s->nextOpen[side] != 0) {
+            added += s->open[side] == 0;
+            s->litPoint[side] = s->open[side] == 0 ? s->nextLitPoint[side] : s->litPoint[side];
+            s->open[side] = s->nextOpen[side];
+        }
+    }
+    for (int i = 0; i < tasks; i++) {
+        s->rays += s->taskRays[i];
+    }
+    return added;
+}
+
+vplResult vplLitSearch_ForAllSides(vplLitSearch* s, vplExamineFcn* examine, const double range[2],
+                                   int* newOut)
+{
+    const int tasks = (s->patches->patchCount + VPL_LIT_TASK_PATCHES - 1) / VPL_LIT_TASK_PATCHES;
+    Pass pass = {s, examine};
+    TRY(vplParallelForProgress(s->context, tasks, examineTask, &pass, s->def->progress, s->def->progressUser,
+                               range[0], range[1]));
+    *newOut = adopt(s, tasks);
+    s->pass++;
+    return VPL_SUCCESS;
+}
+
+static int countUnlit(const vplLitSearch* s)
+{
+    int unlit = 0;
+    for (int side = 0; side < 2 * s->patches->patchCount; side++) {
+        unlit += s->open[side] == 0;
+    }
+    return unlit;
+}
+
+// At least four passes, which cast 64 rays from each side that stays unlit; 16 rays missed one patch in three
+// thousand on the front of a block in Hemgren's box. Further passes follow while each finds at least one in
+// 64 unlit sides, as in rooms behind rooms; slivers would go on forever.
+vplResult vplLitSearch_FindSides(vplLitSearch* s)
+{
+    int added = 1;
+    if (s->def->viewpointCount > 0) {
+        TRY(vplLitSearch_ForAllSides(s, testViewpoints, (const double[2]){0.3, 0.4}, &added));
+    }
+    for (int i = 0; i < MOST_PASSES && (i < LEAST_PASSES || added * INT64_C(64) > countUnlit(s)); i++) {
+        const double range[2] = {0.4 + 0.3 * i / MOST_PASSES, 0.4 + 0.3 * (i + 1) / MOST_PASSES};
+        TRY(vplLitSearch_ForAllSides(s, testLight, range, &added));
+    }
+    return VPL_SUCCESS;
+}

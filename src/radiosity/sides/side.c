@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "radiosity/sides/side.h"
+
+#include "base/context.h"
+#include "geometry/triangle.h"
+#include "math/vec.h"
+
+#include <float.h>
+
+void vplSide_GetCorners(const vplPatches* patches, int patch, bool back, vplVec3 cornersOut[3])
+{
+    const uint32_t* corners = patches->nodes[patches->patches[patch]].corners;
+    for (int k = 0; k < 3; k++) {
+        cornersOut[k] = patches->positions[corners[back ? (3 - k) % 3 : k]];
+    }
+}
+
+// ---- cells
+
+// Turns barycentrics of a part into those of the whole triangle.
+static inline void fromPart(int part, float w[3])
+{
+    for (int k = 0; k < 3; k++) {
+        w[k] = part == 3 ? 0.5f * (1 - w[k]) : 0.5f * (w[k] + (k == part ? 1.0f : 0.0f));
+    }
+}
+
+// Source: Heitz, A Low-Distortion Map Between Triangle and Square, 2019.
+vplVec3 vplCell_Point(const vplVec3 corners[3], int cell, float u, float v)
+{
+    float w[3];
+    w[1] = v > u ? 0.5f * u : u - 0.5f * v;
+    w[2] = v > u ? v - 0.5f * u : 0.5f * v;
+    w[0] = 1 - w[1] - w[2];
+    fromPart(cell & 3, w);
+    fromPart(cell >> 2, w);
+    return vplAdd(vplScale(w[0], corners[0]), vplAdd(vplScale(w[1], corners[1]), vplScale(w[2], corners[2])));
+}
+
+vplVec3 vplPatchSide_SampleCell(const vplPatchSide* side, int k, float u, float v)
+{
+    return vplCell_Point(side->corners, k, u, v);
+}
+
+vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k)
+{
+    const float u = 2.0f / 3; // both give barycentrics of 1/3
+    return vplCell_Point(side->corners, k, u, u);
+}
+
+// Returns the part that barycentrics lie in and turns them into those of the part.
+static int toPart(double w[3])
+{
+    const int part = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
+    for (int k = 0; k < 3; k++) {
+        w[k] = part == 3 ? 1 - 2 * w[k] : 2 * w[k] - (k == part);
+    }
+    return part;
+}
+
+int vplCell_Find(const vplVec3 corners[3], vplVec3 point)
+{
+    double w[3];
+    vplTriangle_Barycentrics(corners, point, w);
+    const int part = toPart(w);
+    return 4 * part + toPart(w);
+}
+
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
+{
+    if (side->open == (1 << VPL_PATCH_CELLS) - 1) { // most sides
+        return k;
+    }
+    unsigned open = side->open;
+    for (; k > 0; k--) {
+        open &= open - 1;
+    }
+    return __builtin_ctz(open);
+}
+
+// ---- rays
+
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
+{
+    const vplPatches* patches = sides->patches;
+    const vplGeometry* g = patches->geometry;
+    const int triangle = vplPatches_TriangleOf(patches, side->patch);
+    return (vplHit){.object = g->owners[triangle],
+                    .face = vplGeometry_FaceOf(g, triangle),
+                    .triangle = triangle,
+                    .position = at,
+                    .normal = g->normals[triangle]};
+}
+
+int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction)
+{
+    const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
+    return patch < 0 ? -1 : vplSideOf(sides, patch, vplDot(direction, hit->normal) > 0);
+}
+
+// ---- values
+
+vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side)
+{
+    if (side >= 0) {
+        return sides->sides[side].reflectance;
+    }
+    const vplGeometry* g = sides->patches->geometry;
+    return g->materials[g->triangleMaterials[vplPatches_TriangleOf(sides->patches, patch)]].diffuse;
+}
+
+float vplClampToFloat(double x)
+{
+    return x > (double)FLT_MAX ? FLT_MAX : x < -(double)FLT_MAX ? -FLT_MAX : (float)x;
+}
+
+vplResult vplCheckRgb(const vplContext* context, const char* name, const vplRgb* values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const vplRgb v = values[i];
+        if (!(isfinite(v.r) && isfinite(v.g) && isfinite(v.b))) {
+            return vplFail(context, VPL_INVALID_ARGUMENT, "%s[%zu] is (%g, %g, %g), must be finite", name, i,
+                           (double)v.r, (double)v.g, (double)v.b);
+        }
+    }
+    return VPL_SUCCESS;
+}

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// One side of a patch: its cells, its corners, and rays that leave or hit it.
+//
+// Cell 4 a + b of a triangle is part b of its part a. Parts 0, 1 and 2 of a triangle are those at its
+// corners, part 3 is the middle one.
+#ifndef VPL_RADIOSITY_SIDE_H
+#define VPL_RADIOSITY_SIDE_H
+
+#include <vpl/radiosity.h>
+
+// Index in sides->sides of a patch's front (0) or back (1); -1: light does not reach it.
+static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
+{
+    return sides->ofPatch[2 * (size_t)patch + (size_t)face];
+}
+
+// The corners of a patch, counter-clockwise seen from one of its sides.
+void vplSide_GetCorners(const vplPatches* patches, int patch, bool back, vplVec3 cornersOut[3]);
+
+// A point of a cell of a triangle, uniform over it for u, v uniform in [0, 1).
+vplVec3 vplCell_Point(const vplVec3 corners[3], int cell, float u, float v);
+
+// The midpoint of cell k.
+vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k);
+
+// The cell that a point of a triangle lies in, or nearly.
+int vplCell_Find(const vplVec3 corners[3], vplVec3 point);
+
+// The k-th open cell.
+int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
+
+// The point `at` of a side as a hit, from which rays leave.
+vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
+
+// The side that a ray in `direction` hits; -1: one that light does not reach.
+int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction);
+
+// The reflectance of a patch. `side`: the patch's side, or -1.
+vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side);
+
+// sum += weight * value, per channel.
+static inline void vplAddRgb(double sum[3], double weight, vplRgb value)
+{
+    sum[0] += weight * (double)value.r;
+    sum[1] += weight * (double)value.g;
+    sum[2] += weight * (double)value.b;
+}
+
+static inline vplRgb vplDivideRgb(const double sum[3], double by)
+{
+    return (vplRgb){(float)(sum[0] / by), (float)(sum[1] / by), (float)(sum[2] / by)};
+}
+
+// x, clamped to the range of float.
+float vplClampToFloat(double x);
+
+// VPL_INVALID_ARGUMENT unless all values are finite. The message begins with "<name>[<index>] is".
+vplResult vplCheckRgb(const vplContext* context, const char* name, const vplRgb* values, size_t count);
+
+#endif

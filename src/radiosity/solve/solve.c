@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// Solves B = E + rho F B: sweeps until the solution converges or is found to diverge.
+#include "radiosity/solve/solve.h"
+
+#include "radiosity/sides/side.h"
+
+#include <math.h>
+
+enum { SOLVE_COOKIE = 0x56504cb5 };
+
+// The spectral radius is computed after this many consecutive sweeps with growing changes. The largest change
+// may grow for a while even if there is a solution, as light reaches a dark corner.
+enum { GROWING = 4 };
+
+// The spectral radius of a closed white room is 1 up to rounding. Its radiosities grow linearly with the
+// sweeps, which is no divergence.
+static const double DIVERGES = 1 + 1e-4;
+
+vplSolveDef vplDefaultSolveDef(void)
+{
+    return (vplSolveDef){.solver = VPL_SOLVER_GAUSS_SEIDEL,
+                         .iterations = 100,
+                         .residual = 1e-4,
+                         .spectrum = true,
+                         .cookie = SOLVE_COOKIE};
+}
+
+// ---- checks
+
+static vplResult checkValues(const vplTransport* t, const vplRgb* values, const char* name)
+{
+    return vplCheckRgb(t->sides->context, name, values, (size_t)t->sides->count);
+}
+
+static vplResult checkDef(const vplTransport* t, const vplSolveDef* def)
+{
+    vplContext* context = t->sides->context;
+    if (def->cookie != SOLVE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef was not made by vplDefaultSolveDef");
+    }
+    if ((int)def->solver < 0 || def->solver > VPL_SOLVER_SHOOTING) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef.solver is %d, must be a vplSolver",
+                       (int)def->solver);
+    }
+    if (def->iterations < 0 || def->iterations > VPL_MAX_SWEEPS) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef.iterations is %d, must be in [0, %d]",
+                       def->iterations, (int)VPL_MAX_SWEEPS);
+    }
+    if (!(def->residual >= 0 && def->residual <= 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplSolveDef.residual is %g, must be in [0, 1]",
+                       def->residual);
+    }
+    return vplTransport_Check(t);
+}
+
+// ---- sweeps
+
+// A solution in progress.
+typedef struct Solution {
+    vplSolve solve;
+    vplPlanes scratch;
+    vplSolveStats stats;
+    bool hasSpectrum; // the stats have their spectral radius and sums of rows
+} Solution;
+
+static vplResult failDiverging(const Solution* s)
+{
+    vplContext* context = s->solve.exchange.context;
+    if (s->stats.spectralRadius <= DIVERGES) {
+        return vplFail(context, VPL_LIMIT,
+                       "after %d sweeps a radiosity is beyond the range of float; dim what emits",
+                       s->stats.iterations);
+    }
+    return vplFail(
+        context, VPL_LIMIT,
+        "radiosity diverges: after %d sweeps the largest is %g W/m^2, and grows; the spectral radius "
+        "of reflectance times form factors is %.4g, must be below 1; clamp the sums of rows "
+        "(--row-sums clamp) or take better form factors (--form-factors monte-carlo)",
+        s->stats.iterations, s->solve.largest, s->stats.spectralRadius);
+}
+
+static void findSpectrum(Solution* s)
+{
+    if (!s->hasSpectrum) {
+        vplFindSpectrum(&s->solve.exchange, &s->scratch, &s->stats);
+        s->hasSpectrum = true;
+    }
+}
+
+static vplResult sweepAll(Solution* s)
+{
+    vplSolve* solve = &s->solve;
+    const vplSolveDef* def = solve->def;
+    double last = INFINITY;
+    int growing = 0;
+    bool done = false;
+    for (int i = 0; i < def->iterations && !done; i++) {
+        if (def->progress != NULL && !def->progress(def->progressUser, (double)i / def->iterations)) {
+            return VPL_CANCELLED;
+        }
+        vplSolve_Sweep(solve);
+        s->stats.iterations = i + 1;
+        s->stats.residual = solve->largest > 0 ? solve->change / solve->largest : 0;
+        done = solve->change <= def->residual * solve->largest;
+        growing = solve->change > last ? growing + 1 : 0;
+        last = solve->change;
+        if (!solve->finite || growing == GROWING) {
+            findSpectrum(s);
+        }
+        if (!solve->finite || (growing >= GROWING && s->stats.spectralRadius > DIVERGES)) {
+            return failDiverging(s);
+        }
+    }
+    if (def->spectrum) {
+        findSpectrum(s);
+    }
+    if (growing > 0 && s->hasSpectrum && s->stats.spectralRadius > DIVERGES) {
+        return failDiverging(s);
+    }
+    if (!done && !def->continues && def->iterations > 0 && def->residual > 0) {
+        vplLog(solve->exchange.context, VPL_LOG_WARNING,
+               "radiosity ended after %d sweeps with a residual of %.3g, not below %g", s->stats.iterations,
+               s->stats.residual, def->residual);
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- the whole solution
+
+static vplResult reserve(vplArena* arena, Solution* s)
+{
+    const int count = s->solve.exchange.count;
+    s->solve.source = vplPlanes_Alloc(arena, count);
+    s->solve.radiosity = vplPlanes_Alloc(arena, count);
+    s->scratch = vplPlanes_Alloc(arena, count);
+    if (s->solve.solver == VPL_SOLVER_SHOOTING) {
+        s->solve.shot = vplPlanes_Alloc(arena, count);
+        s->solve.unshot = vplPlanes_Alloc(arena, count);
+        s->solve.gain = vplPlanes_Alloc(arena, count);
+        s->solve.area = vplArena_AllocZero(arena, vplPaddedSides(count), sizeof *s->solve.area);
+    }
+    return vplArena_Check(arena);
+}
+
+static vplResult solveWith(vplArena* arena, const vplTransport* transport, Solution* s, const vplRgb* source,
+                           vplRgb* radiosity)
+{
+    vplSolve* solve = &s->solve;
+    TRY(vplExchange_Open(arena, transport, &solve->exchange));
+    TRY(reserve(arena, s));
+    vplPlanes_Read(&solve->source, source, solve->exchange.count);
+    vplPlanes_Read(&solve->radiosity, radiosity, solve->exchange.count);
+    if (solve->solver == VPL_SOLVER_SHOOTING) {
+        vplSolve_BeginShooting(solve);
+    }
+    TRY(sweepAll(s));
+    vplPlanes_Write(&solve->radiosity, solve->exchange.count, radiosity);
+    return VPL_SUCCESS;
+}
+
+vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* def, const vplRgb* source,
+                            vplRgb* radiosity, vplSolveStats* statsOut)
+{
+    TRY(checkDef(transport, def));
+    TRY(checkValues(transport, source, "source"));
+    TRY(checkValues(transport, radiosity, "radiosity"));
+    const vplSolver solver = transport->factors != NULL ? def->solver : VPL_SOLVER_JACOBI;
+    Solution s = {.solve = {.def = def, .solver = solver}, .stats = {.solver = solver}};
+    vplArena* arena = vplArena_Create(transport->sides->context);
+    const vplResult result = solveWith(arena, transport, &s, source, radiosity);
+    vplArena_Destroy(arena);
+    if (result == VPL_SUCCESS && statsOut != NULL) {
+        *statsOut = s.stats;
+    }
+    return result;
+}
+
+// ---- F B alone
+
+// Opens an exchange and gathers: its sums are F times radiosity.
+static vplResult gather(vplArena* scratch, const vplTransport* transport, const vplRgb* radiosity,
+                        vplExchange* exchange)
+{
+    TRY(vplExchange_Open(scratch, transport, exchange));
+    vplPlanes planes = vplPlanes_Alloc(scratch, exchange->count);
+    TRY(vplArena_Check(scratch));
+    vplPlanes_Read(&planes, radiosity, exchange->count);
+    vplExchange_Gather(exchange, &planes);
+    return VPL_SUCCESS;
+}
+
+vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radiosity, vplRgb* irradianceOut)
+{
+    TRY(vplTransport_Check(transport));
+    TRY(checkValues(transport, radiosity, "radiosity"));
+    vplExchange e = {.count = 0};
+    vplArena* scratch = vplArena_Create(transport->sides->context);
+    const vplResult result = gather(scratch, transport, radiosity, &e);
+    for (int i = 0; i < e.count && result == VPL_SUCCESS; i++) {
+        irradianceOut[i] = (vplRgb){vplClampToFloat(e.sums[i][0]), vplClampToFloat(e.sums[i][1]),
+                                    vplClampToFloat(e.sums[i][2])};
+    }
+    vplArena_Destroy(scratch);
+    return result;
+}
+
+vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
+                               vplRgb* residualOut)
+{
+    TRY(vplTransport_Check(transport));
+    TRY(checkValues(transport, source, "source"));
+    TRY(checkValues(transport, radiosity, "radiosity"));
+    vplExchange e = {.count = 0};
+    vplArena* scratch = vplArena_Create(transport->sides->context);
+    const vplResult result = gather(scratch, transport, radiosity, &e);
+    for (int i = 0; i < e.count && result == VPL_SUCCESS; i++) {
+        const double r = (double)e.reflectance.c[0][i] * e.sums[i][0];
+        const double g = (double)e.reflectance.c[1][i] * e.sums[i][1];
+        const double b = (double)e.reflectance.c[2][i] * e.sums[i][2];
+        residualOut[i] = (vplRgb){vplClampToFloat((double)source[i].r + r - (double)radiosity[i].r),
+                                  vplClampToFloat((double)source[i].g + g - (double)radiosity[i].g),
+                                  vplClampToFloat((double)source[i].b + b - (double)radiosity[i].b)};
+    }
+    vplArena_Destroy(scratch);
+    return result;
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The exchange of light, F times a vector, by rows of form factors or by links; and the sweeps of solvers.
+#ifndef VPL_RADIOSITY_SOLVE_H
+#define VPL_RADIOSITY_SOLVE_H
+
+#include "radiosity/links/links.h"
+#include "radiosity/sides/planes.h"
+
+// ---- the exchange (exchange.c)
+
+typedef struct vplExchange {
+    const vplTransport* transport;
+    vplContext* context;
+    const vplRadiosityKernels* kernels;
+    int count;
+    vplPlanes reflectance;
+    double (*sums)[3];    // results of the last vplExchange_Gather
+    vplLinkScratch nodes; // for links
+} vplExchange;
+
+// VPL_INVALID_ARGUMENT unless the transport has either factors or links, for as many sides as it has.
+vplResult vplTransport_Check(const vplTransport* transport);
+
+// Allocates from `scratch`.
+vplResult vplExchange_Open(vplArena* scratch, const vplTransport* transport, vplExchange* exchangeOut);
+
+// sums = F x: for all sides or, with form factors, for the sides in [first, end).
+void vplExchange_Gather(vplExchange* exchange, const vplPlanes* x);
+void vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first, int end);
+
+// Fills the spectral radius and the sums of rows. Overwrites `x`.
+void vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats);
+
+// ---- solvers (sweep.c)
+
+typedef struct vplSolve {
+    vplExchange exchange;
+    const vplSolveDef* def;
+    vplSolver solver;
+    vplPlanes source, radiosity;
+    vplPlanes shot, unshot, gain; // shooting: shot + unshot is the radiosity
+    float* area;                  // shooting
+    int next;                     // shooting: the side that shoots next; -1: none
+    double change, largest;       // of the last sweep: the largest change and the largest radiosity, W/m^2
+    bool finite;                  // all radiosities are in the range of float
+} vplSolve;
+
+// Prepares the first sweep of shooting.
+void vplSolve_BeginShooting(vplSolve* solve);
+
+void vplSolve_Sweep(vplSolve* solve);
+
+#endif
