@@ -170,6 +170,21 @@ bool isSureAt(const ShadowMap* m, vplVec3 p, vplVec3 n, bool dark)
                                     : isSureReflective(m->geometry, m->reflective, p, n, dark);
 }
 
+bool holdsRay(const vplGeometry* g, const vplVec3 from[3], vplVec3 d, float stored)
+{
+    for (int i = 0; i < 9; i++) {
+        const float a = 2e-6f * (float)(i % 3 - 1), b = 2e-6f * (float)(i / 3 - 1);
+        const vplVec3 beside = vplAdd(d, vplAdd(vplScale(a, from[1]), vplScale(b, from[2])));
+        const vplRay ray = {from[0], i == 4 ? d : beside, {0, 0}};
+        vplHit hit;
+        const float wanted = vplGeometry_ClosestHit(g, &ray, &hit) ? 1 / hit.t : 0;
+        if (fabsf(stored - wanted) <= 1e-4f * wanted) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static size_t square(int size)
 {
     return (size_t)size * (size_t)size;

@@ -50,6 +50,10 @@ bool isInView(const ShadowMap* map, vplVec3 point);
 // Whether the rays around the one to the point all say `dark`, so that the map must say the same.
 bool isSureAt(const ShadowMap* map, vplVec3 point, vplVec3 normal, bool dark);
 
+// Whether a ray from position along d (or one a hair beside it, to the right or up: edges go to either side) meets something
+// at 1 / stored times d; 0: nothing.
+bool holdsRay(const vplGeometry* g, const vplVec3 positionRightUp[3], vplVec3 d, float stored);
+
 // Of all texels.
 uint64_t hashMap(const ShadowMap* map);
 

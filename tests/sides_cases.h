@@ -3,7 +3,7 @@
 #ifndef VPL_TESTS_SIDES_CASES_H
 #define VPL_TESTS_SIDES_CASES_H
 
-#include "patch_model.h"
+#include "patch_support.h"
 
 #include "base/hash.h"
 #include "math/vec.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Irradiance at the vertices of patches, gathered by rays.
-#include "patch_model.h"
+#include "patch_support.h"
 
 #include "base/hash.h"
 #include "math/vec.h"

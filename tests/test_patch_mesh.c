@@ -58,7 +58,7 @@ TEST_ALONE(HangingVerticesAreThoseOfTheTable)
     Table t = loadTable("subdivision_mesh.csv");
     for (int row = 0; row < t.rows; row++) {
         vplContext* context = openTestContext(2);
-        const vplGeometry* g = openTestModel(context);
+        const vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
         vplPatches* patches = openPatches(g, 125, row);
         vplPatchMesh* m = meshOf(openSides(patches, frontsOpen));
         const int hanging = (int)number(&t, row, "hanging_vertices");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where more patches are wanted: what vplFindPatchPriority says, and that following it pays.
-#include "patch_model.h"
+#include "patch_support.h"
 
 #include "math/vec.h"
 

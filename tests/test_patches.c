@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Triangles bisected at their longest edges: tests/data/subdivision_counts.csv and subdivision_mesh.csv, X093, X097 to X099.
-#include "patch_model.h"
+#include "patch_support.h"
 
 #include "base/hash.h"
 #include "math/scalar.h"
