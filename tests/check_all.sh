@@ -5,9 +5,10 @@
 jobs=$(nproc)
 RUNNER=
 # What one thread can say of arithmetic; of all else golden pictures do.
-ARITHMETIC="bench clusters drawPatches emission exr gather geometry hemiMaps hits image lights math metrics obj objParts
-    objScene packets paraboloids patchMesh patchPriority ply raster rasterTruth rays rsm scene sceneChecks secondBounce
-    triangleFactors visibility -Threads -Everywhere -ChoicesDoNotDepend -AHostsOwnScheduler"
+ARITHMETIC="bench clusters cluster_results draw_patches emission exr gather geometry hemi_maps hits image lights
+    math metrics regions obj obj_parts obj_scene packets paraboloids patch_mesh patch_priority ply raster
+    raster_truth rays rsm scene scene_checks shadow_maps second_bounce triangle_factors point_factors visibility
+    -Threads -Everywhere -ChoicesDoNotDepend -AHostsOwnScheduler"
 export OMP_WAIT_POLICY=passive # configurations are tested side by side: threads that wait must not spin
 
 # check NAME: the tests of a configuration that was built.

@@ -1,84 +1,32 @@
 // SPDX-License-Identifier: MIT
-// Runs all suites; `vpl-tests NAME` runs the suite NAME and the tests whose names contain NAME, `vpl-tests -memory
-// -Host` all but the suite memory and the tests whose names contain Host. --quick leaves out slow tests, --times says what
-// processor time each takes. Ends with "N passed, N failed".
+// Runs all tests; `vpl-tests NAME` runs the suite NAME (the tests of test_NAME.c) and the tests whose names contain NAME,
+// `vpl-tests -memory -Host` all but the suite memory and the tests whose names contain Host. --quick leaves out slow tests,
+// --times prints the processor time of each. Ends with "N passed, N failed".
 #include "test.h"
 
-#include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-// One line per test file.
-// clang-format off
-#define ALL_SUITES(X) \
-    X(arena) \
-    X(bench) \
-    X(bounds) \
-    X(chooseShadows) \
-    X(clusterShadows) \
-    X(clusters) \
-    X(compensation) \
-    X(drawPatches) \
-    X(emission) \
-    X(emitters) \
-    X(exr) \
-    X(formFactors) \
-    X(frames) \
-    X(gather) \
-    X(geometry) \
-    X(hemiMaps) \
-    X(hits) \
-    X(image) \
-    X(interleaved) \
-    X(keller) \
-    X(lightcuts) \
-    X(lights) \
-    X(links) \
-    X(math) \
-    X(memory) \
-    X(metrics) \
-    X(obj) \
-    X(objParts) \
-    X(objScene) \
-    X(packets) \
-    X(paraboloids) \
-    X(passes) \
-    X(patchMesh) \
-    X(patchSides) \
-    X(patchPriority) \
-    X(patches) \
-    X(path) \
-    X(placement) \
-    X(ply) \
-    X(radiosity) \
-    X(radiositySolve) \
-    X(raster) \
-    X(rasterTruth) \
-    X(rays) \
-    X(render) \
-    X(renderer) \
-    X(rsm) \
-    X(rsmLights) \
-    X(rsmShadow) \
-    X(scene) \
-    X(sceneChecks) \
-    X(secondBounce) \
-    X(shadeOutputs) \
-    X(shading) \
-    X(ssvp) \
-    X(tradeoff) \
-    X(triangleFactors) \
-    X(visibility)
-// clang-format on
+static Test *first, *last;
+static int testCount;
 
-#define DECLARE(name) extern const Suite name##Suite;
-#define LIST(name)    &name##Suite,
-ALL_SUITES(DECLARE)
+// Called before main, file by file.
+void registerTest(Test* test)
+{
+    *(last != NULL ? &last->next : &first) = test;
+    last = test;
+    testCount++;
+}
 
-char testIsSlow;
+// "memory" of "tests/test_memory.c".
+static const char* suiteOf(const Test* test)
+{
+    static char suite[64];
+    snprintf(suite, sizeof suite, "%s", strstr(test->file, "test_") + strlen("test_"));
+    suite[strlen(suite) - strlen(".c")] = 0;
+    return suite;
+}
 
-// Takes an option out of the words.
 static bool takeOption(int* count, char** words, const char* option)
 {
     for (int i = 1; i < *count; i++) {
@@ -92,13 +40,13 @@ static bool takeOption(int* count, char** words, const char* option)
 }
 
 // Words name suites, or parts of the names of tests. "-word" excludes; other words, if any, include.
-static bool isWanted(int count, char** words, const char* suite, const char* test)
+static bool isWanted(int count, char** words, const Test* test)
 {
     bool any = false, included = false;
     for (int i = 1; i < count; i++) {
         const bool minus = words[i][0] == '-';
         const char* word = words[i] + minus;
-        const bool hit = strcmp(word, suite) == 0 || strstr(test, word) != NULL;
+        const bool hit = strcmp(word, suiteOf(test)) == 0 || strstr(test->name, word) != NULL;
         if (minus && hit) {
             return false;
         }
@@ -108,13 +56,26 @@ static bool isWanted(int count, char** words, const char* suite, const char* tes
     return included || !any;
 }
 
+static void runTest(void** state)
+{
+    const Test* test = *state;
+    if (test->runAlone != NULL) {
+        test->runAlone();
+        return;
+    }
+    vplContext* context = openTestContext(test->workers);
+    test->run(context);
+    closeTestContext(context);
+}
+
+// Runs `count` tests of one suite. Returns how many failed.
 static size_t run(const char* suite, const struct CMUnitTest* tests, size_t count)
 {
     const int bad = count > 0 ? _cmocka_run_group_tests(suite, tests, count, NULL, NULL) : 0;
     return bad < 0 ? count : (size_t)bad;
 }
 
-// One by one: cmocka knows how long a group takes at most.
+// One by one: cmocka knows only how long a group takes.
 static size_t runTimed(const char* suite, const struct CMUnitTest* tests, size_t count)
 {
     size_t bad = 0;
@@ -128,25 +89,22 @@ static size_t runTimed(const char* suite, const struct CMUnitTest* tests, size_t
 
 int main(int count, char** words)
 {
-    static const Suite* const suites[] = {ALL_SUITES(LIST)};
     const bool timed = takeOption(&count, words, "--times"), quick = takeOption(&count, words, "--quick");
+    struct CMUnitTest* wanted = malloc((size_t)testCount * sizeof *wanted);
     size_t passed = 0, failed = 0;
-    for (size_t i = 0; i < sizeof suites / sizeof *suites; i++) {
-        const Suite* suite = suites[i];
-        struct CMUnitTest wanted[128];
+    for (Test* test = first; test != NULL;) {
+        const Test* head = test;
         size_t n = 0;
-        assert(suite->count <= sizeof wanted / sizeof *wanted);
-        for (size_t k = 0; k < suite->count; k++) {
-            const struct CMUnitTest* test = &suite->tests[k];
-            if (isWanted(count, words, suite->name, test->name) &&
-                !(quick && test->initial_state == &testIsSlow)) {
-                wanted[n++] = *test;
+        for (; test != NULL && strcmp(test->file, head->file) == 0; test = test->next) {
+            if (isWanted(count, words, test) && !(quick && test->slow)) {
+                wanted[n++] = (struct CMUnitTest){test->name, runTest, NULL, NULL, test};
             }
         }
-        const size_t wrong = (timed ? runTimed : run)(suite->name, wanted, n);
+        const size_t wrong = (timed ? runTimed : run)(suiteOf(head), wanted, n);
         failed += wrong;
         passed += n - wrong;
     }
+    free(wanted);
     printf("%zu passed, %zu failed\n", passed, failed);
     return failed > 0;
 }

@@ -6,18 +6,54 @@
 
 #include <stdlib.h>
 
-vplGeometry* openTestModel(vplContext* context)
+vplGeometry* geometryOf(vplContext* context, const Shape* shape, float rho, float emission)
+{
+    vplScene* scene;
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = (vplRgb){rho, rho, rho};
+    material.emission = (vplRgb){emission, emission, emission};
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    assert_int_equal(vplScene_AddMaterial(scene, &material, NULL), VPL_SUCCESS);
+    addShape(scene, shape, false, NULL);
+    return freezeScene(scene);
+}
+
+static vplVec3 place(vplVec3 p, ModelUnit unit)
+{
+    if (unit == MODEL_SCALED) {
+        return vplVec(p.x * 2 / 555 - 1, p.y * 2 / 555 - 1, p.z * 2 / 555 - 1);
+    }
+    return vplScale(unit == MODEL_METRES ? 0.01f : 1, p);
+}
+
+vplGeometry* testModel(vplContext* context, ModelUnit unit, float rho)
 {
     Table t = loadTable("cornell_testmodel.csv");
     Shape shape = {0};
-    for (int i = 0; i < t.rows; i++) {
-        addTriangle(&shape, vectorOf(&t, i, "v0"), vectorOf(&t, i, "v1"), vectorOf(&t, i, "v2"));
+    for (int row = 0; row < t.rows; row++) {
+        addTriangle(&shape, place(vectorOf(&t, row, "v0"), unit), place(vectorOf(&t, row, "v2"), unit),
+                    place(vectorOf(&t, row, "v1"), unit));
     }
-    vplScene* scene = sceneOf(context, 0.5f);
-    addShape(scene, &shape, false, NULL);
+    vplGeometry* geometry = geometryOf(context, &shape, rho, 0);
     freeShape(&shape);
     freeTable(&t);
-    return freezeScene(scene);
+    return geometry;
+}
+
+vplPatchSides* sidesOf(const vplPatches* patches, const vplVec3* position)
+{
+    vplPatchSidesDef def = vplDefaultPatchSidesDef();
+    vplEmitterDef lamp = vplDefaultEmitterDef();
+    vplPatchSides* sides = NULL;
+    if (position != NULL) {
+        lamp.position = *position;
+        def.emitters = &lamp;
+        def.emitterCount = 1;
+    }
+    if (vplPatchSides_Create(patches, &def, &sides) != VPL_SUCCESS) {
+        fail_msg("%s", takeMessage());
+    }
+    return sides;
 }
 
 // ---- patches
@@ -71,21 +107,37 @@ uint16_t frontsOpen(const vplPatches* patches, int patch, int face)
     return face == 0 ? 0xffff : 0;
 }
 
+// The centre of the inscribed circle: corners weighted by the lengths of the edges opposite to them.
+static vplVec3 incentreOf(const vplVec3 p[3])
+{
+    double edge[3], centre[3] = {0};
+    for (int k = 0; k < 3; k++) {
+        const vplVec3 along = vplSub(p[(k + 2) % 3], p[(k + 1) % 3]);
+        edge[k] = sqrt((double)along.x * (double)along.x + (double)along.y * (double)along.y +
+                       (double)along.z * (double)along.z);
+    }
+    for (int k = 0; k < 9; k++) {
+        centre[k % 3] += edge[k / 3] / (edge[0] + edge[1] + edge[2]) * (double)vplComponent(p[k / 3], k % 3);
+    }
+    return vplVec((float)centre[0], (float)centre[1], (float)centre[2]);
+}
+
 static vplPatchSide sideOf(const vplPatches* p, int patch, int face, uint16_t open)
 {
     const vplPatchNode* n = &p->nodes[p->patches[patch]];
     const vplMaterialDef* material = &p->geometry->materials[p->geometry->triangleMaterials[n->triangle]];
     const vplVec3 normal = p->geometry->normals[n->triangle];
     const vplTriangleCorners c = vplCornersOf(p->positions, n->corners);
-    return (vplPatchSide){.patch = patch,
-                          .back = face == 1,
-                          .open = open,
-                          .area = (float)(vplTriangle_Area(&c) * __builtin_popcount(open) / 16),
-                          .corners = {p->positions[n->corners[0]],
-                                      p->positions[n->corners[face == 0 ? 1 : 2]],
-                                      p->positions[n->corners[face == 0 ? 2 : 1]]},
-                          .normal = face == 0 ? normal : vplNegate(normal),
-                          .reflectance = material->diffuse};
+    vplPatchSide side = {.patch = patch,
+                         .back = face == 1,
+                         .open = open,
+                         .area = (float)(vplTriangle_Area(&c) * __builtin_popcount(open) / 16),
+                         .corners = {p->positions[n->corners[0]], p->positions[n->corners[face == 0 ? 1 : 2]],
+                                     p->positions[n->corners[face == 0 ? 2 : 1]]},
+                         .normal = face == 0 ? normal : vplNegate(normal),
+                         .reflectance = material->diffuse};
+    side.incentre = incentreOf(side.corners);
+    return side;
 }
 
 vplPatchSides* openSides(const vplPatches* patches, OpenFcn* open)
@@ -133,4 +185,44 @@ void closeMesh(vplPatchMesh* mesh)
     closeSides(sides);
     vplPatches_Destroy(patches);
     vplGeometry_Destroy(geometry);
+}
+
+SidesFixture openFronts(vplContext* context, const vplVec3* corners, int triangleCount, float size,
+                        int rounds)
+{
+    SidesFixture f;
+    Shape shape = {0};
+    for (int i = 0; i < triangleCount; i++) {
+        addTriangle(&shape, corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]);
+    }
+    f.geometry = geometryOf(context, &shape, 0.5f, 0);
+    f.patches = openPatches(f.geometry, size > 0 ? size : 1e-6f, rounds);
+    f.sides = openSides(f.patches, frontsOpen);
+    freeShape(&shape);
+    return f;
+}
+
+void closeFronts(SidesFixture* f)
+{
+    closeSides(f->sides);
+    vplPatches_Destroy(f->patches);
+    vplGeometry_Destroy(f->geometry);
+}
+
+void boxCorners(float x, float y, float z, vplVec3 corners[36])
+{
+    // Of each face: where it is, and two ways along it whose cross product leads inside.
+    static const int faces[6][3][3] = {{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+                                       {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+                                       {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}};
+    // Diagonals of opposite faces cross, as in the cube of tests/data/incentre_estimator.csv.
+    static const int order[2][6][2] = {{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}},
+                                       {{1, 0}, {1, 1}, {0, 1}, {1, 0}, {0, 1}, {0, 0}}};
+    for (int i = 0; i < 36; i++) {
+        const int(*f)[3] = faces[i / 6];
+        const int a = order[i / 6 % 2][i % 6][0], b = order[i / 6 % 2][i % 6][1];
+        corners[i] = (vplVec3){x * (float)(f[0][0] + a * f[1][0] + b * f[2][0]),
+                               y * (float)(f[0][1] + a * f[1][1] + b * f[2][1]),
+                               z * (float)(f[0][2] + a * f[1][2] + b * f[2][2])};
+    }
 }

@@ -119,7 +119,7 @@ void placeShape(Shape* shape, float scale, const double rotate[3], vplVec3 offse
     }
 }
 
-void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* transform)
+vplResult tryAddShape(vplScene* scene, const Shape* shape, bool smooth, vplObjectDef* object)
 {
     const int corners = 3 * shape->triangleCount;
     uint32_t* indices = malloc((size_t)corners * sizeof *indices + 1);
@@ -133,14 +133,19 @@ void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* t
     mesh.indices = indices;
     mesh.vertexCount = corners;
     mesh.triangleCount = shape->triangleCount;
+    object->type = VPL_OBJECT_MESH;
+    const vplResult result = vplScene_AddMesh(scene, &mesh, &object->mesh);
+    free(indices);
+    return result == VPL_SUCCESS ? vplScene_AddObject(scene, object, NULL) : result;
+}
+
+void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* transform)
+{
     vplObjectDef object = vplDefaultObjectDef();
-    object.type = VPL_OBJECT_MESH;
     object.transform = transform ? *transform : object.transform;
-    if (vplScene_AddMesh(scene, &mesh, &object.mesh) != VPL_SUCCESS ||
-        vplScene_AddObject(scene, &object, NULL) != VPL_SUCCESS) {
+    if (tryAddShape(scene, shape, smooth, &object) != VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
-    free(indices);
 }
 
 vplGeometry* freezeScene(vplScene* scene)

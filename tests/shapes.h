@@ -27,6 +27,9 @@ void placeShape(Shape* shape, float scale, const double rotate[3], vplVec3 offse
 // Adds the shape as an object of material 0; smooth: its corners are its normals.
 void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* transform);
 
+// The same as `object`, whose mesh it becomes; may fail.
+vplResult tryAddShape(vplScene* scene, const Shape* shape, bool smooth, vplObjectDef* object);
+
 // Freezes the scene and destroys it.
 vplGeometry* freezeScene(vplScene* scene);
 

@@ -237,15 +237,20 @@ double uniformAt(uint64_t seed, uint64_t index)
     return (double)vplRandomAt(seed, 77, index).v[0] * 0x1p-32;
 }
 
-vplScene* loadScene(vplContext* context, const char* name)
+vplScene* openScene(vplContext* context, const char* path)
 {
-    char path[256];
-    snprintf(path, sizeof path, "tests/data/%s", name);
     vplScene* scene = NULL;
     if (vplScene_Load(context, path, &scene) != VPL_SUCCESS) {
         fail_msg("%s: %s", path, takeMessage());
     }
     return scene;
+}
+
+vplScene* loadScene(vplContext* context, const char* name)
+{
+    char path[256];
+    snprintf(path, sizeof path, "tests/data/%s", name);
+    return openScene(context, path);
 }
 
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut)

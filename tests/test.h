@@ -15,24 +15,38 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef struct Suite {
-    const char* name;
-    const struct CMUnitTest* tests;
-    size_t count;
-} Suite;
+// A test, which registers itself: TEST(SharedEdgeIsCoveredOnce, 2) { ... } has a `context` with two threads, of which
+// nothing may be left in the end; TEST_ALONE(...) has none. SLOW, in the end, is for tests that take a second or more because
+// they are about statistics, or try many cases of one thing: `vpl-tests --quick` leaves them out.
+#define TEST(name, ...)                                                                                      \
+    static void name(vplContext* context);                                                                   \
+    REGISTER_TEST(name, .run = name, .workers = __VA_ARGS__)                                                 \
+    static void name(vplContext* context)
 
-// Last lines of a test file: TEST_SUITE(raster, cmocka_unit_test(SharedEdgeIsCoveredOnce), ...)
-#define TEST_SUITE(name, ...)                                                                                \
-    static const struct CMUnitTest name##Tests[] = {__VA_ARGS__};                                            \
-    const Suite name##Suite = {#name, name##Tests, sizeof name##Tests / sizeof *name##Tests}
+#define TEST_ALONE(name, ...)                                                                                \
+    static void name(void);                                                                                  \
+    REGISTER_TEST(name, .runAlone = name, .workers = 0, ##__VA_ARGS__)                                       \
+    static void name(void)
 
-// For TEST_SUITE, a test that takes a second or more because it is about statistics, or tries many cases of one thing:
-// it has nothing new to say where the bits are the same, and `vpl-tests --quick` leaves it out.
-// clang-format off
-#define slow_unit_test(f) {#f, f, NULL, NULL, (void*)&testIsSlow}
-// clang-format on
+#define REGISTER_TEST(function, ...)                                                                         \
+    __attribute__((constructor)) static void function##Register(void)                                        \
+    {                                                                                                        \
+        static Test test = {.name = #function, .file = __FILE__, __VA_ARGS__};                               \
+        registerTest(&test);                                                                                 \
+    }
 
-extern char testIsSlow;
+enum { SLOW = 1 };
+
+typedef struct Test {
+    const char *name, *file; // the file is its suite
+    void (*run)(vplContext* context);
+    void (*runAlone)(void);
+    int workers;
+    bool slow;
+    struct Test* next;
+} Test;
+
+void registerTest(Test* test);
 
 // A context with `workers` threads whose last message is kept. Never NULL.
 vplContext* openTestContext(int workers);
@@ -81,6 +95,9 @@ double uniformAt(uint64_t seed, uint64_t index);
 
 // The benchmark room (tests/data/room.json), or the same with a front wall and the camera inside.
 vplScene* loadScene(vplContext* context, const char* name);
+
+// A scene from a file, or a failed test with the library's sentence.
+vplScene* openScene(vplContext* context, const char* path);
 
 // vplRender, or a failed test with the library's sentence. statsOut may be NULL.
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);

@@ -45,9 +45,8 @@ static void closeQuota(vplContext* context, const Quota* quota)
     assert_int_equal(quota->held, 0);
 }
 
-static void DestroyingAnArenaFreesEverythingInIt(void** state)
+TEST_ALONE(DestroyingAnArenaFreesEverythingInIt)
 {
-    (void)state;
     vplContext* context = openTestContext(1);
     vplArena* arena = vplArena_Create(context);
     for (size_t i = 0; i < 100; i++) {
@@ -61,10 +60,8 @@ static void DestroyingAnArenaFreesEverythingInIt(void** state)
     closeTestContext(context); // fails if anything is held
 }
 
-static void MemoryOfAnArenaIsAligned(void** state)
+TEST(MemoryOfAnArenaIsAligned, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplArena* arena = vplArena_Create(context);
     for (size_t size = 0; size < 200; size++) {
         assert_int_equal((uintptr_t)vplArena_Alloc(arena, 1, size) % 64, 0);
@@ -74,13 +71,10 @@ static void MemoryOfAnArenaIsAligned(void** state)
         assert_int_equal(zeros[i], 0);
     }
     vplArena_Destroy(arena);
-    closeTestContext(context);
 }
 
-static void BlocksCanBeFreedInAnyOrder(void** state)
+TEST(BlocksCanBeFreedInAnyOrder, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplArena* arena = vplArena_Create(context);
     const size_t empty = vplContext_GetBytes(context);
     void* blocks[5];
@@ -95,13 +89,10 @@ static void BlocksCanBeFreedInAnyOrder(void** state)
     assert_int_equal(vplContext_GetBytes(context), empty);
     assert_non_null(vplArena_Alloc(arena, 1, 100));
     vplArena_Destroy(arena);
-    closeTestContext(context);
 }
 
-static void ReservingKeepsElements(void** state)
+TEST(ReservingKeepsElements, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplArena* arena = vplArena_Create(context);
     int* numbers = NULL;
     size_t capacity = 0;
@@ -118,13 +109,10 @@ static void ReservingKeepsElements(void** state)
     assert_string_equal(vplArena_CopyString(arena, "name"), "name");
     assert_true(vplContext_GetBytes(context) < 4 * 1000 * sizeof *numbers); // old blocks are not kept
     vplArena_Destroy(arena);
-    closeTestContext(context);
 }
 
-static void AnAbsorbedArenaIsFreedWithTheOther(void** state)
+TEST(AnAbsorbedArenaIsFreedWithTheOther, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int blocks = 0; blocks < 4; blocks++) { // none, one or two in either
         vplArena *arena = vplArena_Create(context), *source = vplArena_Create(context);
         void* first = NULL;
@@ -136,7 +124,6 @@ static void AnAbsorbedArenaIsFreedWithTheOther(void** state)
         assert_non_null(vplArena_Alloc(arena, 1, 10));
         vplArena_Destroy(arena);
     }
-    closeTestContext(context);
 }
 
 // Creates an object of one arena, two arrays and a growing one: 6 allocations.
@@ -160,9 +147,8 @@ static vplResult makeObject(vplContext* context, void** objectOut)
     return result;
 }
 
-static void EveryFailedAllocationIsReportedAndNothingLeaks(void** state)
+TEST_ALONE(EveryFailedAllocationIsReportedAndNothingLeaks)
 {
-    (void)state;
     for (int allowed = 0; allowed <= 6; allowed++) {
         Quota quota = {1 + allowed, 0}; // one for the context
         vplContext* context = openQuota(&quota);
@@ -174,10 +160,8 @@ static void EveryFailedAllocationIsReportedAndNothingLeaks(void** state)
     }
 }
 
-static void ImpossibleSizesAreRefused(void** state)
+TEST(ImpossibleSizesAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplArena* arena = vplArena_Create(context);
     assert_null(vplArena_Alloc(arena, SIZE_MAX / 2, 4));
     assert_int_equal(vplArena_Check(arena), VPL_OUT_OF_MEMORY);
@@ -187,7 +171,6 @@ static void ImpossibleSizesAreRefused(void** state)
     assert_null(vplArena_Alloc(NULL, 1, 1));
     assert_null(vplArena_AllocZero(NULL, 1, 1));
     assert_int_equal(vplArena_Check(NULL), VPL_OUT_OF_MEMORY);
-    closeTestContext(context);
 }
 
 static vplResult passOn(vplResult first, int* callsOut)
@@ -198,18 +181,11 @@ static vplResult passOn(vplResult first, int* callsOut)
     return VPL_SUCCESS;
 }
 
-static void TryReturnsTheFirstFailure(void** state)
+TEST_ALONE(TryReturnsTheFirstFailure)
 {
-    (void)state;
     int calls;
     assert_int_equal(passOn(VPL_CANCELLED, &calls), VPL_CANCELLED);
     assert_int_equal(calls, 1);
     assert_int_equal(passOn(VPL_SUCCESS, &calls), VPL_SUCCESS);
     assert_int_equal(calls, 2);
 }
-
-TEST_SUITE(arena, cmocka_unit_test(DestroyingAnArenaFreesEverythingInIt),
-           cmocka_unit_test(MemoryOfAnArenaIsAligned), cmocka_unit_test(BlocksCanBeFreedInAnyOrder),
-           cmocka_unit_test(ReservingKeepsElements), cmocka_unit_test(AnAbsorbedArenaIsFreedWithTheOther),
-           cmocka_unit_test(EveryFailedAllocationIsReportedAndNothingLeaks),
-           cmocka_unit_test(ImpossibleSizesAreRefused), cmocka_unit_test(TryReturnsTheFirstFailure));

@@ -14,9 +14,8 @@ static void doublings(double first, double* x)
     }
 }
 
-static void ExponentOfAPowerIsItself(void** state)
+TEST_ALONE(ExponentOfAPowerIsItself)
 {
-    (void)state;
     const double exponents[] = {-1, 0, 0.5, 1, 2, 3.25};
     double x[COUNT], y[COUNT];
     doublings(16, x);
@@ -30,17 +29,15 @@ static void ExponentOfAPowerIsItself(void** state)
 }
 
 // The slope of least squares through (0, 0), (1, 1), (2, 1) in logarithms of two is 1/2.
-static void ExponentIsOfLeastSquares(void** state)
+TEST_ALONE(ExponentIsOfLeastSquares)
 {
-    (void)state;
     const double x[] = {1, 2, 4}, y[] = {1, 2, 2}, turned[] = {4, 1, 2}, with[] = {2, 1, 2};
     assertNear(fitExponent(x, y, 3), 0.5, 1e-14, "by hand", 0);
     assertNear(fitExponent(turned, with, 3), 0.5, 1e-14, "in another order", 0);
 }
 
-static void ExponentDoesNotDependOnUnits(void** state)
+TEST_ALONE(ExponentDoesNotDependOnUnits)
 {
-    (void)state;
     double x[COUNT], y[COUNT], scaledX[COUNT], scaledY[COUNT];
     for (uint64_t seed = 0; seed < 100; seed++) {
         for (int i = 0; i < COUNT; i++) {
@@ -53,9 +50,8 @@ static void ExponentDoesNotDependOnUnits(void** state)
     }
 }
 
-static void WhatHasNoExponentIsNotANumber(void** state)
+TEST_ALONE(WhatHasNoExponentIsNotANumber)
 {
-    (void)state;
     const double x[] = {5, 5, 5}, y[] = {1, 2, 3}, zero[] = {0, 1, 2};
     assert_true(isnan(fitExponent(x, y, 3)));
     assert_true(isnan(fitExponent(y, x, 1)));
@@ -67,9 +63,8 @@ static void WhatHasNoExponentIsNotANumber(void** state)
     assert_true(isnan(fitFixed(y, x, 1, 1).scale));
 }
 
-static void FixedPartIsFound(void** state)
+TEST_ALONE(FixedPartIsFound)
 {
-    (void)state;
     const double exponents[] = {-1, 1, 2};
     double x[COUNT], y[COUNT];
     doublings(256, x);
@@ -86,9 +81,8 @@ static void FixedPartIsFound(void** state)
 }
 
 // No other pair of numbers has less of what it minimises.
-static void FixedFitIsOfLeastRelativeSquares(void** state)
+TEST_ALONE(FixedFitIsOfLeastRelativeSquares)
 {
-    (void)state;
     double x[COUNT], y[COUNT];
     doublings(1, x);
     for (uint64_t seed = 0; seed < 50; seed++) {
@@ -114,7 +108,3 @@ static void FixedFitIsOfLeastRelativeSquares(void** state)
         assertNear(fit.worst, worst, 1e-12, "worst", (int)seed);
     }
 }
-
-TEST_SUITE(bench, cmocka_unit_test(ExponentOfAPowerIsItself), cmocka_unit_test(ExponentIsOfLeastSquares),
-           cmocka_unit_test(ExponentDoesNotDependOnUnits), cmocka_unit_test(WhatHasNoExponentIsNotANumber),
-           cmocka_unit_test(FixedPartIsFound), cmocka_unit_test(FixedFitIsOfLeastRelativeSquares));

@@ -71,10 +71,8 @@ static void checkRegion(const vplCubeMap* map, int face, int column, int row, in
     }
 }
 
-static void BoundsHoldForEveryTexel(void** state)
+TEST(BoundsHoldForEveryTexel, 3, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(3);
     const int sizes[] = {1, 2, 7, 15, 16, 17, 33, 64, 100, 257, 1025};
     for (int k = 0; k < 11; k++) {
         vplCubeMap* map = makeRandomMap(context, sizes[k], (uint64_t)(100 * k));
@@ -178,9 +176,8 @@ static vplShadow makeShadow(const vplCubeMap* map, int variant)
     return shadow;
 }
 
-static void BoundsNeverChangeAShadowOfRandomMaps(void** state)
+TEST_ALONE(BoundsNeverChangeAShadowOfRandomMaps, SLOW)
 {
-    (void)state;
     const int sizes[] = {1, 40, 128, 300, 1024};
     for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
         vplContext* context = openIsaContext(2, (vplIsa)isa);
@@ -203,10 +200,8 @@ static void BoundsNeverChangeAShadowOfRandomMaps(void** state)
 }
 
 // On surfaces as they are: planes must be told where samples come within a rounding of the limit.
-static void BoundsTellMostOfARoom(void** state)
+TEST(BoundsTellMostOfARoom, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = tableRoom(context);
     vplCubeMapDef def = vplDefaultCubeMapDef();
     vplCubeMap* map;
@@ -238,8 +233,4 @@ static void BoundsTellMostOfARoom(void** state)
     assert_null(map->bounds); // they were the old texels'
     vplCubeMap_Destroy(map);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
-
-TEST_SUITE(bounds, slow_unit_test(BoundsHoldForEveryTexel),
-           slow_unit_test(BoundsNeverChangeAShadowOfRandomMaps), cmocka_unit_test(BoundsTellMostOfARoom));

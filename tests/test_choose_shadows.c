@@ -7,9 +7,8 @@
 
 static const vplShadowLoad plain = {64, 1e5, 0.4, 1e4, 2e4, 128};
 
-static void CostsGrowWithWhatTheyDependOn(void** state)
+TEST_ALONE(CostsGrowWithWhatTheyDependOn)
 {
-    (void)state;
     const size_t fields[] = {offsetof(vplShadowLoad, lights),         offsetof(vplShadowLoad, pixels),
                              offsetof(vplShadowLoad, facing),         offsetof(vplShadowLoad, triangles),
                              offsetof(vplShadowLoad, trianglesAbove), offsetof(vplShadowLoad, mapSize)};
@@ -31,9 +30,8 @@ static void CostsGrowWithWhatTheyDependOn(void** state)
 }
 
 // More pixels speak for maps, more triangles above the lights against them.
-static void TheRuleTurnsOnce(void** state)
+TEST_ALONE(TheRuleTurnsOnce)
 {
-    (void)state;
     for (int lights = 1; lights < 5000; lights *= 7) {
         vplShadowLoad load = plain;
         load.lights = lights;
@@ -56,9 +54,8 @@ static void TheRuleTurnsOnce(void** state)
 
 // Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter longer, the rule
 // finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as dear.
-static void TheRuleAgreesWithTheMeasuredTable(void** state)
+TEST_ALONE(TheRuleAgreesWithTheMeasuredTable)
 {
-    (void)state;
     Table t = loadTable("crossover.csv");
     int clear = 0, right = 0;
     for (int i = 0; i < t.rows; i++) {
@@ -92,9 +89,8 @@ static vplRenderOptions autoOptions(void)
     return o;
 }
 
-static void AutoRendersWhatItSaysItChose(void** state)
+TEST_ALONE(AutoRendersWhatItSaysItChose)
 {
-    (void)state;
     static const struct {
         int width, interleave;
         vplAccumulation accumulation;
@@ -132,10 +128,8 @@ static void AutoRendersWhatItSaysItChose(void** state)
 }
 
 // Maps of 2048 x 2048 texels: three fit into what is allowed.
-static void LightsWhoseMapsDoNotFitAreAddedInBatches(void** state)
+TEST(LightsWhoseMapsDoNotFitAreAddedInBatches, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = autoOptions();
     vplRenderStats stats;
@@ -164,10 +158,4 @@ static void LightsWhoseMapsDoNotFitAreAddedInBatches(void** state)
     vplImage_Destroy(all);
     vplImage_Destroy(sum);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(chooseShadows, cmocka_unit_test(CostsGrowWithWhatTheyDependOn), cmocka_unit_test(TheRuleTurnsOnce),
-           cmocka_unit_test(TheRuleAgreesWithTheMeasuredTable),
-           cmocka_unit_test(AutoRendersWhatItSaysItChose),
-           cmocka_unit_test(LightsWhoseMapsDoNotFitAreAddedInBatches));

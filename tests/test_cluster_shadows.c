@@ -81,9 +81,8 @@ static uint64_t shadeHash(const Setting* s, const vplShadeDef* def)
     return hash;
 }
 
-static void OneClusterThatSeesAllHasTheBitsOfNoShadows(void** state)
+TEST_ALONE(OneClusterThatSeesAllHasTheBitsOfNoShadows)
 {
-    (void)state;
     Setting s = openStage();
     memset(s.clusters, 0, sizeof s.clusters);
     for (int side = 0; side <= 4; side++) {
@@ -94,9 +93,8 @@ static void OneClusterThatSeesAllHasTheBitsOfNoShadows(void** state)
 }
 
 // Also where there is no map at all.
-static void LightsWithoutAClusterHaveTheBitsOfNoShadows(void** state)
+TEST_ALONE(LightsWithoutAClusterHaveTheBitsOfNoShadows)
 {
-    (void)state;
     Setting s = openStage();
     memset(s.clusters, 0xff, sizeof s.clusters);
     for (int side = 0; side <= 4; side++) {
@@ -109,9 +107,8 @@ static void LightsWithoutAClusterHaveTheBitsOfNoShadows(void** state)
     closeSetting(&s);
 }
 
-static void InterleavedByOneIsDeferredBitForBit(void** state)
+TEST_ALONE(InterleavedByOneIsDeferredBitForBit)
 {
-    (void)state;
     Setting s = openStage();
     const vplShadeDef deferred = clusteredDef(&s, COUNT, 0), one = clusteredDef(&s, COUNT, 1);
     const vplShadeDef plain = stageDef(s.lights, COUNT, 0);
@@ -121,9 +118,8 @@ static void InterleavedByOneIsDeferredBitForBit(void** state)
 }
 
 // As many clusters as lights, of which every third sees: the bits of these lights alone, as far as they are one group.
-static void ClustersOfOneLightAreMapsOfTheirOwn(void** state)
+TEST_ALONE(ClustersOfOneLightAreMapsOfTheirOwn)
 {
-    (void)state;
     enum { FEW = VPL_LIGHT_GROUP };
     Setting s = openStage();
     vplShadeLight seen[FEW];
@@ -140,9 +136,8 @@ static void ClustersOfOneLightAreMapsOfTheirOwn(void** state)
 }
 
 // Clusters that come and go in the list, lights without one between them: the sum of those that reach anything.
-static void AnyOrderOfClustersGivesTheSameSum(void** state)
+TEST_ALONE(AnyOrderOfClustersGivesTheSameSum)
 {
-    (void)state;
     Setting s = openStage();
     vplShadeLight seen[COUNT];
     int seenCount = 0;
@@ -164,9 +159,8 @@ static void AnyOrderOfClustersGivesTheSameSum(void** state)
 
 // One map that looks up from a metre above the floor: what is below gets nothing, what is above all. Interleaved, each
 // pixel asks for itself: those whose window lies on one side know what neighbours share.
-static void VisibilityIsThatOfEachPoint(void** state)
+TEST_ALONE(VisibilityIsThatOfEachPoint)
 {
-    (void)state;
     Setting s = openStage();
     memset(s.clusters, 0, sizeof s.clusters);
     s.maps[0] = farMapOf(s.context, nothing, vplVec(0, 1, 0), 1);
@@ -196,9 +190,8 @@ static void VisibilityIsThatOfEachPoint(void** state)
 
 // Far above a floor, which half of the clusters a class has lights of makes no difference: the sum is that of deferred
 // shading, with clusters of many and of few lights, and few or many clusters.
-static void EachLightIsInOneClass(void** state)
+TEST_ALONE(EachLightIsInOneClass)
 {
-    (void)state;
     vplContext* context = openTestContext(2);
     Setting s = openSetting(context, floorQuad(context, vplVec(0, 0, 0), 100, 0.5f));
     s.view = stageView(vplVec(0, 3, 0.5f), WIDTH, HEIGHT);
@@ -249,9 +242,8 @@ static vplGeometry* smoothStage(vplContext* context)
     return freezeScene(scene);
 }
 
-static void ThreadsAndInstructionSetsChangeNoBit(void** state)
+TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)
 {
-    (void)state;
     static float spots[TEXELS]; // some ways are long, some are short
     Dice dice = {5, 0};
     for (int i = 0; i < TEXELS; i++) {
@@ -280,9 +272,8 @@ static void ThreadsAndInstructionSetsChangeNoBit(void** state)
 
 // ---- what is refused
 
-static void WhatClustersCannotDoIsRefused(void** state)
+TEST_ALONE(WhatClustersCannotDoIsRefused)
 {
-    (void)state;
     Setting s = openStage();
     vplImage* image;
     assert_int_equal(vplImage_Create(s.context, WIDTH, HEIGHT, &image), VPL_SUCCESS);
@@ -306,11 +297,3 @@ static void WhatClustersCannotDoIsRefused(void** state)
     vplImage_Destroy(image);
     closeSetting(&s);
 }
-
-TEST_SUITE(clusterShadows, cmocka_unit_test(OneClusterThatSeesAllHasTheBitsOfNoShadows),
-           cmocka_unit_test(LightsWithoutAClusterHaveTheBitsOfNoShadows),
-           cmocka_unit_test(InterleavedByOneIsDeferredBitForBit),
-           cmocka_unit_test(ClustersOfOneLightAreMapsOfTheirOwn),
-           cmocka_unit_test(AnyOrderOfClustersGivesTheSameSum), cmocka_unit_test(VisibilityIsThatOfEachPoint),
-           cmocka_unit_test(EachLightIsInOneClass), cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),
-           cmocka_unit_test(WhatClustersCannotDoIsRefused));

@@ -62,7 +62,6 @@ static double givenBack(const vplGeometry* g, const vplShadeDef* def)
         points.triangle[l] = 0;
         pixels[l] = (uint32_t)l;
     }
-    assert_int_equal(vplGeometry_PrepareRays(g), VPL_SUCCESS);
     shading.arena = vplArena_Create(g->context);
     assert_int_equal(vplCompensator_Open(&shading), VPL_SUCCESS);
     vplAddCompensation(&shading, &points, pixels, irradiance, &rays);
@@ -76,11 +75,9 @@ static double givenBack(const vplGeometry* g, const vplShadeDef* def)
 
 // Of a plane at height h the bound keeps (h^2/c)(1 + ln(c/h^2)). Rays alone give back the rest, and so do rays within a
 // fifth of D with the lights beyond.
-static void PlaneGetsBackWhatTheBoundTakes(void** state)
+TEST(PlaneGetsBackWhatTheBoundTakes, 1)
 {
-    (void)state;
     Table t = loadTable("vpl_clamp_plane.csv");
-    vplContext* context = openTestContext(1);
     for (int row = 0; row < t.rows; row++) {
         const double c = number(&t, row, "c"), lost = 1 - number(&t, row, "fraction_kept_r2clamp");
         const float h = (float)number(&t, row, "h"), distance = (float)sqrt(c);
@@ -106,7 +103,6 @@ static void PlaneGetsBackWhatTheBoundTakes(void** state)
         vplGeometry_Destroy(g);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- a closed room whose walls all reflect and emit alike: everything is E / (1 - rho)
@@ -162,11 +158,9 @@ static double meanOf(const vplScene* scene, const vplRenderOptions* options, vpl
     return sum / count;
 }
 
-static void FurnaceIsRightWhateverTheBound(void** state)
+TEST(FurnaceIsRightWhateverTheBound, 2, SLOW)
 {
-    (void)state;
     static const float distances[] = {0.25f, 0.5f, 2, 100};
-    vplContext* context = openTestContext(2);
     vplScene* middle =
         furnace(context, 0.5f, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
     vplScene* corner = furnace(context, 0.5f, (vplVec3){0.5f, 0.5f, 0.5f}, (vplVec3){1, 1, 1}, VPL_PI / 6);
@@ -179,14 +173,11 @@ static void FurnaceIsRightWhateverTheBound(void** state)
     }
     vplScene_Destroy(middle);
     vplScene_Destroy(corner);
-    closeTestContext(context);
 }
 
-static void LossIsWhatCompensationAdds(void** state)
+TEST(LossIsWhatCompensationAdds, 2, SLOW)
 {
-    (void)state;
     static const float distances[] = {0.3f, 1};
-    vplContext* context = openTestContext(2);
     vplScene* scene =
         furnace(context, 0.5f, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
     for (int i = 0; i < 2; i++) {
@@ -202,33 +193,20 @@ static void LossIsWhatCompensationAdds(void** state)
         assert_true(without.clampLoss < 0);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X: walls that lose nothing and a bound beyond all light: nothing but the limit ends a walk.
-static void WhiteWallsAndAnEndlessBoundEnd(void** state)
+TEST(WhiteWallsAndAnEndlessBoundEnd, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = furnace(context, 1, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
     vplRenderOptions o = kellerOptions(2, 10, 1e15f);
     o.particles.reflectivity = 0.5;
     const double mean = meanOf(scene, &o, NULL);
     assert_true(mean > 900 && mean < 1100); // a bounce, one more emission
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- a room
-
-static vplScene* loadExample(vplContext* context, const char* name)
-{
-    char path[128];
-    vplScene* scene;
-    snprintf(path, sizeof path, "examples/scenes/%s.json", name);
-    assert_int_equal(vplScene_Load(context, path, &scene), VPL_SUCCESS);
-    return scene;
-}
 
 static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* options)
 {
@@ -239,16 +217,15 @@ static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* options)
 
 static uint64_t hashWith(vplContext* context, const vplRenderOptions* options)
 {
-    vplScene* scene = loadExample(context, "room-area");
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     const uint64_t hash = hashOf(scene, options);
     vplScene_Destroy(scene);
     closeTestContext(context);
     return hash;
 }
 
-static void ThreadsAndInstructionSetsGiveTheSameBits(void** state)
+TEST_ALONE(ThreadsAndInstructionSetsGiveTheSameBits)
 {
-    (void)state;
     static const int threads[] = {2, 3, 7};
     for (int pipeline = 0; pipeline < 2; pipeline++) {
         vplRenderOptions o = kellerOptions(50, 30, -1);
@@ -267,13 +244,11 @@ static void ThreadsAndInstructionSetsGiveTheSameBits(void** state)
     }
 }
 
-static void PipelinesGiveTheSameBits(void** state)
+TEST(PipelinesGiveTheSameBits, 2)
 {
-    (void)state;
-    static const char* const scenes[] = {"room", "room-area"};
-    vplContext* context = openTestContext(2);
+    static const char* const scenes[] = {"examples/scenes/room.json", "examples/scenes/room-area.json"};
     for (int i = 0; i < 2; i++) {
-        vplScene* scene = loadExample(context, scenes[i]);
+        vplScene* scene = openScene(context, scenes[i]);
         vplRenderOptions o = kellerOptions(50, 70, -1);
         const uint64_t wanted = hashOf(scene, &o);
         o.pipeline.kind = VPL_ACCUMULATE_MULTIPASS;
@@ -282,15 +257,12 @@ static void PipelinesGiveTheSameBits(void** state)
         assert_true(hashOf(scene, &o) == wanted);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // Direct light of lamps and the rest are found by different rays, and must still be parts of one picture.
-static void PartsAddUpOnAverage(void** state)
+TEST(PartsAddUpOnAverage, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplScene* scene = loadExample(context, "room-area");
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     vplRenderOptions o = kellerOptions(48, 300, 1);
     const double picture = meanOf(scene, &o, NULL);
     o.output.show = VPL_SHOW_DIRECT;
@@ -299,7 +271,6 @@ static void PartsAddUpOnAverage(void** state)
     parts += meanOf(scene, &o, NULL);
     assertNear(parts, picture, 0.005 * picture, "direct + indirect", 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static double pathMean(const vplScene* scene)
@@ -313,24 +284,25 @@ static double pathMean(const vplScene* scene)
 }
 
 // Instant radiosity with its lamps and shadow maps, Keller's with a point light, shadows by maps, interleaving.
-static void EveryKindOfLightIsGivenBack(void** state)
+TEST(EveryKindOfLightIsGivenBack, 2, SLOW)
 {
-    (void)state;
     static const struct {
         const char* scene;
         vplMethod method;
         vplLightShadows shadows;
         vplAccumulation accumulation;
     } cases[] = {
-        {"room", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
-        {"room-area", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
-        {"room", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
-        {"room-area", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_MAP, VPL_ACCUMULATE_DEFERRED},
-        {"room-area", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_INTERLEAVED},
+        {"examples/scenes/room.json", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY,
+         VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room-area.json", VPL_METHOD_INSTANT_RADIOSITY, VPL_LIGHT_SHADOWS_RAY,
+         VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room.json", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY, VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room-area.json", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_MAP, VPL_ACCUMULATE_DEFERRED},
+        {"examples/scenes/room-area.json", VPL_METHOD_KELLER, VPL_LIGHT_SHADOWS_RAY,
+         VPL_ACCUMULATE_INTERLEAVED},
     };
-    vplContext* context = openTestContext(2);
     for (int i = 0; i < 5; i++) {
-        vplScene* scene = loadExample(context, cases[i].scene);
+        vplScene* scene = openScene(context, cases[i].scene);
         const double truth = pathMean(scene);
         vplRenderOptions o = kellerOptions(32, cases[i].shadows == VPL_LIGHT_SHADOWS_MAP ? 500 : 1000, 1.5f);
         o.method = cases[i].method;
@@ -344,14 +316,11 @@ static void EveryKindOfLightIsGivenBack(void** state)
         assert_true(meanOf(scene, &o, NULL) < 0.985 * truth);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // Where rays bring nearly all light, more passes with the same rays would not help.
-static void PassesCastOtherRays(void** state)
+TEST(PassesCastOtherRays, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene =
         furnace(context, 0.5f, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
     double errors[2];
@@ -367,15 +336,12 @@ static void PassesCastOtherRays(void** state)
     }
     assert_true(errors[1] < errors[0] / 8);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // From inside a unit sphere cosine-distributed rays go 2 cos, whose square is uniform in [0, 4]: the mean of
 // max(0, 1 - d^2/D^2) is D^2/8 up to D = 2. Where nothing is seen, everything is near.
-static void NearDistanceOfASphereIsThatOfItsChords(void** state)
+TEST(NearDistanceOfASphereIsThatOfItsChords, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Shape shape = icosphere(4);
     vplScene* scene = sceneOf(context, 0.5f);
     addShape(scene, &shape, false, NULL);
@@ -400,12 +366,4 @@ static void NearDistanceOfASphereIsThatOfItsChords(void** state)
     assert_int_equal(vplFindNearDistance(sphere, &view, 0.2, &distance), VPL_SUCCESS);
     assertNear((double)distance, (double)vplGeometry_Diagonal(sphere), 1e-6, "diagonal", 0);
     vplGeometry_Destroy(sphere);
-    closeTestContext(context);
 }
-
-TEST_SUITE(compensation, cmocka_unit_test(NearDistanceOfASphereIsThatOfItsChords),
-           cmocka_unit_test(PlaneGetsBackWhatTheBoundTakes), slow_unit_test(FurnaceIsRightWhateverTheBound),
-           slow_unit_test(LossIsWhatCompensationAdds), cmocka_unit_test(WhiteWallsAndAnEndlessBoundEnd),
-           cmocka_unit_test(ThreadsAndInstructionSetsGiveTheSameBits),
-           cmocka_unit_test(PipelinesGiveTheSameBits), cmocka_unit_test(PartsAddUpOnAverage),
-           slow_unit_test(EveryKindOfLightIsGivenBack), cmocka_unit_test(PassesCastOtherRays));

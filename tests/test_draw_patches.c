@@ -80,9 +80,8 @@ static vplPatchMesh* cubeMesh(vplContext* context, int rounds, uint64_t seed, Op
 
 // ---- clip space
 
-static void ClipCoordinatesAreThoseOfTheCamera(void** state)
+TEST_ALONE(ClipCoordinatesAreThoseOfTheCamera)
 {
-    (void)state;
     Dice dice = {4, 0};
     for (int i = 0; i < 1000; i++) {
         const vplCameraDef camera = insideCamera(&dice);
@@ -102,10 +101,8 @@ static void ClipCoordinatesAreThoseOfTheCamera(void** state)
 // ---- coverage
 
 // Sees what shading sees, pixel for pixel: the depth of a room with boxes, and ones from patches.
-static void UndividedPatchesCoverWhatTheViewCovers(void** state)
+TEST(UndividedPatchesCoverWhatTheViewCovers, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplCameraDef camera = *vplScene_GetCamera(scene, 0);
     vplPatchMesh* m = meshOf(openSides(openPatches(freezeScene(scene), 1e9f, 0), allOpen));
@@ -126,14 +123,11 @@ static void UndividedPatchesCoverWhatTheViewCovers(void** state)
     vplImage_Destroy(depth);
     closeCanvas(&c);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // X100: where a large patch meets small ones nothing shines through, whatever the angle.
-static void ClosedRoomHasNoHoles(void** state)
+TEST(ClosedRoomHasNoHoles, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Dice dice = {1, 0};
     for (uint64_t seed = 0; seed < 12; seed++) {
         vplPatchMesh* m = cubeMesh(context, 10, seed, frontsOpen);
@@ -151,15 +145,12 @@ static void ClosedRoomHasNoHoles(void** state)
         closeCanvas(&c);
         closeMesh(m);
     }
-    closeTestContext(context);
 }
 
 // ---- values
 
-static void EqualCornersGiveThatValueToAllPixels(void** state)
+TEST(EqualCornersGiveThatValueToAllPixels, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Dice dice = {2, 0};
     vplPatchMesh* m = cubeMesh(context, 6, 1, frontsOpen);
     const vplCameraDef camera = insideCamera(&dice);
@@ -172,7 +163,6 @@ static void EqualCornersGiveThatValueToAllPixels(void** state)
     free(values);
     closeCanvas(&c);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // Where the middle of a pixel sees the closed cube.
@@ -190,10 +180,8 @@ static vplVec3 seenFrom(const vplView* v, const vplGeometry* g, int x, int y)
 
 // Red, green and blue are x, y and z of what is seen: in perspective, also of patches that the near plane cuts. Off
 // by rounding, 8e-8 in the mean; at most 1.1e-4, where snapping to 1/256 pixel covers one whose centre is outside.
-static void LinearValuesAreReproduced(void** state)
+TEST(LinearValuesAreReproduced, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Dice dice = {7, 0};
     vplPatchMesh* m = cubeMesh(context, 4, 3, frontsOpen);
     vplRgb* values = listOf(2 * m->vertexCount, (vplRgb){9, 9, 9});
@@ -218,7 +206,6 @@ static void LinearValuesAreReproduced(void** state)
     assert_true(mean < 1e-6 && worst < 5e-4);
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // Values of `draw` at the middle of the picture, of a square of 2 by 2 patches that is seen straight from `distance`.
@@ -266,10 +253,8 @@ static uint16_t wallOpen(const vplPatches* patches, int patch, int face)
 }
 
 // What no light reaches is black, from both sides, and hides the bright wall behind it.
-static void DarkSidesHideWhatIsBehindThem(void** state)
+TEST(DarkSidesHideWhatIsBehindThem, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = screenMesh(context, true, wallOpen);
     const vplCameraDef camera = lookAtOrigin(vplVec(0, 0, 4));
     Canvas c = openCanvas(m, &camera, 64, 64);
@@ -280,14 +265,11 @@ static void DarkSidesHideWhatIsBehindThem(void** state)
     free(values);
     closeCanvas(&c);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // From the front 1, from behind 10.
-static void EachSideHasItsOwnValues(void** state)
+TEST(EachSideHasItsOwnValues, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = screenMesh(context, false, allOpen);
     for (int smooth = 0; smooth < 2; smooth++) {
         for (int behind = 0; behind < 2; behind++) {
@@ -310,15 +292,12 @@ static void EachSideHasItsOwnValues(void** state)
         }
     }
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // rho / pi times irradiance, each patch with its own: light of shared corners does not take colour along. And it is
 // added to what the picture held.
-static void IrradianceIsReflectedAndAdded(void** state)
+TEST(IrradianceIsReflectedAndAdded, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = screenMesh(context, false, leftOpen);
     for (int i = 0; i < m->sides->count; i++) {
         ((vplPatchSide*)m->sides->sides)[i].reflectance = (vplRgb){0.5f, 0.25f, 0};
@@ -344,15 +323,12 @@ static void IrradianceIsReflectedAndAdded(void** state)
         closeCanvas(&c);
     }
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // Dark within a pixel of the lines between patches, the full value elsewhere; the cuts that join a hanging vertex to a
 // corner are no lines.
-static void OutlinesAreAtEdgesOfPatches(void** state)
+TEST(OutlinesAreAtEdgesOfPatches, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = screenMesh(context, false, frontsOpen);
     const vplCameraDef camera = lookAtOrigin(vplVec(0, 0, 4));
     vplRgb* values = listOf(m->sides->count, (vplRgb){1, 1, 1});
@@ -387,15 +363,12 @@ static void OutlinesAreAtEdgesOfPatches(void** state)
     assert_in_range(dark[1], 32, 34); // around the middle other edges are near
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // ---- borders
 
-static void WrongDrawsAreRefused(void** state)
+TEST(WrongDrawsAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = screenMesh(context, false, frontsOpen);
     const vplCameraDef camera = lookAtOrigin(vplVec(0, 0, 4));
     Canvas c = openCanvas(m, &camera, 8, 8);
@@ -409,13 +382,10 @@ static void WrongDrawsAreRefused(void** state)
     assert_true(c.image->pixels[3 * 36] == 0);
     closeCanvas(&c);
     closeMesh(m);
-    closeTestContext(context);
 }
 
-static void DrawsCanBeCancelled(void** state)
+TEST(DrawsCanBeCancelled, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = screenMesh(context, false, frontsOpen);
     const vplCameraDef camera = lookAtOrigin(vplVec(0, 0, 4));
     Canvas c = openCanvas(m, &camera, 512, 512);
@@ -426,14 +396,11 @@ static void DrawsCanBeCancelled(void** state)
     free(values);
     closeCanvas(&c);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // Nothing to draw is a picture, too.
-static void SceneWithoutTrianglesDrawsNothing(void** state)
+TEST(SceneWithoutTrianglesDrawsNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = meshOf(openSides(openPatches(freezeScene(sceneOf(context, 0.5f)), 1, 1), frontsOpen));
     assert_true(m->vertexCount == 0 && m->triangleCount == 0);
     const vplCameraDef camera = lookAtOrigin(vplVec(0, 0, 4));
@@ -443,7 +410,6 @@ static void SceneWithoutTrianglesDrawsNothing(void** state)
     assert_true(c.image->pixels[0] == 0);
     closeCanvas(&c);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 static uint64_t hashOfDraw(vplContext* context)
@@ -471,17 +437,7 @@ static uint64_t hashOfDraw(vplContext* context)
     return hash;
 }
 
-static void DrawsAreTheSameBitsEverywhere(void** state)
+TEST_ALONE(DrawsAreTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOfDraw);
 }
-
-TEST_SUITE(drawPatches, cmocka_unit_test(ClipCoordinatesAreThoseOfTheCamera),
-           cmocka_unit_test(UndividedPatchesCoverWhatTheViewCovers), cmocka_unit_test(ClosedRoomHasNoHoles),
-           cmocka_unit_test(EqualCornersGiveThatValueToAllPixels),
-           cmocka_unit_test(LinearValuesAreReproduced), cmocka_unit_test(DarkSidesHideWhatIsBehindThem),
-           cmocka_unit_test(EachSideHasItsOwnValues), cmocka_unit_test(IrradianceIsReflectedAndAdded),
-           cmocka_unit_test(OutlinesAreAtEdgesOfPatches), cmocka_unit_test(WrongDrawsAreRefused),
-           cmocka_unit_test(DrawsCanBeCancelled), cmocka_unit_test(SceneWithoutTrianglesDrawsNothing),
-           cmocka_unit_test(DrawsAreTheSameBitsEverywhere));

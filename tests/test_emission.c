@@ -70,9 +70,8 @@ static double dot(vplVec3 a, vplVec3 b)
     return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z;
 }
 
-static void PowersAreTheIntegralsOfTheirLight(void** state)
+TEST_ALONE(PowersAreTheIntegralsOfTheirLight)
 {
-    (void)state;
     const vplRgb light = {2, 1, 0.5f};
     World w = openWorld();
     vplEmitterDef emitters[5];
@@ -120,9 +119,8 @@ static void PowersAreTheIntegralsOfTheirLight(void** state)
 }
 
 // Each source gets its share of the particles, and with the flux they carry all give back the power.
-static void ParticlesShareThePowerAmongTheSources(void** state)
+TEST_ALONE(ParticlesShareThePowerAmongTheSources)
 {
-    (void)state;
     World w = openWorld();
     vplEmitterDef emitters[2] = {emitterOf(VPL_EMITTER_POINT, (vplRgb){1, 0, 0}),
                                  emitterOf(VPL_EMITTER_SPOT, (vplRgb){0, 9, 3})};
@@ -144,9 +142,8 @@ static void ParticlesShareThePowerAmongTheSources(void** state)
     closeWorld(&w);
 }
 
-static void SpotParticlesFollowTheFalloff(void** state)
+TEST_ALONE(SpotParticlesFollowTheFalloff)
 {
-    (void)state;
     World w = openWorld();
     vplEmitterDef spot = emitterOf(VPL_EMITTER_SPOT, (vplRgb){1, 1, 1});
     freeze(&w, &spot, 1);
@@ -181,9 +178,8 @@ static void SpotParticlesFollowTheFalloff(void** state)
     closeWorld(&w);
 }
 
-static void LampParticlesLeaveTheFrontByTheCosine(void** state)
+TEST_ALONE(LampParticlesLeaveTheFrontByTheCosine)
 {
-    (void)state;
     World w = openWorld();
     addLamp(&w, VPL_OBJECT_QUAD, (vplVec3){5, 0, 0}, (double[3]){0, VPL_PI / 2, 0}, (vplVec3){2, 4, 1},
             (vplRgb){1, 1, 1}); // faces +x
@@ -211,9 +207,8 @@ static void LampParticlesLeaveTheFrontByTheCosine(void** state)
 }
 
 // What lands on a floor is the sun's irradiance times the floor seen from the sun.
-static void SunParticlesFallEvenlyOnAllThereIs(void** state)
+TEST_ALONE(SunParticlesFallEvenlyOnAllThereIs)
 {
-    (void)state;
     World w = openWorld();
     vplEmitterDef sun = emitterOf(VPL_EMITTER_DIRECTIONAL, (vplRgb){3, 3, 3});
     addLamp(&w, VPL_OBJECT_QUAD, (vplVec3){7, 8, 9}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){2, 2, 1},
@@ -235,9 +230,8 @@ static void SunParticlesFallEvenlyOnAllThereIs(void** state)
     closeWorld(&w);
 }
 
-static void AnyNumbersTakeASource(void** state)
+TEST_ALONE(AnyNumbersTakeASource)
 {
-    (void)state;
     World w = openWorld();
     vplEmitterDef emitters[4];
     for (int i = 0; i < 4; i++) {
@@ -265,9 +259,3 @@ static void AnyNumbersTakeASource(void** state)
     assertNear(vplEmission_Power(w.emission), 0, 0, "power of nothing", 0);
     closeWorld(&w);
 }
-
-TEST_SUITE(emission, cmocka_unit_test(PowersAreTheIntegralsOfTheirLight),
-           cmocka_unit_test(ParticlesShareThePowerAmongTheSources),
-           cmocka_unit_test(SpotParticlesFollowTheFalloff),
-           cmocka_unit_test(LampParticlesLeaveTheFrontByTheCosine),
-           cmocka_unit_test(SunParticlesFallEvenlyOnAllThereIs), cmocka_unit_test(AnyNumbersTakeASource));

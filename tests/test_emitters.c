@@ -1,75 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Spots, parallel light and lamps against formulas; the shadows of virtual lights; smooth surfaces; particles of
-// all of them.
-#include "shapes.h"
+// Spots, parallel light and area lights against formulas; the shadows of virtual lights; smooth surfaces.
+#include "emitter_scenes.h"
 
-#include "geometry/emission.h"
-#include "math/vec.h"
-
-static uint64_t renderHash(const vplScene* scene, const vplRenderOptions* options)
+TEST(SpotAndSunAreAnalytic, 1)
 {
-    vplImage* image = renderScene(scene, options, NULL);
-    uint64_t hash = vplImage_Hash(image);
-    vplImage_Destroy(image);
-    return hash;
-}
-
-// Looks straight down; `half` is the tangent of half the angle of view.
-static void lookDown(vplScene* scene, float height, double half)
-{
-    vplCameraDef camera = vplDefaultCameraDef();
-    camera.eye = vplVec(0, height, 0);
-    camera.target = vplVec(0, 0, 0);
-    camera.up = vplVec(0, 0, -1);
-    camera.fovY = 2 * atan(half);
-    camera.near = 0.05;
-    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
-}
-
-// The floor point that a pixel of a square picture sees from above.
-static void floorPoint(int pixel, int size, double height, double half, double* x, double* z)
-{
-    *x = (2 * (pixel % size + 0.5) / size - 1) * half * height;
-    *z = (2 * (pixel / size + 0.5) / size - 1) * half * height;
-}
-
-// A quad that looks up (or down), of the scene's material `material`.
-static void addLevel(vplScene* scene, vplVec3 centre, float size, bool down, int material)
-{
-    vplObjectDef object = vplDefaultObjectDef();
-    object.material = material;
-    object.transform =
-        vplMat4_FromParts(centre, (double[3]){(down ? 1 : -1) * VPL_PI / 2, 0, 0}, vplVec(size, size, 1));
-    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-}
-
-static int addGlow(vplScene* scene, vplRgb emission, float rho)
-{
-    vplMaterialDef material = vplDefaultMaterialDef();
-    int index;
-    material.emission = emission;
-    material.diffuse = (vplRgb){rho, rho, rho};
-    assert_int_equal(vplScene_AddMaterial(scene, &material, &index), VPL_SUCCESS);
-    return index;
-}
-
-static void addColoured(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3 direction,
-                        float intensity)
-{
-    vplEmitterDef emitter = vplDefaultEmitterDef();
-    emitter.type = type;
-    emitter.position = position;
-    emitter.direction = direction;
-    emitter.intensity = (vplRgb){intensity, 0.5f * intensity, 0.75f * intensity};
-    assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
-}
-
-// rho/pi E: E = I cos / d^2 times 3x^2 - 2x^3 of the cosine's way between the angles, or the irradiance times cos.
-static void SpotAndSunAreAnalytic(void** state)
-{
-    (void)state;
     enum { SIZE = 64 };
-    vplContext* context = openTestContext(1);
     for (int which = 0; which < 4; which++) { // spot and sun, by maps and by rays
         const bool sun = which & 1;
         vplScene* scene = sceneOf(context, 0.5f);
@@ -104,7 +39,6 @@ static void SpotAndSunAreAnalytic(void** state)
         vplImage_Destroy(image);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // From a point to the rectangle [0, a] x [0, b] in a plane parallel to it at distance 1, the point below a corner.
@@ -116,16 +50,14 @@ static double cornerFactor(double a, double b)
 }
 
 // A lamp of 1 x 1 m, 1 m above the floor: the radiance of the floor is rho L F.
-static void LampLightsConvergeToTheFormFactor(void** state)
+TEST(LampLightsConvergeToTheFormFactor, 1)
 {
-    (void)state;
     enum { SIZE = 8 };
     // Largest relative error below the lamp and 0.1 m around; it falls as 1 / count.
     const struct {
         int count;
         double error;
     } cases[] = {{1, 1.42}, {16, 0.18}, {64, 0.063}, {1024, 0.0061}};
-    vplContext* context = openTestContext(1);
     vplScene* scene = sceneOf(context, 0.5f);
     addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
     addLevel(scene, vplVec(0, 1, 0), 1, true, addGlow(scene, (vplRgb){4, 4, 4}, 0));
@@ -150,15 +82,12 @@ static void LampLightsConvergeToTheFormFactor(void** state)
         vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Indirect light of the room: maps of 512 x 512 texels (as many as 6 of 209 x 209) are 0.1 % of it off, where shadows
 // stop 10 %.
-static void RayAndMapShadowsAgree(void** state)
+TEST(RayAndMapShadowsAgree, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = vplDefaultRenderOptions();
     o.output.width = 64;
@@ -184,7 +113,6 @@ static void RayAndMapShadowsAgree(void** state)
     vplImage_Destroy(rays);
     vplImage_Destroy(maps);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- stages with lights given by hand
@@ -274,10 +202,8 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
 }
 
 // A square of 1 m halfway between the light and the floor: nothing in its shadow, the unshadowed bits beside it.
-static void RayShadowsAreExact(void** state)
+TEST(RayShadowsAreExact, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplCameraDef camera = vplDefaultCameraDef();
     const double height = 0.9, half = 1.7;
     camera.eye = vplVec(0, (float)height, 0);
@@ -306,16 +232,13 @@ static void RayShadowsAreExact(void** state)
         vplImage_Destroy(with);
         vplImage_Destroy(without);
     }
-    closeTestContext(context);
 }
 
 // ---- smooth surfaces
 
 // Light is received with the interpolated normal, but from the triangle's own side only, by every kind of light.
-static void SmoothTrianglesAreDarkFromBehind(void** state)
+TEST(SmoothTrianglesAreDarkFromBehind, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplCameraDef camera = vplDefaultCameraDef();
     camera.up = vplVec(0, 0, -1);
     // In the plane y = 0, around (0, 0, 0.1); as its own normals the corners point up to 80 degrees away.
@@ -345,15 +268,12 @@ static void SmoothTrianglesAreDarkFromBehind(void** state)
         }
     }
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // A roof of two triangles that share their ridge, and normals there. Across it the light goes on as it goes on
 // beside it; without normals it jumps.
-static void SmoothMeshesShadeWithoutSeams(void** state)
+TEST(SmoothMeshesShadeWithoutSeams, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const vplVec3 corners[4] = {{0, 0, -1}, {0, 0, 1}, {-1, -0.3f, 0}, {1, -0.3f, 0}};
     const vplVec3 normals[4] = {{0, 1, 0}, {0, 1, 0}, {-0.3f, 1, 0}, {0.3f, 1, 0}};
     double jump[2];
@@ -388,346 +308,4 @@ static void SmoothMeshesShadeWithoutSeams(void** state)
         vplScene_Destroy(scene);
     }
     assert_true(jump[1] < 1.05 && jump[0] > 20);
-    closeTestContext(context);
 }
-
-// ---- all kinds of emitters at once
-
-// A room with a smooth ball, a box that glows, a spot, the sun and a point; all light multiplied by `factor`.
-static vplScene* zoo(vplContext* context, float factor)
-{
-    vplScene* scene = sceneOf(context, 0.6f);
-    const int lamp = addGlow(scene, (vplRgb){2 * factor, 3 * factor, factor}, 0.25f);
-    addLevel(scene, vplVec(0, 0, 0), 4, false, 0);
-    addLevel(scene, vplVec(0.5f, 2, 0.1f), 0.5f, true, lamp);
-    vplObjectDef object = vplDefaultObjectDef();
-    object.transform = vplMat4_FromParts(vplVec(0, 1, -1), (double[3]){0.1, 0.2, 0}, vplVec(4, 3, 1));
-    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    object.type = VPL_OBJECT_BOX;
-    object.material = lamp;
-    object.transform =
-        vplMat4_FromParts(vplVec(-1, 0.5f, 0.3f), (double[3]){0.3, 0.4, 0.5}, vplVec(0.4f, 0.3f, 0.5f));
-    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    Shape ball = icosphere(1);
-    const vplMat4 place =
-        vplMat4_FromParts(vplVec(0.5f, 0.6f, 0.2f), (double[3]){0, 0, 0}, vplVec(0.5f, 0.4f, 0.5f));
-    addShape(scene, &ball, true, &place);
-    freeShape(&ball);
-    addColoured(scene, VPL_EMITTER_POINT, vplVec(-0.5f, 1.5f, 0.5f), vplVec(0, -1, 0), 2 * factor);
-    addColoured(scene, VPL_EMITTER_SPOT, vplVec(0.5f, 2.5f, 1), vplVec(0, -2, -0.7f), 5 * factor);
-    addColoured(scene, VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(-0.3f, -1, -0.4f), factor);
-    vplCameraDef camera = vplDefaultCameraDef();
-    camera.eye = vplVec(0, 1.5f, 4);
-    camera.target = vplVec(0, 0.7f, 0);
-    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
-    return scene;
-}
-
-static vplRenderOptions zooOptions(int shadows)
-{
-    vplRenderOptions o = vplDefaultRenderOptions();
-    o.output.width = 35;
-    o.output.height = 25;
-    o.particles.count = 36; // about 70 lights, more than a group of them
-    o.lights.areaLightSamples = 9;
-    o.shadow.mapSize = 32;
-    o.lights.mapSize = 8;
-    o.lights.shadows = (vplLightShadows)shadows;
-    return o;
-}
-
-static void checkAccumulations(vplContext* context, int shadows, uint64_t wanted)
-{
-    vplScene* scene = zoo(context, 1);
-    vplRenderOptions o = zooOptions(shadows);
-    for (int way = VPL_ACCUMULATE_MULTIPASS; way <= VPL_ACCUMULATE_DEFERRED; way++) {
-        o.pipeline.kind = (vplAccumulation)way;
-        o.pipeline.batch = 13;
-        assert_true(renderHash(scene, &o) == wanted);
-    }
-    vplScene_Destroy(scene);
-    closeTestContext(context);
-}
-
-static void AccumulationsAgreeWithEveryShadow(void** state)
-{
-    (void)state;
-    static const int workers[] = {1, 2, 3, 7};
-    uint64_t hashes[1 + VPL_LIGHT_SHADOWS_RAY];
-    for (int shadows = VPL_LIGHT_SHADOWS_NONE; shadows <= VPL_LIGHT_SHADOWS_RAY; shadows++) {
-        vplContext* context = openTestContext(1);
-        vplScene* scene = zoo(context, 1);
-        vplRenderOptions o = zooOptions(shadows);
-        hashes[shadows] = renderHash(scene, &o);
-        vplScene_Destroy(scene);
-        closeTestContext(context);
-        for (int i = 0; i < 4; i++) {
-            checkAccumulations(openTestContext(workers[i]), shadows, hashes[shadows]);
-        }
-        for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
-            context = openIsaContext(2, (vplIsa)isa);
-            if (context != NULL) {
-                checkAccumulations(context, shadows, hashes[shadows]);
-            }
-        }
-    }
-    assert_true(hashes[1] != hashes[2] && hashes[2] != hashes[3] && hashes[1] != hashes[3]);
-}
-
-static void DoublingEmittersDoublesEveryBit(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    for (int shadows = 0; shadows < 3; shadows++) {
-        vplScene *one = zoo(context, 1), *two = zoo(context, 2), *small = zoo(context, 0x1p-40f);
-        const vplRenderOptions o = zooOptions(shadows);
-        vplImage *a = renderScene(one, &o, NULL), *b = renderScene(two, &o, NULL),
-                 *c = renderScene(small, &o, NULL);
-        int lit = 0;
-        for (int i = 0; i < 3 * o.output.width * o.output.height; i++) {
-            assert_true(b->pixels[i] == 2 * a->pixels[i] && c->pixels[i] == 0x1p-40f * a->pixels[i]);
-            lit += a->pixels[i] > 0;
-        }
-        assert_true(lit > 1000);
-        vplImage_Destroy(a);
-        vplImage_Destroy(b);
-        vplImage_Destroy(c);
-        vplScene_Destroy(one);
-        vplScene_Destroy(two);
-        vplScene_Destroy(small);
-    }
-    closeTestContext(context);
-}
-
-static void DocumentedLightingRefusesOtherEmitters(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    for (int type = VPL_EMITTER_SPOT; type <= VPL_EMITTER_DIRECTIONAL; type++) {
-        vplScene* scene = sceneOf(context, 0.5f);
-        addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
-        lookDown(scene, 4, 0.3);
-        addColoured(scene, VPL_EMITTER_POINT, vplVec(0, 2, 0), vplVec(0, -1, 0), 1);
-        addColoured(scene, (vplEmitterType)type, vplVec(0, 2, 0), vplVec(0, -1, 0), 1);
-        vplRenderOptions o = zooOptions(0);
-        for (int direct = 0; direct < 2; direct++) {
-            vplImage* image = NULL;
-            o.method = direct ? VPL_METHOD_DIRECT : VPL_METHOD_INSTANT_RADIOSITY;
-            o.lighting = VPL_LIGHTING_DOCUMENTED;
-            assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
-            assert_null(image);
-            assert_string_equal(takeMessage(),
-                                "light 1 is not a point light, and documented lighting knows no "
-                                "others; use physical");
-            o.lighting = VPL_LIGHTING_PHYSICAL;
-            vplImage_Destroy(renderScene(scene, &o, NULL));
-        }
-        vplScene_Destroy(scene);
-    }
-    closeTestContext(context);
-}
-
-// ---- particles
-
-static vplLightSet* simulate(const vplGeometry* g, int particles, vplParticleGeometry geometry)
-{
-    vplParticleDef def = vplDefaultParticleDef();
-    def.particleCount = particles;
-    def.geometry = geometry;
-    vplLightSet* set;
-    if (vplSimulateParticles(g, NULL, 0, &def, &set) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return set;
-}
-
-// A closed cube of 2 m, reflectance 0.5, with lamps of one or two colours in it, turned any way.
-static vplScene* lampCube(vplContext* context, int lamps, float rho)
-{
-    vplScene* scene = sceneOf(context, rho);
-    vplObjectDef object = vplDefaultObjectDef();
-    object.type = VPL_OBJECT_BOX;
-    object.transform = vplMat4_FromParts(vplVec(0, 0, 0), (double[3]){0.2, 0.1, 0.3}, vplVec(2, 2, 2));
-    assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    for (int i = 0; i < lamps; i++) {
-        object.type = i == 0 ? VPL_OBJECT_QUAD : VPL_OBJECT_BOX;
-        object.material = addGlow(scene, i == 0 ? (vplRgb){8, 1, 0.5f} : (vplRgb){0, 1, 3}, rho);
-        object.transform = vplMat4_FromParts(vplVec(0.3f * (float)(2 * i - 1), 0.2f, 0.1f),
-                                             (double[3]){0.5, 0.6, 0.7 + i}, vplVec(0.4f, 0.3f, 0.2f));
-        assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    }
-    return scene;
-}
-
-// All that lamps send out reaches a wall, and rho of it goes on: of the flux of the lights of step 0 the mean of
-// the channels is exact for every single particle, the colour within what N choices of a source leave open.
-static void LampsShootTheirPower(void** state)
-{
-    (void)state;
-    enum { N = 20000 };
-    vplContext* context = openTestContext(2);
-    for (int lamps = 1; lamps <= 2; lamps++) {
-        vplGeometry* g = freezeScene(lampCube(context, lamps, 0.5f));
-        vplEmission* emission;
-        assert_int_equal(vplEmission_Create(g, NULL, 0, &emission), VPL_SUCCESS);
-        const double power = vplEmission_Power(emission);
-        double wanted[3] = {0}, sums[3] = {0}, first = 0;
-        for (int i = 0; i < emission->sourceCount; i++) {
-            const vplEmissionSource* s = &emission->sources[i];
-            wanted[0] += (double)s->power.r;
-            wanted[1] += (double)s->power.g;
-            wanted[2] += (double)s->power.b;
-            const bool red = s->power.r > s->power.b;
-            first += red ? ((double)s->power.r + (double)s->power.g + (double)s->power.b) / 3 / power : 0;
-        }
-        vplLightSet* set = simulate(g, N, VPL_PARTICLE_GEOMETRY_EXACT);
-        assert_int_equal(set->escaped, 0);
-        assert_int_equal(set->lightsInStep[0], N);
-        for (int i = 0; i < N; i++) {
-            const vplVirtualLight* l = &set->lights[i];
-            const double mean = ((double)l->light.r + (double)l->light.g + (double)l->light.b) / 3;
-            assertNear(mean, 0.5 * power, 1e-6 * power, "flux", i);
-            sums[0] += (double)l->light.r * (double)l->weight / N;
-            sums[1] += (double)l->light.g * (double)l->weight / N;
-            sums[2] += (double)l->light.b * (double)l->weight / N;
-        }
-        const double sigma =
-            sqrt(fmax(first * (1 - first), 0) / N); // of the share of the first lamp's colour
-        for (int c = 0; c < 3; c++) {
-            assertNear(sums[c], 0.5 * wanted[c], (1e-5 + 4 * sigma) * 3 * power, "power", c);
-        }
-        vplLightSet_Destroy(set);
-        vplEmission_Destroy(emission);
-        vplGeometry_Destroy(g);
-    }
-    closeTestContext(context);
-}
-
-// Where all objects are boxes and quads, they are their own bounding boxes.
-static void BoxesInsteadOfBoxesGiveTheSameLights(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplGeometry* g = freezeScene(lampCube(context, 2, 0.5f));
-    vplLightSet* exact = simulate(g, 5000, VPL_PARTICLE_GEOMETRY_EXACT);
-    vplLightSet* boxes = simulate(g, 5000, VPL_PARTICLE_GEOMETRY_OBB);
-    assert_int_equal(exact->lightCount, boxes->lightCount);
-    assert_int_equal(exact->escaped, boxes->escaped);
-    for (int i = 0; i < exact->lightCount; i++) {
-        const vplVirtualLight *a = &exact->lights[i], *b = &boxes->lights[i];
-        if (a->object != b->object || memcmp(&a->position, &b->position, sizeof a->position) != 0) {
-            fail_msg("light %d of step %d, particle %d: on object %d, with boxes on %d", i, a->step,
-                     a->particle, a->object, b->object);
-        }
-        assert_memory_equal(&a->normal, &b->normal, sizeof a->normal);
-        assert_memory_equal(&a->light, &b->light, sizeof a->light);
-    }
-    vplLightSet_Destroy(exact);
-    vplLightSet_Destroy(boxes);
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-}
-
-// A ball is met at its box, all around; a ball that glows lets its own light out.
-static void ParticlesStopAtTheBoxOfAMesh(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    for (int glows = 0; glows < 2; glows++) {
-        vplScene* scene = lampCube(context, glows ? 0 : 1, 0.5f);
-        Shape ball = icosphere(2);
-        vplMeshDef mesh = vplDefaultMeshDef();
-        vplObjectDef object = vplDefaultObjectDef();
-        uint32_t indices[3 * 320];
-        for (uint32_t i = 0; i < 3 * 320; i++) {
-            indices[i] = i;
-        }
-        mesh.positions = ball.corners;
-        mesh.indices = indices;
-        mesh.vertexCount = 3 * (mesh.triangleCount = ball.triangleCount);
-        object.type = VPL_OBJECT_MESH;
-        object.material = glows ? addGlow(scene, (vplRgb){1, 1, 1}, 0.5f) : 0;
-        object.transform =
-            vplMat4_FromParts(vplVec(0.3f, -0.2f, 0.1f), (double[3]){0.4, 0, 0}, vplVec(0.4f, 0.3f, 0.3f));
-        assert_int_equal(vplScene_AddMesh(scene, &mesh, &object.mesh), VPL_SUCCESS);
-        int index;
-        assert_int_equal(vplScene_AddObject(scene, &object, &index), VPL_SUCCESS);
-        vplGeometry* g = freezeScene(scene);
-        vplLightSet* set = simulate(g, 4000, VPL_PARTICLE_GEOMETRY_OBB);
-        int on = 0, first = 0;
-        for (int i = 0; i < set->lightCount; i++) {
-            const vplVirtualLight* l = &set->lights[i];
-            if (l->object != index) {
-                continue;
-            }
-            double largest = 0;
-            for (int row = 0; row < 3; row++) {
-                const double* m = g->objects[index].bounds.toLocal[row];
-                largest = fmax(largest, fabs(m[0] * (double)l->position.x + m[1] * (double)l->position.y +
-                                             m[2] * (double)l->position.z + m[3]));
-            }
-            assertNear(largest, 0.5, 1e-6, "distance from the box", i);
-            first += l->step == 0;
-            on++;
-        }
-        assert_true(on > 100 && (first > 0) == !glows);
-        assert_int_equal(set->escaped, 0);
-        vplLightSet_Destroy(set);
-        vplGeometry_Destroy(g);
-        freeShape(&ball);
-    }
-    closeTestContext(context);
-}
-
-static double energyOf(const vplScene* scene, const vplRenderOptions* options)
-{
-    vplImage* image;
-    double sum = 0;
-    assert_int_equal(vplRender(scene, options, &image, NULL), VPL_SUCCESS);
-    for (int i = 0; i < 3 * image->width * image->height; i++) {
-        sum += (double)image->pixels[i];
-    }
-    vplImage_Destroy(image);
-    return sum;
-}
-
-// Virtual lights with shadows by rays and path tracing are two estimates of one picture. Four seeds of 512
-// particles leave about 1 % of noise in the mean (tests/bench/energy.sh: larger pictures, more particles).
-static void EnergyIsThatOfPathTracing(void** state)
-{
-    (void)state;
-    static const char* const scenes[] = {"examples/scenes/room.json", "examples/scenes/room-area.json"};
-    vplContext* context = openTestContext(2);
-    for (int i = 0; i < 2; i++) {
-        vplScene* scene;
-        assert_int_equal(vplScene_Load(context, scenes[i], &scene), VPL_SUCCESS);
-        vplRenderOptions o = vplDefaultRenderOptions();
-        o.output.width = o.output.height = 16;
-        o.path.pixel = VPL_PIXEL_CENTRE;
-        o.method = VPL_METHOD_PATH;
-        o.path.samples = 1024;
-        const double truth = energyOf(scene, &o);
-        o.method = VPL_METHOD_INSTANT_RADIOSITY;
-        o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
-        o.particles.sampler = VPL_SAMPLER_HALTON;
-        o.particles.count = 512;
-        double sum = 0;
-        for (o.seed = 1; o.seed <= 4; o.seed++) {
-            sum += energyOf(scene, &o);
-        }
-        assertNear(sum / 4 / truth, 1, 0.025, scenes[i], i);
-        o.lights.shadows = VPL_LIGHT_SHADOWS_NONE; // light through boxes is seen
-        assert_true(energyOf(scene, &o) > 1.01 * sum / 4);
-        vplScene_Destroy(scene);
-    }
-    closeTestContext(context);
-}
-
-TEST_SUITE(emitters, slow_unit_test(EnergyIsThatOfPathTracing), cmocka_unit_test(SpotAndSunAreAnalytic),
-           cmocka_unit_test(LampLightsConvergeToTheFormFactor), cmocka_unit_test(RayAndMapShadowsAgree),
-           cmocka_unit_test(RayShadowsAreExact), cmocka_unit_test(SmoothTrianglesAreDarkFromBehind),
-           cmocka_unit_test(SmoothMeshesShadeWithoutSeams), slow_unit_test(AccumulationsAgreeWithEveryShadow),
-           cmocka_unit_test(DoublingEmittersDoublesEveryBit),
-           cmocka_unit_test(DocumentedLightingRefusesOtherEmitters), cmocka_unit_test(LampsShootTheirPower),
-           cmocka_unit_test(BoxesInsteadOfBoxesGiveTheSameLights),
-           cmocka_unit_test(ParticlesStopAtTheBoxOfAMesh));

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Form factors of all pairs of patches: tests/data/incentre_estimator.csv, closed boxes, what stands between, X093-X095.
-#include "test.h"
+#include "patch_support.h"
 
 #include "base/hash.h"
-#include "patch_support.h"
-#include "sides_fixture.h"
 
 #include "math/vec.h"
 
@@ -14,7 +12,7 @@ static void makeBox(vplContext* context, float x, float y, float z, int rounds, 
 {
     vplVec3 corners[36];
     boxCorners(x, y, z, corners);
-    assert_true(makeSides(context, corners, 12, 0, rounds, f));
+    *f = openFronts(context, corners, 12, 0, rounds);
 }
 
 static vplFormFactors* createFor(const vplPatchSides* sides, const vplFormFactorDef* def)
@@ -28,7 +26,7 @@ static vplFormFactors* createFor(const vplPatchSides* sides, const vplFormFactor
 
 static vplFormFactors* create(const SidesFixture* f, const vplFormFactorDef* def)
 {
-    return createFor(&f->sides, def);
+    return createFor(f->sides, def);
 }
 
 static double factorAt(const vplFormFactors* f, int i, int j)
@@ -51,8 +49,8 @@ static void assertReciprocal(const SidesFixture* s, const vplFormFactors* f)
     for (int i = 0; i < f->count; i++) {
         assert_true(factorAt(f, i, i) == 0);
         for (int j = 0; j < f->count; j++) {
-            const double there = (double)s->sides.sides[i].area * factorAt(f, i, j),
-                         back = (double)s->sides.sides[j].area * factorAt(f, j, i);
+            const double there = (double)s->sides->sides[i].area * factorAt(f, i, j),
+                         back = (double)s->sides->sides[j].area * factorAt(f, j, i);
             assert_true(factorAt(f, i, j) >= 0 && factorAt(f, i, j) <= 1);
             assertNear(there, back, 1e-6 * there, "exchange", i);
         }
@@ -147,25 +145,21 @@ static void compareIncentres(const vplPatchSides* sides, const Table* t, int row
     vplFormFactors_Destroy(f);
 }
 
-static void IncentresOfACubeAreThoseOfTheTable(void** state)
+TEST(IncentresOfACubeAreThoseOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplVec3 corners[36];
     boxCorners(1, 1, 1, corners);
     Table t = loadTable("incentre_estimator.csv");
     for (int row = 0; row < 9; row++) {
-        SidesFixture s;
-        assert_true(makeSides(context, corners, 12, 0, (int)number(&t, row, "iteration"), &s));
-        compareIncentres(&s.sides, &t, row, 5e-6);
-        freeSides(&s);
+        SidesFixture s = openFronts(context, corners, 12, 0, (int)number(&t, row, "iteration"));
+        compareIncentres(s.sides, &t, row, 5e-6);
+        closeFronts(&s);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
-// All fronts of the report's box: the lab's normals point out of the room, so that these are backs.
-static vplPatchSides* sidesOf(const vplPatches* patches)
+// All sides of the report's box that face the room.
+static vplPatchSides* sidesOfBox(const vplPatches* patches)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
     vplEmitterDef lamp = vplDefaultEmitterDef();
@@ -179,31 +173,26 @@ static vplPatchSides* sidesOf(const vplPatches* patches)
 }
 
 // X094.
-static void IncentresOfTheReportsBoxAreThoseOfTheTable(void** state)
+TEST(IncentresOfTheReportsBoxAreThoseOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplGeometry* geometry = openTestModel(context);
+    vplGeometry* geometry = testModel(context, MODEL_LAB, 0.5f);
     Table t = loadTable("incentre_estimator.csv");
     for (int row = 9; row < t.rows; row++) {
         vplPatches* patches = openPatches(geometry, 125, (int)number(&t, row, "iteration"));
-        vplPatchSides* sides = sidesOf(patches);
+        vplPatchSides* sides = sidesOfBox(patches);
         compareIncentres(sides, &t, row, 5e-6);
         vplPatchSides_Destroy(sides);
         vplPatches_Destroy(patches);
     }
     freeTable(&t);
     vplGeometry_Destroy(geometry);
-    closeTestContext(context);
 }
 
 // ---- closed rooms
 
 // Measured: at most 0.0025, by three points for a side where pairs are not near.
-static void ClosedBoxesClose(void** state)
+TEST(ClosedBoxesClose, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int rounds = 0; rounds <= 6; rounds++) {
         SidesFixture s;
         makeBox(context, 4, 2.5f, 5, rounds, &s);
@@ -215,15 +204,12 @@ static void ClosedBoxesClose(void** state)
         }
         assertReciprocal(&s, f);
         vplFormFactors_Destroy(f);
-        freeSides(&s);
+        closeFronts(&s);
     }
-    closeTestContext(context);
 }
 
-static void NormalisedRowsSumToOneAndStayReciprocal(void** state)
+TEST(NormalisedRowsSumToOneAndStayReciprocal, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     SidesFixture s;
     makeBox(context, 4, 2.5f, 5, 4, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
@@ -238,15 +224,12 @@ static void NormalisedRowsSumToOneAndStayReciprocal(void** state)
         assertReciprocal(&s, f);
         vplFormFactors_Destroy(f);
     }
-    freeSides(&s);
-    closeTestContext(context);
+    closeFronts(&s);
 }
 
 // Sums that were too large come down, those that were not may only fall; `keep` changes nothing.
-static void ClampedRowsNeverSumToMoreThanOne(void** state)
+TEST(ClampedRowsNeverSumToMoreThanOne, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     SidesFixture s;
     makeBox(context, 4, 2.5f, 5, 3, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
@@ -266,8 +249,7 @@ static void ClampedRowsNeverSumToMoreThanOne(void** state)
     assertReciprocal(&s, clamped);
     vplFormFactors_Destroy(kept);
     vplFormFactors_Destroy(clamped);
-    freeSides(&s);
-    closeTestContext(context);
+    closeFronts(&s);
 }
 
 // ---- what the estimators find
@@ -293,12 +275,9 @@ static double meanOfSeeds(const SidesFixture* s, vplFormFactorDef def, int seeds
 static const vplVec3 PARALLEL[6] = {{0, 0, 0},    {1, 0, 0},    {0, 1, 0},
                                     {0.2f, 0, 2}, {0.2f, 1, 2}, {1.2f, 0, 2}};
 
-static void PairsOfPointsFindTheIntegralWhateverTheirNumber(void** state)
+TEST(PairsOfPointsFindTheIntegralWhateverTheirNumber, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
-    SidesFixture s;
-    assert_true(makeSides(context, PARALLEL, 2, 1, 0, &s));
+    SidesFixture s = openFronts(context, PARALLEL, 2, 1, 0);
     const double wanted = vplTriangleFormFactor(PARALLEL, PARALLEL + 3);
     static const int samples[] = {1, 2, 3, 4, 16, 17, 50};
     for (int k = 0; k < 7; k++) {
@@ -316,15 +295,12 @@ static void PairsOfPointsFindTheIntegralWhateverTheirNumber(void** state)
     // Points in the middles of quarters, for these: 0.4 %.
     assertNear(factorAt(f, 0, 1), wanted, 0.01 * wanted, "known", 0);
     vplFormFactors_Destroy(f);
-    freeSides(&s);
-    closeTestContext(context);
+    closeFronts(&s);
 }
 
 // A screen between the two: all of it, and a part that hides about a half.
-static void WhatStandsBetweenTakesItsShare(void** state)
+TEST(WhatStandsBetweenTakesItsShare, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplVec3 corners[9];
     memcpy(corners, PARALLEL, sizeof PARALLEL);
     static const float edges[2] = {-5, 0.4f};
@@ -332,8 +308,7 @@ static void WhatStandsBetweenTakesItsShare(void** state)
     for (int k = 0; k < 2; k++) {
         const vplVec3 screen[3] = {{edges[k], -50, 1}, {edges[k], 50, 1}, {100, 0, 1}};
         memcpy(corners + 6, screen, sizeof screen);
-        SidesFixture s;
-        assert_true(makeSides(context, corners, 3, 1000, 0, &s));
+        SidesFixture s = openFronts(context, corners, 3, 1000, 0);
         for (int analytic = 0; analytic < 2; analytic++) {
             vplFormFactorDef def = vplDefaultFormFactorDef();
             def.analytic = analytic;
@@ -345,28 +320,24 @@ static void WhatStandsBetweenTakesItsShare(void** state)
             assertNear(meanOfSeeds(&s, def, 50, &error) / vplTriangleFormFactor(PARALLEL, PARALLEL + 3),
                        shares[k][analytic], 0, "all triangles", k);
         }
-        freeSides(&s);
+        closeFronts(&s);
     }
     assert_true(shares[0][0] == 0 && shares[0][1] == 0);
     assert_true(shares[1][0] > 0.3 && shares[1][0] < 0.7);
     assertNear(shares[1][1], shares[1][0], 0.005, "share", 1);
-    closeTestContext(context);
 }
 
 // Of a side whose cells at corner 0 are open, only that quarter takes part.
-static void ClosedCellsExchangeNothing(void** state)
+TEST(ClosedCellsExchangeNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int near = 0; near < 2; near++) {
         vplVec3 corners[6];
         memcpy(corners, PARALLEL, sizeof PARALLEL);
         for (int i = 3; i < 6; i++) {
             corners[i].z = near ? 0.25f : 3;
         }
-        SidesFixture s;
-        assert_true(makeSides(context, corners, 2, 1000, 0, &s));
-        vplPatchSide* side = (vplPatchSide*)&s.sides.sides[1];
+        SidesFixture s = openFronts(context, corners, 2, 1000, 0);
+        vplPatchSide* side = (vplPatchSide*)&s.sides->sides[1];
         side->open = 0x000f;
         side->area *= 0.25f;
         vplVec3 quarter[3] = {corners[3]};
@@ -383,26 +354,22 @@ static void ClosedCellsExchangeNothing(void** state)
             const double mean = meanOfSeeds(&s, def, 50, &error);
             assertNear(mean, wanted, analytic ? 0.03 * wanted : 4 * error, "quarter", analytic);
         }
-        freeSides(&s);
+        closeFronts(&s);
     }
-    closeTestContext(context);
 }
 
 // ---- extremes
 
 // X095: two triangles with an edge in common and any angle between them, at any size.
-static void TouchingAndCoplanarSidesAreNumbers(void** state)
+TEST(TouchingAndCoplanarSidesAreNumbers, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int degrees = 0; degrees <= 180; degrees += 10) {
         for (int power = -20; power <= 20; power += 20) {
             const float size = ldexpf(1, power), c = size * (float)cos(degrees * 3.14159265358979 / 180),
                         sine = size * (float)sin(degrees * 3.14159265358979 / 180);
             const vplVec3 corners[9] = {{0, 0, 0},    {size, 0, 0}, {0, size, 0}, {0, 0, 0},   {0, c, sine},
                                         {size, 0, 0}, {0, 0, 0},    {size, 0, 0}, {0, size, 0}};
-            SidesFixture s;
-            assert_true(makeSides(context, corners, 3, 1e30, 0, &s));
+            SidesFixture s = openFronts(context, corners, 3, 1e30, 0);
             for (int kind = 0; kind < 3; kind++) {
                 vplFormFactorDef def = vplDefaultFormFactorDef();
                 def.analytic = kind == 1;
@@ -412,17 +379,14 @@ static void TouchingAndCoplanarSidesAreNumbers(void** state)
                 assert_true(degrees % 180 != 0 || factorAt(f, 0, 1) == 0);
                 vplFormFactors_Destroy(f);
             }
-            freeSides(&s);
+            closeFronts(&s);
         }
     }
-    closeTestContext(context);
 }
 
 // A box that is 2^20 times as large or as small has the same bits.
-static void FactorsDoNotDependOnTheSizeOfTheScene(void** state)
+TEST(FactorsDoNotDependOnTheSizeOfTheScene, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     uint64_t hashes[3];
     for (int k = 0; k < 3; k++) {
         const float size = ldexpf(1, 20 * (k - 1));
@@ -432,10 +396,9 @@ static void FactorsDoNotDependOnTheSizeOfTheScene(void** state)
         vplFormFactors* f = create(&s, &def);
         hashes[k] = vplHashFloats(0, f->rows, (size_t)f->count * (size_t)f->count);
         vplFormFactors_Destroy(f);
-        freeSides(&s);
+        closeFronts(&s);
     }
     assert_true(hashes[0] == hashes[1] && hashes[2] == hashes[1]);
-    closeTestContext(context);
 }
 
 // ---- same bits, refusals
@@ -447,8 +410,7 @@ static uint64_t hashOfBox(vplContext* context)
     for (int i = 0; i < 30; i++) {
         turnTriangle(corners + 3 * i);
     }
-    SidesFixture s;
-    assert_true(makeSides(context, corners, 30, 0.45 * 555 / 2, 3, &s));
+    SidesFixture s = openFronts(context, corners, 30, 0.45 * 555 / 2, 3);
     uint64_t hash = 0;
     for (int k = 0; k < 4; k++) {
         vplFormFactorDef def = vplDefaultFormFactorDef();
@@ -462,21 +424,18 @@ static uint64_t hashOfBox(vplContext* context)
         hash += (uint64_t)(f->rays + f->analyticPairs);
         vplFormFactors_Destroy(f);
     }
-    freeSides(&s);
+    closeFronts(&s);
     closeTestContext(context);
     return hash;
 }
 
-static void FactorsAreTheSameEverywhere(void** state)
+TEST_ALONE(FactorsAreTheSameEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOfBox);
 }
 
-static void DefsOutOfRangeAreRefusedByName(void** state)
+TEST(DefsOutOfRangeAreRefusedByName, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     SidesFixture s;
     makeBox(context, 1, 1, 1, 0, &s);
     vplFormFactors* untouched = NULL;
@@ -492,8 +451,8 @@ static void DefsOutOfRangeAreRefusedByName(void** state)
         def.samples = k == 1 ? 0 : k == 2 ? 1025 : 4;
         def.kind = (vplFormFactorKind)(k == 3 ? 2 : 0);
         def.rowSums = (vplRowSums)(k == 4 ? 4 : 0);
-        s.sides.count = k == 5 ? 16385 : 12;
-        assert_int_equal(vplFormFactors_Create(&s.sides, &def, &untouched),
+        s.sides->count = k == 5 ? 16385 : 12;
+        assert_int_equal(vplFormFactors_Create(s.sides, &def, &untouched),
                          k == 5 ? VPL_LIMIT : VPL_INVALID_ARGUMENT);
         const char* message = takeMessage();
         if (strstr(message, words[k]) == NULL) {
@@ -501,20 +460,17 @@ static void DefsOutOfRangeAreRefusedByName(void** state)
         }
     }
     assert_null(untouched);
-    s.sides.count = 0;
+    s.sides->count = 0;
     const vplFormFactorDef def = vplDefaultFormFactorDef();
     vplFormFactors* none = create(&s, &def);
     assert_int_equal(none->count, 0);
     vplFormFactors_Destroy(none);
     vplFormFactors_Destroy(NULL);
-    freeSides(&s);
-    closeTestContext(context);
+    closeFronts(&s);
 }
 
-static void FactorsCanBeCancelled(void** state)
+TEST(FactorsCanBeCancelled, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     SidesFixture s;
     makeBox(context, 1, 1, 1, 4, &s);
     vplFormFactorDef def = vplDefaultFormFactorDef();
@@ -522,19 +478,7 @@ static void FactorsCanBeCancelled(void** state)
     int asked = 0;
     def.progress = refuseThird;
     def.progressUser = &asked;
-    assert_int_equal(vplFormFactors_Create(&s.sides, &def, &untouched), VPL_CANCELLED);
+    assert_int_equal(vplFormFactors_Create(s.sides, &def, &untouched), VPL_CANCELLED);
     assert_null(untouched);
-    freeSides(&s);
-    closeTestContext(context);
+    closeFronts(&s);
 }
-
-TEST_SUITE(formFactors, cmocka_unit_test(IncentresOfACubeAreThoseOfTheTable),
-           cmocka_unit_test(IncentresOfTheReportsBoxAreThoseOfTheTable), cmocka_unit_test(ClosedBoxesClose),
-           cmocka_unit_test(NormalisedRowsSumToOneAndStayReciprocal),
-           cmocka_unit_test(ClampedRowsNeverSumToMoreThanOne),
-           cmocka_unit_test(PairsOfPointsFindTheIntegralWhateverTheirNumber),
-           cmocka_unit_test(WhatStandsBetweenTakesItsShare), cmocka_unit_test(ClosedCellsExchangeNothing),
-           cmocka_unit_test(TouchingAndCoplanarSidesAreNumbers),
-           cmocka_unit_test(FactorsDoNotDependOnTheSizeOfTheScene),
-           cmocka_unit_test(FactorsAreTheSameEverywhere), cmocka_unit_test(DefsOutOfRangeAreRefusedByName),
-           cmocka_unit_test(FactorsCanBeCancelled));

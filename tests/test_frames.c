@@ -4,7 +4,6 @@
 
 #include "base/context.h"
 
-
 #include <stdlib.h>
 
 // ---- poses
@@ -35,10 +34,8 @@ static vplEmitterDef poseEmitter(const vplScene* scene, double frame)
     return def;
 }
 
-static void PosesAreLinearBetweenKeysAndHeldBeyondThem(void** state)
+TEST(PosesAreLinearBetweenKeysAndHeldBeyondThem, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     const vplCameraDef declared = *vplScene_GetCamera(scene, 0);
     const vplCameraKey keys[] = {cameraKey(scene, -4, -1, 0.5), cameraKey(scene, 0, 0.1f, 0.7),
@@ -59,13 +56,10 @@ static void PosesAreLinearBetweenKeysAndHeldBeyondThem(void** state)
     assert_true(poseCamera(scene, 0).eye.x == 0.1f); // keys are met exactly
     assert_true(poseCamera(scene, 10).eye.x == 2 && poseCamera(scene, -4).fovY == 0.5);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void EmittersMoveTurnAndFade(void** state)
+TEST(EmittersMoveTurnAndFade, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = sceneOf(context, 0.5f);
     vplEmitterDef spot = vplDefaultEmitterDef();
     spot.type = VPL_EMITTER_SPOT;
@@ -82,13 +76,10 @@ static void EmittersMoveTurnAndFade(void** state)
     assert_true(pose.intensity.r == 0.75f && pose.intensity.g == 1 && pose.intensity.b == 1.5f);
     assert_true(pose.type == VPL_EMITTER_SPOT && pose.outerAngle == spot.outerAngle);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void OneKeyIsAConstantAndNoKeyTheDeclaration(void** state)
+TEST(OneKeyIsAConstantAndNoKeyTheDeclaration, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     vplEmitterKey key = vplMakeEmitterKey(vplScene_GetEmitter(scene, 0), 7);
     key.position.y = 1.25f;
@@ -107,7 +98,6 @@ static void OneKeyIsAConstantAndNoKeyTheDeclaration(void** state)
     assert_null(vplScene_GetEmitterPath(scene, 0, &count));
     assert_true(poseEmitter(scene, 0).position.y == vplScene_GetEmitter(scene, 0)->position.y);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static void refusePath(vplScene* scene, int index, const vplCameraKey* keys, int count, const char* sentence)
@@ -116,10 +106,8 @@ static void refusePath(vplScene* scene, int index, const vplCameraKey* keys, int
     assert_string_equal(takeMessage(), sentence);
 }
 
-static void BadPathsAreRefusedAndChangeNothing(void** state)
+TEST(BadPathsAreRefusedAndChangeNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     const vplCameraKey good = cameraKey(scene, 0, 3, 0.5);
     vplCameraKey keys[3] = {good, cameraKey(scene, 1, 0, 0.5), cameraKey(scene, 1, 1, 0.5)};
@@ -142,14 +130,11 @@ static void BadPathsAreRefusedAndChangeNothing(void** state)
     assert_string_equal(takeMessage(), "vplEmitterKey 0: intensity[1] is -1, must be in [0, 1e+15]");
     assert_true(poseCamera(scene, 5).eye.x == 3);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Each key is good, what is between is not: a sentence, and no picture.
-static void PosesThatDegenerateAreRefused(void** state)
+TEST(PosesThatDegenerateAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     vplCameraKey keys[] = {cameraKey(scene, 0, 0, 0.5), cameraKey(scene, 2, 0, 0.5)};
     keys[1].eye.z = -keys[0].eye.z; // through the target
@@ -179,13 +164,10 @@ static void PosesThatDegenerateAreRefused(void** state)
                         "light 0 at frame 2: direction is the zero vector, must have a direction");
     assert_int_equal(vplScene_PoseEmitter(scene, 0, 3, &sun), VPL_SUCCESS);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void FilesSayWhatChangesAndTheRestIsAsDeclared(void** state)
+TEST(FilesSayWhatChangesAndTheRestIsAsDeclared, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = NULL;
     assert_int_equal(vplScene_Load(context, "examples/scenes/room-path.json", &scene), VPL_SUCCESS);
     int count;
@@ -202,7 +184,6 @@ static void FilesSayWhatChangesAndTheRestIsAsDeclared(void** state)
     assert_true(lights[0].position.x == -1 && lights[1].position.x == 1 && lights[1].direction.x == 0.5f);
     assert_memory_equal(&lights[1].intensity, &vplScene_GetEmitter(scene, 0)->intensity, sizeof(vplRgb));
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- frames
@@ -276,10 +257,8 @@ static vplScene* standingRoom(vplContext* context, double frame)
     return scene;
 }
 
-static void AFrameIsThePictureOfItsPose(void** state)
+TEST(AFrameIsThePictureOfItsPose, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* moving = movingRoom(context);
     const double frames[] = {0, 17.5, 60};
     for (int f = 0; f < 3; f++) {
@@ -294,12 +273,10 @@ static void AFrameIsThePictureOfItsPose(void** state)
         vplScene_Destroy(standing);
     }
     vplScene_Destroy(moving);
-    closeTestContext(context);
 }
 
-static void AHistoryChangesNoPicture(void** state)
+TEST_ALONE(AHistoryChangesNoPicture, SLOW)
 {
-    (void)state;
     const int workers[] = {1, 2, 3, 7};
     const double frames[] = {0, 1, 2, 40, 1, 1};
     uint64_t first[KINDS][6];
@@ -325,10 +302,8 @@ static void AHistoryChangesNoPicture(void** state)
     }
 }
 
-static void AHistoryFreezesTheSceneOnce(void** state)
+TEST(AHistoryFreezesTheSceneOnce, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = movingRoom(context);
     vplHistory* history = NULL;
     assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
@@ -347,7 +322,6 @@ static void AHistoryFreezesTheSceneOnce(void** state)
     vplHistory_Destroy(history);
     assert_true(vplContext_GetBytes(context) < held);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static void refuseHistory(const vplScene* scene, const vplRenderOptions* options, const char* sentence)
@@ -358,9 +332,8 @@ static void refuseHistory(const vplScene* scene, const vplRenderOptions* options
     assert_string_equal(takeMessage(), sentence);
 }
 
-static void AHistoryOfAnotherSceneIsRefused(void** state)
+TEST_ALONE(AHistoryOfAnotherSceneIsRefused)
 {
-    (void)state;
     vplContext *context = openTestContext(1), *foreign = openTestContext(1);
     vplScene *scene = movingRoom(context), *other = movingRoom(context), *abroad = movingRoom(foreign);
     vplHistory* history = NULL;
@@ -369,10 +342,10 @@ static void AHistoryOfAnotherSceneIsRefused(void** state)
     options.sequence.history = history;
     hashOf(scene, &options);
     const char* const sentence =
-        "vplRenderOptions.history is of another scene, or something was added to the scene since";
+        "vplRenderOptions.sequence.history is of another scene, or something was added to the scene since";
     refuseHistory(other, &options, sentence);
     refuseHistory(abroad, &options,
-                  "vplRenderOptions.history was made with another context than the scene's");
+                  "vplRenderOptions.sequence.history was made with another context than the scene's");
     hashOf(scene, &options); // still good
     vplScene_SetCameraPath(scene, 0, NULL, 0);
     hashOf(scene, &options); // how things move may change
@@ -387,12 +360,3 @@ static void AHistoryOfAnotherSceneIsRefused(void** state)
     closeTestContext(foreign);
     closeTestContext(context);
 }
-
-TEST_SUITE(frames, cmocka_unit_test(PosesAreLinearBetweenKeysAndHeldBeyondThem),
-           cmocka_unit_test(EmittersMoveTurnAndFade),
-           cmocka_unit_test(OneKeyIsAConstantAndNoKeyTheDeclaration),
-           cmocka_unit_test(BadPathsAreRefusedAndChangeNothing),
-           cmocka_unit_test(PosesThatDegenerateAreRefused),
-           cmocka_unit_test(FilesSayWhatChangesAndTheRestIsAsDeclared),
-           cmocka_unit_test(AFrameIsThePictureOfItsPose), slow_unit_test(AHistoryChangesNoPicture),
-           cmocka_unit_test(AHistoryFreezesTheSceneOnce), cmocka_unit_test(AHistoryOfAnotherSceneIsRefused));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Irradiance at the vertices of patches, gathered by rays.
-#include "patch_model.h"
+#include "patch_support.h"
 
 #include "base/hash.h"
 #include "math/vec.h"
@@ -70,11 +70,9 @@ static bool isInside(vplVec3 p)
 
 // Within the floor vertices are where they are, and the rest is the closed form: with less error than that many rays
 // would have that know nothing of each other.
-static void VerticesOfAFloorGetWhatAWallSendsThere(void** state)
+TEST(VerticesOfAFloorGetWhatAWallSendsThere, 2)
 {
-    (void)state;
     enum { RAYS = 256 };
-    vplContext* context = openTestContext(2);
     vplPatchMesh* m = openCorner(context, 0.3f);
     vplRgb* values = lightWall(m);
     int64_t cast = 0;
@@ -98,15 +96,12 @@ static void VerticesOfAFloorGetWhatAWallSendsThere(void** state)
     free(e);
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // A vertex between floor and wall belongs to both, and sees the other's light at its foot: nearly a half of all it could.
 // Means over the patches there know nothing of it.
-static void TheFootOfAWallIsLitByTheWall(void** state)
+TEST(TheFootOfAWallIsLitByTheWall, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = openCorner(context, 0.8f);
     vplRgb *values = lightWall(m), *e = gatherOf(m, values, 1024, NULL);
     int feet = 0;
@@ -123,7 +118,6 @@ static void TheFootOfAWallIsLitByTheWall(void** state)
     free(e);
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 static uint16_t backsOpen(const vplPatches* patches, int patch, int face)
@@ -134,10 +128,8 @@ static uint16_t backsOpen(const vplPatches* patches, int patch, int face)
 }
 
 // In a closed room all of whose patches radiate alike, every ray meets one.
-static void InAFurnaceEveryVertexGetsAll(void** state)
+TEST(InAFurnaceEveryVertexGetsAll, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Shape shape = gridBox(2);
     const vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
     freeShape(&shape);
@@ -154,12 +146,10 @@ static void InAFurnaceEveryVertexGetsAll(void** state)
     free(e);
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
 
-static void GathersAreTheSameBitsEverywhere(void** state)
+TEST_ALONE(GathersAreTheSameBitsEverywhere)
 {
-    (void)state;
     static const int workers[] = {1, 3};
     static const vplIsa isas[] = {VPL_ISA_SCALAR, VPL_ISA_AUTO};
     uint64_t hash = 0;
@@ -184,10 +174,8 @@ static bool refuse(void* user, double fraction)
     return false;
 }
 
-static void WrongGathersAreRefused(void** state)
+TEST(WrongGathersAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = openCorner(context, 1);
     vplRgb* values = lightWall(m);
     vplRgb* out = malloc(2 * (size_t)m->vertexCount * sizeof *out);
@@ -209,9 +197,4 @@ static void WrongGathersAreRefused(void** state)
     free(out);
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
-
-TEST_SUITE(gather, cmocka_unit_test(VerticesOfAFloorGetWhatAWallSendsThere),
-           cmocka_unit_test(TheFootOfAWallIsLitByTheWall), cmocka_unit_test(InAFurnaceEveryVertexGetsAll),
-           cmocka_unit_test(GathersAreTheSameBitsEverywhere), cmocka_unit_test(WrongGathersAreRefused));

@@ -33,10 +33,8 @@ static void checkNormal(const Table* t, int row, const vplHit* hit)
     assertNear((double)vplLength(vplSub(hit->normal, n)), 0, 3e-7, "normal", row);
 }
 
-static void EveryRayQuadVerdictOfTheTable(void** state)
+TEST(EveryRayQuadVerdictOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("ray_quad.csv");
     int flipped = 0, singular = 0, hits = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -73,13 +71,10 @@ static void EveryRayQuadVerdictOfTheTable(void** state)
     }
     assert_true(hits > 150 && singular >= 3 && flipped == 0);
     freeTable(&t);
-    closeTestContext(context);
 }
 
-static void EveryRayBoxVerdictOfTheTable(void** state)
+TEST(EveryRayBoxVerdictOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("ray_box.csv");
     int flipped = 0, hits = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -119,14 +114,11 @@ static void EveryRayBoxVerdictOfTheTable(void** state)
     }
     assert_true(hits > 150 && flipped == 0);
     freeTable(&t);
-    closeTestContext(context);
 }
 
-static void EveryRayOfTheRoomMeetsTheObjectOfTheTable(void** state)
+TEST(EveryRayOfTheRoomMeetsTheObjectOfTheTable, 1)
 {
-    (void)state;
     static const char* const faces[6] = {"x+", "x-", "y+", "y-", "z+", "z-"};
-    vplContext* context = openTestContext(1);
     vplGeometry* room = tableRoom(context);
     Table objects = loadTable("room_objects.csv"), t = loadTable("room_rays.csv");
     for (int row = 0; row < t.rows; row++) {
@@ -147,14 +139,11 @@ static void EveryRayOfTheRoomMeetsTheObjectOfTheTable(void** state)
     freeTable(&t);
     freeTable(&objects);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // X003, X004: no scale is too small or too large for the inverse.
-static void AnyUniformScaleGivesTheSameHit(void** state)
+TEST(AnyUniformScaleGivesTheSameHit, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float scales[] = {1, 1e-13f, 1e-6f, 1e6f, 1e12f};
     double wanted = 0;
     for (int i = 0; i < 5; i++) {
@@ -169,14 +158,11 @@ static void AnyUniformScaleGivesTheSameHit(void** state)
         assertNear((double)hit.t, wanted, 1e-6, "t", i);
         assertNear((double)vplLength(hit.normal), 1, 2e-7, "|n|", i);
     }
-    closeTestContext(context);
 }
 
 // X008, X001: what has no inverse is refused where it is made.
-static void SingularAndNonFiniteMatricesAreRefused(void** state)
+TEST(SingularAndNonFiniteMatricesAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPlacement placement;
     const float bad[] = {NAN, INFINITY, 1e30f};
     for (int i = 0; i < 3; i++) {
@@ -191,14 +177,11 @@ static void SingularAndNonFiniteMatricesAreRefused(void** state)
         m.m[5 * axis] = 0;
         assert_int_equal(vplPlacement_Create(context, &m, &placement), VPL_INVALID_ARGUMENT);
     }
-    closeTestContext(context);
 }
 
 // X029: floor and box bottom lie in one plane; the lower index is reported, from both sides.
-static void AmongEqualDistancesTheLowestObjectWins(void** state)
+TEST(AmongEqualDistancesTheLowestObjectWins, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene;
     vplGeometry* geometry;
     assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
@@ -219,14 +202,11 @@ static void AmongEqualDistancesTheLowestObjectWins(void** state)
     assert_int_equal(hit.object, 1);
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X022, X031: a particle that bounces inside a box meets its other faces, and one that leaves never comes back.
-static void ABoxIsLeftOrCrossedFromItsOwnFace(void** state)
+TEST(ABoxIsLeftOrCrossedFromItsOwnFace, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (uint64_t i = 0; i < 2000; i++) {
         vplMat4 m = vplMat4_FromParts((vplVec3){1, 2, 3},
                                       (double[3]){uniformAt(i, 0), uniformAt(i, 1), uniformAt(i, 2)},
@@ -246,13 +226,10 @@ static void ABoxIsLeftOrCrossedFromItsOwnFace(void** state)
         assert_int_not_equal(next.face, out.face);
         assertNear((double)next.t, 2 * (double)out.t, 1e-5 * (double)out.t + 1e-5, "t", (int)i);
     }
-    closeTestContext(context);
 }
 
-static void MeanReflectanceIsThatOfTheTable(void** state)
+TEST(MeanReflectanceIsThatOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* room = tableRoom(context);
     Table t = loadTable("room_mean_reflectivity.csv"), objects = loadTable("room_objects.csv");
     assert_string_equal(cell(&t, 0, "definition"), "area_weighted");
@@ -265,15 +242,12 @@ static void MeanReflectanceIsThatOfTheTable(void** state)
     freeTable(&objects);
     freeTable(&t);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Triangles and ray tests describe the same surfaces: corners lie on the boxes, normals agree with winding,
 // also under mirroring matrices (X005).
-static void TrianglesWindTowardsTheirNormals(void** state)
+TEST(TrianglesWindTowardsTheirNormals, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int mirror = 0; mirror < 8; mirror++) {
         vplScene* scene;
         vplGeometry* g;
@@ -299,15 +273,4 @@ static void TrianglesWindTowardsTheirNormals(void** state)
         vplGeometry_Destroy(g);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
-
-TEST_SUITE(geometry, cmocka_unit_test(EveryRayQuadVerdictOfTheTable),
-           cmocka_unit_test(EveryRayBoxVerdictOfTheTable),
-           cmocka_unit_test(EveryRayOfTheRoomMeetsTheObjectOfTheTable),
-           cmocka_unit_test(AnyUniformScaleGivesTheSameHit),
-           cmocka_unit_test(SingularAndNonFiniteMatricesAreRefused),
-           cmocka_unit_test(AmongEqualDistancesTheLowestObjectWins),
-           cmocka_unit_test(ABoxIsLeftOrCrossedFromItsOwnFace),
-           cmocka_unit_test(MeanReflectanceIsThatOfTheTable),
-           cmocka_unit_test(TrianglesWindTowardsTheirNormals));

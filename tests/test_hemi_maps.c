@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shadow maps of half spaces: what a texel holds, where they agree with rays, and what they do at extremes.
 #include "bench/band.h"
-#include "shapes.h"
+#include "shadow_maps.h"
 
 #include "base/hash.h"
 #include "base/rng.h"
@@ -15,17 +15,12 @@ static vplHemiMaps* drawMaps(const vplGeometry* g, int size, const vplHemiMapPla
     return maps;
 }
 
-static float factorAt(const vplHemiMap* map, vplVec3 p, vplVec3 n)
+static float factorOf(const vplHemiMap* map, vplVec3 p, vplVec3 n)
 {
     vplSurface s;
     float factor[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        s.px[l] = p.x;
-        s.py[l] = p.y;
-        s.pz[l] = p.z;
-        s.nx[l] = n.x;
-        s.ny[l] = n.y;
-        s.nz[l] = n.z;
+        setPoint(&s, l, p, n);
     }
     vplHemiMap_FactorBlock(map, &s, factor);
     return factor[0];
@@ -41,31 +36,8 @@ static vplVec3 directionOf(const vplHemiMap* map, int column, int row)
                   vplScale(1 - fabsf(p) - fabsf(q), map->forward));
 }
 
-static float hitAlong(const vplGeometry* g, const vplHemiMap* map, vplVec3 direction)
+TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
 {
-    const vplRay ray = {map->position, direction, {0, 0}};
-    vplHit hit;
-    return vplGeometry_ClosestHit(g, &ray, &hit) ? 1 / hit.t : 0;
-}
-
-// Whether the ray, or one a hair beside it, meets something there: edges go to either side.
-static bool holdsRay(const vplGeometry* g, const vplHemiMap* map, vplVec3 d, float stored)
-{
-    for (int i = 0; i < 9; i++) {
-        const float a = 2e-6f * (float)(i % 3 - 1), b = 2e-6f * (float)(i / 3 - 1);
-        const vplVec3 beside = vplAdd(d, vplAdd(vplScale(a, map->right), vplScale(b, map->up)));
-        const float wanted = hitAlong(g, map, i == 4 ? d : beside);
-        if (fabsf(stored - wanted) <= 1e-4f * wanted) {
-            return true;
-        }
-    }
-    return false;
-}
-
-static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int which = 0; which < 2; which++) {
         vplGeometry* g = clutter(context, which);
         Dice dice = {7, 0};
@@ -75,101 +47,27 @@ static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
             const int size = 1 + light; // whole blocks and parts of them
             vplHemiMaps* maps = drawMaps(g, size, &place, 1);
             const vplHemiMap* map = &maps->maps[0];
+            const vplVec3 from[] = {map->position, map->right, map->up};
             for (int i = 0; i < size * size; i++) {
                 const vplVec3 d = directionOf(map, i % size, i / size);
                 const float stored =
                     map->texels[vplHemiMap_Place(vplHemiMap_Blocks(size), i % size, i / size)];
                 // Along the horizon the light's own surface is met or not, as rounding wants.
-                if (vplDot(d, map->forward) > 1e-3f && !holdsRay(g, map, d, stored)) {
-                    fail_msg("scene %d, light %d, texel %d of %d^2: 1/t is %.9g, a ray's %.9g", which, light,
-                             i, size, (double)stored, (double)hitAlong(g, map, d));
+                if (vplDot(d, map->forward) > 1e-3f && !holdsRay(g, from, d, stored)) {
+                    fail_msg("scene %d, light %d, texel %d of %d^2: 1/t is %.9g", which, light, i, size,
+                             (double)stored);
                 }
             }
             vplHemiMaps_Destroy(maps);
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
-}
-
-static void MapsAndRaysAgreeOutsideTheBand(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    for (int which = 0; which < 2; which++) {
-        vplGeometry* g = clutter(context, which);
-        Dice dice = {11, 0};
-        int pairs = 0, dark = 0, apart = 0;
-        for (int light = 0; light < 60; light++) {
-            vplHit on, hit;
-            const vplHemiMapPlace place = rollPlace(g, &dice, &on);
-            const vplShadeLight shade = {place.position.x,
-                                         place.position.y,
-                                         place.position.z,
-                                         place.normal.x,
-                                         place.normal.y,
-                                         place.normal.z,
-                                         1,
-                                         1,
-                                         1};
-            vplHemiMaps* maps = drawMaps(g, 16 << light % 4, &place, 1);
-            const vplHemiMap* map = &maps->maps[0];
-            for (int i = 0; i < 300; i++) {
-                const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
-                const vplVec3 way = vplSub(map->position, at.position);
-                if (!(vplDot(way, at.normal) > 0 && vplDot(way, map->forward) < 0)) {
-                    assert_true(factorAt(map, at.position, at.normal) == 1); // light falls from nowhere
-                    continue;
-                }
-                const bool shadowed = isDark(g, &hit, &shade);
-                const bool differs = shadowed != (factorAt(map, at.position, at.normal) > 0);
-                pairs++;
-                dark += shadowed;
-                apart += differs;
-                if (differs && isSure(g, map, at.position, at.normal, shadowed)) {
-                    fail_msg("scene %d, light %d, point %d: the ray says %d", which, light, i, shadowed);
-                }
-            }
-            vplHemiMaps_Destroy(maps);
-        }
-        printf("# %d pairs, %d dark, %d within the band\n", pairs, dark, apart);
-        assert_true(dark > 500 && pairs > dark + 500);
-        assert_true(apart > 0 && apart < pairs / 20);
-        vplGeometry_Destroy(g);
-    }
-    closeTestContext(context);
-}
-
-// Also where light grazes it, and with one texel for all directions.
-static void APlaneNeverShadowsItself(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
-    Dice dice = {3, 0};
-    for (int i = 0; i < 2000; i++) {
-        const float high = 0.25f + 4 * powf(10, roll(&dice, -5, 0));
-        const vplHemiMapPlace place = {vplVec(3 + roll(&dice, -4, 4), high, -2 + roll(&dice, -4, 4)),
-                                       vplNormalize(vplAdd(vplVec(0, -1.01f, 0), rollUnit(&dice)))};
-        vplHemiMaps* maps = drawMaps(g, 1 + i % 33, &place, 1);
-        for (int k = 0; k < 20; k++) {
-            const vplVec3 p = vplVec(3 + roll(&dice, -4.9f, 4.9f), 0.25f, -2 + roll(&dice, -4.9f, 4.9f));
-            if (vplDot(vplSub(p, maps->maps[0].position), place.normal) > 0) {
-                assert_true(factorAt(&maps->maps[0], p, vplVec(0, 1, 0)) == 0);
-            }
-        }
-        vplHemiMaps_Destroy(maps);
-    }
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Nothing in a convex room hides one wall from another: not the surface that a light lies on, nor those that meet it
 // in an edge or a corner, wherever the room is.
-static void LightsOnWallsEdgesAndCornersSeeTheWholeRoom(void** state)
+TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     static const vplVec3 offsets[] = {{0, 0, 0}, {1, 1, 1}, {-1, 1, 0}, {300, -20, 7}};
     for (int o = 0; o < 4; o++) {
         vplScene* scene = sceneOf(context, 0.5f);
@@ -201,20 +99,17 @@ static void LightsOnWallsEdgesAndCornersSeeTheWholeRoom(void** state)
                     (fabsf(local.x) > 1 - band) + (fabsf(local.y) > 1 - band) + (fabsf(local.z) > 1 - band);
                 if (vplDot(way, p.normal) > 1e-3f && vplDot(way, n) < -1e-3f) {
                     assert_false(isDark(g, &hit, &shade));
-                    assert_true(close > 1 || factorAt(&maps->maps[0], p.position, p.normal) == 0);
+                    assert_true(close > 1 || factorOf(&maps->maps[0], p.position, p.normal) == 0);
                 }
             }
             vplHemiMaps_Destroy(maps);
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
-static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
+TEST(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
     const vplHemiMapPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0)};
     vplHemiMaps* maps = drawMaps(g, 5, &place, 1);
@@ -224,11 +119,11 @@ static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
     Dice dice = {1, 0};
     for (int i = 0; i < 100; i++) {
         const vplVec3 p = vplVec(roll(&dice, -9, 9), roll(&dice, 0.1f, 9), roll(&dice, -9, 9));
-        assert_true(factorAt(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
-        assert_true(factorAt(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
+        assert_true(factorOf(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
+        assert_true(factorOf(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
     }
     // The light itself: no number that is none.
-    const float self = factorAt(&maps->maps[0], maps->maps[0].position, vplVec(0, -1, 0));
+    const float self = factorOf(&maps->maps[0], maps->maps[0].position, vplVec(0, -1, 0));
     assert_true(self == 0 || self == 1);
     vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
@@ -238,60 +133,26 @@ static void AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot(void** state)
     assert_true(maps->maps[0].texels[0] == 0);
     vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // One texel looks straight up.
-static void AMapOfOneTexelKnowsWhatIsStraightAbove(void** state)
+TEST(AMapOfOneTexelKnowsWhatIsStraightAbove, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int side = -1; side <= 1; side += 2) {
         vplGeometry* g = floorQuad(context, vplVec(0, 1, 0), 0.5f, 0.5f);
         const vplHemiMapPlace place = {vplVec(0, (float)(1 - side), 0), vplVec(0, (float)side, 0)};
         vplHemiMaps* maps = drawMaps(g, 1, &place, 1);
         assert_true(fabsf(maps->maps[0].texels[0] - 1) < 1e-5f);
         const vplVec3 n = vplVec(0, (float)-side, 0);
-        assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 + 30 * side), 0), n) == 1);
-        assert_true(factorAt(&maps->maps[0], vplVec(0, (float)(1 - 0.5f * (float)side), 0), n) == 0);
+        assert_true(factorOf(&maps->maps[0], vplVec(0, (float)(1 + 30 * side), 0), n) == 1);
+        assert_true(factorOf(&maps->maps[0], vplVec(0, (float)(1 - 0.5f * (float)side), 0), n) == 0);
         vplHemiMaps_Destroy(maps);
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
-static uint64_t hashOf(vplContext* context)
+TEST(MapsCanBeRefusedAndCancelled, 1)
 {
-    vplGeometry* g = clutter(context, 1);
-    Dice dice = {9, 0};
-    vplHemiMapPlace places[9];
-    vplHit hit;
-    for (int i = 0; i < 9; i++) {
-        places[i] = rollPlace(g, &dice, &hit);
-    }
-    vplHemiMaps* maps = drawMaps(g, 36, places, 9);
-    uint64_t hash = vplHashFloats(0, maps->texels, (size_t)9 * 36 * 36);
-    for (int i = 0; i < 9 * 500; i++) {
-        const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
-        const float factor = factorAt(&maps->maps[i % 9], at.position, at.normal);
-        hash = vplHashFloats(hash, &factor, 1);
-    }
-    vplHemiMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-    return hash;
-}
-
-static void MapsHaveTheSameBitsEverywhere(void** state)
-{
-    (void)state;
-    assertSameEverywhere(hashOf);
-}
-
-static void MapsCanBeRefusedAndCancelled(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = closedCube(context, 0.5f);
     vplHemiMaps* maps = NULL;
     assert_int_equal(vplHemiMaps_Create(context, 0, 1, &maps), VPL_INVALID_ARGUMENT);
@@ -313,12 +174,4 @@ static void MapsCanBeRefusedAndCancelled(void** state)
     vplHemiMaps_Destroy(maps);
     vplHemiMaps_Destroy(NULL);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
-
-TEST_SUITE(hemiMaps, cmocka_unit_test(EachTexelHoldsWhatARayThroughItsCentreMeets),
-           cmocka_unit_test(MapsAndRaysAgreeOutsideTheBand), cmocka_unit_test(APlaneNeverShadowsItself),
-           cmocka_unit_test(LightsOnWallsEdgesAndCornersSeeTheWholeRoom),
-           cmocka_unit_test(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot),
-           cmocka_unit_test(AMapOfOneTexelKnowsWhatIsStraightAbove),
-           cmocka_unit_test(MapsHaveTheSameBitsEverywhere), cmocka_unit_test(MapsCanBeRefusedAndCancelled));

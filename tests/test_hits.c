@@ -69,11 +69,9 @@ static void checkConvex(const vplGeometry* g, vplVec3 centre, float size, Dice* 
     }
 }
 
-static void RaysLeaveConvexMeshes(void** state)
+TEST(RaysLeaveConvexMeshes, 1)
 {
-    (void)state;
     static const float scales[] = {1e-3f, 1, 1e5f};
-    vplContext* context = openTestContext(1);
     for (int i = 0; i < 27; i++) {
         const float scale = scales[i / 9];
         Shape shape = i % 3 == 0 ? icosphere(2) : i % 3 == 1 ? ringSphere(9) : gridBox(4);
@@ -90,13 +88,10 @@ static void RaysLeaveConvexMeshes(void** state)
         vplGeometry_Destroy(g);
         freeShape(&shape);
     }
-    closeTestContext(context);
 }
 
-static void RaysLeaveBoxesAndQuads(void** state)
+TEST(RaysLeaveBoxesAndQuads, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int i = 0; i < 40; i++) {
         Dice dice = {(uint64_t)i, 0};
         const vplMat4 m = rollTransform(&dice, i & 1);
@@ -119,14 +114,11 @@ static void RaysLeaveBoxesAndQuads(void** state)
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // Six quads around a room: who leaves one of them meets another, in the corners too.
-static void WallsOfARoomAreLeftForOtherWalls(void** state)
+TEST(WallsOfARoomAreLeftForOtherWalls, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = closedCube(context, 0.5f);
     Dice dice = {3, 0};
     for (int i = 0; i < 20000; i++) {
@@ -145,15 +137,12 @@ static void WallsOfARoomAreLeftForOtherWalls(void** state)
         assert_int_not_equal(next.object, hit.object);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Triangles find the face, the shape itself says where: the very bits of vplRay_HitQuad and vplRay_HitBox. Only
 // at edges, where rounding decides, could one miss what the other hits: none of these rays comes that near.
-static void BoxesAndQuadsAreHitToTheLastDigit(void** state)
+TEST(BoxesAndQuadsAreHitToTheLastDigit, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     int hits = 0, apart = 0, otherFace = 0;
     for (int i = 0; i < 200; i++) {
         Dice dice = {(uint64_t)i, 0};
@@ -181,15 +170,12 @@ static void BoxesAndQuadsAreHitToTheLastDigit(void** state)
         vplGeometry_Destroy(g);
     }
     assert_true(hits > 25000 && apart == 0 && otherFace == 0);
-    closeTestContext(context);
 }
 
 // ---- normals
 
-static void SmoothNormalsAreInterpolated(void** state)
+TEST(SmoothNormalsAreInterpolated, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const vplVec3 corners[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
     const vplVec3 normals[3] = {{0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}, {0, 0, 5}}; // any length
     for (int back = 0; back < 2; back++) { // normals that look the other way are turned
@@ -225,14 +211,11 @@ static void SmoothNormalsAreInterpolated(void** state)
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // A quad made of triangles keeps its front where a quad has it, mirrored or not.
-static void TheFrontOfAMirroredMeshStaysTheFront(void** state)
+TEST(TheFrontOfAMirroredMeshStaysTheFront, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int i = 0; i < 32; i++) {
         Dice dice = {(uint64_t)i, 0};
         vplMat4 m = rollTransform(&dice, true), mirror = vplMat4_Identity();
@@ -268,16 +251,13 @@ static void TheFrontOfAMirroredMeshStaysTheFront(void** state)
         vplGeometry_Destroy(g);
         vplGeometry_Destroy(quad);
     }
-    closeTestContext(context);
 }
 
 // ---- boxes instead of meshes
 
 // A box given as triangles is its own bounding box; quads stay quads.
-static void AMeshIsMetAtItsBox(void** state)
+TEST(AMeshIsMetAtItsBox, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     int hits = 0;
     for (int i = 0; i < 40; i++) {
         Dice dice = {(uint64_t)i, 0};
@@ -311,14 +291,11 @@ static void AMeshIsMetAtItsBox(void** state)
         freeShape(&shape);
     }
     assert_true(hits > 5000);
-    closeTestContext(context);
 }
 
 // Points of a triangle stay as they are; others go to where their weights are at least 2^-16.
-static void PointsBesideATriangleAreMovedInside(void** state)
+TEST(PointsBesideATriangleAreMovedInside, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     int moved = 0;
     for (int i = 0; i < 2000; i++) {
         Dice dice = {(uint64_t)i, 0};
@@ -347,12 +324,4 @@ static void PointsBesideATriangleAreMovedInside(void** state)
         freeShape(&one);
     }
     assert_true(moved > 500 && moved < 1500);
-    closeTestContext(context);
 }
-
-TEST_SUITE(hits, cmocka_unit_test(RaysLeaveConvexMeshes), cmocka_unit_test(RaysLeaveBoxesAndQuads),
-           cmocka_unit_test(WallsOfARoomAreLeftForOtherWalls),
-           cmocka_unit_test(BoxesAndQuadsAreHitToTheLastDigit),
-           cmocka_unit_test(SmoothNormalsAreInterpolated),
-           cmocka_unit_test(TheFrontOfAMirroredMeshStaysTheFront), cmocka_unit_test(AMeshIsMetAtItsBox),
-           cmocka_unit_test(PointsBesideATriangleAreMovedInside));

@@ -19,9 +19,8 @@ static vplImage* makeImage(vplContext* context, int width, int height)
     return image;
 }
 
-static void SrgbIsThatOfTheTables(void** state)
+TEST_ALONE(SrgbIsThatOfTheTables)
 {
-    (void)state;
     Table t = loadTable("srgb_codes.csv");
     for (int row = 0; row < t.rows; row++) {
         int code = (int)number(&t, row, "code");
@@ -48,9 +47,8 @@ static void SrgbIsThatOfTheTables(void** state)
 }
 
 // X111
-static void SrgbCodesAreMonotoneAndDefinedEverywhere(void** state)
+TEST_ALONE(SrgbCodesAreMonotoneAndDefinedEverywhere)
 {
-    (void)state;
     int last = 0;
     for (int i = 0; i <= 100000; i++) {
         int code = vplSrgb_Code((float)i / 100000.0f);
@@ -74,10 +72,8 @@ static int parseList(const char* text, double* out)
     return count;
 }
 
-static void ReinhardIsThatOfTheTable(void** state)
+TEST(ReinhardIsThatOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("reinhard.csv");
     for (int row = 0; row < t.rows; row++) {
         double in[8], simple[8], white[8];
@@ -108,13 +104,10 @@ static void ReinhardIsThatOfTheTable(void** state)
         }
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
-static void ReinhardKeepsChromaticityAsInTheTable(void** state)
+TEST(ReinhardKeepsChromaticityAsInTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("reinhard_rgb.csv");
     for (int row = 0; row < t.rows; row++) {
         // One pixel is its own mean, so the key sets the scaled luminance: a / L_avg * Y = key.
@@ -140,15 +133,12 @@ static void ReinhardKeepsChromaticityAsInTheTable(void** state)
         vplImage_Destroy(image);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // X110: one bad pixel must not blacken the others.
 // What shows nothing leaves the rest as if it were not there; by default it counts, as published.
-static void ReinhardCanLeaveBlackOut(void** state)
+TEST(ReinhardCanLeaveBlackOut, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     float mapped[3] = {0, 0, 0};
     for (int way = 0; way < 3; way++) { // a grey picture alone, then beside as much black: left out, counted
         vplImage* image;
@@ -168,13 +158,10 @@ static void ReinhardCanLeaveBlackOut(void** state)
     assert_true(mapped[1] == mapped[0]);
     assertNear((double)mapped[0], 0.152542, 1e-5, "grey", 0);
     assert_true(mapped[2] > 0.9f);
-    closeTestContext(context);
 }
 
-static void ReinhardIgnoresPixelsThatAreNotFinite(void** state)
+TEST(ReinhardIgnoresPixelsThatAreNotFinite, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float bad[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
         vplImage* image = makeImage(context, 4, 4);
@@ -186,7 +173,6 @@ static void ReinhardIgnoresPixelsThatAreNotFinite(void** state)
         assert_true(image->pixels[0] > 0 && image->pixels[6] == 0);
         vplImage_Destroy(image);
     }
-    closeTestContext(context);
 }
 
 static const char* temporaryName(const char* extension)
@@ -196,10 +182,8 @@ static const char* temporaryName(const char* extension)
     return name;
 }
 
-static void PfmKeepsEveryBit(void** state)
+TEST(PfmKeepsEveryBit, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage *image = makeImage(context, 13, 7), *back;
     image->pixels[5] = 1e-42f;
     image->pixels[6] = -3e38f;
@@ -210,13 +194,10 @@ static void PfmKeepsEveryBit(void** state)
     unlink(path);
     vplImage_Destroy(image);
     vplImage_Destroy(back);
-    closeTestContext(context);
 }
 
-static void HdrKeepsAPercentAndPngKeepsCodes(void** state)
+TEST(HdrKeepsAPercentAndPngKeepsCodes, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage *image = makeImage(context, 33, 9), *back;
     const char* path = temporaryName(".hdr");
     assert_int_equal(vplImage_Write(image, path, NULL), VPL_SUCCESS);
@@ -240,13 +221,10 @@ static void HdrKeepsAPercentAndPngKeepsCodes(void** state)
     unlink(path);
     vplImage_Destroy(back);
     vplImage_Destroy(image);
-    closeTestContext(context);
 }
 
-static void ExposureDoublesPerStop(void** state)
+TEST(ExposureDoublesPerStop, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage *image = makeImage(context, 5, 5), *back;
     vplWriteOptions options = vplDefaultWriteOptions();
     options.exposure = -2;
@@ -261,13 +239,10 @@ static void ExposureDoublesPerStop(void** state)
     unlink(path);
     vplImage_Destroy(back);
     vplImage_Destroy(image);
-    closeTestContext(context);
 }
 
-static void APictureThatIsNotFiniteIsRefusedByName(void** state)
+TEST(APictureThatIsNotFiniteIsRefusedByName, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage* image = makeImage(context, 8, 8);
     image->pixels[3 * (8 * 2 + 5) + 1] = NAN;
     const char* path = temporaryName(".pfm");
@@ -275,13 +250,10 @@ static void APictureThatIsNotFiniteIsRefusedByName(void** state)
     assert_non_null(strstr(takeMessage(), "pixel (5, 2) channel 1"));
     assert_int_equal(access(path, F_OK), -1);
     vplImage_Destroy(image);
-    closeTestContext(context);
 }
 
-static void MalformedPicturesAreRefused(void** state)
+TEST(MalformedPicturesAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const char* const texts[] = {"",
                                  "PF",
                                  "PF\n2 2\n",
@@ -307,13 +279,10 @@ static void MalformedPicturesAreRefused(void** state)
     vplImage* image = NULL;
     assert_int_equal(vplImage_Read(context, "/nonexistent/a.pfm", &image), VPL_FILE_ERROR);
     assert_int_equal(vplImage_Read(context, "a.xyz", &image), VPL_INVALID_ARGUMENT);
-    closeTestContext(context);
 }
 
-static void MetricsAreTheirDefinitions(void** state)
+TEST(MetricsAreTheirDefinitions, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage *a, *b;
     assert_int_equal(vplImage_Create(context, 2, 1, &a), VPL_SUCCESS);
     assert_int_equal(vplImage_Create(context, 2, 1, &b), VPL_SUCCESS);
@@ -341,13 +310,10 @@ static void MetricsAreTheirDefinitions(void** state)
     vplImage_Destroy(other);
     vplImage_Destroy(a);
     vplImage_Destroy(b);
-    closeTestContext(context);
 }
 
-static void HashSeesEveryBitAndTheShape(void** state)
+TEST(HashSeesEveryBitAndTheShape, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage *a = makeImage(context, 6, 4), *b = makeImage(context, 4, 6);
     assert_true(vplImage_Hash(a) != vplImage_Hash(b));
     uint64_t hash = vplImage_Hash(a);
@@ -363,13 +329,11 @@ static void HashSeesEveryBitAndTheShape(void** state)
     assert_true(vplImage_Hash(a) == hash);
     vplImage_Destroy(a);
     vplImage_Destroy(b);
-    closeTestContext(context);
 }
 
 // Around every place where the code changes, and at values that are no light.
-static void CodesByTableAreThoseOfTheFormula(void** state)
+TEST_ALONE(CodesByTableAreThoseOfTheFormula)
 {
-    (void)state;
     vplSrgbTable table;
     vplSrgbTable_Fill(&table);
     float odd[] = {0, -0.0f, -1, NAN, INFINITY, -INFINITY, 1, 2, 1e30f, 1e-30f, 0x1p-13f, 0x1p-14f, FLT_MIN};
@@ -387,14 +351,3 @@ static void CodesByTableAreThoseOfTheFormula(void** state)
         assert_true(vplSrgb_Code(table.next[k]) == k + 1 && vplSrgb_Code(nextafterf(table.next[k], 0)) == k);
     }
 }
-
-TEST_SUITE(image, cmocka_unit_test(CodesByTableAreThoseOfTheFormula), cmocka_unit_test(SrgbIsThatOfTheTables),
-           cmocka_unit_test(SrgbCodesAreMonotoneAndDefinedEverywhere),
-           cmocka_unit_test(ReinhardIsThatOfTheTable),
-           cmocka_unit_test(ReinhardKeepsChromaticityAsInTheTable),
-           cmocka_unit_test(ReinhardCanLeaveBlackOut),
-           cmocka_unit_test(ReinhardIgnoresPixelsThatAreNotFinite), cmocka_unit_test(PfmKeepsEveryBit),
-           cmocka_unit_test(HdrKeepsAPercentAndPngKeepsCodes), cmocka_unit_test(ExposureDoublesPerStop),
-           cmocka_unit_test(APictureThatIsNotFiniteIsRefusedByName),
-           cmocka_unit_test(MalformedPicturesAreRefused), cmocka_unit_test(MetricsAreTheirDefinitions),
-           cmocka_unit_test(HashSeesEveryBitAndTheShape));

@@ -82,10 +82,8 @@ static void checkDefinition(const vplGeometry* g, int width, int height, int sid
 }
 
 // Sides that divide tiles and such that do not; sizes likewise; fewer lights than classes, and more than a group.
-static void EveryPixelIsThatOfTheDefinition(void** state)
+TEST(EveryPixelIsThatOfTheDefinition, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = stage(context);
     static const int cases[][4] = {{128, 96, 2, 300}, {150, 70, 3, 100}, {130, 67, 4, 512}, {70, 131, 5, 60},
                                    {90, 60, 8, 130},  {67, 45, 16, 300}, {66, 65, 7, 20}};
@@ -93,16 +91,13 @@ static void EveryPixelIsThatOfTheDefinition(void** state)
         checkDefinition(g, cases[i][0], cases[i][1], cases[i][2], cases[i][3]);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Away from the picture's border every light counts exactly once, and what is linear over the window keeps its
 // value: lights 2 km above a floor are, to a float.
-static void FarLightsOnAFloorAreThoseOfDeferredShading(void** state)
+TEST(FarLightsOnAFloorAreThoseOfDeferredShading, 2)
 {
-    (void)state;
     enum { COUNT = 9 * 256, WIDTH = 100, HEIGHT = 80 };
-    vplContext* context = openTestContext(2);
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 100, 0.5f);
     const vplView view = stageView(vplVec(0, 3, 0.5f), WIDTH, HEIGHT);
     vplShadeLight* lights = rollLights(COUNT, 1);
@@ -129,15 +124,12 @@ static void FarLightsOnAFloorAreThoseOfDeferredShading(void** state)
     vplImage_Destroy(deferred);
     free(lights);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // A wall whose lights all lie in its plane gets exactly nothing, however bright the floor that it stands on.
-static void NoLightLeaksOverAnEdge(void** state)
+TEST(NoLightLeaksOverAnEdge, 2)
 {
-    (void)state;
     enum { SIZE = 96, COUNT = 300 }; // each of 256 classes has one
-    vplContext* context = openTestContext(2);
     vplGeometry* g = stage(context);
     const vplView view = stageView(vplVec(0, 2, 5), SIZE, SIZE);
     vplShadeLight* lights = rollLights(COUNT, 3);
@@ -164,7 +156,6 @@ static void NoLightLeaksOverAnEdge(void** state)
     vplImage_Destroy(normals);
     free(lights);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // ---- whole renders
@@ -205,9 +196,8 @@ static uint64_t hashOf(vplContext* context, const vplRenderOptions* o)
     return stats.imageHash;
 }
 
-static void BlocksOfOnePixelAreDeferredBitForBit(void** state)
+TEST_ALONE(BlocksOfOnePixelAreDeferredBitForBit)
 {
-    (void)state;
     for (int i = 0; i < 6; i++) {
         vplRenderOptions one = optionsOf(1), deferred = optionsOf(0);
         one.lighting = deferred.lighting = (vplLighting)(i % 2);
@@ -217,9 +207,8 @@ static void BlocksOfOnePixelAreDeferredBitForBit(void** state)
     }
 }
 
-static void ThreadsAndInstructionSetsChangeNoBit(void** state)
+TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)
 {
-    (void)state;
     static const int workers[] = {2, 3, 7}, sides[] = {4, 3, 16};
     for (int i = 0; i < 5; i++) {
         vplRenderOptions o = optionsOf(sides[i % 3]);
@@ -240,10 +229,8 @@ static void ThreadsAndInstructionSetsChangeNoBit(void** state)
 
 // 512 lights and more in the room, with each kind of shadow fewer: the same energy, and a bounded
 // error. Without shadows it is 6, 10 and 14 %, at 1920 x 1080 0.9, 2.1 and 4.4 % (edges count less there).
-static void IndirectLightKeepsItsEnergy(void** state)
+TEST(IndirectLightKeepsItsEnergy, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     for (int shadows = 0; shadows < 3; shadows++) {
         for (int side = shadows ? 4 : 2; side <= (shadows ? 4 : 8); side *= 2) {
@@ -266,13 +253,10 @@ static void IndirectLightKeepsItsEnergy(void** state)
         }
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void SizesOfBlocksOutOfRangeAreRefused(void** state)
+TEST(SizesOfBlocksOutOfRangeAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     static const int wrong[] = {-1, 0, 17};
     vplImage* image = NULL;
@@ -280,7 +264,8 @@ static void SizesOfBlocksOutOfRangeAreRefused(void** state)
         vplRenderOptions o = optionsOf(4);
         o.pipeline.interleave = wrong[i];
         assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
-        assert_true(image == NULL && strstr(takeMessage(), "vplRenderOptions.interleave is ") != NULL);
+        assert_true(image == NULL &&
+                    strstr(takeMessage(), "vplRenderOptions.pipeline.interleave is ") != NULL);
     }
     vplGeometry* g = stage(context);
     const vplView view = stageView(vplVec(0, 2, 5), 4, 4);
@@ -294,12 +279,4 @@ static void SizesOfBlocksOutOfRangeAreRefused(void** state)
     vplImage_Destroy(image);
     vplGeometry_Destroy(g);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(interleaved, slow_unit_test(EveryPixelIsThatOfTheDefinition),
-           cmocka_unit_test(FarLightsOnAFloorAreThoseOfDeferredShading),
-           cmocka_unit_test(NoLightLeaksOverAnEdge), cmocka_unit_test(BlocksOfOnePixelAreDeferredBitForBit),
-           cmocka_unit_test(ThreadsAndInstructionSetsChangeNoBit),
-           cmocka_unit_test(IndirectLightKeepsItsEnergy),
-           cmocka_unit_test(SizesOfBlocksOutOfRangeAreRefused));

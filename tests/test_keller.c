@@ -63,10 +63,8 @@ static vplLightSet* simulate(const vplGeometry* geometry, vplParticleDef def)
 
 // counts_totals.csv: N lights on the emitter, then floor(rho N), floor(rho^2 N) and so on, each after one more ray:
 // 10 particles at rho = 0.5 leave 18 lights by 8 rays.
-static void CountsAndRaysAreThoseOfTheTable(void** state)
+TEST(CountsAndRaysAreThoseOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* room = freezeScene(lampRoom(context, 0.5f));
     Table t = loadTable("counts_totals.csv");
     int checked = 0;
@@ -92,14 +90,11 @@ static void CountsAndRaysAreThoseOfTheTable(void** state)
     assert_true(checked > 100);
     freeTable(&t);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // vpl_weights.csv: N/M_k, and the lights of step k carry the lamp's power times rho^k (documented: (rho/pi)^k).
-static void FluxOfEachStepIsThatOfTheTable(void** state)
+TEST(FluxOfEachStepIsThatOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("vpl_weights.csv");
     for (int row = 0; row < 2 * t.rows; row++) {
         const int r = row / 2, documented = row % 2, k = (int)number(&t, r, "k");
@@ -124,7 +119,6 @@ static void FluxOfEachStepIsThatOfTheTable(void** state)
         vplGeometry_Destroy(cube);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // A sphere of radius 1 that glows inwards with radiance 1.
@@ -172,9 +166,8 @@ static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
 // estimator_factors.csv, "Keller furnace": walls that emit Le and reflect rho glow with Le / (1 - rho); as printed,
 // with Le (1 + rho / (1 - rho/pi)). On a sphere any light gives any point the same, so that the sum is exact but for
 // the steps that floor(rho^j N) = 0 cuts off.
-static void ClosedRoomsGlowAsTheFormulasSay(void** state)
+TEST_ALONE(ClosedRoomsGlowAsTheFormulasSay)
 {
-    (void)state;
     static const struct {
         float rho;
         int particles;
@@ -200,10 +193,8 @@ static void ClosedRoomsGlowAsTheFormulasSay(void** state)
 }
 
 // Lamp, point, spot and sun get particles by power. Where they start from no surface, the light is the emitter.
-static void EmittersOfAllKindsShareByPower(void** state)
+TEST(EmittersOfAllKindsShareByPower, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = lampRoom(context, 0.5f);
     vplEmitterDef emitters[3];
     for (int i = 0; i < 3; i++) {
@@ -239,14 +230,11 @@ static void EmittersOfAllKindsShareByPower(void** state)
     }
     vplEmission_Destroy(emission);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Passes go on where the last ended: two of N particles are the first 2 N of the sequence.
-static void LaterPassesGoOnWithTheSequence(void** state)
+TEST(LaterPassesGoOnWithTheSequence, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* room = freezeScene(lampRoom(context, 0.5f));
     for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
         enum { N = 50 };
@@ -266,16 +254,13 @@ static void LaterPassesGoOnWithTheSequence(void** state)
         vplLightSet_Destroy(second);
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Passes of a walk: their counts add up to floor(rho^k P N), steps that no single pass of N would reach included, and
 // lights of step k weigh rho^-k, so that they carry power rho^k in the mean.
-static void PassesAddUpToOneWalk(void** state)
+TEST(PassesAddUpToOneWalk, 2)
 {
-    (void)state;
     enum { PASSES = 64, N = 7 };
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = freezeScene(closedCubeScene(context, 0.7f, 3));
     int counts[64], steps, sums[64] = {0};
     int64_t total;
@@ -305,7 +290,6 @@ static void PassesAddUpToOneWalk(void** state)
     assert_int_equal(vplSimulateParticles(cube, NULL, 0, &def, &set), VPL_INVALID_ARGUMENT);
     assert_null(set);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 static vplRenderOptions smallOptions(void)
@@ -319,10 +303,8 @@ static vplRenderOptions smallOptions(void)
 }
 
 // With no particle shot, a point light's picture is its direct light bit for bit: N lights at one place are one.
-static void PointEmittersAreDrawnAsThemselves(void** state)
+TEST(PointEmittersAreDrawnAsThemselves, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = smallOptions();
     o.particles.reflectivity = 0;
@@ -334,14 +316,11 @@ static void PointEmittersAreDrawnAsThemselves(void** state)
     vplImage_Destroy(keller);
     vplImage_Destroy(direct);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Direct and indirect light are parts of the picture.
-static void PartsAddUp(void** state)
+TEST(PartsAddUp, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = lampRoom(context, 0.7f);
     vplRenderOptions o = smallOptions();
     o.particles.count = 40;
@@ -362,14 +341,11 @@ static void PartsAddUp(void** state)
         vplImage_Destroy(images[i]);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X031, X036: no particles, one particle, a black room, a lamp that lights nothing.
-static void OddRoomsGiveFinitePictures(void** state)
+TEST(OddRoomsGiveFinitePictures, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int i = 0; i < 4; i++) {
         vplScene* scene = lampRoom(context, i == 2 ? 0.0f : 0.9f);
         if (i == 3) {
@@ -386,12 +362,4 @@ static void OddRoomsGiveFinitePictures(void** state)
         vplImage_Destroy(image);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
-
-TEST_SUITE(keller, cmocka_unit_test(CountsAndRaysAreThoseOfTheTable),
-           cmocka_unit_test(FluxOfEachStepIsThatOfTheTable),
-           cmocka_unit_test(ClosedRoomsGlowAsTheFormulasSay),
-           cmocka_unit_test(EmittersOfAllKindsShareByPower), cmocka_unit_test(LaterPassesGoOnWithTheSequence),
-           cmocka_unit_test(PassesAddUpToOneWalk), cmocka_unit_test(PointEmittersAreDrawnAsThemselves),
-           cmocka_unit_test(PartsAddUp), cmocka_unit_test(OddRoomsGiveFinitePictures));

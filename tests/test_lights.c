@@ -6,10 +6,8 @@
 
 #include <stdlib.h>
 
-static void EveryCountOfTheTableIsTheDecimalOne(void** state)
+TEST(EveryCountOfTheTableIsTheDecimalOne, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("counts.csv");
     static int counts[VPL_MAX_STEPS];
     for (int row = 0; row < t.rows; row++) {
@@ -26,13 +24,10 @@ static void EveryCountOfTheTableIsTheDecimalOne(void** state)
         }
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
-static void EveryTotalOfTheTable(void** state)
+TEST(EveryTotalOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("counts_totals.csv");
     for (int row = 0; row < t.rows; row++) {
         int n = (int)number(&t, row, "N"), steps;
@@ -47,14 +42,11 @@ static void EveryTotalOfTheTable(void** state)
         assert_int_equal(total, (int64_t)number(&t, row, "total_sum_k>=0"));
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // X036, X037: exact below the stated limits, refused beyond, never endless.
-static void ExtremeTotalsAreExactOrRefused(void** state)
+TEST(ExtremeTotalsAreExactOrRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("counts_extreme.csv");
     int exact = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -73,14 +65,11 @@ static void ExtremeTotalsAreExactOrRefused(void** state)
     }
     assert_true(exact >= 10);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // X036, X038 to X040: each row of counts_invalid.csv, as its third column asks.
-static void InvalidCountsAreRefused(void** state)
+TEST(InvalidCountsAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const struct {
         double rho;
         int n;
@@ -107,7 +96,6 @@ static void InvalidCountsAreRefused(void** state)
         assert_int_equal(steps, result == VPL_SUCCESS ? cases[i].steps : -1);
         assert_int_equal(total, result == VPL_SUCCESS ? cases[i].total : -1);
     }
-    closeTestContext(context);
 }
 
 // Simulates one set of room_particles.csv with its own first directions and compares every row.
@@ -163,10 +151,8 @@ static void checkSet(vplContext* context, const vplGeometry* room, const Table* 
     (void)context;
 }
 
-static void EveryParticleOfTheTableLandsWhereItSays(void** state)
+TEST(EveryParticleOfTheTableLandsWhereItSays, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("room_particles.csv");
     vplGeometry* room = tableRoom(context);
     const char* const sets[] = {"A", "B", "C", "D"};
@@ -175,7 +161,6 @@ static void EveryParticleOfTheTableLandsWhereItSays(void** state)
     }
     vplGeometry_Destroy(room);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 static vplLightSet* simulate(const vplGeometry* g, vplParticleDef def)
@@ -186,10 +171,8 @@ static vplLightSet* simulate(const vplGeometry* g, vplParticleDef def)
     return set;
 }
 
-static void TenParticlesAtHalfMake18Lights(void** state)
+TEST(TenParticlesAtHalfMake18Lights, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplLightSet* set = simulate(cube, vplDefaultParticleDef());
     assert_int_equal(set->lightCount, 18);
@@ -203,14 +186,11 @@ static void TenParticlesAtHalfMake18Lights(void** state)
     }
     vplLightSet_Destroy(set);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // vpl_weights.csv: in a closed room the lights of step k carry the flux 4 pi I rho^(k+1), whatever the floor.
-static void FluxOfEachStepIsThatOfTheTable(void** state)
+TEST(FluxOfEachStepIsThatOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("vpl_weights.csv");
     for (int row = 0; row < t.rows; row++) {
         double rho = number(&t, row, "rho");
@@ -235,7 +215,6 @@ static void FluxOfEachStepIsThatOfTheTable(void** state)
         vplGeometry_Destroy(cube);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 static uint64_t hashLights(const vplLightSet* set)
@@ -255,9 +234,8 @@ static uint64_t hashLights(const vplLightSet* set)
     return hash;
 }
 
-static void LightsDoNotDependOnThreads(void** state)
+TEST_ALONE(LightsDoNotDependOnThreads)
 {
-    (void)state;
     for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
         uint64_t wanted = 0;
         const int workers[] = {1, 2, 3, 7};
@@ -285,10 +263,8 @@ static void LightsDoNotDependOnThreads(void** state)
 }
 
 // The first floor(rho^k N) particles must by themselves cover all directions: their mean direction is small.
-static void AnyFirstParticlesCoverTheSphere(void** state)
+TEST(AnyFirstParticlesCoverTheSphere, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     // Random points: 3 standard deviations of the mean of n unit vectors; the others: better than that by far.
     const double allowed[] = {
@@ -308,13 +284,10 @@ static void AnyFirstParticlesCoverTheSphere(void** state)
         vplLightSet_Destroy(set);
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
-static void DoublingTheEmitterDoublesEveryBit(void** state)
+TEST(DoublingTheEmitterDoublesEveryBit, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* room = tableRoom(context);
     vplParticleDef def = vplDefaultParticleDef();
     def.particleCount = 100;
@@ -331,14 +304,11 @@ static void DoublingTheEmitterDoublesEveryBit(void** state)
     vplLightSet_Destroy(one);
     vplLightSet_Destroy(two);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Two emitters of 1 and 3 W/sr share the particles one to three, and the total flux is that of both.
-static void EmittersShareParticlesByPower(void** state)
+TEST(EmittersShareParticlesByPower, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 1);
     for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
         vplParticleDef def = vplDefaultParticleDef();
@@ -361,14 +331,11 @@ static void EmittersShareParticlesByPower(void** state)
         vplLightSet_Destroy(set);
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // X048: after a thousand mirror bounces in a closed cube particles still land on its walls.
-static void AThousandBouncesStayOnTheWalls(void** state)
+TEST(AThousandBouncesStayOnTheWalls, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 1);
     for (int bounce = VPL_BOUNCE_REFLECT; bounce <= VPL_BOUNCE_DIFFUSE; bounce++) {
         vplParticleDef def = vplDefaultParticleDef();
@@ -386,13 +353,10 @@ static void AThousandBouncesStayOnTheWalls(void** state)
         vplLightSet_Destroy(set);
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
-static void SimulationRefusesWhatItCannotShoot(void** state)
+TEST(SimulationRefusesWhatItCannotShoot, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplParticleDef def = vplDefaultParticleDef();
     vplEmitterDef emitter = vplDefaultEmitterDef();
@@ -410,15 +374,4 @@ static void SimulationRefusesWhatItCannotShoot(void** state)
     assert_int_equal(set->lightCount, 0);
     vplLightSet_Destroy(set);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
-
-TEST_SUITE(lights, cmocka_unit_test(EveryCountOfTheTableIsTheDecimalOne),
-           cmocka_unit_test(EveryTotalOfTheTable), cmocka_unit_test(ExtremeTotalsAreExactOrRefused),
-           cmocka_unit_test(InvalidCountsAreRefused),
-           cmocka_unit_test(EveryParticleOfTheTableLandsWhereItSays),
-           cmocka_unit_test(TenParticlesAtHalfMake18Lights), cmocka_unit_test(FluxOfEachStepIsThatOfTheTable),
-           cmocka_unit_test(LightsDoNotDependOnThreads), cmocka_unit_test(AnyFirstParticlesCoverTheSphere),
-           cmocka_unit_test(DoublingTheEmitterDoublesEveryBit),
-           cmocka_unit_test(EmittersShareParticlesByPower), cmocka_unit_test(AThousandBouncesStayOnTheWalls),
-           cmocka_unit_test(SimulationRefusesWhatItCannotShoot));

@@ -117,10 +117,8 @@ static vplScene* boxInRoom(vplContext* context)
 
 // ---- what is known
 
-static void AClosedRoomKeepsAllLight(void** state)
+TEST(AClosedRoomKeepsAllLight, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Room room;
     const vplLinkDef def = vplDefaultLinkDef();
     openRoom(&room, closedCubeScene(context, 0.5f, 1), 1500);
@@ -140,13 +138,10 @@ static void AClosedRoomKeepsAllLight(void** state)
     free(b);
     free(e);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
-static void AFurnaceGlowsAsItMust(void** state)
+TEST(AFurnaceGlowsAsItMust, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Room room;
     const vplLinkDef def = vplDefaultLinkDef();
     openRoom(&room, closedCubeScene(context, 0.75f, 1), 700);
@@ -171,14 +166,11 @@ static void AFurnaceGlowsAsItMust(void** state)
     free(source);
     free(b);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
 // A_i F_ij = A_j F_ji: what x sends to y is what y would send to x.
-static void LinksServeBothDirections(void** state)
+TEST(LinksServeBothDirections, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Room room;
     const vplLinkDef def = vplDefaultLinkDef();
     openRoom(&room, boxInRoom(context), 600);
@@ -200,7 +192,6 @@ static void LinksServeBothDirections(void** state)
     free(fx);
     free(fy);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
 // ---- against all pairs
@@ -225,10 +216,8 @@ static double errorOf(Room* room, double error)
     return found;
 }
 
-static void IrradianceIsThatOfAllPairsToTheErrorAskedFor(void** state)
+TEST(IrradianceIsThatOfAllPairsToTheErrorAskedFor, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Room room;
     openRoom(&room, boxInRoom(context), 1000);
     // Measured: 0.012; 0.032 and 0.0094, with 20 times the links.
@@ -240,14 +229,11 @@ static void IrradianceIsThatOfAllPairsToTheErrorAskedFor(void** state)
     const double fine = errorOf(&room, 0.0005);
     assert_true(fine < 0.5 * coarse && room.links->linkCount > 4 * few);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
 // Its group would be the ceiling's.
-static void ALampFlushWithTheCeilingShinesFromWhereItIs(void** state)
+TEST(ALampFlushWithTheCeilingShinesFromWhereItIs, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Room room;
     vplScene* scene = closedCubeScene(context, 0.5f, 0);
     addThing(scene, VPL_OBJECT_QUAD, addMaterial(scene, (vplRgb){0, 0, 0}, 5), vplVec(0.7f, 0.9999f, 0.7f),
@@ -269,13 +255,10 @@ static void ALampFlushWithTheCeilingShinesFromWhereItIs(void** state)
     free(e);
     free(wanted);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
-static void NoLightGoesThroughAWall(void** state)
+TEST(NoLightGoesThroughAWall, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Room room;
     vplScene* scene = closedCubeScene(context, 0.5f, 0);
     addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), 0, VPL_PI / 2, vplVec(2.01f, 2.01f, 1));
@@ -301,15 +284,12 @@ static void NoLightGoesThroughAWall(void** state)
     free(b);
     free(e);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
 // ---- cost
 
-static void EightTimesThePatchesTakeHalfAsManyLinksEach(void** state)
+TEST(EightTimesThePatchesTakeHalfAsManyLinksEach, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     int64_t links[2], rays[2];
     int sides[2];
     for (int k = 0; k < 2; k++) {
@@ -327,15 +307,12 @@ static void EightTimesThePatchesTakeHalfAsManyLinksEach(void** state)
     }
     // Measured: 3.4 times the links, 3.9 times the rays, 32 of which each side casts itself.
     assert_true(sides[1] > 7 * sides[0] && links[1] < 4 * links[0] && rays[1] < 5 * rays[0]);
-    closeTestContext(context);
 }
 
 // ---- extremes
 
-static void WhatIsInOnePlaneHasNoLinks(void** state)
+TEST(WhatIsInOnePlaneHasNoLinks, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int tilt = 0; tilt < 2; tilt++) {
         for (int patches = 1; patches < 300; patches += 250) {
             Room room;
@@ -357,13 +334,10 @@ static void WhatIsInOnePlaneHasNoLinks(void** state)
             closeRoom(&room);
         }
     }
-    closeTestContext(context);
 }
 
-static void NoSidesHaveNoLinks(void** state)
+TEST(NoSidesHaveNoLinks, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Room room;
     const vplLinkDef def = vplDefaultLinkDef();
     openRoom(&room, closedCubeScene(context, 0.5f, 0), 100); // dark
@@ -374,14 +348,11 @@ static void NoSidesHaveNoLinks(void** state)
     assert_int_equal(room.links->linkCount, 0);
     free(b);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
 // X095: patches that meet at an edge; tiny and huge, with finite factors of at most 1.
-static void CornersAndScalesAreFinite(void** state)
+TEST(CornersAndScalesAreFinite, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int scale = -6; scale <= 6; scale += 6) {
         Room room;
         const float size = (float)pow(10, scale);
@@ -406,13 +377,10 @@ static void CornersAndScalesAreFinite(void** state)
         free(e);
         closeRoom(&room);
     }
-    closeTestContext(context);
 }
 
-static void WrongArgumentsAreRefused(void** state)
+TEST(WrongArgumentsAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Room room;
     vplLinks* links = NULL;
     openRoom(&room, boxInRoom(context), 50);
@@ -441,13 +409,10 @@ static void WrongArgumentsAreRefused(void** state)
     assert_null(links);
     vplLinks_Destroy(NULL);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
-static void CancellingLeavesNothing(void** state)
+TEST(CancellingLeavesNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Room room;
     vplLinks* links = NULL;
     vplLinkDef def = vplDefaultLinkDef();
@@ -459,7 +424,6 @@ static void CancellingLeavesNothing(void** state)
     assert_int_equal(vplLinks_Create(room.sides, &def, &links), VPL_CANCELLED);
     assert_true(links == NULL && asked == 3 && vplContext_GetBytes(context) == before);
     closeRoom(&room);
-    closeTestContext(context);
 }
 
 static uint64_t linksHash(vplContext* context)
@@ -482,18 +446,7 @@ static uint64_t linksHash(vplContext* context)
     return hash;
 }
 
-static void LinksAreTheSameBitsEverywhere(void** state)
+TEST_ALONE(LinksAreTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(linksHash);
 }
-
-TEST_SUITE(links, cmocka_unit_test(AClosedRoomKeepsAllLight), cmocka_unit_test(AFurnaceGlowsAsItMust),
-           cmocka_unit_test(LinksServeBothDirections),
-           slow_unit_test(IrradianceIsThatOfAllPairsToTheErrorAskedFor),
-           cmocka_unit_test(ALampFlushWithTheCeilingShinesFromWhereItIs),
-           cmocka_unit_test(NoLightGoesThroughAWall),
-           slow_unit_test(EightTimesThePatchesTakeHalfAsManyLinksEach),
-           cmocka_unit_test(WhatIsInOnePlaneHasNoLinks), cmocka_unit_test(NoSidesHaveNoLinks),
-           cmocka_unit_test(CornersAndScalesAreFinite), cmocka_unit_test(WrongArgumentsAreRefused),
-           cmocka_unit_test(CancellingLeavesNothing), cmocka_unit_test(LinksAreTheSameBitsEverywhere));

@@ -10,9 +10,8 @@
 
 #include <float.h>
 
-static void ElementaryFunctionsAgreeWithLibm(void** state)
+TEST_ALONE(ElementaryFunctionsAgreeWithLibm)
 {
-    (void)state;
     for (uint64_t i = 0; i < 100000; i++) {
         double u = uniformAt(1, i), x = 40 * u - 20, s, c;
         vplSinCos(x, &s, &c);
@@ -32,9 +31,8 @@ static void ElementaryFunctionsAgreeWithLibm(void** state)
     }
 }
 
-static void ElementaryFunctionsAreDefinedAtTheirEnds(void** state)
+TEST_ALONE(ElementaryFunctionsAreDefinedAtTheirEnds)
 {
-    (void)state;
     double s, c;
     for (int quarter = -8; quarter <= 8; quarter++) {
         vplSinCos(quarter * (VPL_PI / 2), &s, &c);
@@ -61,9 +59,8 @@ static void ElementaryFunctionsAreDefinedAtTheirEnds(void** state)
 }
 
 // The published known-answer vectors of Philox 4x32-10 (Random123, kat_vectors).
-static void PhiloxGivesThePublishedNumbers(void** state)
+TEST_ALONE(PhiloxGivesThePublishedNumbers)
 {
-    (void)state;
     const uint32_t zeros[4] = {0, 0, 0, 0}, ones[4] = {~0u, ~0u, ~0u, ~0u};
     const uint32_t wanted[2][4] = {{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8},
                                    {0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}};
@@ -72,9 +69,8 @@ static void PhiloxGivesThePublishedNumbers(void** state)
     assert_true(vplUnitFloat(~0u) < 1 && vplUnitFloat(0) == 0);
 }
 
-static void RadicalInversesAreThoseOfTheTables(void** state)
+TEST_ALONE(RadicalInversesAreThoseOfTheTables)
 {
-    (void)state;
     Table t = loadTable("vdcorput.csv");
     for (int row = 0; row < t.rows; row++) {
         uint32_t k = (uint32_t)number(&t, row, "k");
@@ -94,9 +90,8 @@ static void RadicalInversesAreThoseOfTheTables(void** state)
     freeTable(&t);
 }
 
-static void WarpsAreThoseOfTheTable(void** state)
+TEST_ALONE(WarpsAreThoseOfTheTable)
 {
-    (void)state;
     Table t = loadTable("disk_maps.csv");
     for (int row = 0; row < t.rows; row++) {
         float u = (float)number(&t, row, "u"), v = (float)number(&t, row, "v"), x, y;
@@ -118,9 +113,8 @@ static void WarpsAreThoseOfTheTable(void** state)
 }
 
 // X046: orthonormal and right-handed for every normal, the poles included.
-static void FramesAreOrthonormalForEveryNormal(void** state)
+TEST_ALONE(FramesAreOrthonormalForEveryNormal)
 {
-    (void)state;
     for (uint64_t i = 0; i < 20000; i++) {
         vplVec3 n = vplSampleSphere((float)uniformAt(1, i), (float)uniformAt(2, i)), t, b;
         const vplVec3 poles[6] = {{0, 0, -1}, {0, 0, 1},       {0, -1, 0},
@@ -135,9 +129,8 @@ static void FramesAreOrthonormalForEveryNormal(void** state)
     }
 }
 
-static void NormalizeKeepsTheDirectionOfAnyLength(void** state)
+TEST_ALONE(NormalizeKeepsTheDirectionOfAnyLength)
 {
-    (void)state;
     const float lengths[] = {1e-42f, 1e-30f, 1, 1e30f, 3e38f};
     for (int i = 0; i < 5; i++) {
         vplVec3 n = vplNormalize(vplVec(0.6f * lengths[i], 0, -0.8f * lengths[i]));
@@ -148,9 +141,8 @@ static void NormalizeKeepsTheDirectionOfAnyLength(void** state)
     assert_true(zero.x == 0 && zero.y == 0 && zero.z == 0);
 }
 
-static void MatricesMoveAsTheyShould(void** state)
+TEST_ALONE(MatricesMoveAsTheyShould)
 {
-    (void)state;
     vplMat4 m = vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){VPL_PI / 2, 0, 0}, (vplVec3){2, 2, 2});
     vplVec3 p = vplMat4_TransformPoint(&m, (vplVec3){0, 1, 0}); // y turns to z
     assert_true(p.x == 1 && p.y == 2 && p.z == 5);
@@ -171,9 +163,8 @@ static void MatricesMoveAsTheyShould(void** state)
 }
 
 // The first eight points, worked out by hand from the primitive polynomials and first numbers of Joe and Kuo.
-static void SobolPointsAreThePublishedOnes(void** state)
+TEST_ALONE(SobolPointsAreThePublishedOnes)
 {
-    (void)state;
     static const double wanted[8][VPL_SOBOL_DIMENSIONS] = {
         {0, 0, 0, 0},
         {0.5, 0.5, 0.5, 0.5},
@@ -196,9 +187,8 @@ static void SobolPointsAreThePublishedOnes(void** state)
 
 // Scrambled and shuffled, the first 2^k points still put one into each stratum of every dimension, and one into each
 // of the cells of any shape that halving the first two dimensions k times makes.
-static void ScrambledPointsKeepTheirStrata(void** state)
+TEST_ALONE(ScrambledPointsKeepTheirStrata)
 {
-    (void)state;
     enum { K = 8, COUNT = 1 << K };
     const vplSobol sobol = vplSobol_Make();
     for (uint32_t stream = 0; stream < 50; stream++) {
@@ -226,9 +216,8 @@ static void ScrambledPointsKeepTheirStrata(void** state)
 }
 
 // One place of a sequence looks uniform over all streams, and two streams have nothing to do with each other.
-static void StreamsAreIndependent(void** state)
+TEST_ALONE(StreamsAreIndependent)
 {
-    (void)state;
     enum { STREAMS = 20000 };
     const vplSobol sobol = vplSobol_Make();
     for (uint32_t index = 0; index < 5; index++) {
@@ -254,12 +243,3 @@ static void StreamsAreIndependent(void** state)
         }
     }
 }
-
-TEST_SUITE(math, cmocka_unit_test(ElementaryFunctionsAgreeWithLibm),
-           cmocka_unit_test(ElementaryFunctionsAreDefinedAtTheirEnds),
-           cmocka_unit_test(PhiloxGivesThePublishedNumbers),
-           cmocka_unit_test(RadicalInversesAreThoseOfTheTables), cmocka_unit_test(WarpsAreThoseOfTheTable),
-           cmocka_unit_test(SobolPointsAreThePublishedOnes), cmocka_unit_test(ScrambledPointsKeepTheirStrata),
-           cmocka_unit_test(StreamsAreIndependent), cmocka_unit_test(FramesAreOrthonormalForEveryNormal),
-           cmocka_unit_test(NormalizeKeepsTheDirectionOfAnyLength),
-           cmocka_unit_test(MatricesMoveAsTheyShould));

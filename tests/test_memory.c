@@ -1,543 +1,234 @@
 // SPDX-License-Identifier: MIT
-// Running out of memory: the n-th allocation fails, for every n, and each time the answer is VPL_OUT_OF_MEMORY,
-// one sentence, nothing leaked and no file. New memory is filled with junk, so that success does not depend on it.
+// Every scenario of the table below, with every allocation failing in turn (tests/failing.h).
+#include "failing.h"
 #include "patch_support.h"
-#include "shapes.h"
-#include "sides_fixture.h"
 
 #include "render/stages/show.h"
 
 #include <jansson.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-typedef struct Failing {
-    long allocations; // so far
-    long failAt;      // this one returns NULL; -1: none
-    bool stayEmpty;   // and all after it
-    long held;        // blocks not yet freed
-    int errors;       // sentences logged
-} Failing;
+// ---- scene files
 
-static void* failingAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
+static vplResult readJson(Attempt* a)
 {
-    Failing* f = user;
-    if (newSize == 0) {
-        f->held -= memory != NULL;
-        free(memory);
-        return NULL;
-    }
-    long number = f->allocations++;
-    if (number == f->failAt || (f->stayEmpty && f->failAt >= 0 && number > f->failAt)) {
-        return NULL;
-    }
-    char* block = realloc(memory, newSize);
-    f->held += memory == NULL && block != NULL;
-    if (block != NULL && newSize > oldSize) {
-        memset(block + oldSize, 0xCD, newSize - oldSize);
-    }
-    return block;
+    return vplScene_Load(a->context, "tests/data/room.json", &a->scene);
 }
 
-static void countErrors(void* user, vplLogLevel level, const char* message)
+// The second file is read into a scene that has the names already.
+static vplResult readMeshes(Attempt* a)
 {
-    Failing* f = user;
-    f->errors += level == VPL_LOG_ERROR && message[0] != 0;
+    static const char* const scenes[] = {"tests/data/obj/meshes.json", "tests/data/obj/everything.obj",
+                                         "tests/data/obj/square.obj"};
+    TRY(vplScene_Load(a->context, scenes[a->variant], &a->scene));
+    return vplScene_LoadObj(a->scene, scenes[a->variant ? a->variant : 1], NULL);
 }
 
-static vplContext* openFailing(Failing* f)
+static vplResult openRoom(Attempt* a, const char* path)
 {
-    vplContextDef def = vplDefaultContextDef();
-    def.alloc = failingAlloc;
-    def.allocUser = f;
-    def.log = countErrors;
-    def.logUser = f;
-    def.workerCount = 2;
-    vplContext* context = NULL;
-    vplContext_Create(&def, &context);
-    return context;
+    TRY(vplScene_Load(a->context, path, &a->scene));
+    return vplGeometry_Create(a->scene, &a->geometry);
 }
 
-typedef vplResult Work(vplContext* context, const char* path, int variant);
-
-// Does the work with every allocation failing in turn, until it succeeds because there is none left to fail.
-static void failEveryAllocation(Work* work, const char* extension, int variant, bool stayEmpty)
+// A ball of 320 triangles that emits light.
+static vplResult addBall(Attempt* a)
 {
-    char folder[] = "/tmp/vpl-memory-XXXXXX", path[64];
-    assert_non_null(mkdtemp(folder));
-    snprintf(path, sizeof path, "%s/a.%s", folder, extension);
-    vplResult result = VPL_OUT_OF_MEMORY;
-    long n = 0;
-    for (; result != VPL_SUCCESS; n++) {
-        Failing failing = {.failAt = n, .stayEmpty = stayEmpty};
-        vplContext* context = openFailing(&failing);
-        result = context ? work(context, path, variant) : VPL_OUT_OF_MEMORY;
-        bool intact = context == NULL || vplContext_GetBytes(context) == 0;
-        vplContext_Destroy(context);
-        struct stat info;
-        bool written = stat(path, &info) == 0;
-        if (result == VPL_SUCCESS) {
-            assert_true(failing.allocations <= n && failing.errors == 0);
-        } else if (result != VPL_OUT_OF_MEMORY || (stayEmpty ? failing.errors < 1 : failing.errors != 1) ||
-                   written) {
-            fail_msg("variant %d, allocation %ld: %s, %d sentences%s", variant, n, vplResult_GetName(result),
-                     failing.errors, written ? ", a file" : "");
-        }
-        if (failing.held != 0 || !intact) {
-            fail_msg("variant %d, allocation %ld: %ld blocks leaked", variant, n, failing.held);
-        }
-        unlink(path);
-    }
-    assert_true(n > 5);
-    assert_int_equal(rmdir(folder), 0); // fails if a temporary file stayed behind
+    vplMaterialDef material = vplDefaultMaterialDef();
+    vplObjectDef object = vplDefaultObjectDef();
+    a->shape = icosphere(2);
+    material.emission = (vplRgb){1, 2, 3};
+    object.transform.m[13] = 3;
+    TRY(vplScene_AddMaterial(a->scene, &material, &object.material));
+    return tryAddShape(a->scene, &a->shape, true, &object);
 }
 
-static vplRenderOptions smallOptions(int pipeline)
+static vplResult buildGeometry(Attempt* a)
+{
+    TRY(vplScene_Create(a->context, &a->scene));
+    TRY(addBall(a));
+    return vplGeometry_Create(a->scene, &a->geometry);
+}
+
+// ---- pictures
+
+static vplRenderOptions optionsOf(vplMethod method, int size, int particles)
 {
     vplRenderOptions options = vplDefaultRenderOptions();
-    options.output.width = 32;
-    options.output.height = 24;
-    options.shadow.mapSize = 16;
-    options.particles.count = 6;
+    options.method = method;
+    options.output.width = options.output.height = size;
+    options.particles.count = particles;
+    options.shadow.mapSize = size / 2;
+    options.lights.mapSize = 2;
     options.pipeline.batch = 4;
-    options.pipeline.kind = (vplAccumulation)pipeline;
     return options;
 }
 
-// A whole run of the program: scene file in, picture file out.
-static vplResult renderFile(vplContext* context, const char* from, const vplRenderOptions* options,
-                            const vplWriteOptions* write, const char* to)
+static vplResult render(Attempt* a, const vplRenderOptions* options)
 {
-    vplScene* scene = NULL;
-    vplImage* image = NULL;
-    vplResult result = vplScene_Load(context, from, &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplRender(scene, options, &image, NULL);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Write(image, to, write);
-    }
-    vplImage_Destroy(image);
-    vplScene_Destroy(scene);
-    return result;
+    return vplRender(a->scene, options, &a->image, NULL);
 }
 
-static vplResult renderAndWrite(vplContext* context, const char* path, int pipeline)
+static vplResult loadAndRender(Attempt* a, const char* from, const vplRenderOptions* options)
 {
-    vplRenderOptions options = smallOptions(pipeline);
+    TRY(vplScene_Load(a->context, from, &a->scene));
+    return render(a, options);
+}
+
+// The whole program: scene file in, picture file out. Variants: pipelines.
+static vplResult renderAndWrite(Attempt* a)
+{
+    vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 32, 6);
     vplWriteOptions write = vplDefaultWriteOptions();
     write.tonemap = VPL_TONEMAP_REINHARD;
-    return renderFile(context, "tests/data/room.json", &options, &write, path);
+    options.pipeline.kind = (vplAccumulation)a->variant;
+    TRY(loadAndRender(a, "tests/data/room.json", &options));
+    return vplImage_Write(a->image, a->path, &write);
 }
 
-static void EveryFailedAllocationOfARenderIsReported(void** state)
+// Variants: without and with an area light.
+static vplResult tracePaths(Attempt* a)
 {
-    (void)state;
-    const char* const extensions[] = {"png", vplImage_CanWrite("a.exr") ? "exr" : "hdr", "pfm", "pfm"};
-    for (int pipeline = VPL_ACCUMULATE_MULTIPASS; pipeline <= VPL_ACCUMULATE_INTERLEAVED; pipeline++) {
-        failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, false);
-        failEveryAllocation(renderAndWrite, extensions[pipeline], pipeline, true);
-    }
-}
-
-static vplResult compensateAndWrite(vplContext* context, const char* path, int variant)
-{
-    vplRenderOptions options = vplDefaultRenderOptions();
-    options.output.width = options.output.height = 20;
-    options.method = VPL_METHOD_KELLER;
-    options.particles.count = 5;
-    options.pipeline.kind = variant ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
-    return renderFile(context, "examples/scenes/room-area.json", &options, NULL, path);
-}
-
-static vplResult pathAndWrite(vplContext* context, const char* path, int variant)
-{
-    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
-    options.method = VPL_METHOD_PATH;
+    vplRenderOptions options = optionsOf(VPL_METHOD_PATH, 16, 0);
     options.path.samples = 2;
-    return renderFile(context, variant ? "examples/scenes/room-area.json" : "examples/scenes/room.json",
-                      &options, NULL, path);
+    TRY(loadAndRender(a, a->variant ? "examples/scenes/room-area.json" : "tests/data/room.json", &options));
+    return vplImage_Write(a->image, a->path, NULL);
 }
 
-static void EveryFailedAllocationOfCompensationIsReported(void** state)
+// Variants: deferred and interleaved.
+static vplResult compensate(Attempt* a)
 {
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(compensateAndWrite, "png", variant, false);
-    }
+    vplRenderOptions options = optionsOf(VPL_METHOD_KELLER, 12, 5);
+    options.pipeline.kind = a->variant ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+    return loadAndRender(a, "examples/scenes/room-area.json", &options);
 }
 
-static void EveryFailedAllocationOfThePathTracerIsReported(void** state)
+// Variants: no shadows of virtual lights, maps and rays, each with a pipeline of its own.
+static vplResult renderBall(Attempt* a)
 {
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(pathAndWrite, "pfm", variant, variant);
-    }
-}
-
-// ---- meshes of patches
-
-// Every third patch of 100 is bisected, so that edges of others are cut.
-static vplResult openThirds(const vplGeometry* geometry, vplPatches** patchesOut)
-{
-    vplPatchDef def = vplDefaultPatchDef();
-    vplPatches* whole = NULL;
-    def.count = 100;
-    vplResult result = vplPatches_Create(geometry, &def, &whole);
-    if (result == VPL_SUCCESS) {
-        float* priorities = calloc((size_t)whole->patchCount, sizeof *priorities);
-        for (int i = 0; i < whole->patchCount; i += 3) {
-            priorities[i] = 1;
-        }
-        result = vplPatches_Refine(whole, priorities, VPL_MAX_PATCHES, patchesOut);
-        free(priorities);
-    }
-    vplPatches_Destroy(whole);
-    return result;
-}
-
-// A room in uneven patches: mesh, means, picture and file.
-static vplResult meshAndWrite(vplContext* context, const char* path, int variant)
-{
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(scene, &geometry);
-    }
-    vplScene_Destroy(scene);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplPatches* patches = NULL;
-    result = openThirds(geometry, &patches);
-    if (result != VPL_SUCCESS) {
-        vplGeometry_Destroy(geometry);
-        return result;
-    }
-    vplPatchSides* sides = openSides(patches, allOpen);
-    const size_t most = 6 * (size_t)patches->patchCount * 8;
-    vplRgb *values = calloc(most, sizeof *values), *corners = calloc(most, sizeof *corners);
-    float(*clip)[4] = calloc(most, sizeof *clip);
-    vplPatchMesh* mesh = NULL;
-    vplImage* image = NULL;
-    result = vplPatchMesh_Create(sides, &mesh);
-    if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Interpolate(mesh, VPL_VERTEX_WEIGHT_ANGLE, values, corners);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Create(context, 16, 16, &image);
-    }
-    if (result == VPL_SUCCESS) {
-        const vplPatchDraw draw = {.mesh = mesh, .values = values, .vertexValues = variant ? corners : NULL};
-        result = vplDrawPatches(&draw, (const float(*)[4])clip, NULL, NULL, image, NULL);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_WritePly(mesh, corners, 1, path);
-    }
-    vplImage_Destroy(image);
-    vplPatchMesh_Destroy(mesh);
-    free(clip);
-    free(values);
-    free(corners);
-    closeSides(sides);
-    vplPatches_Destroy(patches);
-    vplGeometry_Destroy(geometry);
-    return result;
-}
-
-static void EveryFailedAllocationOfPatchMeshesIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(meshAndWrite, "ply", variant, variant);
-    }
-}
-
-// ---- meshes with a tree, lamps, and shadows of virtual lights
-
-static vplResult addBall(vplScene* scene, const Shape* ball)
-{
-    uint32_t indices[3 * 320];
-    for (uint32_t i = 0; i < 3 * 320; i++) {
-        indices[i] = i;
-    }
-    vplMeshDef mesh = vplDefaultMeshDef();
-    vplObjectDef object = vplDefaultObjectDef();
-    vplMaterialDef lamp = vplDefaultMaterialDef();
-    mesh.positions = mesh.normals = ball->corners;
-    mesh.indices = indices;
-    mesh.vertexCount = 3 * ball->triangleCount;
-    mesh.triangleCount = ball->triangleCount;
-    lamp.emission = (vplRgb){1, 2, 3};
-    vplResult result = vplScene_AddMesh(scene, &mesh, &object.mesh);
-    if (result == VPL_SUCCESS) {
-        result = vplScene_AddMaterial(scene, &lamp, &object.material);
-    }
-    if (result == VPL_SUCCESS) {
-        object.type = VPL_OBJECT_MESH;
-        object.transform.m[13] = 3;
-        result = vplScene_AddObject(scene, &object, NULL);
-    }
-    return result;
-}
-
-// Variants: a pipeline each for no shadows, maps and rays.
-static vplResult renderBall(vplContext* context, const char* path, int variant)
-{
-    (void)path;
-    vplScene* scene = NULL;
-    vplImage* image = NULL;
-    Shape ball = icosphere(2);
-    vplRenderOptions options = smallOptions(variant);
-    options.lights.shadows = (vplLightShadows)variant;
-    options.output.width = options.output.height = 8;
-    options.particles.count = 2;
-    options.shadow.mapSize = options.lights.mapSize = 2;
+    vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 8, 2);
+    options.pipeline.kind = (vplAccumulation)a->variant;
+    options.lights.shadows = (vplLightShadows)(VPL_LIGHT_SHADOWS_NONE + a->variant);
     options.lights.areaLightSamples = 3;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = addBall(scene, &ball);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplRender(scene, &options, &image, NULL);
-    }
-    vplImage_Destroy(image);
-    vplScene_Destroy(scene);
-    freeShape(&ball);
-    return result;
+    TRY(vplScene_Load(a->context, "tests/data/room.json", &a->scene));
+    TRY(addBall(a));
+    return render(a, &options);
 }
 
 // Variants: two lights, and so many that the top of their tree is built before its parts.
-static vplResult renderCuts(vplContext* context, const char* path, int variant)
+static vplResult renderCuts(Attempt* a)
 {
-    (void)path;
-    vplScene* scene = NULL;
-    vplImage* image = NULL;
-    vplRenderOptions options = vplDefaultRenderOptions();
-    options.output.width = options.output.height = 4;
-    options.particles.count = variant ? 2000 : 1;
-    options.shadow.mapSize = 2;
+    vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 4, a->variant ? 2000 : 1);
     options.pipeline.kind = VPL_ACCUMULATE_LIGHTCUTS;
     options.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplRender(scene, &options, &image, NULL);
-    }
-    vplImage_Destroy(image);
-    vplScene_Destroy(scene);
-    return result;
+    return loadAndRender(a, "tests/data/room.json", &options);
 }
 
-// Three frames with one history. Variants: large enough for blocks that stay with the context, and small.
-static vplResult renderFrames(vplContext* context, const char* path, int variant)
+static vplResult showStage(Attempt* a)
 {
-    (void)path;
-    vplScene* scene = NULL;
-    vplHistory* history = NULL;
-    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
-    if (variant) {
-        options.output.width = 480; // 1.4 MB of picture
-        options.output.height = 260;
+    vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 16, 2);
+    options.output.show = (vplShow)(VPL_SHOW_DEPTH + a->variant);
+    options.lighting = VPL_LIGHTING_DOCUMENTED;
+    TRY(loadAndRender(a, "tests/data/room-closed.json", &options));
+    return vplImage_Write(a->image, a->path, NULL);
+}
+
+static vplResult renderSsvp(Attempt* a)
+{
+    vplRenderOptions options = optionsOf(VPL_METHOD_SSVP, 8, 0);
+    options.shadow.rsmSize = 8;
+    options.ssvp.clusters = 2;
+    options.ssvp.firstBounce = options.ssvp.secondBounce = 6;
+    options.ssvp.paraboloidSize = 4;
+    return loadAndRender(a, "tests/data/room.json", &options);
+}
+
+// ---- frames of a sequence, in which the emitter moves
+
+static vplResult renderFrames(Attempt* a, vplRenderOptions options, int frames)
+{
+    TRY(vplHistory_Create(a->context, &a->history));
+    options.sequence.history = a->history;
+    for (int frame = 0; frame < frames; frame++) {
+        options.sequence.frame = 10 * frame;
+        vplImage_Destroy(a->image);
+        a->image = NULL;
+        TRY(render(a, &options));
     }
+    return VPL_SUCCESS;
+}
+
+static vplResult renderSequence(Attempt* a)
+{
+    vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 16, 1);
     options.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
-    options.particles.count = 1;
-    vplResult result = vplScene_Load(context, "examples/scenes/room-path.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplHistory_Create(context, &history);
-    }
-    options.sequence.history = history;
-    for (int frame = 0; frame < 3 && result == VPL_SUCCESS; frame++) {
-        vplImage* image = NULL;
-        options.sequence.frame = 10 * frame;
-        result = vplRender(scene, &options, &image, NULL);
-        vplImage_Destroy(image);
-    }
-    vplHistory_Destroy(history);
-    vplScene_Destroy(scene);
-    return result;
+    TRY(vplScene_Load(a->context, "examples/scenes/room-path.json", &a->scene));
+    return renderFrames(a, options, 3);
 }
 
-// Variants: all pairs, adaptive, links; two frames, in the second of which the light has moved.
-static vplResult renderRadiosity(vplContext* context, const char* path, int variant)
+static vplRenderOptions radiosityOptions(void)
 {
-    (void)path;
-    vplScene* scene = NULL;
-    vplHistory* history = NULL;
-    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
-    options.method = VPL_METHOD_RADIOSITY;
-    options.radiosity.patches = 40;
-    options.radiosity.placement = variant == 1 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
-    options.radiosity.hierarchy = variant == 2 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
-    vplResult result = vplScene_Load(context, "tests/data/corner-path.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplHistory_Create(context, &history);
-    }
-    options.sequence.history = history;
-    for (int frame = 0; frame < 2 && result == VPL_SUCCESS; frame++) {
-        vplImage* image = NULL;
-        options.sequence.frame = 10 * frame;
-        result = vplRender(scene, &options, &image, NULL);
-        vplImage_Destroy(image);
-    }
-    vplHistory_Destroy(history);
-    vplScene_Destroy(scene);
-    return result;
+    vplRenderOptions options = optionsOf(VPL_METHOD_RADIOSITY, 8, 0);
+    options.radiosity.patches = 16;
+    options.radiosity.iterations = 2;
+    options.radiosity.lightSamples = options.radiosity.formSamples = 1;
+    return options;
 }
 
-static vplResult bakeRoom(vplContext* context, const char* path, int variant)
+// Variants: all pairs, links, and adaptive patches.
+static vplResult renderRadiosity(Attempt* a)
 {
-    vplScene* scene = NULL;
-    vplRenderOptions options = vplDefaultRenderOptions();
-    options.radiosity.patches = 40;
-    options.radiosity.solver = variant ? VPL_SOLVER_SHOOTING : VPL_SOLVER_JACOBI;
-    vplResult result = vplScene_Load(context, "tests/data/corner-path.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplBake(scene, &options, 0, path, NULL);
-    }
-    vplScene_Destroy(scene);
-    return result;
+    vplRenderOptions options = radiosityOptions();
+    options.radiosity.hierarchy = a->variant == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
+    options.radiosity.placement = a->variant == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
+    TRY(vplScene_Load(a->context, "tests/data/corner-path.json", &a->scene));
+    return renderFrames(a, options, 2);
 }
 
-static void EveryFailedAllocationOfRadiosityIsReported(void** state)
+// Variants: solvers.
+static vplResult bake(Attempt* a)
 {
-    (void)state;
-    for (int variant = 0; variant < 3; variant++) {
-        failEveryAllocation(renderRadiosity, "png", variant, true);
-    }
-    failEveryAllocation(bakeRoom, "ply", 0, true);
-    failEveryAllocation(bakeRoom, "ply", 1, true);
+    vplRenderOptions options = radiosityOptions();
+    options.radiosity.solver = a->variant ? VPL_SOLVER_SHOOTING : VPL_SOLVER_JACOBI;
+    TRY(vplScene_Load(a->context, "tests/data/corner-path.json", &a->scene));
+    return vplBake(a->scene, &options, 0, a->path, NULL);
 }
 
-// While blocks are kept one failure is none: they are given back, and the block is asked for again.
-static void EveryFailedAllocationOfFramesIsReported(void** state)
+// ---- stages of virtual lights
+
+// Variants: placements. That of the view is called by itself, with few candidates and few points.
+static vplResult placeLights(Attempt* a)
 {
-    (void)state;
-    failEveryAllocation(renderFrames, "png", 0, false);
-    failEveryAllocation(renderFrames, "png", 0, true);
-    failEveryAllocation(renderFrames, "png", 1, true);
+    vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 32, 6);
+    vplParticleDef particles = vplDefaultParticleDef();
+    vplPlacementDef def = vplDefaultPlacementDef();
+    options.particles.placement = VPL_PLACEMENT_RSM;
+    options.shadow.rsmSize = 4;
+    def.oversampling = 2;
+    def.pointCount = 1;
+    TRY(openRoom(a, "tests/data/room.json"));
+    return a->variant == 0 ? vplMakeLights(a->scene, &options, &a->lights)
+                           : vplPlaceLights(a->geometry, vplScene_GetEmitter(a->scene, 0), 1, &particles,
+                                            &def, &a->lights);
 }
 
-static vplResult findClusters(vplContext* context, const char* path, int variant)
+// Variants: fewer clusters than lights, and more. The second clustering starts from the first.
+static vplResult findClusters(Attempt* a)
 {
-    (void)path;
     vplVirtualLight lights[20] = {{.weight = 1}};
     for (int i = 0; i < 20; i++) {
         lights[i].position.x = (float)(i * i);
     }
-    const vplLightSet set = {.lights = lights, .lightCount = 20, .particleCount = 20, .context = context};
+    const vplLightSet set = {.lights = lights, .lightCount = 20, .particleCount = 20, .context = a->context};
     vplClusterDef def = vplDefaultClusterDef();
-    def.count = variant ? 30 : 4;
-    vplLightClusters *clusters = NULL, *next = NULL;
-    vplResult result = vplFindClusters(&set, &def, &clusters);
-    if (result == VPL_SUCCESS) {
-        def.last = clusters;
-        result = vplFindClusters(&set, &def, &next);
-    }
-    vplLightClusters_Destroy(next);
-    vplLightClusters_Destroy(clusters);
-    return result;
-}
-
-static void EveryFailedAllocationOfClustersIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(findClusters, "png", variant, false);
-        failEveryAllocation(findClusters, "png", variant, true);
-    }
-}
-
-// Patches, finer ones, and their sides. Variants: by the lamp alone, and by an eye.
-static vplResult findSides(vplContext* context, const char* path, int variant)
-{
-    (void)path;
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    vplPatches *patches = NULL, *finer = NULL;
-    vplPatchSides* sides = NULL;
-    vplPatchDef def = vplDefaultPatchDef();
-    vplPatchSidesDef sidesDef = vplDefaultPatchSidesDef();
-    const vplVec3 eye = {0, 0, 0};
-    float priorities[200];
-    for (int i = 0; i < 200; i++) {
-        priorities[i] = 1;
-    }
-    def.count = 50;
-    sidesDef.viewpoints = &eye;
-    sidesDef.viewpointCount = variant;
-    vplResult result = vplScene_Load(context, "examples/scenes/room-area.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(scene, &geometry);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplPatches_Create(geometry, &def, &patches);
-    }
-    if (result == VPL_SUCCESS) {
-        assert_true(patches->patchCount <= 200);
-        result = vplPatches_Refine(patches, priorities, 70, &finer);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplPatchSides_Create(finer, &sidesDef, &sides);
-    }
-    vplPatchSides_Destroy(sides);
-    vplPatches_Destroy(finer);
-    vplPatches_Destroy(patches);
-    vplGeometry_Destroy(geometry);
-    vplScene_Destroy(scene);
-    return result;
-}
-
-static void EveryFailedAllocationOfPatchesIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(findSides, "png", variant, false);
-        failEveryAllocation(findSides, "png", variant, true);
-    }
-}
-
-static void EveryFailedAllocationOfLightcutsIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(renderCuts, "png", variant, false);
-        failEveryAllocation(renderCuts, "png", variant, true);
-    }
+    def.count = a->variant ? 30 : 4;
+    TRY(vplFindClusters(&set, &def, &a->clusters));
+    def.last = a->clusters;
+    return vplFindClusters(&set, &def, &a->nextClusters);
 }
 
 // Interleaved lights of eight clusters. Variants: before neighbours share, after that.
-static vplResult findFactors(vplContext* context, const char* path, int variant)
+static vplResult shadeClusters(Attempt* a)
 {
-    (void)path;
-    vplVec3 corners[36];
-    boxCorners(1, 1, 1, corners);
-    SidesFixture sides;
-    if (!makeSides(context, corners, 12, 0, 1, &sides)) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    vplFormFactorDef def = vplDefaultFormFactorDef();
-    def.samples = variant ? 20 : 4;
-    vplFormFactors* factors = NULL;
-    const vplResult result = vplFormFactors_Create(&sides.sides, &def, &factors);
-    vplFormFactors_Destroy(factors);
-    freeSides(&sides);
-    return result;
-}
-
-static void EveryFailedAllocationOfFormFactorsIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(findFactors, "png", variant, false);
-        failEveryAllocation(findFactors, "png", variant, true);
-    }
-}
-
-static vplResult shadeClusters(vplContext* context, const char* path, int variant)
-{
-    (void)path;
     enum { LIGHTS = 16, CLUSTERS = 8 };
     static const float texels[2 * (4 + 2) * (4 + 2)];
     vplShadeLight lights[LIGHTS];
@@ -553,11 +244,11 @@ static vplResult shadeClusters(vplContext* context, const char* path, int varian
                                          .size = 4,
                                          .hemispheres = 2,
                                          .texels = texels,
-                                         .context = context};
+                                         .context = a->context};
     }
     const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                              .accumulation = VPL_ACCUMULATE_INTERLEAVED,
-                             .output = variant ? VPL_OUTPUT_DENOISED : VPL_OUTPUT_GATHER,
+                             .output = a->variant ? VPL_OUTPUT_DENOISED : VPL_OUTPUT_GATHER,
                              .interleave = 2,
                              .minDistance = 0.1f,
                              .lights = lights,
@@ -565,263 +256,181 @@ static vplResult shadeClusters(vplContext* context, const char* path, int varian
                              .lightClusters = clusters,
                              .clusterShadows = maps,
                              .clusterCount = CLUSTERS};
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    vplImage* image = NULL;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(scene, &geometry);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Create(context, 8, 6, &image);
-    }
-    if (result == VPL_SUCCESS) {
-        const vplView view = vplView_Create(vplScene_GetCamera(scene, 0), 8, 6);
-        result = vplShadeView(geometry, &view, &def, NULL, NULL, image, NULL);
-    }
-    vplImage_Destroy(image);
-    vplGeometry_Destroy(geometry);
-    vplScene_Destroy(scene);
-    return result;
+    TRY(openRoom(a, "tests/data/room.json"));
+    TRY(vplImage_Create(a->context, 8, 6, &a->image));
+    const vplView view = vplView_Create(vplScene_GetCamera(a->scene, 0), 8, 6);
+    return vplShadeView(a->geometry, &view, &def, NULL, NULL, a->image, NULL);
 }
 
-static void EveryFailedAllocationOfLightsInClustersIsReported(void** state)
+// ---- what is done with shadow maps (all kinds themselves: tests/test_shadow_maps.c)
+
+static vplResult boundCube(Attempt* a)
 {
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(shadeClusters, "png", variant, false);
-        failEveryAllocation(shadeClusters, "png", variant, true);
-    }
+    vplCubeMapDef def = vplDefaultCubeMapDef();
+    def.size = 16;
+    TRY(openRoom(a, "tests/data/room.json"));
+    TRY(vplCubeMap_Create(a->geometry, &def, NULL, NULL, &a->cube));
+    return vplCubeMap_FindBounds(a->cube);
 }
 
-static void EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported(void** state)
+// Variants: without triangles, and with them and lights of the second bounce.
+static vplResult drawParaboloids(Attempt* a)
 {
-    (void)state;
-    for (int variant = 0; variant < 3; variant++) {
-        failEveryAllocation(renderBall, "png", variant, false);
-    }
-}
-
-// Variants: placements. The view's is called by itself: with few candidates and few points.
-static vplResult placeLights(vplContext* context, const char* path, int variant)
-{
-    (void)path;
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    vplLightSet* set = NULL;
-    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
-    vplParticleDef particles = vplDefaultParticleDef();
-    vplPlacementDef def = vplDefaultPlacementDef();
-    options.particles.placement = VPL_PLACEMENT_RSM;
-    options.shadow.rsmSize = 4;
-    def.oversampling = 2;
-    def.pointCount = 1;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS && variant == VPL_PLACEMENT_RSM) {
-        result = vplMakeLights(scene, &options, &set);
-    } else if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(scene, &geometry);
-        if (result == VPL_SUCCESS) {
-            result = vplPlaceLights(geometry, vplScene_GetEmitter(scene, 0), 1, &particles, &def, &set);
-        }
-    }
-    vplLightSet_Destroy(set);
-    vplGeometry_Destroy(geometry);
-    vplScene_Destroy(scene);
-    return result;
-}
-
-static void EveryFailedAllocationOfAPlacementIsReported(void** state)
-{
-    (void)state;
-    for (int variant = VPL_PLACEMENT_RSM; variant <= VPL_PLACEMENT_VIEW; variant++) {
-        failEveryAllocation(placeLights, "png", variant, false);
-        failEveryAllocation(placeLights, "png", variant, true);
-    }
-}
-
-// Variants: types of emitters. The map, its lights and its picture.
-static vplResult sampleReflectiveMap(vplContext* context, const char* path, int variant)
-{
-    (void)path;
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    vplReflectiveMap* map = NULL;
-    vplLightSet* set = NULL;
-    vplImage* image = NULL;
-    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
-    vplRsmSampleDef sampling = vplDefaultRsmSampleDef();
-    def.size = 3;
-    def.emitter.type = (vplEmitterType)variant;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(scene, &geometry);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplReflectiveMap_Create(geometry, &def, NULL, NULL, &map);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplSampleReflectiveMaps(geometry, (const vplReflectiveMap* const*)&map, 1, &sampling, &set);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplShowReflectiveMap(map, geometry, &image);
-    }
-    vplImage_Destroy(image);
-    vplLightSet_Destroy(set);
-    vplReflectiveMap_Destroy(map);
-    vplGeometry_Destroy(geometry);
-    vplScene_Destroy(scene);
-    return result;
-}
-
-static void EveryFailedAllocationOfAReflectiveMapIsReported(void** state)
-{
-    (void)state;
-    for (int variant = VPL_EMITTER_POINT; variant <= VPL_EMITTER_DIRECTIONAL; variant++) {
-        failEveryAllocation(sampleReflectiveMap, "png", variant, false);
-        failEveryAllocation(sampleReflectiveMap, "png", variant, true);
-    }
-}
-
-// Only the geometry of a mesh, and its ray tree.
-static vplResult buildBall(vplContext* context, const char* path, int variant)
-{
-    (void)path;
-    (void)variant;
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    Shape ball = icosphere(2);
-    vplResult result = vplScene_Create(context, &scene);
-    if (result == VPL_SUCCESS) {
-        result = addBall(scene, &ball);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_Create(scene, &geometry);
-    }
-    vplGeometry_Destroy(geometry);
-    vplScene_Destroy(scene);
-    freeShape(&ball);
-    return result;
-}
-
-// Variants: without and with triangles, and then lights of the second bounce.
-static vplResult drawParaboloids(vplContext* context, const char* path, int variant)
-{
-    (void)path;
-    vplScene* scene = NULL;
-    vplGeometry* geometry = NULL;
-    vplParaboloidMaps* maps = NULL;
-    vplLightSet* set = NULL;
     const vplParaboloidPlace place = {{0, 1, 0}, {0, 1, 0}, 2, false};
     const vplLightCluster cluster = {{0, 1, 0}, {0, 1, 0}, {1, 1, 1}, 1, 0, true};
     const vplLightClusters clusters = {.clusters = &cluster, .count = 1};
     vplSecondBounceDef def = vplDefaultSecondBounceDef();
     def.count = 4;
-    vplResult result = vplScene_Load(context, "tests/data/room.json", &scene);
-    result = result == VPL_SUCCESS ? vplGeometry_Create(scene, &geometry) : result;
-    result = result == VPL_SUCCESS ? vplParaboloidMaps_Create(context, 4, 1, variant > 0, &maps) : result;
-    result = result == VPL_SUCCESS ? vplParaboloidMaps_Draw(maps, geometry, &place, 1, NULL, NULL) : result;
-    if (result == VPL_SUCCESS && variant > 0) {
-        result = vplSampleParaboloidMaps(geometry, &clusters, maps, &def, &set);
-    }
-    vplLightSet_Destroy(set);
-    vplParaboloidMaps_Destroy(maps);
-    vplGeometry_Destroy(geometry);
-    vplScene_Destroy(scene);
-    return result;
+    TRY(openRoom(a, "tests/data/room.json"));
+    TRY(vplParaboloidMaps_Create(a->context, 4, 1, a->variant > 0, &a->paraboloids));
+    TRY(vplParaboloidMaps_Draw(a->paraboloids, a->geometry, &place, 1, NULL, NULL));
+    return a->variant == 0
+               ? VPL_SUCCESS
+               : vplSampleParaboloidMaps(a->geometry, &clusters, a->paraboloids, &def, &a->lights);
 }
 
-static void EveryFailedAllocationOfParaboloidMapsIsReported(void** state)
+// Variants: types of emitters. The map, its lights and its picture.
+static vplResult sampleReflectiveMap(Attempt* a)
 {
-    (void)state;
-    for (int variant = 0; variant < 2; variant++) {
-        failEveryAllocation(drawParaboloids, "png", variant, false);
-    }
+    vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
+    const vplRsmSampleDef sampling = vplDefaultRsmSampleDef();
+    def.size = 3;
+    def.emitter.type = (vplEmitterType)a->variant;
+    TRY(openRoom(a, "tests/data/room.json"));
+    TRY(vplReflectiveMap_Create(a->geometry, &def, NULL, NULL, &a->reflective));
+    const vplReflectiveMap* const maps[] = {a->reflective};
+    TRY(vplSampleReflectiveMaps(a->geometry, maps, 1, &sampling, &a->lights));
+    return vplShowReflectiveMap(a->reflective, a->geometry, &a->image);
 }
 
-static void EveryFailedAllocationOfAGeometryIsReported(void** state)
+// ---- stages of radiosity
+
+static vplResult openPatchesOf(Attempt* a, const char* path, int count)
 {
-    (void)state;
-    failEveryAllocation(buildBall, "png", 0, false);
-    failEveryAllocation(buildBall, "png", 0, true);
+    vplPatchDef def = vplDefaultPatchDef();
+    def.count = count;
+    TRY(openRoom(a, path));
+    return vplPatches_Create(a->geometry, &def, &a->patches);
 }
 
-// Everything that `show` can ask for.
-static vplResult showAndWrite(vplContext* context, const char* path, int show)
+// Every `step`-th patch is bisected, so that edges of others are cut.
+static vplResult refine(Attempt* a, int step, int most)
 {
-    vplRenderOptions options = smallOptions(VPL_ACCUMULATE_DEFERRED);
-    options.output.show = (vplShow)show;
-    options.lighting = VPL_LIGHTING_DOCUMENTED;
-    return renderFile(context, "tests/data/room-closed.json", &options, NULL, path);
+    float* priorities = a->blocks[0] = calloc((size_t)a->patches->patchCount, sizeof *priorities);
+    for (int i = 0; i < a->patches->patchCount; i += step) {
+        priorities[i] = 1;
+    }
+    return vplPatches_Refine(a->patches, priorities, most, &a->finer);
 }
 
-static void EveryFailedAllocationOfAShownStageIsReported(void** state)
+// Variants: what an area light reaches, and what a viewpoint sees besides.
+static vplResult findSides(Attempt* a)
 {
-    (void)state;
-    for (int show = VPL_SHOW_DEPTH; show <= VPL_SHOW_OVERLAY; show++) {
-        failEveryAllocation(showAndWrite, "pfm", show, false);
-    }
+    vplPatchSidesDef def = vplDefaultPatchSidesDef();
+    const vplVec3 eye = {0, 0, 0};
+    def.viewpoints = &eye;
+    def.viewpointCount = a->variant;
+    TRY(openPatchesOf(a, "examples/scenes/room-area.json", 50));
+    TRY(refine(a, 1, 70));
+    return vplPatchSides_Create(a->finer, &def, &a->sides);
 }
 
-static vplResult readCompareAndMap(vplContext* context, const char* path, int format)
+// Variants: numbers of samples.
+static vplResult findFactors(Attempt* a)
 {
-    static const char* const pictures[] = {"small.pfm", "small.png", "small.hdr"};
-    char source[128];
-    snprintf(source, sizeof source, "tests/fuzz/corpus/image/%s", pictures[format]);
-    vplImage *a = NULL, *b = NULL, *map = NULL;
-    vplComparison comparison;
-    vplResult result = vplImage_Read(context, source, &a);
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Read(context, source, &b);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Compare(a, b, &comparison);
-    }
+    vplFormFactorDef def = vplDefaultFormFactorDef();
+    def.samples = a->variant ? 20 : 4;
+    TRY(openPatchesOf(a, "tests/data/room-closed.json", 40));
+    a->handMade = openSides(a->patches, frontsOpen);
+    return vplFormFactors_Create(a->handMade, &def, &a->factors);
+}
+
+// A room in uneven patches: mesh, picture without and with values of vertices, and file.
+static vplResult meshAndWrite(Attempt* a)
+{
+    TRY(openPatchesOf(a, "tests/data/room.json", 100));
+    TRY(refine(a, 3, VPL_MAX_PATCHES));
+    a->handMade = openSides(a->finer, allOpen);
+    const size_t most = 6 * (size_t)a->finer->patchCount * 8;
+    vplRgb* values = a->blocks[1] = calloc(most, sizeof *values);
+    vplRgb* corners = a->blocks[2] = calloc(most, sizeof *corners);
+    float(*clip)[4] = a->blocks[3] = calloc(most, sizeof *clip);
+    TRY(vplPatchMesh_Create(a->handMade, &a->mesh));
+    TRY(vplPatchMesh_Interpolate(a->mesh, VPL_VERTEX_WEIGHT_ANGLE, values, corners));
+    TRY(vplImage_Create(a->context, 16, 16, &a->image));
+    const vplPatchDraw draw = {
+        .mesh = a->mesh, .values = values, .vertexValues = a->variant ? corners : NULL};
+    TRY(vplDrawPatches(&draw, (const float(*)[4])clip, NULL, NULL, a->image, NULL));
+    return vplPatchMesh_WritePly(a->mesh, corners, 1, a->path);
+}
+
+// ---- pictures in files
+
+// Variants: formats.
+static vplResult compareAndMap(Attempt* a)
+{
+    static const char* const pictures[] = {"tests/fuzz/corpus/image/small.pfm",
+                                           "tests/fuzz/corpus/image/small.png",
+                                           "tests/fuzz/corpus/image/small.hdr"};
+    static const vplHeat heats[] = {VPL_HEAT_FLIP, VPL_HEAT_SSIM, VPL_HEAT_RELATIVE};
     vplHeatmapDef def = vplDefaultHeatmapDef();
-    def.of = format == 0 ? VPL_HEAT_FLIP : format == 1 ? VPL_HEAT_SSIM : VPL_HEAT_RELATIVE;
-    if (result == VPL_SUCCESS) {
-        result = vplImage_HeatmapOf(a, b, &def, &map);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Write(map, path, NULL);
-    }
-    vplImage_Destroy(a);
-    vplImage_Destroy(b);
-    vplImage_Destroy(map);
+    vplComparison comparison;
+    def.of = heats[a->variant];
+    TRY(vplImage_Read(a->context, pictures[a->variant], &a->image));
+    TRY(vplImage_Read(a->context, pictures[a->variant], &a->other));
+    TRY(vplImage_Compare(a->image, a->other, &comparison));
+    TRY(vplImage_HeatmapOf(a->image, a->other, &def, &a->heatmap));
+    return vplImage_Write(a->heatmap, a->path, NULL);
+}
+
+static vplResult encodePng(Attempt* a)
+{
+    uint8_t* bytes = NULL;
+    size_t size;
+    vplWriteOptions write = vplDefaultWriteOptions();
+    write.tonemap = VPL_TONEMAP_REINHARD;
+    TRY(vplImage_Create(a->context, 60, 40, &a->image));
+    const vplResult result = vplImage_EncodePng(a->image, &write, &bytes, &size);
+    vplPng_Free(a->context, bytes);
     return result;
 }
 
-static void EveryFailedAllocationOfAComparisonIsReported(void** state)
-{
-    (void)state;
-    for (int format = 0; format < 3; format++) {
-        failEveryAllocation(readCompareAndMap, "png", format, false);
-        failEveryAllocation(readCompareAndMap, "png", format, true);
-    }
-}
+// ---- the table: name, scenario, extension of the file, number of variants
 
-static vplResult readMeshes(vplContext* context, const char* path, int variant)
-{
-    static const char* const scenes[] = {"tests/data/obj/meshes.json", "tests/data/obj/everything.obj",
-                                         "tests/data/obj/square.obj"};
-    (void)path;
-    vplScene* scene = NULL;
-    vplResult result = vplScene_Load(context, scenes[variant], &scene);
-    if (result == VPL_SUCCESS) { // once more into a scene that has the names already
-        result = vplScene_LoadObj(scene, scenes[variant ? variant : 1], NULL);
+#define EVERY_FAILED_ALLOCATION(name, scenario, extension, variants)                                         \
+    TEST_ALONE(EveryFailedAllocationOf##name##IsReported)                                                    \
+    {                                                                                                        \
+        failEveryAllocation(#name, scenario, extension, variants);                                           \
     }
-    vplScene_Destroy(scene);
-    return result;
-}
 
-static void EveryFailedAllocationOfTheObjReaderIsReported(void** state)
-{
-    (void)state;
-    for (int variant = 0; variant < 3; variant++) {
-        failEveryAllocation(readMeshes, "png", variant, false);
-        failEveryAllocation(readMeshes, "png", variant, true);
-    }
-}
+// clang-format off
+EVERY_FAILED_ALLOCATION(AJsonScene, readJson, "png", 1)
+EVERY_FAILED_ALLOCATION(TheObjReader, readMeshes, "png", 3)
+EVERY_FAILED_ALLOCATION(AGeometry, buildGeometry, "png", 1)
+EVERY_FAILED_ALLOCATION(ARenderToPng, renderAndWrite, "png", 4)
+EVERY_FAILED_ALLOCATION(ARenderToHdr, renderAndWrite, "hdr", 1)
+EVERY_FAILED_ALLOCATION(ARenderToExr, renderAndWrite, vplImage_CanWrite("a.exr") ? "exr" : "pfm", 1)
+EVERY_FAILED_ALLOCATION(ThePathTracer, tracePaths, "pfm", 2)
+EVERY_FAILED_ALLOCATION(Compensation, compensate, "png", 2)
+EVERY_FAILED_ALLOCATION(MeshesAreaLightsAndLightShadows, renderBall, "png", 3)
+EVERY_FAILED_ALLOCATION(Lightcuts, renderCuts, "png", 2)
+EVERY_FAILED_ALLOCATION(AShownStage, showStage, "pfm", VPL_SHOW_OVERLAY - VPL_SHOW_DEPTH + 1)
+EVERY_FAILED_ALLOCATION(Ssvp, renderSsvp, "png", 1)
+EVERY_FAILED_ALLOCATION(Frames, renderSequence, "png", 1)
+EVERY_FAILED_ALLOCATION(Radiosity, renderRadiosity, "png", 3)
+EVERY_FAILED_ALLOCATION(ABake, bake, "ply", 2)
+EVERY_FAILED_ALLOCATION(APlacement, placeLights, "png", 2)
+EVERY_FAILED_ALLOCATION(Clusters, findClusters, "png", 2)
+EVERY_FAILED_ALLOCATION(LightsInClusters, shadeClusters, "png", 2)
+EVERY_FAILED_ALLOCATION(BoundsOfACubeMap, boundCube, "png", 1)
+EVERY_FAILED_ALLOCATION(ParaboloidMaps, drawParaboloids, "png", 2)
+EVERY_FAILED_ALLOCATION(AReflectiveMap, sampleReflectiveMap, "png", 3)
+EVERY_FAILED_ALLOCATION(PatchSides, findSides, "png", 2)
+EVERY_FAILED_ALLOCATION(FormFactors, findFactors, "png", 2)
+EVERY_FAILED_ALLOCATION(PatchMeshes, meshAndWrite, "ply", 2)
+EVERY_FAILED_ALLOCATION(AComparison, compareAndMap, "png", 3)
+EVERY_FAILED_ALLOCATION(AnEncodedPng, encodePng, "png", 1)
+// clang-format on
 
 // ---- jansson allocates by itself
 
@@ -833,9 +442,8 @@ static void* failingJsonAlloc(size_t size)
 }
 
 // When it has no memory for a key, jansson itself believes that there is none, and calls it a syntax error.
-static void EveryFailedAllocationOfTheJsonReaderIsReported(void** state)
+TEST_ALONE(EveryFailedAllocationOfJanssonIsReported)
 {
-    (void)state;
     vplResult result = VPL_OUT_OF_MEMORY;
     json_set_alloc_funcs(failingJsonAlloc, free);
     for (jsonFailAt = 0; result != VPL_SUCCESS; jsonFailAt++) {
@@ -856,50 +464,3 @@ static void EveryFailedAllocationOfTheJsonReaderIsReported(void** state)
     json_set_alloc_funcs(malloc, free);
     assert_true(jsonFailAt > 100);
 }
-
-static vplResult encodePng(vplContext* context, const char* path, int variant)
-{
-    (void)path;
-    (void)variant;
-    vplImage* image = NULL;
-    uint8_t* bytes = NULL;
-    size_t size;
-    vplWriteOptions write = vplDefaultWriteOptions();
-    write.tonemap = VPL_TONEMAP_REINHARD;
-    vplResult result = vplImage_Create(context, 60, 40, &image);
-    if (result == VPL_SUCCESS) {
-        result = vplImage_EncodePng(image, &write, &bytes, &size);
-    }
-    vplPng_Free(context, bytes);
-    vplImage_Destroy(image);
-    return result;
-}
-
-static void EveryFailedAllocationOfAnEncodedPngIsReported(void** state)
-{
-    (void)state;
-    failEveryAllocation(encodePng, "png", 0, false);
-    failEveryAllocation(encodePng, "png", 0, true);
-}
-
-TEST_SUITE(memory, cmocka_unit_test(EveryFailedAllocationOfAnEncodedPngIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfARenderIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfThePathTracerIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfLightcutsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfClustersIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfPatchesIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfFramesIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfRadiosityIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfCompensationIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfFormFactorsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfLightsInClustersIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfMeshesLampsAndLightShadowsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAPlacementIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAReflectiveMapIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfParaboloidMapsIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAGeometryIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAShownStageIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfPatchMeshesIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfAComparisonIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfTheObjReaderIsReported),
-           cmocka_unit_test(EveryFailedAllocationOfTheJsonReaderIsReported));

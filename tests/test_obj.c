@@ -4,9 +4,8 @@
 
 // ---- damaged files
 
-static void EveryBrokenObjSaysWhatIsWrongWhere(void** state)
+TEST_ALONE(EveryBrokenObjSaysWhatIsWrongWhere)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     Table t = loadTable("obj/broken/expected.csv");
@@ -33,10 +32,8 @@ static void EveryBrokenObjSaysWhatIsWrongWhere(void** state)
     closeDesk(&d);
 }
 
-static void WhatIsNoFileIsAFileError(void** state)
+TEST(WhatIsNoFileIsAFileError, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = NULL;
     const char* const paths[] = {"tests/data/none.obj", "tests/data/obj/square.obj/x.obj", ".obj"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
@@ -44,12 +41,10 @@ static void WhatIsNoFileIsAFileError(void** state)
         assert_true(strncmp(takeMessage(), paths[i], strlen(paths[i])) == 0);
         assert_null(scene);
     }
-    closeTestContext(context);
 }
 
-static void AFailureLeavesTheSceneAsItWas(void** state)
+TEST_ALONE(AFailureLeavesTheSceneAsItWas)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     writeText(d.mtl, "newmtl red\nKd 1 0 0\n");
@@ -67,9 +62,8 @@ static void AFailureLeavesTheSceneAsItWas(void** state)
 
 // ---- statements
 
-static void EveryFormOfAFaceGivesTheSameTriangle(void** state)
+TEST_ALONE(EveryFormOfAFaceGivesTheSameTriangle)
 {
-    (void)state;
 #define POINTS "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
     static const char* const texts[] = {
         POINTS "f 1 2 3",
@@ -124,9 +118,8 @@ static double areaOf(const vplMeshDef* mesh, int material)
     return area;
 }
 
-static void AFileOfEverythingIsRead(void** state)
+TEST_ALONE(AFileOfEverythingIsRead)
 {
-    (void)state;
     Desk d;
     int mesh;
     openDesk(&d);
@@ -157,9 +150,8 @@ static void AFileOfEverythingIsRead(void** state)
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"                               \
     "vn 0 0 -3\nvn 0 0 3\nvn 0 -3 0\nvn 0 3 0\nvn -3 0 0\nvn 3 0 0\n"
 
-static void CornersWithTheSamePointAndNormalShareAVertex(void** state)
+TEST_ALONE(CornersWithTheSamePointAndNormalShareAVertex)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     const vplMeshDef* flat =
@@ -179,9 +171,8 @@ static void CornersWithTheSamePointAndNormalShareAVertex(void** state)
     closeDesk(&d);
 }
 
-static void PointsWithoutTrianglesAreLeftOut(void** state)
+TEST_ALONE(PointsWithoutTrianglesAreLeftOut)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     const vplMeshDef* mesh =
@@ -194,9 +185,8 @@ static void PointsWithoutTrianglesAreLeftOut(void** state)
 }
 
 // Collinear corners are found even where the coordinates are not round; the tiniest triangle stays.
-static void OnlyTrianglesWithoutAreaAreLeftOut(void** state)
+TEST_ALONE(OnlyTrianglesWithoutAreaAreLeftOut)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     const vplMeshDef* mesh =
@@ -209,9 +199,8 @@ static void OnlyTrianglesWithoutAreaAreLeftOut(void** state)
     closeDesk(&d);
 }
 
-static void CornersWithoutANormalGetTheTriangles(void** state)
+TEST_ALONE(CornersWithoutANormalGetTheTriangles)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     const vplMeshDef* mesh =
@@ -232,9 +221,8 @@ static void CornersWithoutANormalGetTheTriangles(void** state)
 }
 
 // A grid of floats written with nine digits comes back bit for bit, and reading it needs little memory.
-static void AGridComesBackAsItWasWritten(void** state)
+TEST_ALONE(AGridComesBackAsItWasWritten)
 {
-    (void)state;
     enum { SIDE = 150 };
     Desk d;
     openDesk(&d);
@@ -270,12 +258,3 @@ static void AGridComesBackAsItWasWritten(void** state)
     assert_true(vplContext_GetPeakBytes(d.context) < 4 * bytes);
     closeDesk(&d);
 }
-
-TEST_SUITE(obj, cmocka_unit_test(EveryBrokenObjSaysWhatIsWrongWhere),
-           cmocka_unit_test(WhatIsNoFileIsAFileError), cmocka_unit_test(AFailureLeavesTheSceneAsItWas),
-           cmocka_unit_test(EveryFormOfAFaceGivesTheSameTriangle), cmocka_unit_test(AFileOfEverythingIsRead),
-           cmocka_unit_test(CornersWithTheSamePointAndNormalShareAVertex),
-           cmocka_unit_test(PointsWithoutTrianglesAreLeftOut),
-           cmocka_unit_test(OnlyTrianglesWithoutAreaAreLeftOut),
-           cmocka_unit_test(CornersWithoutANormalGetTheTriangles),
-           cmocka_unit_test(AGridComesBackAsItWasWritten));

@@ -23,9 +23,8 @@ static void assertNearest(const char* text)
     }
 }
 
-static void NumbersAreTheNearestFloats(void** state)
+TEST_ALONE(NumbersAreTheNearestFloats)
 {
-    (void)state;
     static const char* const texts[] = {
         "0", "-0", "1", "+1", "-1", "1.", ".5", "-.5e1", "0.1", "1e0", "1E+2", "100e-2", "000123.4500",
         // halfway between two floats, and just beside it
@@ -57,9 +56,8 @@ static void NumbersAreTheNearestFloats(void** state)
     assertNearest(text);
 }
 
-static void RandomNumbersAreTheNearestFloats(void** state)
+TEST_ALONE(RandomNumbersAreTheNearestFloats)
 {
-    (void)state;
     char text[100];
     for (uint64_t i = 0; i < 100000; i++) {
         vplRandom4 r = vplRandomAt(1, 0, i);
@@ -82,9 +80,8 @@ static void RandomNumbersAreTheNearestFloats(void** state)
     }
 }
 
-static void WhatIsNoNumberIsRefused(void** state)
+TEST_ALONE(WhatIsNoNumberIsRefused)
 {
-    (void)state;
     static const char* const texts[] = {"",    "-",    "+",   ".",    "-.",    "e5",    "1e", "1e+",
                                         "1e-", "1.2.", "1,5", "0x10", "nan",   "inf",   "1f", "--1",
                                         "+-1", "1 ",   " 1",  "1e5.", "1e1e1", "1_000", "½",  "Infinity"};
@@ -171,9 +168,8 @@ static void assertCoveredEveryWay(const float (*outline)[2], int count, const ch
         assertCoveredEveryWay(outline, (int)(sizeof outline / sizeof *outline), #__VA_ARGS__);               \
     } while (0)
 
-static void PolygonsAreCoveredOnce(void** state)
+TEST_ALONE(PolygonsAreCoveredOnce)
 {
-    (void)state;
     COVERED({{0, 0}, {4, 0}, {0, 3}});                                         // triangle
     COVERED({{0, 0}, {4, 0}, {5, 3}, {0, 3}});                                 // convex
     COVERED({{0, 0}, {4, 0}, {1, 1}, {0, 4}});                                 // dart
@@ -216,9 +212,8 @@ static void PolygonsAreCoveredOnce(void** state)
 }
 
 // A hole is joined to the outline by an edge that is walked twice: two corners are repeated.
-static void HolesJoinedByADoubleEdgeAreCutOut(void** state)
+TEST_ALONE(HolesJoinedByADoubleEdgeAreCutOut)
 {
-    (void)state;
     COVERED({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}});
     COVERED({{0, 0},
              {9, 0},
@@ -261,9 +256,8 @@ static int randomOutline(uint64_t seed, vplVec3* corners)
     return count;
 }
 
-static void RandomPolygonsAreCoveredOnce(void** state)
+TEST_ALONE(RandomPolygonsAreCoveredOnce)
 {
-    (void)state;
     uint64_t checksum = 0;
     int concave = 0;
     for (uint64_t seed = 0; seed < 20000; seed++) {
@@ -280,9 +274,8 @@ static void RandomPolygonsAreCoveredOnce(void** state)
     }
 }
 
-static void AThousandCornersAreCoveredOnce(void** state)
+TEST_ALONE(AThousandCornersAreCoveredOnce)
 {
-    (void)state;
     static vplVec3 corners[VPL_MAX_CORNERS];
     for (int i = 0; i < VPL_MAX_CORNERS / 2; i++) { // a comb, and its back
         corners[i] = (vplVec3){(float)i, i % 2 ? 100 : 1, 0};
@@ -299,9 +292,8 @@ static void AThousandCornersAreCoveredOnce(void** state)
 }
 
 // What is not a polygon in a plane ends all the same, with as many triangles.
-static void CrossingOutlinesEnd(void** state)
+TEST_ALONE(CrossingOutlinesEnd)
 {
-    (void)state;
     static vplVec3 corners[VPL_MAX_CORNERS];
     for (uint64_t seed = 0; seed < 300; seed++) {
         int count = 3 + (int)(vplRandomAt(seed, 3, 0).v[0] % (seed < 290 ? 30 : VPL_MAX_CORNERS - 2));
@@ -319,9 +311,3 @@ static void CrossingOutlinesEnd(void** state)
         }
     }
 }
-
-TEST_SUITE(objParts, cmocka_unit_test(NumbersAreTheNearestFloats),
-           cmocka_unit_test(RandomNumbersAreTheNearestFloats), cmocka_unit_test(WhatIsNoNumberIsRefused),
-           cmocka_unit_test(PolygonsAreCoveredOnce), cmocka_unit_test(HolesJoinedByADoubleEdgeAreCutOut),
-           cmocka_unit_test(RandomPolygonsAreCoveredOnce), cmocka_unit_test(AThousandCornersAreCoveredOnce),
-           cmocka_unit_test(CrossingOutlinesEnd));

@@ -7,9 +7,8 @@
 
 #define TRIANGLE "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
-static void MissingFilesAndMaterialsAreToldOnceAndGrey(void** state)
+TEST_ALONE(MissingFilesAndMaterialsAreToldOnceAndGrey)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     readText(&d, "mtllib none.mtl\nmtllib none.mtl\nmtllib . one.mtl\n" TRIANGLE
@@ -31,9 +30,8 @@ static void MissingFilesAndMaterialsAreToldOnceAndGrey(void** state)
     closeDesk(&d);
 }
 
-static void ManyMissingThingsAreNotAllTold(void** state)
+TEST_ALONE(ManyMissingThingsAreNotAllTold)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     char text[8000] = TRIANGLE;
@@ -49,9 +47,8 @@ static void ManyMissingThingsAreNotAllTold(void** state)
     closeDesk(&d);
 }
 
-static void WhatIsNotUnderstoodIsToldOnceEach(void** state)
+TEST_ALONE(WhatIsNotUnderstoodIsToldOnceEach)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     writeText(d.mtl, "newmtl a\nKd 2 0.5 1.5\nmap_Kd a.png\nKa 1 1 1\nKs 1 1 1\nNs 1\nNi 1\nd 0.5\nTr 1\nTf "
@@ -80,9 +77,8 @@ static void WhatIsNotUnderstoodIsToldOnceEach(void** state)
     closeDesk(&d);
 }
 
-static void FacesThatCrossThemselvesAreToldOnce(void** state)
+TEST_ALONE(FacesThatCrossThemselvesAreToldOnce)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     const vplMeshDef* mesh =
@@ -96,9 +92,8 @@ static void FacesThatCrossThemselvesAreToldOnce(void** state)
     closeDesk(&d);
 }
 
-static void FilesMayShareNamesOfMaterials(void** state)
+TEST_ALONE(FilesMayShareNamesOfMaterials)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     vplMaterialDef own = vplDefaultMaterialDef();
@@ -141,9 +136,8 @@ static vplScene* loadJson(Desk* d, const char* objects)
     return scene;
 }
 
-static void ObjectsShareTheMeshOfOneFile(void** state)
+TEST_ALONE(ObjectsShareTheMeshOfOneFile)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     writeText(d.mtl, "newmtl red\nKd 1 0 0\nKe 3\n");
@@ -175,9 +169,8 @@ static void ObjectsShareTheMeshOfOneFile(void** state)
     closeDesk(&d);
 }
 
-static void MaterialsOfMeshesAreNotTheScenes(void** state)
+TEST_ALONE(MaterialsOfMeshesAreNotTheScenes)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     writeText(d.obj, "usemtl wood\n" TRIANGLE);
@@ -187,9 +180,8 @@ static void MaterialsOfMeshesAreNotTheScenes(void** state)
     closeDesk(&d);
 }
 
-static void DamageInAMeshIsNamedByItsOwnFile(void** state)
+TEST_ALONE(DamageInAMeshIsNamedByItsOwnFile)
 {
-    (void)state;
     Desk d;
     openDesk(&d);
     writeText(d.obj, "v 0 0 0\nv 1 0 x\n");
@@ -216,9 +208,8 @@ static void assertSeen(const vplScene* scene)
     assert_true(camera->far < 5 * camera->near);
 }
 
-static void AnObjAloneGetsACameraAndALight(void** state)
+TEST_ALONE(AnObjAloneGetsACameraAndALight)
 {
-    (void)state;
     static const char* const texts[] = {
         TRIANGLE,
         "v 1000 -500 3000\nv 1001 -500 3000\nv 1000 -499 3003\nv 1000 -502 2999\nf 1 2 3 4\nf 1 2 4\n",
@@ -243,9 +234,8 @@ static void AnObjAloneGetsACameraAndALight(void** state)
     }
 }
 
-static void AnObjThatEmitsGetsNoLight(void** state)
+TEST_ALONE(AnObjThatEmitsGetsNoLight)
 {
-    (void)state;
     Desk d;
     vplScene* scene = NULL;
     openDesk(&d);
@@ -257,9 +247,8 @@ static void AnObjThatEmitsGetsNoLight(void** state)
     closeDesk(&d);
 }
 
-static void BoundsThatNoCameraCanSeeAreRefused(void** state)
+TEST_ALONE(BoundsThatNoCameraCanSeeAreRefused)
 {
-    (void)state;
     static const char* const texts[][2] = {
         {"v -1e15 0 0\nv 1e15 0 0\nv 0 1e15 0\nf 1 2 3\n", "a.obj:1:1: found bounds around (0, 5e+14, 0)"},
         {"v 1e14 0 0\nv 1e14 1e-30 0\nv 1e14 0 1e-30\nf 1 2 3\n", "its target equals the eye"}};
@@ -278,9 +267,8 @@ static void BoundsThatNoCameraCanSeeAreRefused(void** state)
 }
 
 // The ending decides, in capitals, too; anything else is read as JSON.
-static void TheEndingOfThePathDecides(void** state)
+TEST_ALONE(TheEndingOfThePathDecides)
 {
-    (void)state;
     Desk d;
     vplScene* scene = NULL;
     char path[128];
@@ -298,13 +286,3 @@ static void TheEndingOfThePathDecides(void** state)
     assert_null(scene);
     closeDesk(&d);
 }
-
-TEST_SUITE(objScene, cmocka_unit_test(MissingFilesAndMaterialsAreToldOnceAndGrey),
-           cmocka_unit_test(ManyMissingThingsAreNotAllTold),
-           cmocka_unit_test(WhatIsNotUnderstoodIsToldOnceEach),
-           cmocka_unit_test(FacesThatCrossThemselvesAreToldOnce),
-           cmocka_unit_test(FilesMayShareNamesOfMaterials), cmocka_unit_test(ObjectsShareTheMeshOfOneFile),
-           cmocka_unit_test(MaterialsOfMeshesAreNotTheScenes),
-           cmocka_unit_test(DamageInAMeshIsNamedByItsOwnFile),
-           cmocka_unit_test(AnObjAloneGetsACameraAndALight), cmocka_unit_test(AnObjThatEmitsGetsNoLight),
-           cmocka_unit_test(BoundsThatNoCameraCanSeeAreRefused), cmocka_unit_test(TheEndingOfThePathDecides));

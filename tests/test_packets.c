@@ -64,9 +64,8 @@ static void comparePacket(const vplGeometry* g, int kind, Dice* dice, int* hits,
 }
 
 // A tree of 1280 triangles, and 20 triangles that are tested without one.
-static void SixteenRaysSayWhatEachSaysAlone(void** state)
+TEST_ALONE(SixteenRaysSayWhatEachSaysAlone)
 {
-    (void)state;
     for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
         if (!vplHasIsa((vplIsa)isa)) {
             continue;
@@ -121,9 +120,8 @@ static uint64_t hashTree(const vplBvh* bvh)
 }
 
 // 20480 triangles are several waves of splits.
-static void TheTreeIsTheSameForAnyNumberOfWorkers(void** state)
+TEST_ALONE(TheTreeIsTheSameForAnyNumberOfWorkers)
 {
-    (void)state;
     uint64_t first = 0;
     for (int workers = 1; workers <= 7; workers += workers == 3 ? 4 : 1) {
         vplContext* context = openTestContext(workers);
@@ -171,10 +169,8 @@ static vplRayPacket packetOfCrowd(void)
 }
 
 // Hits have the same bits without a tree, with one that is built later, and with one that was built at once.
-static void RaysNeedNoTree(void** state)
+TEST(RaysNeedNoTree, 4)
 {
-    (void)state;
-    vplContext* context = openTestContext(4);
     vplGeometry *whole = ballOf(context, 4, false), *g = ballOf(context, 4, true);
     assert_true(whole->rayTree->nodes != NULL && g->rayTree == NULL);
     Crowd wanted = {whole, {0}}, without = {g, {0}}, with = {g, {0}};
@@ -194,14 +190,11 @@ static void RaysNeedNoTree(void** state)
     assert_memory_equal(wanted.t, with.t, sizeof wanted.t);
     vplGeometry_Destroy(whole);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Twelve triangles make two blocks, 320 make more than VPL_COUNTED_BLOCKS.
-static void CountedRaysTestEveryObjectOfSmallScenes(void** state)
+TEST(CountedRaysTestEveryObjectOfSmallScenes, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int level = 0; level < 4; level++) {
         for (int forRaster = 0; forRaster < 2; forRaster++) {
             vplGeometry* g = ballOf(context, level, forRaster);
@@ -215,7 +208,6 @@ static void CountedRaysTestEveryObjectOfSmallScenes(void** state)
             vplGeometry_Destroy(g);
         }
     }
-    closeTestContext(context);
 }
 
 static void* allocUnlessTold(void* user, void* memory, size_t oldSize, size_t newSize)
@@ -228,9 +220,8 @@ static void* allocUnlessTold(void* user, void* memory, size_t oldSize, size_t ne
     return *(bool*)user ? NULL : realloc(memory, newSize);
 }
 
-static void AFailedTreeLeavesTheGeometryAsItWas(void** state)
+TEST_ALONE(AFailedTreeLeavesTheGeometryAsItWas)
 {
-    (void)state;
     bool empty = false;
     vplContextDef def = vplDefaultContextDef();
     def.alloc = allocUnlessTold;
@@ -253,8 +244,3 @@ static void AFailedTreeLeavesTheGeometryAsItWas(void** state)
     vplGeometry_Destroy(g);
     vplContext_Destroy(context);
 }
-
-TEST_SUITE(packets, cmocka_unit_test(SixteenRaysSayWhatEachSaysAlone),
-           cmocka_unit_test(TheTreeIsTheSameForAnyNumberOfWorkers), cmocka_unit_test(RaysNeedNoTree),
-           cmocka_unit_test(CountedRaysTestEveryObjectOfSmallScenes),
-           cmocka_unit_test(AFailedTreeLeavesTheGeometryAsItWas));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Paraboloid maps: the projection, what a texel holds, where they agree with rays, and what they do at extremes.
 #include "bench/band.h"
-#include "shapes.h"
+#include "shadow_maps.h"
 
 #include "base/hash.h"
 #include "geometry/triangle.h"
@@ -16,17 +16,12 @@ static vplParaboloidMaps* drawMaps(const vplGeometry* g, int size, const vplPara
     return maps;
 }
 
-static float factorAt(const vplParaboloidMap* map, vplVec3 p, vplVec3 n)
+static float factorOf(const vplParaboloidMap* map, vplVec3 p, vplVec3 n)
 {
     vplSurface s;
     float factor[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        s.px[l] = p.x;
-        s.py[l] = p.y;
-        s.pz[l] = p.z;
-        s.nx[l] = n.x;
-        s.ny[l] = n.y;
-        s.nz[l] = n.z;
+        setPoint(&s, l, p, n);
     }
     vplParaboloidMap_FactorBlock(map, &s, factor);
     return factor[0];
@@ -54,9 +49,8 @@ static vplVec3 toWorld(const vplParaboloidMap* map, vplVec3 d)
 
 // ---- the projection
 
-static void ProjectionFollowsTheTable(void** state)
+TEST_ALONE(ProjectionFollowsTheTable)
 {
-    (void)state;
     Table t = loadTable("paraboloid.csv");
     for (int row = 0; row < t.rows; row++) {
         const vplVec3 d = vectorOf(&t, row, "d");
@@ -87,9 +81,8 @@ static void ProjectionFollowsTheTable(void** state)
     assertNear(x / 2e8, 1, 1e-7, "almost behind", 0);
 }
 
-static void UnprojectionIsTheInverse(void** state)
+TEST_ALONE(UnprojectionIsTheInverse)
 {
-    (void)state;
     Table t = loadTable("paraboloid_inverse.csv");
     for (int row = 0; row < t.rows; row++) {
         const double px = number(&t, row, "px"), py = number(&t, row, "py");
@@ -103,9 +96,8 @@ static void UnprojectionIsTheInverse(void** state)
 }
 
 // X043: the first Hammersley point and those next to 1 among them; X104: the mean over the disk is 1.
-static void WeightsOfDiskSamplesFollowTheTable(void** state)
+TEST_ALONE(WeightsOfDiskSamplesFollowTheTable)
 {
-    (void)state;
     Table t = loadTable("disk_maps.csv");
     for (int row = 0; row < t.rows; row++) {
         const double x = number(&t, row, "polar_x"), y = number(&t, row, "polar_y");
@@ -123,27 +115,6 @@ static void WeightsOfDiskSamplesFollowTheTable(void** state)
 
 // ---- texels
 
-static float hitAlong(const vplGeometry* g, const vplParaboloidMap* map, vplVec3 direction)
-{
-    const vplRay ray = {map->position, direction, {0, 0}};
-    vplHit hit;
-    return vplGeometry_ClosestHit(g, &ray, &hit) ? 1 / hit.t : 0;
-}
-
-// Whether the ray, or one a hair beside it, meets something there: edges go to either side.
-static bool holdsRay(const vplGeometry* g, const vplParaboloidMap* map, vplVec3 d, float stored)
-{
-    for (int i = 0; i < 9; i++) {
-        const float a = 2e-6f * (float)(i % 3 - 1), b = 2e-6f * (float)(i / 3 - 1);
-        const vplVec3 beside = vplAdd(d, vplAdd(vplScale(a, map->right), vplScale(b, map->up)));
-        const float wanted = hitAlong(g, map, i == 4 ? d : beside);
-        if (fabsf(stored - wanted) <= 1e-4f * wanted) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static vplParaboloidPlace rollPlaceOf(const vplGeometry* g, Dice* dice, bool onSurface)
 {
     vplHit hit;
@@ -156,6 +127,7 @@ static vplParaboloidPlace rollPlaceOf(const vplGeometry* g, Dice* dice, bool onS
 static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int which, int place)
 {
     const float rim = vplParaboloidMap_Rim(map->size, map->hemispheres);
+    const vplVec3 from[] = {map->position, map->right, map->up};
     for (int i = 0; i < map->hemispheres * map->size * map->size; i++) {
         const int hemisphere = i / (map->size * map->size), texel = i % (map->size * map->size);
         const vplVec3 local = localOf(map, hemisphere, texel), d = toWorld(map, local);
@@ -174,10 +146,9 @@ static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int w
         }
         // Along the horizon the place's own surface is met or not, as rounding wants.
         const bool own = map->hemispheres == 1 && local.z < 2e-3f;
-        if (!own && !holdsRay(g, map, d, stored * length)) {
-            fail_msg("scene %d, place %d, hemisphere %d, texel %d of %d^2: 1/distance is %.9g, a ray's %.9g",
-                     which, place, hemisphere, texel, map->size, (double)stored,
-                     (double)hitAlong(g, map, d) / (double)length);
+        if (!own && !holdsRay(g, from, d, stored * length)) {
+            fail_msg("scene %d, place %d, hemisphere %d, texel %d of %d^2: 1/distance is %.9g", which, place,
+                     hemisphere, texel, map->size, (double)stored);
         }
         vplHit hit;
         vplVec3 direction;
@@ -193,10 +164,8 @@ static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int w
     }
 }
 
-static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
+TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int which = 0; which < 2; which++) {
         vplGeometry* g = clutter(context, which);
         Dice dice = {7, 0};
@@ -208,7 +177,6 @@ static void EachTexelHoldsWhatARayThroughItsCentreMeets(void** state)
         }
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // ---- bounds: nothing that lies in a triangle is lost, and nothing beside it is drawn
@@ -282,10 +250,8 @@ static double heightOf(const vplVec3 corner[3])
     return nearest > 0 ? fabs(dot(n, p[0])) / sqrt(dot(n, n) * nearest) : 0;
 }
 
-static void BoundsOfTrianglesLoseNoTexel(void** state)
+TEST(BoundsOfTrianglesLoseNoTexel, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Dice dice = {21, 0};
     int64_t inside = 0, outside = 0;
     for (int i = 0; i < 6000; i++) {
@@ -333,13 +299,10 @@ static void BoundsOfTrianglesLoseNoTexel(void** state)
     }
     printf("# %lld texels covered, %lld not\n", (long long)inside, (long long)outside);
     assert_true(inside > 100000 && outside > 100000);
-    closeTestContext(context);
 }
 
-static void SharedEdgesLeaveNoHoles(void** state)
+TEST(SharedEdgesLeaveNoHoles, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Dice dice = {13, 0};
     for (int i = 0; i < 24; i++) {
         Shape shape = i % 3 == 0 ? icosphere(i / 3 % 4) : i % 3 == 1 ? ringSphere(20 + i) : gridBox(1 + i);
@@ -362,15 +325,12 @@ static void SharedEdgesLeaveNoHoles(void** state)
         vplParaboloidMaps_Destroy(maps);
         vplGeometry_Destroy(g);
     }
-    closeTestContext(context);
 }
 
 // A thin band along an edge covers the image of its middle, and not the middle of the chord between its ends, which is
 // up to 169 of 512 texels off.
-static void EdgesBendAsTheyShould(void** state)
+TEST(EdgesBendAsTheyShould, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("paraboloid_edge_error.csv");
     int bent = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -412,137 +372,13 @@ static void EdgesBendAsTheyShould(void** state)
     }
     assert_true(bent >= 4);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- shadows
 
-typedef struct Tally {
-    int pairs, dark, apart;
-} Tally;
-
-static void comparePairs(const vplGeometry* g, Dice* dice, const vplParaboloidMap* map, int which,
-                         Tally* tally)
-{
-    for (int i = 0; i < 300; i++) {
-        vplHit hit;
-        const vplHemiMapPlace at = rollPlace(g, dice, &hit);
-        const vplVec3 way = vplSub(map->position, at.position);
-        const float factor = factorAt(map, at.position, at.normal);
-        assert_true(factor >= 0 && factor <= 1 + 1e-6f);
-        if (map->hemispheres == 1 && vplDot(way, map->forward) > 0) {
-            assert_true(factor == 1);
-            continue;
-        }
-        // Within a texel of the only hemisphere's rim nothing is known of what lies beyond it.
-        const float rim = 4 * 1.41421356f / (float)map->size;
-        if (map->hemispheres == 1 && -vplDot(way, map->forward) < rim * vplLength(way)) {
-            continue;
-        }
-        if (!(vplDot(way, at.normal) > 0)) {
-            continue; // no light falls here from the map's place, maybe from others of its cluster
-        }
-        const vplRay ray = vplGeometry_Leave(g, &hit, way);
-        const bool shadowed = vplGeometry_IsOccluded(g, &ray, 1 - 0x1p-16f);
-        const bool differs = shadowed ? factor < 1 : factor > 0;
-        tally->pairs++;
-        tally->dark += shadowed;
-        tally->apart += shadowed != (factor > 0.5f);
-        if (differs && fabsf(factor - (float)shadowed) > 1e-6f &&
-            isSureParaboloid(g, map, at.position, at.normal, shadowed)) {
-            fail_msg("scene %d, point %d: the ray says %d, the map %g", which, i, shadowed, (double)factor);
-        }
-    }
-}
-
-static void MapsAndRaysAgreeOutsideTheBand(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    for (int which = 0; which < 2; which++) {
-        vplGeometry* g = clutter(context, which);
-        Dice dice = {11, 0};
-        Tally tally = {0};
-        for (int i = 0; i < 60; i++) {
-            const vplParaboloidPlace place = rollPlaceOf(g, &dice, i % 2);
-            vplParaboloidMaps* maps = drawMaps(g, 16 << i % 4, &place, 1);
-            comparePairs(g, &dice, &maps->maps[0], which, &tally);
-            vplParaboloidMaps_Destroy(maps);
-        }
-        printf("# %d pairs, %d dark, %d within the band\n", tally.pairs, tally.dark, tally.apart);
-        assert_true(tally.dark > 500 && tally.pairs > tally.dark + 500);
-        assert_true(tally.apart > 0 && tally.apart < tally.pairs / 20);
-        vplGeometry_Destroy(g);
-    }
-    closeTestContext(context);
-}
-
-// Also where light grazes it, from both sides, and with one texel for all directions.
-static void APlaneNeverShadowsItself(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
-    Dice dice = {3, 0};
-    for (int i = 0; i < 2000; i++) {
-        const float high = 0.25f + 4 * powf(10, roll(&dice, -5, 0));
-        const vplParaboloidPlace place = {vplVec(3 + roll(&dice, -4, 4), high, -2 + roll(&dice, -4, 4)),
-                                          vplNormalize(vplAdd(vplVec(0, -1.01f, 0), rollUnit(&dice))),
-                                          1 + i % 2, false};
-        vplParaboloidMaps* maps = drawMaps(g, 1 + i % 33, &place, 1);
-        for (int k = 0; k < 20; k++) {
-            const vplVec3 p = vplVec(3 + roll(&dice, -4.9f, 4.9f), 0.25f, -2 + roll(&dice, -4.9f, 4.9f));
-            if (place.hemispheres == 2 || vplDot(vplSub(p, maps->maps[0].position), place.normal) > 0) {
-                assert_true(factorAt(&maps->maps[0], p, vplVec(0, 1, 0)) == 0);
-                assert_true(factorAt(&maps->maps[0], p, vplVec(0, -1, 0)) == 0);
-            }
-        }
-        vplParaboloidMaps_Destroy(maps);
-    }
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-}
-
-static void AnEmptyHemisphereIsLitAndOneThatIsNotDrawnIsDark(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
-    const vplParaboloidPlace place = {vplVec(0.3f, 0, 0.2f), vplVec(0, 1, 0), 1, true};
-    vplParaboloidMaps* maps = drawMaps(g, 5, &place, 1);
-    for (int i = 0; i < 25; i++) {
-        assert_true(maps->maps[0].texels[placeOf(&maps->maps[0], 0, i)] == 0);
-        assert_true(maps->maps[0].triangles[placeOf(&maps->maps[0], 0, i)] == -1);
-    }
-    Dice dice = {1, 0};
-    for (int i = 0; i < 100; i++) {
-        const vplVec3 p = vplVec(roll(&dice, -9, 9), roll(&dice, 0.1f, 9), roll(&dice, -9, 9));
-        assert_true(factorAt(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
-        assert_true(factorAt(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
-    }
-    // The place itself, and what is no place: no number that is none, and nothing outside of the map is read.
-    const vplVec3 odd[] = {
-        maps->maps[0].position, {NAN, 0, 0}, {INFINITY, 0, 0}, {0, 1e30f, 0}, {3e38f, 3e38f, 0}};
-    for (int i = 0; i < 5; i++) {
-        const float self = factorAt(&maps->maps[0], odd[i], vplVec(0, -1, 0));
-        assert_true(self >= 0 && self <= 1);
-    }
-    vplParaboloidMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-    // Nothing at all.
-    g = freezeScene(sceneOf(context, 0.5f));
-    maps = drawMaps(g, 1, &place, 1);
-    assert_true(maps->maps[0].texels[0] == 0);
-    vplParaboloidMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-}
-
 // Means of clusters may lie anywhere: in a solid, on a vertex, an edge or a surface.
-static void PlacesInMidAirGiveNumbersAnywhere(void** state)
+TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = clutter(context, 1);
     Dice dice = {17, 0};
     for (int i = 0; i < 60; i++) {
@@ -561,56 +397,18 @@ static void PlacesInMidAirGiveNumbersAnywhere(void** state)
         for (int k = 0; k < 20; k++) {
             vplHit hit;
             const vplHemiMapPlace p = rollPlace(g, &dice, &hit);
-            const float factor = factorAt(map, p.position, p.normal);
+            const float factor = factorOf(map, p.position, p.normal);
             assert_true(factor >= 0 && factor <= 1 + 1e-6f);
         }
         vplParaboloidMaps_Destroy(maps);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // ---- everywhere, and not at all
 
-static uint64_t hashOf(vplContext* context)
+TEST(MapsCanBeRefusedAndCancelled, 1)
 {
-    vplGeometry* g = clutter(context, 1);
-    Dice dice = {9, 0};
-    vplParaboloidPlace places[9];
-    vplHit hit;
-    for (int i = 0; i < 9; i++) {
-        places[i] = rollPlaceOf(g, &dice, i % 2);
-    }
-    vplParaboloidMaps* maps = drawMaps(g, 37, places, 9);
-    uint64_t hash = 0;
-    for (int i = 0; i < 9 * 2 * 37 * 37; i++) {
-        const vplParaboloidMap* map = &maps->maps[i % 9];
-        const int hemisphere = i / 9 / (37 * 37) % map->hemispheres;
-        const size_t at = placeOf(map, hemisphere, i / 9 % (37 * 37));
-        hash = vplHashFloats(hash, map->texels + at, 1);
-        hash = vplHashFloats(hash, (const float*)map->triangles + at, 1);
-    }
-    for (int i = 0; i < 9 * 500; i++) {
-        const vplHemiMapPlace at = rollPlace(g, &dice, &hit);
-        const float factor = factorAt(&maps->maps[i % 9], at.position, at.normal);
-        hash = vplHashFloats(hash, &factor, 1);
-    }
-    vplParaboloidMaps_Destroy(maps);
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-    return hash;
-}
-
-static void MapsHaveTheSameBitsEverywhere(void** state)
-{
-    (void)state;
-    assertSameEverywhere(hashOf);
-}
-
-static void MapsCanBeRefusedAndCancelled(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = closedCube(context, 0.5f);
     vplParaboloidMaps* maps = NULL;
     assert_int_equal(vplParaboloidMaps_Create(context, 0, 1, false, &maps), VPL_INVALID_ARGUMENT);
@@ -637,15 +435,4 @@ static void MapsCanBeRefusedAndCancelled(void** state)
     vplParaboloidMaps_Destroy(maps);
     vplParaboloidMaps_Destroy(NULL);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
-
-TEST_SUITE(paraboloids, cmocka_unit_test(ProjectionFollowsTheTable),
-           cmocka_unit_test(UnprojectionIsTheInverse), cmocka_unit_test(WeightsOfDiskSamplesFollowTheTable),
-           cmocka_unit_test(EachTexelHoldsWhatARayThroughItsCentreMeets),
-           cmocka_unit_test(BoundsOfTrianglesLoseNoTexel), cmocka_unit_test(SharedEdgesLeaveNoHoles),
-           cmocka_unit_test(EdgesBendAsTheyShould), cmocka_unit_test(MapsAndRaysAgreeOutsideTheBand),
-           cmocka_unit_test(APlaneNeverShadowsItself),
-           cmocka_unit_test(AnEmptyHemisphereIsLitAndOneThatIsNotDrawnIsDark),
-           cmocka_unit_test(PlacesInMidAirGiveNumbersAnywhere),
-           cmocka_unit_test(MapsHaveTheSameBitsEverywhere), cmocka_unit_test(MapsCanBeRefusedAndCancelled));

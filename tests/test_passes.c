@@ -79,9 +79,8 @@ static uint64_t drawPasses(vplContext* context, const ClipVertex* v, Way way, in
     return hash;
 }
 
-static void PassesOverKeptBlocksGiveTheBitsOfDraws(void** state)
+TEST_ALONE(PassesOverKeptBlocksGiveTheBitsOfDraws)
 {
-    (void)state;
     for (int threads = 1; threads <= 3; threads += 2) {
         vplContext* context = openTestContext(threads);
         for (uint64_t seed = 0; seed < 12; seed++) {
@@ -123,10 +122,8 @@ static void showBoth(const void* uniforms, vplFragments* f)
     showSurface(uniforms, f);
 }
 
-static void SurfaceShadersRunBeforeFragmentShaders(void** state)
+TEST(SurfaceShadersRunBeforeFragmentShaders, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     ClipVertex* v = makeSoup(77, TRIANGLES);
     Canvas one = makeCanvas(100, 60, 0), two = makeCanvas(100, 60, 0);
     vplPipeline p = showPipeline(v);
@@ -141,7 +138,6 @@ static void SurfaceShadersRunBeforeFragmentShaders(void** state)
     freeCanvas(&one);
     freeCanvas(&two);
     free(v);
-    closeTestContext(context);
 }
 
 static void makeVaryings(const void* uniforms, vplFragments* f)
@@ -165,10 +161,8 @@ static void placeVertices(const void* uniforms, int first, int count, const vplV
 }
 
 // Also where there is nothing to interpolate.
-static void SurfaceShadersMayMakeAllVaryings(void** state)
+TEST(SurfaceShadersMayMakeAllVaryings, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const ClipVertex v[3] = {{-1, -1, 0.5f, 1, {0}}, {3, -1, 0.5f, 1, {0}}, {-1, 3, 0.5f, 1, {0}}};
     Canvas c = makeCanvas(30, 20, -1);
     vplPipeline p = vplDefaultPipeline();
@@ -183,14 +177,11 @@ static void SurfaceShadersMayMakeAllVaryings(void** state)
         assert_true(c.planes[0][i] == (float)(i % 30) && c.planes[1][i] == (float)(i / 30));
     }
     freeCanvas(&c);
-    closeTestContext(context);
 }
 
 // Triangles in one draw, whose hidden blocks are left out, against a draw for each, which knows of none hidden.
-static void HiddenBlocksAreHidden(void** state)
+TEST(HiddenBlocksAreHidden, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (uint64_t seed = 0; seed < 20; seed++) {
         ClipVertex* v = makeSoup(900 + seed, TRIANGLES);
         for (vplDepthCompare compare = VPL_DEPTH_LESS; compare <= VPL_DEPTH_LESS_EQUAL; compare++) {
@@ -218,14 +209,11 @@ static void HiddenBlocksAreHidden(void** state)
         }
         free(v);
     }
-    closeTestContext(context);
 }
 
 // Depth-only draws have paths of their own, also for triangles of a few pixels.
-static void DepthAloneIsTheDepthOfShadedDraws(void** state)
+TEST(DepthAloneIsTheDepthOfShadedDraws, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (uint64_t seed = 0; seed < 60; seed++) {
         const int width = 20 + (int)(seed * 7), height = 200 - (int)(seed * 3); // pixels of many sizes
         ClipVertex* v = makeSoup(2100 + seed, TRIANGLES);
@@ -240,7 +228,6 @@ static void DepthAloneIsTheDepthOfShadedDraws(void** state)
         freeCanvas(&two);
         free(v);
     }
-    closeTestContext(context);
 }
 
 // The document's shader: distance from the eye of a 90 degree view, over far.
@@ -254,10 +241,8 @@ static void writeDistance(const void* uniforms, vplFragments* f)
     }
 }
 
-static void DistancesNeedNoShader(void** state)
+TEST(DistancesNeedNoShader, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float scale = 0.125f;
     for (uint64_t seed = 0; seed < 20; seed++) {
         ClipVertex* v = makeSoup(1300 + seed, TRIANGLES);
@@ -279,7 +264,6 @@ static void DistancesNeedNoShader(void** state)
         freeCanvas(&two);
         free(v);
     }
-    closeTestContext(context);
 }
 
 // Plane 1: the triangle counted through all meshes. Depth: w.
@@ -312,11 +296,9 @@ static vplRasterStats drawNamed(vplContext* context, const Canvas* canvas, const
 }
 
 // However depth is written; w, along the axis, is a shader's but for outlines, where that is clamped otherwise.
-static void FramebuffersNameWhoWroteDepthLast(void** state)
+TEST(FramebuffersNameWhoWroteDepthLast, 2)
 {
-    (void)state;
     enum { SPLIT = 17 };
-    vplContext* context = openTestContext(2);
     for (uint64_t seed = 0; seed < 40; seed++) {
         const int width = 20 + (int)(seed * 9), height = 200 - (int)(seed * 4), pixels = width * height;
         ClipVertex* v = makeSoup(2100 + seed, TRIANGLES);
@@ -354,13 +336,10 @@ static void FramebuffersNameWhoWroteDepthLast(void** state)
         free(alone);
         free(v);
     }
-    closeTestContext(context);
 }
 
-static void RastersSideBySideGiveTheBitsOfEachAlone(void** state)
+TEST(RastersSideBySideGiveTheBitsOfEachAlone, 3)
 {
-    (void)state;
-    vplContext* context = openTestContext(3);
     ClipVertex* v[3];
     Canvas alone[3], together[3];
     vplRaster* rasters[3];
@@ -386,13 +365,10 @@ static void RastersSideBySideGiveTheBitsOfEachAlone(void** state)
         freeCanvas(&together[i]);
         free(v[i]);
     }
-    closeTestContext(context);
 }
 
-static void DrawsThatAreNoPassesAreRefused(void** state)
+TEST(DrawsThatAreNoPassesAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplFramebuffer f = vplDefaultFramebuffer(4, 4);
     vplRaster* raster;
     assert_int_equal(vplRaster_Create(context, &f, &raster), VPL_SUCCESS);
@@ -425,13 +401,4 @@ static void DrawsThatAreNoPassesAreRefused(void** state)
     p.ownerTest = true;
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
     vplRaster_Destroy(raster);
-    closeTestContext(context);
 }
-
-TEST_SUITE(passes, cmocka_unit_test(PassesOverKeptBlocksGiveTheBitsOfDraws),
-           cmocka_unit_test(SurfaceShadersRunBeforeFragmentShaders),
-           cmocka_unit_test(SurfaceShadersMayMakeAllVaryings), cmocka_unit_test(HiddenBlocksAreHidden),
-           cmocka_unit_test(DepthAloneIsTheDepthOfShadedDraws), cmocka_unit_test(DistancesNeedNoShader),
-           cmocka_unit_test(FramebuffersNameWhoWroteDepthLast),
-           cmocka_unit_test(RastersSideBySideGiveTheBitsOfEachAlone),
-           cmocka_unit_test(DrawsThatAreNoPassesAreRefused));

@@ -53,13 +53,12 @@ static int countLoose(const vplPatchMesh* m)
 // ---- cuts
 
 // X100: 12 at 120 patches, none in the report's meshes; counted by the table in another way, by geometry.
-static void HangingVerticesAreThoseOfTheTable(void** state)
+TEST_ALONE(HangingVerticesAreThoseOfTheTable)
 {
-    (void)state;
     Table t = loadTable("subdivision_mesh.csv");
     for (int row = 0; row < t.rows; row++) {
         vplContext* context = openTestContext(2);
-        const vplGeometry* g = openTestModel(context);
+        const vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
         vplPatches* patches = openPatches(g, 125, row);
         vplPatchMesh* m = meshOf(openSides(patches, frontsOpen));
         const int hanging = (int)number(&t, row, "hanging_vertices");
@@ -103,10 +102,8 @@ static bool hasEdge(const vplPatchMesh* m, vplVec3 from, vplVec3 to)
 }
 
 // Nothing shines through: both triangles at an edge have the same two ends, bit for bit.
-static void EveryEdgeOfAClosedSurfaceHasTwoTriangles(void** state)
+TEST(EveryEdgeOfAClosedSurfaceHasTwoTriangles, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     int cuts = 0;
     for (uint64_t seed = 0; seed < 6; seed++) {
         vplPatchMesh* m = unevenMesh(context, seed % 2, false, 7, seed, frontsOpen);
@@ -117,14 +114,11 @@ static void EveryEdgeOfAClosedSurfaceHasTwoTriangles(void** state)
         closeMesh(m);
     }
     assert_true(cuts > 100);
-    closeTestContext(context);
 }
 
 // Of a patch as a whole: pieces fill it, none is thinner than halving makes it, and its outline has its length.
-static void PiecesFillTheirPatch(void** state)
+TEST(PiecesFillTheirPatch, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplPatchMesh* m = unevenMesh(context, true, false, 7, 3, frontsOpen);
     const vplPatches* p = m->sides->patches;
     int t = 0, most = 0;
@@ -154,7 +148,6 @@ static void PiecesFillTheirPatch(void** state)
     assert_int_equal(t, m->triangleCount);
     assert_true(most >= 6);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // ---- what shares a vertex
@@ -170,9 +163,8 @@ static int verticesOf(bool ball, bool smooth)
 }
 
 // The faces of an icosahedron meet at 41.8 degrees: apart, unless it is a ball with 12 normals.
-static void SurfacesShareVerticesWhereTheyGoOn(void** state)
+TEST_ALONE(SurfacesShareVerticesWhereTheyGoOn)
 {
-    (void)state;
     assert_int_equal(verticesOf(false, false),
                      24); // four on each face of a box, whose triangles share the diagonal
     assert_int_equal(verticesOf(true, false), 60);
@@ -196,9 +188,8 @@ static vplPatchMesh* fanMesh(vplContext* context, const int order[4])
     return meshOf(openSides(openPatches(freezeScene(scene), 100, 0), frontsOpen));
 }
 
-static void OrderOfTrianglesDoesNotMatter(void** state)
+TEST_ALONE(OrderOfTrianglesDoesNotMatter)
 {
-    (void)state;
     const int orders[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {3, 0, 2, 1}, {2, 0, 3, 1}};
     for (int i = 0; i < 4; i++) {
         vplContext* context = openTestContext(1);
@@ -210,10 +201,8 @@ static void OrderOfTrianglesDoesNotMatter(void** state)
 }
 
 // A floor of two objects, one beside the other, and a wall on it.
-static void CoplanarObjectsShareAndWallsDoNot(void** state)
+TEST(CoplanarObjectsShareAndWallsDoNot, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = sceneOf(context, 0.5f);
     const vplVec3 p[8] = {{0, 0, 0}, {1, 0, 0},  {1, 0, -1}, {0, 0, -1},
                           {2, 0, 0}, {2, 0, -1}, {0, 1, 0},  {0, 1, -1}};
@@ -232,7 +221,6 @@ static void CoplanarObjectsShareAndWallsDoNot(void** state)
         assert_true(m->normals[v].x == 1 || m->normals[v].y == 1);
     }
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // ---- means
@@ -261,10 +249,8 @@ static uint16_t diceOpen(const vplPatches* patches, int patch, int face)
     return (uint16_t)(uniformAt(9, (uint64_t)(2 * patch + face)) * 65536);
 }
 
-static void EqualValuesStayTheSameBits(void** state)
+TEST(EqualValuesStayTheSameBits, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplPatchMesh* m = unevenMesh(context, true, true, 5, 1, diceOpen);
     vplRgb* values = constantValues(m, (vplRgb){0.1f, 0.7f, 1e-30f});
     for (int weight = 0; weight <= VPL_VERTEX_WEIGHT_EQUAL; weight++) {
@@ -276,7 +262,6 @@ static void EqualValuesStayTheSameBits(void** state)
     }
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // A square of two triangles, of which the second is cut once: by its own diagonal's middle the first is cut, too.
@@ -321,10 +306,8 @@ static double meanAt(const vplPatchMesh* m, vplVertexWeight weight, float x, flo
 }
 
 // Hanging vertices take from all patches around, also from the one on whose edge they lie.
-static void VerticesAreMeansByAngleAreaOrCount(void** state)
+TEST(VerticesAreMeansByAngleAreaOrCount, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = squareMesh(context, frontsOpen);
     assert_int_equal(m->hangingVertices, 1);
     assert_int_equal(m->triangleCount, 5);
@@ -339,7 +322,6 @@ static void VerticesAreMeansByAngleAreaOrCount(void** state)
     assertNear(meanAt(m, VPL_VERTEX_WEIGHT_EQUAL, 0.5f, 0.5f), (1 + 2 + 6) / 3.0, 1e-6, "three", 0);
     assertNear(meanAt(m, VPL_VERTEX_WEIGHT_ANGLE, 6, 1), 100, 0, "alone", 0);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // Patch 0 is under a box; of patch 1 light reaches a quarter.
@@ -351,24 +333,19 @@ static uint16_t underBox(const vplPatches* patches, int patch, int face)
 
 // X101: a floor that no light reaches darkens nothing beside it, and what is partly covered counts for as much as is
 // open.
-static void CoveredPatchesDarkenNothing(void** state)
+TEST(CoveredPatchesDarkenNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = squareMesh(context, underBox);
     assertNear(meanAt(m, VPL_VERTEX_WEIGHT_ANGLE, 0.5f, 0.5f), (0.25 * 2 + 6) / 1.25, 1e-5, "angle", 0);
     assertNear(meanAt(m, VPL_VERTEX_WEIGHT_AREA, 0.5f, 0.5f), (0.25 * 2 + 6) / 1.25, 1e-5, "area", 0);
     assertNear(meanAt(m, VPL_VERTEX_WEIGHT_EQUAL, 0.5f, 0.5f), (2 + 6) / 2.0, 1e-5, "equal", 0);
     assertNear(meanAt(m, VPL_VERTEX_WEIGHT_ANGLE, 1, 0), 0, 0, "only covered", 0);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // With sides chosen at random: each corner of a side that counts has a value, so no triangle fades to black.
-static void NoCornerOfALitSideIsBlack(void** state)
+TEST(NoCornerOfALitSideIsBlack, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = unevenMesh(context, false, false, 6, 2, diceOpen);
     vplRgb* values = constantValues(m, (vplRgb){1, 1, 1});
     vplRgb* out = interpolated(m, VPL_VERTEX_WEIGHT_ANGLE, values);
@@ -381,13 +358,10 @@ static void NoCornerOfALitSideIsBlack(void** state)
     free(values);
     free(out);
     closeMesh(m);
-    closeTestContext(context);
 }
 
-static void WrongValuesAreRefused(void** state)
+TEST(WrongValuesAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = squareMesh(context, frontsOpen);
     vplRgb values[4] = {{0, 0, 0}, {1, 1, 1}, {2, NAN, 2}, {3, 3, 3}}, out[20];
     memset(out, 7, sizeof out);
@@ -398,7 +372,6 @@ static void WrongValuesAreRefused(void** state)
     assert_int_equal(((const uint8_t*)out)[0], 7);
     vplPatchMesh_Destroy(NULL);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // How far what is interpolated lies from the value of the sides on which it does, on the mean over triangles' area.
@@ -421,10 +394,8 @@ static double missingOf(const vplPatchMesh* m, const vplRgb* values, const vplRg
     return missing / all;
 }
 
-static void SharpeningShowsEachPatchItsOwnLight(void** state)
+TEST(SharpeningShowsEachPatchItsOwnLight, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplPatchMesh* m = unevenMesh(context, true, true, 6, 3, frontsOpen);
     vplRgb* values = constantValues(m, (vplRgb){0, 0.3f, 0});
     for (int i = 0; i < m->sides->count; i++) {
@@ -451,14 +422,11 @@ static void SharpeningShowsEachPatchItsOwnLight(void** state)
     assert_true(missing[1] < 0.5 * missing[0] && missing[2] < 0.7 * missing[1]);
     free(values);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // A patch of which a part only has light keeps its corners: its value is that part's. Nothing falls below 0.
-static void SharpeningLeavesPartsAloneAndNothingIsNegative(void** state)
+TEST(SharpeningLeavesPartsAloneAndNothingIsNegative, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int part = 0; part < 2; part++) {
         vplPatchMesh* m = unevenMesh(context, true, true, 6, 3, part ? diceOpen : frontsOpen);
         vplRgb* values = constantValues(m, (vplRgb){0, 0, 0});
@@ -479,7 +447,6 @@ static void SharpeningLeavesPartsAloneAndNothingIsNegative(void** state)
         free(values);
         closeMesh(m);
     }
-    closeTestContext(context);
 }
 
 static uint64_t hashOfMesh(vplContext* context)
@@ -504,19 +471,7 @@ static uint64_t hashOfMesh(vplContext* context)
     return hash;
 }
 
-static void MeshesAreTheSameBitsEverywhere(void** state)
+TEST_ALONE(MeshesAreTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOfMesh);
 }
-
-TEST_SUITE(patchMesh, cmocka_unit_test(HangingVerticesAreThoseOfTheTable),
-           cmocka_unit_test(EveryEdgeOfAClosedSurfaceHasTwoTriangles), cmocka_unit_test(PiecesFillTheirPatch),
-           cmocka_unit_test(SurfacesShareVerticesWhereTheyGoOn),
-           cmocka_unit_test(OrderOfTrianglesDoesNotMatter),
-           cmocka_unit_test(CoplanarObjectsShareAndWallsDoNot), cmocka_unit_test(EqualValuesStayTheSameBits),
-           cmocka_unit_test(VerticesAreMeansByAngleAreaOrCount),
-           cmocka_unit_test(CoveredPatchesDarkenNothing), cmocka_unit_test(NoCornerOfALitSideIsBlack),
-           cmocka_unit_test(SharpeningShowsEachPatchItsOwnLight),
-           cmocka_unit_test(SharpeningLeavesPartsAloneAndNothingIsNegative),
-           cmocka_unit_test(WrongValuesAreRefused), cmocka_unit_test(MeshesAreTheSameBitsEverywhere));

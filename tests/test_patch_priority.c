@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where more patches are wanted: what vplFindPatchPriority says, and that following it pays.
-#include "patch_model.h"
+#include "patch_support.h"
 
 #include "math/vec.h"
 
@@ -114,9 +114,8 @@ static double ramp(vplVec3 p)
     return 1 + (p.x > 0 ? (double)p.x : 0);
 }
 
-static void NoLightAndEvenLightNeedNoPatches(void** state)
+TEST_ALONE(NoLightAndEvenLightNeedNoPatches)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         Field f = openField(0.5f, i ? none : one);
         findWorth(&f);
@@ -128,9 +127,8 @@ static void NoLightAndEvenLightNeedNoPatches(void** state)
 }
 
 // Light that grows from the middle on: no patch beside the slope is worth as much as any on it.
-static void SlopesAreWorthMoreThanPlains(void** state)
+TEST_ALONE(SlopesAreWorthMoreThanPlains)
 {
-    (void)state;
     Field f = openField(0.5f, ramp);
     float most = 0, least = INFINITY;
     findWorth(&f);
@@ -145,9 +143,8 @@ static void SlopesAreWorthMoreThanPlains(void** state)
     closeField(&f);
 }
 
-static void AShadowsBoundaryIsWorthPatches(void** state)
+TEST_ALONE(AShadowsBoundaryIsWorthPatches)
 {
-    (void)state;
     Field f = openField(0.5f, one);
     vplPatchPriorityDef def = defOf(&f);
     float* spread = calloc((size_t)f.sides->count, sizeof *spread);
@@ -165,9 +162,8 @@ static void AShadowsBoundaryIsWorthPatches(void** state)
 }
 
 // Direct light that changes across a patch errs in what the patch reflects; even light, however bright, does not.
-static void ChangesOfDirectLightAreWorthPatches(void** state)
+TEST_ALONE(ChangesOfDirectLightAreWorthPatches)
 {
-    (void)state;
     Field f = openField(0.5f, one);
     const size_t corners = 2 * (size_t)f.mesh->vertexCount;
     vplRgb* direct = malloc(corners * sizeof *direct);
@@ -241,9 +237,8 @@ static void refineTo(Field* f, int count)
 }
 
 // As many patches as a size gives, placed by worth, have less than half the squared error.
-static void PatchesWhereTheyAreWorthMostHalveTheError(void** state)
+TEST_ALONE(PatchesWhereTheyAreWorthMostHalveTheError)
 {
-    (void)state;
     for (float size = 0.36f; size > 0.1f; size *= 0.5f) {
         Field uniform = openField(size, irradianceAt), adaptive = openField(4 * size, irradianceAt);
         refineTo(&adaptive, uniform.patches->patchCount);
@@ -264,9 +259,8 @@ static void expectFailure(const Field* f, vplPatchPriorityDef def, const char* s
     assert_true(f->worth[0] == 7);
 }
 
-static void WrongDefsAreRefused(void** state)
+TEST_ALONE(WrongDefsAreRefused)
 {
-    (void)state;
     Field f = openField(1, one);
     vplPatchPriorityDef def = defOf(&f);
     def.irradiance = NULL;
@@ -278,9 +272,3 @@ static void WrongDefsAreRefused(void** state)
     expectFailure(&f, def, "vplPatchPriorityDef was not made by vplDefaultPatchPriorityDef");
     closeField(&f);
 }
-
-TEST_SUITE(patchPriority, cmocka_unit_test(NoLightAndEvenLightNeedNoPatches),
-           cmocka_unit_test(SlopesAreWorthMoreThanPlains), cmocka_unit_test(AShadowsBoundaryIsWorthPatches),
-           cmocka_unit_test(ChangesOfDirectLightAreWorthPatches),
-           cmocka_unit_test(PatchesWhereTheyAreWorthMostHalveTheError),
-           cmocka_unit_test(WrongDefsAreRefused));

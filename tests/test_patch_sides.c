@@ -1,282 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Which sides of patches light reaches, and where (X101).
-#include "patch_model.h"
-
-#include "base/hash.h"
-#include "math/vec.h"
-#include "radiosity/sides/side.h"
-
-#include <stdlib.h>
-
-static const vplVec3 NEAR_CEILING = {2.775f, 5.4f, 2.775f};
-
-// ---- what is built here
-
-static void addFlat(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c, vplVec3 d)
-{
-    addTriangle(shape, a, b, c);
-    addTriangle(shape, a, c, d);
-}
-
-// The box from low to high; fronts inside where `inward`.
-static void addBox(Shape* shape, vplVec3 low, vplVec3 high, bool inward)
-{
-    static const int8_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                       {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    vplVec3 p[8];
-    for (int i = 0; i < 8; i++) {
-        p[i] = vplVec(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
-    }
-    for (int f = 0; f < 6; f++) {
-        const int8_t* c = faces[f];
-        addFlat(shape, p[c[0]], p[c[inward ? 3 : 1]], p[c[2]], p[c[inward ? 1 : 3]]);
-    }
-}
-
-// A floor [-2, 2]^2 at y = 0, its front up.
-static void addFloor(Shape* shape)
-{
-    addFlat(shape, vplVec(-2, 0, -2), vplVec(-2, 0, 2), vplVec(2, 0, 2), vplVec(2, 0, -2));
-}
-
-typedef struct Case {
-    vplContext* context;
-    vplGeometry* geometry;
-    vplPatches* patches;
-    vplPatchSides* sides;
-} Case;
-
-// Frees the shape.
-static Case openCase(Shape* shape, float size, const vplVec3* lamp)
-{
-    Case c = {.context = openTestContext(2)};
-    c.geometry = geometryOf(c.context, shape, 0.5f, 0);
-    c.patches = openPatches(c.geometry, size, VPL_MAX_PATCH_ROUNDS);
-    c.sides = sidesOf(c.patches, lamp);
-    freeShape(shape);
-    return c;
-}
-
-static void closeCase(Case* c)
-{
-    vplPatchSides_Destroy(c->sides);
-    vplPatches_Destroy(c->patches);
-    vplGeometry_Destroy(c->geometry);
-    closeTestContext(c->context);
-}
-
-static int triangleOf(const vplPatches* p, int patch)
-{
-    return p->nodes[p->patches[patch]].triangle;
-}
-
-// Sides among triangles first .. first + count - 1, front or back; the number of patches there in *patchesOut.
-static int countSides(const vplPatchSides* s, int first, int count, bool back, int* patchesOut)
-{
-    int sides = 0, patches = 0;
-    for (int i = 0; i < s->patches->patchCount; i++) {
-        const int triangle = triangleOf(s->patches, i);
-        if (triangle >= first && triangle < first + count) {
-            patches++;
-            sides += s->ofPatch[2 * i + back] >= 0;
-        }
-    }
-    *patchesOut = patches;
-    return sides;
-}
-
-static void assertAll(const vplPatchSides* s, int first, int count, bool back)
-{
-    int patches;
-    const int sides = countSides(s, first, count, back, &patches);
-    assert_int_equal(sides, patches);
-    assert_true(patches > 0);
-}
-
-static void assertNone(const vplPatchSides* s, int first, int count, bool back)
-{
-    int patches;
-    assert_int_equal(countSides(s, first, count, back, &patches), 0);
-    assert_true(patches > 0);
-}
-
-// ---- cells
-
-static vplPatchSide sideOf(vplVec3 a, vplVec3 b, vplVec3 c)
-{
-    return (vplPatchSide){.open = 0xffff, .corners = {a, b, c}};
-}
-
-// Sixteen triangles that tile theirs: points of a cell are found in it again, their mean is where its centre is, and the
-// means of all cells have the patch's.
-static void CellsTileThePatch(void** state)
-{
-    (void)state;
-    const vplPatchSide s = sideOf(vplVec(1, 2, 3), vplVec(4, 2, 1), vplVec(0, 5, 2));
-    double total[3] = {0};
-    for (int k = 0; k < VPL_PATCH_CELLS; k++) {
-        double mean[3] = {0};
-        for (int i = 0; i < 32 * 32; i++) {
-            const float u = ((float)(i % 32) + 0.5f) / 32, v = ((float)(i / 32) + 0.5f) / 32;
-            const vplVec3 p = vplPatchSide_SampleCell(&s, k, u, v);
-            assert_int_equal(vplCell_Find(s.corners, p), k);
-            for (int axis = 0; axis < 3; axis++) {
-                mean[axis] += (double)vplComponent(p, axis) / 1024;
-            }
-        }
-        for (int axis = 0; axis < 3; axis++) {
-            total[axis] += mean[axis] / VPL_PATCH_CELLS;
-        }
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        const double centre = (double)vplComponent(s.corners[0], axis) +
-                              (double)vplComponent(s.corners[1], axis) +
-                              (double)vplComponent(s.corners[2], axis);
-        assertNear(total[axis], centre / 3, 1e-3, "mean", axis);
-    }
-}
-
-// Cell 0 is at corner 0, 5 at corner 1, 10 at corner 2, 15 in the middle; extreme u and v stay within.
-static void CellsAreInTheStatedOrder(void** state)
-{
-    (void)state;
-    const vplPatchSide s = sideOf(vplVec(0, 0, 0), vplVec(4, 0, 0), vplVec(0, 4, 0));
-    const float ends[2] = {0, 1 - 0x1p-24f};
-    for (int i = 0; i < 4; i++) {
-        const vplVec3 first = vplPatchSide_SampleCell(&s, 0, ends[i & 1], ends[i >> 1]),
-                      second = vplPatchSide_SampleCell(&s, 5, ends[i & 1], ends[i >> 1]),
-                      third = vplPatchSide_SampleCell(&s, 10, ends[i & 1], ends[i >> 1]),
-                      middle = vplPatchSide_SampleCell(&s, 15, ends[i & 1], ends[i >> 1]);
-        assert_true(first.x >= 0 && first.y >= 0 && first.x + first.y <= 1);
-        assert_true(second.x >= 3 && second.y >= 0 && second.x + second.y <= 4);
-        assert_true(third.x >= 0 && third.y >= 3 && third.x + third.y <= 4);
-        assert_true(middle.x >= 1 && middle.y >= 1 && middle.x + middle.y <= 3);
-    }
-}
-
-// ---- the report's box
-
-// How much of a cell stands under a block, from 16 x 16 points: blocks are the model's triangles whose fronts look up.
-static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g)
-{
-    int covered = 0;
-    for (int i = 0; i < 256; i++) {
-        const vplVec3 p =
-            vplPatchSide_SampleCell(s, cell, ((float)(i % 16) + 0.5f) / 16, ((float)(i / 16) + 0.5f) / 16);
-        const vplRay up = {vplVec(p.x, 1, p.z), vplVec(0, 1, 0), {0, 0}};
-        vplHit hit;
-        covered +=
-            vplGeometry_ClosestHit(g, &up, &hit) && hit.position.y < 5; // a block's top, not the ceiling
-    }
-    return covered / 256.0;
-}
-
-// Fronts of all 784 patches but for those of the floor that a block stands on; no backs, and no cell that a block
-// covers whole. Cells of which most is free are open, and of those alone.
-static void TheReportsBoxHasItsFrontsButUnderBlocks(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
-    vplPatches* p = openPatches(g, 1.25f, VPL_MAX_PATCH_ROUNDS);
-    vplPatchSides* s = sidesOf(p, &NEAR_CEILING);
-    int covered = 0, partly = 0, more = 0;
-    assert_int_equal(p->patchCount, 784);
-    for (int i = 0; i < p->patchCount; i++) {
-        const int front = s->ofPatch[2 * i];
-        assert_int_equal(s->ofPatch[2 * i + 1], -1);
-        if (triangleOf(p, i) >= 2) {
-            assert_true(front >= 0 && s->sides[front].open == 0xffff);
-            continue;
-        }
-        vplPatchSide whole = {.patch = i};
-        vplSide_GetCorners(p, i, false, whole.corners);
-        const unsigned open = front >= 0 ? s->sides[front].open : 0;
-        bool dark = true;
-        for (int k = 0; k < VPL_PATCH_CELLS; k++) {
-            const double share = coveredShare(&whole, k, g);
-            if (share < 0.2 || share >= 1) {
-                assert_int_equal(open >> k & 1, share < 1);
-            }
-            dark = dark && share >= 1;
-            more += share > 0.2 && share < 1 && (open >> k & 1) != (share < 0.5);
-        }
-        assert_int_equal(front < 0, dark);
-        covered += dark;
-        partly += front >= 0 && open != 0xffff;
-    }
-    assert_true(more <= 10); // 8 points tell halves of most of about a hundred cells
-    assert_int_equal(covered, 7);
-    assert_true(partly >= 25);
-    assert_int_equal(s->count, 777);
-    vplPatchSides_Destroy(s);
-    vplPatches_Destroy(p);
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
-}
-
-static void assertSide(const vplPatchSides* s, int index)
-{
-    const vplPatchSide* side = &s->sides[index];
-    const vplVec3 *c = side->corners, n = vplNormalize(vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0])));
-    assert_int_equal(s->ofPatch[2 * side->patch + side->back], index);
-    assert_true(vplDot(n, side->normal) > 0.9999f);
-    assert_true(side->open != 0);
-    assertNear((double)side->area,
-               vplPatches_Area(s->patches, side->patch) * __builtin_popcount(side->open) / VPL_PATCH_CELLS,
-               1e-6, "area", index);
-    double distances[3];
-    for (int k = 0; k < 3; k++) { // from the edges
-        const vplVec3 edge = vplNormalize(vplSub(c[(k + 1) % 3], c[k]));
-        distances[k] = (double)vplDot(vplCross(edge, vplSub(side->incentre, c[k])), side->normal);
-    }
-    assert_true(distances[0] > 0);
-    assertNear(distances[1], distances[0], 2e-6, "incentre", index);
-    assertNear(distances[2], distances[0], 2e-6, "incentre", index);
-}
-
-static void SidesAreWhatTheHeaderSays(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplScene* scene;
-    vplGeometry* g;
-    assert_int_equal(vplScene_Load(context, "examples/scenes/room-area.json", &scene), VPL_SUCCESS);
-    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
-    vplPatches* p = openPatches(g, 0.8f, VPL_MAX_PATCH_ROUNDS);
-    vplPatchSides* s = sidesOf(p, NULL);
-    double emitted = 0;
-    int before = -1;
-    for (int i = 0; i < s->count; i++) {
-        const vplPatchSide* side = &s->sides[i];
-        assertSide(s, i);
-        assert_true(2 * side->patch + side->back > before);
-        before = 2 * side->patch + side->back;
-        assert_true(!side->back || side->emission.r == 0);
-        emitted += (double)side->area * (double)side->emission.g;
-    }
-    vplEmission* e;
-    assert_int_equal(vplEmission_Create(g, NULL, 0, &e), VPL_SUCCESS);
-    double wanted = 0;
-    for (int i = 0; i < e->sourceCount; i++) {
-        wanted += (double)e->sources[i].power.g;
-    }
-    assertNear(emitted, wanted, 1e-5 * wanted, "power", 0);
-    vplEmission_Destroy(e);
-    vplPatchSides_Destroy(s);
-    vplPatches_Destroy(p);
-    vplGeometry_Destroy(g);
-    vplScene_Destroy(scene);
-    closeTestContext(context);
-}
+#include "sides_cases.h"
 
 // ---- what light does not reach
 
 // A crate on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside is dark, and so is what it
 // stands on: open cells make up the floor less its base, but for those that it covers in part.
-static void TheInsideOfACrateAndTheFloorUnderItAreDark(void** state)
+TEST_ALONE(TheInsideOfACrateAndTheFloorUnderItAreDark)
 {
-    (void)state;
     for (int sunk = 0; sunk < 3; sunk++) { // on the floor, into it, and a hair above
         Shape shape = {0};
         addFloor(&shape);
@@ -295,10 +26,8 @@ static void TheInsideOfACrateAndTheFloorUnderItAreDark(void** state)
 }
 
 // Twenty seeds and other sizes: rounding lets no light through a wall.
-static void NoSeedLightsTheBackOfAWall(void** state)
+TEST(NoSeedLightsTheBackOfAWall, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
     for (uint64_t seed = 0; seed < 20; seed++) {
         vplPatches* p = openPatches(g, 2.0f - 0.07f * (float)seed, VPL_MAX_PATCH_ROUNDS);
@@ -319,13 +48,11 @@ static void NoSeedLightsTheBackOfAWall(void** state)
         vplPatches_Destroy(p);
     }
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Two closed rooms beside each other, a lamp in one.
-static void ARoomWithoutALampTakesNoPart(void** state)
+TEST_ALONE(ARoomWithoutALampTakesNoPart)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(2, 0, 0), vplVec(4, 2, 2), true);
@@ -336,9 +63,8 @@ static void ARoomWithoutALampTakesNoPart(void** state)
     closeCase(&c);
 }
 
-static void WithoutLightThereAreNoSides(void** state)
+TEST_ALONE(WithoutLightThereAreNoSides)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     Case c = openCase(&shape, 1, NULL);
@@ -350,9 +76,8 @@ static void WithoutLightThereAreNoSides(void** state)
 }
 
 // What an eye sees takes part, dark as it is.
-static void WhatAnEyeSeesTakesPart(void** state)
+TEST_ALONE(WhatAnEyeSeesTakesPart)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(3, 0, 0), vplVec(5, 2, 2), true);
@@ -373,9 +98,8 @@ static void WhatAnEyeSeesTakesPart(void** state)
 
 // ---- what it reaches
 
-static void OneTriangleHasTheSideThatFacesTheLamp(void** state)
+TEST_ALONE(OneTriangleHasTheSideThatFacesTheLamp)
 {
-    (void)state;
     for (int back = 0; back < 2; back++) {
         Shape shape = {0};
         addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 0, 0), vplVec(0, 1, 0));
@@ -388,10 +112,8 @@ static void OneTriangleHasTheSideThatFacesTheLamp(void** state)
     }
 }
 
-static void ALampAloneIsASide(void** state)
+TEST(ALampAloneIsASide, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shape = {0};
     addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 0, 0), vplVec(0, 1, 0));
     vplGeometry* g = geometryOf(context, &shape, 0, 2);
@@ -408,13 +130,11 @@ static void ALampAloneIsASide(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // A curtain that hangs in a lit room: light on one side, and from the walls on the other.
-static void ACurtainHasBothSides(void** state)
+TEST_ALONE(ACurtainHasBothSides)
 {
-    (void)state;
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addFlat(&shape, vplVec(0.4f, 0.3f, 1), vplVec(1.6f, 0.3f, 1), vplVec(1.6f, 1.7f, 1),
@@ -428,9 +148,8 @@ static void ACurtainHasBothSides(void** state)
 }
 
 // Of triangles in one place rays meet the first: it has the light of both sides, the other has none.
-static void OfTwoTrianglesInOnePlaceTheFirstHasTheLight(void** state)
+TEST_ALONE(OfTwoTrianglesInOnePlaceTheFirstHasTheLight)
 {
-    (void)state;
     for (int turned = 0; turned < 2; turned++) {
         Shape shape = {0};
         addFloor(&shape);
@@ -450,9 +169,8 @@ static void OfTwoTrianglesInOnePlaceTheFirstHasTheLight(void** state)
 
 // Five rooms in a row with doors a tenth of the wall, which do not face each other; the lamp is in the first. All walls
 // of all rooms are met, at few patches and at many.
-static void LightGoesThroughDoorsToTheLastRoom(void** state)
+TEST_ALONE(LightGoesThroughDoorsToTheLastRoom)
 {
-    (void)state;
     for (int fine = 0; fine < 2; fine++) {
         Shape shape = {0};
         addBox(&shape, vplVec(0, 0, 0), vplVec(20, 4, 4), true);
@@ -476,10 +194,8 @@ static void LightGoesThroughDoorsToTheLastRoom(void** state)
 }
 
 // A lamp of a millionth of another's power, alone in its room, and the only one of a hundred triangles.
-static void AWeakLampLightsItsRoom(void** state)
+TEST(AWeakLampLightsItsRoom, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(3, 0, 0), vplVec(5, 2, 2), true);
@@ -500,13 +216,11 @@ static void AWeakLampLightsItsRoom(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // A poster half a millimetre off the wall (triangles 0 and 1) covers it; the wall around it is light.
-static void APosterCoversItsWall(void** state)
+TEST_ALONE(APosterCoversItsWall)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     addFlat(&shape, vplVec(-1, 5e-4f, -1), vplVec(-1, 5e-4f, 1), vplVec(1, 5e-4f, 1), vplVec(1, 5e-4f, -1));
@@ -524,9 +238,8 @@ static void APosterCoversItsWall(void** state)
 // ---- the rest
 
 // `whole`: of each triangle that light reaches, all patches on that side, none of them in part.
-static void WholeSidesAreThoseOfWholeTriangles(void** state)
+TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     addBox(&shape, vplVec(-0.9f, 0, -0.7f), vplVec(0.8f, 1, 0.9f), false);
@@ -577,9 +290,8 @@ static uint64_t hashOfModel(vplContext* context)
     return hash;
 }
 
-static void SidesAreTheSameEverywhere(void** state)
+TEST_ALONE(SidesAreTheSameEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOfModel);
 }
 
@@ -593,9 +305,8 @@ static void expectFailure(const vplPatches* p, vplPatchSidesDef def, vplResult w
     assert_string_equal(takeMessage(), sentence);
 }
 
-static void WrongDefsAreRefused(void** state)
+TEST_ALONE(WrongDefsAreRefused)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     Case c = openCase(&shape, 1, NULL);
@@ -619,9 +330,8 @@ static void WrongDefsAreRefused(void** state)
     closeCase(&c);
 }
 
-static void ARefusedProgressCancels(void** state)
+TEST_ALONE(ARefusedProgressCancels)
 {
-    (void)state;
     Shape shape = {0};
     addFloor(&shape);
     Case c = openCase(&shape, 0.2f, NULL);
@@ -637,17 +347,3 @@ static void ARefusedProgressCancels(void** state)
     assert_int_equal(asked, 3);
     closeCase(&c);
 }
-
-TEST_SUITE(patchSides, cmocka_unit_test(CellsTileThePatch), cmocka_unit_test(CellsAreInTheStatedOrder),
-           cmocka_unit_test(TheReportsBoxHasItsFrontsButUnderBlocks),
-           cmocka_unit_test(SidesAreWhatTheHeaderSays),
-           cmocka_unit_test(TheInsideOfACrateAndTheFloorUnderItAreDark),
-           slow_unit_test(NoSeedLightsTheBackOfAWall), cmocka_unit_test(ARoomWithoutALampTakesNoPart),
-           cmocka_unit_test(WithoutLightThereAreNoSides), cmocka_unit_test(WhatAnEyeSeesTakesPart),
-           cmocka_unit_test(OneTriangleHasTheSideThatFacesTheLamp), cmocka_unit_test(ALampAloneIsASide),
-           cmocka_unit_test(ACurtainHasBothSides),
-           cmocka_unit_test(OfTwoTrianglesInOnePlaceTheFirstHasTheLight),
-           cmocka_unit_test(LightGoesThroughDoorsToTheLastRoom), cmocka_unit_test(AWeakLampLightsItsRoom),
-           cmocka_unit_test(APosterCoversItsWall), cmocka_unit_test(WholeSidesAreThoseOfWholeTriangles),
-           cmocka_unit_test(SidesAreTheSameEverywhere), cmocka_unit_test(WrongDefsAreRefused),
-           cmocka_unit_test(ARefusedProgressCancels));

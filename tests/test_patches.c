@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Triangles bisected at their longest edges: tests/data/subdivision_counts.csv and subdivision_mesh.csv, X093, X097 to X099.
-#include "patch_model.h"
+#include "patch_support.h"
 
 #include "base/hash.h"
 #include "math/scalar.h"
@@ -32,10 +32,8 @@ static bool startsWith(const Table* t, int row, const char* text)
 // Lengths of the lab's unit are roots of numbers that float holds, so the two floats beside a length tell it from T on
 // both sides, and T that equals a length (82.5, 138.75, 165 ...) does not bisect it (X097). From below without the
 // seventh round: its thresholds (98.1, half of 196.2) are not among the table's.
-static void EveryThresholdGivesTheTablesCountsFromBothSides(void** state)
+TEST(EveryThresholdGivesTheTablesCountsFromBothSides, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     Table t = loadTable("subdivision_counts.csv");
     int rows = 0;
@@ -51,14 +49,11 @@ static void EveryThresholdGivesTheTablesCountsFromBothSides(void** state)
     assert_true(rows > 50);
     freeTable(&t);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // T = 0.5 in the lab's own float coordinates, which halves of walls have exactly: 464, and a hair below 784 (X097).
-static void ScaledThresholdsInFloatGiveTheTablesCounts(void** state)
+TEST(ScaledThresholdsInFloatGiveTheTablesCounts, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_SCALED, 0.5f);
     Table t = loadTable("subdivision_counts.csv");
     int rows = 0;
@@ -74,14 +69,11 @@ static void ScaledThresholdsInFloatGiveTheTablesCounts(void** state)
     assert_int_equal(rows, 6);
     freeTable(&t);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Triangles with their corners in another order: other edges are first among equals, counts are the same (X099).
-static void CountsDoNotDependOnWhichOfEqualEdgesIsFirst(void** state)
+TEST(CountsDoNotDependOnWhichOfEqualEdgesIsFirst, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table model = loadTable("cornell_testmodel.csv"), t = loadTable("subdivision_counts.csv");
     for (int turn = 0; turn < 3; turn++) {
         Shape shape = {0};
@@ -104,7 +96,6 @@ static void CountsDoNotDependOnWhichOfEqualEdgesIsFirst(void** state)
     }
     freeTable(&model);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- the mesh
@@ -164,10 +155,8 @@ static void compareSurfaces(const vplPatches* p, const Table* model, const Table
     }
 }
 
-static void TheMeshOfEachRoundIsTheTables(void** state)
+TEST(TheMeshOfEachRoundIsTheTables, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     Table t = loadTable("subdivision_mesh.csv"), model = loadTable("cornell_testmodel.csv");
     for (int row = 0; row < t.rows; row++) {
@@ -192,7 +181,6 @@ static void TheMeshOfEachRoundIsTheTables(void** state)
     freeTable(&t);
     freeTable(&model);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 static bool isSame(vplVec3 a, vplVec3 b)
@@ -255,10 +243,8 @@ static Shape looseTriangles(int count, uint64_t seed)
     return shape;
 }
 
-static void NodesAreWhatTheHeaderSays(void** state)
+TEST(NodesAreWhatTheHeaderSays, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shapes[] = {looseTriangles(20, 7), ringSphere(5), gridBox(2)};
     for (int i = 0; i < 3; i++) {
         vplGeometry* g = geometryOf(context, &shapes[i], 0.5f, 0);
@@ -271,14 +257,11 @@ static void NodesAreWhatTheHeaderSays(void** state)
         vplGeometry_Destroy(g);
         freeShape(&shapes[i]);
     }
-    closeTestContext(context);
 }
 
 // Points of each patch, a hair inside, are found in it, and corners of the triangle in a patch that has them.
-static void PointsAreFoundInTheirPatch(void** state)
+TEST(PointsAreFoundInTheirPatch, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shape = looseTriangles(20, 8);
     vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
     vplPatches* p = openPatches(g, 0.2f, VPL_MAX_PATCH_ROUNDS);
@@ -297,16 +280,13 @@ static void PointsAreFoundInTheirPatch(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // ---- extremes
 
 // X093: needles that are lines and points have no patch, also beside others; and no half ever has no area.
-static void TrianglesWithoutAreaHaveNoPatch(void** state)
+TEST(TrianglesWithoutAreaHaveNoPatch, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shape = {0};
     const vplVec3 a = {0, 0, 0}, b = {1, 0, 0}, c = {2, 0, 0}, d = {0, 1, 0};
     addTriangle(&shape, a, b, c);
@@ -327,7 +307,6 @@ static void TrianglesWithoutAreaHaveNoPatch(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 static void expectFailure(const vplGeometry* g, vplPatchDef def, vplResult wanted, const char* sentence)
@@ -342,10 +321,8 @@ static void expectFailure(const vplGeometry* g, vplPatchDef def, vplResult wante
 
 // X098: T of 0 is the count's; below 0 and not finite are refused; tiny T is refused before memory is taken, or ended
 // by rounds, or by floats that have nothing between them.
-static void TinyThresholdsEnd(void** state)
+TEST(TinyThresholdsEnd, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     vplPatchDef def = vplDefaultPatchDef();
     def.size = 1e-30f;
@@ -368,14 +345,11 @@ static void TinyThresholdsEnd(void** state)
     def.cookie = 0;
     expectFailure(g, def, VPL_INVALID_ARGUMENT, "vplPatchDef was not made by vplDefaultPatchDef");
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // A triangle of a few units in the last place: patches end where float does.
-static void EdgesEndWhereFloatDoes(void** state)
+TEST(EdgesEndWhereFloatDoes, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float u = 0x1p-23f;
     Shape shape = {0};
     addTriangle(&shape, (vplVec3){1, 1, 1}, (vplVec3){1 + 8 * u, 1, 1}, (vplVec3){1, 1 + 8 * u, 1});
@@ -392,13 +366,10 @@ static void EdgesEndWhereFloatDoes(void** state)
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
-static void NoTrianglesGiveNoPatches(void** state)
+TEST(NoTrianglesGiveNoPatches, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape shape = {0};
     addTriangle(&shape, (vplVec3){0}, (vplVec3){0}, (vplVec3){0});
     vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
@@ -410,7 +381,6 @@ static void NoTrianglesGiveNoPatches(void** state)
     vplPatches_Destroy(NULL);
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // ---- counts
@@ -426,10 +396,8 @@ static vplPatches* byCount(const vplGeometry* g, int count)
 
 // A count is met as soon as all edges of one length are bisected: one class less is too few, and the patches are those
 // of a threshold. Edges of the metre model are alike only to rounding and yet go together.
-static void ACountBisectsTheLongestFirstAllOfALengthTogether(void** state)
+TEST(ACountBisectsTheLongestFirstAllOfALengthTogether, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* lab = testModel(context, MODEL_LAB, 0.5f);
     vplGeometry* metres = testModel(context, MODEL_METRES, 0.5f);
     static const int counts[] = {1, 30, 31, 464, 465, 784, 785, 5000};
@@ -451,15 +419,12 @@ static void ACountBisectsTheLongestFirstAllOfALengthTogether(void** state)
     }
     vplGeometry_Destroy(lab);
     vplGeometry_Destroy(metres);
-    closeTestContext(context);
 }
 
 // ---- refining
 
-static void RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes(void** state)
+TEST(RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     vplPatches *p = openPatches(g, 125, 2), *q;
     float priorities[120] = {0};
@@ -487,14 +452,11 @@ static void RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes(void** sta
     vplPatches_Destroy(q);
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Refining all, again and again, is what a threshold does; old patches outlive nothing they need.
-static void RefiningEverythingIsARound(void** state)
+TEST(RefiningEverythingIsARound, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     float ones[960];
     for (int i = 0; i < 960; i++) {
@@ -518,13 +480,10 @@ static void RefiningEverythingIsARound(void** state)
     }
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
-static void RefiningRefusesWhatIsNoPriority(void** state)
+TEST(RefiningRefusesWhatIsNoPriority, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
     vplPatches *p = openPatches(g, 1, 0), *q = p;
     float priorities[30] = {0};
@@ -537,16 +496,4 @@ static void RefiningRefusesWhatIsNoPriority(void** state)
     assert_ptr_equal(q, p);
     vplPatches_Destroy(p);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
-
-TEST_SUITE(patches, cmocka_unit_test(EveryThresholdGivesTheTablesCountsFromBothSides),
-           cmocka_unit_test(ScaledThresholdsInFloatGiveTheTablesCounts),
-           cmocka_unit_test(CountsDoNotDependOnWhichOfEqualEdgesIsFirst),
-           cmocka_unit_test(TheMeshOfEachRoundIsTheTables), cmocka_unit_test(NodesAreWhatTheHeaderSays),
-           cmocka_unit_test(PointsAreFoundInTheirPatch), cmocka_unit_test(TrianglesWithoutAreaHaveNoPatch),
-           cmocka_unit_test(TinyThresholdsEnd), cmocka_unit_test(EdgesEndWhereFloatDoes),
-           cmocka_unit_test(NoTrianglesGiveNoPatches),
-           cmocka_unit_test(ACountBisectsTheLongestFirstAllOfALengthTogether),
-           cmocka_unit_test(RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes),
-           cmocka_unit_test(RefiningEverythingIsARound), cmocka_unit_test(RefiningRefusesWhatIsNoPriority));

@@ -38,10 +38,8 @@ static float worthOf(const vplGeometry* g, const vplVirtualLight* light, const v
 }
 
 // rho sum(flux)/pi cos cos / d^2, bounded; documented: rho sum(L) cos. Nothing from below, nor past a wall.
-static void WorthIsWhatTheFloorReflects(void** state)
+TEST(WorthIsWhatTheFloorReflects, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* floor = floorQuad(context, vplVec(0, 0, 0), 10, 0.25f);
     vplPlacementDef def = narrowDef();
     const vplVirtualLight slant =
@@ -58,13 +56,10 @@ static void WorthIsWhatTheFloorReflects(void** state)
     def.camera.far = 3.9; // the floor is cut away
     assert_true(worthOf(floor, &slant, &def) == 0);
     vplGeometry_Destroy(floor);
-    closeTestContext(context);
 }
 
-static void WhatIsBetweenStopsOnlyLightsWithShadows(void** state)
+TEST(WhatIsBetweenStopsOnlyLightsWithShadows, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = sceneOf(context, 0.5f);
     vplObjectDef object = vplDefaultObjectDef();
     object.transform = vplMat4_FromParts(vplVec(0, 0, 0), (double[3]){-VPL_PI / 2, 0, 0}, vplVec(10, 10, 1));
@@ -81,7 +76,6 @@ static void WhatIsBetweenStopsOnlyLightsWithShadows(void** state)
     assert_true(worthOf(geometry, &behind, &def) > 0);
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- the choice
@@ -118,11 +112,9 @@ static vplLightSet* chooseSome(const vplLightSet* from, const float* contributio
 }
 
 // Each light's weight, summed over all choices in which it is, must be its own weight times their number.
-static void EachLightKeepsItsWeightInTheMean(void** state)
+TEST(EachLightKeepsItsWeightInTheMean, 1)
 {
-    (void)state;
     enum { CHOICES = 20000 };
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplLightSet* all = candidatesOf(cube, 100);
     float* contributions = someContributions(all);
@@ -149,15 +141,12 @@ static void EachLightKeepsItsWeightInTheMean(void** state)
     free(contributions);
     vplLightSet_Destroy(all);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // The closed form: step k carries 4 pi I rho^(k+1). The mean over choices must find it.
-static void ChosenFluxIsThatOfAClosedRoom(void** state)
+TEST(ChosenFluxIsThatOfAClosedRoom, 1)
 {
-    (void)state;
     enum { CHOICES = 2000 };
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplLightSet* all = candidatesOf(cube, 1000);
     float* contributions = someContributions(all);
@@ -185,13 +174,10 @@ static void ChosenFluxIsThatOfAClosedRoom(void** state)
     free(contributions);
     vplLightSet_Destroy(all);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
-static void AllAreKeptWhereAllAreWanted(void** state)
+TEST(AllAreKeptWhereAllAreWanted, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplLightSet* all = candidatesOf(cube, 50);
     float* contributions = someContributions(all);
@@ -212,7 +198,6 @@ static void AllAreKeptWhereAllAreWanted(void** state)
     free(contributions);
     vplLightSet_Destroy(all);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // ---- in a render
@@ -264,10 +249,8 @@ static double meanEnergy(const vplScene* scene, vplRenderOptions o, double* devi
     return sum;
 }
 
-static void PicturesAreThoseOfPlainParticlesInTheMean(void** state)
+TEST(PicturesAreThoseOfPlainParticlesInTheMean, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     // Instant radiosity and Keller's, with rays and without shadows, documented lighting.
     for (int variant = 0; variant < 5; variant++) {
         vplScene* scene =
@@ -287,14 +270,11 @@ static void PicturesAreThoseOfPlainParticlesInTheMean(void** state)
         assertNear(mean[1], mean[0], 3.5 * hypot(apart[0], apart[1]), "energy", variant);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // In a flat whose lamps are in seven other rooms, nearly all lights are chosen where they reach the camera's room.
-static void LightsBehindWallsAreLeftOut(void** state)
+TEST(LightsBehindWallsAreLeftOut, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene;
     assert_int_equal(vplScene_Load(context, "examples/scenes/flat.json", &scene), VPL_SUCCESS);
     double share[2], count[2];
@@ -314,7 +294,6 @@ static void LightsBehindWallsAreLeftOut(void** state)
     assertNear(count[1], count[0], 2, "lights", 0);
     assert_true(share[0] < 0.01 && share[1] > 30 * share[0]);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* o)
@@ -325,9 +304,8 @@ static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* o)
     return hash;
 }
 
-static void ChoicesDoNotDependOnThreadsOrIsa(void** state)
+TEST_ALONE(ChoicesDoNotDependOnThreadsOrIsa)
 {
-    (void)state;
     for (int placement = VPL_PLACEMENT_RSM; placement <= VPL_PLACEMENT_VIEW; placement++) {
         for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
             uint64_t wanted = 0;
@@ -373,10 +351,8 @@ static vplScene* pointInCube(vplContext* context, float intensity, float rho)
     return scene;
 }
 
-static void DoublingTheEmitterChoosesTheSameLights(void** state)
+TEST(DoublingTheEmitterChoosesTheSameLights, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene *one = pointInCube(context, 3, 0.5f), *two = pointInCube(context, 6, 0.5f);
     vplRenderOptions o = viewOptions(100);
     vplLightSet *a = lightsOf(one, &o), *b = lightsOf(two, &o);
@@ -390,15 +366,12 @@ static void DoublingTheEmitterChoosesTheSameLights(void** state)
     vplLightSet_Destroy(b);
     vplScene_Destroy(one);
     vplScene_Destroy(two);
-    closeTestContext(context);
 }
 
 // X040 and beyond: no particles; walls that reflect nothing; the brightest and the dimmest emitters; a camera that
 // sees nothing but the sky.
-static void ExtremesStayFinite(void** state)
+TEST(ExtremesStayFinite, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float intensities[] = {VPL_MAX_MAGNITUDE, 1e-30f, 0};
     for (int i = 0; i < 3; i++) {
         vplScene* scene = pointInCube(context, intensities[i], 0.9f);
@@ -424,13 +397,10 @@ static void ExtremesStayFinite(void** state)
     assert_int_equal(vplScene_AddCamera(black, &away, &o.output.camera), VPL_SUCCESS);
     assert_true(energyOf(black, &o) == 0);
     vplScene_Destroy(black);
-    closeTestContext(context);
 }
 
-static void BadPlacementsAreRefused(void** state)
+TEST(BadPlacementsAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     const vplLightSet none = {.context = context};
     float worth;
@@ -453,14 +423,4 @@ static void BadPlacementsAreRefused(void** state)
     assert_null(set);
     takeMessage();
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
-
-TEST_SUITE(placement, cmocka_unit_test(WorthIsWhatTheFloorReflects),
-           cmocka_unit_test(WhatIsBetweenStopsOnlyLightsWithShadows),
-           cmocka_unit_test(EachLightKeepsItsWeightInTheMean),
-           cmocka_unit_test(ChosenFluxIsThatOfAClosedRoom), cmocka_unit_test(AllAreKeptWhereAllAreWanted),
-           slow_unit_test(PicturesAreThoseOfPlainParticlesInTheMean),
-           cmocka_unit_test(LightsBehindWallsAreLeftOut), cmocka_unit_test(ChoicesDoNotDependOnThreadsOrIsa),
-           cmocka_unit_test(DoublingTheEmitterChoosesTheSameLights), cmocka_unit_test(ExtremesStayFinite),
-           cmocka_unit_test(BadPlacementsAreRefused));

@@ -129,10 +129,8 @@ static Ply bake(vplContext* context, vplPatchMesh** meshOut)
 }
 
 // Three fronts (the third as its material) and one back; where two reflectances meet each has its vertex.
-static void FileHasAllFrontsAndTheLitBacks(void** state)
+TEST(FileHasAllFrontsAndTheLitBacks, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m;
     Ply ply = bake(context, &m);
     assert_int_equal(ply.faceCount, 4);
@@ -147,13 +145,10 @@ static void FileHasAllFrontsAndTheLitBacks(void** state)
     }
     free(ply.bytes);
     closeMesh(m);
-    closeTestContext(context);
 }
 
-static void ColoursAreRadiosity(void** state)
+TEST(ColoursAreRadiosity, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m;
     Ply ply = bake(context, &m);
     const float rho[4][3] = {{0.5f, 0, 0.25f}, {0.125f, 0.5f, 0}, {0.5f, 0.5f, 0.5f}, {0.125f, 0.5f, 0}};
@@ -168,14 +163,11 @@ static void ColoursAreRadiosity(void** state)
     }
     free(ply.bytes);
     closeMesh(m);
-    closeTestContext(context);
 }
 
 // Of one reflectance vertices are those of the mesh.
-static void VerticesAreSharedWhereColoursAgree(void** state)
+TEST(VerticesAreSharedWhereColoursAgree, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = flatMesh(context, frontsOpen);
     const vplRgb irradiance[40] = {{0, 0, 0}};
     Ply ply = writeAndRead(m, irradiance, 1);
@@ -183,13 +175,10 @@ static void VerticesAreSharedWhereColoursAgree(void** state)
     assert_int_equal(ply.faceCount, 3);
     free(ply.bytes);
     closeMesh(m);
-    closeTestContext(context);
 }
 
-static void FilesThatCannotBeAreRefused(void** state)
+TEST(FilesThatCannotBeAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplPatchMesh* m = flatMesh(context, frontsOpen);
     vplRgb irradiance[40] = {{0, 0, 0}};
     assert_int_equal(vplPatchMesh_WritePly(m, irradiance, 1, "/nowhere/a.ply"), VPL_FILE_ERROR);
@@ -199,9 +188,4 @@ static void FilesThatCannotBeAreRefused(void** state)
     assert_int_equal(vplPatchMesh_WritePly(m, irradiance, 1, "/tmp/a.ply"), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "vertexIrradiance[3]"));
     closeMesh(m);
-    closeTestContext(context);
 }
-
-TEST_SUITE(ply, cmocka_unit_test(FileHasAllFrontsAndTheLitBacks), cmocka_unit_test(ColoursAreRadiosity),
-           cmocka_unit_test(VerticesAreSharedWhereColoursAgree),
-           cmocka_unit_test(FilesThatCannotBeAreRefused));

@@ -2,75 +2,12 @@
 // Radiosity as a whole: what its pictures are made of and converge to, light that moves, and what happens at its
 // extremes. The stages have suites of their own: patches, patchSides, formFactors, radiositySolve, links, patchMesh,
 // drawPatches.
-#include "scenes.h"
-#include "shapes.h"
-
-#include "math/vec.h"
-
-// ---- scenes and pictures
-
-// A box on the floor of a closed room, lit by a lamp or a point.
-static vplScene* boxRoom(vplContext* context, float rho, bool lamp)
-{
-    vplScene* scene = closedCubeScene(context, rho, 0);
-    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.25f, -0.7f, -0.2f), 0, 0.5, vplVec(0.5f, 0.6f, 0.5f));
-    aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
-    if (lamp) {
-        addThing(scene, VPL_OBJECT_QUAD, addMaterial(scene, (vplRgb){0, 0, 0}, 5), vplVec(0, 0.99f, 0),
-                 VPL_PI / 2, 0, vplVec(0.5f, 0.5f, 1));
-    } else {
-        addEmitter(scene, VPL_EMITTER_POINT, vplVec(-0.3f, 0.6f, 0.2f), vplVec(0, -1, 0), 3);
-    }
-    return scene;
-}
-
-static vplRenderOptions radiosityOptions(int patches)
-{
-    vplRenderOptions o = vplDefaultRenderOptions();
-    o.method = VPL_METHOD_RADIOSITY;
-    o.output.width = 40;
-    o.output.height = 30;
-    o.radiosity.patches = patches;
-    return o;
-}
-
-static vplImage* showOf(const vplScene* scene, vplRenderOptions o, vplShow show)
-{
-    o.output.show = show;
-    return renderScene(scene, &o, NULL);
-}
-
-static double meanOf(const vplImage* image)
-{
-    double sum = 0;
-    for (int i = 0; i < 3 * image->width * image->height; i++) {
-        sum += (double)image->pixels[i];
-    }
-    return sum / (3 * image->width * image->height);
-}
-
-static vplImage* pathsOf(const vplScene* scene, vplShow show, int spp)
-{
-    vplRenderOptions o = radiosityOptions(1);
-    o.method = VPL_METHOD_PATH;
-    o.path.pixel = VPL_PIXEL_CENTRE;
-    o.path.samples = spp;
-    return showOf(scene, o, show);
-}
-
-static vplComparison compare(const vplImage* a, const vplImage* b)
-{
-    vplComparison c;
-    assert_int_equal(vplImage_Compare(a, b, &c), VPL_SUCCESS);
-    return c;
-}
+#include "radiosity_pictures.h"
 
 // ---- what a picture is
 
-static void PictureIsDirectLightAndPatches(void** state)
+TEST(PictureIsDirectLightAndPatches, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int lamp = 0; lamp < 2; lamp++) {
         vplScene* scene = boxRoom(context, 0.6f, lamp);
         vplRenderOptions o = radiosityOptions(200), plain = o;
@@ -89,13 +26,10 @@ static void PictureIsDirectLightAndPatches(void** state)
         vplImage_Destroy(same);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
-static void PicturesComeNearerToPathsAsPatchesShrink(void** state)
+TEST(PicturesComeNearerToPathsAsPatchesShrink, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int lamp = 0; lamp < 2; lamp++) {
         vplScene* scene = boxRoom(context, 0.7f, lamp);
         vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 512);
@@ -113,7 +47,6 @@ static void PicturesComeNearerToPathsAsPatchesShrink(void** state)
         vplImage_Destroy(truth);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // What errors against two truths of independent noise have in common.
@@ -130,10 +63,8 @@ static double commonError(const vplImage* image, vplImage* const truth[2])
 }
 
 // Measured: 0.00071 with 980 patches, where 1624 of one size give 0.00092 (bench/radiosity_error has more, off edges).
-static void AdaptivePatchesAreBetterThanMoreUniformOnes(void** state)
+TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "../../examples/scenes/room-area.json");
     vplImage* truth[2];
     vplRenderOptions o = radiosityOptions(1);
@@ -161,16 +92,13 @@ static void AdaptivePatchesAreBetterThanMoreUniformOnes(void** state)
     vplImage_Destroy(truth[0]);
     vplImage_Destroy(truth[1]);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // In a closed room whose walls all emit, light is the same everywhere: Le / (1 - rho), of which Le rho^2 / (1 - rho) was
 // reflected at least twice, the eye's last reflection counted.
-static void FurnaceIsUniform(void** state)
+TEST(FurnaceIsUniform, 2)
 {
-    (void)state;
     static const float rhos[] = {0, 0.1f, 0.5f, 0.9f, 0.99f};
-    vplContext* context = openTestContext(2);
     for (int k = 0; k < 5; k++) {
         vplScene* scene = closedCubeScene(context, rhos[k], 1);
         aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
@@ -189,7 +117,6 @@ static void FurnaceIsUniform(void** state)
         }
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 static uint64_t hashOf(vplContext* context)
@@ -212,19 +139,16 @@ static uint64_t hashOf(vplContext* context)
     return hash;
 }
 
-static void PicturesHaveTheSameBitsEverywhere(void** state)
+TEST_ALONE(PicturesHaveTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(hashOf);
 }
 
 // ---- the report's saturation
 
 // X094. With the document's estimator and few patches there is too much light, or no solution; with ours there is not.
-static void OneSampleFormFactorsSaturateAndOursDoNot(void** state)
+TEST(OneSampleFormFactorsSaturateAndOursDoNot, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = boxRoom(context, 0.75f, false);
     vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 256);
     vplRenderOptions o = radiosityOptions(60);
@@ -238,13 +162,10 @@ static void OneSampleFormFactorsSaturateAndOursDoNot(void** state)
     vplImage_Destroy(theirs);
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void DivergenceIsASentence(void** state)
+TEST(DivergenceIsASentence, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = closedCubeScene(context, 0.9f, 1);
     aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
     vplRenderOptions o = radiosityOptions(12); // spectral radius 1.55
@@ -263,14 +184,11 @@ static void DivergenceIsASentence(void** state)
     assert_true(stats.solve.spectralRadius < 0.91 && stats.solve.rowSumMax <= 1);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X096: no solution, but as many sweeps as were asked for, and a warning.
-static void WhiteClosedRoomEndsWithAWarning(void** state)
+TEST(WhiteClosedRoomEndsWithAWarning, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = boxRoom(context, 1, false);
     vplRenderOptions o = radiosityOptions(100);
     vplRenderStats stats;
@@ -283,126 +201,12 @@ static void WhiteClosedRoomEndsWithAWarning(void** state)
     assert_true(isfinite(meanOf(image)) && stats.solve.residual > o.radiosity.residual);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
-}
-
-// ---- a light that moves
-
-static void movePath(vplScene* scene)
-{
-    const vplEmitterDef* def = vplScene_GetEmitter(scene, 0);
-    vplEmitterKey keys[2] = {vplMakeEmitterKey(def, 0), vplMakeEmitterKey(def, 1)};
-    keys[1].position = vplVec(0.5f, 0.3f, 0.4f);
-    assert_int_equal(vplScene_SetEmitterPath(scene, 0, keys, 2), VPL_SUCCESS);
-}
-
-// Frame 0, then frame 1 again and again: one sweep each time.
-static void LightThatJumpedArrivesSweepBySweep(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplScene* scene = boxRoom(context, 0.7f, false);
-    movePath(scene);
-    vplRenderOptions o = radiosityOptions(300);
-    o.sequence.frame = 1;
-    o.radiosity.residual = 1e-7;
-    vplImage* truth = showOf(scene, o, VPL_SHOW_INDIRECT);
-    assert_int_equal(vplHistory_Create(context, &o.sequence.history), VPL_SUCCESS);
-    o.sequence.frame = 0;
-    vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
-    double last = compare(image, truth).rmse;
-    assert_true(last > 0);
-    vplImage_Destroy(image);
-    o.sequence.frame = 1;
-    o.radiosity.iterations = 1;
-    for (int i = 0; i < 12; i++) {
-        image = showOf(scene, o, VPL_SHOW_INDIRECT);
-        const double error = compare(image, truth).rmse;
-        assert_true(error < 0.6 * last || error < 1e-6);
-        last = error;
-        vplImage_Destroy(image);
-    }
-    vplHistory_Destroy(o.sequence.history);
-    vplImage_Destroy(truth);
-    vplScene_Destroy(scene);
-    closeTestContext(context);
-}
-
-static void FormFactorsAreKeptAndNothingElseChanges(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplScene* scene = boxRoom(context, 0.7f, false);
-    movePath(scene);
-    vplRenderOptions o = radiosityOptions(300);
-    vplRenderStats alone, kept;
-    o.sequence.coherence = VPL_COHERENCE_OFF;
-    o.sequence.frame = 1;
-    vplImage_Destroy(renderScene(scene, &o, &alone));
-    assert_int_equal(vplHistory_Create(context, &o.sequence.history), VPL_SUCCESS);
-    o.sequence.frame = 0;
-    vplImage_Destroy(renderScene(scene, &o, NULL));
-    o.sequence.frame = 1;
-    vplImage_Destroy(renderScene(scene, &o, &kept));
-    assert_true(kept.imageHash == alone.imageHash);
-    assert_true(kept.rays < alone.rays / 4);
-    o.radiosity.patches = 200;
-    vplImage_Destroy(renderScene(scene, &o, &kept)); // other patches are made anew
-    assert_true(kept.patches < alone.patches);
-    vplHistory_Destroy(o.sequence.history);
-    vplScene_Destroy(scene);
-    closeTestContext(context);
-}
-
-// A vplProgressFcn that refuses from the n-th time on; `user` is an int that counts down.
-static bool refuseLater(void* user, double fraction)
-{
-    (void)fraction;
-    return --*(int*)user > 0;
-}
-
-// Wherever the first frame was cancelled, the next of the same history is as if it had not been.
-static void CancelledFramesLeaveNothingBehind(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    vplScene* scene = boxRoom(context, 0.7f, false);
-    vplRenderOptions o = radiosityOptions(40);
-    vplRenderStats alone, after;
-    o.shadow.mapSize = 32;            // as many steps as ever, all of them short
-    o.sequence.coherence = VPL_COHERENCE_OFF; // light that was found before pixels were cancelled may be gone on from
-    vplImage_Destroy(renderScene(scene, &o, &alone));
-    int cancelled = 0;
-    for (int last = 1, done = 0; !done; last++) {
-        int left = last;
-        vplImage* image = NULL;
-        assert_int_equal(vplHistory_Create(context, &o.sequence.history), VPL_SUCCESS);
-        o.progress = refuseLater;
-        o.progressUser = &left;
-        const vplResult result = vplRender(scene, &o, &image, NULL);
-        vplImage_Destroy(image);
-        o.progress = NULL;
-        if (result == VPL_CANCELLED) {
-            vplImage_Destroy(renderScene(scene, &o, &after));
-            assert_true(after.imageHash == alone.imageHash);
-            assert_true(after.solve.spectralRadius == alone.solve.spectralRadius);
-            cancelled++;
-        }
-        done = result == VPL_SUCCESS;
-        vplHistory_Destroy(o.sequence.history);
-        o.sequence.history = NULL;
-    }
-    assert_true(cancelled > 10);
-    vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- extremes
 
-static void NoLightIsBlack(void** state)
+TEST(NoLightIsBlack, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = closedCubeScene(context, 0.5f, 0);
     aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
     vplRenderOptions o = radiosityOptions(100);
@@ -414,13 +218,10 @@ static void NoLightIsBlack(void** state)
         vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void OneTriangleReflectsNothingToItself(void** state)
+TEST(OneTriangleReflectsNothingToItself, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = sceneOf(context, 0.5f);
     Shape shape = {0};
     addTriangle(&shape, vplVec(-1, 0, 1), vplVec(1, 0, 1), vplVec(0, 0, -1));
@@ -438,14 +239,11 @@ static void OneTriangleReflectsNothingToItself(void** state)
     assert_true(meanOf(image) > 0.001);
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Two walls in the same place: each patch is there twice, light is not.
-static void CoplanarDuplicatesDoNotDoubleLight(void** state)
+TEST(CoplanarDuplicatesDoNotDoubleLight, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     double means[2];
     for (int twice = 0; twice < 2; twice++) {
         vplScene* scene = boxRoom(context, 0.6f, false);
@@ -460,14 +258,11 @@ static void CoplanarDuplicatesDoNotDoubleLight(void** state)
         vplScene_Destroy(scene);
     }
     assertNear(means[1], means[0], 0.05 * means[0], "light of a floor that is there twice", 0);
-    closeTestContext(context);
 }
 
 // The inside of another closed box has no light, and takes no part.
-static void RoomsWithoutLightTakeNoPart(void** state)
+TEST(RoomsWithoutLightTakeNoPart, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplRenderStats stats[2];
     for (int other = 0; other < 2; other++) {
         vplScene* scene = boxRoom(context, 0.6f, false);
@@ -483,15 +278,12 @@ static void RoomsWithoutLightTakeNoPart(void** state)
     assert_true(stats[1].patches > stats[0].patches);
     assert_int_equal(stats[1].patchSides, stats[0].patchSides);
     assert_true(stats[1].imageHash == stats[0].imageHash);
-    closeTestContext(context);
 }
 
 // X101. Corners of floor patches under the box have no light; nothing near it may be dark for that. Compared are flat
 // patches beside the box, of which none is much darker than paths say.
-static void NothingIsDarkBecauseItTouchesABox(void** state)
+TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = closedCubeScene(context, 0.7f, 0);
     addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0, -0.8f, 0), 0, 0.6, vplVec(0.7f, 0.4f, 0.7f));
     aim(scene, vplVec(0, 0.95f, 0.01f), vplVec(0, -1, 0)); // straight down
@@ -515,15 +307,12 @@ static void NothingIsDarkBecauseItTouchesABox(void** state)
     assert_true(least[1] < 0.7); // its figure 7
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- what is refused
 
-static void WhatIsNotPossibleIsASentence(void** state)
+TEST(WhatIsNotPossibleIsASentence, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = boxRoom(context, 0.5f, false);
     const vplRenderOptions good = radiosityOptions(100);
     vplRenderOptions o[11];
@@ -555,19 +344,4 @@ static void WhatIsNotPossibleIsASentence(void** state)
         assert_non_null(strstr(takeMessage(), words[i]));
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(radiosity, cmocka_unit_test(PictureIsDirectLightAndPatches),
-           slow_unit_test(PicturesComeNearerToPathsAsPatchesShrink),
-           slow_unit_test(AdaptivePatchesAreBetterThanMoreUniformOnes), cmocka_unit_test(FurnaceIsUniform),
-           cmocka_unit_test(PicturesHaveTheSameBitsEverywhere),
-           slow_unit_test(OneSampleFormFactorsSaturateAndOursDoNot), cmocka_unit_test(DivergenceIsASentence),
-           cmocka_unit_test(WhiteClosedRoomEndsWithAWarning),
-           cmocka_unit_test(LightThatJumpedArrivesSweepBySweep),
-           cmocka_unit_test(FormFactorsAreKeptAndNothingElseChanges),
-           cmocka_unit_test(CancelledFramesLeaveNothingBehind), cmocka_unit_test(NoLightIsBlack),
-           cmocka_unit_test(OneTriangleReflectsNothingToItself),
-           cmocka_unit_test(CoplanarDuplicatesDoNotDoubleLight),
-           cmocka_unit_test(RoomsWithoutLightTakeNoPart), slow_unit_test(NothingIsDarkBecauseItTouchesABox),
-           cmocka_unit_test(WhatIsNotPossibleIsASentence));

@@ -1,45 +1,6 @@
 // SPDX-License-Identifier: MIT
-// B = E + rho F B with form factors made by hand: tests/data/two_patch.csv, furnace.csv, gs_cube6.csv, gs_rates.csv; what
-// has no solution (X094, X096); and extremes.
-#include "exchange.h"
-
-#include "base/hash.h"
-
-#include <float.h>
-#include <stdlib.h>
-
-static const vplSolver SOLVERS[] = {VPL_SOLVER_GAUSS_SEIDEL, VPL_SOLVER_JACOBI, VPL_SOLVER_SHOOTING};
-
-static vplSolveDef sweeps(vplSolver solver, int iterations)
-{
-    vplSolveDef def = vplDefaultSolveDef();
-    def.solver = solver;
-    def.iterations = iterations;
-    def.residual = 0;
-    return def;
-}
-
-// From B = E.
-static vplSolveStats solve(const Exchange* e, const vplSolveDef* def, const vplRgb* source, vplRgb* radiosity)
-{
-    vplSolveStats stats;
-    memcpy(radiosity, source, (size_t)e->sides.count * sizeof *radiosity);
-    if (vplSolveRadiosity(&e->transport, def, source, radiosity, &stats) != VPL_SUCCESS) {
-        fail_msg("%s", takeMessage());
-    }
-    return stats;
-}
-
-static vplRgb grey(double x)
-{
-    return (vplRgb){(float)x, (float)x, (float)x};
-}
-
-// Relative to the wanted value.
-static void assertRatio(double value, double wanted, double tolerance, const char* what, int row)
-{
-    assertNear(value, wanted, tolerance * fabs(wanted), what, row);
-}
+// B = E + rho F B with form factors made by hand: tests/data/two_patch.csv, furnace.csv, gs_cube6.csv, gs_rates.csv.
+#include "solving.h"
 
 // ---- two patches
 
@@ -55,10 +16,8 @@ static void openTwoPatches(Exchange* e, vplContext* context, const Table* t, int
     e->rows[2] = (float)number(t, row, "F21");
 }
 
-static void TwoPatchesAreThoseOfTheTable(void** state)
+TEST(TwoPatchesAreThoseOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("two_patch.csv");
     const struct {
         vplSolver solver;
@@ -88,14 +47,11 @@ static void TwoPatchesAreThoseOfTheTable(void** state)
     }
     assert_int_equal(compared, 8 * 7);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // X096
-static void WithoutASolutionIterationsEndItAndTheResidualIsReported(void** state)
+TEST(WithoutASolutionIterationsEndItAndTheResidualIsReported, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("two_patch.csv");
     int singular = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -118,15 +74,12 @@ static void WithoutASolutionIterationsEndItAndTheResidualIsReported(void** state
     }
     assert_int_equal(singular, 3);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- closed rooms
 
-static void AFurnaceGlowsByTheGeometricSeries(void** state)
+TEST(AFurnaceGlowsByTheGeometricSeries, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("furnace.csv");
     static const int iterations[] = {1, 2, 5, 10, 100};
     enum { COUNT = 37 };
@@ -156,26 +109,10 @@ static void AFurnaceGlowsByTheGeometricSeries(void** state)
         freeExchange(&e);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
-// The unit cube's faces; opposite ones: Howell's catalogue, C-11; both as in ff_analytic.csv.
-static void openCube(Exchange* e, vplContext* context, float rho)
+TEST(AlgorithmOneOnACubeIsThatOfTheTable, 1)
 {
-    const double opposite = 0.19982489569838745;
-    openExchange(e, context, 6);
-    setReflectance(e, rho);
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) {
-            e->rows[6 * i + j] = (float)(i == j ? 0 : (i ^ 1) == j ? opposite : (1 - opposite) / 4);
-        }
-    }
-}
-
-static void AlgorithmOneOnACubeIsThatOfTheTable(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("gs_cube6.csv");
     static const char* const columns[] = {"B_-z", "B_+z", "B_-y", "B_+y", "B_-x", "B_+x"};
     for (int row = 0; row < t.rows; row++) {
@@ -196,7 +133,6 @@ static void AlgorithmOneOnACubeIsThatOfTheTable(void** state)
     }
     assert_int_equal(t.rows, 42);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // Sweeps from darkness, as the table counts, until all are within 1e-3 of the solution. The row sums' last bits are worth some sweeps at 0.99, so the solution
@@ -221,10 +157,8 @@ static int sweepsNeeded(const Exchange* e, vplSolver solver)
     }
 }
 
-static void GaussSeidelNeedsHalfTheSweepsOfJacobi(void** state)
+TEST(GaussSeidelNeedsHalfTheSweepsOfJacobi, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("gs_rates.csv");
     for (int row = 0; row < t.rows; row++) {
         Exchange e;
@@ -236,39 +170,12 @@ static void GaussSeidelNeedsHalfTheSweepsOfJacobi(void** state)
         freeExchange(&e);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // ---- all solvers
 
-enum { MANY = 300 }; // more than one block and one chunk, no multiple of either
-
-static void fillSources(vplRgb* source, int count, uint64_t seed)
+TEST(EverySolverFindsTheSameSolution, 2)
 {
-    for (int i = 0; i < count; i++) {
-        const uint64_t at = 3 * (uint64_t)i;
-        source[i] = (vplRgb){(float)uniformAt(seed, at), (float)uniformAt(seed, at + 1),
-                             (float)uniformAt(seed, at + 2)};
-    }
-}
-
-// Inside of a sphere all receive the same: H = sum a E / (1 - sum a rho), a the shares of area.
-static double sphereIrradiance(const Exchange* e, const vplRgb* source, int channel)
-{
-    double emitted = 0, kept = 0, area = 0;
-    for (int i = 0; i < e->sides.count; i++) {
-        const double a = (double)e->side[i].area;
-        emitted += a * (double)(&source[i].r)[channel];
-        kept += a * (double)(&e->side[i].reflectance.r)[channel];
-        area += a;
-    }
-    return emitted / area / (1 - kept / area);
-}
-
-static void EverySolverFindsTheSameSolution(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
     Exchange e;
     vplRgb source[MANY], b[MANY], residual[MANY], received[MANY];
     openExchange(&e, context, MANY);
@@ -291,13 +198,10 @@ static void EverySolverFindsTheSameSolution(void** state)
         }
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void AMovedLightStartsFromTheOldSolution(void** state)
+TEST(AMovedLightStartsFromTheOldSolution, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb before[MANY], after[MANY], old[MANY], b[MANY], fresh[MANY];
     openExchange(&e, context, MANY);
@@ -323,13 +227,10 @@ static void AMovedLightStartsFromTheOldSolution(void** state)
         }
     }
     freeExchange(&e);
-    closeTestContext(context);
 }
 
-static void ResidualsEndIt(void** state)
+TEST(ResidualsEndIt, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Exchange e;
     vplRgb source[MANY], b[MANY];
     openExchange(&e, context, MANY);
@@ -352,243 +253,6 @@ static void ResidualsEndIt(void** state)
         assert_true(last > 2);
     }
     freeExchange(&e);
-    closeTestContext(context);
-}
-
-// ---- what diverges (X094)
-
-static void WhatDivergesIsRefusedWithItsRadius(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    for (int k = 0; k < 3; k++) {
-        for (int large = 0; large < 2; large++) {
-            Exchange e;
-            vplRgb source[MANY], b[MANY];
-            vplSolveStats stats = {.iterations = 77};
-            openExchange(&e, context, MANY);
-            fillSphere(&e, 41);
-            setReflectance(&e, 0.5f);
-            for (size_t i = 0; i < (size_t)MANY * MANY; i++) {
-                e.rows[i] *= large ? 100 : 3; // radius 50, 1.5
-            }
-            fillSources(source, MANY, 42);
-            memcpy(b, source, sizeof b);
-            const vplSolveDef def = sweeps(SOLVERS[k], 1 << 20);
-            assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, &stats), VPL_LIMIT);
-            const char* message = takeMessage();
-            assert_non_null(strstr(message, large ? "is 50, must be below 1" : "is 1.5, must be below 1"));
-            assert_non_null(strstr(message, "--row-sums clamp"));
-            assert_memory_equal(b, source, sizeof b);
-            assert_int_equal(stats.iterations, 77);
-            freeExchange(&e);
-        }
-    }
-    closeTestContext(context);
-}
-
-// Few sweeps do not hide it.
-static void AFewSweepsOfWhatDivergesAreRefusedToo(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    Exchange e;
-    vplRgb source[MANY], b[MANY];
-    openExchange(&e, context, MANY);
-    fillSphere(&e, 51);
-    setReflectance(&e, 0.6f);
-    for (size_t i = 0; i < (size_t)MANY * MANY; i++) {
-        e.rows[i] *= 2;
-    }
-    fillSources(source, MANY, 52);
-    for (int k = 0; k < 2; k++) {
-        memcpy(b, source, sizeof b);
-        const vplSolveDef def = sweeps(SOLVERS[k], 3);
-        assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_LIMIT);
-        assert_non_null(strstr(takeMessage(), "is 1.2, must be below 1"));
-        assert_memory_equal(b, source, sizeof b);
-    }
-    freeExchange(&e);
-    closeTestContext(context);
-}
-
-static void WhatIsBeyondFloatIsRefused(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    Exchange e;
-    vplRgb source[6], b[6], received[6];
-    openCube(&e, context, 0.5f);
-    for (int i = 0; i < 6; i++) {
-        source[i] = b[i] = grey(3e38);
-    }
-    for (int k = 0; k < 3; k++) {
-        const vplSolveDef def = sweeps(SOLVERS[k], 20);
-        assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_LIMIT);
-        assert_non_null(strstr(takeMessage(), "beyond the range of float"));
-    }
-    setReflectance(&e, 0);
-    const vplSolveDef def = sweeps(VPL_SOLVER_JACOBI, 20);
-    assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_SUCCESS);
-    assert_int_equal(vplGatherRadiosity(&e.transport, b, received), VPL_SUCCESS);
-    for (int i = 0; i < 6; i++) {
-        assert_true(isfinite(received[i].r) && b[i].r == source[i].r);
-    }
-    freeExchange(&e);
-    closeTestContext(context);
-}
-
-// ---- extremes
-
-static void NoSidesOneSideAndNoLight(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    for (int k = 0; k < 3; k++) {
-        Exchange e;
-        vplRgb source[MANY] = {{0, 0, 0}}, b[MANY];
-        vplSolveDef def = vplDefaultSolveDef();
-        def.solver = SOLVERS[k];
-        openExchange(&e, context, 0);
-        vplSolveStats stats = solve(&e, &def, source, b);
-        assert_true(stats.residual == 0 && stats.spectralRadius == 0 && stats.rowSumMin == 0);
-        assert_int_equal(vplGatherRadiosity(&e.transport, b, b), VPL_SUCCESS);
-        freeExchange(&e);
-
-        openExchange(&e, context, 1);
-        source[0] = (vplRgb){1, 2, 3};
-        stats = solve(&e, &def, source, b);
-        assert_true(b[0].r == 1 && b[0].g == 2 && b[0].b == 3 && stats.spectralRadius == 0);
-        freeExchange(&e);
-
-        openExchange(&e, context, MANY);
-        fillSphere(&e, 61);
-        memset(source, 0, sizeof source);
-        stats = solve(&e, &def, source, b);
-        for (int i = 0; i < MANY; i++) {
-            assert_true(b[i].r == 0 && b[i].g == 0 && b[i].b == 0);
-        }
-        assert_true(stats.residual == 0 && stats.iterations == 1);
-        freeExchange(&e);
-    }
-    closeTestContext(context);
-}
-
-static void NoSweepsChangeNothing(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    Exchange e;
-    vplRgb source[6], b[6];
-    openCube(&e, context, 0.5f);
-    for (int k = 0; k < 2; k++) {
-        for (int i = 0; i < 6; i++) {
-            source[i] = grey(1);
-            b[i] = grey(i);
-        }
-        const vplSolveDef def = sweeps(SOLVERS[k], 0);
-        vplSolveStats stats;
-        assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, &stats), VPL_SUCCESS);
-        assert_true(stats.iterations == 0 && stats.residual == 0 && b[5].r == 5);
-        assertNear(stats.spectralRadius, 0.5, 1e-6, "radius", 0);
-    }
-    freeExchange(&e);
-    closeTestContext(context);
-}
-
-static void TheBrightestSideShootsFirst(void** state)
-{
-    (void)state;
-    // Progress at once is what shooting is for: one sweep takes most of the light further than one of Jacobi's does.
-    vplContext* context = openTestContext(1);
-    Exchange e;
-    vplRgb source[MANY], shot[MANY], gathered[MANY], exact[MANY];
-    openExchange(&e, context, MANY);
-    fillSphere(&e, 71);
-    setReflectance(&e, 0.8f);
-    memset(source, 0, sizeof source);
-    source[7] = grey(100);
-    const vplSolveDef one = sweeps(VPL_SOLVER_SHOOTING, 1), jacobi = sweeps(VPL_SOLVER_JACOBI, 1),
-                      many = sweeps(VPL_SOLVER_JACOBI, 400);
-    solve(&e, &one, source, shot);
-    solve(&e, &jacobi, source, gathered);
-    solve(&e, &many, source, exact);
-    double shotError = 0, gatheredError = 0;
-    for (int i = 0; i < MANY; i++) {
-        shotError += fabs((double)shot[i].r - (double)exact[i].r);
-        gatheredError += fabs((double)gathered[i].r - (double)exact[i].r);
-    }
-    assert_true(shotError < 0.8 * gatheredError);
-    freeExchange(&e);
-    closeTestContext(context);
-}
-
-static void WrongArgumentsAreRefused(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    Exchange e;
-    vplRgb source[6] = {{0, 0, 0}}, b[6] = {{0, 0, 0}};
-    openCube(&e, context, 0.5f);
-    const struct {
-        int solver, iterations;
-        double residual;
-        const char* message;
-    } cases[] = {{3, 1, 0, "vplSolveDef.solver is 3"},
-                 {-1, 1, 0, "vplSolveDef.solver is -1"},
-                 {0, -1, 0, "vplSolveDef.iterations is -1, must be in [0, 1048576]"},
-                 {0, 1048577, 0, "vplSolveDef.iterations is 1048577"},
-                 {0, 1, -1e-9, "vplSolveDef.residual is -1e-09, must be in [0, 1]"},
-                 {0, 1, (double)NAN, "vplSolveDef.residual is"},
-                 {0, 1, 1.5, "vplSolveDef.residual is 1.5"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        vplSolveDef def = sweeps((vplSolver)cases[i].solver, cases[i].iterations);
-        def.residual = cases[i].residual;
-        assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_INVALID_ARGUMENT);
-        assert_non_null(strstr(takeMessage(), cases[i].message));
-    }
-    vplSolveDef def = sweeps(VPL_SOLVER_JACOBI, 1);
-    def.cookie = 0;
-    assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_INVALID_ARGUMENT);
-    assert_non_null(strstr(takeMessage(), "vplDefaultSolveDef"));
-    def = sweeps(VPL_SOLVER_JACOBI, 1);
-    source[4].g = INFINITY;
-    assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_INVALID_ARGUMENT);
-    assert_non_null(strstr(takeMessage(), "source[4] is (0, inf, 0), must be finite"));
-    source[4].g = 0;
-    b[3].b = NAN;
-    assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_INVALID_ARGUMENT);
-    assert_non_null(strstr(takeMessage(), "radiosity[3]"));
-    assert_int_equal(vplGatherRadiosity(&e.transport, b, source), VPL_INVALID_ARGUMENT);
-    e.transport.factors = NULL;
-    assert_int_equal(vplGatherRadiosity(&e.transport, source, b), VPL_INVALID_ARGUMENT);
-    assert_non_null(strstr(takeMessage(), "neither factors nor links"));
-    e.transport.factors = &e.factors;
-    e.factors.count = 5;
-    assert_int_equal(vplRadiosityResidual(&e.transport, source, source, b), VPL_INVALID_ARGUMENT);
-    assert_non_null(strstr(takeMessage(), "6 sides, but its form factors were made for 5"));
-    freeExchange(&e);
-    closeTestContext(context);
-}
-
-static void CancellingLeavesTheRadiosities(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    Exchange e;
-    vplRgb source[6], b[6];
-    openCube(&e, context, 0.5f);
-    for (int i = 0; i < 6; i++) {
-        source[i] = b[i] = grey(1);
-    }
-    int asked = 0;
-    vplSolveDef def = sweeps(VPL_SOLVER_GAUSS_SEIDEL, 10);
-    def.progress = refuseThird;
-    def.progressUser = &asked;
-    assert_int_equal(vplSolveRadiosity(&e.transport, &def, source, b, NULL), VPL_CANCELLED);
-    assert_true(asked == 3 && b[0].r == 1);
-    freeExchange(&e);
-    closeTestContext(context);
 }
 
 // ---- bits
@@ -616,22 +280,7 @@ static uint64_t solveHash(vplContext* context)
     return hash;
 }
 
-static void SolutionsAreTheSameBitsEverywhere(void** state)
+TEST_ALONE(SolutionsAreTheSameBitsEverywhere)
 {
-    (void)state;
     assertSameEverywhere(solveHash);
 }
-
-TEST_SUITE(radiositySolve, cmocka_unit_test(TwoPatchesAreThoseOfTheTable),
-           cmocka_unit_test(WithoutASolutionIterationsEndItAndTheResidualIsReported),
-           cmocka_unit_test(AFurnaceGlowsByTheGeometricSeries),
-           cmocka_unit_test(AlgorithmOneOnACubeIsThatOfTheTable),
-           cmocka_unit_test(GaussSeidelNeedsHalfTheSweepsOfJacobi),
-           cmocka_unit_test(EverySolverFindsTheSameSolution),
-           cmocka_unit_test(AMovedLightStartsFromTheOldSolution), cmocka_unit_test(ResidualsEndIt),
-           cmocka_unit_test(WhatDivergesIsRefusedWithItsRadius),
-           cmocka_unit_test(AFewSweepsOfWhatDivergesAreRefusedToo),
-           cmocka_unit_test(WhatIsBeyondFloatIsRefused), cmocka_unit_test(NoSidesOneSideAndNoLight),
-           cmocka_unit_test(NoSweepsChangeNothing), cmocka_unit_test(TheBrightestSideShootsFirst),
-           cmocka_unit_test(WrongArgumentsAreRefused), cmocka_unit_test(CancellingLeavesTheRadiosities),
-           cmocka_unit_test(SolutionsAreTheSameBitsEverywhere));

@@ -6,10 +6,8 @@
 
 #include <stdlib.h>
 
-static void EqualTouchesExactlyWhatLessLeft(void** state)
+TEST(EqualTouchesExactlyWhatLessLeft, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (uint64_t seed = 0; seed < 100; seed++) {
         ClipVertex* v = makeSoup(seed, 120);
         uint32_t indices[360];
@@ -44,15 +42,12 @@ static void EqualTouchesExactlyWhatLessLeft(void** state)
         freeCanvas(&c);
         free(v);
     }
-    closeTestContext(context);
 }
 
 // A grid of jittered vertices fills a rectangle: every centre inside is covered by one triangle, whatever the
 // jitter, the diagonals and the windings.
-static void SharedEdgeIsCoveredOnce(void** state)
+TEST(SharedEdgeIsCoveredOnce, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     enum { N = 9 };
     for (uint64_t seed = 0; seed < 60; seed++) {
         ClipVertex v[N * N];
@@ -87,7 +82,6 @@ static void SharedEdgeIsCoveredOnce(void** state)
         }
         freeCanvas(&c);
     }
-    closeTestContext(context);
 }
 
 static uint64_t soupHash(vplContext* context, uint64_t seed)
@@ -103,9 +97,8 @@ static uint64_t soupHash(vplContext* context, uint64_t seed)
     return hash;
 }
 
-static void BitsDoNotDependOnThreadsOrInstructionSet(void** state)
+TEST_ALONE(BitsDoNotDependOnThreadsOrInstructionSet)
 {
-    (void)state;
     for (uint64_t seed = 0; seed < 3; seed++) {
         uint64_t wanted = 0;
         const int workers[] = {1, 2, 3, 7};
@@ -127,21 +120,16 @@ static void BitsDoNotDependOnThreadsOrInstructionSet(void** state)
 }
 
 // Pinned bits: compiler, optimisation level and architecture may not change them either.
-static void BitsOfASoupArePinned(void** state)
+TEST(BitsOfASoupArePinned, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     uint64_t hash = soupHash(context, 1);
     if (hash != 0xad1dec21abfa48a5) {
         fail_msg("hash %016llx", (unsigned long long)hash);
     }
-    closeTestContext(context);
 }
 
-static void CullingKeepsOneSide(void** state)
+TEST(CullingKeepsOneSide, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     ClipVertex v[6] = {fixedVertex(0, 0, 0.5f, 16, 16),       fixedVertex(0, 4096, 0.5f, 16, 16),
                        fixedVertex(2048, 0, 0.5f, 16, 16), // counter-clockwise as seen
                        fixedVertex(4096, 4096, 0.5f, 16, 16), fixedVertex(2048, 4096, 0.5f, 16, 16),
@@ -158,14 +146,11 @@ static void CullingKeepsOneSide(void** state)
         freeCanvas(&c);
     }
     assert_true(fragments[0] == fragments[1] + fragments[2]);
-    closeTestContext(context);
 }
 
 // Two overlapping rectangles in each compare mode, with depth writes on and off.
-static void DepthComparesAndWritesAsAsked(void** state)
+TEST(DepthComparesAndWritesAsAsked, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float depths[3] = {0.5f, 0.25f, 0.75f}; // equal, nearer, farther than 0.5
     const bool passes[4][3] = {{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, 1, 1}};
     for (int compare = 0; compare < 4; compare++) {
@@ -190,13 +175,10 @@ static void DepthComparesAndWritesAsAsked(void** state)
             }
         }
     }
-    closeTestContext(context);
 }
 
-static void LoadKeepsAndClearReplacesWhatWasThere(void** state)
+TEST(LoadKeepsAndClearReplacesWhatWasThere, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     ClipVertex v[3] = {fixedVertex(0, 0, 0.5f, 70, 66), fixedVertex(2560, 0, 0.5f, 70, 66),
                        fixedVertex(0, 2560, 0.5f, 70, 66)};
     for (int load = 0; load < 2; load++) {
@@ -213,14 +195,11 @@ static void LoadKeepsAndClearReplacesWhatWasThere(void** state)
         assertNear((double)c.planes[0][last], load ? last : 3, 0, "outside", load);
         freeCanvas(&c);
     }
-    closeTestContext(context);
 }
 
 // X076, X073, X079: what cannot be drawn is dropped and disturbs nothing.
-static void BadTrianglesDrawNothing(void** state)
+TEST(BadTrianglesDrawNothing, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float bad[] = {NAN, INFINITY, -INFINITY};
     for (int component = 0; component < 4; component++) {
         for (int kind = 0; kind < 3; kind++) {
@@ -244,14 +223,11 @@ static void BadTrianglesDrawNothing(void** state)
         assert_int_equal(drawList(context, &c, &p, NULL, 3, 1).fragments, 0);
         freeCanvas(&c);
     }
-    closeTestContext(context);
 }
 
 // Huge but finite coordinates are clipped to the guard band, not wrapped.
-static void HugeTrianglesCoverThePicture(void** state)
+TEST(HugeTrianglesCoverThePicture, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     const float sizes[] = {10, 1e4f, 1e10f, 1e30f};
     for (int i = 0; i < 4; i++) {
         float s = sizes[i];
@@ -264,13 +240,10 @@ static void HugeTrianglesCoverThePicture(void** state)
         assertNear((double)c.planes[2][100], 1, 0, "constant varying", i);
         freeCanvas(&c);
     }
-    closeTestContext(context);
 }
 
-static void WrongArgumentsAreRefusedWithASentence(void** state)
+TEST(WrongArgumentsAreRefusedWithASentence, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplRaster* raster = NULL;
     vplFramebuffer f = vplDefaultFramebuffer(0, 5);
     assert_int_equal(vplRaster_Create(context, &f, &raster), VPL_INVALID_ARGUMENT);
@@ -300,7 +273,6 @@ static void WrongArgumentsAreRefusedWithASentence(void** state)
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_SUCCESS); // empty is fine
     assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);
     vplRaster_Destroy(raster);
-    closeTestContext(context);
 }
 
 static bool stopAtOnce(void* user, double fraction)
@@ -309,10 +281,8 @@ static bool stopAtOnce(void* user, double fraction)
     return fraction < 0;
 }
 
-static void ProgressCanCancel(void** state)
+TEST(ProgressCanCancel, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplFramebuffer f = vplDefaultFramebuffer(640, 640);
     vplRaster* raster;
     int asked = 0;
@@ -320,13 +290,4 @@ static void ProgressCanCancel(void** state)
     assert_int_equal(vplRaster_Run(raster, stopAtOnce, &asked, NULL), VPL_CANCELLED);
     assert_int_equal(asked, 1);
     vplRaster_Destroy(raster);
-    closeTestContext(context);
 }
-
-TEST_SUITE(raster, cmocka_unit_test(EqualTouchesExactlyWhatLessLeft),
-           cmocka_unit_test(SharedEdgeIsCoveredOnce),
-           cmocka_unit_test(BitsDoNotDependOnThreadsOrInstructionSet), cmocka_unit_test(BitsOfASoupArePinned),
-           cmocka_unit_test(CullingKeepsOneSide), cmocka_unit_test(DepthComparesAndWritesAsAsked),
-           cmocka_unit_test(LoadKeepsAndClearReplacesWhatWasThere), cmocka_unit_test(BadTrianglesDrawNothing),
-           cmocka_unit_test(HugeTrianglesCoverThePicture),
-           cmocka_unit_test(WrongArgumentsAreRefusedWithASentence), cmocka_unit_test(ProgressCanCancel));

@@ -20,10 +20,8 @@ static uint32_t crc32Of(const uint8_t* bytes, size_t count)
     return ~crc;
 }
 
-static void EveryTriangleOfTheTableFillsBitForBit(void** state)
+TEST(EveryTriangleOfTheTableFillsBitForBit, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("fill_tris.csv");
     for (int row = 0; row < t.rows; row++) {
         int width = (int)number(&t, row, "W"), height = (int)number(&t, row, "H");
@@ -51,7 +49,6 @@ static void EveryTriangleOfTheTableFillsBitForBit(void** state)
         freeCanvas(&c);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // Expands "-1*64 3*2" into owner[64].
@@ -112,10 +109,8 @@ static void checkMesh(vplContext* context, const char* name, json_t* mesh)
     freeCanvas(&c);
 }
 
-static void EveryMeshOfTheTableIsOwnedBitForBit(void** state)
+TEST(EveryMeshOfTheTableIsOwnedBitForBit, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     json_error_t error;
     json_t* meshes = json_load_file("tests/data/fill_meshes.json", 0, &error);
     assert_non_null(meshes);
@@ -126,12 +121,10 @@ static void EveryMeshOfTheTableIsOwnedBitForBit(void** state)
         checkMesh(context, name, mesh);
     }
     json_decref(meshes);
-    closeTestContext(context);
 }
 
-static void VerticesSnapToNearestEven(void** state)
+TEST_ALONE(VerticesSnapToNearestEven)
 {
-    (void)state;
     Table t = loadTable("snap.csv");
     vplRaster raster = {.framebuffer = {.width = 2, .height = 2}};
     for (int row = 0; row < t.rows; row++) {
@@ -144,10 +137,8 @@ static void VerticesSnapToNearestEven(void** state)
 
 // The table's tolerance: perspective barycentrics carry a few roundings, and varyings are formed from corner
 // 0, so errors scale with the spread of the corners' values.
-static void VaryingsDepthAndWAreThoseOfTheTable(void** state)
+TEST(VaryingsDepthAndWAreThoseOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("persp.csv");
     ClipVertex v[3] = {{0}};
     Canvas c = makeCanvas(64, 64, 0);
@@ -182,7 +173,6 @@ static void VaryingsDepthAndWAreThoseOfTheTable(void** state)
     }
     freeCanvas(&c);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 static void loadClipTriangle(const Table* t, int row, ClipVertex v[3])
@@ -198,10 +188,8 @@ static void loadClipTriangle(const Table* t, int row, ClipVertex v[3])
     }
 }
 
-static void NearClipCoversWhatTheHomogeneousTestSays(void** state)
+TEST(NearClipCoversWhatTheHomogeneousTestSays, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("clip_near.csv"), pixels = loadTable("clip_pixels.csv");
     Canvas c = makeCanvas(32, 32, 0);
     int tested = 0;
@@ -246,10 +234,4 @@ static void NearClipCoversWhatTheHomogeneousTestSays(void** state)
     freeCanvas(&c);
     freeTable(&pixels);
     freeTable(&t);
-    closeTestContext(context);
 }
-
-TEST_SUITE(rasterTruth, cmocka_unit_test(EveryTriangleOfTheTableFillsBitForBit),
-           cmocka_unit_test(EveryMeshOfTheTableIsOwnedBitForBit), cmocka_unit_test(VerticesSnapToNearestEven),
-           cmocka_unit_test(VaryingsDepthAndWAreThoseOfTheTable),
-           cmocka_unit_test(NearClipCoversWhatTheHomogeneousTestSays));

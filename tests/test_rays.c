@@ -118,11 +118,9 @@ static uint64_t compareOne(const vplBvh* tree, const vplBvh* all, const vplRay* 
     return vplHashFloats(state, (const float[]){a.t, a.b1, a.b2}, 3);
 }
 
-static void TreeAgreesWithAllTriangles(void** state)
+TEST(TreeAgreesWithAllTriangles, 1)
 {
-    (void)state;
     uint64_t sums[VPL_ISA_COUNT] = {0};
-    vplContext* context = openTestContext(1);
     for (int kind = 0; kind < KINDS; kind++) {
         Dice dice = {(uint64_t)kind, 0};
         Shape soup = makeSoup(kind, &dice);
@@ -155,7 +153,6 @@ static void TreeAgreesWithAllTriangles(void** state)
             fail_msg("%s: checksum %016llx", vplIsa_GetName((vplIsa)isa), (unsigned long long)sums[isa]);
         }
     }
-    closeTestContext(context);
 }
 
 // ---- closed surfaces
@@ -192,11 +189,9 @@ static vplVec3 pointOn(const Shape* shape, int index, Dice* dice)
 }
 
 // At corners, at edges and anywhere, from inside and from far outside across it: always a hit.
-static void SharedEdgesLetNothingThrough(void** state)
+TEST(SharedEdgesLetNothingThrough, 1)
 {
-    (void)state;
     static const float scales[] = {1e-3f, 1, 1e5f};
-    vplContext* context = openTestContext(1);
     int leaks = 0, rays = 0;
     for (int i = 0; i < SURFACES * PLACES * 3; i++) {
         const float scale = scales[i / (SURFACES * PLACES)];
@@ -226,15 +221,12 @@ static void SharedEdgesLetNothingThrough(void** state)
     if (leaks > 0) {
         fail_msg("%d of %d rays found a gap", leaks, rays);
     }
-    closeTestContext(context);
 }
 
 // Where edges run along axes, the box of a triangle ends where the triangle does. Seen from a thousand times as
 // far as it is large, both tests are off by more than it is padded: each must still find the same side.
-static void EdgesAlongAxesHoldFromAfar(void** state)
+TEST(EdgesAlongAxesHoldFromAfar, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplVec3 centre;
     Shape shape = makeClosed(3, 1, 1, &centre);
     vplScene* scene = sceneOf(context, 0.5f);
@@ -259,17 +251,14 @@ static void EdgesAlongAxesHoldFromAfar(void** state)
     }
     vplGeometry_Destroy(g);
     freeShape(&shape);
-    closeTestContext(context);
 }
 
 // ---- ties, and nothing to hit
 
 // Eight triangles in one plane, again and again in three objects. Of the same triangle the lowest copy is hit,
 // whatever the tree makes of it; which of the eight is nearest, if any, is a matter of rounding.
-static void EqualDistancesGoToTheLowestTriangle(void** state)
+TEST(EqualDistancesGoToTheLowestTriangle, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape wall = {0};
     for (int i = 0; i < 64; i++) {
         float size = 2 + (float)(i % 8);
@@ -294,14 +283,11 @@ static void EqualDistancesGoToTheLowestTriangle(void** state)
     }
     vplGeometry_Destroy(g);
     freeShape(&wall);
-    closeTestContext(context);
 }
 
 // No plane separates them: the tree is built by halving, and stays as shallow as that makes it.
-static void AThousandCopiesOfATriangleAreATreeOfHalves(void** state)
+TEST(AThousandCopiesOfATriangleAreATreeOfHalves, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Shape copies = {0};
     for (int i = 0; i < 1000; i++) {
         addTriangle(&copies, vplVec(-1, -1, 0), vplVec(1, -1, 0), vplVec(0, 1, 0));
@@ -329,14 +315,11 @@ static void AThousandCopiesOfATriangleAreATreeOfHalves(void** state)
     assert_false(vplGeometry_ClosestHit(g, &none, &hit) || vplGeometry_IsOccluded(g, &none, INFINITY));
     vplGeometry_Destroy(g);
     freeShape(&copies);
-    closeTestContext(context);
 }
 
 // A scene of objects that have no surface, and one of none.
-static void WithoutSurfacesNothingIsEverHit(void** state)
+TEST(WithoutSurfacesNothingIsEverHit, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int which = 0; which < 5; which++) {
         vplScene* scene = sceneOf(context, 0.5f);
         Shape shape = {0};
@@ -364,11 +347,4 @@ static void WithoutSurfacesNothingIsEverHit(void** state)
         vplGeometry_Destroy(g);
         freeShape(&shape);
     }
-    closeTestContext(context);
 }
-
-TEST_SUITE(rays, cmocka_unit_test(TreeAgreesWithAllTriangles), cmocka_unit_test(SharedEdgesLetNothingThrough),
-           cmocka_unit_test(EdgesAlongAxesHoldFromAfar),
-           cmocka_unit_test(EqualDistancesGoToTheLowestTriangle),
-           cmocka_unit_test(AThousandCopiesOfATriangleAreATreeOfHalves),
-           cmocka_unit_test(WithoutSurfacesNothingIsEverHit));

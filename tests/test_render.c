@@ -23,10 +23,8 @@ static uint64_t renderHash(const vplScene* scene, const vplRenderOptions* option
 }
 
 // Franchi and Ferrante: (7 + M) B draw calls, (7 + M/m) B batched; B = 8 objects, M = 18 lights.
-static void DrawCallsAreThoseOfTheDocument(void** state)
+TEST(DrawCallsAreThoseOfTheDocument, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room-closed.json");
     vplRenderOptions o = smallOptions();
     const struct {
@@ -48,13 +46,10 @@ static void DrawCallsAreThoseOfTheDocument(void** state)
         assert_int_equal(stats.escaped, 0);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void OpenRoomsKeepNominalCountsAndReportEscapes(void** state)
+TEST(OpenRoomsKeepNominalCountsAndReportEscapes, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = smallOptions();
     int escaped = 0;
@@ -75,13 +70,11 @@ static void OpenRoomsKeepNominalCountsAndReportEscapes(void** state)
     }
     assert_true(escaped > 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // All pipelines, batch sizes around the group size, threads and instruction sets: one hash.
-static void EveryPipelineGivesTheSameBits(void** state)
+TEST_ALONE(EveryPipelineGivesTheSameBits)
 {
-    (void)state;
     for (int lighting = 0; lighting < 2; lighting++) {
         uint64_t wanted = 0;
         const int batches[] = {1, 3, 63, 64, 65, 1000};
@@ -120,9 +113,8 @@ static void EveryPipelineGivesTheSameBits(void** state)
     }
 }
 
-static void AHostsOwnSchedulerGivesTheSameBits(void** state)
+TEST_ALONE(AHostsOwnSchedulerGivesTheSameBits)
 {
-    (void)state;
     uint64_t hashes[2];
     for (int hosted = 0; hosted < 2; hosted++) {
         vplContextDef def = vplDefaultContextDef();
@@ -140,10 +132,8 @@ static void AHostsOwnSchedulerGivesTheSameBits(void** state)
 }
 
 // Two floors in one plane: depth EQUAL alone would light both and add twice.
-static void CoplanarSurfacesAreLitOnce(void** state)
+TEST(CoplanarSurfacesAreLitOnce, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     uint64_t hashes[3];
     vplRenderOptions o = smallOptions();
     o.particles.count = 50;
@@ -157,7 +147,6 @@ static void CoplanarSurfacesAreLitOnce(void** state)
         vplScene_Destroy(scene);
     }
     assert_true(hashes[0] == hashes[2] && hashes[1] == hashes[2]);
-    closeTestContext(context);
 }
 
 // Builds the room by hand, scaled and lit by `intensity`: numbers that are powers of two change no digit.
@@ -195,10 +184,8 @@ static vplImage* scaledRoom(vplContext* context, float scale, float intensity, v
     return image;
 }
 
-static void DoublingTheLightDoublesEveryPixel(void** state)
+TEST(DoublingTheLightDoublesEveryPixel, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     for (int lighting = 0; lighting < 2; lighting++) {
         vplImage* one = scaledRoom(context, 1, 8, (vplLighting)lighting);
         vplImage* two = scaledRoom(context, 1, 16, (vplLighting)lighting);
@@ -208,14 +195,11 @@ static void DoublingTheLightDoublesEveryPixel(void** state)
         vplImage_Destroy(one);
         vplImage_Destroy(two);
     }
-    closeTestContext(context);
 }
 
 // Physical light is scale-free: twice the size with four times the intensity is the same picture, bit for bit.
-static void TwiceTheSizeWithFourTimesTheLightIsTheSamePicture(void** state)
+TEST(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplImage* small = scaledRoom(context, 1, 8, VPL_LIGHTING_PHYSICAL);
     vplImage* large = scaledRoom(context, 2, 32, VPL_LIGHTING_PHYSICAL);
     vplImage* huge = scaledRoom(context, 1024, 8 * 1048576, VPL_LIGHTING_PHYSICAL);
@@ -224,14 +208,11 @@ static void TwiceTheSizeWithFourTimesTheLightIsTheSamePicture(void** state)
     vplImage_Destroy(small);
     vplImage_Destroy(large);
     vplImage_Destroy(huge);
-    closeTestContext(context);
 }
 
 // Point light above a plane: rho/pi I cos / d^2, against the value at each pixel's own point.
-static void APlaneUnderAPointLightIsLitAsInTheBook(void** state)
+TEST(APlaneUnderAPointLightIsLitAsInTheBook, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene;
     assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
     vplMaterialDef material = vplDefaultMaterialDef();
@@ -254,7 +235,8 @@ static void APlaneUnderAPointLightIsLitAsInTheBook(void** state)
     vplImage* image = renderScene(scene, &o, NULL);
     double half = tan(20 * VPL_PI / 180) * 4;
     for (int i = 0; i < o.output.width * o.output.height; i++) {
-        double x = (2 * (i % o.output.width + 0.5) / o.output.width - 1) * half * o.output.width / o.output.height;
+        double x =
+            (2 * (i % o.output.width + 0.5) / o.output.width - 1) * half * o.output.width / o.output.height;
         double z = -(1 - 2 * (i / o.output.width + 0.5) / o.output.height) * half;
         double dx = x - 0.5, dz = z + 0.25, d2 = dx * dx + 4 + dz * dz;
         double wanted = 0.5 / VPL_PI * 3 * (2 / sqrt(d2)) / d2;
@@ -263,14 +245,11 @@ static void APlaneUnderAPointLightIsLitAsInTheBook(void** state)
     }
     vplImage_Destroy(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X090: documented direct light falls as 1/N and the indirect sum does not; physical light depends on neither.
-static void DocumentedDirectLightFallsWithN(void** state)
+TEST(DocumentedDirectLightFallsWithN, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room-closed.json");
     double sums[2][2];
     for (int lighting = 0; lighting < 2; lighting++) {
@@ -291,13 +270,10 @@ static void DocumentedDirectLightFallsWithN(void** state)
     assertNear(sums[VPL_LIGHTING_PHYSICAL][0], sums[VPL_LIGHTING_PHYSICAL][1], 0, "physical", 0);
     assertNear(sums[VPL_LIGHTING_DOCUMENTED][0] / sums[VPL_LIGHTING_DOCUMENTED][1], 2, 1e-6, "documented", 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void DirectAndEachLightAddUpToThePicture(void** state)
+TEST(DirectAndEachLightAddUpToThePicture, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room-closed.json");
     vplRenderOptions o = smallOptions();
     o.lights.minDistance = 0.5f;
@@ -331,16 +307,14 @@ static void DirectAndEachLightAddUpToThePicture(void** state)
     vplImage_Destroy(sum);
     vplImage_Destroy(indirect);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void StagesShowWhatTheySay(void** state)
+TEST(StagesShowWhatTheySay, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = smallOptions();
-    int middle = 3 * (o.output.height / 3 * o.output.width + 2 * o.output.width / 3), count = 3 * o.output.width * o.output.height;
+    int middle = 3 * (o.output.height / 3 * o.output.width + 2 * o.output.width / 3),
+        count = 3 * o.output.width * o.output.height;
     o.output.show = VPL_SHOW_DEPTH;
     vplImage* image = renderScene(scene, &o, NULL);
     assertNear((double)image->pixels[middle], 11, 1e-4, "depth of the back wall", 0);
@@ -381,14 +355,11 @@ static void StagesShowWhatTheySay(void** state)
     vplImage_Destroy(image);
     vplImage_Destroy(plain);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Only the front of an emitting quad shines.
-static void EmissionLeavesTheFrontOnly(void** state)
+TEST(EmissionLeavesTheFrontOnly, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int back = 0; back < 2; back++) {
         vplScene* scene;
         assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
@@ -411,42 +382,6 @@ static void EmissionLeavesTheFrontOnly(void** state)
         vplImage_Destroy(image);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
-}
-
-static void OptionsOutOfRangeAreNamed(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
-    vplScene* scene = loadScene(context, "room.json");
-    struct {
-        vplRenderOptions o;
-        const char* name;
-    } cases[10];
-    for (int i = 0; i < 10; i++) {
-        cases[i].o = smallOptions();
-    }
-    cases[0].o.output.width = 0, cases[0].name = "width is 0, must be in [1, 16384]";
-    cases[1].o.output.height = 16385, cases[1].name = "height is 16385";
-    cases[2].o.output.camera = 1, cases[2].name = "camera is 1, must be in [0, 0]";
-    cases[3].o.particles.count = -1, cases[3].name = "particles is -1";
-    cases[4].o.particles.reflectivity = 1, cases[4].name = "reflectivity is 1";
-    cases[5].o.shadow.mapSize = 0, cases[5].name = "shadowMapSize is 0";
-    cases[6].o.lights.minDistance = NAN, cases[6].name = "minDistance is ";
-    cases[7].o.shadow.pcfSamples = 0, cases[7].name = "pcfSamples is 0";
-    cases[8].o.pipeline.batch = 0, cases[8].name = "batch is 0";
-    cases[9].o.cookie = 0, cases[9].name = "vplDefaultRenderOptions";
-    for (int i = 0; i < 10; i++) {
-        vplImage* image = NULL;
-        assert_int_equal(vplRender(scene, &cases[i].o, &image, NULL), VPL_INVALID_ARGUMENT);
-        assert_null(image);
-        const char* message = takeMessage();
-        if (strstr(message, cases[i].name) == NULL) {
-            fail_msg("\"%s\" lacks \"%s\"", message, cases[i].name);
-        }
-    }
-    vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 typedef struct Watch {
@@ -462,10 +397,8 @@ static bool watch(void* user, double fraction)
     return ++w->calls != w->stopAt;
 }
 
-static void ProgressRisesAndCancels(void** state)
+TEST(ProgressRisesAndCancels, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = smallOptions();
     Watch w = {0, -1, 0};
@@ -484,14 +417,11 @@ static void ProgressRisesAndCancels(void** state)
         assert_int_equal(w.calls, stop);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X031, X042, X092: odd scenes give finite pictures.
-static void OddScenesGiveFinitePictures(void** state)
+TEST(OddScenesGiveFinitePictures, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     const vplVec3 places[] = {{-0.9f, 1.65f, -0.8f}, {0, 4.5f, 30},     {0, 5, 0}, {0, 0, 0},
                               {0, 2.5f, 8.5f},       {1e6f, 1e6f, 1e6f}};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
@@ -513,7 +443,6 @@ static void OddScenesGiveFinitePictures(void** state)
             vplScene_Destroy(scene);
         }
     }
-    closeTestContext(context);
 }
 
 // How much of pixel `i` of 8 the interval [a, b] of the picture's [-1, 1] covers.
@@ -524,10 +453,8 @@ static double coverage(int i, double a, double b)
 }
 
 // A glowing square that covers parts of pixels: its mean over a pixel is its share of it.
-static void AntialiasingIsTheBoxFilter(void** state)
+TEST(AntialiasingIsTheBoxFilter, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene;
     assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
     vplCameraDef camera = vplDefaultCameraDef(); // at z = 5; half the picture is 5 tan(fov / 2) metres
@@ -564,18 +491,4 @@ static void AntialiasingIsTheBoxFilter(void** state)
     o.output.antialias = 0;
     assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(render, cmocka_unit_test(AntialiasingIsTheBoxFilter),
-           cmocka_unit_test(DrawCallsAreThoseOfTheDocument),
-           cmocka_unit_test(OpenRoomsKeepNominalCountsAndReportEscapes),
-           cmocka_unit_test(EveryPipelineGivesTheSameBits),
-           cmocka_unit_test(AHostsOwnSchedulerGivesTheSameBits), cmocka_unit_test(CoplanarSurfacesAreLitOnce),
-           cmocka_unit_test(DoublingTheLightDoublesEveryPixel),
-           cmocka_unit_test(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture),
-           cmocka_unit_test(APlaneUnderAPointLightIsLitAsInTheBook),
-           cmocka_unit_test(DocumentedDirectLightFallsWithN),
-           cmocka_unit_test(DirectAndEachLightAddUpToThePicture), cmocka_unit_test(StagesShowWhatTheySay),
-           cmocka_unit_test(EmissionLeavesTheFrontOnly), cmocka_unit_test(OptionsOutOfRangeAreNamed),
-           cmocka_unit_test(ProgressRisesAndCancels), cmocka_unit_test(OddScenesGiveFinitePictures));

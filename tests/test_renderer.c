@@ -44,9 +44,8 @@ static uint64_t hashOfSteps(const vplScene* scene, const vplRenderOptions* o, in
 }
 
 // Every method, with one pass and with several; pictures taken on the way change nothing.
-static void StepsGiveTheBitsOfOneCall(void** state)
+TEST_ALONE(StepsGiveTheBitsOfOneCall)
 {
-    (void)state;
     static const vplMethod methods[] = {VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_KELLER, VPL_METHOD_PATH,
                                         VPL_METHOD_DIRECT};
     for (int i = 0; i < 16; i++) {
@@ -79,10 +78,8 @@ static vplImage* truthOf(const vplScene* scene, const vplRenderOptions* like)
 }
 
 // The error falls with the passes, and what is estimated from their halves is of its size.
-static void MorePassesAreBetterAndSaySo(void** state)
+TEST(MorePassesAreBetterAndSaySo, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();
     o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
@@ -102,13 +99,10 @@ static void MorePassesAreBetterAndSaySo(void** state)
     }
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void AnErrorOrATimeEndsIt(void** state)
+TEST(AnErrorOrATimeEndsIt, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();
     vplRenderStats stats;
@@ -132,14 +126,11 @@ static void AnErrorOrATimeEndsIt(void** state)
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.passes > 1);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // A path traced picture ends by its error, too.
-static void PathsEndByTheirError(void** state)
+TEST(PathsEndByTheirError, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();
     o.method = VPL_METHOD_PATH;
@@ -149,7 +140,6 @@ static void PathsEndByTheirError(void** state)
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.relativeErrorEstimate <= 0.05 && stats.passes < 128);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 static bool stopAtHalf(void* user, double fraction)
@@ -158,10 +148,8 @@ static bool stopAtHalf(void* user, double fraction)
     return fraction < 0.5;
 }
 
-static void StepsAreCancelledAndNeedAFirst(void** state)
+TEST(StepsAreCancelledAndNeedAFirst, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = loadScene(context, "room.json");
     vplRenderOptions o = progressiveOptions();
     vplRenderer* r;
@@ -184,9 +172,4 @@ static void StepsAreCancelledAndNeedAFirst(void** state)
     o.stop.budgetMs = NAN;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(renderer, cmocka_unit_test(StepsGiveTheBitsOfOneCall), slow_unit_test(MorePassesAreBetterAndSaySo),
-           cmocka_unit_test(AnErrorOrATimeEndsIt), cmocka_unit_test(PathsEndByTheirError),
-           cmocka_unit_test(StepsAreCancelledAndNeedAFirst));

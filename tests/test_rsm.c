@@ -33,10 +33,8 @@ static vplEmitterDef emitterOf(vplEmitterType type, vplVec3 position, vplVec3 di
 }
 
 // One texel a face is enough: solid angles are exact.
-static void APointInAClosedCubeSends4PiI(void** state)
+TEST(APointInAClosedCubeSends4PiI, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     const vplEmitterDef e = emitterOf(VPL_EMITTER_POINT, vplVec(0.3f, -0.2f, 0.55f), vplVec(0, -1, 0));
     for (int size = 1; size <= 130; size += 1 + size / 2) {
@@ -53,14 +51,11 @@ static void APointInAClosedCubeSends4PiI(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // The falloff is taken at texels' centres: the error falls with their number.
-static void ASpotSendsItsPower(void** state)
+TEST(ASpotSendsItsPower, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplEmitterDef e = emitterOf(VPL_EMITTER_SPOT, vplVec(0.1f, 0.4f, -0.3f), vplVec(0.3f, -1, 0.2f));
     for (int k = 0; k < 3; k++) {
@@ -75,14 +70,11 @@ static void ASpotSendsItsPower(void** state)
         }
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // E times the area seen along the light.
-static void TheSunSendsWhatTheFloorMeets(void** state)
+TEST(TheSunSendsWhatTheFloorMeets, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* floor = floorQuad(context, vplVec(100, 3, -50), 10, 0.5f);
     for (int size = 1; size <= 256; size *= 4) {
         vplEmitterDef e = emitterOf(VPL_EMITTER_DIRECTIONAL, vplVec(0, 0, 0), vplVec(0, -2, 0));
@@ -101,7 +93,6 @@ static void TheSunSendsWhatTheFloorMeets(void** state)
     assertNear(fluxOf(map, floor), 0, 0.01, "flux", 0);
     vplReflectiveMap_Destroy(map);
     vplGeometry_Destroy(floor);
-    closeTestContext(context);
 }
 
 static vplEmitterDef someEmitter(int k)
@@ -113,11 +104,9 @@ static vplEmitterDef someEmitter(int k)
 
 // Each texel's point is on its triangle's plane, in the direction of its centre, and the first that a ray meets;
 // its normal faces the emitter.
-static void TexelsAreWhereRaysLand(void** state)
+TEST(TexelsAreWhereRaysLand, 2)
 {
-    (void)state;
     enum { SIZE = 40 };
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = someEmitter(k);
@@ -155,15 +144,12 @@ static void TexelsAreWhereRaysLand(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Particles of a map are those of rays, moved by a texel's footprint at most, as seen from the emitter.
-static void ParticlesMoveByATexelAtMost(void** state)
+TEST(ParticlesMoveByATexelAtMost, 2)
 {
-    (void)state;
     enum { SIZE = 64, COUNT = 3000 };
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         for (int keller = 0; keller < 2; keller++) {
@@ -210,14 +196,11 @@ static void ParticlesMoveByATexelAtMost(void** state)
         }
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // On a smooth ball, normals are those of the ball, towards the emitter, and so are particles' shading normals.
-static void SmoothObjectsHaveTheirNormals(void** state)
+TEST(SmoothObjectsHaveTheirNormals, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = sceneOf(context, 0.5f);
     Shape ball = icosphere(2);
     addShape(scene, &ball, true, NULL);
@@ -236,13 +219,10 @@ static void SmoothObjectsHaveTheirNormals(void** state)
     vplReflectiveMap_Destroy(map);
     vplGeometry_Destroy(geometry);
     freeShape(&ball);
-    closeTestContext(context);
 }
 
-static void AnEmptySceneGivesAnEmptyMap(void** state)
+TEST(AnEmptySceneGivesAnEmptyMap, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = sceneOf(context, 0.5f);
     vplGeometry* nothing;
     assert_int_equal(vplGeometry_Create(scene, &nothing), VPL_SUCCESS);
@@ -257,15 +237,12 @@ static void AnEmptySceneGivesAnEmptyMap(void** state)
     }
     vplGeometry_Destroy(nothing);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // An emitter on a wall of a closed cube, and a hair in front of it: at most all of its power arrives, at least half
 // does, and everything is finite.
-static void AnEmitterMayTouchASurface(void** state)
+TEST(AnEmitterMayTouchASurface, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     const float heights[] = {-1, -0.9999999f, -0.999f};
     for (int i = 0; i < 3; i++) {
@@ -284,7 +261,6 @@ static void AnEmitterMayTouchASurface(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 static uint64_t folded(uint64_t hash, const void* numbers, size_t bytes)
@@ -298,9 +274,8 @@ static uint64_t folded(uint64_t hash, const void* numbers, size_t bytes)
     return hash;
 }
 
-static void MapsDoNotDependOnThreadsOrIsa(void** state)
+TEST_ALONE(MapsDoNotDependOnThreadsOrIsa)
 {
-    (void)state;
     for (int k = 0; k < 3; k++) {
         uint64_t wanted = 0;
         for (int i = 0; i < 8; i++) {
@@ -332,11 +307,9 @@ static void MapsDoNotDependOnThreadsOrIsa(void** state)
 }
 
 // Four pictures side by side, of a point a cross each; each texel at its place.
-static void ShownMapsHaveFourParts(void** state)
+TEST(ShownMapsHaveFourParts, 2)
 {
-    (void)state;
     enum { SIZE = 24 };
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = someEmitter(k);
@@ -379,13 +352,10 @@ static void ShownMapsHaveFourParts(void** state)
     assert_null(none);
     vplReflectiveMap_Destroy(large);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
-static void BadMapsAreRefused(void** state)
+TEST(BadMapsAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
     vplReflectiveMap* map = NULL;
@@ -407,12 +377,4 @@ static void BadMapsAreRefused(void** state)
     assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &particles, &set), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "bounding boxes"));
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
-
-TEST_SUITE(rsm, cmocka_unit_test(APointInAClosedCubeSends4PiI), cmocka_unit_test(ASpotSendsItsPower),
-           cmocka_unit_test(TheSunSendsWhatTheFloorMeets), cmocka_unit_test(TexelsAreWhereRaysLand),
-           cmocka_unit_test(ParticlesMoveByATexelAtMost), cmocka_unit_test(SmoothObjectsHaveTheirNormals),
-           cmocka_unit_test(AnEmptySceneGivesAnEmptyMap), cmocka_unit_test(AnEmitterMayTouchASurface),
-           cmocka_unit_test(MapsDoNotDependOnThreadsOrIsa), cmocka_unit_test(ShownMapsHaveFourParts),
-           cmocka_unit_test(BadMapsAreRefused));

@@ -55,10 +55,8 @@ static double reflectedBy(const vplGeometry* g, const vplReflectiveMap* map)
 }
 
 // As many points as texels, a power of two a side: each texel is met once.
-static void AsManyPointsAsTexelsMeetEachOnce(void** state)
+TEST(AsManyPointsAsTexelsMeetEachOnce, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         for (int size = 1; size <= 32; size *= 2) {
@@ -79,14 +77,11 @@ static void AsManyPointsAsTexelsMeetEachOnce(void** state)
         }
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Measured: 0.025 % too much with 256 points, 0.00004 % with 4096.
-static void AClosedRoomReflectsPowerTimesAlbedo(void** state)
+TEST(AClosedRoomReflectsPowerTimesAlbedo, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.8f);
     vplEmitterDef e = someEmitter(VPL_EMITTER_POINT);
     e.position = vplVec(0.3f, -0.2f, 0.55f);
@@ -101,15 +96,12 @@ static void AClosedRoomReflectsPowerTimesAlbedo(void** state)
     }
     vplReflectiveMap_Destroy(map);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // Seen straight from above, light k lies in the texel that (k/n, vdc(k)) falls into.
-static void PointsAreThoseOfTheDocument(void** state)
+TEST(PointsAreThoseOfTheDocument, 1)
 {
-    (void)state;
     enum { SIZE = 512 };
-    vplContext* context = openTestContext(1);
     vplGeometry* ground = floorQuad(context, vplVec(1, 2, 3), 8, 0.5f);
     Table t = loadTable("hammersley.csv");
     const vplEmitterDef e = {
@@ -136,14 +128,11 @@ static void PointsAreThoseOfTheDocument(void** state)
     freeTable(&t);
     vplReflectiveMap_Destroy(map);
     vplGeometry_Destroy(ground);
-    closeTestContext(context);
 }
 
 // Each light lies in a triangle that the emitter sees, turned to it, and names its object.
-static void LightsLieOnWhatIsLit(void** state)
+TEST(LightsLieOnWhatIsLit, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = someEmitter(k);
@@ -176,14 +165,11 @@ static void LightsLieOnWhatIsLit(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
 // Shares go by power and add up to n; each map's own light is right whatever its share; NULL has none.
-static void MapsShareTheLightsByPower(void** state)
+TEST(MapsShareTheLightsByPower, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplEmitterDef e = someEmitter(VPL_EMITTER_POINT);
     e.position = vplVec(0, 0, 0);
@@ -216,15 +202,12 @@ static void MapsShareTheLightsByPower(void** state)
     vplReflectiveMap_Destroy(strong);
     vplReflectiveMap_Destroy(black);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // The mean over many shifts is the light of all texels, with far fewer points than texels.
-static void ShiftedPointsAreRightOnAverage(void** state)
+TEST(ShiftedPointsAreRightOnAverage, 2)
 {
-    (void)state;
     enum { SHIFTS = 600, COUNT = 7 };
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = someEmitter(k);
@@ -244,13 +227,10 @@ static void ShiftedPointsAreRightOnAverage(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
 
-static void LightlessMapsGiveNoLights(void** state)
+TEST(LightlessMapsGiveNoLights, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* black = closedCube(context, 0);
     vplGeometry* floor = floorQuad(context, vplVec(0, -5, 0), 1, 0.5f);
     const vplReflectiveMap* const none[] = {NULL};
@@ -278,14 +258,11 @@ static void LightlessMapsGiveNoLights(void** state)
     vplReflectiveMap_Destroy(dark);
     vplGeometry_Destroy(black);
     vplGeometry_Destroy(floor);
-    closeTestContext(context);
 }
 
 // A map of one texel a face: all of a face's lights lie in one place.
-static void OneTexelIsEnough(void** state)
+TEST(OneTexelIsEnough, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplEmitterDef e = someEmitter(VPL_EMITTER_POINT);
     e.position = vplVec(0, 0, 0);
@@ -300,12 +277,10 @@ static void OneTexelIsEnough(void** state)
     vplLightSet_Destroy(set);
     vplReflectiveMap_Destroy(map);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
-static void LightsDoNotDependOnThreadsOrIsa(void** state)
+TEST_ALONE(LightsDoNotDependOnThreadsOrIsa)
 {
-    (void)state;
     vplVirtualLight* wanted = NULL;
     int count = 0;
     for (int i = 0; i < 8; i++) {
@@ -348,10 +323,8 @@ static void LightsDoNotDependOnThreadsOrIsa(void** state)
 }
 
 // In a closed room all rays meet a wall, under the sky none does, and beside a tall wall half of them do.
-static void LightsAreWorthWhatTheySee(void** state)
+TEST(LightsAreWorthWhatTheySee, 3)
 {
-    (void)state;
-    vplContext* context = openTestContext(3);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplGeometry* ground = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
     vplScene* scene = sceneOf(context, 0.5f);
@@ -388,14 +361,11 @@ static void LightsAreWorthWhatTheySee(void** state)
     vplGeometry_Destroy(cube);
     vplGeometry_Destroy(ground);
     vplGeometry_Destroy(half);
-    closeTestContext(context);
 }
 
 // All that stays weighs what all weighed, on average over the shifts; in a closed room nothing changes.
-static void UsefulLightsStandForAll(void** state)
+TEST(UsefulLightsStandForAll, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplEmitterDef e = someEmitter(VPL_EMITTER_POINT);
     vplReflectiveMap* map = mapOf(cube, &e, 32);
@@ -427,13 +397,10 @@ static void UsefulLightsStandForAll(void** state)
     vplLightSet_Destroy(all);
     vplReflectiveMap_Destroy(map);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
-static void BadSamplesAreRefused(void** state)
+TEST(BadSamplesAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.5f);
     vplRsmSampleDef def = {.count = 4};
     vplLightSet* set = NULL;
@@ -448,13 +415,4 @@ static void BadSamplesAreRefused(void** state)
     assert_int_equal(vplSampleReflectiveMaps(cube, NULL, 0, &def, &set), VPL_INVALID_ARGUMENT);
     assert_null(set);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
-
-TEST_SUITE(rsmLights, cmocka_unit_test(AsManyPointsAsTexelsMeetEachOnce),
-           cmocka_unit_test(AClosedRoomReflectsPowerTimesAlbedo),
-           cmocka_unit_test(PointsAreThoseOfTheDocument), cmocka_unit_test(LightsLieOnWhatIsLit),
-           cmocka_unit_test(MapsShareTheLightsByPower), cmocka_unit_test(ShiftedPointsAreRightOnAverage),
-           cmocka_unit_test(LightlessMapsGiveNoLights), cmocka_unit_test(OneTexelIsEnough),
-           cmocka_unit_test(LightsDoNotDependOnThreadsOrIsa), cmocka_unit_test(LightsAreWorthWhatTheySee),
-           cmocka_unit_test(UsefulLightsStandForAll), cmocka_unit_test(BadSamplesAreRefused));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Reflective maps as shadow maps: planes do not shadow themselves, and rays say the same but near edges.
-#include "shapes.h"
+#include "shadow_maps.h"
 
-#include "bench/rsm_band.h"
+#include "math/vec.h"
 
 static vplEmitterDef emitterOf(vplEmitterType type, vplVec3 position, vplVec3 direction)
 {
@@ -14,73 +14,6 @@ static vplEmitterDef emitterOf(vplEmitterType type, vplVec3 position, vplVec3 di
     return e;
 }
 
-static void setPoint(vplSurface* s, int lane, vplVec3 p, vplVec3 n)
-{
-    s->px[lane] = p.x;
-    s->py[lane] = p.y;
-    s->pz[lane] = p.z;
-    s->nx[lane] = n.x;
-    s->ny[lane] = n.y;
-    s->nz[lane] = n.z;
-}
-
-// A point of a triangle, as floats round it.
-static vplVec3 rollOn(const vplGeometry* g, int triangle, Dice* dice)
-{
-    return vplGeometry_SampleTriangle(g, triangle, roll(dice, 0, 1), roll(dice, 0, 1)).position;
-}
-
-// A square of many triangles, turned anyhow; emitters that shine on it at all angles, down to a hundredth of a degree.
-static void NoPlaneShadowsItselfAtAnyAngle(void** state)
-{
-    (void)state;
-    static const double degrees[] = {0, 30, 60, 80, 88, 89.5, 89.9, 89.99};
-    static const int sizes[] = {1, 3, 64, 1000};
-    vplContext* context = openTestContext(2);
-    Dice dice = {11, 0};
-    for (int turn = 0; turn < 6; turn++) {
-        vplScene* scene = sceneOf(context, 0.5f);
-        Shape square = {0};
-        for (int i = 0; i < 7 * 7; i++) {
-            const float x = (float)(i % 7) - 3.5f, y = (float)(i / 7) - 3.5f;
-            addTriangle(&square, vplVec(x, y, 0), vplVec(x + 1, y, 0), vplVec(x + 1, y + 1, 0));
-            addTriangle(&square, vplVec(x, y, 0), vplVec(x + 1, y + 1, 0), vplVec(x, y + 1, 0));
-        }
-        const double rotate[3] = {turn * 1.1, turn * 0.7, turn * 2.3};
-        placeShape(&square, 1.7f, rotate, rollVec(&dice, turn < 3 ? 3 : 300));
-        addShape(scene, &square, false, NULL);
-        vplGeometry* plane = freezeScene(scene);
-        const vplVec3 n = plane->normals[0], middle = plane->positions[3 * 48];
-        vplVec3 tangent, bitangent;
-        vplTangentFrame(n, &tangent, &bitangent);
-        for (size_t d = 0; d < sizeof degrees / sizeof *degrees; d++) {
-            const double angle = degrees[d] * VPL_PI / 180;
-            const vplVec3 from = vplAdd(vplScale((float)cos(angle), n), vplScale((float)sin(angle), tangent));
-            for (size_t k = 0; k < 3 * sizeof sizes / sizeof *sizes; k++) {
-                const vplEmitterDef e =
-                    emitterOf((vplEmitterType)(k % 3), vplAdd(middle, vplScale(15, from)), vplNegate(from));
-                vplReflectiveMap* map = mapOf(plane, &e, sizes[k / 3]);
-                for (int block = 0; block < 60; block++) {
-                    vplSurface s;
-                    float factor[VPL_LANES];
-                    for (int l = 0; l < VPL_LANES; l++) {
-                        const int triangle = (block * VPL_LANES + l) % plane->triangleCount;
-                        setPoint(&s, l, rollOn(plane, triangle, &dice), block % 2 ? n : vplNegate(n));
-                    }
-                    vplReflectiveMap_FactorBlock(map, &s, factor);
-                    for (int l = 0; l < VPL_LANES; l++) {
-                        assertNear((double)factor[l], 0, 0, "factor", (int)(100 * d + k));
-                    }
-                }
-                vplReflectiveMap_Destroy(map);
-            }
-        }
-        vplGeometry_Destroy(plane);
-        freeShape(&square);
-    }
-    closeTestContext(context);
-}
-
 static vplEmitterDef someEmitter(int k)
 {
     const vplVec3 direction =
@@ -88,63 +21,9 @@ static vplEmitterDef someEmitter(int k)
     return emitterOf((vplEmitterType)k, vplVec(0.4f, 4.1f, 1.2f), direction); // the room is open in front
 }
 
-// Points of all triangles that face the emitter. Where all rays nearby agree so does the map; elsewhere rarely not.
-static void RaysSayTheSameBeyondTheBand(void** state)
-{
-    (void)state;
-    enum { SIZE = 200, BLOCKS = 400 };
-    vplContext* context = openTestContext(2);
-    vplGeometry* room = tableRoom(context);
-    for (int k = 0; k < 3; k++) {
-        const vplEmitterDef e = someEmitter(k);
-        vplReflectiveMap* map = mapOf(room, &e, SIZE);
-        Dice dice = {5, 0};
-        int points = 0, sure = 0, other = 0, darkOnes = 0;
-        for (int block = 0; block < BLOCKS; block++) {
-            vplSurface s;
-            bool dark[VPL_LANES];
-            float factor[VPL_LANES];
-            for (int l = 0; l < VPL_LANES;) {
-                const int triangle = (int)roll(&dice, 0, (float)room->triangleCount);
-                const vplVec3 p = rollOn(room, triangle, &dice), n = room->normals[triangle];
-                const vplVec3 way =
-                    k == VPL_EMITTER_DIRECTIONAL ? vplScale(-20, e.direction) : vplSub(e.position, p);
-                const vplVec3 lit = vplDot(way, n) > 0 ? n : vplNegate(n);
-                const vplRay ray = {vplAdd(p, vplScale(1e-5f, lit)), way, {0, 0}};
-                if (vplDot(way, lit) > 0.01f * vplLength(way) &&
-                    (k != VPL_EMITTER_SPOT ||
-                     vplDot(way, e.direction) < -0.5f * vplLength(way) * vplLength(e.direction))) {
-                    dark[l] = vplGeometry_IsOccluded(room, &ray, 1);
-                    setPoint(&s, l++, p, lit);
-                }
-            }
-            vplReflectiveMap_FactorBlock(map, &s, factor);
-            for (int l = 0; l < VPL_LANES; l++) {
-                const vplVec3 p = {s.px[l], s.py[l], s.pz[l]}, n = {s.nx[l], s.ny[l], s.nz[l]};
-                assert_true(factor[l] >= 0 && factor[l] <= 1);
-                points++;
-                darkOnes += dark[l];
-                other += fabsf(factor[l] - (dark[l] ? 1.0f : 0.0f)) > 0.5f;
-                if (isSure(room, map, p, n, dark[l])) {
-                    sure++;
-                    assertNear((double)factor[l], dark[l] ? 1 : 0, 0, "factor", k);
-                }
-            }
-        }
-        assert_true(darkOnes > points / 100);
-        assert_true(sure > points * 8 / 10);
-        assert_true(other < points * 3 / 100);
-        vplReflectiveMap_Destroy(map);
-    }
-    vplGeometry_Destroy(room);
-    closeTestContext(context);
-}
-
 // Behind a spot, outside of its square and beyond everything; also for points that are no numbers.
-static void NothingIsShadowedOutsideOfTheView(void** state)
+TEST(NothingIsShadowedOutsideOfTheView, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* floor = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = emitterOf((vplEmitterType)k, vplVec(0, 2, 0), vplVec(0, -1, 0));
@@ -165,46 +44,6 @@ static void NothingIsShadowedOutsideOfTheView(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(floor);
-    closeTestContext(context);
-}
-
-static void FactorsDoNotDependOnIsa(void** state)
-{
-    (void)state;
-    for (int k = 0; k < 3; k++) {
-        float wanted[100][VPL_LANES];
-        for (int i = VPL_ISA_SCALAR; i < VPL_ISA_COUNT; i++) {
-            vplContext* context = openIsaContext(2, (vplIsa)i);
-            if (context == NULL) {
-                continue;
-            }
-            vplGeometry* room = tableRoom(context);
-            const vplEmitterDef e = someEmitter(k);
-            vplReflectiveMap* map = mapOf(room, &e, 50);
-            Dice dice = {3, 0};
-            int between = 0;
-            for (int block = 0; block < 100; block++) {
-                vplSurface s;
-                float factor[VPL_LANES];
-                for (int l = 0; l < VPL_LANES; l++) {
-                    const int triangle = (int)roll(&dice, 0, (float)room->triangleCount);
-                    setPoint(&s, l, rollOn(room, triangle, &dice), room->normals[triangle]);
-                }
-                vplReflectiveMap_FactorBlock(map, &s, factor);
-                if (i == VPL_ISA_SCALAR) {
-                    memcpy(wanted[block], factor, sizeof factor);
-                }
-                assert_memory_equal(factor, wanted[block], sizeof factor);
-                for (int l = 0; l < VPL_LANES; l++) {
-                    between += factor[l] > 0 && factor[l] < 1;
-                }
-            }
-            assert_true(between > 0);
-            vplReflectiveMap_Destroy(map);
-            vplGeometry_Destroy(room);
-            closeTestContext(context);
-        }
-    }
 }
 
 static vplImage* shaded(const vplGeometry* g, const vplShadeDef* def, vplShadeStats* stats)
@@ -222,10 +61,8 @@ static vplImage* shaded(const vplGeometry* g, const vplShadeDef* def, vplShadeSt
 }
 
 // Direct light by the map: no ray, no cube map, the same bits in all pipelines, and little that differs from rays.
-static void EmittersTakeTheirShadowsFromTheirMaps(void** state)
+TEST(EmittersTakeTheirShadowsFromTheirMaps, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* room = tableRoom(context);
     for (int k = 0; k < 3; k++) {
         const vplEmitterDef e = someEmitter(k);
@@ -263,10 +100,4 @@ static void EmittersTakeTheirShadowsFromTheirMaps(void** state)
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
-
-TEST_SUITE(rsmShadow, slow_unit_test(NoPlaneShadowsItselfAtAnyAngle),
-           cmocka_unit_test(RaysSayTheSameBeyondTheBand), cmocka_unit_test(NothingIsShadowedOutsideOfTheView),
-           cmocka_unit_test(FactorsDoNotDependOnIsa),
-           cmocka_unit_test(EmittersTakeTheirShadowsFromTheirMaps));

@@ -28,10 +28,8 @@ static vplScene* mustLoad(vplContext* context, const char* text)
     return scene;
 }
 
-static void EveryBrokenSceneSaysWhatIsWrongWhere(void** state)
+TEST(EveryBrokenSceneSaysWhatIsWrongWhere, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("broken/expected.csv");
     assert_true(t.rows >= 34);
     for (int row = 0; row < t.rows; row++) {
@@ -51,14 +49,11 @@ static void EveryBrokenSceneSaysWhatIsWrongWhere(void** state)
         assert_int_equal(vplContext_GetBytes(context), 0);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // Strings may hold any bracket, quote or backslash; none of them may mislead the search for a position.
-static void PositionsAreFoundBehindConfusingStrings(void** state)
+TEST(PositionsAreFoundBehindConfusingStrings, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = NULL;
     const char* text =
         "{\"materials\": {\"]}\\\"[{\": {}, \"m\": {}},\n"
@@ -69,13 +64,10 @@ static void PositionsAreFoundBehindConfusingStrings(void** state)
         "     1, -1e20]}]}";
     assert_int_equal(loadText(context, text, &scene), VPL_PARSE_ERROR);
     assert_non_null(strstr(takeMessage(), ":5:13: objects[1].scale is -1e+20"));
-    closeTestContext(context);
 }
 
-static void WhatIsNoFileIsAFileError(void** state)
+TEST(WhatIsNoFileIsAFileError, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = NULL;
     const char* const paths[] = {"tests/data/none.json", "tests/data", "tests/data/room.json/x", ""};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
@@ -83,7 +75,6 @@ static void WhatIsNoFileIsAFileError(void** state)
         assert_true(strncmp(takeMessage(), paths[i], strlen(paths[i])) == 0);
         assert_null(scene);
     }
-    closeTestContext(context);
 }
 
 // ---- what is right arrives as it was written
@@ -144,10 +135,8 @@ static vplMat4 tableMatrix(const Table* t, int row)
     return m;
 }
 
-static void TheRoomIsThatOfTheTable(void** state)
+TEST(TheRoomIsThatOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* room = loadScene(context, "room.json");
     Table t = loadTable("room_objects.csv");
     assert_int_equal(vplScene_GetCameraCount(room), 1);
@@ -179,7 +168,6 @@ static void TheRoomIsThatOfTheTable(void** state)
     assertRgb(vplScene_GetEmitter(room, 0)->intensity, 10, 10, 10);
     freeTable(&t);
     vplScene_Destroy(room);
-    closeTestContext(context);
 }
 
 #define WITH(objects)                                                                                        \
@@ -196,10 +184,8 @@ static void turn(double p[3], int axis, double degrees)
     p[u] = x;
 }
 
-static void ScaleThenRotateXyzThenTranslate(void** state)
+TEST(ScaleThenRotateXyzThenTranslate, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene =
         mustLoad(context, WITH("{\"type\": \"box\", \"material\": \"m\", \"translate\": [1, -2, 3],"
                                "\"rotate\": [20, -35, 70], \"scale\": [2, 3, 0.5]}"));
@@ -219,14 +205,11 @@ static void ScaleThenRotateXyzThenTranslate(void** state)
         assertNear((double)same.x, p[0] + 1, 1e-6, "x by vplMat4_FromParts", i);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Every combination of quarter turns is a matrix of 0, 1 and -1 without rounding dust.
-static void QuarterTurnsAreExact(void** state)
+TEST(QuarterTurnsAreExact, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     for (int i = 0; i < 125; i++) {
         int turns[3] = {90 * (i % 5 - 2), 90 * (i / 5 % 5 - 2), 90 * (i / 25 - 2) + 360};
         char text[400];
@@ -243,13 +226,10 @@ static void QuarterTurnsAreExact(void** state)
         assert_true(sum == 4);
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
-static void MatricesAndUniformScales(void** state)
+TEST(MatricesAndUniformScales, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = mustLoad(
         context, WITH("{\"type\": \"quad\", \"material\": \"m\","
                       " \"matrix\": [1, 2, 3, 0, -5, 6, 7, 0, 9, 10, -11, 0, 13, 14, 15, 1]},"
@@ -265,13 +245,10 @@ static void MatricesAndUniformScales(void** state)
     assert_null(vplScene_GetObject(scene, 2)->name);
     assertRgb(vplScene_GetMaterial(scene, 0)->diffuse, 0.5, 0.5, 0.5);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void CamerasAndLightsOfEveryKind(void** state)
+TEST(CamerasAndLightsOfEveryKind, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = mustLoad(
         context,
         "{\"cameras\": [{\"eye\": [0, 0, 5], \"target\": [0, 0, 0]},\n"
@@ -304,14 +281,11 @@ static void CamerasAndLightsOfEveryKind(void** state)
     assertVector(sun->direction, 0.25, -1, -0.15);
     assertRgb(sun->intensity, 60, 57, 51);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // JSON knows escapes and numbers of any length; a key is what it says, not how it is spelt.
-static void JsonIsReadAsJson(void** state)
+TEST(JsonIsReadAsJson, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene =
         mustLoad(context, "\r\n\t{\"\\u0063amera\": {\"eye\": [0, -0, 5.0e0], \"target\": [0, 0, 0]},"
                           "\"materials\": {\"\\u00e9\\ud83d\\ude00\": {}}, \"objects\": "
@@ -323,12 +297,4 @@ static void JsonIsReadAsJson(void** state)
         WITH("{\"type\": \"box\", \"material\": \"m\", \"scale\": 100000000000000000000}");
     assert_int_equal(loadText(context, beyond64Bits, &scene), VPL_PARSE_ERROR);
     assert_non_null(strstr(takeMessage(), "objects[0].scale is 1e+20, must be in"));
-    closeTestContext(context);
 }
-
-TEST_SUITE(scene, cmocka_unit_test(EveryBrokenSceneSaysWhatIsWrongWhere),
-           cmocka_unit_test(PositionsAreFoundBehindConfusingStrings),
-           cmocka_unit_test(WhatIsNoFileIsAFileError), cmocka_unit_test(TheRoomIsThatOfTheTable),
-           cmocka_unit_test(ScaleThenRotateXyzThenTranslate), cmocka_unit_test(QuarterTurnsAreExact),
-           cmocka_unit_test(MatricesAndUniformScales), cmocka_unit_test(CamerasAndLightsOfEveryKind),
-           cmocka_unit_test(JsonIsReadAsJson));

@@ -39,10 +39,8 @@ static vplScene* emptyScene(vplContext* context)
     return scene;
 }
 
-static void CamerasAreChecked(void** state)
+TEST(CamerasAreChecked, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = emptyScene(context);
     const BadNumber cases[] = {
         {FLOAT(vplCameraDef, eye.y), (double)NAN, "vplCameraDef.eye[1] is nan"},
@@ -71,13 +69,10 @@ static void CamerasAreChecked(void** state)
     assertRefused(vplScene_AddCamera(scene, &def, NULL), "vplCameraDef.up is parallel", UNTOUCHED);
     assert_int_equal(vplScene_GetCameraCount(scene), 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void MaterialsAreChecked(void** state)
+TEST(MaterialsAreChecked, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = emptyScene(context);
     const BadNumber cases[] = {
         {FLOAT(vplMaterialDef, diffuse.r), -0.01, "vplMaterialDef.diffuse[0] is -0.01"},
@@ -102,13 +97,10 @@ static void MaterialsAreChecked(void** state)
                   UNTOUCHED);
     assert_true(first == 0 && second == 1 && vplScene_GetMaterialCount(scene) == 3);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void ObjectsAreChecked(void** state)
+TEST(ObjectsAreChecked, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = emptyScene(context);
     vplMaterialDef material = vplDefaultMaterialDef();
     assert_int_equal(vplScene_AddMaterial(scene, &material, NULL), VPL_SUCCESS);
@@ -137,13 +129,10 @@ static void ObjectsAreChecked(void** state)
     assertRefused(vplScene_AddObject(scene, &beyond, NULL), "vplObjectDef.material is 1", UNTOUCHED);
     assert_int_equal(vplScene_GetObjectCount(scene), 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void EmittersAreChecked(void** state)
+TEST(EmittersAreChecked, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = emptyScene(context);
     const BadNumber cases[] = {
         {FLOAT(vplEmitterDef, position.x), (double)NAN, "vplEmitterDef.position[0] is nan"},
@@ -170,13 +159,10 @@ static void EmittersAreChecked(void** state)
     assertRefused(vplScene_AddEmitter(scene, &def, NULL), "vplEmitterDef.type is 9", UNTOUCHED);
     assert_int_equal(vplScene_GetEmitterCount(scene), 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void DefsThatWereNeverFilledInAreRefused(void** state)
+TEST(DefsThatWereNeverFilledInAreRefused, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = emptyScene(context);
     vplCameraDef camera = {.eye = {0, 0, 5}, .up = {0, 1, 0}, .fovY = 1, .near = 1, .far = 2};
     vplMaterialDef material = {0};
@@ -195,13 +181,10 @@ static void DefsThatWereNeverFilledInAreRefused(void** state)
     assertRefused(vplScene_AddCamera(scene, &camera, NULL), "vplCameraDef was not made by its default",
                   UNTOUCHED);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void ScenesKeepTheirOwnNames(void** state)
+TEST(ScenesKeepTheirOwnNames, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = emptyScene(context);
     char name[] = "oak";
     vplMaterialDef material = vplDefaultMaterialDef();
@@ -214,9 +197,4 @@ static void ScenesKeepTheirOwnNames(void** state)
     assert_string_equal(vplScene_GetObject(scene, 0)->name, "oak");
     vplScene_Destroy(scene);
     vplScene_Destroy(NULL);
-    closeTestContext(context);
 }
-
-TEST_SUITE(sceneChecks, cmocka_unit_test(CamerasAreChecked), cmocka_unit_test(MaterialsAreChecked),
-           cmocka_unit_test(ObjectsAreChecked), cmocka_unit_test(EmittersAreChecked),
-           cmocka_unit_test(DefsThatWereNeverFilledInAreRefused), cmocka_unit_test(ScenesKeepTheirOwnNames));

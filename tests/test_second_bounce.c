@@ -61,9 +61,8 @@ static vplRgb fluxOf(const vplLightSet* set)
 }
 
 // In a closed box whose walls reflect a share a, the second bounce is a times the first.
-static void SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst(void** state)
+TEST_ALONE(SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst)
 {
-    (void)state;
     Stand s;
     openStand(&s, openTestContext(2), 0.6f, 128);
     const double wanted = 0.6 * 4 * CLUSTERS;
@@ -90,9 +89,8 @@ static void SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst(void** state)
 
 // X104: without the weight the sum is the same where all is white, and too much of it lies along the horizon: below 10
 // degrees a diffuse light sends sin^2 10 = 3.0 % of its flux, and 1 - tan^2 40 = 29.6 % of the disk lies there.
-static void PrintedWeightsBrightenTheHorizon(void** state)
+TEST_ALONE(PrintedWeightsBrightenTheHorizon)
 {
-    (void)state;
     Stand s;
     openStand(&s, openTestContext(1), 0.6f, 256);
     double low[2];
@@ -118,9 +116,8 @@ static void PrintedWeightsBrightenTheHorizon(void** state)
     closeStand(&s);
 }
 
-static void LightsLieOnWhatTheirClusterSeesAndFaceIt(void** state)
+TEST_ALONE(LightsLieOnWhatTheirClusterSeesAndFaceIt)
 {
-    (void)state;
     Stand s;
     openStand(&s, openTestContext(1), 0.6f, 64);
     vplSecondBounceDef def = vplDefaultSecondBounceDef();
@@ -145,9 +142,8 @@ static void LightsLieOnWhatTheirClusterSeesAndFaceIt(void** state)
 }
 
 // The same from frame to frame; another shift, other points; clusters do not sample alike.
-static void PointsAreTheSameFromFrameToFrame(void** state)
+TEST_ALONE(PointsAreTheSameFromFrameToFrame)
 {
-    (void)state;
     Stand s;
     openStand(&s, openTestContext(1), 0.6f, 256);
     for (int i = 0; i < CLUSTERS; i++) {
@@ -171,9 +167,8 @@ static void PointsAreTheSameFromFrameToFrame(void** state)
     closeStand(&s);
 }
 
-static void ClustersWithoutLightSampleNothing(void** state)
+TEST_ALONE(ClustersWithoutLightSampleNothing)
 {
-    (void)state;
     Stand s;
     openStand(&s, openTestContext(1), 0.6f, 32);
     s.list[0].lightCount = 0;
@@ -207,9 +202,8 @@ static void ClustersWithoutLightSampleNothing(void** state)
     closeStand(&s);
 }
 
-static void APictureOfAMapShowsPositionsNormalsAlbedoAndDistance(void** state)
+TEST_ALONE(APictureOfAMapShowsPositionsNormalsAlbedoAndDistance)
 {
-    (void)state;
     Stand s;
     openStand(&s, openTestContext(1), 0.6f, 33);
     vplImage* image;
@@ -232,10 +226,3 @@ static void APictureOfAMapShowsPositionsNormalsAlbedoAndDistance(void** state)
     vplImage_Destroy(image);
     closeStand(&s);
 }
-
-TEST_SUITE(secondBounce, cmocka_unit_test(SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst),
-           cmocka_unit_test(PrintedWeightsBrightenTheHorizon),
-           cmocka_unit_test(LightsLieOnWhatTheirClusterSeesAndFaceIt),
-           cmocka_unit_test(PointsAreTheSameFromFrameToFrame),
-           cmocka_unit_test(ClustersWithoutLightSampleNothing),
-           cmocka_unit_test(APictureOfAMapShowsPositionsNormalsAlbedoAndDistance));

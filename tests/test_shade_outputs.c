@@ -65,9 +65,8 @@ static int assertTimes(const vplImage* image, const vplImage* other, double fact
     return lit;
 }
 
-static void DenoisedIrradianceTimesReflectanceIsThePicture(void** state)
+TEST_ALONE(DenoisedIrradianceTimesReflectanceIsThePicture)
 {
-    (void)state;
     Setting s = openSetting();
     for (int side = 2; side <= 5; side++) {
         vplImage* picture = show(&s, VPL_ACCUMULATE_INTERLEAVED, side, VPL_OUTPUT_RADIANCE);
@@ -80,9 +79,8 @@ static void DenoisedIrradianceTimesReflectanceIsThePicture(void** state)
 }
 
 // Of class c the lights c, c + K^2, ..., K^2 times as bright.
-static void GatheredIrradianceIsThatOfEachPixelsClass(void** state)
+TEST_ALONE(GatheredIrradianceIsThatOfEachPixelsClass)
 {
-    (void)state;
     enum { SIDE = 3 };
     Setting s = openSetting();
     vplImage* gather = show(&s, VPL_ACCUMULATE_INTERLEAVED, SIDE, VPL_OUTPUT_GATHER);
@@ -111,9 +109,8 @@ static void GatheredIrradianceIsThatOfEachPixelsClass(void** state)
 }
 
 // However virtual lights are accumulated, and without light of emitters.
-static void WhereNobodySharesBothAreTheIrradiance(void** state)
+TEST_ALONE(WhereNobodySharesBothAreTheIrradiance)
 {
-    (void)state;
     Setting s = openSetting();
     vplImage* picture = show(&s, VPL_ACCUMULATE_DEFERRED, 1, VPL_OUTPUT_RADIANCE);
     for (int k = 0; k < 10; k++) {
@@ -125,7 +122,3 @@ static void WhereNobodySharesBothAreTheIrradiance(void** state)
     vplImage_Destroy(picture);
     closeSetting(&s);
 }
-
-TEST_SUITE(shadeOutputs, cmocka_unit_test(DenoisedIrradianceTimesReflectanceIsThePicture),
-           cmocka_unit_test(GatheredIrradianceIsThatOfEachPixelsClass),
-           cmocka_unit_test(WhereNobodySharesBothAreTheIrradiance));

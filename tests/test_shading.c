@@ -39,10 +39,8 @@ static vplShadeLight lightAt(vplVec3 p, vplVec3 n, float colour)
     return (vplShadeLight){p.x, p.y, p.z, n.x, n.y, n.z, colour, colour, colour};
 }
 
-static void EveryKernelValueOfTheTable(void** state)
+TEST(EveryKernelValueOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("vpl_kernel.csv");
     for (int row = 0; row < t.rows; row++) {
         const char* category = cell(&t, row, "cat");
@@ -68,14 +66,11 @@ static void EveryKernelValueOfTheTable(void** state)
         assertNear(documented, number(&t, row, "documented_kernel"), 4e-7, category, row);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), by 20,000 rings.
-static void ClampLosesOnAPlaneWhatTheTableSays(void** state)
+TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("vpl_clamp_plane.csv");
     enum { RINGS = 20000 };
     vplShadeLight* rings = malloc(RINGS * sizeof *rings);
@@ -101,7 +96,6 @@ static void ClampLosesOnAPlaneWhatTheTableSays(void** state)
     }
     free(rings);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // The first directions of the tables: spherical Fibonacci points about y.
@@ -113,10 +107,8 @@ static vplVec3 fibonacci(int i, int count)
 }
 
 // In a sphere lit from its centre G is 1/(4 R^2) between all points: the physical sum is exact for any lights.
-static void FurnaceSphereIsExact(void** state)
+TEST(FurnaceSphereIsExact, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("furnace_sphere.csv");
     for (int row = 0; row < t.rows; row++) {
         double radius = number(&t, row, "R"), rho = number(&t, row, "rho"), intensity = number(&t, row, "I");
@@ -141,13 +133,10 @@ static void FurnaceSphereIsExact(void** state)
         assertNear(rho / VPL_PI * e, wanted, 2e-6 * wanted, "radiance", row);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
-static void DocumentedFurnaceSphereIsThatOfTheTable(void** state)
+TEST(DocumentedFurnaceSphereIsThatOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("furnace_sphere_documented.csv");
     for (int row = 0; row < t.rows; row++) {
         double rho = number(&t, row, "rho"), radius = number(&t, row, "R"), sum = 0;
@@ -169,7 +158,6 @@ static void DocumentedFurnaceSphereIsThatOfTheTable(void** state)
         assertNear(rho / VPL_PI * sum, wanted, 1e-5 * wanted, "documented radiance", row);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // Irradiance of the lights of one step at the floor point (u, -1, v) of the closed cube.
@@ -204,10 +192,8 @@ static vplLightSet* cubeLights(const vplGeometry* cube, vplLighting lighting, in
     return set;
 }
 
-static void LightsInACubeConvergeToTheTable(void** state)
+TEST(LightsInACubeConvergeToTheTable, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("cube_physical.csv");
     vplGeometry* cube = closedCube(context, 0.9f);
     const char* const columns[3] = {"E1_over_rho", "E2_over_rho^2", "E3_over_rho^3"};
@@ -238,13 +224,10 @@ static void LightsInACubeConvergeToTheTable(void** state)
     }
     vplGeometry_Destroy(cube);
     freeTable(&t);
-    closeTestContext(context);
 }
 
-static void DocumentedLightsInACubeConvergeToTheTable(void** state)
+TEST(DocumentedLightsInACubeConvergeToTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("cube_documented.csv");
     vplGeometry* cube = closedCube(context, 0.9f);
     vplLightSet* set = cubeLights(cube, VPL_LIGHTING_DOCUMENTED, 60000, 0.9, 0);
@@ -261,7 +244,6 @@ static void DocumentedLightsInACubeConvergeToTheTable(void** state)
     vplLightSet_Destroy(set);
     vplGeometry_Destroy(cube);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // The virtual lights of set A of room_particles.csv, as a kernel wants them.
@@ -296,10 +278,8 @@ static void checkRgb(const Table* t, int row, const char* prefix, const float e[
     }
 }
 
-static void EveryPointOfTheRoomIsLitAsTheTableSays(void** state)
+TEST(EveryPointOfTheRoomIsLitAsTheTableSays, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("room_shading.csv"), objects = loadTable("room_objects.csv");
     vplGeometry* room = tableRoom(context);
     vplShadeLight lights[18];
@@ -355,14 +335,11 @@ static void EveryPointOfTheRoomIsLitAsTheTableSays(void** state)
     vplGeometry_Destroy(room);
     freeTable(&objects);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // estimator_factors.csv: the same particles under both lightings differ by known factors.
-static void BothLightingsDifferByTheFactorsOfTheTable(void** state)
+TEST(BothLightingsDifferByTheFactorsOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* cube = closedCube(context, 0.7f);
     vplLightSet* documented = cubeLights(cube, VPL_LIGHTING_DOCUMENTED, 50, 0.6, 0);
     vplParticleDef def = vplDefaultParticleDef();
@@ -386,13 +363,11 @@ static void BothLightingsDifferByTheFactorsOfTheTable(void** state)
     vplLightSet_Destroy(documented);
     vplLightSet_Destroy(physical);
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // depth_precision.csv: the camera's z/w, and what rounding it to float hides.
-static void DepthIsThatOfTheTable(void** state)
+TEST_ALONE(DepthIsThatOfTheTable)
 {
-    (void)state;
     Table t = loadTable("depth_precision.csv");
     for (int row = 0; row < t.rows; row++) {
         vplCameraDef camera = vplDefaultCameraDef();
@@ -437,10 +412,8 @@ static vplImage* shadeFloor(vplContext* context, vplShadeDef def, int width, int
 }
 
 // X091: a million equal lights are a million times one, which a float sum could not count.
-static void AMillionEqualLightsAddUp(void** state)
+TEST(AMillionEqualLightsAddUp, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     enum { COUNT = 1000000 };
     vplShadeLight* lights = malloc(COUNT * sizeof *lights);
     for (int i = 0; i < COUNT; i++) {
@@ -459,14 +432,11 @@ static void AMillionEqualLightsAddUp(void** state)
     vplImage_Destroy(one);
     vplImage_Destroy(many);
     free(lights);
-    closeTestContext(context);
 }
 
 // X112, X092: sizes that are no multiple of a tile or block, and no light at all.
-static void EveryPixelOfAnySizeIsShadedOnce(void** state)
+TEST(EveryPixelOfAnySizeIsShadedOnce, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplShadeLight light = lightAt(vplVec(0, 5, 0), vplVec(0, -1, 0), 1);
     const int sizes[][2] = {{1, 1}, {3, 5}, {64, 64}, {65, 63}, {130, 67}};
     for (int i = 0; i < 5; i++) {
@@ -491,15 +461,4 @@ static void EveryPixelOfAnySizeIsShadedOnce(void** state)
         }
         vplImage_Destroy(dark);
     }
-    closeTestContext(context);
 }
-
-TEST_SUITE(shading, cmocka_unit_test(EveryKernelValueOfTheTable),
-           cmocka_unit_test(ClampLosesOnAPlaneWhatTheTableSays), cmocka_unit_test(FurnaceSphereIsExact),
-           cmocka_unit_test(DocumentedFurnaceSphereIsThatOfTheTable),
-           slow_unit_test(LightsInACubeConvergeToTheTable),
-           cmocka_unit_test(DocumentedLightsInACubeConvergeToTheTable),
-           cmocka_unit_test(EveryPointOfTheRoomIsLitAsTheTableSays),
-           cmocka_unit_test(BothLightingsDifferByTheFactorsOfTheTable),
-           cmocka_unit_test(DepthIsThatOfTheTable), cmocka_unit_test(AMillionEqualLightsAddUp),
-           cmocka_unit_test(EveryPixelOfAnySizeIsShadedOnce));

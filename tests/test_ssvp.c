@@ -91,10 +91,8 @@ static vplImage* renderWith(const vplScene* scene, vplRenderOptions o, vplLightS
 // The document: "for the hypothetical scenario where we have as many clusters as VPLs ... the technique is
 // indistinguishable from the original Instant Radiosity". Each light then sees by a map of its own, and what is left is
 // how maps and rays differ at the edges of shadows: the same as with Keller's map per light.
-static void AsManyClustersAsLightsAreInstantRadiosity(void** state)
+TEST(AsManyClustersAsLightsAreInstantRadiosity, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(64);
     o.output.show = VPL_SHOW_INDIRECT;
@@ -117,14 +115,11 @@ static void AsManyClustersAsLightsAreInstantRadiosity(void** state)
         vplImage_Destroy(all[i]);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Light of one and of two bounces is that of the path tracer, which knows no maps, clusters or virtual lights.
-static void EachBounceHasTheLightOfPaths(void** state)
+TEST(EachBounceHasTheLightOfPaths, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     const vplEmitterType types[3] = {VPL_EMITTER_SPOT, VPL_EMITTER_POINT, VPL_EMITTER_DIRECTIONAL};
     for (int k = 0; k < 3; k++) {
         vplScene* scene = corner(context, types[k]);
@@ -149,15 +144,12 @@ static void EachBounceHasTheLightOfPaths(void** state)
         }
         vplScene_Destroy(scene);
     }
-    closeTestContext(context);
 }
 
 // The weight that the document leaves out: without it light near the rim of each map counts as much as that along the
 // axis, where it is eight times as bright.
-static void PrintedWeightsMoveTheSecondBounce(void** state)
+TEST(PrintedWeightsMoveTheSecondBounce, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(32);
     o.output.show = VPL_SHOW_INDIRECT;
@@ -168,15 +160,12 @@ static void PrintedWeightsMoveTheSecondBounce(void** state)
     vplImage_Destroy(right);
     vplImage_Destroy(printed);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- toggles
 
-static void BouncesAreToggled(void** state)
+TEST(BouncesAreToggled, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(48);
     vplRenderStats stats[4];
@@ -204,14 +193,11 @@ static void BouncesAreToggled(void** state)
         vplImage_Destroy(pictures[i]);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Every stage can be looked at; what is not there is a sentence.
-static void EveryStageIsShown(void** state)
+TEST(EveryStageIsShown, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(48);
     vplRenderStats plain, stats;
@@ -229,12 +215,10 @@ static void EveryStageIsShown(void** state)
     assert_int_equal(vplRender(scene, &o, &nothing, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "cluster 8 does not exist, there are 8"));
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void BitsDependOnNeitherThreadsNorInstructions(void** state)
+TEST_ALONE(BitsDependOnNeitherThreadsNorInstructions)
 {
-    (void)state;
     static const int workers[4] = {1, 2, 3, 7};
     uint64_t first = 0;
     for (int i = 0; i < 4 + VPL_ISA_COUNT; i++) {
@@ -265,10 +249,8 @@ static uint64_t hashOfFrame(vplScene* scene, vplRenderOptions o, vplHistory* his
 }
 
 // Where the light stands still, so do its lights and clusters; where patterns are new for each frame, they do not.
-static void StillLightsKeepTheirBits(void** state)
+TEST(StillLightsKeepTheirBits, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(32);
     vplHistory* history;
@@ -287,14 +269,11 @@ static void StillLightsKeepTheirBits(void** state)
     assert_true(hashOfFrame(scene, o, history, 0) == five);
     vplHistory_Destroy(history);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // A frame for which nobody looked at the maps leaves none; the next one does not go without.
-static void MapsThatWereNotNeededAreDrawnWhenTheyAre(void** state)
+TEST(MapsThatWereNotNeededAreDrawnWhenTheyAre, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(32);
     vplHistory* history;
@@ -306,14 +285,11 @@ static void MapsThatWereNotNeededAreDrawnWhenTheyAre(void** state)
     assert_true(hashOfFrame(scene, o, history, 1) == hashOfFrame(scene, o, NULL, 1));
     vplHistory_Destroy(history);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // Passes are no frames: each has samples of its own, whatever those of the pass before were of use.
-static void PassesHaveNothingToDoWithEachOther(void** state)
+TEST(PassesHaveNothingToDoWithEachOther, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = corner(context, VPL_EMITTER_SPOT);
     vplRenderOptions o = ssvpOptions(32);
     o.stop.passes = 3;
@@ -321,7 +297,6 @@ static void PassesHaveNothingToDoWithEachOther(void** state)
     o.sequence.coherence = VPL_COHERENCE_OFF;
     assert_true(hashOfFrame(scene, o, NULL, 0) == on);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // ---- extremes
@@ -334,10 +309,8 @@ static void assertFinite(const vplScene* scene, vplRenderOptions o)
 }
 
 // X092, X105: fewer lights than clusters, and one; a map of one texel.
-static void FewerLightsThanClustersAndMapsOfOneTexel(void** state)
+TEST(FewerLightsThanClustersAndMapsOfOneTexel, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = spotRoom(context, 0.6f);
     vplRenderOptions o = ssvpOptions(32);
     const int counts[4] = {0, 1, 2, 7};
@@ -354,14 +327,11 @@ static void FewerLightsThanClustersAndMapsOfOneTexel(void** state)
     o.pipeline.interleave = 16;
     assertFinite(scene, o);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // X108: the cube's walls facing each other, and a ball from within: centroids hang in mid-air, normals cancel.
-static void CentroidsInMidAirLightTheBallTheyAreIn(void** state)
+TEST(CentroidsInMidAirLightTheBallTheyAreIn, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = sceneOf(context, 0.5f);
     Shape ball = icosphere(3);
     const vplMat4 identity = vplMat4_Identity();
@@ -383,13 +353,10 @@ static void CentroidsInMidAirLightTheBallTheyAreIn(void** state)
         vplImage_Destroy(rays);
     }
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
-static void BlackScenesAndLightsThatSeeNothingStayBlack(void** state)
+TEST(BlackScenesAndLightsThatSeeNothingStayBlack, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* black = spotRoom(context, 0);
     vplRenderOptions o = ssvpOptions(32);
     o.output.show = VPL_SHOW_INDIRECT;
@@ -403,14 +370,11 @@ static void BlackScenesAndLightsThatSeeNothingStayBlack(void** state)
     addEmitter(dark, VPL_EMITTER_SPOT, vplVec(9, 0, 0), vplVec(1, 0, 0), 5);
     assertNear(meanOfRender(dark, &o), 0, 0, "light that sees nothing", 0);
     vplScene_Destroy(dark);
-    closeTestContext(context);
 }
 
 // Surfaces that emit have no reflective map: particles take their share of the first bounce.
-static void LampsAreLightsToo(void** state)
+TEST(LampsAreLightsToo, 2, SLOW)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplScene* scene = closedCubeScene(context, 0.6f, 0);
     addBox(scene);
     const int lamp = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 3);
@@ -432,14 +396,11 @@ static void LampsAreLightsToo(void** state)
     o.output.show = VPL_SHOW_INDIRECT;
     assertNear(found / meanOfRender(scene, &o), 1, 0.03, "energy", 0);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
 
 // What SSVP cannot do is said.
-static void WhatIsNotPossibleIsASentence(void** state)
+TEST(WhatIsNotPossibleIsASentence, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplScene* scene = spotRoom(context, 0.5f);
     vplImage* image = NULL;
     vplRenderOptions o = ssvpOptions(16);
@@ -468,17 +429,4 @@ static void WhatIsNotPossibleIsASentence(void** state)
     }
     assert_null(image);
     vplScene_Destroy(scene);
-    closeTestContext(context);
 }
-
-TEST_SUITE(ssvp, slow_unit_test(AsManyClustersAsLightsAreInstantRadiosity),
-           slow_unit_test(EachBounceHasTheLightOfPaths), cmocka_unit_test(PrintedWeightsMoveTheSecondBounce),
-           cmocka_unit_test(BouncesAreToggled), cmocka_unit_test(EveryStageIsShown),
-           cmocka_unit_test(BitsDependOnNeitherThreadsNorInstructions),
-           cmocka_unit_test(StillLightsKeepTheirBits),
-           cmocka_unit_test(MapsThatWereNotNeededAreDrawnWhenTheyAre),
-           cmocka_unit_test(PassesHaveNothingToDoWithEachOther),
-           cmocka_unit_test(FewerLightsThanClustersAndMapsOfOneTexel),
-           cmocka_unit_test(CentroidsInMidAirLightTheBallTheyAreIn),
-           cmocka_unit_test(BlackScenesAndLightsThatSeeNothingStayBlack), slow_unit_test(LampsAreLightsToo),
-           cmocka_unit_test(WhatIsNotPossibleIsASentence));

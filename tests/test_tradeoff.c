@@ -5,9 +5,8 @@
 #include "cli/bench/measure.h"
 #include "cli/tradeoff/math.h"
 
-static void MedianIsTheMiddleOrTheMeanOfTwo(void** state)
+TEST_ALONE(MedianIsTheMiddleOrTheMeanOfTwo)
 {
-    (void)state;
     const double odd[] = {9, 1, 5}, even[] = {4, 1, 3, 2}, ties[] = {7, 7, 1, 7}, one[] = {3};
     assertNear(medianOf(odd, 3), 5, 0, "odd", 0);
     assertNear(medianOf(even, 4), 2.5, 0, "even", 0);
@@ -17,9 +16,8 @@ static void MedianIsTheMiddleOrTheMeanOfTwo(void** state)
     assertNear(even[0], 4, 0, "stays as it was", 0);
 }
 
-static void FrontHoldsWhatNothingBeats(void** state)
+TEST_ALONE(FrontHoldsWhatNothingBeats)
 {
-    (void)state;
     //                     front, beaten, front, equal, front, dearer, not measured
     const double cost[] = {1, 2, 2, 2, 5, 6, NAN}, error[] = {9, 9, 7, 7, 1, 1, NAN};
     bool onFront[7];
@@ -30,9 +28,8 @@ static void FrontHoldsWhatNothingBeats(void** state)
 
 // By definition, in random cases: a point is on the front if and only if no other is as good in both and better in
 // one, or equal and before it.
-static void FrontFollowsItsDefinition(void** state)
+TEST_ALONE(FrontFollowsItsDefinition)
 {
-    (void)state;
     enum { COUNT = 12 };
     for (uint64_t seed = 0; seed < 500; seed++) {
         double cost[COUNT], error[COUNT];
@@ -56,18 +53,16 @@ static void FrontFollowsItsDefinition(void** state)
     }
 }
 
-static void ThinFrontLeavesOutSmallGains(void** state)
+TEST_ALONE(ThinFrontLeavesOutSmallGains)
 {
-    (void)state;
     const double cost[] = {1, 2, 3, 4}, error[] = {10, 9.8, 9.6, 5};
     bool onFront[4];
     assert_int_equal(markFront(cost, error, 4, 0.03, onFront), 3); // 9.8 is not 3 % below 10, 9.6 is
     assert_true(onFront[0] && !onFront[1] && onFront[2] && onFront[3]);
 }
 
-static void CheapestWithinALimit(void** state)
+TEST_ALONE(CheapestWithinALimit)
 {
-    (void)state;
     const double cost[] = {5, 3, 3, 1, 0}, error[] = {1, 2, 2, 9, NAN};
     assert_int_equal(cheapestWithin(cost, error, 5, 2), 1);
     assert_int_equal(cheapestWithin(cost, error, 5, 1), 0);
@@ -75,9 +70,8 @@ static void CheapestWithinALimit(void** state)
     assert_int_equal(cheapestWithin(cost, error, 5, 0.5), -1);
 }
 
-static void HalvingTwiceCostsHalfTheDifference(void** state)
+TEST_ALONE(HalvingTwiceCostsHalfTheDifference)
 {
-    (void)state;
     assertNear(costPerHalving(10, 0.8, 40, 0.2), 15, 1e-12, "two halvings for 30", 0);
     assertNear(costPerHalving(10, 0.4, 4, 0.2), -6, 1e-12, "less error and less time", 0);
     assert_true(isinf(costPerHalving(10, 0.2, 40, 0.2)));
@@ -85,9 +79,8 @@ static void HalvingTwiceCostsHalfTheDifference(void** state)
     assertNear(costPerHalving(10, 0.2, 40, 0), 0, 0, "no error left", 0);
 }
 
-static void FloorShowsWhereWorkNoLongerHelps(void** state)
+TEST_ALONE(FloorShowsWhereWorkNoLongerHelps)
 {
-    (void)state;
     const double work[] = {10, 30, 100, 300}, falling[] = {40, 23, 13, 7.3}, biased[] = {40, 14, 12.5, 12.1};
     assert_true(isnan(floorOf(work, falling, 4)));
     assertNear(floorOf(work, biased, 4), 12.1, 0, "floor", 0);
@@ -96,9 +89,8 @@ static void FloorShowsWhereWorkNoLongerHelps(void** state)
     assert_true(isnan(floorOf(work, biased, 1)));
 }
 
-static void JointSquareIsFreeOfTheReferencesNoise(void** state)
+TEST_ALONE(JointSquareIsFreeOfTheReferencesNoise)
 {
-    (void)state;
     enum { COUNT = 100000 };
     static float x[COUNT], a[COUNT], b[COUNT];
     for (uint64_t i = 0; i < COUNT; i++) { // the truth is 1, the halves have noise of deviation 0.5
@@ -115,9 +107,8 @@ static void JointSquareIsFreeOfTheReferencesNoise(void** state)
     assertNear(jointSquare(a, a, b, COUNT), 0, 3 * uncertainty, "a judged by itself and b", 0);
 }
 
-static void AxesHoldAllValues(void** state)
+TEST_ALONE(AxesHoldAllValues)
 {
-    (void)state;
     double low, high, ticks[8];
     const double values[] = {0, 3, 40, NAN, -1, INFINITY};
     assert_true(logRange(values, 6, &low, &high));
@@ -131,9 +122,8 @@ static void AxesHoldAllValues(void** state)
     assert_int_equal(logTicks(0.5, 2e5, ticks, 8), 6); // 1 to 100000
 }
 
-static void TimesAndSharesReadWell(void** state)
+TEST_ALONE(TimesAndSharesReadWell)
 {
-    (void)state;
     static const struct {
         double ms;
         const char* text;
@@ -152,10 +142,8 @@ static void TimesAndSharesReadWell(void** state)
     assert_string_equal(text, "130 %");
 }
 
-static void EncodedPngIsTheFileThatWouldBeWritten(void** state)
+TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplImage* image;
     assert_int_equal(vplImage_Create(context, 5, 3, &image), VPL_SUCCESS);
     for (int i = 0; i < 45; i++) {
@@ -178,13 +166,4 @@ static void EncodedPngIsTheFileThatWouldBeWritten(void** state)
     assert_int_equal(vplImage_EncodePng(image, NULL, &bytes, &size), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "pixel (2, 0) channel 1"));
     vplImage_Destroy(image);
-    closeTestContext(context);
 }
-
-TEST_SUITE(tradeoff, cmocka_unit_test(MedianIsTheMiddleOrTheMeanOfTwo),
-           cmocka_unit_test(FrontHoldsWhatNothingBeats), cmocka_unit_test(FrontFollowsItsDefinition),
-           cmocka_unit_test(ThinFrontLeavesOutSmallGains), cmocka_unit_test(CheapestWithinALimit),
-           cmocka_unit_test(HalvingTwiceCostsHalfTheDifference),
-           cmocka_unit_test(FloorShowsWhereWorkNoLongerHelps),
-           cmocka_unit_test(JointSquareIsFreeOfTheReferencesNoise), cmocka_unit_test(AxesHoldAllValues),
-           cmocka_unit_test(TimesAndSharesReadWell), cmocka_unit_test(EncodedPngIsTheFileThatWouldBeWritten));

@@ -1,41 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Form factors of two triangles and of a point and a triangle: tests/data/ff_triangles.csv, ff_cube12.csv,
-// ff_analytic.csv, ff_closure.csv, and what holds for all of them.
-#include "shapes.h"
+// Form factors of two triangles: tests/data/ff_triangles.csv, ff_cube12.csv, ff_analytic.csv, ff_closure.csv, and what holds
+// for all of them.
+#include "factor_cases.h"
 
-static vplVec3 cornerOf(const Table* t, int row, const char* letter, int i)
+TEST_ALONE(FactorsOfPairsAreThoseOfTheTable)
 {
-    char prefix[8];
-    snprintf(prefix, sizeof prefix, "%s%d", letter, i);
-    return vectorOf(t, row, prefix);
-}
-
-static void swapCorners(vplVec3 t[3])
-{
-    const vplVec3 swap = t[1];
-    t[1] = t[2];
-    t[2] = swap;
-}
-
-// The tables do not say which side is the front: that which sees something.
-static double factorOfEitherSide(const vplVec3 a[3], vplVec3 b[3])
-{
-    const double f = vplTriangleFormFactor(a, b);
-    if (f > 0) {
-        return f;
-    }
-    swapCorners(b);
-    return vplTriangleFormFactor(a, b);
-}
-
-static void assertRelative(double value, double wanted, double tolerance, const char* what, int row)
-{
-    assertNear(value / wanted, 1, tolerance, what, row);
-}
-
-static void FactorsOfPairsAreThoseOfTheTable(void** state)
-{
-    (void)state;
     Table t = loadTable("ff_triangles.csv");
     for (int row = 0; row < t.rows; row++) {
         vplVec3 a[3], b[3];
@@ -50,9 +19,8 @@ static void FactorsOfPairsAreThoseOfTheTable(void** state)
     freeTable(&t);
 }
 
-static void RowsOfACubeAreThoseOfTheTableAndSumToOne(void** state)
+TEST_ALONE(RowsOfACubeAreThoseOfTheTableAndSumToOne)
 {
-    (void)state;
     Table t = loadTable("ff_cube12.csv");
     vplVec3 corners[12][3];
     for (int i = 0; i < 12; i++) {
@@ -118,9 +86,8 @@ static double factorOfPerpendicular(float w, float l, float h)
 }
 
 // Lengths are floats: 0.001 is wrong by 5e-8 of it. Those that are exact agree to 1e-11.
-static void RectanglesAreThoseOfTheClosedForms(void** state)
+TEST_ALONE(RectanglesAreThoseOfTheClosedForms)
 {
-    (void)state;
     Table t = loadTable("ff_analytic.csv");
     int compared = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -149,9 +116,8 @@ static void RectanglesAreThoseOfTheClosedForms(void** state)
     freeTable(&t);
 }
 
-static void BoxesCloseAsTheTableSays(void** state)
+TEST_ALONE(BoxesCloseAsTheTableSays)
 {
-    (void)state;
     static const float sizes[5][3] = {{1, 1, 1}, {5, 5, 5}, {1, 2, 3}, {1, 1, 100}, {1, 100, 100}};
     Table t = loadTable("ff_closure.csv");
     for (int row = 0; row < t.rows; row++) {
@@ -167,40 +133,8 @@ static void BoxesCloseAsTheTableSays(void** state)
 
 // ---- any two triangles
 
-static vplVec3 rollPoint(uint64_t seed, uint64_t index, float size, vplVec3 at)
+TEST_ALONE(BothDirectionsExchangeTheSame)
 {
-    return (vplVec3){at.x + size * (float)(uniformAt(seed, 3 * index) - 0.5),
-                     at.y + size * (float)(uniformAt(seed, 3 * index + 1) - 0.5),
-                     at.z + size * (float)(uniformAt(seed, 3 * index + 2) - 0.5)};
-}
-
-// Up to 8 apart, up to a hundred times as large, and cutting each other's planes as often as not.
-static void rollPair(uint64_t seed, vplVec3 a[3], vplVec3 b[3])
-{
-    const float size = powf(10, (float)(uniformAt(seed, 100) * 2 - 1)),
-                apart = 8 * (float)uniformAt(seed, 101);
-    for (uint64_t i = 0; i < 3; i++) {
-        a[i] = rollPoint(seed, i, 1, (vplVec3){0, 0, 0});
-        b[i] = rollPoint(seed, 3 + i, size, (vplVec3){0, 0, apart});
-    }
-    if (vplTriangleFormFactor(a, b) == 0) {
-        swapCorners(b);
-    }
-}
-
-static double areaOf(const vplVec3 t[3])
-{
-    const double ux = (double)t[1].x - t[0].x, uy = (double)t[1].y - t[0].y, uz = (double)t[1].z - t[0].z;
-    const double vx = (double)t[2].x - t[0].x, vy = (double)t[2].y - t[0].y, vz = (double)t[2].z - t[0].z;
-    const double x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-    return 0.5 * sqrt(x * x + y * y + z * z);
-}
-
-enum { MOST_CASES = 2000 };
-
-static void BothDirectionsExchangeTheSame(void** state)
-{
-    (void)state;
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
@@ -217,9 +151,8 @@ static void BothDirectionsExchangeTheSame(void** state)
 }
 
 // Halves are smaller than the whole, so that other formulas and other cuts do for them: all must agree.
-static void HalvesSumToTheWhole(void** state)
+TEST_ALONE(HalvesSumToTheWhole)
 {
-    (void)state;
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
@@ -242,9 +175,8 @@ static void HalvesSumToTheWhole(void** state)
 }
 
 // Of every size that floats have: the same share, and a number.
-static void FactorsDoNotDependOnTheUnit(void** state)
+TEST_ALONE(FactorsDoNotDependOnTheUnit)
 {
-    (void)state;
     for (uint64_t seed = 0; seed < 100; seed++) {
         vplVec3 a[3], b[3];
         rollPair(seed, a, b);
@@ -261,9 +193,8 @@ static void FactorsDoNotDependOnTheUnit(void** state)
 }
 
 // X093, X095, and whatever touches.
-static void PlanesTouchesAndDuplicatesAreNumbers(void** state)
+TEST_ALONE(PlanesTouchesAndDuplicatesAreNumbers)
 {
-    (void)state;
     const vplVec3 floor[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, over[3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
     const vplVec3 beside[3] = {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, point[3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
     const vplVec3 line[3] = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}},
@@ -279,9 +210,8 @@ static void PlanesTouchesAndDuplicatesAreNumbers(void** state)
 }
 
 // Two triangles with an edge in common, folded: from 1 where they lie on each other to 0 where they are in one plane.
-static void FoldedPairsFallFromOneToZero(void** state)
+TEST_ALONE(FoldedPairsFallFromOneToZero)
 {
-    (void)state;
     double last = 1;
     for (int degrees = 1; degrees < 180; degrees++) {
         double sine, cosine;
@@ -296,412 +226,3 @@ static void FoldedPairsFallFromOneToZero(void** state)
     }
     assert_true(last < 1e-4);
 }
-
-// ---- a point and a triangle
-
-// Of a fan: corners in order, convex.
-static double pointFactorOfFan(vplVec3 point, vplVec3 normal, const vplVec3* corners, int count)
-{
-    double sum = 0;
-    for (int i = 2; i < count; i++) {
-        sum += vplPointFormFactor(point, normal, (const vplVec3[3]){corners[0], corners[i - 1], corners[i]});
-    }
-    return sum;
-}
-
-// From below the corner of a rectangle a x b, c above.
-static double pointFactorOfCorner(vplVec3 normal, const float v[3])
-{
-    const float a = v[0], b = v[1], c = v[2];
-    return pointFactorOfFan((vplVec3){0, 0, 0}, normal,
-                            (const vplVec3[4]){{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}}, 4);
-}
-
-// Lengths are floats: 0.001 is wrong by 5e-8 of it, and the smallest factors by as much. In millimetres all lengths are
-// exact, and 4e-16 are measured.
-static void CornersOfRectanglesAreThoseOfTheClosedForms(void** state)
-{
-    (void)state;
-    Table t = loadTable("ff_analytic.csv");
-    int compared = 0;
-    for (int row = 0; row < t.rows; row++) {
-        const char *config = cell(&t, row, "config"), *parameters = cell(&t, row, "parameters");
-        const bool perpendicular = strcmp(config, "dA_rect_perp_corner") == 0;
-        if (!perpendicular && strcmp(config, "dA_rect_parallel_corner") != 0) {
-            continue;
-        }
-        double v[3];
-        assert_int_equal(sscanf(parameters, "a=%lf b=%lf c=%lf", &v[0], &v[1], &v[2]), 3);
-        const vplVec3 normal = perpendicular ? (vplVec3){1, 0, 0} : (vplVec3){0, 0, 1};
-        const double wanted = number(&t, row, "F12");
-        bool exact = true;
-        float metres[3], millimetres[3];
-        for (int k = 0; k < 3; k++) {
-            metres[k] = (float)v[k];
-            millimetres[k] = (float)(1000 * v[k]);
-            exact = exact && (double)metres[k] == v[k];
-            assert_true(fabs((double)millimetres[k] - 1000 * v[k]) < 1e-12);
-        }
-        assertRelative(pointFactorOfCorner(normal, metres), wanted, exact ? 1e-14 : 1e-7, parameters, row);
-        assertRelative(pointFactorOfCorner(normal, millimetres), wanted, 1e-14, parameters, row);
-        compared++;
-    }
-    assert_int_equal(compared, 9);
-    freeTable(&t);
-}
-
-// A regular polygon of so many corners, h above its middle's foot.
-static double pointFactorOfRing(double radius, float h, int count)
-{
-    const vplVec3 point = {0, 0, 0}, up = {0, 0, 1};
-    double sum = 0;
-    vplVec3 last = {(float)radius, 0, h};
-    for (int i = 1; i <= count; i++) {
-        const double angle = 2 * 3.14159265358979323846 * (i % count) / count;
-        const vplVec3 next = {(float)(radius * cos(angle)), (float)(radius * sin(angle)), h};
-        sum += vplPointFormFactor(point, up, (const vplVec3[3]){{0, 0, h}, next, last});
-        last = next;
-    }
-    return sum;
-}
-
-// A disk lies between polygons in it and around it, whatever their corners' rounding, which is less than the 2^-22 that
-// they are moved. One of the same area has the same factor to (pi / count)^4 and the mean of the corners' rounding:
-// 8e-10 of it are measured.
-static void DisksAreThoseOfTheClosedForm(void** state)
-{
-    (void)state;
-    enum { CORNERS = 4096 };
-    const double part = 3.14159265358979323846 / CORNERS;
-    Table t = loadTable("ff_analytic.csv");
-    int compared = 0;
-    for (int row = 0; row < t.rows; row++) {
-        if (strcmp(cell(&t, row, "config"), "dA_disk_coaxial_parallel") != 0) {
-            continue;
-        }
-        const char* parameters = cell(&t, row, "parameters");
-        double r, h;
-        assert_int_equal(sscanf(parameters, "r=%lf h=%lf", &r, &h), 2);
-        if ((double)(float)h != h) { // in millimetres it is exact
-            r *= 1000;
-            h *= 1000;
-        }
-        const double wanted = number(&t, row, "F12");
-        const double inside = pointFactorOfRing(r * (1 - 0x1p-22), (float)h, CORNERS),
-                     around = pointFactorOfRing(r * (1 + 0x1p-22) / cos(part), (float)h, CORNERS),
-                     same = pointFactorOfRing(r * sqrt(2 * part / sin(2 * part)), (float)h, CORNERS);
-        assert_true(inside < wanted && wanted < around);
-        assertRelative(around, inside, 2e-6, parameters, row);
-        assertRelative(same, wanted, 3e-9, parameters, row);
-        compared++;
-    }
-    assert_int_equal(compared, 4);
-    freeTable(&t);
-}
-
-static vplVec3 rollNormal(uint64_t seed)
-{
-    Dice dice = {seed + 1000, 0};
-    return rollUnit(&dice);
-}
-
-static double heightAbove(vplVec3 point, vplVec3 normal, vplVec3 p)
-{
-    return ((double)p.x - point.x) * normal.x + ((double)p.y - point.y) * normal.y +
-           ((double)p.z - point.z) * normal.z;
-}
-
-// Of two windings one is seen, and none of what is below the horizon.
-static void PointsSeeOneSideAndNothingBehindThem(void** state)
-{
-    (void)state;
-    int seen = 0, behind = 0;
-    for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
-        vplVec3 a[3], b[3];
-        rollPair(seed, a, b);
-        const vplVec3 point = a[0], normal = rollNormal(seed);
-        double highest = -INFINITY;
-        for (int i = 0; i < 3; i++) {
-            highest = fmax(highest, heightAbove(point, normal, b[i]));
-        }
-        const double one = vplPointFormFactor(point, normal, b);
-        swapCorners(b);
-        const double other = vplPointFormFactor(point, normal, b);
-        assert_true(one >= 0 && one <= 1 && other >= 0 && other <= 1);
-        if (highest > 1e-3) {
-            assert_true((one > 0) != (other > 0));
-            seen++;
-        } else if (highest < -1e-3) {
-            assert_true(one == 0 && other == 0);
-            behind++;
-        }
-    }
-    assert_true(seen > MOST_CASES / 2 && behind > MOST_CASES / 10);
-}
-
-// Whatever the element's direction, a closed box is all it sees: triangles are cut at its horizon so that nothing is
-// lost and nothing is counted twice.
-static void BoxesAroundAPointSumToOne(void** state)
-{
-    (void)state;
-    // Corner i of the box has the upper x, y, z where bits 0, 1, 2 of i are set; counter-clockwise seen from inside.
-    static const int faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
-                                    {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
-    static const float sizes[4][3] = {{1, 1, 1}, {1, 2, 3}, {1, 1, 1000}, {1000, 1, 1000}};
-    for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
-        const float* size = sizes[seed % 4];
-        const vplVec3 normal = rollNormal(seed);
-        vplVec3 point = {size[0] * (float)uniformAt(seed, 0), size[1] * (float)uniformAt(seed, 1),
-                         size[2] * (float)uniformAt(seed, 2)};
-        vplVec3 ahead = normal;
-        if (seed % 3 == 1) { // as near to the floor as the table's rows
-            point.z = 0.001f;
-        } else if (seed % 3 == 2) { // a part of the floor
-            point.z = 0;
-            ahead = (vplVec3){0, 0, 1};
-        }
-        double sum = 0;
-        for (int face = 0; face < 6; face++) {
-            vplVec3 corners[4];
-            for (int k = 0; k < 4; k++) {
-                const int i = faces[face][k];
-                corners[k] = (vplVec3){i & 1 ? size[0] : 0, i & 2 ? size[1] : 0, i & 4 ? size[2] : 0};
-            }
-            sum += pointFactorOfFan(point, ahead, corners, 4);
-        }
-        assertNear(sum, 1, 1e-13, "box", (int)seed);
-    }
-}
-
-// The part of a triangle that is seen ends at the horizon: where its edges end below is all the same.
-static void WhatIsBelowTheHorizonChangesNothing(void** state)
-{
-    (void)state;
-    const vplVec3 point = {0, 0, 0}, up = {0, 0, 1}, left = {-0.25f, 1, -1.5f}, right = {-0.5f, -1, -2};
-    for (uint64_t seed = 0; seed < 500; seed++) {
-        // Multiples of 2^-10, so that the longer edges are exact.
-        const vplVec3 top = {0.5f + rintf((float)uniformAt(seed, 0) * 0x1p10f) * 0x1p-10f,
-                             rintf((float)uniformAt(seed, 1) * 0x1p10f) * 0x1p-10f,
-                             rintf((float)uniformAt(seed, 2) * 0x1p10f) * 0x1p-10f + 0x1p-10f};
-        vplVec3 triangles[2][3];
-        for (int i = 0; i < 2; i++) {
-            const float l = i == 0 ? 1 : 3, r = i == 0 ? 1 : 5;
-            triangles[i][0] = top;
-            triangles[i][1] = (vplVec3){top.x + l * left.x, top.y + l * left.y, top.z + l * left.z};
-            triangles[i][2] = (vplVec3){top.x + r * right.x, top.y + r * right.y, top.z + r * right.z};
-            assert_true(triangles[i][1].z < 0 && triangles[i][2].z < 0);
-        }
-        if (vplPointFormFactor(point, up, triangles[0]) == 0) {
-            swapCorners(triangles[0]);
-            swapCorners(triangles[1]);
-        }
-        const double f = vplPointFormFactor(point, up, triangles[0]);
-        assert_true(f > 0);
-        assertNear(vplPointFormFactor(point, up, triangles[1]), f, 1e-15 + 1e-13 * f, "longer", (int)seed);
-    }
-}
-
-// The same bits, of whatever size and wherever: near and far, cut and whole.
-static void PointFactorsDoNotDependOnTheUnitOrThePlace(void** state)
-{
-    (void)state;
-    static const int powers[6] = {-100, -33, -30, 30, 33, 100};
-    int seen = 0;
-    for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
-        vplVec3 a[3], b[3], moved[3];
-        rollPair(seed, a, b);
-        const float step = 0x1p-10f, far = 4096;
-        for (int i = 0; i < 3; i++) { // so that places a few thousand away are exact
-            b[i] = (vplVec3){rintf(b[i].x / step) * step, rintf(b[i].y / step) * step,
-                             rintf(b[i].z / step) * step};
-            moved[i] = (vplVec3){b[i].x + far, b[i].y - far, b[i].z + far};
-        }
-        const vplVec3 point = {rintf(a[0].x / step) * step, rintf(a[0].y / step) * step,
-                               rintf(a[0].z / step) * step},
-                      normal = rollNormal(seed);
-        const double wanted = vplPointFormFactor(point, normal, b);
-        seen += wanted > 0;
-        assert_true(vplPointFormFactor((vplVec3){point.x + far, point.y - far, point.z + far}, normal,
-                                       moved) == wanted);
-        for (int k = 0; k < 6; k++) {
-            const float scale = ldexpf(1, powers[k]);
-            vplVec3 c[3];
-            for (int i = 0; i < 3; i++) {
-                c[i] = (vplVec3){b[i].x * scale, b[i].y * scale, b[i].z * scale};
-            }
-            assert_true(vplPointFormFactor((vplVec3){point.x * scale, point.y * scale, point.z * scale},
-                                           normal, c) == wanted);
-        }
-    }
-    assert_true(seen > MOST_CASES / 3);
-}
-
-// Seen at an angle: along its edges almost all cancels, at 2^20 sizes 6 digits and at 2^60 all that doubles have.
-static void FarTrianglesAreTheirAreaOverTheSquare(void** state)
-{
-    (void)state;
-    // Its middle is the origin, so that what follows the first term has the square of the distance below it.
-    const vplVec3 triangle[3] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}}, normal = {0.6f, 0, -0.8f};
-    const double length = sqrt((double)normal.x * normal.x + (double)normal.z * normal.z);
-    for (int power = 4; power <= 60; power++) {
-        const float d = ldexpf(1, power);
-        const vplVec3 point = {-2 * d, d, 2 * d}; // 3d from it
-        const double f = vplPointFormFactor(point, normal, triangle);
-        const double square = 9 * (double)d * d,
-                     cosine = (2 * (double)normal.x - 2 * (double)normal.z) / (3 * length);
-        const double wanted = 4.5 * (2 / 3.0) * cosine / (3.14159265358979323846 * square);
-        assertNear(f / wanted, 1, 20 / square + 1e-15, "power", power);
-    }
-}
-
-// Halves are nearer for their size than the whole, so that one is along edges and the other over the area.
-static void HalvesSeenFromAPointSumToTheWhole(void** state)
-{
-    (void)state;
-    int seen = 0;
-    for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
-        vplVec3 a[3], b[3];
-        rollPair(seed, a, b);
-        for (int i = 0; i < 3; i++) { // so that the middle is exact
-            b[i] = (vplVec3){rintf(b[i].x * 0x1p14f) * 0x1p-14f, rintf(b[i].y * 0x1p14f) * 0x1p-14f,
-                             rintf(b[i].z * 0x1p14f) * 0x1p-14f};
-        }
-        const vplVec3 m = {0.5f * (b[0].x + b[1].x), 0.5f * (b[0].y + b[1].y), 0.5f * (b[0].z + b[1].z)};
-        const vplVec3 normal = rollNormal(seed);
-        const double whole = vplPointFormFactor(a[0], normal, b);
-        const double first = vplPointFormFactor(a[0], normal, (const vplVec3[3]){b[0], m, b[2]}),
-                     second = vplPointFormFactor(a[0], normal, (const vplVec3[3]){m, b[1], b[2]});
-        if (whole > 0) {
-            assertNear(first + second, whole, 1e-15 + 1e-12 * whole, "halves", (int)seed);
-            seen++;
-        }
-    }
-    assert_true(seen > MOST_CASES / 3);
-}
-
-// Of the middles of the parts of a, n to an edge.
-static double meanOfPointFactors(const vplVec3 a[3], vplVec3 normal, const vplVec3 b[3], int n)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < 2 * i + 1; k++) { // in strip i, up and down by turns
-            const double u = (i - k / 2 + (k & 1 ? -1 / 3.0 : 1 / 3.0)) / n,
-                         v = (k / 2 + (k & 1 ? 2 / 3.0 : 1 / 3.0)) / n;
-            const vplVec3 point = {(float)(a[0].x + u * (a[1].x - a[0].x) + v * (a[2].x - a[0].x)),
-                                   (float)(a[0].y + u * (a[1].y - a[0].y) + v * (a[2].y - a[0].y)),
-                                   (float)(a[0].z + u * (a[1].z - a[0].z) + v * (a[2].z - a[0].z))};
-            sum += vplPointFormFactor(point, normal, b);
-        }
-    }
-    return sum / ((double)n * n);
-}
-
-// What a triangle sends is the mean of what its points send. The middle of a part errs by its size squared, which the
-// difference of two such means takes away, and by the rounding of points to floats.
-static void MeansOverPointsAreFactorsOfTriangles(void** state)
-{
-    (void)state;
-    int compared = 0, cut = 0;
-    for (uint64_t seed = 0; seed < 400; seed++) {
-        vplVec3 a[3], b[3];
-        rollPair(seed, a, b);
-        const double ux = (double)a[1].x - a[0].x, uy = (double)a[1].y - a[0].y, uz = (double)a[1].z - a[0].z;
-        const double vx = (double)a[2].x - a[0].x, vy = (double)a[2].y - a[0].y, vz = (double)a[2].z - a[0].z;
-        const double twice = 2 * areaOf(a);
-        const vplVec3 normal = {(float)((uy * vz - uz * vy) / twice), (float)((uz * vx - ux * vz) / twice),
-                                (float)((ux * vy - uy * vx) / twice)};
-        bool behind = false;
-        for (int i = 0; i < 3; i++) {
-            behind = behind || heightAbove(a[0], normal, b[i]) < 0;
-        }
-        // The mean is of a smooth function where all of a is in front of b, and b is some way off.
-        const double wanted = vplTriangleFormFactor(a, b);
-        if (!(wanted > 1e-4) || !(b[0].z > 0.6f && b[1].z > 0.6f && b[2].z > 0.6f) ||
-            !(vplPointFormFactor(a[0], normal, b) > 0 && vplPointFormFactor(a[1], normal, b) > 0 &&
-              vplPointFormFactor(a[2], normal, b) > 0)) {
-            continue;
-        }
-        const double coarse = meanOfPointFactors(a, normal, b, 16),
-                     fine = meanOfPointFactors(a, normal, b, 32);
-        assertRelative((4 * fine - coarse) / 3, wanted, 1e-6, "mean", (int)seed);
-        cut += behind;
-        compared++;
-    }
-    assert_true(compared > 50 && cut > 10);
-}
-
-// Over the middle of a triangle all is seen, over its edges half, over a corner the corner's share of the turn.
-static void PointsOnATriangleSeeItsShareOfTheTurn(void** state)
-{
-    (void)state;
-    const vplVec3 triangle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, down = {0, 0, -1};
-    static const struct {
-        float x, y;
-        double share;
-    } places[8] = {{0.25f, 0.25f, 1}, {0.5f, 0, 0.5}, {0, 0.5f, 0.5}, {0.5f, 0.5f, 0.5},
-                   {0, 0, 0.25},      {1, 0, 0.125},  {0, 1, 0.125},  {1.5f, 0.25f, 0}};
-    for (int i = 0; i < 8; i++) {
-        for (int power = -10; power >= -100; power -= 10) {
-            const float h = ldexpf(1, power);
-            const double f = vplPointFormFactor((vplVec3){places[i].x, places[i].y, h}, down, triangle);
-            assertNear(f, places[i].share, 16 * (double)h * h + 1e-15, "place", i);
-        }
-        const vplVec3 on = {places[i].x, places[i].y, 0}, under = {places[i].x, places[i].y, -0x1p-100f};
-        assert_true(vplPointFormFactor(on, down, triangle) == 0);
-        assert_true(vplPointFormFactor(under, (vplVec3){0, 0, 1}, triangle) == 0);
-    }
-}
-
-// Corners and middles of edges, which are exact, in planes at any angle; and what has no area, or no direction.
-static void PointsInThePlaneAndNoAreaSeeNothing(void** state)
-{
-    (void)state;
-    for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
-        vplVec3 t[3];
-        for (uint64_t i = 0; i < 3; i++) {
-            t[i] = rollPoint(seed, i, 1, (vplVec3){0, 0, 0});
-            t[i] = (vplVec3){rintf(t[i].x * 0x1p22f) * 0x1p-22f, rintf(t[i].y * 0x1p22f) * 0x1p-22f,
-                             rintf(t[i].z * 0x1p22f) * 0x1p-22f};
-        }
-        const vplVec3 normal = rollNormal(seed);
-        for (int i = 0; i < 3; i++) {
-            const vplVec3 p = t[i], q = t[(i + 1) % 3];
-            const vplVec3 m = {0.5f * (p.x + q.x), 0.5f * (p.y + q.y), 0.5f * (p.z + q.z)};
-            assert_true(vplPointFormFactor(p, normal, t) == 0);
-            assert_true(vplPointFormFactor(m, normal, t) == 0);
-        }
-    }
-    const vplVec3 origin = {0, 0, 0}, up = {0, 0, 1}, point[3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}},
-                  line[3] = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}}, over[3] = {{0, 0, 1}, {0, 1, 1}, {1, 0, 1}};
-    assert_true(vplPointFormFactor(origin, up, point) == 0);
-    assert_true(vplPointFormFactor(origin, up, line) == 0);
-    assert_true(vplPointFormFactor(origin, up, over) > 0);
-    assert_true(vplPointFormFactor(origin, origin, over) == 0);
-    for (int i = 0; i < 2; i++) {
-        const float bad = i == 0 ? INFINITY : NAN;
-        assert_true(vplPointFormFactor((vplVec3){0, 0, bad}, up, over) == 0);
-        assert_true(vplPointFormFactor(origin, (vplVec3){0, 0, bad}, over) == 0);
-        assert_true(vplPointFormFactor(origin, up, (const vplVec3[3]){over[0], over[1], {bad, 0, 1}}) == 0);
-    }
-    // Behind the element, and with an edge on its horizon.
-    assert_true(vplPointFormFactor(origin, (vplVec3){0, 0, -1}, over) == 0);
-    assert_true(vplPointFormFactor(origin, up, (const vplVec3[3]){{1, 0, 0}, {1, 1, 0}, {1, 0, -1}}) == 0);
-}
-
-TEST_SUITE(triangleFactors, cmocka_unit_test(FactorsOfPairsAreThoseOfTheTable),
-           cmocka_unit_test(RowsOfACubeAreThoseOfTheTableAndSumToOne),
-           cmocka_unit_test(RectanglesAreThoseOfTheClosedForms), cmocka_unit_test(BoxesCloseAsTheTableSays),
-           cmocka_unit_test(BothDirectionsExchangeTheSame), cmocka_unit_test(HalvesSumToTheWhole),
-           cmocka_unit_test(FactorsDoNotDependOnTheUnit),
-           cmocka_unit_test(PlanesTouchesAndDuplicatesAreNumbers),
-           cmocka_unit_test(FoldedPairsFallFromOneToZero),
-           cmocka_unit_test(CornersOfRectanglesAreThoseOfTheClosedForms),
-           cmocka_unit_test(DisksAreThoseOfTheClosedForm),
-           cmocka_unit_test(PointsSeeOneSideAndNothingBehindThem),
-           cmocka_unit_test(BoxesAroundAPointSumToOne), cmocka_unit_test(WhatIsBelowTheHorizonChangesNothing),
-           cmocka_unit_test(PointFactorsDoNotDependOnTheUnitOrThePlace),
-           cmocka_unit_test(FarTrianglesAreTheirAreaOverTheSquare),
-           cmocka_unit_test(HalvesSeenFromAPointSumToTheWhole),
-           cmocka_unit_test(MeansOverPointsAreFactorsOfTriangles),
-           cmocka_unit_test(PointsOnATriangleSeeItsShareOfTheTurn),
-           cmocka_unit_test(PointsInThePlaneAndNoAreaSeeNothing));

@@ -6,9 +6,8 @@
 
 #include <stdlib.h>
 
-static void FramesAreThoseOfTheTable(void** state)
+TEST_ALONE(FramesAreThoseOfTheTable)
 {
-    (void)state;
     Table t = loadTable("cube_frames.csv");
     for (int face = 0; face < 6; face++) {
         vplCubeFrame f = vplCube_GetFrame(face);
@@ -24,9 +23,8 @@ static void FramesAreThoseOfTheTable(void** state)
     freeTable(&t);
 }
 
-static void EveryDirectionOfTheTableFindsItsTexel(void** state)
+TEST_ALONE(EveryDirectionOfTheTableFindsItsTexel)
 {
-    (void)state;
     static const char* const faces[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
     static const int sizes[4] = {1, 2, 16, 1024};
     Table t = loadTable("cube_dirs.csv");
@@ -71,10 +69,8 @@ static vplCubeMap* makeMap(const vplGeometry* g, vplVec3 position, int size)
 }
 
 // X053 to X056: in the cube [-1, 1]^3 the distance along any direction is known, and no texel is left out.
-static void TexelsHoldTheDistanceOfTheWall(void** state)
+TEST(TexelsHoldTheDistanceOfTheWall, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* cube = closedCube(context, 0.5f);
     const int sizes[] = {1, 2, 7, 64, 257};
     for (int k = 0; k < 5; k++) {
@@ -97,14 +93,11 @@ static void TexelsHoldTheDistanceOfTheWall(void** state)
         vplCubeMap_Destroy(map);
     }
     vplGeometry_Destroy(cube);
-    closeTestContext(context);
 }
 
 // shadow_distance.csv: a small quad at the point, facing the light, is found at its distance.
-static void StoredDistancesAreRadialAndUnclamped(void** state)
+TEST(StoredDistancesAreRadialAndUnclamped, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("shadow_distance.csv");
     static const char* const faces[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
     int clamped = 0;
@@ -149,7 +142,6 @@ static void StoredDistancesAreRadialAndUnclamped(void** state)
     }
     assert_true(clamped > 0);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // A map whose six texels all hold one stored value.
@@ -167,10 +159,8 @@ static void makeFlatMap(FlatMap* flat, vplContext* context, vplVec3 light, float
         (vplCubeMap){.position = light, .size = 1, .far = far, .texels = flat->texels, .context = context};
 }
 
-static void EveryShadowVerdictOfTheTable(void** state)
+TEST(EveryShadowVerdictOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("shadow_compare.csv");
     for (int row = 0; row < t.rows; row++) {
         FlatMap flat;
@@ -191,7 +181,6 @@ static void EveryShadowVerdictOfTheTable(void** state)
                    number(&t, row, "bias_clamped"), 2e-8, "bias", row);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 static vplShadow exactShadow(const vplCubeMap* map, int samples, float offset)
@@ -205,10 +194,8 @@ static vplShadow exactShadow(const vplCubeMap* map, int samples, float offset)
     return shadow;
 }
 
-static void ExactBiasIsThatOfTheTable(void** state)
+TEST(ExactBiasIsThatOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("bias_angle.csv");
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
@@ -221,15 +208,12 @@ static void ExactBiasIsThatOfTheTable(void** state)
         assertNear(bias, wanted, 4e-7 + 6e-8 / number(&t, row, "alpha"), "bias", row);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // bias_texel.csv: a fragment in the worst corner of a texel against the distance at the texel's centre. Ours
 // must be enough (no acne), and is at most the table's closed form with the largest texel's angle.
-static void ExactBiasIsEnoughInEveryTexelOfTheTable(void** state)
+TEST(ExactBiasIsEnoughInEveryTexelOfTheTable, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("bias_texel.csv");
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
@@ -248,14 +232,11 @@ static void ExactBiasIsEnoughInEveryTexelOfTheTable(void** state)
     }
     assert_true(tested > 200);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // bias_pair.csv: our automatic pair, b_s = alpha r and b_dmax = 5.6 b_s, is enough up to 80 degrees.
-static void AutomaticPairIsEnoughUpTo80Degrees(void** state)
+TEST(AutomaticPairIsEnoughUpTo80Degrees, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     Table t = loadTable("bias_pair.csv");
     int tested = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -276,30 +257,6 @@ static void AutomaticPairIsEnoughUpTo80Degrees(void** state)
     assertNear((double)shadow.def.biasStatic, 10 * sqrt(2) / 512, 3e-4, "b_s", 0);
     assertNear((double)(shadow.def.biasDynamic / shadow.def.biasStatic), 5.6, 1e-5, "b_dmax", 0);
     freeTable(&t);
-    closeTestContext(context);
-}
-
-// No point of a plane shadows itself under the exact rule, however coarse the map, hard or filtered.
-static void ExactBiasLeavesNoAcneOnAPlane(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(2);
-    vplGeometry* g = floorQuad(context, (vplVec3){0, 0, 0}, 200, 0.5f);
-    const int sizes[] = {1, 2, 3, 16, 128, 1000};
-    for (int k = 0; k < 6; k++) {
-        vplCubeMap* map = makeMap(g, (vplVec3){0.1f, 1.3f, -0.2f}, sizes[k]);
-        for (int samples = 1; samples <= 16; samples += 15) {
-            vplShadow shadow = exactShadow(map, samples, 0.05f);
-            for (int i = 0; i < 20000; i++) {
-                double r = 30 * pow(uniformAt(3, (uint64_t)i), 3), angle = 6.2832 * uniformAt(4, (uint64_t)i);
-                vplVec3 p = {(float)(r * cos(angle)), 0, (float)(r * sin(angle))};
-                assertNear((double)vplShadow_Factor(&shadow, p, (vplVec3){0, 1, 0}), 0, 0, "s", i);
-            }
-        }
-        vplCubeMap_Destroy(map);
-    }
-    vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // A wall standing on the floor at x = x0, and the floor.
@@ -323,10 +280,8 @@ static vplGeometry* wallOnFloor(vplContext* context, float x0)
 }
 
 // peter_panning.csv: how far behind a wall light leaks, to the size of a texel on the floor.
-static void LightLeaksBehindAWallAsFarAsTheTableSays(void** state)
+TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("peter_panning.csv");
     enum { SIZE = 1024 };
     int tested = 0;
@@ -359,7 +314,6 @@ static void LightLeaksBehindAWallAsFarAsTheTableSays(void** state)
     }
     assert_true(tested >= 6);
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // A quad that shadows the half-space x < edge (measured on the floor, 2 below the light), halfway down.
@@ -370,10 +324,8 @@ static vplCubeMap* halfPlaneMap(vplContext* context, float edge, int size, vplGe
     return makeMap(g, (vplVec3){0, 0, 0}, size);
 }
 
-static void PcfGivesTheExpectationOfADisc(void** state)
+TEST(PcfGivesTheExpectationOfADisc, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("pcf_halfplane.csv");
     const float e = 0.2f;
     for (int row = 0; row < t.rows; row++) {
@@ -396,14 +348,11 @@ static void PcfGivesTheExpectationOfADisc(void** state)
         vplGeometry_Destroy(g);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // pcf_grid.csv with the table's own offsets put in place of ours: exact counts.
-static void PcfCountsTheGridsOfTheTable(void** state)
+TEST(PcfCountsTheGridsOfTheTable, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     Table t = loadTable("pcf_grid.csv");
     const float e = 0.2f;
     for (int row = 0; row < t.rows; row++) {
@@ -425,14 +374,11 @@ static void PcfCountsTheGridsOfTheTable(void** state)
         vplGeometry_Destroy(g);
     }
     freeTable(&t);
-    closeTestContext(context);
 }
 
 // X057, X059, X067, X069: nothing there, fragment in the light, one texel, kernel wider than the distance.
-static void DegenerateShadowsAreDefined(void** state)
+TEST(DegenerateShadowsAreDefined, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, INFINITY);
     vplShadow shadow = exactShadow(&flat.map, 16, 0.1f);
@@ -445,13 +391,10 @@ static void DegenerateShadowsAreDefined(void** state)
     double wide = (double)vplShadow_Factor(&shadow, (vplVec3){0.01f, 0, 0}, (vplVec3){-1, 0, 0});
     assert_true(wide >= 0 && wide <= 1);
     assert_true(isinf(vplCubeMap_Distance(&flat.map, (vplVec3){0, 0, 0})));
-    closeTestContext(context);
 }
 
-static void OffsetsLieOnTheDiscInPairs(void** state)
+TEST(OffsetsLieOnTheDiscInPairs, 1)
 {
-    (void)state;
-    vplContext* context = openTestContext(1);
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
     for (int samples = 1; samples <= VPL_MAX_PCF_SAMPLES; samples++) {
@@ -470,40 +413,10 @@ static void OffsetsLieOnTheDiscInPairs(void** state)
             assertNear(square, 0.5, 0.08, "mean square of the uniform disc", samples);
         }
     }
-    closeTestContext(context);
 }
 
-static void ShadowBitsDoNotDependOnInstructionSet(void** state)
+TEST(ShadowMapsRefuseBadDefs, 1)
 {
-    (void)state;
-    float wanted[200];
-    for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
-        vplContext* context = openIsaContext(1 + isa, (vplIsa)isa);
-        if (context == NULL) {
-            continue;
-        }
-        vplGeometry* room = tableRoom(context);
-        vplCubeMap* map = makeMap(room, (vplVec3){0, 4.5f, 0}, 200);
-        vplShadow shadow = exactShadow(map, 16, 0.1f);
-        for (int i = 0; i < 200; i++) {
-            vplVec3 p = {(float)(5 * uniformAt(1, (uint64_t)i) - 2.5), 0,
-                         (float)(5 * uniformAt(2, (uint64_t)i) - 2.5)};
-            float s = vplShadow_Factor(&shadow, p, (vplVec3){0, 1, 0});
-            if (isa == VPL_ISA_SCALAR) {
-                wanted[i] = s;
-            }
-            assert_true(s == wanted[i]);
-        }
-        vplCubeMap_Destroy(map);
-        vplGeometry_Destroy(room);
-        closeTestContext(context);
-    }
-}
-
-static void ShadowMapsRefuseBadDefs(void** state)
-{
-    (void)state;
-    vplContext* context = openTestContext(1);
     vplGeometry* g = floorQuad(context, (vplVec3){0, 0, 0}, 1, 0.5f);
     vplCubeMap* map = NULL;
     vplCubeMapDef def = vplDefaultCubeMapDef();
@@ -527,14 +440,11 @@ static void ShadowMapsRefuseBadDefs(void** state)
     shadowDef.biasStatic = NAN;
     assert_int_equal(vplShadow_Create(&flat.map, &shadowDef, &shadow), VPL_INVALID_ARGUMENT);
     vplGeometry_Destroy(g);
-    closeTestContext(context);
 }
 
 // Also with bounds, which belong to what was drawn before.
-static void RedrawnMapsAreThoseOfNewOnes(void** state)
+TEST(RedrawnMapsAreThoseOfNewOnes, 2)
 {
-    (void)state;
-    vplContext* context = openTestContext(2);
     vplGeometry* room = wallOnFloor(context, 0.5f);
     const size_t texels = (size_t)6 * 100 * 100;
     vplCubeMapDef def = vplDefaultCubeMapDef();
@@ -556,16 +466,4 @@ static void RedrawnMapsAreThoseOfNewOnes(void** state)
     vplCubeMap_Destroy(moved);
     vplCubeMap_Destroy(fresh);
     vplGeometry_Destroy(room);
-    closeTestContext(context);
 }
-
-TEST_SUITE(
-    visibility, cmocka_unit_test(RedrawnMapsAreThoseOfNewOnes), cmocka_unit_test(FramesAreThoseOfTheTable),
-    cmocka_unit_test(EveryDirectionOfTheTableFindsItsTexel), cmocka_unit_test(TexelsHoldTheDistanceOfTheWall),
-    cmocka_unit_test(StoredDistancesAreRadialAndUnclamped), cmocka_unit_test(EveryShadowVerdictOfTheTable),
-    cmocka_unit_test(ExactBiasIsThatOfTheTable), cmocka_unit_test(ExactBiasIsEnoughInEveryTexelOfTheTable),
-    cmocka_unit_test(AutomaticPairIsEnoughUpTo80Degrees), cmocka_unit_test(ExactBiasLeavesNoAcneOnAPlane),
-    cmocka_unit_test(LightLeaksBehindAWallAsFarAsTheTableSays),
-    cmocka_unit_test(PcfGivesTheExpectationOfADisc), cmocka_unit_test(PcfCountsTheGridsOfTheTable),
-    cmocka_unit_test(DegenerateShadowsAreDefined), cmocka_unit_test(OffsetsLieOnTheDiscInPairs),
-    cmocka_unit_test(ShadowBitsDoNotDependOnInstructionSet), cmocka_unit_test(ShadowMapsRefuseBadDefs));

@@ -174,7 +174,7 @@ static void measureAgreement(const Bench* b, const vplView* view, const vplRefle
         s.ny[0] = n.y;
         s.nz[0] = n.z;
         vplReflectiveMap_FactorBlock(map, &s, factor);
-        const bool must = isSure(b->geometry, map, hit.position, n, dark);
+        const bool must = isSureReflective(b->geometry, map, hit.position, n, dark);
         points++;
         sure += must;
         mapOnly += factor[0] > 0.5f && !dark;
@@ -229,7 +229,6 @@ int main(int count, char** words)
         vplGeometry* geometry;
         openScene(words[i], 1, VPL_ISA_AUTO, &context, &scene);
         check(vplGeometry_Create(scene, &geometry));
-        check(vplGeometry_PrepareRays(geometry));
         Bench b = {scene, geometry, NULL, vplScene_GetEmitterCount(scene)};
         if (b.emitterCount > 0) {
             b.emitters = vplScene_GetEmitter(scene, 0);

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Rooms and pictures for tests of radiosity as a whole.
+#ifndef VPL_TESTS_RADIOSITY_PICTURES_H
+#define VPL_TESTS_RADIOSITY_PICTURES_H
+
+#include "scenes.h"
+#include "shapes.h"
+
+#include "math/vec.h"
+
+// A box on the floor of a closed room, lit by a lamp or a point.
+vplScene* boxRoom(vplContext* context, float rho, bool lamp);
+
+vplRenderOptions radiosityOptions(int patches);
+
+vplImage* showOf(const vplScene* scene, vplRenderOptions o, vplShow show);
+
+double meanOf(const vplImage* image);
+
+vplImage* pathsOf(const vplScene* scene, vplShow show, int spp);
+
+vplComparison compare(const vplImage* a, const vplImage* b);
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Rooms for tests of sides of patches.
+#ifndef VPL_TESTS_SIDES_CASES_H
+#define VPL_TESTS_SIDES_CASES_H
+
+#include "patch_support.h"
+
+#include "base/hash.h"
+#include "math/vec.h"
+#include "radiosity/sides/side.h"
+
+#include <stdlib.h>
+
+extern const vplVec3 NEAR_CEILING;
+
+void addFlat(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c, vplVec3 d);
+
+// The box from low to high; fronts inside where `inward`.
+void addBox(Shape* shape, vplVec3 low, vplVec3 high, bool inward);
+
+// A floor [-2, 2]^2 at y = 0, its front up.
+void addFloor(Shape* shape);
+
+typedef struct Case {
+    vplContext* context;
+    vplGeometry* geometry;
+    vplPatches* patches;
+    vplPatchSides* sides;
+} Case;
+
+// Frees the shape.
+Case openCase(Shape* shape, float size, const vplVec3* lamp);
+
+void closeCase(Case* c);
+
+int triangleOf(const vplPatches* p, int patch);
+
+// Sides among triangles first .. first + count - 1, front or back; the number of patches there in *patchesOut.
+int countSides(const vplPatchSides* s, int first, int count, bool back, int* patchesOut);
+
+void assertAll(const vplPatchSides* s, int first, int count, bool back);
+
+void assertNone(const vplPatchSides* s, int first, int count, bool back);
+
+void assertSide(const vplPatchSides* s, int index);
+
+#endif

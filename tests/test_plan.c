@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: MIT
+// Plans: pure, with every decision made, and true of what rendering then does.
+#include "scenes.h"
+
+static const char* const METHODS[] = {"instant-radiosity", "direct", "path", "keller", "ssvp", "radiosity"};
+enum { METHOD_COUNT = 6 };
+
+// Options from pairs of words: "size", "32x24", ..., NULL.
+static vplRenderOptions optionsOf(const char* const* words)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    for (; words[0] != NULL; words += 2) {
+        if (vplRenderOptions_Set(&o, words[0], words[1]) != VPL_SUCCESS) {
+            fail_msg("%s", o.problem);
+        }
+    }
+    return o;
+}
+
+#define OPTIONS(...) optionsOf((const char* const[]){__VA_ARGS__, NULL})
+
+static vplPlan* planOf(const vplScene* scene, const vplRenderOptions* options)
+{
+    vplPlan* plan = NULL;
+    if (vplPlan_Create(scene, options, NULL, &plan) != VPL_SUCCESS) {
+        fail_msg("%s", takeMessage());
+    }
+    return plan;
+}
+
+static bool hasStage(const vplPlan* plan, const char* name)
+{
+    for (int i = 0; i < plan->stageCount; i++) {
+        if (strcmp(plan->stages[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool isLeftOut(const vplPlan* plan, const char* name)
+{
+    for (int i = 0; i < plan->leftOutCount; i++) {
+        if (strcmp(plan->leftOut[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// ---- pure
+
+TEST(TwoPlansOfTheSameAreEqual, 2)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    for (int method = 0; method < METHOD_COUNT; method++) {
+        const vplRenderOptions options = OPTIONS("method", METHODS[method], "size", "64x36"),
+                               before = options;
+        vplPlan *a = planOf(scene, &options), *b = planOf(scene, &options);
+        assert_memory_equal(&options, &before, sizeof before);
+        assert_memory_equal(&a->options, &b->options, offsetof(vplRenderOptions, problem));
+        assert_int_equal(a->stageCount, b->stageCount);
+        assert_memory_equal(a->particlesPerStep, b->particlesPerStep, sizeof a->particlesPerStep);
+        assert_true(a->peakBytes == b->peakBytes && a->virtualLights == b->virtualLights);
+        assert_true(a->drawCalls == b->drawCalls && a->patches == b->patches && a->paths == b->paths);
+        vplPlan_Destroy(a);
+        vplPlan_Destroy(b);
+    }
+    vplPlan_Destroy(NULL);
+    vplScene_Destroy(scene);
+}
+
+// Machines change estimates, never a decision.
+TEST(MachinesChangeNoDecision, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    for (int method = 0; method < METHOD_COUNT; method++) {
+        const vplRenderOptions options = OPTIONS("method", METHODS[method], "size", "64x36");
+        vplPlan *one, *many;
+        assert_int_equal(vplPlan_Create(scene, &options, &(vplMachine){1}, &one), VPL_SUCCESS);
+        assert_int_equal(vplPlan_Create(scene, &options, &(vplMachine){64}, &many), VPL_SUCCESS);
+        assert_memory_equal(&one->options, &many->options, offsetof(vplRenderOptions, problem));
+        assert_int_equal(one->stageCount, many->stageCount);
+        for (int i = 0; i < one->stageCount; i++) {
+            assert_string_equal(one->stages[i].name, many->stages[i].name);
+        }
+        assert_true(one->peakBytes <= many->peakBytes);
+        vplPlan_Destroy(one);
+        vplPlan_Destroy(many);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Of all options that the method uses; lengths of bias and filter are of each shadow map its own: shares of its `far`.
+TEST(NothingIsLeftToTheLibrary, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    int count, left = 0;
+    const vplOption* table = vplGetOptions(&count);
+    for (int method = 0; method < METHOD_COUNT; method++) {
+        const vplRenderOptions options = OPTIONS("method", METHODS[method], "size", "64x36");
+        vplPlan* plan = planOf(scene, &options);
+        for (int i = 0; i < count; i++) {
+            char value[64];
+            if (table[i].kind == VPL_OPTION_PART ||
+                strstr("max-bounces bias bias-slope pcf-offset", table[i].name) != NULL ||
+                !vplRenderOptions_IsUsed(&plan->options, table[i].name, NULL, 0)) {
+                continue;
+            }
+            assert_int_equal(vplRenderOptions_Get(&plan->options, table[i].name, value, sizeof value),
+                             VPL_SUCCESS);
+            if (strcmp(value, "usual") == 0 || strcmp(value, "auto") == 0 ||
+                (value[0] == '-' && table[i].low >= 0)) {
+                printf("# %s leaves %s %s\n", METHODS[method], table[i].name, value);
+                left++;
+            }
+        }
+        assert_true(plan->biasRule != VPL_BIAS_AUTO);
+        vplPlan_Destroy(plan);
+    }
+    assert_int_equal(left, 0);
+    vplScene_Destroy(scene);
+}
+
+// ---- stages
+
+static void assertStages(const vplPlan* plan, const char* wanted)
+{
+    char names[512] = "";
+    for (int i = 0; i < plan->stageCount; i++) {
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "",
+                 plan->stages[i].name);
+    }
+    assert_string_equal(names, wanted);
+}
+
+TEST(EachMethodRunsTheStagesOfItsDocument, 1)
+{
+    static const char* const wanted[METHOD_COUNT] = {
+        "geometry, particles, shadow map, area lights, virtual lights, shading",
+        "geometry, shadow map, area lights, shading",
+        "geometry, paths",
+        "geometry, clamp distance, particles, shadow map, virtual lights, shading",
+        "geometry, reflective map, first bounce, clusters, paraboloid, second bounce, second clusters, "
+        "second "
+        "paraboloid, list, area lights, virtual lights, shading",
+        "geometry, patches, reachable sides, patch mesh, form factors, patch light, solve, corners, shadow "
+        "map, area lights, shading"};
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 2, 0}, (vplVec3){0, -1, 0}, 1);
+    for (int method = 0; method < METHOD_COUNT; method++) {
+        const vplRenderOptions options = OPTIONS("method", METHODS[method], "size", "64x36");
+        vplPlan* plan = planOf(scene, &options);
+        assertStages(plan, wanted[method]);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Every input of a stage runs before it, and every stage and all that is left out has a reason.
+TEST(InputsComeFirstAndReasonsAreGiven, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    for (int method = 0; method < METHOD_COUNT; method++) {
+        const vplRenderOptions options = OPTIONS("method", METHODS[method], "size", "64x36");
+        vplPlan* plan = planOf(scene, &options);
+        for (int i = 0; i < plan->stageCount; i++) {
+            char inputs[400];
+            snprintf(inputs, sizeof inputs, "%s", plan->stages[i].inputs);
+            for (char* input = strtok(inputs, ","); input != NULL; input = strtok(NULL, ",")) {
+                bool before = false;
+                input += strspn(input, " ");
+                for (int k = 0; k < i; k++) {
+                    before = before || strcmp(plan->stages[k].name, input) == 0;
+                }
+                if (!before && !isLeftOut(plan, input) && hasStage(plan, input)) {
+                    fail_msg("%s: %s reads %s", METHODS[method], plan->stages[i].name, input);
+                }
+            }
+            assert_true(strlen(plan->stages[i].why) > 8 && plan->stages[i].bytes >= 0);
+        }
+        for (int i = 0; i < plan->leftOutCount; i++) {
+            assert_true(strlen(plan->leftOut[i].why) > 8 && !hasStage(plan, plan->leftOut[i].name));
+        }
+        for (int i = 0; i < plan->decisionCount; i++) {
+            assert_true(strlen(plan->decisions[i].why) > 4 && plan->decisions[i].value[0] != 0);
+        }
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
+TEST(RenderingRunsTheStagesOfThePlan, 1)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room-area.json");
+    for (int method = 0; method < METHOD_COUNT; method++) {
+        const vplRenderOptions options =
+            OPTIONS("method", METHODS[method], "size", "16x12", "patches", "40", "first-bounce", "8",
+                    "second-bounce", "8", "paraboloid", "8", "rsm-size", "16", "spp", "1");
+        vplPlan* plan = planOf(scene, &options);
+        vplRenderStats stats;
+        vplImage_Destroy(renderScene(scene, &options, &stats));
+        for (int i = 0; i < stats.stageCount; i++) {
+            assert_false(isLeftOut(plan, stats.stages[i].name));
+        }
+        for (int i = 0; i < plan->stageCount; i++) {
+            bool ran = false;
+            for (int k = 0; k < stats.stageCount; k++) {
+                ran = ran || strcmp(stats.stages[k].name, plan->stages[i].name) == 0;
+            }
+            if (!ran) {
+                fail_msg("%s did not run %s", METHODS[method], plan->stages[i].name);
+            }
+        }
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
+TEST(WhatNobodyAsksForIsNotMade, 1)
+{
+    vplScene* dark = sceneOf(context, 0.5f);
+    addThing(dark, VPL_OBJECT_QUAD, 0, (vplVec3){0, 0, 0}, 0, 0, (vplVec3){1, 1, 1});
+    aim(dark, (vplVec3){0, 0, 3}, (vplVec3){0, 0, 0});
+    vplRenderOptions options = OPTIONS("method", "direct", "size", "8x8");
+    vplPlan* plan = planOf(dark, &options);
+    assert_true(!hasStage(plan, "shadow map") && isLeftOut(plan, "shadow map"));
+    assert_true(!hasStage(plan, "area lights") && !plan->castsRays && plan->shadowMapBytes == 0);
+    vplPlan_Destroy(plan);
+    vplScene_Destroy(dark);
+
+    vplScene* room = loadScene(context, "room.json");
+    options = OPTIONS("show", "normals", "size", "8x8");
+    plan = planOf(room, &options);
+    assertStages(plan, "geometry, shading");
+    vplPlan_Destroy(plan);
+    options = OPTIONS("light-shadows", "ray", "size", "8x8");
+    plan = planOf(room, &options);
+    assert_true(plan->castsRays && !hasStage(plan, "shadow map"));
+    vplPlan_Destroy(plan);
+    options = OPTIONS("method", "ssvp", "max-bounces", "1", "size", "8x8");
+    plan = planOf(room, &options);
+    assert_true(hasStage(plan, "first bounce") && !hasStage(plan, "second bounce"));
+    vplPlan_Destroy(plan);
+    vplScene_Destroy(room);
+}
+
+// ---- refusals
+
+TEST(WhatCannotBeRenderedHasAPlanThatSaysWhy, 1)
+{
+    static const char* const refused[][5] = {{"show", "patches", NULL},
+                                             {"method", "path", "show", "light:0", NULL},
+                                             {"method", "direct", "show", "clusters", NULL},
+                                             {"method", "ssvp", "lighting", "documented", NULL},
+                                             {"method", "radiosity", "lighting", "documented", NULL}};
+    vplScene* scene = loadScene(context, "room.json");
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+        const vplRenderOptions options = optionsOf(refused[i]);
+        vplImage* image = NULL;
+        vplPlan* plan = planOf(scene, &options);
+        if (strlen(plan->problem) < 12) {
+            fail_msg("%s %s has no problem", refused[i][0], refused[i][1]);
+        }
+        const vplResult result = vplRender(scene, &options, &image, NULL);
+        assert_true(result == plan->refusal && result != VPL_SUCCESS && image == NULL);
+        const char* message = takeMessage();
+        if (strstr(message, plan->problem) == NULL) {
+            fail_msg("\"%s\" lacks \"%s\"", message, plan->problem);
+        }
+        vplPlan_Destroy(plan);
+    }
+    vplRenderOptions bad = vplDefaultRenderOptions();
+    vplPlan* none = NULL;
+    bad.particles.count = -1;
+    assert_int_equal(vplPlan_Create(scene, &bad, NULL, &none), VPL_INVALID_ARGUMENT);
+    assert_null(none);
+    vplScene_Destroy(scene);
+}
+
+// ---- memory
+
+// About twenty pictures: scene x method x size x threads.
+TEST_ALONE(PeakBytesAreTrueWithin15Percent)
+{
+    static const char* const scenes[] = {"examples/scenes/room-area.json", "examples/scenes/testmodel.json",
+                                         "examples/scenes/closed-room.json"};
+    static const char* const sizes[] = {"160x90", "480x270", "97x301"};
+    int wrong = 0;
+    for (int i = 0; i < 3 * METHOD_COUNT + 3; i++) {
+        const int method = i < 3 * METHOD_COUNT ? i % METHOD_COUNT : 3 + i % 3;
+        const char* size = sizes[i / 2 % 3];
+        vplContext* context = openTestContext(1 + i % 3);
+        vplScene* scene = openScene(context, scenes[i / METHOD_COUNT % 3]);
+        const vplRenderOptions options =
+            OPTIONS("method", METHODS[method], "size", size, "patches", i % 2 ? "300" : "700", "spp", "2");
+        vplPlan* plan = planOf(scene, &options);
+        const int64_t planned = plan->peakBytes;
+        vplPlan_Destroy(plan);
+        vplRenderStats stats;
+        vplImage_Destroy(renderScene(scene, &options, &stats));
+        const double ratio = (double)planned / (double)stats.peakBytes;
+        if (!(fabs(ratio - 1) <= 0.15)) {
+            printf("# %s %s %s %d threads: %.2f MiB planned, %.2f held (%.2f)\n",
+                   scenes[i / METHOD_COUNT % 3], METHODS[method], size, 1 + i % 3, (double)planned / 1048576,
+                   (double)stats.peakBytes / 1048576, ratio);
+            wrong++;
+        }
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+    assert_int_equal(wrong, 0);
+}
