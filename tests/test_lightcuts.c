@@ -215,7 +215,8 @@ static void checkBound(vplContext* context, const vplLightTree* tree, vplCluster
                        vplLighting lighting, float minDistance)
 {
     float bound[VPL_LANES];
-    vplGetClusterBound(context->isa, lighting)(s, &tree->nodes[c.node], inverseSquare(minDistance), bound);
+    vplGetShadingKernels(context->isa, lighting)
+        .clusterBound(s, &tree->nodes[c.node], inverseSquare(minDistance), bound);
     for (int i = c.first; i < c.first + c.count; i++) {
         vplShadeLight light = tree->lights[i].light;
         light.r = light.g = light.b = 1;
@@ -278,7 +279,8 @@ static void BoundsOfSmallClustersAreTight(void** state)
             s.nx[l] = n.x, s.ny[l] = n.y, s.nz[l] = n.z;
         }
         float bound[VPL_LANES], part[3][VPL_LANES] = {{0}};
-        vplGetClusterBound(context->isa, VPL_LIGHTING_PHYSICAL)(&s, &tree->nodes[0], INFINITY, bound);
+        vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL)
+            .clusterBound(&s, &tree->nodes[0], INFINITY, bound);
         vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &s, lights, 1, part);
         for (int l = 0; l < VPL_LANES; l++) {
             const float d2 = s.px[l] * s.px[l] + s.py[l] * s.py[l] + s.pz[l] * s.pz[l];
@@ -310,8 +312,8 @@ static void InstructionSetsBoundAlike(void** state)
             vplContext* other = openIsaContext(1, (vplIsa)isa);
             for (int lighting = 0; lighting < 2 && other != NULL; lighting++) {
                 float a[VPL_LANES], b[VPL_LANES];
-                vplGetClusterBound(VPL_ISA_SCALAR, (vplLighting)lighting)(&s, node, 25, a);
-                vplGetClusterBound((vplIsa)isa, (vplLighting)lighting)(&s, node, 25, b);
+                vplGetShadingKernels(VPL_ISA_SCALAR, (vplLighting)lighting).clusterBound(&s, node, 25, a);
+                vplGetShadingKernels((vplIsa)isa, (vplLighting)lighting).clusterBound(&s, node, 25, b);
                 assert_memory_equal(a, b, sizeof a);
             }
             if (other != NULL) {
@@ -362,17 +364,19 @@ static void judge(const vplShading* s, const vplLightTree* tree, vplCluster c, c
     vplFindRayStarts(s, points, &starts);
     memset(j, 0, sizeof *j);
     float bound[VPL_LANES];
-    s->clusterBound(points->surface, node, s->inverseBound, bound);
+    s->kernels.clusterBound(points->surface, node, s->lights.inverseClamp, bound);
     for (int i = c.first; i < c.first + c.count; i++) {
         const vplShadeLight* light = &tree->lights[i].light;
-        float part[3][VPL_LANES], visible[VPL_LANES];
+        vplReceived received;
         int64_t rays = 0;
-        if (!vplLightVisibly(s, points, &starts, NULL, light, s->inverseBound, part, visible, &rays)) {
+        const vplReceiver receiver = {s, points, &starts, &rays};
+        if (!vplReceiveLight(&receiver, light, NULL, s->lights.inverseClamp, &received)) {
             continue;
         }
         const double scale = (double)node->intensity / (double)(light->r + light->g + light->b);
         for (int l = 0; l < VPL_LANES; l++) {
-            const double given = (double)visible[l] * (double)(part[0][l] + part[1][l] + part[2][l]);
+            const double given = (double)received.visible[l] *
+                                 (double)(received.open[0][l] + received.open[1][l] + received.open[2][l]);
             j->all[l] += given;
             j->one[l] += i == node->representative ? scale * given : 0;
         }
@@ -396,9 +400,9 @@ static void RepresentativesErrByLessThanTheBoundAlsoInShadow(void** state)
     for (int kind = 0; kind < KIND_FAR; kind++) {
         vplShadeLight* lights = rollLights((Kind)kind, COUNT, 3);
         vplLightTree* tree = plant(context, lights, COUNT);
-        vplShading s = {.geometry = g, .inverseBound = 1 / 0.04f};
-        s.lightKernel = vplGetLightKernel(context->isa, VPL_LIGHTING_PHYSICAL);
-        s.clusterBound = vplGetClusterBound(context->isa, VPL_LIGHTING_PHYSICAL);
+        const vplShading s = {.geometry = g,
+                              .kernels = vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL),
+                              .lights = {.inverseClamp = 1 / 0.04f}};
         for (int round = 0; round < ROUNDS; round++) {
             vplSurface surface;
             vplPoints points;

@@ -27,22 +27,22 @@ static void randomNumbers(vplPathDef* def)
 
 static void balance(vplPathDef* def)
 {
-    def->balance = true;
+    def->balanceHeuristic = true;
 }
 
 static void points(vplPathDef* def)
 {
-    def->ways = VPL_PATH_POINTS;
+    def->techniques = VPL_PATH_LIGHT_SAMPLING;
 }
 
 static void chance(vplPathDef* def)
 {
-    def->ways = VPL_PATH_CHANCE;
+    def->techniques = VPL_PATH_BSDF_SAMPLING;
 }
 
 static void pointsAndChance(vplPathDef* def)
 {
-    def->ways = VPL_PATH_POINTS | VPL_PATH_CHANCE;
+    def->techniques = VPL_PATH_LIGHT_SAMPLING | VPL_PATH_BSDF_SAMPLING;
 }
 
 static void rouletteAt1(vplPathDef* def)
