@@ -38,12 +38,12 @@ MACHINE := $(shell $(CC) -dumpmachine 2>/dev/null)
 ISAS    := scalar sse2 $(if $(filter x86_64%,$(MACHINE)),avx2 avx512)
 ISA_scalar := -fno-tree-vectorize -fno-tree-slp-vectorize
 ISA_sse2   :=
-# gcc would unroll loops over 16 lanes before it thinks of vectors.
+# Without this gcc unrolls loops over 16 lanes completely instead of vectorising them.
 LANES      := $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),,--param max-completely-peel-times=15)
-# Rays meet 8 boxes or triangles at once.
+# Ray kernels have 8 lanes: 8 boxes or triangles.
 $(BUILD)/obj/src/geometry/%: LANES := $(subst times=15,times=7,$(LANES))
-# gcc copies 16 bytes at a time unless told; loads of 32 bytes then wait for both stores to reach the cache: without
-# these the fills of bench/roofline take 1.6 and 4.0 times as long under AVX2. clang needs and knows them not.
+# gcc copies 16 bytes at a time by default, and a later load of 32 bytes waits for both stores. With these options the fills
+# of bench/roofline take 1/1.6 and 1/4.0 of the time under AVX2. clang copies 32 bytes by itself.
 MOVES      := $(shell $(CC) -mavx2 -mmove-max=256 -mstore-max=256 -x c -c /dev/null -o /dev/null 2>/dev/null \
                 && echo -mmove-max=256 -mstore-max=256)
 ISA_avx2   := -mavx2 $(MOVES)
@@ -65,30 +65,39 @@ EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard example
 
 .PHONY: all libs programs test-programs help deps demo test check-all bench bench-peers golden gallery install clean format fuzz
 
-## make             builds build/vpl and build/libvpl.a, installing what is missing
-all: deps
+# Headers that programs need, each with the Debian package that has it.
+NEEDS := jansson.h=libjansson-dev stb_image.h=libstb-dev
+
+## make             builds build/vpl and build/libvpl.a; installs nothing, but says what is missing
+all:
+	@missing=; command -v $(firstword $(CC)) >/dev/null || missing=" build-essential"; \
+	for need in $(NEEDS); do \
+	  printf '#include <%s>\n' "$${need%=*}" | $(CC) $(INCLUDES) -E -x c - >/dev/null 2>&1 || missing="$$missing $${need#*=}"; \
+	done; \
+	[ -z "$$missing" ] || { echo "Missing:$$missing. Get them by: sudo apt-get install$$missing (or by: make demo)" >&2; exit 1; }
 	@$(MAKE) --no-print-directory $(JOBS) programs
 
 programs: $(BUILD)/libvpl.a $(BUILD)/vpl
 
-## make demo        renders the room with 18 virtual lights to build/demo.png
-demo: all
-	$(BUILD)/vpl render examples/scenes/closed-room.json -o $(BUILD)/demo.png --size 800x700 \
-	  --lighting documented --exposure 0.5 --pcf 64 --pcf-offset 0.12
+## make demo        installs what is missing, builds, renders a living room to build/demo.png
+demo: deps
+	@$(MAKE) --no-print-directory $(JOBS) programs
+	$(BUILD)/vpl render examples/scenes/loft.json -o $(BUILD)/demo.png --method keller --particles 4000 \
+	  --reflectivity auto --pipeline interleaved --interleave 16 --light-shadows ray --size 960x540 --exposure 1
 	@echo "Done: open $(BUILD)/demo.png"
 
-## make test        runs every test; ends with "N passed, N failed"
+## make test        installs what is missing, runs every test; ends with "N passed, N failed"
 test: deps
 	@$(MAKE) --no-print-directory $(JOBS) test-programs
 	@tests/run.sh $(BUILD)
 
 test-programs: programs $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS)
 
-## make check-all   the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
+## make check-all   installs what is missing, the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
 check-all: deps
 	@tests/check_all.sh
 
-## make bench       times every stage
+## make bench       times every stage (tests/bench/README.md explains the tables)
 bench: all
 	@$(MAKE) --no-print-directory $(JOBS) $(BENCH_PROGRAMS)
 	$(BUILD)/vpl bench
@@ -113,7 +122,7 @@ bench: all
 	$(BUILD)/bench/roofline
 	$(BUILD)/vpl bench --scaling
 
-## make bench-peers  beside Mesa's llvmpipe and Intel's Embree, which are installed where they can be
+## make bench-peers the same room by OpenGL (llvmpipe) and by Embree, which it installs where it can
 bench-peers: all
 	@.ci/install-deps $(PEER_PACKAGES) || true
 	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/bench/peers $(BUILD)/bench/rays
@@ -122,27 +131,28 @@ bench-peers: all
 	$(BUILD)/bench/rays examples/scenes/room.json
 PEER_PACKAGES := libegl-dev libgl-dev libopengl-dev libegl1 libgl1-mesa-dri libembree-dev
 
-## make golden      rewrites golden/ (say in the commit why bits moved)
+## make golden      rewrites golden/; the commit says why bits moved
 golden: deps
 	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/vpl-golden
 	$(BUILD)/vpl-golden write golden
 
-## make gallery     rewrites the README's pictures
+## make gallery     rewrites golden/gallery and prints the numbers of README.md
 gallery: all
 	tests/gallery.sh $(BUILD)/vpl
+	tests/bench/readme.sh $(BUILD)
 
 ## make fuzz        fuzzes the readers for FUZZ_SECONDS each (default 600)
 fuzz: deps
 	@tests/fuzz/run.sh $(FUZZERS)
 
 ## make install     library, headers, program, man page and libvpl.pc under PREFIX (/usr/local)
-install: programs
+install: programs $(BUILD)/vpl.1
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/vpl $(DESTDIR)$(PREFIX)/lib/pkgconfig \
 	  $(DESTDIR)$(PREFIX)/share/man/man1
 	install $(BUILD)/vpl $(DESTDIR)$(PREFIX)/bin
-	install -m 644 include/vpl/*.h $(DESTDIR)$(PREFIX)/include/vpl
+	install -m 644 include/vpl/*.h include/vpl/*.def $(DESTDIR)$(PREFIX)/include/vpl
 	install -m 644 $(BUILD)/libvpl.a $(DESTDIR)$(PREFIX)/lib
-	install -m 644 src/cli/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 $(BUILD)/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(shell sed -n 's/.*VERSION_STRING *"\(.*\)"/\1/p' include/vpl/base.h)|' \
 	  -e 's|@OMP@|$(OMP)|' -e 's|@LIBS@|$(LDLIBS)|' src/libvpl.pc.in > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libvpl.pc
 
@@ -169,7 +179,11 @@ $(BUILD)/vpl: $(CLI_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff_math.o %/bench_fit.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
+# The program writes the options of its man page.
+$(BUILD)/vpl.1: src/cli/vpl.1.in $(BUILD)/vpl
+	$(Q)$(BUILD)/vpl help --man | sed -e '/^@OPTIONS@$$/{r /dev/stdin' -e 'd' -e '}' $< > $@
+
+$(BUILD)/vpl-tests: $(TEST_OBJECTS) $(filter %/tradeoff/math.o %/bench/fit.o %/bench/measure.o,$(CLI_OBJECTS)) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -pthread -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -177,12 +191,13 @@ $(BUILD)/vpl-golden: $(GOLDEN_OBJECTS) $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-# Peers that benchmarks are measured against, where this machine has them.
+# Libraries that benchmarks compare with, where they are installed.
 EMBREE := $(if $(wildcard /usr/include/embree3/rtcore.h),-lembree3)
 $(BUILD)/obj/tests/bench/rays.o: INCLUDES += $(if $(EMBREE),-DHAVE_EMBREE)
 $(BUILD)/bench/rays: LDLIBS += $(EMBREE)
+MEASURE := $(BUILD)/obj/src/cli/bench/measure.o
 ROOFLINE := $(foreach part,roofline roofline/loops roofline/work roofline/peaks $(ISAS:%=roofline/peaks_kernel.%),\
-              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench_cover.o,$(CLI_OBJECTS))
+              $(BUILD)/obj/tests/bench/$(part).o) $(filter %/bench/cover.o,$(CLI_OBJECTS)) $(MEASURE)
 $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
@@ -191,7 +206,7 @@ $(BUILD)/bench/roofline: $(ROOFLINE) $(BUILD)/libvpl.a
 PEER_HEADERS := /usr/include/EGL/egl.h /usr/include/GL/glcorearb.h
 PEER_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(wildcard tests/bench/peers/*.c))
 ifeq ($(words $(wildcard $(PEER_HEADERS))),2)
-$(BUILD)/bench/peers: $(PEER_OBJECTS) $(BUILD)/libvpl.a
+$(BUILD)/bench/peers: $(PEER_OBJECTS) $(MEASURE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ -lEGL -lOpenGL $(LDLIBS)
@@ -199,7 +214,7 @@ else
 $(BUILD)/bench/peers:
 	@echo "bench-peers needs EGL and OpenGL to build: $(PEER_HEADERS)" >&2; exit 1
 endif
-$(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(BUILD)/libvpl.a
+$(BUILD)/bench/%: $(BUILD)/obj/tests/bench/%.o $(MEASURE) $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
@@ -236,7 +251,7 @@ $(BUILD)/obj/exr-$(EXR):
 	@rm -f $(BUILD)/obj/exr-*
 	@touch $@
 
-# Prints what a program that is linked with libvpl.a needs besides.
+# Prints the libraries that a program needs besides libvpl.a.
 libs:
 	@echo $(LDLIBS)
 

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The rasterizer by itself, without scenes or lights: own shaders draw a fan of coloured blades in perspective.
+// The rasterizer without scenes or lights: rasterizer [PICTURE] draws a fan of coloured blades in perspective by two shaders.
 #include <vpl/vpl.h>
 
 #include <math.h>
 #include <stdio.h>
 
+static void printMessage(void* file, vplLogLevel level, const char* message)
+{
+    (void)level;
+    fprintf(file, "%s\n", message);
+}
+
 enum { BLADES = 24, SIZE = 400 };
 
-// Three vertices per blade: the middle, and two on a circle that leans back. Clip space by hand.
+// Vertex shader. A blade has three vertices: the centre of the fan and two points of a circle that leans back. It writes clip
+// space directly.
 static void bladeVertices(const void* uniforms, int first, int count, const vplVertices* out)
 {
     const float* twist = uniforms;
@@ -19,13 +26,14 @@ static void bladeVertices(const void* uniforms, int first, int count, const vplV
         float depth = 2 + 0.7f * y + 0.3f * (corner == 2 ? 1.0f : 0.0f);
         out->x[i] = 1.8f * x;
         out->y[i] = 1.8f * y;
-        out->z[i] = depth - 1; // near plane at 1
+        out->z[i] = depth - 1; // the near plane is at 1
         out->w[i] = depth;
         out->varying[0][i] = (float)blade / BLADES;
         out->varying[1][i] = radius;
     }
 }
 
+// Fragment shader: rings of two brightnesses; the hue tells the blade. It gets a block of fragments at once.
 static void bladeColours(const void* uniforms, vplFragments* f)
 {
     (void)uniforms;
@@ -45,7 +53,7 @@ int main(int count, char** words)
     for (uint32_t i = 0; i < 3 * BLADES; i++) {
         indices[i] = i;
     }
-    const float twist = 1.6f; // blades overlap, so depth decides
+    const float twist = 1.6f; // above 1 blades overlap, so the depth test decides
     vplMesh mesh = {indices, 3 * BLADES, BLADES};
     vplPipeline pipeline = vplDefaultPipeline();
     pipeline.vertex = bladeVertices;
@@ -59,11 +67,14 @@ int main(int count, char** words)
         framebuffer.planes[c].pixels = planes[c];
         framebuffer.planes[c].clear = 0.02f;
     }
+    vplContextDef def = vplDefaultContextDef();
+    def.log = printMessage;
+    def.logUser = stderr;
     vplContext* context;
     vplRaster* raster;
     vplImage* image;
     vplRasterStats stats;
-    if (vplContext_Create(NULL, &context) || vplRaster_Create(context, &framebuffer, &raster) ||
+    if (vplContext_Create(&def, &context) || vplRaster_Create(context, &framebuffer, &raster) ||
         vplRaster_Draw(raster, &mesh, &pipeline) || vplRaster_Run(raster, NULL, NULL, &stats) ||
         vplImage_Create(context, SIZE, SIZE, &image)) {
         return 1;

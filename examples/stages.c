@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Every stage called by itself: particles, cube shadow map, shadow factor, light kernel, a pipeline.
+// Each stage of instant radiosity called by itself: stages SCENE PICTURE simulates particles, draws a cube shadow map, asks
+// it about a point, runs the light kernel and shades a picture. The scene's first light must be a point light.
 #include <vpl/vpl.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 
-static void check(vplResult result, const char* what)
+static void printMessage(void* file, vplLogLevel level, const char* message)
+{
+    (void)level;
+    fprintf(file, "%s\n", message);
+}
+
+// Ends the program if a stage failed. The log has the reason.
+static void check(vplResult result, const char* stage)
 {
     if (result != VPL_SUCCESS) {
-        fprintf(stderr, "%s: %s\n", what, vplResult_GetName(result));
+        fprintf(stderr, "%s: %s\n", stage, vplResult_GetName(result));
         exit(1);
     }
 }
 
-// Irradiance of 16 points along the front of the floor.
+// Prints the irradiance of the first and last of 16 points along the front of the floor.
 static void lightFloor(const vplContext* context, const vplShadeLight* lights, int lightCount)
 {
     vplSurface surface;
@@ -33,27 +41,34 @@ static void lightFloor(const vplContext* context, const vplShadeLight* lights, i
 int main(int count, char** words)
 {
     if (count < 3) {
-        fprintf(stderr, "usage: stages SCENE.json PICTURE.png\n");
+        fprintf(stderr, "usage: stages SCENE PICTURE\n");
         return 2;
     }
+    vplContextDef contextDef = vplDefaultContextDef();
+    contextDef.log = printMessage;
+    contextDef.logUser = stderr;
     vplContext* context;
     vplScene* scene;
     vplGeometry* geometry;
-    check(vplContext_Create(NULL, &context), "context");
+    check(vplContext_Create(&contextDef, &context), "context");
     check(vplScene_Load(context, words[1], &scene), "scene");
     check(vplGeometry_Create(scene, &geometry), "geometry");
-    const vplEmitterDef* lamp = vplScene_GetEmitter(scene, 0);
+    if (vplScene_GetEmitterCount(scene) == 0 || vplScene_GetEmitter(scene, 0)->type != VPL_EMITTER_POINT) {
+        fprintf(stderr, "the scene's first light must be a point light\n");
+        return 2;
+    }
+    const vplEmitterDef* light = vplScene_GetEmitter(scene, 0);
 
-    // 1. Particles: each hit leaves a virtual light.
+    // 1. Particles. Each hit leaves a virtual light.
     vplParticleDef particles = vplDefaultParticleDef();
     particles.particleCount = 100;
     vplLightSet* set;
-    check(vplSimulateParticles(geometry, lamp, 1, &particles, &set), "particles");
+    check(vplSimulateParticles(geometry, light, 1, &particles, &set), "particles");
     printf("%d lights in %d steps, %d particles escaped\n", set->lightCount, set->stepCount, set->escaped);
 
-    // 2. The cube shadow map, and what one point sees of the lamp.
+    // 2. The cube shadow map of the light, and how much of one point is in shadow.
     vplCubeMapDef mapDef = vplDefaultCubeMapDef();
-    mapDef.position = lamp->position;
+    mapDef.position = light->position;
     vplCubeMap* map;
     check(vplCubeMap_Create(geometry, &mapDef, NULL, NULL, &map), "cube map");
     vplShadowDef shadowDef = vplDefaultShadowDef();
@@ -62,17 +77,21 @@ int main(int count, char** words)
     vplVec3 point = {-2, 0, -2}, up = {0, 1, 0};
     printf("shadow factor at (-2, 0, -2): %g\n", (double)vplShadow_Factor(&shadow, point, up));
 
-    // 3. The light kernel on 16 points at once.
+    // 3. The light kernel, on 16 points at once.
     vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
+    if (lights == NULL && set->lightCount > 0) {
+        fprintf(stderr, "out of memory\n");
+        return 1;
+    }
     vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
     lightFloor(context, lights, set->lightCount);
 
-    // 4. All of it in one of the pipelines.
+    // 4. The picture: direct light with shadows, then one additive pass per virtual light.
     vplView view = vplView_Create(vplScene_GetCamera(scene, 0), 320, 240);
     vplShadeDef def = {0};
     def.accumulation = VPL_ACCUMULATE_MULTIPASS;
     def.minDistance = 0.2f;
-    def.emitters = lamp;
+    def.emitters = light;
     def.shadows = &shadow;
     def.emitterCount = 1;
     def.lights = lights;

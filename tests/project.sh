@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tests of the project itself: layers, headers, examples, README, installation. tests/project.sh BUILD.
+# Tests of the project itself: layers, headers, examples, README files, installation. tests/project.sh BUILD.
 build=$1
 passed=0
 failed=0
@@ -49,23 +49,83 @@ check ExampleHelloRuns writes "$scratch/hello.png" "$build/examples/hello" $scen
 check ExampleStagesRuns writes "$scratch/stages.png" "$build/examples/stages" $scene "$scratch/stages.png"
 check ExampleSceneByHandRuns writes "$scratch/hand.png" "$build/examples/scene_by_hand" "$scratch/hand.png"
 check ExampleRasterizerRuns writes "$scratch/raster.png" "$build/examples/rasterizer" "$scratch/raster.png"
+examples_name_failures() {
+    for example in hello stages; do
+        ! "$build/examples/$example" nowhere.json "$scratch/nowhere.png" 2>"$scratch/errors" &&
+            grep -q nowhere.json "$scratch/errors" || return 1
+    done
+    for example in scene_by_hand rasterizer; do
+        ! "$build/examples/$example" "$scratch/no/folder.png" 2>"$scratch/errors" &&
+            grep -q no/folder.png "$scratch/errors" || return 1
+    done
+}
+check ExamplesNameWhatFailed examples_name_failures
 
-# README: its C program is compiled and run, its commands are run.
-sed -n '/^```c$/,/^```$/p' README.md | sed '/^```/d' >"$scratch/readme.c"
-readme_program() {
-    [ -s "$scratch/readme.c" ] &&
-        "$cc" -std=gnu11 -Wall -Werror -Iinclude "$scratch/readme.c" "$build/libvpl.a" $SANITIZE_FLAGS -fopenmp $(make -s --no-print-directory libs) -o "$scratch/readme" &&
-        cp $scene "$scratch/room.json" && (cd "$scratch" && ./readme) && [ -s "$scratch/room.png" ]
+# README files: C blocks are programs that compile and run, sh blocks of README.md run, commands, options and links exist.
+# Scenes are beside what runs.
+mkdir -p "$scratch/commands/build" "$scratch/commands/examples/scenes"
+cp "$build/vpl" "$scratch/commands/build/vpl"
+cp examples/scenes/* "$scratch/commands/examples/scenes"
+cp examples/scenes/* "$scratch"
+
+# blocks README LANGUAGE: writes the blocks of a language to block-1.c, block-2.c and so on, and prints how many.
+blocks() {
+    rm -f "$scratch"/block-*
+    awk -v start="\`\`\`$2" -v name="$scratch/block-" -v end=".$2" '
+        $0 == start { count++; inside = 1; next }
+        /^```/ { inside = 0 }
+        inside { print > (name count end) }
+        END { print count + 0 }' "$1"
 }
-[ -n "$SANITIZE_FLAGS" ] || check ReadmeProgramCompilesAndRuns readme_program
+readme_programs() {
+    count=$(blocks "$1" c)
+    [ "$count" -ge "$2" ] || { echo "$1 has $count C programs, must have $2" && return 1; }
+    for block in "$scratch"/block-*.c; do
+        [ -e "$block" ] || continue
+        "$cc" -std=gnu11 -Wall -Wextra -Werror -Iinclude "$block" "$build/libvpl.a" -fopenmp \
+            $(make -s --no-print-directory libs) -o "$scratch/readme" &&
+            (cd "$scratch" && rm -f ./*.png && ./readme && ls ./*.png) || return 1
+    done
+}
 readme_commands() {
-    mkdir -p "$scratch/commands/build" "$scratch/commands/examples/scenes"
-    cp "$build/vpl" "$scratch/commands/build/vpl"
-    cp examples/scenes/* "$scratch/commands/examples/scenes"
     sed -n '/^```sh$/,/^```$/p' README.md | grep '^build/vpl' >"$scratch/commands/list"
-    [ -s "$scratch/commands/list" ] && (cd "$scratch/commands" && sh -e list)
+    [ "$(wc -l <"$scratch/commands/list")" -ge 5 ] && (cd "$scratch/commands" && sh -ex list)
 }
+readme_scenes() {
+    [ "$(blocks examples/scenes/README.md json)" -ge 1 ] && "$build/vpl" info "$scratch/block-1.json"
+}
+two_screens() {
+    [ "$(wc -l <README.md)" -le 150 ]
+}
+for readme in $(find . -name README.md -not -path './build*' | sort); do
+    folder=$(dirname "$readme" | sed 's/^\.$/.\/top/; s/^\.\///' | tr / _)
+    check "Readme_${folder}_LinksLeadSomewhere" tests/readme_check.sh links "$build/vpl" "$readme"
+    check "Readme_${folder}_CommandsExist" tests/readme_check.sh commands "$build/vpl" "$readme"
+    check "Readme_${folder}_StaysInTheRepository" tests/readme_check.sh places "$build/vpl" "$readme"
+    least=0
+    [ "$readme" != ./README.md ] || least=1
+    [ -n "$SANITIZE_FLAGS" ] || check "Readme_${folder}_ProgramsRun" readme_programs "$readme" $least
+done
 check ReadmeCommandsRun readme_commands
+check ReadmeSceneIsRead readme_scenes
+check ReadmeHasTwoScreens two_screens
+printf 'See [that](nowhere.md), [there](#nowhere), `vpl render a.json --nothing 1`, `--never` and `vpl paint`.\n' >"$scratch/README.md"
+printf 'In ../shared/scenes.\n' >>"$scratch/README.md"
+for what in links commands places; do
+    check "ReadmeCheckCatchesWrong_$what" refuses tests/readme_check.sh $what "$build/vpl" "$scratch/README.md"
+done
+
+# Plain make installs nothing and names what it lacks; make test installs.
+installs() {
+    make -n --no-print-directory "$@" | grep -q install-deps
+}
+check PlainMakeInstallsNothing refuses installs BUILD="$scratch/make" all
+check MakeTestInstalls installs BUILD="$scratch/make" test
+check MakeDemoInstalls installs BUILD="$scratch/make" demo
+names_what_is_missing() {
+    make --no-print-directory BUILD="$scratch/make" CC=false all 2>&1 | grep -q 'apt-get install.*libjansson-dev'
+}
+check PlainMakeNamesWhatIsMissing names_what_is_missing
 
 # Installation: a program finds the library by pkg-config alone.
 installed_program() {
@@ -78,12 +138,18 @@ installed_program() {
 }
 [ -n "$SANITIZE_FLAGS" ] || check InstalledLibraryIsFoundByPkgConfig installed_program
 
+# The man page names every option of rendering and of the program once, under the heading that the help has.
 options_in_man_page() {
-    for command in render lights compare info tradeoff bench; do
-        "$build/vpl" help $command | sed -n 's/^  \(--[a-z-]*\).*/\1/p'
-    done | sort -u | while read -r option; do
-        grep -q -- "$(echo "$option" | sed 's/-/\\\\-/g')" src/cli/vpl.1 || { echo "vpl.1 lacks $option"; exit 1; }
-    done
+    make -s --no-print-directory BUILD="$build" "$build/vpl.1" || return 1
+    { "$build/vpl" help options; for command in render bake lights compare info tradeoff bench; do
+        "$build/vpl" help $command
+    done; } | sed -n 's/^  \(-[a-z0-9-]*\).*/\1/p' | sort -u >"$scratch/options"
+    [ "$(wc -l <"$scratch/options")" -gt 90 ] && while read -r option; do
+        wanted=1
+        [ "$option" = -o ] && wanted=3
+        [ "$(grep -c -- "^\.BI \"*$(echo "$option" | sed 's/-/\\\\-/g')\( \|$\)" "$build/vpl.1")" -eq $wanted ] ||
+            { echo "vpl.1 does not have $option $wanted times"; return 1; }
+    done <"$scratch/options"
 }
 check ManPageNamesEveryOption options_in_man_page
 

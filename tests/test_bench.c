@@ -2,7 +2,7 @@
 // The arithmetic of vpl bench --scaling.
 #include "test.h"
 
-#include "cli/bench_fit.h"
+#include "cli/bench/fit.h"
 
 enum { COUNT = 8 };
 

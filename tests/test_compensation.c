@@ -62,9 +62,10 @@ static double givenBack(const vplGeometry* g, const vplShadeDef* def)
         points.triangle[l] = 0;
         pixels[l] = (uint32_t)l;
     }
-    assert_int_equal(vplOpenNearLight(&shading), VPL_SUCCESS);
-    vplAddNearLight(&shading, &points, pixels, irradiance, &rays);
-    vplCloseNearLight(&shading);
+    shading.arena = vplArena_Create(g->context);
+    assert_int_equal(vplCompensator_Open(&shading), VPL_SUCCESS);
+    vplAddCompensation(&shading, &points, pixels, irradiance, &rays);
+    vplArena_Destroy(shading.arena);
     for (int l = 0; l < VPL_LANES; l++) {
         assert_true(irradiance[0][l] == irradiance[1][l] && irradiance[1][l] == irradiance[2][l]);
         sum += (double)irradiance[0][l] / VPL_LANES / VPL_PI;

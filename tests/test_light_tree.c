@@ -143,7 +143,8 @@ static void checkBound(vplContext* context, const vplLightTree* tree, vplCluster
                        vplLighting lighting, float minDistance)
 {
     float bound[VPL_LANES];
-    vplGetClusterBound(context->isa, lighting)(s, &tree->nodes[c.node], inverseSquare(minDistance), bound);
+    vplGetShadingKernels(context->isa, lighting)
+        .clusterBound(s, &tree->nodes[c.node], inverseSquare(minDistance), bound);
     for (int i = c.first; i < c.first + c.count; i++) {
         vplShadeLight light = tree->lights[i].light;
         light.r = light.g = light.b = 1;
@@ -201,7 +202,8 @@ TEST(BoundsOfSmallClustersAreTight, 1)
             s.nx[l] = n.x, s.ny[l] = n.y, s.nz[l] = n.z;
         }
         float bound[VPL_LANES], part[3][VPL_LANES] = {{0}};
-        vplGetClusterBound(context->isa, VPL_LIGHTING_PHYSICAL)(&s, &tree->nodes[0], INFINITY, bound);
+        vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL)
+            .clusterBound(&s, &tree->nodes[0], INFINITY, bound);
         vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &s, lights, 1, part);
         for (int l = 0; l < VPL_LANES; l++) {
             const float d2 = s.px[l] * s.px[l] + s.py[l] * s.py[l] + s.pz[l] * s.pz[l];
@@ -231,8 +233,8 @@ TEST_ALONE(InstructionSetsBoundAlike)
             vplContext* other = openIsaContext(1, (vplIsa)isa);
             for (int lighting = 0; lighting < 2 && other != NULL; lighting++) {
                 float a[VPL_LANES], b[VPL_LANES];
-                vplGetClusterBound(VPL_ISA_SCALAR, (vplLighting)lighting)(&s, node, 25, a);
-                vplGetClusterBound((vplIsa)isa, (vplLighting)lighting)(&s, node, 25, b);
+                vplGetShadingKernels(VPL_ISA_SCALAR, (vplLighting)lighting).clusterBound(&s, node, 25, a);
+                vplGetShadingKernels((vplIsa)isa, (vplLighting)lighting).clusterBound(&s, node, 25, b);
                 assert_memory_equal(a, b, sizeof a);
             }
             if (other != NULL) {

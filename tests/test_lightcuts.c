@@ -40,17 +40,19 @@ static void judge(const vplShading* s, const vplLightTree* tree, vplCluster c, c
     vplFindRayStarts(s, points, &starts);
     memset(j, 0, sizeof *j);
     float bound[VPL_LANES];
-    s->clusterBound(points->surface, node, s->inverseBound, bound);
+    s->kernels.clusterBound(points->surface, node, s->lights.inverseClamp, bound);
     for (int i = c.first; i < c.first + c.count; i++) {
         const vplShadeLight* light = &tree->lights[i].light;
-        float part[3][VPL_LANES], visible[VPL_LANES];
+        vplReceived received;
         int64_t rays = 0;
-        if (!vplLightVisibly(s, points, &starts, NULL, light, s->inverseBound, part, visible, &rays)) {
+        const vplReceiver receiver = {s, points, &starts, &rays};
+        if (!vplReceiveLight(&receiver, light, NULL, s->lights.inverseClamp, &received)) {
             continue;
         }
         const double scale = (double)node->intensity / (double)(light->r + light->g + light->b);
         for (int l = 0; l < VPL_LANES; l++) {
-            const double given = (double)visible[l] * (double)(part[0][l] + part[1][l] + part[2][l]);
+            const double given = (double)received.visible[l] *
+                                 (double)(received.open[0][l] + received.open[1][l] + received.open[2][l]);
             j->all[l] += given;
             j->one[l] += i == node->representative ? scale * given : 0;
         }
@@ -71,9 +73,9 @@ TEST(RepresentativesErrByLessThanTheBoundAlsoInShadow, 2)
     for (int kind = 0; kind < KIND_FAR; kind++) {
         vplShadeLight* lights = rollTreeLights((Kind)kind, COUNT, 3);
         vplLightTree* tree = plant(context, lights, COUNT);
-        vplShading s = {.geometry = g, .inverseBound = 1 / 0.04f};
-        s.lightKernel = vplGetLightKernel(context->isa, VPL_LIGHTING_PHYSICAL);
-        s.clusterBound = vplGetClusterBound(context->isa, VPL_LIGHTING_PHYSICAL);
+        const vplShading s = {.geometry = g,
+                              .kernels = vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL),
+                              .lights = {.inverseClamp = 1 / 0.04f}};
         for (int round = 0; round < ROUNDS; round++) {
             vplSurface surface;
             vplPoints points;

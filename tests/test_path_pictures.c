@@ -121,16 +121,16 @@ TEST(AllWaysOfFindingLightAgree, 2, SLOW)
     def.lastBounce = 4;
     vplPathStats stats, other;
     vplImage* all = traceWith(scene, geometry, &def, 1024, &stats);
-    static const int ways[] = {VPL_PATH_POINTS,
-                               VPL_PATH_CHANCE,
-                               VPL_PATH_POINTS | VPL_PATH_CHANCE,
-                               VPL_PATH_CHANCE | VPL_PATH_PARTICLES,
+    static const int ways[] = {VPL_PATH_LIGHT_SAMPLING,
+                               VPL_PATH_BSDF_SAMPLING,
+                               VPL_PATH_LIGHT_SAMPLING | VPL_PATH_BSDF_SAMPLING,
+                               VPL_PATH_BSDF_SAMPLING | VPL_PATH_PARTICLES,
                                VPL_PATH_ALL,
                                VPL_PATH_ALL};
     for (int i = 0; i < 6; i++) {
         def.seed = 1 + (uint64_t)i;
-        def.ways = ways[i];
-        def.balance = i & 1;
+        def.techniques = ways[i];
+        def.balanceHeuristic = i & 1;
         def.random = i == 4;
         vplImage* image = traceWith(scene, geometry, &def, 512, &other);
         double predicted =

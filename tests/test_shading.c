@@ -311,18 +311,18 @@ TEST(EveryPointOfTheRoomIsLitAsTheTableSays, 2)
                            .emitterCount = 1,
                            .particleCount = 10};
         vplEmitterRay ray = {.position = emitter.position};
-        vplShading shading = {.geometry = room,
-                              .def = &def,
-                              .addEmitters = vplGetAddEmitters(vplContext_GetIsa(context)),
-                              .emitters = &ray};
+        vplShading shading = vplShading_Make(room, NULL, &def);
+        shading.direct.rays = &ray;
         vplPoints points = {.surface = &surface, .plane = &surface};
         int64_t rays = 0;
         float e[3][VPL_LANES];
-        vplDirectIrradiance(&shading, &points, e, &rays);
+        vplDirectIrradiance(&shading, &shading.direct, &points, e, &rays);
         checkRgb(&t, row, "doc_direct", e, rho);
         def.lighting = VPL_LIGHTING_PHYSICAL;
+        shading = vplShading_Make(room, NULL, &def);
+        shading.direct.rays = &ray;
         ray.falloff = true;
-        vplDirectIrradiance(&shading, &points, e, &rays);
+        vplDirectIrradiance(&shading, &shading.direct, &points, e, &rays);
         checkRgb(&t, row, "phys_direct", e, rho);
         memset(e, 0, sizeof e);
         vplAccumulateLights(context, VPL_LIGHTING_DOCUMENTED, 0, &surface, lights, count, e);

@@ -2,7 +2,8 @@
 // The arithmetic of vpl tradeoff, and the PNG that its report embeds.
 #include "test.h"
 
-#include "cli/tradeoff_math.h"
+#include "cli/bench/measure.h"
+#include "cli/tradeoff/math.h"
 
 TEST_ALONE(MedianIsTheMiddleOrTheMeanOfTwo)
 {

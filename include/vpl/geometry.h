@@ -11,8 +11,8 @@ extern "C" {
 
 // ---- placements, rays and hits
 
-// A model matrix with what intersection and shading derive from it; rows of 3x4 and 3x3 matrices.
-// Matrices are in double, because grazing angles magnify the rounding of a hit: tenfold at a tenth of a radian.
+// A model matrix with what intersection and shading derive from it; rows of 3x4 and 3x3 matrices. Matrices
+// are in double, because grazing angles magnify the rounding of a hit: tenfold at a tenth of a radian.
 typedef struct vplPlacement {
     double toWorld[3][4];
     double toLocal[3][4]; // the inverse
@@ -50,10 +50,11 @@ typedef struct vplHit {
 // Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Quad".
 bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hitOut);
 
-// Intersects a ray with the box [-0.5, 0.5]^3 by the slab method: the entry at t > 0, or from inside the exit. A ray that
-// leaves the box from its face `fromFace` never hits that face again; VPL_FACE_NONE: the ray does not start on the box.
-// Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Box". Departs: t = 0 is a miss, or every reflected particle
-// would hit the face it starts on.
+// Intersects a ray with the box [-0.5, 0.5]^3 by the slab method: the entry at t > 0, or from inside the
+// exit. A ray that leaves the box from its face `fromFace` never hits that face again; VPL_FACE_NONE: the ray
+// does not start on the box.
+// Source: Franchi and Ferrante, Virtual Point Lights, "Ray-Box". Departs: t = 0 is a miss, or every reflected
+// particle would hit the face it starts on.
 bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFace, vplHit* hitOut);
 
 // ---- the geometry
@@ -90,16 +91,17 @@ typedef struct vplGeometry {
     vplContext* context;
 } vplGeometry;
 
-// Builds the geometry of a scene and its ray tree, with all workers. The scene may be destroyed before the geometry.
+// Builds the geometry of a scene and its ray tree, with all workers. The scene may be destroyed before the
+// geometry.
 // Errors: VPL_LIMIT for more than VPL_MAX_TRIANGLES triangles or vertices, VPL_OUT_OF_MEMORY.
 vplResult vplGeometry_Create(const vplScene* scene, vplGeometry** geometryOut);
 
-// The same without the ray tree, for pictures that cast no rays. Rays work and have the same hits, but test every
-// triangle.
+// The same without the ray tree, for pictures that cast no rays. Rays work and have the same hits, but test
+// every triangle.
 vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geometryOut);
 
-// Builds the ray tree, with all workers; does nothing if there is one. Not to be called from a task or while rays are
-// being cast. On VPL_OUT_OF_MEMORY the geometry stays as it was.
+// Builds the ray tree, with all workers; does nothing if there is one. Not to be called from a task or while
+// rays are being cast. On VPL_OUT_OF_MEMORY the geometry stays as it was.
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry);
 
 #define vplGeometry_PrepareRays(geometry) VPL_SUCCESS // removed at the merge
@@ -107,26 +109,27 @@ vplResult vplGeometry_BuildRayTree(vplGeometry* geometry);
 // NULL is allowed.
 void vplGeometry_Destroy(vplGeometry* geometry);
 
-// Finds the closest hit; among equal distances the lowest triangle. False if there is none. Hits of quads and boxes are
-// those of vplRay_HitQuad and vplRay_HitBox, to the last digits of position and normal. Mesh triangles are tested by the
-// watertight test of Woop, Benthin and Wald, JCGT 2013: a ray through a shared edge hits one of its triangles.
+// Finds the closest hit; among equal distances the lowest triangle. False if there is none. Hits of quads and
+// boxes are those of vplRay_HitQuad and vplRay_HitBox, to the last digits of position and normal. Mesh
+// triangles are tested by the watertight test of Woop, Benthin and Wald, JCGT 2013: a ray through a shared
+// edge hits one of its triangles.
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut);
 
 // True if the ray hits something with t in (0, tMax). tMax in units of the direction.
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax);
 
-// A ray that leaves a hit point in `direction` and does not hit the surface it leaves: the quad, the box (towards its
-// inside only the face), the triangle. From a mesh it starts a few units in the last place off the surface, because
-// neighbouring triangles are not coplanar.
+// A ray that leaves a hit point in `direction` and does not hit the surface it leaves: the quad, the box
+// (towards its inside only the face), the triangle. From a mesh it starts a few units in the last place off
+// the surface, because neighbouring triangles are not coplanar.
 vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction);
 
 // The normal for shading, unit: interpolated on smooth objects, else the hit's own.
 vplVec3 vplGeometry_ShadingNormal(const vplGeometry* geometry, const vplHit* hit);
 
-// Finds the closest hit among the objects' oriented bounding boxes (quads stay quads): the cheap stand-in for meshes
-// that Franchi and Ferrante propose under "Improving the Particle Simulation". `from` is the hit that the ray leaves,
-// NULL in free space; the box of a mesh is not hit by a ray that leaves one of the mesh's own triangles. Ignores
-// ray->skip. hitOut->triangle is the object's first.
+// Finds the closest hit among the objects' oriented bounding boxes (quads stay quads): the cheap stand-in for
+// meshes that Franchi and Ferrante propose under "Improving the Particle Simulation". `from` is the hit that
+// the ray leaves, NULL in free space; the box of a mesh is not hit by a ray that leaves one of the mesh's own
+// triangles. Ignores ray->skip. hitOut->triangle is the object's first.
 bool vplGeometry_ClosestBox(const vplGeometry* geometry, const vplRay* ray, const vplHit* from,
                             vplHit* hitOut);
 
@@ -149,8 +152,8 @@ typedef struct vplEmissionSource {
     vplRgb power; // W
 } vplEmissionSource;
 
-// The list of all sources with power, for path tracing and for shooting particles. Read only. Sources are chosen with a
-// probability proportional to power, the mean of its three channels.
+// The list of all sources with power, for path tracing and for shooting particles. Read only. Sources are
+// chosen with a probability proportional to power, the mean of its three channels.
 typedef struct vplEmission {
     const vplGeometry* geometry;
     const vplEmitterDef* emitters;    // a copy; directions are unit vectors
@@ -178,13 +181,14 @@ double vplEmission_Area(const vplEmission* emission);
 // Power of all sources, mean of the three channels, W.
 double vplEmission_Power(const vplEmission* emission);
 
-// The share of a spot's full intensity in a direction, by the cosine of its angle to the axis: 1 inside the inner angle,
-// 0 outside the outer, between them 3x^2 - 2x^3, where x goes from 0 to 1 linearly in the cosine.
+// The share of a spot's full intensity in a direction, by the cosine of its angle to the axis: 1 inside the
+// inner angle, 0 outside the outer, between them 3x^2 - 2x^3, where x goes from 0 to 1 linearly in the
+// cosine.
 // Source: Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.2.1 (SmoothStep).
 double vplSpot_Falloff(const vplEmitterDef* spot, double cosine);
 
-// Intensity of a point or spot emitter in a direction (unit vector away from it), W/sr; irradiance of a directional
-// emitter, W/m^2.
+// Intensity of a point or spot emitter in a direction (unit vector away from it), W/sr; irradiance of a
+// directional emitter, W/m^2.
 vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction);
 
 // A point on a triangle, uniform over its area for u, v uniform in [0, 1).
@@ -198,9 +202,9 @@ typedef struct vplParticle {
     int source;     // index
 } vplParticle;
 
-// Samples a particle from five numbers in [0, 1): `choice` chooses the source, u[0], u[1] the position (triangle,
-// directional), u[2], u[3] the direction (cosine-distributed from a triangle, uniform from a point, by the
-// falloff from a spot). False where nothing emits.
+// Samples a particle from five numbers in [0, 1): `choice` chooses the source, u[0], u[1] the position
+// (triangle, directional), u[2], u[3] the direction (cosine-distributed from a triangle, uniform from a
+// point, by the falloff from a spot). False where nothing emits.
 bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],
                                 vplParticle* particleOut);
 
@@ -210,11 +214,12 @@ bool vplEmission_SampleParticle(const vplEmission* emission, double choice, cons
 enum { VPL_MAX_PATCHES = 1 << 24, VPL_MAX_PATCH_ROUNDS = 40 };
 
 typedef struct vplPatchDef {
-    // T, metres, >= 0: each round bisects every triangle whose longest edge is longer than T, at the middle of that edge.
-    // 0 (default): T is chosen for `count`.
+    // T, metres, >= 0: each round bisects every triangle whose longest edge is longer than T, at the middle
+    // of that edge. 0 (default): T is chosen for `count`.
     float size;
-    // About as many patches as this, [1, VPL_MAX_PATCHES]; default 1000. Used where size is 0. Triangles are bisected
-    // longest edge first, all of equal length together; there are never fewer patches than triangles.
+    // About as many patches as this, [1, VPL_MAX_PATCHES]; default 1000. Used where size is 0. Triangles are
+    // bisected longest edge first, all of equal length together; there are never fewer patches than
+    // triangles.
     int count;
     int rounds;      // of bisection at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
     uint32_t cookie; // set by vplDefaultPatchDef
@@ -222,9 +227,9 @@ typedef struct vplPatchDef {
 
 vplPatchDef vplDefaultPatchDef(void);
 
-// A triangle of the geometry or a half of another node, counter-clockwise seen from the front. Corner 0 is opposite the
-// edge that is, or would be, bisected: the longest, and of equally long ones the first in the order 01, 12, 20 of the
-// parent's corners.
+// A triangle of the geometry or a half of another node, counter-clockwise seen from the front. Corner 0 is
+// opposite the edge that is, or would be, bisected: the longest, and of equally long ones the first in the
+// order 01, 12, 20 of the parent's corners.
 typedef struct vplPatchNode {
     uint32_t corners[3]; // indices in vplPatches.positions
     int triangle;        // of the geometry
@@ -233,8 +238,8 @@ typedef struct vplPatchNode {
     int patch;           // index in vplPatches.patches; -1: none
 } vplPatchNode;
 
-// Triangles bisected at their longest edges. Read only. Node t, t < geometry->triangleCount, is triangle t. The middle of
-// a shared edge has the same bits for both triangles. Triangles whose area is 0 have no patch.
+// Triangles bisected at their longest edges. Read only. Node t, t < geometry->triangleCount, is triangle t.
+// The middle of a shared edge has the same bits for both triangles. Triangles whose area is 0 have no patch.
 // Source: Hemgren, Radiosity in Realtime Rendering, 3.1. Edges exactly as long as T stay whole.
 typedef struct vplPatches {
     const vplGeometry* geometry;
@@ -249,20 +254,21 @@ typedef struct vplPatches {
     vplContext* context;
 } vplPatches;
 
-// The geometry must outlive the patches. Errors: VPL_INVALID_ARGUMENT, VPL_LIMIT for more than VPL_MAX_PATCHES patches,
-// VPL_OUT_OF_MEMORY.
+// The geometry must outlive the patches. Errors: VPL_INVALID_ARGUMENT, VPL_LIMIT for more than
+// VPL_MAX_PATCHES patches, VPL_OUT_OF_MEMORY.
 vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def, vplPatches** patchesOut);
 
-// Bisects the patches of the largest priorities, one priority per patch, until there are `count` patches or no priority
-// above 0 is left; halves of a patch are not bisected again. Makes new patches; the old ones stay.
+// Bisects the patches of the largest priorities, one priority per patch, until there are `count` patches or
+// no priority above 0 is left; halves of a patch are not bisected again. Makes new patches; the old ones
+// stay.
 vplResult vplPatches_Refine(const vplPatches* patches, const float* priorities, int count,
                             vplPatches** patchesOut);
 
 // NULL is allowed.
 void vplPatches_Destroy(vplPatches* patches);
 
-// The patch of a triangle that contains a point on it, to rounding; of two that meet there, the first. -1: the triangle
-// has none.
+// The patch of a triangle that contains a point on it, to rounding; of two that meet there, the first. -1:
+// the triangle has none.
 int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position);
 
 // Area of a patch, square metres.

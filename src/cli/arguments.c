@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Words of the command line to options.
 #include "cli/options.h"
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <stdio.h>
 #include <string.h>

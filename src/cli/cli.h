@@ -5,7 +5,18 @@
 
 #include <vpl/vpl.h>
 
+#include <stdio.h>
+
 enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
+
+// Returns the result of a call if it failed.
+#define TRY(call)                                                                                            \
+    do {                                                                                                     \
+        const vplResult tryResult = (call);                                                                  \
+        if (tryResult != VPL_SUCCESS) {                                                                      \
+            return tryResult;                                                                                \
+        }                                                                                                    \
+    } while (0)
 
 enum { MAX_POSITIONALS = 2, MAX_THREAD_COUNTS = 8, MAX_FRAMES = 100000 };
 
@@ -90,15 +101,16 @@ vplContext* openContext(const Arguments* arguments);
 // Exit code of a result; `reading` says whether a file error was met while reading input.
 int exitCode(vplResult result, bool reading);
 
-// Loads the scene that the words name, lets `work` have it, and cleans up. Interrupts cancel the work.
+// Writes vplPlan_Describe's text.
+int printPlan(const vplPlan* plan, FILE* file);
+
+// Loads the scene that the words name, prints the plan if --explain or --dry-run asks for it, and without the latter lets
+// `work` have the scene.
 typedef int SceneWork(const Arguments* arguments, vplContext* context, const vplScene* scene);
 int runOnScene(const Arguments* arguments, SceneWork* work);
 
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
 int finishOutput(int code);
-
-// Of a clock that never goes back.
-double secondsNow(void);
 
 // Progress bar with the time left, on stderr if that is a terminal; also notices SIGINT. Both take a Progress.
 typedef struct Progress {

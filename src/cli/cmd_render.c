@@ -127,6 +127,7 @@ static int renderPicture(const Arguments* a, vplContext* context, const vplScene
 
 static int renderScene(const Arguments* a, vplContext* context, const vplScene* scene)
 {
+    catchInterrupts();
     Sequence sequence = {beginProgress(a->quiet), 0, 1};
     vplRenderOptions options = a->render;
     options.progress = showSequence;
@@ -164,6 +165,9 @@ static bool checkFiles(const Arguments* a)
 
 int runRender(const Arguments* a)
 {
+    if (a->dryRun) {
+        return runOnScene(a, renderScene);
+    }
     if (a->output == NULL) {
         complain("render needs -o FILE, the picture to write");
         return EXIT_USAGE;

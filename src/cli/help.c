@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The help and the option sections of the man page: commands and both option tables, as text.
 #include "cli/options.h"
-#include "cli/tradeoff.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-enum { WIDTH = 110, INDENT = 6, TEXT = 1024 };
+enum { WIDTH = 110, INDENT = 6, TEXT = 2048 };
 
 // What most pictures need.
-static const char ESSENTIALS[] =
-    " method size particles spp patches light-shadows pipeline budget max-error seed camera "
-    "show ";
+static const char* const ESSENTIALS[] = {"method", "size",      "camera",        "particles",
+                                         "spp",    "patches",   "light-shadows", "pipeline",
+                                         "budget", "max-error", "seed",          "show"};
 
 const Command COMMANDS[] = {
     {"render", RENDER, 1, runRender, "vpl render SCENE -o FILE [options]", "renders a picture",
@@ -91,16 +91,18 @@ const Command* findCommand(const char* name)
 // Prints words from `column` on and breaks lines at spaces and behind "|"; further lines begin at `indent`.
 static void printWrapped(const char* text, int column, int indent)
 {
+    bool space = false;
     while (*text != 0) {
-        const size_t length = strcspn(text, " |"), whole = length + (text[length] == '|');
-        if (column + (int)whole > WIDTH) {
+        const int length = (int)strcspn(text, " |") + (text[strcspn(text, " |")] == '|');
+        if (column + space + length > WIDTH) {
             printf("\n%*s", indent, "");
             column = indent;
+            space = false;
         }
-        const bool space = text[whole] == ' ' || (text[length] == ' ');
-        printf("%.*s%s", (int)whole, text, space ? " " : "");
-        column += (int)whole + space;
-        text += whole + space;
+        printf("%s%.*s", space ? " " : "", length, text);
+        column += space + length;
+        space = text[length] == ' ';
+        text += length + space;
     }
     putchar('\n');
 }
@@ -142,10 +144,23 @@ static void describeOption(const vplOption* o, char text[TEXT])
     }
 }
 
+// The names of the sweeps, each once, in the order of the table.
+static void appendSweeps(char text[TEXT])
+{
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        if (i == 0 || strcmp(SWEEPS[i].name, SWEEPS[i - 1].name) != 0) {
+            sprintf(text + strlen(text), "%s%s", i > 0 ? ", " : "; they are ", SWEEPS[i].name);
+        }
+    }
+}
+
 static void describeOwn(const Option* o, bool commands, char text[TEXT])
 {
     snprintf(text, TEXT, "%s%s%s", o->help, o->default_ != NULL ? "; default " : "",
              o->default_ != NULL ? o->default_ : "");
+    if (strcmp(o->name, "--sweeps") == 0) {
+        appendSweeps(text);
+    }
     const char* between = " (";
     for (int i = 0; i < COMMAND_COUNT && commands && o->commands != ~0; i++) {
         if ((o->commands & COMMANDS[i].bit) != 0) {
@@ -239,15 +254,11 @@ static int printSubject(const char* subject, bool manual)
 
 static void printEssentials(void)
 {
-    int count;
-    const vplOption* options = vplGetOptions(&count);
-    for (int i = 0; i < count; i++) {
-        char padded[48], text[TEXT];
-        snprintf(padded, sizeof padded, " %s ", options[i].name);
-        if (strstr(ESSENTIALS, padded) != NULL) {
-            describeOption(&options[i], text);
-            printOption("--", options[i].name, options[i].value, text, false);
-        }
+    for (int i = 0; i < (int)(sizeof ESSENTIALS / sizeof *ESSENTIALS); i++) {
+        const vplOption* o = vplFindOption(ESSENTIALS[i]);
+        char text[TEXT];
+        describeOption(o, text);
+        printOption("--", o->name, o->value, text, false);
     }
 }
 
@@ -272,28 +283,12 @@ static void printSubjects(void)
     }
 }
 
-// Names of sweeps, each once, in the order of the table.
-static void printSweeps(void)
-{
-    char text[TEXT] = "Sweeps:";
-    for (int i = 0; i < SWEEP_COUNT; i++) {
-        if (i == 0 || strcmp(SWEEPS[i].name, SWEEPS[i - 1].name) != 0) {
-            snprintf(text + strlen(text), sizeof text - strlen(text), " %s", SWEEPS[i].name);
-        }
-    }
-    putchar('\n');
-    printWrapped(text, 0, 2);
-}
-
 // ---- topics
 
 static void printCommand(const Command* c)
 {
     printf("%s\n\n", c->usage);
     printWrapped(c->text, 0, 0);
-    if (c->bit == TRADEOFF) {
-        printSweeps();
-    }
     puts("\nOptions (--name VALUE or --name=VALUE):");
     if (c->bit == RENDER) {
         printEssentials();

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void complain(const char* format, ...)
@@ -57,16 +58,47 @@ int exitCode(vplResult result, bool reading)
     return EXIT_COULD_NOT;
 }
 
+int printPlan(const vplPlan* plan, FILE* file)
+{
+    const size_t length = vplPlan_Describe(plan, NULL, 0);
+    char* text = malloc(length + 1);
+    if (text == NULL) {
+        complain("out of memory");
+        return EXIT_COULD_NOT;
+    }
+    vplPlan_Describe(plan, text, length + 1);
+    fputs(text, file);
+    free(text);
+    return EXIT_DONE;
+}
+
+// --explain and --dry-run.
+static int explain(const Arguments* a, const vplScene* scene)
+{
+    vplPlan* plan = NULL;
+    int code = exitCode(vplPlan_Create(scene, &a->render, NULL, &plan), true);
+    if (code == EXIT_DONE && a->dryRun && plan->problem[0] != 0) {
+        complain("%s", plan->problem);
+        code = EXIT_USAGE;
+    } else if (code == EXIT_DONE) {
+        code = printPlan(plan, a->dryRun ? stdout : stderr);
+    }
+    vplPlan_Destroy(plan);
+    return code;
+}
+
 int runOnScene(const Arguments* a, SceneWork* work)
 {
-    catchInterrupts();
     vplContext* context = openContext(a);
     if (context == NULL) {
         return EXIT_USAGE;
     }
     vplScene* scene = NULL;
     int code = exitCode(vplScene_Load(context, a->positionals[0], &scene), true);
-    if (code == EXIT_DONE) {
+    if (code == EXIT_DONE && (a->explain || a->dryRun)) {
+        code = explain(a, scene);
+    }
+    if (code == EXIT_DONE && !a->dryRun) {
         code = work(a, context, scene);
     }
     vplScene_Destroy(scene);

@@ -117,6 +117,7 @@ static bool readFrames(const Option* o, const char* value, Arguments* a)
         complain("%s is \"%s\", must be 1 to %d frames", o->name, value, MAX_FRAMES);
         return false;
     }
+    a->render.sequence.frame = f[0]; // that of the plan
     return true;
 }
 

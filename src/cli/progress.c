@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: MIT
+#include "cli/bench/measure.h"
 #include "cli/cli.h"
 
 #include <signal.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
-double secondsNow(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static volatile sig_atomic_t interrupted;
-static volatile double firstInterrupt; // seconds; read and written by the handler alone
+static volatile double firstInterrupt; // ms; read and written by the handler alone
 
 // The second one kills, unless it comes at once: timeout(1) sends every signal twice.
 static void onInterrupt(int number)
 {
     if (!interrupted) {
-        firstInterrupt = secondsNow();
+        firstInterrupt = wallMs();
         interrupted = 1;
-    } else if (secondsNow() - firstInterrupt > 0.5) {
+    } else if (wallMs() - firstInterrupt > 500) {
         signal(number, SIG_DFL);
         raise(number);
     }
@@ -39,13 +32,13 @@ void catchInterrupts(void)
 
 Progress beginProgress(bool quiet)
 {
-    return (Progress){secondsNow(), 0, !quiet && isatty(STDERR_FILENO)};
+    return (Progress){1e-3 * wallMs(), 0, !quiet && isatty(STDERR_FILENO)};
 }
 
 bool showProgress(void* user, double fraction)
 {
     Progress* p = user;
-    double time = secondsNow();
+    double time = 1e-3 * wallMs();
     if (p->visible && time - p->lastDrawn > 0.1 && fraction > 0) {
         char bar[41];
         for (int i = 0; i < 40; i++) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Axis-aligned boxes in vector registers, by the vector types that gcc and clang share. Written as loops over
-// floats the hierarchy builds 1.9x slower (bench "geometry and tree": gcc 12 splits most of them into scalars).
+// floats the hierarchy builds 1.9x slower (bench "geometry and tree": gcc 12 splits most of them into
+// scalars).
 #ifndef VPL_GEOMETRY_BOX_H
 #define VPL_GEOMETRY_BOX_H
 
@@ -58,8 +59,8 @@ static inline vplBox vplBox_Join(vplBox a, vplBox b)
     return (vplBox){vplFour_Min(a.low, b.low), vplFour_Max(a.high, b.high)};
 }
 
-// Triangle bounds, padded by the largest rounding error of the triangle test: two units in the last place of the
-// coordinates and of the differences between them.
+// Triangle bounds, padded by the largest rounding error of the triangle test: two units in the last place of
+// the coordinates and of the differences between them.
 static inline vplBox vplBoundTriangle(const vplFour corner[3])
 {
     const vplFour low = vplFour_Min(corner[0], vplFour_Min(corner[1], corner[2]));

@@ -22,7 +22,8 @@ void vplTriangleBlock_Fill(vplTriangleBlock* block, const vplGeometry* g, const 
     }
 }
 
-// AVX-512 uses the AVX2 kernels: eight lanes fill no 512-bit register (bench/rays on Zen 4: AVX2 traces 1.05x the rays).
+// AVX-512 uses the AVX2 kernels: eight lanes fill no 512-bit register (bench/rays on Zen 4: AVX2 traces 1.05x
+// the rays).
 #if defined(__x86_64__)
 #define DECLARE(field, type, name) extern type name##_scalar, name##_sse2, name##_avx2;
 #define AVX2(field, type, name)    name##_avx2,

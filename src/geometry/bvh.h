@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The ray tree: a bounding volume hierarchy with eight children per node over blocks of up to eight triangles, or the
-// blocks alone in scenes so small that testing all of them is faster. Also the ray queries of the other folders.
+// The ray tree: a bounding volume hierarchy with eight children per node over blocks of up to eight
+// triangles, or the blocks alone in scenes so small that testing all of them is faster. Also the ray queries
+// of the other folders.
 #ifndef VPL_GEOMETRY_BVH_H
 #define VPL_GEOMETRY_BVH_H
 
@@ -9,10 +10,10 @@
 enum {
     VPL_BVH_WIDTH = 8,  // children of a node, and triangles of a block
     VPL_BVH_DEPTH = 64, // deepest tree; the builder halves ranges before it gets there
-    // Up to this many blocks there are no nodes, and rays test every block (bench/rays: the tree is 1.1x to 1.3x as
-    // fast at 5 blocks, 0.95x to 1.0x at 3).
+    // Up to this many blocks there are no nodes, and rays test every block (bench/rays: the tree is 1.1x to
+    // 1.3x as fast at 5 blocks, 0.95x to 1.0x at 3).
     VPL_BRUTE_BLOCKS = 4,
-    // Up to this many blocks, counted rays test every object, as the documents do whose counts are reproduced.
+    // Up to this many blocks, counted rays test every object, so that counts agree with the documents'.
     VPL_COUNTED_BLOCKS = 8
 };
 
@@ -35,8 +36,8 @@ typedef struct vplBvh {
     struct vplArena* arena; // owns the arrays
 } vplBvh;
 
-// Builds the tree over all triangles of positive area, with all workers: the same tree for any number of them. Up to
-// `bruteBlocks` blocks (usually VPL_BRUTE_BLOCKS) it has no nodes.
+// Builds the tree over all triangles of positive area, with all workers: the same tree for any number of
+// them. Up to `bruteBlocks` blocks (usually VPL_BRUTE_BLOCKS) it has no nodes.
 vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
 void vplBvh_Destroy(vplBvh* bvh);
 
@@ -117,7 +118,7 @@ const vplRayKernels* vplGetRayKernels(vplIsa isa);
 
 // ---- queries; without a ray tree they test every triangle
 
-// vplGeometry_ClosestHit that also adds to *tests: the number of objects where every object is tested, else of blocks.
+// vplGeometry_ClosestHit, adding to *tests the number of objects if all are tested, else of blocks tested.
 bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests);
 
 // The closest hit nearer than tMax, in units of the direction.

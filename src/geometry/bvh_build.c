@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Builds the hierarchy: the upper splits of the binary tree in parallel waves, the subtrees below as parallel tasks.
-// Work is divided by the number of triangles alone and each task writes its own slots, so the tree does not depend on
-// the number of workers.
+// Builds the hierarchy: the upper splits of the binary tree in parallel waves, the subtrees below as parallel
+// tasks. Work is divided by the number of triangles alone and each task writes its own slots, so the tree
+// does not depend on the number of workers.
 #include "geometry/bvh_build.h"
 
 enum {
@@ -25,8 +25,8 @@ typedef struct TopTree {
     int wave[SUBTREES]; // nodes that are split side by side
 } TopTree;
 
-// The place of a top node in the binary tree. The top nodes come first; a subtree of `count` items has fewer than
-// 2 count nodes, so the one whose items begin at `first` is stored from 2 first on.
+// The place of a top node in the binary tree. The top nodes come first; a subtree of `count` items has fewer
+// than 2 count nodes, so the one whose items begin at `first` is stored from 2 first on.
 static int placeOf(const TopTree* top, int index)
 {
     const TopNode* node = &top->nodes[index];

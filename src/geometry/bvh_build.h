@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The hierarchy while it is built: ranges of triangles are split into a binary tree, which is collapsed into the wide
-// one.
+// The hierarchy while it is built: ranges of triangles are split into a binary tree, which is collapsed into
+// the wide one.
 #ifndef VPL_GEOMETRY_BVH_BUILD_H
 #define VPL_GEOMETRY_BVH_BUILD_H
 
@@ -19,7 +19,7 @@ typedef struct vplBuildRange {
     int first, count;
 } vplBuildRange;
 
-// Expected cost of a binary subtree that becomes at most 1 .. 8 children of one wide node: cost[children - 1].
+// Expected cost of a binary subtree: cost[i] if it becomes at most i + 1 children of one wide node.
 typedef struct vplBuildCosts {
     float cost[VPL_BVH_WIDTH];
 } vplBuildCosts;
@@ -56,8 +56,8 @@ static inline float vplHalfSurface(const vplBvhBuilder* b, const vplBox* box)
 // Fills items and ids with the triangles that can be hit.
 vplResult vplCollectItems(vplBvhBuilder* builder, vplBuildRange* allOut);
 
-// Splits a range where the surface area heuristic is least; in halves where no plane separates centres or the tree gets
-// too deep. Reorders the items of the range.
+// Splits a range where the surface area heuristic is least; in halves where no plane separates centres or the
+// tree gets too deep. Reorders the items of the range.
 void vplSplitRange(const vplBvhBuilder* builder, const vplBuildRange* range, int depth,
                    vplBuildRange halvesOut[2]);
 

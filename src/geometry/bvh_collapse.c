@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Based on: Henri Ylitie, Tero Karras and Samuli Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed
-// Wide BVHs, HPG 2017, section 4.1: dynamic programming over the expected cost decides which nodes of the binary tree
-// become children of wide ones, and which become blocks.
+// Based on: Henri Ylitie, Tero Karras and Samuli Laine, Efficient Incoherent Ray Traversal on GPUs Through
+// Compressed Wide BVHs, HPG 2017, section 4.1: dynamic programming over the expected cost decides which nodes
+// of the binary tree become children of wide ones, and which become blocks.
 #include "geometry/bvh_build.h"
 
 // Cost of a visit, relative: blocks are further away in memory and take more arithmetic.
@@ -64,8 +64,8 @@ void vplFinishNode(const vplBvhBuilder* b, vplBinary* node, const vplBuildCosts*
         shareChildren(node, left, right, costs);
         finishInner(b, node, NODE_COST * area, block, costs);
     }
-    // A ray that enters a box with triangles of area s meets one with a probability of about s / (s + area), for
-    // cost / area of work.
+    // A ray that enters a box with triangles of area s meets one with a probability of about s / (s + area),
+    // for cost / area of work.
     const float s = node->surface, meets = s + area > 0 ? s / (s + area) : 1;
     node->hitsPerCost = costs->cost[0] > 0 ? meets * (area / costs->cost[0]) : meets;
 }
@@ -97,7 +97,8 @@ static void listChildren(const vplBvhBuilder* b, int index, int count, int child
     listChildren(b, node->right, count - node->leftShare[count - 1], children, childCount);
 }
 
-// Any-hit rays visit children in this order (bench/rays: 1.4x the random rays in Sponza, 0.9x its shadow rays).
+// Any-hit rays visit children in this order (bench/rays: 1.4x the random rays in Sponza, 0.9x its shadow
+// rays).
 static void sortChildren(const vplBvhBuilder* b, int children[VPL_BVH_WIDTH], int count)
 {
     for (int i = 1; i < count; i++) {

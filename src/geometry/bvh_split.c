@@ -177,8 +177,8 @@ static void splitAlong(const vplBvhBuilder* b, const Bins* bins, int count, int 
     }
 }
 
-// Moves the items that go left to the front and returns their number. Has no branch on the side: it would be mispredicted
-// half of the time.
+// Moves the items that go left to the front and returns their number. Has no branch on the side: it would be
+// mispredicted half of the time.
 static int partition(const vplBvhBuilder* b, const vplBuildRange* range, const Binning* binning,
                      const Split* split)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023, chapter 12,
-// for the powers and the spot's falloff.
+// Based on: Matt Pharr, Wenzel Jakob and Greg Humphreys, Physically Based Rendering, 4th edition 2023,
+// chapter 12, for the powers and the spot's falloff.
 #include "geometry/emission.h"
 #include "base/arena.h"
 #include "geometry/triangle.h"
@@ -54,8 +54,8 @@ double vplSpot_SampleCosine(const vplEmitterDef* spot, double u)
     if (at <= plain || ring <= 0) {
         return 1 - at;
     }
-    // In the ring the integral of the smooth step from the outer edge to x is x^3 - x^4/2. Bisection inverts it to the
-    // last bit of a float, always along the same path.
+    // In the ring the integral of the smooth step from the outer edge to x is x^3 - x^4/2. Bisection inverts
+    // it to the last bit of a float, always along the same path.
     double wanted = (plain + ring - at) / (2 * ring), low = 0, high = 1;
     for (int i = 0; i < 30; i++) {
         double x = (low + high) / 2;
@@ -75,9 +75,9 @@ vplRgb vplEmitter_Intensity(const vplEmitterDef* emitter, vplVec3 direction)
 
 // ---- the list of sources
 
-// Counts the sources, or fills in as many as were counted.
+// The arrays of an emission while they are filled.
 typedef struct Lister {
-    vplEmissionSource* sources; // NULL to count
+    vplEmissionSource* sources;
     double* sums;
     int count;
 } Lister;
@@ -85,19 +85,22 @@ typedef struct Lister {
 static void list(Lister* l, int emitter, int triangle, double factor, vplRgb light)
 {
     double power = factor * vplRgbMean(light);
-    if (!(power > 0)) {
-        return;
-    }
-    if (l->sources != NULL) {
+    if (power > 0) {
         l->sources[l->count] = (vplEmissionSource){emitter, triangle, vplScaleRadiometric(factor, light)};
         l->sums[l->count + 1] = l->sums[l->count] + power;
+        l->count++;
     }
-    l->count++;
 }
 
-static void listSources(const vplEmission* e, Lister* l, int* firstTriangle)
+static vplRgb radianceOf(const vplGeometry* g, int triangle)
+{
+    return g->materials[g->triangleMaterials[triangle]].emission;
+}
+
+static void listSources(vplEmission* e, Lister* l)
 {
     const vplGeometry* g = e->geometry;
+    l->sums[0] = 0;
     for (int i = 0; i < e->emitterCount; i++) {
         const vplEmitterDef* emitter = &e->emitters[i];
         double factor = emitter->type == VPL_EMITTER_POINT  ? 4 * VPL_PI
@@ -105,13 +108,13 @@ static void listSources(const vplEmission* e, Lister* l, int* firstTriangle)
                                                             : VPL_PI * e->radius * e->radius;
         list(l, i, -1, factor, emitter->intensity);
     }
-    *firstTriangle = l->count;
+    e->firstTriangle = l->count;
     for (int i = 0; g->emits && i < g->triangleCount; i++) {
-        vplRgb radiance = g->materials[g->triangleMaterials[i]].emission;
-        if (vplRgbMean(radiance) > 0) {
-            list(l, -1, i, VPL_PI * vplGeometry_TriangleArea(g, i), radiance);
+        if (vplRgbMean(radianceOf(g, i)) > 0) {
+            list(l, -1, i, VPL_PI * vplGeometry_TriangleArea(g, i), radianceOf(g, i));
         }
     }
+    e->sourceCount = l->count;
 }
 
 static void coverGeometry(vplEmission* e)
@@ -124,23 +127,24 @@ static void coverGeometry(vplEmission* e)
 
 static vplResult fill(vplEmission* e, const vplEmitterDef* emitters)
 {
+    const vplGeometry* g = e->geometry;
+    int capacity = e->emitterCount;
+    for (int i = 0; g->emits && i < g->triangleCount; i++) {
+        capacity += vplRgbMean(radianceOf(g, i)) > 0;
+    }
     vplEmitterDef* copies = vplArena_Alloc(e->arena, (size_t)e->emitterCount, sizeof *copies);
+    Lister lister = {.sources = vplArena_Alloc(e->arena, (size_t)capacity, sizeof *lister.sources),
+                     .sums = vplArena_Alloc(e->arena, (size_t)capacity + 1, sizeof *lister.sums)};
     TRY(vplArena_Check(e->arena));
     for (int i = 0; i < e->emitterCount; i++) {
         copies[i] = emitters[i];
         copies[i].direction = vplNormalize(emitters[i].direction);
     }
     e->emitters = copies;
+    e->sources = lister.sources;
+    e->cumulative = lister.sums;
     coverGeometry(e);
-    Lister lister = {NULL, NULL, 0};
-    listSources(e, &lister, &e->firstTriangle);
-    e->sourceCount = lister.count;
-    e->sources = lister.sources = vplArena_Alloc(e->arena, (size_t)lister.count, sizeof *lister.sources);
-    e->cumulative = lister.sums = vplArena_Alloc(e->arena, (size_t)lister.count + 1, sizeof *lister.sums);
-    TRY(vplArena_Check(e->arena));
-    lister.sums[0] = 0;
-    lister.count = 0;
-    listSources(e, &lister, &e->firstTriangle);
+    listSources(e, &lister);
     return VPL_SUCCESS;
 }
 

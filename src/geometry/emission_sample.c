@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Based on: Eric Heitz, A Low-Distortion Map Between Triangle and Square, 2019, for points on triangles; Alexander
-// Keller, Instant Radiosity, SIGGRAPH 1997, for particles that start where light does.
+// Based on: Eric Heitz, A Low-Distortion Map Between Triangle and Square, 2019, for points on triangles;
+// Alexander Keller, Instant Radiosity, SIGGRAPH 1997, for particles that start where light does.
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "math/sampling.h"

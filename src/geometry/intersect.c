@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Intersection Tests". Rays are tested
-// in local space without renormalising the direction, so that t means the same for all objects. Departs: t must be
-// above 0, and a ray from inside a box hits its exit; otherwise a particle would hit the surface it just left.
-#include "geometry/intersect.h"
+// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Intersection Tests". Rays are
+// tested in local space without renormalising the direction, so that t means the same for all objects.
+// Departs: t must be above 0, and a ray from inside a box hits its exit; otherwise a particle would hit the
+// surface it just left.
+#include "geometry/triangle.h"
 #include "math/matrix.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -64,34 +65,44 @@ static bool fillHit(const vplPlacement* p, const double at[3], double t, int fac
     return hit->t > 0 && isfinite(hit->t);
 }
 
-bool vplRay_HitFace(const vplRay* ray, const vplPlacement* placement, int face, double side, vplHit* hitOut)
+// Intersects a local ray with the plane at coordinate `side` of an axis. False if parallel or behind.
+static bool hitPlane(const LocalRay* r, int axis, double side, double* t, double at[3])
 {
-    LocalRay r = toLocal(ray, placement);
-    const int axis = face >> 1;
-    if (r.d[axis] == 0) {
-        return false; // parallel, or in the plane
+    if (r->d[axis] == 0) {
+        return false;
     }
-    double t = (side - r.o[axis]) / r.d[axis], at[3];
+    *t = (side - r->o[axis]) / r->d[axis];
     for (int i = 0; i < 3; i++) {
-        double p = r.o[i] + t * r.d[i];
-        at[i] = p < -0.5 ? -0.5 : p > 0.5 ? 0.5 : p;
+        at[i] = r->o[i] + *t * r->d[i];
     }
     at[axis] = side; // exact, not rounded
-    return t > 0 && fillHit(placement, at, t, face, hitOut);
+    return *t > 0;
+}
+
+static double clampToFace(double p)
+{
+    return p < -0.5 ? -0.5 : p > 0.5 ? 0.5 : p;
+}
+
+bool vplRay_HitFace(const vplRay* ray, const vplPlacement* placement, int face, double side, vplHit* hitOut)
+{
+    const LocalRay r = toLocal(ray, placement);
+    double t, at[3];
+    if (!hitPlane(&r, face >> 1, side, &t, at)) {
+        return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        at[i] = clampToFace(at[i]);
+    }
+    return fillHit(placement, at, t, face, hitOut);
 }
 
 bool vplRay_HitQuad(const vplRay* ray, const vplPlacement* placement, vplHit* hitOut)
 {
-    LocalRay r = toLocal(ray, placement);
-    if (r.d[2] == 0) {
-        return false; // parallel, or in the plane
-    }
-    double t = -r.o[2] / r.d[2];
-    const double at[3] = {r.o[0] + t * r.d[0], r.o[1] + t * r.d[1], 0};
-    if (!(t > 0 && fabs(at[0]) <= 0.5 && fabs(at[1]) <= 0.5)) {
-        return false;
-    }
-    return fillHit(placement, at, t, VPL_FACE_QUAD, hitOut);
+    const LocalRay r = toLocal(ray, placement);
+    double t, at[3];
+    return hitPlane(&r, 2, 0, &t, at) && fabs(at[0]) <= 0.5 && fabs(at[1]) <= 0.5 &&
+           fillHit(placement, at, t, VPL_FACE_QUAD, hitOut);
 }
 
 // The part of a ray inside all three slabs, and the faces where it begins and ends.
@@ -147,8 +158,7 @@ bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFac
     }
     double at[3];
     for (int axis = 0; axis < 3; axis++) {
-        double p = r.o[axis] + t * r.d[axis];
-        at[axis] = p < -0.5 ? -0.5 : p > 0.5 ? 0.5 : p;
+        at[axis] = clampToFace(r.o[axis] + t * r.d[axis]);
     }
     at[face >> 1] = face & 1 ? -0.5 : 0.5; // exact, not rounded
     return fillHit(placement, at, t, face, hitOut);

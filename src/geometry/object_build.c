@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Turns objects into world-space triangles: two for a quad, twelve for a box, those of a mesh. Corners are rounded from
-// double once and shared by the faces that meet there, so edges are watertight.
+// Turns objects into world-space triangles: two for a quad, twelve for a box, those of a mesh. Corners are
+// rounded from double once and shared by the faces that meet there, so edges are watertight.
 #include "geometry/object_build.h"
 #include "geometry/triangle.h"
+#include "math/double3.h"
 #include "math/matrix.h"
 #include "math/vec.h"
 
@@ -78,11 +79,9 @@ static vplVec3 normalToWorld(const vplPlacement* placement, vplVec3 n)
 // Whether a placement turns counter-clockwise triangles into clockwise ones.
 static bool mirrors(const vplPlacement* p)
 {
-    const double(*m)[4] = p->toWorld;
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-               m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-               m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
-           0;
+    double cross[3];
+    vplCross3(p->toWorld[1], p->toWorld[2], cross);
+    return vplDot3(p->toWorld[0], cross) < 0;
 }
 
 static void fillVertices(const vplGeometryBuilder* b, const vplObjectDef* def, const vplMeshDef* shape,
@@ -139,8 +138,8 @@ static void fillTriangles(const vplGeometryBuilder* b, const vplMeshDef* shape, 
     }
 }
 
-// Finds the oriented bounding box of a mesh: its box in local space, transformed with the object. Flat meshes get a thin
-// one.
+// Finds the oriented bounding box of a mesh: its box in local space, transformed with the object. Flat meshes
+// get a thin one.
 static void findOrientedBox(const vplObjectDef* def, const vplMeshDef* shape, vplGeometryObject* object)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, largest = 0;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // vplTraceAny for packets of sixteen rays.
-// Based on: Ingo Wald, Philipp Slusallek, Carsten Benthin and Markus Wagner, Interactive Rendering with Coherent Ray
-// Tracing, Eurographics 2001 (packets). Departs: the last few rays of a subtree or block are traced one by one.
+// Based on: Ingo Wald, Philipp Slusallek, Carsten Benthin and Markus Wagner, Interactive Rendering with
+// Coherent Ray Tracing, Eurographics 2001 (packets). Departs: the last few rays of a subtree or block are
+// traced one by one.
 #include "geometry/packet_tests.h"
 
-// Up to this many rays are traced one by one through a subtree or block. Twice or half as many change bench/rays by
-// 0 to 5 %.
+// Up to this many rays are traced one by one through a subtree or block. Twice or half as many change
+// bench/rays by 0 to 5 %.
 enum { FEW = 3, FEW_AT_BLOCK = 2 };
 
 // A subtree and the rays that enter it: bit i is ray i.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sixteen rays against the children of a node and against a triangle, by the arithmetic of ray_tests.h.
-// Based on: Solomon Boulos, Ingo Wald and Peter Shirley, Geometric and Arithmetic Culling Methods for Entire Ray
-// Packets, University of Utah, 2006 (intervals).
+// Based on: Solomon Boulos, Ingo Wald and Peter Shirley, Geometric and Arithmetic Culling Methods for Entire
+// Ray Packets, University of Utah, 2006 (intervals).
 #ifndef VPL_GEOMETRY_PACKET_TESTS_H
 #define VPL_GEOMETRY_PACKET_TESTS_H
 
@@ -15,8 +15,8 @@ typedef struct Packet {
     int32_t kz[LANES], skipFirst[LANES], skipCount[LANES];
     uint32_t along[3]; // bit i: ray i has this kz
     float limit;
-    // Intervals over all rays: of the origins, towards the planes by which rays enter and leave a box, and of the
-    // inverse directions. They bound nothing along an axis in which the directions differ in sign.
+    // Intervals over all rays: of the origins, towards the planes by which rays enter and leave a box, and of
+    // the inverse directions. They bound nothing along an axis in which the directions differ in sign.
     float enterOrigin[3], leaveOrigin[3], least[3], most[3];
     int enterRow[3], leaveRow[3];
     bool sameSign[3];
@@ -29,7 +29,8 @@ static inline uint32_t collectLanes(const int32_t flags[LANES])
 
 // ---- boxes
 
-// Bit i of the result: some ray may meet child i. Rounding is monotone, so every ray misses what the intervals miss.
+// Bit i of the result: some ray may meet child i. Rounding is monotone, so every ray misses what the
+// intervals miss.
 static inline uint32_t testIntervals(const Packet* p, const vplBvhNode* node)
 {
     float in[WIDTH], out[WIDTH];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1; Maria-Cecilia Rivara, Algorithms for Refining Triangular
-// Grids, 1984 (longest-edge bisection). Departs: neighbours are not refined along; the radiosity mesh handles hanging
-// vertices.
+// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1; Maria-Cecilia Rivara, Algorithms for Refining
+// Triangular Grids, 1984 (longest-edge bisection). Departs: neighbours are not refined along; the radiosity
+// mesh handles hanging vertices.
 #include "geometry/patch_tree.h"
 
 #include "geometry/bvh.h"

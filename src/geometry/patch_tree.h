@@ -17,18 +17,19 @@ typedef struct vplPatchTree {
     int positionCount, nodeCount;
 } vplPatchTree;
 
-// Rotates the corners until corner 0 is opposite the longest edge; of equally long ones the first of 01, 12, 20.
+// Rotates the corners until corner 0 is opposite the longest edge; among equally long ones 01 goes before 12
+// and 12 before 20.
 vplTriangleCorners vplPatch_Rotate(const vplTriangleCorners* triangle);
 
-// Squared length of the edge opposite corner 0, in double: edges exactly as long as T must not come out longer.
+// Squared length of the edge opposite corner 0, in double, so that an edge of length T does not exceed T.
 double vplPatch_SquaredEdge(const vplTriangleCorners* rotated);
 
-// The middle of the edge opposite corner 0, the same bits from both of its sides. False where a half would have no area,
-// because no float lies between the ends.
+// The middle of the edge opposite corner 0, the same bits from both of its sides. False where a half would
+// have no area, because no float lies between the ends.
 bool vplPatch_Middle(const vplTriangleCorners* rotated, vplVec3 normal, vplVec3* middleOut);
 
-// A half of a bisected triangle. Its corners begin with those on the edge that was cut: that order decides which of
-// several equally long edges is bisected next.
+// A half of a bisected triangle. Its corners begin with those on the edge that was cut: that order decides
+// which of several equally long edges is bisected next.
 vplTriangleCorners vplPatch_Half(const vplTriangleCorners* rotated, vplVec3 middle, int second);
 
 // Allocates room for positions and nodes, and makes the arenas. The tree's geometry is set.
@@ -43,7 +44,7 @@ void vplPatchTree_AddTriangles(vplPatchTree* tree);
 // Gives a node two children if the square of its longest edge exceeds `square`. False where it stays a leaf.
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square);
 
-// Makes patches of the leaves if `result`, of the growth, is VPL_SUCCESS, and frees the tree. Returns the result.
+// Ends a tree: makes patches of its leaves, unless `result` is a failure on the way here, which it returns.
 vplResult vplPatchTree_Finish(vplPatchTree* tree, vplResult result, vplPatches** patchesOut);
 
 #endif

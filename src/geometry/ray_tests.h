@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// One ray against the triangles of a block and against the children of a node. Included by kernels only, so it is
-// compiled once per instruction set; all give the same bits.
+// One ray against the triangles of a block and against the children of a node. Included by kernels only, so
+// it is compiled once per instruction set; all give the same bits.
 // Based on: Sven Woop, Carsten Benthin and Ingo Wald, Watertight Ray/Triangle Intersection, JCGT 2013; Thiago
 // Ize, Robust BVH Ray Traversal, JCGT 2013 (rounding of the box test).
-// Departs: a hit must also lie in its triangle's own bounds, by the arithmetic that tests nodes. That arithmetic is
-// monotone, so a ray that meets a box never misses the box around it: the tree gives the same bits as testing every
-// triangle, for all rays.
+// Departs: a hit must also lie in its triangle's own bounds, by the arithmetic that tests nodes. That
+// arithmetic is monotone, so a ray that meets a box never misses the box around it: the tree gives the same
+// bits as testing every triangle, for all rays.
 #ifndef VPL_GEOMETRY_RAY_TESTS_H
 #define VPL_GEOMETRY_RAY_TESTS_H
 
@@ -83,8 +83,8 @@ static inline Prepared prepare(const vplRay* ray)
     return p;
 }
 
-// Recomputes the edge functions of a triangle in double where one came out as 0 in float: rounding never flips a sign,
-// but it can hide one.
+// Recomputes the edge functions of a triangle in double where one came out as 0 in float: rounding never
+// flips a sign, but it can hide one.
 static void edgesInDouble(const float a[2], const float b[2], const float c[2], float* u, float* v, float* w)
 {
     *u = (float)((double)c[0] * b[1] - (double)c[1] * b[0]);
@@ -153,9 +153,10 @@ static inline float slabEntry(float x, float y, float z)
     return t > 0 ? t : 0;
 }
 
-// The distance at which it leaves the box, enlarged by 16 rounding units: the slabs err by 6 and the corners in the
-// triangle test by 6 more, on top of the padding of vplBoundTriangle. Without it 204 of the 96000 rays of the test
-// SharedEdgesLetNothingThrough fall through an edge: they miss the box of the triangle that they hit.
+// The distance at which it leaves the box, enlarged by 16 rounding units: the slabs err by 6 and the corners
+// in the triangle test by 6 more, on top of the padding of vplBoundTriangle. Without it 204 of the 96000 rays
+// of the test SharedEdgesLetNothingThrough fall through an edge: they miss the box of the triangle that they
+// hit.
 static inline float slabExit(float x, float y, float z)
 {
     float t = x < y ? x : y;
@@ -218,7 +219,8 @@ static inline bool hasHitBelow(const Prepared* r, const vplTriangleBlock* block,
     return false;
 }
 
-// Whether the subtree of `child` has a hit. Visits children in their order: sorting by distance costs more than it saves.
+// Whether the subtree of `child` has a hit. Visits children in their order: sorting by distance costs more
+// than it saves.
 static inline bool hasHitInTree(const Prepared* r, const vplBvh* bvh, int32_t child, float limit)
 {
     int32_t stack[VPL_BVH_DEPTH * (WIDTH - 1) + 1];

@@ -2,7 +2,6 @@
 // Rays through the scene: the tree of triangles finds what is hit, the object's own shape says where.
 #include "base/context.h"
 #include "geometry/bvh.h"
-#include "geometry/intersect.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
 
@@ -26,31 +25,25 @@ static void makeBlock(const vplGeometry* g, int first, vplTriangleBlock* block, 
     *bvh = (vplBvh){.blocks = block, .blockCount = count > 0};
 }
 
-static void testAll(const vplGeometry* g, const vplRay* ray, float tMax, vplRawHit* best)
+// The closest hit, or with `any` some hit, by testing every triangle.
+static vplRawHit testAll(const vplGeometry* g, const vplRay* ray, float tMax, bool any)
 {
     const vplRayKernels* kernels = vplGetRayKernels(g->context->isa);
-    *best = (vplRawHit){.t = tMax, .triangle = -1};
-    for (int i = 0; i < g->triangleCount; i += VPL_BVH_WIDTH) {
+    vplRawHit best = {.t = tMax, .triangle = -1};
+    for (int i = 0; i < g->triangleCount && !(any && best.triangle >= 0); i += VPL_BVH_WIDTH) {
         vplTriangleBlock block;
         vplBvh bvh;
         vplRawHit hit;
         makeBlock(g, i, &block, &bvh);
-        kernels->closest(&bvh, ray, best->t, &hit);
-        *best = hit.triangle >= 0 ? hit : *best; // ascending: of equal distances the first stays
+        kernels->closest(&bvh, ray, best.t, &hit);
+        best = hit.triangle >= 0 ? hit : best; // ids ascend: among equal distances the first stays
     }
+    return best;
 }
 
 bool vplAnyOfTriangles(const vplGeometry* g, const vplRay* ray, float tMax)
 {
-    const vplRayKernels* kernels = vplGetRayKernels(g->context->isa);
-    bool found = false;
-    for (int i = 0; i < g->triangleCount && !found; i += VPL_BVH_WIDTH) {
-        vplTriangleBlock block;
-        vplBvh bvh;
-        makeBlock(g, i, &block, &bvh);
-        found = kernels->any(&bvh, ray, tMax);
-    }
-    return found;
+    return testAll(g, ray, tMax, true).triangle >= 0;
 }
 
 // ---- hits
@@ -103,7 +96,7 @@ static bool castRay(const vplGeometry* g, const vplRay* ray, float tMax, int* te
         everyObject = bvh.nodes == NULL;
         vplGetRayKernels(g->context->isa)->closest(&bvh, ray, tMax, &raw);
     } else {
-        testAll(g, ray, tMax, &raw);
+        raw = testAll(g, ray, tMax, false);
     }
     if (tests != NULL) {
         *tests += everyObject ? g->objectCount : raw.blocks;
@@ -162,7 +155,7 @@ vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3
     } else if (object->type == VPL_OBJECT_BOX) {
         ray.skip = (vplSkip){object->firstTriangle + 2 * hit->face, 2};
     } else {
-        // Rounding moves the point off the triangle, and the neighbours are not coplanar: step clear of all of them.
+        // Rounding moves the point off the triangle, and its neighbours are not coplanar: clear them all.
         vplVec3 p = hit->position;
         float largest = fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
         ray.origin = vplAdd(p, vplScale((outward ? 1 : -1) * largest * 0x1p-20f, hit->normal));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Corners, areas and barycentrics of single triangles.
+// Corners, areas, barycentrics and faces of single triangles.
 #ifndef VPL_GEOMETRY_TRIANGLE_H
 #define VPL_GEOMETRY_TRIANGLE_H
 
@@ -21,8 +21,8 @@ static inline vplTriangleCorners vplGeometry_Corners(const vplGeometry* g, int t
                         g->indices + 3 * (size_t)triangle);
 }
 
-// The cross product of two edges: twice the area, along the normal of the counter-clockwise side. Computed in double,
-// where differences of floats lose nothing.
+// The cross product of two edges: twice the area, along the normal of the counter-clockwise side. Computed in
+// double, where differences of floats lose nothing.
 void vplTriangle_Cross(const vplTriangleCorners* triangle, double cross[3]);
 
 // Area in square metres, computed in double from the rounded corners.
@@ -43,6 +43,10 @@ vplVec3 vplGeometry_InsideAt(const vplGeometry* geometry, int triangle, vplVec3 
 
 // Barycentrics of a point in a triangle's plane, or of its projection onto the plane; 1, 0, 0 without area.
 void vplTriangle_Barycentrics(const vplVec3 corners[3], vplVec3 point, double barycentricsOut[3]);
+
+// Intersects a ray that is known to hit a face with its plane, at local coordinate `side`, and clamps the
+// point to the face. False where t is not positive and finite.
+bool vplRay_HitFace(const vplRay* ray, const vplPlacement* placement, int face, double side, vplHit* hitOut);
 
 static inline int vplPatches_TriangleOf(const vplPatches* patches, int patch)
 {

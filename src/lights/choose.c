@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Some lights of many, each with a probability of its own and its weight divided by that: unbiased, whatever the
-// contributions are worth.
-// Based on: Georgiev and Slusallek, Eurographics 2010, who accept each light by itself. Departs: systematic sampling
-// along a curve that fills space, so that the number is fixed and each region keeps its share of lights: 0.75 (room)
-// and 0.91 (sponza-sun) of the error that the particles' own order leaves. Lights beyond probability 1 are kept as
-// they are, not doubled.
+// Chooses some lights of many, each with a probability of its own by which its weight is divided: unbiased
+// for any probabilities.
+// Based on: Georgiev and Slusallek, Eurographics 2010, who accept each light independently. Departs:
+// systematic sampling along a space-filling curve, so that the number is fixed and each region keeps its
+// share of lights: 0.75 (room) and 0.91 (sponza-sun) of the error in particle order. Lights of probability 1
+// or more are kept as they are.
 #include "lights/light_set.h"
 #include "lights/placement.h"
 
-#include "base/context.h"
 #include "base/rng.h"
 #include "math/vec.h"
 
 #include <float.h>
 
-// Of random numbers: not those of particles.
-enum { CHOICE_STREAM = 0x80000003u };
+enum { CHOICE_STREAM = 0x80000003u }; // of random numbers; differs from those of particles
 
 // A tiny probability would make a weight that overflows.
 static const double LEAST_PROBABILITY = 1e-30;
@@ -32,7 +30,7 @@ static double fluxOf(const vplVirtualLight* v)
     return isDrawn(v) ? vplRgbMean(v->light) * (double)v->weight : 0;
 }
 
-// q: positive where there is flux, else 0.
+// Mixes shares by contribution and by flux: positive where there is flux, else 0.
 static void mixShares(const vplLightSet* set, const float* contributions, double fluxShare, double* q)
 {
     double contribution = 0, flux = 0;
@@ -48,8 +46,8 @@ static void mixShares(const vplLightSet* set, const float* contributions, double
     }
 }
 
-// q becomes p = min(1, t q) with the sum `count`, or 1 where there are not more lights than that. Each round finds
-// some that are beyond 1; the others share what is left.
+// Replaces q by p = min(1, t q) with the sum `count`, or by 1 where there are not more lights than that. Each
+// round sets some to 1; the others share the rest.
 static void findProbabilities(double* q, int lightCount, double count)
 {
     int positive = 0;
@@ -86,7 +84,7 @@ typedef struct Place {
     int light;
 } Place;
 
-// Every third bit.
+// Spreads ten bits to every third bit.
 static uint32_t spread(uint32_t x)
 {
     x = (x | x << 16) & 0x030000FF;
@@ -101,7 +99,7 @@ static uint32_t cellOf(float x, float low, float size)
     return cell < 1023 ? (cell > 0 ? (uint32_t)cell : 0) : 1023;
 }
 
-// Morton's curve through 1024^3 cells of the box around all lights.
+// Morton order of 1024^3 cells of the box around all lights.
 static void findKeys(const vplLightSet* set, Place* places)
 {
     vplVec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
@@ -119,7 +117,7 @@ static void findKeys(const vplLightSet* set, Place* places)
     }
 }
 
-// By key, then by index: three rounds of counting ten bits. The result is in `scratch`.
+// Radix sort by key, then index: three rounds of ten bits. The result is in `scratch`.
 static void sortPlaces(Place* places, Place* scratch, int count)
 {
     for (int shift = 0; shift < 30; shift += 10) {
@@ -141,8 +139,8 @@ static void sortPlaces(Place* places, Place* scratch, int count)
 
 // ---- choice
 
-// Goes through the lights and takes one whenever the sum of their probabilities passes a whole number plus `offset`.
-// What is not chosen gets probability 0.
+// Systematic sampling: takes a light when the sum of probabilities passes a whole number plus `offset`.
+// Lights that are not taken get probability 0.
 static void sample(const Place* order, int count, double offset, double* p)
 {
     double sum = 0;
@@ -156,70 +154,54 @@ static void sample(const Place* order, int count, double offset, double* p)
     }
 }
 
-// Lights of positive probability, in the order that they had.
-static void take(const vplLightSet* from, const double* p, vplVirtualLight* lights, int* lightsInStep,
-                 vplLightSet* set)
-{
-    for (int i = 0; i < from->lightCount; i++) {
-        if (p[i] > 0) {
-            vplVirtualLight* v = &lights[set->lightCount++];
-            *v = from->lights[i];
-            v->weight = (float)((double)v->weight / p[i]);
-            lightsInStep[v->step]++;
-        }
-    }
-}
-
+// The lights of positive probability, in their order.
 static vplResult makeSet(const vplLightSet* from, const double* p, vplLightSet** setOut)
 {
-    vplContext* context = from->context;
-    size_t chosen = 0;
+    int chosen = 0;
     for (int i = 0; i < from->lightCount; i++) {
         chosen += p[i] > 0;
     }
+    vplLightArrays arrays;
     vplLightSet* set;
-    const vplResult result = vplLightSet_Make(context, (int)chosen, from->stepCount, &set);
-    if (result != VPL_SUCCESS) {
-        return result;
+    TRY(vplLightSet_MakeSubset(from, chosen, &arrays, &set));
+    for (int i = 0; i < from->lightCount; i++) {
+        if (p[i] > 0) {
+            vplVirtualLight* v = &arrays.lights[set->lightCount++];
+            *v = from->lights[i];
+            v->weight = (float)((double)v->weight / p[i]);
+            arrays.lightsInStep[v->step]++;
+        }
     }
-    set->lightCount = 0;
-    set->escaped = from->escaped;
-    set->rays = from->rays;
-    set->rayObjectTests = from->rayObjectTests;
-    set->particleCount = from->particleCount;
-    for (int i = 0; i < from->stepCount; i++) {
-        ((int*)set->stepCounts)[i] = from->stepCounts[i];
-    }
-    take(from, p, (vplVirtualLight*)set->lights, (int*)set->lightsInStep, set);
     *setOut = set;
     return VPL_SUCCESS;
+}
+
+static vplResult choose(const vplLightSet* candidates, const float* contributions, double count,
+                        const vplPlacementDef* def, vplArena* scratch, vplLightSet** setOut)
+{
+    const size_t lights = (size_t)candidates->lightCount;
+    double* p = vplArena_Alloc(scratch, lights, sizeof *p);
+    Place* places = vplArena_Alloc(scratch, 2 * lights, sizeof *places);
+    TRY(vplArena_Check(scratch));
+    mixShares(candidates, contributions, (double)def->fluxShare, p);
+    findProbabilities(p, candidates->lightCount, count);
+    findKeys(candidates, places);
+    sortPlaces(places, places + lights, candidates->lightCount);
+    const vplRandom4 r = vplRandomAt(def->seed, CHOICE_STREAM, (uint64_t)def->index);
+    sample(places + lights, candidates->lightCount, (double)vplUnitFloat(r.v[0]), p);
+    return makeSet(candidates, p, setOut);
 }
 
 vplResult vplChooseLights(const vplLightSet* candidates, const float* contributions, double count,
                           const vplPlacementDef* def, vplLightSet** setOut)
 {
     vplContext* context = candidates->context;
-    const size_t lights = (size_t)candidates->lightCount;
-    vplResult result = vplPlacementDef_Check(context, def);
-    if (result == VPL_SUCCESS && !(count >= 0)) {
-        result = vplFail(context, VPL_INVALID_ARGUMENT, "count of lights is %g, must be at least 0", count);
+    TRY(vplPlacementDef_Check(context, def));
+    if (!(count >= 0)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "count of lights is %g, must be at least 0", count);
     }
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    double* p = vplAlloc(context, lights, sizeof *p);
-    Place* places = p ? vplAlloc(context, 2 * lights, sizeof *places) : NULL;
-    result = places ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    if (result == VPL_SUCCESS) {
-        mixShares(candidates, contributions, (double)def->fluxShare, p);
-        findProbabilities(p, candidates->lightCount, count);
-        findKeys(candidates, places);
-        sortPlaces(places, places + lights, candidates->lightCount);
-        const vplRandom4 r = vplRandomAt(def->seed, CHOICE_STREAM, (uint64_t)def->index);
-        sample(places + lights, candidates->lightCount, (double)vplUnitFloat(r.v[0]), p);
-        result = makeSet(candidates, p, setOut);
-    }
-    vplFree(context, places);
-    vplFree(context, p);
+    vplArena* scratch = vplArena_Create(context);
+    const vplResult result = choose(candidates, contributions, count, def, scratch, setOut);
+    vplArena_Destroy(scratch);
     return result;
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Lloyd's two steps in turn: each light to its nearest cluster, each cluster to the mean of its lights.
-// The mean minimises none of these distances, so that the search may come back to an earlier assignment: it is noticed,
-// and the search ends.
-// A light looks only at clusters that have moved since it looked last, unless its own went away from it: the same
-// answer in less time.
+// K-means by Lloyd's algorithm: assigns each light to its nearest cluster, then moves each cluster to the
+// mean of its lights, in turn. The mean does not minimise these distances, so the search may return to an
+// earlier assignment: it ends then. A light is compared only with clusters that moved since the last
+// assignment, unless its own moved away from it: the same answer in less time.
 #include "lights/clusters.h"
 
 #include "base/context.h"
@@ -13,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-// Fewer pairs of a light and a cluster take less time than waking threads: 0.1 ms.
+// With fewer pairs of a light and a cluster, waking threads (0.1 ms) takes longer than the work.
 static const double FEW_PAIRS = 1 << 15;
 
 // ---- distance
@@ -23,14 +22,14 @@ double vplClusterDistance_Below(const vplClusterDistance* distance, const vplClu
 {
     const double dx = a->p[0] - b->p[0], dy = a->p[1] - b->p[1], dz = a->p[2] - b->p[2];
     const double along = a->n[0] * b->n[0] + a->n[1] * b->n[1] + a->n[2] * b->n[2];
-    const double cosine = along < -1 ? -1 : along > 1 ? 1 : along; // so that no term is below 0
-    double term = 1 - cosine;                                      // no angle is less than that
+    const double cosine = along < -1 ? -1 : along > 1 ? 1 : along; // no term is below 0
+    double term = 1 - cosine;                                      // a lower bound of the angle
     if (distance->metric == VPL_CLUSTER_PRINTED) {
         term = cosine > 0 ? cosine : 0;
     } else if (distance->metric == VPL_CLUSTER_ONE_MINUS_CLAMPED) {
         term = cosine > 0 ? 1 - cosine : 1;
     }
-    // No root, and no angle, where the square tells that it is too far. 1e-12 is more than all roundings.
+    // Saves root and angle where the square is too large already. 1e-12 is more than all rounding.
     const double square = distance->w1 * distance->w1 * (dx * dx + dy * dy + dz * dz);
     const double left = best - distance->w2 * term;
     if (!(left >= 0 && square <= left * left * (1 + 1e-12))) {
@@ -55,26 +54,26 @@ static void offer(const vplClusterSearch* s, const vplClusterPoint* point, int c
     }
 }
 
-static void lookAtAll(const vplClusterSearch* s, const vplClusterPoint* point, double* best, int* winner)
+static void compareWithAll(const vplClusterSearch* s, const vplClusterPoint* point, double* best, int* winner)
 {
     for (int j = 0; j < s->count; j++) {
         offer(s, point, j, best, winner);
     }
 }
 
-// Clusters that stayed are not nearer than they were, and its own was the nearest: unless that went away, only those
-// that moved can win.
+// Clusters that did not move are no nearer than before, and the light's own was the nearest: unless that
+// moved away, only clusters that moved can win.
 static int findCluster(const vplClusterSearch* s, int light, double* best)
 {
     const vplClusterPoint* point = &s->points[light];
     int winner = s->of[light];
-    *best = s->reached[light];
+    *best = s->distances[light];
     if (s->moved[winner]) {
         const double now = vplClusterDistance_Below(&s->distance, point, &s->centres[winner], INFINITY);
         const bool away = now > *best;
         *best = now;
         if (away) {
-            lookAtAll(s, point, best, &winner);
+            compareWithAll(s, point, best, &winner);
             return winner;
         }
     }
@@ -95,18 +94,18 @@ static void assignSome(void* data, int task, int worker)
         int cluster = 0;
         double best = INFINITY;
         if (s->first) {
-            lookAtAll(s, &s->points[i], &best, &cluster);
+            compareWithAll(s, &s->points[i], &best, &cluster);
         } else {
             cluster = findCluster(s, i, &best);
         }
         changed = changed || cluster != s->of[i];
         s->of[i] = cluster;
-        s->reached[i] = best;
+        s->distances[i] = best;
     }
     s->changed[task] = changed;
 }
 
-// Whether a light went to another cluster.
+// Returns whether a light changed its cluster.
 static bool assign(vplClusterSearch* s)
 {
     if ((double)s->lightCount * s->count < FEW_PAIRS) {
@@ -126,7 +125,7 @@ static bool assign(vplClusterSearch* s)
 
 // ---- each cluster to the mean of its lights
 
-// Of a sum of unit normals that is next to nothing only roundings are left: they point nowhere.
+// Keeps the normal if the sum of unit normals is so small that only rounding is left.
 static void pointAlong(double n[3], const double sum[3], double weight)
 {
     const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
@@ -171,7 +170,7 @@ static uint64_t hashAssignment(const vplClusterSearch* s)
     return vplHashWords(0, (const uint32_t*)s->of, (size_t)s->lightCount);
 }
 
-static bool wasThere(const vplClusterSearch* s, int iterations)
+static bool repeatsEarlier(const vplClusterSearch* s, int iterations)
 {
     for (int i = 0; i < iterations; i++) {
         if (s->hashes[i] == s->hashes[iterations]) {
@@ -195,9 +194,9 @@ void vplClusterSearch_Run(vplClusterSearch* s, vplLightClusters* clusters)
             continue;
         }
         s->hashes[clusters->iterations] = hashAssignment(s);
-        if (wasThere(s, clusters->iterations)) {
+        if (repeatsEarlier(s, clusters->iterations)) {
             clusters->end = VPL_CLUSTERS_CYCLE;
         }
     }
-    update(s); // where the last assignment was another one
+    update(s); // the last assignment may have changed clusters
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Groups of lights that will share one view of the scene.
-// Based on: Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation, section II-A, equation 2;
-// Dong, Grosch, Ritschel, Kautz and Seidel, Real-time Indirect Illumination with Clustered Visibility, VMV 2009.
+// Clusters of lights that share one paraboloid map.
+// Based on: Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation, section II-A,
+// equation 2; Dong, Grosch, Ritschel, Kautz and Seidel, Real-time Indirect Illumination with Clustered
+// Visibility, VMV 2009.
 // Departs: the normal term, which as printed keeps equal normals apart.
 #include "lights/clusters.h"
 
-#include "base/context.h"
+#include "base/arena.h"
 #include "math/scalar.h"
 
 #include <float.h>
@@ -14,7 +15,8 @@
 
 enum { CLUSTER_COOKIE = 0x56504c90 };
 
-// Of the box around all lights: how far those of a flat cluster may be from its plane. And of a light's normal.
+// Largest distance of a flat cluster's lights from its plane, in diagonals of the box around all lights; also
+// the largest difference of normals.
 static const double FLAT = 1e-4;
 
 vplClusterDef vplDefaultClusterDef(void)
@@ -79,7 +81,7 @@ static vplResult checkDef(const vplLightSet* set, const vplClusterDef* def)
     return checkLights(set);
 }
 
-// ---- what is handed on
+// ---- output
 
 static float toFloat(double x)
 {
@@ -106,7 +108,7 @@ static double extentOf(const vplClusterSearch* s)
     return sqrt(square);
 }
 
-// Coordinates are float: 4 roundings of the largest are no step, either.
+// Four roundings of the largest coordinate, a float, are tolerated, too.
 static bool liesFlat(const vplClusterPoint* light, const vplClusterPoint* centre, double extent)
 {
     double height = 0, turned = 0, largest = 0;
@@ -118,7 +120,7 @@ static bool liesFlat(const vplClusterPoint* light, const vplClusterPoint* centre
     return fabs(height) <= FLAT * extent + 0x1p-22 * largest && turned <= FLAT * FLAT;
 }
 
-static void gather(vplClusterSearch* s, const vplLightSet* set, vplLightCluster* out)
+static void summarize(vplClusterSearch* s, const vplLightSet* set, vplLightCluster* out)
 {
     const double extent = extentOf(s);
     for (int j = 0; j < s->count; j++) {
@@ -146,12 +148,12 @@ static void gather(vplClusterSearch* s, const vplLightSet* set, vplLightCluster*
         cluster->flat = cluster->flat && liesFlat(&s->points[i], centre, extent);
     }
     for (int j = 0; j < s->count; j++) {
-        const double* flux = s->tallies[j].flux; // zeros since the last update
+        const double* flux = s->tallies[j].flux; // the last update set them to 0
         out[j].flux = (vplRgb){toFloat(flux[0]), toFloat(flux[1]), toFloat(flux[2])};
     }
 }
 
-// ---- all of it
+// ---- the clusters
 
 static void copyPoints(vplClusterSearch* s, const vplLightSet* set)
 {
@@ -162,76 +164,66 @@ static void copyPoints(vplClusterSearch* s, const vplLightSet* set)
     }
 }
 
-static vplResult reserve(vplClusterSearch* s, vplLightClusters* clusters)
+// Scratch memory of the search; `of` belongs to the clusters.
+static vplResult prepare(vplClusterSearch* s, vplArena* scratch)
 {
     const size_t lights = (size_t)s->lightCount, count = (size_t)s->count;
-    s->points = vplAlloc(s->context, lights, sizeof *s->points);
-    s->reached = s->points ? vplAlloc(s->context, lights, sizeof *s->reached) : NULL;
-    s->centres = s->reached ? vplAlloc(s->context, count, sizeof *s->centres) : NULL;
-    s->tallies = s->centres ? vplAlloc(s->context, count, sizeof *s->tallies) : NULL;
-    s->moved = s->tallies ? vplAlloc(s->context, count, sizeof *s->moved) : NULL;
-    s->movedList = s->moved ? vplAlloc(s->context, count, sizeof *s->movedList) : NULL;
-    s->hashes = s->movedList ? vplAlloc(s->context, (size_t)s->maxIterations + 1, sizeof *s->hashes) : NULL;
-    s->changed = s->hashes ? vplAlloc(s->context, (size_t)s->taskCount, sizeof *s->changed) : NULL;
-    clusters->of = s->of = s->changed ? vplAllocZero(s->context, lights, sizeof *s->of) : NULL;
-    clusters->clusters = s->of ? vplAlloc(s->context, count, sizeof *clusters->clusters) : NULL;
-    return clusters->clusters ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    s->points = vplArena_Alloc(scratch, lights, sizeof *s->points);
+    s->distances = vplArena_Alloc(scratch, lights, sizeof *s->distances);
+    s->centres = vplArena_Alloc(scratch, count, sizeof *s->centres);
+    s->tallies = vplArena_Alloc(scratch, count, sizeof *s->tallies);
+    s->moved = vplArena_Alloc(scratch, count, sizeof *s->moved);
+    s->movedList = vplArena_Alloc(scratch, count, sizeof *s->movedList);
+    s->hashes = vplArena_Alloc(scratch, (size_t)s->maxIterations + 1, sizeof *s->hashes);
+    s->changed = vplArena_Alloc(scratch, (size_t)s->taskCount, sizeof *s->changed);
+    return vplArena_Check(scratch);
 }
 
-static void release(vplClusterSearch* s)
+static vplResult find(const vplLightSet* lights, const vplClusterDef* def, vplArena* scratch,
+                      vplLightClusters** clustersOut)
 {
-    vplFree(s->context, s->points);
-    vplFree(s->context, s->reached);
-    vplFree(s->context, s->centres);
-    vplFree(s->context, s->tallies);
-    vplFree(s->context, s->moved);
-    vplFree(s->context, s->movedList);
-    vplFree(s->context, s->hashes);
-    vplFree(s->context, s->changed);
-}
-
-vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def, vplLightClusters** clustersOut)
-{
-    vplResult result = checkDef(lights, def);
     vplContext* context = lights->context;
-    vplLightClusters* clusters = result == VPL_SUCCESS ? vplAllocZero(context, 1, sizeof *clusters) : NULL;
-    if (clusters == NULL) {
-        return result == VPL_SUCCESS ? VPL_OUT_OF_MEMORY : result;
-    }
     vplClusterSearch s = {.context = context,
                           .distance = {def->metric, def->w1, def->w2},
                           .lightCount = lights->lightCount,
                           .count = vplMini(def->count, lights->lightCount),
                           .maxIterations = def->maxIterations,
-                          .weights = def->weights};
-    s.taskCount = (s.lightCount + VPL_CLUSTER_TASK - 1) / VPL_CLUSTER_TASK;
-    clusters->context = context;
-    clusters->lightCount = s.lightCount;
-    clusters->count = s.count;
-    result = reserve(&s, clusters);
+                          .weights = def->weights,
+                          .taskCount = (lights->lightCount + VPL_CLUSTER_TASK - 1) / VPL_CLUSTER_TASK};
+    TRY(prepare(&s, scratch));
+    vplArena* arena = vplArena_Create(context);
+    vplLightClusters* clusters = vplArena_AllocZero(arena, 1, sizeof *clusters);
+    vplLightCluster* summaries = vplArena_Alloc(arena, (size_t)s.count, sizeof *summaries);
+    s.of = vplArena_AllocZero(arena, (size_t)s.lightCount, sizeof *s.of);
+    const vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
+        *clusters = (vplLightClusters){.clusters = summaries,
+                                       .count = s.count,
+                                       .of = s.of,
+                                       .lightCount = s.lightCount,
+                                       .context = context,
+                                       .arena = arena};
         copyPoints(&s, lights);
         vplClusterSearch_Place(&s, def);
         vplClusterSearch_Run(&s, clusters);
-        gather(&s, lights, (vplLightCluster*)clusters->clusters);
+        summarize(&s, lights, summaries);
         for (int j = 0; j < s.count; j++) {
             clusters->emptyCount += s.tallies[j].lightCount == 0;
         }
     }
-    release(&s);
-    if (result != VPL_SUCCESS) {
-        vplLightClusters_Destroy(clusters);
-        return result;
-    }
-    *clustersOut = clusters;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, clusters, clustersOut);
+}
+
+vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def, vplLightClusters** clustersOut)
+{
+    TRY(checkDef(lights, def));
+    vplArena* scratch = vplArena_Create(lights->context);
+    const vplResult result = find(lights, def, scratch, clustersOut);
+    vplArena_Destroy(scratch);
+    return result;
 }
 
 void vplLightClusters_Destroy(vplLightClusters* clusters)
 {
-    if (clusters != NULL) {
-        vplFree(clusters->context, (void*)clusters->clusters);
-        vplFree(clusters->context, (void*)clusters->of);
-        vplFree(clusters->context, clusters);
-    }
+    vplArena_Destroy(clusters != NULL ? clusters->arena : NULL);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// K-means over virtual lights from the inside: what searching and choosing where to start share.
+// K-means over virtual lights: what start and search share.
 #ifndef VPL_LIGHTS_CLUSTERS_H
 #define VPL_LIGHTS_CLUSTERS_H
 
@@ -11,17 +11,16 @@ typedef struct vplClusterPoint {
     double n[3]; // unit
 } vplClusterPoint;
 
-// A distance of points.
 typedef struct vplClusterDistance {
     vplClusterMetric metric;
     double w1, w2;
 } vplClusterDistance;
 
-// At least 0. Where it is not less than `best` the answer may be anything that is not, either.
+// At least 0. If the distance is `best` or more, any number from `best` on may be returned.
 double vplClusterDistance_Below(const vplClusterDistance* distance, const vplClusterPoint* a,
                                 const vplClusterPoint* b, double best);
 
-// Of a cluster: sums over its lights.
+// Sums over the lights of a cluster.
 typedef struct vplClusterTally {
     vplClusterPoint sum;
     double flux[3];
@@ -36,19 +35,21 @@ typedef struct vplClusterSearch {
     vplContext* context;
     vplClusterDistance distance;
     int lightCount, count, maxIterations;
-    vplClusterPoint* points; // of each light
-    const float* weights;    // of each light; NULL: 1
-    double* reached;         // of each light: its distance from its cluster
-    int* of;                 // of each light: its cluster; zeros before the search
+    // Per light.
+    vplClusterPoint* points;
+    const float* weights; // NULL: 1
+    double* distances;    // from its cluster
+    int* of;              // its cluster; 0 before the search
+    // Per cluster.
     vplClusterPoint* centres;
     vplClusterTally* tallies;
-    bool* moved; // of each cluster: since lights looked last
+    bool* moved; // since the last assignment
     int* movedList;
     int movedCount;
     uint64_t* hashes; // of all assignments so far
     int taskCount;
-    bool* changed; // of each task: whether a light went to another cluster
-    bool first;
+    bool* changed; // per task: whether a light changed its cluster
+    bool first;    // the first assignment
 } vplClusterSearch;
 
 static inline double vplClusterSearch_Weight(const vplClusterSearch* search, int light)
@@ -56,11 +57,12 @@ static inline double vplClusterSearch_Weight(const vplClusterSearch* search, int
     return search->weights != NULL ? (double)search->weights[light] : 1;
 }
 
-// Where clusters start: where def->last has clusters with lights, or at lights that def->seeds names, then at lights
-// that are far from all those before.
+// Places clusters where def->last has clusters with lights, or at the lights def->seeds, then at lights that
+// are far from all those before.
 void vplClusterSearch_Place(vplClusterSearch* search, const vplClusterDef* def);
 
-// From there to the end: of, centres, the tallies' sums and counts; iterations and end of `clusters`.
+// Searches from there. Writes of, centres, the sums and counts of tallies, and iterations and end of
+// `clusters`.
 void vplClusterSearch_Run(vplClusterSearch* search, vplLightClusters* clusters);
 
 #endif

@@ -1,54 +1,75 @@
 // SPDX-License-Identifier: MIT
 #include "lights/light_set.h"
 
-#include "base/context.h"
+#include "base/arena.h"
 
-vplResult vplLightSet_Make(vplContext* context, int lightCount, int stepCount, vplLightSet** setOut)
+#include <string.h>
+
+vplResult vplLightSet_Make(vplContext* context, int capacity, int stepCount, vplLightArrays* arraysOut,
+                           vplLightSet** setOut)
 {
-    vplLightSet* set = vplAllocZero(context, 1, sizeof *set);
-    if (set == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    vplArena* arena = vplArena_Create(context);
+    vplLightSet* set = vplArena_AllocZero(arena, 1, sizeof *set);
+    const vplLightArrays arrays = {vplArena_Alloc(arena, (size_t)capacity, sizeof *arrays.lights),
+                                   vplArena_AllocZero(arena, (size_t)stepCount, sizeof *arrays.stepCounts),
+                                   vplArena_AllocZero(arena, (size_t)stepCount, sizeof *arrays.lightsInStep)};
+    const vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *set = (vplLightSet){.lights = arrays.lights,
+                             .stepCounts = arrays.stepCounts,
+                             .lightsInStep = arrays.lightsInStep,
+                             .stepCount = stepCount,
+                             .context = context,
+                             .arena = arena};
+        *arraysOut = arrays;
     }
-    set->context = context;
-    set->lightCount = lightCount;
-    set->stepCount = stepCount;
-    set->lights = vplAllocZero(context, (size_t)lightCount, sizeof *set->lights);
-    set->stepCounts = vplAllocZero(context, (size_t)stepCount, sizeof *set->stepCounts);
-    set->lightsInStep = vplAllocZero(context, (size_t)stepCount, sizeof *set->lightsInStep);
-    if (set->lights == NULL || set->stepCounts == NULL || set->lightsInStep == NULL) {
-        vplLightSet_Destroy(set);
-        return VPL_OUT_OF_MEMORY;
-    }
-    *setOut = set;
+    return vplArena_Deliver(arena, result, set, setOut);
+}
+
+void vplLightSet_Destroy(vplLightSet* set)
+{
+    vplArena_Destroy(set != NULL ? set->arena : NULL);
+}
+
+vplResult vplLightSet_MakeSubset(const vplLightSet* from, int capacity, vplLightArrays* arraysOut,
+                                 vplLightSet** setOut)
+{
+    TRY(vplLightSet_Make(from->context, capacity, from->stepCount, arraysOut, setOut));
+    vplLightSet* set = *setOut;
+    set->escaped = from->escaped;
+    set->rays = from->rays;
+    set->rayObjectTests = from->rayObjectTests;
+    set->particleCount = from->particleCount;
+    memcpy(arraysOut->stepCounts, from->stepCounts, (size_t)from->stepCount * sizeof *from->stepCounts);
     return VPL_SUCCESS;
+}
+
+// Adds the lights of `from` to the set, their weights times a factor.
+static void append(const vplLightSet* from, float factor, const vplLightArrays* arrays, vplLightSet* set)
+{
+    for (int i = 0; i < from->lightCount; i++) {
+        vplVirtualLight* light = &arrays->lights[set->lightCount++];
+        *light = from->lights[i];
+        light->weight *= factor;
+    }
+    for (int i = 0; i < from->stepCount; i++) {
+        arrays->stepCounts[i] += from->stepCounts[i];
+        arrays->lightsInStep[i] += from->lightsInStep[i];
+    }
+    set->escaped += from->escaped;
+    set->rays += from->rays;
+    set->rayObjectTests += from->rayObjectTests;
 }
 
 vplResult vplLightSet_Join(const vplLightSet* a, const vplLightSet* b, vplLightSet** setOut)
 {
     const int steps = a->stepCount > b->stepCount ? a->stepCount : b->stepCount;
+    vplLightArrays arrays;
     vplLightSet* set;
-    vplResult result = vplLightSet_Make(a->context, a->lightCount + b->lightCount, steps, &set);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplVirtualLight* lights = (vplVirtualLight*)set->lights;
-    for (int i = 0; i < set->lightCount; i++) {
-        lights[i] = i < a->lightCount ? a->lights[i] : b->lights[i - a->lightCount];
-    }
+    TRY(vplLightSet_Make(a->context, a->lightCount + b->lightCount, steps, &arrays, &set));
     set->particleCount = a->particleCount > 0 ? a->particleCount : b->particleCount;
-    const float factor = b->particleCount > 0 ? (float)set->particleCount / (float)b->particleCount : 1;
-    for (int i = a->lightCount; i < set->lightCount; i++) {
-        lights[i].weight *= factor;
-    }
-    for (int i = 0; i < steps; i++) {
-        ((int*)set->stepCounts)[i] =
-            (i < a->stepCount ? a->stepCounts[i] : 0) + (i < b->stepCount ? b->stepCounts[i] : 0);
-        ((int*)set->lightsInStep)[i] =
-            (i < a->stepCount ? a->lightsInStep[i] : 0) + (i < b->stepCount ? b->lightsInStep[i] : 0);
-    }
-    set->escaped = a->escaped + b->escaped;
-    set->rays = a->rays + b->rays;
-    set->rayObjectTests = a->rayObjectTests + b->rayObjectTests;
+    append(a, 1, &arrays, set);
+    append(b, b->particleCount > 0 ? (float)set->particleCount / (float)b->particleCount : 1, &arrays, set);
     *setOut = set;
     return VPL_SUCCESS;
 }

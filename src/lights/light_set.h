@@ -1,16 +1,38 @@
 // SPDX-License-Identifier: MIT
-// Sets of virtual lights being made.
+// Making sets of virtual lights, and preparing their lights for kernels.
 #ifndef VPL_LIGHTS_LIGHT_SET_H
 #define VPL_LIGHTS_LIGHT_SET_H
 
 #include <vpl/lights.h>
 
-// Room for so many lights and steps, all 0; lights, stepCounts and lightsInStep may be written until the set is given
-// away.
-vplResult vplLightSet_Make(vplContext* context, int lightCount, int stepCount, vplLightSet** setOut);
+#include "math/vec.h"
 
-// One set of the lights of two that each stand for light of its own, those of `b` behind those of `a`. Steps are kept; N
-// is that of `a`, and the weights of `b` make up for it, unless `a` has none.
+// The arrays of a set, to be written until the set is given away.
+typedef struct vplLightArrays {
+    vplVirtualLight* lights;
+    int *stepCounts, *lightsInStep;
+} vplLightArrays;
+
+// A set with room for so many lights and steps; all but the lights is 0, and so is lightCount.
+vplResult vplLightSet_Make(vplContext* context, int capacity, int stepCount, vplLightArrays* arraysOut,
+                           vplLightSet** setOut);
+
+// A set for some lights of another one: the same steps, statistics and N.
+vplResult vplLightSet_MakeSubset(const vplLightSet* from, int capacity, vplLightArrays* arraysOut,
+                                 vplLightSet** setOut);
+
+// The lights of two sets that each stand for light of their own: those of `a`, then those of `b`. Steps are
+// kept. N is that of `a`, and the weights of `b` are adapted to it, unless `a` has none.
 vplResult vplLightSet_Join(const vplLightSet* a, const vplLightSet* b, vplLightSet** setOut);
+
+// One light of N particles as kernels read it, see vplPrepareLights.
+static inline vplShadeLight vplPrepareLight(const vplVirtualLight* v, int particleCount, vplLighting lighting)
+{
+    // A virtual light of flux P emits P/pi cos; its colour includes the 1/pi.
+    const float scale = lighting == VPL_LIGHTING_PHYSICAL ? (float)(1 / VPL_PI) : 1;
+    const vplRgb shown = vplRgbScale(scale * (v->weight / (float)particleCount), v->light);
+    return (vplShadeLight){v->position.x, v->position.y, v->position.z, v->normal.x, v->normal.y,
+                           v->normal.z,   shown.r,       shown.g,       shown.b};
+}
 
 #endif

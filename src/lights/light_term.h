@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a virtual light gives to a point: the arithmetic of every kernel that asks, so that all get the same bits.
-// Based on: Alexander Keller, Instant Radiosity, SIGGRAPH 1997, with the geometry term bounded as r^2 -> max(r^2, c);
-// Franchi and Ferrante, Virtual Point Lights (documented).
+// The contribution of a virtual light to a point: the arithmetic of all kernels, so that all get the same
+// bits.
+// Based on: Alexander Keller, Instant Radiosity, SIGGRAPH 1997, with the geometry term clamped, r^2 ->
+// max(r^2, c); Franchi and Ferrante, Virtual Point Lights (documented).
 #ifndef VPL_LIGHTS_LIGHT_TERM_H
 #define VPL_LIGHTS_LIGHT_TERM_H
 
@@ -10,10 +11,10 @@
 #include <stdint.h>
 #include <string.h>
 
-// Larger and smaller of two numbers; `a` may be negative, `b` not. Floats that are not negative are ordered as
-// their bits are. From AVX2 on integers are compared: on Zen 4 multiplications, which bound these loops, and float
-// comparisons share two of the four vector units, integer comparisons have all four (physical lights: 6 % faster
-// with AVX-512, 5 % with AVX2; SSE2 has no such instruction and loses 16 %).
+// Larger and smaller of two numbers; `a` may be negative, `b` not. Non-negative floats are ordered like their
+// bits. From AVX2 on integers are compared: on Zen 4 float comparisons share two of the four vector units
+// with multiplications, integer comparisons use all four (physical lights: 5 to 6 % faster; SSE2 has no such
+// instruction and would lose 16 %).
 #ifdef __AVX2__
 static inline int32_t vplBitsOf(float x)
 {
@@ -50,7 +51,7 @@ static inline float vplSmallerOf(float a, float b)
 }
 #endif
 
-// Cosines at both ends times the distance, and the inverse square of that. x, y, z: from the point to the light.
+// Cosines at both ends times the distance, and 1 / distance^2. x, y, z: from the point to the light.
 typedef struct vplLightTerm {
     float here, there, inverse;
 } vplLightTerm;
@@ -68,13 +69,13 @@ static inline vplLightTerm vplLightTermOf(float x, float y, float z, float nx, f
 }
 
 // cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is 0, not infinity / infinity.
-static inline float vplBoundedGeometry(vplLightTerm t, float inverseBound)
+static inline float vplClampedGeometry(vplLightTerm t, float inverseClamp)
 {
-    const float bounded = vplSmallerOf(t.inverse, inverseBound);
+    const float bounded = vplSmallerOf(t.inverse, inverseClamp);
     return (t.here * t.inverse) * (t.there * bounded);
 }
 
-// The cosine of documented lighting, which knows no distance; 0 where 0/0 would be.
+// The cosine of documented lighting, which has no falloff; 0 instead of 0/0.
 static inline float vplDocumentedCosine(float x, float y, float z, float nx, float ny, float nz)
 {
     float d2 = x * x + y * y + z * z;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Based on: Walter, Fernandez, Arbree, Bala, Donikian and Greenberg, Lightcuts: A Scalable Approach to Illumination,
-// SIGGRAPH 2005, section 3. Departs: built from the top, in time that a million lights allow, by halving what is
-// longest among the sides of the box of positions and those of the box of normals, instead of by merging the pair of
-// clusters whose size and cone are smallest.
+// The light tree of Lightcuts.
+// Based on: Walter, Fernandez, Arbree, Bala, Donikian and Greenberg, Lightcuts: A Scalable Approach to
+// Illumination, SIGGRAPH 2005, section 3. Departs: built top down in O(n log n), by halving the longest side
+// of the boxes of positions and normals, instead of merging the pair of clusters whose size and cone are
+// smallest.
 #include "lights/light_tree.h"
 #include "base/context.h"
 #include "base/hash.h"
@@ -11,13 +12,13 @@
 
 #include <string.h>
 
-// Normals as far apart as two opposite ones count as much as places this share of the scene's diagonal apart.
+// Weight of normals: a difference of 1 counts as much as this share of the diagonal of all lights.
 static const float TURN = 0.5f;
 
 enum {
-    STREAM = 0x4c43,   // of random numbers
-    MAX_HALVINGS = 64, // lights in a geometric series would make a list of a tree: then halves of equal count
-    SUBTREES = 128,    // tasks, about
+    STREAM = 0x4c43,      // of random numbers
+    MAX_HALVINGS = 64,    // deeper clusters are split into halves of equal count
+    SUBTREES = 128,       // tasks, about
     MIN_SUBTREE = 1 << 10 // lights of a task
 };
 
@@ -47,7 +48,7 @@ static inline float columnOf(const vplTreeLight* light, int k)
 
 _Static_assert(offsetof(vplShadeLight, nz) == 5 * sizeof(float), "a light begins with its six columns");
 
-// The cone around the mean normal. Cosines of rounded unit vectors are off by up to 4e-7.
+// The cone around the mean normal. Cosines of rounded unit vectors err by up to 4e-7.
 static void findCone(const vplTreeLight* lights, int count, const double sum[3], vplLightNode* node)
 {
     const vplVec3 axis = vplNormalize(vplVec((float)sum[0], (float)sum[1], (float)sum[2]));
@@ -128,8 +129,8 @@ static void halve(const Build* b, vplCluster c, int depth)
     }
 }
 
-// Intensity, and a representative: that of one of the halves, with a probability that is its share of the
-// intensity, so that what a cluster is expected to give is what its lights give.
+// Sets intensity and representative: that of one of the halves, with a probability of its share of the
+// intensity, so that the representative's expected contribution is that of the lights.
 static void merge(const Build* b, vplCluster c)
 {
     const vplLightTree* tree = b->tree;
@@ -153,7 +154,7 @@ static void merge(const Build* b, vplCluster c)
     node->representative = vplLightTree_Representative(tree, halves[chosen]);
 }
 
-// MAX_HALVINGS + 24 calls deep at most.
+// Recurses at most MAX_HALVINGS + 24 calls deep.
 static void buildSubtree(const Build* b, vplCluster c, int depth)
 {
     if (c.count < 2) {
@@ -179,20 +180,17 @@ static void subtreeTask(void* data, int task, int worker)
 
 static vplResult pushRange(Build* b, vplCluster cluster, int depth)
 {
-    const vplResult result =
-        vplReserve(b->tree->context, &b->ranges, &b->capacity, (size_t)b->rangeCount + 1, sizeof *b->ranges);
-    if (result == VPL_SUCCESS) {
-        b->ranges[b->rangeCount++] = (Range){cluster, depth, false};
-    }
-    return result;
+    TRY(vplReserve(b->tree->context, &b->ranges, &b->capacity, (size_t)b->rangeCount + 1, sizeof *b->ranges));
+    b->ranges[b->rangeCount++] = (Range){cluster, depth, false};
+    return VPL_SUCCESS;
 }
 
-// Which clusters are halved depends on counts alone, so it does not on workers.
+// Which clusters are split here depends on counts alone, not on workers.
 static vplResult buildTop(Build* b)
 {
     const int share = b->tree->lightCount / SUBTREES, grain = share > MIN_SUBTREE ? share : MIN_SUBTREE;
-    vplResult result = pushRange(b, vplLightTree_Root(b->tree), 0);
-    for (int i = 0; i < b->rangeCount && result == VPL_SUCCESS; i++) {
+    TRY(pushRange(b, vplLightTree_Root(b->tree), 0));
+    for (int i = 0; i < b->rangeCount; i++) {
         const Range range = b->ranges[i];
         if (range.cluster.count <= grain) {
             continue;
@@ -201,12 +199,10 @@ static vplResult buildTop(Build* b)
         halve(b, range.cluster, range.depth);
         vplLightTree_Halves(b->tree, range.cluster, halves);
         b->ranges[i].halved = true;
-        result = pushRange(b, halves[0], range.depth + 1);
-        if (result == VPL_SUCCESS) {
-            result = pushRange(b, halves[1], range.depth + 1);
-        }
+        TRY(pushRange(b, halves[0], range.depth + 1));
+        TRY(pushRange(b, halves[1], range.depth + 1));
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
 static float diagonalOf(const vplShadeLight* lights, int count)
@@ -220,7 +216,7 @@ static float diagonalOf(const vplShadeLight* lights, int count)
     return vplLength(vplSub(high, low));
 }
 
-// Other lights draw other representatives, so that errors of pictures by several passes do not agree.
+// Other lights get other random numbers, so that the errors of several passes are independent.
 static uint64_t seedOf(const vplShadeLight* lights, int count)
 {
     const int step = count / 64 + 1;
@@ -254,31 +250,19 @@ static vplResult build(vplLightTree* tree, const vplShadeLight* lights, vplProgr
 vplResult vplLightTree_Create(vplContext* context, const vplShadeLight* lights, int lightCount,
                               vplProgressFcn* progress, void* user, vplLightTree** treeOut)
 {
-    vplLightTree* tree = vplAllocZero(context, 1, sizeof *tree);
-    vplResult result = tree ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    vplArena* arena = vplArena_Create(context);
+    vplLightTree* tree = vplArena_AllocZero(arena, 1, sizeof *tree);
+    vplTreeLight* treeLights = vplArena_Alloc(arena, (size_t)lightCount, sizeof *treeLights);
+    vplLightNode* nodes = vplArena_Alloc(arena, (size_t)lightCount, sizeof *nodes);
+    vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
-        tree->context = context;
-        tree->lightCount = lightCount;
-        tree->lights = vplAlloc(context, (size_t)lightCount, sizeof *tree->lights);
-        tree->nodes = vplAlloc(context, (size_t)lightCount, sizeof *tree->nodes);
-        result = tree->lights && tree->nodes ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+        *tree = (vplLightTree){treeLights, nodes, lightCount, context, arena};
+        result = lightCount > 0 ? build(tree, lights, progress, user) : VPL_SUCCESS;
     }
-    if (result == VPL_SUCCESS && lightCount > 0) {
-        result = build(tree, lights, progress, user);
-    }
-    if (result != VPL_SUCCESS) {
-        vplLightTree_Destroy(tree);
-        return result;
-    }
-    *treeOut = tree;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, tree, treeOut);
 }
 
 void vplLightTree_Destroy(vplLightTree* tree)
 {
-    if (tree != NULL) {
-        vplFree(tree->context, tree->lights);
-        vplFree(tree->context, tree->nodes);
-        vplFree(tree->context, tree);
-    }
+    vplArena_Destroy(tree != NULL ? tree->arena : NULL);
 }

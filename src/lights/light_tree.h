@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// A binary tree over virtual lights: what a cluster of them can do at most can be told from its node.
+// A binary tree over virtual lights. The node of a cluster bounds the contribution of its lights.
 #ifndef VPL_LIGHTS_LIGHT_TREE_H
 #define VPL_LIGHTS_LIGHT_TREE_H
 
 #include <vpl/lights.h>
 
-// Two lights or more. The node of a cluster's left half follows it, that of the right half comes `left` nodes
-// later; halves of one light have none.
+#include "base/arena.h"
+
+// A cluster of two lights or more. The node of its left half follows, that of the right half comes `left`
+// nodes later; halves of one light have no node.
 typedef struct vplLightNode {
     float low[3], high[3]; // box of the positions, metres
-    float axis[3], cosine; // all normals are within this cone; -1: anywhere
+    float axis[3], cosine; // cone that holds all normals; -1: any direction
     float rgb[3];          // of all lights
     float intensity;       // r + g + b
     int left;              // lights in the left half
@@ -26,6 +28,7 @@ typedef struct vplLightTree {
     vplLightNode* nodes;  // lightCount - 1 of them, the root first; 104 bytes per light with the lights
     int lightCount;
     vplContext* context;
+    vplArena* arena; // owns the tree
 } vplLightTree;
 
 // A cluster: lights first .. first + count - 1, and its node where there is more than one.

@@ -1,60 +1,49 @@
 // SPDX-License-Identifier: MIT
-// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Particle Simulation", after Alexander
-// Keller, Instant Radiosity, SIGGRAPH 1997. All N particles are shot, then the first floor(rho N) go on, then
-// the first floor(rho^2 N), as the document's figure counts them (its prose skips floor(rho N)).
+// Particle simulation.
+// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights, "Particle Simulation", after
+// Alexander Keller, Instant Radiosity, SIGGRAPH 1997. All N particles are shot, then the first floor(rho N)
+// go on, then the first floor(rho^2 N), as in the document's figure (its prose skips floor(rho N)).
 //
-// Documented: light is attenuated by rho_d/pi at every hit and reflected like by a mirror. Physical: the flux
-// 4 pi I is multiplied by rho_d and leaves in a cosine-distributed direction.
+// Documented: light is multiplied by rho_d/pi at every hit and reflected as by a mirror. Physical: the flux 4
+// pi I is multiplied by rho_d and leaves in a cosine-distributed direction.
 //
-// Keller's own recipe counts the places where particles start as step 0: N lights on the emitters, of which the
-// first floor(rho N) are shot. Departs: where particles start from a point or a direction, those lights are one, the
-// emitter itself, and are marked so.
-#include <vpl/lights.h>
+// Keller counts the places where particles start as step 0: N lights on the emitters, of which the first
+// floor(rho N) are shot. Departs: where particles start from a point or a direction, these lights are marked
+// as the emitter itself.
+#include "lights/particles.h"
 
-#include "base/context.h"
+#include "base/arena.h"
 #include "geometry/bvh.h"
-#include "lights/counts.h"
-#include "lights/starts.h"
+#include "lights/light_set.h"
 #include "math/sampling.h"
 #include "math/vec.h"
-
-enum { PARTICLE_COOKIE = 0x56504c60 };
-
-vplParticleDef vplDefaultParticleDef(void)
-{
-    vplParticleDef def = {0};
-    def.particleCount = 10;
-    def.reflectivity = 0.5;
-    def.cookie = PARTICLE_COOKIE;
-    return def;
-}
 
 typedef struct Simulation {
     const vplGeometry* geometry;
     vplParticleDef def;
     vplStarts starts;
     bool keller; // lights where particles start are step 0
-    const int* stepCounts;
-    const int* stepStart;  // first slot of each step
-    const int* reach;      // per step: how many particles get there, to leave a light or to go on
-    const double* weights; // per step
+    // Per step: its first slot, the number of particles that reach it to leave a light or to go on, their
+    // weight.
+    int *stepCounts, *stepStart, *reach;
+    double* weights;
     int stepCount;
     vplVirtualLight* slots; // one per step and particle; step -1 where nothing was hit
-    int* raysOf;            // per particle
-    int* testsOf;           // per particle
-    bool* escapedOf;        // per particle
+    // Per particle.
+    int *raysOf, *testsOf;
+    bool* escapedOf;
 } Simulation;
 
 static vplVec3 reflect(vplVec3 d, vplVec3 n)
 {
     float along = vplDot(d, n);
     vplVec3 r = vplNormalize(vplSub(d, vplScale(2 * along, n)));
-    // Grazing rays may point into the surface after rounding; slide along it instead.
+    // A grazing ray may point into the surface after rounding: it slides along it.
     float side = along > 0 ? -1.0f : 1.0f, out = side * vplDot(r, n);
     return out >= 0 ? r : vplNormalize(vplSub(r, vplScale(side * out, n)));
 }
 
-// The particle's next surface; `hit` is the one it leaves, its object -1 in free space.
+// Finds the particle's next surface. `hit` is the one it leaves, of object -1 in free space.
 static bool trace(Simulation* s, int particle, const vplRay* ray, vplHit* hit)
 {
     if (s->def.geometry == VPL_PARTICLE_GEOMETRY_EXACT) {
@@ -65,21 +54,20 @@ static bool trace(Simulation* s, int particle, const vplRay* ray, vplHit* hit)
     return vplGeometry_ClosestBox(s->geometry, ray, from.object >= 0 ? &from : NULL, hit);
 }
 
-// The first surface of a particle that leaves an emitter with a map: where the texel's centre is, and the particle
-// comes from there.
+// Looks up the first surface of a particle in its emitter's map. The ray becomes that of the texel's centre.
 static bool lookUp(Simulation* s, const vplReflectiveMap* map, vplRay* ray, vplHit* hit)
 {
     const int64_t texel = vplReflectiveMap_Find(map, ray);
     return texel >= 0 && vplReflectiveMap_GetHit(map, s->geometry, texel, hit, &ray->direction);
 }
 
-// The map that takes the place of a particle's first ray, or NULL.
+// The map that replaces a particle's first ray, or NULL.
 static const vplReflectiveMap* mapOf(const Simulation* s, const vplStart* p)
 {
     return s->def.maps != NULL && p->emitter >= 0 ? s->def.maps[p->emitter] : NULL;
 }
 
-// A bounding box has no colour of its own: it reflects as its object does in the mean.
+// A bounding box reflects as its object does in the mean.
 static vplRgb reflectanceAt(const Simulation* s, const vplHit* hit)
 {
     const vplGeometry* g = s->geometry;
@@ -88,7 +76,7 @@ static vplRgb reflectanceAt(const Simulation* s, const vplHit* hit)
                : g->materials[g->triangleMaterials[hit->triangle]].diffuse;
 }
 
-// Interpolated normals receive cos(shading) where the surface met cos(geometric) of the light.
+// Smooth surfaces receive by their shading normal: cos(shading) / cos(geometric) of what hit the triangle.
 static float shadingFactor(const Simulation* s, const vplHit* hit, vplVec3 direction)
 {
     if (s->def.geometry == VPL_PARTICLE_GEOMETRY_OBB || !s->geometry->objects[hit->object].smooth) {
@@ -103,7 +91,7 @@ static float shadingFactor(const Simulation* s, const vplHit* hit, vplVec3 direc
 static void leaveLight(Simulation* s, int particle, int step, const vplVirtualLight* light)
 {
     if (particle >= s->stepCounts[step]) {
-        return; // only later steps have a place for it
+        return; // passes: a later step has more particles
     }
     vplVirtualLight* slot = &s->slots[s->stepStart[step] + particle];
     *slot = *light;
@@ -166,8 +154,8 @@ static void followChunk(void* data, int index, int worker)
     }
 }
 
-// Closes the gaps that escaped particles left and sums the statistics, in particle order.
-static void collect(const Simulation* s, vplLightSet* set, int* lightsInStep)
+// Closes the gaps of escaped particles and sums the statistics, in particle order.
+static void collect(const Simulation* s, int* lightsInStep, vplLightSet* set)
 {
     vplVirtualLight* lights = s->slots;
     int total = s->stepCount ? s->stepStart[s->stepCount - 1] + s->stepCounts[s->stepCount - 1] : 0;
@@ -184,149 +172,86 @@ static void collect(const Simulation* s, vplLightSet* set, int* lightsInStep)
     }
 }
 
-// Franchi and Ferrante's formulas are about point lights.
-static bool needsPoints(const vplParticleDef* def)
+static vplParticlePass passOf(const vplParticleDef* def)
 {
-    return def->lighting == VPL_LIGHTING_DOCUMENTED && def->start == VPL_START_FIRST_HIT;
+    return (vplParticlePass){def->pass ? def->firstParticle : 0, def->particleCount, def->reflectivity};
 }
 
-static vplResult checkDef(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
-                          const vplParticleDef* def)
+static vplResult prepare(Simulation* s, vplContext* context, vplArena* scratch)
 {
-    if (def->firstParticle < 0 || def->firstParticle > (INT64_C(1) << 40)) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "vplParticleDef.firstParticle is %lld, must be in [0, 2^40]",
-                       (long long)def->firstParticle);
+    const size_t particles = (size_t)s->def.particleCount, steps = (size_t)s->stepCount;
+    s->stepCounts = vplArena_Alloc(scratch, steps, sizeof *s->stepCounts);
+    s->stepStart = vplArena_Alloc(scratch, steps, sizeof *s->stepStart);
+    s->reach = vplArena_Alloc(scratch, steps, sizeof *s->reach);
+    s->weights = vplArena_Alloc(scratch, steps, sizeof *s->weights);
+    s->raysOf = vplArena_AllocZero(scratch, particles, sizeof *s->raysOf);
+    s->testsOf = vplArena_AllocZero(scratch, particles, sizeof *s->testsOf);
+    s->escapedOf = vplArena_AllocZero(scratch, particles, sizeof *s->escapedOf);
+    TRY(vplArena_Check(scratch));
+    const vplParticlePass pass = passOf(&s->def);
+    vplStepTotals totals;
+    TRY(vplCountPass(context, &pass, s->stepCounts, s->stepCount, &totals));
+    double weight = 1;
+    for (int i = 0, at = 0; i < s->stepCount; at += s->stepCounts[i], i++) {
+        s->stepStart[i] = at;
+        s->weights[i] = s->def.pass ? weight : (double)s->def.particleCount / s->stepCounts[i];
+        weight /= s->def.reflectivity;
     }
-    if (def->cookie != PARTICLE_COOKIE) {
-        return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef was not made by vplDefaultParticleDef");
-    }
-    const bool pointsOnly = needsPoints(def);
-    for (int i = 0; pointsOnly && i < emitterCount; i++) {
-        if (emitters[i].type != VPL_EMITTER_POINT) {
-            return vplFail(
-                context, VPL_INVALID_ARGUMENT,
-                "light %d is not a point light, and documented lighting knows no others; use physical", i);
-        }
-    }
-    if (pointsOnly && emitterCount < 1) {
-        return vplFail(
-            context, VPL_INVALID_ARGUMENT,
-            "the scene has no emitter to shoot particles from: documented lighting needs a point light");
-    }
-    if (def->maps != NULL && def->geometry != VPL_PARTICLE_GEOMETRY_EXACT) {
-        return vplFail(
-            context, VPL_INVALID_ARGUMENT,
-            "reflective shadow maps show triangles, not bounding boxes: use exact particle geometry");
-    }
-    for (int i = 0; def->directions != NULL && i < def->particleCount; i++) {
-        if (!vplIsFiniteVec(def->directions[i])) {
-            return vplFail(context, VPL_INVALID_ARGUMENT, "vplParticleDef.directions[%d] is not finite", i);
-        }
+    for (int i = s->stepCount - 1, most = 0; i >= 0; i--) {
+        most = s->stepCounts[i] > most ? s->stepCounts[i] : most;
+        s->reach[i] = most;
     }
     return VPL_SUCCESS;
 }
 
-static vplResult allocate(Simulation* s, vplLightSet* set, int64_t total, int** lightsInStep)
+static vplResult simulate(Simulation* s, int lightCount, vplArena* scratch, vplLightSet** setOut)
 {
-    vplContext* context = set->context;
-    size_t particles = (size_t)s->def.particleCount, steps = (size_t)set->stepCount;
-    int* counts = vplAlloc(context, steps, sizeof(int));
-    int* starts = vplAlloc(context, 2 * steps, sizeof(int));
-    double* weights = vplAlloc(context, steps, sizeof *weights);
-    *lightsInStep = vplAllocZero(context, steps, sizeof(int));
-    s->slots = vplAlloc(context, (size_t)total, sizeof *s->slots);
-    s->raysOf = vplAllocZero(context, particles, sizeof *s->raysOf);
-    s->testsOf = vplAllocZero(context, particles, sizeof *s->testsOf);
-    s->escapedOf = vplAllocZero(context, particles, sizeof *s->escapedOf);
-    set->stepCounts = s->stepCounts = counts;
-    s->stepStart = starts;
-    s->weights = weights;
-    set->lightsInStep = *lightsInStep;
-    set->lights = s->slots;
-    if (!counts || !starts || !weights || !*lightsInStep || !s->slots || !s->raysOf || !s->testsOf ||
-        !s->escapedOf) {
-        return VPL_OUT_OF_MEMORY;
+    vplContext* context = s->geometry->context;
+    vplLightArrays arrays;
+    vplLightSet* set;
+    TRY(prepare(s, context, scratch));
+    TRY(vplLightSet_Make(context, lightCount, s->stepCount, &arrays, &set));
+    s->slots = arrays.lights;
+    set->particleCount = s->def.particleCount;
+    for (int i = 0; i < s->stepCount; i++) {
+        arrays.stepCounts[i] = s->stepCounts[i];
     }
-    vplResult result = vplCountPass(context, s->def.pass ? s->def.firstParticle : 0, s->def.particleCount,
-                                    s->def.reflectivity, counts, set->stepCount, &set->stepCount, &total);
-    double weight = 1;
-    for (int i = 0, at = 0; i < set->stepCount; at += counts[i], i++) {
-        starts[i] = at;
-        weights[i] = s->def.pass ? weight : (double)s->def.particleCount / counts[i];
-        weight /= s->def.reflectivity;
+    const vplResult result =
+        vplParallelForProgress(context, (s->def.particleCount + CHUNK - 1) / CHUNK, followChunk, s,
+                               s->def.progress, s->def.progressUser, 0, 1);
+    if (result == VPL_SUCCESS) {
+        collect(s, arrays.lightsInStep, set);
     }
-    s->reach = starts + set->stepCount;
-    for (int i = set->stepCount - 1, most = 0; i >= 0; i--) {
-        most = counts[i] > most ? counts[i] : most;
-        starts[set->stepCount + i] = most;
-    }
-    return result;
+    return vplArena_Deliver(set->arena, result, set, setOut);
 }
 
 vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                                const vplParticleDef* def, vplLightSet** setOut)
 {
     vplContext* context = geometry->context;
-    int steps;
-    int64_t total;
-    vplResult result = checkDef(context, emitters, emitterCount, def);
-    if (result == VPL_SUCCESS) {
-        result = vplCountPass(context, def->pass ? def->firstParticle : 0, def->particleCount,
-                              def->reflectivity, NULL, 0, &steps, &total);
-    }
-    vplLightSet* set = result == VPL_SUCCESS ? vplAllocZero(context, 1, sizeof *set) : NULL;
-    if (set == NULL) {
-        return result == VPL_SUCCESS ? VPL_OUT_OF_MEMORY : result;
-    }
-    set->context = context;
-    set->stepCount = steps;
-    set->particleCount = def->particleCount;
-    Simulation s = {.geometry = geometry, .def = *def, .keller = def->start == VPL_START_EMITTER};
+    const vplParticlePass pass = passOf(def);
+    vplStepTotals totals;
     vplEmission* emission = NULL;
-    if (!needsPoints(def)) {
-        result = vplEmission_Create(geometry, emitters, emitterCount, &emission);
+    TRY(vplParticleDef_Check(context, emitters, emitterCount, def));
+    TRY(vplCountPass(context, &pass, NULL, 0, &totals));
+    if (!vplParticleDef_NeedsPoints(def)) {
+        TRY(vplEmission_Create(geometry, emitters, emitterCount, &emission));
     }
-    s.starts = vplStarts_Make(geometry, emission, emitters, emitterCount, &s.def);
-    if (result == VPL_SUCCESS && emission != NULL && emission->sourceCount == 0 && emitterCount == 0) {
+    vplResult result = VPL_SUCCESS;
+    if (emission != NULL && emission->sourceCount == 0 && emitterCount == 0) {
         result = vplFail(context, VPL_INVALID_ARGUMENT,
                          "the scene has no emitter: no light, and no surface that emits");
     }
-    int* lightsInStep = NULL;
-    if (result == VPL_SUCCESS && def->geometry == VPL_PARTICLE_GEOMETRY_EXACT) {
-        result = vplGeometry_PrepareRays(geometry);
-    }
     if (result == VPL_SUCCESS) {
-        result = allocate(&s, set, total, &lightsInStep);
-    }
-    if (result == VPL_SUCCESS) {
-        s.stepCount = set->stepCount;
-        result = vplParallelForProgress(context, (def->particleCount + CHUNK - 1) / CHUNK, followChunk, &s,
-                                        def->progress, def->progressUser, 0, 1);
-    }
-    if (result == VPL_SUCCESS) {
-        collect(&s, set, lightsInStep);
+        vplArena* scratch = vplArena_Create(context);
+        Simulation s = {.geometry = geometry,
+                        .def = *def,
+                        .keller = def->start == VPL_START_EMITTER,
+                        .stepCount = totals.stepCount};
+        s.starts = vplStarts_Make(geometry, emission, emitters, emitterCount, &s.def);
+        result = simulate(&s, (int)totals.lightCount, scratch, setOut);
+        vplArena_Destroy(scratch);
     }
     vplEmission_Destroy(emission);
-    vplFree(context, (int*)s.stepStart);
-    vplFree(context, (double*)s.weights);
-    vplFree(context, s.raysOf);
-    vplFree(context, s.testsOf);
-    vplFree(context, s.escapedOf);
-    if (result != VPL_SUCCESS) {
-        vplLightSet_Destroy(set);
-        return result;
-    }
-    *setOut = set;
-    return VPL_SUCCESS;
-}
-
-void vplLightSet_Destroy(vplLightSet* set)
-{
-    if (set != NULL) {
-        vplFree(set->context, (void*)set->lights);
-        vplFree(set->context, (void*)set->stepCounts);
-        vplFree(set->context, (void*)set->lightsInStep);
-        vplFree(set->context, set);
-    }
+    return result;
 }

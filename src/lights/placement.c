@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Based on: Franchi and Ferrante, Virtual Point Lights, "Considerations and Future Work", the first route: better
-// placement of the virtual lights, of which only those count that influence what is looked at. Many more particles
-// are simulated than were asked for, and lights are chosen by what they give to the picture.
+// Placement of virtual lights for a view: many more particles are simulated than were asked for, and lights
+// are chosen by their contribution to the picture.
+// Based on: Franchi and Ferrante, Virtual Point Lights, "Considerations and Future Work", the first route.
 #include "lights/placement.h"
-
-#include "base/context.h"
 
 #include <math.h>
 
 enum { PLACEMENT_COOKIE = 0x56504c61, MAX_CANDIDATES = 1 << 22 };
 
-// Errors of 300 particles in room and sponza-sun with 64 points: 0.067, 0.065; 256: 0.052, 0.048; 1024: 0.044, 0.043.
-// With 2 %, 10 % and 30 % by flux: 0.057, 0.052, 0.053 and 0.051, 0.048, 0.054.
+// 256 points and 10 % by flux: errors of 0.052 in room and 0.048 in sponza-sun with 300 particles, 0.067 and
+// 0.065 with 64 points (bench/placement).
 vplPlacementDef vplDefaultPlacementDef(void)
 {
     vplPlacementDef def = {0};
@@ -57,7 +55,7 @@ vplResult vplPlacementDef_Check(const vplContext* context, const vplPlacementDef
     return VPL_SUCCESS;
 }
 
-// As many times the particles as may be.
+// How many times the particles may be multiplied.
 static int oversample(const vplPlacementDef* def, int particles, int64_t lights)
 {
     int64_t times = lights > 0 ? MAX_CANDIDATES / lights : 1;
@@ -66,7 +64,7 @@ static int oversample(const vplPlacementDef* def, int particles, int64_t lights)
     return times > 1 ? (int)times : 1;
 }
 
-// How many lights the particles that were asked for would leave, from what many more of them left.
+// How many lights the particles that were asked for would leave, estimated from many more of them.
 static double countPlain(const vplLightSet* candidates, const int* counts, int stepCount)
 {
     double sum = 0;
@@ -80,45 +78,44 @@ static double countPlain(const vplLightSet* candidates, const int* counts, int s
     return rint(sum);
 }
 
+// Measures the candidates and chooses among them.
+static vplResult choose(const vplGeometry* geometry, const vplParticleDef* particles,
+                        const vplPlacementDef* def, vplArena* scratch, vplLightSet* candidates,
+                        vplLightSet** setOut)
+{
+    vplContext* context = geometry->context;
+    int steps;
+    int64_t total, rays;
+    TRY(vplCountParticles(context, particles->particleCount, particles->reflectivity, NULL, 0, &steps,
+                          &total));
+    int* counts = vplArena_Alloc(scratch, (size_t)steps, sizeof *counts);
+    float* contributions = vplArena_Alloc(scratch, (size_t)candidates->lightCount, sizeof *contributions);
+    TRY(vplArena_Check(scratch));
+    TRY(vplCountParticles(context, particles->particleCount, particles->reflectivity, counts, steps, &steps,
+                          &total));
+    TRY(vplMeasureLights(geometry, candidates, def, contributions, &rays));
+    candidates->rays += rays;
+    return vplChooseLights(candidates, contributions, countPlain(candidates, counts, steps), def, setOut);
+}
+
 vplResult vplPlaceLights(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                          const vplParticleDef* particles, const vplPlacementDef* def, vplLightSet** setOut)
 {
     vplContext* context = geometry->context;
     int steps;
-    int64_t total, rays;
-    vplResult result = vplPlacementDef_Check(context, def);
-    if (result == VPL_SUCCESS) {
-        result = vplCountParticles(context, particles->particleCount, particles->reflectivity, NULL, 0,
-                                   &steps, &total);
-    }
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    int64_t total;
+    TRY(vplPlacementDef_Check(context, def));
+    TRY(vplCountParticles(context, particles->particleCount, particles->reflectivity, NULL, 0, &steps,
+                          &total));
     vplParticleDef many = *particles;
     const int times = oversample(def, particles->particleCount, total);
     many.particleCount *= times;
     many.firstParticle *= times;
-    vplLightSet* candidates = NULL;
-    int* counts = vplAlloc(context, (size_t)steps, sizeof *counts);
-    float* contributions = NULL;
-    result = counts ? vplCountParticles(context, particles->particleCount, particles->reflectivity, counts,
-                                        steps, &steps, &total)
-                    : VPL_OUT_OF_MEMORY;
-    if (result == VPL_SUCCESS) {
-        result = vplSimulateParticles(geometry, emitters, emitterCount, &many, &candidates);
-    }
-    if (result == VPL_SUCCESS) {
-        contributions = vplAlloc(context, (size_t)candidates->lightCount, sizeof *contributions);
-        result = contributions ? vplMeasureLights(geometry, candidates, def, contributions, &rays)
-                               : VPL_OUT_OF_MEMORY;
-    }
-    if (result == VPL_SUCCESS) {
-        const double count = countPlain(candidates, counts, steps);
-        candidates->rays += rays;
-        result = vplChooseLights(candidates, contributions, count, def, setOut);
-    }
-    vplFree(context, contributions);
+    vplLightSet* candidates;
+    TRY(vplSimulateParticles(geometry, emitters, emitterCount, &many, &candidates));
+    vplArena* scratch = vplArena_Create(context);
+    const vplResult result = choose(geometry, particles, def, scratch, candidates, setOut);
+    vplArena_Destroy(scratch);
     vplLightSet_Destroy(candidates);
-    vplFree(context, counts);
     return result;
 }

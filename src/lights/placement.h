@@ -1,29 +1,25 @@
 // SPDX-License-Identifier: MIT
-// What a camera sees, and what lights give to it.
+// Points that a camera sees, by which lights are judged.
 #ifndef VPL_LIGHTS_PLACEMENT_H
 #define VPL_LIGHTS_PLACEMENT_H
 
 #include <vpl/lights.h>
 
+#include "base/arena.h"
 #include "geometry/bvh.h"
 
 // Sixteen points of one part of the picture.
-typedef struct vplSeenBlock {
+typedef struct vplViewBlock {
     vplSurface surface;        // positions, and normals as they are shaded with
-    float plane[3][VPL_LANES]; // the triangles' own normals, on the side that is seen
-    float rho[3][VPL_LANES];   // reflectance; 0 where nothing is seen
+    float plane[3][VPL_LANES]; // the triangles' own normals, on the visible side
+    float rho[3][VPL_LANES];   // reflectance; 0 where nothing is visible
     vplRayPacket rays;         // where shadow rays leave; without directions
-} vplSeenBlock;
+} vplViewBlock;
 
 vplResult vplPlacementDef_Check(const vplContext* context, const vplPlacementDef* def);
 
-// Where the camera looks; free *blocksOut with vplFree.
-vplResult vplFindSeen(const vplGeometry* geometry, const vplPlacementDef* def, vplSeenBlock** blocksOut,
-                      int* countOut);
-
-// What 16 points reflect of one light, without shadow, as the sum of three channels. inverseBound is
-// 1 / minDistance^2, infinity for no bound; it is not used by documented lighting.
-typedef void vplReflectFcn(const vplSeenBlock* block, const vplShadeLight* light, float inverseBound,
-                           float reflectedOut[VPL_LANES]);
+// Points that the def's camera sees; the arena owns the blocks.
+vplResult vplSampleView(const vplGeometry* geometry, const vplPlacementDef* def, vplArena* arena,
+                        const vplViewBlock** blocksOut, int* countOut);
 
 #endif

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Based on: Carsten Dachsbacher and Marc Stamminger, Reflective Shadow Maps, I3D 2005: the scene seen from the light,
-// each texel with position, normal and flux. Departs: a point light has the six faces of a cube; only depth and the
-// triangle are drawn, as fast as depth alone, and the rest is found for the texels that are asked for: SSVP asks for
-// 256 of a million (see rsm_texels.c).
+// Reflective shadow maps.
+// Based on: Carsten Dachsbacher and Marc Stamminger, Reflective Shadow Maps, I3D 2005: the scene seen from
+// the light, each texel with position, normal and flux. Departs: a point light has the six faces of a cube;
+// only depth and triangle are drawn, as fast as depth alone, and the rest is found for the texels that are
+// read, 256 of a million in SSVP (see rsm_texels.c).
 #include <vpl/lights.h>
 
-#include "base/context.h"
+#include "base/arena.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "visibility/drawing.h"
@@ -19,7 +20,7 @@ vplReflectiveMapDef vplDefaultReflectiveMapDef(void)
 
 // ---- the view
 
-// Returns what is nearer than it sees, metres.
+// Returns the near distance, metres.
 static float aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
 {
     const vplEmitterDef* e = &map->emitter;
@@ -44,7 +45,7 @@ static float aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
     return vplFarthestVertex(g, map->origin) * 0x1p-20f;
 }
 
-// The box around all vertices, along the light and across. A hair wider, so that its edges are within the view.
+// The box around all vertices in the light's frame. Slightly larger, so that its edges are within the view.
 static void aimParallel(vplReflectiveMap* map, const vplGeometry* g)
 {
     map->forward[0] = vplNormalize(map->emitter.direction);
@@ -64,7 +65,7 @@ static void aimParallel(vplReflectiveMap* map, const vplGeometry* g)
         half[k] = g->vertexCount > 0 ? 0.5 * (high - low) : 0;
         largest = half[k] > largest ? half[k] : largest;
     }
-    for (int k = 0; k < 3; k++) { // what is seen edge-on has no width of its own
+    for (int k = 0; k < 3; k++) { // a flat scene seen edge-on has no width
         half[k] += (largest > 0 ? largest : 1) * 0x1p-16;
     }
     map->extent[0] = half[0];
@@ -96,68 +97,86 @@ static void shadeVertices(const void* uniforms, int first, int count, const vplV
         out->x[i] = acrossScale * vplDot(m->right[u->face], p);
         out->y[i] = upScale * vplDot(m->up[u->face], p);
         out->w[i] = parallel ? 1 : depth;
-        out->z[i] = parallel ? depth * inverseFar : depth - u->near; // no far plane: everything counts
+        out->z[i] = parallel ? depth * inverseFar : depth - u->near; // no far plane
     }
 }
 
 // ---- drawing
 
-// In parallel views z/w is linear and what is wanted. In others it would crowd where everything is: depths are those
-// along the axis.
-static vplResult recordFace(const vplReflectiveMap* map, const vplGeometry* g, float near, int face,
-                            ObjectUniforms* uniforms, const vplMesh* meshes, vplRaster** rasterOut)
+// A map while it is drawn.
+typedef struct Drawing {
+    vplReflectiveMap* map;
+    const vplGeometry* geometry;
+    float near;
+    float* depth; // the map's, as it is drawn
+    int32_t* triangle;
+    ObjectUniforms* uniforms; // of every object on every face
+    vplMesh* meshes;          // of every object
+    vplRaster* rasters[6];
+} Drawing;
+
+// Creates the raster of a face. Depth is z/w in parallel views, where that is linear, else the distance along
+// the axis.
+static vplResult recordFace(Drawing* d, int face)
 {
+    const vplReflectiveMap* map = d->map;
+    const vplGeometry* g = d->geometry;
     vplFramebuffer framebuffer = vplDefaultFramebuffer(map->size, map->size);
     const size_t first = (size_t)face * (size_t)map->size * (size_t)map->size;
     framebuffer.depth.clear = INFINITY;
-    framebuffer.depth.pixels = (float*)map->depth + first;
-    framebuffer.triangles = (int32_t*)map->triangle + first;
-    vplResult result = vplRaster_Create(g->context, &framebuffer, rasterOut);
-    for (int i = 0; i < g->objectCount && result == VPL_SUCCESS; i++) {
-        ObjectUniforms* u = &uniforms[face * g->objectCount + i];
-        *u = (ObjectUniforms){map, face, near, g->positions + g->objects[i].firstVertex};
+    framebuffer.depth.pixels = d->depth + first;
+    framebuffer.triangles = d->triangle + first;
+    TRY(vplRaster_Create(g->context, &framebuffer, &d->rasters[face]));
+    for (int i = 0; i < g->objectCount; i++) {
+        ObjectUniforms* u = &d->uniforms[face * g->objectCount + i];
+        *u = (ObjectUniforms){map, face, d->near, g->positions + g->objects[i].firstVertex};
         vplPipeline pipeline = vplDefaultPipeline();
         pipeline.vertex = shadeVertices;
         pipeline.vertexUniforms = u;
         pipeline.distanceScale = map->emitter.type == VPL_EMITTER_DIRECTIONAL ? 0 : 1;
         pipeline.distanceAlongAxis = pipeline.distanceScale != 0;
-        result = vplRaster_Draw(*rasterOut, &meshes[i], &pipeline);
+        TRY(vplRaster_Draw(d->rasters[face], &d->meshes[i], &pipeline));
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
-static vplResult draw(vplReflectiveMap* map, const vplGeometry* g, vplProgressFcn* progress, void* user)
+static vplResult recordFaces(Drawing* d, vplArena* scratch)
 {
-    vplContext* context = g->context;
+    const vplGeometry* g = d->geometry;
     const size_t objects = (size_t)g->objectCount;
-    float near = 0;
-    if (map->emitter.type == VPL_EMITTER_DIRECTIONAL) {
-        aimParallel(map, g);
-    } else {
-        near = aimPerspective(map, g);
+    d->uniforms = vplArena_Alloc(scratch, objects * (size_t)d->map->faceCount, sizeof *d->uniforms);
+    d->meshes = vplArena_Alloc(scratch, objects, sizeof *d->meshes);
+    TRY(vplArena_Check(scratch));
+    for (int i = 0; i < g->objectCount; i++) {
+        d->meshes[i] = vplMeshOfObject(g, i);
     }
-    ObjectUniforms* uniforms = vplAlloc(context, objects * (size_t)map->faceCount, sizeof *uniforms);
-    vplMesh* meshes = vplAlloc(context, objects, sizeof *meshes);
-    vplRaster* rasters[6] = {NULL};
+    for (int face = 0; face < d->map->faceCount; face++) {
+        TRY(recordFace(d, face));
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult draw(Drawing* d, vplProgressFcn* progress, void* user)
+{
+    vplReflectiveMap* map = d->map;
     vplRasterStats stats[6];
-    vplResult result = uniforms && meshes ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    for (int i = 0; result == VPL_SUCCESS && i < g->objectCount; i++) {
-        meshes[i] = vplMeshOfObject(g, i);
+    if (map->emitter.type == VPL_EMITTER_DIRECTIONAL) {
+        aimParallel(map, d->geometry);
+    } else {
+        d->near = aimPerspective(map, d->geometry);
     }
-    for (int face = 0; face < map->faceCount && result == VPL_SUCCESS; face++) {
-        result = recordFace(map, g, near, face, uniforms, meshes, &rasters[face]);
-    }
+    vplArena* scratch = vplArena_Create(d->geometry->context);
+    vplResult result = recordFaces(d, scratch);
     if (result == VPL_SUCCESS) {
-        result = vplRaster_RunAll(rasters, map->faceCount, progress, user, stats);
+        result = vplRaster_RunAll(d->rasters, map->faceCount, progress, user, stats);
     }
     for (int face = 0; face < map->faceCount; face++) {
         if (result == VPL_SUCCESS) {
             vplRasterStats_Add(&map->stats, &stats[face]);
         }
-        vplRaster_Destroy(rasters[face]);
+        vplRaster_Destroy(d->rasters[face]);
     }
-    vplFree(context, meshes);
-    vplFree(context, uniforms);
+    vplArena_Destroy(scratch);
     return result;
 }
 
@@ -175,31 +194,29 @@ vplResult vplReflectiveMap_Create(const vplGeometry* geometry, const vplReflecti
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplReflectiveMapDef.size is %d, must be in [1, %d]",
                        def->size, VPL_MAX_SHADOW_MAP);
     }
-    vplReflectiveMap* map = vplAllocZero(context, 1, sizeof *map);
-    if (map == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    const int faces = def->emitter.type == VPL_EMITTER_POINT ? 6 : 1;
+    const size_t texels = (size_t)faces * (size_t)def->size * (size_t)def->size;
+    vplArena* arena = vplArena_Create(context);
+    vplReflectiveMap* map = vplArena_AllocZero(arena, 1, sizeof *map);
+    Drawing d = {.map = map,
+                 .geometry = geometry,
+                 .depth = vplArena_Alloc(arena, texels, sizeof *d.depth),
+                 .triangle = vplArena_Alloc(arena, texels, sizeof *d.triangle)};
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *map = (vplReflectiveMap){.emitter = def->emitter,
+                                  .size = def->size,
+                                  .faceCount = faces,
+                                  .depth = d.depth,
+                                  .triangle = d.triangle,
+                                  .context = context,
+                                  .arena = arena};
+        result = draw(&d, progress, user);
     }
-    map->context = context;
-    map->emitter = def->emitter;
-    map->size = def->size;
-    map->faceCount = def->emitter.type == VPL_EMITTER_POINT ? 6 : 1;
-    const size_t texels = (size_t)map->faceCount * (size_t)map->size * (size_t)map->size;
-    map->depth = vplAlloc(context, texels, sizeof *map->depth);
-    map->triangle = map->depth ? vplAlloc(context, texels, sizeof *map->triangle) : NULL;
-    vplResult result = map->triangle ? draw(map, geometry, progress, user) : VPL_OUT_OF_MEMORY;
-    if (result != VPL_SUCCESS) {
-        vplReflectiveMap_Destroy(map);
-        return result;
-    }
-    *mapOut = map;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, map, mapOut);
 }
 
 void vplReflectiveMap_Destroy(vplReflectiveMap* map)
 {
-    if (map != NULL) {
-        vplFree(map->context, (void*)map->triangle);
-        vplFree(map->context, (void*)map->depth);
-        vplFree(map->context, map);
-    }
+    vplArena_Destroy(map != NULL ? map->arena : NULL);
 }

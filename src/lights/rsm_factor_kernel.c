@@ -1,31 +1,32 @@
 // SPDX-License-Identifier: MIT
-// The shadow of 16 points by what an emitter lights first. Compiled once per instruction set; all give the same bits.
-// Based on: William Reeves, David Salesin and Robert Cook, Rendering Antialiased Shadows with Depth Maps, SIGGRAPH 1987:
-// depths are compared first and the answers of neighbouring texels are mixed. Departs: each of four texels is compared
-// with the point's own plane at that texel's centre, or with the point itself, whichever is nearer to the emitter: a
-// plane never shadows itself at any angle.
+// The shadow of 16 points from a reflective shadow map. Compiled once per instruction set; all give the same
+// bits.
+// Based on: William Reeves, David Salesin and Robert Cook, Rendering Antialiased Shadows with Depth Maps,
+// SIGGRAPH 1987: depths are compared first, then the results of neighbouring texels are interpolated.
+// Departs: each of four texels is compared with the point's own plane at the texel's centre or with the point
+// itself, whichever is nearer to the emitter, so that no plane shadows itself at any angle.
 //
-// Over the map, a plane's depth is linear in parallel views, and 1 / its depth in others: both are `near` here, larger
-// where it is nearer to the emitter (parallel: the depth with its sign turned).
-#include "base/isa.h"
+// Over the map, a plane's depth is linear in parallel views, and its inverse is linear in others. `near` is
+// either: negated depth or 1 / depth, larger nearer to the emitter.
+#include "lights/kernels.h"
 #include "lights/rsm.h"
 #include "math/scalar.h"
 #include "visibility/gather.h"
 
-// Points and their planes in the frame of the face that sees them.
-typedef struct Seen {
+// Points and their planes in the frame of the face that shows them.
+typedef struct FacePoints {
     float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES];    // right, up, forward, metres
     float nx[VPL_LANES], ny[VPL_LANES], nz[VPL_LANES]; // unit
-    float rounding[VPL_LANES];                         // metres: how far off their planes points may be
-    int32_t first[VPL_LANES];                          // texel of the face
-} Seen;
+    float rounding[VPL_LANES]; // metres: distance of points from their planes by rounding
+    int32_t first[VPL_LANES];  // texel of the face
+} FacePoints;
 
 // A plane over the map.
 typedef struct Slope {
     float column[VPL_LANES], row[VPL_LANES]; // of the point, in texels; 0 is the first one's centre
-    float near[VPL_LANES], across[VPL_LANES], down[VPL_LANES]; // there, and its growth per texel
-    float slack[VPL_LANES]; // how much nearer the plane may have been drawn
-    int32_t seen[VPL_LANES];
+    float near[VPL_LANES], across[VPL_LANES], down[VPL_LANES]; // there, and its gradient per texel
+    float slack[VPL_LANES];     // how much nearer the plane may have been drawn
+    int32_t covered[VPL_LANES]; // -1 where the map reaches
 } Slope;
 
 // Four units in the last place of coordinates.
@@ -34,7 +35,7 @@ static inline float roundingOf(vplVec3 o, float px, float py, float pz)
     return 0x1p-22f * (fabsf(px) + fabsf(py) + fabsf(pz) + fabsf(o.x) + fabsf(o.y) + fabsf(o.z));
 }
 
-// Texels' centres may be 1/256 outside of what they show.
+// Centres of texels may lie 1/256 texel outside the triangles that they show.
 static inline float slackOf(float across, float down, float rounding)
 {
     return 0x1p-8f * (fabsf(across) + fabsf(down)) + fabsf(rounding);
@@ -42,7 +43,8 @@ static inline float slackOf(float across, float down, float rounding)
 
 // ---- frames
 
-static inline void turnToFace(const vplReflectiveMap* map, const vplSurface* restrict s, Seen* restrict out)
+static inline void turnToFace(const vplReflectiveMap* map, const vplSurface* restrict s,
+                              FacePoints* restrict out)
 {
     const vplVec3 o = map->origin, r = map->right[0], u = map->up[0], f = map->forward[0];
     for (int l = 0; l < VPL_LANES; l++) {
@@ -60,7 +62,8 @@ static inline void turnToFace(const vplReflectiveMap* map, const vplSurface* res
 }
 
 // The frames of vplCube_GetFrame; ties go to z, then y, then x.
-static inline void turnToCube(const vplReflectiveMap* map, const vplSurface* restrict s, Seen* restrict out)
+static inline void turnToCube(const vplReflectiveMap* map, const vplSurface* restrict s,
+                              FacePoints* restrict out)
 {
     const vplVec3 o = map->origin;
     const int32_t texels = map->size * map->size;
@@ -86,13 +89,13 @@ static inline void turnToCube(const vplReflectiveMap* map, const vplSurface* res
 
 // ---- planes
 
-// As near to the emitter as the plane may come and not be there.
+// Keeps the divisor of a plane away from 0.
 static inline float leastOf(float facing)
 {
     return fabsf(facing) > 1e-30f ? facing : 1e-30f;
 }
 
-static inline void projectCone(const vplReflectiveMap* map, const Seen* restrict s, Slope* restrict out)
+static inline void projectCone(const vplReflectiveMap* map, const FacePoints* restrict s, Slope* restrict out)
 {
     const float sideX = (float)(2 * map->extent[0] / map->size),
                 sideY = (float)(2 * map->extent[1] / map->size);
@@ -108,11 +111,12 @@ static inline void projectCone(const vplReflectiveMap* map, const Seen* restrict
         out->across[l] = across;
         out->down[l] = down;
         out->slack[l] = slackOf(across, down, s->rounding[l] * rate * near);
-        out->seen[l] = z > 0;
+        out->covered[l] = z > 0;
     }
 }
 
-static inline void projectParallel(const vplReflectiveMap* map, const Seen* restrict s, Slope* restrict out)
+static inline void projectParallel(const vplReflectiveMap* map, const FacePoints* restrict s,
+                                   Slope* restrict out)
 {
     const float sideX = (float)(2 * map->extent[0] / map->size),
                 sideY = (float)(2 * map->extent[1] / map->size);
@@ -127,21 +131,22 @@ static inline void projectParallel(const vplReflectiveMap* map, const Seen* rest
         out->across[l] = across;
         out->down[l] = down;
         out->slack[l] = slackOf(across, down, s->rounding[l] * rate);
-        out->seen[l] = -1;
+        out->covered[l] = -1;
     }
 }
 
 // ---- texels
 
-// Of one coordinate: the two texels around it, how far their centres are from it, and the weight of the second.
+// One coordinate: the two texels around it, the offsets of their centres from it, and the weight of the
+// second.
 typedef struct Pair {
     int32_t at[2][VPL_LANES];
     float away[2][VPL_LANES], weight[VPL_LANES];
 } Pair;
 
-// Beyond the last centre both are the last one. Clears `seen` where the map does not reach.
+// Beyond the last centre both are the last one. Clears `covered` where the map does not reach.
 static inline void findPair(const float coordinate[restrict VPL_LANES], int32_t size,
-                            int32_t seen[restrict VPL_LANES], Pair* restrict out)
+                            int32_t covered[restrict VPL_LANES], Pair* restrict out)
 {
     const float end = (float)size - 0.5f;
     const int32_t last = size - 1;
@@ -155,11 +160,12 @@ static inline void findPair(const float coordinate[restrict VPL_LANES], int32_t 
         out->away[0][l] = (float)first - within;
         out->away[1][l] = (float)second - within;
         out->weight[l] = within - (float)before;
-        seen[l] &= fabsf(c - within) < 0x1p-8f ? -1 : 0; // at a cube's edges both faces may round it away
+        covered[l] &=
+            fabsf(c - within) < 0x1p-8f ? -1 : 0; // at a cube's edges rounding may move it outside both faces
     }
 }
 
-// 1 where a texel sees something nearer than the plane there and the point.
+// 1 where a texel shows something nearer than the plane there and the point.
 static inline void compare(const vplReflectiveMap* map, const Slope* restrict s,
                            const float away[2][VPL_LANES], const float stored[restrict VPL_LANES],
                            float hides[restrict VPL_LANES])
@@ -180,33 +186,31 @@ static inline void compare(const vplReflectiveMap* map, const Slope* restrict s,
     }
 }
 
-vplReflectiveFactorFcn VPL_KERNEL(vplReflectiveFactor);
-
 void VPL_KERNEL(vplReflectiveFactor)(const vplReflectiveMap* map, const vplSurface* surface,
                                      float factor[restrict VPL_LANES])
 {
-    Seen seen;
+    FacePoints points;
     Slope slope;
     Pair columns, rows;
     float hides[4][VPL_LANES];
     if (map->emitter.type == VPL_EMITTER_POINT) {
-        turnToCube(map, surface, &seen);
+        turnToCube(map, surface, &points);
     } else {
-        turnToFace(map, surface, &seen);
+        turnToFace(map, surface, &points);
     }
     if (map->emitter.type == VPL_EMITTER_DIRECTIONAL) {
-        projectParallel(map, &seen, &slope);
+        projectParallel(map, &points, &slope);
     } else {
-        projectCone(map, &seen, &slope);
+        projectCone(map, &points, &slope);
     }
-    findPair(slope.column, map->size, slope.seen, &columns);
-    findPair(slope.row, map->size, slope.seen, &rows);
+    findPair(slope.column, map->size, slope.covered, &columns);
+    findPair(slope.row, map->size, slope.covered, &rows);
     for (int k = 0; k < 4; k++) {
         const int i = k & 1, j = k >> 1;
         int32_t place[VPL_LANES];
         float stored[VPL_LANES], away[2][VPL_LANES];
         for (int l = 0; l < VPL_LANES; l++) {
-            place[l] = seen.first[l] + rows.at[j][l] * map->size + columns.at[i][l];
+            place[l] = points.first[l] + rows.at[j][l] * map->size + columns.at[i][l];
             away[0][l] = columns.away[i][l];
             away[1][l] = rows.away[j][l];
         }
@@ -218,6 +222,6 @@ void VPL_KERNEL(vplReflectiveFactor)(const vplReflectiveMap* map, const vplSurfa
         const float above = hides[0][l] + x * (hides[1][l] - hides[0][l]);
         const float below = hides[2][l] + x * (hides[3][l] - hides[2][l]);
         const float mixed = above + y * (below - above);
-        factor[l] = slope.seen[l] ? mixed : 0.0f;
+        factor[l] = slope.covered[l] ? mixed : 0.0f;
     }
 }

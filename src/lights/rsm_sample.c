@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Based on: Vitor Aranha, Márcio Macedo and Antônio Apolinário, Screen-Space Virtual Point Light Propagation for
-// Real-Time Global Illumination, section II-A: the texels of a reflective shadow map at the points of the 2D Hammersley
-// sequence are the lights of the first bounce. Departs: what a light sends out is written down, as the document does
-// not; several emitters share the lights by power, and a point's six faces lie side by side in the unit square.
-#include "base/context.h"
+// First-bounce lights of SSVP: samples of reflective shadow maps.
+// Based on: Vitor Aranha, Márcio Macedo and Antônio Apolinário, Screen-Space Virtual Point Light Propagation
+// for Real-Time Global Illumination, section II-A: texels at the points of the 2D Hammersley sequence.
+// Departs: the flux of a light, which the document does not state; several emitters share the lights by
+// power; the six faces of a point light lie side by side in the unit square.
+#include "base/arena.h"
 #include "base/rng.h"
 #include "geometry/emission.h"
 #include "lights/light_set.h"
@@ -24,8 +25,8 @@ typedef struct Sampling {
     const vplReflectiveMap* const* maps;
     int mapCount, count;
     uint64_t shift;
-    int* first;             // of each map: its first sample; one more than maps
-    vplVirtualLight* slots; // one per sample; weight 0: there is none
+    int* first;             // per map: its first sample; the last entry ends the last map
+    vplVirtualLight* slots; // one per sample; weight 0: none
     int64_t escaped;
 } Sampling;
 
@@ -44,8 +45,8 @@ static double powerOf(const vplReflectiveMap* map)
     return share * vplRgbMean(e->intensity);
 }
 
-// Each map with power has one sample, where there are so many, lest its light be lost; the others go by power. Rounded
-// sums of all up to a map make shares that add up.
+// Each map with power gets one sample, if there are so many, so that its light is not lost; the others are
+// shared by power. Rounding cumulative sums makes the shares add up.
 static void shareSamples(Sampling* s)
 {
     double total = 0, sum = 0;
@@ -66,8 +67,8 @@ static void shareSamples(Sampling* s)
 
 // ---- samples
 
-// In which of `cells` equal parts of [0, 1) the coordinate numerator / denominator + shift, modulo 1, lies. No rounding
-// moves an unshifted point from one cell to another: its quotient is at least 2^-24 below the next integer, or is one.
+// The one of `cells` equal parts of [0, 1) that holds numerator / denominator + shift, modulo 1. Rounding
+// moves no unshifted point to another cell: its quotient is an integer, or at least 2^-24 below the next one.
 static int64_t cellOf(double numerator, double denominator, double shift, int64_t cells)
 {
     double at = numerator * (double)cells / denominator + shift * (double)cells;
@@ -90,8 +91,8 @@ static int64_t texelOf(const Sampling* s, const vplReflectiveMap* map, int emitt
     return (column / size * size + row) * size + column % size;
 }
 
-// Each of the n samples stands for its n-th part of the map's texels, each of all N samples carries all of the map's
-// light: the weight N / n makes up for those that are other maps'.
+// A sample stands for the n-th part of its map's texels and carries the light of the whole map: the weight N
+// / n accounts for the samples of other maps.
 static void takeSample(Sampling* s, int emitter, int particle)
 {
     const vplReflectiveMap* map = s->maps[emitter];
@@ -131,12 +132,11 @@ static void takeSamples(void* data, int chunk, int worker)
 
 // ---- the set
 
-static void fillSet(Sampling* s, vplLightSet* set)
+static void fillSet(Sampling* s, const vplLightArrays* arrays, vplLightSet* set)
 {
     shareSamples(s);
     const int taken = s->first[s->mapCount];
     vplParallelFor(set->context, (taken + CHUNK - 1) / CHUNK, takeSamples, s);
-    set->lightCount = 0;
     for (int i = 0; i < taken; i++) {
         if (s->slots[i].weight > 0) {
             s->slots[set->lightCount++] = s->slots[i];
@@ -145,8 +145,8 @@ static void fillSet(Sampling* s, vplLightSet* set)
     set->particleCount = s->count;
     set->escaped = (int)s->escaped;
     if (set->stepCount > 0) {
-        ((int*)set->stepCounts)[0] = s->count;
-        ((int*)set->lightsInStep)[0] = set->lightCount;
+        arrays->stepCounts[0] = s->count;
+        arrays->lightsInStep[0] = set->lightCount;
     }
 }
 
@@ -162,24 +162,17 @@ vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflecti
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplRsmSampleDef.count is %d, must be in [0, %d]",
                        def->count, VPL_MAX_LIGHTS);
     }
+    Sampling s = {
+        .geometry = geometry, .maps = maps, .mapCount = mapCount, .count = def->count, .shift = def->shift};
+    vplLightArrays arrays;
     vplLightSet* set;
-    const vplResult result = vplLightSet_Make(context, def->count, def->count > 0 ? 1 : 0, &set);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    Sampling s = {.geometry = geometry,
-                  .maps = maps,
-                  .mapCount = mapCount,
-                  .count = def->count,
-                  .shift = def->shift,
-                  .slots = (vplVirtualLight*)set->lights};
+    TRY(vplLightSet_Make(context, def->count, def->count > 0 ? 1 : 0, &arrays, &set));
+    s.slots = arrays.lights;
     s.first = vplAlloc(context, (size_t)mapCount + 1, sizeof *s.first);
-    if (s.first == NULL) {
-        vplLightSet_Destroy(set);
-        return VPL_OUT_OF_MEMORY;
+    if (s.first != NULL) {
+        fillSet(&s, &arrays, set);
     }
-    fillSet(&s, set);
+    const vplResult result = s.first != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     vplFree(context, s.first);
-    *setOut = set;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(set->arena, result, set, setOut);
 }

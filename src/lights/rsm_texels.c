@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What texels of a reflective shadow map see, found from the triangle when it is asked for, and which texel a ray goes
-// through. In double: at a grazing angle a texel's ray meets the plane with ten times the rounding of the ray.
-#include "lights/rsm.h"
+// Texels of a reflective shadow map: position, normal and flux are found from the triangle on demand, and the
+// texel of a ray. In double: at grazing angles the hit has ten times the rounding error of the ray.
+#include "lights/kernels.h"
 
 #include "base/context.h"
-#include "base/isa.h"
 #include "geometry/emission.h"
 #include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
-
-VPL_KERNEL_TABLE(FACTOR, vplReflectiveFactorFcn, vplReflectiveFactor);
 
 typedef struct Place {
     int face, i, j;
@@ -53,8 +50,9 @@ static vplRgb fluxOf(const vplReflectiveMap* m, const Place* p)
 
 // ---- place
 
-// A point of a triangle's plane: where the ray through a texel's centre meets it, metres. What is seen edge-on, or was
-// not quite seen (coverage is snapped to 1/256 texel), is met no nearer or farther than its corners.
+// The point where the ray through a texel's centre meets a triangle's plane, metres. A triangle that is seen
+// edge-on, or does not quite cover the centre (coverage is snapped to 1/256 texel), is hit within the depths
+// of its corners.
 static vplVec3 meetPlane(const vplReflectiveMap* m, const vplGeometry* g, const Place* p, int triangle)
 {
     const bool parallel = m->emitter.type == VPL_EMITTER_DIRECTIONAL;
@@ -78,8 +76,9 @@ static vplVec3 meetPlane(const vplReflectiveMap* m, const vplGeometry* g, const 
     const double most = fmax(corner[0], fmax(corner[1], corner[2]));
     const double meets = height / fall, t = meets < least  ? least
                                             : meets < most ? meets
-                                                           : most;    // most: not a number
-    const double off = square > 0 ? (height - t * fall) / square : 0; // back to the plane where t was cut
+                                                           : most; // most: not a number
+    const double off =
+        square > 0 ? (height - t * fall) / square : 0; // returns to the plane where t was clamped
     return vplVec((float)(from[0] + t * way[0] + off * n[0]), (float)(from[1] + t * way[1] + off * n[1]),
                   (float)(from[2] + t * way[2] + off * n[2]));
 }
@@ -160,5 +159,5 @@ int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray)
 void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES])
 {
-    FACTOR[map->context->isa](map, surface, factorOut);
+    vplGetLightsKernels(map->context->isa).reflectiveFactor(map, surface, factorOut);
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Based on: Vitor Aranha, Marcio Macedo and Antonio Apolinario, Screen-Space Virtual Point Light Propagation for
-// Real-Time Global Illumination, section II-B: what a cluster's paraboloid map sees at evenly spread points of the disk
-// are the lights of the second bounce. Departs: points of equal density on the disk do not share a diffuse light's flux
-// equally, so each gets its weight, 4 (1 - p^2) / (1 + p^2)^3, whose mean over the disk is 1.
-#include <vpl/lights.h>
-
-#include "base/context.h"
+// Second-bounce lights of SSVP: samples of the clusters' paraboloid maps.
+// Based on: Vitor Aranha, Marcio Macedo and Antonio Apolinario, Screen-Space Virtual Point Light Propagation
+// for Real-Time Global Illumination, section II-B: evenly spread points of a cluster's paraboloid map.
+// Departs: points of equal density on the disk do not share a diffuse light's flux equally, so each has the
+// weight 4 (1 - p^2) / (1 + p^2)^3, whose mean over the disk is 1.
+#include "base/arena.h"
 #include "base/rng.h"
 #include "lights/light_set.h"
 #include "math/sampling.h"
@@ -24,7 +23,7 @@ typedef struct Sampling {
     const vplParaboloidMaps* maps;
     const vplSecondBounceDef* def;
     vplLightSet* set;
-    vplVirtualLight* lights;
+    vplLightArrays arrays;
 } Sampling;
 
 static bool shines(const vplLightCluster* c)
@@ -37,8 +36,8 @@ static float wrap(float x)
     return x < 1 ? x : x - 1;
 }
 
-// Point k of m on the disk. Clusters see the same points shifted on the square, so that their lights do not lie alike;
-// the first cluster's are as published, unless all are shifted.
+// Point k of m on the disk. Each cluster shifts the points on the square, so that clusters do not have the
+// same pattern; the first cluster's are as published unless the def shifts all.
 static void pointOf(uint64_t shift, int cluster, int k, int m, float* x, float* y)
 {
     float u = (float)((double)k / m), v = vplVanDerCorput((uint32_t)k);
@@ -57,8 +56,8 @@ static int cellOf(float x, int size)
     return at < size ? at : size - 1;
 }
 
-// The texel of a point; next to the rim, where the point's own may have its centre outside of the disk, one further in
-// by up to half a diagonal.
+// The texel of a point. Next to the rim, where its own texel may have its centre outside the disk, one
+// further in by up to half a diagonal.
 static void texelOf(float x, float y, int size, int* column, int* row)
 {
     const float r = sqrtf(x * x + y * y), most = fmaxf(1 - 1.4143f / (float)size, 0);
@@ -67,8 +66,8 @@ static void texelOf(float x, float y, int size, int* column, int* row)
     *row = cellOf(scale * y, size);
 }
 
-// One of the m samples of a cluster: each carries all that the cluster sends out, as far as its weight says; N / m
-// makes up for the samples that are other clusters'.
+// Takes one of the m samples of a cluster: it carries the cluster's whole flux times its weight; N / m
+// accounts for the samples of other clusters.
 static void takeSample(Sampling* s, int cluster, int k, int m, int particle)
 {
     const vplParaboloidMap* map = &s->maps->maps[cluster];
@@ -88,7 +87,7 @@ static void takeSample(Sampling* s, int cluster, int k, int m, int particle)
     const vplRgb albedo = s->geometry->materials[s->geometry->triangleMaterials[hit.triangle]].diffuse;
     const vplRgb light = vplRgbScale((float)weight, vplRgbMul(flux, albedo));
     if (light.r > 0 || light.g > 0 || light.b > 0) {
-        s->lights[s->set->lightCount++] = (vplVirtualLight){
+        s->arrays.lights[s->set->lightCount++] = (vplVirtualLight){
             .position = hit.position,
             .normal = vplDot(direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal,
             .light = light,
@@ -99,7 +98,7 @@ static void takeSample(Sampling* s, int cluster, int k, int m, int particle)
     }
 }
 
-// All clusters that shine have the same number of samples, but that the first of them have one more.
+// Clusters that shine have equally many samples; the first ones have one more.
 static void takeSamples(Sampling* s)
 {
     int shining = 0, rank = 0, particle = 0;
@@ -141,22 +140,13 @@ vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClu
                                   const vplParaboloidMaps* maps, const vplSecondBounceDef* def,
                                   vplLightSet** setOut)
 {
-    vplContext* context = maps->context;
-    vplResult result = check(clusters, maps, def);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    vplLightSet* set;
-    result = vplLightSet_Make(context, def->count, 2, &set);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    set->lightCount = 0;
-    set->particleCount = def->count;
-    Sampling s = {geometry, clusters, maps, def, set, (vplVirtualLight*)set->lights};
+    Sampling s = {.geometry = geometry, .clusters = clusters, .maps = maps, .def = def};
+    TRY(check(clusters, maps, def));
+    TRY(vplLightSet_Make(maps->context, def->count, 2, &s.arrays, &s.set));
+    s.set->particleCount = def->count;
     takeSamples(&s);
-    ((int*)set->stepCounts)[1] = def->count;
-    ((int*)set->lightsInStep)[1] = set->lightCount;
-    *setOut = set;
+    s.arrays.stepCounts[1] = def->count;
+    s.arrays.lightsInStep[1] = s.set->lightCount;
+    *setOut = s.set;
     return VPL_SUCCESS;
 }

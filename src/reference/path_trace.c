@@ -1,87 +1,54 @@
 // SPDX-License-Identifier: MIT
-// Pixels, passes and the error. Even and odd samples of a pixel come from two sequences that are scrambled by
-// themselves: how far their means lie apart tells how far the picture may be from the truth.
+// Pixels, passes and the error estimate. Even and odd samples of a pixel come from two independently
+// scrambled sequences; the difference of their means estimates the error.
 #include "reference/path_trace.h"
-#include "base/context.h"
-#include "math/scalar.h"
-#include "math/vec.h"
-#include "reference/path.h"
+#include "base/arena.h"
+#include "reference/path_sample.h"
 
 #include <float.h>
+#include <math.h>
 
 enum { TILE = 16, HALVES = 2 };
 
 typedef struct PixelSum {
-    double half[HALVES][3]; // sums of radiance
+    vplRadiance half[HALVES];
 } PixelSum;
 
 struct vplPathTracer {
     vplPathScene scene;
     PixelSum* sums;
-    int64_t* raysOf; // per tile
-    int columns, rows;
-    int done, now; // samples per pixel, before this pass and in it
+    int64_t* tileRays;
+    int columns, rows; // of tiles
+    int done, now;     // samples per pixel, before this pass and in it
+    vplArena* arena;   // owns the arrays
     vplContext* context;
 };
 
-vplPathDef vplDefaultPathDef(void)
-{
-    // rouletteFrom: least variance for the time on rooms, see tests/bench/path.c.
-    return (vplPathDef){.lastBounce = 1 << 16, .emission = true, .ways = VPL_PATH_ALL, .rouletteFrom = 0.25};
-}
-
-// The same frame as the rasterizer's view has.
-static void aimCamera(vplPathScene* s)
-{
-    const vplCameraDef* camera = s->def.camera;
-    double sine, cosine;
-    vplSinCos(camera->fovY / 2, &sine, &cosine);
-    s->forward = vplNormalize(vplSub(camera->target, camera->eye));
-    s->right = vplNormalize(vplCross(s->forward, camera->up));
-    s->up = vplCross(s->right, s->forward);
-    s->scaleY = sine / cosine;
-    s->scaleX = s->scaleY * s->def.width / s->def.height;
-}
-
 vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* def, vplPathTracer** tracerOut)
 {
-    vplContext* context = geometry->context;
-    vplPathTracer* t = vplAllocZero(context, 1, sizeof *t);
-    if (t == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    t->context = context;
-    t->columns = (def->width + TILE - 1) / TILE;
-    t->rows = (def->height + TILE - 1) / TILE;
-    t->scene = (vplPathScene){.geometry = geometry, .def = *def, .sobol = vplSobol_Make()};
-    aimCamera(&t->scene);
-    vplResult result = vplEmission_Create(geometry, def->emitters, def->emitterCount, &t->scene.emission);
+    vplArena* arena = vplArena_Create(geometry->context);
+    vplPathTracer* t = vplArena_AllocZero(arena, 1, sizeof *t);
+    const int columns = (def->width + TILE - 1) / TILE, rows = (def->height + TILE - 1) / TILE;
+    PixelSum* sums = vplArena_AllocZero(arena, (size_t)def->width * (size_t)def->height, sizeof *sums);
+    int64_t* tileRays = vplArena_AllocZero(arena, (size_t)(columns * rows), sizeof *tileRays);
+    vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
-        result = vplGeometry_PrepareRays(geometry);
+        *t = (vplPathTracer){.sums = sums,
+                             .tileRays = tileRays,
+                             .columns = columns,
+                             .rows = rows,
+                             .arena = arena,
+                             .context = geometry->context};
+        result = vplPathScene_Init(&t->scene, geometry, def);
     }
-    if (result == VPL_SUCCESS) {
-        t->sums = vplAllocZero(context, (size_t)def->width * (size_t)def->height, sizeof *t->sums);
-        t->raysOf = t->sums ? vplAllocZero(context, (size_t)(t->columns * t->rows), sizeof *t->raysOf) : NULL;
-        result = t->raysOf ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    }
-    if (result != VPL_SUCCESS) {
-        vplPathTracer_Destroy(t);
-        return result;
-    }
-    const vplEmission* e = t->scene.emission;
-    t->scene.power = vplEmission_Power(e);
-    t->scene.trianglePower = t->scene.power - e->cumulative[e->firstTriangle];
-    *tracerOut = t;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, t, tracerOut);
 }
 
 void vplPathTracer_Destroy(vplPathTracer* tracer)
 {
     if (tracer != NULL) {
         vplEmission_Destroy(tracer->scene.emission);
-        vplFree(tracer->context, tracer->sums);
-        vplFree(tracer->context, tracer->raysOf);
-        vplFree(tracer->context, tracer);
+        vplArena_Destroy(tracer->arena);
     }
 }
 
@@ -89,9 +56,10 @@ static void tracePixel(vplPathTracer* t, int x, int y, int64_t* rays)
 {
     size_t pixel = (size_t)y * (size_t)t->scene.def.width + (size_t)x;
     for (int i = t->done; i < t->done + t->now; i++) {
-        uint64_t half = i & 1;
-        vplPathNumbers numbers = {&t->scene, HALVES * (uint64_t)pixel + half, (uint32_t)i / HALVES};
-        vplFollowPath(&t->scene, x, y, &numbers, t->sums[pixel].half[half], rays);
+        const uint64_t half = i & 1;
+        vplPathState path = {&t->scene, HALVES * (uint64_t)pixel + half, (uint32_t)i / HALVES, 0};
+        vplPath_Follow(&path, x, y, &t->sums[pixel].half[half]);
+        *rays += path.rays;
     }
 }
 
@@ -102,7 +70,7 @@ static void traceTile(void* data, int tile, int worker)
     int left = tile % t->columns * TILE, top = tile / t->columns * TILE;
     for (int y = top; y < top + TILE && y < t->scene.def.height; y++) {
         for (int x = left; x < left + TILE && x < t->scene.def.width; x++) {
-            tracePixel(t, x, y, &t->raysOf[tile]);
+            tracePixel(t, x, y, &t->tileRays[tile]);
         }
     }
 }
@@ -141,18 +109,20 @@ void vplPathTracer_Resolve(const vplPathTracer* tracer, vplImage* image, vplPath
     double count[HALVES] = {(tracer->done + 1) / HALVES, tracer->done / HALVES}, squares = 0, total = 0;
     size_t pixels = (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < pixels; i++) {
-        const PixelSum* sum = &tracer->sums[i];
+        const vplRadiance *a = &tracer->sums[i].half[0], *b = &tracer->sums[i].half[1];
+        const double channels[3][HALVES] = {{a->r, b->r}, {a->g, b->g}, {a->b, b->b}};
         for (int c = 0; c < 3; c++) {
-            double mean = (sum->half[0][c] + sum->half[1][c]) / tracer->done;
-            double apart = count[1] > 0 ? sum->half[0][c] / count[0] - sum->half[1][c] / count[1] : 0;
+            const double* half = channels[c];
+            double mean = (half[0] + half[1]) / tracer->done;
+            double difference = count[1] > 0 ? half[0] / count[0] - half[1] / count[1] : 0;
             image->pixels[3 * i + (size_t)c] = toFloat(mean);
-            squares += apart * apart;
+            squares += difference * difference;
             total += mean;
         }
     }
     estimate(tracer, squares, total, statsOut);
     statsOut->rays = 0;
     for (int i = 0; i < tracer->columns * tracer->rows; i++) {
-        statsOut->rays += tracer->raysOf[i];
+        statsOut->rays += tracer->tileRays[i];
     }
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a cluster of lights can give to a point at most.
-// Based on: Walter et al., Lightcuts, SIGGRAPH 2005, section 4.1. Departs: the largest n.l is found from the box along
-// n and from its sphere across, instead of from a box turned to n.
+// Upper bound of the contribution of a cluster's lights to a point.
+// Based on: Walter et al., Lightcuts, SIGGRAPH 2005, section 4.1. Departs: the largest n.l follows from the
+// box along n and its bounding sphere across n, instead of from a box turned to n.
 //
-// Nothing here may be less than what the light kernel makes of any light of the cluster, rounding included: the
-// kernel's differences light - point lie between those of the box, because rounding is monotone, and its sums of three
-// products are off by at most 2^-22 of the sum of their sizes, for which SLACK is four times enough.
+// The bound holds for the light kernel's results with their rounding: its differences light - point lie
+// between those of the box, because rounding is monotone, and its sums of three products err by at most 2^-22
+// of the sum of their absolute values; SLACK is four times that.
 #include "base/isa.h"
 #include "math/scalar.h"
 #include "shading/shading.h"
@@ -13,12 +13,10 @@
 #include <float.h>
 #include <math.h>
 
-vplClusterBoundFcn VPL_KERNEL(vplClusterBoundDocumented), VPL_KERNEL(vplClusterBoundPhysical);
-
 static const float SLACK = 1e-6f;
 
-// Largest cosine of the angle between an axis and the vectors to (or from) a box: at most `along` of them goes along
-// the axis; they begin at the distance `across` +- radius from it.
+// Largest cosine of the angle between an axis and the vectors to (or from) a box: their component along the
+// axis is at most `along`, that across it the root of across2 +- radius.
 static inline float largestCosine(float along, float across2, float distance2, float radius)
 {
     const float slack = 4 * SLACK * distance2;
@@ -28,7 +26,7 @@ static inline float largestCosine(float along, float across2, float distance2, f
     return along / sqrtf(vplMaxf(along * along + across * across, FLT_MIN));
 }
 
-// Largest cosine to any axis within a cone around the one that `cosine` is the largest cosine to.
+// Largest cosine to any axis within a cone, if `cosine` is the largest one to the cone's own axis.
 static inline float widen(float cosine, float coneCosine, float coneSine)
 {
     const float c = vplMinf(cosine + SLACK, 1), sine = sqrtf(vplMaxf(1 - c * c, 0));
@@ -38,7 +36,7 @@ static inline float widen(float cosine, float coneCosine, float coneSine)
 
 static inline __attribute__((always_inline)) void findBound(const vplSurface* restrict s,
                                                             const vplLightNode* restrict node,
-                                                            float inverseBound, bool physical,
+                                                            float inverseClamp, bool physical,
                                                             float bound[restrict VPL_LANES])
 {
     const vplLightNode n = *node;
@@ -55,8 +53,8 @@ static inline __attribute__((always_inline)) void findBound(const vplSurface* re
         const float distance2 = cx * cx + cy * cy + cz * cz;
         const float along =
             slack + vplMaxf(nx * lx, nx * hx) + vplMaxf(ny * ly, ny * hy) + vplMaxf(nz * lz, nz * hz);
-        const float middle = nx * cx + ny * cy + nz * cz;
-        float here = largestCosine(along, distance2 - middle * middle, distance2, radius);
+        const float centre = nx * cx + ny * cy + nz * cz;
+        float here = largestCosine(along, distance2 - centre * centre, distance2, radius);
         here = along > 0 ? here + SLACK : 0;
         if (!physical) {
             bound[l] = here;
@@ -70,20 +68,20 @@ static inline __attribute__((always_inline)) void findBound(const vplSurface* re
         const float dx = vplMaxf(vplMaxf(lx, -hx), 0), dy = vplMaxf(vplMaxf(ly, -hy), 0),
                     dz = vplMaxf(vplMaxf(lz, -hz), 0);
         const float inverse = 1 / vplMaxf(dx * dx + dy * dy + dz * dz, FLT_MIN);
-        bound[l] = (1 + 8 * SLACK) * here * there * vplMinf(inverse, inverseBound);
+        bound[l] = (1 + 8 * SLACK) * here * there * vplMinf(inverse, inverseClamp);
     }
 }
 
 void VPL_KERNEL(vplClusterBoundDocumented)(const vplSurface* restrict surface,
-                                           const vplLightNode* restrict node, float inverseBound,
+                                           const vplLightNode* restrict node, float inverseClamp,
                                            float bound[restrict VPL_LANES])
 {
-    findBound(surface, node, inverseBound, false, bound);
+    findBound(surface, node, inverseClamp, false, bound);
 }
 
 void VPL_KERNEL(vplClusterBoundPhysical)(const vplSurface* restrict surface,
-                                         const vplLightNode* restrict node, float inverseBound,
+                                         const vplLightNode* restrict node, float inverseClamp,
                                          float bound[restrict VPL_LANES])
 {
-    findBound(surface, node, inverseBound, true, bound);
+    findBound(surface, node, inverseClamp, true, bound);
 }

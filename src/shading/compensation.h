@@ -1,56 +1,58 @@
 // SPDX-License-Identifier: MIT
-// Short rays that bring back what the bound of near virtual lights takes away.
+// Compensation: short rays that bring back the light that the clamp takes from virtual lights.
 #ifndef VPL_SHADING_COMPENSATION_H
 #define VPL_SHADING_COMPENSATION_H
 
 #include "math/sobol.h"
 #include "shading/shading.h"
 
-// Sixteen virtual lights side by side: px, py, pz, nx, ny, nz.
-typedef struct vplLightLanes {
-    _Alignas(64) float at[6][VPL_LANES];
-} vplLightLanes;
-
-// What one point, with its normal, receives from each per unit of intensity: the arithmetic of vplLightsPhysical,
-// with a bound for each light, and without the part up to `taken` of 1/d^2.
-typedef void vplPointKernelFcn(const vplLightLanes* restrict lights, const float point[restrict 6],
-                               const float inverseBound[restrict VPL_LANES], float taken,
-                               float geometry[restrict VPL_LANES]);
-
-vplPointKernelFcn* vplGetPointKernel(vplIsa isa);
-
-// One render's compensation.
-typedef struct vplNearLight {
+typedef struct vplCompensator {
     const vplCompensationDef* def;
-    vplShading hits; // lights what rays meet: emitters and lamps by vplDirectIrradiance
-    vplShadeDef hitsDef;
-    vplPointKernelFcn* kernel;
+    vplDirectLight direct; // lights the hits of short rays
     vplSobol sobol;
-    float distance;                       // D, metres
-    float lampDistance, areaLightInverseBound; // the smaller one of lights on lamps
-} vplNearLight;
+    float distance;              // D, the clamp distance, metres
+    float areaLightDistance;     // the smaller one of lights that stand for emission,
+    float areaLightInverseClamp; // and 1 over its square
+} vplCompensator;
 
-// A point to be lit, and the numbers that its choices are drawn with.
+// A point to be lit, and the numbers that seed its random choices.
 typedef struct vplLitPoint {
     vplHit hit;
     vplVec3 shading, plane; // normals on the side that is lit
     uint32_t pixel, ray, bounce;
 } vplLitPoint;
 
-// The place that the view shows at pixel coordinates (x, y); false where there is none.
-bool vplLookAt(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* p);
+// Turns both normals of the point's hit towards where `direction` came from.
+void vplLitPoint_Face(vplLitPoint* point, const vplGeometry* g, vplVec3 direction);
 
-// Some virtual lights for a point to choose from.
-typedef struct vplLightChoice {
+// Writes the point into a lane of both surfaces.
+static inline void vplLitPoint_Store(const vplLitPoint* p, int lane, vplSurface* surface, vplSurface* plane)
+{
+    surface->px[lane] = plane->px[lane] = p->hit.position.x;
+    surface->py[lane] = plane->py[lane] = p->hit.position.y;
+    surface->pz[lane] = plane->pz[lane] = p->hit.position.z;
+    surface->nx[lane] = p->shading.x;
+    surface->ny[lane] = p->shading.y;
+    surface->nz[lane] = p->shading.z;
+    plane->nx[lane] = p->plane.x;
+    plane->ny[lane] = p->plane.y;
+    plane->nz[lane] = p->plane.z;
+}
+
+// The point shown at pixel coordinates (x, y); false where there is none.
+bool vplFindVisiblePoint(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* point);
+
+// A list of virtual lights of which a point draws some.
+typedef struct vplLightDraw {
     const vplShadeLight* lights;
-    int count, chosen;
-    int areaLightCount; // the first of them lie on lamps
-    float taken;   // as the kernel's
-} vplLightChoice;
+    int count, drawn;
+    int areaLightCount; // the first of them stand for emission
+    float subtracted;   // see vplPointKernelFcn
+} vplLightDraw;
 
-// Irradiance of `chosen` of the lights, one from each of as many equal parts of the list, count / chosen times as
-// bright; of all where there are no more. Shadows as the shading's def says.
-void vplLightPoint(const vplShading* shading, const vplNearLight* near, const vplLightChoice* from,
-                   const vplLitPoint* point, float irradiance[3], int64_t* rays);
+// Irradiance of `drawn` of the lights, one from each of as many equal parts of the list, weighted by count /
+// drawn; of all lights where there are no more. Rays find shadows if the compensation's def says so.
+void vplReceiveDrawnLights(const vplShading* shading, const vplLightDraw* draw, const vplLitPoint* point,
+                           float irradiance[3], int64_t* rays);
 
 #endif

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Lights that give exactly nothing to some points: those behind all their surfaces, and, where lights face
-// somewhere, those that face away from all of them or lie in their plane.
+// Culls lights that contribute exactly 0 to all points within some bounds: those behind all surfaces, and for
+// physical lighting those whose own plane has all points on it or behind it.
 //
-// The bounds here are not estimates. The light kernel computes (a x + b y) + c z from x = light - point; rounding
-// is monotone, so the same operations on the ends of the intervals bound every rounded result from above. Where
-// that bound is not positive, the kernel's cosine is 0 in every lane, and adding 0 changes no bit.
+// The light kernel computes (a x + b y) + c z from x = light - point. Rounding is monotone, so the same
+// operations on the ends of the intervals bound every rounded result from above. Where that bound is not
+// positive, the kernel's cosine is 0 in every lane, and adding 0 changes no bit.
 #include "base/isa.h"
 #include "shading/shading.h"
-
-vplCullFcn VPL_KERNEL(vplCullDocumented), VPL_KERNEL(vplCullPhysical);
 
 static inline float most4(float a, float b, float c, float d)
 {
@@ -22,8 +20,8 @@ static inline float mostProduct(float low, float high, float a, float b)
     return most4(low * a, low * b, high * a, high * b);
 }
 
-static inline void cull(const vplBounds* bounds, float* const columns[6], int first, int count, bool facing,
-                        int32_t keep[VPL_LIGHT_GROUP])
+static inline void cull(const vplBounds* bounds, float* const columns[6], int first, int count, bool oneSided,
+                        int32_t facing[VPL_LIGHT_GROUP])
 {
     const vplBounds b = *bounds;
     const float *px = columns[0] + first, *py = columns[1] + first, *pz = columns[2] + first;
@@ -39,18 +37,18 @@ static inline void cull(const vplBounds* bounds, float* const columns[6], int fi
         // -(n . (x, y, z)) is largest where n . (-x, -y, -z) is, and a change of signs rounds alike.
         const float there = mostProduct(-x1, -x0, nx[i], nx[i]) + mostProduct(-y1, -y0, ny[i], ny[i]) +
                             mostProduct(-z1, -z0, nz[i], nz[i]);
-        keep[i] = (here > 0) & (!facing | (there > 0));
+        facing[i] = (here > 0) & (!oneSided | (there > 0));
     }
 }
 
 void VPL_KERNEL(vplCullDocumented)(const vplBounds* bounds, float* const columns[6], int first, int count,
-                                   int32_t keep[VPL_LIGHT_GROUP])
+                                   int32_t facing[VPL_LIGHT_GROUP])
 {
-    cull(bounds, columns, first, count, false, keep);
+    cull(bounds, columns, first, count, false, facing);
 }
 
 void VPL_KERNEL(vplCullPhysical)(const vplBounds* bounds, float* const columns[6], int first, int count,
-                                 int32_t keep[VPL_LIGHT_GROUP])
+                                 int32_t facing[VPL_LIGHT_GROUP])
 {
-    cull(bounds, columns, first, count, true, keep);
+    cull(bounds, columns, first, count, true, facing);
 }

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What a tile of the G-buffer shows: light, depth, normals or a shadow factor. Lit in squares of 4 x 4 blocks,
-// whose points, sums and lights stay in the first cache.
+// Tiles of the G-buffer: writing them, lighting them, and showing depth, normals or a shadow factor. Light is
+// added in squares of 4 x 4 blocks, whose points, sums and lights stay in the first-level cache.
 #include "base/isa.h"
-#include "shading/add_lights.h"
+#include "shading/accumulate.h"
 
 enum { SQUARE = 4, SQUARES = VPL_TILE_BLOCKS / SQUARE, SQUARE_BLOCKS = SQUARE * SQUARE };
-
-vplFragmentFcn VPL_KERNEL(vplWriteGbuffer);
-vplTileFcn VPL_KERNEL(vplLightTile), VPL_KERNEL(vplShowTile);
 
 void VPL_KERNEL(vplWriteGbuffer)(const void* uniforms, vplFragments* f)
 {
     const vplObjectUniforms* u = uniforms;
-    vplShowTriangle(u->shading->geometry->objects[u->object].firstTriangle + f->primitive, f);
+    vplStoreTriangle(u->shading->geometry->objects[u->object].firstTriangle + f->primitive, f);
     memcpy(f->plane[VPL_PLANE_POSITION], f->varying[0], 3 * sizeof f->varying[0]);
     if (u->normals != NULL) {
         memcpy(f->plane[VPL_PLANE_NORMAL], f->varying[VPL_CAMERA_VARYINGS], 3 * sizeof f->varying[0]);
@@ -27,25 +24,24 @@ static inline int blockOf(int firstBlock, int i)
     return firstBlock + i / SQUARE * VPL_TILE_BLOCKS + i % SQUARE;
 }
 
-static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplSeen* seen,
+static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplFacetCache* cache,
                         vplBlock blocks[SQUARE_BLOCKS])
 {
     vplTileSums* tileSums = tile->scratch;
     int lit[SQUARE_BLOCKS], litCount = 0;
     for (int i = 0; i < SQUARE_BLOCKS; i++) {
         vplBlock* b = &blocks[i];
-        if (vplReadBlock(s, tile, blockOf(firstBlock, i) * VPL_LANES, seen, b)) {
-            vplLightOnce(s, tile, blockOf(firstBlock, i), b);
+        if (vplReadBlock(s, tile, blockOf(firstBlock, i) * VPL_LANES, cache, b)) {
+            vplStartLight(s, tile, blockOf(firstBlock, i), b);
             lit[litCount++] = i;
         }
     }
-    const bool culls = s->columns[0] != NULL && litCount > 0;
-    vplBounds bounds = {{0}, {0}};
-    if (culls) {
-        bounds = vplFindBounds(blocks, lit, litCount);
+    vplLitBlocks to = {.blocks = blocks, .lit = lit, .count = litCount};
+    to.culls = s->lights.columns[0] != NULL && litCount > 0;
+    if (to.culls) {
+        to.bounds = vplFindBounds(blocks, lit, litCount);
     }
-    vplAddLights(s, blocks, lit, litCount, culls ? &bounds : NULL, 0, s->def->lightCount,
-                 &tileSums->shadowRays);
+    vplAddLights(s, &to, 0, s->lights.count, &tileSums->shadowRays);
 }
 
 void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
@@ -53,23 +49,23 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
     (void)worker;
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
-    vplSeen seen;
-    vplSeen_Clear(&seen);
+    vplFacetCache cache;
+    vplFacetCache_Clear(&cache);
     vplBlock blocks[SQUARE_BLOCKS];
     for (int square = 0; square < SQUARES * SQUARES; square++) {
         const int x = square % SQUARES, y = square / SQUARES;
         if (x * SQUARE * VPL_BLOCK_SIDE < tile->width && y * SQUARE * VPL_BLOCK_SIDE < tile->height) {
             const int firstBlock = (y * VPL_TILE_BLOCKS + x) * SQUARE;
-            lightSquare(s, tile, firstBlock, &seen, blocks);
+            lightSquare(s, tile, firstBlock, &cache, blocks);
             for (int i = 0; i < SQUARE_BLOCKS; i++) {
-                vplWriteLit(s, tile, blockOf(firstBlock, i), &seen, &blocks[i]);
+                vplWriteLit(s, tile, blockOf(firstBlock, i), &cache, &blocks[i]);
             }
         }
     }
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }
 
-// ---- a look at the stages
+// ---- stages
 
 void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
 {
@@ -77,21 +73,21 @@ void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
     const vplShading* s = data;
     const vplView* view = s->view;
     const bool depth = s->def->output == VPL_OUTPUT_DEPTH, normals = s->def->output == VPL_OUTPUT_NORMALS;
-    vplSeen seen;
-    vplSeen_Clear(&seen);
+    vplFacetCache cache;
+    vplFacetCache_Clear(&cache);
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
         vplBlock b;
         float values[3][VPL_LANES] = {{0}}, factor[VPL_LANES] = {0};
-        if (!vplReadBlock(s, tile, block * VPL_LANES, &seen, &b)) {
+        if (!vplReadBlock(s, tile, block * VPL_LANES, &cache, &b)) {
             vplWriteBlock(s, tile, block, values);
             continue;
         }
         if (s->def->output == VPL_OUTPUT_SHADOW_FACTOR) {
-            const vplReflectiveMap* map = vplEmitterMapOf(s->def, 0);
+            const vplReflectiveMap* map = vplDirectLight_Map(&s->direct, 0);
             if (map != NULL) {
                 vplReflectiveMap_FactorBlock(map, b.points.plane, factor);
             } else {
-                vplShadow_FactorBlock(&s->def->shadows[0], b.points.plane, factor);
+                vplShadow_FactorBlock(&s->direct.shadows[0], b.points.plane, factor);
             }
         }
         for (int l = 0; l < VPL_LANES; l++) {

@@ -1,27 +1,86 @@
 // SPDX-License-Identifier: MIT
-// The light of emitters with their shadows. Compiled once per instruction set, because what one kernel writes
-// in whole vectors another should read in vectors of the same width: processors forward nothing wider than was
-// stored.
+// Emitters with their shadows. Compiled once per instruction set: processors forward a store only to loads
+// that are not wider, so kernels that read each other's vectors have the same width.
 #include "base/isa.h"
 #include "shading/shading.h"
 
-extern vplEmitterKernelFcn VPL_KERNEL(vplEmitterCosine);
-vplAddEmittersFcn VPL_KERNEL(vplAddEmitters);
+#include <float.h>
+#include <math.h>
 
-// Multiplies `amount` by what the emitter's shadow leaves of it.
-static void shadowEmitter(const vplShading* s, const vplPoints* points, int index, float amount[VPL_LANES],
-                          int64_t* rays)
+// ---- cosines
+
+// The vector from a point to an emitter, its squared length, its length, and the cosine towards it.
+typedef struct EmitterTerm {
+    float x, y, z, d2, d, cosine;
+} EmitterTerm;
+
+static inline EmitterTerm termOf(const vplSurface* surface, int l, const vplEmitterRay* e, bool parallel)
 {
-    const vplEmitterRay* emitter = &s->emitters[index];
-    const vplReflectiveMap* map = vplEmitterMapOf(s->def, index);
-    if (map == NULL && (emitter->parallel || s->def->shadows[index].map == NULL)) {
+    const float x = parallel ? -e->direction.x : e->position.x - surface->px[l];
+    const float y = parallel ? -e->direction.y : e->position.y - surface->py[l];
+    const float z = parallel ? -e->direction.z : e->position.z - surface->pz[l];
+    const float square = x * x + y * y + z * z;
+    const float c = surface->nx[l] * x + surface->ny[l] * y + surface->nz[l] * z;
+    const float d2 = square > FLT_MIN ? square : FLT_MIN, d = sqrtf(d2);
+    return (EmitterTerm){x, y, z, d2, d, (c > 0 ? c : 0) / d};
+}
+
+static inline bool anyPositive(const float cosine[VPL_LANES])
+{
+    int any = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        any |= cosine[l] > 0;
+    }
+    return any;
+}
+
+// Irradiance per unit of intensity, without shadow; false where no lane is lit. Directional: n.l. Point: n.l
+// / d^2. Spot: that times the smooth step of its cone (see vplSpot_Falloff).
+static bool emitterCosine(const vplSurface* restrict surface, const vplEmitterRay* emitter,
+                          float cosine[restrict VPL_LANES])
+{
+    const vplEmitterRay e = *emitter;
+    if (e.parallel) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            cosine[l] = termOf(surface, l, &e, true).cosine;
+        }
+        return anyPositive(cosine);
+    }
+    if (!e.spot) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            const EmitterTerm t = termOf(surface, l, &e, false);
+            cosine[l] = e.falloff ? t.cosine / t.d2 : t.cosine;
+        }
+        return anyPositive(cosine);
+    }
+    for (int l = 0; l < VPL_LANES; l++) {
+        const EmitterTerm t = termOf(surface, l, &e, false);
+        const float c = e.falloff ? t.cosine / t.d2 : t.cosine;
+        const float axis = -(e.direction.x * t.x + e.direction.y * t.y + e.direction.z * t.z) / t.d;
+        float step = (axis - e.cosOuter) * e.inverseRing;
+        step = step > 0 ? step : 0;
+        step = step < 1 ? step : 1;
+        cosine[l] = c * (step * step * (3 - 2 * step));
+    }
+    return anyPositive(cosine);
+}
+
+// ---- light
+
+// Multiplies `amount` by the unshadowed share of the emitter.
+static void shadowEmitter(const vplShading* s, const vplDirectLight* direct, const vplPoints* points,
+                          int index, float amount[VPL_LANES], int64_t* rays)
+{
+    const vplEmitterRay* emitter = &direct->rays[index];
+    const vplReflectiveMap* map = vplDirectLight_Map(direct, index);
+    if (map == NULL && (emitter->parallel || direct->shadows[index].map == NULL)) {
         vplCastEmitterRays(s, points, emitter, amount, rays);
         return;
     }
     float factor[VPL_LANES];
-    if (s->smooth) { // a shadow belongs to the plane of the triangle, and so does its far side
+    if (s->smooth) { // the plane of the triangle, not the shading normal, decides which side is lit
         float cosine[VPL_LANES];
-        VPL_KERNEL(vplEmitterCosine)(points->plane, emitter, cosine);
+        emitterCosine(points->plane, emitter, cosine);
         for (int l = 0; l < VPL_LANES; l++) {
             amount[l] = cosine[l] > 0 ? amount[l] : 0;
         }
@@ -29,26 +88,24 @@ static void shadowEmitter(const vplShading* s, const vplPoints* points, int inde
     if (map != NULL) {
         vplReflectiveMap_FactorBlock(map, points->plane, factor);
     } else {
-        vplShadow_FactorBlock(&s->def->shadows[index], points->plane, factor);
+        vplShadow_FactorBlock(&direct->shadows[index], points->plane, factor);
     }
     for (int l = 0; l < VPL_LANES; l++) {
         amount[l] *= 1 - factor[l];
     }
 }
 
-void VPL_KERNEL(vplAddEmitters)(const vplShading* s, const vplPoints* points,
+void VPL_KERNEL(vplAddEmitters)(const vplShading* s, const vplDirectLight* direct, const vplPoints* points,
                                 float irradiance[restrict 3][VPL_LANES], int64_t* rays)
 {
-    const vplShadeDef* def = s->def;
-    const bool documented = def->lighting == VPL_LIGHTING_DOCUMENTED;
-    const float weight = documented && def->particleCount > 0 ? 1 / (float)def->particleCount : 1;
-    for (int i = 0; i < def->emitterCount; i++) {
+    for (int i = 0; i < direct->emitterCount; i++) {
         float amount[VPL_LANES];
-        if (!VPL_KERNEL(vplEmitterCosine)(points->surface, &s->emitters[i], amount)) {
+        if (!emitterCosine(points->surface, &direct->rays[i], amount)) {
             continue;
         }
-        shadowEmitter(s, points, i, amount, rays);
-        const vplRgb intensity = def->emitters[i].intensity;
+        shadowEmitter(s, direct, points, i, amount, rays);
+        const vplRgb intensity = direct->emitters[i].intensity;
+        const float weight = direct->weight;
         const float colour[3] = {weight * intensity.r, weight * intensity.g, weight * intensity.b};
         for (int c = 0; c < 3; c++) {
             for (int l = 0; l < VPL_LANES; l++) {

@@ -1,27 +1,63 @@
 // SPDX-License-Identifier: MIT
-// Blocks of the G-buffer and what becomes of them, for kernels.
+// Blocks of the G-buffer, for kernels: reading, bounds, sums of irradiance, writing.
 #ifndef VPL_SHADING_GBUFFER_H
 #define VPL_SHADING_GBUFFER_H
 
 #include "math/vec.h"
-#include "shading/normals.h"
 #include "shading/resolve.h"
 
-// A block of the G-buffer.
+#include <math.h>
+
 typedef struct vplBlock {
-    _Alignas(64) vplSurface surface, plane; // `plane` only where some object is smooth
+    union {
+        _Alignas(64) vplSurface surface;
+        float columns[6][VPL_LANES]; // the same as an array
+    };
+    vplSurface plane; // set where some object is smooth
     vplPoints points;
-    vplReflector reflector; // where all lanes show one triangle
-    bool same;
+    bool same;              // all lanes show one triangle, or nothing
+    vplReflector reflector; // of that triangle
     double sums[3][VPL_LANES];
-    int cluster; // whose visibility was asked for last; none: VPL_NO_CLUSTER
+    int cluster; // whose visibility is in `visible`; VPL_NO_CLUSTER: none
     float visible[VPL_LANES];
 } vplBlock;
 
 enum { VPL_NO_CLUSTER = -2 };
 
-// Normals of the triangles that a block shows, and which of them are smooth.
-static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LANES], vplSeen* seen,
+_Static_assert(sizeof(vplSurface) == 6 * VPL_LANES * sizeof(float), "a surface is six columns");
+
+// ---- normals
+
+static inline void vplSetNormals(vplVec3 n, vplSurface* surface)
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        surface->nx[l] = n.x;
+        surface->ny[l] = n.y;
+        surface->nz[l] = n.z;
+    }
+}
+
+// Turns interpolated normals into unit vectors on their triangle's side. Lanes that are not smooth, or whose
+// interpolated normal is 0, get the triangle's.
+static inline void vplFinishNormals(const vplSurface* restrict plane,
+                                    const int32_t smooth[restrict VPL_LANES], vplSurface* restrict surface)
+{
+    for (int l = 0; l < VPL_LANES; l++) {
+        const float x = surface->nx[l], y = surface->ny[l], z = surface->nz[l];
+        const float px = plane->nx[l], py = plane->ny[l], pz = plane->nz[l];
+        const float length = sqrtf(x * x + y * y + z * z);
+        const bool usable = smooth[l] && length > 0;
+        const float scale = (x * px + y * py + z * pz < 0 ? -1.0f : 1.0f) / (usable ? length : 1);
+        surface->nx[l] = usable ? scale * x : px;
+        surface->ny[l] = usable ? scale * y : py;
+        surface->nz[l] = usable ? scale * z : pz;
+    }
+}
+
+// ---- reading
+
+// Normals of the triangles of a block, and which of them are smooth.
+static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LANES], vplFacetCache* cache,
                                  vplSurface* plane, int32_t smooth[VPL_LANES])
 {
     vplVec3 n = {0, 0, 0};
@@ -30,7 +66,7 @@ static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LA
         const int triangle = triangles[l];
         if (triangle != last) {
             last = triangle;
-            const vplSeenFacet* facet = triangle < 0 ? NULL : vplSee(s, triangle, seen);
+            const vplCachedFacet* facet = triangle < 0 ? NULL : vplFacetCache_Get(s, triangle, cache);
             n = facet ? facet->normal : vplVec(0, 0, 0);
             isSmooth = facet && facet->smooth ? -1 : 0;
         }
@@ -41,7 +77,7 @@ static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LA
     }
 }
 
-// One coordinate of a block: 0 where nothing is, because nothing was written there.
+// One coordinate of a block; 0 where nothing is: the plane holds anything there.
 static inline void vplReadPlane(const vplTile* tile, int plane, int element, const int triangles[VPL_LANES],
                                 float valueOut[VPL_LANES])
 {
@@ -53,8 +89,8 @@ static inline void vplReadPlane(const vplTile* tile, int plane, int element, con
     }
 }
 
-// False where it is empty.
-static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int element, vplSeen* seen,
+// Returns false for an empty block.
+static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int element, vplFacetCache* cache,
                                 vplBlock* b)
 {
     if (!vplReadTriangles(tile, element, b->points.triangle)) {
@@ -70,12 +106,12 @@ static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int el
     int32_t smooth[VPL_LANES];
     vplSurface* flat = s->smooth ? &b->plane : &b->surface;
     if (b->same) {
-        const vplSeenFacet* facet = vplSee(s, b->points.triangle[0], seen);
+        const vplCachedFacet* facet = vplFacetCache_Get(s, b->points.triangle[0], cache);
         vplSetNormals(facet->normal, flat);
         b->reflector = facet->reflector;
         memset(smooth, facet->smooth ? 0xff : 0, sizeof smooth);
     } else {
-        vplReadFacets(s, b->points.triangle, seen, flat, smooth);
+        vplReadFacets(s, b->points.triangle, cache, flat, smooth);
     }
     if (!s->smooth) {
         return true;
@@ -89,7 +125,7 @@ static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int el
     return true;
 }
 
-// Where the points of some blocks lie and where they face.
+// Bounds of positions and normals of the blocks lit[0 .. count).
 static inline vplBounds vplFindBounds(const vplBlock* blocks, const int* lit, int count)
 {
     float low[6][VPL_LANES], high[6][VPL_LANES];
@@ -102,9 +138,8 @@ static inline vplBounds vplFindBounds(const vplBlock* blocks, const int* lit, in
     for (int i = 0; i < count; i++) {
         const vplBlock* b = &blocks[lit[i]];
         for (int k = 0; k < 6; k++) {
-            const float* value = b->surface.px + k * VPL_LANES;
             for (int l = 0; l < VPL_LANES; l++) {
-                const float v = value[l];
+                const float v = b->columns[k][l];
                 const float least = v < low[k][l] ? v : low[k][l], most = v > high[k][l] ? v : high[k][l];
                 low[k][l] = b->points.triangle[l] < 0 ? low[k][l] : least;
                 high[k][l] = b->points.triangle[l] < 0 ? high[k][l] : most;
@@ -132,16 +167,19 @@ static inline void vplStartSums(vplBlock* b, float part[3][VPL_LANES])
     }
 }
 
-// Begins a block's sums with light that is found once per pixel, whatever becomes of virtual lights.
-static inline void vplLightOnce(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
+// ---- sums
+
+// Starts a block's sums with direct light and compensation, which are found once per pixel.
+static inline void vplStartLight(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
 {
     vplTileSums* tileSums = tile->scratch;
     _Alignas(64) float part[3][VPL_LANES] = {{0}};
     if (!s->irradiance) {
-        vplDirectIrradiance(s, &b->points, part, &tileSums->shadowRays);
+        vplDirectIrradiance(s, &s->direct, &b->points, part, &tileSums->shadowRays);
     }
-    vplAddNearLightOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
-                           tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part, &tileSums->shadowRays);
+    vplAddCompensationOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
+                              tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part,
+                              &tileSums->shadowRays);
     vplStartSums(b, part);
 }
 
@@ -157,8 +195,8 @@ static inline void vplWriteSums(const vplShading* s, const vplTile* tile, int bl
     vplWriteBlock(s, tile, block, values);
 }
 
-// Sums become radiance, where that is asked for, and pixels of block `block` of the tile.
-static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int block, vplSeen* seen,
+// Writes block `block` of the tile: radiance, or irradiance if the picture is that.
+static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int block, vplFacetCache* cache,
                                vplBlock* b)
 {
     float radiance[3][VPL_LANES] = {{0}};
@@ -173,7 +211,7 @@ static inline void vplWriteLit(const vplShading* s, const vplTile* tile, int blo
     if (b->same) {
         vplResolveSame(&b->reflector, b->sums, radiance);
     } else {
-        vplResolveMixed(s, b->points.triangle, b->sums, seen, radiance);
+        vplResolveMixed(s, b->points.triangle, b->sums, cache, radiance);
     }
     vplWriteBlock(s, tile, block, radiance);
 }

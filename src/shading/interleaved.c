@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: MIT
 // Interleaved shading: pixel (x, y) belongs to class (y mod K) K + x mod K and is lit by every K^2-th virtual
-// light, K^2 times as brightly; then pixels take the mean of those around them that lie on about the same surface,
-// with weights (K - |x|) (K - |y|). Where all of them do, each class weighs the same, so that each light counts once,
-// and each is interpolated linearly between the pixels that met it. (Equal weights in K x K pixels made a picture
-// of steps: 3.5 % error instead of 2.1 % with 512 lights in the room at K = 4, for 55 instead of 68 ms of processor
-// time.)
+// light, K^2 times as bright; then a filter takes means over neighbours on about the same surface, with
+// weights (K - |x|) (K - |y|). On one surface each class has the same weight, so that each light counts once
+// and is interpolated linearly between the pixels that it lit. (A box filter of K x K pixels shows steps: 3.5
+// % error instead of 2.1 %, bench/interleaved.)
 // Based on: Segovia, Iehl, Mitanchey and Peroche, Non-interleaved Deferred Shading of Interleaved Sample
 // Patterns, Graphics Hardware 2006. Departs: a pixel's class is its place in the picture, and classes are
-// collected from a tile at a time, which is in cache, instead of in sub-pictures of the whole picture.
-#include "shading/gather.h"
+// collected tile by tile, in cache, instead of in sub-pictures of the whole picture.
+#include "shading/interleave_filter.h"
 
-#include <string.h>
-
-// With this many clusters and more each class has lights of one half of them only, and pixels with lights of either half
-// alternate like the fields of a chessboard: what clusters see is asked for half as often. With 8 clusters of 512 lights,
-// 4x4 and 1920x1080 the error is 0.0328 instead of 0.0330 in a conference room and 0.176 instead of 0.167 in Sibenik, in
-// 200 and 195 instead of 267 and 246 ms of processor time. Quarters make it 0.0366 and 0.264 in 171 and 169 ms.
+// From this many clusters on, each class has lights of one half of them only, and pixels of the two halves
+// alternate like the fields of a chessboard: visibility of clusters is looked up half as often, in 3/4 of the
+// time at nearly the same error (bench/interleaved).
 enum { LEAST_TO_HALVE = 8 };
 
-// Which half of the clusters each belongs to, so that both have about as many lights; the last are lights without a
+// ---- classes
+
+// Sorts clusters into two halves with about as many lights each; the last entry is for lights without a
 // cluster. False where halves would not pay, or classes have no chessboard.
 static bool findHalves(const vplShadeDef* def, int side, int* halves)
 {
@@ -37,7 +35,7 @@ static bool findHalves(const vplShadeDef* def, int side, int* halves)
     return used >= LEAST_TO_HALVE && side % 2 == 0;
 }
 
-// The class of each light. Without `halves` lights are dealt out to all in turn.
+// The class of each light. Without `halves` lights are dealt out to all classes in turn.
 static void findClasses(const vplShadeDef* def, int side, const int* halves, int* classes)
 {
     int turn[2] = {0, 0};
@@ -53,136 +51,104 @@ static void findClasses(const vplShadeDef* def, int side, const int* halves, int
     }
 }
 
-static vplResult chooseClasses(vplContext* context, const vplShadeDef* def, int side, int* classes)
-{
-    if (def->lightClusters == NULL) {
-        findClasses(def, side, NULL, classes);
-        return VPL_SUCCESS;
-    }
-    int* halves = vplAlloc(context, (size_t)def->clusterCount + 1, sizeof *halves);
-    if (halves == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    findClasses(def, side, findHalves(def, side, halves) ? halves : NULL, classes);
-    vplFree(context, halves);
-    return VPL_SUCCESS;
-}
-
-static void putLight(const vplShadeDef* def, vplInterleave* w, int i, int at)
-{
-    w->lights[at] = def->lights[i];
-    if (w->shadows != NULL) {
-        w->shadows[at] = def->lightShadows[i];
-    }
-    if (w->clusters != NULL) {
-        w->clusters[at] = def->lightClusters[i];
-    }
-}
-
-// Lights of a class side by side, in the order that they have in the list: clusters stay together.
+// Puts lights of a class side by side, in the order of the list, so that clusters stay together.
 static vplResult sortLights(vplShading* s, vplInterleave* w)
 {
-    vplContext* context = s->geometry->context;
     const vplShadeDef* def = s->def;
-    const int count = def->lightCount, classCount = w->side * w->side;
-    w->lights = vplAlloc(context, (size_t)count, sizeof *w->lights);
-    w->shadows = def->lightShadows ? vplAlloc(context, (size_t)count, sizeof *w->shadows) : NULL;
-    w->clusters = def->lightClusters ? vplAlloc(context, (size_t)count, sizeof *w->clusters) : NULL;
-    w->classes = vplAlloc(context, (size_t)count, sizeof *w->classes);
-    if (w->lights == NULL || w->classes == NULL || (def->lightShadows != NULL && w->shadows == NULL) ||
-        (def->lightClusters != NULL && w->clusters == NULL) ||
-        chooseClasses(context, def, w->side, w->classes) != VPL_SUCCESS) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    const size_t count = (size_t)def->lightCount;
+    const bool clustered = def->lightClusters != NULL, mapped = def->lightShadows != NULL;
+    vplShadeLight* lights = vplArena_Alloc(s->arena, count, sizeof *lights);
+    vplHemiMap* maps = mapped ? vplArena_Alloc(s->arena, count, sizeof *maps) : NULL;
+    int* clusters = clustered ? vplArena_Alloc(s->arena, count, sizeof *clusters) : NULL;
+    int* halves = clustered ? vplArena_Alloc(s->arena, (size_t)def->clusterCount + 1, sizeof *halves) : NULL;
+    int* classes = vplArena_Alloc(s->arena, count, sizeof *classes);
+    TRY(vplArena_Check(s->arena));
+    const bool halved = clustered && findHalves(def, w->side, halves);
+    findClasses(def, w->side, halved ? halves : NULL, classes);
     int next[VPL_MAX_INTERLEAVE * VPL_MAX_INTERLEAVE + 1] = {0};
-    for (int i = 0; i < count; i++) {
-        next[w->classes[i] + 1]++;
+    for (int i = 0; i < def->lightCount; i++) {
+        next[classes[i] + 1]++;
     }
-    for (int i = 0; i < classCount; i++) {
+    for (int i = 0; i < w->side * w->side; i++) {
         next[i + 1] += next[i];
     }
     memcpy(w->classStart, next, sizeof next);
-    for (int i = 0; i < count; i++) {
-        putLight(def, w, i, next[w->classes[i]]++);
+    for (int i = 0; i < def->lightCount; i++) {
+        const int at = next[classes[i]]++;
+        lights[at] = def->lights[i];
+        if (mapped) {
+            maps[at] = def->lightShadows[i];
+        }
+        if (clustered) {
+            clusters[at] = def->lightClusters[i];
+        }
     }
-    w->def = *def;
-    w->def.lights = w->lights;
-    w->def.lightShadows = w->shadows;
-    w->def.lightClusters = w->clusters;
+    s->lights.lights = lights;
+    s->lights.maps = maps;
+    s->lights.clusters = clusters;
     return VPL_SUCCESS;
 }
 
-vplResult vplOpenInterleave(vplShading* shading, vplFramebuffer* framebuffer)
+// ---- the strategy
+
+static vplResult openInterleaved(vplShading* shading, vplFramebuffer* framebuffer)
 {
-    vplContext* context = shading->geometry->context;
-    vplInterleave* w = vplAllocZero(context, 1, sizeof *w);
-    if (w == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    shading->interleave = w;
     const int width = framebuffer->width, height = framebuffer->height;
+    const int workers = shading->geometry->context->workerCount;
+    const size_t pixels = (size_t)width * (size_t)height;
+    vplInterleave* w = vplArena_AllocZero(shading->arena, 1, sizeof *w);
+    float* planes = vplArena_Alloc(shading->arena, pixels, VPL_FILTER_PLANES * sizeof *planes);
+    vplFilterScratch* scratch = vplArena_Alloc(shading->arena, (size_t)workers, sizeof *scratch);
+    TRY(vplArena_Check(shading->arena));
+    shading->state = w;
     w->side = shading->def->interleave;
-    w->pixelCount = (size_t)width * (size_t)height;
-    w->tilesX = (width + VPL_GATHER_WIDTH - 1) / VPL_GATHER_WIDTH;
-    w->tilesY = (height + VPL_GATHER_HEIGHT - 1) / VPL_GATHER_HEIGHT;
-    w->planes = vplAlloc(context, w->pixelCount, VPL_GATHER_PLANES * sizeof *w->planes);
-    w->rooms = vplAlloc(context, (size_t)context->workerCount, sizeof *w->rooms);
-    if (w->planes == NULL || w->rooms == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    w->pixelCount = pixels;
+    w->tilesX = (width + VPL_FILTER_WIDTH - 1) / VPL_FILTER_WIDTH;
+    w->tilesY = (height + VPL_FILTER_HEIGHT - 1) / VPL_FILTER_HEIGHT;
+    w->planes = planes;
+    w->scratch = scratch;
+    for (int i = 0; i < workers; i++) {
+        vplFacetCache_Clear(&scratch[i].facets);
     }
-    for (int i = 0; i < context->workerCount; i++) {
-        vplSeen_Clear(&w->rooms[i].seen);
-    }
-    vplPlane* planes = framebuffer->planes;
+    vplPrepareGbuffer(framebuffer);
     for (int k = 0; k < 3; k++) {
-        planes[VPL_PLANE_INDIRECT + k].pixels = vplGatherPlane(w, VPL_GATHER_INDIRECT + k);
+        framebuffer->planes[VPL_PLANE_INDIRECT + k].pixels = vplFilterPlane(w, VPL_FILTER_INDIRECT + k);
     }
-    planes[VPL_PLANE_TRIANGLE].pixels = vplGatherPlane(w, VPL_GATHER_TRIANGLE);
-    const vplResult result = sortLights(shading, w);
-    if (result == VPL_SUCCESS) {
-        shading->def = &w->def;
-    }
-    return result;
+    framebuffer->planes[VPL_PLANE_TRIANGLE].pixels = vplFilterPlane(w, VPL_FILTER_TRIANGLE);
+    TRY(sortLights(shading, w));
+    return vplMakeColumns(shading);
 }
 
-// What pixels have before they share it, in the part of the picture of one task.
-static void showGather(void* data, int task, int worker)
+static vplResult recordInterleaved(vplShading* shading, vplRaster* raster)
+{
+    return vplRecordGbuffer(shading, raster, shading->kernels.interleaved);
+}
+
+// Copies a part of the unfiltered irradiance to the picture.
+static void showUnfiltered(void* data, int task, int worker)
 {
     (void)worker;
     const vplShading* s = data;
-    const vplInterleave* w = s->interleave;
-    const int x0 = task % w->tilesX * VPL_GATHER_WIDTH, y0 = task / w->tilesX * VPL_GATHER_HEIGHT;
-    for (int y = y0; y < y0 + VPL_GATHER_HEIGHT && y < s->image->height; y++) {
-        for (int x = x0; x < x0 + VPL_GATHER_WIDTH && x < s->image->width; x++) {
+    const vplInterleave* w = s->state;
+    const int x0 = task % w->tilesX * VPL_FILTER_WIDTH, y0 = task / w->tilesX * VPL_FILTER_HEIGHT;
+    for (int y = y0; y < y0 + VPL_FILTER_HEIGHT && y < s->image->height; y++) {
+        for (int x = x0; x < x0 + VPL_FILTER_WIDTH && x < s->image->width; x++) {
             const size_t at = (size_t)y * (size_t)s->image->width + (size_t)x;
             for (int c = 0; c < 3; c++) {
-                s->image->pixels[3 * at + (size_t)c] = vplGatherPlane(w, VPL_GATHER_INDIRECT + c)[at];
+                s->image->pixels[3 * at + (size_t)c] = vplFilterPlane(w, VPL_FILTER_INDIRECT + c)[at];
             }
         }
     }
 }
 
-vplResult vplGatherInterleaved(const vplShading* shading, vplProgressFcn* progress, void* user)
+static vplResult filterInterleaved(vplShading* shading, vplShadeStats* stats)
 {
-    const vplInterleave* w = shading->interleave;
-    vplContext* context = shading->geometry->context;
-    vplTaskFcn* gather =
-        shading->def->output == VPL_OUTPUT_GATHER ? showGather : vplGetShadingKernels(context->isa).gather;
-    return vplParallelForProgress(context, w->tilesX * w->tilesY, gather, (void*)shading, progress, user, 1,
-                                  1);
+    (void)stats;
+    const vplInterleave* w = shading->state;
+    vplTaskFcn* task = shading->def->output == VPL_OUTPUT_GATHER ? showUnfiltered : shading->kernels.filter;
+    return vplParallelForProgress(shading->geometry->context, w->tilesX * w->tilesY, task, shading,
+                                  shading->progress, shading->progressUser, 1, 1);
 }
 
-void vplCloseInterleave(vplShading* shading)
-{
-    vplContext* context = shading->geometry->context;
-    vplInterleave* w = shading->interleave;
-    if (w != NULL) {
-        vplFree(context, w->rooms);
-        vplFree(context, w->planes);
-        vplFree(context, w->classes);
-        vplFree(context, w->clusters);
-        vplFree(context, w->shadows);
-        vplFree(context, w->lights);
-        vplFree(context, w);
-    }
-}
+const vplStrategy vplInterleavedStrategy = {
+    .open = openInterleaved, .tile = recordInterleaved, .finish = filterInterleaved};

@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: MIT
-// The first step of interleaved shading: pixels of one class, collected from a region of the tile, meet the lights
-// of that class 16 at a time.
+// The first step of interleaved shading: pixels of one class, collected from a region of the tile, are lit by
+// the lights of that class, 16 pixels at a time.
 #include "base/isa.h"
-#include "shading/add_lights.h"
-#include "shading/gather.h"
+#include "shading/accumulate.h"
+#include "shading/interleave_filter.h"
 
 enum {
-    SQUARE = 4,     // blocks along a side: what is read and lit directly at once
+    SQUARE = 4,     // blocks along a side that are read and lit directly together
     MAX_CHUNKS = 11 // 13 x 13 pixels, of 64 x 64 at K = 5
 };
 
-vplTileFcn VPL_KERNEL(vplInterleaveTile);
-
-// A square of pixels of the tile. Its side is chosen so that classes fill vectors and points stay in the first
-// cache: 16 pixels of a class or more.
+// A square of pixels of the tile, of a side that gives a class 16 pixels or more and keeps points in the
+// first-level cache.
 typedef struct Region {
     int x, y, width, height; // in the tile
-    vplBounds bounds;        // of what is visible in it
+    vplBounds bounds;        // of the visible points
     bool any;
 } Region;
 
@@ -30,29 +28,28 @@ static inline void storeLanes(vplTile* tile, int plane, int element, const float
     memcpy(tile->planes[plane] + element, values, VPL_LANES * sizeof values[0]);
 }
 
-// Direct light becomes pixels; what lights and windows will ask for becomes planes.
-static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplSeen* seen, vplBlock* b,
+// Writes direct light to the picture, and finished positions and normals to the planes.
+static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplFacetCache* cache, vplBlock* b,
                          int64_t* rays)
 {
     const int element = block * VPL_LANES;
     const float nothing[VPL_LANES] = {0};
-    if (!vplReadBlock(s, tile, element, seen, b)) {
+    if (!vplReadBlock(s, tile, element, cache, b)) {
         for (int k = 0; k < 3; k++) {
             storeLanes(tile, VPL_PLANE_INDIRECT + k, element, nothing);
         }
     } else {
         _Alignas(64) float part[3][VPL_LANES] = {{0}};
         if (!s->irradiance) {
-            vplDirectIrradiance(s, &b->points, part, rays);
+            vplDirectIrradiance(s, &s->direct, &b->points, part, rays);
         }
         vplStartSums(b, part);
-        const vplSurface* p = &b->surface;
         for (int k = 0; k < 3; k++) {
-            storeLanes(tile, VPL_PLANE_POSITION + k, element, p->px + k * VPL_LANES);
-            storeLanes(tile, VPL_PLANE_NORMAL + k, element, p->nx + k * VPL_LANES);
+            storeLanes(tile, VPL_PLANE_POSITION + k, element, b->columns[k]);
+            storeLanes(tile, VPL_PLANE_NORMAL + k, element, b->columns[3 + k]);
         }
     }
-    vplWriteLit(s, tile, block, seen, b);
+    vplWriteLit(s, tile, block, cache, b);
 }
 
 static void addBounds(const vplBounds* more, Region* r)
@@ -65,8 +62,8 @@ static void addBounds(const vplBounds* more, Region* r)
     r->any = true;
 }
 
-// All blocks of a region, square by square.
-static void prepareRegion(const vplShading* s, vplTile* tile, Region* r, vplSeen* seen)
+// Prepares all blocks of a region, square by square.
+static void prepareRegion(const vplShading* s, vplTile* tile, Region* r, vplFacetCache* cache)
 {
     vplTileSums* tileSums = tile->scratch;
     vplBlock blocks[SQUARE * SQUARE];
@@ -77,7 +74,7 @@ static void prepareRegion(const vplShading* s, vplTile* tile, Region* r, vplSeen
         int lit[SQUARE * SQUARE], litCount = 0;
         for (int i = 0; i < SQUARE * SQUARE; i++) {
             vplBlock* b = &blocks[i];
-            prepareBlock(s, tile, (y + i / SQUARE) * VPL_TILE_BLOCKS + x + i % SQUARE, seen, b,
+            prepareBlock(s, tile, (y + i / SQUARE) * VPL_TILE_BLOCKS + x + i % SQUARE, cache, b,
                          &tileSums->shadowRays);
             if (!b->same || b->points.triangle[0] >= 0) {
                 lit[litCount++] = i;
@@ -98,7 +95,8 @@ static inline int elementOf(int x, int y)
     return (int)(block * VPL_LANES + v % VPL_BLOCK_SIDE * VPL_BLOCK_SIDE + u % VPL_BLOCK_SIDE);
 }
 
-// Elements that show something, of every K-th pixel from (x, y) on. Returns their number, at most 16 MAX_CHUNKS.
+// Lists elements that show something among every K-th pixel from (x0, y0) on. Returns their number, at most
+// 16 MAX_CHUNKS.
 static int listPixels(const vplTile* tile, const Region* r, int x0, int y0, int step, int* elements)
 {
     const int32_t* triangles = (const int32_t*)tile->planes[VPL_PLANE_TRIANGLE];
@@ -113,21 +111,40 @@ static int listPixels(const vplTile* tile, const Region* r, int x0, int y0, int 
     return count;
 }
 
-// Brings 16 pixels together. Lanes behind the last repeat the first, and show nothing that casts a ray.
-static void collect(const vplShading* s, const vplTile* tile, const Region* r, int* elements, int count,
-                    vplSeen* seen, vplBlock* b)
+// Pixels of one class in a region. Elements are those of the tile's planes.
+typedef struct Class {
+    const vplShading* shading;
+    vplTile* tile;
+    const Region* region;
+    vplFacetCache* cache;
+    int elements[(MAX_CHUNKS + 1) * VPL_LANES], count;
+} Class;
+
+// Whether shadows or compensation read the points' triangles and planes.
+static bool needsPoints(const vplShading* s)
 {
+    const vplLightList* list = &s->lights;
+    return list->maps != NULL || list->castsRays || s->compensation != NULL ||
+           (s->smooth && list->clusters != NULL);
+}
+
+// Copies `count` pixels from elements[0] on into a block. Lanes behind the last repeat the first, and cast no
+// rays.
+static void collect(const Class* class, int* elements, int count, vplBlock* b)
+{
+    const vplShading* s = class->shading;
+    const vplTile* tile = class->tile;
     for (int l = count; l < VPL_LANES; l++) {
         elements[l] = elements[0];
     }
     for (int k = 0; k < 3; k++) {
         const float* position = tile->planes[VPL_PLANE_POSITION + k];
         const float* normal = tile->planes[VPL_PLANE_NORMAL + k];
-        float *p = b->surface.px + k * VPL_LANES, *n = b->surface.nx + k * VPL_LANES;
+        float *p = b->columns[k], *n = b->columns[3 + k];
         for (int l = 0; l < VPL_LANES; l++) {
             p[l] = position[elements[l]];
         }
-        const float low = r->bounds.low[3 + k], high = r->bounds.high[3 + k];
+        const float low = class->region->bounds.low[3 + k], high = class->region->bounds.high[3 + k];
         for (int l = 0; l < VPL_LANES; l++) {
             n[l] = low;
         }
@@ -136,12 +153,12 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
         }
     }
     for (int c = 0; c < 3; c++) {
-        memset(b->sums[c], 0, sizeof b->sums[c]); // all at once becomes `rep stos`, which is slow to start
+        memset(b->sums[c], 0,
+               sizeof b->sums[c]); // one memset of all becomes `rep stos`, which is slow to start
     }
     b->points.surface = b->points.plane = &b->surface;
     b->cluster = VPL_NO_CLUSTER;
-    const bool asksPlane = s->smooth && s->def->lightClusters != NULL;
-    if (s->def->lightShadows == NULL && !s->def->lightRays && s->nearLight == NULL && !asksPlane) {
+    if (!needsPoints(s)) {
         return;
     }
     const int32_t* triangles = (const int32_t*)tile->planes[VPL_PLANE_TRIANGLE];
@@ -151,25 +168,24 @@ static void collect(const vplShading* s, const vplTile* tile, const Region* r, i
     if (s->smooth) {
         int32_t smooth[VPL_LANES];
         memcpy(&b->plane, &b->surface, 3 * sizeof b->surface.px);
-        vplReadFacets(s, b->points.triangle, seen, &b->plane, smooth);
+        vplReadFacets(s, b->points.triangle, class->cache, &b->plane, smooth);
         b->points.plane = &b->plane;
     }
 }
 
-// What short rays find is gathered with the light of the class, which it is part of.
-static void addNearLight(const vplShading* s, const vplTile* tile, const int* elements, vplBlock* b,
-                         int64_t* rays)
+// Adds compensation to the light of the class: both are filtered.
+static void addCompensation(const Class* class, int side, const int* elements, vplBlock* b, int64_t* rays)
 {
+    const vplTile* tile = class->tile;
     uint32_t pixels[VPL_LANES];
     float part[3][VPL_LANES] = {{0}};
-    const int side = s->interleave->side;
     for (int l = 0; l < VPL_LANES; l++) {
         const int block = elements[l] / VPL_LANES, lane = elements[l] % VPL_LANES;
         const int x = tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE + lane % VPL_BLOCK_SIDE;
         const int y = tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE + lane / VPL_BLOCK_SIDE;
         pixels[l] = (uint32_t)y << 16 | (uint32_t)x;
     }
-    vplAddNearLight(s, &b->points, pixels, part, rays);
+    vplAddCompensation(class->shading, &b->points, pixels, part, rays);
     for (int c = 0; c < 3; c++) {
         for (int l = 0; l < VPL_LANES; l++) {
             b->sums[c][l] += (double)part[c][l] / (side * side);
@@ -177,7 +193,7 @@ static void addNearLight(const vplShading* s, const vplTile* tile, const int* el
     }
 }
 
-// Irradiance goes where positions were: no other class wants these.
+// Writes irradiance over positions, which no other class reads.
 static void scatter(vplTile* tile, const int* elements, int count, double factor, const vplBlock* b)
 {
     for (int c = 0; c < 3; c++) {
@@ -188,48 +204,56 @@ static void scatter(vplTile* tile, const int* elements, int count, double factor
     }
 }
 
-// The pixels of one class by the lights of that class.
-static void lightClass(const vplShading* s, vplTile* tile, const Region* r, int x, int y, vplSeen* seen)
+// Lights the pixels of the class of (x, y), a pixel of the tile.
+static void lightClass(Class* class, int x, int y)
 {
     static const int all[MAX_CHUNKS] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
-    const int side = s->interleave->side, classes = side * side;
-    const int which = (tile->y + y) % side * side + (tile->x + x) % side;
-    const int first = s->interleave->classStart[which];
-    const int end = s->interleave->classStart[which + 1];
+    const vplShading* s = class->shading;
+    const vplInterleave* w = s->state;
+    vplTile* tile = class->tile;
     vplTileSums* tileSums = tile->scratch;
-    int elements[(MAX_CHUNKS + 1) * VPL_LANES];
-    const int count = listPixels(tile, r, x, y, side, elements);
-    const int chunks = (count + VPL_LANES - 1) / VPL_LANES;
+    const int side = w->side, which = (tile->y + y) % side * side + (tile->x + x) % side;
+    const int first = w->classStart[which], end = w->classStart[which + 1];
+    class->count = listPixels(tile, class->region, x, y, side, class->elements);
     vplBlock blocks[MAX_CHUNKS];
-    for (int i = 0; i < chunks; i++) {
-        const int left = count - i * VPL_LANES;
-        collect(s, tile, r, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, seen, &blocks[i]);
-        if (s->nearLight != NULL) {
-            addNearLight(s, tile, elements + i * VPL_LANES, &blocks[i], &tileSums->shadowRays);
+    vplLitBlocks to = {.blocks = blocks, .lit = all, .count = (class->count + VPL_LANES - 1) / VPL_LANES};
+    for (int i = 0; i < to.count; i++) {
+        const int left = class->count - i * VPL_LANES;
+        int* elements = class->elements + i * VPL_LANES;
+        collect(class, elements, left < VPL_LANES ? left : VPL_LANES, &blocks[i]);
+        if (s->compensation != NULL) {
+            addCompensation(class, side, elements, &blocks[i], &tileSums->shadowRays);
         }
     }
-    vplAddLights(s, blocks, all, chunks, s->columns[0] != NULL ? &r->bounds : NULL, first, end - first,
-                 &tileSums->shadowRays);
-    for (int i = 0; i < chunks; i++) {
-        const int left = count - i * VPL_LANES;
-        scatter(tile, elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, classes, &blocks[i]);
+    to.culls = s->lights.columns[0] != NULL;
+    to.bounds = class->region->bounds;
+    vplAddLights(s, &to, first, end - first, &tileSums->shadowRays);
+    for (int i = 0; i < to.count; i++) {
+        const int left = class->count - i * VPL_LANES;
+        scatter(tile, class->elements + i * VPL_LANES, left < VPL_LANES ? left : VPL_LANES, side * side,
+                &blocks[i]);
     }
 }
 
 void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
 {
     const vplShading* s = data;
+    const vplInterleave* w = s->state;
     const vplTileSums* tileSums = tile->scratch;
-    const int side = sideOf(s->interleave->side);
-    vplSeen* seen = &s->interleave->rooms[worker].seen;
+    const int side = sideOf(w->side);
     for (int y = 0; y < tile->height; y += side) {
         for (int x = 0; x < tile->width; x += side) {
             Region r = {.x = x, .y = y};
             r.width = tile->width - x < side ? tile->width - x : side;
             r.height = tile->height - y < side ? tile->height - y : side;
-            prepareRegion(s, tile, &r, seen);
-            for (int k = 0; r.any && k < s->interleave->side * s->interleave->side; k++) {
-                lightClass(s, tile, &r, x + k % s->interleave->side, y + k / s->interleave->side, seen);
+            Class class;
+            class.shading = s;
+            class.tile = tile;
+            class.region = &r;
+            class.cache = &w->scratch[worker].facets;
+            prepareRegion(s, tile, &r, class.cache);
+            for (int k = 0; r.any && k < w->side * w->side; k++) {
+                lightClass(&class, x + k % w->side, y + k / w->side);
             }
         }
     }

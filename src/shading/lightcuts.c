@@ -1,63 +1,57 @@
 // SPDX-License-Identifier: MIT
-// The light tree of a render, and the memory of its cuts.
+// Lightcuts: the light tree of a render, and the memory of its cuts.
 #include "shading/lightcuts.h"
 
-// The tree takes less than a tenth of the time that a picture does: it asks whether to go on, and reports no progress.
-typedef struct Asked {
-    vplProgressFcn* progress;
-    void* user;
-} Asked;
-
+// The tree takes less than a tenth of a picture's time: it can be cancelled, and reports no progress.
 static bool askOnly(void* user, double fraction)
 {
     (void)fraction;
-    const Asked* asked = user;
-    return asked->progress(asked->user, 0);
+    const vplShading* s = user;
+    return s->progress(s->progressUser, 0);
 }
 
-vplResult vplOpenLightcuts(vplShading* shading, vplProgressFcn* progress, void* user)
+static vplResult openLightcuts(vplShading* shading, vplFramebuffer* framebuffer)
 {
     vplContext* context = shading->geometry->context;
-    const vplShadeDef* def = shading->def;
-    Asked asked = {progress, user};
-    vplLightcuts* lightcuts = vplAllocZero(context, 1, sizeof *lightcuts);
-    if (lightcuts == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    shading->lightcuts = lightcuts;
-    lightcuts->workerCount = context->workerCount;
-    lightcuts->workers = vplAlloc(context, (size_t)lightcuts->workerCount, sizeof *lightcuts->workers);
-    if (lightcuts->workers == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    for (int i = 0; i < lightcuts->workerCount; i++) {
-        vplCutWorker* worker = &lightcuts->workers[i];
-        worker->evaluations = worker->pixels = worker->largest = 0;
+    vplLightcuts* lightcuts = vplArena_AllocZero(shading->arena, 1, sizeof *lightcuts);
+    vplCutWorker* workers = vplArena_Alloc(shading->arena, (size_t)context->workerCount, sizeof *workers);
+    TRY(vplArena_Check(shading->arena));
+    vplPrepareGbuffer(framebuffer);
+    shading->state = lightcuts;
+    lightcuts->workers = workers;
+    for (int i = 0; i < context->workerCount; i++) {
+        workers[i].evaluations = workers[i].pixels = workers[i].largest = 0;
         for (int k = 0; k < VPL_CUT_CAPACITY; k++) {
-            worker->cut.places[k] = k;
+            workers[i].cut.indices[k] = k;
         }
     }
-    return vplLightTree_Create(context, def->lights, def->lightCount, progress ? askOnly : NULL, &asked,
-                               &lightcuts->tree);
+    return vplLightTree_Create(context, shading->lights.lights, shading->lights.count,
+                               shading->progress ? askOnly : NULL, shading, &lightcuts->tree);
 }
 
-void vplCountLightcuts(const vplShading* shading, vplShadeStats* stats)
+static vplResult recordLightcuts(vplShading* shading, vplRaster* raster)
 {
-    const vplLightcuts* lightcuts = shading->lightcuts;
-    for (int i = 0; lightcuts != NULL && lightcuts->workers != NULL && i < lightcuts->workerCount; i++) {
+    return vplRecordGbuffer(shading, raster, shading->kernels.lightcuts);
+}
+
+static vplResult countLightcuts(vplShading* shading, vplShadeStats* stats)
+{
+    const vplLightcuts* lightcuts = shading->state;
+    for (int i = 0; i < shading->geometry->context->workerCount; i++) {
         const vplCutWorker* worker = &lightcuts->workers[i];
         stats->lightEvaluations += worker->evaluations;
         stats->cutPixels += worker->pixels;
         stats->largestCut = worker->largest > stats->largestCut ? worker->largest : stats->largestCut;
     }
+    return VPL_SUCCESS;
 }
 
-void vplCloseLightcuts(vplShading* shading)
+static void closeLightcuts(vplShading* shading)
 {
-    vplContext* context = shading->geometry->context;
-    if (shading->lightcuts != NULL) {
-        vplLightTree_Destroy(shading->lightcuts->tree);
-        vplFree(context, shading->lightcuts->workers);
-        vplFree(context, shading->lightcuts);
+    const vplLightcuts* lightcuts = shading->state;
+    if (lightcuts != NULL) {
+        vplLightTree_Destroy(lightcuts->tree);
     }
 }
+
+const vplStrategy vplLightcutsStrategy = {openLightcuts, recordLightcuts, countLightcuts, closeLightcuts};

@@ -1,42 +1,39 @@
 // SPDX-License-Identifier: MIT
-// Based on: Walter, Fernandez, Arbree, Bala, Donikian and Greenberg, Lightcuts: A Scalable Approach to Illumination,
-// SIGGRAPH 2005, section 4. Departs: one cut for the 16 points of a block, whose rays go in one packet: a cluster is
-// refined where any of them asks for it.
+// Lightcuts: lights each block by a cut through the light tree.
+// Based on: Walter, Fernandez, Arbree, Bala, Donikian and Greenberg, Lightcuts: A Scalable Approach to
+// Illumination, SIGGRAPH 2005, section 4. Departs: one cut for the 16 points of a block, whose rays form one
+// packet; a cluster is split if its error is too large at any of them.
 #include "base/isa.h"
 #include "shading/gbuffer.h"
 #include "shading/lightcuts.h"
 
-// A cluster may err by this share of the error that was asked for. The clusters' errors have the mean 0 and nearly
-// cancel, but not quite: with a whole share, as in the paper, pixels are off by up to 3.7 times what was asked for, with
-// a quarter by 1.35 times, with an eighth by 0.95 times (bench/lightcuts: room, room-area, sponza-sun; 1,000 to 100,000
-// particles; largest of all pixels).
+// Largest error of a cluster, as a share of the error that is allowed for a pixel. The errors of clusters
+// have the mean 0 and mostly cancel: with 1, as in the paper, the largest pixel error is 3.7 times the
+// allowed one, with 1/8 0.95 times (bench/lightcuts).
 static const double SHARE = 1.0 / 8;
-// Where nearly all lights are hidden, an error counts as a share of this part of what they would give if they were
-// not: a pixel that no light reaches at all would need all of a million lights to know. With a sixteenth, the largest
-// cut of a million in the room is 10,733 lights, with a thirty-second 124,833.
+// Errors are relative to a pixel's light, or to this share of its unshadowed light if that is more: a pixel
+// in full shadow would evaluate every light to know it. With 1/16 the largest cut of a million lights in the
+// room is 10,733 lights, with 1/32 124,833 (bench/lightcuts).
 static const double DARK = 1.0 / 16;
 
-vplTileFcn VPL_KERNEL(vplCutTile);
-
-// What the steps of one cut share.
+// State of one cut.
 typedef struct Work {
     const vplShading* shading;
-    const vplPoints* points;
-    const vplRayStarts* starts; // NULL: no rays
-    const float* besides;
+    const vplLightTree* tree;
+    vplReceiver receiver;
     vplCut* cut;
-    int64_t* rays;
-    double sums[3][VPL_LANES]; // of lights that were reached
-    double open[VPL_LANES];    // the same if nothing were between, r + g + b
-    float inverse[VPL_LANES];  // 1 / the error that may be left in a cluster
+    float otherLight[VPL_LANES]; // direct light, r + g + b
+    double sums[3][VPL_LANES];   // of lights that are in the cut themselves
+    double open[VPL_LANES];      // the same if nothing were between, r + g + b
+    float inverse[VPL_LANES];    // 1 / error that a cluster may have
 } Work;
 
 // ---- the heap
 
-static void sink(vplCut* cut, int i)
+static void siftDown(vplCut* cut, int i)
 {
     const float key = cut->keys[i];
-    const int place = cut->places[i];
+    const int index = cut->indices[i];
     while (2 * i + 1 < cut->count) {
         int child = 2 * i + 1;
         child += child + 1 < cut->count && cut->keys[child + 1] > cut->keys[child];
@@ -44,49 +41,49 @@ static void sink(vplCut* cut, int i)
             break;
         }
         cut->keys[i] = cut->keys[child];
-        cut->places[i] = cut->places[child];
+        cut->indices[i] = cut->indices[child];
         i = child;
     }
     cut->keys[i] = key;
-    cut->places[i] = place;
+    cut->indices[i] = index;
 }
 
-static void rise(vplCut* cut, int i)
+static void siftUp(vplCut* cut, int i)
 {
     const float key = cut->keys[i];
-    const int place = cut->places[i];
+    const int index = cut->indices[i];
     while (i > 0 && key > cut->keys[(i - 1) / 2]) {
         cut->keys[i] = cut->keys[(i - 1) / 2];
-        cut->places[i] = cut->places[(i - 1) / 2];
+        cut->indices[i] = cut->indices[(i - 1) / 2];
         i = (i - 1) / 2;
     }
     cut->keys[i] = key;
-    cut->places[i] = place;
+    cut->indices[i] = index;
 }
 
 // ---- clusters
 
-// What a light of intensity 1 gives to the lanes, with and without what is between.
-typedef struct Gift {
-    float gives[VPL_LANES], open[VPL_LANES];
-} Gift;
+// Contribution of a light of intensity 1, with and without visibility.
+typedef struct Contribution {
+    float visible[VPL_LANES], open[VPL_LANES];
+} Contribution;
 
-static void evaluate(Work* w, int i, Gift* gift)
+static void evaluate(Work* w, int i, Contribution* out)
 {
-    const vplShading* s = w->shading;
-    const vplTreeLight* from = &s->lightcuts->tree->lights[i];
+    const vplLightList* list = &w->shading->lights;
+    const vplTreeLight* from = &w->tree->lights[i];
     vplShadeLight light = from->light;
     light.r = light.g = light.b = 1;
-    float part[3][VPL_LANES], visible[VPL_LANES];
-    const vplHemiMap* map = s->def->lightShadows ? &s->def->lightShadows[from->index] : NULL;
+    const vplHemiMap* map = list->maps ? &list->maps[from->index] : NULL;
+    vplReceived received;
     w->cut->evaluations++;
-    if (!vplLightVisibly(s, w->points, w->starts, map, &light, s->inverseBound, part, visible, w->rays)) {
-        memset(gift, 0, sizeof *gift);
+    if (!vplReceiveLight(&w->receiver, &light, map, list->inverseClamp, &received)) {
+        memset(out, 0, sizeof *out);
         return;
     }
     for (int l = 0; l < VPL_LANES; l++) {
-        gift->gives[l] = visible[l] * part[0][l];
-        gift->open[l] = part[0][l];
+        out->visible[l] = received.visible[l] * received.open[0][l];
+        out->open[l] = received.open[0][l];
     }
 }
 
@@ -98,13 +95,13 @@ static void addScaled(double sums[VPL_LANES], float scale, const float values[VP
 }
 
 // One light, exactly.
-static void addLight(Work* w, int i, const Gift* gift)
+static void addLight(Work* w, int i, const Contribution* from)
 {
-    const vplShadeLight* light = &w->shading->lightcuts->tree->lights[i].light;
-    addScaled(w->sums[0], light->r, gift->gives);
-    addScaled(w->sums[1], light->g, gift->gives);
-    addScaled(w->sums[2], light->b, gift->gives);
-    addScaled(w->open, light->r + light->g + light->b, gift->open);
+    const vplShadeLight* light = &w->tree->lights[i].light;
+    addScaled(w->sums[0], light->r, from->visible);
+    addScaled(w->sums[1], light->g, from->visible);
+    addScaled(w->sums[2], light->b, from->visible);
+    addScaled(w->open, light->r + light->g + light->b, from->open);
 }
 
 static float keyOf(const Work* w, const vplCutEntry* e)
@@ -117,53 +114,53 @@ static float keyOf(const Work* w, const vplCutEntry* e)
     return largest;
 }
 
-// Puts a cluster into the cut, or where it is one light, into the sums.
-static void place(Work* w, vplCluster cluster, const Gift* gift)
+// Puts a cluster into the cut, or a cluster of one light into the sums.
+static void insert(Work* w, vplCluster cluster, const Contribution* from)
 {
     if (cluster.count == 1) {
-        addLight(w, cluster.first, gift);
+        addLight(w, cluster.first, from);
         return;
     }
     const vplShading* s = w->shading;
-    const vplLightNode* node = &s->lightcuts->tree->nodes[cluster.node];
+    const vplLightNode* node = &w->tree->nodes[cluster.node];
     vplCut* cut = w->cut;
-    vplCutEntry* e = &cut->entries[cut->places[cut->count]];
+    vplCutEntry* e = &cut->entries[cut->indices[cut->count]];
     e->cluster = cluster;
-    memcpy(e->gives, gift->gives, sizeof e->gives);
-    memcpy(e->open, gift->open, sizeof e->open);
-    s->clusterBound(w->points->surface, node, s->inverseBound, e->bound);
+    memcpy(e->visible, from->visible, sizeof e->visible);
+    memcpy(e->open, from->open, sizeof e->open);
+    s->kernels.clusterBound(w->receiver.points->surface, node, s->lights.inverseClamp, e->bound);
     for (int l = 0; l < VPL_LANES; l++) {
         e->bound[l] *= node->intensity;
     }
     cut->keys[cut->count] = keyOf(w, e);
-    rise(cut, cut->count++);
+    siftUp(cut, cut->count++);
 }
 
-// Takes the worst cluster out of the heap; its entry is the next that will be used.
+// Takes the worst cluster out of the heap. Its entry is the next to be reused.
 static vplCutEntry* pop(vplCut* cut)
 {
-    const int place = cut->places[0];
+    const int index = cut->indices[0];
     cut->count--;
     cut->keys[0] = cut->keys[cut->count];
-    cut->places[0] = cut->places[cut->count];
-    cut->places[cut->count] = place;
-    sink(cut, 0);
-    return &cut->entries[place];
+    cut->indices[0] = cut->indices[cut->count];
+    cut->indices[cut->count] = index;
+    siftDown(cut, 0);
+    return &cut->entries[index];
 }
 
 static void sumUp(Work* w, vplCluster cluster)
 {
     for (int i = cluster.first; i < cluster.first + cluster.count; i++) {
-        Gift gift;
-        evaluate(w, i, &gift);
-        addLight(w, i, &gift);
+        Contribution one;
+        evaluate(w, i, &one);
+        addLight(w, i, &one);
     }
 }
 
-// One half keeps the representative, and with it what is known of it.
+// Splits the worst cluster. One half keeps the representative and its contribution.
 static void split(Work* w)
 {
-    const vplLightTree* tree = w->shading->lightcuts->tree;
+    const vplLightTree* tree = w->tree;
     const vplCutEntry* e = pop(w->cut);
     const vplCluster cluster = e->cluster;
     if (w->cut->count + 2 > VPL_CUT_CAPACITY) {
@@ -173,43 +170,42 @@ static void split(Work* w)
     vplCluster halves[2];
     vplLightTree_Halves(tree, cluster, halves);
     const int kept = tree->nodes[cluster.node].representative < halves[1].first ? 0 : 1;
-    Gift gifts[2];
-    memcpy(gifts[kept].gives, e->gives, sizeof e->gives);
-    memcpy(gifts[kept].open, e->open, sizeof e->open);
-    evaluate(w, vplLightTree_Representative(tree, halves[1 - kept]), &gifts[1 - kept]);
-    place(w, halves[0], &gifts[0]);
-    place(w, halves[1], &gifts[1]);
+    Contribution of[2];
+    memcpy(of[kept].visible, e->visible, sizeof e->visible);
+    memcpy(of[kept].open, e->open, sizeof e->open);
+    evaluate(w, vplLightTree_Representative(tree, halves[1 - kept]), &of[1 - kept]);
+    insert(w, halves[0], &of[0]);
+    insert(w, halves[1], &of[1]);
 }
 
 // ---- the cut
 
-// Sums over the cut so far; with them, what error is allowed, keys and heap.
-static void renew(Work* w)
+// Sums the cut, from which follow the allowed error, the keys and the heap.
+static void updateErrors(Work* w)
 {
-    const vplShading* s = w->shading;
     vplCut* cut = w->cut;
     double totals[VPL_LANES], open[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        totals[l] = (double)w->besides[l] + (w->sums[0][l] + w->sums[1][l] + w->sums[2][l]);
-        open[l] = (double)w->besides[l] + w->open[l];
+        totals[l] = (double)w->otherLight[l] + (w->sums[0][l] + w->sums[1][l] + w->sums[2][l]);
+        open[l] = (double)w->otherLight[l] + w->open[l];
     }
     for (int i = 0; i < cut->count; i++) {
-        const vplCutEntry* e = &cut->entries[cut->places[i]];
-        const float intensity = s->lightcuts->tree->nodes[e->cluster.node].intensity;
-        addScaled(totals, intensity, e->gives);
+        const vplCutEntry* e = &cut->entries[cut->indices[i]];
+        const float intensity = w->tree->nodes[e->cluster.node].intensity;
+        addScaled(totals, intensity, e->visible);
         addScaled(open, intensity, e->open);
     }
-    const double share = (double)s->def->cutError * SHARE;
+    const double share = (double)w->shading->def->cutError * SHARE;
     for (int l = 0; l < VPL_LANES; l++) {
         const double dark = DARK * open[l], of = totals[l] > dark ? totals[l] : dark;
         const double inverse = 1 / (share * of);
-        w->inverse[l] = w->points->triangle[l] < 0 ? 0 : inverse < 1e37 ? (float)inverse : 1e37f;
+        w->inverse[l] = w->receiver.points->triangle[l] < 0 ? 0 : inverse < 1e37 ? (float)inverse : 1e37f;
     }
     for (int i = 0; i < cut->count; i++) {
-        cut->keys[i] = keyOf(w, &cut->entries[cut->places[i]]);
+        cut->keys[i] = keyOf(w, &cut->entries[cut->indices[i]]);
     }
     for (int i = cut->count / 2 - 1; i >= 0; i--) {
-        sink(cut, i);
+        siftDown(cut, i);
     }
 }
 
@@ -219,7 +215,7 @@ static void refine(Work* w)
     int next = 16;
     while (cut->count > 0) {
         if (!(cut->keys[0] > 1) || cut->count >= next) {
-            renew(w);
+            updateErrors(w);
             next = cut->count + cut->count / 4 + 8;
             if (!(cut->keys[0] > 1)) {
                 return;
@@ -229,39 +225,40 @@ static void refine(Work* w)
     }
 }
 
-// Adds the light of all clusters to a block whose sums hold what else it receives: that counts where an error is a
-// share of a pixel's light.
+static void refineFromRoot(Work* w)
+{
+    const vplCluster root = vplLightTree_Root(w->tree);
+    Contribution one;
+    w->cut->count = w->cut->evaluations = 0;
+    evaluate(w, vplLightTree_Representative(w->tree, root), &one);
+    insert(w, root, &one);
+    refine(w);
+    for (int i = 0; i < w->cut->count; i++) {
+        const vplCutEntry* e = &w->cut->entries[w->cut->indices[i]];
+        for (int c = 0; c < 3; c++) {
+            addScaled(w->sums[c], w->tree->nodes[e->cluster.node].rgb[c], e->visible);
+        }
+    }
+}
+
+// Adds the light of all clusters to a block whose sums hold its other light, to which errors are relative,
+// too.
 static void addCut(const vplShading* s, vplCutWorker* worker, vplBlock* b, int64_t* rays)
 {
     const vplPoints* points = &b->points;
-    const vplLightTree* tree = s->lightcuts->tree;
+    const vplLightcuts* lightcuts = s->state;
     vplRayStarts starts;
-    const bool casts = s->def->lightShadows == NULL && s->def->lightRays;
-    if (casts) {
+    if (s->lights.castsRays) {
         vplFindRayStarts(s, points, &starts);
     }
-    float besides[VPL_LANES];
-    for (int l = 0; l < VPL_LANES; l++) {
-        besides[l] = (float)(b->sums[0][l] + b->sums[1][l] + b->sums[2][l]);
-    }
     Work w = {.shading = s,
-              .points = points,
-              .starts = casts ? &starts : NULL,
-              .besides = besides,
-              .cut = &worker->cut,
-              .rays = rays};
-    w.cut->count = w.cut->evaluations = 0;
-    const vplCluster root = vplLightTree_Root(tree);
-    Gift gift;
-    evaluate(&w, vplLightTree_Representative(tree, root), &gift);
-    place(&w, root, &gift);
-    refine(&w);
-    for (int i = 0; i < w.cut->count; i++) {
-        const vplCutEntry* e = &w.cut->entries[w.cut->places[i]];
-        for (int c = 0; c < 3; c++) {
-            addScaled(w.sums[c], tree->nodes[e->cluster.node].rgb[c], e->gives);
-        }
+              .tree = lightcuts->tree,
+              .receiver = {s, points, s->lights.castsRays ? &starts : NULL, rays},
+              .cut = &worker->cut};
+    for (int l = 0; l < VPL_LANES; l++) {
+        w.otherLight[l] = (float)(b->sums[0][l] + b->sums[1][l] + b->sums[2][l]);
     }
+    refineFromRoot(&w);
     for (int l = 0; l < VPL_LANES; l++) {
         const bool shown = points->triangle[l] >= 0;
         worker->pixels += shown;
@@ -279,19 +276,20 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
 {
     const vplShading* s = data;
     vplTileSums* tileSums = tile->scratch;
-    vplSeen seen;
-    vplSeen_Clear(&seen);
+    const vplLightcuts* lightcuts = s->state;
+    vplFacetCache cache;
+    vplFacetCache_Clear(&cache);
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
         const int x = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, y = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
         if (x >= tile->width || y >= tile->height) {
             continue;
         }
         vplBlock b;
-        if (vplReadBlock(s, tile, block * VPL_LANES, &seen, &b)) {
-            vplLightOnce(s, tile, block, &b);
-            addCut(s, &s->lightcuts->workers[worker], &b, &tileSums->shadowRays);
+        if (vplReadBlock(s, tile, block * VPL_LANES, &cache, &b)) {
+            vplStartLight(s, tile, block, &b);
+            addCut(s, &lightcuts->workers[worker], &b, &tileSums->shadowRays);
         }
-        vplWriteLit(s, tile, block, &seen, &b);
+        vplWriteLit(s, tile, block, &cache, &b);
     }
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }

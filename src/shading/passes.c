@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering": the scene lit by the point light with
-// depth LESS, then the whole scene once per virtual light with depth EQUAL, additive, without shadows. Batched:
-// "Improving the Rendering", m lights in one pass.
-// Departs: passes add irradiance, and the reflectance is multiplied once at the end (three multiplications
-// less per pixel and light); of coplanar surfaces at equal depth only the one that won the depth test is lit,
-// where EQUAL alone would add the light twice.
+// Multipass: the scene is drawn once with direct light and depth LESS, then once per virtual light with depth
+// EQUAL, additive. Batched: m lights per pass.
+// Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering" and "Improving the Rendering". Departs:
+// passes add irradiance, which is multiplied by the reflectance once at the end (three multiplications less
+// per pixel and light); of coplanar surfaces at equal depth only the winner of the depth test is lit, where
+// EQUAL alone would light both.
 #include "shading/shading.h"
 
-// One pass over all objects.
-static vplResult recordPass(const vplShading* s, vplRaster* raster, vplPipeline state,
-                            vplPassUniforms* uniforms, int first, int count)
+static vplResult openPasses(vplShading* shading, vplFramebuffer* framebuffer)
 {
-    vplResult result = VPL_SUCCESS;
-    for (int i = 0; i < s->geometry->objectCount && result == VPL_SUCCESS; i++) {
+    (void)shading;
+    framebuffer->planeCount = VPL_PLANE_TRIANGLE + 1;
+    framebuffer->scratchBytes = sizeof(vplTileSums);
+    return VPL_SUCCESS;
+}
+
+// One pass over all objects, with `uniforms` for each.
+static vplResult recordPass(const vplShading* s, vplRaster* raster, vplPipeline state, int first, int count,
+                            vplPassUniforms* uniforms)
+{
+    for (int i = 0; i < s->geometry->objectCount; i++) {
         uniforms[i] = (vplPassUniforms){s, i, first, count};
         const vplPipeline own = vplCameraPipeline(s, i); // smooth objects have more varyings than flat ones
         state.vertex = own.vertex;
@@ -21,43 +28,39 @@ static vplResult recordPass(const vplShading* s, vplRaster* raster, vplPipeline 
         state.surface = own.surface;
         state.surfaceCount = own.surfaceCount;
         state.fragmentUniforms = &uniforms[i];
-        result = vplRaster_Draw(raster, &s->meshes[i], &state);
+        TRY(vplRaster_Draw(raster, &s->meshes[i], &state));
     }
-    return result;
+    return VPL_SUCCESS;
 }
 
-vplResult vplRecordPasses(const vplShading* shading, vplRaster* raster, void** uniformsOut)
+static vplResult recordPasses(vplShading* shading, vplRaster* raster)
 {
     const vplShadeDef* def = shading->def;
-    const vplShadingKernels kernels = vplGetShadingKernels(shading->geometry->context->isa);
     const int batch = def->accumulation == VPL_ACCUMULATE_MULTIPASS ? 1 : def->batch;
     const size_t objects = (size_t)shading->geometry->objectCount;
     const size_t passes = 1 + ((size_t)def->lightCount + (size_t)batch - 1) / (size_t)batch;
-    vplPassUniforms* uniforms = vplAlloc(shading->geometry->context, objects * passes, sizeof *uniforms);
-    if (uniforms == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    *uniformsOut = uniforms;
+    vplPassUniforms* uniforms = vplArena_Alloc(shading->arena, objects * passes, sizeof *uniforms);
+    TRY(vplArena_Check(shading->arena));
     vplPipeline less = vplDefaultPipeline();
-    less.fragment = kernels.direct;
-    vplResult result = recordPass(shading, raster, less, uniforms, 0, 0);
-    if (result == VPL_SUCCESS) {
-        result = vplRaster_TileTask(raster, kernels.fold, NULL);
-    }
+    less.fragment = shading->kernels.direct;
+    TRY(recordPass(shading, raster, less, 0, 0, uniforms));
+    TRY(vplRaster_TileTask(raster, shading->kernels.flush, NULL));
     vplPipeline equal = vplDefaultPipeline();
-    equal.passes = kernels.lights;
+    equal.passes = shading->kernels.lights;
     equal.depthCompare = VPL_DEPTH_EQUAL;
     equal.depthWrite = false;
     equal.ownerTest = true;
     equal.blend = VPL_BLEND_ADD;
     equal.planeMask = 7u << VPL_PLANE_IRRADIANCE;
-    for (int first = 0; first < def->lightCount && result == VPL_SUCCESS; first += batch) {
-        int count = def->lightCount - first < batch ? def->lightCount - first : batch;
+    for (int first = 0; first < def->lightCount; first += batch) {
+        const int left = def->lightCount - first;
         uniforms += objects;
-        result = recordPass(shading, raster, equal, uniforms, first, count);
+        TRY(recordPass(shading, raster, equal, first, left < batch ? left : batch, uniforms));
     }
-    if (result == VPL_SUCCESS && def->lightCount > 0) {
-        result = vplRaster_TileTask(raster, kernels.fold, NULL);
+    if (def->lightCount > 0) {
+        TRY(vplRaster_TileTask(raster, shading->kernels.flush, NULL));
     }
-    return result == VPL_SUCCESS ? vplRaster_TileTask(raster, kernels.resolve, (void*)shading) : result;
+    return vplRaster_TileTask(raster, shading->kernels.resolve, shading);
 }
+
+const vplStrategy vplPassesStrategy = {.open = openPasses, .tile = recordPasses};

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Shaders of the passes: emitters once, then virtual lights one by one or in batches.
+// Shaders of the passes: direct light once, then virtual lights one by one or in batches.
 #include "base/isa.h"
-#include "shading/resolve.h"
-
-#include <string.h>
+#include "shading/gbuffer.h"
 
 enum { BLOCKS = VPL_TILE_BLOCKS * VPL_TILE_BLOCKS };
 
@@ -12,7 +10,7 @@ static inline int triangleOf(const vplPassUniforms* u, const vplFragments* f)
     return u->shading->geometry->objects[u->object].firstTriangle + f->primitive;
 }
 
-// The points of a block, which the surface shader has prepared.
+// The points of a block, which the surface shader has written.
 static inline vplPoints pointsOf(const vplPassUniforms* u, const vplFragments* f)
 {
     vplPoints points;
@@ -25,22 +23,38 @@ static inline vplPoints pointsOf(const vplPassUniforms* u, const vplFragments* f
     return points;
 }
 
-vplFragmentFcn VPL_KERNEL(vplShadeDirect);
-vplPassesFcn VPL_KERNEL(vplShadeLights);
-vplTileFcn VPL_KERNEL(vplFoldTile), VPL_KERNEL(vplResolveTile);
+// The surface shader: a triangle and interpolated positions become a vplSurface.
+void VPL_KERNEL(vplShadeSurface)(const void* uniforms, vplFragments* f)
+{
+    const vplObjectUniforms* u = uniforms;
+    const vplShading* s = u->shading;
+    const int triangle = s->geometry->objects[u->object].firstTriangle + f->primitive;
+    const vplVec3 n = vplGetFacet(s, triangle).normal;
+    vplSurface* surface = (vplSurface*)f->varying[0];
+    if (!s->smooth) {
+        vplSetNormals(n, surface);
+        return;
+    }
+    vplSurface* plane = (vplSurface*)f->varying[VPL_SURFACE_VARYINGS];
+    memcpy(plane, surface, 3 * sizeof f->varying[0]);
+    vplSetNormals(n, plane);
+    int32_t smooth[VPL_LANES];
+    memset(smooth, u->normals != NULL ? 0xff : 0, sizeof smooth);
+    vplFinishNormals(plane, smooth, surface);
+}
 
 void VPL_KERNEL(vplShadeDirect)(const void* uniforms, vplFragments* f)
 {
     const vplPassUniforms* u = uniforms;
     vplTileSums* sums = f->scratch;
     const vplPoints points = pointsOf(u, f);
-    vplDirectIrradiance(u->shading, &points, f->plane, &sums->shadowRays);
-    vplAddNearLightOfBlock(u->shading, &points, f->x, f->y, f->plane, &sums->shadowRays);
-    vplShowTriangle(triangleOf(u, f), f);
+    vplDirectIrradiance(u->shading, &u->shading->direct, &points, f->plane, &sums->shadowRays);
+    vplAddCompensationOfBlock(u->shading, &points, f->x, f->y, f->plane, &sums->shadowRays);
+    vplStoreTriangle(triangleOf(u, f), f);
 }
 
-// A full group of a block moves from its planes to the sums.
-static void foldBlock(vplFragments* f)
+// Moves a finished group of a block from its planes to the sums.
+static void flushBlock(vplFragments* f)
 {
     vplTileSums* sums = f->scratch;
     for (int c = 0; c < 3; c++) {
@@ -55,9 +69,9 @@ static void foldBlock(vplFragments* f)
     }
 }
 
-// Passes of one light or several each; passes that follow each other use lights that follow each other (see
-// vplRecordPasses). The framebuffer's part of the group goes through the kernel as its starting value, so that
-// each light is added in the same order however many share a pass, and however many passes a call.
+// Adds `count` consecutive passes, whose lights follow each other in the list. The kernel starts from the
+// framebuffer's sum of the group, so that the order of additions does not depend on lights per pass or passes
+// per call.
 void VPL_KERNEL(vplShadeLights)(const void* const* uniforms, int count, vplFragments* f)
 {
     const vplPassUniforms *u = uniforms[0], *last = uniforms[count - 1];
@@ -70,12 +84,12 @@ void VPL_KERNEL(vplShadeLights)(const void* const* uniforms, int count, vplFragm
         vplIndirectIrradiance(u->shading, &points, first, next - first, f->plane, &sums->shadowRays);
         first = next;
         if (first == groupEnd) {
-            foldBlock(f);
+            flushBlock(f);
         }
     }
 }
 
-void VPL_KERNEL(vplFoldTile)(void* data, vplTile* tile, int worker)
+void VPL_KERNEL(vplFlushTile)(void* data, vplTile* tile, int worker)
 {
     (void)data;
     (void)worker;
@@ -97,8 +111,8 @@ void VPL_KERNEL(vplResolveTile)(void* data, vplTile* tile, int worker)
     const vplShading* s = data;
     const vplTileSums* tileSums = tile->scratch;
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
-    vplSeen seen;
-    vplSeen_Clear(&seen);
+    vplFacetCache cache;
+    vplFacetCache_Clear(&cache);
     for (int block = 0; block < BLOCKS; block++) {
         int triangles[VPL_LANES];
         double sums[3][VPL_LANES];
@@ -108,9 +122,9 @@ void VPL_KERNEL(vplResolveTile)(void* data, vplTile* tile, int worker)
         }
         float radiance[3][VPL_LANES];
         if (triangles[0] >= 0 && vplSameTriangle(triangles)) {
-            vplResolveSame(&vplSee(s, triangles[0], &seen)->reflector, sums, radiance);
+            vplResolveSame(&vplFacetCache_Get(s, triangles[0], &cache)->reflector, sums, radiance);
         } else {
-            vplResolveMixed(s, triangles, sums, &seen, radiance);
+            vplResolveMixed(s, triangles, sums, &cache, radiance);
         }
         vplWriteBlock(s, tile, block, radiance);
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The end of every pipeline, for kernels: sums of irradiance become radiance and pixels.
+// The end of every strategy, for kernels: sums of irradiance become radiance and pixels.
 #ifndef VPL_SHADING_RESOLVE_H
 #define VPL_SHADING_RESOLVE_H
 
-#include "shading/seen.h"
+#include "shading/facet_cache.h"
 
-// What vplReadTriangles reads: one triangle in all lanes.
-static inline void vplShowTriangle(int triangle, vplFragments* f)
+// Stores one triangle in all lanes, as vplReadTriangles reads it.
+static inline void vplStoreTriangle(int triangle, vplFragments* f)
 {
     int32_t id[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
@@ -18,7 +18,7 @@ static inline void vplShowTriangle(int triangle, vplFragments* f)
 // Index in geometry->normals of each lane of a block, -1 where nothing is. Returns whether any lane has one.
 static inline bool vplReadTriangles(const vplTile* tile, int element, int triangles[VPL_LANES])
 {
-    // Not read as floats: small integers are denormal there.
+    // Copied as bits: small integers read as floats are denormal.
     memcpy(triangles, tile->planes[VPL_PLANE_TRIANGLE] + element, VPL_LANES * sizeof(int));
     int any = 0;
     for (int l = 0; l < VPL_LANES; l++) {
@@ -43,7 +43,7 @@ static inline void vplWriteBlock(const vplShading* shading, const vplTile* tile,
 {
     vplImage* image = shading->image;
     const int x = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, y = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
-    // Rows start where vectors do: what is read back must have been written in one piece.
+    // Rows are aligned to vectors, so that each load is forwarded from one store.
     _Alignas(64) float rows[VPL_BLOCK_SIDE][VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
         float* pixel = &rows[l / VPL_BLOCK_SIDE][3 * (l % VPL_BLOCK_SIDE)];
@@ -55,7 +55,7 @@ static inline void vplWriteBlock(const vplShading* shading, const vplTile* tile,
     float* to = image->pixels + (size_t)(tile->y + y) * pitch + 3 * (size_t)(tile->x + x);
     const int width = tile->width - x < VPL_BLOCK_SIDE ? tile->width - x : VPL_BLOCK_SIDE;
     for (int row = 0; row < VPL_BLOCK_SIDE && y + row < tile->height && width > 0; row++, to += pitch) {
-        if (width == VPL_BLOCK_SIDE) {
+        if (width == VPL_BLOCK_SIDE) { // a constant size: no call
             memcpy(to, rows[row], 3 * VPL_BLOCK_SIDE * sizeof(float));
         } else {
             memcpy(to, rows[row], 3 * (size_t)width * sizeof(float));
@@ -63,7 +63,7 @@ static inline void vplWriteBlock(const vplShading* shading, const vplTile* tile,
     }
 }
 
-// One triangle in all lanes.
+// All lanes show one triangle.
 static inline void vplResolveSame(const vplReflector* r, double sums[3][VPL_LANES],
                                   float radiance[3][VPL_LANES])
 {
@@ -77,13 +77,14 @@ static inline void vplResolveSame(const vplReflector* r, double sums[3][VPL_LANE
 }
 
 static inline void vplResolveMixed(const vplShading* s, const int triangles[VPL_LANES],
-                                   double sums[3][VPL_LANES], vplSeen* seen, float radiance[3][VPL_LANES])
+                                   double sums[3][VPL_LANES], vplFacetCache* cache,
+                                   float radiance[3][VPL_LANES])
 {
     vplReflector r = {{0}, {0}};
     for (int l = 0, last = -1; l < VPL_LANES; l++) {
         if (triangles[l] != last) {
             last = triangles[l];
-            r = last < 0 ? (vplReflector){{0}, {0}} : vplSee(s, last, seen)->reflector;
+            r = last < 0 ? (vplReflector){{0}, {0}} : vplFacetCache_Get(s, last, cache)->reflector;
         }
         for (int c = 0; c < 3; c++) {
             radiance[c][l] = (float)(r.emission[c] + r.factor[c] * sums[c][l]);

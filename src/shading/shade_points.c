@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light at points of surfaces that no camera shows: what the patches of radiosity receive.
+// Light at points of surfaces that no camera shows: direct light of radiosity's patches.
 #include "math/vec.h"
 #include "shading/shading.h"
 
@@ -13,8 +13,7 @@ typedef struct PointsTask {
     int64_t rays;
 } PointsTask;
 
-// Tasks of so many points: a lamp's 64 rays each are a millisecond.
-enum { TASK_POINTS = 16 * VPL_LANES };
+enum { TASK_POINTS = 16 * VPL_LANES }; // per task: 64 rays to an area light from each take a millisecond
 
 static void loadBlock(const PointsTask* t, int first, int count, vplSurface* surface, int triangle[VPL_LANES])
 {
@@ -34,11 +33,11 @@ static void loadBlock(const PointsTask* t, int first, int count, vplSurface* sur
     }
 }
 
-// Groups are summed in double, as vplTileSums does.
+// Sums groups in double, as vplTileSums does.
 static void addLights(const vplShading* s, const vplPoints* points, double sums[3][VPL_LANES], int64_t* rays)
 {
-    for (int first = 0; first < s->def->lightCount; first += VPL_LIGHT_GROUP) {
-        const int left = s->def->lightCount - first;
+    for (int first = 0; first < s->lights.count; first += VPL_LIGHT_GROUP) {
+        const int left = s->lights.count - first;
         float part[3][VPL_LANES] = {{0}};
         vplIndirectIrradiance(s, points, first, left < VPL_LIGHT_GROUP ? left : VPL_LIGHT_GROUP, part, rays);
         for (int c = 0; c < 3; c++) {
@@ -56,7 +55,7 @@ static void lightBlock(PointsTask* t, int first, int count, int64_t* rays)
     float direct[3][VPL_LANES];
     double sums[3][VPL_LANES];
     loadBlock(t, first, count, &surface, points.triangle);
-    vplDirectIrradiance(&t->shading, &points, direct, rays);
+    vplDirectIrradiance(&t->shading, &t->shading.direct, &points, direct, rays);
     for (int c = 0; c < 3; c++) {
         for (int l = 0; l < VPL_LANES; l++) {
             sums[c][l] = (double)direct[c][l];
@@ -89,16 +88,14 @@ vplResult vplShadePoints(const vplGeometry* geometry, const vplShadeDef* def, co
                        .count = count,
                        .irradiance = irradianceOut};
     task.shading.smooth = false; // points have one normal each
-    vplResult result = vplMakeEmitterRays(&task.shading);
-    if (result == VPL_SUCCESS) {
-        result = vplGeometry_PrepareRays(geometry);
-    }
+    task.shading.arena = vplArena_Create(geometry->context);
+    const vplResult result = vplDirectLight_Open(&task.shading.direct, task.shading.arena, def->lighting);
     if (result == VPL_SUCCESS) {
         vplParallelFor(geometry->context, (count + TASK_POINTS - 1) / TASK_POINTS, lightPoints, &task);
         if (raysOut != NULL) {
             *raysOut += task.rays;
         }
     }
-    vplFree(geometry->context, task.shading.emitters);
+    vplArena_Destroy(task.shading.arena);
     return result;
 }

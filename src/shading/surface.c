@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The camera, its vertex shader, and what a triangle shows to it.
+// The camera, its vertex shader, and the facets of triangles.
 #include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -36,7 +36,7 @@ typedef struct ViewPoint {
     double x, y, depth;
 } ViewPoint;
 
-// Relative to the eye first, so that a scene far from the origin keeps its digits.
+// Subtracts the eye first: a scene far from the origin keeps its digits.
 static ViewPoint toView(const vplView* v, vplVec3 p)
 {
     double x = (double)p.x - v->eye.x, y = (double)p.y - v->eye.y, z = (double)p.z - v->eye.z;
@@ -56,7 +56,7 @@ bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y)
     return true;
 }
 
-// One function for all draws: depths that are compared must be the same bits.
+// All draws use this function: depths that are compared must have the same bits.
 static void toClip(const vplView* view, vplVec3 point, float* x, float* y, float* z, float* w)
 {
     const ViewPoint v = toView(view, point);
@@ -98,7 +98,7 @@ vplPipeline vplCameraPipeline(const vplShading* shading, int object)
     pipeline.vertex = vplCameraVertices;
     pipeline.vertexUniforms = &shading->objects[object];
     pipeline.varyingCount = VPL_CAMERA_VARYINGS + (shading->objects[object].normals ? 3 : 0);
-    pipeline.surface = vplGetShadingKernels(shading->geometry->context->isa).surface;
+    pipeline.surface = shading->kernels.surface;
     pipeline.surfaceCount = VPL_SURFACE_VARYINGS * (shading->smooth ? 2 : 1);
     return pipeline;
 }

@@ -5,6 +5,7 @@
 
 #include "base/context.h"
 #include "base/rng.h"
+#include "cli/bench/measure.h"
 #include "geometry/bvh.h"
 #include "math/vec.h"
 
@@ -39,18 +40,6 @@ static inline void openScene(const char* path, int workers, vplIsa isa, vplConte
     def.isa = isa;
     check(vplContext_Create(&def, contextOut));
     check(vplScene_Load(*contextOut, path, sceneOut));
-}
-
-static inline double median(double* values, int count)
-{
-    for (int i = 1; i < count; i++) {
-        for (int k = i; k > 0 && values[k - 1] > values[k]; k--) {
-            double swap = values[k];
-            values[k] = values[k - 1];
-            values[k - 1] = swap;
-        }
-    }
-    return values[count / 2];
 }
 
 // Through the centre of a pixel.

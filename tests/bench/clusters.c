@@ -4,8 +4,6 @@
 // mean of 200 random rooms.
 #include "bench.h"
 
-#include "base/clock.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -34,9 +32,9 @@ static void addRun(const vplLightSet* set, int count, const int* seeds, Outcome*
     def.count = count;
     def.seeds = seeds;
     vplLightClusters* clusters;
-    const double start = vplCpuMs();
+    const double start = cpuMs();
     check(vplFindClusters(set, &def, &clusters));
-    outcome->us += 1e3 * (vplCpuMs() - start);
+    outcome->us += 1e3 * (cpuMs() - start);
     outcome->sum += sumOf(set, clusters, &def);
     outcome->iterations += clusters->iterations;
     vplLightClusters_Destroy(clusters);

@@ -5,7 +5,7 @@
 // with the deviation that our own error estimate explains.
 // The scene is that of Laurent Noel and Venceslas Biri, Skeleton based Vertex Connection Resampling for Bidirectional
 // Path Tracing, Pacific Graphics 2015; it is not part of libvpl.
-#include "base/clock.h"
+#include "cli/bench/measure.h"
 #include "reference/path_trace.h"
 
 #include <vpl/vpl.h>
@@ -98,7 +98,7 @@ static vplResult trace(const vplScene* scene, const vplGeometry* geometry, int s
     vplPathTracer* tracer = NULL;
     vplImage* image = NULL;
     vplPathStats stats;
-    double start = vplCpuMs();
+    double start = cpuMs();
     vplResult result = vplPathTracer_Create(geometry, &def, &tracer);
     if (result == VPL_SUCCESS) {
         result = vplPathTracer_Pass(tracer, samples, NULL, NULL, 0, 1);
@@ -108,7 +108,7 @@ static vplResult trace(const vplScene* scene, const vplGeometry* geometry, int s
     }
     if (result == VPL_SUCCESS) {
         vplPathTracer_Resolve(tracer, image, &stats);
-        compare(image, &stats, vplCpuMs() - start, theirs);
+        compare(image, &stats, cpuMs() - start, theirs);
     }
     vplImage_Destroy(image);
     vplPathTracer_Destroy(tracer);

@@ -11,7 +11,6 @@
 #include "render/stages/shadow_choice.h"
 
 #include <string.h>
-#include <time.h>
 
 enum { MOST_LIGHTS = 1024, RUNS = 3, MAP_SIZES = 3 };
 static const int mapSizes[MAP_SIZES] = {64, 128, 256};
@@ -24,13 +23,6 @@ typedef struct Bench {
     vplShadeLight lights[MOST_LIGHTS];
     int lightCount;
 } Bench;
-
-static double processorMs(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
 
 // Lights of all steps, evenly chosen.
 static void makeLights(Bench* b)
@@ -73,9 +65,9 @@ static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int 
     def.lightCount = lights;
     def.lightRays = rays;
     def.lightShadows = maps ? maps->maps : NULL;
-    const double start = processorMs();
+    const double start = cpuMs();
     check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
-    return processorMs() - start;
+    return cpuMs() - start;
 }
 
 typedef struct Cell {
@@ -95,9 +87,9 @@ static void measureMaps(const Bench* b, const vplView* view, vplImage* image, in
         const int count = lights - first < batch ? lights - first : batch;
         vplHemiMapPlace* places = malloc((size_t)count * sizeof *places);
         placesOf(b, first, count, places);
-        const double start = processorMs();
+        const double start = cpuMs();
         check(vplHemiMaps_Draw(maps, b->geometry, places, count, NULL, NULL));
-        *drawMs += processorMs() - start;
+        *drawMs += cpuMs() - start;
         *lookMs += shadeMs(b, view, image, first, count, maps, false);
         free(places);
     }
@@ -121,10 +113,10 @@ static Cell measure(const Bench* b, int width, int height, int lights, int runs)
             measureMaps(b, &view, image, lights, mapSizes[k], &draw[k][run], &look[k][run]);
         }
     }
-    Cell cell = {.none = median(none, runs), .ray = median(ray, runs)};
+    Cell cell = {.none = medianOf(none, runs), .ray = medianOf(ray, runs)};
     for (int k = 0; k < MAP_SIZES; k++) {
-        cell.draw[k] = median(draw[k], runs);
-        cell.look[k] = median(look[k], runs);
+        cell.draw[k] = medianOf(draw[k], runs);
+        cell.look[k] = medianOf(look[k], runs);
     }
     vplImage_Destroy(image);
     return cell;

@@ -137,8 +137,8 @@ static void measure(const vplScene* scene, const Truth* truth, const Line* line,
         printf("keller %6d, interleaved %2d, %d passes, %s", line->amount, line->interleave, stats.passes,
                line->compensation == VPL_COMPENSATION_RAYS ? "short rays" : "clamped   ");
     }
-    printf(" %8.3f %8.3f %8.2f %8.2f %8.2f\n", 1e-3 * median(wall, RUNS), 1e-3 * median(cpu, RUNS),
-           100 * median(errors, RUNS), 100 * median(rms, RUNS), 100 * median(largest, RUNS));
+    printf(" %8.3f %8.3f %8.2f %8.2f %8.2f\n", 1e-3 * medianOf(wall, RUNS), 1e-3 * medianOf(cpu, RUNS),
+           100 * medianOf(errors, RUNS), 100 * medianOf(rms, RUNS), 100 * medianOf(largest, RUNS));
     fflush(stdout);
 }
 

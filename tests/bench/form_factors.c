@@ -5,7 +5,6 @@
 // --most (default 4000; all pairs of 50000 are refused). Times: of the first way. Ways that test every triangle run up to --brute patches (default 1000). Error: the mean over
 // rows of the sum of |F - F of 64 samples|, up to 1000 patches.
 #include "bench.h"
-#include "base/clock.h"
 
 #include <math.h>
 #include <string.h>
@@ -90,11 +89,11 @@ static double measure(const vplPatchSides* sides, int runs, int brute)
             if (many || (WAYS[w].bruteForce && sides->patches->patchCount > brute)) {
                 continue;
             }
-            const double start = vplCpuMs();
+            const double start = cpuMs();
             vplFormFactors* f = create(sides, &WAYS[w], 0);
-            times[w][run] = vplCpuMs() - start;
+            times[w][run] = cpuMs() - start;
             if (run == runs - 1) {
-                const double ms = median(times[w], runs);
+                const double ms = medianOf(times[w], runs);
                 first = first > 0 ? first : ms;
                 print(sides, &WAYS[w], ms, first, f, truth);
             }
@@ -112,11 +111,11 @@ static void measureLinks(const vplPatchSides* sides, int runs, double first)
     const vplLinkDef def = vplDefaultLinkDef();
     for (int run = 0; run < runs; run++) {
         vplLinks* links;
-        const double start = vplCpuMs();
+        const double start = cpuMs();
         check(vplLinks_Create(sides, &def, &links));
-        times[run] = vplCpuMs() - start;
+        times[run] = cpuMs() - start;
         if (run == runs - 1) {
-            const double ms = median(times, runs);
+            const double ms = medianOf(times, runs);
             printf("  %-26s %10.1f %8.2f %12lld %8s  %lld links\n", "links", ms, first > 0 ? first / ms : 1,
                    (long long)links->rays, "", (long long)links->linkCount);
         }

@@ -4,19 +4,17 @@
 // `bench/history SCENE [METHOD [WIDTH HEIGHT [RUNS]]]`; METHOD: direct (default), interleaved or ssvp.
 #include "bench.h"
 
-#include "base/clock.h"
-
 #include <string.h>
 #include <sys/resource.h>
 
-enum { WAYS = 2, MAX_RUNS = 101 };
+enum { WAYS = 2, MOST_RUNS = 101 };
 
 typedef struct Way {
     const char* name;
     vplContext* context;
     vplScene* scene;
     vplHistory* history;
-    double wall[MAX_RUNS], cpu[MAX_RUNS], kernel[MAX_RUNS], pages[MAX_RUNS];
+    double wall[MOST_RUNS], cpu[MOST_RUNS], kernel[MOST_RUNS], pages[MOST_RUNS];
     size_t peak;
 } Way;
 
@@ -32,15 +30,15 @@ static uint64_t runOnce(Way* way, vplRenderOptions options, int run)
     vplRenderStats stats;
     options.sequence.history = way->history;
     options.sequence.frame = run;
-    const double wall = vplClockMs(), cpu = vplCpuMs();
+    const double wall = wallMs(), cpu = cpuMs();
     getrusage(RUSAGE_SELF, &before);
     check(vplRender(way->scene, &options, &image, &stats));
     vplImage_Destroy(image);
     getrusage(RUSAGE_SELF, &after);
     way->peak = stats.peakBytes;
     if (run >= 0) {
-        way->wall[run] = vplClockMs() - wall;
-        way->cpu[run] = vplCpuMs() - cpu;
+        way->wall[run] = wallMs() - wall;
+        way->cpu[run] = cpuMs() - cpu;
         way->kernel[run] = kernelMs(&after) - kernelMs(&before);
         way->pages[run] = (double)(after.ru_minflt - before.ru_minflt);
     }
@@ -66,7 +64,7 @@ int main(int count, char** words)
     }
     options.output.width = count > 4 ? atoi(words[3]) : 1920;
     options.output.height = count > 4 ? atoi(words[4]) : 1080;
-    const int runs = count > 5 && atoi(words[5]) < MAX_RUNS ? atoi(words[5]) : 15;
+    const int runs = count > 5 && atoi(words[5]) < MOST_RUNS ? atoi(words[5]) : 15;
     for (int w = 0; w < WAYS; w++) {
         openScene(words[1], 0, VPL_ISA_AUTO, &ways[w].context, &ways[w].scene);
         if (w > 0) {
@@ -83,13 +81,14 @@ int main(int count, char** words)
             return 1;
         }
     }
-    printf("%s, %s, %dx%d, medians of %d frames\n", words[1], method, options.output.width, options.output.height, runs);
+    printf("%s, %s, %dx%d, medians of %d frames\n", words[1], method, options.output.width,
+           options.output.height, runs);
     printf("%-17s %9s %9s %10s %8s %8s\n", "history of", "wall ms", "cpu ms", "kernel ms", "pages",
            "peak MB");
     for (int w = 0; w < WAYS; w++) {
         Way* way = &ways[w];
-        printf("%-17s %9.1f %9.1f %10.1f %8.0f %8.0f\n", way->name, median(way->wall, runs),
-               median(way->cpu, runs), median(way->kernel, runs), median(way->pages, runs),
+        printf("%-17s %9.1f %9.1f %10.1f %8.0f %8.0f\n", way->name, medianOf(way->wall, runs),
+               medianOf(way->cpu, runs), medianOf(way->kernel, runs), medianOf(way->pages, runs),
                (double)way->peak / (1 << 20));
         vplHistory_Destroy(way->history);
         vplScene_Destroy(way->scene);

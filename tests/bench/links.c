@@ -5,16 +5,8 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 enum { MOST_DENSE = 6000, RUNS = 3 };
-
-static double processorMs(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
 
 // What a lamp under the middle of the ceiling makes of each side, and what sides emit: light as uneven as any.
 static vplRgb* lightSides(const vplPatchSides* sides)
@@ -65,11 +57,11 @@ static Row timeLinks(const vplPatchSides* sides, const vplLinkDef* def)
     const int runs = sides->count < 20000 ? RUNS : 1;
     for (int run = 0; run < runs; run++) {
         vplLinks_Destroy(row.links);
-        const double start = processorMs();
+        const double start = cpuMs();
         check(vplLinks_Create(sides, def, &row.links));
-        times[run] = processorMs() - start;
+        times[run] = cpuMs() - start;
     }
-    row.ms = median(times, runs);
+    row.ms = medianOf(times, runs);
     return row;
 }
 
@@ -84,9 +76,9 @@ static double sweepMs(const vplTransport* transport, vplSolver solver, const vpl
     def.iterations = SWEEPS;
     def.residual = 0;
     def.spectrum = false;
-    const double start = processorMs();
+    const double start = cpuMs();
     check(vplSolveRadiosity(transport, &def, source, b, NULL));
-    const double ms = (processorMs() - start) / SWEEPS;
+    const double ms = (cpuMs() - start) / SWEEPS;
     free(b);
     return ms;
 }
@@ -113,9 +105,9 @@ static void printRow(vplContext* context, const vplPatches* patches, const vplSc
     const vplTransport byLinks = {.sides = sides, .links = row.links};
     double times[9], sum = 0, square = 0;
     for (int run = 0; run < 9; run++) {
-        const double start = processorMs();
+        const double start = cpuMs();
         check(vplGatherRadiosity(&byLinks, b, e));
-        times[run] = processorMs() - start;
+        times[run] = cpuMs() - start;
     }
     for (int i = 0; i < sides->count; i++) {
         sum += (double)row.links->rowSums[i] / sides->count;
@@ -123,12 +115,12 @@ static void printRow(vplContext* context, const vplPatches* patches, const vplSc
     }
     printf("%7d %8lld %6.1f %9lld %8.0f %8.2f %7.1f  %6.4f %6.4f", sides->count,
            (long long)row.links->linkCount, (double)row.links->linkCount / sides->count,
-           (long long)row.links->rays, row.ms, median(times, 9), (double)bytes / 0x1p20, sum, sqrt(square));
+           (long long)row.links->rays, row.ms, medianOf(times, 9), (double)bytes / 0x1p20, sum, sqrt(square));
     if (sides->count <= MOST_DENSE) {
         vplFormFactorDef all = vplDefaultFormFactorDef();
-        double start = processorMs();
+        double start = cpuMs();
         check(vplFormFactors_Create(sides, &all, &factors));
-        const double ms = processorMs() - start;
+        const double ms = cpuMs() - start;
         const vplTransport usual = {.sides = sides, .factors = factors};
         vplRgb* few = malloc(sizeof *few * (size_t)sides->count);
         check(vplGatherRadiosity(&usual, b, few));

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Time and memory that reading scenes takes: build/bench/load FILE... Processor time, the best of fifteen.
+#include "cli/bench/measure.h"
+
 #include <vpl/vpl.h>
 
 #include <stdio.h>
 #include <sys/stat.h>
-#include <time.h>
 
 enum { RUNS = 15 };
 
@@ -13,13 +14,6 @@ typedef struct Load {
     size_t peak, mesh; // bytes held at most while reading; bytes of the meshes' arrays
     long long vertices, triangles;
 } Load;
-
-static double processorTime(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 static void countMeshes(const vplScene* scene, Load* load)
 {
@@ -40,9 +34,9 @@ static bool loadOnce(const char* path, Load* load)
     if (vplContext_Create(NULL, &context) != VPL_SUCCESS) {
         return false;
     }
-    double start = processorTime();
+    double start = cpuMs();
     bool good = vplScene_Load(context, path, &scene) == VPL_SUCCESS;
-    *load = (Load){processorTime() - start, vplContext_GetPeakBytes(context), 0, 0, 0};
+    *load = (Load){cpuMs() - start, vplContext_GetPeakBytes(context), 0, 0, 0};
     if (good) {
         countMeshes(scene, load);
     }

@@ -5,8 +5,6 @@
 #include "band.h"
 #include "bench.h"
 
-#include "base/clock.h"
-
 #include <string.h>
 
 enum { MOST = 32, RUNS = 7, POINTS_X = 320, POINTS_Y = 180, POINTS = POINTS_X * POINTS_Y, RAYS_OF = 16 };
@@ -69,23 +67,31 @@ static void makePoints(Bench* b)
 
 // ---- drawing
 
+typedef struct Drawing {
+    const Bench* bench;
+    vplParaboloidMaps* maps;
+    int air, count;
+} Drawing;
+
+static vplResult draw(void* user, int way)
+{
+    const Drawing* d = user;
+    (void)way;
+    return vplParaboloidMaps_Draw(d->maps, d->bench->geometry, d->bench->places[d->air], d->count, NULL,
+                                  NULL);
+}
+
 static void timeDrawing(const Bench* b, const char* name, int size, int air, bool triangles)
 {
     printf("%-18s %4d %-8s %-9s", name, size, air ? "mid-air" : "surface", triangles ? "triangles" : "-");
     for (int count = 1; count <= MOST; count *= count == 1 ? 4 : 2) {
-        vplParaboloidMaps* maps;
-        double wall[RUNS], cpu[RUNS];
-        check(vplParaboloidMaps_Create(b->context, size, count, triangles, &maps));
-        for (int run = -1; run < RUNS; run++) {
-            const double wall0 = vplClockMs(), cpu0 = vplCpuMs();
-            check(vplParaboloidMaps_Draw(maps, b->geometry, b->places[air], count, NULL, NULL));
-            if (run >= 0) {
-                wall[run] = vplClockMs() - wall0;
-                cpu[run] = vplCpuMs() - cpu0;
-            }
-        }
-        printf("  %2d: %6.2f (%6.2f)", count, median(wall, RUNS), median(cpu, RUNS));
-        vplParaboloidMaps_Destroy(maps);
+        Drawing drawing = {b, NULL, air, count};
+        const Contest contest = {draw, &drawing, 1, RUNS, 0, INFINITY};
+        Times times;
+        check(vplParaboloidMaps_Create(b->context, size, count, triangles, &drawing.maps));
+        check(measureInTurn(&contest, &times, NULL));
+        printf("  %2d: %6.2f (%6.2f)", count, times.wall, times.cpu);
+        vplParaboloidMaps_Destroy(drawing.maps);
     }
     printf("\n");
     fflush(stdout);
@@ -98,7 +104,7 @@ static void timeLooking(const Bench* b, const char* name, const vplParaboloidMap
     double ns[RUNS];
     float sum = 0;
     for (int run = 0; run < RUNS; run++) {
-        const double start = vplCpuMs();
+        const double start = cpuMs();
         for (int m = 0; m < maps->count; m++) {
             for (int i = 0; i < POINTS / VPL_LANES; i++) {
                 float factor[VPL_LANES];
@@ -106,9 +112,9 @@ static void timeLooking(const Bench* b, const char* name, const vplParaboloidMap
                 sum += factor[run];
             }
         }
-        ns[run] = (vplCpuMs() - start) * 1e6 / (double)maps->count / (POINTS / VPL_LANES);
+        ns[run] = (cpuMs() - start) * 1e6 / (double)maps->count / (POINTS / VPL_LANES);
     }
-    printf("%-18s %4d: %.1f ns per 16 look-ups (%g)\n", name, maps->size, median(ns, RUNS), (double)sum);
+    printf("%-18s %4d: %.1f ns per 16 look-ups (%g)\n", name, maps->size, medianOf(ns, RUNS), (double)sum);
 }
 
 // By a ray that neither end shadows.

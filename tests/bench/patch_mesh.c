@@ -6,16 +6,8 @@
 #include "bench.h"
 
 #include <string.h>
-#include <time.h>
 
 enum { RUNS = 15, WIDTH = 1280, HEIGHT = 720 };
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
 
 // Both sides of all patches are lit.
 static vplPatchSides* fillSides(const vplPatches* p)
@@ -33,45 +25,45 @@ static vplPatchSides* fillSides(const vplPatches* p)
     return sides;
 }
 
-typedef struct Times {
+typedef struct PhaseTimes {
     double mesh[RUNS], means[RUNS], clip[RUNS], flat[RUNS], smooth[RUNS], depth[RUNS];
-} Times;
+} PhaseTimes;
 
 static void drawOnce(const vplPatchDraw* draw, float (*clip)[4], vplImage* image)
 {
     check(vplDrawPatches(draw, (const float(*)[4])clip, NULL, NULL, image, NULL));
 }
 
-static void runOnce(const vplPatchSides* sides, const vplView* view, vplImage* image, Times* t, int run)
+static void runOnce(const vplPatchSides* sides, const vplView* view, vplImage* image, PhaseTimes* t, int run)
 {
     vplPatchMesh* mesh;
-    double start = now();
+    double start = cpuMs();
     check(vplPatchMesh_Create(sides, &mesh));
-    t->mesh[run] = now() - start;
+    t->mesh[run] = cpuMs() - start;
     vplRgb* values = calloc((size_t)sides->count, sizeof *values);
     vplRgb* corners = calloc(2 * (size_t)mesh->vertexCount, sizeof *corners);
     float(*clip)[4] = calloc((size_t)mesh->vertexCount, sizeof *clip);
-    start = now();
+    start = cpuMs();
     check(vplPatchMesh_Interpolate(mesh, VPL_VERTEX_WEIGHT_ANGLE, values, corners));
-    t->means[run] = now() - start;
-    start = now();
+    t->means[run] = cpuMs() - start;
+    start = cpuMs();
     vplView_ToClip(view, mesh->positions, mesh->vertexCount, clip);
-    t->clip[run] = now() - start;
+    t->clip[run] = cpuMs() - start;
     vplPatchDraw draw = {.mesh = mesh, .values = values, .reflect = true};
-    start = now();
+    start = cpuMs();
     drawOnce(&draw, clip, image);
-    t->flat[run] = now() - start;
+    t->flat[run] = cpuMs() - start;
     draw.vertexValues = corners;
-    start = now();
+    start = cpuMs();
     drawOnce(&draw, clip, image);
-    t->smooth[run] = now() - start;
+    t->smooth[run] = cpuMs() - start;
     const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                              .accumulation = VPL_ACCUMULATE_DEFERRED,
                              .output = VPL_OUTPUT_DEPTH,
                              .batch = 1};
-    start = now();
+    start = cpuMs();
     check(vplShadeView(sides->patches->geometry, view, &def, NULL, NULL, image, NULL));
-    t->depth[run] = now() - start;
+    t->depth[run] = cpuMs() - start;
     free(values);
     free(corners);
     free(clip);
@@ -105,7 +97,7 @@ static void measure(const vplGeometry* g, const vplView* view, int count, bool u
 {
     vplImage* image;
     vplPatchMesh* mesh;
-    static Times t;
+    static PhaseTimes t;
     vplPatches* patches = divide(g, count, uneven);
     check(vplImage_Create(g->context, WIDTH, HEIGHT, &image));
     vplPatchSides* sides = fillSides(patches);
@@ -114,8 +106,8 @@ static void measure(const vplGeometry* g, const vplView* view, int count, bool u
     }
     check(vplPatchMesh_Create(sides, &mesh));
     printf("%7d %8d %8d %7d %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f\n", patches->patchCount, mesh->vertexCount,
-           mesh->triangleCount, mesh->hangingVertices, median(t.mesh, RUNS), median(t.means, RUNS),
-           median(t.clip, RUNS), median(t.flat, RUNS), median(t.smooth, RUNS), median(t.depth, RUNS));
+           mesh->triangleCount, mesh->hangingVertices, medianOf(t.mesh, RUNS), medianOf(t.means, RUNS),
+           medianOf(t.clip, RUNS), medianOf(t.flat, RUNS), medianOf(t.smooth, RUNS), medianOf(t.depth, RUNS));
     vplPatchMesh_Destroy(mesh);
     free((void*)sides->sides);
     free((void*)sides->ofPatch);

@@ -1,24 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What patches cost, and the sides of them that light reaches: milliseconds of processor time of one thread, medians of
 // five, and rays. `patches SCENE [COUNT ...]`
+#include "cli/bench/measure.h"
+
 #include <vpl/vpl.h>
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
-static int compare(const void* a, const void* b)
-{
-    const double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
 
 static int measure(const vplScene* scene, const vplGeometry* geometry, int count)
 {
@@ -34,25 +22,23 @@ static int measure(const vplScene* scene, const vplGeometry* geometry, int count
     for (int run = 0; run < RUNS; run++) {
         vplPatchSides_Destroy(sides);
         vplPatches_Destroy(patches);
-        const double start = now();
+        const double start = cpuMs();
         if (vplPatches_Create(geometry, &def, &patches) != VPL_SUCCESS) {
             return 1;
         }
-        const double middle = now();
+        const double middle = cpuMs();
         if (vplPatchSides_Create(patches, &sidesDef, &sides) != VPL_SUCCESS) {
             return 1;
         }
         making[run] = middle - start;
-        finding[run] = now() - middle;
+        finding[run] = cpuMs() - middle;
     }
-    qsort(making, RUNS, sizeof *making, compare);
-    qsort(finding, RUNS, sizeof *finding, compare);
     int part = 0;
     for (int i = 0; i < sides->count; i++) {
         part += sides->sides[i].open != 0xffff;
     }
     printf("%8d patches %9.2f ms  %8d sides, %6d in part %9.1f ms %10lld rays, %5.1f a patch\n",
-           patches->patchCount, making[RUNS / 2], sides->count, part, finding[RUNS / 2],
+           patches->patchCount, medianOf(making, RUNS), sides->count, part, medianOf(finding, RUNS),
            (long long)sides->rays, (double)sides->rays / patches->patchCount);
     vplPatchSides_Destroy(sides);
     vplPatches_Destroy(patches);

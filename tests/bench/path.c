@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the path tracer's choices are worth: error of the picture, rays, time, and variance times time against the
 // first line of each group (smaller is better). `bench/path SCENE [SAMPLES [SIZE]]`.
-#include "base/clock.h"
+#include "cli/bench/measure.h"
 #include "reference/path_trace.h"
 
 #include <vpl/vpl.h>
@@ -27,22 +27,22 @@ static void randomNumbers(vplPathDef* def)
 
 static void balance(vplPathDef* def)
 {
-    def->balance = true;
+    def->balanceHeuristic = true;
 }
 
 static void points(vplPathDef* def)
 {
-    def->ways = VPL_PATH_POINTS;
+    def->techniques = VPL_PATH_LIGHT_SAMPLING;
 }
 
 static void chance(vplPathDef* def)
 {
-    def->ways = VPL_PATH_CHANCE;
+    def->techniques = VPL_PATH_BSDF_SAMPLING;
 }
 
 static void pointsAndChance(vplPathDef* def)
 {
-    def->ways = VPL_PATH_POINTS | VPL_PATH_CHANCE;
+    def->techniques = VPL_PATH_LIGHT_SAMPLING | VPL_PATH_BSDF_SAMPLING;
 }
 
 static void rouletteAt1(vplPathDef* def)
@@ -85,12 +85,12 @@ static vplResult measure(const vplGeometry* geometry, const vplPathDef* def, int
 {
     vplPathTracer* tracer = NULL;
     vplImage* image = NULL;
-    double start = vplCpuMs();
+    double start = cpuMs();
     vplResult result = vplPathTracer_Create(geometry, def, &tracer);
     if (result == VPL_SUCCESS) {
         result = vplPathTracer_Pass(tracer, samples, NULL, NULL, 0, 1);
     }
-    *ms = vplCpuMs() - start;
+    *ms = cpuMs() - start;
     if (result == VPL_SUCCESS) {
         result = vplImage_Create(geometry->context, def->width, def->height, &image);
     }

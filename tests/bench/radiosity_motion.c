@@ -69,9 +69,9 @@ static void time(vplContext* context, int patches)
         solve[f] = stage(&stats, "solve");
     }
     vplHistory_Destroy(history);
-    const double first = total[0], frame = median(total + 1, JUMP - 1);
+    const double first = total[0], frame = medianOf(total + 1, JUMP - 1);
     printf("%7d %7d %8.0f %8.1f %6.1f %8.2f %8.2f\n", stats.patches, stats.patchSides, first, frame,
-           1000 / frame, median(light + 1, JUMP - 1), median(solve + 1, JUMP - 1));
+           1000 / frame, medianOf(light + 1, JUMP - 1), medianOf(solve + 1, JUMP - 1));
 }
 
 static void lag(vplContext* context, int patches, vplSolver solver)

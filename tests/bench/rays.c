@@ -6,7 +6,6 @@
 // --only: rays of this number in the table, and no building.
 #include "bench.h"
 #include "embree.h"
-#include "base/clock.h"
 #include "math/sampling.h"
 
 #include <math.h>
@@ -149,20 +148,20 @@ static void measure(Bench* b, int runs, bool brute, int only)
         int hits[3] = {0};
         const int few = brute ? b->rayCount / (1 + b->all->blockCount / 64) : 0;
         for (int run = 0; run < runs; run++) {
-            double start = vplCpuMs();
+            double start = cpuMs();
             hits[0] = traceAll(b, b->tree, kind, b->rayCount);
-            speed[0][run] = b->rayCount / (vplCpuMs() - start) / 1e3;
-            start = vplCpuMs();
+            speed[0][run] = b->rayCount / (cpuMs() - start) / 1e3;
+            start = cpuMs();
             hits[1] = traceAll(b, b->all, kind, few);
-            speed[1][run] = few / (vplCpuMs() - start) / 1e3;
+            speed[1][run] = few / (cpuMs() - start) / 1e3;
 #ifdef HAVE_EMBREE
-            start = vplCpuMs();
+            start = cpuMs();
             hits[2] = traceEmbree(embree, b->rays, b->rayCount, wayOf(kind));
-            speed[2][run] = b->rayCount / (vplCpuMs() - start) / 1e3;
+            speed[2][run] = b->rayCount / (cpuMs() - start) / 1e3;
 #endif
         }
-        double tree = median(speed[0], runs), peer = median(speed[2], runs);
-        printf("%-20s %10.2f %10.2f %10.2f   %.2f (%d, %d)\n", KINDS[kind], tree, median(speed[1], runs),
+        double tree = medianOf(speed[0], runs), peer = medianOf(speed[2], runs);
+        printf("%-20s %10.2f %10.2f %10.2f   %.2f (%d, %d)\n", KINDS[kind], tree, medianOf(speed[1], runs),
                peer, peer > 0 ? tree / peer : 0, hits[0], hits[2]);
     }
 #ifdef HAVE_EMBREE
@@ -175,7 +174,7 @@ static void measure(Bench* b, int runs, bool brute, int only)
 static void measureBuild(const char* path, int workers, int runs)
 {
     Bench b = {0};
-    double (*const now)(void) = workers == 1 ? vplCpuMs : vplClockMs;
+    double (*const now)(void) = workers == 1 ? cpuMs : wallMs;
     openScene(path, workers, VPL_ISA_AUTO, &b.context, &b.scene);
     check(vplGeometry_Create(b.scene, &b.geometry));
     double ms[2][MOST_RUNS] = {{0}};
@@ -200,7 +199,7 @@ static void measureBuild(const char* path, int workers, int runs)
 #ifdef HAVE_EMBREE
     rtcReleaseDevice(device);
 #endif
-    double tree = median(ms[0], runs), peer = median(ms[1], runs);
+    double tree = medianOf(ms[0], runs), peer = medianOf(ms[1], runs);
     printf("build, %d threads: tree %.2f ms, Embree %.2f ms, %.2f of its speed\n",
            vplContext_GetWorkerCount(b.context), tree, peer, peer / tree);
     vplGeometry_Destroy(b.geometry);

@@ -5,8 +5,6 @@
 #include "bench.h"
 #include "rsm_band.h"
 
-#include "base/clock.h"
-
 #include <string.h>
 
 enum { PARTICLES = 100000, RUNS = 5, SIDE = 96, SHOWN = 300, WIDTH = 1920, HEIGHT = 1080 };
@@ -44,9 +42,9 @@ static double simulate(const Bench* b, vplReflectiveMap** maps)
     def.particleCount = PARTICLES;
     def.reflectivity = 0;
     def.maps = (const vplReflectiveMap* const*)maps;
-    const double start = vplCpuMs();
+    const double start = cpuMs();
     check(vplSimulateParticles(b->geometry, b->emitters, b->emitterCount, &def, &set));
-    const double ms = vplCpuMs() - start;
+    const double ms = cpuMs() - start;
     vplLightSet_Destroy(set);
     return ms;
 }
@@ -86,15 +84,15 @@ static void measure(const Bench* b, const char* name)
            "difference");
     for (int size = 16; size <= 1024; size *= 4) {
         for (int run = 0; run < RUNS; run++) {
-            const double start = vplCpuMs();
+            const double start = cpuMs();
             drawMaps(b, size, maps);
-            draws[run] = vplCpuMs() - start;
+            draws[run] = cpuMs() - start;
             looks[run] = simulate(b, maps);
             destroyMaps(b, maps);
             rays[run] = simulate(b, NULL);
         }
-        const double map = median(draws, RUNS), look = median(looks, RUNS) / PARTICLES,
-                     ray = median(rays, RUNS) / PARTICLES;
+        const double map = medianOf(draws, RUNS), look = medianOf(looks, RUNS) / PARTICLES,
+                     ray = medianOf(rays, RUNS) / PARTICLES;
         vplImage* moved = picture(b, size, 1);
         printf("%6d %9.2f %12.0f %12.0f %10.0f %10.4f\n", size, map, 1e6 * ray, 1e6 * look,
                ray > look ? map / (ray - look) : INFINITY, difference(moved, cast));
@@ -116,9 +114,9 @@ static double light(const Bench* b, const vplView* view, const vplReflectiveMap*
                        .emitterCount = 1,
                        .shadows = &none,
                        .emitterMaps = &map};
-    const double start = vplCpuMs();
+    const double start = cpuMs();
     check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
-    return vplCpuMs() - start;
+    return cpuMs() - start;
 }
 
 // Shares of the pixels that differ by more than 1 % and by more than half of the larger one.
@@ -202,16 +200,16 @@ static void measureShadows(Bench* b)
         double draws[RUNS], rays[RUNS], looks[RUNS], some, much;
         for (int run = 0; run < RUNS; run++) {
             vplReflectiveMap* map;
-            const double start = vplCpuMs();
+            const double start = cpuMs();
             drawMaps(b, size, &map);
-            draws[run] = vplCpuMs() - start;
+            draws[run] = cpuMs() - start;
             rays[run] = light(b, &view, NULL, byRays);
             looks[run] = light(b, &view, map, byMap);
             vplReflectiveMap_Destroy(map);
         }
         countDifferent(byRays, byMap, &some, &much);
-        printf("%6d %9.2f %12.2f %12.2f %9.3f%% %9.3f%%\n", size, median(draws, RUNS), median(rays, RUNS),
-               median(looks, RUNS), some, much);
+        printf("%6d %9.2f %12.2f %12.2f %9.3f%% %9.3f%%\n", size, medianOf(draws, RUNS), medianOf(rays, RUNS),
+               medianOf(looks, RUNS), some, much);
     }
     for (int size = 512; size <= 2048; size *= 2) {
         vplReflectiveMap* map;

@@ -4,7 +4,6 @@
 // One thread, runs alternated, medians of processor time.
 #include "bench.h"
 
-#include "base/clock.h"
 #include "visibility/cube_bounds.h"
 #include "visibility/shadow.h"
 
@@ -38,13 +37,27 @@ typedef struct Counts {
     int64_t told, blocksTold, same, blocksSame; // without samples; all samples alike
 } Counts;
 
-static double factors(const vplShadow* shadow, const vplSurface* blocks, int count, float* out)
+// Both ways: without bounds, and with them.
+typedef struct Factors {
+    const vplShadow* shadows[2];
+    float* out[2];
+    const vplSurface* blocks;
+    int count;
+} Factors;
+
+static vplResult findFactors(void* user, int way)
 {
-    double start = vplCpuMs();
-    for (int i = 0; i < count; i++) {
-        vplShadow_FactorBlock(shadow, &blocks[i], out + (size_t)i * VPL_LANES);
+    const Factors* f = user;
+    for (int i = 0; i < f->count; i++) {
+        vplShadow_FactorBlock(f->shadows[way], &f->blocks[i], f->out[way] + (size_t)i * VPL_LANES);
     }
-    return vplCpuMs() - start;
+    return VPL_SUCCESS;
+}
+
+static vplResult findBounds(void* map, int way)
+{
+    (void)way;
+    return vplCubeMap_FindBounds(map);
 }
 
 static void count(const vplShadow* shadow, const vplSurface* blocks, int blockCount, Counts* c)
@@ -70,18 +83,17 @@ static void measure(const vplShadow* shadow, const vplSurface* blocks, int block
     without.map = &bare;
     const size_t lanes = (size_t)blockCount * VPL_LANES;
     float *a = calloc(lanes, sizeof *a), *b = calloc(lanes, sizeof *b);
-    double times[2][RUNS];
-    for (int run = 0; run < RUNS; run++) {
-        times[0][run] = factors(&without, blocks, blockCount, a);
-        times[1][run] = factors(shadow, blocks, blockCount, b);
-    }
+    Times times[2];
+    Factors factors = {{&without, shadow}, {a, b}, blocks, blockCount};
+    const Contest contest = {findFactors, &factors, 2, RUNS, 0, 0};
+    check(measureInTurn(&contest, times, NULL));
     if (memcmp(a, b, lanes * sizeof *a) != 0) {
         fprintf(stderr, "the bounds changed a shadow\n");
         exit(1);
     }
     Counts c = {0};
     count(shadow, blocks, blockCount, &c);
-    const double old = median(times[0], RUNS), new = median(times[1], RUNS);
+    const double old = times[0].cpu, new = times[1].cpu;
     printf("all samples, ms %30.2f\nbounds first, ms %29.2f\nratio %40.2f\n", old, new, old / new);
     printf("told without samples: %.1f %% of points, %.1f %% of blocks\n",
            100.0 * (double)c.told / (double)lanes, 100.0 * (double)c.blocksTold / blockCount);
@@ -93,13 +105,10 @@ static void measure(const vplShadow* shadow, const vplSurface* blocks, int block
 
 static void measureBounds(vplCubeMap* map)
 {
-    double times[RUNS];
-    for (int run = 0; run < RUNS; run++) {
-        double start = vplCpuMs();
-        check(vplCubeMap_FindBounds(map));
-        times[run] = vplCpuMs() - start;
-    }
-    printf("bounds of 6 x %d^2 texels, ms %16.2f\n", map->size, median(times, RUNS));
+    Times times;
+    const Contest contest = {findBounds, map, 1, RUNS, 0, 0};
+    check(measureInTurn(&contest, &times, NULL));
+    printf("bounds of 6 x %d^2 texels, ms %16.2f\n", map->size, times.cpu);
 }
 
 int main(int argc, char** argv)
@@ -125,9 +134,9 @@ int main(int argc, char** argv)
     }
     printf("%d blocks\n", blockCount);
     vplCubeMap* map;
-    double start = vplCpuMs();
+    double start = cpuMs();
     check(vplCubeMap_Create(g, &mapDef, NULL, NULL, &map));
-    printf("cube map, ms %33.2f\n", vplCpuMs() - start);
+    printf("cube map, ms %33.2f\n", cpuMs() - start);
     measureBounds(map);
     vplShadowDef shadowDef = vplDefaultShadowDef();
     shadowDef.pcfSamples = argc > 4 ? atoi(argv[4]) : shadowDef.pcfSamples;

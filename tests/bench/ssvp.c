@@ -5,12 +5,9 @@
 // `bench/ssvp SCENE [LIGHTS [RUNS [WIDTH HEIGHT [CLUSTERS [THREADS]]]]]`; direct light is left out.
 #include "bench.h"
 
-#include "base/clock.h"
-
 #include <malloc.h>
-#include <time.h>
 
-enum { MAX_RUNS = 101, MAX_CLUSTERS = 64, MAP_SIZE = 256, SIDE = 4 };
+enum { MAX_CLUSTERS = 64, MAP_SIZE = 256, SIDE = 4 };
 
 typedef struct Way {
     const char* name;
@@ -41,15 +38,7 @@ typedef struct Bench {
     int *clusters, *wholeClusters;
     vplParaboloidMaps* maps;
     vplImage* images[WAYS];
-    double cpu[WAYS][MAX_RUNS], wall[WAYS][MAX_RUNS];
 } Bench;
-
-static double processorMs(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
-}
 
 // `count` of the particles' lights, evenly. In their order they are spread like halves of the scene's light paths are.
 static void makeLights(Bench* b, int count)
@@ -104,8 +93,9 @@ static void makeClusters(Bench* b, int count)
     check(vplParaboloidMaps_Draw(b->maps, b->geometry, places, count, NULL, NULL));
 }
 
-static void shade(Bench* b, int which, int run)
+static vplResult shade(void* user, int which)
 {
+    const Bench* b = user;
     const Way* way = &ways[which];
     vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL, .minDistance = 0.5f, .output = way->output};
     def.accumulation = VPL_ACCUMULATE_INTERLEAVED;
@@ -117,26 +107,20 @@ static void shade(Bench* b, int which, int run)
         def.clusterShadows = b->maps->maps;
         def.clusterCount = b->clusterCount;
     }
-    const double cpu = processorMs(), wall = vplClockMs();
-    check(vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->images[which], NULL));
-    b->cpu[which][run] = processorMs() - cpu;
-    b->wall[which][run] = vplClockMs() - wall;
+    return vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->images[which], NULL);
 }
 
-static void print(Bench* b, int runs)
+static void print(const Bench* b, const Times* times, int runs)
 {
     printf("%d lights in %d clusters, %dx%d, 4x4, medians of %d runs\n", b->lightCount, b->clusterCount,
            b->view.width, b->view.height, runs);
     printf("%-22s %9s %9s %9s %9s  %s\n", "", "cpu ms", "more", "wall ms", "rel. rmse", "hash");
-    double cpu[WAYS];
-    for (int i = 0; i < WAYS; i++) {
-        cpu[i] = median(b->cpu[i], runs);
-    }
     for (int i = 0; i < WAYS; i++) {
         vplComparison c = {0};
         check(vplImage_Compare(b->images[i], b->images[ways[i].truth], &c));
-        printf("%-22s %9.2f %9.2f %9.2f %9.4f  %016llx\n", ways[i].name, cpu[i], cpu[i] - cpu[ways[i].before],
-               median(b->wall[i], runs), c.relativeRmse, (unsigned long long)vplImage_Hash(b->images[i]));
+        printf("%-22s %9.2f %9.2f %9.2f %9.4f  %016llx\n", ways[i].name, times[i].cpu,
+               times[i].cpu - times[ways[i].before].cpu, times[i].wall, c.relativeRmse,
+               (unsigned long long)vplImage_Hash(b->images[i]));
     }
 }
 
@@ -158,12 +142,10 @@ int main(int count, char** words)
     }
     makeLights(&b, count > 2 ? atoi(words[2]) : 512);
     makeClusters(&b, count > 6 ? atoi(words[6]) : 8);
-    for (int run = -1; run < runs; run++) { // the first makes memory
-        for (int i = 0; i < WAYS; i++) {
-            shade(&b, i, run < 0 ? 0 : run);
-        }
-    }
-    print(&b, runs);
+    Times times[WAYS];
+    const Contest contest = {shade, &b, WAYS, runs, 0, INFINITY}; // the first makes memory
+    check(measureInTurn(&contest, times, NULL));
+    print(&b, times, runs);
     for (int i = 0; i < WAYS; i++) {
         vplImage_Destroy(b.images[i]);
     }

@@ -1,5 +1,6 @@
 #!/bin/sh
-# The document's figures 4 to 7 for its scenes: one bounce, two bounces, the truth, side by side in README.
+# Figures 4 to 7 of Aranha and others for the document's scenes: one bounce, two bounces, the truth, side by side in
+# golden/gallery/README.md.
 # tests/bench/ssvp_gallery.sh BUILD OUT SCENE...
 set -e
 build=$1

@@ -86,6 +86,13 @@ wrong "--show is \"light:K\"" render "$room" -o "$png" --show light:K
 wrong "--show is \"light:-1\"" render "$room" -o "$png" --show light:-1
 wrong "virtual light 18 does not exist, there are 18 (from 0)" \
     render "$closed" -o "$png" --size 8x8 --shadow-map 16 --show light:18
+for option in particles seed reflectivity size bias min-distance w1 budget sampler; do # " 10" is no number
+    wrong "--$option is \" 10\", must be" render "$room" -o "$png" --$option=" 10"
+done
+wrong "--exposure is \" 1\", must be a number in [-64, 64]" render "$room" -o "$png" --exposure=" 1"
+wrong "--runs is \" 1\", must be a whole number" bench --runs=" 1"
+wrong "unknown option --height" render "$room" -o "$png" --height 10 # a part of --size
+wrong "no option and no subject \"frob\"" help options frob
 wrong "--heat-scale is \"-1\"" compare a.png b.png --heat-scale -1
 wrong "--heatmap-of is \"noise\", must be one of difference|relative|ssim|flip" compare a.png b.png --heatmap-of noise
 wrong "--ppd is \"0.5\", must be a number in [1, 1000]" compare a.png b.png --ppd 0.5
@@ -107,5 +114,44 @@ for command in render lights compare info tradeoff bench; do
     succeeds "OptionHelpOf_$command" "$vpl" $command --help
     check "OptionHelpOf_${command}_IsTheSame" cmp "$scratch/stdout" "$scratch/help"
 done
+# The help by subject has every option of the table once.
+sed -n 's/^    "\([a-z0-9-]*\)", *".*/\1/p; s/^    "\([a-z0-9-]*\)",$/\1/p' include/vpl/options.def | grep -vx -e height -e show-index | sort >"$scratch/table"
+succeeds HelpOfOptions "$vpl" help options
+sed -n 's/^  --\([a-z0-9-]*\).*/\1/p' "$scratch/stdout" | sort >"$scratch/helped"
+check HelpHasEveryOptionOnce cmp "$scratch/table" "$scratch/helped"
+check HelpHasManyOptions test "$(wc -l <"$scratch/table")" -ge 60
+tr -s " \n" " " <"$scratch/stdout" >"$scratch/flat"
+check HelpNamesDefaults grep -q "paths per pixel; default 64" "$scratch/stdout"
+check HelpNamesMethods grep -q "paths per pixel; default 64 \[path\]" "$scratch/stdout"
+check HelpNamesPipelines grep -q "default 4 \[instant-radiosity, keller, ssvp\] \[--pipeline interleaved\]" "$scratch/flat"
+equals HelpHasSubjects "$(grep -c '^// ---- ' include/vpl/options.def)" "$(grep -c '^[A-Z]' "$scratch/stdout")"
+succeeds HelpOfASubject "$vpl" help options ssvp
+equals HelpOfASubjectHasItsOptions "SSVP --clusters" "$(sed -n '2p; 3s/^  \(--[a-z]*\).*/\1/p' "$scratch/stdout" | tr '\n' ' ' | sed 's/ $//')"
+succeeds HelpOfAnOption "$vpl" help options --pcf
+equals HelpOfAnOptionIsThat "  --pcf S" "$(grep '^  --' "$scratch/stdout")"
+for command in render bake lights info tradeoff; do
+    "$vpl" help $command | sed '1,/^All options of rendering/d' | grep '^      ' | tr ' ' '\n' | sed -n 's/^--//p' | sort >"$scratch/helped"
+    check "HelpOf_${command}_ListsEveryOption" cmp "$scratch/table" "$scratch/helped"
+done
+
+# An option that was given and has no effect warns; the picture is made all the same.
+# unused TEXT WORDS...
+unused() {
+    text=$1
+    shift
+    "$vpl" "$@" -o "$out/u.pfm" >"$scratch/stdout" 2>"$scratch/stderr"
+    equals "NoEffect: $text" "0 vpl: warning: $text" "$? $(cat "$scratch/stderr")"
+}
+tiny="--size 8x8 --shadow-map 8"
+unused "--clusters has no effect with --method instant-radiosity" render "$room" $tiny --clusters 8
+unused "--particles has no effect with --method direct" render "$room" $tiny --particles=3 --method direct
+unused "--batch has no effect with --pipeline deferred" render "$room" $tiny --batch 3
+unused "--interleave has no effect with --pipeline lightcuts" render "$room" $tiny --pipeline lightcuts --interleave 3 --interleave 4
+succeeds NoEffectIsQuiet "$vpl" render "$room" $tiny --clusters 8 --quiet -o "$out/u.pfm"
+succeeds EffectOfTheUsualPipeline "$vpl" render "$room" --size 8x8 --method ssvp --interleave 2 --rsm-size 32 -o "$out/u.pfm"
+succeeds DefaultsDoNotWarn "$vpl" render "$room" $tiny -o "$out/u.pfm"
+"$vpl" info "$room" --spp 3 >"$scratch/stdout" 2>"$scratch/stderr"
+equals NoEffectInInfo "vpl: warning: --spp has no effect with --method instant-radiosity" "$(cat "$scratch/stderr")"
+rm "$out/u.pfm"
 succeeds HelpListsCommands "$vpl" help
 check HelpNamesExitCodes grep -q '^Exit codes: 0' "$scratch/stdout"

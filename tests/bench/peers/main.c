@@ -4,7 +4,8 @@
 // One thread is measured in processor time, more in wall-clock time. Where OpenGL has several ways to draw a
 // row, the fastest counts. A row's results are compared, so that what is timed is the same picture.
 #include "peers.h"
-#include "base/clock.h"
+
+#include "cli/bench/measure.h"
 
 #include <malloc.h>
 #include <math.h>
@@ -18,21 +19,9 @@ enum { MOST_RUNS = 100, FEW_LIGHTS = 64 };
 // A row ends early after so many ms, so that the slowest do not take all the time.
 static const double ROW_MS = 2000;
 
-static int compareDoubles(const void* a, const void* b)
-{
-    double x = *(const double*)a, y = *(const double*)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double* values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, compareDoubles);
-    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
-
 static double now(const Options* o)
 {
-    return o->threads == 1 ? vplCpuMs() : vplClockMs();
+    return o->threads == 1 ? cpuMs() : wallMs();
 }
 
 static void drawGl(Gl* gl, const Row* row, int way)
@@ -126,9 +115,9 @@ static int chooseWays(Gl* gl, Room* room, const Row* row, int* countOut)
     int first = 0, count = 0;
     for (; few.gl[count].draw != NULL; count++) {
         drawGl(gl, &few, count);
-        const double start = vplCpuMs();
+        const double start = cpuMs();
         drawGl(gl, &few, count);
-        const double ms = vplCpuMs() - start;
+        const double ms = cpuMs() - start;
         if (count == 0 || ms < best) {
             best = ms;
             first = count;
@@ -162,12 +151,12 @@ static Figure measureRow(const Options* o, Gl* gl, Room* room, const Row* row)
     }
     f.best = first;
     for (int way = first; way < first + ways; way++) {
-        f.glMs[way] = median(glMs[way], f.runs);
+        f.glMs[way] = medianOf(glMs[way], f.runs);
         f.best = f.glMs[way] < f.glMs[f.best] ? way : f.best;
     }
     f.glDraws = draws[f.best];
     if (row->vpl != NULL) {
-        f.vplMs = median(vplMs, f.runs);
+        f.vplMs = medianOf(vplMs, f.runs);
         f.error = compareResults(gl, room, row);
     }
     return f;

@@ -2,7 +2,7 @@
 // The hot loops at work on one thread, and variants of them with one thing changed.
 #include "work.h"
 
-#include "cli/bench_cover.h"
+#include "cli/bench/cover.h"
 #include "geometry/bvh.h"
 #include "shading/shading.h"
 
@@ -70,7 +70,7 @@ double cullLights(void* work, int which)
     const vplBounds bounds = {{-0.5f, 0, -0.5f, 0, 1, 0}, {0.5f, 0, 0.5f, 0, 1, 0}};
     float* const columns[6] = {w->columns[0], w->columns[1], w->columns[2],
                                w->columns[3], w->columns[4], w->columns[5]};
-    vplCullFcn* cull = vplGetCull(w->context->isa, VPL_LIGHTING_PHYSICAL);
+    vplCullFcn* cull = vplGetShadingKernels(w->context->isa, VPL_LIGHTING_PHYSICAL).cull;
     int32_t keep[VPL_LIGHT_GROUP];
     for (int first = 0; first < LIGHTS; first += VPL_LIGHT_GROUP) {
         cull(&bounds, columns, first, VPL_LIGHT_GROUP, keep);

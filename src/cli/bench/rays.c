@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// Stages of rays: building what they go through, and sending them.
+#include "cli/bench/bench.h"
+
+#include <string.h>
+
+vplResult runGeometry(Bench* b, const Stage* stage, Outcome* outcome)
+{
+    (void)stage;
+    vplGeometry* geometry;
+    TRY(needField(b));
+    TRY(vplGeometry_Create(b->field, &geometry));
+    hitPixels(geometry, vplScene_GetCamera(b->field, 0), 16, 16, outcome); // shows that the tree is right
+    outcome->rays = 0;
+    outcome->triangles = geometry->triangleCount;
+    outcome->work = geometry->triangleCount;
+    outcome->unit = "triangles";
+    vplGeometry_Destroy(geometry);
+    return VPL_SUCCESS;
+}
+
+// One ray through each pixel's centre; the hash is of what they hit and where.
+void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
+               Outcome* outcome)
+{
+    const vplView v = vplView_Create(camera, width, height);
+    for (int i = 0; i < width * height; i++) {
+        float x = (float)((2 * (i % width + 0.5) / width - 1) / v.scaleX);
+        float y = (float)((1 - 2 * (i / width + 0.5) / height) / v.scaleY);
+        const vplVec3 way = {v.forward.x + x * v.right.x + y * v.up.x,
+                             v.forward.y + x * v.right.y + y * v.up.y,
+                             v.forward.z + x * v.right.z + y * v.up.z};
+        const vplRay ray = {v.eye, way, {0, 0}};
+        vplHit hit;
+        uint64_t found = 0;
+        if (vplGeometry_ClosestHit(geometry, &ray, &hit)) {
+            uint32_t bits;
+            memcpy(&bits, &hit.t, sizeof bits);
+            found = (uint64_t)bits << 32 | (uint32_t)hit.triangle;
+        }
+        addHash(&outcome->hash, found);
+    }
+    outcome->rays = (int64_t)width * height;
+    outcome->work = (double)outcome->rays;
+    outcome->unit = "rays";
+}
+
+// On one thread whatever was asked for: the stage shows the tree, not the tasks.
+vplResult runClosestHits(Bench* b, const Stage* stage, Outcome* outcome)
+{
+    (void)stage;
+    TRY(needField(b));
+    hitPixels(b->fieldGeometry, vplScene_GetCamera(b->field, 0), b->quarter->width, b->quarter->height,
+              outcome);
+    return VPL_SUCCESS;
+}
+
+vplResult runPath(Bench* b, const Stage* stage, Outcome* outcome)
+{
+    (void)stage;
+    vplRenderOptions options = vplDefaultRenderOptions();
+    options.method = VPL_METHOD_PATH;
+    options.output.width = b->quarter->width;
+    options.output.height = b->quarter->height;
+    options.path.samples = 1;
+    vplImage* image;
+    vplRenderStats stats;
+    TRY(vplRender(b->scene, &options, &image, &stats));
+    outcome->rays = stats.rays;
+    outcome->work = (double)stats.rays;
+    outcome->unit = "rays";
+    outcome->hash = stats.imageHash;
+    vplImage_Destroy(image);
+    return VPL_SUCCESS;
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// vpl lights and vpl bake: what pictures are made from, for other programs.
+#include "cli/cli.h"
+
+#include <stdio.h>
+#include <string.h>
+
+// ---- virtual lights
+
+static void printLights(const vplLightSet* set)
+{
+    puts("index,step,px,py,pz,nx,ny,nz,r,g,b,weight");
+    for (int i = 0; i < set->lightCount && !ferror(stdout); i++) {
+        const vplVirtualLight* v = &set->lights[i];
+        printf("%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, v->step, (double)v->position.x,
+               (double)v->position.y, (double)v->position.z, (double)v->normal.x, (double)v->normal.y,
+               (double)v->normal.z, (double)v->light.r, (double)v->light.g, (double)v->light.b,
+               (double)v->weight);
+    }
+}
+
+static int listLights(const Arguments* a, vplContext* context, const vplScene* scene)
+{
+    (void)context;
+    vplLightSet* set = NULL;
+    int code = exitCode(vplMakeLights(scene, &a->render, &set), true);
+    if (code == EXIT_DONE) {
+        printLights(set);
+    }
+    if (code == EXIT_DONE && a->verbose) {
+        complain("%d lights, %d particles escaped, %lld rays, %lld ray-object tests", set->lightCount,
+                 set->escaped, (long long)set->rays, (long long)set->rayObjectTests);
+    }
+    vplLightSet_Destroy(set);
+    return code;
+}
+
+int runLights(const Arguments* a)
+{
+    return runOnScene(a, listLights);
+}
+
+// ---- patches
+
+static int bake(const Arguments* a, vplContext* context, const vplScene* scene)
+{
+    catchInterrupts();
+    Progress progress = beginProgress(a->quiet);
+    vplRenderOptions options = a->render;
+    vplRenderStats stats;
+    options.progress = showProgress;
+    options.progressUser = &progress;
+    int code = exitCode(vplBake(scene, &options, (float)a->exposure, a->output, &stats), false);
+    endProgress(&progress);
+    if (code == EXIT_DONE && a->verbose) {
+        complain("%d patches, %d sides that light reaches, %d sweeps", stats.patches, stats.patchSides,
+                 stats.solve.iterations);
+    }
+    if (code == EXIT_DONE && a->stats != NULL) {
+        code = exitCode(writeStats(context, a->stats, &stats), false);
+    }
+    return code;
+}
+
+int runBake(const Arguments* a)
+{
+    const size_t length = a->output != NULL ? strlen(a->output) : 0;
+    if (a->render.method != VPL_METHOD_RADIOSITY) {
+        complain("bake writes the patches of --method radiosity alone");
+        return EXIT_USAGE;
+    }
+    if (!a->dryRun && (length < 4 || strcmp(a->output + length - 4, ".ply") != 0)) {
+        complain("bake needs -o FILE, a name that ends in .ply");
+        return EXIT_USAGE;
+    }
+    if (!a->dryRun && (!checkOutput(a->output) || (a->stats != NULL && !checkOutput(a->stats)))) {
+        return EXIT_COULD_NOT;
+    }
+    return runOnScene(a, bake);
+}

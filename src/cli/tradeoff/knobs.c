@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// What each knob buys: every sweep of one option is compared with the base, seed by seed.
+#include "cli/tradeoff/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef enum Verdict { VERDICT_FREE = 0, VERDICT_BUYS, VERDICT_SAVES, VERDICT_NOTHING } Verdict;
+
+typedef struct Knob {
+    const Sweep* sweep;
+    const Setting* best;
+    Verdict verdict;
+    double perHalving;  // milliseconds of processor time
+    int values;         // measured, besides the base
+    bool worse, dearer; // some value makes the error larger, or costs more
+} Knob;
+
+// -1 or 1 if every seed agrees that the error falls or grows, and by more than 2 %; else 0.
+static int errorTrend(const Setting* base, const Setting* s)
+{
+    int common = s->runCount < base->runCount ? s->runCount : base->runCount, below = 0, above = 0;
+    for (int k = 0; k < common; k++) {
+        double ratio = s->runs[k].error / base->runs[k].error;
+        below += ratio < 0.98;
+        above += ratio > 1.02;
+    }
+    return below == common ? -1 : above == common ? 1 : 0;
+}
+
+// Times within a tenth, or of overlapping bands, are the same: machines are not quieter than that.
+static int costTrend(const Setting* base, const Setting* s)
+{
+    bool above = s->cpuMs > 1.1 * base->cpuMs && s->cpuLow > base->cpuHigh;
+    bool below = s->cpuMs < 0.9 * base->cpuMs && s->cpuHigh < base->cpuLow;
+    return above ? 1 : below ? -1 : 0;
+}
+
+static bool isBetter(const Knob* knob, Verdict verdict, double perHalving, const Setting* s)
+{
+    if (verdict != knob->verdict) {
+        return verdict < knob->verdict;
+    }
+    return verdict == VERDICT_FREE    ? s->error < knob->best->error
+           : verdict == VERDICT_SAVES ? s->cpuMs < knob->best->cpuMs
+                                      : perHalving < knob->perHalving;
+}
+
+static void judge(Knob* knob, const Setting* base, const Setting* s)
+{
+    int error = errorTrend(base, s), cost = costTrend(base, s);
+    double perHalving = costPerHalving(base->cpuMs, base->error, s->cpuMs, s->error);
+    bool same = s->error <= 1.02 * base->error; // seeds that disagree do not prove it
+    Verdict verdict = error < 0 && cost <= 0           ? VERDICT_FREE
+                      : error < 0                      ? VERDICT_BUYS
+                      : error == 0 && same && cost < 0 ? VERDICT_SAVES
+                                                       : VERDICT_NOTHING;
+    knob->values++;
+    knob->worse |= error > 0;
+    knob->dearer |= cost > 0;
+    if (verdict != VERDICT_NOTHING && isBetter(knob, verdict, perHalving, s)) {
+        knob->best = s;
+        knob->verdict = verdict;
+        knob->perHalving = perHalving;
+    }
+}
+
+static int findKnobs(const Tradeoff* t, Knob* knobs)
+{
+    int count = 0;
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        Knob knob = {&SWEEPS[i], NULL, VERDICT_NOTHING, INFINITY, 0, false, false};
+        for (int j = 1; j < t->settingCount; j++) {
+            const Setting* s = &t->settings[j];
+            if ((s->sweeps >> i & 1) != 0 && isMeasured(s) && SWEEPS[i].meaning != NULL) {
+                judge(&knob, &t->settings[0], s);
+            }
+        }
+        if (knob.values > 0) {
+            knobs[count++] = knob;
+        }
+    }
+    return count;
+}
+
+static bool comesBefore(const Knob* a, const Knob* b)
+{
+    if (a->verdict != b->verdict) {
+        return a->verdict < b->verdict;
+    }
+    return a->verdict == VERDICT_FREE    ? a->best->error < b->best->error
+           : a->verdict == VERDICT_SAVES ? a->best->cpuMs < b->best->cpuMs
+                                         : a->perHalving < b->perHalving;
+}
+
+static void sortKnobs(Knob* knobs, int count)
+{
+    for (int i = 1; i < count; i++) {
+        Knob knob = knobs[i];
+        int j = i;
+        for (; j > 0 && comesBefore(&knob, &knobs[j - 1]); j--) {
+            knobs[j] = knobs[j - 1];
+        }
+        knobs[j] = knob;
+    }
+}
+
+// The option that the sweep turns, the last word before its values.
+static void addNothing(const Knob* knob, Text* html)
+{
+    const char* option = strrchr(knob->sweep->words, ' ');
+    addText(html, "<td><code>%s</code></td><td colspan=\"3\">%s</td><td class=\"n\">&ndash;</td></tr>\n",
+            option ? option + 1 : knob->sweep->words,
+            knob->worse ? "buys nothing: the base's value is best, others are worse"
+            : knob->dearer
+                ? "buys nothing: no value changes the error on all seeds, others than the base's cost more"
+                : "buys nothing: no value changes the error on all seeds, or the cost");
+}
+
+static void addKnob(const Setting* base, const Knob* knob, Text* html)
+{
+    static const char* const words[] = {"less error for no more time", "less error for more time",
+                                        "saves time at the same error", ""};
+    char from[32], to[32];
+    addText(html, "<tr><td>%s</td>", knob->sweep->meaning);
+    if (knob->best == NULL) {
+        addNothing(knob, html);
+        return;
+    }
+    formatPercent(base->error, from, sizeof from);
+    formatPercent(knob->best->error, to, sizeof to);
+    addText(html, "<td><code>");
+    addWords(html, knob->best->change);
+    addText(html, "</code></td><td class=\"n\">%s &rarr; %s</td>", from, to);
+    formatTime(base->cpuMs, from, sizeof from);
+    formatTime(knob->best->cpuMs, to, sizeof to);
+    addText(html, "<td class=\"n\">%s &rarr; %s</td><td>%s</td>", from, to, words[knob->verdict]);
+    formatTime(knob->perHalving, from, sizeof from);
+    addText(html, "<td class=\"n\">%s</td></tr>\n",
+            knob->verdict == VERDICT_BUYS   ? from
+            : knob->verdict == VERDICT_FREE ? "free"
+                                            : "&ndash;");
+}
+
+void addKnobs(const Tradeoff* t, Text* html)
+{
+    Knob knobs[MAX_SWEEPS];
+    const Setting* base = &t->settings[0];
+    int count = isMeasured(base) ? findKnobs(t, knobs) : 0;
+    if (count == 0) {
+        return;
+    }
+    char command[SENTENCE];
+    writeCommand(base, command, sizeof command);
+    sortKnobs(knobs, count);
+    addText(html, "<h2>What each knob buys</h2>\n<p>One option at a time is changed from the base, <code>");
+    addWords(html, command);
+    addText(html,
+            "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor time "
+            "added for each factor of two by which the error falls. A change counts only if all seeds agree "
+            "and it is larger than 2 %% (error) or 10 %% (time).</p>\n<table><tr><th>knob</th><th>change</th>"
+            "<th class=\"n\">error</th><th class=\"n\">processor time</th><th>verdict</th><th "
+            "class=\"n\">per halving</th></tr>\n");
+    for (int i = 0; i < count; i++) {
+        addKnob(base, &knobs[i], html);
+    }
+    addText(html, "</table>\n");
+}

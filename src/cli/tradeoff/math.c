@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "cli/tradeoff/math.h"
+
+#include <math.h>
+#include <stdio.h>
+
+// The next point by cost, then by error, then by index, whose error is below the limit; -1: none.
+static int nextOnFront(const double* cost, const double* error, int count, double limit)
+{
+    int next = -1;
+    for (int i = 0; i < count; i++) {
+        bool counts = !isnan(cost[i]) && error[i] < limit;
+        if (counts &&
+            (next < 0 || cost[i] < cost[next] || (cost[i] == cost[next] && error[i] < error[next]))) {
+            next = i;
+        }
+    }
+    return next;
+}
+
+// What costs less than a marked point has an error above the limit, or it would have been marked first.
+int markFront(const double* cost, const double* error, int count, double gain, bool* onFront)
+{
+    int marked = 0;
+    for (int i = 0; i < count; i++) {
+        onFront[i] = false;
+    }
+    double limit = INFINITY;
+    for (int i = nextOnFront(cost, error, count, limit); i >= 0; i = nextOnFront(cost, error, count, limit)) {
+        onFront[i] = true;
+        marked++;
+        limit = (1 - gain) * error[i];
+    }
+    return marked;
+}
+
+int cheapestWithin(const double* cost, const double* error, int count, double limit)
+{
+    int best = -1;
+    for (int i = 0; i < count; i++) {
+        if (error[i] <= limit && (best < 0 || cost[i] < cost[best])) {
+            best = i;
+        }
+    }
+    return best;
+}
+
+double costPerHalving(double cost0, double error0, double cost1, double error1)
+{
+    if (!(error1 < error0)) {
+        return INFINITY;
+    }
+    return (cost1 - cost0) / log2(error0 / error1); // an error of 0 is infinitely many halvings
+}
+
+double floorOf(const double* work, const double* error, int count)
+{
+    int before = count - 2;
+    while (before >= 0 && work[before] * 8 > work[count - 1]) {
+        before--;
+    }
+    return before >= 0 && error[count - 1] > 0.8 * error[before] ? error[count - 1] : NAN;
+}
+
+bool logRange(const double* values, int count, double* low, double* high)
+{
+    double least = INFINITY, most = 0;
+    for (int i = 0; i < count; i++) {
+        if (values[i] > 0 && isfinite(values[i])) {
+            least = fmin(least, values[i]);
+            most = fmax(most, values[i]);
+        }
+    }
+    if (most == 0) {
+        return false;
+    }
+    const double room = 1.2589254117941673; // a tenth of a decade
+    least /= room;
+    most *= room;
+    double widen = most < 10 * least ? sqrt(10 * least / most) : 1;
+    *low = least / widen;
+    *high = most * widen;
+    return true;
+}
+
+int logTicks(double low, double high, double* ticks, int most)
+{
+    static const double steps[] = {1, 2, 5};
+    int count = 0, stride = high / low > 1e4 ? 3 : 1;
+    double decade = pow(10, floor(log10(low)));
+    for (int i = 0; decade * steps[i % 3] <= high && count < most; i += stride) {
+        if (i % 3 == 0 && i > 0) {
+            decade *= 10;
+        }
+        double tick = decade * steps[i % 3];
+        if (tick >= low && tick <= high) {
+            ticks[count++] = tick;
+        }
+    }
+    return count;
+}
+
+double jointSquare(const float* x, const float* a, const float* b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += ((double)x[i] - (double)a[i]) * ((double)x[i] - (double)b[i]);
+    }
+    return sum / (double)count;
+}
+
+double jointUncertainty(const float* a, const float* b, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        double square = ((double)a[i] - (double)b[i]) * ((double)a[i] - (double)b[i]);
+        sum += square * square;
+    }
+    return sqrt(sum / 12) / (double)count;
+}
+
+// Two digits below 10, all whole ones above: no more than timing repeats.
+static int decimals(double value)
+{
+    return value < 1 ? 2 : value < 10 ? 1 : 0;
+}
+
+void formatTime(double ms, char* text, size_t size)
+{
+    if (ms < 999.5) {
+        snprintf(text, size, "%.*f ms", decimals(ms), ms);
+    } else if (ms < 99950) {
+        snprintf(text, size, "%.*f s", ms < 9995 ? 2 : 1, ms / 1000);
+    } else {
+        int seconds = (int)fmin(ms / 1000 + 0.5, 2e9);
+        snprintf(text, size, "%d min %d s", seconds / 60, seconds % 60);
+    }
+}
+
+void formatPercent(double fraction, char* text, size_t size)
+{
+    double percent = 100 * fraction;
+    snprintf(text, size, "%.*f %%", percent < 1 ? 2 : percent < 99.95 ? 1 : 0, percent);
+}

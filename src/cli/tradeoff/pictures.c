@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// The front in pictures: each beside the truth and the difference.
+#include "cli/tradeoff/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// More would make a page of many megabytes, of pictures that look alike.
+enum { MAX_PICTURES = 10 };
+
+// Whole stops by which pixels are brightened: nine in ten of the truth's lit values end at or below 0.8. The
+// same for all pictures, so that they can be compared.
+static float chooseExposure(const Tradeoff* t)
+{
+    const vplImage* image = t->reference.image;
+    size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    float exposure = -30;
+    for (; exposure < 30; exposure++) {
+        double next = ldexp(1, (int)exposure + 1);
+        size_t lit = 0, above = 0;
+        for (size_t i = 0; i < count; i++) {
+            lit += image->pixels[i] > 0;
+            above += next * (double)image->pixels[i] > 0.8;
+        }
+        if (10 * above > lit) {
+            break;
+        }
+    }
+    return exposure;
+}
+
+static void addFigure(Text* html, const vplImage* image, const vplWriteOptions* options, const char* caption)
+{
+    addText(html, "<figure><img alt=\"%s\" src=\"", caption);
+    addPicture(html, image, options);
+    addText(html, "\"><figcaption>%s</figcaption></figure>\n", caption);
+}
+
+// About half of the truth's mean, of one digit so that the numbers of the bar are short.
+static double heatScale(const Tradeoff* t)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.0e", 0.5 * t->reference.mean);
+    return strtod(text, NULL);
+}
+
+static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions* options, Text* html)
+{
+    char time[32], error[32], caption[128];
+    formatTime(s->cpuMs, time, sizeof time);
+    formatPercent(s->runs[0].error, error, sizeof error);
+    addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number, time, error);
+    char command[SENTENCE];
+    writeCommand(s, command, sizeof command);
+    addWords(html, command);
+    addText(html, "</code></p>\n<div class=\"row\">");
+    addFigure(html, s->image, options, FAMILY_NAMES[s->family]);
+    addFigure(html, t->reference.image, options, "the truth");
+    vplImage* map = NULL;
+    if (vplImage_Heatmap(s->image, t->reference.image, (float)heatScale(t), &map) == VPL_SUCCESS) {
+        snprintf(caption, sizeof caption,
+                 "difference; white is %g W/(m&sup2; sr), about half the truth's mean", heatScale(t));
+        addFigure(html, map, NULL, caption);
+    } else {
+        html->failed = true;
+    }
+    vplImage_Destroy(map);
+    addText(html, "</div>\n");
+}
+
+// Points of the front by ascending cost; every n-th where there are too many, and always the last.
+static int choosePoints(const Tradeoff* t, const Setting** chosen)
+{
+    const Setting* front[MAX_SETTINGS];
+    int count = 0;
+    for (int number = 1; number <= t->settingCount; number++) {
+        for (int i = 0; i < t->settingCount; i++) {
+            if (t->settings[i].onFront && t->settings[i].number == number && t->settings[i].image != NULL) {
+                front[count++] = &t->settings[i];
+            }
+        }
+    }
+    int kept = count < MAX_PICTURES ? count : MAX_PICTURES;
+    for (int i = 0; i < kept; i++) {
+        chosen[i] = front[kept > 1 ? i * (count - 1) / (kept - 1) : 0];
+    }
+    return kept;
+}
+
+void addPictures(const Tradeoff* t, Text* html)
+{
+    const Setting* chosen[MAX_PICTURES];
+    vplWriteOptions options = vplDefaultWriteOptions();
+    options.exposure = t->arguments->exposure != 0 ? (float)t->arguments->exposure : chooseExposure(t);
+    int count = choosePoints(t, chosen);
+    addText(
+        html,
+        "<h2>What it looks like</h2>\n<p>Settings on the front of the plot, by their numbers there; first "
+        "seed; exposure %+g stops.</p>\n",
+        (double)options.exposure);
+    for (int i = 0; i < count; i++) {
+        addPoint(t, chosen[i], &options, html);
+    }
+}

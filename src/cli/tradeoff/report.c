@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// report.html: one file that needs no other, no network and no scripts.
+#include "cli/tradeoff/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/utsname.h>
+#include <time.h>
+
+static const char CSS[] =
+    "body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,sans-serif}\n"
+    "main{max-width:1000px;margin:0 auto;padding:1.5rem}\n"
+    "h1{font-size:1.7rem;margin:.2rem 0} h2{margin-top:2.4rem} h3{margin:1.6rem 0 .3rem;font-size:1.05rem}\n"
+    "code{background:var(--panel);padding:.1em .3em;border-radius:3px;font-size:.9em}\n"
+    "code.copy{display:inline-block;user-select:all;overflow-wrap:anywhere} code span{white-space:nowrap}\n"
+    ".answer{border-left:5px solid var(--f3);padding:.4rem .9rem;background:var(--panel);font-size:1.1rem}\n"
+    "table{border-collapse:collapse;width:100%;font-size:.92rem} th,td{text-align:left;padding:.35rem .5rem;"
+    "border-bottom:1px solid var(--line);vertical-align:top} .n{text-align:right;white-space:nowrap}\n"
+    ".small,figcaption{font-size:.85rem;color:var(--soft)} .row{display:flex;gap:.6rem;flex-wrap:wrap}\n"
+    "figure{margin:0;flex:1 1 280px} img{width:100%;display:block;border:1px solid var(--line)}\n"
+    ".dot{display:inline-block;width:.7em;height:.7em;border-radius:50%;margin-right:.5em}\n"
+    ".scroll{overflow-x:auto} details{margin-top:1rem}\n"
+    "@media print{main{max-width:none} h2{break-after:avoid} figure,tr,svg{break-inside:avoid}}\n";
+
+static void addHead(const Tradeoff* t, Text* html)
+{
+    const vplRenderOptions* o = &t->arguments->render;
+    addText(html,
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+            "content=\"width=device-width,initial-scale=1\">\n<meta name=\"color-scheme\" "
+            "content=\"light dark\">\n<title>Error against time: ");
+    addEscaped(html, t->arguments->positionals[0]);
+    addText(html, "</title>\n<style>\n");
+    writeStyle(html);
+    addText(html, "%s", CSS);
+    for (int i = 0; i < FAMILY_COUNT; i++) {
+        addText(html, ".d%d{background:var(--f%d)}", i, i);
+    }
+    addText(html,
+            "\n</style></head>\n<body class=\"vpl\"><main>\n<p class=\"small\">vpl tradeoff %s</p>\n"
+            "<h1>Error against time</h1>\n<p>",
+            vplGetVersion());
+    addEscaped(html, t->arguments->positionals[0]);
+    addText(html, ", camera %d, %dx%d pixels.", o->output.camera, o->output.width, o->output.height);
+    if (t->interrupted) {
+        addText(html, " <strong>Interrupted: only what was measured until then is shown.</strong>");
+    }
+    addText(html, "</p>\n");
+}
+
+static void addReference(const Tradeoff* t, Text* html)
+{
+    const Reference* r = &t->reference;
+    char text[32];
+    formatTime(r->ms, text, sizeof text);
+    addText(html, "<li>The truth: ");
+    if (r->spp > 0) {
+        addText(
+            html,
+            "path traced in two independent halves with %d paths per pixel in all (%s of processor time), "
+            "through the centres of pixels as all methods draw: jagged edges do not count as error. "
+            "<code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
+            r->spp, text);
+    } else {
+        addText(html, "<code>");
+        addEscaped(html, t->arguments->reference);
+        addText(html, "</code>, as given.");
+    }
+    if (r->error < 0) {
+        addText(html, " Its own error is not known; small errors may be the file's.</li>\n");
+        return;
+    }
+    formatPercent(r->error, text, sizeof text);
+    addText(
+        html,
+        " It is noisy by %s itself, but the noise of the halves is independent and cancels in the mean of ",
+        text);
+    formatPercent(r->resolution, text, sizeof text);
+    addText(
+        html,
+        "(x &minus; a)(x &minus; b). What remains unknown is <strong>%s</strong>, two standard errors; no "
+        "error below that is claimed.</li>\n",
+        text);
+}
+
+// "AMD EPYC ...", or what uname says where /proc/cpuinfo has no such line.
+static void describeMachine(char* text, size_t size)
+{
+    struct utsname system;
+    snprintf(text, size, "%s", uname(&system) == 0 ? system.machine : "unknown");
+    FILE* file = fopen("/proc/cpuinfo", "r");
+    char line[256];
+    while (file != NULL && fgets(line, sizeof line, file) != NULL) {
+        const char* colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) == 0 && colon != NULL) {
+            snprintf(text, size, "%.*s", (int)strcspn(colon + 2, "\n"), colon + 2);
+            break;
+        }
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+}
+
+static void addMachine(const Tradeoff* t, Text* html)
+{
+    char machine[256], date[64] = "";
+    time_t now = time(NULL);
+    struct tm local;
+    describeMachine(machine, sizeof machine);
+    if (localtime_r(&now, &local) != NULL) {
+        strftime(date, sizeof date, "%Y-%m-%d %H:%M", &local);
+    }
+    addText(html, "<li>The machine: ");
+    addEscaped(html, machine);
+    addText(
+        html,
+        ", %d threads, %s instructions, libvpl %s, %s. Pictures and errors are the same on every machine; "
+        "times are not.</li>\n",
+        vplContext_GetWorkerCount(t->context), vplIsa_GetName(vplContext_GetIsa(t->context)), vplGetVersion(),
+        date);
+}
+
+static void addLeftOut(const Tradeoff* t, Text* html)
+{
+    int late = 0, failed = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* s = &t->settings[i];
+        late += !isMeasured(s) && s->problem[0] == 0;
+        failed += !isMeasured(s) && s->problem[0] != 0;
+    }
+    addText(html, "<li>%d settings measured", t->settingCount - late - failed);
+    if (late > 0) {
+        addText(html, ", %d left out when the time of %g s was up", late, t->arguments->seconds);
+    }
+    if (failed == 0) {
+        addText(html, ".</li>\n");
+        return;
+    }
+    addText(html, ", %d not measured:</li>\n<ul>", failed);
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* s = &t->settings[i];
+        if (!isMeasured(s) && s->problem[0] != 0) {
+            addText(html, "<li><code>%s</code>: ", s->change[0] ? s->change : "the base");
+            addEscaped(html, s->problem);
+            addText(html, "</li>\n");
+        }
+    }
+    addText(html, "</ul>\n");
+}
+
+static void addAllSettings(const Tradeoff* t, Text* html)
+{
+    addText(
+        html,
+        "<details><summary>All settings</summary><div class=\"scroll\"><table>\n<tr><th>change from the base"
+        "</th><th class=\"n\">seeds</th><th class=\"n\">processor time</th><th class=\"n\">error</th>"
+        "<th class=\"n\">least to most</th><th class=\"n\">energy</th></tr>\n");
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* s = &t->settings[i];
+        char text[32], low[32], high[32];
+        addText(html, "<tr><td><code>%s</code>", s->change[0] ? s->change : "the base");
+        if (!isMeasured(s)) {
+            addText(html, "</td><td colspan=\"5\">not measured: ");
+            addEscaped(html, s->problem[0] ? s->problem : "no time left");
+            addText(html, "</td></tr>\n");
+            continue;
+        }
+        formatTime(s->cpuMs, text, sizeof text);
+        addText(html, "</td><td class=\"n\">%d</td><td class=\"n\">%s</td>", s->runCount, text);
+        formatPercent(s->error, text, sizeof text);
+        formatPercent(s->errorLow, low, sizeof low);
+        formatPercent(s->errorHigh, high, sizeof high);
+        addText(html, "<td class=\"n\">%s</td><td class=\"n\">%s to %s</td><td class=\"n\">%.3f</td></tr>\n",
+                text, low, high, s->energy);
+    }
+    addText(html, "</table></div></details>\n");
+}
+
+void addMethod(const Tradeoff* t, Text* html)
+{
+    addText(html, "<h2>How it was measured</h2>\n<ul>\n");
+    addReference(t, html);
+    addText(
+        html,
+        "<li>Every setting was rendered with up to %d seed%s from %llu; figures are medians, bands run from "
+        "the least to the most. Settings ran from the cheapest to the dearest.</li>\n"
+        "<li>Processor time is the time of all threads together for the whole of <code>vpl render</code> "
+        "without reading the scene and writing the picture, here measured on %d thread%s. Several threads "
+        "share "
+        "it, so one waits less. Of short renders the fastest of three counts.</li>\n",
+        t->arguments->seeds, t->arguments->seeds == 1 ? "" : "s",
+        (unsigned long long)t->arguments->render.seed, vplContext_GetWorkerCount(t->context),
+        vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
+    addMachine(t, html);
+    addText(
+        html,
+        "<li>Physical lighting only: the documented formulas have no falloff with distance, so there is no "
+        "truth to compare them with.</li>\n");
+    addLeftOut(t, html);
+    addText(html, "<li>Every figure of every run is in <code>tradeoff.csv</code>.</li>\n</ul>\n");
+    addAllSettings(t, html);
+}
+
+void writeReport(const Tradeoff* t, Text* html)
+{
+    addHead(t, html);
+    addAnswers(t, html);
+    addText(html, "<h2>All settings: error against processor time</h2>\n");
+    writePlot(t, html);
+    addPictures(t, html);
+    addClamp(t, html);
+    addKnobs(t, html);
+    addMethod(t, html);
+    addText(html, "</main></body></html>\n");
+}

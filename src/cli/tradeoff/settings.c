@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+// Which settings are measured: a table of sweeps. A new option of `vpl render` is measured by a new row.
+#include "cli/tradeoff/tradeoff.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char PARTICLES[] = "3 10 30 100 300 1000 3000 10000 30000 65536";
+
+static const char PATCHES[] = "100 300 1000 3000 10000 30000";
+
+static const char DISTANCES[] = "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4";
+
+const Sweep SWEEPS[] = {
+    {"frontier", "--light-shadows none --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows map --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows ray --particles", PARTICLES, NULL},
+    {"frontier", "--method keller --particles", PARTICLES, NULL},
+    {"frontier", "--method keller --pipeline interleaved --particles", PARTICLES, NULL},
+    {"frontier", "--method keller --pipeline interleaved --interleave 16 --particles", PARTICLES, NULL},
+    {"frontier", "--method ssvp --clusters", "4 8 16 32 64", NULL},
+    {"frontier", "--method ssvp --clusters 32 --first-bounce 1024 --second-bounce", "1024 4096", NULL},
+    {"frontier", "--method radiosity --patches", PATCHES, NULL},
+    {"frontier", "--method radiosity --patch-placement adaptive --patches", PATCHES, NULL},
+    {"frontier", "--light-shadows none --min-distance @0.03 --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows map --min-distance @0.03 --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows ray --min-distance @0.03 --particles", PARTICLES, NULL},
+    {"frontier", "--light-shadows ray --shadow-map 2048 --particles", PARTICLES, NULL},
+    {"path", "--pixel centre --method path --spp", "1 2 4 8 16 32 64 128 256 512 1024", NULL},
+    {"direct", "--method", "direct", NULL},
+    {"particles", "--particles", PARTICLES, "Particles"},
+    {"light-shadows", "--light-shadows", "none map ray auto", "Shadows of virtual lights"},
+    {"interleave", "--pipeline interleaved --interleave", "2 4 8 16",
+     "Lights that neighbouring pixels share"},
+    {"interleave", "--light-shadows ray --pipeline interleaved --interleave", "2 4 8 16", NULL},
+    {"min-distance", "--min-distance", DISTANCES, "Clamp of near virtual lights"},
+    {"min-distance", "--light-shadows map --min-distance", DISTANCES, NULL},
+    {"compensation", "--light-shadows ray --compensation", "none rays",
+     "Light lost to the clamp found by rays"},
+    {"compensation", "--light-shadows ray --compensation rays --particles", "100 1000 10000", NULL},
+    {"passes", "--method keller --pipeline interleaved --interleave 16 --passes", "1 2 4 8", "Passes"},
+    {"sampler", "--sampler", "random halton hammersley", "Where particles go"},
+    {"placement", "--light-shadows ray --placement", "particles rsm view", "Where lights go"},
+    {"clusters", "--method ssvp --clusters", "4 8 16 32 64 256", "SSVP: clusters that lights see by"},
+    {"bounces", "--method ssvp --max-bounces", "0 1 2", "SSVP: bounces"},
+    {"first-bounce", "--method ssvp --first-bounce", "64 256 1024", "SSVP: first-bounce lights"},
+    {"second-bounce", "--method ssvp --second-bounce", "64 256 1024", "SSVP: second-bounce lights"},
+    {"second-weight", "--method ssvp --second-weight", "cosine printed", "SSVP: weight of the second bounce"},
+    {"cluster-metric", "--method ssvp --cluster-metric", "one-minus printed one-minus-clamped angle",
+     "SSVP: what makes a light far from a cluster"},
+    {"cluster-place", "--method ssvp --cluster-place", "member mean", "SSVP: where clusters look from"},
+    {"paraboloid", "--method ssvp --paraboloid", "64 128 256 512", "SSVP: size of paraboloid maps"},
+    {"hemispheres", "--method ssvp --hemispheres", "1 2", "SSVP: what clusters see"},
+    {"oversampling", "--method ssvp --oversampling", "1 4 16", "SSVP: samples for lights that are of use"},
+    {"rsm-size", "--method ssvp --rsm-size", "256 512 1024 2048", "SSVP: size of the reflective map"},
+    {"ssvp-interleave", "--method ssvp --interleave", "1 2 4 8",
+     "SSVP: lights that neighbouring pixels share"},
+    {"patches", "--method radiosity --patches", PATCHES, "Radiosity: patches"},
+    {"patch-placement", "--method radiosity --patch-placement", "uniform adaptive",
+     "Radiosity: where patches are small"},
+    {"form-factors", "--method radiosity --form-factors", "monte-carlo incentre", "Radiosity: form factors"},
+    {"form-samples", "--method radiosity --form-samples", "1 4 16", "Radiosity: samples of form factors"},
+    {"row-sums", "--method radiosity --row-sums", "keep clamp normalise",
+     "Radiosity: what becomes of sums above 1"},
+    {"hierarchy", "--method radiosity --hierarchy", "off on", "Radiosity: links between groups"},
+    {"link-error", "--method radiosity --hierarchy on --link-error", "0.001 0.003 0.01 0.03 0.1",
+     "Radiosity: error of links"},
+    {"patch-light", "--method radiosity --patch-light", "1 4 16", "Radiosity: samples of lights"},
+    {"iterations", "--method radiosity --iterations", "1 2 5 10", "Radiosity: sweeps"},
+    {"interpolation", "--method radiosity --interpolation", "gouraud none", "Radiosity: interpolation"},
+    {"sharpen", "--method radiosity --sharpen", "0 1 2 4 8", "Radiosity: corners against smoothing"},
+    {"vertex-weight", "--method radiosity --vertex-weight", "angle area equal",
+     "Radiosity: weights at corners"},
+    {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
+    {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
+    {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
+    {"bias", "--bias", "auto 0 @0.001 @0.003 @0.01", "Shadow bias"},
+    {"pipeline", "--pipeline", "usual batched multipass", "How virtual lights are added up"},
+    {"cut-error", "--pipeline lightcuts --light-shadows ray --particles 10000 --cut-error",
+     "0.005 0.01 0.02 0.05 0.1 0.2", "Error of lightcuts"},
+    {"area-light-samples", "--area-light-samples", "4 16 64 256", "Samples of area lights"},
+    {"area-light-samples", "--area-light-samples 16 --particles", "300 1000 3000", NULL},
+    {"light-map", "--light-shadows map --light-map", "32 64 128 256 512", "Size of virtual lights' maps"},
+    {"particle-geometry", "--particle-geometry", "exact obb", "What stops a particle"},
+};
+
+const int SWEEP_COUNT = sizeof SWEEPS / sizeof *SWEEPS;
+
+_Static_assert(sizeof SWEEPS / sizeof *SWEEPS <= MAX_SWEEPS, "a sweep is a bit of Setting.sweeps");
+
+const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
+                                                "virtual lights without shadows",
+                                                "virtual lights with shadow maps",
+                                                "virtual lights with shadow rays",
+                                                "Keller's method",
+                                                "SSVP",
+                                                "radiosity",
+                                                "path tracing"};
+
+// True if `name` is one of the words in "a,b,c"; NULL names all.
+static bool isListed(const char* list, const char* name)
+{
+    size_t length = strlen(name);
+    for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
+        if (strcspn(at, ",") == length && strncmp(at, name, length) == 0) {
+            return true;
+        }
+    }
+    return list == NULL;
+}
+
+static bool checkSweepNames(const char* list)
+{
+    for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
+        int length = (int)strcspn(at, ","), known = 0;
+        for (int i = 0; i < SWEEP_COUNT; i++) {
+            known |=
+                (int)strlen(SWEEPS[i].name) == length && strncmp(at, SWEEPS[i].name, (size_t)length) == 0;
+        }
+        if (!known) {
+            complain("--sweeps names \"%.*s\"; vpl help tradeoff lists the sweeps", length, at);
+            return false;
+        }
+    }
+    return true;
+}
+
+static Family familyOf(const vplRenderOptions* o)
+{
+    switch (o->method) {
+    case VPL_METHOD_DIRECT:
+        return FAMILY_DIRECT;
+    case VPL_METHOD_PATH:
+        return FAMILY_PATH;
+    case VPL_METHOD_KELLER:
+        return FAMILY_KELLER;
+    case VPL_METHOD_SSVP:
+        return FAMILY_SSVP;
+    case VPL_METHOD_RADIOSITY:
+        return FAMILY_RADIOSITY;
+    case VPL_METHOD_INSTANT_RADIOSITY:
+        break;
+    }
+    return o->lights.shadows == VPL_LIGHT_SHADOWS_MAP   ? FAMILY_MAP
+           : o->lights.shadows == VPL_LIGHT_SHADOWS_RAY ? FAMILY_RAY
+                                                        : FAMILY_UNSHADOWED;
+}
+
+// Lights or paths, and a constant for what every picture costs.
+static double workOf(const vplRenderOptions* o)
+{
+    double reflectivity = o->particles.reflectivity >= 0 ? o->particles.reflectivity : 0.7;
+    return o->method == VPL_METHOD_PATH        ? o->path.samples
+           : o->method == VPL_METHOD_DIRECT    ? 1
+           : o->method == VPL_METHOD_RADIOSITY ? 500 + o->radiosity.patches
+           : o->method == VPL_METHOD_SSVP
+               ? 200 + o->ssvp.firstBounce + o->ssvp.secondBounce + 8 * o->ssvp.clusters
+               : 50 + o->particles.count / (1 - reflectivity);
+}
+
+// The words that make `plain` into `o`; options that the method of `o` makes no use of need none.
+static void writeDifference(const vplRenderOptions* plain, const vplRenderOptions* o, char* words,
+                            size_t size)
+{
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    size_t used = 0;
+    words[0] = 0;
+    for (int i = 0; i < count; i++) {
+        char value[64], usual[64];
+        const char* name = options[i].name;
+        if (vplRenderOptions_Get(o, name, value, sizeof value) == VPL_SUCCESS &&
+            vplRenderOptions_Get(plain, name, usual, sizeof usual) == VPL_SUCCESS &&
+            strcmp(value, usual) != 0 && vplRenderOptions_IsUsed(o, name, NULL, 0)) {
+            int length = snprintf(words + used, size - used, "%s--%s %s", used ? " " : "", name, value);
+            used += length > 0 && (size_t)length < size - used ? (size_t)length : 0;
+        }
+    }
+}
+
+void writeCommand(const Setting* s, char* words, size_t size)
+{
+    const vplRenderOptions plain = vplDefaultRenderOptions();
+    writeDifference(&plain, &s->options, words, size);
+}
+
+// Options that the method makes no use of go back to their defaults: equal settings look equal.
+static void forgetUnused(vplRenderOptions* o)
+{
+    const vplRenderOptions plain = vplDefaultRenderOptions();
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        char usual[64];
+        if (!vplRenderOptions_IsUsed(o, options[i].name, NULL, 0) &&
+            vplRenderOptions_Get(&plain, options[i].name, usual, sizeof usual) == VPL_SUCCESS) {
+            vplRenderOptions_Set(o, options[i].name, usual);
+        }
+    }
+}
+
+// Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too.
+static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
+{
+    Setting s = {.options = t->arguments->render, .sweeps = sweep};
+    if (!setOptions(&s.options, words)) {
+        return false;
+    }
+    forgetUnused(&s.options);
+    char command[SENTENCE], other[SENTENCE];
+    writeCommand(&s, command, sizeof command);
+    for (int i = 0; i < t->settingCount; i++) {
+        writeCommand(&t->settings[i], other, sizeof other);
+        if (strcmp(command, other) == 0) {
+            t->settings[i].sweeps |= sweep;
+            return true;
+        }
+    }
+    if (t->settingCount == MAX_SETTINGS) {
+        complain("more than %d settings", MAX_SETTINGS);
+        return false;
+    }
+    writeDifference(&t->arguments->render, &s.options, s.change, sizeof s.change);
+    s.family = familyOf(&s.options);
+    s.work = workOf(&s.options);
+    t->settings[t->settingCount++] = s;
+    return true;
+}
+
+// Copies words; @X becomes a length in metres, of two digits so that a command line reads well.
+static void expandLengths(const Tradeoff* t, const char* from, char* words, size_t size)
+{
+    size_t used = 0;
+    while (*from != 0 && used + 1 < size) {
+        if (*from != '@') {
+            words[used++] = *from++;
+            continue;
+        }
+        char* end;
+        char digits[32];
+        snprintf(digits, sizeof digits, "%.1e", t->diagonal * strtod(from + 1, &end));
+        int length = snprintf(words + used, size - used, "%g", strtod(digits, NULL));
+        used += (size_t)length < size - used ? (size_t)length : 0;
+        from = end;
+    }
+    words[used] = 0;
+}
+
+static bool addSweep(Tradeoff* t, int index)
+{
+    const Sweep* sweep = &SWEEPS[index];
+    char value[32], pattern[128], words[128];
+    int length;
+    for (const char* at = sweep->values; sscanf(at, " %31s%n", value, &length) == 1; at += length) {
+        snprintf(pattern, sizeof pattern, "%s %s", sweep->words, value);
+        expandLengths(t, pattern, words, sizeof words);
+        if (!addSetting(t, words, UINT64_C(1) << index)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool listSettings(Tradeoff* t)
+{
+    uint64_t knobs = 0;
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        bool chosen = isListed(t->arguments->sweeps, SWEEPS[i].name);
+        knobs |= chosen && SWEEPS[i].meaning != NULL ? UINT64_C(1) << i : 0;
+    }
+    if (!checkSweepNames(t->arguments->sweeps) || !addSetting(t, "", knobs)) {
+        return false;
+    }
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        if (isListed(t->arguments->sweeps, SWEEPS[i].name) && !addSweep(t, i)) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// Measures error against time: which settings for 5 % error, and what do they cost?
+#include "cli/tradeoff/tradeoff.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html", "reference-a.pfm",
+                                    "reference-b.pfm"};
+
+enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
+
+// Errors of the library are printed, except while settings are tried out.
+static void keepLog(void* user, vplLogLevel level, const char* message)
+{
+    Tradeoff* t = user;
+    if (level == VPL_LOG_ERROR) {
+        snprintf(t->message, sizeof t->message, "%s", message);
+    }
+    if (level == VPL_LOG_ERROR ? !t->silent
+                               : level == VPL_LOG_WARNING && !t->arguments->quiet && !t->silent) {
+        complain("%s%s", level == VPL_LOG_WARNING ? "warning: " : "", message);
+    }
+}
+
+static bool joinPath(const char* folder, const char* name, char* path)
+{
+    int length = snprintf(path, PATH_MAX, "%s/%s", folder, name);
+    if (length >= PATH_MAX) {
+        complain("%s: the name is too long", folder);
+    }
+    return length < PATH_MAX;
+}
+
+// Makes the folder if it is missing and asks whether all files can be written. *made tells whether to undo it.
+static bool prepareFolder(const char* folder, bool* made)
+{
+    char path[PATH_MAX];
+    *made = mkdir(folder, 0777) == 0;
+    if (!*made && errno != EEXIST) {
+        complain("%s: cannot create the folder: %s", folder, strerror(errno));
+        return false;
+    }
+    for (int i = 0; i < FILE_COUNT; i++) {
+        if (!joinPath(folder, FILES[i], path) || !checkOutput(path)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool writeResult(const Tradeoff* t, const char* name, void write(const Tradeoff* t, Text* text))
+{
+    char path[PATH_MAX];
+    Text text = {0};
+    write(t, &text);
+    bool good = joinPath(t->arguments->output, name, path);
+    if (good && (text.failed || text.bytes == NULL)) {
+        complain("%s: out of memory", path);
+        good = false;
+    }
+    good = good && writeTextFile(path, text.bytes);
+    free(text.bytes);
+    return good;
+}
+
+static int writeResults(Tradeoff* t)
+{
+    char path[PATH_MAX];
+    const char* folder = t->arguments->output;
+    for (int i = 0; i < 2 && t->reference.spp > 0; i++) {
+        if (!joinPath(folder, i == 0 ? "reference-a.pfm" : "reference-b.pfm", path) ||
+            vplImage_Write(t->reference.halves[i], path, NULL) != VPL_SUCCESS) {
+            return EXIT_COULD_NOT;
+        }
+    }
+    bool good = writeResult(t, "tradeoff.csv", writeTable) && writeResult(t, "tradeoff.svg", writePlot) &&
+                writeResult(t, "report.html", writeReport);
+    if (good && t->interrupted) {
+        complain("interrupted; what had been measured is in %s/report.html", folder);
+    }
+    return good && !t->interrupted ? EXIT_DONE : EXIT_COULD_NOT;
+}
+
+static int measure(Tradeoff* t)
+{
+    t->start = 1e-3 * wallMs();
+    t->deadline = t->start + t->arguments->seconds;
+    t->progress = beginProgress(t->arguments->quiet);
+    int code = makeReference(t);
+    if (code == EXIT_DONE) {
+        code = measureSettings(t);
+    }
+    endProgress(&t->progress);
+    return code;
+}
+
+static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOut)
+{
+    vplContextDef def = t->arguments->context;
+    def.log = keepLog;
+    def.logUser = t;
+    def.workerCount = workers;
+    return vplContext_Create(&def, contextOut);
+}
+
+static int checkCamera(const Tradeoff* t)
+{
+    int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.output.camera;
+    if (camera >= cameras) {
+        complain("--camera is %d, the scene has %d (from 0)", camera, cameras);
+    }
+    return camera < cameras ? EXIT_DONE : EXIT_USAGE;
+}
+
+static int readScene(Tradeoff* t)
+{
+    const char* path = t->arguments->positionals[0];
+    int code = exitCode(vplScene_Load(t->context, path, &t->scene), true);
+    if (code == EXIT_DONE && t->arguments->reference == NULL) {
+        t->silent = true; // what there is to say about the scene has been said
+        code = exitCode(vplScene_Load(t->tracing, path, &t->traced), true);
+        t->silent = false;
+    }
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    vplGeometry* geometry = NULL;
+    code = exitCode(vplGeometry_Create(t->scene, &geometry), true);
+    t->diagonal = geometry ? (double)vplGeometry_Diagonal(geometry) : 0;
+    vplGeometry_Destroy(geometry);
+    return code == EXIT_DONE ? checkCamera(t) : code;
+}
+
+static int run(Tradeoff* t)
+{
+    int code = readScene(t);
+    if (code != EXIT_DONE || !listSettings(t)) {
+        return code != EXIT_DONE ? code : EXIT_USAGE;
+    }
+    bool made = false;
+    if (t->arguments->reference != NULL) { // a wrong one must not leave an empty folder
+        code = makeReference(t);
+    }
+    if (code == EXIT_DONE && !prepareFolder(t->arguments->output, &made)) {
+        code = EXIT_COULD_NOT;
+    }
+    if (code == EXIT_DONE) {
+        code = measure(t);
+        code = code == EXIT_DONE ? writeResults(t) : code;
+    }
+    if (code != EXIT_DONE && made) {
+        rmdir(t->arguments->output); // stays if there is something in it
+    }
+    return code;
+}
+
+static void destroy(Tradeoff* t)
+{
+    for (int i = 0; i < t->settingCount; i++) {
+        vplImage_Destroy(t->settings[i].image);
+        free(t->settings[i].runs);
+    }
+    vplImage_Destroy(t->reference.image);
+    vplImage_Destroy(t->reference.halves[0]);
+    vplImage_Destroy(t->reference.halves[1]);
+    vplScene_Destroy(t->scene);
+    vplContext_Destroy(t->context);
+    vplScene_Destroy(t->traced);
+    vplContext_Destroy(t->tracing);
+    free(t);
+}
+
+int runTradeoff(const Arguments* a)
+{
+    if (a->output == NULL) {
+        complain("tradeoff needs -o DIR, the folder for the report");
+        return EXIT_USAGE;
+    }
+    if (a->render.lighting != VPL_LIGHTING_PHYSICAL) {
+        complain("--lighting documented has no truth to measure errors against; tradeoff is for physical");
+        return EXIT_USAGE;
+    }
+    Tradeoff* t = calloc(1, sizeof *t);
+    if (t == NULL) {
+        complain("out of memory");
+        return EXIT_COULD_NOT;
+    }
+    catchInterrupts();
+    t->arguments = a;
+    // One thread unless told otherwise: threads that wait for each other also use processor time, the more the
+    // busier the machine is.
+    int workers = a->threadsCount > 0 ? a->context.workerCount : 1;
+    bool open = openContextFor(t, workers, &t->context) == VPL_SUCCESS &&
+                openContextFor(t, a->context.workerCount, &t->tracing) == VPL_SUCCESS;
+    int code = open ? run(t) : EXIT_USAGE;
+    destroy(t);
+    return code;
+}

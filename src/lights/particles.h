@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Parts of the particle simulation: how many particles reach each step, their numbers in [0, 1), and
+// where they start.
+#ifndef VPL_LIGHTS_PARTICLES_H
+#define VPL_LIGHTS_PARTICLES_H
+
+#include <vpl/lights.h>
+
+// ---- the definition
+
+// Documented lighting of first hits: point emitters only.
+bool vplParticleDef_NeedsPoints(const vplParticleDef* def);
+
+vplResult vplParticleDef_Check(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
+                               const vplParticleDef* def);
+
+// ---- counts
+
+// N particles that follow `first` others of the same walk.
+typedef struct vplParticlePass {
+    int64_t first;
+    int count; // N
+    double reflectivity;
+} vplParticlePass;
+
+typedef struct vplStepTotals {
+    int stepCount;
+    int64_t lightCount; // in all steps
+} vplStepTotals;
+
+// As vplCountParticles: a step gets floor(rho^k (first + N)) - floor(rho^k first). It may get none though a
+// later one gets some.
+vplResult vplCountPass(vplContext* context, const vplParticlePass* pass, int* counts, int capacity,
+                       vplStepTotals* totalsOut);
+
+// ---- samples
+
+typedef struct vplSampleSource {
+    vplSampler sampler; // never VPL_SAMPLER_AUTO
+    uint64_t seed;
+    int64_t first;  // added to the particle
+    int count;      // N
+    int64_t stride; // Hammersley: particle i takes point (i + 1) * stride mod N
+    int reserved;   // first pairs of dimensions that are not for directions: places of Keller's particles
+} vplSampleSource;
+
+vplSampleSource vplSampleSource_Make(const vplParticleDef* def);
+
+// Two numbers for the direction of particle i at `step`.
+void vplSampleSource_Direction(const vplSampleSource* source, int particle, int step, float* u, float* v);
+
+// One number that spreads any first few particles evenly over the emitters.
+float vplSampleSource_Emitter(const vplSampleSource* source, int particle);
+
+// Two numbers for the place where particle i starts on its source: Halton's first two dimensions in Keller's
+// walk, else the sequence R2 (Roberts 2018, The Unreasonable Effectiveness of Quasirandom Sequences). Any
+// first few particles are spread evenly.
+void vplSampleSource_Place(const vplSampleSource* source, int particle, float* u, float* v);
+
+// ---- starts
+
+typedef struct vplStarts {
+    const vplGeometry* geometry;
+    const vplParticleDef* def;
+    const vplEmitterDef* emitters;
+    int emitterCount;
+    double totalPower;           // sum of the emitters' mean intensities
+    const vplEmission* emission; // everything that emits; NULL: point emitters only, as documented
+    vplSampleSource samples;
+} vplStarts;
+
+// A particle before its first flight.
+typedef struct vplStart {
+    vplRay ray;
+    vplVec3 normal; // of an area light; of other emitters, the direction
+    vplRgb light;   // documented: the emitter's intensity; else flux in W; as if one particle carried all
+    vplHit from;    // the surface it leaves; its object is -1 in free space
+    int emitter;    // index; -1: a triangle that emits
+} vplStart;
+
+vplStarts vplStarts_Make(const vplGeometry* geometry, const vplEmission* emission,
+                         const vplEmitterDef* emitters, int emitterCount, const vplParticleDef* def);
+
+// False where nothing emits.
+bool vplStarts_Get(const vplStarts* starts, int particle, vplStart* startOut);
+
+#endif

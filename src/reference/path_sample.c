@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Based on: James T. Kajiya, The Rendering Equation, SIGGRAPH 1986: a path from the camera is reflected at
+// random and gathers light at each vertex. Directions have the density of the reflected light, so a
+// reflection only multiplies the throughput by rho. James Arvo and David Kirk, Particle Transport and Image
+// Synthesis, SIGGRAPH 1990: Russian roulette. Nothing is clamped: without the rare bright paths the mean
+// would be biased.
+#include "reference/path_sample.h"
+#include "math/sampling.h"
+#include "math/vec.h"
+#include "reference/direct_light.h"
+
+enum { CAMERA_SET, PARTICLE_SET, FIRST_SET };
+
+static void add(vplRadiance* sum, vplRgb throughput, vplRadiance light)
+{
+    vplRadiance_Add(sum, vplRadiance_Reflect(1, throughput, light));
+}
+
+// Russian roulette: false ends the path; surviving paths carry the light of those that end.
+static bool survives(const vplPathState* path, uint32_t set, vplRgb* throughput)
+{
+    float most = fmaxf(throughput->r, fmaxf(throughput->g, throughput->b));
+    float chance = most / (float)path->scene->def.rouletteFrom;
+    if (chance >= 1) {
+        return true;
+    }
+    float u[4];
+    vplPath_Draw(path, set, u);
+    if (u[1] >= chance) {
+        return false;
+    }
+    *throughput = vplRgbScale(1 / chance, *throughput);
+    return true;
+}
+
+// The next vertex, with the density that the reflection had of leading there.
+static vplPathVertex arrive(const vplPathScene* s, const vplPathVertex* from, const vplHit* hit,
+                            vplVec3 direction)
+{
+    vplPathVertex v = vplPathVertex_Make(s, hit, direction);
+    double cosines = (double)vplDot(direction, from->shading) * -(double)vplDot(direction, v.normal);
+    v.density = cosines / (VPL_PI * hit->t * hit->t);
+    return v;
+}
+
+// Follows the bounces after the camera's first hit. The path is the same for every range of bounces, so that
+// pictures of single bounces add up exactly.
+static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLandedParticle* particle,
+                          vplRadiance* sum)
+{
+    const vplPathScene* s = path->scene;
+    vplRgb throughput = {1, 1, 1};
+    for (int bounce = 0; bounce <= s->def.lastBounce; bounce++) {
+        const uint32_t set = (uint32_t)(2 * bounce + FIRST_SET); // and the next, for more than four numbers
+        const bool counts = bounce >= s->def.firstBounce, last = bounce == s->def.lastBounce;
+        float u[4];
+        vplPath_Draw(path, set, u);
+        if (counts) {
+            add(sum, throughput, vplSampleDirect(path, &vertex, u + 2, set + 1));
+        }
+        if (particle->landed && !last && bounce + 1 >= s->def.firstBounce) {
+            add(sum, throughput, vplConnectToParticle(path, &vertex, particle));
+        }
+        if (last && s->trianglePower <= 0) {
+            return;
+        }
+        throughput = vplRgbMul(throughput, vertex.rho);
+        vplVec3 direction = vplSampleCosineAround(vertex.shading, u[0], u[1]);
+        if (!(vplDot(direction, vertex.normal) > 0) || !survives(path, set + 1, &throughput)) {
+            return;
+        }
+        vplRay ray = vplGeometry_Leave(s->geometry, &vertex.hit, direction);
+        vplHit hit;
+        path->rays++;
+        if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
+            return;
+        }
+        if (counts) {
+            add(sum, throughput, vplHitEmission(s, &vertex, &hit, direction));
+        }
+        vertex = arrive(s, &vertex, &hit, direction);
+    }
+}
+
+void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum)
+{
+    const vplPathScene* s = path->scene;
+    const vplCameraDef* camera = s->def.camera;
+    float u[4], start[4];
+    vplHit hit;
+    vplPath_Draw(path, CAMERA_SET, u);
+    vplRay ray = vplPathScene_CameraRay(s, x, y, u);
+    path->rays++;
+    if (!vplGeometry_ClosestHit(s->geometry, &ray, &hit) || (double)hit.t > camera->far - camera->near) {
+        return;
+    }
+    if (s->def.emission) {
+        vplRadiance_Add(sum, vplRadiance_Of(vplPathScene_EmissionAt(s, &hit, ray.direction)));
+    }
+    vplLandedParticle particle = {.landed = false};
+    if (s->def.techniques & VPL_PATH_PARTICLES && s->def.lastBounce > 0) {
+        vplPath_Draw(path, PARTICLE_SET, start);
+        particle = vplShootParticle(path, (double)u[2], start);
+    }
+    followBounces(path, vplPathVertex_Make(s, &hit, ray.direction), &particle, sum);
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "reference/path_scene.h"
+#include "base/arena.h"
+#include "base/rng.h"
+#include "math/scalar.h"
+#include "math/vec.h"
+
+vplPathDef vplDefaultPathDef(void)
+{
+    // rouletteFrom: least variance for the time in rooms (bench/path).
+    return (vplPathDef){
+        .lastBounce = 1 << 16, .emission = true, .techniques = VPL_PATH_ALL, .rouletteFrom = 0.25};
+}
+
+vplResult vplPathScene_Init(vplPathScene* s, const vplGeometry* geometry, const vplPathDef* def)
+{
+    *s = (vplPathScene){.geometry = geometry, .def = *def, .sobol = vplSobol_Make()};
+    const vplCameraDef* camera = def->camera;
+    double sine, cosine;
+    vplSinCos(camera->fovY / 2, &sine, &cosine);
+    s->forward = vplNormalize(vplSub(camera->target, camera->eye));
+    s->right = vplNormalize(vplCross(s->forward, camera->up));
+    s->up = vplCross(s->right, s->forward);
+    s->scaleY = sine / cosine;
+    s->scaleX = s->scaleY * def->width / def->height;
+    TRY(vplEmission_Create(geometry, def->emitters, def->emitterCount, &s->emission));
+    s->power = vplEmission_Power(s->emission);
+    s->trianglePower = s->power - s->emission->cumulative[s->emission->firstTriangle];
+    return VPL_SUCCESS;
+}
+
+void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4])
+{
+    const vplPathScene* s = path->scene;
+    if (!s->def.random) {
+        vplSobol_Sample(&s->sobol, s->def.seed, path->stream, set, path->index, out);
+        return;
+    }
+    const uint32_t counter[4] = {(uint32_t)path->stream, (uint32_t)(path->stream >> 32), set, path->index};
+    vplRandom4 r = vplPhilox(counter, (uint32_t)s->def.seed, (uint32_t)(s->def.seed >> 32));
+    for (int i = 0; i < 4; i++) {
+        out[i] = vplUnitFloat(r.v[i]);
+    }
+}
+
+vplRay vplPathScene_CameraRay(const vplPathScene* s, int x, int y, const float offset[2])
+{
+    const vplCameraDef* camera = s->def.camera;
+    // Pixel centres are moved slightly right and down, so that an edge through a centre belongs to the
+    // surface that the rasterizer's top-left rule gives it to. In a symmetric room whole rows of centres lie
+    // on edges.
+    double px = x + (s->def.pixelCentres ? 0.5 + 0x1p-10 : (double)offset[0]);
+    double py = y + (s->def.pixelCentres ? 0.5 + 0x1p-12 : (double)offset[1]);
+    double across = s->scaleX * (2 * px / s->def.width - 1);
+    double upward = s->scaleY * (1 - 2 * py / s->def.height);
+    double d[3] = {s->forward.x + across * s->right.x + upward * s->up.x,
+                   s->forward.y + across * s->right.y + upward * s->up.y,
+                   s->forward.z + across * s->right.z + upward * s->up.z};
+    vplRay ray = {.direction = vplVec((float)d[0], (float)d[1], (float)d[2])};
+    ray.origin =
+        vplVec((float)(camera->eye.x + camera->near * d[0]), (float)(camera->eye.y + camera->near * d[1]),
+               (float)(camera->eye.z + camera->near * d[2]));
+    return ray;
+}
+
+vplPathVertex vplPathVertex_Make(const vplPathScene* s, const vplHit* hit, vplVec3 direction)
+{
+    const vplGeometry* g = s->geometry;
+    vplPathVertex v = {.hit = *hit,
+                       .normal = hit->normal,
+                       .shading = vplGeometry_ShadingNormal(g, hit),
+                       .density = INFINITY};
+    v.rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+    if (vplDot(direction, hit->normal) > 0) {
+        v.normal = vplNegate(v.normal);
+        v.shading = vplNegate(v.shading);
+    }
+    return v;
+}
+
+vplRgb vplPathScene_EmissionAt(const vplPathScene* s, const vplHit* hit, vplVec3 direction)
+{
+    const vplGeometry* g = s->geometry;
+    return vplDot(direction, hit->normal) < 0 ? g->materials[g->triangleMaterials[hit->triangle]].emission
+                                              : (vplRgb){0, 0, 0};
+}

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The inputs shared by all paths of a picture, the random numbers of a path, and its vertices.
+#ifndef VPL_REFERENCE_PATH_SCENE_H
+#define VPL_REFERENCE_PATH_SCENE_H
+
+#include <vpl/geometry.h>
+
+#include "math/sobol.h"
+
+// Techniques for sampling the last steps of a path to a light. Where several can find the same path, multiple
+// importance sampling weights their results.
+enum {
+    VPL_PATH_LIGHT_SAMPLING = 1, // choose a point on a light (next-event estimation)
+    VPL_PATH_BSDF_SAMPLING = 2,  // reflect the path and see whether it hits a light
+    VPL_PATH_PARTICLES = 4,      // connect to where a particle from a light has landed
+    VPL_PATH_ALL = 7
+};
+
+typedef struct vplPathDef {
+    const vplCameraDef* camera;
+    const vplEmitterDef* emitters; // NULL if there are none
+    int emitterCount;
+    int width, height; // pixels
+    bool emission;     // show surfaces that emit; default true
+    bool pixelCentres; // start paths at the centres of pixels, where the rasterizer samples; default false
+    // The picture sums light of this range of bounces, counted before the one towards the camera; default 0,
+    // 1 << 16.
+    int firstBounce, lastBounce;
+    uint64_t seed;
+    // VPL_PATH_..., default VPL_PATH_ALL. Lights that a path cannot hit are sampled in any case.
+    int techniques;
+    bool balanceHeuristic; // weight by the balance heuristic instead of the power heuristic; default false
+    bool random;           // independent random numbers instead of Sobol's points; default false
+    double rouletteFrom;   // paths with a throughput below this may end; default 0.25
+} vplPathDef;
+
+vplPathDef vplDefaultPathDef(void);
+
+typedef struct vplPathScene {
+    const vplGeometry* geometry;
+    vplEmission* emission; // owned
+    vplPathDef def;
+    vplSobol sobol;
+    vplVec3 right, up, forward;  // of the camera
+    double scaleX, scaleY;       // tangents of its half-angles
+    double power, trianglePower; // W, of all sources and of the triangles among them
+} vplPathScene;
+
+// The geometry, the camera and the emitters must outlive the scene. vplEmission_Destroy(scene.emission) frees
+// it.
+vplResult vplPathScene_Init(vplPathScene* scene, const vplGeometry* geometry, const vplPathDef* def);
+
+// One path while it is followed.
+typedef struct vplPathState {
+    const vplPathScene* scene;
+    uint64_t stream; // of its numbers: one for each half of a pixel's samples
+    uint32_t index;  // of the path in the stream
+    int64_t rays;    // cast so far
+} vplPathState;
+
+// Draws the four numbers in [0, 1) of set `set` of the path.
+void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4]);
+
+// The ray through a position in pixel (x, y), from the near plane. t counts the depth beyond that plane, so
+// the camera sees hits with t <= far - near.
+vplRay vplPathScene_CameraRay(const vplPathScene* scene, int x, int y, const float offset[2]);
+
+// A point where a path is reflected.
+typedef struct vplPathVertex {
+    vplHit hit;
+    vplVec3 normal;  // of the surface, on the side that the path came from
+    vplVec3 shading; // normal to shade with, on the same side
+    vplRgb rho;
+    double density; // per square metre, of reflections that lead here; infinite for what the camera sees
+} vplPathVertex;
+
+vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
+
+// The radiance that the surface emits against `direction`.
+vplRgb vplPathScene_EmissionAt(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
+
+// Radiance, or a part of it.
+typedef struct vplRadiance {
+    double r, g, b;
+} vplRadiance;
+
+static inline vplRadiance vplRadiance_Of(vplRgb c)
+{
+    return (vplRadiance){c.r, c.g, c.b};
+}
+
+static inline vplRadiance vplRadiance_Scale(double s, vplRadiance a)
+{
+    return (vplRadiance){s * a.r, s * a.g, s * a.b};
+}
+
+// s rho a, in this order.
+static inline vplRadiance vplRadiance_Reflect(double s, vplRgb rho, vplRadiance a)
+{
+    return (vplRadiance){s * rho.r * a.r, s * rho.g * a.g, s * rho.b * a.b};
+}
+
+static inline void vplRadiance_Add(vplRadiance* sum, vplRadiance a)
+{
+    sum->r += a.r;
+    sum->g += a.g;
+    sum->b += a.b;
+}
+
+#endif

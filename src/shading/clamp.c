@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// How much light the clamp takes: the distance at which it takes a given share, and the share of a given
+// picture.
+#include "math/sampling.h"
+#include "math/vec.h"
+#include "shading/compensation.h"
+
+#include <string.h>
+
+bool vplFindVisiblePoint(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* p)
+{
+    const double across = (2 * x / view->width - 1) / view->scaleX;
+    const double upward = (1 - 2 * y / view->height) / view->scaleY;
+    const vplVec3 d = vplAdd(view->forward,
+                             vplAdd(vplScale((float)across, view->right), vplScale((float)upward, view->up)));
+    const vplRay ray = {vplAdd(view->eye, vplScale((float)view->near, d)), d, {0, 0}};
+    if (!vplGeometry_ClosestHit(g, &ray, &p->hit) || (double)p->hit.t > view->far - view->near) {
+        return false;
+    }
+    vplLitPoint_Face(p, g, d);
+    return true;
+}
+
+// ---- distance of a share
+
+// Enough for two digits of the distance.
+enum { POINTS = 2048, HALVINGS = 40 };
+
+// The share that the clamp takes from a surface whose surroundings, at these squared distances, are all
+// equally bright.
+static double shareTaken(const double squares[POINTS], int count, double distance)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        const double nearer = squares[i] / (distance * distance);
+        sum += nearer < 1 ? 1 - nearer : 0;
+    }
+    return count ? sum / count : 0;
+}
+
+vplResult vplFindNearDistance(const vplGeometry* geometry, const vplView* view, double share,
+                              float* distanceOut)
+{
+    double squares[POINTS];
+    int count = 0;
+    for (uint32_t i = 1; i <= POINTS; i++) {
+        vplLitPoint p;
+        vplHit hit;
+        if (vplFindVisiblePoint(geometry, view, (double)vplHalton(i, 0) * view->width,
+                                (double)vplHalton(i, 1) * view->height, &p)) {
+            const vplVec3 way = vplSampleCosineAround(p.plane, vplHalton(i, 2), vplHalton(i, 3));
+            const vplRay ray = vplGeometry_Leave(geometry, &p.hit, way);
+            squares[count++] =
+                vplGeometry_ClosestHit(geometry, &ray, &hit) ? (double)hit.t * (double)hit.t : INFINITY;
+        }
+    }
+    double low = 0, high = (double)vplGeometry_Diagonal(geometry);
+    for (int i = 0; i < HALVINGS; i++) {
+        const double middle = 0.5 * (low + high);
+        if (shareTaken(squares, count, middle) < share) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    *distanceOut = (float)high;
+    return VPL_SUCCESS;
+}
+
+// ---- share of a picture
+
+enum { DRAWN_LIGHTS = 64 }; // per point
+
+// Adds points first .. first + 15.
+static void addBlock(const vplShading* s, int first, int count, vplClampLoss* sum)
+{
+    const vplGeometry* g = s->geometry;
+    const vplCompensationDef* def = s->compensation->def;
+    const int hidden = def->seesEmission ? 0 : def->emitterLightCount; // these light only hits of short rays
+    const vplLightDraw all = {def->lights + hidden, def->lightCount - hidden, DRAWN_LIGHTS, 0, 0};
+    vplLitPoint at[VPL_LANES];
+    vplSurface surface, plane;
+    vplPoints points = {.surface = &surface, .plane = &plane};
+    uint32_t pixels[VPL_LANES];
+    float lost[3][VPL_LANES] = {{0}};
+    int64_t rays = 0;
+    memset(&surface, 0, sizeof surface);
+    memset(&plane, 0, sizeof plane);
+    for (int l = 0; l < VPL_LANES; l++) {
+        const uint64_t i = (uint64_t)(first + l) + def->firstRay;
+        points.triangle[l] = -1;
+        pixels[l] = (uint32_t)i;
+        at[l] = (vplLitPoint){.pixel = pixels[l]};
+        if (l < count && vplFindVisiblePoint(g, s->view, (double)vplHalton(i + 1, 0) * s->view->width,
+                                             (double)vplHalton(i + 1, 1) * s->view->height, &at[l])) {
+            points.triangle[l] = at[l].hit.triangle;
+            vplLitPoint_Store(&at[l], l, &surface, &plane);
+        }
+    }
+    vplAddCompensation(s, &points, pixels, lost, &rays);
+    for (int l = 0; l < count; l++) {
+        if (points.triangle[l] < 0) {
+            continue;
+        }
+        const vplRgb rho = g->materials[g->triangleMaterials[points.triangle[l]]].diffuse;
+        float left[3];
+        vplReceiveDrawnLights(s, &all, &at[l], left, &rays);
+        const float taken = rho.r * lost[0][l] + rho.g * lost[1][l] + rho.b * lost[2][l];
+        sum->lost += (double)taken;
+        sum->all += (double)(taken + rho.r * left[0] + rho.g * left[1] + rho.b * left[2]);
+    }
+}
+
+vplResult vplEstimateClampLoss(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
+                               int pointCount, vplClampLoss* lossOut)
+{
+    vplShading shading = vplShading_Make(geometry, view, def);
+    vplClampLoss sum = {0, 0};
+    shading.arena = vplArena_Create(geometry->context);
+    const vplResult result = vplCompensator_Open(&shading);
+    if (result == VPL_SUCCESS && shading.compensation != NULL) {
+        for (int i = 0; i < pointCount; i += VPL_LANES) {
+            addBlock(&shading, i, pointCount - i < VPL_LANES ? pointCount - i : VPL_LANES, &sum);
+        }
+    }
+    vplArena_Destroy(shading.arena);
+    if (result == VPL_SUCCESS) {
+        *lossOut = sum;
+    }
+    return result;
+}

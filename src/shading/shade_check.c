@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Refuses what vplShadeView cannot draw, before anything is allocated.
+#include "shading/shading.h"
+
+#include <math.h>
+
+static vplResult checkClusters(const vplContext* context, const vplShadeDef* def)
+{
+    if (def->lightClusters == NULL) {
+        return VPL_SUCCESS;
+    }
+    if (def->accumulation != VPL_ACCUMULATE_DEFERRED && def->accumulation != VPL_ACCUMULATE_INTERLEAVED) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "clusters of lights share shadows in deferred and interleaved shading only");
+    }
+    if (def->lightShadows != NULL || def->lightRays || def->compensation != NULL) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "lights whose clusters share shadows have no maps or rays of their own, and no compensation");
+    }
+    for (int i = 0; i < def->lightCount; i++) {
+        if (def->lightClusters[i] < -1 || def->lightClusters[i] >= def->clusterCount) {
+            return vplFail(context, VPL_INVALID_ARGUMENT,
+                           "vplShadeDef.lightClusters[%d] is %d, must be in [-1, %d)", i,
+                           def->lightClusters[i], def->clusterCount);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// The fields of one accumulation.
+static vplResult checkAccumulation(const vplContext* context, const vplShadeDef* def)
+{
+    if (def->accumulation == VPL_ACCUMULATE_BATCHED && def->batch < 1) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.batch is %d, must be at least 1",
+                       def->batch);
+    }
+    if (def->accumulation == VPL_ACCUMULATE_INTERLEAVED &&
+        (def->interleave < 1 || def->interleave > VPL_MAX_INTERLEAVE)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.interleave is %d, must be in [1, %d]",
+                       def->interleave, VPL_MAX_INTERLEAVE);
+    }
+    if (def->accumulation == VPL_ACCUMULATE_LIGHTCUTS && !(def->cutError > 0 && def->cutError <= 1)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.cutError is %g, must be in (0, 1]",
+                       (double)def->cutError);
+    }
+    return checkClusters(context, def);
+}
+
+static vplResult checkDistance(const vplContext* context, const char* name, float distance)
+{
+    return distance >= 0 && isfinite(distance)
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.%s is %g, must be finite and >= 0", name,
+                         (double)distance);
+}
+
+vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, const vplShadeDef* def,
+                            const vplImage* image)
+{
+    if (image->width != view->width || image->height != view->height) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "image is %dx%d, must be %dx%d as the view",
+                       image->width, image->height, view->width, view->height);
+    }
+    TRY(checkDistance(context, "minDistance", def->minDistance));
+    TRY(checkDistance(context, "areaLightMinDistance", def->areaLightMinDistance));
+    const vplCompensationDef* c = def->compensation;
+    if (c != NULL && (c->rayCount < 1 || c->rayCount > VPL_MAX_NEAR_RAYS || c->hitLights < 1)) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
+            c->rayCount, c->hitLights, VPL_MAX_NEAR_RAYS);
+    }
+    if (def->output == VPL_OUTPUT_SHADOW_FACTOR &&
+        (def->emitterCount < 1 ||
+         ((def->emitterMaps == NULL || def->emitterMaps[0] == NULL) && def->shadows[0].map == NULL))) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "a shadow factor needs an emitter with a shadow map");
+    }
+    return checkAccumulation(context, def);
+}
