@@ -4,11 +4,12 @@
 #include "render/plan.h"
 #include "render/stages/ssvp.h"
 #include "visibility/hemi_map.h"
+#include "scene/scene.h"
 #include "visibility/paraboloid_map.h"
 
 typedef struct Scale {
     const vplPlan* plan;
-    double workers, triangles, objects, pixels, lights, sides;
+    double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
 } Scale;
 
 typedef struct Bytes {
@@ -140,10 +141,10 @@ static double pipelineScratch(const Scale* s)
 static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    double scratch = pipelineScratch(s) + RASTER_VIEW * s->triangles + (s->plan->compensates ? 1.9e6 : 0);
+    double scratch = pipelineScratch(s) + RASTER_VIEW * s->triangles;
     scratch += o->output.antialias > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
-        const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->lights * each;
+        const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
         const bool batches = all > (double)VPL_LIGHT_MAP_BYTES;
         scratch += batches ? (double)VPL_LIGHT_MAP_BYTES + 12 * s->pixels : all;
     }
@@ -181,6 +182,14 @@ static EstimateFcn* const ESTIMATES[VPL_STAGE_COUNT] = {
 
 // ---- the plan
 
+// Keller's lights of step 0 are drawn where they lie on area lights; elsewhere they are the emitter itself.
+static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
+{
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights;
+    const vplVirtualLights* known = r->store->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
+    return known != NULL ? known->count : p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
+}
+
 static void countDraws(const Scale* s, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
@@ -193,11 +202,8 @@ static void countDraws(const Scale* s, vplPlan* p)
         p->drawCalls = objects * ((int64_t)rsmFaces(p) + antialias);
         return;
     }
-    // Keller's lights of step 0 are drawn where they lie on area lights; elsewhere they are the emitter itself.
-    const bool asEmitters = o->method == VPL_METHOD_KELLER && !p->hasAreaLights;
-    const int64_t drawn = p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
     const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
-    const int64_t passes = o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : (drawn + perPass - 1) / perPass;
+    const int64_t passes = o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
     p->drawCalls = objects * (6 * maps + (1 + passes) * antialias) + patchDraws * antialias;
@@ -234,10 +240,13 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
                      .objects = g->objectCount,
                      .pixels = (double)p->options.output.width * p->options.output.height,
                      .lights = (double)p->virtualLights,
+                     .drawn = (double)drawnLights(r, p),
                      .sides = p->patchSides};
-    int64_t live = (int64_t)vplContext_GetBytes(r->run.context);
-    p->peakBytes = (int64_t)vplContext_GetPeakBytes(r->run.context);
-    p->peakBytes = (int64_t)r->peakBytes > p->peakBytes ? (int64_t)r->peakBytes : p->peakBytes;
+    // What else the context holds is not of this render, but for the scene.
+    const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplArena_GetBytes(r->run.scene->arena);
+    const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;
+    int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign;
+    p->peakBytes = (peak > before ? peak : before) - foreign;
     for (int i = 0; i < p->stageCount; i++) {
         vplPlanStage* stage = &p->stages[i];
         const vplSlot* slot = &r->store->slots[stage->id];
