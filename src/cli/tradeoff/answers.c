@@ -18,12 +18,10 @@ static bool isJudged(const Tradeoff* t, double limit)
 
 static void addCommand(const Tradeoff* t, const Setting* s, Text* html)
 {
-    char command[SENTENCE];
-    writeCommand(s, command, sizeof command);
     addText(html, "<code class=\"copy\">vpl render ");
     addEscaped(html, t->arguments->positionals[0]);
     addText(html, " ");
-    addWords(html, command);
+    addWords(html, s->command);
     addText(html, " -o picture.png</code>");
 }
 

@@ -133,11 +133,9 @@ void addKnobs(const Tradeoff* t, Text* html)
     if (count == 0) {
         return;
     }
-    char command[SENTENCE];
-    writeCommand(base, command, sizeof command);
     qsort(knobs, (size_t)count, sizeof *knobs, compareKnobs);
     addText(html, "<h2>What each knob buys</h2>\n<p>One option at a time is changed from the base, <code>");
-    addWords(html, command);
+    addWords(html, base->command);
     addText(html,
             "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor time "
             "added for each factor of two by which the error falls. A change counts only if all seeds agree "

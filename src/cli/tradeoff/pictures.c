@@ -51,9 +51,7 @@ static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions*
     formatTime(s->cpuMs, time, sizeof time);
     formatPercent(s->runs[0].error, error, sizeof error);
     addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number, time, error);
-    char command[SENTENCE];
-    writeCommand(s, command, sizeof command);
-    addWords(html, command);
+    addWords(html, s->command);
     addText(html, "</code></p>\n<div class=\"row\">");
     addFigure(html, s->image, options, FAMILY_NAMES[s->family]);
     addFigure(html, t->reference.image, options, "the truth");

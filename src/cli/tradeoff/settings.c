@@ -181,10 +181,10 @@ static void writeDifference(const vplRenderOptions* plain, const vplRenderOption
     }
 }
 
-void writeCommand(const Setting* s, char* words, size_t size)
+void writeCommand(const vplRenderOptions* o, char* words, size_t size)
 {
     const vplRenderOptions plain = vplDefaultRenderOptions();
-    writeDifference(&plain, &s->options, words, size);
+    writeDifference(&plain, o, words, size);
 }
 
 // Sets options that the method makes no use of to their defaults, so that equal settings compare equal.
@@ -210,11 +210,9 @@ static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
         return false;
     }
     forgetUnused(&s.options);
-    char command[SENTENCE], other[SENTENCE];
-    writeCommand(&s, command, sizeof command);
+    writeCommand(&s.options, s.command, sizeof s.command);
     for (int i = 0; i < t->settingCount; i++) {
-        writeCommand(&t->settings[i], other, sizeof other);
-        if (strcmp(command, other) == 0) {
+        if (strcmp(t->settings[i].command, s.command) == 0) {
             t->settings[i].sweeps |= sweep;
             return true;
         }

@@ -108,8 +108,8 @@ static void addRow(const Tradeoff* t, int index, const Run* run, const Stages* s
     }
     addFigures(run, stages, csv);
     char command[SENTENCE];
-    Setting seeded = *s;
-    seeded.options.seed = run->seed;
+    vplRenderOptions seeded = s->options;
+    seeded.seed = run->seed;
     writeCommand(&seeded, command, sizeof command);
     addText(csv, "%s\n", command);
 }

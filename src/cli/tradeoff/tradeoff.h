@@ -57,6 +57,7 @@ typedef struct Run {
 } Run;
 
 typedef struct Setting {
+    char command[SENTENCE];   // the words after `vpl render` that make its picture, without the output
     char change[128];         // words that differ from the base; empty for the base itself
     vplRenderOptions options; // the base with the change
     uint64_t sweeps;          // bit i: belongs to SWEEPS[i]
@@ -106,8 +107,8 @@ typedef struct Tradeoff {
 // Fills in the base and all settings of the chosen sweeps; complains and returns false if a name is unknown.
 bool listSettings(Tradeoff* t);
 
-// The words after `vpl render` that make this setting's picture, without the output.
-void writeCommand(const Setting* s, char* words, size_t size);
+// The words after `vpl render` that ask for these options, without the output.
+void writeCommand(const vplRenderOptions* options, char* words, size_t size);
 
 // ---- measuring
 
