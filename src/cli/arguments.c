@@ -32,7 +32,8 @@ static int distance(const char* a, const char* b)
     return row[n];
 }
 
-// The option that a word names, "--name" or "--name=value"; NULL after complaining if the command has none such.
+// The option that a word names, "--name" or "--name=value"; NULL after complaining if the command has none
+// such.
 static const Option* findOption(const Command* command, const char* word)
 {
     char name[48], candidate[48], nearest[48] = "";

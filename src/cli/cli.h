@@ -86,8 +86,8 @@ bool isGiven(const Arguments* arguments, const char* name);
 // Sets options by words "--name value --name value"; complains and returns false if one is wrong.
 bool setOptions(vplRenderOptions* options, const char* words);
 
-// vpl help WORD WORD: `topic` may be NULL, a command or "options"; `subject` is one of the latter. False after
-// complaining.
+// vpl help WORD WORD: `topic` may be NULL, a command or "options"; `subject` is one of the latter. False
+// after complaining.
 bool printHelp(const char* topic, const char* subject);
 
 // One sentence on stderr, starting with "vpl: ".
@@ -105,15 +105,16 @@ int exitCode(vplResult result, bool reading);
 // Writes vplPlan_Describe's text.
 int printPlan(const vplPlan* plan, FILE* file);
 
-// Loads the scene that the words name, prints the plan if --explain or --dry-run asks for it, and without the latter lets
-// `work` have the scene.
+// Loads the scene that the words name, prints the plan if --explain or --dry-run asks for it, and without the
+// latter lets `work` have the scene.
 typedef int SceneWork(const Arguments* arguments, vplContext* context, const vplScene* scene);
 int runOnScene(const Arguments* arguments, SceneWork* work);
 
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
 int finishOutput(int code);
 
-// Progress bar with the time left, on stderr if that is a terminal; also notices SIGINT. Both take a Progress.
+// Progress bar with the time left, on stderr if that is a terminal; also notices SIGINT. Both take a
+// Progress.
 typedef struct Progress {
     double start, lastDrawn;
     bool visible;
@@ -123,13 +124,14 @@ Progress beginProgress(bool quiet);
 vplProgressFcn showProgress;
 void endProgress(Progress* progress);
 
-// From here on SIGINT and SIGTERM only make showProgress return false; a second one kills.
+// From now on SIGINT and SIGTERM make showProgress return false; a second one kills.
 void catchInterrupts(void);
 
 // JSON knows no infinity: what is not finite is null.
 json_t* numberJson(double value);
 
-// Writes JSON to a file, or to stdout if that is NULL, and lets go of it. Complains unless it returns EXIT_DONE.
+// Writes JSON to a file, or to stdout if that is NULL, and lets go of it. Complains unless it returns
+// EXIT_DONE.
 int writeJson(json_t* root, int digits, const char* path);
 
 // Writes the statistics of a render as JSON.
@@ -138,8 +140,8 @@ int writeStats(vplContext* context, const char* path, const vplRenderStats* stat
 // True if a file can probably be written there; complains otherwise. Asked before hours of rendering.
 bool checkOutput(const char* path);
 
-// The name of frame `number` of frames up to `last`: "-0012" before the extension, at least four digits. False if it
-// does not fit.
+// The name of frame `number` of frames up to `last`: "-0012" before the extension, at least four digits.
+// False if it does not fit.
 bool numberName(const char* name, int number, int last, char* out, size_t size);
 
 // Writes a whole file beside its target and renames it, or leaves everything as it was and complains.

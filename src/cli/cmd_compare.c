@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// Everything that is printed.
+// All figures of a comparison.
 typedef struct Findings {
     vplComparison pixels;
     double ssim, flip;
@@ -73,7 +73,7 @@ static vplResult compareRegions(const Arguments* a, const vplImage* first, const
     return vplImage_CompareRegions(first, second, a->regions[0], a->regions[1], findings->regions);
 }
 
-// Places are those of the whole pictures, though a cut-out was measured.
+// Moves coordinates in the cropped pictures to those in the whole ones.
 static void movePlaces(Findings* f, const int region[4])
 {
     f->pixels.maxX += region[0];

@@ -11,7 +11,8 @@ static bool isEmpty(const float* pixel)
     return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0;
 }
 
-// PNG shows what is not light: metres from nearest (white) to farthest (dark), normals packed as (n + 1) / 2.
+// Makes values other than light visible in a PNG: metres from nearest (white) to farthest (dark), normals as
+// (n + 1) / 2.
 static void prepareForEyes(vplImage* image, vplShow show)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
@@ -85,7 +86,7 @@ static bool nameFrame(const char* name, const Arguments* a, int frame, char* out
                          : snprintf(out, PATH_MAX, "%s", name) < PATH_MAX;
 }
 
-// The bar is that of all frames.
+// The progress bar covers all frames.
 typedef struct Sequence {
     Progress progress;
     int done, count;
@@ -152,7 +153,7 @@ static int renderScene(const Arguments* a, vplContext* context, const vplScene* 
     return code;
 }
 
-// Names of the first frame stand for all: they differ in digits only.
+// Checks the files of the first frame; those of the others differ in digits only.
 static bool checkFiles(const Arguments* a)
 {
     char output[PATH_MAX], stats[PATH_MAX];

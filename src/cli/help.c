@@ -10,7 +10,7 @@
 
 enum { WIDTH = 110, INDENT = 6, TEXT = 2048 };
 
-// What most pictures need.
+// Options that vpl help render explains first; most pictures need no others.
 static const char* const ESSENTIALS[] = {"method", "size",      "camera",        "particles",
                                          "spp",    "patches",   "light-shadows", "pipeline",
                                          "budget", "max-error", "seed",          "show"};
@@ -211,8 +211,8 @@ static bool contains(const char* text, const char* word)
     return false;
 }
 
-// Prints the options of the groups whose heading contains the subject (NULL: all), or the option of that name, under
-// their headings. Returns how many there were.
+// Prints the options of the groups whose heading contains the subject (NULL: all), or the option of that
+// name, under their headings. Returns how many there were.
 static int printSubject(const char* subject, bool manual)
 {
     int count, printed = 0;

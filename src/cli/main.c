@@ -135,8 +135,8 @@ static int runCommand(const Command* command, int count, const char* const* word
 
 int main(int count, char** words)
 {
-    signal(SIGPIPE, SIG_IGN); // a closed pipe is a failed write, and said so
-    signal(SIGXFSZ, SIG_IGN); // so is a file beyond the size limit
+    signal(SIGPIPE, SIG_IGN); // writing to a closed pipe then fails, and is reported
+    signal(SIGXFSZ, SIG_IGN); // so is writing beyond the file size limit
     const char* word = count > 1 ? words[1] : NULL;
     if (word == NULL) {
         complain("no command; vpl help lists them");

@@ -8,7 +8,8 @@
 
 // ---- readers
 
-// Whole numbers without a sign, with `separator` between, into `out`. Returns how many; 0 if it is anything else.
+// Whole numbers without a sign, with `separator` between, into `out`. Returns how many; 0 if it is anything
+// else.
 static int parseNumbers(const char* text, char separator, double low, double high, int* out, int most)
 {
     for (int count = 0; count < most;) {
@@ -100,7 +101,7 @@ static bool readGrid(const Option* o, const char* value, Arguments* a)
            refuse(o, value, "COLUMNSxROWS, each in [1, %d]", VPL_MAX_IMAGE_SIZE);
 }
 
-// Whether it lies inside the pictures is asked when they are there.
+// Whether the rectangle lies inside the pictures is checked when they are read.
 static bool readRegion(const Option* o, const char* value, Arguments* a)
 {
     const int* r = a->region;

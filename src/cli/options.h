@@ -19,7 +19,8 @@ struct Option {
     size_t offset;    // in Arguments
     double low, high; // of numbers
     const char* help;
-    const vplOption* render; // of rendering: all but name, value, commands, read and help is there; else NULL
+    const vplOption*
+        render; // the row of vpl/options.def, which has default and range; NULL: one of the program's own
 };
 
 // The program's own options, then those of rendering.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the program itself writes: JSON, and files, which are asked for before the work and appear whole or not at all.
+// Files and JSON that the program itself writes. Paths are checked before the work; files appear whole or not
+// at all.
 #include "cli/cli.h"
 
 #include <errno.h>

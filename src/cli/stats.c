@@ -31,7 +31,7 @@ static void addRadiosity(json_t* root, const vplRenderStats* stats)
         json_pack("{s:f, s:f, s:f}", "min", s->rowSumMin, "mean", s->rowSumMean, "max", s->rowSumMax));
 }
 
-// What only some methods have.
+// Figures that only some methods have.
 static void addSome(json_t* root, const vplRenderStats* s)
 {
     static const char* const shadows[] = {"", "none", "map", "ray", "auto", "cluster"};

@@ -76,9 +76,10 @@ int main(int count, char** words)
                               &b.images[i]));
     }
     makeLights(&b, count > 2 ? atoi(words[2]) : 512);
-    const Contest contest = {shade, &b, SIDES, runs < 1 ? 1 : runs > MAX_RUNS ? MAX_RUNS : runs, 0, 0};
-    check(measureInTurn(&contest, times, NULL));
-    print(&b, times, contest.runs);
+    const Measurement measurement = {shade, &b, SIDES, runs < 1 ? 1 : runs > MAX_RUNS ? MAX_RUNS : runs,
+                                     0,     0};
+    check(measureInTurn(&measurement, times, NULL));
+    print(&b, times, measurement.runs);
     for (int i = 0; i < SIDES; i++) {
         vplImage_Destroy(b.images[i]);
     }

@@ -86,10 +86,10 @@ static void timeDrawing(const Bench* b, const char* name, int size, int air, boo
     printf("%-18s %4d %-8s %-9s", name, size, air ? "mid-air" : "surface", triangles ? "triangles" : "-");
     for (int count = 1; count <= MOST; count *= count == 1 ? 4 : 2) {
         Drawing drawing = {b, NULL, air, count};
-        const Contest contest = {draw, &drawing, 1, RUNS, 0, INFINITY};
+        const Measurement measurement = {draw, &drawing, 1, RUNS, 0, INFINITY};
         Times times;
         check(vplParaboloidMaps_Create(b->context, size, count, triangles, &drawing.maps));
-        check(measureInTurn(&contest, &times, NULL));
+        check(measureInTurn(&measurement, &times, NULL));
         printf("  %2d: %6.2f (%6.2f)", count, times.wall, times.cpu);
         vplParaboloidMaps_Destroy(drawing.maps);
     }

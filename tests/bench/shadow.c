@@ -85,8 +85,8 @@ static void measure(const vplShadow* shadow, const vplSurface* blocks, int block
     float *a = calloc(lanes, sizeof *a), *b = calloc(lanes, sizeof *b);
     Times times[2];
     Factors factors = {{&without, shadow}, {a, b}, blocks, blockCount};
-    const Contest contest = {findFactors, &factors, 2, RUNS, 0, 0};
-    check(measureInTurn(&contest, times, NULL));
+    const Measurement measurement = {findFactors, &factors, 2, RUNS, 0, 0};
+    check(measureInTurn(&measurement, times, NULL));
     if (memcmp(a, b, lanes * sizeof *a) != 0) {
         fprintf(stderr, "the bounds changed a shadow\n");
         exit(1);
@@ -106,8 +106,8 @@ static void measure(const vplShadow* shadow, const vplSurface* blocks, int block
 static void measureBounds(vplCubeMap* map)
 {
     Times times;
-    const Contest contest = {findBounds, map, 1, RUNS, 0, 0};
-    check(measureInTurn(&contest, &times, NULL));
+    const Measurement measurement = {findBounds, map, 1, RUNS, 0, 0};
+    check(measureInTurn(&measurement, &times, NULL));
     printf("bounds of 6 x %d^2 texels, ms %16.2f\n", map->size, times.cpu);
 }
 

@@ -143,8 +143,8 @@ int main(int count, char** words)
     makeLights(&b, count > 2 ? atoi(words[2]) : 512);
     makeClusters(&b, count > 6 ? atoi(words[6]) : 8);
     Times times[WAYS];
-    const Contest contest = {shade, &b, WAYS, runs, 0, INFINITY}; // the first makes memory
-    check(measureInTurn(&contest, times, NULL));
+    const Measurement measurement = {shade, &b, WAYS, runs, 0, INFINITY}; // the first makes memory
+    check(measureInTurn(&measurement, times, NULL));
     print(&b, times, runs);
     for (int i = 0; i < WAYS; i++) {
         vplImage_Destroy(b.images[i]);

@@ -25,6 +25,7 @@ failed=0
 . "$folder/scenes.sh"
 . "$folder/files.sh"
 . "$folder/numbers.sh"
+. "$folder/plan.sh"
 . "$folder/pictures.sh"
 . "$folder/frames.sh"
 . "$folder/radiosity.sh"

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// vpl bench: every stage on the benchmark room. Speed-ups compare medians of one call; hashes show that all thread counts
-// gave the same bits.
+// vpl bench: every stage on the benchmark room. Speed-ups compare medians of one call; hashes show that all
+// thread counts gave the same bits.
 #include "cli/bench/bench.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-// A stage is not run again after this time in all its runs. A first run shorter than WARM_UP does not count. Seconds.
+// A stage is not run again after this time in all its runs. A first run shorter than WARM_UP does not count.
+// Seconds.
 #define SECONDS_PER_STAGE 4.0
 #define WARM_UP           0.5
 
@@ -31,8 +32,8 @@ static vplResult runStage(void* user, int column)
 static vplResult measureRow(const Arguments* a, Bench* benches, int columns, Row* row)
 {
     Work work = {benches, row};
-    const Contest contest = {runStage, &work, columns, a->runs, SECONDS_PER_STAGE, WARM_UP};
-    TRY(measureInTurn(&contest, row->times, &row->runs));
+    const Measurement measurement = {runStage, &work, columns, a->runs, SECONDS_PER_STAGE, WARM_UP};
+    TRY(measureInTurn(&measurement, row->times, &row->runs));
     for (int c = 0; c < columns; c++) {
         Outcome* outcome = &row->outcomes[c];
         outcome->hash = outcome->image != NULL ? vplImage_Hash(outcome->image) : outcome->hash;

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-// What the stages work on, one for each thread count.
+// Inputs of the stages; there is one Bench for each thread count.
 typedef struct Bench {
     vplContext* context;
     vplScene* scene;
@@ -25,7 +25,7 @@ typedef struct Bench {
     vplGeometry* fieldGeometry;
 } Bench;
 
-// What one run of a stage did.
+// Counts and results of one run of a stage.
 typedef struct Outcome {
     double work;      // what the rate is of, in `unit`
     const char* unit; // NULL: no rate
@@ -57,7 +57,7 @@ enum {
 extern const Stage STAGES[];
 extern const int STAGE_COUNT;
 
-// A stage that ran, and what came of it for each thread count.
+// What was measured of one stage, for each thread count.
 typedef struct Row {
     const Stage* stage;
     int runs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Drawing the whole picture as fast as can be: what fills are measured with, here and in bench/roofline.
+// A triangle over the whole picture, with trivial shaders: measures fill rate, here and in bench/roofline.
 #ifndef VPL_CLI_BENCH_COVER_H
 #define VPL_CLI_BENCH_COVER_H
 

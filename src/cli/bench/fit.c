@@ -32,7 +32,7 @@ double fitExponent(const double* x, const double* y, int count)
     return xx > 1e-20 ? xy / xx : NAN;
 }
 
-// Linear in what is sought: the sum of (fixed u + scale v - 1)^2 with u = 1/y, v = x^p/y.
+// Minimises the sum of (fixed u + scale v - 1)^2 with u = 1/y, v = x^p/y, which is linear in fixed and scale.
 FixedFit fitFixed(const double* x, const double* y, int count, double exponent)
 {
     const FixedFit none = {NAN, NAN, NAN};

@@ -47,7 +47,7 @@ double medianOf(const double* values, int count)
     return count % 2 ? upper : 0.5 * (ofRank(values, count, count / 2 - 1) + upper);
 }
 
-static vplResult runOnce(const Contest* c, int way, double* wall, double* cpu)
+static vplResult runOnce(const Measurement* c, int way, double* wall, double* cpu)
 {
     nanosleep(&(struct timespec){0, 10000000}, NULL); // libgomp's threads spin for some milliseconds
     *cpu = cpuMs();
@@ -58,7 +58,7 @@ static vplResult runOnce(const Contest* c, int way, double* wall, double* cpu)
     return result;
 }
 
-vplResult measureInTurn(const Contest* c, Times* mediansOut, int* runsOut)
+vplResult measureInTurn(const Measurement* c, Times* mediansOut, int* runsOut)
 {
     enum { LEAST_RUNS = 3 };
     double(*wall)[MAX_RUNS] = malloc((size_t)c->ways * sizeof *wall);

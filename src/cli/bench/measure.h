@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How all benchmarks measure, those of vpl bench and the programs of tests/bench: clocks, medians, and runs of several
-// ways in turn.
+// How all benchmarks measure, those of vpl bench and the programs of tests/bench: clocks, medians, and runs
+// of several ways in turn.
 #ifndef VPL_CLI_BENCH_MEASURE_H
 #define VPL_CLI_BENCH_MEASURE_H
 
@@ -14,25 +14,26 @@ double wallMs(void);
 // Milliseconds of processor time of all threads.
 double cpuMs(void);
 
-// The middle value, or the mean of the two middle ones; NAN of none. `values` may be in any order and stays so.
+// The middle value, or the mean of the two middle ones; NAN of none. `values` may be in any order and stays
+// so.
 double medianOf(const double* values, int count);
 
-// Of one run, or medians of several; ms.
+// Times of one run, or medians over several runs; ms.
 typedef struct Times {
     double wall, cpu;
 } Times;
 
 // Ways of doing something, measured in turn so that a machine that slows down slows all of them.
-typedef struct Contest {
+typedef struct Measurement {
     vplResult (*run)(void* user, int way);
     void* user;
     int ways, runs;
     double seconds; // no more runs after so much wall-clock time, but three at least; 0: no limit
     double warmUp;  // seconds: the first run of all ways does not count if none takes longer; 0: it counts
-} Contest;
+} Measurement;
 
-// Medians of each way. runsOut, how many runs counted, may be NULL. Before each run, threads that still look out for
-// work of the last go to sleep.
-vplResult measureInTurn(const Contest* contest, Times* mediansOut, int* runsOut);
+// Medians of each way. runsOut, how many runs counted, may be NULL. Before each run, threads that still look
+// out for work of the last go to sleep.
+vplResult measureInTurn(const Measurement* measurement, Times* mediansOut, int* runsOut);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-// Less than this on two threads, and as much less of what more could give, is marked.
+// A lower parallel efficiency is marked.
 #define LEAST_EFFICIENCY 0.85
 
 // "2.07M", "41k", "7"; "-" for nothing.

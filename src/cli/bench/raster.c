@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rasterizer by itself: how fast it fills, and what triangles cost that fill nothing.
+// Stages of the rasterizer alone: fill rate, and the cost of triangles that hardly cover a pixel.
 #include "cli/bench/bench.h"
 #include "cli/bench/cover.h"
 
@@ -10,7 +10,8 @@
 
 enum { LAYERS = 8 };
 
-// Runs what was recorded, unless that failed, and destroys the raster. The picture's floats hold its first plane.
+// Runs what was recorded, unless that failed, and destroys the raster. The picture's floats hold its first
+// plane.
 static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Outcome* outcome)
 {
     vplRasterStats stats;
@@ -32,46 +33,44 @@ static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Out
     return result;
 }
 
+// Layers one nearer than the other into the depth buffer or, if there are planes, one depth and then layers
+// of equal depth that are added up.
+static vplResult fill(const Bench* b, int planes, Outcome* outcome)
+{
+    float depths[LAYERS + 1];
+    vplFramebuffer framebuffer = vplDefaultFramebuffer(b->image->width, b->image->height);
+    vplPipeline pipeline = vplDefaultPipeline();
+    vplRaster* raster;
+    vplResult result = VPL_SUCCESS;
+    framebuffer.planeCount = planes;
+    *(planes > 0 ? &framebuffer.planes[0].pixels : &framebuffer.depth.pixels) =
+        b->image->pixels; // room for three
+    TRY(vplRaster_Create(b->context, &framebuffer, &raster));
+    pipeline.vertex = coverVertices;
+    for (int i = 0; i < LAYERS + (planes > 0) && result == VPL_SUCCESS; i++) {
+        depths[i] = planes > 0 ? 0.5f : (float)(LAYERS - i) / (LAYERS + 1);
+        pipeline.vertexUniforms = &depths[i];
+        result = vplRaster_Draw(raster, &COVER, &pipeline);
+        if (planes > 0) {
+            pipeline.depthCompare = VPL_DEPTH_EQUAL;
+            pipeline.depthWrite = false;
+            pipeline.blend = VPL_BLEND_ADD;
+            pipeline.fragment = coverFragments;
+        }
+    }
+    return finish(raster, result, b, outcome);
+}
+
 vplResult runFill(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
-    float depths[LAYERS];
-    vplFramebuffer framebuffer = vplDefaultFramebuffer(b->image->width, b->image->height);
-    framebuffer.depth.pixels = b->image->pixels; // room for three
-    vplRaster* raster;
-    vplResult result = VPL_SUCCESS;
-    TRY(vplRaster_Create(b->context, &framebuffer, &raster));
-    vplPipeline pipeline = vplDefaultPipeline();
-    pipeline.vertex = coverVertices;
-    for (int i = 0; i < LAYERS && result == VPL_SUCCESS; i++) {
-        depths[i] = (float)(LAYERS - i) / (LAYERS + 1);
-        pipeline.vertexUniforms = &depths[i];
-        result = vplRaster_Draw(raster, &COVER, &pipeline);
-    }
-    return finish(raster, result, b, outcome);
+    return fill(b, 0, outcome);
 }
 
 vplResult runAdditiveFill(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
-    const float depth = 0.5f;
-    vplFramebuffer framebuffer = vplDefaultFramebuffer(b->image->width, b->image->height);
-    framebuffer.planeCount = 4;
-    framebuffer.planes[0].pixels = b->image->pixels;
-    vplRaster* raster;
-    vplResult result = VPL_SUCCESS;
-    TRY(vplRaster_Create(b->context, &framebuffer, &raster));
-    vplPipeline pipeline = vplDefaultPipeline();
-    pipeline.vertex = coverVertices;
-    pipeline.vertexUniforms = &depth;
-    for (int i = 0; i <= LAYERS && result == VPL_SUCCESS; i++) {
-        result = vplRaster_Draw(raster, &COVER, &pipeline);
-        pipeline.depthCompare = VPL_DEPTH_EQUAL;
-        pipeline.depthWrite = false;
-        pipeline.blend = VPL_BLEND_ADD;
-        pipeline.fragment = coverFragments;
-    }
-    return finish(raster, result, b, outcome);
+    return fill(b, 4, outcome);
 }
 
 // ---- small triangles: squares of 2 x 2 pixels, two triangles each
@@ -81,7 +80,7 @@ typedef struct Grid {
     float stepX, stepY;
 } Grid;
 
-// Leaning, so that depth has a slope.
+// Depth varies from vertex to vertex, so that triangles have a depth slope.
 static void gridVertices(const void* uniforms, int first, int count, const vplVertices* out)
 {
     const Grid* g = uniforms;

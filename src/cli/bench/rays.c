@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stages of rays: building what they go through, and sending them.
+// Stages of rays: building the tree, and tracing.
 #include "cli/bench/bench.h"
 
 #include <string.h>
@@ -19,7 +19,7 @@ vplResult runGeometry(Bench* b, const Stage* stage, Outcome* outcome)
     return VPL_SUCCESS;
 }
 
-// One ray through each pixel's centre; the hash is of what they hit and where.
+// Casts one ray through each pixel's centre and hashes the triangles and distances of the hits.
 void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
                Outcome* outcome)
 {
@@ -45,7 +45,7 @@ void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int widt
     outcome->unit = "rays";
 }
 
-// On one thread whatever was asked for: the stage shows the tree, not the tasks.
+// Always on one thread: the stage measures the tree, not the scheduling.
 vplResult runClosestHits(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;

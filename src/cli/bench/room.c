@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What vpl bench looks at, made here so that the program needs no files: a room, and a field of bumpy spheres
-// where many triangles are wanted.
+// Scenes of vpl bench, made in code so that the program needs no files: a room, and a field of bumpy spheres
+// for stages with many triangles.
 #include "cli/bench/bench.h"
 
 #include <math.h>
@@ -38,28 +38,34 @@ static void addEmitter(vplScene* scene)
 // The room of examples/scenes/room.json.
 static vplResult buildRoom(vplContext* context, vplScene** sceneOut)
 {
-    static const vplRgb colours[3] = {{0.725f, 0.71f, 0.68f}, {0.63f, 0.065f, 0.05f}, {0.14f, 0.45f, 0.091f}};
-    vplScene* s;
-    vplResult result = vplScene_Create(context, &s);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    for (int i = 0; i < 3; i++) {
+    static const vplRgb colours[] = {{0.725f, 0.71f, 0.68f}, {0.63f, 0.065f, 0.05f}, {0.14f, 0.45f, 0.091f}};
+    static const struct {
+        vplObjectType type;
+        int colour;
+        vplVec3 place;
+        double turnX, turnY; // degrees
+        vplVec3 size;
+    } objects[] = {
+        {VPL_OBJECT_QUAD, 0, {0, 0, 0}, -90, 0, {5, 5, 1}},
+        {VPL_OBJECT_QUAD, 0, {0, 5, 0}, 90, 0, {5, 5, 1}},
+        {VPL_OBJECT_QUAD, 0, {0, 2.5f, -2.5f}, 0, 0, {5, 5, 1}},
+        {VPL_OBJECT_QUAD, 1, {-2.5f, 2.5f, 0}, 0, 90, {5, 5, 1}},
+        {VPL_OBJECT_QUAD, 2, {2.5f, 2.5f, 0}, 0, -90, {5, 5, 1}},
+        {VPL_OBJECT_BOX, 0, {-0.9f, 1.65f, -0.8f}, 0, 17, {1.5f, 3.3f, 1.5f}},
+        {VPL_OBJECT_BOX, 0, {0.85f, 0.75f, 0.75f}, 0, -17, {1.5f, 1.5f, 1.5f}},
+    };
+    TRY(vplScene_Create(context, sceneOut));
+    for (size_t i = 0; i < sizeof colours / sizeof *colours; i++) {
         vplMaterialDef material = vplDefaultMaterialDef();
         material.diffuse = colours[i];
-        vplScene_AddMaterial(s, &material, NULL);
+        vplScene_AddMaterial(*sceneOut, &material, NULL);
     }
-    const vplVec3 wall = {5, 5, 1};
-    addObject(s, VPL_OBJECT_QUAD, 0, (vplVec3){0, 0, 0}, -90, 0, wall);
-    addObject(s, VPL_OBJECT_QUAD, 0, (vplVec3){0, 5, 0}, 90, 0, wall);
-    addObject(s, VPL_OBJECT_QUAD, 0, (vplVec3){0, 2.5f, -2.5f}, 0, 0, wall);
-    addObject(s, VPL_OBJECT_QUAD, 1, (vplVec3){-2.5f, 2.5f, 0}, 0, 90, wall);
-    addObject(s, VPL_OBJECT_QUAD, 2, (vplVec3){2.5f, 2.5f, 0}, 0, -90, wall);
-    addObject(s, VPL_OBJECT_BOX, 0, (vplVec3){-0.9f, 1.65f, -0.8f}, 0, 17, (vplVec3){1.5f, 3.3f, 1.5f});
-    addObject(s, VPL_OBJECT_BOX, 0, (vplVec3){0.85f, 0.75f, 0.75f}, 0, -17, (vplVec3){1.5f, 1.5f, 1.5f});
-    addEmitter(s);
-    addCamera(s);
-    *sceneOut = s;
+    for (size_t i = 0; i < sizeof objects / sizeof *objects; i++) {
+        addObject(*sceneOut, objects[i].type, objects[i].colour, objects[i].place, objects[i].turnX,
+                  objects[i].turnY, objects[i].size);
+    }
+    addEmitter(*sceneOut);
+    addCamera(*sceneOut);
     return VPL_SUCCESS;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// vpl bench --scaling: how time grows with the amount of work. An exponent by least squares over all points is
-// flattened by the part of the time that does not grow. So two figures stand beside it: the exponent of the upper
-// half of the points, where that part weighs least, and the part itself, by fitting a + b n^p where p is what is
-// expected; how far that fit is off says whether to believe it.
+// vpl bench --scaling: how time grows with the amount of work. Constant costs flatten the exponent that least
+// squares find over all points. Two more figures are therefore printed: the exponent of the upper half of the
+// points, where constant costs weigh least, and the constant a of the fit a + b n^p with the expected p, with
+// the fit's largest error.
 #include "cli/bench/fit.h"
 #include "cli/bench/series.h"
 
@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-// An exponent this much above the expected one is marked.
+// Exponents of the upper half that exceed the expected one by more than this are marked.
 #define TOLERANCE          0.15
 #define SECONDS_PER_SERIES 15.0
 
@@ -69,7 +69,7 @@ static vplResult runPoint(void* user, int point)
     return s->series->run(s, point);
 }
 
-// On one thread processor time is what the wall clock would show if nothing else ran.
+// On one thread, processor time is used: other programs do not disturb it.
 static void fitSeries(Measured* m)
 {
     const double* times = m->oneThread ? m->cpuMs : m->ms;
@@ -83,8 +83,8 @@ static vplResult measureSweep(const Arguments* a, Sweep* s, Measured* m)
 {
     Times times[MAX_POINTS];
     TRY(openSweep(a, m->series, s));
-    const Contest contest = {runPoint, s, s->points, a->runs, SECONDS_PER_SERIES, INFINITY};
-    TRY(measureInTurn(&contest, times, &m->runs));
+    const Measurement measurement = {runPoint, s, s->points, a->runs, SECONDS_PER_SERIES, INFINITY};
+    TRY(measureInTurn(&measurement, times, &m->runs));
     m->points = s->points;
     m->oneThread = vplContext_GetWorkerCount(s->bench.context) == 1 && m->series->most > 0;
     for (int i = 0; i < s->points; i++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What vpl bench --scaling varies.
+// The series of vpl bench --scaling.
 #ifndef VPL_CLI_BENCH_SERIES_H
 #define VPL_CLI_BENCH_SERIES_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The stages that vpl bench times. Each makes all it needs but what Bench holds, so that any may run alone.
+// The stages that vpl bench times. Each makes what it needs beyond Bench, so that any may run alone.
 #include "cli/bench/bench.h"
 
 static vplResult runParticles(Bench* b, const Stage* stage, Outcome* outcome)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// "Which settings for 5 % error, and what do they cost?"
+// The first part of the report: which settings reach 5 % error, and what do they cost?
 #include "cli/tradeoff/report.h"
 
 #include <ctype.h>
@@ -27,7 +27,8 @@ static void addCommand(const Tradeoff* t, const Setting* s, Text* html)
     addText(html, " -o picture.png</code>");
 }
 
-static void addRow(const Tradeoff* t, double limit, Text* html)
+// *above is set if the worst seed lies above the limit.
+static void addRow(const Tradeoff* t, double limit, bool* above, Text* html)
 {
     char text[32];
     int found = findCheapest(t, FAMILY_COUNT, limit);
@@ -41,6 +42,7 @@ static void addRow(const Tradeoff* t, double limit, Text* html)
         return;
     }
     const Setting* s = &t->settings[found];
+    *above = *above || s->errorHigh > limit;
     formatTime(s->cpuMs, text, sizeof text);
     addText(html, "<td class=\"n\"><strong>%s</strong></td>", text);
     formatPercent(s->error, text, sizeof text);
@@ -50,18 +52,7 @@ static void addRow(const Tradeoff* t, double limit, Text* html)
     addText(html, "</td></tr>\n");
 }
 
-static bool anySeedAbove(const Tradeoff* t)
-{
-    for (int i = 0; i < LIMIT_COUNT; i++) {
-        int found = isJudged(t, LIMITS[i]) ? findCheapest(t, FAMILY_COUNT, LIMITS[i]) : -1;
-        if (found >= 0 && t->settings[found].errorHigh > LIMITS[i]) {
-            return true;
-        }
-    }
-    return false;
-}
-
-// FAMILY_COUNT: of any.
+// The least error of a family; FAMILY_COUNT: of all.
 static double leastError(const Tradeoff* t, Family family)
 {
     double least = INFINITY;
@@ -90,7 +81,7 @@ static void addFamily(const Tradeoff* t, Family family, Text* html)
     addText(html, "<td class=\"n\">%s%s</td></tr>\n", least <= t->reference.resolution ? "&le; " : "", text);
 }
 
-// The same question asked of each family alone: the best is not always what one wants to use.
+// The cheapest setting of each family: the best of all is not always the one to use.
 static void addFamilies(const Tradeoff* t, Text* html)
 {
     addText(html, "<h3>The same for each method: processor time</h3>\n<table><tr><th>error at most</th>");
@@ -130,7 +121,7 @@ static void addFloors(const Tradeoff* t, Text* html)
 {
     for (int f = FAMILY_UNSHADOWED; f <= FAMILY_RAY; f++) {
         double floor = findFloor(t, (Family)f);
-        // No floor where another clamp or shadow map gets below it.
+        // A family does not level off there if another clamp distance or shadow map lowers its error further.
         if (floor > t->reference.resolution && leastError(t, (Family)f) > 0.85 * floor) {
             char text[32];
             formatPercent(floor, text, sizeof text);
@@ -163,13 +154,13 @@ void addAnswers(const Tradeoff* t, Text* html)
     addText(html, "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th "
                   "class=\"n\">measured error</th><th class=\"n\">energy</th><th>cheapest setting, to copy"
                   "</th></tr>\n");
+    bool above = false;
     for (int i = 0; i < LIMIT_COUNT; i++) {
-        addRow(t, LIMITS[i], html);
+        addRow(t, LIMITS[i], &above, html);
     }
     addText(html, "</table>\n%s",
-            anySeedAbove(t)
-                ? "<p class=\"small\"><sup>a</sup> the median of the seeds; the worst seed lies above "
-                  "the limit.</p>\n"
-                : "");
+            above ? "<p class=\"small\"><sup>a</sup> the median of the seeds; the worst seed lies above "
+                    "the limit.</p>\n"
+                  : "");
     addFamilies(t, html);
 }

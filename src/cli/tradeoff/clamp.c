@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Error and energy against --min-distance: the larger the clamp distance, the fewer bright blotches, the less light.
+// Error and energy against --min-distance: the larger the clamp distance, the fewer bright blotches, the less
+// light.
 #include "cli/tradeoff/report.h"
 #include "cli/tradeoff/svg.h"
 

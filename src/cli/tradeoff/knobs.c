@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each knob buys: every sweep of one option is compared with the base, seed by seed.
+// What each option buys: compares every sweep of one option with the base, seed by seed.
 #include "cli/tradeoff/report.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static bool comesBefore(const Knob* a, const Knob* b)
     return a->verdict != b->verdict ? a->verdict < b->verdict : a->score < b->score;
 }
 
-// -1 or 1 if every seed agrees that the error falls or grows, and by more than 2 %; else 0.
+// Returns -1 or 1 if the error falls or grows by more than 2 % with every seed; else 0.
 static int errorTrend(const Setting* base, const Setting* s)
 {
     int common = s->runCount < base->runCount ? s->runCount : base->runCount, below = 0, above = 0;
@@ -35,7 +35,8 @@ static int errorTrend(const Setting* base, const Setting* s)
     return below == common ? -1 : above == common ? 1 : 0;
 }
 
-// Times within a tenth, or of overlapping bands, are the same: machines are not quieter than that.
+// Times that differ by less than a tenth, or whose bands overlap, count as equal: machines are too noisy to
+// tell.
 static int costTrend(const Setting* base, const Setting* s)
 {
     bool above = s->cpuMs > 1.1 * base->cpuMs && s->cpuLow > base->cpuHigh;

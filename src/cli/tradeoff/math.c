@@ -18,7 +18,7 @@ static int nextOnFront(const double* cost, const double* error, int count, doubl
     return next;
 }
 
-// What costs less than a marked point has an error above the limit, or it would have been marked first.
+// Points cheaper than a marked one have errors above the limit, or they would have been marked first.
 int markFront(const double* cost, const double* error, int count, double gain, bool* onFront)
 {
     int marked = 0;

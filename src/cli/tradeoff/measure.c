@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The bar shows the share of the time that is used up; the fraction of one picture would jump back and forth.
+// The bar shows the share of the time that is used up.
 static bool watch(void* user, double fraction)
 {
     Tradeoff* t = user;
@@ -35,8 +35,8 @@ vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptio
     return result;
 }
 
-// Milliseconds of the wall clock that one picture will take. The nearest measured setting of the same kind is
-// scaled by the work; where there is none yet, a guess per pixel that only has to put the kinds in order.
+// Estimates the wall-clock time of a picture, ms: that of the nearest measured setting of the same kind,
+// scaled by the work; or, where there is none yet, a guess per pixel, which only orders the kinds.
 static double foresee(const Tradeoff* t, const Setting* s)
 {
     static const double guess[FAMILY_COUNT] = {1e-4, 1e-7, 1e-5, 1e-5, 1e-5, 1e-6, 1e-7, 1e-3};
@@ -85,7 +85,7 @@ static vplResult compare(const Tradeoff* t, const vplImage* image, Run* run)
     return vplImage_Flip(image, truth, VPL_DEFAULT_PPD, &run->flip, NULL);
 }
 
-// One more seed of a setting.
+// Measures one more seed of a setting.
 static void measureSeed(Tradeoff* t, Setting* s)
 {
     Run* run = &s->runs[s->runCount];
@@ -150,8 +150,8 @@ static void say(const Setting* s)
     }
 }
 
-// One seed of every setting, the cheapest first, as long as it is before `end`. Seeds are rounds, not rows: what
-// disturbs the machine for a while then hits all settings, and the medians of none.
+// Measures one seed of every setting, the cheapest first, until `end`. Each seed is a round over all
+// settings, so a disturbance of the machine hits one seed of many settings instead of all seeds of a few.
 static void measureRound(Tradeoff* t, int round, double end)
 {
     double ms = 0;
@@ -179,7 +179,8 @@ static bool makeRoom(Tradeoff* t)
     return good;
 }
 
-// A setting may come to the front only when later seeds are known, its picture gone: the same bits are made again.
+// Renders again the pictures of settings that came to the front only with later seeds, after their picture
+// was dropped.
 static void restorePictures(Tradeoff* t)
 {
     t->deadline = INFINITY;
@@ -192,7 +193,7 @@ static void restorePictures(Tradeoff* t)
     }
 }
 
-// A processor that was idle is slow at first; that must not be the cheapest setting's fault.
+// Renders once without measuring: an idle processor is slow at first.
 static void warmUp(Tradeoff* t)
 {
     vplImage* image = NULL;
@@ -208,8 +209,8 @@ int measureSettings(Tradeoff* t)
     }
     warmUp(t);
     for (int round = 0; round < t->arguments->seeds; round++) {
-        // The first seed gets more than its share: it is better to know a dear setting by one seed than not at
-        // all, and the dearer a setting, the less its seeds differ.
+        // The first seed gets more than its share of the time: one seed of an expensive setting is better
+        // than none, and the seeds of expensive settings differ least.
         double now = 1e-3 * wallMs(), left = t->deadline - now;
         int rounds = t->arguments->seeds - round;
         measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.6 : 1.0 / rounds));

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The front in pictures: each beside the truth and the difference.
+// Pictures of the front, each beside the reference and the difference.
 #include "cli/tradeoff/report.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-// More would make a page of many megabytes, of pictures that look alike.
+// More would make a page of many megabytes.
 enum { MAX_PICTURES = 10 };
 
-// Whole stops by which pixels are brightened: nine in ten of the truth's lit values end at or below 0.8. The
-// same for all pictures, so that they can be compared.
+// Chooses whole stops such that nine in ten of the reference's lit values end at or below 0.8. All pictures
+// share them, so that they can be compared.
 static float chooseExposure(const Tradeoff* t)
 {
     const vplImage* image = t->reference.image;
@@ -37,7 +37,7 @@ static void addFigure(Text* html, const vplImage* image, const vplWriteOptions* 
     addText(html, "\"><figcaption>%s</figcaption></figure>\n", caption);
 }
 
-// About half of the truth's mean, of one digit so that the numbers of the bar are short.
+// About half of the reference's mean, rounded to one digit for the labels of the bar.
 static double heatScale(const Tradeoff* t)
 {
     char text[32];

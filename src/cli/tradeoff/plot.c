@@ -70,7 +70,7 @@ static void addPoint(const Plot* p, const Setting* s)
     addText(p->svg, "</g>\n");
 }
 
-// Stairs through the front: what is reachable within a time.
+// Draws a step line through the front: the least error within a time.
 static void addFront(const Tradeoff* t, const Plot* p)
 {
     const Setting* front[MAX_SETTINGS];
@@ -94,7 +94,7 @@ static void addNumbers(const Tradeoff* t, const Plot* p)
     addText(p->svg, "\n");
 }
 
-// Below its own error the reference cannot tell who is right.
+// Shades errors below the reference's resolution.
 static void addUnknown(const Tradeoff* t, const Plot* p)
 {
     if (t->reference.resolution > p->y.low) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The picture that counts as true: read from files, or path traced as two independent halves. One half alone
-// judges by (x - a)^2, which counts its own noise; two judge by (x - a)(x - b), in which noise cancels.
-// Based on: Fabrice Rousselle, Claude Knaus and Matthias Zwicker, Adaptive Rendering with Non-Local Means
-// Filtering, SIGGRAPH Asia 2012, section 4: two buffers, so that the noise of one is independent of the other's.
+// The reference: read from files, or path traced as two independent halves a and b. The error of a picture x
+// is the mean of (x - a)(x - b), in which the reference's noise cancels; (x - a)^2 would include it. Based
+// on: Fabrice Rousselle, Claude Knaus and Matthias Zwicker, Adaptive Rendering with Non-Local Means
+// Filtering, SIGGRAPH Asia 2012, section 4: two buffers, so that the noise of one is independent of the
+// other's.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <limits.h>
@@ -39,7 +40,7 @@ static int readPicture(Tradeoff* t, const char* path, vplImage** imageOut)
     return code;
 }
 
-// One file, or two with a comma between.
+// Reads one file, or two with a comma between.
 static int readReference(Tradeoff* t)
 {
     Reference* r = &t->reference;
@@ -54,8 +55,8 @@ static int readReference(Tradeoff* t)
     return code == EXIT_DONE ? readPicture(t, comma + 1, &r->halves[1]) : code;
 }
 
-// Paths per pixel for one half: those that fit into a sixth of the time, as 2^k or 3 * 2^k so that machines come
-// to equal numbers more often than not.
+// Paths per pixel for one half: those that fit into a sixth of the time, as 2^k or 3 * 2^k so that machines
+// come to equal numbers more often than not.
 static int chooseSamples(const Tradeoff* t, double msPerSample)
 {
     double fitting = 1e3 * (t->deadline - t->start) / 6 / msPerSample;
@@ -71,12 +72,12 @@ static vplResult traceHalf(Tradeoff* t, int samples, int half, vplImage** imageO
     vplRenderOptions o = vplDefaultRenderOptions();
     const vplRenderOptions* base = &t->arguments->render;
     o.method = VPL_METHOD_PATH;
-    o.path.pixel = VPL_PIXEL_CENTRE; // jagged edges are no error of a method that draws them so
+    o.path.pixel = VPL_PIXEL_CENTRE; // other methods sample there, too: jagged edges are no error
     o.output.width = base->output.width;
     o.output.height = base->output.height;
     o.output.camera = base->output.camera;
     o.path.samples = samples;
-    // Far from the seeds of the settings: a path-traced setting must not share paths with its own judge.
+    // Far from the seeds of the settings: a path-traced setting must not share paths with the reference.
     o.seed = base->seed ^ (UINT64_C(0x7472757468000000) + (uint64_t)half);
     return renderQuietly(t, t->traced, &o, imageOut, stats);
 }
@@ -114,7 +115,7 @@ static int traceReference(Tradeoff* t)
     return result == VPL_SUCCESS ? EXIT_DONE : explain(t, result);
 }
 
-// The mean of the halves, what it may be off by, and what the two can tell.
+// Computes the mean of the halves, its own error, and the smallest error that it can resolve.
 static int joinHalves(Tradeoff* t)
 {
     Reference* r = &t->reference;

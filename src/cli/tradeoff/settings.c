@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which settings are measured: a table of sweeps. A new option of `vpl render` is measured by a new row.
+// The sweeps: which settings are measured. A new row of the table measures a new option.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
@@ -98,7 +98,7 @@ const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
                                                 "radiosity",
                                                 "path tracing"};
 
-// The number of a name's first row in SWEEPS, or -1.
+// Returns the index of a name's first row in SWEEPS, or -1.
 static int findSweep(const char* name, int length)
 {
     for (int i = 0; i < SWEEP_COUNT; i++) {
@@ -149,7 +149,7 @@ static Family familyOf(const vplRenderOptions* o)
                                                         : FAMILY_UNSHADOWED;
 }
 
-// Lights or paths, and a constant for what every picture costs.
+// Lights, patches or paths, plus a constant for the cost of any picture.
 static double workOf(const vplRenderOptions* o)
 {
     double reflectivity = o->particles.reflectivity >= 0 ? o->particles.reflectivity : 0.7;
@@ -161,7 +161,7 @@ static double workOf(const vplRenderOptions* o)
                : 50 + o->particles.count / (1 - reflectivity);
 }
 
-// The words that make `plain` into `o`; options that the method of `o` makes no use of need none.
+// Writes the options in which `o` differs from `plain`, but for those that the method of `o` makes no use of.
 static void writeDifference(const vplRenderOptions* plain, const vplRenderOptions* o, char* words,
                             size_t size)
 {
@@ -187,7 +187,7 @@ void writeCommand(const Setting* s, char* words, size_t size)
     writeDifference(&plain, &s->options, words, size);
 }
 
-// Options that the method makes no use of go back to their defaults: equal settings look equal.
+// Sets options that the method makes no use of to their defaults, so that equal settings compare equal.
 static void forgetUnused(vplRenderOptions* o)
 {
     const vplRenderOptions plain = vplDefaultRenderOptions();

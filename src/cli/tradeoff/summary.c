@@ -1,34 +1,22 @@
 // SPDX-License-Identifier: MIT
-// From runs to medians, bands, the front, the cheapest setting for an error, and the floor of a family.
+// Summaries of runs: medians, bands, the front, the cheapest setting for an error, the least error of a
+// family.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
+#include <string.h>
 
-static double field(const Run* run, int which)
-{
-    switch (which) {
-    case 0:
-        return run->error;
-    case 1:
-        return run->stats.cpuMs;
-    case 2:
-        return run->stats.totalMs;
-    default:
-        return run->comparison.energyRatio;
-    }
-}
-
-// A numbered point of the plot takes at least this share off the error: less is chance, and crowds.
+// Each point of the front lowers the error by at least this share; less may be chance, and crowds the plot.
 static const double FRONT_GAIN = 0.03;
 
-// The median of a figure over the seeds, and the least and the most.
-static double band(const Setting* s, int which, double* low, double* high)
+// The median over the seeds of a double of Run, and the least and the most.
+static double band(const Setting* s, size_t offset, double* low, double* high)
 {
     double values[64]; // --seeds takes no more
     *low = INFINITY;
     *high = -INFINITY;
     for (int k = 0; k < s->runCount; k++) {
-        values[k] = field(&s->runs[k], which);
+        memcpy(&values[k], (const char*)&s->runs[k] + offset, sizeof values[k]);
         *low = fmin(*low, values[k]);
         *high = fmax(*high, values[k]);
     }
@@ -42,19 +30,17 @@ void summarise(Tradeoff* t)
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
         double low, high;
-        s->error = band(s, 0, &s->errorLow, &s->errorHigh);
-        s->cpuMs = band(s, 1, &s->cpuLow, &s->cpuHigh);
-        s->wallMs = band(s, 2, &low, &high);
-        s->energy = band(s, 3, &low, &high);
+        s->error = band(s, offsetof(Run, error), &s->errorLow, &s->errorHigh);
+        s->cpuMs = band(s, offsetof(Run, stats.cpuMs), &s->cpuLow, &s->cpuHigh);
+        s->wallMs = band(s, offsetof(Run, stats.totalMs), &low, &high);
+        s->energy = band(s, offsetof(Run, comparison.energyRatio), &low, &high);
         cost[i] = s->cpuMs;
         error[i] = s->error;
     }
     markFront(cost, error, t->settingCount, FRONT_GAIN, onFront);
     for (int i = 0; i < t->settingCount; i++) {
-        t->settings[i].onFront = onFront[i];
-    }
-    for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
+        s->onFront = onFront[i];
         s->number = 1;
         for (int j = 0; j < t->settingCount; j++) {
             s->number += onFront[j] && cost[j] < cost[i];

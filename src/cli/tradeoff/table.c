@@ -30,6 +30,16 @@ static bool isColumn(const vplOption* o)
     return o->kind != VPL_OPTION_PART && o->kind != VPL_OPTION_SEED;
 }
 
+// A heading: a name with underscores.
+static void addHeading(const char* prefix, const char* name, Text* csv)
+{
+    addText(csv, "%s", prefix);
+    for (; *name != 0; name++) {
+        addText(csv, "%c", *name == '-' || *name == ' ' ? '_' : *name);
+    }
+    addText(csv, ",");
+}
+
 static void addHeader(const Stages* stages, Text* csv)
 {
     addText(csv, "setting,family,sweeps,on_front,seed,");
@@ -37,21 +47,14 @@ static void addHeader(const Stages* stages, Text* csv)
     const vplOption* options = vplGetOptions(&count);
     for (int i = 0; i < count; i++) {
         if (isColumn(&options[i])) {
-            for (const char* c = options[i].name; *c; c++) {
-                addText(csv, "%c", *c == '-' ? '_' : *c);
-            }
-            addText(csv, ",");
+            addHeading("", options[i].name, csv);
         }
     }
     addText(csv, "virtual_lights,min_distance_used,reflectivity_used,image_hash,error,relative_rmse,rmse,"
                  "relmse,trimmed_relmse,ssim,flip,psnr,"
                  "energy_ratio,max_difference,draw_calls,rays,peak_bytes,cpu_ms,total_ms,");
     for (int i = 0; i < stages->count; i++) {
-        addText(csv, "ms_");
-        for (const char* c = stages->names[i]; *c; c++) {
-            addText(csv, "%c", *c == ' ' || *c == '-' ? '_' : *c);
-        }
-        addText(csv, ",");
+        addHeading("ms_", stages->names[i], csv);
     }
     addText(csv, "command\n");
 }

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Room for `more` bytes and a 0 behind them.
+// Makes room for `more` bytes and a 0 behind them.
 static bool reserve(Text* text, size_t more)
 {
     size_t needed = text->size + more + 1;

@@ -5,7 +5,8 @@
 
 #include <vpl/image.h>
 
-// Start with {0}; bytes is NULL while empty and is freed with free. Once `failed` (out of memory) it stays so.
+// Start with {0}; bytes is NULL while empty and is freed with free. Once `failed` (out of memory) it stays
+// so.
 typedef struct Text {
     char* bytes;
     size_t size, capacity;
@@ -17,7 +18,7 @@ __attribute__((format(printf, 2, 3)))
 #endif
 void addText(Text* text, const char* format, ...);
 
-// Adds text with what HTML takes for markup written as entities.
+// Adds text with the characters of HTML markup as entities.
 void addEscaped(Text* text, const char* plain);
 
 // Adds words of a command line such that lines break between options only: half a word cannot be copied.

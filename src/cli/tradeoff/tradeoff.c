@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Measures error against time: which settings for 5 % error, and what do they cost?
+// vpl tradeoff: measures error against time.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <errno.h>
@@ -15,7 +15,7 @@ static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html
 
 enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
-// Errors of the library are printed, except while settings are tried out.
+// Prints errors and warnings of the library, but keeps errors quietly while settings are tried out.
 static void keepLog(void* user, vplLogLevel level, const char* message)
 {
     Tradeoff* t = user;
@@ -37,7 +37,7 @@ static bool joinPath(const char* folder, const char* name, char* path)
     return length < PATH_MAX;
 }
 
-// Makes the folder if it is missing and asks whether all files can be written. *made tells whether to undo it.
+// Makes the folder if it is missing and checks that all files can be written. *made: it was missing.
 static bool prepareFolder(const char* folder, bool* made)
 {
     char path[PATH_MAX];
@@ -123,7 +123,7 @@ static int readScene(Tradeoff* t)
     const char* path = t->arguments->positionals[0];
     int code = exitCode(vplScene_Load(t->context, path, &t->scene), true);
     if (code == EXIT_DONE && t->arguments->reference == NULL) {
-        t->silent = true; // what there is to say about the scene has been said
+        t->silent = true; // warnings about the scene have been printed
         code = exitCode(vplScene_Load(t->tracing, path, &t->traced), true);
         t->silent = false;
     }
@@ -144,7 +144,7 @@ static int run(Tradeoff* t)
         return code != EXIT_DONE ? code : EXIT_USAGE;
     }
     bool made = false;
-    if (t->arguments->reference != NULL) { // a wrong one must not leave an empty folder
+    if (t->arguments->reference != NULL) { // before the folder is made: a bad reference leaves none behind
         code = makeReference(t);
     }
     if (code == EXIT_DONE && !prepareFolder(t->arguments->output, &made)) {
@@ -193,8 +193,8 @@ int runTradeoff(const Arguments* a)
     }
     catchInterrupts();
     t->arguments = a;
-    // One thread unless told otherwise: threads that wait for each other also use processor time, the more the
-    // busier the machine is.
+    // One thread unless told otherwise: waiting threads use processor time, too, the more the busier the
+    // machine is.
     int workers = a->threadsCount > 0 ? a->context.workerCount : 1;
     bool open = openContextFor(t, workers, &t->context) == VPL_SUCCESS &&
                 openContextFor(t, a->context.workerCount, &t->tracing) == VPL_SUCCESS;

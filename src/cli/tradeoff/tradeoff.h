@@ -8,15 +8,16 @@
 #include "cli/tradeoff/math.h"
 #include "cli/tradeoff/text.h"
 
-// What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures, enough
-// particles to see something, the sampler and hard shadows that the truth of a point light wants, and a seed other
-// than 0, with which the first Halton point is the origin in all dimensions: the particle that it drives goes on to
-// the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error, else 18 %).
+// What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures,
+// enough particles to see something, the sampler and hard shadows that the truth of a point light wants, and
+// a seed other than 0, with which the first Halton point is the origin in all dimensions: the particle that
+// it drives goes on to the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error,
+// else 18 %).
 #define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --seed 1 --shadow-map 256 --pcf 1"
 
 enum { MAX_SETTINGS = 512, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
 
-// What is told apart by colour: methods that converge, or do not, in ways of their own.
+// Kinds of settings, each with a colour in the plots: they converge differently.
 typedef enum Family {
     FAMILY_DIRECT = 0,
     FAMILY_UNSHADOWED, // instant radiosity, virtual lights shine through walls
@@ -72,7 +73,7 @@ typedef struct Setting {
     vplImage* image;         // of the first seed, kept while no other setting is better in all ways
 } Setting;
 
-// The picture that counts as true.
+// The reference picture.
 typedef struct Reference {
     vplImage* image;
     vplImage* halves[2]; // independent pictures of which it is the mean; NULL if there is only one
@@ -110,11 +111,11 @@ void writeCommand(const Setting* s, char* words, size_t size);
 
 // ---- measuring
 
-// Reads or path-traces the truth. A sentence was printed unless it returns EXIT_DONE.
+// Reads or path-traces the reference. A sentence was printed unless it returns EXIT_DONE.
 int makeReference(Tradeoff* t);
 
-// The error that all of this is about: root mean square difference from the truth / mean of the truth. With two
-// halves, free of the reference's own noise. Never below the reference's resolution.
+// The error of a picture: root mean square difference from the reference / mean of the reference. With two
+// halves it is free of the reference's own noise. Never below the reference's resolution.
 double errorOf(const Reference* r, const vplImage* image, const vplComparison* comparison);
 
 // Renders all settings that fit into the time. EXIT_DONE also if interrupted; then t->interrupted says so.
@@ -134,7 +135,8 @@ void writeStyle(Text* css); // colours of both the plots and the report
 void writePlot(const Tradeoff* t, Text* svg);
 void writeReport(const Tradeoff* t, Text* html);
 
-// The index of the cheapest setting of a family (FAMILY_COUNT: any) with a median error within the limit, or -1.
+// The index of the cheapest setting of a family (FAMILY_COUNT: any) with a median error within the limit, or
+// -1.
 int findCheapest(const Tradeoff* t, Family family, double limit);
 
 // The settings on the front, the cheapest first; returns how many.
