@@ -48,7 +48,8 @@ TEST_ALONE(EveryDirectionOfTheTableFindsItsTexel)
             int wantedI = (int)number(&t, row, column);
             *column = 'j';
             int wantedJ = (int)number(&t, row, column);
-            // A float s may lie on the other side of a texel's edge only where s * size is an integer to rounding.
+            // A float s may lie on the other side of a texel's edge only where s * size is an integer to
+            // rounding.
             bool edgeI = fabs((double)u * sizes[k] - rint((double)u * sizes[k])) < 1e-7 * sizes[k];
             bool edgeJ = fabs((double)v * sizes[k] - rint((double)v * sizes[k])) < 1e-7 * sizes[k];
             assert_true(i == wantedI || (edgeI && abs(i - wantedI) == 1));
