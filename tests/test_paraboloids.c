@@ -154,7 +154,8 @@ static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int w
         vplHit hit;
         vplVec3 direction;
         const int n = map->size;
-        const bool got = vplParaboloidMap_GetHit(map, g, hemisphere, texel % n, texel / n, &hit, &direction);
+        const bool got = vplParaboloidMap_GetHit(
+            map, g, (vplParaboloidTexel){hemisphere, texel % n, texel / n}, &hit, &direction);
         assert_true(got == (stored > 0 && p <= 1));
         if (got) {
             const vplVec3 way = vplSub(hit.position, map->position);

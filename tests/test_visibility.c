@@ -31,29 +31,28 @@ TEST_ALONE(EveryDirectionOfTheTableFindsItsTexel)
     int zeros = 0;
     for (int row = 0; row < t.rows; row++) {
         vplVec3 d = vectorOf(&t, row, "d");
-        int face, i, j;
-        float u, v;
+        vplCubePoint p;
         for (int k = 0; k < 4; k++) {
             char column[8];
-            bool found = vplCube_Find(d, sizes[k], &face, &u, &v, &i, &j);
+            bool found = vplCube_Find(d, sizes[k], &p);
             if (!found) {
                 assert_true(d.x == 0 && d.y == 0 && d.z == 0); // X050
                 zeros++;
                 continue;
             }
-            assert_string_equal(faces[face], cell(&t, row, "face_zyx"));
-            assertNear((double)u, number(&t, row, "s"), 1e-7, "s", row);
-            assertNear((double)v, number(&t, row, "t"), 1e-7, "t", row);
+            assert_string_equal(faces[p.face], cell(&t, row, "face_zyx"));
+            assertNear((double)p.s, number(&t, row, "s"), 1e-7, "s", row);
+            assertNear((double)p.t, number(&t, row, "t"), 1e-7, "t", row);
             snprintf(column, sizeof column, "i%d", sizes[k]);
             int wantedI = (int)number(&t, row, column);
             *column = 'j';
             int wantedJ = (int)number(&t, row, column);
             // A float s may lie on the other side of a texel's edge only where s * size is an integer to
             // rounding.
-            bool edgeI = fabs((double)u * sizes[k] - rint((double)u * sizes[k])) < 1e-7 * sizes[k];
-            bool edgeJ = fabs((double)v * sizes[k] - rint((double)v * sizes[k])) < 1e-7 * sizes[k];
-            assert_true(i == wantedI || (edgeI && abs(i - wantedI) == 1));
-            assert_true(j == wantedJ || (edgeJ && abs(j - wantedJ) == 1));
+            bool edgeI = fabs((double)p.s * sizes[k] - rint((double)p.s * sizes[k])) < 1e-7 * sizes[k];
+            bool edgeJ = fabs((double)p.t * sizes[k] - rint((double)p.t * sizes[k])) < 1e-7 * sizes[k];
+            assert_true(p.column == wantedI || (edgeI && abs(p.column - wantedI) == 1));
+            assert_true(p.row == wantedJ || (edgeJ && abs(p.row - wantedJ) == 1));
         }
     }
     assert_true(zeros <= 4);
@@ -105,12 +104,11 @@ TEST(StoredDistancesAreRadialAndUnclamped, 1)
     int clamped = 0;
     for (int row = 0; row < t.rows; row++) {
         vplVec3 p = vectorOf(&t, row, "p"), l = vectorOf(&t, row, "l"), d = vplSub(p, l);
-        int face, i, j;
-        float u, v;
-        assert_true(vplCube_Find(d, 64, &face, &u, &v, &i, &j));
-        assert_string_equal(faces[face], cell(&t, row, "face"));
-        assertNear((double)u, number(&t, row, "s"), 3e-6, "s", row);
-        assertNear((double)v, number(&t, row, "t"), 3e-6, "t", row);
+        vplCubePoint at;
+        assert_true(vplCube_Find(d, 64, &at));
+        assert_string_equal(faces[at.face], cell(&t, row, "face"));
+        assertNear((double)at.s, number(&t, row, "s"), 3e-6, "s", row);
+        assertNear((double)at.t, number(&t, row, "t"), 3e-6, "t", row);
         // A sphere of quads would do; one quad perpendicular to the ray and as wide as two texels is enough.
         double dist = number(&t, row, "dist");
         vplScene* scene;

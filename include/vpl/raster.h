@@ -3,8 +3,8 @@
 // next tile, so that a tile's pixels stay in cache however many passes there are.
 //
 // Rules: 8 bits of sub-pixel precision, vertices snapped to nearest even, top-left rule: a pixel centre on a
-// shared edge is covered exactly once. Depth is z/w in [0, 1], linear in screen space, computed by one
-// function for all passes: a LESS pass and an EQUAL pass see the same bits.
+// shared edge is covered exactly once. Depth is z/w in [0, 1], linear in screen space, and computed by one
+// function for all passes, so that a LESS pass and an EQUAL pass get the same bits.
 #ifndef VPL_RASTER_H
 #define VPL_RASTER_H
 
@@ -23,7 +23,7 @@ enum {
     VPL_MAX_PLANES = 8     // colour planes of a framebuffer
 };
 
-// Where a vertex shader puts its results: element i - first of each array belongs to vertex i.
+// Output of a vertex shader: element i - first of each array belongs to vertex i.
 typedef struct vplVertices {
     float *x, *y, *z, *w; // clip space: inside when |x| <= w, |y| <= w and 0 <= z <= w
     float* varying[VPL_MAX_VARYINGS];
@@ -32,24 +32,26 @@ typedef struct vplVertices {
 // Shades vertices first .. first + count - 1. Called from any worker.
 typedef void vplVertexFcn(const void* uniforms, int first, int count, const vplVertices* out);
 
-// A block of fragments of one triangle. Lanes that are not covered hold defined numbers that are not written.
+// A block of fragments of one triangle. Lanes that are not covered hold finite numbers that are never written
+// to planes.
 typedef struct vplFragments {
     int32_t covered[VPL_LANES];                 // -1 where the lane is a fragment, else 0
     float depth[VPL_LANES];                     // z/w; a shader with writesDepth sets it
     float w[VPL_LANES];                         // clip-space w: distance along the view axis; see needsW
     float varying[VPL_MAX_VARYINGS][VPL_LANES]; // perspective-correct
-    float plane[VPL_MAX_PLANES][VPL_LANES]; // out: colours; in: what the framebuffer holds, if readsPlanes
-    int x, y;                               // pixel of lane 0; x and y are multiples of 4
-    int primitive;                          // index of the triangle in its mesh
-    int element;                            // of lane 0 in the tile's storage
-    void* scratch;                          // the tile's, see vplFramebuffer
+    float plane[VPL_MAX_PLANES][VPL_LANES];     // out: colours; in, with readsPlanes: the framebuffer's
+    int x, y;                                   // pixel of lane 0; x and y are multiples of 4
+    int primitive;                              // index of the triangle in its mesh
+    int element;                                // of lane 0 in the tile's storage
+    void* scratch;                              // the tile's, see vplFramebuffer
 } vplFragments;
 
 // Shades one block. Called from any worker.
 typedef void vplFragmentFcn(const void* uniforms, vplFragments* fragments);
 
-// Shades one block by `count` passes, in order, with the uniforms of each: f->plane holds the framebuffer, and what
-// the passes would add one after another is added to it. The bits must be the same for any split into calls.
+// Shades one block by `count` fused passes, in order, with the uniforms of each. fragments->plane holds the
+// framebuffer; the shader adds to it what the passes add one after another. The bits must be the same for any
+// split into calls.
 typedef void vplPassesFcn(const void* const* uniforms, int count, vplFragments* fragments);
 
 typedef enum vplDepthCompare {
@@ -77,25 +79,27 @@ typedef struct vplPipeline {
     int varyingCount;             // [0, VPL_MAX_VARYINGS]; default 0
     vplFragmentFcn* fragment;     // NULL (default): depth only
     const void* fragmentUniforms; // passed to it
-    vplFragmentFcn* surface; // runs before the fragment shader, with vertexUniforms, and may change and add
-                             // varyings; once where several passes (ownerTest) shade a block; default NULL
-    int surfaceCount;        // varyings there are after it, [varyingCount, VPL_MAX_VARYINGS]
-    vplPassesFcn*
-        passes; // instead of `fragment`, where draws with ownerTest, EQUAL, no depth write, ADD and no
-                // culling follow each other: then one call shades a block for many; default NULL
+    // Runs before the fragment shader, with vertexUniforms; may change and add varyings. Runs once per block
+    // for all passes (ownerTest) over it. Default NULL.
+    vplFragmentFcn* surface;
+    int surfaceCount; // varyings after the surface shader, [varyingCount, VPL_MAX_VARYINGS]
+    // Replaces `fragment` in draws with ownerTest, EQUAL, no depth write, ADD and no culling: one call then
+    // shades a block for all such draws in a row. Default NULL.
+    vplPassesFcn* passes;
     vplDepthCompare depthCompare; // default VPL_DEPTH_LESS
     bool depthWrite;              // default true
-    float
-        distanceScale; // not 0: depth is the distance from the eye of a view of 90 by 90 degrees times this,
-                       // instead of z/w; for draws without fragment shader and depthCompare LESS; default 0
-    // With distanceScale: the distance is that along the view axis, of any view, and on the triangle's plane also where
-    // snapping covers a pixel whose centre is outside of it. Default false.
+    // Not 0: depth is the distance from the eye of a view of 90 by 90 degrees, times this, instead of z/w.
+    // Only for draws without fragment shader and with depthCompare LESS. Default 0.
+    float distanceScale;
+    // With distanceScale, for any view: the distance is that along the view axis, and lies on the triangle's
+    // plane also where snapping covers a pixel whose centre is outside of the triangle. Default false.
     bool distanceAlongAxis;
-    bool writesDepth;   // the fragment shader replaces depth, and the test uses that; default false
-    bool needsW;        // shaders read w; without it only varyings bring w along; default false
-    bool readsPlanes;   // the fragment shader sees the framebuffer and blends by itself; default false
-    bool ownerTest;     // only where the same triangle of the same mesh wrote depth last: of
-                        // coplanar surfaces one counts; default false
+    bool writesDepth; // the fragment shader replaces depth before the depth test; default false
+    bool needsW;      // shaders read w; without it w is valid only where there are varyings; default false
+    bool readsPlanes; // the fragment shader reads the framebuffer and blends by itself; default false
+    // Draws only where the same triangle of the same mesh wrote depth last, so that one of coplanar surfaces
+    // counts. Default false.
+    bool ownerTest;
     vplBlend blend;     // default VPL_BLEND_REPLACE
     vplCull cull;       // default VPL_CULL_NONE
     uint32_t planeMask; // bit p: plane p is written; default all
@@ -113,9 +117,9 @@ typedef struct vplMesh {
 
 // Storage of one value per pixel, rows top-down.
 typedef struct vplPlane {
-    float* pixels; // width * height floats, NULL: lives only while its tile is drawn
-    bool load;     // start from `pixels` instead of `clear`; default false
-    bool scratch;  // starts as anything: is written before it is read; not for depth; default false
+    float* pixels; // width * height floats; NULL: exists only while its tile is drawn
+    bool load;     // starts from `pixels` instead of `clear`; default false
+    bool scratch;  // starts undefined: draws write it before they read it; not for depth; default false
     float clear;   // default 1 for depth, 0 for colours
 } vplPlane;
 
@@ -124,10 +128,10 @@ typedef struct vplFramebuffer {
     vplPlane depth;
     vplPlane planes[VPL_MAX_PLANES];
     int planeCount; // [0, VPL_MAX_PLANES]
-    // Out, one per pixel: the triangle that wrote depth last, counted through the meshes in the order in which they are
-    // first drawn; -1: none. Not with ownerTest. NULL (default): not asked for.
+    // Out, one per pixel: the triangle that wrote depth last, numbered through the meshes in the order in
+    // which they are first drawn; -1: none. Not with ownerTest. NULL (default): not wanted.
     int32_t* triangles;
-    size_t scratchBytes; // private memory of a tile, zeroed at its start; for tile tasks
+    size_t scratchBytes; // private memory of a tile, zeroed at its start, for tile tasks; default 0
     uint32_t cookie;     // set by vplDefaultFramebuffer
 } vplFramebuffer;
 
@@ -136,14 +140,14 @@ vplFramebuffer vplDefaultFramebuffer(int width, int height);
 // One tile's storage, for tile tasks. Lane l of block b lies at element 16 * b + l; block b covers the pixels
 // from (x + 4 * (b % 16), y + 4 * (b / 16)).
 typedef struct vplTile {
-    int x, y;           // pixel of the upper left corner
-    int width, height;  // pixels inside the picture, up to VPL_TILE_SIDE
-    const float* depth; // only draws change it
+    int x, y;          // pixel of the upper left corner
+    int width, height; // pixels inside the picture, up to VPL_TILE_SIDE
+    const float* depth;
     float* planes[VPL_MAX_PLANES];
     void* scratch;
 } vplTile;
 
-// Work on a whole tile between draws.
+// A tile task: works on a whole tile between draws. Called from any worker.
 typedef void vplTileFcn(void* data, vplTile* tile, int worker);
 
 typedef struct vplRasterStats {
@@ -171,11 +175,12 @@ vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeli
 // Records work on every tile.
 vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data);
 
-// Runs all that was recorded, in order. `progress` (may be NULL) sees fractions from 0 to 1. May be called
+// Runs everything recorded, in order. `progress` (may be NULL) gets fractions from 0 to 1. May be called
 // again. statsOut may be NULL.
 vplResult vplRaster_Run(vplRaster* raster, vplProgressFcn* progress, void* user, vplRasterStats* statsOut);
 
-// The same for several rasters of one context, whose tiles run side by side. statsOut: one per raster, or NULL.
+// The same for several rasters of one context, whose tiles run in parallel. statsOut: one per raster, or
+// NULL.
 vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
                            vplRasterStats* statsOut);
 

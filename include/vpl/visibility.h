@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Does light reach x from y? Answered here by a cube shadow map; knows nothing of lights but their place.
+// Shadow maps: does light reach x from y? Cube maps for point lights, hemi-octahedral maps for virtual
+// lights, paraboloid maps for clusters of virtual lights. They know nothing of lights but their position.
 #ifndef VPL_VISIBILITY_H
 #define VPL_VISIBILITY_H
 
@@ -12,11 +13,11 @@ extern "C" {
 
 #define VPL_MAX_SHADOW_MAP  8192
 #define VPL_MAX_PCF_SAMPLES 256
-// With fewer samples per point a shadow does not ask the map's bounds.
+// With fewer samples per point a shadow does not use the map's bounds.
 #define VPL_MIN_BOUND_SAMPLES 8
 
-// Faces +x, -x, +y, -y, +z, -z of a cube around a point, with 90 degrees of view each. Frames as in Direct3D:
-// left-handed, right x up = forward.
+// A face of a cube around a point, 90 degrees of view. Faces are numbered +x, -x, +y, -y, +z, -z. Frames are
+// those of Direct3D: left-handed, right x up = forward.
 typedef struct vplCubeFrame {
     vplVec3 right, up, forward;
 } vplCubeFrame;
@@ -24,14 +25,21 @@ typedef struct vplCubeFrame {
 // The frame of face 0 to 5.
 vplCubeFrame vplCube_GetFrame(int face);
 
-// Where a direction meets the cube: face, s and t in [0, 1] (t down), and texel (i, j) of a map with `size`
-// texels a side. Ties go to z, then y, then x. False for the zero vector.
-bool vplCube_Find(vplVec3 direction, int size, int* face, float* s, float* t, int* i, int* j);
+// A point of a cube and the texel that holds it.
+typedef struct vplCubePoint {
+    int face;        // 0 to 5
+    float s, t;      // in [0, 1]; t points down
+    int column, row; // in [0, size - 1]
+} vplCubePoint;
+
+// Finds the point where a direction of any length meets the cube, for a map with `size` texels a side. Ties
+// go to z, then y, then x. Returns false for the zero vector.
+bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut);
 
 typedef struct vplCubeMapDef {
     vplVec3 position; // metres
     int size;         // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
-    float near;       // metres, > 0: what is nearer to the position casts no shadow; 0 (default): far * 2^-20
+    float near;       // metres, > 0: nearer surfaces cast no shadow; 0 (default): far * 2^-20
     float far; // metres, > near: unit of the stored distances; 0 (default): distance of the farthest vertex
     uint32_t cookie; // set by vplDefaultCubeMapDef
 } vplCubeMapDef;
@@ -43,26 +51,27 @@ typedef struct vplCubeMap {
     vplVec3 position;
     int size;
     float near, far;
-    const float*
-        texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
-    const struct vplCubeBounds* bounds; // NULL before vplCubeMap_FindBounds
+    float* texels; // [face][row][column]: radial distance / far, not clamped; +infinity where nothing is
+    struct vplCubeBounds* bounds; // NULL before vplCubeMap_FindBounds
     vplRasterStats stats;
     vplContext* context;
+    struct vplArena* arena; // owns the map and its texels
 } vplCubeMap;
 
-// Draws every object six times. Source: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow
-// Map"; departs in not clamping distances to far, which falsely shadows the corners of the cube.
+// Draws every object into the six faces. Source: Franchi and Ferrante, Virtual Point Lights, "Rendering the
+// Cube Shadow Map". Departs: distances are not clamped to far, because that falsely shadows the corners of
+// the cube.
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
                             void* user, vplCubeMap** mapOut);
 
-// Draws the map again, for a light that moved: the same size, no memory is made for texels, and bounds are
-// forgotten. Where it fails, the map's contents are undefined.
+// Draws the map again, for a light that moved. The size must be the same; no texels are allocated, and bounds
+// are freed. On failure the map's contents are undefined.
 vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
                             vplProgressFcn* progress, void* user);
 
-// Finds what the texels of each region have in common, so that for most points one look takes the place of all
-// samples of a soft shadow. Shadows keep their bits. It costs about as much as half a sample per texel, and pays
-// where points times samples are more than half the texels. On failure the map is as it was.
+// Finds bounds of the texels in each region, so that for most points one test replaces all samples of a soft
+// shadow. Shadows keep their bits. It costs about as much as half a sample per texel, and pays where points
+// times samples are more than half the texels (bench/shadow). On failure the map is as it was.
 vplResult vplCubeMap_FindBounds(vplCubeMap* map);
 
 // NULL is allowed.
@@ -74,17 +83,16 @@ float vplCubeMap_Distance(const vplCubeMap* map, vplVec3 direction);
 typedef enum vplBiasRule {
     VPL_BIAS_AUTO = 0, // VPL_BIAS_EXACT; in vplRender with documented lighting VPL_BIAS_PAIR
     VPL_BIAS_PAIR,     // b_s + b_dmax (1 - n.l): the document's static and dynamic bias
-    VPL_BIAS_EXACT     // r (1 - cos t / cos(t - a)): what a plane at angle t needs when samples are a off
+    VPL_BIAS_EXACT     // r (1 - cos t / cos(t - a)): bias of a plane at angle t whose samples are off by a
 } vplBiasRule;
 
 typedef struct vplShadowDef {
     vplBiasRule biasRule; // default VPL_BIAS_AUTO
-    float biasStatic;     // b_s, metres; negative (default): far * texel half-angle + pcfOffset; pair only
-    float
-        biasDynamic; // b_dmax, metres; negative (default): 5.6 b_s, free of acne up to 80 degrees; pair only
+    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): far * texel half-angle + pcfOffset, and
+    // 5.6 b_s, which is free of acne up to 80 degrees.
+    float biasStatic, biasDynamic;
     int pcfSamples;  // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
-    float pcfOffset; // off: radius of the disc of samples at the fragment, metres, >= 0; negative
-                     // (default): far / 128
+    float pcfOffset; // off: radius of the disc of samples, metres, >= 0; negative (default): far / 128
     uint32_t cookie; // set by vplDefaultShadowDef
 } vplShadowDef;
 
@@ -94,7 +102,7 @@ vplShadowDef vplDefaultShadowDef(void);
 typedef struct vplShadow {
     const vplCubeMap* map;
     vplShadowDef def;
-    float reach;                           // not less than any offset, metres
+    float reach;                           // upper bound of the offsets' lengths, metres
     float texelTangent;                    // tangent of the largest angle between a texel's centre and corner
     float offsets[VPL_MAX_PCF_SAMPLES][2]; // on the unit disc, in pairs o, -o; times pcfOffset
 } vplShadow;
@@ -106,8 +114,8 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
 // Shadows"; VPL_BIAS_EXACT from the geometry of a plane, derived in src/visibility/shadow_kernel.c.
 float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine);
 
-// The shadow factor s in [0, 1] at a surface point: the share of samples that see something nearer to the
-// light. The samples lie on a disc perpendicular to the light, so no seams show at the cube's edges.
+// The shadow factor s in [0, 1] at a surface point: the fraction of samples with something nearer to the
+// light. The samples lie on a disc perpendicular to the light, so that no seams show at the cube's edges.
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal);
 
 // 16 points at once: the positions and unit normals of a block.
@@ -118,29 +126,33 @@ typedef struct vplSurface {
 
 void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES]);
 
-// ---- many small maps: what virtual lights, which shine to one side of their surface only, see of a scene
+// ---- hemi-octahedral maps: many small shadow maps of virtual lights, which shine to one side of their
+// surface
 
-// The half space above a surface, as an octahedron's upper half seen from straight above and turned by 45 degrees:
-// the direction (x, y, z) in the frame below meets (u, v) = (x + y, x - y) / (|x| + |y| + z) in [-1, 1]^2. Straight
-// edges stay straight but for kinks where x or y is 0, and one square sees what a half cube sees with three.
-// Source: Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003 (the octahedron); Zina
-// Cigolle and others, A Survey of Efficient Representations for Independent Unit Vectors, JCGT 2014 (its half).
+// The half space above a surface, mapped to the upper half of an octahedron, seen from above and turned by 45
+// degrees: the direction (x, y, z) in the frame below maps to (u, v) = (x + y, x - y) / (|x| + |y| + z) in
+// [-1, 1]^2. Straight edges stay straight except for kinks where x or y is 0. One square replaces a half
+// cube's three.
+// Source: Emil Praun and Hugues Hoppe, Spherical Parametrization and Remeshing, SIGGRAPH 2003 (the
+// octahedron); Zina Cigolle and others, A Survey of Efficient Representations for Independent Unit Vectors,
+// JCGT 2014 (its half).
 typedef struct vplHemiMap {
-    vplVec3 position;           // metres; a hair above the surface
+    vplVec3 position;           // metres; slightly above the surface
     vplVec3 right, up, forward; // right-handed, unit; forward is the surface's normal
     int size;                   // texels along a side
-    const float*
-        texels; // 1 / (|x| + |y| + z) of the nearest surface, 1/metres; 0 where nothing is; in blocks of
-                // 4 x 4 of columns (u) and rows (v)
+    // 1 / (|x| + |y| + z) of the nearest surface, 1/metres; 0 where nothing is. Blocks of 4 x 4 columns (u)
+    // and rows (v).
+    const float* texels;
     vplContext* context;
 } vplHemiMap;
 
 // Read only.
 typedef struct vplHemiMaps {
-    const vplHemiMap* maps;
+    vplHemiMap* maps;
     int count, capacity, size;
     float* texels;
     vplContext* context;
+    struct vplArena* arena; // owns the maps and their texels
 } vplHemiMaps;
 
 typedef struct vplHemiMapPlace {
@@ -148,84 +160,89 @@ typedef struct vplHemiMapPlace {
     vplVec3 normal;   // unit
 } vplHemiMapPlace;
 
-// Room for `capacity` maps with `size` texels a side, [1, VPL_MAX_SHADOW_MAP].
+// Makes room for `capacity` maps with `size` texels a side, [1, VPL_MAX_SHADOW_MAP].
 vplResult vplHemiMaps_Create(vplContext* context, int size, int capacity, vplHemiMaps** mapsOut);
 
-// Memory per map.
+// Bytes per map.
 size_t vplHemiMaps_BytesPerMap(int size);
 
-// Draws what is seen from `count` places, at most the capacity, side by side; those of before are gone.
+// Draws maps from `count` places, at most the capacity, in parallel. They replace all maps drawn before.
 vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const vplHemiMapPlace* places,
                            int count, vplProgressFcn* progress, void* user);
 
 // NULL is allowed.
 void vplHemiMaps_Destroy(vplHemiMaps* maps);
 
-// 1 where something nearer to the place hides it from a point, and where one lies behind the other's surface; else 0.
-// A ray says the same except within a band. A texel's centre looks past a point at distance r, in the direction (x, y,
-// z), by at most the footprint f = sqrt(2) (|x| + |y| + z) / size; along the point's plane, at the angle T to the light,
-// it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r, as in VPL_BIAS_EXACT; 1.5 f are tolerated. So
-// the answers are equal where all that blocks the way is further than 2.5 f + b from the point, and blocks or frees all
-// ways to the point's plane within f around it alike.
+// The shadow factor of 16 points: 1 where something nearer to the map's position hides it, and where the
+// position lies behind the point's surface; else 0.
+// A ray gives the same answer except within a band. The centre of a texel is off a point at distance r, in
+// the direction (x, y, z), by at most the footprint f = sqrt(2) (|x| + |y| + z) / size. Along the point's
+// plane, at the angle T to the light, it is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r,
+// as in VPL_BIAS_EXACT. Blockers nearer to the point than 1.5 f are ignored. So map and ray agree where every
+// blocker is further than 2.5 f + b from the point and blocks either all or none of the rays to the point's
+// plane within f around it.
 void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
 
-// ---- paraboloid maps: what a cluster of virtual lights sees of a scene
+// ---- paraboloid maps: shadow maps of clusters of virtual lights
 
-// Where a direction of any length, in a map's frame (z along its axis), meets the front hemisphere's map: p = (x, y) /
-// (|d| + z), inside the unit disk where z >= 0. False where z is -|d|, and for the zero vector. It is the stereographic
-// projection: circles stay circles, and an area of the disk stands for 4 / (1 + p^2)^2 times as much solid angle.
+// Projects a direction of any length, in a map's frame (z along its axis), to the map of the front
+// hemisphere: p = (x, y) / (|d| + z), inside the unit disk where z >= 0. Returns false where z is -|d|, and
+// for the zero vector. It is the stereographic projection: circles stay circles, and an area of the disk
+// covers 4 / (1 + p^2)^2 times as much solid angle.
 // Source: Wolfgang Heidrich and Hans-Peter Seidel, View-independent Environment Maps, Graphics Hardware 1998.
 bool vplParaboloid_Project(vplVec3 direction, double* x, double* y);
 
-// The unit direction of a point of the map; the inverse.
+// The unit direction of a point of the map: the inverse.
 vplVec3 vplParaboloid_Unproject(double x, double y);
 
-// What a diffuse light sends through a point of the unit disk, as a multiple of the mean over the disk:
-// 4 (1 - p^2) / (1 + p^2)^3, the cosine times the solid angle. 0 outside of the disk.
+// The flux that a diffuse light sends through a point of the unit disk, as a multiple of the mean over the
+// disk: 4 (1 - p^2) / (1 + p^2)^3, the cosine times the solid angle. 0 outside of the disk.
 double vplParaboloid_Weight(double x, double y);
 
-// One place and the surfaces that it sees. Hemisphere 0 looks along `forward`, hemisphere 1 (if there are two) back,
-// with z turned round: p = (x, y) / (|d| - z).
+// The surfaces around one position. Hemisphere 0 looks along `forward`, hemisphere 1 (if there are two) back,
+// with z reversed: p = (x, y) / (|d| - z).
 typedef struct vplParaboloidMap {
     vplVec3 position;           // metres
     vplVec3 right, up, forward; // right-handed, unit
     int size;                   // texels along a side; the disk touches the sides of the square
     int hemispheres;            // 1 or 2
-    // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is and outside of the disk
-    // (of two, by more than a texel's diagonal). [hemisphere][row + 1 (y)][column + 1 (x)], size + 2 of either: those at
-    // the sides are there twice.
+    // 1 / distance of the nearest surface along the texel's centre, 1/metres; 0 where nothing is, and outside
+    // of the disk (with two hemispheres: by more than a texel's diagonal). [hemisphere][row + 1 (y)][column +
+    // 1 (x)], size + 2 rows and columns: those at the sides are stored twice.
     const float* texels;
-    const int32_t*
-        triangles; // in that order, not twice: index in the geometry, -1 where nothing is; NULL: not kept
+    // Index of that surface in the geometry, in the same order; -1 where nothing is. NULL: not kept.
+    const int32_t* triangles;
     vplContext* context;
 } vplParaboloidMap;
 
 // Read only.
 typedef struct vplParaboloidMaps {
-    const vplParaboloidMap* maps;
+    vplParaboloidMap* maps;
     int count, capacity, size;
     float* texels;
     int32_t* triangles; // NULL: not kept
-    float* scratch;     // where workers draw
+    float* scratch;     // memory that workers draw in
     vplContext* context;
+    struct vplArena* arena; // owns the maps and their arrays
 } vplParaboloidMaps;
 
 typedef struct vplParaboloidPlace {
     vplVec3 position; // metres
     vplVec3 normal;   // unit: the axis
-    int hemispheres;  // 1: nothing behind the plane is asked for; 2
-    bool onSurface;   // it lies on one, which must not hide what it sees: seen from a hair above
+    int hemispheres;  // 1: nothing behind the plane is needed; 2
+    // The position lies on a surface, which must not hide it: the map is drawn from slightly above.
+    bool onSurface;
 } vplParaboloidPlace;
 
-// Room for `capacity` maps of two hemispheres with `size` texels a side, [1, VPL_MAX_SHADOW_MAP]; with triangles, where
-// surfaces are asked for (vplParaboloidMap_GetHit).
+// Makes room for `capacity` maps of two hemispheres with `size` texels a side, [1, VPL_MAX_SHADOW_MAP].
+// `triangles`: keeps the surfaces that vplParaboloidMap_GetHit needs.
 vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, bool triangles,
                                    vplParaboloidMaps** mapsOut);
 
-// Draws what is seen from `count` places, at most the capacity, side by side; those of before are gone. One pass over
-// the triangles per hemisphere. Edges are not straightened: whether a texel's centre lies in a triangle is decided in
-// space, by the planes through its edges and the eye, so that there is no distortion to bound. The document's
-// rasterizer draws them straight, up to 169 of 512 texels off (EXTREMES.md).
+// Draws maps from `count` places, at most the capacity, in parallel. They replace all maps drawn before. One
+// pass over the triangles per hemisphere. Edges are drawn as the circles that they are: the planes through an
+// edge and the eye decide whether a texel's centre lies in a triangle. The document's rasterizer draws
+// straight edges, up to 169 of 512 texels off.
 vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geometry,
                                  const vplParaboloidPlace* places, int count, vplProgressFcn* progress,
                                  void* user);
@@ -233,19 +250,25 @@ vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geo
 // NULL is allowed.
 void vplParaboloidMaps_Destroy(vplParaboloidMaps* maps);
 
-// What texel (column, row) of a hemisphere sees: the hit of the ray through its centre, and that ray's unit direction
-// in the world. False where nothing is and outside of the disk. The map must have triangles.
-bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry, int hemisphere,
-                             int column, int row, vplHit* hitOut, vplVec3* directionOut);
+typedef struct vplParaboloidTexel {
+    int hemisphere, column, row;
+} vplParaboloidTexel;
 
-// The share in [0, 1] of what lies between a point and the map's place, for 16 points: of the four texels around it,
-// linearly weighted, those that see something nearer than the point's own plane. The plane may face either way: lights
-// beside the map's place may be before it. Points in a hemisphere that was not drawn: 1; of the only hemisphere, texels
-// beyond the rim hide nothing. A ray says the same except within a band: texels' centres look past a point at distance r
-// by at most a texel's diagonal f = 2 sqrt(2) (r + |z|) / size, z along the axis, where its plane, at the angle T to the
-// light, is nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r; f / 2 and less is tolerated. So the answers
-// are equal where all that blocks the way is further than 2.5 f + b from the point, and blocks or frees all ways to the
-// point's plane within f around it alike.
+// Finds the surface in a texel: the hit of the ray through its centre, and that ray's unit direction in the
+// world. Returns false where nothing is and outside of the disk. The map must have triangles.
+bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry,
+                             vplParaboloidTexel texel, vplHit* hitOut, vplVec3* directionOut);
+
+// The shadow factor in [0, 1] of 16 points: the bilinear weight of those of the four texels around the point
+// that show something nearer to the map's position than the point's own plane. The plane may face either way,
+// because lights beside the map's position may be in front of it. Points in a hemisphere that was not drawn
+// get 1. Texels beyond the rim of a single hemisphere hide nothing.
+// A ray gives the same answer except within a band. The centres of the texels are off a point at distance r
+// by at most a texel's diagonal f = 2 sqrt(2) (r + |z|) / size, z along the axis. Along the point's plane, at
+// the angle T to the light, they are nearer by at most b = r (1 - cos T / cos(T - a)), tan a = f / r.
+// Blockers nearer to the point than f / 2 are ignored. So map and ray agree where every blocker is further
+// than 2.5 f + b from the point and blocks either all or none of the rays to the point's plane within f
+// around it.
 void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES]);
 

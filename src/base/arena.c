@@ -123,6 +123,15 @@ void vplArena_Absorb(vplArena* arena, vplArena* source)
     vplFree(source->context, source);
 }
 
+size_t vplArena_GetBytes(const vplArena* arena)
+{
+    size_t bytes = vplAllocatedBytes(arena);
+    for (const Block* block = arena->newest; block != NULL; block = block->older) {
+        bytes += vplAllocatedBytes(block);
+    }
+    return bytes;
+}
+
 vplResult vplArena_Check(const vplArena* arena)
 {
     return arena != NULL && !arena->failed ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;

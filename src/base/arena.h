@@ -61,6 +61,9 @@ void vplArena_Free(vplArena* arena, void* memory);
 // Moves the blocks of `source` to `arena` and destroys `source`. Cannot fail.
 void vplArena_Absorb(vplArena* arena, vplArena* source);
 
+// Bytes that the context holds for the arena. It is not NULL.
+size_t vplArena_GetBytes(const vplArena* arena);
+
 // VPL_OUT_OF_MEMORY if the arena is NULL or any of its allocations failed so far.
 vplResult vplArena_Check(const vplArena* arena);
 

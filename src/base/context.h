@@ -47,6 +47,9 @@ size_t vplGrownCapacity(size_t capacity, size_t count);
 // NULL is allowed.
 void vplFree(vplContext* context, void* memory);
 
+// Bytes that the context holds for one allocation.
+size_t vplAllocatedBytes(const void* memory);
+
 // ---- tasks
 
 // Runs task(data, i, worker) for i in [0, count), on the calling thread if there is one worker or one task.

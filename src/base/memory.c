@@ -55,6 +55,11 @@ void* vplAllocZero(vplContext* context, size_t count, size_t size)
     return memory;
 }
 
+size_t vplAllocatedBytes(const void* memory)
+{
+    return ((const Header*)memory - 1)->total;
+}
+
 void vplFree(vplContext* context, void* memory)
 {
     if (memory != NULL) {

@@ -32,63 +32,38 @@ static int distance(const char* a, const char* b)
     return row[n];
 }
 
-// A word that names an option: one of the program's own, or one of rendering, or neither.
-typedef struct Found {
-    const Option* own;
-    const vplOption* render;
-} Found;
-
-typedef struct Guess {
-    const char* name; // as typed
-    char nearest[48];
-    int least;
-} Guess;
-
-static void consider(Guess* g, const char* dashes, const char* candidate)
+// The option that a word names, "--name" or "--name=value"; NULL after complaining if the command has none such.
+static const Option* findOption(const Command* command, const char* word)
 {
-    char name[48];
-    snprintf(name, sizeof name, "%s%s", dashes, candidate);
-    const bool begun = strncmp(g->name, name, strlen(g->name)) == 0; // "--reflect" for "--reflectivity"
-    const int far = begun ? 1 : distance(g->name, name);
-    if (strlen(g->name) > 3 && far < g->least) {
-        g->least = far;
-        strcpy(g->nearest, name);
-    }
-}
-
-// `word` is the name and perhaps "=value". Complains if the command has no such option.
-static Found findOption(const Command* command, const char* word)
-{
-    char name[48];
-    snprintf(name, sizeof name, "%.*s", (int)(word[1] == '-' ? strcspn(word, "=") : strlen(word)), word);
-    Found found = {NULL, NULL};
-    Guess guess = {.name = name, .least = 3};
+    char name[48], candidate[48], nearest[48] = "";
+    int count, least = 3;
     bool elsewhere = false;
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        const bool equal = strcmp(OPTIONS[i].name, name) == 0;
-        if ((OPTIONS[i].commands & command->bit) != 0) {
-            found.own = equal ? &OPTIONS[i] : found.own;
-            consider(&guess, "", OPTIONS[i].name);
-        }
-        elsewhere |= equal;
-    }
-    int count;
-    const vplOption* options = vplGetOptions(&count);
+    const Option* options = getOptions(&count);
+    snprintf(name, sizeof name, "%.*s", (int)(word[1] == '-' ? strcspn(word, "=") : strlen(word)), word);
     for (int i = 0; i < count; i++) {
-        const bool equal = strncmp(name, "--", 2) == 0 && strcmp(options[i].name, name + 2) == 0;
-        if (takesOption(command, &options[i])) {
-            found.render = equal ? &options[i] : found.render;
-            consider(&guess, "--", options[i].name);
+        snprintf(candidate, sizeof candidate, "%s%s", dashesOf(&options[i]), options[i].name);
+        const bool equal = strcmp(candidate, name) == 0;
+        const bool begun = strncmp(name, candidate, strlen(name)) == 0; // "--reflect" for "--reflectivity"
+        const int far = begun ? 1 : distance(name, candidate);
+        elsewhere |= equal;
+        if ((options[i].commands & command->bit) == 0) {
+            continue;
         }
-        elsewhere |= equal && options[i].kind != VPL_OPTION_PART;
+        if (equal) {
+            return &options[i];
+        }
+        if (strlen(name) > 3 && far < least) {
+            least = far;
+            strcpy(nearest, candidate);
+        }
     }
-    if (found.own == NULL && found.render == NULL && elsewhere) {
+    if (elsewhere) {
         complain("%s has no option %s", command->name, name);
-    } else if (found.own == NULL && found.render == NULL) {
-        complain("unknown option %s%s%s%s", name, guess.nearest[0] ? ", did you mean " : "", guess.nearest,
-                 guess.nearest[0] ? "?" : "");
+    } else {
+        complain("unknown option %s%s%s%s", name, nearest[0] ? ", did you mean " : "", nearest,
+                 nearest[0] ? "?" : "");
     }
-    return found;
+    return NULL;
 }
 
 bool isGiven(const Arguments* a, const char* name)
@@ -111,9 +86,11 @@ static Arguments defaultArguments(const char* command)
     Arguments a = {.command = findCommand(command), .frames = {0, -1}, .ppd = VPL_DEFAULT_PPD};
     a.render = vplDefaultRenderOptions();
     a.context = vplDefaultContextDef();
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        if (OPTIONS[i].default_ != NULL) {
-            OPTIONS[i].read(&OPTIONS[i], OPTIONS[i].default_, &a);
+    int count;
+    const Option* options = getOptions(&count);
+    for (int i = 0; i < count; i++) {
+        if (options[i].default_ != NULL) {
+            options[i].read(&options[i], options[i].default_, &a);
         }
     }
     if (a.command->bit == TRADEOFF) {
@@ -123,42 +100,28 @@ static Arguments defaultArguments(const char* command)
     return a;
 }
 
-static bool setOption(Arguments* a, const Found* found, const char* value)
-{
-    if (found->own != NULL) {
-        return found->own->read(found->own, value, a);
-    }
-    if (vplRenderOptions_Set(&a->render, found->render->name, value) != VPL_SUCCESS) {
-        complain("--%s", a->render.problem);
-        return false;
-    }
-    return true;
-}
-
 // Reads the option at word *i, and its value if that is the next word.
 static bool readOption(Arguments* a, int* i)
 {
     const char* word = a->words[*i];
-    const Found found = findOption(a->command, word);
-    if (found.own == NULL && found.render == NULL) {
+    const Option* o = findOption(a->command, word);
+    if (o == NULL) {
         return false;
     }
     const char* equals = word[1] == '-' ? strchr(word, '=') : NULL;
-    const char* wanted = found.own != NULL ? found.own->value : found.render->value;
-    const int length = equals != NULL ? (int)(equals - word) : (int)strlen(word);
-    if (wanted == NULL && equals != NULL) {
-        complain("%.*s takes no value", length, word);
+    if (o->value == NULL && equals != NULL) {
+        complain("--%s takes no value", o->name);
         return false;
     }
-    if (wanted == NULL || equals != NULL) {
-        return setOption(a, &found, equals != NULL ? equals + 1 : NULL);
+    if (o->value == NULL || equals != NULL) {
+        return o->read(o, equals != NULL ? equals + 1 : NULL, a);
     }
     if (*i + 1 >= a->wordCount || strncmp(a->words[*i + 1], "--", 2) == 0) { // a file so named: --name=--file
-        complain("%.*s needs a value: %s", length, word, wanted);
+        complain("%s%s needs a value: %s", dashesOf(o), o->name, o->value);
         return false;
     }
     *i += 1;
-    return setOption(a, &found, a->words[*i]);
+    return o->read(o, a->words[*i], a);
 }
 
 static void warnOfUnused(const Arguments* a)

@@ -5,6 +5,7 @@
 
 #include <vpl/vpl.h>
 
+#include <jansson.h>
 #include <stdio.h>
 
 enum { EXIT_DONE = 0, EXIT_COULD_NOT = 1, EXIT_USAGE = 2 };
@@ -125,8 +126,14 @@ void endProgress(Progress* progress);
 // From here on SIGINT and SIGTERM only make showProgress return false; a second one kills.
 void catchInterrupts(void);
 
+// JSON knows no infinity: what is not finite is null.
+json_t* numberJson(double value);
+
+// Writes JSON to a file, or to stdout if that is NULL, and lets go of it. Complains unless it returns EXIT_DONE.
+int writeJson(json_t* root, int digits, const char* path);
+
 // Writes the statistics of a render as JSON.
-vplResult writeStats(vplContext* context, const char* path, const vplRenderStats* stats);
+int writeStats(vplContext* context, const char* path, const vplRenderStats* stats);
 
 // True if a file can probably be written there; complains otherwise. Asked before hours of rendering.
 bool checkOutput(const char* path);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/cli.h"
 
-#include <jansson.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -37,53 +35,28 @@ static void printText(const Findings* f)
     }
 }
 
-// JSON knows no infinity: what is infinite is null.
-static json_t* number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t* describeRegions(const Findings* f)
-{
-    json_t* array = json_array();
-    for (int i = 0; i < f->regionCount; i++) {
-        const vplRegion* r = &f->regions[i];
-        json_t* entry = json_object();
-        json_object_set_new(entry, "x", json_integer(r->x));
-        json_object_set_new(entry, "y", json_integer(r->y));
-        json_object_set_new(entry, "width", json_integer(r->width));
-        json_object_set_new(entry, "height", json_integer(r->height));
-        json_object_set_new(entry, "mean_a", number(r->meanA));
-        json_object_set_new(entry, "mean_b", number(r->meanB));
-        json_object_set_new(entry, "ratio", number(r->ratio));
-        json_object_set_new(entry, "rmse", number(r->rmse));
-        json_array_append_new(array, entry);
-    }
-    return array;
-}
-
-static void printJson(const Findings* f, double ppd)
+static json_t* describe(const Findings* f, double ppd)
 {
     const vplComparison* c = &f->pixels;
-    json_t* root = json_object();
-    json_object_set_new(root, "rmse", number(c->rmse));
-    json_object_set_new(root, "relative_rmse", number(c->relativeRmse));
-    json_object_set_new(root, "relmse", number(c->relmse));
-    json_object_set_new(root, "trimmed_relmse", number(c->trimmedRelmse));
-    json_object_set_new(root, "psnr", number(c->psnr));
-    json_object_set_new(root, "ssim", number(f->ssim));
-    json_object_set_new(root, "flip", number(f->flip));
-    json_object_set_new(root, "flip_ppd", number(ppd));
-    json_object_set_new(root, "energy_ratio", number(c->energyRatio));
-    json_object_set_new(root, "max_difference", number(c->maxDifference));
-    json_object_set_new(root, "max_x", json_integer(c->maxX));
-    json_object_set_new(root, "max_y", json_integer(c->maxY));
-    if (f->regionCount > 0) {
-        json_object_set_new(root, "regions", describeRegions(f));
+    json_t* root = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:o, s:o, s:i, s:i}", "rmse",
+                             numberJson(c->rmse), "relative_rmse", numberJson(c->relativeRmse), "relmse",
+                             numberJson(c->relmse), "trimmed_relmse", numberJson(c->trimmedRelmse), "psnr",
+                             numberJson(c->psnr), "ssim", numberJson(f->ssim), "flip", numberJson(f->flip),
+                             "flip_ppd", ppd, "energy_ratio", numberJson(c->energyRatio), "max_difference",
+                             numberJson(c->maxDifference), "max_x", c->maxX, "max_y", c->maxY);
+    json_t* regions = json_array();
+    for (int i = 0; i < f->regionCount; i++) {
+        const vplRegion* r = &f->regions[i];
+        json_array_append_new(regions, json_pack("{s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:o}", "x", r->x, "y",
+                                                 r->y, "width", r->width, "height", r->height, "mean_a",
+                                                 numberJson(r->meanA), "mean_b", numberJson(r->meanB),
+                                                 "ratio", numberJson(r->ratio), "rmse", numberJson(r->rmse)));
     }
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    putchar('\n');
-    json_decref(root);
+    if (f->regionCount > 0) {
+        json_object_set(root, "regions", regions);
+    }
+    json_decref(regions);
+    return root;
 }
 
 static vplResult compareRegions(const Arguments* a, const vplImage* first, const vplImage* second,
@@ -114,17 +87,10 @@ static void movePlaces(Findings* f, const int region[4])
 static vplResult measure(const Arguments* a, const vplImage* first, const vplImage* second,
                          Findings* findings)
 {
-    vplResult result = vplImage_Compare(first, second, &findings->pixels);
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Ssim(first, second, &findings->ssim, NULL);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplImage_Flip(first, second, a->ppd, &findings->flip, NULL);
-    }
-    if (result == VPL_SUCCESS && a->regions[0] > 0) {
-        result = compareRegions(a, first, second, findings);
-    }
-    return result;
+    TRY(vplImage_Compare(first, second, &findings->pixels));
+    TRY(vplImage_Ssim(first, second, &findings->ssim, NULL));
+    TRY(vplImage_Flip(first, second, a->ppd, &findings->flip, NULL));
+    return a->regions[0] > 0 ? compareRegions(a, first, second, findings) : VPL_SUCCESS;
 }
 
 static int writeHeatmap(const Arguments* a, const vplImage* first, const vplImage* second)
@@ -150,7 +116,7 @@ static int compare(const Arguments* a, const vplImage* first, const vplImage* se
     if (code == EXIT_DONE) {
         movePlaces(&findings, a->region);
         if (a->json) {
-            printJson(&findings, a->ppd);
+            code = writeJson(describe(&findings, a->ppd), 9, NULL);
         } else {
             printText(&findings);
         }

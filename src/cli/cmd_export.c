@@ -57,7 +57,7 @@ static int bake(const Arguments* a, vplContext* context, const vplScene* scene)
                  stats.solve.iterations);
     }
     if (code == EXIT_DONE && a->stats != NULL) {
-        code = exitCode(writeStats(context, a->stats, &stats), false);
+        code = writeStats(context, a->stats, &stats);
     }
     return code;
 }

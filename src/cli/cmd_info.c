@@ -2,9 +2,7 @@
 // vpl info: what is in a scene, and the plan of a render with the same options. Nothing is rendered.
 #include "cli/cli.h"
 
-#include <jansson.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { OBJECT_TYPES = VPL_OBJECT_MESH + 1, EMITTER_TYPES = VPL_EMITTER_DIRECTIONAL + 1 };
 
@@ -122,25 +120,6 @@ static json_t* vector(vplVec3 v)
     return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
 }
 
-static json_t* sceneJson(const Info* info)
-{
-    const int* objects = info->objectsOfType;
-    const int* emitters = info->emittersOfType;
-    return json_pack("{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:{s:i, "
-                     "s:f, s:f}, s:i, s:i, "
-                     "s:f, s:o, s:o, s:f, s:f, s:f}",
-                     "cameras", info->cameras, "materials", info->materials, "objects", "total",
-                     info->objects, "quad", objects[VPL_OBJECT_QUAD], "box", objects[VPL_OBJECT_BOX], "mesh",
-                     objects[VPL_OBJECT_MESH], "meshes", "total", info->meshes, "vertices",
-                     (json_int_t)info->meshVertices, "triangles", (json_int_t)info->meshTriangles, "lights",
-                     "total", info->emitters, "point", emitters[VPL_EMITTER_POINT], "spot",
-                     emitters[VPL_EMITTER_SPOT], "directional", emitters[VPL_EMITTER_DIRECTIONAL], "paths",
-                     "total", info->paths, "first_frame", info->firstFrame, "last_frame", info->lastFrame,
-                     "triangles", info->triangles, "lamp_triangles", info->areaLightTriangles, "lamp_area",
-                     info->areaLightArea, "bounds_min", vector(info->low), "bounds_max", vector(info->high),
-                     "diagonal", info->diagonal, "area", info->area, "mean_reflectance", info->reflectance);
-}
-
 static json_t* decisionsJson(const vplDecision* decisions, int count)
 {
     json_t* array = json_array();
@@ -181,19 +160,24 @@ static json_t* planJson(const vplPlan* p)
                      p->problem[0] != 0 ? p->problem : NULL);
 }
 
-static int printJson(const Info* info, const vplPlan* plan)
+static json_t* sceneJson(const Info* info, const vplPlan* plan)
 {
-    json_t* root = sceneJson(info);
-    json_object_set_new(root, "render", planJson(plan));
-    char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    json_decref(root);
-    if (text == NULL) {
-        complain("out of memory while writing JSON");
-        return EXIT_COULD_NOT;
-    }
-    puts(text);
-    free(text);
-    return EXIT_DONE;
+    const int* objects = info->objectsOfType;
+    const int* emitters = info->emittersOfType;
+    return json_pack("{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:{s:i, "
+                     "s:f, s:f}, s:i, s:i, "
+                     "s:f, s:o, s:o, s:f, s:f, s:f, s:o}",
+                     "cameras", info->cameras, "materials", info->materials, "objects", "total",
+                     info->objects, "quad", objects[VPL_OBJECT_QUAD], "box", objects[VPL_OBJECT_BOX], "mesh",
+                     objects[VPL_OBJECT_MESH], "meshes", "total", info->meshes, "vertices",
+                     (json_int_t)info->meshVertices, "triangles", (json_int_t)info->meshTriangles, "lights",
+                     "total", info->emitters, "point", emitters[VPL_EMITTER_POINT], "spot",
+                     emitters[VPL_EMITTER_SPOT], "directional", emitters[VPL_EMITTER_DIRECTIONAL], "paths",
+                     "total", info->paths, "first_frame", info->firstFrame, "last_frame", info->lastFrame,
+                     "triangles", info->triangles, "lamp_triangles", info->areaLightTriangles, "lamp_area",
+                     info->areaLightArea, "bounds_min", vector(info->low), "bounds_max", vector(info->high),
+                     "diagonal", info->diagonal, "area", info->area, "mean_reflectance", info->reflectance,
+                     "render", planJson(plan));
 }
 
 static int showInfo(const Arguments* a, vplContext* context, const vplScene* scene)
@@ -207,7 +191,7 @@ static int showInfo(const Arguments* a, vplContext* context, const vplScene* sce
         code = exitCode(vplPlan_Create(scene, &a->render, NULL, &plan), true);
     }
     if (code == EXIT_DONE && a->json) {
-        code = printJson(&info, plan);
+        code = writeJson(sceneJson(&info, plan), 9, NULL);
     } else if (code == EXIT_DONE) {
         printScene(a->positionals[0], &info);
         code = printPlan(plan, stdout);

@@ -119,7 +119,7 @@ static int renderPicture(const Arguments* a, vplContext* context, const vplScene
     }
     code = writePicture(a, image, output);
     if (code == EXIT_DONE && statsFile != NULL) {
-        code = exitCode(writeStats(context, statsFile, &stats), false);
+        code = writeStats(context, statsFile, &stats);
     }
     vplImage_Destroy(image);
     return code;

@@ -107,41 +107,18 @@ static void printWrapped(const char* text, int column, int indent)
     putchar('\n');
 }
 
-// Adds the words of "a|b|c" whose bits are set, with commas between.
-static void appendWords(char* text, const char* words, int bits)
+// Adds the words of "a|b|c" whose bits are set, with commas between, within two brackets.
+static void appendWords(char* text, const char* open, const char* words, int bits, const char* close)
 {
-    const char* between = "";
-    for (int bit = 1;; bit <<= 1) {
-        const int length = (int)strcspn(words, "|");
+    for (int bit = 1; words != NULL; bit <<= 1) {
         if ((bits & bit) != 0) {
-            sprintf(text + strlen(text), "%s%.*s", between, length, words);
-            between = ", ";
+            sprintf(text + strlen(text), "%s%.*s", open, (int)strcspn(words, "|"), words);
+            open = ", ";
         }
-        if (words[length] == 0) {
-            return;
-        }
-        words += length + 1;
+        words = strchr(words, '|');
+        words = words != NULL ? words + 1 : NULL;
     }
-}
-
-// The help of an option of rendering, its default, and who uses it if not all do.
-static void describeOption(const vplOption* o, char text[TEXT])
-{
-    const vplRenderOptions defaults = vplDefaultRenderOptions();
-    char value[64] = "";
-    vplRenderOptions_Get(&defaults, o->name, value, sizeof value);
-    snprintf(text, TEXT, "%s; default %s", o->help, value);
-    const int methods = o->users & VPL_USE_ALL;
-    if (methods != VPL_USE_ALL) {
-        strcat(text, " [");
-        appendWords(text, vplFindOption("method")->value, methods);
-        strcat(text, "]");
-    }
-    if (o->users >> 8 != 0) {
-        strcat(text, " [--pipeline ");
-        appendWords(text, vplFindOption("pipeline")->value, o->users >> 8);
-        strcat(text, "]");
-    }
+    strcat(text, close);
 }
 
 // The names of the sweeps, each once, in the order of the table.
@@ -154,21 +131,29 @@ static void appendSweeps(char text[TEXT])
     }
 }
 
-static void describeOwn(const Option* o, bool commands, char text[TEXT])
+// The help of an option, its default, and who uses it if not all do: methods and pipelines, or commands.
+static void describeOption(const Option* o, bool commands, char text[TEXT])
 {
-    snprintf(text, TEXT, "%s%s%s", o->help, o->default_ != NULL ? "; default " : "",
-             o->default_ != NULL ? o->default_ : "");
-    if (strcmp(o->name, "--sweeps") == 0) {
+    const vplRenderOptions defaults = vplDefaultRenderOptions();
+    const int users = o->render != NULL ? o->render->users : VPL_USE_ALL;
+    char value[64] = "";
+    snprintf(value, sizeof value, "%s", o->default_ != NULL ? o->default_ : "");
+    if (o->render != NULL) {
+        vplRenderOptions_Get(&defaults, o->name, value, sizeof value);
+    }
+    snprintf(text, TEXT, "%s%s%s", o->help, value[0] != 0 ? "; default " : "", value);
+    if (strcmp(o->name, "sweeps") == 0) {
         appendSweeps(text);
     }
-    const char* between = " (";
-    for (int i = 0; i < COMMAND_COUNT && commands && o->commands != ~0; i++) {
-        if ((o->commands & COMMANDS[i].bit) != 0) {
-            sprintf(text + strlen(text), "%s%s", between, COMMANDS[i].name);
-            between = ", ";
-        }
+    if ((users & VPL_USE_ALL) != VPL_USE_ALL) {
+        appendWords(text, " [", vplFindOption("method")->value, users, "]");
     }
-    strcat(text, between[0] == ',' ? ")" : "");
+    if (users >> 8 != 0) {
+        appendWords(text, " [--pipeline ", vplFindOption("pipeline")->value, users >> 8, "]");
+    }
+    if (commands && o->render == NULL && o->commands != ~0) {
+        appendWords(text, " (", "render|bake|lights|info|tradeoff|compare|bench", o->commands, ")");
+    }
 }
 
 // Text of a man page: dashes that are no hyphens.
@@ -179,36 +164,37 @@ static void printManual(const char* text)
     }
 }
 
-static void printOption(const char* dashes, const char* name, const char* value, const char* text,
-                        bool manual)
+static void printOption(const Option* o, bool manual)
 {
+    char text[TEXT], line[TEXT];
+    const char *dashes = dashesOf(o), *space = o->value != NULL ? " " : "",
+               *value = o->value != NULL ? o->value : "";
+    describeOption(o, manual, text);
     if (manual) {
+        snprintf(line, sizeof line, o->value != NULL ? "%s%s \"%s%s\"" : "%s%s%s%s", dashes, o->name, space,
+                 value);
         printf(".TP\n.BI ");
-        printManual(dashes);
-        printManual(name);
-        printf(value != NULL ? " \" " : "");
-        printManual(value != NULL ? value : "");
-        puts(value != NULL ? "\"" : "");
+        printManual(line);
+        putchar('\n');
         printManual(text);
         putchar('\n');
         return;
     }
-    char line[TEXT];
-    snprintf(line, sizeof line, "%s%s%s%s", dashes, name, value != NULL ? " " : "",
-             value != NULL ? value : "");
+    snprintf(line, sizeof line, "%s%s%s%s", dashes, o->name, space, value);
     printf("  ");
-    printWrapped(line, 2, INDENT + 2 + (int)strlen(name));
+    printWrapped(line, 2, INDENT + 2 + (int)strlen(o->name));
     printf("%*s", INDENT, "");
     printWrapped(text, INDENT, INDENT);
 }
 
-static void printOwn(const Command* command, bool manual)
+// The program's own options that a command takes; all: of all commands.
+static void printOwn(int commands, bool manual)
 {
-    for (int i = 0; i < OPTION_COUNT; i++) {
-        char text[TEXT];
-        if (command == NULL || (OPTIONS[i].commands & command->bit) != 0) {
-            describeOwn(&OPTIONS[i], command == NULL, text);
-            printOption("", OPTIONS[i].name, OPTIONS[i].value, text, manual);
+    int count;
+    const Option* options = getOptions(&count);
+    for (int i = 0; i < count; i++) {
+        if (options[i].render == NULL && (options[i].commands & commands) != 0) {
+            printOption(&options[i], manual);
         }
     }
 }
@@ -230,13 +216,13 @@ static bool contains(const char* text, const char* word)
 static int printSubject(const char* subject, bool manual)
 {
     int count, printed = 0;
-    const vplOption* options = vplGetOptions(&count);
+    const Option* options = getOptions(&count);
     const vplOption* named =
         subject != NULL ? vplFindOption(subject + 2 * (strncmp(subject, "--", 2) == 0)) : NULL;
     const char* group = "";
     for (int i = 0; i < count; i++) {
-        const vplOption* o = &options[i];
-        if (o->kind == VPL_OPTION_PART || (named != NULL && o != named) ||
+        const vplOption* o = options[i].render;
+        if (o == NULL || (named != NULL && o != named) ||
             (named == NULL && subject != NULL && !contains(o->group, subject))) {
             continue;
         }
@@ -244,9 +230,7 @@ static int printSubject(const char* subject, bool manual)
             printf(manual ? ".SS %s\n" : "\n%s\n", o->group);
             group = o->group;
         }
-        char text[TEXT];
-        describeOption(o, text);
-        printOption("--", o->name, o->value, text, manual);
+        printOption(&options[i], manual);
         printed++;
     }
     return printed;
@@ -254,11 +238,14 @@ static int printSubject(const char* subject, bool manual)
 
 static void printEssentials(void)
 {
-    for (int i = 0; i < (int)(sizeof ESSENTIALS / sizeof *ESSENTIALS); i++) {
-        const vplOption* o = vplFindOption(ESSENTIALS[i]);
-        char text[TEXT];
-        describeOption(o, text);
-        printOption("--", o->name, o->value, text, false);
+    int count;
+    const Option* options = getOptions(&count);
+    for (size_t k = 0; k < sizeof ESSENTIALS / sizeof *ESSENTIALS; k++) {
+        for (int i = 0; i < count; i++) {
+            if (options[i].render != NULL && strcmp(options[i].name, ESSENTIALS[k]) == 0) {
+                printOption(&options[i], false);
+            }
+        }
     }
 }
 
@@ -266,17 +253,17 @@ static void printEssentials(void)
 static void printSubjects(void)
 {
     int count;
-    const vplOption* options = vplGetOptions(&count);
+    const Option* options = getOptions(&count);
+    const char* group = "";
     puts("\nAll options of rendering; vpl help options SUBJECT (or NAME) explains them:");
-    for (int i = 0; i < count;) {
-        const char* group = options[i].group;
-        char text[TEXT];
-        int length = 0;
-        for (; i < count && strcmp(options[i].group, group) == 0; i++) {
-            if (options[i].kind != VPL_OPTION_PART) {
-                length += snprintf(text + length, sizeof text - (size_t)length, "%s--%s",
-                                   length > 0 ? " " : "", options[i].name);
-            }
+    for (int i = 0; i < count; i++) {
+        char text[TEXT] = "";
+        if (options[i].render == NULL || strcmp(options[i].render->group, group) == 0) {
+            continue;
+        }
+        group = options[i].render->group;
+        for (int k = i; k < count && strcmp(options[k].render->group, group) == 0; k++) {
+            sprintf(text + strlen(text), "%s--%s", k > i ? " " : "", options[k].name);
         }
         printf("  %s\n%*s", group, INDENT, "");
         printWrapped(text, INDENT, INDENT);
@@ -293,7 +280,7 @@ static void printCommand(const Command* c)
     if (c->bit == RENDER) {
         printEssentials();
     }
-    printOwn(c, false);
+    printOwn(c->bit, false);
     if (c->bit == BENCH) {
         puts("  --size WxH\n      pixels; default 1920x1080, with --scaling 640x360");
     }
@@ -324,7 +311,7 @@ bool printHelp(const char* topic, const char* subject)
         printCommand(command);
     } else if (strcmp(topic, "--man") == 0) { // for vpl.1.in
         puts(".SS Files and running");
-        printOwn(NULL, true);
+        printOwn(~0, true);
         printSubject(NULL, true);
     } else if (strcmp(topic, "options") != 0) {
         complain("no command \"%s\"; vpl help lists them", topic);

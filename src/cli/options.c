@@ -2,6 +2,7 @@
 #include "cli/options.h"
 
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,110 +30,114 @@ static int parseNumbers(const char* text, char separator, double low, double hig
     return 0;
 }
 
+__attribute__((format(printf, 3, 4))) static bool refuse(const Option* o, const char* value,
+                                                         const char* format, ...)
+{
+    char wanted[200];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(wanted, sizeof wanted, format, arguments);
+    va_end(arguments);
+    complain("%s%s is \"%s\", must be %s", dashesOf(o), o->name, value, wanted);
+    return false;
+}
+
+static bool store(const Option* o, Arguments* a, const void* value, size_t size)
+{
+    memcpy((char*)a + o->offset, value, size);
+    return true;
+}
+
 static bool readInt(const Option* o, const char* value, Arguments* a)
 {
     int number;
-    if (parseNumbers(value, 0, o->low, o->high, &number, 1) != 1) {
-        complain("%s is \"%s\", must be a whole number in [%.0f, %.0f]", o->name, value, o->low, o->high);
-        return false;
-    }
-    memcpy((char*)a + o->offset, &number, sizeof number);
-    return true;
+    return parseNumbers(value, 0, o->low, o->high, &number, 1) == 1
+               ? store(o, a, &number, sizeof number)
+               : refuse(o, value, "a whole number in [%.0f, %.0f]", o->low, o->high);
 }
 
 static bool readNumber(const Option* o, const char* value, Arguments* a)
 {
     char* end;
     const double number = strtod(value, &end);
-    if (*value == ' ' || end == value || *end != 0 || !(number >= o->low && number <= o->high)) {
-        complain("%s is \"%s\", must be a number in [%g, %g]", o->name, value, o->low, o->high);
-        return false;
-    }
-    memcpy((char*)a + o->offset, &number, sizeof number);
-    return true;
+    const bool good = *value != ' ' && end != value && *end == 0 && number >= o->low && number <= o->high;
+    return good ? store(o, a, &number, sizeof number)
+                : refuse(o, value, "a number in [%g, %g]", o->low, o->high);
 }
 
 static bool readFlag(const Option* o, const char* value, Arguments* a)
 {
     (void)value;
-    const bool on = true;
-    memcpy((char*)a + o->offset, &on, sizeof on);
-    return true;
+    return store(o, a, &(bool){true}, sizeof(bool));
 }
 
 static bool readText(const Option* o, const char* value, Arguments* a)
 {
     if (*value == 0) {
-        complain("%s is empty, must be %s", o->name, o->value);
+        complain("%s%s is empty, must be %s", dashesOf(o), o->name, o->value);
         return false;
     }
-    memcpy((char*)a + o->offset, &value, sizeof value);
-    return true;
+    return store(o, a, &value, sizeof value);
 }
 
 static bool readChoice(const Option* o, const char* value, Arguments* a)
 {
     const size_t length = strlen(value);
     const char* at = o->value;
-    for (int choice = 0; at != NULL; choice++) {
-        if (length > 0 && strcspn(at, "|") == length && strncmp(at, value, length) == 0) {
-            memcpy((char*)a + o->offset, &choice, sizeof choice); // enums are ints
-            return true;
+    for (int choice = 0; at != NULL && length > 0; choice++) {
+        if (strcspn(at, "|") == length && strncmp(at, value, length) == 0) {
+            return store(o, a, &choice, sizeof choice); // enums are ints
         }
         at = strchr(at, '|');
         at = at != NULL ? at + 1 : NULL;
     }
-    complain("%s is \"%s\", must be one of %s", o->name, value, o->value);
-    return false;
+    return refuse(o, value, "one of %s", o->value);
 }
 
 static bool readGrid(const Option* o, const char* value, Arguments* a)
 {
-    if (parseNumbers(value, 'x', 1, VPL_MAX_IMAGE_SIZE, a->regions, 2) != 2) {
-        complain("%s is \"%s\", must be COLUMNSxROWS, each in [1, %d]", o->name, value, VPL_MAX_IMAGE_SIZE);
-        return false;
-    }
-    return true;
+    return parseNumbers(value, 'x', 1, VPL_MAX_IMAGE_SIZE, a->regions, 2) == 2 ||
+           refuse(o, value, "COLUMNSxROWS, each in [1, %d]", VPL_MAX_IMAGE_SIZE);
 }
 
 // Whether it lies inside the pictures is asked when they are there.
 static bool readRegion(const Option* o, const char* value, Arguments* a)
 {
-    int* r = a->region;
-    if (parseNumbers(value, ',', 0, VPL_MAX_IMAGE_SIZE, r, 4) != 4 || r[2] == 0 || r[3] == 0) {
-        complain("%s is \"%s\", must be X,Y,WIDTH,HEIGHT in pixels, X and Y from 0", o->name, value);
-        return false;
-    }
-    return true;
+    const int* r = a->region;
+    return (parseNumbers(value, ',', 0, VPL_MAX_IMAGE_SIZE, a->region, 4) == 4 && r[2] > 0 && r[3] > 0) ||
+           refuse(o, value, "X,Y,WIDTH,HEIGHT in pixels, X and Y from 0");
 }
 
 static bool readFrames(const Option* o, const char* value, Arguments* a)
 {
     int* f = a->frames;
     if (parseNumbers(value, ':', 0, VPL_MAX_FRAME, f, 2) != 2) {
-        complain("%s is \"%s\", must be FIRST:LAST, two numbers in [0, %d]", o->name, value, VPL_MAX_FRAME);
-        return false;
-    }
-    if (f[0] > f[1] || f[1] - f[0] >= MAX_FRAMES) {
-        complain("%s is \"%s\", must be 1 to %d frames", o->name, value, MAX_FRAMES);
-        return false;
+        return refuse(o, value, "FIRST:LAST, two numbers in [0, %d]", VPL_MAX_FRAME);
     }
     a->render.sequence.frame = f[0]; // that of the plan
-    return true;
+    return (f[0] <= f[1] && f[1] - f[0] < MAX_FRAMES) || refuse(o, value, "1 to %d frames", MAX_FRAMES);
 }
 
 // One thread count, or for bench several: 1,2,4.
 static bool readThreads(const Option* o, const char* value, Arguments* a)
 {
     const bool several = a->command->bit == BENCH;
-    a->threadsCount =
-        parseNumbers(value, ',', 0, VPL_MAX_WORKERS, a->threads, several ? MAX_THREAD_COUNTS : 1);
+    const int most = several ? MAX_THREAD_COUNTS : 1;
+    a->threadsCount = parseNumbers(value, ',', 0, VPL_MAX_WORKERS, a->threads, most);
     if (a->threadsCount == 0) {
-        complain("%s is \"%s\", must be %s in [0, %d]", o->name, value,
-                 several ? "whole numbers with commas between," : "a whole number", VPL_MAX_WORKERS);
-        return false;
+        return refuse(o, value, "%s in [0, %d]",
+                      several ? "whole numbers with commas between," : "a whole number", VPL_MAX_WORKERS);
     }
     a->context.workerCount = a->threads[a->threadsCount - 1];
+    return true;
+}
+
+static bool readRender(const Option* o, const char* value, Arguments* a)
+{
+    if (vplRenderOptions_Set(&a->render, o->name, value) != VPL_SUCCESS) {
+        complain("--%s", a->render.problem);
+        return false;
+    }
     return true;
 }
 
@@ -140,72 +145,97 @@ static bool readThreads(const Option* o, const char* value, Arguments* a)
 
 #define AT(field) offsetof(Arguments, field)
 
-const Option OPTIONS[] = {
-    {"-o", "FILE", NULL, RENDER, readText, AT(output), 0, 0,
-     "picture to write: .png (8-bit sRGB), .hdr, .pfm or, where built in, .exr (linear radiance); required"},
-    {"-o", "FILE", NULL, BAKE, readText, AT(output), 0, 0, "mesh to write: .ply; required"},
-    {"-o", "DIR", NULL, TRADEOFF, readText, AT(output), 0, 0,
-     "folder for report.html, tradeoff.svg, tradeoff.csv and the reference, made if missing; required"},
-    {"--exposure", "EV", NULL, RENDER | TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
-     "stops, PNG and the colours of PLY only: pixels times 2^EV; default 0"},
-    {"--tonemap", "usual|none|reinhard", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
-     "PNG only; usual: reinhard for ssvp, else none"},
-    {"--frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
+static const Option OWN[] = {
+    {"o", "FILE", NULL, RENDER, readText, AT(output), 0, 0,
+     "picture to write: .png (8-bit sRGB), .hdr, .pfm or, where built in, .exr (linear radiance); required",
+     NULL},
+    {"o", "FILE", NULL, BAKE, readText, AT(output), 0, 0, "mesh to write: .ply; required", NULL},
+    {"o", "DIR", NULL, TRADEOFF, readText, AT(output), 0, 0,
+     "folder for report.html, tradeoff.svg, tradeoff.csv and the reference, made if missing; required", NULL},
+    {"exposure", "EV", NULL, RENDER | TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
+     "stops, PNG and the colours of PLY only: pixels times 2^EV; default 0", NULL},
+    {"tonemap", "usual|none|reinhard", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
+     "PNG only; usual: reinhard for ssvp, else none", NULL},
+    {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics "
-     "are numbered in the same way"},
-    {"--stats", "FILE", NULL, RENDER | BAKE, readText, AT(stats), 0, 0, "write statistics as JSON"},
-    {"--explain", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(explain), 0, 0,
-     "print the plan on standard error first: what will be done, and why"},
-    {"--dry-run", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(dryRun), 0, 0,
-     "print the plan and do nothing"},
-    {"--reference", "FILES", NULL, TRADEOFF, readText, AT(reference), 0, 0,
+     "are numbered in the same way",
+     NULL},
+    {"stats", "FILE", NULL, RENDER | BAKE, readText, AT(stats), 0, 0, "write statistics as JSON", NULL},
+    {"explain", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(explain), 0, 0,
+     "print the plan on standard error first: what will be done, and why", NULL},
+    {"dry-run", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(dryRun), 0, 0,
+     "print the plan and do nothing", NULL},
+    {"reference", "FILES", NULL, TRADEOFF, readText, AT(reference), 0, 0,
      "the true picture, linear and of the same size, or two independent ones, A,B, whose noise cancels; "
      "default: "
-     "path traced"},
-    {"--reference-spp", "N", NULL, TRADEOFF, readInt, AT(referenceSpp), 2, VPL_MAX_SAMPLES,
-     "paths per pixel of the reference; default: as many as a third of the time allows"},
-    {"--seeds", "K", "3", TRADEOFF, readInt, AT(seeds), 1, 64, "seeds per setting"},
-    {"--time", "S", "300", TRADEOFF, readNumber, AT(seconds), 0, 1e9,
-     "seconds of measuring, the cheapest settings first"},
-    {"--sweeps", "LIST", NULL, TRADEOFF, readText, AT(sweeps), 0, 0,
-     "only these sweeps, as in frontier,sampler; default: all"},
-    {"--heatmap", "FILE", NULL, COMPARE, readText, AT(heatmap), 0, 0, "write a picture of the differences"},
-    {"--heatmap-of", "difference|relative|ssim|flip", "difference", COMPARE, readChoice, AT(heatmapOf), 0, 0,
-     "what it shows; ssim: 1 - SSIM; flip: in magma colours"},
-    {"--heat-scale", "X", NULL, COMPARE, readNumber, AT(heatScale), 0, 1e30,
-     "value at the bright end; default: the largest, and 1 for ssim and flip"},
-    {"--ppd", "P", NULL, COMPARE, readNumber, AT(ppd), VPL_MIN_PPD, VPL_MAX_PPD,
-     "pixels per degree of vision, for FLIP; default 67.02: 3840 pixels on 0.7 m seen from 0.7 m"},
-    {"--region", "X,Y,W,H", NULL, COMPARE, readRegion, 0, 0, 0,
-     "compare this rectangle only, as if it were cut out of both pictures"},
-    {"--regions", "CxR", NULL, COMPARE, readGrid, 0, 0, 0,
-     "also print means, ratio and rmse of each of C times R blocks"},
-    {"--json", NULL, NULL, COMPARE | BENCH | INFO, readFlag, AT(json), 0, 0, "print JSON"},
-    {"--runs", "N", "5", BENCH, readInt, AT(runs), 1, 1000,
-     "runs of which the median is printed, three at least of stages that take seconds"},
-    {"--stage", "WORD", NULL, BENCH, readText, AT(stage), 0, 0,
-     "only the stages (with --scaling: the series) whose name contains this, slow ones too"},
-    {"--all", NULL, NULL, BENCH, readFlag, AT(all), 0, 0, "slow stages, too"},
-    {"--scaling", NULL, NULL, BENCH, readFlag, AT(scaling), 0, 0,
-     "instead: time against lights, pixels, triangles, threads and shadow map size, with fitted exponents"},
-    {"--threads", "T", NULL, ~INFO, readThreads, 0, 0, 0,
-     "worker threads, 0 (default, tradeoff: 1): one per processor; bench takes several: 1,2"},
-    {"--isa", "auto|scalar|sse2|avx2|avx512", "auto", ~(INFO | COMPARE), readChoice, AT(context.isa), 0, 0,
-     "instruction set: the same bits"},
-    {"--quiet", NULL, NULL, ~0, readFlag, AT(quiet), 0, 0, "no progress bar, no warnings"},
-    {"-v", NULL, NULL, ~0, readFlag, AT(verbose), 0, 0, "say more"},
-    {"--help", NULL, NULL, ~0, readFlag, AT(help), 0, 0, "print the help of a command"},
+     "path traced",
+     NULL},
+    {"reference-spp", "N", NULL, TRADEOFF, readInt, AT(referenceSpp), 2, VPL_MAX_SAMPLES,
+     "paths per pixel of the reference; default: as many as a third of the time allows", NULL},
+    {"seeds", "K", "3", TRADEOFF, readInt, AT(seeds), 1, 64, "seeds per setting", NULL},
+    {"time", "S", "300", TRADEOFF, readNumber, AT(seconds), 0, 1e9,
+     "seconds of measuring, the cheapest settings first", NULL},
+    {"sweeps", "LIST", NULL, TRADEOFF, readText, AT(sweeps), 0, 0,
+     "only these sweeps, as in frontier,sampler; default: all", NULL},
+    {"heatmap", "FILE", NULL, COMPARE, readText, AT(heatmap), 0, 0, "write a picture of the differences",
+     NULL},
+    {"heatmap-of", "difference|relative|ssim|flip", "difference", COMPARE, readChoice, AT(heatmapOf), 0, 0,
+     "what it shows; ssim: 1 - SSIM; flip: in magma colours", NULL},
+    {"heat-scale", "X", NULL, COMPARE, readNumber, AT(heatScale), 0, 1e30,
+     "value at the bright end; default: the largest, and 1 for ssim and flip", NULL},
+    {"ppd", "P", NULL, COMPARE, readNumber, AT(ppd), VPL_MIN_PPD, VPL_MAX_PPD,
+     "pixels per degree of vision, for FLIP; default 67.02: 3840 pixels on 0.7 m seen from 0.7 m", NULL},
+    {"region", "X,Y,W,H", NULL, COMPARE, readRegion, 0, 0, 0,
+     "compare this rectangle only, as if it were cut out of both pictures", NULL},
+    {"regions", "CxR", NULL, COMPARE, readGrid, 0, 0, 0,
+     "also print means, ratio and rmse of each of C times R blocks", NULL},
+    {"json", NULL, NULL, COMPARE | BENCH | INFO, readFlag, AT(json), 0, 0, "print JSON", NULL},
+    {"runs", "N", "5", BENCH, readInt, AT(runs), 1, 1000,
+     "runs of which the median is printed, three at least of stages that take seconds", NULL},
+    {"stage", "WORD", NULL, BENCH, readText, AT(stage), 0, 0,
+     "only the stages (with --scaling: the series) whose name contains this, slow ones too", NULL},
+    {"all", NULL, NULL, BENCH, readFlag, AT(all), 0, 0, "slow stages, too", NULL},
+    {"scaling", NULL, NULL, BENCH, readFlag, AT(scaling), 0, 0,
+     "instead: time against lights, pixels, triangles, threads and shadow map size, with fitted exponents",
+     NULL},
+    {"threads", "T", NULL, ~INFO, readThreads, 0, 0, 0,
+     "worker threads, 0 (default, tradeoff: 1): one per processor; bench takes several: 1,2", NULL},
+    {"isa", "auto|scalar|sse2|avx2|avx512", "auto", ~(INFO | COMPARE), readChoice, AT(context.isa), 0, 0,
+     "instruction set: the same bits", NULL},
+    {"quiet", NULL, NULL, ~0, readFlag, AT(quiet), 0, 0, "no progress bar, no warnings", NULL},
+    {"v", NULL, NULL, ~0, readFlag, AT(verbose), 0, 0, "say more", NULL},
+    {"help", NULL, NULL, ~0, readFlag, AT(help), 0, 0, "print the help of a command", NULL},
 };
 
-const int OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS;
-
-bool takesOption(const Command* command, const vplOption* option)
+const Option* getOptions(int* countOut)
 {
-    if (option->kind == VPL_OPTION_PART) {
-        return false;
+    enum { OWN_COUNT = sizeof OWN / sizeof *OWN, MOST = 200 };
+    static Option all[MOST];
+    static int count = 0;
+    if (count == 0) {
+        int renderCount;
+        const vplOption* render = vplGetOptions(&renderCount);
+        memcpy(all, OWN, sizeof OWN);
+        count = OWN_COUNT;
+        for (const vplOption* r = render; r < render + renderCount && count < MOST; r++) {
+            const int method = strcmp(r->name, "method") == 0 ? TRADEOFF : 0;
+            const int size = strcmp(r->name, "size") == 0 ? BENCH : 0;
+            if (r->kind != VPL_OPTION_PART) {
+                all[count++] = (Option){.name = r->name,
+                                        .value = r->value,
+                                        .commands = (ON_SCENES & ~method) | size,
+                                        .read = readRender,
+                                        .help = r->help,
+                                        .render = r};
+            }
+        }
     }
-    return command->bit == BENCH      ? strcmp(option->name, "size") == 0
-           : command->bit == TRADEOFF ? strcmp(option->name, "method") != 0
-                                      : (command->bit & ON_SCENES) != 0;
+    *countOut = count;
+    return all;
+}
+
+const char* dashesOf(const Option* option)
+{
+    return option->name[1] == 0 ? "-" : "--";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program's own options; those of rendering are in vpl/options.def.
+// All options of the command line: the program's own, and those of rendering from vpl/options.def.
 #ifndef VPL_CLI_OPTIONS_H
 #define VPL_CLI_OPTIONS_H
 
@@ -11,7 +11,7 @@ typedef struct Option Option;
 typedef bool ReadFcn(const Option* option, const char* value, Arguments* arguments);
 
 struct Option {
-    const char* name;     // with its dashes
+    const char* name;     // without dashes: one for a letter, two for a word
     const char* value;    // what it takes: "N", or its choices: "a|b|c"; NULL: a flag
     const char* default_; // as a value, or NULL: none, or the help says what
     int commands;         // bits
@@ -19,12 +19,13 @@ struct Option {
     size_t offset;    // in Arguments
     double low, high; // of numbers
     const char* help;
+    const vplOption* render; // of rendering: all but name, value, commands, read and help is there; else NULL
 };
 
-extern const Option OPTIONS[];
-extern const int OPTION_COUNT;
+// The program's own options, then those of rendering.
+const Option* getOptions(int* countOut);
 
-// Whether a command takes an option of rendering.
-bool takesOption(const Command* command, const vplOption* option);
+// "--" or "-", by the length of the name.
+const char* dashesOf(const Option* option);
 
 #endif

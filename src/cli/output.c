@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Files that the program itself writes or is about to: asked for before the work, whole or not at all after it.
+// What the program itself writes: JSON, and files, which are asked for before the work and appear whole or not at all.
 #include "cli/cli.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,4 +80,25 @@ bool writeTextFile(const char* path, const char* text)
     vplResult result = vplWriteFile(context, path, text, strlen(text));
     vplContext_Destroy(context);
     return result == VPL_SUCCESS;
+}
+
+json_t* numberJson(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+int writeJson(json_t* root, int digits, const char* path)
+{
+    char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(digits));
+    json_decref(root);
+    bool written = text != NULL;
+    if (text == NULL) {
+        complain("%s: out of memory while writing JSON", path != NULL ? path : "standard output");
+    } else if (path != NULL) {
+        written = writeTextFile(path, text);
+    } else {
+        puts(text);
+    }
+    free(text);
+    return written ? EXIT_DONE : EXIT_COULD_NOT;
 }

@@ -11,7 +11,7 @@
 #include "lights/kernels.h"
 #include "lights/rsm.h"
 #include "math/scalar.h"
-#include "visibility/gather.h"
+#include "visibility/map_gather.h"
 
 // Points and their planes in the frame of the face that shows them.
 typedef struct FacePoints {

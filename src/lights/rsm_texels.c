@@ -140,10 +140,8 @@ int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray)
 {
     const int64_t size = map->size;
     if (map->emitter.type == VPL_EMITTER_POINT) {
-        int face, i, j;
-        float s, t;
-        return vplCube_Find(ray->direction, map->size, &face, &s, &t, &i, &j) ? (face * size + j) * size + i
-                                                                              : -1;
+        vplCubePoint p;
+        return vplCube_Find(ray->direction, map->size, &p) ? (p.face * size + p.row) * size + p.column : -1;
     }
     const bool parallel = map->emitter.type == VPL_EMITTER_DIRECTIONAL;
     const vplVec3 p = parallel ? vplSub(ray->origin, map->origin) : ray->direction;

@@ -78,7 +78,7 @@ static void takeSample(Sampling* s, int cluster, int k, int m, int particle)
     vplVec3 direction;
     pointOf(s->def->shift, cluster, k, m, &x, &y);
     texelOf(x, y, map->size, &column, &row);
-    if (!vplParaboloidMap_GetHit(map, s->geometry, 0, column, row, &hit, &direction)) {
+    if (!vplParaboloidMap_GetHit(map, s->geometry, (vplParaboloidTexel){0, column, row}, &hit, &direction)) {
         s->set->escaped++;
         return;
     }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// From shaded vertices to references to the triangles that may be seen, in drawing order. Chunks of triangles
-// run in parallel; each knows beforehand where its results may go, so that the order does not depend on them.
+// Makes references to the triangles that may be visible, in drawing order. Chunks of triangles run in
+// parallel; each knows beforehand where its results go, so that the order does not depend on threads.
 #include "raster/raster.h"
 
 #include <string.h>
 
-// The part of triangle `first` to `end` - 1 that belongs to one mesh, from `first` on: returns where it ends and
-// moves *mesh to that mesh.
+// Moves *mesh to the mesh of triangle `first`. Returns where its part of the triangles `first` to `end` - 1
+// ends.
 static int meshPart(const vplRaster* r, int first, int end, int* mesh)
 {
     while (*mesh + 1 < r->shadedCount && r->shaded[*mesh + 1].firstTriangle <= first) {
@@ -16,7 +16,7 @@ static int meshPart(const vplRaster* r, int first, int end, int* mesh)
     return meshEnd < end ? meshEnd : end;
 }
 
-// Outcode bits of the planes that a triangle must be cut by; -1 where it is dropped.
+// Outcode bits of the planes that must cut a triangle; -1 where it is dropped.
 static int planesOf(const vplShaded* s, const uint32_t* index)
 {
     const int c0 = s->outcodes[index[0]], c1 = s->outcodes[index[1]], c2 = s->outcodes[index[2]];
@@ -24,7 +24,7 @@ static int planesOf(const vplShaded* s, const uint32_t* index)
     if ((any & VPL_OUT_BAD) || (c0 & c1 & c2 & ~VPL_OUT_GUARD)) {
         return -1;
     }
-    return any & (VPL_OUT_NEAR | VPL_OUT_FAR | VPL_OUT_GUARD);
+    return any & VPL_OUT_CUT;
 }
 
 void vplCountCuts(void* data, int chunkIndex, int worker)
@@ -38,7 +38,7 @@ void vplCountCuts(void* data, int chunkIndex, int worker)
     for (int i = chunk->first, mesh = 0, partEnd; i < end; i = partEnd) {
         partEnd = meshPart(r, i, end, &mesh);
         const vplShaded* s = &r->shaded[mesh];
-        const bool mayCut = s->outcodesTogether & (VPL_OUT_NEAR | VPL_OUT_FAR | VPL_OUT_GUARD);
+        const bool mayCut = s->outcodesTogether & VPL_OUT_CUT;
         for (; mayCut && i < partEnd; i++) {
             chunk->cut += planesOf(s, s->mesh.indices + 3 * (size_t)(i - s->firstTriangle)) > 0;
         }
@@ -59,7 +59,7 @@ static inline bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
 {
     const int64_t area =
         (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
-    const vplPixelBox box = vplBoundTriangle(v);
+    const vplPixelBox box = vplTriangle_PixelBox(v);
     if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || (box.x1 | box.y1) < 0 || box.x0 >= w->width ||
         box.y0 >= w->height) {
         return false;
@@ -93,12 +93,11 @@ static void emitClipped(Writer* w, const vplShaded* s, const uint32_t* index, in
     const int count = vplClipTriangle(r, planes, s->varyingCount, in, out);
     vplScreenVertex* screen = r->extraScreen + w->extras;
     for (int i = 0; i < count; i++) {
-        if (!(out[i].w >= 1e-30)) {
+        if (!(out[i].w >= VPL_SMALLEST_W)) {
             return; // only a point in the eye is left
         }
-        const double z = out[i].z < 0          ? 0
-                         : out[i].z > out[i].w ? out[i].w
-                                               : out[i].z; // rounding dust of the cuts
+        // The cuts round.
+        const double z = out[i].z < 0 ? 0 : out[i].z > out[i].w ? out[i].w : out[i].z;
         screen[i] = vplProject(r, out[i].x, out[i].y, z, out[i].w);
         float* to = r->extras + (size_t)(w->extras + i) * (size_t)r->extraStride;
         to[0] = (float)out[i].x;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Which triangles touch which tile: a counting sort over chunks of triangles. Counts first, then places, so
-// every tile lists its triangles in drawing order whatever the threads did.
+// Sorts triangles into tiles: a counting sort over chunks of triangles. Counts come first, then places, so
+// that every tile lists its triangles in drawing order whatever the threads did.
+#include "math/scalar.h"
 #include "raster/raster.h"
 
 static void binChunk(void* data, int chunkIndex, int worker)
@@ -20,7 +21,7 @@ static void binChunk(void* data, int chunkIndex, int worker)
     }
 }
 
-static vplResult makeChunks(vplTriangleStage* stage)
+static vplResult makeChunks(vplTriangleStage* stage, vplArena* scratch)
 {
     vplRaster* r = stage->raster;
     int64_t total = 0;
@@ -37,18 +38,18 @@ static vplResult makeChunks(vplTriangleStage* stage)
         stage->chunkSize *= 2;
     }
     stage->chunkCount = (int)((total + stage->chunkSize - 1) / stage->chunkSize);
-    stage->chunks = vplAlloc(r->context, (size_t)stage->chunkCount, sizeof *stage->chunks);
-    stage->counts =
-        vplAllocZero(r->context, (size_t)stage->chunkCount * (size_t)stage->tileCount, sizeof *stage->counts);
-    for (int i = 0; stage->chunks != NULL && i < stage->chunkCount; i++) {
+    stage->chunks = vplArena_Alloc(scratch, (size_t)stage->chunkCount, sizeof *stage->chunks);
+    stage->counts = vplArena_AllocZero(scratch, (size_t)stage->chunkCount * (size_t)stage->tileCount,
+                                       sizeof *stage->counts);
+    TRY(vplArena_Check(scratch));
+    for (int i = 0; i < stage->chunkCount; i++) {
         const int first = i * stage->chunkSize;
-        const int count = (int)total - first < stage->chunkSize ? (int)total - first : stage->chunkSize;
-        stage->chunks[i] = (vplChunk){.first = first, .count = count};
+        stage->chunks[i] = (vplChunk){.first = first, .count = vplMini((int)total - first, stage->chunkSize)};
     }
-    return stage->chunks && stage->counts ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    return VPL_SUCCESS;
 }
 
-// Room for what the chunks may make: a triangle that is cut becomes up to seven.
+// Makes room for the chunks' refs: a triangle that is cut becomes up to seven.
 static vplResult reserveRefs(vplTriangleStage* stage)
 {
     vplRaster* r = stage->raster;
@@ -65,18 +66,17 @@ static vplResult reserveRefs(vplTriangleStage* stage)
     }
     r->extraStride = 3;
     for (int i = 0; i < r->shadedCount; i++) {
-        const int stride = 3 + r->shaded[i].varyingCount;
-        r->extraStride = r->extraStride > stride ? r->extraStride : stride;
+        r->extraStride = vplMaxi(r->extraStride, 3 + r->shaded[i].varyingCount);
         if (cuts * VPL_MAX_CLIPPED + r->shaded[i].mesh.vertexCount > INT32_MAX) {
             return vplFail(r->context, VPL_LIMIT, "more than %d vertices on screen", INT32_MAX);
         }
     }
     const size_t extras = (size_t)cuts * VPL_MAX_CLIPPED;
-    r->refs = vplAlloc(r->context, (size_t)refs, sizeof *r->refs);
-    r->clipped = vplAlloc(r->context, (size_t)cuts * VPL_MAX_PIECES, sizeof *r->clipped);
-    r->extraScreen = vplAlloc(r->context, extras, sizeof *r->extraScreen);
-    r->extras = vplAlloc(r->context, extras * (size_t)r->extraStride, sizeof *r->extras);
-    return r->refs && r->clipped && r->extraScreen && r->extras ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    r->refs = vplArena_Alloc(r->run, (size_t)refs, sizeof *r->refs);
+    r->clipped = vplArena_Alloc(r->run, (size_t)cuts * VPL_MAX_PIECES, sizeof *r->clipped);
+    r->extraScreen = vplArena_Alloc(r->run, extras, sizeof *r->extraScreen);
+    r->extras = vplArena_Alloc(r->run, extras * (size_t)r->extraStride, sizeof *r->extras);
+    return vplArena_Check(r->run);
 }
 
 // Turns the chunks' counts into places and makes room for the bins.
@@ -84,10 +84,8 @@ static vplResult reserveBins(vplTriangleStage* stage)
 {
     vplRaster* r = stage->raster;
     int64_t total = 0;
-    r->binStart = vplAlloc(r->context, (size_t)stage->tileCount + 1, sizeof *r->binStart);
-    if (r->binStart == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    r->binStart = vplArena_Alloc(r->run, (size_t)stage->tileCount + 1, sizeof *r->binStart);
+    TRY(vplArena_Check(r->run));
     for (int tile = 0; tile < stage->tileCount && total <= INT32_MAX; tile++) {
         r->binStart[tile] = (int)total;
         for (int chunk = 0; chunk < stage->chunkCount; chunk++) {
@@ -101,8 +99,8 @@ static vplResult reserveBins(vplTriangleStage* stage)
         return vplFail(r->context, VPL_LIMIT, "more than %d triangle-tile pairs on screen", INT32_MAX);
     }
     r->binStart[stage->tileCount] = (int)total;
-    r->bins = vplAlloc(r->context, (size_t)total, sizeof *r->bins);
-    return r->bins ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    r->bins = vplArena_Alloc(r->run, (size_t)total, sizeof *r->bins);
+    return vplArena_Check(r->run);
 }
 
 // Meshes without triangles begin where the next one does.
@@ -119,24 +117,24 @@ static void finishRefs(const vplTriangleStage* stage)
     }
 }
 
+static vplResult binTriangles(vplTriangleStage* stage, vplArena* scratch)
+{
+    vplContext* context = stage->raster->context;
+    TRY(makeChunks(stage, scratch));
+    vplParallelFor(context, stage->chunkCount, vplCountCuts, stage);
+    TRY(reserveRefs(stage));
+    vplParallelFor(context, stage->chunkCount, vplAssembleChunk, stage);
+    TRY(reserveBins(stage));
+    vplParallelFor(context, stage->chunkCount, binChunk, stage);
+    finishRefs(stage);
+    return VPL_SUCCESS;
+}
+
 vplResult vplBinTriangles(vplRaster* raster)
 {
-    vplContext* context = raster->context;
     vplTriangleStage stage = {.raster = raster, .tileCount = raster->tilesX * raster->tilesY};
-    vplResult result = makeChunks(&stage);
-    if (result == VPL_SUCCESS) {
-        vplParallelFor(context, stage.chunkCount, vplCountCuts, &stage);
-        result = reserveRefs(&stage);
-    }
-    if (result == VPL_SUCCESS) {
-        vplParallelFor(context, stage.chunkCount, vplAssembleChunk, &stage);
-        result = reserveBins(&stage);
-    }
-    if (result == VPL_SUCCESS) {
-        vplParallelFor(context, stage.chunkCount, binChunk, &stage);
-        finishRefs(&stage);
-    }
-    vplFree(context, stage.counts);
-    vplFree(context, stage.chunks);
+    vplArena* scratch = vplArena_Create(raster->context);
+    const vplResult result = binTriangles(&stage, scratch);
+    vplArena_Destroy(scratch);
     return result;
 }

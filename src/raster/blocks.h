@@ -5,7 +5,7 @@
 
 #include "raster/coverage.h"
 #include "raster/shaders.h"
-#include "raster/shares.h"
+#include "raster/barycentrics.h"
 #include "raster/tiny.h"
 
 #include <math.h>
@@ -16,10 +16,15 @@ typedef struct Draw {
     const vplPipeline* pipeline;
     const vplShaded* shaded;
     const Batch* batch;
-    int place, owner; // of the triangle: in its batch, and its name in state->owner
-    Shares* shares;   // of the triangle, once they are needed
-    float texel;      // of a view of 90 by 90 degrees, whose half is 1
-    bool hasShares, keep, depthOnly, distances, rejects, tightens;
+    int place, owner;           // the triangle's place in its batch and its name in state->owner
+    Barycentrics* barycentrics; // the triangle's, where hasBarycentrics
+    float texel;                // width of a pixel of a view of 90 by 90 degrees, at distance 1
+    bool hasBarycentrics;
+    bool keep;      // stores blocks for the passes
+    bool depthOnly; // nothing but depth is written, where it is less
+    bool distances; // depth is a distance
+    bool rejects;   // hidden blocks are skipped,
+    bool tightens;  // and bounds of depths lowered
 } Draw;
 
 // -1 where a depth passes the test against the one that is there.
@@ -38,8 +43,8 @@ static inline int32_t passes(vplDepthCompare compare, float depth, float old)
     return -1;
 }
 
-// Lanes that pass owner and depth test stay covered; 0 if there are none. `compare` is a constant where this is
-// called, so that each test is a loop without branches.
+// Leaves the lanes covered that pass the owner and depth tests. Returns 0 if there are none. Callers pass a
+// constant `compare`, so that each test is a loop without branches.
 static inline int32_t testLanes(vplTileState* state, vplDepthCompare compare, bool ownerTest, int owner,
                                 int at)
 {
@@ -78,21 +83,21 @@ static inline int32_t testFragments(vplTileState* state, const vplPipeline* p, i
     return testLanes(state, VPL_DEPTH_ALWAYS, p->ownerTest, owner, at);
 }
 
-static inline void needShares(Draw* d)
+static inline void needBarycentrics(Draw* d)
 {
-    if (!d->hasShares) {
-        setUpShares(d->raster, d->batch, d->place, d->shaded, d->shares);
-        d->hasShares = true;
+    if (!d->hasBarycentrics) {
+        setUpBarycentrics(d->raster, d->batch, d->place, d->shaded, d->barycentrics);
+        d->hasBarycentrics = true;
     }
 }
 
-// Interpolates, and runs the surface shader.
+// Interpolates varyings and runs the surface shader.
 static void makeSurface(Draw* d)
 {
     vplFragments* f = &d->state->block;
     if (d->shaded->varyingCount > 0 || d->pipeline->needsW) {
-        needShares(d);
-        interpolate(d->shares, d->shaded->varyingCount, f->x, f->y, f);
+        needBarycentrics(d);
+        interpolate(d->barycentrics, d->shaded->varyingCount, f->x, f->y, f);
     }
     if (d->pipeline->surface != NULL) {
         d->pipeline->surface(d->pipeline->vertexUniforms, f);
@@ -118,15 +123,16 @@ static void keepBlock(vplTileState* state)
     memcpy(to + 2 * VPL_LANES, f->varying, (size_t)keptVaryings(state) * sizeof f->varying[0]);
 }
 
-// Fragments by lane. Neighbouring blocks count in different places: none waits for the one before.
+// Counters of fragments by lane. Neighbouring blocks use different ones, so that no block waits for the one
+// before.
 static inline int32_t* countersOf(vplTileState* state, int at)
 {
     return state->fragmentLanes[at / VPL_LANES % VPL_COUNTERS];
 }
 
-// Owners for keepNearer: the depths are still those of before.
-static inline void keepOwner(vplTileState* state, int owner, int at, const float drawn[VPL_LANES],
-                             bool filled)
+// Writes the owners for writeNearer, before the depths change.
+static inline void writeNearerOwner(vplTileState* state, int owner, int at, const float drawn[VPL_LANES],
+                                    bool filled)
 {
     float depth[VPL_LANES];
     int32_t covered[VPL_LANES], owners[VPL_LANES];
@@ -141,16 +147,16 @@ static inline void keepOwner(vplTileState* state, int owner, int at, const float
     memcpy(state->owner + at, owners, sizeof owners);
 }
 
-// The end of draws that write depth only: the nearer of two depths stays. `filled`: all lanes are covered. Lanes
-// are copied first, so that the compiler need not ask whether arrays overlap.
-static inline void keepNearer(vplTileState* state, int owner, int at, const float drawn[VPL_LANES],
-                              bool filled)
+// Ends draws that write depth only: keeps the nearer of two depths. `filled`: all lanes are covered. Lanes
+// are copied first, so that the compiler knows that arrays do not overlap.
+static inline void writeNearer(vplTileState* state, int owner, int at, const float drawn[VPL_LANES],
+                               bool filled)
 {
     int32_t* counts = countersOf(state, at);
     float depth[VPL_LANES];
     int32_t covered[VPL_LANES];
     if (state->owner != NULL) {
-        keepOwner(state, owner, at, drawn, filled);
+        writeNearerOwner(state, owner, at, drawn, filled);
     }
     memcpy(depth, state->depth + at, sizeof depth);
     memcpy(covered, state->block.covered, sizeof covered);
@@ -169,33 +175,33 @@ static inline void drawDepth(const Draw* d, const Setup* s, double z, int at, bo
     for (int l = 0; l < VPL_LANES; l++) {
         drawn[l] = clampDepth(z + s->laneZ[l]);
     }
-    keepNearer(d->state, d->owner, at, drawn, filled);
+    writeNearer(d->state, d->owner, at, drawn, filled);
 }
 
-// Distance from the eye. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow Map";
-// departs: w is turned into a distance by the texel's own direction.
+// Draws the distance from the eye. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube
+// Shadow Map". Departs: w is turned into a distance by the texel's own direction.
 static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
 {
     const float scale = d->pipeline->distanceScale, texel = d->texel;
     x += d->state->tile.x;
     y += d->state->tile.y;
-    float drawn[VPL_LANES], share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES];
-    shareOf(d->shares, 0, x, y, share0);
-    shareOf(d->shares, 1, x, y, share1);
-    shareOf(d->shares, 2, x, y, share2);
+    float drawn[VPL_LANES], weight0[VPL_LANES], weight1[VPL_LANES], weight2[VPL_LANES];
+    cornerWeights(d->barycentrics, 0, x, y, weight0);
+    cornerWeights(d->barycentrics, 1, x, y, weight1);
+    cornerWeights(d->barycentrics, 2, x, y, weight2);
     for (int l = 0; l < VPL_LANES; l++) {
         const float s = ((float)x + (float)(l & 3) + 0.5f) * texel - 1;
         const float t = 1 - ((float)y + (float)(l >> 2) + 0.5f) * texel;
-        const float w = 1 / (share0[l] + share1[l] + share2[l]);
+        const float w = 1 / (weight0[l] + weight1[l] + weight2[l]);
         drawn[l] = w * sqrtf(1 + s * s + t * t) * scale;
     }
-    keepNearer(d->state, d->owner, at, drawn, filled);
+    writeNearer(d->state, d->owner, at, drawn, filled);
 }
 
-// w of the plane at the pixels' centres, within what the corners have.
+// Draws w of the triangle's plane at the pixels' centres, clamped to the range of its corners.
 static inline void drawAlongAxis(const Draw* d, int x, int y, int at, bool filled)
 {
-    const Shares* s = d->shares;
+    const Barycentrics* s = d->barycentrics;
     const double perX = s->x[0] + s->x[1] + s->x[2], perY = s->y[0] + s->y[1] + s->y[2];
     const double first =
         perX * (d->state->tile.x + x) + (perY * (d->state->tile.y + y) + (s->c[0] + s->c[1] + s->c[2]));
@@ -207,7 +213,7 @@ static inline void drawAlongAxis(const Draw* d, int x, int y, int at, bool fille
         inverse = inverse < most ? inverse : most;
         drawn[l] = scale / inverse;
     }
-    keepNearer(d->state, d->owner, at, drawn, filled);
+    writeNearer(d->state, d->owner, at, drawn, filled);
 }
 
 static inline void writeDepth(vplTileState* state, int owner, int at)
@@ -231,7 +237,7 @@ static inline void writeDepth(vplTileState* state, int owner, int at)
     }
 }
 
-// Depth, owners and planes, as the pipeline says, of the lanes in f->covered.
+// Writes depth, owners and planes of the lanes in f->covered, as the pipeline says.
 static void drawFragments(Draw* d, const Setup* s, double z)
 {
     vplTileState* state = d->state;
@@ -270,7 +276,8 @@ static void drawFragments(Draw* d, const Setup* s, double z)
     }
 }
 
-// z: depth in lane 0. `edge`: edge functions there; NULL: all lanes are inside the triangle and the picture.
+// z: depth in lane 0. `edge`: edge functions in lane 0, or NULL: all lanes are inside the triangle and the
+// picture.
 static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup* s, int x, int y, double z,
                                                             const int32_t edge[3])
 {
@@ -282,27 +289,15 @@ static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup
         return;
     }
     if (d->distances && d->pipeline->distanceAlongAxis) {
-        if (filled) {
-            drawAlongAxis(d, x, y, block * VPL_LANES, true);
-        } else {
-            drawAlongAxis(d, x, y, block * VPL_LANES, false);
-        }
+        drawAlongAxis(d, x, y, block * VPL_LANES, filled);
         return;
     }
     if (d->distances) {
-        if (filled) {
-            drawDistance(d, x, y, block * VPL_LANES, true);
-        } else {
-            drawDistance(d, x, y, block * VPL_LANES, false);
-        }
+        drawDistance(d, x, y, block * VPL_LANES, filled);
         return;
     }
     if (d->depthOnly) {
-        if (filled) {
-            drawDepth(d, s, z, block * VPL_LANES, true);
-        } else {
-            drawDepth(d, s, z, block * VPL_LANES, false);
-        }
+        drawDepth(d, s, z, block * VPL_LANES, filled);
         return;
     }
     if (filled) {

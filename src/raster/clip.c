@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Based on: Ivan Sutherland and Gary Hodgman, Reentrant Polygon Clipping, CACM 1974, in homogeneous
 // coordinates as in James Blinn and Martin Newell, Clipping Using Homogeneous Coordinates, SIGGRAPH 1978.
-// Before the divide, so that triangles behind the eye never flip to the front. An edge is always cut from its
-// inner to its outer end, so the two triangles that share it get the same point.
+// Clipping comes before the divide, so that triangles behind the eye never flip to the front. An edge is
+// always cut from its inner to its outer end, so that the two triangles that share it get the same point.
 #include "raster/raster.h"
 
 #include <string.h>
@@ -28,7 +28,8 @@ static vplClipVertex cut(const Plane* plane, const vplClipVertex* inside, const 
     v.y = inside->y + t * (outside->y - inside->y);
     v.z = inside->z + t * (outside->z - inside->z);
     v.w = inside->w + t * (outside->w - inside->w);
-    // On the plane to the bit: with corners 1e15 apart the sums above would miss it by more than a picture.
+    // Puts the point exactly on the plane: with corners 1e15 apart the sums above would miss it by more than
+    // a picture.
     *(plane->axis == 0 ? &v.x : plane->axis == 1 ? &v.y : &v.z) = plane->limit * v.w;
     for (int k = 0; k < varyings; k++) {
         v.varying[k] = (float)(inside->varying[k] + t * ((double)outside->varying[k] - inside->varying[k]));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Which pixels, blocks and squares of a tile a triangle covers. Included by the tile kernel only.
+// Coverage: which pixels, blocks and squares of a tile a triangle covers. Included by the tile kernel only.
 // Based on: Michael Abrash, Rasterization on Larrabee, Game Developers Conference 2009: levels of 4 x 4.
 #ifndef VPL_RASTER_COVERAGE_H
 #define VPL_RASTER_COVERAGE_H
 
+#include "math/scalar.h"
 #include "raster/setup.h"
 
 static inline void edgesAt(const Setup* s, int x, int y, int32_t edge[3])
@@ -13,8 +14,8 @@ static inline void edgesAt(const Setup* s, int x, int y, int32_t edge[3])
     }
 }
 
-// Lanes of the block at (x, y) that are inside the triangle and the picture; 0 if there are none. `edge`: its edge
-// functions in lane 0.
+// Finds the lanes of the block at (x, y) that are inside the triangle and the picture. Returns 0 if there are
+// none. `edge`: the edge functions in lane 0.
 static inline int32_t cover(const vplTile* tile, const Setup* s, const int32_t edge[3], int x, int y,
                             int32_t covered[restrict VPL_LANES])
 {
@@ -46,8 +47,9 @@ static inline double least3(double a, double b, double c)
     return ab < c ? ab : c;
 }
 
-// Which cells of `side` pixels from (x, y) on a triangle touches, and which it fills. Doubles hold these integers
-// exactly, and unlike 64-bit integers they have a minimum in every instruction set.
+// Finds which of 4 x 4 cells of `side` pixels, the first at (x, y), a triangle touches and which it fills.
+// Doubles hold these integers exactly, and unlike 64-bit integers they have a minimum in every instruction
+// set.
 static inline Cells classify(const Setup* s, int x, int y, int side)
 {
     double e[3], right[3], down[3], most[3], least[3];
@@ -59,7 +61,7 @@ static inline Cells classify(const Setup* s, int x, int y, int side)
         most[i] = (side - 1) * ((a > 0 ? a : 0) + (b > 0 ? b : 0)); // from a cell's first centre
         least[i] = (side - 1) * ((a < 0 ? a : 0) + (b < 0 ? b : 0));
     }
-    float highest[VPL_LANES], lowest[VPL_LANES]; // only the sign is of interest
+    float highest[VPL_LANES], lowest[VPL_LANES]; // only their signs matter
     for (int l = 0; l < VPL_LANES; l++) {
         const int column = l & 3, row = l >> 2;
         const double u = e[0] + (right[0] * column + down[0] * row);
@@ -76,23 +78,13 @@ static inline Cells classify(const Setup* s, int x, int y, int side)
     return cells;
 }
 
-static inline int minOf(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-static inline int maxOf(int a, int b)
-{
-    return a > b ? a : b;
-}
-
-// Cells of 4 x 4 between two columns and two rows.
+// Those of 4 x 4 cells that lie in columns x0 to x1 and rows y0 to y1.
 static inline uint32_t cellsWithin(int x0, int x1, int y0, int y1)
 {
-    x0 = maxOf(x0, 0);
-    y0 = maxOf(y0, 0);
-    x1 = minOf(x1, 3);
-    y1 = minOf(y1, 3);
+    x0 = vplMaxi(x0, 0);
+    y0 = vplMaxi(y0, 0);
+    x1 = vplMini(x1, 3);
+    y1 = vplMini(y1, 3);
     if (x1 < x0 || y1 < y0) {
         return 0;
     }

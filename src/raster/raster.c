@@ -52,33 +52,10 @@ vplResult vplRaster_Create(vplContext* context, const vplFramebuffer* framebuffe
     return VPL_SUCCESS;
 }
 
-static void freeGeometry(vplRaster* raster)
-{
-    vplContext* context = raster->context;
-    for (int i = 0; i < raster->shadedCount; i++) {
-        vplShaded* shaded = &raster->shaded[i];
-        vplFree(context, shaded->storage);
-        vplFree(context, shaded->screen);
-        vplFree(context, shaded->outcodes);
-        shaded->storage = NULL;
-        shaded->screen = NULL;
-        shaded->outcodes = NULL;
-    }
-    void** const arrays[] = {(void**)&raster->refs,        (void**)&raster->clipped,
-                             (void**)&raster->extraScreen, (void**)&raster->extras,
-                             (void**)&raster->bins,        (void**)&raster->binStart,
-                             (void**)&raster->passUniforms};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        vplFree(context, *arrays[i]);
-        *arrays[i] = NULL;
-    }
-}
-
 void vplRaster_Destroy(vplRaster* raster)
 {
     if (raster != NULL) {
         vplContext* context = raster->context;
-        freeGeometry(raster);
         vplFree(context, raster->commands);
         vplFree(context, raster->pipelines);
         vplFree(context, raster->shaded);
@@ -123,13 +100,13 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
     return VPL_SUCCESS;
 }
 
-// A draw's vertex work is found again by mesh, shader and uniforms. Scenes draw their objects round and round,
-// so the search starts behind the one found last.
+// Draws of one mesh with one vertex shader and uniforms share their vertex work. Scenes draw their objects
+// round and round, so the search starts behind the one found last. Returns -1 where there is none.
 static int findShaded(const vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
 {
-    int last = raster->commandCount > 0 ? raster->commands[raster->commandCount - 1].shaded : -1;
+    const int last = raster->commandCount > 0 ? raster->commands[raster->commandCount - 1].shaded : -1;
     for (int i = 0; i < raster->shadedCount; i++) {
-        int at = (last + 1 + i) % raster->shadedCount;
+        const int at = (last + 1 + i) % raster->shadedCount;
         const vplShaded* s = &raster->shaded[at];
         if (s->key == mesh && s->vertexFcn == pipeline->vertex && s->uniforms == pipeline->vertexUniforms &&
             s->varyingCount == pipeline->varyingCount && s->surfaceFcn == pipeline->surface) {
@@ -139,66 +116,64 @@ static int findShaded(const vplRaster* raster, const vplMesh* mesh, const vplPip
     return -1;
 }
 
-static vplResult addShaded(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline, int* indexOut)
+static vplResult shareVertices(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline,
+                               int* indexOut)
 {
-    if (vplReserve(raster->context, &raster->shaded, &raster->shadedCapacity, (size_t)raster->shadedCount + 1,
-                   sizeof *raster->shaded) != VPL_SUCCESS) {
-        return VPL_OUT_OF_MEMORY;
+    *indexOut = findShaded(raster, mesh, pipeline);
+    if (*indexOut >= 0) {
+        return VPL_SUCCESS;
     }
-    vplShaded* shaded = &raster->shaded[raster->shadedCount];
-    memset(shaded, 0, sizeof *shaded);
-    shaded->key = mesh;
-    shaded->mesh = *mesh;
-    shaded->vertexFcn = pipeline->vertex;
-    shaded->uniforms = pipeline->vertexUniforms;
-    shaded->varyingCount = pipeline->varyingCount;
-    shaded->surfaceFcn = pipeline->surface;
-    shaded->surfaceCount = pipeline->surface ? pipeline->surfaceCount : pipeline->varyingCount;
+    TRY(vplReserve(raster->context, &raster->shaded, &raster->shadedCapacity, (size_t)raster->shadedCount + 1,
+                   sizeof *raster->shaded));
+    raster->shaded[raster->shadedCount] = (vplShaded){
+        .key = mesh,
+        .mesh = *mesh,
+        .vertexFcn = pipeline->vertex,
+        .uniforms = pipeline->vertexUniforms,
+        .varyingCount = pipeline->varyingCount,
+        .surfaceFcn = pipeline->surface,
+        .surfaceCount = pipeline->surface ? pipeline->surfaceCount : pipeline->varyingCount,
+    };
     *indexOut = raster->shadedCount++;
+    return VPL_SUCCESS;
+}
+
+// Draws one after another often have the same pipeline.
+static vplResult sharePipeline(vplRaster* raster, const vplPipeline* pipeline, int* indexOut)
+{
+    const int last = raster->pipelineCount - 1;
+    *indexOut = last;
+    if (last >= 0 && memcmp(&raster->pipelines[last], pipeline, sizeof *pipeline) == 0) {
+        return VPL_SUCCESS;
+    }
+    TRY(vplReserve(raster->context, &raster->pipelines, &raster->pipelineCapacity,
+                   (size_t)raster->pipelineCount + 1, sizeof *raster->pipelines));
+    *indexOut = raster->pipelineCount++;
+    raster->pipelines[*indexOut] = *pipeline;
     return VPL_SUCCESS;
 }
 
 static vplResult addCommand(vplRaster* raster, vplCommand command)
 {
-    if (vplReserve(raster->context, &raster->commands, &raster->commandCapacity,
-                   (size_t)raster->commandCount + 1, sizeof *raster->commands) != VPL_SUCCESS) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    TRY(vplReserve(raster->context, &raster->commands, &raster->commandCapacity,
+                   (size_t)raster->commandCount + 1, sizeof *raster->commands));
     raster->commands[raster->commandCount++] = command;
     return VPL_SUCCESS;
 }
 
 vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeline* pipeline)
 {
-    vplResult result = checkDraw(raster->context, mesh, pipeline);
-    if (result == VPL_SUCCESS && pipeline->ownerTest && raster->framebuffer.triangles != NULL) {
+    vplCommand command = {0};
+    TRY(checkDraw(raster->context, mesh, pipeline));
+    if (pipeline->ownerTest && raster->framebuffer.triangles != NULL) {
         return vplFail(raster->context, VPL_INVALID_ARGUMENT,
                        "vplPipeline.ownerTest is set, must not be with vplFramebuffer.triangles");
     }
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
-    int shaded = findShaded(raster, mesh, pipeline);
-    if (shaded < 0) {
-        result = addShaded(raster, mesh, pipeline, &shaded);
-        if (result != VPL_SUCCESS) {
-            return result;
-        }
-    }
-    int last = raster->pipelineCount - 1;
-    if (last < 0 || memcmp(&raster->pipelines[last], pipeline, sizeof *pipeline) != 0) {
-        if (vplReserve(raster->context, &raster->pipelines, &raster->pipelineCapacity,
-                       (size_t)raster->pipelineCount + 1, sizeof *raster->pipelines) != VPL_SUCCESS) {
-            return VPL_OUT_OF_MEMORY;
-        }
-        last = raster->pipelineCount++;
-        raster->pipelines[last] = *pipeline;
-    }
-    result = addCommand(raster, (vplCommand){.shaded = shaded, .pipeline = last});
-    if (result == VPL_SUCCESS) {
-        raster->stats.drawCalls++;
-    }
-    return result;
+    TRY(shareVertices(raster, mesh, pipeline, &command.shaded));
+    TRY(sharePipeline(raster, pipeline, &command.pipeline));
+    TRY(addCommand(raster, command));
+    raster->stats.drawCalls++;
+    return VPL_SUCCESS;
 }
 
 vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data)
@@ -206,39 +181,44 @@ vplResult vplRaster_TileTask(vplRaster* raster, vplTileFcn* fcn, void* data)
     return addCommand(raster, (vplCommand){.shaded = -1, .tileFcn = fcn, .data = data});
 }
 
-// Vertices, triangles and bins.
+// Passes, vertices, triangles and bins.
 static vplResult prepare(vplRaster* raster)
 {
-    vplResult result = vplFindPasses(raster);
+    raster->run = vplArena_Create(raster->context);
+    TRY(vplFindPasses(raster));
     const double start = vplClockMs();
     raster->stats.trianglesIn = 0;
     raster->stats.trianglesBinned = 0;
     raster->stats.fragments = 0;
-    for (int i = 0; i < raster->shadedCount && result == VPL_SUCCESS; i++) {
-        result = vplShadeVertices(raster, &raster->shaded[i]);
+    for (int i = 0; i < raster->shadedCount; i++) {
+        TRY(vplShadeVertices(raster, &raster->shaded[i]));
         raster->stats.trianglesIn += raster->shaded[i].mesh.triangleCount;
     }
-    if (result == VPL_SUCCESS) {
-        result = vplBinTriangles(raster);
-    }
+    TRY(vplBinTriangles(raster));
     raster->stats.vertexMs = vplClockMs() - start;
-    return result;
+    return VPL_SUCCESS;
+}
+
+static vplResult runAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user)
+{
+    for (int i = 0; i < count; i++) {
+        TRY(prepare(rasters[i]));
+    }
+    const double start = vplClockMs();
+    TRY(vplRunTiles(rasters, count, progress, user));
+    for (int i = 0; i < count; i++) {
+        rasters[i]->stats.tilesMs = (vplClockMs() - start) / count;
+    }
+    return VPL_SUCCESS;
 }
 
 vplResult vplRaster_RunAll(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user,
                            vplRasterStats* statsOut)
 {
-    vplResult result = VPL_SUCCESS;
-    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        result = prepare(rasters[i]);
-    }
-    const double start = vplClockMs();
-    if (result == VPL_SUCCESS) {
-        result = vplRunTiles(rasters, count, progress, user);
-    }
+    const vplResult result = runAll(rasters, count, progress, user);
     for (int i = 0; i < count; i++) {
-        freeGeometry(rasters[i]);
-        rasters[i]->stats.tilesMs = (vplClockMs() - start) / count;
+        vplArena_Destroy(rasters[i]->run);
+        rasters[i]->run = NULL;
         if (result == VPL_SUCCESS && statsOut != NULL) {
             statsOut[i] = rasters[i]->stats;
         }

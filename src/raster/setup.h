@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Triangles prepared for a tile, 16 at a time, so that the arithmetic of small ones is done side by side. Included
-// by the tile kernel only, so that it is compiled for each instruction set.
+// Sets triangles up for a tile, 16 at a time, so that the arithmetic of small ones is vectorised. Included by
+// the tile kernel only, so that it is compiled for each instruction set.
 // Based on: Juan Pineda, A Parallel Algorithm for Polygon Rasterization, SIGGRAPH 1988: edge functions. Ours
-// are exact integers, so coverage cannot depend on where a block or a tile starts. Doubles hold them: products of
-// 24-bit numbers and sums of a few of them stay below 2^53, and all instruction sets multiply doubles.
+// are exact integers, so coverage cannot depend on where a block or a tile starts. Doubles hold them:
+// products of 24-bit numbers and sums of a few of them stay below 2^53, and all instruction sets multiply
+// doubles.
 #ifndef VPL_RASTER_SETUP_H
 #define VPL_RASTER_SETUP_H
 
@@ -13,19 +14,25 @@ enum { BATCH = VPL_LANES };
 
 // Edge i lies opposite corner i; its function is the area at that corner.
 typedef struct Batch {
-    _Alignas(64) int32_t left[BATCH], right[BATCH], top[BATCH], bottom[BATCH]; // pixel boxes in the tile
-    _Alignas(64) int32_t x[3][BATCH], y[3][BATCH]; // corners, 24.8 fixed point; turned by setUpBatch
+    // Pixel boxes in the tile.
+    _Alignas(64) int32_t left[BATCH], right[BATCH], top[BATCH], bottom[BATCH];
+    // Corners, 24.8 fixed point; oriented by setUpBatch.
+    _Alignas(64) int32_t x[3][BATCH], y[3][BATCH];
     _Alignas(64) float z[3][BATCH];
-    _Alignas(64) double e[3][BATCH]; // at the centre of the tile's first pixel, with the bias below
-    _Alignas(64) double a[3][BATCH], b[3][BATCH];            // growth per sub-pixel in x and y
-    _Alignas(64) double planeZ[BATCH], zx[BATCH], zy[BATCH]; // depth there, and its growth per pixel
-    _Alignas(64) int32_t edge[3][BATCH];   // e / 256, rounded down, at the first block that the box touches
-    _Alignas(64) int32_t clockwise[BATCH]; // as seen, before turning
+    // Edge functions at the centre of the tile's first pixel, with the bias of setUpBatch, and their growth
+    // per sub-pixel in x and y.
+    _Alignas(64) double e[3][BATCH], a[3][BATCH], b[3][BATCH];
+    // Depth at the same place, and its growth per pixel.
+    _Alignas(64) double planeZ[BATCH], zx[BATCH], zy[BATCH];
+    // e / 256, rounded down, at the first block that the box touches.
+    _Alignas(64) int32_t edge[3][BATCH];
+    // -1 where the triangle is clockwise on screen, before it is oriented.
+    _Alignas(64) int32_t clockwise[BATCH];
     uint32_t vertex[3][BATCH];
     int32_t primitive[BATCH];
 } Batch;
 
-// Looks up the corners of triangle `ref` for place k.
+// Looks up the corners of triangle `ref` for place k of the batch.
 static inline void fetchTriangle(const vplRaster* r, const vplShaded* s, int ref, Batch* batch, int k)
 {
     const uint32_t source = r->refs[ref].source;
@@ -64,7 +71,7 @@ static inline int32_t most3i(int32_t a, int32_t b, int32_t c)
     return ab > c ? ab : c;
 }
 
-// The triangles' pixel boxes within the tile; see vplBoundTriangle.
+// Finds the triangles' pixel boxes within the tile; see vplTriangle_PixelBox.
 static inline void boundBatch(const vplTile* tile, Batch* t)
 {
     const int32_t left = tile->x, top = tile->y, right = tile->width - 1, bottom = tile->height - 1;
@@ -80,8 +87,8 @@ static inline void boundBatch(const vplTile* tile, Batch* t)
     }
 }
 
-// Turns triangles so that their areas are positive with y down: clockwise as seen.
-static inline void turnBatch(Batch* t)
+// Swaps corners so that all areas are positive with y down: clockwise on screen.
+static inline void orientBatch(Batch* t)
 {
     for (int k = 0; k < BATCH; k++) {
         const int32_t x1 = t->x[1][k], x2 = t->x[2][k], y1 = t->y[1][k], y2 = t->y[2][k];
@@ -104,7 +111,8 @@ static inline void turnBatch(Batch* t)
     }
 }
 
-// Within a block an edge grows by less than 2^28 pixels' worth, so beyond 2^30 only the sign matters.
+// Rounds an edge function to whole pixels. Within a block it grows by less than 2^28, so beyond 2^30 only the
+// sign matters.
 static inline int32_t edgeOf(double e)
 {
     double v = e * 0x1p-8;
@@ -128,7 +136,7 @@ static inline void setUpBatch(const vplTile* tile, Batch* t)
 {
     const double px = 256.0 * tile->x + 128, py = 256.0 * tile->y + 128;
     boundBatch(tile, t);
-    turnBatch(t);
+    orientBatch(t);
     for (int i = 0; i < 3; i++) {
         const int p = (i + 1) % 3, q = (i + 2) % 3;
         for (int k = 0; k < BATCH; k++) {
@@ -139,14 +147,15 @@ static inline void setUpBatch(const vplTile* tile, Batch* t)
         }
     }
     for (int k = 0; k < BATCH; k++) {
-        // Sum of the three edge functions anywhere is the doubled area.
+        // The sum of the three edge functions is twice the area, anywhere.
         const double inverse = 1 / (t->e[0][k] + t->e[1][k] + t->e[2][k]);
         const double z1 = (double)t->z[1][k] - t->z[0][k], z2 = (double)t->z[2][k] - t->z[0][k];
         t->zx[k] = 256 * inverse * (z1 * t->a[1][k] + z2 * t->a[2][k]);
         t->zy[k] = 256 * inverse * (z1 * t->b[1][k] + z2 * t->b[2][k]);
         t->planeZ[k] = t->z[0][k] + inverse * (z1 * t->e[1][k] + z2 * t->e[2][k]);
     }
-    for (int i = 0; i < 3; i++) { // left and top edges own their centres, others leave them to the neighbour
+    for (int i = 0; i < 3;
+         i++) { // centres on left and top edges are inside, on others they are the neighbour's
         for (int k = 0; k < BATCH; k++) {
             const double a = t->a[i][k], b = t->b[i][k];
             const double owned = a > 0 ? 0 : 1, ownedTop = b > 0 ? 0 : 1;
@@ -161,7 +170,7 @@ typedef struct Setup {
     double e[3], a[3], b[3];
     double z, zx, zy;
     _Alignas(64) double laneZ[VPL_LANES];
-    double leastZ, mostZ;                     // of laneZ
+    double leastZ, mostZ;                     // least and largest laneZ
     _Alignas(64) int32_t steps[3][VPL_LANES]; // growth of the edges from lane 0, in whole pixels (e / 256)
 } Setup;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shaders of a block, and what happens to their results. Included by kernels only.
+// Runs shaders on a block and blends their results. Included by kernels only.
 #ifndef VPL_RASTER_SHADERS_H
 #define VPL_RASTER_SHADERS_H
 
@@ -14,7 +14,8 @@ static inline void blendPlane(vplBlend blend, const int32_t covered[VPL_LANES], 
     memcpy(from, drawn, sizeof from);
     memcpy(to, plane, sizeof to);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float kept = to[l], sum = kept + from[l]; // made for all lanes: a choice then, not a branch
+        const float kept = to[l],
+                    sum = kept + from[l]; // for all lanes, so that the next line needs no branch
         to[l] = covered[l] ? (blend == VPL_BLEND_ADD ? sum : from[l]) : kept;
     }
     memcpy(plane, to, sizeof to);
@@ -55,7 +56,7 @@ static inline void runFragmentShader(const vplPipeline* p, vplFragments* f, floa
     p->fragment(p->fragmentUniforms, f);
 }
 
-// Several passes in one call.
+// Runs `count` fused passes.
 static inline void runPassShader(const vplPipeline* p, const void* const* uniforms, int count,
                                  vplFragments* f, float* const planes[], int planeCount)
 {
@@ -68,7 +69,7 @@ static inline void runPassShader(const vplPipeline* p, const void* const* unifor
     }
 }
 
-// Varyings of a kept block.
+// How many varyings a kept block has.
 static inline int keptVaryings(const vplTileState* state)
 {
     return (int)((state->keptStride - sizeof(vplKeptBlock)) / sizeof(float)) / VPL_LANES - 2;

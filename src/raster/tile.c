@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Runs all commands on one tile after another. A tile's pixels live in memory of its worker, blocks of 4x4 in
-// a row, and meet the row-major planes only at the start and the end.
-#include "raster/raster.h"
-#include "base/isa.h"
+// Runs all commands on one tile after another. A tile's pixels live in its worker's memory, in 4 x 4 blocks,
+// and are copied from and to the row-major planes only at the start and the end.
+#include "raster/kernels.h"
 
 #include <math.h>
 #include <string.h>
-
-VPL_KERNEL_TABLE(DRAW_TILE, vplDrawTileFcn, vplDrawTile);
-VPL_KERNEL_TABLE(RUN_PASSES, vplRunPassesFcn, vplRunPasses);
 
 typedef struct Run {
     vplRaster* const* rasters;
@@ -17,7 +13,6 @@ typedef struct Run {
     vplTileState* states;   // one per worker
     int64_t* tileFragments; // one per tile
     char* memory;           // of all states
-    int meshes;             // most of any raster
 } Run;
 
 static void fill(float* storage, float value)
@@ -58,7 +53,7 @@ static void storePlane(const vplRaster* r, const vplTile* tile, const vplPlane* 
     }
 }
 
-// Where each mesh's triangles begin in the tile's bin, which is sorted by mesh.
+// Finds where each mesh's triangles start in the tile's bin, which is sorted by mesh.
 static void findMeshes(const vplRaster* r, const int* bin, int count, int* meshStart)
 {
     int at = 0;
@@ -71,7 +66,7 @@ static void findMeshes(const vplRaster* r, const int* bin, int count, int* meshS
     meshStart[r->shadedCount] = count;
 }
 
-// Draws that shade what is visible, mesh by mesh.
+// Runs a row of passes, mesh by mesh.
 static void runPasses(const vplRaster* r, vplTileState* state, int first, const int* bin)
 {
     for (int i = first; i < r->commands[first].passesEnd; i++) {
@@ -83,10 +78,10 @@ static void runPasses(const vplRaster* r, vplTileState* state, int first, const 
         if (state->keptEpoch[mesh] != c->epoch) {
             state->keptEpoch[mesh] = c->epoch;
             state->keptStart[mesh] = state->keptCount;
-            DRAW_TILE[r->context->isa](state, r, c, bin + start, end - start, true);
+            vplRasterKernels_Get(r->context->isa)->drawTile(state, r, c, bin + start, end - start, true);
             state->keptEnd[mesh] = state->keptCount;
         }
-        RUN_PASSES[r->context->isa](state, r, i);
+        vplRasterKernels_Get(r->context->isa)->runPasses(state, r, i);
     }
 }
 
@@ -95,7 +90,7 @@ static void runCommands(const vplRaster* r, vplTileState* state, const int* bin,
     int epoch = -1;
     for (int i = 0; i < r->commandCount;) {
         const vplCommand* c = &r->commands[i];
-        if (c->repeats) {
+        if (c->isPass) {
             state->keptCount = c->epoch == epoch ? state->keptCount : 0;
             epoch = c->epoch;
             runPasses(r, state, i, bin);
@@ -109,7 +104,7 @@ static void runCommands(const vplRaster* r, vplTileState* state, const int* bin,
         }
         const int start = state->meshStart[c->shaded], end = state->meshStart[c->shaded + 1];
         if (start < end) {
-            DRAW_TILE[r->context->isa](state, r, c, bin + start, end - start, false);
+            vplRasterKernels_Get(r->context->isa)->drawTile(state, r, c, bin + start, end - start, false);
         }
     }
 }
@@ -133,7 +128,7 @@ static void loadPlanes(const vplRaster* r, vplTileState* state)
     memset(tile->scratch, 0, f->scratchBytes);
 }
 
-// A tile where nothing is drawn keeps what was there or is cleared, without a way through the tile's storage.
+// A tile without draws is cleared, or left as it is, in the planes themselves.
 static void clearTile(const vplRaster* r, const vplTile* tile)
 {
     const vplFramebuffer* f = &r->framebuffer;
@@ -192,11 +187,11 @@ static void runTile(void* data, int number, int worker)
     run->tileFragments[number] = state->fragments;
 }
 
-// Sizes of a worker's memory: the most that any raster needs.
-typedef struct Needs {
+// Sizes of a worker's memory: the largest that any raster needs.
+typedef struct Sizes {
     size_t planes, scratch, meshes, kept, keptStride;
     bool owners;
-} Needs;
+} Sizes;
 
 static size_t roundUp(size_t bytes)
 {
@@ -208,9 +203,9 @@ static size_t mostOf(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-static Needs findNeeds(const Run* run)
+static Sizes findSizes(const Run* run)
 {
-    Needs n = {0};
+    Sizes n = {0};
     for (int i = 0; i < run->rasterCount; i++) {
         const vplRaster* r = run->rasters[i];
         n.planes = mostOf(n.planes, (size_t)r->framebuffer.planeCount);
@@ -233,9 +228,9 @@ static void* take(char* memory, size_t* at, size_t bytes)
     return taken;
 }
 
-// Lays a worker's state out in `memory` (NULL: nowhere) and returns how much it takes. Vectors must not
-// straddle cache lines, and what vplAlloc returns starts with one.
-static size_t layOut(const Needs* n, vplTileState* state, char* memory)
+// Places a worker's arrays in `memory` (NULL: only measures) and returns how many bytes they take. All start
+// at a cache line, so that no vector straddles two.
+static size_t layOut(const Sizes* n, vplTileState* state, char* memory)
 {
     const size_t plane = VPL_TILE_PIXELS * sizeof(float), perMesh = (n->meshes + 1) * sizeof(int);
     size_t at = 0;
@@ -255,27 +250,40 @@ static size_t layOut(const Needs* n, vplTileState* state, char* memory)
     return at;
 }
 
-static vplResult makeStates(Run* run)
+static vplResult makeStates(Run* run, vplArena* scratch)
+{
+    const size_t workers = (size_t)run->rasters[0]->context->workerCount;
+    const Sizes sizes = findSizes(run);
+    vplTileState sample;
+    const size_t perWorker = layOut(&sizes, &sample, NULL);
+    run->firstTile = vplArena_Alloc(scratch, (size_t)run->rasterCount + 1, sizeof *run->firstTile);
+    TRY(vplArena_Check(scratch));
+    int tiles = 0;
+    for (int i = 0; i < run->rasterCount; i++) {
+        run->firstTile[i] = tiles;
+        tiles += run->rasters[i]->tilesX * run->rasters[i]->tilesY;
+    }
+    run->firstTile[run->rasterCount] = tiles;
+    run->states = vplArena_AllocZero(scratch, workers, sizeof *run->states);
+    run->tileFragments = vplArena_AllocZero(scratch, (size_t)tiles, sizeof *run->tileFragments);
+    run->memory = vplArena_Alloc(scratch, workers, perWorker);
+    TRY(vplArena_Check(scratch));
+    for (size_t i = 0; i < workers; i++) {
+        layOut(&sizes, &run->states[i], run->memory + i * perWorker);
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult runTiles(Run* run, vplArena* scratch, vplProgressFcn* progress, void* user)
 {
     vplContext* context = run->rasters[0]->context;
-    const size_t workers = (size_t)context->workerCount;
-    const Needs needs = findNeeds(run);
-    vplTileState sample;
-    const size_t perWorker = layOut(&needs, &sample, NULL);
-    int64_t tiles = 0;
-    run->firstTile = vplAlloc(context, (size_t)run->rasterCount + 1, sizeof *run->firstTile);
-    for (int i = 0; run->firstTile != NULL && i <= run->rasterCount; i++) {
-        run->firstTile[i] = (int)tiles;
-        tiles += i < run->rasterCount ? run->rasters[i]->tilesX * run->rasters[i]->tilesY : 0;
-    }
-    run->states = vplAllocZero(context, workers, sizeof *run->states);
-    run->tileFragments = vplAllocZero(context, (size_t)tiles, sizeof *run->tileFragments);
-    run->memory = vplAlloc(context, workers, perWorker);
-    if (!run->firstTile || !run->states || !run->tileFragments || !run->memory) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    for (size_t i = 0; i < workers; i++) {
-        layOut(&needs, &run->states[i], run->memory + i * perWorker);
+    TRY(makeStates(run, scratch));
+    TRY(vplParallelForProgress(context, run->firstTile[run->rasterCount], runTile, run, progress, user, 0,
+                               1));
+    for (int i = 0; i < run->rasterCount; i++) {
+        for (int tile = run->firstTile[i]; tile < run->firstTile[i + 1]; tile++) {
+            run->rasters[i]->stats.fragments += run->tileFragments[tile];
+        }
     }
     return VPL_SUCCESS;
 }
@@ -283,19 +291,8 @@ static vplResult makeStates(Run* run)
 vplResult vplRunTiles(vplRaster* const* rasters, int count, vplProgressFcn* progress, void* user)
 {
     Run run = {.rasters = rasters, .rasterCount = count};
-    vplContext* context = rasters[0]->context;
-    vplResult result = makeStates(&run);
-    if (result == VPL_SUCCESS) {
-        result = vplParallelForProgress(context, run.firstTile[count], runTile, &run, progress, user, 0, 1);
-    }
-    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        for (int tile = run.firstTile[i]; tile < run.firstTile[i + 1]; tile++) {
-            rasters[i]->stats.fragments += run.tileFragments[tile];
-        }
-    }
-    vplFree(context, run.memory);
-    vplFree(context, run.tileFragments);
-    vplFree(context, run.states);
-    vplFree(context, run.firstTile);
+    vplArena* scratch = vplArena_Create(rasters[0]->context);
+    const vplResult result = runTiles(&run, scratch, progress, user);
+    vplArena_Destroy(scratch);
     return result;
 }

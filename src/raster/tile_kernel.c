@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Draws triangles into one tile: 4 x 4 squares of 4 x 4 blocks of 4 x 4 pixels. Squares and blocks that a
-// triangle does not touch are left out, in those it fills no pixel is asked. Compiled once per instruction set;
-// all give the same bits.
-// Based on: Michael Abrash, Rasterization on Larrabee, Game Developers Conference 2009: three levels of 4 x 4.
-// Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility, SIGGRAPH 1993: a block knows the
-// farthest depth in it, and what lies behind that is not looked at.
-#include "base/isa.h"
+// triangle does not touch are skipped; in those that it fills no pixel is tested for coverage. Compiled once
+// per instruction set; all give the same bits.
+// Based on: Michael Abrash, Rasterization on Larrabee, Game Developers Conference 2009: three levels of 4 x
+// 4. Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility, SIGGRAPH 1993: a block
+// stores a bound of its depths, and triangles behind that are skipped.
 #include "raster/blocks.h"
+#include "raster/kernels.h"
 
 enum { SQUARE_SIDE = 4 * VPL_BLOCK_SIDE, SQUARES = VPL_TILE_SIDE / SQUARE_SIDE };
 
@@ -15,7 +15,7 @@ static inline double depthAt(const Setup* s, int x, int y)
     return s->z + (s->zx * x + s->zy * y);
 }
 
-// Blocks of a square in which all that is there is nearer than the triangle. z: its depths in lane 0 of each.
+// Blocks of a square whose depths are all nearer than the triangle. z: its depths in lane 0 of each block.
 static inline uint32_t hiddenBlocks(const Setup* s, const double z[VPL_LANES],
                                     const float farthest[VPL_LANES])
 {
@@ -26,7 +26,7 @@ static inline uint32_t hiddenBlocks(const Setup* s, const double z[VPL_LANES],
     return hidden;
 }
 
-// In blocks that the triangle fills no lane keeps a depth beyond the triangle's.
+// Lowers the bounds of blocks that the triangle fills: no lane keeps a depth beyond the triangle's.
 static inline void tightenBlocks(const Setup* s, const double z[VPL_LANES], uint32_t filled,
                                  float farthest[VPL_LANES])
 {
@@ -37,7 +37,7 @@ static inline void tightenBlocks(const Setup* s, const double z[VPL_LANES], uint
     }
 }
 
-// The blocks of a square whose bits are set in `within`.
+// Draws the blocks of a square whose bits are set in `within`.
 static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, bool filled)
 {
     const vplTile* tile = &d->state->tile;
@@ -77,12 +77,12 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
     }
 }
 
-// Whether all that is there is nearer than the triangle in blocks x0 .. x1, y0 .. y1.
+// Whether all depths in blocks x0 to x1, y0 to y1 are nearer than the triangle.
 static bool isHidden(const Draw* d, int x0, int y0, int x1, int y1)
 {
     const Batch* t = d->batch;
     const double zx = t->zx[d->place], zy = t->zy[d->place];
-    const double least = (zx < 0 ? zx * 3 : 0) + (zy < 0 ? zy * 3 : 0); // the bits of boundDepth's
+    const double least = (zx < 0 ? zx * 3 : 0) + (zy < 0 ? zy * 3 : 0); // same bits as in boundDepth
     for (int y = y0; y <= y1; y++) {
         for (int x = x0; x <= x1; x++) {
             const double z = t->planeZ[d->place] + (zx * (x * VPL_BLOCK_SIDE) + zy * (y * VPL_BLOCK_SIDE));
@@ -106,7 +106,7 @@ static void drawTriangle(Draw* d)
     }
     setUp(t, d->place, &s);
     if (d->distances) {
-        needShares(d);
+        needBarycentrics(d);
     }
     if (x1 == x0 && y1 == y0) {
         const int32_t edge[3] = {t->edge[0][d->place], t->edge[1][d->place], t->edge[2][d->place]};
@@ -114,7 +114,7 @@ static void drawTriangle(Draw* d)
         drawBlock(d, &s, x, y, depthAt(&s, x, y), edge);
         return;
     }
-    if (x1 - x0 <= 1 && y1 - y0 <= 1) { // asking pixels at once is less work
+    if (x1 - x0 <= 1 && y1 - y0 <= 1) { // testing pixels directly is less work than classifying blocks
         for (int row = y0; row <= y1; row++) {
             for (int column = x0; column <= x1; column++) {
                 const int x = column * VPL_BLOCK_SIDE, y = row * VPL_BLOCK_SIDE;
@@ -138,59 +138,69 @@ static void drawTriangle(Draw* d)
     }
 }
 
-vplDrawTileFcn VPL_KERNEL(vplDrawTile);
+static Draw startDraw(vplTileState* state, const vplRaster* raster, const vplCommand* command)
+{
+    const vplPipeline* p = &raster->pipelines[command->pipeline];
+    const bool less = p->depthCompare == VPL_DEPTH_LESS || p->depthCompare == VPL_DEPTH_LESS_EQUAL;
+    const bool byPlane = less && !p->writesDepth && p->distanceScale == 0; // depth is the triangle's plane
+    return (Draw){.state = state,
+                  .raster = raster,
+                  .pipeline = p,
+                  .shaded = &raster->shaded[command->shaded],
+                  .distances = p->distanceScale != 0,
+                  .texel = 2.0f / (float)raster->framebuffer.width,
+                  .rejects = byPlane,
+                  .tightens = byPlane && p->depthWrite && !p->ownerTest,
+                  .depthOnly = p->fragment == NULL && p->distanceScale == 0 &&
+                               p->depthCompare == VPL_DEPTH_LESS && p->depthWrite && !p->ownerTest};
+}
+
+// Draws the first `count` triangles of a batch, the refs list[0] to list[count - 1].
+static void drawBatch(Draw* d, Batch* batch, const int* list, int count)
+{
+    vplTileState* state = d->state;
+    const vplCull cull = d->pipeline->cull;
+    const bool names = d->raster->framebuffer.triangles != NULL;
+    Tiny tiny;
+    for (int k = 0; k < count; k++) {
+        fetchTriangle(d->raster, d->shaded, list[k], batch, k);
+    }
+    setUpBatch(&state->tile, batch);
+    const bool anyTiny = d->depthOnly && cull == VPL_CULL_NONE && hasTiny(batch, count);
+    if (anyTiny) {
+        testTiny(batch, &tiny);
+    }
+    for (int k = 0; k < count; k++) {
+        d->owner = names ? d->shaded->firstTriangle + batch->primitive[k] : list[k];
+        d->place = k;
+        d->hasBarycentrics = false;
+        state->block.primitive = batch->primitive[k];
+        if (anyTiny && isTiny(batch, k)) {
+            state->fragments += drawTiny(&tiny, k, state->depth, state->owner, d->owner);
+        } else if (cull == VPL_CULL_NONE || (cull == VPL_CULL_BACK) != (batch->clockwise[k] != 0)) {
+            drawTriangle(d);
+        }
+    }
+}
 
 void VPL_KERNEL(vplDrawTile)(vplTileState* state, const vplRaster* raster, const vplCommand* command,
                              const int* list, int count, bool keep)
 {
-    const vplPipeline* p = &raster->pipelines[command->pipeline];
-    const bool nearer = p->depthCompare == VPL_DEPTH_LESS || p->depthCompare == VPL_DEPTH_LESS_EQUAL;
-    const bool byPlane = nearer && !p->writesDepth && p->distanceScale == 0; // depth is the triangle's plane
-    Shares shares;
+    Barycentrics barycentrics;
     Batch batch;
-    Tiny tiny;
-    memset(batch.x, 0, sizeof batch.x); // places that stay empty are computed, too
+    memset(batch.x, 0, sizeof batch.x); // the arithmetic runs over unused places, too
     memset(batch.y, 0, sizeof batch.y);
     memset(batch.z, 0, sizeof batch.z);
     memset(batch.vertex, 0, sizeof batch.vertex);
-    Draw d = {.state = state,
-              .raster = raster,
-              .pipeline = p,
-              .shaded = &raster->shaded[command->shaded],
-              .shares = &shares,
-              .batch = &batch,
-              .keep = keep,
-              .distances = p->distanceScale != 0,
-              .texel = 2.0f / (float)raster->framebuffer.width,
-              .rejects = byPlane,
-              .tightens = byPlane && p->depthWrite && !p->ownerTest};
-    d.depthOnly = p->fragment == NULL && p->distanceScale == 0 && p->depthCompare == VPL_DEPTH_LESS &&
-                  p->depthWrite && !p->ownerTest;
-    const bool names = raster->framebuffer.triangles != NULL;
+    Draw d = startDraw(state, raster, command);
+    d.barycentrics = &barycentrics;
+    d.batch = &batch;
+    d.keep = keep;
     state->block.scratch = state->tile.scratch;
     for (int first = 0; first < count; first += BATCH) {
-        const int some = count - first < BATCH ? count - first : BATCH;
-        for (int k = 0; k < some; k++) {
-            fetchTriangle(raster, d.shaded, list[first + k], &batch, k);
-        }
-        setUpBatch(&state->tile, &batch);
-        const bool anyTiny = d.depthOnly && p->cull == VPL_CULL_NONE && hasTiny(&batch, some);
-        if (anyTiny) {
-            testTiny(&batch, &tiny);
-        }
-        for (int k = 0; k < some; k++) {
-            d.owner = names ? d.shaded->firstTriangle + batch.primitive[k] : list[first + k];
-            d.place = k;
-            d.hasShares = false;
-            state->block.primitive = batch.primitive[k];
-            if (anyTiny && isTiny(&batch, k)) {
-                state->fragments += drawTiny(&tiny, k, state->depth, state->owner, d.owner);
-            } else if (p->cull == VPL_CULL_NONE || (p->cull == VPL_CULL_BACK) != (batch.clockwise[k] != 0)) {
-                drawTriangle(&d);
-            }
-        }
+        drawBatch(&d, &batch, list + first, count - first < BATCH ? count - first : BATCH);
     }
-    if (p->depthWrite && p->depthCompare == VPL_DEPTH_ALWAYS) {
+    if (d.pipeline->depthWrite && d.pipeline->depthCompare == VPL_DEPTH_ALWAYS) {
         for (int i = 0; i < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; i++) {
             state->farthest[i] = INFINITY;
         }

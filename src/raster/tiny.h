@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Triangles whose pixel box has at most 2 x 2 centres, 16 triangles side by side instead of 16 pixels: with two
-// pixels each a block would be asked for 14 lanes in vain. Included by the tile kernel only.
+// Draws triangles whose pixel box has at most 2 x 2 centres: the lanes are 16 triangles, because a block of
+// 16 pixels would use 4 of its lanes at most. Included by the tile kernel only.
 #ifndef VPL_RASTER_TINY_H
 #define VPL_RASTER_TINY_H
 
@@ -19,7 +19,7 @@ static inline bool isTiny(const Batch* t, int k)
     return t->right[k] - t->left[k] < TINY_SIDE && t->bottom[k] - t->top[k] < TINY_SIDE;
 }
 
-// Whether any of the first `count` triangles is.
+// Whether any of the first `count` triangles is tiny.
 static inline bool hasTiny(const Batch* t, int count)
 {
     bool any = false;
@@ -48,7 +48,7 @@ static inline void testTinyPixel(const Batch* t, int column, int row, float* res
         const double uv = u < v ? u : v, least = uv < w ? uv : w;
         const int32_t within = (px <= t->right[k]) & (py <= t->bottom[k]);
         inside[k] = (least >= 0 ? -1 : 0) & -within;
-        // The bits of a block's depths: those of its first pixel, then the growth to the lane.
+        // The same bits as in a block: depth of its first pixel, then the growth to the lane.
         const double z = t->planeZ[k] + (t->zx[k] * (px & ~3) + t->zy[k] * (py & ~3));
         depth[k] = clampDepth(z + (t->zx[k] * (px & 3) + t->zy[k] * (py & 3)));
         element[k] =
@@ -63,7 +63,7 @@ static inline void testTiny(const Batch* t, Tiny* tiny)
     }
 }
 
-// Draws triangle k of the batch, depth and (unless `owners` is NULL) owner only. Returns how many fragments passed.
+// Draws depth and (unless `owners` is NULL) owner of triangle k. Returns how many fragments passed.
 static inline int drawTiny(const Tiny* tiny, int k, float* depth, int32_t* owners, int32_t owner)
 {
     int passed = 0;

@@ -6,9 +6,6 @@
 
 enum { CHUNK = 4096 };
 
-// Below this w a vertex is as good as in the eye: 1/w would near the end of float's range.
-static const double SMALLEST_W = 1e-30;
-
 typedef struct Pixel {
     double x, y;
 } Pixel;
@@ -19,8 +16,8 @@ static Pixel toPixel(const vplRaster* raster, double x, double y, double w)
                    (0.5 - y / w * 0.5) * raster->framebuffer.height};
 }
 
-// To the nearest even, as Direct3D snaps, so that both sides of an edge agree. Adding 1.5 * 2^52 leaves no bits
-// below 1, as rint does, which is a function call on plain x86-64.
+// Rounds to the nearest even, as Direct3D snaps, so that both sides of an edge agree. Adding 1.5 * 2^52
+// leaves no bits below 1; rint does the same, but is a function call on plain x86-64.
 static int32_t nearest(double v)
 {
     return (int32_t)((v + 0x1.8p52) - 0x1.8p52);
@@ -37,7 +34,7 @@ vplScreenVertex vplProject(const vplRaster* raster, double x, double y, double z
     return snap(toPixel(raster, x, y, w), z / w);
 }
 
-// Outcode of a clip-space position, and where it lies on the screen unless that is out of range.
+// Returns the outcode of a clip-space position. Sets *screenOut where the position is within range.
 static uint8_t projectVertex(const vplRaster* raster, double x, double y, double z, double w,
                              vplScreenVertex* screenOut)
 {
@@ -46,7 +43,7 @@ static uint8_t projectVertex(const vplRaster* raster, double x, double y, double
     }
     int code = (x < -w ? VPL_OUT_LEFT : 0) | (x > w ? VPL_OUT_RIGHT : 0) | (y < -w ? VPL_OUT_BOTTOM : 0) |
                (y > w ? VPL_OUT_TOP : 0) | (z < 0 ? VPL_OUT_NEAR : 0) | (z > w ? VPL_OUT_FAR : 0);
-    if (w < SMALLEST_W) {
+    if (w < VPL_SMALLEST_W) {
         return (uint8_t)(code | VPL_OUT_GUARD);
     }
     const double limit = (double)VPL_FIXED_LIMIT / (1 << VPL_SUBPIXEL_BITS);
@@ -88,13 +85,10 @@ static void shadeChunk(void* data, int index, int worker)
 vplResult vplShadeVertices(vplRaster* raster, vplShaded* shaded)
 {
     size_t count = (size_t)shaded->mesh.vertexCount;
-    shaded->storage = vplAlloc(raster->context, count * (size_t)(4 + shaded->varyingCount), sizeof(float));
-    shaded->screen = vplAlloc(raster->context, count, sizeof *shaded->screen);
-    shaded->outcodes = vplAlloc(raster->context, count, 1);
-    if (!shaded->storage || !shaded->screen || !shaded->outcodes) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    float* at = shaded->storage;
+    float* at = vplArena_Alloc(raster->run, count * (size_t)(4 + shaded->varyingCount), sizeof *at);
+    shaded->screen = vplArena_Alloc(raster->run, count, sizeof *shaded->screen);
+    shaded->outcodes = vplArena_Alloc(raster->run, count, 1);
+    TRY(vplArena_Check(raster->run));
     shaded->clip.x = at;
     shaded->clip.y = at + count;
     shaded->clip.z = at + 2 * count;

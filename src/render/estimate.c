@@ -1,11 +1,268 @@
 // SPDX-License-Identifier: MIT
-// Counts and bytes of a plan.
+// Counts and bytes of a plan. A stage that ran while decisions were made is known exactly; for the others sizes follow from
+// what they allocate. tests/test_plan.c compares the sum with what rendering holds.
 #include "render/plan.h"
+#include "render/stages/ssvp.h"
+#include "visibility/hemi_map.h"
+#include "scene/scene.h"
+#include "visibility/paraboloid_map.h"
 
-vplResult vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* p)
+typedef struct Scale {
+    const vplPlan* plan;
+    double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
+} Scale;
+
+typedef struct Bytes {
+    double held, scratch;
+} Bytes;
+
+// Bytes per triangle that the rasterizer holds while it draws a view, and the six faces of a cube map.
+static const double RASTER_VIEW = 34, RASTER_CUBE = 150;
+
+static int countMaps(const vplPlan* p, bool points)
 {
-    (void)runner;
-    (void)machine;
-    (void)p;
+    int count = 0;
+    for (int i = 0; i < p->emitterCount; i++) {
+        const vplEmitterType type = p->emitters[i].type;
+        count += points ? type == VPL_EMITTER_POINT : type != VPL_EMITTER_DIRECTIONAL;
+    }
+    return count;
+}
+
+// Faces of the reflective maps of all emitters.
+static double rsmFaces(const vplPlan* p)
+{
+    return p->emitterCount + 5.0 * countMaps(p, true);
+}
+
+// ---- stages
+
+static Bytes emitterMaps(const Scale* s)
+{
+    const double size = s->plan->options.shadow.mapSize, shadow = sizeof(vplShadow);
+    return (Bytes){countMaps(s->plan, false) * 6 * size * size * sizeof(float) + s->plan->emitterCount * shadow,
+                   2e5 + RASTER_CUBE * s->triangles};
+}
+
+static Bytes areaLights(const Scale* s)
+{
+    return (Bytes){s->plan->options.lights.areaLightSamples * (double)sizeof(vplShadeLight), 0};
+}
+
+static Bytes reflectiveMaps(const Scale* s)
+{
+    const double size = s->plan->options.shadow.rsmSize; // a distance and a triangle per texel
+    return (Bytes){rsmFaces(s->plan) * size * size * 8, 1.5e5 + RASTER_VIEW * s->triangles};
+}
+
+static Bytes virtualLightSet(const Scale* s)
+{
+    return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4};
+}
+
+static Bytes preparedLights(const Scale* s)
+{
+    return (Bytes){s->lights * sizeof(vplShadeLight), 0};
+}
+
+// Of both hemispheres, whether they are used or not.
+static Bytes paraboloids(const Scale* s, double lights, double values)
+{
+    const int size = s->plan->options.ssvp.paraboloidSize;
+    const double texels = 2 * (double)vplParaboloidMap_Texels(size), drawn = (double)vplParaboloidMap_Drawn(size);
+    const double count = lights < s->plan->options.ssvp.clusters ? lights : s->plan->options.ssvp.clusters;
+    return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
+}
+
+static Bytes firstParaboloids(const Scale* s)
+{
+    const bool surfaces = vplSsvpHasSecondBounce(s->plan) || vplSsvpShowsClusters(s->plan);
+    return paraboloids(s, s->plan->options.ssvp.firstBounce, surfaces ? 2 : 1);
+}
+
+static Bytes secondParaboloids(const Scale* s)
+{
+    return paraboloids(s, s->plan->options.ssvp.secondBounce, 1);
+}
+
+static Bytes patchMesh(const Scale* s)
+{
+    return (Bytes){98.0 * s->plan->patches, 98.0 * s->plan->patches};
+}
+
+static Bytes formFactors(const Scale* s)
+{
+    return s->plan->linked ? (Bytes){800 * s->sides, 700 * s->sides}
+                           : (Bytes){4 * s->sides * s->sides, 515 * s->sides};
+}
+
+static Bytes patchLight(const Scale* s)
+{
+    const double chunk = s->sides < 4096 ? s->sides : 4096;
+    return (Bytes){28 * s->sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
+}
+
+static Bytes solution(const Scale* s)
+{
+    return (Bytes){24 * s->sides, (s->plan->linked ? 152 : 72) * s->sides};
+}
+
+static Bytes vertexLight(const Scale* s)
+{
+    return (Bytes){14.0 * s->plan->patches, 57.0 * s->plan->patches};
+}
+
+// The last draft of adaptive patches has two thirds of them.
+static Bytes adaptivePatches(const Scale* s)
+{
+    Scale draft = *s;
+    draft.sides = s->sides / 1.5;
+    const Bytes factors = formFactors(&draft), light = patchLight(&draft), solved = solution(&draft);
+    return (Bytes){70.0 * s->plan->patches, factors.held + light.held + light.scratch + solved.held + 300 * draft.sides};
+}
+
+static double pipelineScratch(const Scale* s)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const bool lit = s->plan->showsVirtual;
+    switch (o->pipeline.kind) {
+    case VPL_ACCUMULATE_MULTIPASS:
+    case VPL_ACCUMULATE_BATCHED:
+        return 2.82e6 * s->workers;
+    case VPL_ACCUMULATE_INTERLEAVED:
+        return lit ? 16 * s->pixels + 4.6e5 * s->workers : 1.4e5 * s->workers;
+    case VPL_ACCUMULATE_LIGHTCUTS:
+        return lit ? 3.6e6 * s->workers + 104 * s->lights : 1.4e5 * s->workers;
+    default:
+        return 1.4e5 * s->workers;
+    }
+}
+
+static Bytes picture(const Scale* s)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    double scratch = pipelineScratch(s) + RASTER_VIEW * s->triangles;
+    scratch += o->output.antialias > 1 ? 24 * s->pixels : 0;
+    if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
+        const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
+        const bool batches = all > (double)VPL_LIGHT_MAP_BYTES;
+        scratch += batches ? (double)VPL_LIGHT_MAP_BYTES + 12 * s->pixels : all;
+    }
+    return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
+}
+
+// Sums of two halves, and the picture they resolve to.
+static Bytes paths(const Scale* s)
+{
+    return (Bytes){60 * s->pixels, 0};
+}
+
+typedef Bytes EstimateFcn(const Scale* scale);
+
+static EstimateFcn* const ESTIMATES[VPL_STAGE_COUNT] = {
+    [VPL_STAGE_EMITTER_MAPS] = emitterMaps,
+    [VPL_STAGE_AREA_LIGHTS] = areaLights,
+    [VPL_STAGE_REFLECTIVE_MAPS] = reflectiveMaps,
+    [VPL_STAGE_PARTICLES] = virtualLightSet,
+    [VPL_STAGE_FIRST_BOUNCE] = virtualLightSet,
+    [VPL_STAGE_PARABOLOIDS] = firstParaboloids,
+    [VPL_STAGE_SECOND_BOUNCE] = virtualLightSet,
+    [VPL_STAGE_SECOND_PARABOLOIDS] = secondParaboloids,
+    [VPL_STAGE_CLUSTERED_LIGHTS] = virtualLightSet,
+    [VPL_STAGE_VIRTUAL_LIGHTS] = preparedLights,
+    [VPL_STAGE_PATCHES] = adaptivePatches,
+    [VPL_STAGE_PATCH_MESH] = patchMesh,
+    [VPL_STAGE_FORM_FACTORS] = formFactors,
+    [VPL_STAGE_PATCH_LIGHT] = patchLight,
+    [VPL_STAGE_SOLUTION] = solution,
+    [VPL_STAGE_VERTEX_LIGHT] = vertexLight,
+    [VPL_STAGE_PICTURE] = picture,
+    [VPL_STAGE_PATHS] = paths,
+};
+
+// ---- the plan
+
+// Keller's lights of step 0 are drawn where they lie on area lights; elsewhere they are the emitter itself.
+static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
+{
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights;
+    const vplVirtualLights* known = r->store->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
+    return known != NULL ? known->count : p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
+}
+
+static void countDraws(const Scale* s, vplPlan* p)
+{
+    const vplRenderOptions* o = &p->options;
+    const int64_t objects = (int64_t)s->objects, antialias = o->output.antialias;
+    if (o->method == VPL_METHOD_PATH) {
+        p->paths = (int64_t)s->pixels * o->path.samples;
+        return;
+    }
+    if (o->method == VPL_METHOD_SSVP) {
+        p->drawCalls = objects * ((int64_t)rsmFaces(p) + antialias);
+        return;
+    }
+    const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
+    const int64_t passes = o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
+    const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
+    const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
+    p->drawCalls = objects * (6 * maps + (1 + passes) * antialias) + patchDraws * antialias;
+}
+
+static void sumUp(vplPlan* p, vplStageId id, const vplPlanStage* stage)
+{
+    switch (id) {
+    case VPL_STAGE_EMITTER_MAPS:
+    case VPL_STAGE_REFLECTIVE_MAPS:
+    case VPL_STAGE_PARABOLOIDS:
+    case VPL_STAGE_SECOND_PARABOLOIDS:
+        p->shadowMapBytes += stage->bytes;
+        break;
+    case VPL_STAGE_AREA_LIGHTS:
+    case VPL_STAGE_PARTICLES:
+    case VPL_STAGE_FIRST_BOUNCE:
+    case VPL_STAGE_SECOND_BOUNCE:
+    case VPL_STAGE_CLUSTERED_LIGHTS:
+    case VPL_STAGE_VIRTUAL_LIGHTS:
+        p->lightBytes += stage->bytes;
+        break;
+    default:
+        break;
+    }
+}
+
+vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
+{
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const Scale s = {.plan = p,
+                     .workers = machine != NULL ? machine->workerCount : vplContext_GetWorkerCount(r->run.context),
+                     .triangles = g->triangleCount,
+                     .objects = g->objectCount,
+                     .pixels = (double)p->options.output.width * p->options.output.height,
+                     .lights = (double)p->virtualLights,
+                     .drawn = (double)drawnLights(r, p),
+                     .sides = p->patchSides};
+    // What else the context holds is not of this render, but for the scene.
+    const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplArena_GetBytes(r->run.scene->arena);
+    const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;
+    int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign;
+    p->peakBytes = (peak > before ? peak : before) - foreign;
+    for (int i = 0; i < p->stageCount; i++) {
+        vplPlanStage* stage = &p->stages[i];
+        const vplSlot* slot = &r->store->slots[stage->id];
+        if (slot->result != NULL) { // it ran while decisions were made, and is part of `live`
+            stage->bytes = slot->bytes;
+            stage->scratch = slot->scratch;
+        } else if (ESTIMATES[stage->id] != NULL) {
+            const Bytes bytes = ESTIMATES[stage->id](&s);
+            stage->bytes = (int64_t)bytes.held;
+            stage->scratch = (int64_t)bytes.scratch;
+            live += stage->bytes;
+            p->peakBytes = live + stage->scratch > p->peakBytes ? live + stage->scratch : p->peakBytes;
+        }
+        sumUp(p, (vplStageId)stage->id, stage);
+    }
+    p->pictureBytes = (int64_t)(12 * s.pixels);
+    countDraws(&s, p);
     return VPL_SUCCESS;
 }

@@ -286,7 +286,7 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
                    : o->hierarchy == VPL_HIERARCHY_OFF ? INT_MAX
                                                        : VPL_ALL_PAIRS;
     p->patches = o->patches;
-    p->patchSides = 2 * o->patches;
+    p->patchSides = o->patches; // in rooms, which light fills from one side
     if (o->placement == VPL_PATCHES_UNIFORM && p->showsPatches) {
         TRY(vplRunner_RunStage(r, VPL_STAGE_PATCHES));
         TRY(vplRunner_RunStage(r, VPL_STAGE_SIDES));

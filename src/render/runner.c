@@ -44,7 +44,10 @@ vplRunner vplRunner_Begin(const vplScene* scene, vplStore* store)
 {
     vplContext* context = vplScene_GetContext(scene);
     vplContext_ResetPeakBytes(context);
-    return (vplRunner){.run = {.context = context, .scene = scene}, .store = store, .stepTo = 1};
+    return (vplRunner){.run = {.context = context, .scene = scene},
+                       .store = store,
+                       .stepTo = 1,
+                       .heldBytes = vplContext_GetBytes(context)};
 }
 
 static bool forwardProgress(void* user, double fraction)

@@ -35,6 +35,7 @@ typedef struct vplRunner {
     double startMs;            // of a nested runner
     double partMs;             // that vplRun_AddTime took from the stage under way
     vplClampLoss loss;         // of all passes
+    size_t heldBytes;          // by the context when the runner began: the scene, and what is not of this render
     size_t peakBytes;          // of the context, before its counter was set back
 } vplRunner;
 

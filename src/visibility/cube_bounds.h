@@ -1,67 +1,56 @@
 // SPDX-License-Identifier: MIT
-// What all texels in a square window of a cube map have in common, so that many shadow tests need one look.
-// Based on: the depth hierarchy of Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility,
-// SIGGRAPH 1993. Departs: the near side is bounded by planes instead of a smallest depth, because a floor seen
-// at a slant spans more depth within a window than any bias; and windows overlap by half, so that a footprint
-// not larger than half a window always lies within one.
+// Bounds of what square regions of a cube map show, so that one test often replaces all samples of 16 points.
+// Based on: the depth pyramid of Ned Greene, Michael Kass and Gavin Miller, Hierarchical Z-Buffer Visibility,
+// SIGGRAPH 1993. Departs: a region has the bounding box of its surface points besides its nearest and
+// farthest distance. A floor seen at a slant spans more distance within a region than any bias, but its box
+// is as flat as the floor, so that the test against the receiver's plane finds that the floor does not shadow
+// itself.
 #ifndef VPL_VISIBILITY_CUBE_BOUNDS_H
 #define VPL_VISIBILITY_CUBE_BOUNDS_H
 
 #include <vpl/visibility.h>
 
-#include "base/isa.h"
+#include "math/scalar.h"
 
-// How many planes bound a window, and how.
-typedef enum vplBoundKind {
-    VPL_BOUND_ONE,    // both planes are the same
-    VPL_BOUND_EITHER, // the texels lie behind each of both: an edge that sticks out
-    VPL_BOUND_BOTH // every texel lies behind one of both at least: an inner edge, or one thing before another
-} vplBoundKind;
+// A texel shows the surface point D d: D is its stored distance times far, d the unit direction of its
+// centre, and the axes are the face's right, up and forward.
+enum {
+    VPL_LEAST_POINT,                            // smallest x, y, z of the region's points, rounded down
+    VPL_LEAST_NEGATED = VPL_LEAST_POINT + 3,    // smallest -x, -y, -z, rounded down
+    VPL_LEAST_DISTANCE = VPL_LEAST_NEGATED + 3, // smallest stored distance
+    VPL_LEAST_NEGATED_DISTANCE,                 // smallest negated stored distance
+    VPL_REGION_VALUES
+};
 
-// Of the texels in one window. A texel whose centre is in the unit direction d at distance D (stored distance
-// times far) lies behind a plane if (plane . d) D >= 1. Where all texels show one plane, the bound is its normal
-// divided by its distance from the map's position, but for rounding. Axes are the face's right, up and forward.
-typedef struct vplCubeBound {
-    float planes[2][3];
-    float farthest; // no stored distance is larger
-    int32_t kind;
-} vplCubeBound;
+// Only minima, so that eight of them are merged by one vector operation. Texels that show nothing have no
+// point.
+typedef struct vplCubeRegion {
+    float least[VPL_REGION_VALUES];
+} vplCubeRegion;
 
-enum { VPL_BOUND_LEVELS = 10 };
+// Texels along the side of a region of level 0, one vector, and its binary logarithm.
+enum { VPL_REGION_SHIFT = 4, VPL_REGION_SIDE = 1 << VPL_REGION_SHIFT, VPL_REGION_LEVELS = 10 };
 
-// Level k has a window at every multiple of (tile << k) texels in both directions, side[k]^2 in a face, each two
-// such steps wide or up to the end of the face.
+// A region of level k is 2^k regions of level 0 wide. Region (i, j) of a face lies at
+// first[k] + (face * side[k] + j) * side[k] + i.
 typedef struct vplCubeBounds {
-    int tile, tileShift; // texels between two windows of level 0, and its binary logarithm
     int levelCount;
-    int side[VPL_BOUND_LEVELS], first[VPL_BOUND_LEVELS];
-    vplCubeBound
-        bounds[]; // window (i, j) of level k of a face: first[k] + (face * side[k] + j) * side[k] + i
+    int side[VPL_REGION_LEVELS]; // regions along a face
+    int first[VPL_REGION_LEVELS];
+    vplCubeRegion regions[];
 } vplCubeBounds;
 
-// A square of texels in a face, or what of it lies inside the face.
-typedef struct vplCubeTile {
-    const float* texels; // the first; the next row is `size` further
-    float far;
-    int size;                             // texels along the face
-    int column, row, width, height, side; // width and height are at most `side`, a multiple of VPL_LANES
-} vplCubeTile;
-
-enum { VPL_MAX_CUBE_TILE = 32 };
-
-// False where the texels of a tile do not lie in one plane: then the bound is undefined.
-typedef bool vplFlatTileFcn(const vplCubeTile* tile, vplCubeBound* boundOut);
-
-enum { VPL_BOUND_CANDIDATES = 6 };
-
-// How far planes must be raised for a region to lie behind them: each alone, and two together so that it lies
-// behind their higher one. At least 0.
-typedef struct vplRaises {
-    double one[VPL_BOUND_CANDIDATES], two[VPL_BOUND_CANDIDATES][VPL_BOUND_CANDIDATES];
-} vplRaises;
-
-// The raises of a tile; of two[i][k] those with i < k are set. Returns the largest stored distance.
-typedef float vplTileRaisesFcn(const vplCubeTile* tile, const float planes[][3], int count,
-                               vplRaises* raisesOut);
+// The least of 16, by halves: a chain would wait for each step.
+static inline float vplLeastLane(const float* restrict values)
+{
+    float a[8], b[4];
+    for (int l = 0; l < 8; l++) {
+        a[l] = vplMinf(values[l], values[l + 8]);
+    }
+    for (int l = 0; l < 4; l++) {
+        b[l] = vplMinf(a[l], a[l + 4]);
+    }
+    return vplMinf(vplMinf(b[0], b[2]), vplMinf(b[1], b[3]));
+}
 
 #endif

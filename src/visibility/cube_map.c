@@ -2,7 +2,7 @@
 // Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow Map": six views with 90
 // degrees each, depth = world distance / far. Departs: the view depth w is turned into a distance by the
 // texel's own direction instead of interpolating world positions; distances are not clamped at far.
-#include "base/context.h"
+#include "base/arena.h"
 #include "math/vec.h"
 #include "visibility/cube_texel.h"
 #include "visibility/drawing.h"
@@ -27,17 +27,14 @@ vplCubeFrame vplCube_GetFrame(int face)
     return frames[face];
 }
 
-bool vplCube_Find(vplVec3 direction, int size, int* face, float* s, float* t, int* i, int* j)
+bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut)
 {
     if (direction.x == 0 && direction.y == 0 && direction.z == 0) {
         return false;
     }
-    vplCubeTexel texel = vplCubeTexelOf(direction.x, direction.y, direction.z);
-    *face = texel.face;
-    *s = texel.s;
-    *t = texel.t;
-    *i = vplTexelIndex(texel.s, (float)size, size - 1);
-    *j = vplTexelIndex(texel.t, (float)size, size - 1);
+    const vplCubeTexel texel = vplCubeTexelOf(direction.x, direction.y, direction.z);
+    *pointOut = (vplCubePoint){texel.face, texel.s, texel.t, vplTexelIndex(texel.s, (float)size, size - 1),
+                               vplTexelIndex(texel.t, (float)size, size - 1)};
     return true;
 }
 
@@ -47,7 +44,7 @@ typedef struct Face {
     float near;
 } Face;
 
-// What the vertex shader of one object on one face needs.
+// Uniforms of the vertex shader, for one object on one face.
 typedef struct ObjectUniforms {
     const Face* face;
     const vplVec3* positions;
@@ -74,51 +71,57 @@ typedef struct Faces {
     ObjectUniforms* objects; // one per object and face
 } Faces;
 
-static vplResult recordFace(Faces* f, const vplGeometry* g, const vplCubeMap* map, float* texels, int face)
+static vplResult recordFace(Faces* f, const vplGeometry* g, const vplCubeMap* map, int face)
 {
     vplFramebuffer framebuffer = vplDefaultFramebuffer(map->size, map->size);
     framebuffer.depth.clear = INFINITY;
-    framebuffer.depth.pixels = texels + (size_t)face * (size_t)map->size * (size_t)map->size;
+    framebuffer.depth.pixels = map->texels + (size_t)face * (size_t)map->size * (size_t)map->size;
     f->faces[face] = (Face){map->position, vplCube_GetFrame(face), map->near};
-    vplResult result = vplRaster_Create(g->context, &framebuffer, &f->rasters[face]);
-    for (int i = 0; i < g->objectCount && result == VPL_SUCCESS; i++) {
+    TRY(vplRaster_Create(g->context, &framebuffer, &f->rasters[face]));
+    for (int i = 0; i < g->objectCount; i++) {
         ObjectUniforms* object = &f->objects[face * g->objectCount + i];
         *object = (ObjectUniforms){&f->faces[face], g->positions + g->objects[i].firstVertex};
         vplPipeline pipeline = vplDefaultPipeline();
         pipeline.vertex = faceVertices;
         pipeline.vertexUniforms = object;
         pipeline.distanceScale = 1 / map->far;
-        result = vplRaster_Draw(f->rasters[face], &f->meshes[i], &pipeline);
+        TRY(vplRaster_Draw(f->rasters[face], &f->meshes[i], &pipeline));
     }
-    return result;
+    return VPL_SUCCESS;
+}
+
+static vplResult runFaces(Faces* f, const vplGeometry* g, vplCubeMap* map, vplProgressFcn* progress,
+                          void* user)
+{
+    vplRasterStats stats[6];
+    for (int i = 0; i < g->objectCount; i++) {
+        f->meshes[i] = vplMeshOfObject(g, i);
+    }
+    for (int face = 0; face < 6; face++) {
+        TRY(recordFace(f, g, map, face));
+    }
+    TRY(vplRaster_RunAll(f->rasters, 6, progress, user, stats));
+    for (int face = 0; face < 6; face++) {
+        vplRasterStats_Add(&map->stats, &stats[face]);
+    }
+    return VPL_SUCCESS;
 }
 
 static vplResult drawFaces(const vplGeometry* g, vplCubeMap* map, vplProgressFcn* progress, void* user)
 {
-    vplContext* context = g->context;
     const size_t count = (size_t)g->objectCount;
-    Faces f = {.meshes = vplAlloc(context, count, sizeof *f.meshes),
-               .objects = vplAlloc(context, 6 * count, sizeof *f.objects)};
-    vplResult result = f.meshes && f.objects ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    for (int i = 0; result == VPL_SUCCESS && i < g->objectCount; i++) {
-        f.meshes[i] = vplMeshOfObject(g, i);
-    }
-    for (int face = 0; face < 6 && result == VPL_SUCCESS; face++) {
-        result = recordFace(&f, g, map, (float*)map->texels, face);
-    }
-    vplRasterStats stats[6];
+    vplArena* scratch = vplArena_Create(g->context);
+    Faces f = {.meshes = vplArena_Alloc(scratch, count, sizeof *f.meshes),
+               .objects = vplArena_Alloc(scratch, 6 * count, sizeof *f.objects)};
+    map->stats = (vplRasterStats){0};
+    vplResult result = vplArena_Check(scratch);
     if (result == VPL_SUCCESS) {
-        result = vplRaster_RunAll(f.rasters, 6, progress, user, stats);
+        result = runFaces(&f, g, map, progress, user);
     }
-    memset(&map->stats, 0, sizeof map->stats);
     for (int face = 0; face < 6; face++) {
-        if (result == VPL_SUCCESS) {
-            vplRasterStats_Add(&map->stats, &stats[face]);
-        }
         vplRaster_Destroy(f.rasters[face]);
     }
-    vplFree(context, f.objects);
-    vplFree(context, f.meshes);
+    vplArena_Destroy(scratch);
     return result;
 }
 
@@ -150,43 +153,34 @@ vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* de
                             void* user, vplCubeMap** mapOut)
 {
     vplContext* context = geometry->context;
-    vplResult result = checkDef(context, def);
-    if (result != VPL_SUCCESS) {
-        return result;
+    TRY(checkDef(context, def));
+    vplArena* arena = vplArena_Create(context);
+    vplCubeMap* map = vplArena_AllocZero(arena, 1, sizeof *map);
+    float* texels = vplArena_Alloc(arena, 6 * (size_t)def->size * (size_t)def->size, sizeof *texels);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *map = (vplCubeMap){.size = def->size, .texels = texels, .context = context, .arena = arena};
+        place(map, geometry, def);
+        result = drawFaces(geometry, map, progress, user);
     }
-    vplCubeMap* map = vplAllocZero(context, 1, sizeof *map);
-    float* texels = vplAlloc(context, 6 * (size_t)def->size * (size_t)def->size, sizeof(float));
-    if (map == NULL || texels == NULL) {
-        vplFree(context, map);
-        vplFree(context, texels);
-        return VPL_OUT_OF_MEMORY;
-    }
-    map->context = context;
-    map->texels = texels;
-    map->size = def->size;
-    place(map, geometry, def);
-    result = drawFaces(geometry, map, progress, user);
-    if (result != VPL_SUCCESS) {
-        vplCubeMap_Destroy(map);
-        return result;
-    }
-    *mapOut = map;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, map, mapOut);
+}
+
+static void freeBounds(vplCubeMap* map)
+{
+    vplFree(map->context, map->bounds);
+    map->bounds = NULL;
 }
 
 vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
                             vplProgressFcn* progress, void* user)
 {
-    const vplResult result = checkDef(map->context, def);
-    if (result != VPL_SUCCESS) {
-        return result;
-    }
+    TRY(checkDef(map->context, def));
     if (def->size != map->size) {
         return vplFail(map->context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be the map's %d",
                        def->size, map->size);
     }
-    vplFree(map->context, (void*)map->bounds);
-    map->bounds = NULL;
+    freeBounds(map);
     place(map, geometry, def);
     return drawFaces(geometry, map, progress, user);
 }
@@ -194,19 +188,17 @@ vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const 
 void vplCubeMap_Destroy(vplCubeMap* map)
 {
     if (map != NULL) {
-        vplFree(map->context, (void*)map->bounds);
-        vplFree(map->context, (void*)map->texels);
-        vplFree(map->context, map);
+        freeBounds(map);
+        vplArena_Destroy(map->arena);
     }
 }
 
 float vplCubeMap_Distance(const vplCubeMap* map, vplVec3 direction)
 {
-    int face, i, j;
-    float s, t;
-    if (!vplCube_Find(direction, map->size, &face, &s, &t, &i, &j)) {
+    const size_t size = (size_t)map->size;
+    vplCubePoint p;
+    if (!vplCube_Find(direction, map->size, &p)) {
         return INFINITY;
     }
-    return map->texels[((size_t)face * (size_t)map->size + (size_t)j) * (size_t)map->size + (size_t)i] *
-           map->far;
+    return map->texels[((size_t)p.face * size + (size_t)p.row) * size + (size_t)p.column] * map->far;
 }

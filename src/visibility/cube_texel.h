@@ -4,6 +4,7 @@
 #define VPL_VISIBILITY_CUBE_TEXEL_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct vplCubeTexel {
@@ -37,6 +38,23 @@ static inline int32_t vplTexelIndex(float s, float size, int32_t last)
 {
     int32_t i = (int32_t)(s * size);
     return i < last ? i : last;
+}
+
+// A vector in the axes of a face. Only signs change, so that sums keep their bits.
+typedef struct vplInFace {
+    float right, up, major;
+} vplInFace;
+
+static inline vplInFace vplTurnToFace(int32_t face, float x, float y, float z)
+{
+    const bool negative = face & 1;
+    if (face >= 4) {
+        return (vplInFace){negative ? -x : x, y, negative ? -z : z};
+    }
+    if (face >= 2) {
+        return (vplInFace){x, negative ? z : -z, negative ? -y : y};
+    }
+    return (vplInFace){negative ? z : -z, y, negative ? -x : x};
 }
 
 #endif

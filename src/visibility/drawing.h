@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What drawings of a geometry from somewhere have in common.
+// Shared by everything that rasterizes a geometry.
 #ifndef VPL_VISIBILITY_DRAWING_H
 #define VPL_VISIBILITY_DRAWING_H
 
@@ -14,7 +14,7 @@ static inline vplMesh vplMeshOfObject(const vplGeometry* g, int object)
     return (vplMesh){g->indices + 3 * (size_t)o->firstTriangle, o->vertexCount, o->triangleCount};
 }
 
-// A hair farther than any vertex; 1 where there is nothing.
+// Slightly more than the distance of the farthest vertex; 1 where there is none.
 static inline float vplFarthestVertex(const vplGeometry* g, vplVec3 from)
 {
     float farthest = 0;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The shadow of 16 fragments by the map of a half space. Compiled once per instruction set; all give the same bits.
+// The shadow factor of 16 fragments by a hemi-octahedral map. Compiled once per instruction set; all give the same
+// bits.
 //
-// What a texel stores (1/t along its centre) is compared with the fragment's own plane there, and with the fragment
-// itself, whichever is nearer: a plane never shadows itself at any angle.
-#include "base/isa.h"
+// The texel's 1/t along its centre is compared with the fragment's own plane there, and with the
+// fragment itself, whichever is nearer: a plane never shadows itself at any angle.
 #include "math/scalar.h"
-#include "visibility/gather.h"
+#include "visibility/kernels.h"
+#include "visibility/map_gather.h"
 #include "visibility/hemi_map.h"
-
-vplHemiMapFactorFcn VPL_KERNEL(vplHemiMapFactor);
 
 void VPL_KERNEL(vplHemiMapFactor)(const vplHemiMap* map, const vplSurface* surface,
                                   float factor[restrict VPL_LANES])

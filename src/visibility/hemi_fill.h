@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// One triangle in the shadow map of a half space. Included by the kernel that draws them.
+// Fills one triangle into a hemi-octahedral map. Included by the kernel that draws them.
 //
-// A texel at (u, v) in [-1, 1]^2 looks along d = (p, q, 1 - |p| - |q|), p = (u + v) / 2, q = (u - v) / 2, in the
-// light's frame; where p and q keep their signs d is linear in u and v. A point t d lies on a triangle's plane where
-// 1/t = n.d / n.corner, which is linear, too, and the nearest is the largest.
+// A texel at (u, v) in [-1, 1]^2 has the direction d = (p, q, 1 - |p| - |q|), p = (u + v) / 2, q = (u - v) / 2, in
+// the light's frame; where p and q keep their signs d is linear in u and v. A point t d lies on a triangle's
+// plane where 1/t = n.d / n.corner, which is linear, too, and the nearest is the largest.
 #ifndef VPL_VISIBILITY_HEMI_FILL_H
 #define VPL_VISIBILITY_HEMI_FILL_H
 
@@ -50,9 +50,10 @@ static inline int32_t setUp(vplVec3 p0, vplVec3 p1, vplVec3 p2, float right, flo
 }
 
 // One row of blocks. `whole`: the triangle may reach into other quadrants, whose texels are not meant.
-static inline void fillRow(const Filling* restrict f, int32_t row, float scale, int32_t first, int32_t last,
-                           bool whole, float* restrict texels)
+static inline void fillRow(const Filling* restrict f, BlockRow blocks, bool whole, float* restrict texels)
 {
+    const int32_t row = blocks.row;
+    const float scale = blocks.scale;
     const float u0 = f->edge[0].cu, u1 = f->edge[1].cu, u2 = f->edge[2].cu, nearU = f->near.cu;
     const float right = whole ? f->right : 0, up = whole ? f->up : 0;
     float v[VPL_LANES], e0[VPL_LANES], e1[VPL_LANES], e2[VPL_LANES], near[VPL_LANES];
@@ -63,7 +64,7 @@ static inline void fillRow(const Filling* restrict f, int32_t row, float scale, 
         e2[l] = f->edge[2].c + f->edge[2].cv * v[l];
         near[l] = f->near.c + f->near.cv * v[l];
     }
-    for (int32_t i = first; i <= last; i++) {
+    for (int32_t i = blocks.first; i <= blocks.last; i++) {
         float old[VPL_LANES], now[VPL_LANES];
         memcpy(old, texels + (size_t)i * VPL_LANES, sizeof old);
         for (int l = 0; l < VPL_LANES; l++) {
@@ -74,7 +75,7 @@ static inline void fillRow(const Filling* restrict f, int32_t row, float scale, 
             const float abc = ab < c ? ab : c;
             const float before = old[l];
             const float nearer = value > before ? value : before;
-            now[l] = (abc >= 0) & (pq >= 0) ? nearer : before;
+            now[l] = ((abc >= 0) & (pq >= 0)) ? nearer : before;
         }
         memcpy(texels + (size_t)i * VPL_LANES, now, sizeof now);
     }
@@ -85,7 +86,8 @@ static inline void fill(const vplHemiMap* map, const Filling* f, Texels box, boo
     const float scale = 1 / (float)map->size;
     const size_t stride = (size_t)vplHemiMap_Blocks(map->size) * VPL_LANES;
     for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
-        fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, whole, texels + (size_t)row * stride);
+        fillRow(f, (BlockRow){row, box.i0 / SIDE, box.i1 / SIDE, scale}, whole,
+                texels + (size_t)row * stride);
     }
 }
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Shadow maps of half spaces, many at once: one task draws one map, from start to end.
+// Hemi-octahedral shadow maps, many at once: one task draws one map.
 #include "visibility/hemi_map.h"
-#include "base/context.h"
-#include "base/isa.h"
+#include "base/arena.h"
 #include "geometry/bvh.h"
+#include "visibility/kernels.h"
 
 #include <string.h>
-
-VPL_KERNEL_TABLE(DRAW, vplDrawHemiMapFcn, vplDrawHemiMap);
-VPL_KERNEL_TABLE(FACTOR, vplHemiMapFactorFcn, vplHemiMapFactor);
 
 static size_t texelsOf(int size)
 {
@@ -25,32 +22,25 @@ vplResult vplHemiMaps_Create(vplContext* context, int size, int capacity, vplHem
 {
     if (size < 1 || size > VPL_MAX_SHADOW_MAP || capacity < 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "%d half-space maps of %d texels a side: must be 0 or more of [1, %d]", capacity, size,
-                       VPL_MAX_SHADOW_MAP);
+                       "%d hemi-octahedral maps of %d texels a side: must be 0 or more of [1, %d]", capacity,
+                       size, VPL_MAX_SHADOW_MAP);
     }
-    vplHemiMaps* maps = vplAllocZero(context, 1, sizeof *maps);
-    vplHemiMap* list = vplAllocZero(context, (size_t)capacity, sizeof *list);
-    float* texels = vplAlloc(context, (size_t)capacity, texelsOf(size) * sizeof *texels);
-    if (maps == NULL || list == NULL || texels == NULL) {
-        vplFree(context, maps);
-        vplFree(context, list);
-        vplFree(context, texels);
-        return VPL_OUT_OF_MEMORY;
+    vplArena* arena = vplArena_Create(context);
+    vplHemiMaps* maps = vplArena_Alloc(arena, 1, sizeof *maps);
+    vplHemiMap* list = vplArena_AllocZero(arena, (size_t)capacity, sizeof *list);
+    float* texels = vplArena_Alloc(arena, (size_t)capacity, texelsOf(size) * sizeof *texels);
+    const vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *maps = (vplHemiMaps){.maps = list, .capacity = capacity, .size = size, .texels = texels};
+        maps->context = context;
+        maps->arena = arena;
     }
-    *maps =
-        (vplHemiMaps){.maps = list, .capacity = capacity, .size = size, .texels = texels, .context = context};
-    *mapsOut = maps;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, maps, mapsOut);
 }
 
 void vplHemiMaps_Destroy(vplHemiMaps* maps)
 {
-    if (maps != NULL) {
-        vplContext* context = maps->context;
-        vplFree(context, maps->texels);
-        vplFree(context, (void*)maps->maps);
-        vplFree(context, maps);
-    }
+    vplArena_Destroy(maps != NULL ? maps->arena : NULL);
 }
 
 typedef struct Drawing {
@@ -65,7 +55,7 @@ static void drawMap(void* data, int index, int worker)
     const vplHemiMap* map = &d->maps->maps[index];
     float* texels = d->maps->texels + (size_t)index * texelsOf(map->size);
     memset(texels, 0, texelsOf(map->size) * sizeof *texels);
-    DRAW[d->maps->context->isa](d->bvh, map, texels);
+    vplVisibilityKernels_Get(d->maps->context->isa)->drawHemiMap(d->bvh, map, texels);
 }
 
 vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const vplHemiMapPlace* places,
@@ -73,16 +63,16 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
 {
     if (count < 0 || count > maps->capacity) {
         return vplFail(maps->context, VPL_INVALID_ARGUMENT,
-                       "%d half-space maps are asked for, there is room for %d", count, maps->capacity);
+                       "%d hemi-octahedral maps are asked for, there is room for %d", count, maps->capacity);
     }
-    vplResult result = vplGeometry_PrepareRays(geometry);
-    if (result != VPL_SUCCESS) {
-        return result;
+    Drawing drawing = {maps, geometry->rayTree};
+    if (drawing.bvh == NULL) {
+        return vplFail(maps->context, VPL_INVALID_ARGUMENT,
+                       "these maps are drawn through the ray tree; call vplGeometry_BuildRayTree first");
     }
     maps->count = count;
-    vplHemiMap* list = (vplHemiMap*)maps->maps;
     for (int i = 0; i < count; i++) {
-        vplHemiMap* map = &list[i];
+        vplHemiMap* map = &maps->maps[i];
         const float lift = vplLightLift(vplLargestOf(places[i].position));
         map->position = vplAdd(places[i].position, vplScale(lift, places[i].normal));
         map->forward = places[i].normal;
@@ -91,7 +81,6 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
         map->texels = maps->texels + (size_t)i * texelsOf(maps->size);
         map->context = maps->context;
     }
-    Drawing drawing = {maps, geometry->rayTree};
     return vplParallelForProgress(maps->context, count, drawMap, &drawing, progress, user, 0, 1);
 }
 
@@ -122,5 +111,5 @@ int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapP
 
 void vplHemiMap_FactorBlock(const vplHemiMap* map, const vplSurface* surface, float factorOut[VPL_LANES])
 {
-    FACTOR[map->context->isa](map, surface, factorOut);
+    vplVisibilityKernels_Get(map->context->isa)->hemiMapFactor(map, surface, factorOut);
 }

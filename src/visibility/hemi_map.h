@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shadow maps of half spaces from the inside.
+// Hemi-octahedral shadow maps from the inside.
 #ifndef VPL_VISIBILITY_HEMI_MAP_H
 #define VPL_VISIBILITY_HEMI_MAP_H
 
@@ -16,19 +16,13 @@ static inline int32_t vplHemiMap_Blocks(int32_t size)
     return (size + VPL_BLOCK_SIDE - 1) / VPL_BLOCK_SIDE;
 }
 
-// Where a texel is.
+// The index of a texel.
 static inline int32_t vplHemiMap_Place(int32_t blocks, int32_t column, int32_t row)
 {
     return ((row >> 2) * blocks + (column >> 2)) * VPL_LANES + (row & 3) * VPL_BLOCK_SIDE + (column & 3);
 }
 
-// Draws all triangles of a tree into a map of zeros.
-typedef void vplDrawHemiMapFcn(const vplBvh* bvh, const vplHemiMap* map, float* texels);
-
-typedef void vplHemiMapFactorFcn(const vplHemiMap* map, const vplSurface* surface,
-                                 float factor[restrict VPL_LANES]);
-
-// Bit i: some of child i lies above a plane.
+// Bit i: part of child i lies above the plane through o with normal n.
 static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVec3 n)
 {
     uint32_t above = 0;
@@ -41,21 +35,19 @@ static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVe
     return above;
 }
 
-// How many triangles a light's map draws: those in blocks of the tree that reach above its plane.
+// How many triangles a place's map draws: those in blocks of the tree that reach above its plane.
 int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place);
 
-// What is nearer to the light than a fragment and its plane by less than this share of the distance, one and a half
-// footprints, does not shadow it: walls that meet in a corner. Pairs dark in the map only + in the ray only, in %, for
-// 0, 1/2, 1, 3/2, 2 footprints (bench/crossover, 128 texels): room 0.51 + 0.20, 0.38 + 0.20, 0.30 + 0.20, 0.26 + 0.20,
-// 0.23 + 0.20; Sibenik 5.72 + 3.82, 3.73 + 4.06, 2.96 + 4.38, 2.31 + 4.87, 1.90 + 5.50; Sponza 5.37 + 4.29,
-// 3.43 + 4.82, 2.39 + 5.30, 1.91 + 5.82, 1.62 + 6.40.
+// Blockers that are nearer to the light than a fragment and its plane by less than this fraction of the
+// distance, one and a half footprints, do not shadow it: walls that meet in a corner. More footprints lose
+// shadows, fewer find false ones (bench/crossover).
 static inline float vplHemiMap_Tolerance(int size)
 {
     return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
 }
 
-// 2.5 f + b, metres: how near something may be to a point at distance r for map and ray to disagree, where texels look
-// past the point by at most f and cosT is its plane's cosine to the light.
+// 2.5 f + b, metres: the largest distance between blocker and point at which map and ray may disagree. r is
+// the point's distance, f its footprint, cosT the cosine of its plane to the light.
 static inline float vplShadowBand(float r, float f, float cosT)
 {
     const float sinT = sqrtf(1 - cosT * cosT);
@@ -64,7 +56,7 @@ static inline float vplShadowBand(float r, float f, float cosT)
     return 2.5f * f + r * (1 - cosT / turned) + r * 0x1p-16f;
 }
 
-// The band of vplHemiMap_FactorBlock, and f.
+// The band of vplHemiMap_FactorBlock, metres, and the footprint f.
 static inline float vplHemiMap_Band(const vplHemiMap* map, vplVec3 point, vplVec3 normal, float* footprintOut)
 {
     const vplVec3 way = vplSub(point, map->position);
@@ -80,16 +72,16 @@ static inline float vplLargestOf(vplVec3 p)
     return fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
 }
 
-// 64 units in the last place of a coordinate: further than surfaces are from where they should be.
+// 64 units in the last place of a coordinate: more than the rounding of surfaces.
 static inline float vplLightLift(float largest)
 {
     return largest * 0x1p-18f;
 }
 
-// A ray from a point to a virtual light, which lies on a surface and maybe in a corner, and neither must shadow it: it
-// aims above the surface and ends before the light, by the rounding of the larger end. The light's own coordinates do
-// not do: in a Cornell box whose floor is at 0, lights near the origin were hidden from the ceiling by the floor that
-// they lie on (0.46 % of all pairs), and those on an edge of a room by the other wall.
+// The ray from a point to a virtual light, which lies on a surface and maybe in a corner: neither must shadow
+// it. The ray aims slightly above the surface and ends before the light, by the rounding of the larger end.
+// The rounding of the light's own coordinates is not enough: in a Cornell box whose floor is at 0, the floor
+// would hide lights near the origin from the ceiling (0.46 % of all pairs).
 static inline vplVec3 vplWayToLight(vplVec3 light, vplVec3 n, vplVec3 from)
 {
     const float lift = vplLightLift(fmaxf(vplLargestOf(light), vplLargestOf(from)));

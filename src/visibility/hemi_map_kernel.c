@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Draws the shadow map of a half space: down a tree of triangles as far as they lie above the light's plane, sixteen
-// side by side. Compiled once per instruction set; all give the same bits.
-#include "base/isa.h"
+// Draws a hemi-octahedral map: down a tree of triangles as far as they lie above the light's plane,
+// sixteen side by side. Compiled once per instruction set; all give the same bits.
 #include "math/scalar.h"
+#include "visibility/kernels.h"
 #include "visibility/hemi_fill.h"
-
-vplDrawHemiMapFcn VPL_KERNEL(vplDrawHemiMap);
 
 // ---- sixteen triangles
 
@@ -41,7 +39,7 @@ static void bound(const vplHemiMap* map, const Sixteen* restrict s, int32_t box[
         box[1][l] = i1;
         box[2][l] = j0;
         box[3][l] = j1;
-        kind[l] = above & (s->id[l] >= 0) ? (one ? some : CROSSING) : UNSEEN;
+        kind[l] = (above & (s->id[l] >= 0)) ? (one ? some : CROSSING) : UNSEEN;
     }
 }
 
@@ -65,7 +63,7 @@ static void setUpAll(const Sixteen* restrict s, int32_t kind[restrict VPL_LANES]
         all->near[0][l] = f.near.c;
         all->near[1][l] = f.near.cu;
         all->near[2][l] = f.near.cv;
-        kind[l] = (was == INSIDE) & !seen ? UNSEEN : was;
+        kind[l] = ((was == INSIDE) & !seen) ? UNSEEN : was;
     }
 }
 

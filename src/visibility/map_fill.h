@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the rasterizers of small maps share: half spaces and paraboloids. They walk down the ray tree as far as it
-// reaches above a plane, take sixteen triangles side by side, turn them to the eye, and find planes through it.
-// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, Graphics Hardware
-// 1997: inside is where three planes through the eye say so, so that nothing is clipped. The planes are Pluecker's
-// (as in Embree): they are exact negatives for both triangles at an edge, and no texel between them is lost.
+// What the rasterizers of small maps share: half spaces and paraboloids. They walk down the ray tree as far
+// as it reaches above a plane, take sixteen triangles side by side, turn them to the eye, and find planes
+// through it.
+// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, Graphics
+// Hardware 1997: inside is where three planes through the eye say so, so that nothing is clipped. The planes
+// are Pluecker's (as in Embree): they are exact negatives for both triangles at an edge, and no texel between
+// them is lost.
 #ifndef VPL_VISIBILITY_MAP_FILL_H
 #define VPL_VISIBILITY_MAP_FILL_H
 
@@ -21,6 +23,12 @@ enum { SIDE = VPL_BLOCK_SIDE };
 typedef struct Texels {
     int32_t i0, i1, j0, j1;
 } Texels;
+
+// Blocks `first` to `last` of a row of blocks; scale is 1 / size.
+typedef struct BlockRow {
+    int32_t row, first, last;
+    float scale;
+} BlockRow;
 
 // Bounds are wider by this much of a texel, which covers the rounding of projected corners.
 static const float MARGIN = 0x1p-9f;

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: MIT
 // The shadow of 16 fragments by a paraboloid map. Compiled once per instruction set; all give the same bits.
 //
-// Each of the four texels around a fragment is compared with the fragment's own plane at that texel's centre, and with
-// the fragment itself, whichever is nearer: a plane never shadows itself at any angle. In texel (i, j) the plane is at
+// Each of the four texels around a fragment is compared with the fragment's own plane at that texel's centre,
+// and with the fragment itself, whichever is nearer: a plane never shadows itself at any angle. In texel (i,
+// j) the plane is at
 //     1/t = n.d / n.way, d = (2 x_i, 2 y_j, 1 - x_i^2 - y_j^2), |d| = 1 + x_i^2 + y_j^2,
 // so both are sums of a number of the column and one of the row.
-#include "base/isa.h"
 #include "math/scalar.h"
-#include "visibility/gather.h"
+#include "visibility/kernels.h"
+#include "visibility/map_gather.h"
 #include "visibility/paraboloid_map.h"
 
-vplParaboloidFactorFcn VPL_KERNEL(vplParaboloidFactor);
-
 // 16 fragments as the map sees them.
-typedef struct Look {
+typedef struct View {
     float x[VPL_LANES], y[VPL_LANES];                  // in the map
     float nx[VPL_LANES], ny[VPL_LANES], nz[VPL_LANES]; // normals, times distance / n.way; x and y doubled
     float reach[VPL_LANES];                            // distances, less what is tolerated
     int32_t back[VPL_LANES];
-} Look;
+} View;
 
-static inline void look(const vplParaboloidMap* map, const vplSurface* surface, Look* restrict k)
+static inline void findView(const vplParaboloidMap* map, const vplSurface* surface, View* restrict k)
 {
     const vplVec3 o = map->position, r = map->right, u = map->up, f = map->forward;
     const float tolerance = vplParaboloidMap_Tolerance(map->size);
@@ -40,15 +39,15 @@ static inline void look(const vplParaboloidMap* map, const vplSurface* surface, 
         k->nx[l] = 2 * (mx * r.x + my * r.y + mz * r.z) * scale;
         k->ny[l] = 2 * (mx * u.x + my * u.y + mz * u.z) * scale;
         k->nz[l] = (back ? -nz : nz) * scale;
-        // Footprints shrink as 1 / (1 + p^2), which is 1 / 2q with q = distance / (distance + |z|) in [1/2, 1], and at
-        // most 3/2 - q.
+        // Footprints shrink as 1 / (1 + p^2), which is 1 / 2q with q = distance / (distance + |z|) in [1/2,
+        // 1], and at most 3/2 - q.
         k->reach[l] = distance * (1 - 0x1p-16f - tolerance * (1.5f - distance * inverse));
         k->back[l] = back;
     }
 }
 
-// The two texels beside a fragment, along an axis: where the first is, counted from -1, what share the second has, and
-// their centres. At the sides both are one.
+// The two texels beside a fragment, along an axis: where the first is, counted from -1, what share the second
+// has, and their centres. At the sides both are one.
 typedef struct Beside {
     int32_t at[VPL_LANES];
     float share[VPL_LANES], first[VPL_LANES], second[VPL_LANES];
@@ -69,7 +68,7 @@ static inline void findBeside(const float x[restrict VPL_LANES], int32_t size, B
 }
 
 // The texels of one row beside each fragment, as 0 or 1 of the shares.
-static inline void addRow(const Look* restrict k, const Beside* restrict column,
+static inline void addRow(const View* restrict k, const Beside* restrict column,
                           const float y[restrict VPL_LANES], const float first[restrict VPL_LANES],
                           const float second[restrict VPL_LANES], float dark[restrict VPL_LANES])
 {
@@ -91,11 +90,11 @@ void VPL_KERNEL(vplParaboloidFactor)(const vplParaboloidMap* map, const vplSurfa
 {
     const int32_t stride = vplParaboloidMap_Stride(map->size), backs = map->hemispheres == 2;
     const int32_t behind = backs ? stride * stride : 0;
-    Look k;
+    View k;
     Beside column, row;
     int32_t place[VPL_LANES];
     float first[VPL_LANES], second[VPL_LANES], above[VPL_LANES], below[VPL_LANES];
-    look(map, surface, &k);
+    findView(map, surface, &k);
     findBeside(k.x, map->size, &column);
     findBeside(k.y, map->size, &row);
     for (int l = 0; l < VPL_LANES; l++) {

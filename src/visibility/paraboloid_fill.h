@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// One triangle in a paraboloid map. Included by the kernel that draws them.
+// Fills one triangle into a paraboloid map. Included by the kernel that draws them.
 //
-// A texel at p = (x, y) in [-1, 1]^2 looks along d = (2x, 2y, 1 - p^2) in the map's frame, |d| = 1 + p^2. So a plane
-// e.d is the function e.z (1 - p^2) + 2 e.x x + 2 e.y y: edges are exact circles, and nothing is subdivided. While
-// triangles are drawn a texel holds 1/t of the nearest t d, which needs no division; at the end that of distance.
+// A texel at p = (x, y) in [-1, 1]^2 looks along d = (2x, 2y, 1 - p^2) in the map's frame, |d| = 1 + p^2. So
+// a plane e.d is the function e.z (1 - p^2) + 2 e.x x + 2 e.y y: edges are exact circles, and nothing is
+// subdivided. While triangles are drawn a texel holds 1/t of the nearest t d, which needs no division; at the
+// end that of distance.
 #ifndef VPL_VISIBILITY_PARABOLOID_FILL_H
 #define VPL_VISIBILITY_PARABOLOID_FILL_H
 
@@ -11,8 +12,8 @@
 #include "visibility/map_fill.h"
 #include "visibility/paraboloid_map.h"
 
-// p x q as that of the nearer end and the difference: right to rounding also where one end is 10^5 times as far as the
-// other, which moves edges by a hundredth where sum and difference are multiplied.
+// p x q as that of the nearer end and the difference: right to rounding also where one end is 10^5 times as
+// far as the other, which moves edges by a hundredth where sum and difference are multiplied.
 static inline vplVec3 edgeOf(vplVec3 p, vplVec3 q)
 {
     const float pp = vplDot(p, p), qq = vplDot(q, q);
@@ -47,10 +48,12 @@ typedef struct Canvas {
 } Canvas;
 
 // One row of blocks.
-static inline __attribute__((always_inline)) void fillRow(const Filling* restrict f, int32_t row, float scale,
-                                                          int32_t first, int32_t last, bool ids,
-                                                          float* restrict texels, int32_t* restrict triangles)
+static inline __attribute__((always_inline)) void fillRow(const Filling* restrict f, BlockRow blocks,
+                                                          bool ids, float* restrict texels,
+                                                          int32_t* restrict triangles)
 {
+    const int32_t row = blocks.row;
+    const float scale = blocks.scale;
     const Quadric q0 = f->edge[0], q1 = f->edge[1], q2 = f->edge[2], qn = f->near;
     const int32_t triangle = f->triangle;
     float e0[VPL_LANES], e1[VPL_LANES], e2[VPL_LANES], near[VPL_LANES];
@@ -61,7 +64,7 @@ static inline __attribute__((always_inline)) void fillRow(const Filling* restric
         e2[l] = q2.a * above + q2.c * y;
         near[l] = qn.a * above + qn.c * y;
     }
-    for (int32_t i = first; i <= last; i++) {
+    for (int32_t i = blocks.first; i <= blocks.last; i++) {
         float old[VPL_LANES], now[VPL_LANES];
         int32_t oldId[VPL_LANES], nowId[VPL_LANES];
         memcpy(old, texels + (size_t)i * VPL_LANES, sizeof old);
@@ -94,10 +97,11 @@ static inline void fill(const Canvas* c, const Filling* f, Texels box)
     const size_t stride = (size_t)vplHemiMap_Blocks(c->size) * VPL_LANES;
     for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
         const size_t at = (size_t)row * stride;
+        const BlockRow blocks = {row, box.i0 / SIDE, box.i1 / SIDE, scale};
         if (c->triangles != NULL) {
-            fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, true, c->texels + at, c->triangles + at);
+            fillRow(f, blocks, true, c->texels + at, c->triangles + at);
         } else {
-            fillRow(f, row, scale, box.i0 / SIDE, box.i1 / SIDE, false, c->texels + at, NULL);
+            fillRow(f, blocks, false, c->texels + at, NULL);
         }
     }
 }
@@ -114,8 +118,8 @@ static inline void widen(Box* box, int axis, double at)
     box->high[axis] = at > box->high[axis] ? at : box->high[axis];
 }
 
-// The image of the edge from a to b lies on the circle around (e.x, e.y) / e.z of radius |e| / |e.z|, e = a x b. Its
-// ends on each axis count where they lie between a and b.
+// The image of the edge from a to b lies on the circle around (e.x, e.y) / e.z of radius |e| / |e.z|, e = a x
+// b. Its ends on each axis count where they lie between a and b.
 static inline void widenByArc(Box* box, const double a[3], const double b[3], const double e[3])
 {
     const double length = sqrt(vplDot3(e, e));

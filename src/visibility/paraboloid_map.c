@@ -1,13 +1,44 @@
 // SPDX-License-Identifier: MIT
-// Paraboloid maps, many at once: one task draws one hemisphere, from start to end.
+// Paraboloid maps, many at once: one task draws one hemisphere.
+// Based on: Wolfgang Heidrich and Hans-Peter Seidel, View-independent Environment Maps, Graphics Hardware
+// 1998.
 #include "visibility/paraboloid_map.h"
-#include "base/context.h"
-#include "base/isa.h"
+#include "base/arena.h"
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
+#include "visibility/kernels.h"
 
-VPL_KERNEL_TABLE(DRAW, vplDrawParaboloidFcn, vplDrawParaboloid);
-VPL_KERNEL_TABLE(FACTOR, vplParaboloidFactorFcn, vplParaboloidFactor);
+bool vplParaboloid_Project(vplVec3 direction, double* x, double* y)
+{
+    const double dx = (double)direction.x, dy = (double)direction.y, dz = (double)direction.z;
+    // The largest component is brought to 1, so that no square underflows or overflows.
+    const double largest = fmax(fabs(dx), fmax(fabs(dy), fabs(dz)));
+    if (!(largest > 0) || !isfinite(dx + dy + dz)) {
+        return false;
+    }
+    const double a = dx / largest, b = dy / largest, c = dz / largest;
+    const double across = a * a + b * b, length = sqrt(across + c * c);
+    if (!(across > 0) && c < 0) {
+        return false;
+    }
+    // 1 / (|d| + z); behind the plane the difference would cancel, and (|d| - z) / (|d|^2 - z^2) does not.
+    const double scale = c >= 0 ? 1 / (length + c) : (length - c) / across;
+    *x = a * scale;
+    *y = b * scale;
+    return true;
+}
+
+vplVec3 vplParaboloid_Unproject(double x, double y)
+{
+    const double r2 = x * x + y * y, scale = 1 / (1 + r2);
+    return (vplVec3){(float)(2 * x * scale), (float)(2 * y * scale), (float)((1 - r2) * scale)};
+}
+
+double vplParaboloid_Weight(double x, double y)
+{
+    const double r2 = x * x + y * y, s = 1 + r2;
+    return r2 < 1 ? 4 * (1 - r2) / (s * s * s) : 0;
+}
 
 vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, bool triangles,
                                    vplParaboloidMaps** mapsOut)
@@ -18,38 +49,26 @@ vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, 
                        VPL_MAX_SHADOW_MAP);
     }
     const size_t texels = 2 * vplParaboloidMap_Texels(size);
-    vplParaboloidMaps* maps = vplAllocZero(context, 1, sizeof *maps);
-    if (maps == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    vplArena* arena = vplArena_Create(context);
+    vplParaboloidMaps* maps = vplArena_Alloc(arena, 1, sizeof *maps);
+    vplParaboloidMaps made = {.capacity = capacity, .size = size, .context = context, .arena = arena};
+    made.maps = vplArena_AllocZero(arena, (size_t)capacity, sizeof *made.maps);
+    made.texels = vplArena_Alloc(arena, (size_t)capacity, texels * sizeof *made.texels);
+    if (triangles) {
+        made.triangles = vplArena_Alloc(arena, (size_t)capacity, texels * sizeof *made.triangles);
     }
-    maps->maps = vplAllocZero(context, (size_t)capacity, sizeof *maps->maps);
-    maps->texels = vplAlloc(context, (size_t)capacity, texels * sizeof *maps->texels);
-    maps->triangles =
-        triangles ? vplAlloc(context, (size_t)capacity, texels * sizeof *maps->triangles) : NULL;
-    maps->scratch = vplAlloc(context, (triangles ? 2 : 1) * (size_t)context->workerCount,
-                             vplParaboloidMap_Drawn(size) * sizeof *maps->scratch);
-    maps->capacity = capacity;
-    maps->size = size;
-    maps->context = context;
-    if (maps->maps == NULL || maps->texels == NULL || maps->scratch == NULL ||
-        (triangles && maps->triangles == NULL)) {
-        vplParaboloidMaps_Destroy(maps);
-        return VPL_OUT_OF_MEMORY;
+    made.scratch = vplArena_Alloc(arena, (triangles ? 2 : 1) * (size_t)context->workerCount,
+                                  vplParaboloidMap_Drawn(size) * sizeof *made.scratch);
+    const vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        *maps = made;
     }
-    *mapsOut = maps;
-    return VPL_SUCCESS;
+    return vplArena_Deliver(arena, result, maps, mapsOut);
 }
 
 void vplParaboloidMaps_Destroy(vplParaboloidMaps* maps)
 {
-    if (maps != NULL) {
-        vplContext* context = maps->context;
-        vplFree(context, maps->scratch);
-        vplFree(context, maps->triangles);
-        vplFree(context, maps->texels);
-        vplFree(context, (void*)maps->maps);
-        vplFree(context, maps);
-    }
+    vplArena_Destroy(maps != NULL ? maps->arena : NULL);
 }
 
 typedef struct Drawing {
@@ -57,27 +76,29 @@ typedef struct Drawing {
     const vplBvh* bvh;
 } Drawing;
 
-// Front hemispheres first: all of them are drawn, and workers end together.
+// All front hemispheres come first: these are always drawn, so that workers end at about the same time.
 static void drawHemisphere(void* data, int index, int worker)
 {
     const Drawing* d = data;
-    const int hemisphere = index / d->maps->count;
-    const vplParaboloidMap* map = &d->maps->maps[index % d->maps->count];
-    const size_t first = (size_t)hemisphere * vplParaboloidMap_Texels(map->size),
-                 drawn = vplParaboloidMap_Drawn(map->size);
-    const bool ids = map->triangles != NULL;
-    float* scratch = d->maps->scratch + (ids ? 2 : 1) * (size_t)worker * drawn;
-    if (hemisphere < map->hemispheres) {
-        DRAW[map->context->isa](d->bvh, map, hemisphere,
-                                (vplParaboloidTexels){scratch, ids ? (int32_t*)(scratch + drawn) : NULL},
-                                (vplParaboloidTexels){(float*)map->texels + first,
-                                                      ids ? (int32_t*)map->triangles + first : NULL});
+    const vplParaboloidMaps* maps = d->maps;
+    const int hemisphere = index / maps->count, which = index % maps->count;
+    const vplParaboloidMap* map = &maps->maps[which];
+    if (hemisphere >= map->hemispheres) {
+        return;
     }
+    const size_t first = (2 * (size_t)which + (size_t)hemisphere) * vplParaboloidMap_Texels(map->size);
+    const size_t drawn = vplParaboloidMap_Drawn(map->size);
+    const bool ids = maps->triangles != NULL;
+    float* scratch = maps->scratch + (ids ? 2 : 1) * (size_t)worker * drawn;
+    vplVisibilityKernels_Get(map->context->isa)
+        ->drawParaboloid(d->bvh, map, hemisphere,
+                         (vplParaboloidTexels){scratch, ids ? (int32_t*)(scratch + drawn) : NULL},
+                         (vplParaboloidTexels){maps->texels + first, ids ? maps->triangles + first : NULL});
 }
 
 static void place(const vplParaboloidMaps* maps, int index, const vplParaboloidPlace* p)
 {
-    vplParaboloidMap* map = (vplParaboloidMap*)&maps->maps[index];
+    vplParaboloidMap* map = &maps->maps[index];
     const float lift = p->onSurface ? vplLightLift(vplLargestOf(p->position)) : 0;
     const size_t first = (size_t)index * 2 * vplParaboloidMap_Texels(maps->size);
     map->position = vplAdd(p->position, vplScale(lift, p->normal));
@@ -105,34 +126,34 @@ vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geo
                            places[i].hemispheres);
         }
     }
-    vplResult result = vplGeometry_PrepareRays(geometry);
-    if (result != VPL_SUCCESS) {
-        return result;
+    Drawing drawing = {maps, geometry->rayTree};
+    if (drawing.bvh == NULL) {
+        return vplFail(maps->context, VPL_INVALID_ARGUMENT,
+                       "these maps are drawn through the ray tree; call vplGeometry_BuildRayTree first");
     }
     maps->count = count;
     for (int i = 0; i < count; i++) {
         place(maps, i, &places[i]);
     }
-    Drawing drawing = {maps, geometry->rayTree};
     return vplParallelForProgress(maps->context, 2 * count, drawHemisphere, &drawing, progress, user, 0, 1);
 }
 
-bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry, int hemisphere,
-                             int column, int row, vplHit* hitOut, vplVec3* directionOut)
+bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry,
+                             vplParaboloidTexel texel, vplHit* hitOut, vplVec3* directionOut)
 {
-    const double x = (2 * column + 1.0) / map->size - 1, y = (2 * row + 1.0) / map->size - 1;
-    if (hemisphere >= map->hemispheres || !(x * x + y * y <= 1)) {
+    const double x = (2 * texel.column + 1.0) / map->size - 1, y = (2 * texel.row + 1.0) / map->size - 1;
+    if (texel.hemisphere >= map->hemispheres || !(x * x + y * y <= 1)) {
         return false;
     }
-    const size_t at = (size_t)hemisphere * vplParaboloidMap_Texels(map->size) +
-                      vplParaboloidMap_Place(map->size, column, row);
+    const size_t at = (size_t)texel.hemisphere * vplParaboloidMap_Texels(map->size) +
+                      vplParaboloidMap_Place(map->size, texel.column, texel.row);
     const int triangle = map->triangles[at];
     if (triangle < 0) {
         return false;
     }
     const vplVec3 d = vplParaboloid_Unproject(x, y);
     const vplVec3 direction = vplAdd(vplAdd(vplScale(d.x, map->right), vplScale(d.y, map->up)),
-                                     vplScale(hemisphere == 0 ? d.z : -d.z, map->forward));
+                                     vplScale(texel.hemisphere == 0 ? d.z : -d.z, map->forward));
     vplHit hit = {.t = 1 / map->texels[at],
                   .object = geometry->owners[triangle],
                   .face = vplGeometry_FaceOf(geometry, triangle),
@@ -148,5 +169,5 @@ bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geo
 void vplParaboloidMap_FactorBlock(const vplParaboloidMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES])
 {
-    FACTOR[map->context->isa](map, surface, factorOut);
+    vplVisibilityKernels_Get(map->context->isa)->paraboloidFactor(map, surface, factorOut);
 }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Draws a hemisphere of a paraboloid map: down a tree of triangles as far as they lie above the plane, sixteen side by
-// side. Compiled once per instruction set; all give the same bits.
-#include "base/isa.h"
+// Draws a hemisphere of a paraboloid map: down a tree of triangles as far as they lie above the plane,
+// sixteen side by side. Compiled once per instruction set; all give the same bits.
 #include "math/scalar.h"
+#include "visibility/kernels.h"
 #include "visibility/paraboloid_fill.h"
-
-vplDrawParaboloidFcn VPL_KERNEL(vplDrawParaboloid);
 
 // The numbers of sixteen Fillings, side by side, and which texels each may cover.
 typedef struct Fillings {
@@ -25,8 +23,8 @@ static inline vplVec3 pickCorner(bool second, bool third, vplVec3 a, vplVec3 b, 
                   pick(second, third, a.z, b.z, c.z));
 }
 
-// Turns the corners round so that the nearest comes first: from there a plane's normal and distance are right to
-// rounding, while from a corner 1000 times as far even its side may be wrong.
+// Turns the corners round so that the nearest comes first: from there a plane's normal and distance are right
+// to rounding, while from a corner 1000 times as far even its side may be wrong.
 static inline void nearestFirst(vplVec3 p[3])
 {
     const vplVec3 a = p[0], b = p[1], c = p[2];
@@ -59,15 +57,16 @@ static void setUpAll(const Sixteen* restrict s, Fillings* restrict all)
     }
 }
 
-// Nearer to the horizon than this (1 degree), or below it, a triangle is bounded exactly, unless it is SMALL and no lower
-// than DEEP (6 degrees).
+// Nearer to the horizon than this (1 degree), or below it, a triangle is bounded exactly, unless it is SMALL
+// and no lower than DEEP (6 degrees).
 static const float LOW = 0x1p-6f, DEEP = 0.1f, SMALL = 0.5f;
 
-// Bounds of triangles above the horizon. The image of an edge is at most half a circle: inside of the disk because a
-// great circle's image meets the rim in opposite points; further out because a chord of 1/2 stands for less than a
-// radian, of which each grows at most 2.3 times, while half of the smallest circle is pi long. Such an arc of chord c
-// leaves its chord by at most c^2 / 4R, R at least 1, at right angles to it: (w + h) h / 4 to the sides of a box of
-// w x h, which is nothing for most triangles. Large ones are bounded again.
+// Bounds of triangles above the horizon. The image of an edge is at most half a circle: inside of the disk
+// because a great circle's image meets the rim in opposite points; further out because a chord of 1/2 stands
+// for less than a radian, of which each grows at most 2.3 times, while half of the smallest circle is pi
+// long. Such an arc of chord c leaves its chord by at most c^2 / 4R, R at least 1, at right angles to it: (w
+// + h) h / 4 to the sides of a box of w x h, which is nothing for most triangles. Large ones are bounded
+// again.
 static void bound(const Canvas* c, const Sixteen* restrict s, Fillings* restrict all)
 {
     const int32_t last = c->size - 1;

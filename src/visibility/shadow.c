@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "visibility/shadow.h"
 #include "base/context.h"
-#include "base/isa.h"
 #include "math/sampling.h"
+#include "visibility/kernels.h"
 
 #include <math.h>
-
-VPL_KERNEL_TABLE(BIAS, vplShadowBiasFcn, vplShadowBias);
-VPL_KERNEL_TABLE(FACTOR, vplShadowFactorFcn, vplShadowFactor);
 
 enum { SHADOW_COOKIE = 0x56504c51 };
 
@@ -16,9 +13,9 @@ vplShadowDef vplDefaultShadowDef(void)
     return (vplShadowDef){VPL_BIAS_AUTO, -1, -1, 16, -1, SHADOW_COOKIE};
 }
 
-// The document asks for S random offsets without a distribution. Ours are uniform on the disc: the concentric
-// map of Hammersley points on one half, and their opposites, so that a straight edge through the centre
-// shadows exactly half of an even S; an odd S has one sample in the centre.
+// The document asks for S random offsets without a distribution. These are uniform on the disc: Hammersley
+// points mapped concentrically to one half, and their opposites, so that a straight edge through the centre
+// shadows exactly half of an even S. An odd S has one sample in the centre.
 static void makeOffsets(vplShadow* shadow)
 {
     int pairs = shadow->def.pcfSamples / 2;
@@ -69,7 +66,7 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
     makeOffsets(&shadow);
     for (int i = 0; i < def->pcfSamples; i++) {
         const float x = shadow.offsets[i][0], y = shadow.offsets[i][1];
-        // A hair longer, for the rounding here and where a sample is placed.
+        // Slightly longer, for the rounding here and where a sample is placed.
         shadow.reach = fmaxf(shadow.reach, sqrtf(x * x + y * y) * shadow.def.pcfOffset * 1.00001f);
     }
     *shadowOut = shadow;
@@ -83,18 +80,19 @@ float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine)
         distances[l] = distance;
         cosines[l] = cosine;
     }
-    BIAS[shadow->map->context->isa](shadow, distances, cosines, bias);
+    vplVisibilityKernels_Get(shadow->map->context->isa)->shadowBias(shadow, distances, cosines, bias);
     return bias[0];
 }
 
-int vplShadow_FactorBlockTold(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
+int vplShadow_FactorBlockCounted(const vplShadow* shadow, const vplSurface* surface,
+                                 float factorOut[VPL_LANES])
 {
-    return FACTOR[shadow->map->context->isa](shadow, surface, factorOut);
+    return vplVisibilityKernels_Get(shadow->map->context->isa)->shadowFactor(shadow, surface, factorOut);
 }
 
 void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
 {
-    vplShadow_FactorBlockTold(shadow, surface, factorOut);
+    vplShadow_FactorBlockCounted(shadow, surface, factorOut);
 }
 
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal)

@@ -252,7 +252,6 @@ int main(int argc, char** argv)
         snprintf(name, sizeof name, "%s", slash ? slash + 1 : argv[i]);
         openScene(argv[i], 1, VPL_ISA_AUTO, &b.context, &b.scene);
         check(vplGeometry_Create(b.scene, &b.geometry));
-        check(vplGeometry_PrepareRays(b.geometry));
         makeLights(&b);
         if (costs) {
             printCosts(&b, name, quick);

@@ -173,7 +173,6 @@ int main(int count, char** words)
     }
     openScene(words[1], 1, VPL_ISA_AUTO, &context, &scene);
     check(vplGeometry_Create(scene, &geometry));
-    check(vplGeometry_PrepareRays(geometry));
     vplLinkDef def = vplDefaultLinkDef();
     def.error = count > 2 ? atof(words[2]) : def.error;
     def.samples = count > 3 ? atoi(words[3]) : def.samples;

@@ -164,7 +164,6 @@ static void benchScene(Bench* b, const char* path, bool quick, bool draw, int wo
     const char* name = slash ? slash + 1 : path;
     openScene(path, workers, VPL_ISA_AUTO, &b->context, &b->scene);
     check(vplGeometry_Create(b->scene, &b->geometry));
-    check(vplGeometry_PrepareRays(b->geometry));
     makePlaces(b);
     makePoints(b);
     for (int size = 128; size <= (quick ? 256 : 512); size *= 2) {

@@ -229,7 +229,6 @@ int main(int count, char** words)
         vplGeometry* geometry;
         openScene(words[i], 1, VPL_ISA_AUTO, &context, &scene);
         check(vplGeometry_Create(scene, &geometry));
-        check(vplGeometry_PrepareRays(geometry));
         Bench b = {scene, geometry, NULL, vplScene_GetEmitterCount(scene)};
         if (b.emitterCount > 0) {
             b.emitters = vplScene_GetEmitter(scene, 0);

@@ -24,12 +24,11 @@ static inline vplRay rayBeside(const vplReflectiveMap* m, int face, vplVec3 poin
 
 static inline int faceOf(const vplReflectiveMap* m, vplVec3 point)
 {
-    int face = 0, i, j;
-    float s, t;
+    vplCubePoint p = {0};
     if (m->faceCount == 6) {
-        vplCube_Find(vplSub(point, m->origin), m->size, &face, &s, &t, &i, &j);
+        vplCube_Find(vplSub(point, m->origin), m->size, &p);
     }
-    return face;
+    return p.face;
 }
 
 // Whether all rays that pass within a texel and a 128th (coverage is snapped to 1/256) of the point say what the

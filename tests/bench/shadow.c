@@ -64,7 +64,7 @@ static void count(const vplShadow* shadow, const vplSurface* blocks, int blockCo
 {
     for (int i = 0; i < blockCount; i++) {
         float factor[VPL_LANES];
-        int told = vplShadow_FactorBlockTold(shadow, &blocks[i], factor), same = 0;
+        int told = vplShadow_FactorBlockCounted(shadow, &blocks[i], factor), same = 0;
         for (int l = 0; l < VPL_LANES; l++) {
             same += factor[l] == 0 || factor[l] == 1;
         }

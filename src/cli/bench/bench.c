@@ -75,8 +75,9 @@ static int runStages(const Arguments* a, Table* t)
     t->load = getloadavg(&t->load, 1) == 1 ? t->load : 0;
     const int code = exitCode(measureAll(a, t), true);
     if (code == EXIT_DONE && a->json) {
-        printTableJson(t);
-    } else if (code == EXIT_DONE) {
+        return printTableJson(t);
+    }
+    if (code == EXIT_DONE) {
         printTable(a, t);
     }
     return code;

@@ -125,7 +125,7 @@ void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int widt
 bool isAskedFor(const Arguments* a, const char* name);
 
 void printTable(const Arguments* a, const Table* table);
-void printTableJson(const Table* table);
+int printTableJson(const Table* table);
 
 int runScaling(const Arguments* a);
 

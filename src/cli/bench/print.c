@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/bench/bench.h"
 
-#include <jansson.h>
 #include <stdio.h>
 
 // Less than this on two threads, and as much less of what more could give, is marked.
@@ -109,7 +108,7 @@ static json_t* columnJson(const Table* t, const Row* row, int column)
                      o->unit ? o->unit : "", "hash", hash);
 }
 
-void printTableJson(const Table* t)
+int printTableJson(const Table* t)
 {
     json_t* root = json_array();
     for (int i = 0; i < t->rowCount; i++) {
@@ -117,7 +116,5 @@ void printTableJson(const Table* t)
             json_array_append_new(root, columnJson(t, &t->rows[i], c));
         }
     }
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(6));
-    putchar('\n');
-    json_decref(root);
+    return writeJson(root, 6, NULL);
 }

@@ -6,7 +6,6 @@
 #include "cli/bench/fit.h"
 #include "cli/bench/series.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -128,12 +127,6 @@ static void printSeries(const Measured* m)
     }
 }
 
-// NaN is not JSON.
-static json_t* number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t* seriesJson(const Measured* m)
 {
     json_t* points = json_array();
@@ -143,39 +136,38 @@ static json_t* seriesJson(const Measured* m)
     }
     return json_pack("{s:s, s:s, s:s, s:i, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "series", m->series->name,
                      "unit", m->series->unit, "fitted", m->oneThread ? "cpu_ms" : "ms", "runs", m->runs,
-                     "expected", m->series->expected, "exponent", number(m->exponent), "exponent_upper_half",
-                     number(m->upper), "fixed_ms", number(m->fit.fixed), "ms_per_unit", number(m->fit.scale),
-                     "fit_off_by", number(m->fit.worst), "points", points);
+                     "expected", m->series->expected, "exponent", numberJson(m->exponent),
+                     "exponent_upper_half", numberJson(m->upper), "fixed_ms", numberJson(m->fit.fixed),
+                     "ms_per_unit", numberJson(m->fit.scale), "fit_off_by", numberJson(m->fit.worst),
+                     "points", points);
 }
 
 int runScaling(const Arguments* a)
 {
     static Measured measured;
-    json_t* root = a->json ? json_array() : NULL;
-    int ran = 0;
-    vplResult result = VPL_SUCCESS;
-    for (int i = 0; i < SERIES_COUNT && result == VPL_SUCCESS; i++) {
+    json_t* root = json_array();
+    int ran = 0, code = EXIT_DONE;
+    for (int i = 0; i < SERIES_COUNT && code == EXIT_DONE; i++) {
         if (!isAskedFor(a, SERIES[i].name)) {
             continue;
         }
         measured.series = &SERIES[i];
-        result = measureSeries(a, &measured);
-        if (result == VPL_SUCCESS && root != NULL) {
+        code = exitCode(measureSeries(a, &measured), true);
+        if (code == EXIT_DONE && a->json) {
             json_array_append_new(root, seriesJson(&measured));
-        } else if (result == VPL_SUCCESS) {
+        } else if (code == EXIT_DONE) {
             printSeries(&measured);
             fflush(stdout);
         }
         ran++;
     }
-    if (root != NULL && result == VPL_SUCCESS && ran > 0) {
-        json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(6));
-        putchar('\n');
+    if (a->json && code == EXIT_DONE && ran > 0) {
+        return writeJson(root, 6, NULL);
     }
     json_decref(root);
     if (ran == 0) {
         complain("no series of bench --scaling has \"%s\" in its name", a->stage);
         return EXIT_USAGE;
     }
-    return exitCode(result, true);
+    return code;
 }

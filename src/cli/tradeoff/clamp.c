@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Error and energy against --min-distance: the larger the bound, the fewer bright blotches, the less light.
+// Error and energy against --min-distance: the larger the clamp distance, the fewer bright blotches, the less light.
 #include "cli/tradeoff/report.h"
+#include "cli/tradeoff/svg.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 900, PANEL = 200, GAP = 34, LEFT = 72, RIGHT = 24, TOP = 26, BOTTOM = 56, MAX_POINTS = 32 };
+enum { PANEL = 200, GAP = 34, TOP = 26, BOTTOM = 56, MAX_POINTS = 32 };
 
 typedef struct Clamp {
     const Setting* points[MAX_POINTS]; // by ascending distance
@@ -50,16 +51,7 @@ static void findColumns(Clamp* c)
 // Evenly spaced: the distances run over decades and begin with 0.
 static double atX(const Clamp* c, int i)
 {
-    return LEFT + (WIDTH - LEFT - RIGHT) * (c->column[i] + 0.5) / c->columns;
-}
-
-typedef struct Range {
-    double low, high, bottom; // of the values; pixel of the low end
-} Range;
-
-static double atY(const Range* r, double value)
-{
-    return r->bottom - PANEL * (value - r->low) / (r->high - r->low);
+    return PLOT_LEFT + (PLOT_RIGHT - PLOT_LEFT) * (c->column[i] + 0.5) / c->columns;
 }
 
 // A round step that makes three to eight of them.
@@ -69,29 +61,26 @@ static double stepOf(double span)
     return span / step > 8 ? (span / step > 16 ? 5 * step : 2 * step) : step;
 }
 
-static void addPanel(const Clamp* c, const Range* r, const char* title, bool percent)
+static void addPanel(const Clamp* c, const Axis* a, const char* title, bool percent)
 {
-    addText(c->svg, "<text x=\"%d\" y=\"%.1f\">%s</text>\n", LEFT, r->bottom - PANEL - 8, title);
-    double step = stepOf(r->high - r->low);
-    for (double value = step * ceil(r->low / step - 1e-9); value <= r->high * (1 + 1e-9); value += step) {
-        double y = atY(r, value);
-        addText(c->svg, "<line class=\"grid\" x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\"/>", LEFT,
-                WIDTH - RIGHT, y, y);
-        addText(c->svg, "<text class=\"soft\" x=\"%d\" y=\"%.1f\" text-anchor=\"end\">%.4g%s</text>\n",
-                LEFT - 8, y + 4, 0 + (percent ? 100 * value : value), percent ? " %" : "");
+    addText(c->svg, "<text x=\"%d\" y=\"%.1f\">%s</text>\n", PLOT_LEFT, a->to - 8, title);
+    double step = stepOf(a->high - a->low);
+    for (double value = step * ceil(a->low / step - 1e-9); value <= a->high * (1 + 1e-9); value += step) {
+        char label[32];
+        snprintf(label, sizeof label, "%.4g%s", 0 + (percent ? 100 * value : value), percent ? " %" : "");
+        addGridLine(c->svg, pixelOf(a, value), label);
     }
-    addText(c->svg, "<path class=\"axis\" d=\"M%d %.1fV%.1fH%d\"/>\n", LEFT, r->bottom - PANEL, r->bottom,
-            WIDTH - RIGHT);
+    addFrame(c->svg, a->to, a->from);
 }
 
-static void addLine(const Clamp* c, const Range* r, Family family, bool energy)
+static void addLine(const Clamp* c, const Axis* a, Family family, bool energy)
 {
     const char* command = "M";
     addText(c->svg, "<path class=\"f%d band\" d=\"", family);
     for (int i = 0; i < c->count; i++) {
         const Setting* s = c->points[i];
         if (s->family == family) {
-            addText(c->svg, "%s%.1f %.1f", command, atX(c, i), atY(r, energy ? s->energy : s->error));
+            addText(c->svg, "%s%.1f %.1f", command, atX(c, i), pixelOf(a, energy ? s->energy : s->error));
             command = "L";
         }
     }
@@ -99,27 +88,11 @@ static void addLine(const Clamp* c, const Range* r, Family family, bool energy)
     for (int i = 0; i < c->count; i++) {
         const Setting* s = c->points[i];
         if (s->family == family) {
-            addMarker(c->svg, family, true, atX(c, i), atY(r, energy ? s->energy : s->error));
+            addMarker(c->svg, family, true, atX(c, i), pixelOf(a, energy ? s->energy : s->error));
         }
         if (s->family == family && !energy) {
             addText(c->svg, "<path class=\"f%d band\" d=\"M%.1f %.1fV%.1f\"/>", family, atX(c, i),
-                    atY(r, s->errorLow), atY(r, s->errorHigh));
-        }
-    }
-}
-
-static void addLegend(const Clamp* c)
-{
-    int x = LEFT + 150;
-    for (int f = 0; f < FAMILY_COUNT; f++) {
-        bool present = false;
-        for (int i = 0; i < c->count; i++) {
-            present |= c->points[i]->family == (Family)f;
-        }
-        if (present) {
-            addMarker(c->svg, (Family)f, true, x, TOP - 12);
-            addText(c->svg, "<text x=\"%d\" y=\"%d\">%s</text>\n", x + 12, TOP - 8, FAMILY_NAMES[f]);
-            x += 250;
+                    pixelOf(a, s->errorLow), pixelOf(a, s->errorHigh));
         }
     }
 }
@@ -141,33 +114,32 @@ static void addDistances(const Clamp* c, int y)
 
 static void drawClamp(const Clamp* c)
 {
-    Range error = {0, 0, TOP + PANEL}, energy = {1, 1, TOP + 2 * PANEL + GAP};
+    const int height = TOP + 2 * PANEL + GAP + BOTTOM;
+    Axis error = {0, 0, TOP + PANEL, TOP, false},
+         energy = {1, 1, TOP + 2 * PANEL + GAP, TOP + PANEL + GAP, false};
+    bool present[FAMILY_COUNT] = {false};
     for (int i = 0; i < c->count; i++) {
         error.high = fmax(error.high, 1.05 * c->points[i]->errorHigh);
         energy.low = fmin(energy.low, c->points[i]->energy);
         energy.high = fmax(energy.high, c->points[i]->energy);
+        present[c->points[i]->family] = true;
     }
     double room = fmax(0.05 * (energy.high - energy.low), 0.01);
     energy.low -= room;
     energy.high += room;
-    int height = TOP + 2 * PANEL + GAP + BOTTOM;
-    addText(
-        c->svg,
-        "<svg class=\"vpl\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" width=\"%d\" "
-        "height=\"%d\" role=\"img\" aria-label=\"Error and energy against the clamp\">\n<rect class=\"back\" "
-        "width=\"%d\" height=\"%d\"/>\n",
-        WIDTH, height, WIDTH, height, WIDTH, height);
+    beginSvg(c->svg, height, "Error and energy against the clamp", false);
     addPanel(c, &error, "error", true);
     addPanel(c, &energy, "energy: all light / all light of the truth", false);
-    addText(c->svg, "<path class=\"front\" d=\"M%d %.1fH%d\"/>\n", LEFT, atY(&energy, 1), WIDTH - RIGHT);
+    addText(c->svg, "<path class=\"front\" d=\"M%d %.1fH%d\"/>\n", PLOT_LEFT, pixelOf(&energy, 1),
+            PLOT_RIGHT);
     for (int f = 0; f < FAMILY_COUNT; f++) {
         addLine(c, &error, (Family)f, false);
         addLine(c, &energy, (Family)f, true);
     }
-    addLegend(c);
+    addLegend(c->svg, present, PLOT_LEFT + 150, TOP - 8);
     addDistances(c, height - BOTTOM + 18);
     addText(c->svg, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">--min-distance D</text>\n</svg>\n",
-            (LEFT + WIDTH - RIGHT) / 2, height - 12);
+            (PLOT_LEFT + PLOT_RIGHT) / 2, height - 12);
 }
 
 void addClamp(const Tradeoff* t, Text* html)

@@ -3,7 +3,7 @@
 #include "cli/tradeoff/report.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef enum Verdict { VERDICT_FREE = 0, VERDICT_BUYS, VERDICT_SAVES, VERDICT_NOTHING } Verdict;
@@ -12,10 +12,16 @@ typedef struct Knob {
     const Sweep* sweep;
     const Setting* best;
     Verdict verdict;
+    double score;       // among knobs of one verdict, the least comes first: error, ms per halving, or ms
     double perHalving;  // milliseconds of processor time
     int values;         // measured, besides the base
     bool worse, dearer; // some value makes the error larger, or costs more
 } Knob;
+
+static bool comesBefore(const Knob* a, const Knob* b)
+{
+    return a->verdict != b->verdict ? a->verdict < b->verdict : a->score < b->score;
+}
 
 // -1 or 1 if every seed agrees that the error falls or grows, and by more than 2 %; else 0.
 static int errorTrend(const Setting* base, const Setting* s)
@@ -37,40 +43,34 @@ static int costTrend(const Setting* base, const Setting* s)
     return above ? 1 : below ? -1 : 0;
 }
 
-static bool isBetter(const Knob* knob, Verdict verdict, double perHalving, const Setting* s)
-{
-    if (verdict != knob->verdict) {
-        return verdict < knob->verdict;
-    }
-    return verdict == VERDICT_FREE    ? s->error < knob->best->error
-           : verdict == VERDICT_SAVES ? s->cpuMs < knob->best->cpuMs
-                                      : perHalving < knob->perHalving;
-}
-
+// Compares a setting with the base; the knob keeps the best.
 static void judge(Knob* knob, const Setting* base, const Setting* s)
 {
     int error = errorTrend(base, s), cost = costTrend(base, s);
-    double perHalving = costPerHalving(base->cpuMs, base->error, s->cpuMs, s->error);
     bool same = s->error <= 1.02 * base->error; // seeds that disagree do not prove it
-    Verdict verdict = error < 0 && cost <= 0           ? VERDICT_FREE
-                      : error < 0                      ? VERDICT_BUYS
-                      : error == 0 && same && cost < 0 ? VERDICT_SAVES
-                                                       : VERDICT_NOTHING;
+    Knob with = *knob;
+    with.best = s;
+    with.verdict = error < 0 && cost <= 0           ? VERDICT_FREE
+                   : error < 0                      ? VERDICT_BUYS
+                   : error == 0 && same && cost < 0 ? VERDICT_SAVES
+                                                    : VERDICT_NOTHING;
+    with.perHalving = costPerHalving(base->cpuMs, base->error, s->cpuMs, s->error);
+    with.score = with.verdict == VERDICT_FREE    ? s->error
+                 : with.verdict == VERDICT_SAVES ? s->cpuMs
+                                                 : with.perHalving;
+    if (with.verdict != VERDICT_NOTHING && comesBefore(&with, knob)) {
+        *knob = with;
+    }
     knob->values++;
     knob->worse |= error > 0;
     knob->dearer |= cost > 0;
-    if (verdict != VERDICT_NOTHING && isBetter(knob, verdict, perHalving, s)) {
-        knob->best = s;
-        knob->verdict = verdict;
-        knob->perHalving = perHalving;
-    }
 }
 
 static int findKnobs(const Tradeoff* t, Knob* knobs)
 {
     int count = 0;
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        Knob knob = {&SWEEPS[i], NULL, VERDICT_NOTHING, INFINITY, 0, false, false};
+        Knob knob = {&SWEEPS[i], NULL, VERDICT_NOTHING, INFINITY, INFINITY, 0, false, false};
         for (int j = 1; j < t->settingCount; j++) {
             const Setting* s = &t->settings[j];
             if ((s->sweeps >> i & 1) != 0 && isMeasured(s) && SWEEPS[i].meaning != NULL) {
@@ -84,34 +84,15 @@ static int findKnobs(const Tradeoff* t, Knob* knobs)
     return count;
 }
 
-static bool comesBefore(const Knob* a, const Knob* b)
+static int compareKnobs(const void* a, const void* b)
 {
-    if (a->verdict != b->verdict) {
-        return a->verdict < b->verdict;
-    }
-    return a->verdict == VERDICT_FREE    ? a->best->error < b->best->error
-           : a->verdict == VERDICT_SAVES ? a->best->cpuMs < b->best->cpuMs
-                                         : a->perHalving < b->perHalving;
+    return comesBefore(a, b) ? -1 : comesBefore(b, a);
 }
 
-static void sortKnobs(Knob* knobs, int count)
-{
-    for (int i = 1; i < count; i++) {
-        Knob knob = knobs[i];
-        int j = i;
-        for (; j > 0 && comesBefore(&knob, &knobs[j - 1]); j--) {
-            knobs[j] = knobs[j - 1];
-        }
-        knobs[j] = knob;
-    }
-}
-
-// The option that the sweep turns, the last word before its values.
 static void addNothing(const Knob* knob, Text* html)
 {
-    const char* option = strrchr(knob->sweep->words, ' ');
     addText(html, "<td><code>%s</code></td><td colspan=\"3\">%s</td><td class=\"n\">&ndash;</td></tr>\n",
-            option ? option + 1 : knob->sweep->words,
+            optionOf(knob->sweep),
             knob->worse ? "buys nothing: the base's value is best, others are worse"
             : knob->dearer
                 ? "buys nothing: no value changes the error on all seeds, others than the base's cost more"
@@ -153,7 +134,7 @@ void addKnobs(const Tradeoff* t, Text* html)
     }
     char command[SENTENCE];
     writeCommand(base, command, sizeof command);
-    sortKnobs(knobs, count);
+    qsort(knobs, (size_t)count, sizeof *knobs, compareKnobs);
     addText(html, "<h2>What each knob buys</h2>\n<p>One option at a time is changed from the base, <code>");
     addWords(html, command);
     addText(html,

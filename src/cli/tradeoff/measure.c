@@ -79,12 +79,10 @@ static vplResult timeAgain(Tradeoff* t, const vplRenderOptions* options, vplRend
 static vplResult compare(const Tradeoff* t, const vplImage* image, Run* run)
 {
     const vplImage* truth = t->reference.image;
-    vplResult result = vplImage_Compare(image, truth, &run->comparison);
-    if (result == VPL_SUCCESS) {
-        run->error = errorOf(&t->reference, image, &run->comparison);
-        result = vplImage_Ssim(image, truth, &run->ssim, NULL);
-    }
-    return result == VPL_SUCCESS ? vplImage_Flip(image, truth, VPL_DEFAULT_PPD, &run->flip, NULL) : result;
+    TRY(vplImage_Compare(image, truth, &run->comparison));
+    run->error = errorOf(&t->reference, image, &run->comparison);
+    TRY(vplImage_Ssim(image, truth, &run->ssim, NULL));
+    return vplImage_Flip(image, truth, VPL_DEFAULT_PPD, &run->flip, NULL);
 }
 
 // One more seed of a setting.

@@ -74,12 +74,9 @@ static int choosePoints(const Tradeoff* t, const Setting** chosen)
 {
     const Setting* front[MAX_SETTINGS];
     int count = 0;
-    for (int number = 1; number <= t->settingCount; number++) {
-        for (int i = 0; i < t->settingCount; i++) {
-            if (t->settings[i].onFront && t->settings[i].number == number && t->settings[i].image != NULL) {
-                front[count++] = &t->settings[i];
-            }
-        }
+    for (int i = 0, all = listFront(t, front); i < all; i++) {
+        front[count] = front[i];
+        count += front[i]->image != NULL;
     }
     int kept = count < MAX_PICTURES ? count : MAX_PICTURES;
     for (int i = 0; i < kept; i++) {

@@ -13,6 +13,9 @@ static const char PATCHES[] = "100 300 1000 3000 10000 30000";
 
 static const char DISTANCES[] = "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4";
 
+// As values: the choices of the option, but for those that leave the choice to the library.
+#define CHOICES NULL
+
 const Sweep SWEEPS[] = {
     {"frontier", "--light-shadows none --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows map --particles", PARTICLES, NULL},
@@ -37,42 +40,38 @@ const Sweep SWEEPS[] = {
     {"interleave", "--light-shadows ray --pipeline interleaved --interleave", "2 4 8 16", NULL},
     {"min-distance", "--min-distance", DISTANCES, "Clamp of near virtual lights"},
     {"min-distance", "--light-shadows map --min-distance", DISTANCES, NULL},
-    {"compensation", "--light-shadows ray --compensation", "none rays",
-     "Light lost to the clamp found by rays"},
+    {"compensation", "--light-shadows ray --compensation", CHOICES, "Light lost to the clamp found by rays"},
     {"compensation", "--light-shadows ray --compensation rays --particles", "100 1000 10000", NULL},
     {"passes", "--method keller --pipeline interleaved --interleave 16 --passes", "1 2 4 8", "Passes"},
-    {"sampler", "--sampler", "random halton hammersley", "Where particles go"},
-    {"placement", "--light-shadows ray --placement", "particles rsm view", "Where lights go"},
-    {"clusters", "--method ssvp --clusters", "4 8 16 32 64 256", "SSVP: clusters that lights see by"},
+    {"sampler", "--sampler", CHOICES, "Where particles go"},
+    {"placement", "--light-shadows ray --placement", CHOICES, "Where lights go"},
+    {"clusters", "--method ssvp --clusters", "4 8 16 32 64 256", "SSVP: clusters of lights"},
     {"bounces", "--method ssvp --max-bounces", "0 1 2", "SSVP: bounces"},
     {"first-bounce", "--method ssvp --first-bounce", "64 256 1024", "SSVP: first-bounce lights"},
     {"second-bounce", "--method ssvp --second-bounce", "64 256 1024", "SSVP: second-bounce lights"},
-    {"second-weight", "--method ssvp --second-weight", "cosine printed", "SSVP: weight of the second bounce"},
-    {"cluster-metric", "--method ssvp --cluster-metric", "one-minus printed one-minus-clamped angle",
-     "SSVP: what makes a light far from a cluster"},
-    {"cluster-place", "--method ssvp --cluster-place", "member mean", "SSVP: where clusters look from"},
+    {"second-weight", "--method ssvp --second-weight", CHOICES, "SSVP: weight of the second bounce"},
+    {"cluster-metric", "--method ssvp --cluster-metric", CHOICES, "SSVP: distance of a light from a cluster"},
+    {"cluster-place", "--method ssvp --cluster-place", CHOICES, "SSVP: viewpoints of clusters"},
     {"paraboloid", "--method ssvp --paraboloid", "64 128 256 512", "SSVP: size of paraboloid maps"},
-    {"hemispheres", "--method ssvp --hemispheres", "1 2", "SSVP: what clusters see"},
-    {"oversampling", "--method ssvp --oversampling", "1 4 16", "SSVP: samples for lights that are of use"},
+    {"hemispheres", "--method ssvp --hemispheres", "1 2", "SSVP: hemispheres of a cluster"},
+    {"oversampling", "--method ssvp --oversampling", "1 4 16", "SSVP: oversampling of the reflective map"},
     {"rsm-size", "--method ssvp --rsm-size", "256 512 1024 2048", "SSVP: size of the reflective map"},
     {"ssvp-interleave", "--method ssvp --interleave", "1 2 4 8",
      "SSVP: lights that neighbouring pixels share"},
     {"patches", "--method radiosity --patches", PATCHES, "Radiosity: patches"},
-    {"patch-placement", "--method radiosity --patch-placement", "uniform adaptive",
+    {"patch-placement", "--method radiosity --patch-placement", CHOICES,
      "Radiosity: where patches are small"},
-    {"form-factors", "--method radiosity --form-factors", "monte-carlo incentre", "Radiosity: form factors"},
+    {"form-factors", "--method radiosity --form-factors", CHOICES, "Radiosity: form factors"},
     {"form-samples", "--method radiosity --form-samples", "1 4 16", "Radiosity: samples of form factors"},
-    {"row-sums", "--method radiosity --row-sums", "keep clamp normalise",
-     "Radiosity: what becomes of sums above 1"},
-    {"hierarchy", "--method radiosity --hierarchy", "off on", "Radiosity: links between groups"},
+    {"row-sums", "--method radiosity --row-sums", CHOICES, "Radiosity: sums of form factors above 1"},
+    {"hierarchy", "--method radiosity --hierarchy", CHOICES, "Radiosity: links between groups"},
     {"link-error", "--method radiosity --hierarchy on --link-error", "0.001 0.003 0.01 0.03 0.1",
      "Radiosity: error of links"},
     {"patch-light", "--method radiosity --patch-light", "1 4 16", "Radiosity: samples of lights"},
     {"iterations", "--method radiosity --iterations", "1 2 5 10", "Radiosity: sweeps"},
-    {"interpolation", "--method radiosity --interpolation", "gouraud none", "Radiosity: interpolation"},
-    {"sharpen", "--method radiosity --sharpen", "0 1 2 4 8", "Radiosity: corners against smoothing"},
-    {"vertex-weight", "--method radiosity --vertex-weight", "angle area equal",
-     "Radiosity: weights at corners"},
+    {"interpolation", "--method radiosity --interpolation", CHOICES, "Radiosity: interpolation"},
+    {"sharpen", "--method radiosity --sharpen", "0 1 2 4 8", "Radiosity: sharpening of corners"},
+    {"vertex-weight", "--method radiosity --vertex-weight", CHOICES, "Radiosity: weights at corners"},
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},
     {"shadow-map", "--shadow-map", "64 128 256 512 1024 2048", "Size of the light's shadow map"},
     {"pcf", "--pcf", "1 4 16 64", "Softening of the light's shadow"},
@@ -83,7 +82,7 @@ const Sweep SWEEPS[] = {
     {"area-light-samples", "--area-light-samples", "4 16 64 256", "Samples of area lights"},
     {"area-light-samples", "--area-light-samples 16 --particles", "300 1000 3000", NULL},
     {"light-map", "--light-shadows map --light-map", "32 64 128 256 512", "Size of virtual lights' maps"},
-    {"particle-geometry", "--particle-geometry", "exact obb", "What stops a particle"},
+    {"particle-geometry", "--particle-geometry", CHOICES, "What stops a particle"},
 };
 
 const int SWEEP_COUNT = sizeof SWEEPS / sizeof *SWEEPS;
@@ -99,29 +98,31 @@ const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
                                                 "radiosity",
                                                 "path tracing"};
 
-// True if `name` is one of the words in "a,b,c"; NULL names all.
-static bool isListed(const char* list, const char* name)
+// The number of a name's first row in SWEEPS, or -1.
+static int findSweep(const char* name, int length)
 {
-    size_t length = strlen(name);
-    for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
-        if (strcspn(at, ",") == length && strncmp(at, name, length) == 0) {
-            return true;
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        if ((int)strlen(SWEEPS[i].name) == length && strncmp(name, SWEEPS[i].name, (size_t)length) == 0) {
+            return i;
         }
     }
-    return list == NULL;
+    return -1;
 }
 
-static bool checkSweepNames(const char* list)
+// Marks the sweeps that "a,b,c" names; NULL names all. False after complaining of a name that is none.
+static bool chooseSweeps(const char* list, bool chosen[])
 {
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        chosen[i] = list == NULL;
+    }
     for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
-        int length = (int)strcspn(at, ","), known = 0;
-        for (int i = 0; i < SWEEP_COUNT; i++) {
-            known |=
-                (int)strlen(SWEEPS[i].name) == length && strncmp(at, SWEEPS[i].name, (size_t)length) == 0;
-        }
-        if (!known) {
+        const int length = (int)strcspn(at, ","), first = findSweep(at, length);
+        if (first < 0) {
             complain("--sweeps names \"%.*s\"; vpl help tradeoff lists the sweeps", length, at);
             return false;
+        }
+        for (int i = first; i < SWEEP_COUNT; i++) {
+            chosen[i] = chosen[i] || strcmp(SWEEPS[i].name, SWEEPS[first].name) == 0;
         }
     }
     return true;
@@ -248,15 +249,22 @@ static void expandLengths(const Tradeoff* t, const char* from, char* words, size
     words[used] = 0;
 }
 
+const char* optionOf(const Sweep* sweep)
+{
+    const char* space = strrchr(sweep->words, ' ');
+    return space != NULL ? space + 1 : sweep->words;
+}
+
 static bool addSweep(Tradeoff* t, int index)
 {
     const Sweep* sweep = &SWEEPS[index];
+    const char* at = sweep->values != CHOICES ? sweep->values : vplFindOption(optionOf(sweep) + 2)->value;
     char value[32], pattern[128], words[128];
-    int length;
-    for (const char* at = sweep->values; sscanf(at, " %31s%n", value, &length) == 1; at += length) {
+    for (; sscanf(at, "%31[^ |]", value) == 1; at += strlen(value), at += *at != 0) {
+        const bool left = strcmp(value, "auto") == 0 || strcmp(value, "usual") == 0;
         snprintf(pattern, sizeof pattern, "%s %s", sweep->words, value);
         expandLengths(t, pattern, words, sizeof words);
-        if (!addSetting(t, words, UINT64_C(1) << index)) {
+        if ((sweep->values != CHOICES || !left) && !addSetting(t, words, UINT64_C(1) << index)) {
             return false;
         }
     }
@@ -265,18 +273,17 @@ static bool addSweep(Tradeoff* t, int index)
 
 bool listSettings(Tradeoff* t)
 {
+    bool chosen[MAX_SWEEPS];
     uint64_t knobs = 0;
-    for (int i = 0; i < SWEEP_COUNT; i++) {
-        bool chosen = isListed(t->arguments->sweeps, SWEEPS[i].name);
-        knobs |= chosen && SWEEPS[i].meaning != NULL ? UINT64_C(1) << i : 0;
-    }
-    if (!checkSweepNames(t->arguments->sweeps) || !addSetting(t, "", knobs)) {
+    if (!chooseSweeps(t->arguments->sweeps, chosen)) {
         return false;
     }
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        if (isListed(t->arguments->sweeps, SWEEPS[i].name) && !addSweep(t, i)) {
-            return false;
-        }
+        knobs |= chosen[i] && SWEEPS[i].meaning != NULL ? UINT64_C(1) << i : 0;
     }
-    return true;
+    bool good = addSetting(t, "", knobs);
+    for (int i = 0; i < SWEEP_COUNT && good; i++) {
+        good = !chosen[i] || addSweep(t, i);
+    }
+    return good;
 }

@@ -74,6 +74,22 @@ int findCheapest(const Tradeoff* t, Family family, double limit)
     return cheapestWithin(cost, error, t->settingCount, limit);
 }
 
+int listFront(const Tradeoff* t, const Setting* front[MAX_SETTINGS])
+{
+    int count = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* s = &t->settings[i];
+        if (s->onFront) {
+            int at = count++;
+            for (; at > 0 && front[at - 1]->number > s->number; at--) {
+                front[at] = front[at - 1];
+            }
+            front[at] = s;
+        }
+    }
+    return count;
+}
+
 double findFloor(const Tradeoff* t, Family family)
 {
     double work[MAX_SETTINGS], error[MAX_SETTINGS];

@@ -37,22 +37,12 @@ void addText(Text* text, const char* format, ...)
 void addEscaped(Text* text, const char* plain)
 {
     for (; *plain; plain++) {
-        switch (*plain) {
-        case '&':
-            addText(text, "&amp;");
-            break;
-        case '<':
-            addText(text, "&lt;");
-            break;
-        case '>':
-            addText(text, "&gt;");
-            break;
-        case '"':
-            addText(text, "&quot;");
-            break;
-        default:
-            addText(text, "%c", *plain);
-        }
+        const char* entity = *plain == '&'   ? "&amp;"
+                             : *plain == '<' ? "&lt;"
+                             : *plain == '>' ? "&gt;"
+                             : *plain == '"' ? "&quot;"
+                                             : (char[]){*plain, 0};
+        addText(text, "%s", entity);
     }
 }
 

@@ -33,14 +33,18 @@ extern const char* const FAMILY_NAMES[FAMILY_COUNT];
 
 // A series of settings that differ from the base in one thing.
 typedef struct Sweep {
-    const char* name;    // as in --sweeps; rows of one name belong together
-    const char* words;   // the change; the last word is an option that takes each of the values
-    const char* values;  // with spaces between; @X is X times the scene's diagonal, in metres
+    const char* name;  // as in --sweeps; rows of one name belong together
+    const char* words; // the change; the last word is an option that takes each of the values
+    const char*
+        values; // with spaces between; @X is X times the scene's diagonal, in metres; NULL: its choices
     const char* meaning; // of the knob, for the report; NULL: no knob, only points of the plot
 } Sweep;
 
 extern const Sweep SWEEPS[];
 extern const int SWEEP_COUNT;
+
+// The option that takes each of the values, with its dashes.
+const char* optionOf(const Sweep* sweep);
 
 // One setting rendered with one seed.
 typedef struct Run {
@@ -126,13 +130,15 @@ vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptio
 // ---- results
 
 void writeTable(const Tradeoff* t, Text* csv);
-void addMarker(Text* svg, Family family, bool solid, double x, double y);
 void writeStyle(Text* css); // colours of both the plots and the report
 void writePlot(const Tradeoff* t, Text* svg);
 void writeReport(const Tradeoff* t, Text* html);
 
 // The index of the cheapest setting of a family (FAMILY_COUNT: any) with a median error within the limit, or -1.
 int findCheapest(const Tradeoff* t, Family family, double limit);
+
+// The settings on the front, the cheapest first; returns how many.
+int listFront(const Tradeoff* t, const Setting* front[MAX_SETTINGS]);
 
 // The error that a family without shadows cannot get below however many particles; NAN where none shows.
 double findFloor(const Tradeoff* t, Family family);

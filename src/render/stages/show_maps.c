@@ -103,8 +103,8 @@ static void showParaboloidRow(void* data, int row, int worker)
     for (int i = 0; i < size; i++) {
         vplHit hit;
         vplVec3 direction;
-        if (vplParaboloidMap_GetHit(s->paraboloid, s->geometry, hemisphere, i, row % size, &hit,
-                                    &direction)) {
+        if (vplParaboloidMap_GetHit(s->paraboloid, s->geometry,
+                                    (vplParaboloidTexel){hemisphere, i, row % size}, &hit, &direction)) {
             const vplVec3 n = vplDot(direction, hit.normal) > 0 ? vplNegate(hit.normal) : hit.normal;
             const vplRgb albedo =
                 s->geometry->materials[s->geometry->triangleMaterials[hit.triangle]].diffuse;

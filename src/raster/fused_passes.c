@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Passes: draws that change neither depth nor owner and shade what the depth test left, one after another, as
-// Franchi and Ferrante draw the scene once per virtual light with depth EQUAL. All passes over a mesh see the
-// same fragments, so coverage, depth and interpolation are done once per tile; each pass only runs its shader.
-// A pixel has one owner, so the order in which meshes are taken does not matter, only that of the passes.
+// Passes are draws that change neither depth nor owner and shade the visible fragments, as Franchi and
+// Ferrante draw the scene once per virtual light with depth EQUAL. All passes over a mesh see the same
+// fragments, so coverage, depth and interpolation are done once per tile; each pass only runs its shader. A
+// pixel has one owner, so the order of the meshes does not matter, only that of the passes.
+//
+// A row is a run of passes in the list of commands; a chain is the passes of a row over one mesh. The passes
+// of a chain are fused, that is shaded by one call, where they share a shader that takes several passes.
 #include "raster/raster.h"
 
 bool vplIsPass(const vplPipeline* p)
@@ -29,26 +32,26 @@ static void linkRow(vplRaster* r, int first, int end, int* last)
     }
 }
 
-// Collects the uniforms of a chain, and asks whether one call may shade all of it.
+// Collects the uniforms of a chain and decides whether one call may shade all of it.
 static void fuseChain(vplRaster* r, int first, int* used)
 {
     vplCommand* start = &r->commands[first];
     const vplPipeline* p = &r->pipelines[start->pipeline];
-    bool alike = p->passes != NULL;
+    bool same = p->passes != NULL;
     start->uniforms = *used;
     for (int i = first; i >= 0; i = r->commands[i].chainNext) {
         const vplPipeline* other = &r->pipelines[r->commands[i].pipeline];
-        alike = alike && other->passes == p->passes && other->planeMask == p->planeMask;
+        same = same && other->passes == p->passes && other->planeMask == p->planeMask;
         r->passUniforms[(*used)++] = other->fragmentUniforms;
     }
-    start->fused = alike ? *used - start->uniforms : 0;
+    start->fused = same ? *used - start->uniforms : 0;
 }
 
 static void findRows(vplRaster* r, int* last)
 {
     int used = 0;
     for (int i = 0, end; i < r->commandCount; i = end) {
-        for (end = i; end < r->commandCount && r->commands[end].repeats; end++) {
+        for (end = i; end < r->commandCount && r->commands[end].isPass; end++) {
         }
         r->commands[i].passesEnd = end;
         linkRow(r, i, end, last);
@@ -69,23 +72,20 @@ vplResult vplFindPasses(vplRaster* raster)
     for (int i = 0; i < raster->commandCount; i++) {
         vplCommand* c = &raster->commands[i];
         const vplPipeline* p = c->shaded < 0 ? NULL : &raster->pipelines[c->pipeline];
-        c->repeats = p != NULL && vplIsPass(p);
+        c->isPass = p != NULL && vplIsPass(p);
         epoch += p != NULL && p->depthWrite;
         c->epoch = epoch;
         raster->keepsOwners |= p != NULL && p->ownerTest;
-        raster->keepsPasses |= c->repeats;
+        raster->keepsPasses |= c->isPass;
         raster->hasTasks |= p == NULL;
     }
     if (!raster->keepsPasses) {
         return VPL_SUCCESS;
     }
-    int* last = vplAlloc(raster->context, (size_t)raster->shadedCount, sizeof *last);
+    int* last = vplArena_Alloc(raster->run, (size_t)raster->shadedCount, sizeof *last);
     raster->passUniforms =
-        vplAlloc(raster->context, (size_t)raster->commandCount, sizeof *raster->passUniforms);
-    const bool enough = last != NULL && raster->passUniforms != NULL;
-    if (enough) {
-        findRows(raster, last);
-    }
-    vplFree(raster->context, last);
-    return enough ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+        vplArena_Alloc(raster->run, (size_t)raster->commandCount, sizeof *raster->passUniforms);
+    TRY(vplArena_Check(raster->run));
+    findRows(raster, last);
+    return VPL_SUCCESS;
 }

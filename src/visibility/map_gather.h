@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sixteen table entries at once. gcc 12 makes sixteen scalar loads and compares of the plain loop.
-#ifndef VPL_VISIBILITY_GATHER_H
-#define VPL_VISIBILITY_GATHER_H
+// Gathers 16 texels of a map. gcc 12 turns the plain loop into 16 scalar loads and compares.
+#ifndef VPL_VISIBILITY_MAP_GATHER_H
+#define VPL_VISIBILITY_MAP_GATHER_H
 
 #include <vpl/raster.h>
 
@@ -20,7 +20,7 @@ static inline void vplGather(const float* restrict table, const int32_t index[re
     memcpy(out, &lanes, sizeof lanes);
 }
 
-// first[l] = table[index[l]], second[l] = the one behind it: with half as many loads as vplGather twice.
+// first[l] = table[index[l]], second[l] = table[index[l] + 1]: half as many loads as two calls of vplGather.
 static inline void vplGatherPairs(const float* restrict table, const int32_t index[restrict VPL_LANES],
                                   float first[restrict VPL_LANES], float second[restrict VPL_LANES])
 {

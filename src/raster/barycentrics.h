@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Perspective-correct interpolation within a triangle. Included by the tile kernel only.
-// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D Homogeneous Coordinates, Graphics Hardware
-// 1997: with corners (X, Y, w) in homogeneous pixels, share i of the point seen at pixel p is proportional to
-// (corner j x corner k) . (p, 1). No corner is divided by its w, and none is snapped: snapping decides coverage
-// only, and moves no surface.
-#ifndef VPL_RASTER_SHARES_H
-#define VPL_RASTER_SHARES_H
+// Barycentrics: perspective-correct interpolation within a triangle. Included by the tile kernel only.
+// Based on: Marc Olano and Trey Greer, Triangle Scan Conversion Using 2D Homogeneous Coordinates, Graphics
+// Hardware 1997: with corners (X, Y, w) in homogeneous pixels, barycentric coordinate i of the point seen at
+// pixel p is proportional to (corner j x corner k) . (p, 1). Corners are neither divided by w nor snapped:
+// snapping decides coverage only and moves no surface.
+#ifndef VPL_RASTER_BARYCENTRICS_H
+#define VPL_RASTER_BARYCENTRICS_H
 
 #include "raster/setup.h"
 
 #include <math.h>
 
-typedef struct Shares {
-    double x[3], y[3], c[3];                // the three planes over pixel indices; their sum is 1/w
+typedef struct Barycentrics {
+    // Weight i of a pixel is x[i] column + y[i] row + c[i]; the sum of the weights is 1/w.
+    double x[3], y[3], c[3];
     _Alignas(64) double lane[3][VPL_LANES]; // growth from lane 0
-    float leastInverse, mostInverse;        // of the corners' 1/w
-    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS],
-        d2[VPL_MAX_VARYINGS]; // corner 0 and differences from it
-} Shares;
+    float leastInverse, mostInverse;        // range of the corners' 1/w
+    // Varyings of corner 0, and the differences of corners 1 and 2 from them.
+    float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS], d2[VPL_MAX_VARYINGS];
+} Barycentrics;
 
-static inline void crossPlanes(const double p[3][3], Shares* s)
+static inline void crossPlanes(const double p[3][3], Barycentrics* s)
 {
     for (int i = 0; i < 3; i++) {
         const double *u = p[(i + 1) % 3], *v = p[(i + 2) % 3];
@@ -29,8 +30,8 @@ static inline void crossPlanes(const double p[3][3], Shares* s)
     }
 }
 
-static inline void setUpShares(const vplRaster* r, const Batch* t, int place, const vplShaded* shaded,
-                               Shares* s)
+static inline void setUpBarycentrics(const vplRaster* r, const Batch* t, int place, const vplShaded* shaded,
+                                     Barycentrics* s)
 {
     double p[3][3];
     float varyings[3][VPL_MAX_VARYINGS];
@@ -48,7 +49,7 @@ static inline void setUpShares(const vplRaster* r, const Batch* t, int place, co
     crossPlanes(p, s);
     double determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
     if (!(determinant > 0)) {
-        // Only snapping gave it an area: then the snapped corners are the triangle.
+        // The triangle has an area only because of snapping: use its snapped corners.
         for (int i = 0; i < 3; i++) {
             p[i][0] = t->x[i][place] / 256.0 * p[i][2];
             p[i][1] = t->y[i][place] / 256.0 * p[i][2];
@@ -73,31 +74,31 @@ static inline void setUpShares(const vplRaster* r, const Batch* t, int place, co
     }
 }
 
-// Shares of the corners in a block, not yet divided by their sum. Clamped at 0: that keeps points of the outline
-// within the triangle, and lanes that are not covered finite.
-static inline void shareOf(const Shares* s, int i, int x, int y, float share[VPL_LANES])
+// Weights of corner i in a block. The barycentrics are the weights divided by their sum. They are clamped at
+// 0, so that points of the outline stay within the triangle and lanes that are not covered finite.
+static inline void cornerWeights(const Barycentrics* s, int i, int x, int y, float weight[VPL_LANES])
 {
     const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);
     for (int l = 0; l < VPL_LANES; l++) {
         const float v = (float)(at + s->lane[i][l]);
-        share[l] = v > 0 ? v : 0;
+        weight[l] = v > 0 ? v : 0;
     }
 }
 
-static inline void interpolate(const Shares* s, int varyingCount, int x, int y, vplFragments* f)
+static inline void interpolate(const Barycentrics* s, int varyingCount, int x, int y, vplFragments* f)
 {
-    float share0[VPL_LANES], share1[VPL_LANES], share2[VPL_LANES], b1[VPL_LANES], b2[VPL_LANES];
-    shareOf(s, 0, x, y, share0);
-    shareOf(s, 1, x, y, share1);
-    shareOf(s, 2, x, y, share2);
+    float weight0[VPL_LANES], weight1[VPL_LANES], weight2[VPL_LANES], b1[VPL_LANES], b2[VPL_LANES];
+    cornerWeights(s, 0, x, y, weight0);
+    cornerWeights(s, 1, x, y, weight1);
+    cornerWeights(s, 2, x, y, weight2);
     for (int l = 0; l < VPL_LANES; l++) {
-        const float w = 1 / (share0[l] + share1[l] + share2[l]);
+        const float w = 1 / (weight0[l] + weight1[l] + weight2[l]);
         f->w[l] = w;
-        b1[l] = share1[l] * w;
-        b2[l] = share2[l] * w;
+        b1[l] = weight1[l] * w;
+        b2[l] = weight2[l] * w;
     }
     for (int k = 0; k < varyingCount; k++) {
-        // From corner 0, so that what is equal at all corners stays equal in every bit.
+        // Relative to corner 0, so that a varying that is equal at all corners keeps its bits.
         const float v0 = s->v0[k], d1 = s->d1[k], d2 = s->d2[k];
         for (int l = 0; l < VPL_LANES; l++) {
             f->varying[k][l] = v0 + (b1[l] * d1 + b2[l] * d2);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Shades kept blocks by all passes over them; see repeat.c. Compiled once per instruction set.
-#include "base/isa.h"
+// Shades kept blocks by all passes over them; see fused_passes.c. Compiled once per instruction set; all give
+// the same bits.
+#include "raster/kernels.h"
 #include "raster/shaders.h"
-
-vplRunPassesFcn VPL_KERNEL(vplRunPasses);
 
 void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int first)
 {

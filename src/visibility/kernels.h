@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// All kernels of visibility: one list, from which prototypes and a table for each instruction set are made.
+#ifndef VPL_VISIBILITY_KERNELS_H
+#define VPL_VISIBILITY_KERNELS_H
+
+#include <vpl/visibility.h>
+
+#include "base/isa.h"
+
+struct vplBvh;
+struct vplCubeBounds;
+
+// ---- cube maps
+
+// 16 points as the light sees them.
+typedef struct vplShadowPoints {
+    float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES]; // from the light
+    float inverse[VPL_LANES];                       // 1 / distance
+    float limit[VPL_LANES];                         // distance less bias: a sample nearer than this shadows
+    int32_t face[VPL_LANES];                        // all samples fall on it; negative where they may differ
+} vplShadowPoints;
+
+typedef void vplShadowBiasFcn(const vplShadow* shadow, const float* restrict distance,
+                              const float* restrict cosine, float* restrict bias);
+
+// Returns how many points needed no samples.
+typedef int vplShadowFactorFcn(const vplShadow* shadow, const vplSurface* surface, float* restrict factor);
+
+// Sets the points' faces, known where the map's bounds decide all samples, and shadowed to how many lie in
+// shadow there. Returns how many points are known.
+typedef int vplTestBoundsFcn(const vplShadow* shadow, const vplSurface* surface,
+                             vplShadowPoints* restrict points, int32_t known[restrict VPL_LANES],
+                             float shadowed[restrict VPL_LANES]);
+
+// Bounds one row of regions of level 0 in all faces.
+typedef void vplBoundRegionsFcn(const vplCubeMap* map, int row, struct vplCubeBounds* restrict bounds);
+
+// ---- small maps
+
+// Draws all triangles of a tree into a map of zeros.
+typedef void vplDrawHemiMapFcn(const struct vplBvh* bvh, const vplHemiMap* map, float* texels);
+
+typedef void vplHemiMapFactorFcn(const vplHemiMap* map, const vplSurface* surface,
+                                 float factor[restrict VPL_LANES]);
+
+// Texels of a hemisphere; `triangles` may be NULL.
+typedef struct vplParaboloidTexels {
+    float* texels;
+    int32_t* triangles;
+} vplParaboloidTexels;
+
+// Draws a hemisphere of a map, with a back or without; `scratch` has room for the blocks.
+typedef void vplDrawParaboloidFcn(const struct vplBvh* bvh, const vplParaboloidMap* map, int hemisphere,
+                                  vplParaboloidTexels scratch, vplParaboloidTexels out);
+
+typedef void vplParaboloidFactorFcn(const vplParaboloidMap* map, const vplSurface* surface,
+                                    float factor[restrict VPL_LANES]);
+
+// ---- the list: X(type, field, function, instruction set)
+
+#define VPL_VISIBILITY_KERNELS(X, isa)                                                                       \
+    X(vplShadowBiasFcn, shadowBias, vplShadowBias, isa)                                                      \
+    X(vplShadowFactorFcn, shadowFactor, vplShadowFactor, isa)                                                \
+    X(vplTestBoundsFcn, testBounds, vplTestBounds, isa)                                                      \
+    X(vplBoundRegionsFcn, boundRegions, vplBoundRegions, isa)                                                \
+    X(vplDrawHemiMapFcn, drawHemiMap, vplDrawHemiMap, isa)                                                   \
+    X(vplHemiMapFactorFcn, hemiMapFactor, vplHemiMapFactor, isa)                                             \
+    X(vplDrawParaboloidFcn, drawParaboloid, vplDrawParaboloid, isa)                                          \
+    X(vplParaboloidFactorFcn, paraboloidFactor, vplParaboloidFactor, isa)
+
+#define VPL_PROTOTYPE(type, field, function, isa) type VPL_JOIN(function, isa);
+
+typedef struct vplVisibilityKernels {
+#define VPL_FIELD(type, field, function, isa) type* field;
+    VPL_VISIBILITY_KERNELS(VPL_FIELD, )
+#undef VPL_FIELD
+} vplVisibilityKernels;
+
+const vplVisibilityKernels* vplVisibilityKernels_Get(vplIsa isa);
+
+// In *_kernel.c: the prototypes of this instruction set.
+#ifdef VPL_KERNEL_ISA
+VPL_VISIBILITY_KERNELS(VPL_PROTOTYPE, VPL_KERNEL_ISA)
+#endif
+
+#endif
