@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether virtual lights take maps or rays: the rule, what it is asked with, and that pictures are those of what it
-// chose. Lights whose maps do not fit into memory at the same time.
+// Whether virtual lights take maps or rays: the rule, what it is asked with, and that pictures are those of
+// what it chose. Lights whose maps do not fit into memory at the same time.
 #include "scenes.h"
 
 #include "render/stages/shadow_choice.h"
@@ -52,8 +52,9 @@ TEST_ALONE(TheRuleTurnsOnce)
     }
 }
 
-// Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter longer, the rule
-// finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as dear.
+// Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter
+// longer, the rule finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as
+// dear.
 TEST_ALONE(TheRuleAgreesWithTheMeasuredTable)
 {
     Table t = loadTable("crossover.csv");
