@@ -27,6 +27,7 @@ typedef struct vplRunner {
     vplRun run;
     vplStore* store;
     vplRenderStats stats;
+    bool plans; // results serve decisions: they are not reported yet
     vplProgressFcn* progress;
     void* progressUser;
     double stepFrom, stepTo;   // share of the whole that the pass under way has
