@@ -140,7 +140,8 @@ TEST(LightsWhoseMapsDoNotFitAreAddedInBatches, 2)
     o.lights.mapSize = 2048;
     o.lights.shadows = VPL_LIGHT_SHADOWS_MAP;
     vplImage* all = renderScene(scene, &o, &stats);
-    assert_true(stats.virtualLights > 2 * 3 && stats.peakBytes <= VPL_LIGHT_MAP_BYTES + ((size_t)64 << 20));
+    assert_true(stats.virtualLights > 2 * 3 &&
+                stats.peakBytes <= ((size_t)o.lights.mapMemory << 20) + ((size_t)64 << 20));
     o.output.show = VPL_SHOW_DIRECT;
     vplImage* direct = renderScene(scene, &o, NULL);
     vplImage* sum = direct;

@@ -148,8 +148,8 @@ static Bytes picture(const Scale* s)
     scratch += o->output.antialias > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
         const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
-        const bool batches = all > (double)VPL_LIGHT_MAP_BYTES;
-        scratch += batches ? (double)VPL_LIGHT_MAP_BYTES + 12 * s->pixels : all;
+        const double most = o->lights.mapMemory * 1048576.0;
+        scratch += all > most ? most + 12 * s->pixels : all;
     }
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
