@@ -26,7 +26,8 @@ vplClusterMetric metricOf(const char* name);
 // Lights on the walls of a box of about 4 x 3 x 5 metres.
 void fillRoom(Lights* l, uint64_t room);
 
-// kmeans_cycles.csv, whose rooms are not given: 10, 0 and 0 of 300 (X107). The metric without clamping is not in it.
+// kmeans_cycles.csv, whose rooms are not given: 10, 0 and 0 of 300 (X107). The metric without clamping is not
+// in it.
 void assertSame(const vplLightClusters* a, const vplLightClusters* b);
 
 #endif

@@ -58,14 +58,14 @@ void addColoured(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3
 vplScene* zoo(vplContext* context, float factor)
 {
     vplScene* scene = sceneOf(context, 0.6f);
-    const int lamp = addGlow(scene, (vplRgb){2 * factor, 3 * factor, factor}, 0.25f);
+    const int areaLight = addGlow(scene, (vplRgb){2 * factor, 3 * factor, factor}, 0.25f);
     addLevel(scene, vplVec(0, 0, 0), 4, false, 0);
-    addLevel(scene, vplVec(0.5f, 2, 0.1f), 0.5f, true, lamp);
+    addLevel(scene, vplVec(0.5f, 2, 0.1f), 0.5f, true, areaLight);
     vplObjectDef object = vplDefaultObjectDef();
     object.transform = vplMat4_FromParts(vplVec(0, 1, -1), (double[3]){0.1, 0.2, 0}, vplVec(4, 3, 1));
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
     object.type = VPL_OBJECT_BOX;
-    object.material = lamp;
+    object.material = areaLight;
     object.transform =
         vplMat4_FromParts(vplVec(-1, 0.5f, 0.3f), (double[3]){0.3, 0.4, 0.5}, vplVec(0.4f, 0.3f, 0.5f));
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);

@@ -23,8 +23,9 @@ int addGlow(vplScene* scene, vplRgb emission, float rho);
 
 void addColoured(vplScene* scene, vplEmitterType type, vplVec3 position, vplVec3 direction, float intensity);
 
-// rho/pi E: E = I cos / d^2 times 3x^2 - 2x^3 of the cosine's way between the angles, or the irradiance times cos.
-// A room with a smooth ball, a box that glows, a spot, the sun and a point; all light multiplied by `factor`.
+// rho/pi E: E = I cos / d^2 times 3x^2 - 2x^3 of the cosine's way between the angles, or the irradiance times
+// cos. A room with a smooth ball, a box that glows, a spot, the sun and a point; all light multiplied by
+// `factor`.
 vplScene* zoo(vplContext* context, float factor);
 
 vplRenderOptions zooOptions(int shadows);

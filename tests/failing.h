@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Running out of memory: the n-th allocation fails, for every n, and each time the answer is VPL_OUT_OF_MEMORY, one sentence
-// is logged, nothing leaks and no file is left. New memory is filled with junk, so success cannot depend on it.
+// Running out of memory: the n-th allocation fails, for every n, and each time the answer is
+// VPL_OUT_OF_MEMORY, one sentence is logged, nothing leaks and no file is left. New memory is filled with
+// junk, so success cannot depend on it.
 #ifndef VPL_TESTS_FAILING_H
 #define VPL_TESTS_FAILING_H
 
@@ -33,11 +34,12 @@ typedef struct Attempt {
 
 typedef vplResult Scenario(Attempt* attempt);
 
-// Runs each variant of a scenario until no allocation is left to fail, in two ways: only the n-th fails, or all from the
-// n-th on. `extension` is that of the file.
+// Runs each variant of a scenario until no allocation is left to fail, in two ways: only the n-th fails, or
+// all from the n-th on. `extension` is that of the file.
 void failEveryAllocation(const char* name, Scenario* scenario, const char* extension, int variants);
 
-// A context whose n-th allocation fails (-1: none) and, if stayEmpty, all after it. NULL if already its own does.
+// A context whose n-th allocation fails (-1: none) and, if stayEmpty, all after it. NULL if already its own
+// does.
 typedef struct Failing {
     long allocations; // so far
     long failAt;

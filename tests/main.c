@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Runs all tests; `vpl-tests NAME` runs the suite NAME (the tests of test_NAME.c) and the tests whose names contain NAME,
-// `vpl-tests -memory -Host` all but the suite memory and the tests whose names contain Host. --quick leaves out slow tests,
-// --times prints the processor time of each. Ends with "N passed, N failed".
+// Runs all tests; `vpl-tests NAME` runs the suite NAME (the tests of test_NAME.c) and the tests whose names
+// contain NAME, `vpl-tests -memory -Host` all but the suite memory and the tests whose names contain Host.
+// --quick leaves out slow tests, --times prints the processor time of each. Ends with "N passed, N failed".
 #include "test.h"
 
 #include <stdlib.h>

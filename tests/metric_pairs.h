@@ -15,7 +15,8 @@ int noise(uint32_t seed, uint32_t index);
 
 int referenceValue(int pair, int x, int y, int channel, int width);
 
-// Grain on ramps, edges shifted by (2, 1), or noise with colours that are swapped and beyond 1 here and there.
+// Grain on ramps, edges shifted by (2, 1), or noise with colours that are swapped and beyond 1 here and
+// there.
 float testValue(int pair, int x, int y, int channel, int width);
 
 typedef struct Pair {

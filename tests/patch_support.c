@@ -15,7 +15,7 @@ vplGeometry* geometryOf(vplContext* context, const Shape* shape, float rho, floa
     assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
     assert_int_equal(vplScene_AddMaterial(scene, &material, NULL), VPL_SUCCESS);
     addShape(scene, shape, false, NULL);
-    return freezeScene(scene);
+    return buildGeometry(scene);
 }
 
 static vplVec3 place(vplVec3 p, ModelUnit unit)
@@ -43,11 +43,11 @@ vplGeometry* testModel(vplContext* context, ModelUnit unit, float rho)
 vplPatchSides* sidesOf(const vplPatches* patches, const vplVec3* position)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
-    vplEmitterDef lamp = vplDefaultEmitterDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
     vplPatchSides* sides = NULL;
     if (position != NULL) {
-        lamp.position = *position;
-        def.emitters = &lamp;
+        emitter.position = *position;
+        def.emitters = &emitter;
         def.emitterCount = 1;
     }
     if (vplPatchSides_Create(patches, &def, &sides) != VPL_SUCCESS) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Patches for tests: of the report's box (tests/data/cornell_testmodel.csv) and of other shapes, with sides as a test wants them.
+// Patches for tests: of the report's box (tests/data/cornell_testmodel.csv) and of other shapes, with sides
+// as a test wants them.
 #ifndef VPL_TESTS_PATCH_SUPPORT_H
 #define VPL_TESTS_PATCH_SUPPORT_H
 
@@ -42,8 +43,8 @@ vplPatchMesh* meshOf(const vplPatchSides* sides);
 // Closes mesh, sides, patches and geometry.
 void closeMesh(vplPatchMesh* mesh);
 
-// The fronts of triangles, three corners each, after `rounds` rounds of bisecting all whose longest edge is longer than
-// `size`; 0: all.
+// The fronts of triangles, three corners each, after `rounds` rounds of bisecting all whose longest edge is
+// longer than `size`; 0: all.
 typedef struct SidesFixture {
     vplGeometry* geometry;
     vplPatches* patches;

@@ -19,7 +19,8 @@ void addQuad(vplScene* scene, int material, vplVec3 place, int quarters, float s
 // The cube [-1, 1]^3 as six quads that face inwards.
 void addRoom(vplScene* scene, int material);
 
-// A sphere of radius 1 made of an octahedron's faces, each cut into n^2; with normals of the true sphere or none.
+// A sphere of radius 1 made of an octahedron's faces, each cut into n^2; with normals of the true sphere or
+// none.
 void addSphere(vplScene* scene, int material, vplVec3 centre, float radius, int n, bool smooth);
 
 vplEmitterDef* addWhite(vplScene* scene, vplEmitterType type, vplVec3 position, float intensity);

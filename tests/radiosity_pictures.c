@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "radiosity_pictures.h"
 
-vplScene* boxRoom(vplContext* context, float rho, bool lamp)
+vplScene* boxRoom(vplContext* context, float rho, bool areaLight)
 {
     vplScene* scene = closedCubeScene(context, rho, 0);
     addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.25f, -0.7f, -0.2f), 0, 0.5, vplVec(0.5f, 0.6f, 0.5f));
     aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
-    if (lamp) {
+    if (areaLight) {
         addThing(scene, VPL_OBJECT_QUAD, addMaterial(scene, (vplRgb){0, 0, 0}, 5), vplVec(0, 0.99f, 0),
                  VPL_PI / 2, 0, vplVec(0.5f, 0.5f, 1));
     } else {

@@ -8,8 +8,8 @@
 
 #include "math/vec.h"
 
-// A box on the floor of a closed room, lit by a lamp or a point.
-vplScene* boxRoom(vplContext* context, float rho, bool lamp);
+// A box on the floor of a closed room, lit by an area light or a point.
+vplScene* boxRoom(vplContext* context, float rho, bool areaLight);
 
 vplRenderOptions radiosityOptions(int patches);
 

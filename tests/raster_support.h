@@ -13,7 +13,8 @@ typedef struct ClipVertex {
 // Vertex shader over an array of ClipVertex (the uniforms).
 void passVertices(const void* uniforms, int first, int count, const vplVertices* out);
 
-// Fragment shader: plane 0 is 1, plane 1 the primitive, planes 2 to 4 the varyings, plane 5 w. Uniforms unused.
+// Fragment shader: plane 0 is 1, plane 1 the primitive, planes 2 to 4 the varyings, plane 5 w. Uniforms
+// unused.
 void showFragments(const void* uniforms, vplFragments* fragments);
 enum { SHOWN_PLANES = 6 };
 

@@ -23,7 +23,7 @@ count() {
     failed=$((failed + bad))
     echo "$name: ${good:-0} passed, $bad failed"
     if [ "$bad" -ne 0 ]; then # which, however many suites came after it
-        grep -E 'FAILED|ERROR|LINE' "$scratch/log" | head -n 40
+        grep -E 'FAILED|ERROR|LINE|^not ok' "$scratch/log" | head -n 40
         tail -n 60 "$scratch/log"
     fi
 }

@@ -36,7 +36,7 @@ vplGeometry* tableRoom(vplContext* context)
     return geometry;
 }
 
-static vplGeometry* freeze(vplScene* scene)
+static vplGeometry* build(vplScene* scene)
 {
     vplGeometry* geometry;
     assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);
@@ -86,7 +86,7 @@ vplScene* closedCubeScene(vplContext* context, float rho, float emission)
 
 vplGeometry* closedCube(vplContext* context, float rho)
 {
-    return freeze(closedCubeScene(context, rho, 0));
+    return build(closedCubeScene(context, rho, 0));
 }
 
 vplGeometry* floorQuad(vplContext* context, vplVec3 centre, float size, float rho)
@@ -95,7 +95,7 @@ vplGeometry* floorQuad(vplContext* context, vplVec3 centre, float size, float rh
     vplObjectDef object = vplDefaultObjectDef();
     object.transform = vplMat4_FromParts(centre, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){size, size, 1});
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    return freeze(scene);
+    return build(scene);
 }
 
 void aim(vplScene* scene, vplVec3 eye, vplVec3 target)

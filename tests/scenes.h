@@ -5,14 +5,15 @@
 
 #include "test.h"
 
-// The room of tests/data/room_objects.csv (the tables' matrices, which turn the quads otherwise than room.json).
+// The room of tests/data/room_objects.csv (the tables' matrices, which turn the quads otherwise than
+// room.json).
 vplGeometry* tableRoom(vplContext* context);
 
 // A scene with one material of reflectance rho.
 vplScene* sceneOf(vplContext* context, float rho);
 
-// The cube [-1, 1]^3 seen from inside: six quads facing inwards, all of reflectance rho. Emission: of red, half as much
-// green, a quarter blue.
+// The cube [-1, 1]^3 seen from inside: six quads facing inwards, all of reflectance rho. Emission: of red,
+// half as much green, a quarter blue.
 vplScene* closedCubeScene(vplContext* context, float rho, float emission);
 vplGeometry* closedCube(vplContext* context, float rho);
 

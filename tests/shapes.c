@@ -148,7 +148,7 @@ void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* t
     }
 }
 
-vplGeometry* freezeScene(vplScene* scene)
+vplGeometry* buildGeometry(vplScene* scene)
 {
     vplGeometry* geometry;
     assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);
@@ -191,7 +191,7 @@ vplGeometry* clutter(vplContext* context, int which)
     addShape(scene, &box, false, NULL);
     freeShape(&ball);
     freeShape(&box);
-    return freezeScene(scene);
+    return buildGeometry(scene);
 }
 
 vplHemiMapPlace rollPlace(const vplGeometry* g, Dice* dice, vplHit* hitOut)

@@ -14,9 +14,9 @@ typedef struct Shape {
 void addTriangle(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c);
 void freeShape(Shape* shape);
 
-// Closed surfaces around the origin: an icosahedron halved `levels` times and blown up to the unit sphere; the
-// unit sphere in `rings` rings of twice as many parts, needles at the poles; the box [-1, 1]^3 in cells^2 cells
-// a face.
+// Closed surfaces around the origin: an icosahedron halved `levels` times and blown up to the unit sphere;
+// the unit sphere in `rings` rings of twice as many parts, needles at the poles; the box [-1, 1]^3 in cells^2
+// cells a face.
 Shape icosphere(int levels);
 Shape ringSphere(int rings);
 Shape gridBox(int cells);
@@ -30,8 +30,8 @@ void addShape(vplScene* scene, const Shape* shape, bool smooth, const vplMat4* t
 // The same as `object`, whose mesh it becomes; may fail.
 vplResult tryAddShape(vplScene* scene, const Shape* shape, bool smooth, vplObjectDef* object);
 
-// Freezes the scene and destroys it.
-vplGeometry* freezeScene(vplScene* scene);
+// Builds the geometry of the scene and destroys the scene.
+vplGeometry* buildGeometry(vplScene* scene);
 
 // Numbers from a seed, one after another.
 typedef struct Dice {

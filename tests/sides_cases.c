@@ -28,12 +28,12 @@ void addFloor(Shape* shape)
     addFlat(shape, vplVec(-2, 0, -2), vplVec(-2, 0, 2), vplVec(2, 0, 2), vplVec(2, 0, -2));
 }
 
-Case openCase(Shape* shape, float size, const vplVec3* lamp)
+Case openCase(Shape* shape, float size, const vplVec3* emitter)
 {
     Case c = {.context = openTestContext(2)};
     c.geometry = geometryOf(c.context, shape, 0.5f, 0);
     c.patches = openPatches(c.geometry, size, VPL_MAX_PATCH_ROUNDS);
-    c.sides = sidesOf(c.patches, lamp);
+    c.sides = sidesOf(c.patches, emitter);
     freeShape(shape);
     return c;
 }

@@ -29,13 +29,14 @@ typedef struct Case {
 } Case;
 
 // Frees the shape.
-Case openCase(Shape* shape, float size, const vplVec3* lamp);
+Case openCase(Shape* shape, float size, const vplVec3* emitter);
 
 void closeCase(Case* c);
 
 int triangleOf(const vplPatches* p, int patch);
 
-// Sides among triangles first .. first + count - 1, front or back; the number of patches there in *patchesOut.
+// Sides among triangles first .. first + count - 1, front or back; the number of patches there in
+// *patchesOut.
 int countSides(const vplPatchSides* s, int first, int count, bool back, int* patchesOut);
 
 void assertAll(const vplPatchSides* s, int first, int count, bool back);

@@ -16,7 +16,7 @@ vplGeometry* stage(vplContext* context)
         object.transform = vplMat4_FromParts(places[i], rotate, sizes[i]);
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
     }
-    return freezeScene(scene);
+    return buildGeometry(scene);
 }
 
 vplView stageView(vplVec3 eye, int width, int height)
@@ -57,26 +57,26 @@ vplImage* shadeStage(const vplGeometry* g, const vplView* view, const vplShadeDe
     return image;
 }
 
-Look* lookAt(const vplGeometry* g, const vplView* view)
+PixelSample* samplePixels(const vplGeometry* g, const vplView* view)
 {
     vplShadeDef def = stageDef(NULL, 0, 0);
     def.output = VPL_OUTPUT_DEPTH;
     vplImage* depth = shadeStage(g, view, &def);
     def.output = VPL_OUTPUT_NORMALS;
     vplImage* normals = shadeStage(g, view, &def);
-    Look* looks = malloc((size_t)(view->width * view->height) * sizeof *looks);
+    PixelSample* samples = malloc((size_t)(view->width * view->height) * sizeof *samples);
     for (int i = 0; i < view->width * view->height; i++) {
         const double x = ((i % view->width + 0.5) / view->width * 2 - 1) / view->scaleX;
         const double y = (1 - (i / view->width + 0.5) / view->height * 2) / view->scaleY;
         for (int k = 0; k < 3; k++) {
             const double f = (double)vplComponent(view->forward, k), r = (double)vplComponent(view->right, k),
                          u = (double)vplComponent(view->up, k);
-            looks[i].w = (double)depth->pixels[3 * i];
-            looks[i].p[k] = looks[i].w * (f + x * r + y * u);
-            looks[i].n[k] = (double)normals->pixels[3 * i + k];
+            samples[i].w = (double)depth->pixels[3 * i];
+            samples[i].p[k] = samples[i].w * (f + x * r + y * u);
+            samples[i].n[k] = (double)normals->pixels[3 * i + k];
         }
     }
     vplImage_Destroy(depth);
     vplImage_Destroy(normals);
-    return looks;
+    return samples;
 }

@@ -19,11 +19,11 @@ vplShadeDef stageDef(const vplShadeLight* lights, int count, int side);
 vplImage* shadeStage(const vplGeometry* g, const vplView* view, const vplShadeDef* def);
 
 // What a pixel shows: distance along the view axis, the place from the eye, the normal.
-typedef struct Look {
+typedef struct PixelSample {
     double w, p[3], n[3];
-} Look;
+} PixelSample;
 
 // One per pixel. The caller frees.
-Look* lookAt(const vplGeometry* g, const vplView* view);
+PixelSample* samplePixels(const vplGeometry* g, const vplView* view);
 
 #endif

@@ -15,9 +15,10 @@
 #include <stdio.h>
 #include <string.h>
 
-// A test, which registers itself: TEST(SharedEdgeIsCoveredOnce, 2) { ... } has a `context` with two threads, of which
-// nothing may be left in the end; TEST_ALONE(...) has none. SLOW, in the end, is for tests that take a second or more because
-// they are about statistics, or try many cases of one thing: `vpl-tests --quick` leaves them out.
+// A test, which registers itself: TEST(SharedEdgeIsCoveredOnce, 2) { ... } has a `context` with two threads,
+// of which nothing may be left in the end; TEST_ALONE(...) has none. SLOW, in the end, is for tests that take
+// a second or more because they are about statistics, or try many cases of one thing: `vpl-tests --quick`
+// leaves them out.
 #define TEST(name, ...)                                                                                      \
     static void name(vplContext* context);                                                                   \
     REGISTER_TEST(name, .run = name, .workers = __VA_ARGS__)                                                 \
@@ -57,7 +58,8 @@ vplContext* openIsaContext(int workers, vplIsa isa);
 // A vplParallelForFcn made of threads, as a host program might have.
 void threadedFor(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data);
 
-// Fails unless a hash is the same for 1, 2, 3 and 7 workers and every instruction set. hashOf closes the context.
+// Fails unless a hash is the same for 1, 2, 3 and 7 workers and every instruction set. hashOf closes the
+// context.
 void assertSameEverywhere(uint64_t (*hashOf)(vplContext* context));
 
 // A vplProgressFcn that refuses when it is asked for the third time; `user` is an int that counts.

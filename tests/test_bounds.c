@@ -87,7 +87,6 @@ TEST(BoundsHoldForEveryTexel, 3, SLOW)
         }
         vplCubeMap_Destroy(map);
     }
-    closeTestContext(context);
 }
 
 static double pick(uint64_t seed, uint64_t* index)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether virtual lights take maps or rays: the rule, what it is asked with, and that pictures are those of what it
-// chose. Lights whose maps do not fit into memory at the same time.
+// Whether virtual lights take maps or rays: the rule, what it is asked with, and that pictures are those of
+// what it chose. Lights whose maps do not fit into memory at the same time.
 #include "scenes.h"
 
 #include "render/stages/shadow_choice.h"
@@ -52,8 +52,9 @@ TEST_ALONE(TheRuleTurnsOnce)
     }
 }
 
-// Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter longer, the rule
-// finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as dear.
+// Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter
+// longer, the rule finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as
+// dear.
 TEST_ALONE(TheRuleAgreesWithTheMeasuredTable)
 {
     Table t = loadTable("crossover.csv");
@@ -139,7 +140,8 @@ TEST(LightsWhoseMapsDoNotFitAreAddedInBatches, 2)
     o.lights.mapSize = 2048;
     o.lights.shadows = VPL_LIGHT_SHADOWS_MAP;
     vplImage* all = renderScene(scene, &o, &stats);
-    assert_true(stats.virtualLights > 2 * 3 && stats.peakBytes <= VPL_LIGHT_MAP_BYTES + ((size_t)64 << 20));
+    assert_true(stats.virtualLights > 2 * 3 &&
+                stats.peakBytes <= ((size_t)o.lights.mapMemory << 20) + ((size_t)64 << 20));
     o.output.show = VPL_SHOW_DIRECT;
     vplImage* direct = renderScene(scene, &o, NULL);
     vplImage* sum = direct;

@@ -117,7 +117,8 @@ TEST_ALONE(InterleavedByOneIsDeferredBitForBit)
     closeSetting(&s);
 }
 
-// As many clusters as lights, of which every third sees: the bits of these lights alone, as far as they are one group.
+// As many clusters as lights, of which every third sees: the bits of these lights alone, as far as they are
+// one group.
 TEST_ALONE(ClustersOfOneLightAreMapsOfTheirOwn)
 {
     enum { FEW = VPL_LIGHT_GROUP };
@@ -135,7 +136,8 @@ TEST_ALONE(ClustersOfOneLightAreMapsOfTheirOwn)
     closeSetting(&s);
 }
 
-// Clusters that come and go in the list, lights without one between them: the sum of those that reach anything.
+// Clusters that come and go in the list, lights without one between them: the sum of those that reach
+// anything.
 TEST_ALONE(AnyOrderOfClustersGivesTheSameSum)
 {
     Setting s = openStage();
@@ -157,25 +159,25 @@ TEST_ALONE(AnyOrderOfClustersGivesTheSameSum)
     closeSetting(&s);
 }
 
-// One map that looks up from a metre above the floor: what is below gets nothing, what is above all. Interleaved, each
-// pixel asks for itself: those whose window lies on one side know what neighbours share.
+// One map that samples up from a metre above the floor: what is below gets nothing, what is above all.
+// Interleaved, each pixel asks for itself: those whose window lies on one side know what neighbours share.
 TEST_ALONE(VisibilityIsThatOfEachPoint)
 {
     Setting s = openStage();
     memset(s.clusters, 0, sizeof s.clusters);
     s.maps[0] = farMapOf(s.context, nothing, vplVec(0, 1, 0), 1);
-    Look* looks = lookAt(s.geometry, &s.view);
+    PixelSample* samples = samplePixels(s.geometry, &s.view);
     for (int side = 0; side <= 4; side += 2) {
         const vplShadeDef plain = stageDef(s.lights, COUNT, side), shared = clusteredDef(&s, COUNT, side);
         vplImage *a = shadeStage(s.geometry, &s.view, &shared), *b = shadeStage(s.geometry, &s.view, &plain);
         int dark = 0, bright = 0;
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
-            const double up = 2 + looks[i].p[1], margin = 0.25; // 4 pixels are 0.2 m
+            const double up = 2 + samples[i].p[1], margin = 0.25; // 4 pixels are 0.2 m
             const float *own = a->pixels + 3 * i, *all = b->pixels + 3 * i;
-            if (looks[i].w > 0 && up < 1 - margin) {
+            if (samples[i].w > 0 && up < 1 - margin) {
                 assert_true(own[0] == 0 && own[1] == 0 && own[2] == 0);
                 dark += all[0] > 0;
-            } else if (looks[i].w > 0 && up > 1 + margin) {
+            } else if (samples[i].w > 0 && up > 1 + margin) {
                 assert_true(memcmp(own, all, 3 * sizeof *own) == 0);
                 bright += all[0] > 0;
             }
@@ -184,12 +186,12 @@ TEST_ALONE(VisibilityIsThatOfEachPoint)
         vplImage_Destroy(a);
         vplImage_Destroy(b);
     }
-    free(looks);
+    free(samples);
     closeSetting(&s);
 }
 
-// Far above a floor, which half of the clusters a class has lights of makes no difference: the sum is that of deferred
-// shading, with clusters of many and of few lights, and few or many clusters.
+// Far above a floor, which half of the clusters a class has lights of makes no difference: the sum is that of
+// deferred shading, with clusters of many and of few lights, and few or many clusters.
 TEST_ALONE(EachLightIsInOneClass)
 {
     vplContext* context = openTestContext(2);
@@ -239,7 +241,7 @@ static vplGeometry* smoothStage(vplContext* context)
     const vplMat4 place = vplMat4_FromParts(vplVec(0, 0.8f, 0), still, vplVec(0.7f, 0.7f, 0.7f));
     addShape(scene, &ball, true, &place);
     freeShape(&ball);
-    return freezeScene(scene);
+    return buildGeometry(scene);
 }
 
 TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)

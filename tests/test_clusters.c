@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// K-means over lights: tests/data/kmeans.csv, kmeans.json, metric_examples.csv, kmeans_cycles.csv, and the extremes.
+// K-means over lights: tests/data/kmeans.csv, kmeans.json, metric_examples.csv, kmeans_cycles.csv, and the
+// extremes.
 #include "cluster_lights.h"
 
 // ---- tables
@@ -22,8 +23,8 @@ static void assertClose(vplVec3 v, const json_t* wanted, const char* what, int r
     assertNear((double)v.z, real(json_array_get(wanted, 2)), 2.5e-7, what, row);
 }
 
-// Where the search went round in circles the table's centres are those of one assignment before its last. Ours are
-// always the means of their lights: those of the other half of the cycle.
+// Where the search went round in circles the table's centres are those of one assignment before its last.
+// Ours are always the means of their lights: those of the other half of the cycle.
 static void compareWithTruth(const Lights* l, const json_t* set, const char* metric, const json_t* truth)
 {
     const json_t* seedList = json_object_get(set, "seeds");
@@ -84,8 +85,9 @@ TEST(AssignmentsCentresAndIterationsAreThoseOfTheTable, 1)
     assert_int_equal(compared, 16);
 }
 
-// Lights of a row of kmeans.csv. kmeans.json has some sets only, but corner's lights are the first of the same, those of
-// thin_wall are corner's put on both sides of a wall, and opposite_normals says itself what it is. False: not known.
+// Lights of a row of kmeans.csv. kmeans.json has some sets only, but corner's lights are the first of the
+// same, those of thin_wall are corner's put on both sides of a wall, and opposite_normals says itself what it
+// is. False: not known.
 static bool lightsOfRow(const json_t* root, const Table* t, int row, Lights* l)
 {
     const char* set = cell(t, row, "set");
@@ -242,7 +244,7 @@ static void searchPlainly(const vplLightSet* set, const vplClusterDef* def, int*
     }
 }
 
-TEST(WhoLooksAtMovedClustersOnlyMissesNone, 1)
+TEST(ComparingMovedClustersOnlyMissesNone, 1)
 {
     Lights l;
     for (uint64_t room = 0; room < 60; room++) {

@@ -29,7 +29,7 @@ static vplGeometry* planeOver(vplContext* context, float h, float size)
                               (vplVec3){i ? size : 1, i ? size : 1, 1});
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
     }
-    return freezeScene(scene);
+    return buildGeometry(scene);
 }
 
 // Lights that stand for the plane within 2 D of the receiver.
@@ -73,9 +73,9 @@ static double givenBack(const vplGeometry* g, const vplShadeDef* def)
     return sum;
 }
 
-// Of a plane at height h the bound keeps (h^2/c)(1 + ln(c/h^2)). Rays alone give back the rest, and so do rays within a
-// fifth of D with the lights beyond.
-TEST(PlaneGetsBackWhatTheBoundTakes, 1)
+// Of a plane at height h the bound keeps (h^2/c)(1 + ln(c/h^2)). Rays alone give back the rest, and so do
+// rays within a fifth of D with the lights beyond.
+TEST(PlaneGetsBackWhatTheClampTakes, 1)
 {
     Table t = loadTable("vpl_clamp_plane.csv");
     for (int row = 0; row < t.rows; row++) {
@@ -158,7 +158,7 @@ static double meanOf(const vplScene* scene, const vplRenderOptions* options, vpl
     return sum / count;
 }
 
-TEST(FurnaceIsRightWhateverTheBound, 2, SLOW)
+TEST(FurnaceIsRightWhateverTheClampDistance, 2, SLOW)
 {
     static const float distances[] = {0.25f, 0.5f, 2, 100};
     vplScene* middle =
@@ -196,7 +196,7 @@ TEST(LossIsWhatCompensationAdds, 2, SLOW)
 }
 
 // X: walls that lose nothing and a bound beyond all light: nothing but the limit ends a walk.
-TEST(WhiteWallsAndAnEndlessBoundEnd, 2)
+TEST(WhiteWallsAndAnInfiniteClampDistanceEnd, 2)
 {
     vplScene* scene = furnace(context, 1, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
     vplRenderOptions o = kellerOptions(2, 10, 1e15f);
@@ -259,7 +259,8 @@ TEST(PipelinesGiveTheSameBits, 2)
     }
 }
 
-// Direct light of lamps and the rest are found by different rays, and must still be parts of one picture.
+// Direct light of area lights and the rest are found by different rays, and must still be parts of one
+// picture.
 TEST(PartsAddUpOnAverage, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
@@ -283,7 +284,8 @@ static double pathMean(const vplScene* scene)
     return meanOf(scene, &o, NULL);
 }
 
-// Instant radiosity with its lamps and shadow maps, Keller's with a point light, shadows by maps, interleaving.
+// Instant radiosity with its area lights and shadow maps, Keller's with a point light, shadows by maps,
+// interleaving.
 TEST(EveryKindOfLightIsGivenBack, 2, SLOW)
 {
     static const struct {
@@ -346,7 +348,7 @@ TEST(NearDistanceOfASphereIsThatOfItsChords, 2)
     vplScene* scene = sceneOf(context, 0.5f);
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
-    vplGeometry* sphere = freezeScene(scene);
+    vplGeometry* sphere = buildGeometry(scene);
     vplCameraDef camera = vplDefaultCameraDef();
     camera.eye = vplVec(0, 0, 0);
     camera.target = vplVec(0, 0, -1);

@@ -105,7 +105,7 @@ TEST(UndividedPatchesCoverWhatTheViewCovers, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
     vplCameraDef camera = *vplScene_GetCamera(scene, 0);
-    vplPatchMesh* m = meshOf(openSides(openPatches(freezeScene(scene), 1e9f, 0), allOpen));
+    vplPatchMesh* m = meshOf(openSides(openPatches(buildGeometry(scene), 1e9f, 0), allOpen));
     Canvas c = openCanvas(m, &camera, 161, 93);
     vplShadeDef def = stageDef(NULL, 0, 0);
     def.output = VPL_OUTPUT_DEPTH;
@@ -178,8 +178,9 @@ static vplVec3 seenFrom(const vplView* v, const vplGeometry* g, int x, int y)
     return hit.position;
 }
 
-// Red, green and blue are x, y and z of what is seen: in perspective, also of patches that the near plane cuts. Off
-// by rounding, 8e-8 in the mean; at most 1.1e-4, where snapping to 1/256 pixel covers one whose centre is outside.
+// Red, green and blue are x, y and z of what is seen: in perspective, also of patches that the near plane
+// cuts. Off by rounding, 8e-8 in the mean; at most 1.1e-4, where snapping to 1/256 pixel covers one whose
+// centre is outside.
 TEST(LinearValuesAreReproduced, 2)
 {
     Dice dice = {7, 0};
@@ -208,7 +209,8 @@ TEST(LinearValuesAreReproduced, 2)
     closeMesh(m);
 }
 
-// Values of `draw` at the middle of the picture, of a square of 2 by 2 patches that is seen straight from `distance`.
+// Values of `draw` at the middle of the picture, of a square of 2 by 2 patches that is seen straight from
+// `distance`.
 static uint16_t leftOpen(const vplPatches* patches, int patch, int face)
 {
     const vplPatchNode* n = &patches->nodes[patches->patches[patch]];
@@ -244,7 +246,7 @@ static vplPatchMesh* screenMesh(vplContext* context, bool wall, OpenFcn* open)
     }
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
-    return meshOf(openSides(openPatches(freezeScene(scene), 1000, 0), open));
+    return meshOf(openSides(openPatches(buildGeometry(scene), 1000, 0), open));
 }
 
 static uint16_t wallOpen(const vplPatches* patches, int patch, int face)
@@ -294,8 +296,8 @@ TEST(EachSideHasItsOwnValues, 1)
     closeMesh(m);
 }
 
-// rho / pi times irradiance, each patch with its own: light of shared corners does not take colour along. And it is
-// added to what the picture held.
+// rho / pi times irradiance, each patch with its own: light of shared corners does not take colour along. And
+// it is added to what the picture held.
 TEST(IrradianceIsReflectedAndAdded, 1)
 {
     vplPatchMesh* m = screenMesh(context, false, leftOpen);
@@ -325,8 +327,8 @@ TEST(IrradianceIsReflectedAndAdded, 1)
     closeMesh(m);
 }
 
-// Dark within a pixel of the lines between patches, the full value elsewhere; the cuts that join a hanging vertex to a
-// corner are no lines.
+// Dark within a pixel of the lines between patches, the full value elsewhere; the cuts that join a hanging
+// vertex to a corner are no lines.
 TEST(OutlinesAreAtEdgesOfPatches, 1)
 {
     vplPatchMesh* m = screenMesh(context, false, frontsOpen);
@@ -401,7 +403,7 @@ TEST(DrawsCanBeCancelled, 1)
 // Nothing to draw is a picture, too.
 TEST(SceneWithoutTrianglesDrawsNothing, 1)
 {
-    vplPatchMesh* m = meshOf(openSides(openPatches(freezeScene(sceneOf(context, 0.5f)), 1, 1), frontsOpen));
+    vplPatchMesh* m = meshOf(openSides(openPatches(buildGeometry(sceneOf(context, 0.5f)), 1, 1), frontsOpen));
     assert_true(m->vertexCount == 0 && m->triangleCount == 0);
     const vplCameraDef camera = lookAtOrigin(vplVec(0, 0, 4));
     Canvas c = openCanvas(m, &camera, 8, 8);

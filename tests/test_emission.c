@@ -18,8 +18,8 @@ static World openWorld(void)
     return w;
 }
 
-static void addLamp(const World* w, vplObjectType type, vplVec3 place, const double rotate[3], vplVec3 scale,
-                    vplRgb radiance)
+static void addAreaLight(const World* w, vplObjectType type, vplVec3 place, const double rotate[3],
+                         vplVec3 scale, vplRgb radiance)
 {
     vplMaterialDef material = vplDefaultMaterialDef();
     vplObjectDef object = vplDefaultObjectDef();
@@ -82,10 +82,10 @@ TEST_ALONE(PowersAreTheIntegralsOfTheirLight)
     emitters[2].innerAngle = emitters[2].outerAngle; // a hard edge
     emitters[3].intensity = (vplRgb){0, 0, 0};       // no source at all
     emitters[4].type = VPL_EMITTER_DIRECTIONAL;
-    addLamp(&w, VPL_OBJECT_QUAD, (vplVec3){4, 5, 6}, (double[3]){1, 2, 3}, (vplVec3){2, 3, 1}, light);
-    addLamp(&w, VPL_OBJECT_BOX, (vplVec3){-4, 5, 6}, (double[3]){3, 2, 1}, (vplVec3){1, 2, 3}, light);
-    addLamp(&w, VPL_OBJECT_BOX, (vplVec3){0, 0, 0}, (double[3]){3, 2, 1}, (vplVec3){1, 2, 3},
-            (vplRgb){0, 0, 0});
+    addAreaLight(&w, VPL_OBJECT_QUAD, (vplVec3){4, 5, 6}, (double[3]){1, 2, 3}, (vplVec3){2, 3, 1}, light);
+    addAreaLight(&w, VPL_OBJECT_BOX, (vplVec3){-4, 5, 6}, (double[3]){3, 2, 1}, (vplVec3){1, 2, 3}, light);
+    addAreaLight(&w, VPL_OBJECT_BOX, (vplVec3){0, 0, 0}, (double[3]){3, 2, 1}, (vplVec3){1, 2, 3},
+                 (vplRgb){0, 0, 0});
     freeze(&w, emitters, 5);
     const vplEmission* e = w.emission;
     assert_int_equal(e->sourceCount, 4 + 2 + 12);
@@ -124,8 +124,8 @@ TEST_ALONE(ParticlesShareThePowerAmongTheSources)
     World w = openWorld();
     vplEmitterDef emitters[2] = {emitterOf(VPL_EMITTER_POINT, (vplRgb){1, 0, 0}),
                                  emitterOf(VPL_EMITTER_SPOT, (vplRgb){0, 9, 3})};
-    addLamp(&w, VPL_OBJECT_QUAD, (vplVec3){0, 0, 0}, (double[3]){0, 0, 0}, (vplVec3){1, 1, 1},
-            (vplRgb){1, 1, 4});
+    addAreaLight(&w, VPL_OBJECT_QUAD, (vplVec3){0, 0, 0}, (double[3]){0, 0, 0}, (vplVec3){1, 1, 1},
+                 (vplRgb){1, 1, 4});
     freeze(&w, emitters, 2);
     enum { COUNT = 200000 };
     double flux[4] = {0};
@@ -178,11 +178,11 @@ TEST_ALONE(SpotParticlesFollowTheFalloff)
     closeWorld(&w);
 }
 
-TEST_ALONE(LampParticlesLeaveTheFrontByTheCosine)
+TEST_ALONE(AreaLightParticlesLeaveTheFrontByTheCosine)
 {
     World w = openWorld();
-    addLamp(&w, VPL_OBJECT_QUAD, (vplVec3){5, 0, 0}, (double[3]){0, VPL_PI / 2, 0}, (vplVec3){2, 4, 1},
-            (vplRgb){1, 1, 1}); // faces +x
+    addAreaLight(&w, VPL_OBJECT_QUAD, (vplVec3){5, 0, 0}, (double[3]){0, VPL_PI / 2, 0}, (vplVec3){2, 4, 1},
+                 (vplRgb){1, 1, 1}); // faces +x
     freeze(&w, NULL, 0);
     enum { COUNT = 100000 };
     double cosines = 0, y = 0, z = 0, yy = 0, zz = 0;
@@ -211,8 +211,8 @@ TEST_ALONE(SunParticlesFallEvenlyOnAllThereIs)
 {
     World w = openWorld();
     vplEmitterDef sun = emitterOf(VPL_EMITTER_DIRECTIONAL, (vplRgb){3, 3, 3});
-    addLamp(&w, VPL_OBJECT_QUAD, (vplVec3){7, 8, 9}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){2, 2, 1},
-            (vplRgb){0, 0, 0});
+    addAreaLight(&w, VPL_OBJECT_QUAD, (vplVec3){7, 8, 9}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){2, 2, 1},
+                 (vplRgb){0, 0, 0});
     freeze(&w, &sun, 1);
     enum { COUNT = 100000 };
     double landed = 0, left = 0;

@@ -102,15 +102,15 @@ static vplLightSet* simulate(const vplGeometry* g, int particles, vplParticleGeo
     return set;
 }
 
-// A closed cube of 2 m, reflectance 0.5, with lamps of one or two colours in it, turned any way.
-static vplScene* lampCube(vplContext* context, int lamps, float rho)
+// A closed cube of 2 m, reflectance 0.5, with area lights of one or two colours in it, turned any way.
+static vplScene* areaLightCube(vplContext* context, int areaLights, float rho)
 {
     vplScene* scene = sceneOf(context, rho);
     vplObjectDef object = vplDefaultObjectDef();
     object.type = VPL_OBJECT_BOX;
     object.transform = vplMat4_FromParts(vplVec(0, 0, 0), (double[3]){0.2, 0.1, 0.3}, vplVec(2, 2, 2));
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    for (int i = 0; i < lamps; i++) {
+    for (int i = 0; i < areaLights; i++) {
         object.type = i == 0 ? VPL_OBJECT_QUAD : VPL_OBJECT_BOX;
         object.material = addGlow(scene, i == 0 ? (vplRgb){8, 1, 0.5f} : (vplRgb){0, 1, 3}, rho);
         object.transform = vplMat4_FromParts(vplVec(0.3f * (float)(2 * i - 1), 0.2f, 0.1f),
@@ -120,13 +120,14 @@ static vplScene* lampCube(vplContext* context, int lamps, float rho)
     return scene;
 }
 
-// All that lamps send out reaches a wall, and rho of it goes on: of the flux of the lights of step 0 the mean of
-// the channels is exact for every single particle, the colour within what N choices of a source leave open.
-TEST(LampsShootTheirPower, 2)
+// All that area lights send out reaches a wall, and rho of it goes on: of the flux of the lights of step 0
+// the mean of the channels is exact for every single particle, the colour within what N choices of a source
+// leave open.
+TEST(AreaLightsShootTheirPower, 2)
 {
     enum { N = 20000 };
-    for (int lamps = 1; lamps <= 2; lamps++) {
-        vplGeometry* g = freezeScene(lampCube(context, lamps, 0.5f));
+    for (int areaLights = 1; areaLights <= 2; areaLights++) {
+        vplGeometry* g = buildGeometry(areaLightCube(context, areaLights, 0.5f));
         vplEmission* emission;
         assert_int_equal(vplEmission_Create(g, NULL, 0, &emission), VPL_SUCCESS);
         const double power = vplEmission_Power(emission);
@@ -151,7 +152,7 @@ TEST(LampsShootTheirPower, 2)
             sums[2] += (double)l->light.b * (double)l->weight / N;
         }
         const double sigma =
-            sqrt(fmax(first * (1 - first), 0) / N); // of the share of the first lamp's colour
+            sqrt(fmax(first * (1 - first), 0) / N); // of the share of the first area light's colour
         for (int c = 0; c < 3; c++) {
             assertNear(sums[c], 0.5 * wanted[c], (1e-5 + 4 * sigma) * 3 * power, "power", c);
         }
@@ -164,7 +165,7 @@ TEST(LampsShootTheirPower, 2)
 // Where all objects are boxes and quads, they are their own bounding boxes.
 TEST(BoxesInsteadOfBoxesGiveTheSameLights, 2)
 {
-    vplGeometry* g = freezeScene(lampCube(context, 2, 0.5f));
+    vplGeometry* g = buildGeometry(areaLightCube(context, 2, 0.5f));
     vplLightSet* exact = simulate(g, 5000, VPL_PARTICLE_GEOMETRY_EXACT);
     vplLightSet* boxes = simulate(g, 5000, VPL_PARTICLE_GEOMETRY_OBB);
     assert_int_equal(exact->lightCount, boxes->lightCount);
@@ -187,7 +188,7 @@ TEST(BoxesInsteadOfBoxesGiveTheSameLights, 2)
 TEST(ParticlesStopAtTheBoxOfAMesh, 2)
 {
     for (int glows = 0; glows < 2; glows++) {
-        vplScene* scene = lampCube(context, glows ? 0 : 1, 0.5f);
+        vplScene* scene = areaLightCube(context, glows ? 0 : 1, 0.5f);
         Shape ball = icosphere(2);
         vplMeshDef mesh = vplDefaultMeshDef();
         vplObjectDef object = vplDefaultObjectDef();
@@ -205,7 +206,7 @@ TEST(ParticlesStopAtTheBoxOfAMesh, 2)
         assert_int_equal(vplScene_AddMesh(scene, &mesh, &object.mesh), VPL_SUCCESS);
         int index;
         assert_int_equal(vplScene_AddObject(scene, &object, &index), VPL_SUCCESS);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         vplLightSet* set = simulate(g, 4000, VPL_PARTICLE_GEOMETRY_OBB);
         int on = 0, first = 0;
         for (int i = 0; i < set->lightCount; i++) {

@@ -41,19 +41,19 @@ TEST(SpotAndSunAreAnalytic, 1)
     }
 }
 
-// From a point to the rectangle [0, a] x [0, b] in a plane parallel to it at distance 1, the point below a corner.
-// Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.
+// From a point to the rectangle [0, a] x [0, b] in a plane parallel to it at distance 1, the point below a
+// corner. Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.
 static double cornerFactor(double a, double b)
 {
     const double p = sqrt(1 + a * a), q = sqrt(1 + b * b);
     return (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * VPL_PI);
 }
 
-// A lamp of 1 x 1 m, 1 m above the floor: the radiance of the floor is rho L F.
-TEST(LampLightsConvergeToTheFormFactor, 1)
+// An area light of 1 x 1 m, 1 m above the floor: the radiance of the floor is rho L F.
+TEST(AreaLightsConvergeToTheFormFactor, 1)
 {
     enum { SIZE = 8 };
-    // Largest relative error below the lamp and 0.1 m around; it falls as 1 / count.
+    // Largest relative error below the area light and 0.1 m around; it falls as 1 / count.
     const struct {
         int count;
         double error;
@@ -84,8 +84,8 @@ TEST(LampLightsConvergeToTheFormFactor, 1)
     vplScene_Destroy(scene);
 }
 
-// Indirect light of the room: maps of 512 x 512 texels (as many as 6 of 209 x 209) are 0.1 % of it off, where shadows
-// stop 10 %.
+// Indirect light of the room: maps of 512 x 512 texels (as many as 6 of 209 x 209) are 0.1 % of it off, where
+// shadows stop 10 %.
 TEST(RayAndMapShadowsAgree, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -143,9 +143,10 @@ static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplSh
     return image;
 }
 
-enum { BY_POINT, BY_SPOT, BY_SUN, BY_LAMP, BY_VIRTUAL_LIGHT, LIGHT_KINDS };
+enum { BY_POINT, BY_SPOT, BY_SUN, BY_AREA_LIGHT, BY_VIRTUAL_LIGHT, LIGHT_KINDS };
 
-// Direct light of one source, above or wherever `place` is, shining towards `aim`; or of one virtual light there.
+// Direct light of one source, above or wherever `place` is, shining towards `aim`; or of one virtual light
+// there.
 static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool smooth, float blocker,
                          const vplCameraDef* camera, vplVec3 place, vplVec3 aim, bool map)
 {
@@ -162,22 +163,22 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     }
     vplImage* image;
     if (kind == BY_VIRTUAL_LIGHT) {
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         const vplView view = vplView_Create(camera, VIEW, VIEW);
         const vplShadeLight light = {place.x, place.y, place.z, d.x, d.y, d.z, 1, 2, 3};
         image = shadeOne(g, &view, &light, map);
         vplGeometry_Destroy(g);
         return image;
     }
-    if (kind == BY_LAMP) { // so small that one light stands for it
-        Shape lamp = {0};
+    if (kind == BY_AREA_LIGHT) { // so small that one light stands for it
+        Shape areaLight = {0};
         vplVec3 t, b;
         vplTangentFrame(d, &t, &b);
-        addTriangle(&lamp, vplAdd(place, vplScale(-1e-4f, t)), vplAdd(place, vplScale(1e-4f, t)),
+        addTriangle(&areaLight, vplAdd(place, vplScale(-1e-4f, t)), vplAdd(place, vplScale(1e-4f, t)),
                     vplAdd(place, vplScale(1e-4f, b)));
         vplMeshDef mesh = vplDefaultMeshDef();
         vplObjectDef object = vplDefaultObjectDef();
-        mesh.positions = lamp.corners;
+        mesh.positions = areaLight.corners;
         mesh.indices = (const uint32_t[]){0, 1, 2};
         mesh.vertexCount = 3;
         mesh.triangleCount = 1;
@@ -185,7 +186,7 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
         object.material = addGlow(scene, (vplRgb){1e8f, 1e8f, 1e8f}, 0);
         assert_int_equal(vplScene_AddMesh(scene, &mesh, &object.mesh), VPL_SUCCESS);
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-        freeShape(&lamp);
+        freeShape(&areaLight);
     } else {
         addColoured(scene, (vplEmitterType)kind, place, d, 2);
     }
@@ -201,7 +202,8 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     return image;
 }
 
-// A square of 1 m halfway between the light and the floor: nothing in its shadow, the unshadowed bits beside it.
+// A square of 1 m halfway between the light and the floor: nothing in its shadow, the unshadowed bits beside
+// it.
 TEST(RayShadowsAreExact, 1)
 {
     vplCameraDef camera = vplDefaultCameraDef();
@@ -236,7 +238,8 @@ TEST(RayShadowsAreExact, 1)
 
 // ---- smooth surfaces
 
-// Light is received with the interpolated normal, but from the triangle's own side only, by every kind of light.
+// Light is received with the interpolated normal, but from the triangle's own side only, by every kind of
+// light.
 TEST(SmoothTrianglesAreDarkFromBehind, 1)
 {
     vplCameraDef camera = vplDefaultCameraDef();
@@ -270,8 +273,8 @@ TEST(SmoothTrianglesAreDarkFromBehind, 1)
     freeShape(&shape);
 }
 
-// A roof of two triangles that share their ridge, and normals there. Across it the light goes on as it goes on
-// beside it; without normals it jumps.
+// A roof of two triangles that share their ridge, and normals there. Across it the light goes on as it goes
+// on beside it; without normals it jumps.
 TEST(SmoothMeshesShadeWithoutSeams, 1)
 {
     const vplVec3 corners[4] = {{0, 0, -1}, {0, 0, 1}, {-1, -0.3f, 0}, {1, -0.3f, 0}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Form factors of all pairs of patches: tests/data/incentre_estimator.csv, closed boxes, what stands between, X093-X095.
+// Form factors of all pairs of patches: tests/data/incentre_estimator.csv, closed boxes, what stands between,
+// X093-X095.
 #include "patch_support.h"
 
 #include "base/hash.h"
@@ -162,10 +163,10 @@ TEST(IncentresOfACubeAreThoseOfTheTable, 2)
 static vplPatchSides* sidesOfBox(const vplPatches* patches)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
-    vplEmitterDef lamp = vplDefaultEmitterDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
     vplPatchSides* sides = NULL;
-    lamp.position = vplVec(278, 416, 84);
-    def.emitters = &lamp;
+    emitter.position = vplVec(278, 416, 84);
+    def.emitters = &emitter;
     def.emitterCount = 1;
     def.wholeTriangles = true;
     assert_int_equal(vplPatchSides_Create(patches, &def, &sides), VPL_SUCCESS);

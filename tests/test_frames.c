@@ -302,7 +302,7 @@ TEST_ALONE(AHistoryChangesNoPicture, SLOW)
     }
 }
 
-TEST(AHistoryFreezesTheSceneOnce, 1)
+TEST(AHistoryBuildsTheGeometryOnce, 1)
 {
     vplScene* scene = movingRoom(context);
     vplHistory* history = NULL;

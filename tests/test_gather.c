@@ -68,8 +68,8 @@ static bool isInside(vplVec3 p)
     return p.y == 0 && p.z > 0.01f && p.z < 1.99f && fabsf(p.x) < 0.99f;
 }
 
-// Within the floor vertices are where they are, and the rest is the closed form: with less error than that many rays
-// would have that know nothing of each other.
+// Within the floor vertices are where they are, and the rest is the closed form: with less error than that
+// many rays would have that know nothing of each other.
 TEST(VerticesOfAFloorGetWhatAWallSendsThere, 2)
 {
     enum { RAYS = 256 };
@@ -98,8 +98,8 @@ TEST(VerticesOfAFloorGetWhatAWallSendsThere, 2)
     closeMesh(m);
 }
 
-// A vertex between floor and wall belongs to both, and sees the other's light at its foot: nearly a half of all it could.
-// Means over the patches there know nothing of it.
+// A vertex between floor and wall belongs to both, and sees the other's light at its foot: nearly a half of
+// all it could. Means over the patches there know nothing of it.
 TEST(TheFootOfAWallIsLitByTheWall, 1)
 {
     vplPatchMesh* m = openCorner(context, 0.8f);

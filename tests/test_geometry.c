@@ -204,7 +204,8 @@ TEST(AmongEqualDistancesTheLowestObjectWins, 1)
     vplScene_Destroy(scene);
 }
 
-// X022, X031: a particle that bounces inside a box meets its other faces, and one that leaves never comes back.
+// X022, X031: a particle that bounces inside a box meets its other faces, and one that leaves never comes
+// back.
 TEST(ABoxIsLeftOrCrossedFromItsOwnFace, 1)
 {
     for (uint64_t i = 0; i < 2000; i++) {

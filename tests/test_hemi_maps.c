@@ -64,8 +64,8 @@ TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
     }
 }
 
-// Nothing in a convex room hides one wall from another: not the surface that a light lies on, nor those that meet it
-// in an edge or a corner, wherever the room is.
+// Nothing in a convex room hides one wall from another: not the surface that a light lies on, nor those that
+// meet it in an edge or a corner, wherever the room is.
 TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
 {
     static const vplVec3 offsets[] = {{0, 0, 0}, {1, 1, 1}, {-1, 1, 0}, {300, -20, 7}};
@@ -75,7 +75,7 @@ TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
         placeShape(&box, 1, (const double[]){0, 0, 0}, offsets[o]);
         addShape(scene, &box, false, NULL);
         freeShape(&box);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         Dice dice = {5, 0};
         for (int light = 0; light < 300; light++) {
             vplVec3 at = rollVec(&dice, 1), n = {0, light & 1 ? 1 : -1, 0};
@@ -91,8 +91,8 @@ TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
                 const vplHemiMapPlace p = rollPlace(g, &dice, &hit);
                 const vplVec3 local = vplSub(p.position, offsets[o]),
                               way = vplSub(place.position, p.position);
-                // Two coordinates near 1: by an edge, where the map is in its band. A light in the point's own plane
-                // lights nothing.
+                // Two coordinates near 1: by an edge, where the map is in its band. A light in the point's
+                // own plane lights nothing.
                 float band, footprint;
                 band = vplHemiMap_Band(&maps->maps[0], p.position, p.normal, &footprint);
                 const int close =
@@ -128,7 +128,7 @@ TEST(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot, 1)
     vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
     // Nothing at all.
-    g = freezeScene(sceneOf(context, 0.5f));
+    g = buildGeometry(sceneOf(context, 0.5f));
     maps = drawMaps(g, 1, &place, 1);
     assert_true(maps->maps[0].texels[0] == 0);
     vplHemiMaps_Destroy(maps);

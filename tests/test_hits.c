@@ -30,11 +30,12 @@ static vplGeometry* oneObject(vplContext* context, vplObjectType type, const vpl
     object.type = type;
     object.transform = *transform;
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-    return freezeScene(scene);
+    return buildGeometry(scene);
 }
 
-// A direction on the given side of a normal, one in four close to the plane: outward 1e-4 off it, inward 1e-2. A
-// hit is off its plane by rounding, and at an edge a ray that goes in more slowly than that passes outside.
+// A direction on the given side of a normal, one in four close to the plane: outward 1e-4 off it, inward
+// 1e-2. A hit is off its plane by rounding, and at an edge a ray that goes in more slowly than that passes
+// outside.
 static vplVec3 rollSide(Dice* dice, vplVec3 normal, bool outward)
 {
     const vplVec3 d = rollUnit(dice);
@@ -82,7 +83,7 @@ TEST(RaysLeaveConvexMeshes, 1)
         placeShape(&shape, 1, (double[3]){0, 0, 0}, centre);
         vplScene* scene = sceneOf(context, 0.5f);
         addShape(scene, &shape, false, NULL);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         Dice dice = {(uint64_t)i, 0};
         checkConvex(g, centre, scale, &dice, i);
         vplGeometry_Destroy(g);
@@ -139,8 +140,9 @@ TEST(WallsOfARoomAreLeftForOtherWalls, 1)
     vplGeometry_Destroy(g);
 }
 
-// Triangles find the face, the shape itself says where: the very bits of vplRay_HitQuad and vplRay_HitBox. Only
-// at edges, where rounding decides, could one miss what the other hits: none of these rays comes that near.
+// Triangles find the face, the shape itself says where: the very bits of vplRay_HitQuad and vplRay_HitBox.
+// Only at edges, where rounding decides, could one miss what the other hits: none of these rays comes that
+// near.
 TEST(BoxesAndQuadsAreHitToTheLastDigit, 1)
 {
     int hits = 0, apart = 0, otherFace = 0;
@@ -194,7 +196,7 @@ TEST(SmoothNormalsAreInterpolated, 1)
         object.type = VPL_OBJECT_MESH;
         assert_int_equal(vplScene_AddMesh(scene, &mesh, &object.mesh), VPL_SUCCESS);
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         for (int i = 0; i < 200; i++) {
             Dice dice = {(uint64_t)i, 0};
             const float u = roll(&dice, 0, 1), v = roll(&dice, 0, 1 - u);
@@ -238,7 +240,7 @@ TEST(TheFrontOfAMirroredMeshStaysTheFront, 1)
         object.transform = m;
         assert_int_equal(vplScene_AddMesh(scene, &mesh, &object.mesh), VPL_SUCCESS);
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         const vplVec3 on = vplMat4_TransformPoint(&m, vplVec(0.1f, 0.2f, 0));
         const vplRay ray = {vplAdd(on, rollVec(&dice, 3)), {0, 0, 0}, {0, 0}};
         const vplRay to = {ray.origin, vplSub(on, ray.origin), {0, 0}};
@@ -267,7 +269,7 @@ TEST(AMeshIsMetAtItsBox, 1)
         placeShape(&shape, 0.5f, (double[3]){0, 0, 0}, vplVec(0, 0, 0));
         vplScene* scene = sceneOf(context, 0.5f);
         addShape(scene, &shape, false, &m);
-        vplGeometry* mesh = freezeScene(scene);
+        vplGeometry* mesh = buildGeometry(scene);
         for (int k = 0; k < 200; k++) {
             const vplVec3 from = vplMat4_TransformPoint(&m, rollVec(&dice, k & 1 ? 0.4f : 3));
             const vplVec3 to = vplMat4_TransformPoint(&m, rollVec(&dice, 0.8f));
@@ -303,7 +305,7 @@ TEST(PointsBesideATriangleAreMovedInside, 1)
         addTriangle(&one, rollVec(&dice, 1), rollVec(&dice, 1), rollVec(&dice, 1));
         vplScene* scene = sceneOf(context, 0.5f);
         addShape(scene, &one, false, NULL);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         const vplVec3* p = one.corners;
         const float b = roll(&dice, -0.2f, 1.2f), c = roll(&dice, -0.2f, 1.2f - b);
         const vplVec3 u = vplSub(p[1], p[0]), v = vplSub(p[2], p[0]);

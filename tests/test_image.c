@@ -80,8 +80,8 @@ TEST(ReinhardIsThatOfTheTable, 1)
         int count = parseList(cell(&t, row, "luminances"), in);
         for (int kind = 0; kind < 2; kind++) {
             const char* column = kind ? "Ld_white=max" : "Ld_simple";
-            // Where the geometric mean is 0 the formula divides by 0: the table is empty, black stays black and
-            // no number is not finite (X109).
+            // Where the geometric mean is 0 the formula divides by 0: the table is empty, black stays black
+            // and no number is not finite (X109).
             bool defined =
                 !isEmpty(&t, row, column) && parseList(cell(&t, row, column), kind ? white : simple) == count;
             vplImage* image;

@@ -8,7 +8,7 @@
 
 enum { MAX_SIDE = VPL_MAX_INTERLEAVE };
 
-static bool oneSurface(const Look* a, const Look* b)
+static bool oneSurface(const PixelSample* a, const PixelSample* b)
 {
     double cosine = 0, apart = 0;
     for (int k = 0; k < 3; k++) {
@@ -18,7 +18,8 @@ static bool oneSurface(const Look* a, const Look* b)
     return b->w > 0 && cosine >= 0.9 && fabs(apart) <= 0.01 * a->w;
 }
 
-// The definition: pictures of the lights of each class alone, of which each pixel gives the one of its own class.
+// The definition: pictures of the lights of each class alone, of which each pixel gives the one of its own
+// class.
 static vplImage** classPictures(const vplGeometry* g, const vplView* view, const vplShadeLight* lights,
                                 int count, int side)
 {
@@ -36,17 +37,17 @@ static vplImage** classPictures(const vplGeometry* g, const vplView* view, const
     return pictures;
 }
 
-// Weights fall from K in the middle to 1 at K - 1 pixels from it. Of a row those pixels count that lie on the surface of
-// its pixel in the middle's column, of rows those whose pixel there lies on that of the middle.
-static double expected(vplImage** pictures, const Look* looks, int x, int y, int side, int channel)
+// Weights fall from K in the middle to 1 at K - 1 pixels from it. Of a row those pixels count that lie on the
+// surface of its pixel in the middle's column, of rows those whose pixel there lies on that of the middle.
+static double expected(vplImage** pictures, const PixelSample* samples, int x, int y, int side, int channel)
 {
     const int width = pictures[0]->width, height = pictures[0]->height;
-    const Look* middle = &looks[y * width + x];
+    const PixelSample* middle = &samples[y * width + x];
     double sum = 0, weights = 0;
     for (int v = y > side - 1 ? y - side + 1 : 0; v < y + side && v < height; v++) {
-        const Look* own = &looks[v * width + x];
+        const PixelSample* own = &samples[v * width + x];
         for (int u = x > side - 1 ? x - side + 1 : 0; u < x + side && u < width; u++) {
-            if (oneSurface(middle, own) && oneSurface(own, &looks[v * width + u])) {
+            if (oneSurface(middle, own) && oneSurface(own, &samples[v * width + u])) {
                 const double weight = (double)((side - abs(u - x)) * (side - abs(v - y)));
                 const vplImage* class = pictures[v % side * side + u % side];
                 sum += weight * side * side * (double)class->pixels[3 * (v * width + u) + channel];
@@ -61,13 +62,13 @@ static void checkDefinition(const vplGeometry* g, int width, int height, int sid
 {
     const vplView view = stageView(vplVec(1, 2, 5), width, height);
     vplShadeLight* lights = rollLights(lightCount, (uint64_t)side);
-    Look* looks = lookAt(g, &view);
+    PixelSample* samples = samplePixels(g, &view);
     vplImage** pictures = classPictures(g, &view, lights, lightCount, side);
     const vplShadeDef def = stageDef(lights, lightCount, side);
     vplImage* image = shadeStage(g, &view, &def);
     int lit = 0;
     for (int i = 0; i < 3 * width * height; i++) {
-        const double wanted = expected(pictures, looks, i / 3 % width, i / 3 / width, side, i % 3);
+        const double wanted = expected(pictures, samples, i / 3 % width, i / 3 / width, side, i % 3);
         assertNear((double)image->pixels[i], wanted, 2e-6 * wanted, "radiance", i);
         lit += wanted > 0;
     }
@@ -77,11 +78,12 @@ static void checkDefinition(const vplGeometry* g, int width, int height, int sid
     }
     vplImage_Destroy(image);
     free(pictures);
-    free(looks);
+    free(samples);
     free(lights);
 }
 
-// Sides that divide tiles and such that do not; sizes likewise; fewer lights than classes, and more than a group.
+// Sides that divide tiles and such that do not; sizes likewise; fewer lights than classes, and more than a
+// group.
 TEST(EveryPixelIsThatOfTheDefinition, 2, SLOW)
 {
     vplGeometry* g = stage(context);
@@ -93,8 +95,8 @@ TEST(EveryPixelIsThatOfTheDefinition, 2, SLOW)
     vplGeometry_Destroy(g);
 }
 
-// Away from the picture's border every light counts exactly once, and what is linear over the window keeps its
-// value: lights 2 km above a floor are, to a float.
+// Away from the picture's border every light counts exactly once, and what is linear over the window keeps
+// its value: lights 2 km above a floor are, to a float.
 TEST(FarLightsOnAFloorAreThoseOfDeferredShading, 2)
 {
     enum { COUNT = 9 * 256, WIDTH = 100, HEIGHT = 80 };

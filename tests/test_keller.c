@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Keller's Instant Radiosity against tables and closed forms: counts, weights, what closed rooms glow with, and how
-// emitters share the particles.
+// Keller's Instant Radiosity against tables and closed forms: counts, weights, what closed rooms glow with,
+// and how emitters share the particles.
 #include "shapes.h"
 
 #include "math/vec.h"
@@ -17,8 +17,8 @@ static int addGlow(vplScene* scene, float rho, float emission)
     return index;
 }
 
-// A one-sided lamp that looks down.
-static void addLamp(vplScene* scene, vplVec3 centre, float size, float emission)
+// A one-sided area light that looks down.
+static void addAreaLight(vplScene* scene, vplVec3 centre, float size, float emission)
 {
     vplObjectDef object = vplDefaultObjectDef();
     object.material = addGlow(scene, 0.5f, emission);
@@ -36,11 +36,11 @@ static void addCamera(vplScene* scene)
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
 }
 
-// The cube [-1, 1]^3 with a lamp of half its width below its ceiling.
-static vplScene* lampRoom(vplContext* context, float rho)
+// The cube [-1, 1]^3 with an area light of half its width below its ceiling.
+static vplScene* areaLightRoom(vplContext* context, float rho)
 {
     vplScene* scene = closedCubeScene(context, rho, 0);
-    addLamp(scene, vplVec(0, 0.99f, 0), 1, 3);
+    addAreaLight(scene, vplVec(0, 0.99f, 0), 1, 3);
     addCamera(scene);
     return scene;
 }
@@ -61,11 +61,11 @@ static vplLightSet* simulate(const vplGeometry* geometry, vplParticleDef def)
     return set;
 }
 
-// counts_totals.csv: N lights on the emitter, then floor(rho N), floor(rho^2 N) and so on, each after one more ray:
-// 10 particles at rho = 0.5 leave 18 lights by 8 rays.
+// counts_totals.csv: N lights on the emitter, then floor(rho N), floor(rho^2 N) and so on, each after one
+// more ray: 10 particles at rho = 0.5 leave 18 lights by 8 rays.
 TEST(CountsAndRaysAreThoseOfTheTable, 2)
 {
-    vplGeometry* room = freezeScene(lampRoom(context, 0.5f));
+    vplGeometry* room = buildGeometry(areaLightRoom(context, 0.5f));
     Table t = loadTable("counts_totals.csv");
     int checked = 0;
     for (int row = 0; row < t.rows; row++) {
@@ -80,9 +80,9 @@ TEST(CountsAndRaysAreThoseOfTheTable, 2)
         assert_int_equal(set->escaped, 0);
         for (int i = 0; i < set->lightCount; i++) {
             const vplVirtualLight* v = &set->lights[i];
-            const bool onLamp =
+            const bool onAreaLight =
                 v->object == 6 && fabsf(v->position.y - 0.99f) < 1e-6f && v->normal.y < -0.999f;
-            assert_true(v->step > 0 || onLamp);
+            assert_true(v->step > 0 || onAreaLight);
         }
         vplLightSet_Destroy(set);
         checked++;
@@ -92,14 +92,15 @@ TEST(CountsAndRaysAreThoseOfTheTable, 2)
     vplGeometry_Destroy(room);
 }
 
-// vpl_weights.csv: N/M_k, and the lights of step k carry the lamp's power times rho^k (documented: (rho/pi)^k).
+// vpl_weights.csv: N/M_k, and the lights of step k carry the area light's power times rho^k (documented:
+// (rho/pi)^k).
 TEST(FluxOfEachStepIsThatOfTheTable, 2)
 {
     Table t = loadTable("vpl_weights.csv");
     for (int row = 0; row < 2 * t.rows; row++) {
         const int r = row / 2, documented = row % 2, k = (int)number(&t, r, "k");
         const float rho = (float)number(&t, r, "rho");
-        vplGeometry* cube = freezeScene(closedCubeScene(context, rho, 3));
+        vplGeometry* cube = buildGeometry(closedCubeScene(context, rho, 3));
         vplParticleDef def = kellerDef((int)number(&t, r, "N"), number(&t, r, "rho"));
         def.lighting = documented ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
         vplLightSet* set = simulate(cube, def);
@@ -136,10 +137,11 @@ static vplGeometry* glowingSphere(vplContext* context, float rho)
     }
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
-    return freezeScene(scene);
+    return buildGeometry(scene);
 }
 
-// The red irradiance at a point of the unit sphere, of lights moved onto it: each gives a quarter of its intensity.
+// The red irradiance at a point of the unit sphere, of lights moved onto it: each gives a quarter of its
+// intensity.
 static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
 {
     const vplVec3 at = vplNormalize(vplVec(0.3f, -0.5f, 0.8f));
@@ -163,9 +165,9 @@ static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
     return sum;
 }
 
-// estimator_factors.csv, "Keller furnace": walls that emit Le and reflect rho glow with Le / (1 - rho); as printed,
-// with Le (1 + rho / (1 - rho/pi)). On a sphere any light gives any point the same, so that the sum is exact but for
-// the steps that floor(rho^j N) = 0 cuts off.
+// estimator_factors.csv, "Keller furnace": walls that emit Le and reflect rho glow with Le / (1 - rho); as
+// printed, with Le (1 + rho / (1 - rho/pi)). On a sphere any light gives any point the same, so that the sum
+// is exact but for the steps that floor(rho^j N) = 0 cuts off.
 TEST_ALONE(ClosedRoomsGlowAsTheFormulasSay)
 {
     static const struct {
@@ -192,10 +194,11 @@ TEST_ALONE(ClosedRoomsGlowAsTheFormulasSay)
     }
 }
 
-// Lamp, point, spot and sun get particles by power. Where they start from no surface, the light is the emitter.
+// Area light, point, spot and sun get particles by power. Where they start from no surface, the light is the
+// emitter.
 TEST(EmittersOfAllKindsShareByPower, 2)
 {
-    vplScene* scene = lampRoom(context, 0.5f);
+    vplScene* scene = areaLightRoom(context, 0.5f);
     vplEmitterDef emitters[3];
     for (int i = 0; i < 3; i++) {
         emitters[i] = vplDefaultEmitterDef();
@@ -204,7 +207,7 @@ TEST(EmittersOfAllKindsShareByPower, 2)
         emitters[i].intensity = (vplRgb){1, 1, 1};
         emitters[i].direction = vplVec(0.1f, -1, 0.2f);
     }
-    vplGeometry* room = freezeScene(scene);
+    vplGeometry* room = buildGeometry(scene);
     vplEmission* emission;
     assert_int_equal(vplEmission_Create(room, emitters, 3, &emission), VPL_SUCCESS);
     for (int sampler = VPL_SAMPLER_AUTO; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
@@ -215,17 +218,17 @@ TEST(EmittersOfAllKindsShareByPower, 2)
         assert_int_equal(vplSimulateParticles(room, emitters, 3, &def, &set), VPL_SUCCESS);
         assert_int_equal(set->lightCount, N);
         assert_int_equal(set->rays, 0);
-        int onLamp = 0, atPoint = 0;
+        int onAreaLight = 0, atPoint = 0;
         for (int i = 0; i < N; i++) {
-            onLamp += set->lights[i].object == 6;
+            onAreaLight += set->lights[i].object == 6;
             atPoint += set->lights[i].object < 0 && vplLength(set->lights[i].position) == 0;
         }
         const double* sums = emission->cumulative;
         const double total = sums[emission->sourceCount], slack = sampler == VPL_SAMPLER_RANDOM ? 100 : 3;
-        assertNear(onLamp, N * (total - sums[3]) / total, slack, "on the lamp", sampler);
+        assertNear(onAreaLight, N * (total - sums[3]) / total, slack, "on the area light", sampler);
         assertNear(atPoint, N * sums[2] / total, slack, "at point and spot", sampler); // both at the origin
         vplShadeLight lights[N];
-        assert_int_equal(vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights), onLamp);
+        assert_int_equal(vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights), onAreaLight);
         vplLightSet_Destroy(set);
     }
     vplEmission_Destroy(emission);
@@ -235,7 +238,7 @@ TEST(EmittersOfAllKindsShareByPower, 2)
 // Passes go on where the last ended: two of N particles are the first 2 N of the sequence.
 TEST(LaterPassesGoOnWithTheSequence, 1)
 {
-    vplGeometry* room = freezeScene(lampRoom(context, 0.5f));
+    vplGeometry* room = buildGeometry(areaLightRoom(context, 0.5f));
     for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
         enum { N = 50 };
         vplParticleDef def = kellerDef(2 * N, 0);
@@ -256,12 +259,12 @@ TEST(LaterPassesGoOnWithTheSequence, 1)
     vplGeometry_Destroy(room);
 }
 
-// Passes of a walk: their counts add up to floor(rho^k P N), steps that no single pass of N would reach included, and
-// lights of step k weigh rho^-k, so that they carry power rho^k in the mean.
+// Passes of a walk: their counts add up to floor(rho^k P N), steps that no single pass of N would reach
+// included, and lights of step k weigh rho^-k, so that they carry power rho^k in the mean.
 TEST(PassesAddUpToOneWalk, 2)
 {
     enum { PASSES = 64, N = 7 };
-    vplGeometry* cube = freezeScene(closedCubeScene(context, 0.7f, 3));
+    vplGeometry* cube = buildGeometry(closedCubeScene(context, 0.7f, 3));
     int counts[64], steps, sums[64] = {0};
     int64_t total;
     double flux[64] = {0};
@@ -302,7 +305,8 @@ static vplRenderOptions smallOptions(void)
     return o;
 }
 
-// With no particle shot, a point light's picture is its direct light bit for bit: N lights at one place are one.
+// With no particle shot, a point light's picture is its direct light bit for bit: N lights at one place are
+// one.
 TEST(PointEmittersAreDrawnAsThemselves, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -321,7 +325,7 @@ TEST(PointEmittersAreDrawnAsThemselves, 2)
 // Direct and indirect light are parts of the picture.
 TEST(PartsAddUp, 2)
 {
-    vplScene* scene = lampRoom(context, 0.7f);
+    vplScene* scene = areaLightRoom(context, 0.7f);
     vplRenderOptions o = smallOptions();
     o.particles.count = 40;
     o.lights.compensation = VPL_COMPENSATION_NONE;
@@ -343,13 +347,13 @@ TEST(PartsAddUp, 2)
     vplScene_Destroy(scene);
 }
 
-// X031, X036: no particles, one particle, a black room, a lamp that lights nothing.
+// X031, X036: no particles, one particle, a black room, an area light that lights nothing.
 TEST(OddRoomsGiveFinitePictures, 2)
 {
     for (int i = 0; i < 4; i++) {
-        vplScene* scene = lampRoom(context, i == 2 ? 0.0f : 0.9f);
+        vplScene* scene = areaLightRoom(context, i == 2 ? 0.0f : 0.9f);
         if (i == 3) {
-            addLamp(scene, vplVec(0, -50, 0), 1, 1e6f); // outside, looks away: takes all particles
+            addAreaLight(scene, vplVec(0, -50, 0), 1, 1e6f); // outside, looks away: takes all particles
         }
         vplRenderOptions o = smallOptions();
         o.particles.count = i == 0 ? 0 : i == 1 ? 1 : 20;

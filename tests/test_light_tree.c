@@ -186,8 +186,8 @@ TEST(NoLightGivesMoreThanTheBoundOfItsCluster, 1)
     }
 }
 
-// Two lights 1 cm apart, seen from a metre and more: the bound is at most 8 % above what they give, and 0 behind
-// them and where they are behind.
+// Two lights 1 cm apart, seen from a metre and more: the bound is at most 8 % above what they give, and 0
+// behind them and where they are behind.
 TEST(BoundsOfSmallClustersAreTight, 1)
 {
     vplShadeLight lights[2] = {{0, 0, 0, 0, 1, 0, 1, 1, 1}, {0.01f, 0, 0, 0, 1, 0, 1, 1, 1}};

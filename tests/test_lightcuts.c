@@ -172,8 +172,8 @@ TEST(NoPixelErrsByMoreThanAsked, 2, SLOW)
     }
 }
 
-// With next to no error every light is reached, also where the cut's memory ends first: 40,000 lights are more than
-// twice what it holds.
+// With next to no error every light is reached, also where the cut's memory ends first: 40,000 lights are
+// more than twice what it holds.
 TEST(NoErrorIsTheSumOfAllLights, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -249,8 +249,8 @@ TEST(TwiceTheLightIsTwiceThePicture, 2)
     vplGeometry_Destroy(g);
 }
 
-// Every kind of lights, unbounded, some of them on what they light: finite, not negative, and where a picture by all
-// lights is 0 so is this.
+// Every kind of lights, unbounded, some of them on what they light: finite, not negative, and where a picture
+// by all lights is 0 so is this.
 TEST(NastyLightsLeaveNoNan, 2)
 {
     enum { COUNT = 500, SIZE = 20 };

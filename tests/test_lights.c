@@ -266,7 +266,8 @@ TEST_ALONE(LightsDoNotDependOnThreads)
 TEST(AnyFirstParticlesCoverTheSphere, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
-    // Random points: 3 standard deviations of the mean of n unit vectors; the others: better than that by far.
+    // Random points: 3 standard deviations of the mean of n unit vectors; the others: better than that by
+    // far.
     const double allowed[] = {
         [VPL_SAMPLER_RANDOM] = 3, [VPL_SAMPLER_HALTON] = 0.7, [VPL_SAMPLER_HAMMERSLEY] = 0.7};
     for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {

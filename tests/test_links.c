@@ -232,7 +232,7 @@ TEST(IrradianceIsThatOfAllPairsToTheErrorAskedFor, 2, SLOW)
 }
 
 // Its group would be the ceiling's.
-TEST(ALampFlushWithTheCeilingShinesFromWhereItIs, 2)
+TEST(AnAreaLightFlushWithTheCeilingShinesFromWhereItIs, 2)
 {
     Room room;
     vplScene* scene = closedCubeScene(context, 0.5f, 0);

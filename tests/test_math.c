@@ -185,8 +185,8 @@ TEST_ALONE(SobolPointsAreThePublishedOnes)
     }
 }
 
-// Scrambled and shuffled, the first 2^k points still put one into each stratum of every dimension, and one into each
-// of the cells of any shape that halving the first two dimensions k times makes.
+// Scrambled and shuffled, the first 2^k points still put one into each stratum of every dimension, and one
+// into each of the cells of any shape that halving the first two dimensions k times makes.
 TEST_ALONE(ScrambledPointsKeepTheirStrata)
 {
     enum { K = 8, COUNT = 1 << K };

@@ -42,7 +42,7 @@ static vplResult addBall(Attempt* a)
     return tryAddShape(a->scene, &a->shape, true, &object);
 }
 
-static vplResult buildGeometry(Attempt* a)
+static vplResult buildBall(Attempt* a)
 {
     TRY(vplScene_Create(a->context, &a->scene));
     TRY(addBall(a));
@@ -406,7 +406,7 @@ static vplResult encodePng(Attempt* a)
 // clang-format off
 EVERY_FAILED_ALLOCATION(AJsonScene, readJson, "png", 1)
 EVERY_FAILED_ALLOCATION(TheObjReader, readMeshes, "png", 3)
-EVERY_FAILED_ALLOCATION(AGeometry, buildGeometry, "png", 1)
+EVERY_FAILED_ALLOCATION(AGeometry, buildBall, "png", 1)
 EVERY_FAILED_ALLOCATION(ARenderToPng, renderAndWrite, "png", 4)
 EVERY_FAILED_ALLOCATION(ARenderToHdr, renderAndWrite, "hdr", 1)
 EVERY_FAILED_ALLOCATION(ARenderToExr, renderAndWrite, vplImage_CanWrite("a.exr") ? "exr" : "pfm", 1)

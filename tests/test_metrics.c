@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// SSIM, FLIP and heat maps: against other implementations (tests/data/metrics.csv), exact relations, odd sizes, refusals.
+// SSIM, FLIP and heat maps: against other implementations (tests/data/metrics.csv), exact relations, odd
+// sizes, refusals.
 #include "metric_pairs.h"
 
 static float valueAt(const vplImage* map, int x, int y)
@@ -7,8 +8,8 @@ static float valueAt(const vplImage* map, int x, int y)
     return map->pixels[3 * (y * map->width + x)];
 }
 
-// Other implementations agree to 1e-8 (SSIM) and 2e-5 (FLIP, which they and we compute in float: where nothing
-// but rounding makes an edge, its square root shows).
+// Other implementations agree to 1e-8 (SSIM) and 2e-5 (FLIP, which they and we compute in float: where
+// nothing but rounding makes an edge, its square root shows).
 TEST(SsimAndFlipAreThoseOfOtherImplementations, 2)
 {
     Table t = loadTable("metrics.csv");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// OBJ and MTL files: what is right arrives as it was written, what is damaged is named by file, line and column.
+// OBJ and MTL files: what is right arrives as it was written, what is damaged is named by file, line and
+// column.
 #include "obj_support.h"
 
 // ---- damaged files

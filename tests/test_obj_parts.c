@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The parts of the OBJ reader by themselves: numbers become the nearest floats, and every polygon is covered once.
+// The parts of the OBJ reader by themselves: numbers become the nearest floats, and every polygon is covered
+// once.
 #include "test.h"
 
 #include "base/hash.h"

@@ -75,7 +75,7 @@ TEST_ALONE(SixteenRaysSayWhatEachSaysAlone)
             Shape ball = icosphere(level);
             vplScene* scene = sceneOf(context, 0.5f);
             addShape(scene, &ball, false, NULL);
-            vplGeometry* g = freezeScene(scene);
+            vplGeometry* g = buildGeometry(scene);
             assert_int_equal(g->rayTree->nodes == NULL, level == 0);
             Dice dice = {11, 0};
             int hits = 0, rays = 0;

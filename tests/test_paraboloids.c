@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Paraboloid maps: the projection, what a texel holds, where they agree with rays, and what they do at extremes.
+// Paraboloid maps: the projection, what a texel holds, where they agree with rays, and what they do at
+// extremes.
 #include "bench/band.h"
 #include "shadow_maps.h"
 
@@ -153,7 +154,8 @@ static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int w
         vplHit hit;
         vplVec3 direction;
         const int n = map->size;
-        const bool got = vplParaboloidMap_GetHit(map, g, (vplParaboloidTexel){hemisphere, texel % n, texel / n}, &hit, &direction);
+        const bool got = vplParaboloidMap_GetHit(
+            map, g, (vplParaboloidTexel){hemisphere, texel % n, texel / n}, &hit, &direction);
         assert_true(got == (stored > 0 && p <= 1));
         if (got) {
             const vplVec3 way = vplSub(hit.position, map->position);
@@ -270,7 +272,7 @@ TEST(BoundsOfTrianglesLoseNoTexel, 1)
         addTriangle(&one, corner[0], corner[1], corner[2]);
         addShape(scene, &one, false, NULL);
         freeShape(&one);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         const double height = heightOf(corner);
         const vplParaboloidPlace place = {vplVec(0, 0, 0), vplVec(0, 0, 1), 1 + i % 2, false};
         vplParaboloidMaps* maps = drawMaps(g, 5 + i % 60, &place, 1);
@@ -311,7 +313,7 @@ TEST(SharedEdgesLeaveNoHoles, 2)
         vplScene* scene = sceneOf(context, 0.5f);
         addShape(scene, &shape, false, NULL);
         freeShape(&shape);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         const vplParaboloidPlace place = {rollVec(&dice, 0.3f), i % 4 ? rollUnit(&dice) : vplVec(0, 0, 1), 2,
                                           false};
         vplParaboloidMaps* maps = drawMaps(g, 64 + i, &place, 1);
@@ -327,8 +329,8 @@ TEST(SharedEdgesLeaveNoHoles, 2)
     }
 }
 
-// A thin band along an edge covers the image of its middle, and not the middle of the chord between its ends, which is
-// up to 169 of 512 texels off.
+// A thin band along an edge covers the image of its middle, and not the middle of the chord between its ends,
+// which is up to 169 of 512 texels off.
 TEST(EdgesBendAsTheyShould, 1)
 {
     Table t = loadTable("paraboloid_edge_error.csv");
@@ -344,7 +346,7 @@ TEST(EdgesBendAsTheyShould, 1)
         addTriangle(&band, c[0], c[2], c[3]);
         addShape(scene, &band, false, NULL);
         freeShape(&band);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         const vplParaboloidPlace place = {vplVec(0, 0, 0), vplVec(0, 0, 1), 1, false};
         vplParaboloidMaps* maps = drawMaps(g, MAP, &place, 1);
         const vplParaboloidMap* map = &maps->maps[0];

@@ -40,8 +40,8 @@ static void addNumbers(const void* const* uniforms, int count, vplFragments* f)
 
 typedef enum Way { PLAIN, KEPT, FUSED, MIXED } Way;
 
-// A soup in two meshes, then passes over both, by draws that are not recognised as passes, that are, that are fused,
-// and that would be but for different masks.
+// A soup in two meshes, then passes over both, by draws that are not recognised as passes, that are, that are
+// fused, and that would be but for different masks.
 static uint64_t drawPasses(vplContext* context, const ClipVertex* v, Way way, int64_t* fragments)
 {
     static const float numbers[PASSES] = {1, 0.1f, 0.3f, 2, 7, 0.7f, 1e-3f, 5, 3, 11, 0.01f};
@@ -79,7 +79,7 @@ static uint64_t drawPasses(vplContext* context, const ClipVertex* v, Way way, in
     return hash;
 }
 
-TEST_ALONE(PassesOverKeptBlocksGiveTheBitsOfDraws)
+TEST_ALONE(FusedPassesGiveTheBitsOfDraws)
 {
     for (int threads = 1; threads <= 3; threads += 2) {
         vplContext* context = openTestContext(threads);
@@ -179,7 +179,8 @@ TEST(SurfaceShadersMayMakeAllVaryings, 1)
     freeCanvas(&c);
 }
 
-// Triangles in one draw, whose hidden blocks are left out, against a draw for each, which knows of none hidden.
+// Triangles in one draw, whose hidden blocks are left out, against a draw for each, which knows of none
+// hidden.
 TEST(HiddenBlocksAreHidden, 1)
 {
     for (uint64_t seed = 0; seed < 20; seed++) {
@@ -295,7 +296,8 @@ static vplRasterStats drawNamed(vplContext* context, const Canvas* canvas, const
     return stats;
 }
 
-// However depth is written; w, along the axis, is a shader's but for outlines, where that is clamped otherwise.
+// However depth is written; w, along the axis, is a shader's but for outlines, where that is clamped
+// otherwise.
 TEST(FramebuffersNameWhoWroteDepthLast, 2)
 {
     enum { SPLIT = 17 };

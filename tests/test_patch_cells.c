@@ -9,8 +9,8 @@ static vplPatchSide sideOf(vplVec3 a, vplVec3 b, vplVec3 c)
     return (vplPatchSide){.open = 0xffff, .corners = {a, b, c}};
 }
 
-// Sixteen triangles that tile theirs: points of a cell are found in it again, their mean is where its centre is, and the
-// means of all cells have the patch's.
+// Sixteen triangles that tile theirs: points of a cell are found in it again, their mean is where its centre
+// is, and the means of all cells have the patch's.
 TEST_ALONE(CellsTileThePatch)
 {
     const vplPatchSide s = sideOf(vplVec(1, 2, 3), vplVec(4, 2, 1), vplVec(0, 5, 2));
@@ -56,7 +56,8 @@ TEST_ALONE(CellsAreInTheStatedOrder)
 
 // ---- the report's box
 
-// How much of a cell stands under a block, from 16 x 16 points: blocks are the model's triangles whose fronts look up.
+// How much of a cell stands under a block, from 16 x 16 points: blocks are the model's triangles whose fronts
+// look up.
 static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g)
 {
     int covered = 0;
@@ -71,8 +72,8 @@ static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g
     return covered / 256.0;
 }
 
-// Fronts of all 784 patches but for those of the floor that a block stands on; no backs, and no cell that a block
-// covers whole. Cells of which most is free are open, and of those alone.
+// Fronts of all 784 patches but for those of the floor that a block stands on; no backs, and no cell that a
+// block covers whole. Cells of which most is free are open, and of those alone.
 TEST(TheReportsBoxHasItsFrontsButUnderBlocks, 2)
 {
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);

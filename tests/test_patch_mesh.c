@@ -88,7 +88,7 @@ static vplPatchMesh* unevenMesh(vplContext* context, bool ball, bool smooth, int
     placeShape(&shape, 1.3f, turned, vplVec(0.1f, 0.2f, 0.3f));
     addShape(scene, &shape, smooth, NULL);
     freeShape(&shape);
-    return meshOf(openSides(openUnevenPatches(freezeScene(scene), rounds, seed), open));
+    return meshOf(openSides(openUnevenPatches(buildGeometry(scene), rounds, seed), open));
 }
 
 static bool hasEdge(const vplPatchMesh* m, vplVec3 from, vplVec3 to)
@@ -116,7 +116,8 @@ TEST(EveryEdgeOfAClosedSurfaceHasTwoTriangles, 2)
     assert_true(cuts > 100);
 }
 
-// Of a patch as a whole: pieces fill it, none is thinner than halving makes it, and its outline has its length.
+// Of a patch as a whole: pieces fill it, none is thinner than halving makes it, and its outline has its
+// length.
 TEST(PiecesFillTheirPatch, 2)
 {
     vplPatchMesh* m = unevenMesh(context, true, false, 7, 3, frontsOpen);
@@ -171,7 +172,8 @@ TEST_ALONE(SurfacesShareVerticesWhereTheyGoOn)
     assert_int_equal(verticesOf(true, true), 12);
 }
 
-// Strips of a cylinder of `parts` sides of 15 degrees, in the order of `step`; only neighbours are within 20 degrees.
+// Strips of a cylinder of `parts` sides of 15 degrees, in the order of `step`; only neighbours are within 20
+// degrees.
 static vplPatchMesh* fanMesh(vplContext* context, const int order[4])
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -185,7 +187,7 @@ static vplPatchMesh* fanMesh(vplContext* context, const int order[4])
     }
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
-    return meshOf(openSides(openPatches(freezeScene(scene), 100, 0), frontsOpen));
+    return meshOf(openSides(openPatches(buildGeometry(scene), 100, 0), frontsOpen));
 }
 
 TEST_ALONE(OrderOfTrianglesDoesNotMatter)
@@ -214,7 +216,7 @@ TEST(CoplanarObjectsShareAndWallsDoNot, 1)
         addShape(scene, &shape, false, NULL);
         freeShape(&shape);
     }
-    vplPatchMesh* m = meshOf(openSides(openPatches(freezeScene(scene), 100, 0), frontsOpen));
+    vplPatchMesh* m = meshOf(openSides(openPatches(buildGeometry(scene), 100, 0), frontsOpen));
     assert_int_equal(m->vertexCount, 6 + 4);
     for (int v = 0; v < m->vertexCount; v++) {
         assertNear((double)vplLength(m->normals[v]), 1, 1e-6, "normal", v);
@@ -264,8 +266,9 @@ TEST(EqualValuesStayTheSameBits, 2)
     closeMesh(m);
 }
 
-// A square of two triangles, of which the second is cut once: by its own diagonal's middle the first is cut, too.
-// Corners at the diagonal's ends: 45 degrees of either. At its middle: 180 of the first, 90 of each half.
+// A square of two triangles, of which the second is cut once: by its own diagonal's middle the first is cut,
+// too. Corners at the diagonal's ends: 45 degrees of either. At its middle: 180 of the first, 90 of each
+// half.
 static vplPatchMesh* squareMesh(vplContext* context, OpenFcn* open)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -275,7 +278,7 @@ static vplPatchMesh* squareMesh(vplContext* context, OpenFcn* open)
     addTriangle(&shape, vplVec(5, 0, 0), vplVec(6, 0, 0), vplVec(6, 1, 0)); // alone
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
-    vplPatches *whole = openPatches(freezeScene(scene), 100, 0), *p = NULL;
+    vplPatches *whole = openPatches(buildGeometry(scene), 100, 0), *p = NULL;
     assert_int_equal(vplPatches_Refine(whole, (const float[]){0, 1, 0}, 4, &p), VPL_SUCCESS);
     vplPatches_Destroy(whole);
     return meshOf(openSides(p, open));
@@ -331,8 +334,8 @@ static uint16_t underBox(const vplPatches* patches, int patch, int face)
     return face == 1 || patch == 0 ? 0 : patch == 1 ? 0x1111 : 0xffff;
 }
 
-// X101: a floor that no light reaches darkens nothing beside it, and what is partly covered counts for as much as is
-// open.
+// X101: a floor that no light reaches darkens nothing beside it, and what is partly covered counts for as
+// much as is open.
 TEST(CoveredPatchesDarkenNothing, 1)
 {
     vplPatchMesh* m = squareMesh(context, underBox);
@@ -374,7 +377,8 @@ TEST(WrongValuesAreRefused, 1)
     closeMesh(m);
 }
 
-// How far what is interpolated lies from the value of the sides on which it does, on the mean over triangles' area.
+// How far what is interpolated lies from the value of the sides on which it does, on the mean over triangles'
+// area.
 static double missingOf(const vplPatchMesh* m, const vplRgb* values, const vplRgb* corners)
 {
     double* sums = calloc(2 * (size_t)m->sides->count, sizeof *sums);

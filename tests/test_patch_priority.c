@@ -25,7 +25,7 @@ typedef struct Field {
     float* worth;
 } Field;
 
-static const vplVec3 LAMP = {0, 5, 0};
+static const vplVec3 EMITTER = {0, 5, 0};
 
 static double meanOver(const vplPatchSide* side, double (*at)(vplVec3))
 {
@@ -41,7 +41,7 @@ static double meanOver(const vplPatchSide* side, double (*at)(vplVec3))
 static void fillField(Field* f, vplPatches* patches, double (*at)(vplVec3))
 {
     f->patches = patches;
-    f->sides = sidesOf(patches, &LAMP);
+    f->sides = sidesOf(patches, &EMITTER);
     assert_int_equal(vplPatchMesh_Create(f->sides, &f->mesh), VPL_SUCCESS);
     f->values = malloc((size_t)f->sides->count * sizeof *f->values);
     f->corners = malloc(2 * (size_t)f->mesh->vertexCount * sizeof *f->corners);
@@ -127,7 +127,7 @@ TEST_ALONE(NoLightAndEvenLightNeedNoPatches)
 }
 
 // Light that grows from the middle on: no patch beside the slope is worth as much as any on it.
-TEST_ALONE(SlopesAreWorthMoreThanPlains)
+TEST_ALONE(SlopesHaveAHigherPriorityThanPlains)
 {
     Field f = openField(0.5f, ramp);
     float most = 0, least = INFINITY;
@@ -143,7 +143,7 @@ TEST_ALONE(SlopesAreWorthMoreThanPlains)
     closeField(&f);
 }
 
-TEST_ALONE(AShadowsBoundaryIsWorthPatches)
+TEST_ALONE(AShadowsBoundaryHasAHighPriority)
 {
     Field f = openField(0.5f, one);
     vplPatchPriorityDef def = defOf(&f);
@@ -161,8 +161,9 @@ TEST_ALONE(AShadowsBoundaryIsWorthPatches)
     closeField(&f);
 }
 
-// Direct light that changes across a patch errs in what the patch reflects; even light, however bright, does not.
-TEST_ALONE(ChangesOfDirectLightAreWorthPatches)
+// Direct light that changes across a patch errs in what the patch reflects; even light, however bright, does
+// not.
+TEST_ALONE(ChangesOfDirectLightHaveAHighPriority)
 {
     Field f = openField(0.5f, one);
     const size_t corners = 2 * (size_t)f.mesh->vertexCount;
@@ -237,7 +238,7 @@ static void refineTo(Field* f, int count)
 }
 
 // As many patches as a size gives, placed by worth, have less than half the squared error.
-TEST_ALONE(PatchesWhereTheyAreWorthMostHalveTheError)
+TEST_ALONE(PatchesByPriorityHalveTheError)
 {
     for (float size = 0.36f; size > 0.1f; size *= 0.5f) {
         Field uniform = openField(size, irradianceAt), adaptive = openField(4 * size, irradianceAt);

@@ -4,8 +4,8 @@
 
 // ---- what light does not reach
 
-// A crate on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside is dark, and so is what it
-// stands on: open cells make up the floor less its base, but for those that it covers in part.
+// A crate on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside is dark, and so is
+// what it stands on: open cells make up the floor less its base, but for those that it covers in part.
 TEST_ALONE(TheInsideOfACrateAndTheFloorUnderItAreDark)
 {
     for (int sunk = 0; sunk < 3; sunk++) { // on the floor, into it, and a hair above
@@ -32,11 +32,11 @@ TEST(NoSeedLightsTheBackOfAWall, 2, SLOW)
     for (uint64_t seed = 0; seed < 20; seed++) {
         vplPatches* p = openPatches(g, 2.0f - 0.07f * (float)seed, VPL_MAX_PATCH_ROUNDS);
         vplPatchSidesDef def = vplDefaultPatchSidesDef();
-        vplEmitterDef lamp = vplDefaultEmitterDef();
+        vplEmitterDef emitter = vplDefaultEmitterDef();
         vplPatchSides* s;
         int patches;
-        lamp.position = NEAR_CEILING;
-        def.emitters = &lamp;
+        emitter.position = NEAR_CEILING;
+        def.emitters = &emitter;
         def.emitterCount = 1;
         def.seed = seed;
         assert_int_equal(vplPatchSides_Create(p, &def, &s), VPL_SUCCESS);
@@ -50,8 +50,8 @@ TEST(NoSeedLightsTheBackOfAWall, 2, SLOW)
     vplGeometry_Destroy(g);
 }
 
-// Two closed rooms beside each other, a lamp in one.
-TEST_ALONE(ARoomWithoutALampTakesNoPart)
+// Two closed rooms beside each other, an emitter in one.
+TEST_ALONE(ARoomWithoutAnEmitterTakesNoPart)
 {
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
@@ -76,7 +76,7 @@ TEST_ALONE(WithoutLightThereAreNoSides)
 }
 
 // What an eye sees takes part, dark as it is.
-TEST_ALONE(WhatAnEyeSeesTakesPart)
+TEST_ALONE(WhatAViewpointSeesTakesPart)
 {
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
@@ -98,7 +98,7 @@ TEST_ALONE(WhatAnEyeSeesTakesPart)
 
 // ---- what it reaches
 
-TEST_ALONE(OneTriangleHasTheSideThatFacesTheLamp)
+TEST_ALONE(OneTriangleHasTheSideThatFacesTheEmitter)
 {
     for (int back = 0; back < 2; back++) {
         Shape shape = {0};
@@ -112,7 +112,7 @@ TEST_ALONE(OneTriangleHasTheSideThatFacesTheLamp)
     }
 }
 
-TEST(ALampAloneIsASide, 1)
+TEST(AnAreaLightAloneIsASide, 1)
 {
     Shape shape = {0};
     addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 0, 0), vplVec(0, 1, 0));
@@ -167,8 +167,8 @@ TEST_ALONE(OfTwoTrianglesInOnePlaceTheFirstHasTheLight)
     }
 }
 
-// Five rooms in a row with doors a tenth of the wall, which do not face each other; the lamp is in the first. All walls
-// of all rooms are met, at few patches and at many.
+// Five rooms in a row with doors a tenth of the wall, which do not face each other; the emitter is in the
+// first. All walls of all rooms are met, at few patches and at many.
 TEST_ALONE(LightGoesThroughDoorsToTheLastRoom)
 {
     for (int fine = 0; fine < 2; fine++) {
@@ -193,21 +193,21 @@ TEST_ALONE(LightGoesThroughDoorsToTheLastRoom)
     }
 }
 
-// A lamp of a millionth of another's power, alone in its room, and the only one of a hundred triangles.
-TEST(AWeakLampLightsItsRoom, 1)
+// An emitter of a millionth of another's power, alone in its room, and the only one of a hundred triangles.
+TEST(AWeakAreaLightLightsItsRoom, 1)
 {
     Shape shape = {0};
     addBox(&shape, vplVec(0, 0, 0), vplVec(2, 2, 2), true);
     addBox(&shape, vplVec(3, 0, 0), vplVec(5, 2, 2), true);
     vplGeometry* g = geometryOf(context, &shape, 0.5f, 0);
     vplPatches* p = openPatches(g, 0.7f, VPL_MAX_PATCH_ROUNDS);
-    vplEmitterDef lamps[2] = {vplDefaultEmitterDef(), vplDefaultEmitterDef()};
+    vplEmitterDef emitters[2] = {vplDefaultEmitterDef(), vplDefaultEmitterDef()};
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
     vplPatchSides* s;
-    lamps[0].position = vplVec(1, 1, 1);
-    lamps[1].position = vplVec(4, 1, 1);
-    lamps[1].intensity = (vplRgb){1e-6f, 0, 0};
-    def.emitters = lamps;
+    emitters[0].position = vplVec(1, 1, 1);
+    emitters[1].position = vplVec(4, 1, 1);
+    emitters[1].intensity = (vplRgb){1e-6f, 0, 0};
+    def.emitters = emitters;
     def.emitterCount = 2;
     assert_int_equal(vplPatchSides_Create(p, &def, &s), VPL_SUCCESS);
     assertAll(s, 0, 24, false);
@@ -245,10 +245,10 @@ TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
     addBox(&shape, vplVec(-0.9f, 0, -0.7f), vplVec(0.8f, 1, 0.9f), false);
     Case c = openCase(&shape, 0.5f, &(vplVec3){1, 3, 1});
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
-    vplEmitterDef lamp = vplDefaultEmitterDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
     vplPatchSides* s;
-    lamp.position = vplVec(1, 3, 1);
-    def.emitters = &lamp;
+    emitter.position = vplVec(1, 3, 1);
+    def.emitters = &emitter;
     def.emitterCount = 1;
     def.wholeTriangles = true;
     assert_int_equal(vplPatchSides_Create(c.patches, &def, &s), VPL_SUCCESS);
@@ -335,11 +335,11 @@ TEST_ALONE(ARefusedProgressCancels)
     Shape shape = {0};
     addFloor(&shape);
     Case c = openCase(&shape, 0.2f, NULL);
-    vplEmitterDef lamp = vplDefaultEmitterDef();
+    vplEmitterDef emitter = vplDefaultEmitterDef();
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
     int asked = 0;
-    lamp.position = vplVec(0, 2, 0);
-    def.emitters = &lamp;
+    emitter.position = vplVec(0, 2, 0);
+    def.emitters = &emitter;
     def.emitterCount = 1;
     def.progress = refuseThird;
     def.progressUser = &asked;

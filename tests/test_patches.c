@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles bisected at their longest edges: tests/data/subdivision_counts.csv and subdivision_mesh.csv, X093, X097 to X099.
+// Triangles bisected at longest edges: tests/data/subdivision_*.csv, X093, X097 to X099.
 #include "patch_support.h"
 
 #include "base/hash.h"
@@ -29,9 +29,9 @@ static bool startsWith(const Table* t, int row, const char* text)
     return strncmp(cell(t, row, "rule"), text, strlen(text)) == 0;
 }
 
-// Lengths of the lab's unit are roots of numbers that float holds, so the two floats beside a length tell it from T on
-// both sides, and T that equals a length (82.5, 138.75, 165 ...) does not bisect it (X097). From below without the
-// seventh round: its thresholds (98.1, half of 196.2) are not among the table's.
+// Lengths of the lab's unit are roots of numbers that float holds, so the two floats beside a length tell it
+// from T on both sides, and T that equals a length (82.5, 138.75, 165 ...) does not bisect it (X097). From
+// below without the seventh round: its thresholds (98.1, half of 196.2) are not among the table's.
 TEST(EveryThresholdGivesTheTablesCountsFromBothSides, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
@@ -51,7 +51,7 @@ TEST(EveryThresholdGivesTheTablesCountsFromBothSides, 1)
     vplGeometry_Destroy(g);
 }
 
-// T = 0.5 in the lab's own float coordinates, which halves of walls have exactly: 464, and a hair below 784 (X097).
+// T = 0.5 in the lab's own float coordinates, the length of halves of walls: 464, a hair below 784 (X097).
 TEST(ScaledThresholdsInFloatGiveTheTablesCounts, 1)
 {
     vplGeometry* g = testModel(context, MODEL_SCALED, 0.5f);
@@ -71,7 +71,8 @@ TEST(ScaledThresholdsInFloatGiveTheTablesCounts, 1)
     vplGeometry_Destroy(g);
 }
 
-// Triangles with their corners in another order: other edges are first among equals, counts are the same (X099).
+// Triangles with their corners in another order: other edges are first among equals, counts are the same
+// (X099).
 TEST(CountsDoNotDependOnWhichOfEqualEdgesIsFirst, 1)
 {
     Table model = loadTable("cornell_testmodel.csv"), t = loadTable("subdivision_counts.csv");
@@ -319,8 +320,8 @@ static void expectFailure(const vplGeometry* g, vplPatchDef def, vplResult wante
     assert_string_equal(takeMessage(), sentence);
 }
 
-// X098: T of 0 is the count's; below 0 and not finite are refused; tiny T is refused before memory is taken, or ended
-// by rounds, or by floats that have nothing between them.
+// X098: T of 0 is the count's; below 0 and not finite are refused; tiny T is refused before memory is taken,
+// or ended by rounds, or by floats that have nothing between them.
 TEST(TinyThresholdsEnd, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
@@ -394,8 +395,8 @@ static vplPatches* byCount(const vplGeometry* g, int count)
     return p;
 }
 
-// A count is met as soon as all edges of one length are bisected: one class less is too few, and the patches are those
-// of a threshold. Edges of the metre model are alike only to rounding and yet go together.
+// A count is met as soon as all edges of one length are bisected: one class less is too few, and the patches
+// are those of a threshold. Edges of the metre model are alike only to rounding and yet go together.
 TEST(ACountBisectsTheLongestFirstAllOfALengthTogether, 1)
 {
     vplGeometry* lab = testModel(context, MODEL_LAB, 0.5f);

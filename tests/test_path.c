@@ -33,8 +33,8 @@ TEST_ALONE(FurnaceGlowsEverywhereAlike, SLOW)
     }
 }
 
-// A perfect reflector among walls that emit E shows E, or it makes or loses energy. Interpolated normals may lose
-// what would have to be reflected into the surface, but never gain.
+// A perfect reflector among walls that emit E shows E, or it makes or loses energy. Interpolated normals may
+// lose what would have to be reflected into the surface, but never gain.
 TEST_ALONE(WhiteBodyInAFurnaceVanishes)
 {
     for (int smooth = 0; smooth < 2; smooth++) {
@@ -123,7 +123,7 @@ static double cornerFactor(double a, double b)
     return (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * VPL_PI);
 }
 
-TEST(SquareLampGivesItsFormFactor, 1)
+TEST(SquareAreaLightGivesItsFormFactor, 1)
 {
     static const struct {
         float size, height;
@@ -146,7 +146,7 @@ TEST(SquareLampGivesItsFormFactor, 1)
     }
 }
 
-TEST(OnlyTheFrontOfALampEmits, 1)
+TEST(OnlyTheFrontOfAnAreaLightEmits, 1)
 {
     for (int behind = 0; behind < 2; behind++) {
         vplScene* scene = newScene(context);
@@ -202,8 +202,8 @@ TEST(CubeMatchesTheTableBounceByBounce, 2, SLOW)
     freeTable(&t);
 }
 
-// A light in the middle of a sphere: rho/pi I/R^2 / (1 - rho) everywhere. The mesh is inside the sphere by up to
-// 1 - cos(its edges' half angle), 0.05 %, and R^2 twice that.
+// A light in the middle of a sphere: rho/pi I/R^2 / (1 - rho) everywhere. The mesh is inside the sphere by up
+// to 1 - cos(its edges' half angle), 0.05 %, and R^2 twice that.
 TEST(SphereMatchesTheTable, 2, SLOW)
 {
     Table t = loadTable("furnace_sphere.csv");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The path-traced reference against itself and the pixels of the rasterizer: parts, errors, bits, and what must not break it.
+// The path-traced reference against itself and the pixels of the rasterizer: parts, errors, bits, and what
+// must not break it.
 #include "path_scenes.h"
 
 // Whatever is shown, the same paths are followed, so parts add up to the whole but for rounding.
@@ -102,8 +103,8 @@ static vplImage* traceWith(const vplScene* scene, const vplGeometry* geometry, c
     return image;
 }
 
-// Every emitter type, a lamp, and a smooth sphere: what each way finds is the same light. Pictures differ by no more
-// than their error estimates say, and so do their means.
+// Every emitter type, an area light, and a smooth sphere: what each way finds is the same light. Pictures
+// differ by no more than their error estimates say, and so do their means.
 TEST(AllWaysOfFindingLightAgree, 2, SLOW)
 {
     vplScene* scene = newScene(context);
@@ -207,7 +208,8 @@ TEST(PassesOfAnySizeEndInTheSameBits, 2)
     vplScene_Destroy(scene);
 }
 
-// Where all samples of a pixel show one surface, the rasterizer must show it there, too; and most pixels are so.
+// Where all samples of a pixel show one surface, the rasterizer must show it there, too; and most pixels are
+// so.
 TEST(PixelsAreTheRasterizersPixels, 2)
 {
     vplScene* scene = newScene(context);
@@ -256,14 +258,14 @@ TEST(PixelsAreTheRasterizersPixels, 2)
 TEST(LightsOnSurfacesAndEdgesGiveNumbers, 2)
 {
     vplScene* scene = newScene(context);
-    int grey = addGrey(scene, 1, 0), lamp = addGrey(scene, 0.5f, 1e15f);
+    int grey = addGrey(scene, 1, 0), areaLight = addGrey(scene, 0.5f, 1e15f);
     addRoom(scene, grey);
-    addQuad(scene, lamp, (vplVec3){0, -1, 0}, -1, 0.5f);             // in the floor
-    addQuad(scene, lamp, (vplVec3){0, 0, -1}, 0, 1e-6f);             // tiny, in the wall
+    addQuad(scene, areaLight, (vplVec3){0, -1, 0}, -1, 0.5f);        // in the floor
+    addQuad(scene, areaLight, (vplVec3){0, 0, -1}, 0, 1e-6f);        // tiny, in the wall
     addQuad(scene, grey, (vplVec3){0, 0, 0}, -1, 1e-15f);            // a speck
     addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 1, 0}, 5e14f);   // in the ceiling
     addWhite(scene, VPL_EMITTER_POINT, (vplVec3){1, 1, -1}, 1);      // in a corner
-    addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){0, -1, 0}, 1);       // on a lamp
+    addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){0, -1, 0}, 1);       // on an area light
     addWhite(scene, VPL_EMITTER_DIRECTIONAL, (vplVec3){0, 0, 0}, 1); // along the walls
     addWhite(scene, VPL_EMITTER_POINT, (vplVec3){5, 5, 5}, 0);
     addCamera(scene, (vplVec3){0, 0, 0.99f}, (vplVec3){0.1f, -0.2f, -1}, 2.8);

@@ -38,7 +38,7 @@ static float worthOf(const vplGeometry* g, const vplVirtualLight* light, const v
 }
 
 // rho sum(flux)/pi cos cos / d^2, bounded; documented: rho sum(L) cos. Nothing from below, nor past a wall.
-TEST(WorthIsWhatTheFloorReflects, 2)
+TEST(ALightsWeightIsWhatTheFloorReflects, 2)
 {
     vplGeometry* floor = floorQuad(context, vplVec(0, 0, 0), 10, 0.25f);
     vplPlacementDef def = narrowDef();
@@ -272,7 +272,8 @@ TEST(PicturesAreThoseOfPlainParticlesInTheMean, 2, SLOW)
     }
 }
 
-// In a flat whose lamps are in seven other rooms, nearly all lights are chosen where they reach the camera's room.
+// In a flat whose area lights are in seven other rooms, nearly all lights are chosen where they reach the
+// camera's room.
 TEST(LightsBehindWallsAreLeftOut, 2)
 {
     vplScene* scene;
@@ -368,8 +369,8 @@ TEST(DoublingTheEmitterChoosesTheSameLights, 1)
     vplScene_Destroy(two);
 }
 
-// X040 and beyond: no particles; walls that reflect nothing; the brightest and the dimmest emitters; a camera that
-// sees nothing but the sky.
+// X040 and beyond: no particles; walls that reflect nothing; the brightest and the dimmest emitters; a camera
+// that sees nothing but the sky.
 TEST(ExtremesStayFinite, 1)
 {
     const float intensities[] = {VPL_MAX_MAGNITUDE, 1e-30f, 0};

@@ -91,7 +91,8 @@ TEST(MachinesChangeNoDecision, 1)
     vplScene_Destroy(scene);
 }
 
-// Of all options that the method uses; lengths of bias and filter are of each shadow map its own: shares of its `far`.
+// Of all options that the method uses; lengths of bias and filter are of each shadow map its own: shares of
+// its `far`.
 TEST(NothingIsLeftToTheLibrary, 1)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");

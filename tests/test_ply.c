@@ -87,7 +87,7 @@ static vplPatchMesh* flatMesh(vplContext* context, OpenFcn* open)
     addTriangle(&shape, vplVec(1, 0, 0), vplVec(2, 0, 0), vplVec(1, 1, 0));
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
-    return meshOf(openSides(openPatches(freezeScene(scene), 100, 0), open));
+    return meshOf(openSides(openPatches(buildGeometry(scene), 100, 0), open));
 }
 
 // Fronts of the first two, the back of the second.

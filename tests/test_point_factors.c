@@ -22,8 +22,8 @@ static double pointFactorOfCorner(vplVec3 normal, const float v[3])
                             (const vplVec3[4]){{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}}, 4);
 }
 
-// Lengths are floats: 0.001 is wrong by 5e-8 of it, and the smallest factors by as much. In millimetres all lengths are
-// exact, and 4e-16 are measured.
+// Lengths are floats: 0.001 is wrong by 5e-8 of it, and the smallest factors by as much. In millimetres all
+// lengths are exact, and 4e-16 are measured.
 TEST_ALONE(CornersOfRectanglesAreThoseOfTheClosedForms)
 {
     Table t = loadTable("ff_analytic.csv");
@@ -69,9 +69,9 @@ static double pointFactorOfRing(double radius, float h, int count)
     return sum;
 }
 
-// A disk lies between polygons in it and around it, whatever their corners' rounding, which is less than the 2^-22 that
-// they are moved. One of the same area has the same factor to (pi / count)^4 and the mean of the corners' rounding:
-// 8e-10 of it are measured.
+// A disk lies between polygons in it and around it, whatever their corners' rounding, which is less than the
+// 2^-22 that they are moved. One of the same area has the same factor to (pi / count)^4 and the mean of the
+// corners' rounding: 8e-10 of it are measured.
 TEST_ALONE(DisksAreThoseOfTheClosedForm)
 {
     enum { CORNERS = 4096 };
@@ -141,11 +141,12 @@ TEST_ALONE(PointsSeeOneSideAndNothingBehindThem)
     assert_true(seen > MOST_CASES / 2 && behind > MOST_CASES / 10);
 }
 
-// Whatever the element's direction, a closed box is all it sees: triangles are cut at its horizon so that nothing is
-// lost and nothing is counted twice.
+// Whatever the element's direction, a closed box is all it sees: triangles are cut at its horizon so that
+// nothing is lost and nothing is counted twice.
 TEST_ALONE(BoxesAroundAPointSumToOne)
 {
-    // Corner i of the box has the upper x, y, z where bits 0, 1, 2 of i are set; counter-clockwise seen from inside.
+    // Corner i of the box has the upper x, y, z where bits 0, 1, 2 of i are set; counter-clockwise seen from
+    // inside.
     static const int faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
                                     {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
     static const float sizes[4][3] = {{1, 1, 1}, {1, 2, 3}, {1, 1, 1000}, {1000, 1, 1000}};
@@ -235,7 +236,8 @@ TEST_ALONE(PointFactorsDoNotDependOnTheUnitOrThePlace)
     assert_true(seen > MOST_CASES / 3);
 }
 
-// Seen at an angle: along its edges almost all cancels, at 2^20 sizes 6 digits and at 2^60 all that doubles have.
+// Seen at an angle: along its edges almost all cancels, at 2^20 sizes 6 digits and at 2^60 all that doubles
+// have.
 TEST_ALONE(FarTrianglesAreTheirAreaOverTheSquare)
 {
     // Its middle is the origin, so that what follows the first term has the square of the distance below it.
@@ -293,8 +295,8 @@ static double meanOfPointFactors(const vplVec3 a[3], vplVec3 normal, const vplVe
     return sum / ((double)n * n);
 }
 
-// What a triangle sends is the mean of what its points send. The middle of a part errs by its size squared, which the
-// difference of two such means takes away, and by the rounding of points to floats.
+// What a triangle sends is the mean of what its points send. The middle of a part errs by its size squared,
+// which the difference of two such means takes away, and by the rounding of points to floats.
 TEST_ALONE(MeansOverPointsAreFactorsOfTriangles)
 {
     int compared = 0, cut = 0;
@@ -326,7 +328,8 @@ TEST_ALONE(MeansOverPointsAreFactorsOfTriangles)
     assert_true(compared > 50 && cut > 10);
 }
 
-// Over the middle of a triangle all is seen, over its edges half, over a corner the corner's share of the turn.
+// Over the middle of a triangle all is seen, over its edges half, over a corner the corner's share of the
+// turn.
 TEST_ALONE(PointsOnATriangleSeeItsShareOfTheTurn)
 {
     const vplVec3 triangle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, down = {0, 0, -1};
@@ -347,7 +350,8 @@ TEST_ALONE(PointsOnATriangleSeeItsShareOfTheTurn)
     }
 }
 
-// Corners and middles of edges, which are exact, in planes at any angle; and what has no area, or no direction.
+// Corners and middles of edges, which are exact, in planes at any angle; and what has no area, or no
+// direction.
 TEST_ALONE(PointsInThePlaneAndNoAreaSeeNothing)
 {
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {

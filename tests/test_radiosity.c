@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Radiosity as a whole: what its pictures are made of and converge to, light that moves, and what happens at its
-// extremes. The stages have suites of their own: patches, patchSides, formFactors, radiositySolve, links, patchMesh,
-// drawPatches.
+// Radiosity as a whole: what its pictures are made of and converge to, light that moves, and what happens at
+// its extremes. The stages have suites of their own: patches, patchSides, formFactors, radiositySolve, links,
+// patchMesh, drawPatches.
 #include "radiosity_pictures.h"
 
 // ---- what a picture is
 
 TEST(PictureIsDirectLightAndPatches, 2)
 {
-    for (int lamp = 0; lamp < 2; lamp++) {
-        vplScene* scene = boxRoom(context, 0.6f, lamp);
+    for (int areaLight = 0; areaLight < 2; areaLight++) {
+        vplScene* scene = boxRoom(context, 0.6f, areaLight);
         vplRenderOptions o = radiosityOptions(200), plain = o;
         plain.method = VPL_METHOD_DIRECT;
         vplImage *picture = showOf(scene, o, VPL_SHOW_PICTURE), *direct = showOf(scene, o, VPL_SHOW_DIRECT),
@@ -30,8 +30,8 @@ TEST(PictureIsDirectLightAndPatches, 2)
 
 TEST(PicturesComeNearerToPathsAsPatchesShrink, 2, SLOW)
 {
-    for (int lamp = 0; lamp < 2; lamp++) {
-        vplScene* scene = boxRoom(context, 0.7f, lamp);
+    for (int areaLight = 0; areaLight < 2; areaLight++) {
+        vplScene* scene = boxRoom(context, 0.7f, areaLight);
         vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 512);
         double last = 1, energy = 0;
         for (int patches = 100; patches <= 1600; patches *= 4) {
@@ -42,8 +42,8 @@ TEST(PicturesComeNearerToPathsAsPatchesShrink, 2, SLOW)
             energy = c.energyRatio;
             vplImage_Destroy(image);
         }
-        assertNear(last, 0, 0.004, "relmse of 1600 patches", lamp);
-        assertNear(energy, 1, 0.03, "energy of 1600 patches", lamp);
+        assertNear(last, 0, 0.004, "relmse of 1600 patches", areaLight);
+        assertNear(energy, 1, 0.03, "energy of 1600 patches", areaLight);
         vplImage_Destroy(truth);
         vplScene_Destroy(scene);
     }
@@ -62,7 +62,8 @@ static double commonError(const vplImage* image, vplImage* const truth[2])
     return sum / count;
 }
 
-// Measured: 0.00071 with 980 patches, where 1624 of one size give 0.00092 (bench/radiosity_error has more, off edges).
+// Measured: 0.00071 with 980 patches, where 1624 of one size give 0.00092 (bench/radiosity_error has more,
+// off edges).
 TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)
 {
     vplScene* scene = loadScene(context, "../../examples/scenes/room-area.json");
@@ -94,8 +95,8 @@ TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-// In a closed room whose walls all emit, light is the same everywhere: Le / (1 - rho), of which Le rho^2 / (1 - rho) was
-// reflected at least twice, the eye's last reflection counted.
+// In a closed room whose walls all emit, light is the same everywhere: Le / (1 - rho), of which Le rho^2 / (1
+// - rho) was reflected at least twice, the eye's last reflection counted.
 TEST(FurnaceIsUniform, 2)
 {
     static const float rhos[] = {0, 0.1f, 0.5f, 0.9f, 0.99f};
@@ -146,7 +147,8 @@ TEST_ALONE(PicturesHaveTheSameBitsEverywhere)
 
 // ---- the report's saturation
 
-// X094. With the document's estimator and few patches there is too much light, or no solution; with ours there is not.
+// X094. With the document's estimator and few patches there is too much light, or no solution; with ours
+// there is not.
 TEST(OneSampleFormFactorsSaturateAndOursDoNot, 2, SLOW)
 {
     vplScene* scene = boxRoom(context, 0.75f, false);
@@ -280,8 +282,8 @@ TEST(RoomsWithoutLightTakeNoPart, 2)
     assert_true(stats[1].imageHash == stats[0].imageHash);
 }
 
-// X101. Corners of floor patches under the box have no light; nothing near it may be dark for that. Compared are flat
-// patches beside the box, of which none is much darker than paths say.
+// X101. Corners of floor patches under the box have no light; nothing near it may be dark for that. Compared
+// are flat patches beside the box, of which none is much darker than paths say.
 TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
 {
     vplScene* scene = closedCubeScene(context, 0.7f, 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// B = E + rho F B with form factors made by hand: tests/data/two_patch.csv, furnace.csv, gs_cube6.csv, gs_rates.csv.
+// B = E + rho F B with form factors made by hand: tests/data/two_patch.csv, furnace.csv, gs_cube6.csv,
+// gs_rates.csv.
 #include "solving.h"
 
 // ---- two patches
@@ -135,8 +136,8 @@ TEST(AlgorithmOneOnACubeIsThatOfTheTable, 1)
     freeTable(&t);
 }
 
-// Sweeps from darkness, as the table counts, until all are within 1e-3 of the solution. The row sums' last bits are worth some sweeps at 0.99, so the solution
-// is that of these rows.
+// Sweeps from darkness, as the table counts, until all are within 1e-3 of the solution. The row sums' last
+// bits are worth some sweeps at 0.99, so the solution is that of these rows.
 static int sweepsNeeded(const Exchange* e, vplSolver solver)
 {
     vplRgb source[6], b[6] = {{0, 0, 0}}, exact[6];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays through triangles: the tree against all triangles, closed surfaces without leaks, ties, nothing to hit.
+// Rays through triangles: the tree against all triangles, closed surfaces without leaks, ties, nothing to
+// hit.
 #include "shapes.h"
 
 #include "base/context.h"
@@ -126,7 +127,7 @@ TEST(TreeAgreesWithAllTriangles, 1)
         Shape soup = makeSoup(kind, &dice);
         vplScene* scene = sceneOf(context, 0.5f);
         addShape(scene, &soup, false, NULL);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         vplBvh *tree, *all;
         assert_int_equal(vplBvh_Create(g, 0, &tree), VPL_SUCCESS);
         assert_int_equal(vplBvh_Create(g, INT_MAX, &all), VPL_SUCCESS);
@@ -199,7 +200,7 @@ TEST(SharedEdgesLetNothingThrough, 1)
         Shape shape = makeClosed(i % SURFACES, i / SURFACES % PLACES, scale, &centre);
         vplScene* scene = sceneOf(context, 0.5f);
         addShape(scene, &shape, false, NULL);
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         Dice dice = {(uint64_t)i, 0};
         for (int k = 0; k < 2000; k++, rays++) {
             const vplVec3 within = vplAdd(centre, vplScale(0.8f * scale, rollUnit(&dice)));
@@ -223,15 +224,15 @@ TEST(SharedEdgesLetNothingThrough, 1)
     }
 }
 
-// Where edges run along axes, the box of a triangle ends where the triangle does. Seen from a thousand times as
-// far as it is large, both tests are off by more than it is padded: each must still find the same side.
+// Where edges run along axes, the box of a triangle ends where the triangle does. Seen from a thousand times
+// as far as it is large, both tests are off by more than it is padded: each must still find the same side.
 TEST(EdgesAlongAxesHoldFromAfar, 1)
 {
     vplVec3 centre;
     Shape shape = makeClosed(3, 1, 1, &centre);
     vplScene* scene = sceneOf(context, 0.5f);
     addShape(scene, &shape, false, NULL);
-    vplGeometry* g = freezeScene(scene);
+    vplGeometry* g = buildGeometry(scene);
     Dice dice = {1, 0};
     int leaks = 0;
     enum { RAYS = 60000 };
@@ -255,8 +256,8 @@ TEST(EdgesAlongAxesHoldFromAfar, 1)
 
 // ---- ties, and nothing to hit
 
-// Eight triangles in one plane, again and again in three objects. Of the same triangle the lowest copy is hit,
-// whatever the tree makes of it; which of the eight is nearest, if any, is a matter of rounding.
+// Eight triangles in one plane, again and again in three objects. Of the same triangle the lowest copy is
+// hit, whatever the tree makes of it; which of the eight is nearest, if any, is a matter of rounding.
 TEST(EqualDistancesGoToTheLowestTriangle, 1)
 {
     Shape wall = {0};
@@ -268,7 +269,7 @@ TEST(EqualDistancesGoToTheLowestTriangle, 1)
     for (int i = 0; i < 3; i++) {
         addShape(scene, &wall, false, NULL);
     }
-    vplGeometry* g = freezeScene(scene);
+    vplGeometry* g = buildGeometry(scene);
     assert_true(g->rayTree->nodes != NULL);
     Dice dice = {5, 0};
     for (int i = 0; i < 1000; i++) {
@@ -294,7 +295,7 @@ TEST(AThousandCopiesOfATriangleAreATreeOfHalves, 1)
     }
     vplScene* scene = sceneOf(context, 0.5f);
     addShape(scene, &copies, false, NULL);
-    vplGeometry* g = freezeScene(scene);
+    vplGeometry* g = buildGeometry(scene);
     int triangles = 0;
     for (int i = 0; i < g->rayTree->blockCount; i++) {
         for (int lane = 0; lane < VPL_BVH_WIDTH; lane++) {
@@ -330,7 +331,7 @@ TEST(WithoutSurfacesNothingIsEverHit, 1)
         if (which > 0) {
             addShape(scene, &shape, false, NULL);
         }
-        vplGeometry* g = freezeScene(scene);
+        vplGeometry* g = buildGeometry(scene);
         assert_true(vplIsFiniteVec(g->boundsMin) && vplIsFiniteVec(g->boundsMax));
         assert_true(vplGeometry_Area(g) == 0 && vplGeometry_MeanReflectance(g) == 0);
         assert_true(isfinite(vplGeometry_Diagonal(g)));

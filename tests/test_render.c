@@ -197,7 +197,8 @@ TEST(DoublingTheLightDoublesEveryPixel, 2)
     }
 }
 
-// Physical light is scale-free: twice the size with four times the intensity is the same picture, bit for bit.
+// Physical light is scale-free: twice the size with four times the intensity is the same picture, bit for
+// bit.
 TEST(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture, 2)
 {
     vplImage* small = scaledRoom(context, 1, 8, VPL_LIGHTING_PHYSICAL);
@@ -247,7 +248,8 @@ TEST(APlaneUnderAPointLightIsLitAsInTheBook, 1)
     vplScene_Destroy(scene);
 }
 
-// X090: documented direct light falls as 1/N and the indirect sum does not; physical light depends on neither.
+// X090: documented direct light falls as 1/N and the indirect sum does not; physical light depends on
+// neither.
 TEST(DocumentedDirectLightFallsWithN, 2)
 {
     vplScene* scene = loadScene(context, "room-closed.json");

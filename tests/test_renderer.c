@@ -93,7 +93,8 @@ TEST(MorePassesAreBetterAndSaySo, 2, SLOW)
         assert_int_equal(vplImage_Compare(image, truth, &m), VPL_SUCCESS);
         assert_true(m.rmse < 0.7 * before); // light that is cut off near surfaces keeps it from 0.35
         before = m.rmse;
-        // Low-discrepancy halves differ by more than their mean is wrong; light cut off and steps left out are not seen.
+        // Low-discrepancy halves differ by more than their mean is wrong; light cut off and steps left out
+        // are not seen.
         assert_true(stats.errorEstimate > 0.3 * m.rmse && stats.errorEstimate < 3 * m.rmse);
         vplImage_Destroy(image);
     }

@@ -102,8 +102,8 @@ static vplEmitterDef someEmitter(int k)
     return e;
 }
 
-// Each texel's point is on its triangle's plane, in the direction of its centre, and the first that a ray meets;
-// its normal faces the emitter.
+// Each texel's point is on its triangle's plane, in the direction of its centre, and the first that a ray
+// meets; its normal faces the emitter.
 TEST(TexelsAreWhereRaysLand, 2)
 {
     enum { SIZE = 40 };
@@ -198,13 +198,14 @@ TEST(ParticlesMoveByATexelAtMost, 2)
     vplGeometry_Destroy(room);
 }
 
-// On a smooth ball, normals are those of the ball, towards the emitter, and so are particles' shading normals.
+// On a smooth ball, normals are those of the ball, towards the emitter, and so are particles' shading
+// normals.
 TEST(SmoothObjectsHaveTheirNormals, 1)
 {
     vplScene* scene = sceneOf(context, 0.5f);
     Shape ball = icosphere(2);
     addShape(scene, &ball, true, NULL);
-    vplGeometry* geometry = freezeScene(scene);
+    vplGeometry* geometry = buildGeometry(scene);
     const vplEmitterDef e = emitterOf(VPL_EMITTER_POINT, vplVec(1.5f, 0.5f, 0), vplVec(0, -1, 0));
     vplReflectiveMap* map = mapOf(geometry, &e, 50);
     int seen = 0;
@@ -239,8 +240,8 @@ TEST(AnEmptySceneGivesAnEmptyMap, 1)
     vplScene_Destroy(scene);
 }
 
-// An emitter on a wall of a closed cube, and a hair in front of it: at most all of its power arrives, at least half
-// does, and everything is finite.
+// An emitter on a wall of a closed cube, and a hair in front of it: at most all of its power arrives, at
+// least half does, and everything is finite.
 TEST(AnEmitterMayTouchASurface, 1)
 {
     vplGeometry* cube = closedCube(context, 0.5f);

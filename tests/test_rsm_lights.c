@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// First-bounce lights of reflective maps: where the Hammersley points fall, and all the light that is reflected.
+// First-bounce lights of reflective maps: where the Hammersley points fall, and all the light that is
+// reflected.
 #include "shapes.h"
 
 #include "geometry/triangle.h"
@@ -323,7 +324,7 @@ TEST_ALONE(LightsDoNotDependOnThreadsOrIsa)
 }
 
 // In a closed room all rays meet a wall, under the sky none does, and beside a tall wall half of them do.
-TEST(LightsAreWorthWhatTheySee, 3)
+TEST(LightsAreWeightedByWhatTheySee, 3)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
     vplGeometry* ground = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
@@ -331,7 +332,7 @@ TEST(LightsAreWorthWhatTheySee, 3)
     vplObjectDef wall = vplDefaultObjectDef(); // at z = 0
     wall.transform = vplMat4_FromParts(vplVec(0, 0, 0), (double[3]){0, 0, 0}, vplVec(1e5f, 1e5f, 1));
     assert_int_equal(vplScene_AddObject(scene, &wall, NULL), VPL_SUCCESS);
-    vplGeometry* half = freezeScene(scene);
+    vplGeometry* half = buildGeometry(scene);
     vplEmitterDef e = someEmitter(VPL_EMITTER_POINT);
     e.position = vplVec(0.1f, 0.5f, -0.2f);
     vplReflectiveMap *inside = mapOf(cube, &e, 16), *outside = mapOf(ground, &e, 16);

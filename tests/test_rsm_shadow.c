@@ -60,7 +60,8 @@ static vplImage* shaded(const vplGeometry* g, const vplShadeDef* def, vplShadeSt
     return image;
 }
 
-// Direct light by the map: no ray, no cube map, the same bits in all pipelines, and little that differs from rays.
+// Direct light by the map: no ray, no cube map, the same bits in all pipelines, and little that differs from
+// rays.
 TEST(EmittersTakeTheirShadowsFromTheirMaps, 2)
 {
     vplGeometry* room = tableRoom(context);

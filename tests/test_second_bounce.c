@@ -87,8 +87,9 @@ TEST_ALONE(SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst)
     closeStand(&s);
 }
 
-// X104: without the weight the sum is the same where all is white, and too much of it lies along the horizon: below 10
-// degrees a diffuse light sends sin^2 10 = 3.0 % of its flux, and 1 - tan^2 40 = 29.6 % of the disk lies there.
+// X104: without the weight the sum is the same where all is white, and too much of it lies along the horizon:
+// below 10 degrees a diffuse light sends sin^2 10 = 3.0 % of its flux, and 1 - tan^2 40 = 29.6 % of the disk
+// lies there.
 TEST_ALONE(PrintedWeightsBrightenTheHorizon)
 {
     Stand s;

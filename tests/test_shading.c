@@ -76,7 +76,8 @@ TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
     vplShadeLight* rings = malloc(RINGS * sizeof *rings);
     for (int row = 0; row < t.rows; row++) {
         double h = number(&t, row, "h"), c = number(&t, row, "c"), sum = 0;
-        // Rings from 1e-3 to 1e3 times the larger of h and sqrt(c), evenly in the logarithm, and a disc inside.
+        // Rings from 1e-3 to 1e3 times the larger of h and sqrt(c), evenly in the logarithm, and a disc
+        // inside.
         double unit = fmax(h, sqrt(c)), inner = 1e-3 * fmin(h, sqrt(c)),
                ratio = pow(1e3 * unit / inner, 1.0 / RINGS);
         double r = inner;
@@ -106,7 +107,8 @@ static vplVec3 fibonacci(int i, int count)
     return vplVec((float)(r * cos(angle)), (float)y, (float)(r * sin(angle)));
 }
 
-// In a sphere lit from its centre G is 1/(4 R^2) between all points: the physical sum is exact for any lights.
+// In a sphere lit from its centre G is 1/(4 R^2) between all points: the physical sum is exact for any
+// lights.
 TEST(FurnaceSphereIsExact, 1)
 {
     Table t = loadTable("furnace_sphere.csv");

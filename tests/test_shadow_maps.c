@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shadow maps of every kind promise, each promise once: cube maps (hard and soft), hemi-octahedral maps, paraboloid maps
-// and reflective maps as shadow maps.
+// What shadow maps of every kind promise, each promise once: cube maps (hard and soft), hemi-octahedral maps,
+// paraboloid maps and reflective maps as shadow maps.
 #include "failing.h"
 #include "shadow_maps.h"
 
@@ -21,7 +21,7 @@ static vplGeometry* plane(vplContext* context, int turn, vplVec3 offset, vplVec3
     placeShape(&square, 1.7f, rotate, offset);
     addShape(scene, &square, false, NULL);
     freeShape(&square);
-    vplGeometry* g = freezeScene(scene);
+    vplGeometry* g = buildGeometry(scene);
     *nOut = g->normals[0];
     *middleOut = g->positions[3 * 48];
     return g;
@@ -34,8 +34,8 @@ static vplVec3 rollOn(const vplGeometry* g, Dice* dice)
     return vplGeometry_SampleTriangle(g, triangle, roll(dice, 0, 1), roll(dice, 0, 1)).position;
 }
 
-// The plane is turned anyhow and lies near to the origin or far away; light comes at all angles down to a hundredth of a
-// degree, from 15 m, into maps of one texel and of many.
+// The plane is turned anyhow and lies near to the origin or far away; light comes at all angles down to a
+// hundredth of a degree, from 15 m, into maps of one texel and of many.
 TEST(APlaneNeverShadowsItself, 2, SLOW)
 {
     static const double degrees[] = {0, 30, 60, 80, 88, 89.5, 89.9, 89.99};
@@ -46,7 +46,8 @@ TEST(APlaneNeverShadowsItself, 2, SLOW)
         vplGeometry* g = plane(context, turn, rollVec(&dice, turn < 3 ? 3 : 300), &n, &middle);
         vplTangentFrame(n, &tangent, &bitangent);
         for (int k = 0; k < 4 * MAP_KINDS; k++) {
-            // Maps of half spaces and cubes hold distances, of which rounding at 300 m is a hundredth of 2.6 mm above.
+            // Maps of half spaces and cubes hold distances, of which rounding at 300 m is a hundredth of 2.6
+            // mm above.
             const bool rounded = turn >= 3 && k / 4 < MAP_REFLECTIVE_POINT;
             for (size_t d = 0; d < sizeof degrees / sizeof *degrees - rounded; d++) {
                 const double angle = degrees[d] * VPL_PI / 180;
@@ -121,8 +122,8 @@ static void compareWithRays(const ShadowMap* m, Dice* dice, int points, Tally* t
     }
 }
 
-// Maps anywhere in the room's objects, in a ball in a box, and in an empty cube, where nothing is dark. Light from a
-// direction needs a scene that is open on a side.
+// Maps anywhere in the room's objects, in a ball in a box, and in an empty cube, where nothing is dark. Light
+// from a direction needs a scene that is open on a side.
 TEST(MapsAndRaysAgreeOutsideTheBand, 2)
 {
     for (int k = 0; k < 3 * MAP_KINDS; k++) {
@@ -206,8 +207,8 @@ TEST(WithNothingThereAllIsLit, 1)
     vplGeometry_Destroy(below);
 }
 
-// Half spaces that are not drawn are dark, as nothing shines there; beyond the cone of a spot nothing is drawn either, but
-// the spot's own light ends there.
+// Half spaces that are not drawn are dark, as nothing shines there; beyond the cone of a spot nothing is
+// drawn either, but the spot's own light ends there.
 TEST(WhatIsBehindAMapOfAHalfSpaceIsDark, 1)
 {
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
@@ -310,7 +311,8 @@ TEST_ALONE(MapsAndFactorsHaveTheSameBitsEverywhere)
     assertSameEverywhere(hashOf);
 }
 
-// A wall between map and point is found at all sizes but the coarsest, and the way to a point beside it is free.
+// A wall between map and point is found at all sizes but the coarsest, and the way to a point beside it is
+// free.
 TEST(MapsOfAllSizesTellAWallFromNone, 2)
 {
     static const int sizes[] = {1, 2, 3, 5, 7, 16, 64, 257, 1024};

@@ -130,7 +130,8 @@ TEST(NoSweepsChangeNothing, 1)
 
 TEST(TheBrightestSideShootsFirst, 1)
 {
-    // Progress at once is what shooting is for: one sweep takes most of the light further than one of Jacobi's does.
+    // Progress at once is what shooting is for: one sweep takes most of the light further than one of
+    // Jacobi's does.
     Exchange e;
     vplRgb source[MANY], shot[MANY], gathered[MANY], exact[MANY];
     openExchange(&e, context, MANY);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// SSVP as a whole: what it must converge to, what its toggles leave, and what happens at its extremes. The stages have
-// suites of their own: rsm, clusters, paraboloid, secondBounce, interleaved.
+// SSVP as a whole: what it must converge to, what its toggles leave, and what happens at its extremes. The
+// stages have suites of their own: rsm, clusters, paraboloid, secondBounce, interleaved.
 #include "scenes.h"
 #include "shapes.h"
 
@@ -89,8 +89,8 @@ static vplImage* renderWith(const vplScene* scene, vplRenderOptions o, vplLightS
 }
 
 // The document: "for the hypothetical scenario where we have as many clusters as VPLs ... the technique is
-// indistinguishable from the original Instant Radiosity". Each light then sees by a map of its own, and what is left is
-// how maps and rays differ at the edges of shadows: the same as with Keller's map per light.
+// indistinguishable from the original Instant Radiosity". Each light then sees by a map of its own, and what
+// is left is how maps and rays differ at the edges of shadows: the same as with Keller's map per light.
 TEST(AsManyClustersAsLightsAreInstantRadiosity, 2, SLOW)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -117,7 +117,8 @@ TEST(AsManyClustersAsLightsAreInstantRadiosity, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-// Light of one and of two bounces is that of the path tracer, which knows no maps, clusters or virtual lights.
+// Light of one and of two bounces is that of the path tracer, which knows no maps, clusters or virtual
+// lights.
 TEST(EachBounceHasTheLightOfPaths, 2, SLOW)
 {
     const vplEmitterType types[3] = {VPL_EMITTER_SPOT, VPL_EMITTER_POINT, VPL_EMITTER_DIRECTIONAL};
@@ -146,8 +147,8 @@ TEST(EachBounceHasTheLightOfPaths, 2, SLOW)
     }
 }
 
-// The weight that the document leaves out: without it light near the rim of each map counts as much as that along the
-// axis, where it is eight times as bright.
+// The weight that the document leaves out: without it light near the rim of each map counts as much as that
+// along the axis, where it is eight times as bright.
 TEST(PrintedWeightsMoveTheSecondBounce, 1)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -248,7 +249,8 @@ static uint64_t hashOfFrame(vplScene* scene, vplRenderOptions o, vplHistory* his
     return stats.imageHash;
 }
 
-// Where the light stands still, so do its lights and clusters; where patterns are new for each frame, they do not.
+// Where the light stands still, so do its lights and clusters; where patterns are new for each frame, they do
+// not.
 TEST(StillLightsKeepTheirBits, 2)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -329,7 +331,8 @@ TEST(FewerLightsThanClustersAndMapsOfOneTexel, 2)
     vplScene_Destroy(scene);
 }
 
-// X108: the cube's walls facing each other, and a ball from within: centroids hang in mid-air, normals cancel.
+// X108: the cube's walls facing each other, and a ball from within: centroids hang in mid-air, normals
+// cancel.
 TEST(CentroidsInMidAirLightTheBallTheyAreIn, 2)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -373,12 +376,12 @@ TEST(BlackScenesAndLightsThatSeeNothingStayBlack, 2)
 }
 
 // Surfaces that emit have no reflective map: particles take their share of the first bounce.
-TEST(LampsAreLightsToo, 2, SLOW)
+TEST(SsvpReflectsAreaLights, 2, SLOW)
 {
     vplScene* scene = closedCubeScene(context, 0.6f, 0);
     addBox(scene);
-    const int lamp = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 3);
-    addThing(scene, VPL_OBJECT_QUAD, lamp, vplVec(0, 0.99f, 0), VPL_PI / 2, 0, vplVec(1, 1, 1));
+    const int areaLight = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 3);
+    addThing(scene, VPL_OBJECT_QUAD, areaLight, vplVec(0, 0.99f, 0), VPL_PI / 2, 0, vplVec(1, 1, 1));
     aim(scene, vplVec(0.1f, -0.2f, 0.9f), vplVec(0, -0.3f, -1));
     vplRenderOptions o = ssvpOptions(32);
     o.ssvp.firstBounce = 4096;

@@ -26,8 +26,8 @@ TEST_ALONE(FrontHoldsWhatNothingBeats)
     assert_memory_equal(onFront, wanted, sizeof wanted);
 }
 
-// By definition, in random cases: a point is on the front if and only if no other is as good in both and better in
-// one, or equal and before it.
+// By definition, in random cases: a point is on the front if and only if no other is as good in both and
+// better in one, or equal and before it.
 TEST_ALONE(FrontFollowsItsDefinition)
 {
     enum { COUNT = 12 };
@@ -100,8 +100,8 @@ TEST_ALONE(JointSquareIsFreeOfTheReferencesNoise)
         x[i] = i % 2 ? 1.1f : 0.9f;
     }
     double uncertainty = jointUncertainty(a, b, COUNT);
-    // Variance 0.25 each: a'b' has deviation 0.25, their mean 0.25 / sqrt(n); uniform noise is less spiky than
-    // normal noise, (a' - b')^4 is 9.6 v^2 for it.
+    // Variance 0.25 each: a'b' has deviation 0.25, their mean 0.25 / sqrt(n); uniform noise is less spiky
+    // than normal noise, (a' - b')^4 is 9.6 v^2 for it.
     assertNear(uncertainty, 0.25 * sqrt(9.6 / 12) / sqrt(COUNT), 0.02 * uncertainty, "uncertainty", 0);
     assertNear(jointSquare(x, a, b, COUNT), 0.01, 3 * uncertainty, "mean squared error", 0);
     assertNear(jointSquare(a, a, b, COUNT), 0, 3 * uncertainty, "a judged by itself and b", 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Form factors of two triangles: tests/data/ff_triangles.csv, ff_cube12.csv, ff_analytic.csv, ff_closure.csv, and what holds
-// for all of them.
+// Form factors of two triangles: tests/data/ff_triangles.csv, ff_cube12.csv, ff_analytic.csv, ff_closure.csv,
+// and what holds for all of them.
 #include "factor_cases.h"
 
 TEST_ALONE(FactorsOfPairsAreThoseOfTheTable)
@@ -209,7 +209,8 @@ TEST_ALONE(PlanesTouchesAndDuplicatesAreNumbers)
     assert_true(f >= 0 && f <= 1 && g >= 0 && g <= 1 && f + g > 0);
 }
 
-// Two triangles with an edge in common, folded: from 1 where they lie on each other to 0 where they are in one plane.
+// Two triangles with an edge in common, folded: from 1 where they lie on each other to 0 where they are in
+// one plane.
 TEST_ALONE(FoldedPairsFallFromOneToZero)
 {
     double last = 1;

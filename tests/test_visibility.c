@@ -47,7 +47,8 @@ TEST_ALONE(EveryDirectionOfTheTableFindsItsTexel)
             int wantedI = (int)number(&t, row, column);
             *column = 'j';
             int wantedJ = (int)number(&t, row, column);
-            // A float s may lie on the other side of a texel's edge only where s * size is an integer to rounding.
+            // A float s may lie on the other side of a texel's edge only where s * size is an integer to
+            // rounding.
             bool edgeI = fabs((double)p.s * sizes[k] - rint((double)p.s * sizes[k])) < 1e-7 * sizes[k];
             bool edgeJ = fabs((double)p.t * sizes[k] - rint((double)p.t * sizes[k])) < 1e-7 * sizes[k];
             assert_true(p.column == wantedI || (edgeI && abs(p.column - wantedI) == 1));

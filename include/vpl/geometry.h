@@ -104,7 +104,6 @@ vplResult vplGeometry_CreateForRaster(const vplScene* scene, vplGeometry** geome
 // rays are being cast. On VPL_OUT_OF_MEMORY the geometry stays as it was.
 vplResult vplGeometry_BuildRayTree(vplGeometry* geometry);
 
-
 // NULL is allowed.
 void vplGeometry_Destroy(vplGeometry* geometry);
 

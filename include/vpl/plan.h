@@ -19,8 +19,8 @@ enum {
 
 // A stage that will run.
 typedef struct vplPlanStage {
-    int id;             // in the library's table of stages
-    const char* name;   // as in vplRenderStats.stages
+    int id;                     // in the library's table of stages
+    const char* name;           // as in vplRenderStats.stages
     char inputs[VPL_PLAN_TEXT]; // names of the stages whose results it reads, with commas between
     char why[VPL_PLAN_TEXT];
     int64_t bytes;   // that its result holds, about
@@ -40,21 +40,21 @@ typedef struct vplPlan {
     vplLighting
         shading;        // formulas of shading: physical for Keller also where particles lose light as printed
     vplSampler sampler; // of particles
-    vplBiasRule biasRule;     // of shadow maps of emitters
-    int linkAbove;            // patches exchange light by links where more sides than this take part
-    float nearDistance;       // metres; least clamp distance of compensated lights; 0: none
-    double clampArea;         // m^2; each of N lights is clamped at the radius of a disc of clampArea / N; 0:
-                              // options.lights.minDistance is given
-    bool progressive;         // the picture is the mean of several passes
-    bool castsRays;           // so geometry has a ray tree
-    bool emitterRays;         // shadows of emitters come by rays, not from maps
-    bool hasAreaLights;       // a material emits
-    bool showsDirect;         // the picture shows emission, and light from emitters and area lights
-    bool showsVirtual;        // it shows light of virtual lights
-    bool showsPatches;        // it shows patches
-    bool compensates;         // short rays find the light that the clamp takes away
-    bool estimatesLoss;       // statistics tell how much that is
-    vplView view;       // the camera, posed
+    vplBiasRule biasRule; // of shadow maps of emitters
+    int linkAbove;        // patches exchange light by links where more sides than this take part
+    float nearDistance;   // metres; least clamp distance of compensated lights; 0: none
+    double clampArea;     // m^2; each of N lights is clamped at the radius of a disc of clampArea / N; 0:
+                          // options.lights.minDistance is given
+    bool progressive;     // the picture is the mean of several passes
+    bool castsRays;       // so geometry has a ray tree
+    bool emitterRays;     // shadows of emitters come by rays, not from maps
+    bool hasAreaLights;   // a material emits
+    bool showsDirect;     // the picture shows emission, and light from emitters and area lights
+    bool showsVirtual;    // it shows light of virtual lights
+    bool showsPatches;    // it shows patches
+    bool compensates;     // short rays find the light that the clamp takes away
+    bool estimatesLoss;   // statistics tell how much that is
+    vplView view;         // the camera, posed
     vplCameraDef camera;
     const vplEmitterDef* emitters; // of the scene, posed
     int emitterCount;

@@ -18,11 +18,6 @@ vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut);
 // NULL is allowed.
 void vplHistory_Destroy(vplHistory* history);
 
-// Most memory that maps of virtual lights take; more lights are added batch by batch. With 256 MB 900 lights in the room
-// took 1.5 times as much time at 640x360, because new pages cost more than maps of few triangles; with 64 and 16 MB the
-// same: then a batch costs another look at the scene.
-#define VPL_LIGHT_MAP_BYTES ((int64_t)32 << 20)
-
 enum { VPL_MAX_STAGES = 24 };
 
 typedef struct vplStageTime {

@@ -40,7 +40,8 @@ static double rsmFaces(const vplPlan* p)
 static Bytes emitterMaps(const Scale* s)
 {
     const double size = s->plan->options.shadow.mapSize, shadow = sizeof(vplShadow);
-    return (Bytes){countMaps(s->plan, false) * 6 * size * size * sizeof(float) + s->plan->emitterCount * shadow,
+    return (Bytes){countMaps(s->plan, false) * 6 * size * size * sizeof(float) +
+                       s->plan->emitterCount * shadow,
                    2e5 + RASTER_CUBE * s->triangles};
 }
 
@@ -69,7 +70,8 @@ static Bytes preparedLights(const Scale* s)
 static Bytes paraboloids(const Scale* s, double lights, double values)
 {
     const int size = s->plan->options.ssvp.paraboloidSize;
-    const double texels = 2 * (double)vplParaboloidMap_Texels(size), drawn = (double)vplParaboloidMap_Drawn(size);
+    const double texels = 2 * (double)vplParaboloidMap_Texels(size),
+                 drawn = (double)vplParaboloidMap_Drawn(size);
     const double count = lights < s->plan->options.ssvp.clusters ? lights : s->plan->options.ssvp.clusters;
     return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
 }
@@ -118,7 +120,8 @@ static Bytes adaptivePatches(const Scale* s)
     Scale draft = *s;
     draft.sides = s->sides / 1.5;
     const Bytes factors = formFactors(&draft), light = patchLight(&draft), solved = solution(&draft);
-    return (Bytes){70.0 * s->plan->patches, factors.held + light.held + light.scratch + solved.held + 300 * draft.sides};
+    return (Bytes){70.0 * s->plan->patches,
+                   factors.held + light.held + light.scratch + solved.held + 300 * draft.sides};
 }
 
 static double pipelineScratch(const Scale* s)
@@ -145,8 +148,8 @@ static Bytes picture(const Scale* s)
     scratch += o->output.antialias > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
         const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
-        const bool batches = all > (double)VPL_LIGHT_MAP_BYTES;
-        scratch += batches ? (double)VPL_LIGHT_MAP_BYTES + 12 * s->pixels : all;
+        const double most = o->lights.mapMemory * 1048576.0;
+        scratch += all > most ? most + 12 * s->pixels : all;
     }
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
@@ -203,7 +206,8 @@ static void countDraws(const Scale* s, vplPlan* p)
         return;
     }
     const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
-    const int64_t passes = o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
+    const int64_t passes =
+        o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
     p->drawCalls = objects * (6 * maps + (1 + passes) * antialias) + patchDraws * antialias;
@@ -235,7 +239,8 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const Scale s = {.plan = p,
-                     .workers = machine != NULL ? machine->workerCount : vplContext_GetWorkerCount(r->run.context),
+                     .workers =
+                         machine != NULL ? machine->workerCount : vplContext_GetWorkerCount(r->run.context),
                      .triangles = g->triangleCount,
                      .objects = g->objectCount,
                      .pixels = (double)p->options.output.width * p->options.output.height,

@@ -433,7 +433,9 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
         p->arena = arena;
         p->options = *options;
         r->run.plan = p;
+        r->plans = true;
         result = decideAll(r, p);
+        r->plans = false;
     }
     if (result == VPL_SUCCESS) {
         result = vplEstimatePlan(r, machine, p);

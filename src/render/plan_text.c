@@ -15,7 +15,8 @@ __attribute__((format(printf, 2, 3))) static void put(Text* t, const char* forma
     const bool room = t->length < t->size;
     va_list arguments;
     va_start(arguments, format);
-    const int length = vsnprintf(room ? t->at + t->length : NULL, room ? t->size - t->length : 0, format, arguments);
+    const int length =
+        vsnprintf(room ? t->at + t->length : NULL, room ? t->size - t->length : 0, format, arguments);
     va_end(arguments);
     t->length += length > 0 ? (size_t)length : 0;
 }

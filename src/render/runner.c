@@ -301,7 +301,7 @@ vplResult vplRunner_RunPlan(vplRunner* r, const vplPlan* plan, vplStageId last)
     for (int i = 0; i < plan->stageCount; i++) {
         const vplStageId id = (vplStageId)plan->stages[i].id;
         TRY(vplRunner_RunStage(r, id));
-        if (VPL_STAGES[id].report != NULL) {
+        if (VPL_STAGES[id].report != NULL && !r->plans) {
             VPL_STAGES[id].report(&r->run);
         }
         if (id == last) {

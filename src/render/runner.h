@@ -27,6 +27,7 @@ typedef struct vplRunner {
     vplRun run;
     vplStore* store;
     vplRenderStats stats;
+    bool plans; // results serve decisions: they are not reported yet
     vplProgressFcn* progress;
     void* progressUser;
     double stepFrom, stepTo;   // share of the whole that the pass under way has
@@ -35,8 +36,8 @@ typedef struct vplRunner {
     double startMs;            // of a nested runner
     double partMs;             // that vplRun_AddTime took from the stage under way
     vplClampLoss loss;         // of all passes
-    size_t heldBytes;          // by the context when the runner began: the scene, and what is not of this render
-    size_t peakBytes;          // of the context, before its counter was set back
+    size_t heldBytes; // by the context when the runner began: the scene, and what is not of this render
+    size_t peakBytes; // of the context, before its counter was set back
 } vplRunner;
 
 // A runner without a plan. It borrows the store.

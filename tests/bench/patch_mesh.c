@@ -21,7 +21,8 @@ static vplPatchSides* fillSides(const vplPatches* p)
             (vplPatchSide){.patch = i / 2, .open = 0xffff, .area = 1, .reflectance = {0.5f, 0.5f, 0.5f}};
         of[i] = i;
     }
-    *sides = (vplPatchSides){.patches = p, .sides = list, .count = count, .ofPatch = of, .context = p->context};
+    *sides =
+        (vplPatchSides){.patches = p, .sides = list, .count = count, .ofPatch = of, .context = p->context};
     return sides;
 }
 

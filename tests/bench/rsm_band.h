@@ -34,8 +34,8 @@ static inline int faceOf(const vplReflectiveMap* m, vplVec3 point)
 // Whether all rays that pass within a texel and a 128th (coverage is snapped to 1/256) of the point say what the
 // point's own says: that something is nearer than the point, and than its plane there, by the tolerance; or that nothing
 // is nearer than both. Then the map must say the same.
-static inline bool isSureReflective(const vplGeometry* g, const vplReflectiveMap* m, vplVec3 point, vplVec3 normal,
-                          bool dark)
+static inline bool isSureReflective(const vplGeometry* g, const vplReflectiveMap* m, vplVec3 point,
+                                    vplVec3 normal, bool dark)
 {
     enum { GRID = 9 };
     const bool parallel = m->emitter.type == VPL_EMITTER_DIRECTIONAL;

@@ -174,12 +174,12 @@ static vplResult drawLightMaps(const vplRun* run, Shading* s, int first, int cou
 static vplResult shadeBatches(const vplRun* run, Shading* s, int total, vplImage* image)
 {
     const size_t values = vplValueCount(image);
-    const size_t room =
-        (size_t)VPL_LIGHT_MAP_BYTES / vplHemiMaps_BytesPerMap(run->plan->options.lights.mapSize);
+    const vplLightOptions* o = &run->plan->options.lights;
+    const size_t room = ((size_t)o->mapMemory << 20) / vplHemiMaps_BytesPerMap(o->mapSize);
     const int batch = room >= (size_t)total ? total : room > 0 ? (int)room : 1;
     float* sum = vplArena_Alloc(s->arena, batch < total ? values : 0, sizeof *sum);
     TRY(vplArena_Check(s->arena));
-    TRY(vplHemiMaps_Create(run->context, run->plan->options.lights.mapSize, batch, &s->lightMaps));
+    TRY(vplHemiMaps_Create(run->context, o->mapSize, batch, &s->lightMaps));
     for (int first = 0; first < total; first += batch) {
         const int count = total - first < batch ? total - first : batch;
         TRY(drawLightMaps(run, s, first, count));

@@ -35,15 +35,14 @@ static vplResult findClusters(const vplRun* run, const vplLightSet* lights, vplA
 
 static vplResult makeClusters(const vplRun* run, const vplBounceLights* bounce, void** resultOut)
 {
-    vplArena* scratch = vplArena_Create(run->context);
-    vplBounceClusters* c = vplAllocZero(run->context, 1, sizeof *c);
-    vplResult result = c != NULL ? vplArena_Check(scratch) : VPL_OUT_OF_MEMORY;
-    *resultOut = c;
-    if (result == VPL_SUCCESS) {
-        c->context = run->context;
-        c->shift = bounce->shift;
-        result = findClusters(run, bounce->lights, scratch, c);
+    vplBounceClusters* c = vplAlloc(run->context, 1, sizeof *c);
+    if (c == NULL) {
+        return VPL_OUT_OF_MEMORY;
     }
+    *c = (vplBounceClusters){NULL, bounce->shift, run->context};
+    *resultOut = c;
+    vplArena* scratch = vplArena_Create(run->context);
+    const vplResult result = findClusters(run, bounce->lights, scratch, c);
     vplArena_Destroy(scratch);
     return result;
 }
