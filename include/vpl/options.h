@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a picture is asked to be: methods, stages to show, and every option, which all come from vpl/options.def.
+// What a picture is asked to be: methods, stages to show, and every option, which all come from
+// vpl/options.def.
 #ifndef VPL_OPTIONS_H
 #define VPL_OPTIONS_H
 
@@ -54,9 +55,9 @@ enum { VPL_MAX_SAMPLES = 1 << 24, VPL_MAX_BOUNCES = 1 << 16 };
 
 // Whether light from a virtual light is stopped by what is between.
 typedef enum vplLightShadows {
-    VPL_LIGHT_SHADOWS_USUAL =
-        0, // as the method's document draws: instant radiosity none, Keller's auto, SSVP by the
-           // paraboloid map of a light's cluster
+    // As the method's document draws: instant radiosity none, Keller's auto, SSVP by the paraboloid map of a
+    // light's cluster.
+    VPL_LIGHT_SHADOWS_USUAL = 0,
     VPL_LIGHT_SHADOWS_NONE,   // it is not: as Franchi and Ferrante draw
     VPL_LIGHT_SHADOWS_MAP,    // a map of the half space above each virtual light, one sample: as Keller draws
     VPL_LIGHT_SHADOWS_RAY,    // a ray per pixel and light: exact
@@ -97,9 +98,9 @@ typedef enum vplHierarchy {
     VPL_HIERARCHY_ON        // links between groups of them
 } vplHierarchy;
 
-// More sides of patches than this are linked in groups: as many as VPL_MAX_FORM_FACTOR_BYTES allow. Links are five times as
-// fast there and err ten to twenty times as much (bench/form_factors, bench/radiosity_error): more patches should not make a
-// picture worse where nobody asked for it.
+// More sides of patches than this are linked in groups: as many as VPL_MAX_FORM_FACTOR_BYTES allow. Links are
+// five times as fast there and err ten to twenty times as much (bench/form_factors, bench/radiosity_error):
+// more patches should not make a picture worse where nobody asked for it.
 enum { VPL_ALL_PAIRS = 16384 };
 
 // Where patches are small.
@@ -116,10 +117,11 @@ typedef enum vplInterpolation {
 
 // Whether frames of a sequence have anything to do with each other.
 typedef enum vplCoherence {
-    VPL_COHERENCE_OFF =
-        0, // new sample patterns for each frame, and clusters that start from the frame's own lights
-    // The same patterns in all frames, and clusters that start from those of the frame before. Radiosities go on from
-    // those of the frame before, `iterations` sweeps a frame: light that moved arrives with the lag of its bounces.
+    // New sample patterns for each frame, and clusters that start from the frame's own lights The same
+    // patterns in all frames, and clusters that start from those of the frame before. Radiosities go on from
+    // those of the frame before, `iterations` sweeps a frame: light that moved arrives with the lag of its
+    // bounces.
+    VPL_COHERENCE_OFF = 0,
     VPL_COHERENCE_ON
 } vplCoherence;
 
@@ -212,17 +214,17 @@ typedef struct vplRenderOptions {
 // Every option at its default.
 vplRenderOptions vplDefaultRenderOptions(void);
 
-// Sets an option by its name on the command line, without dashes: vplRenderOptions_Set(&o, "particles", "200").
-// VPL_INVALID_ARGUMENT if there is no such option or the value is not one of its values: then nothing is changed but
-// options->problem, one sentence.
+// Sets an option by its name on the command line, without dashes: vplRenderOptions_Set(&o, "particles",
+// "200"). VPL_INVALID_ARGUMENT if there is no such option or the value is not one of its values: then nothing
+// is changed but options->problem, one sentence.
 vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, const char* value);
 
-// The inverse: writes the value of an option as vplRenderOptions_Set reads it. VPL_INVALID_ARGUMENT if there is no such
-// option or `size` bytes are too few.
+// The inverse: writes the value of an option as vplRenderOptions_Set reads it. VPL_INVALID_ARGUMENT if there
+// is no such option or `size` bytes are too few.
 vplResult vplRenderOptions_Get(const vplRenderOptions* options, const char* name, char* textOut, size_t size);
 
-// Whether the method and pipeline of `options` make any use of an option. If not, and reasonOut is not NULL, it gets what
-// stands against it, such as "--method keller".
+// Whether the method and pipeline of `options` make any use of an option. If not, and reasonOut is not NULL,
+// it gets what stands against it, such as "--method keller".
 bool vplRenderOptions_IsUsed(const vplRenderOptions* options, const char* name, char* reasonOut, size_t size);
 
 // ---- the table

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a picture needs, as a value: every decision made, every stage that will run, and what is left out, each with its
-// reason. Rendering follows a plan and decides nothing; vpl info, --explain, --dry-run and refusals print one.
+// What a picture needs, as a value: every decision made, every stage that will run, and what is left out,
+// each with its reason. Rendering follows a plan and decides nothing; vpl info, --explain, --dry-run and
+// refusals print one.
 #ifndef VPL_PLAN_H
 #define VPL_PLAN_H
 
@@ -77,20 +78,22 @@ typedef struct vplPlan {
     int64_t formFactorBytes; // of all pairs
     int64_t shadowMapBytes, lightBytes, pictureBytes;
     int64_t peakBytes; // that rendering holds at most; within 15 %
-    // The costs that chose the shadows of virtual lights, ms of one core of the machine of bench/crossover; 0 if not asked.
+    // The costs that chose the shadows of virtual lights, ms of one core of the machine of bench/crossover; 0
+    // if not asked.
     double shadowMapEstimateMs, shadowRayEstimateMs;
     char problem[VPL_PLAN_TEXT]; // why it cannot be rendered; empty: it can
     vplResult refusal;           // what rendering then returns: VPL_INVALID_ARGUMENT or VPL_LIMIT
     struct vplArena* arena;      // owns the emitters
 } vplPlan;
 
-// What a plan needs to know of a machine. It changes estimates only, never a decision: pictures are the same everywhere.
+// What a plan needs to know of a machine. It changes estimates only, never a decision: pictures are the same
+// everywhere.
 typedef struct vplMachine {
     int workerCount; // threads
 } vplMachine;
 
-// Plans a render. `machine` NULL: that of the scene's context. A picture that cannot be rendered has a plan too, whose
-// `problem` says why; VPL_INVALID_ARGUMENT is for options out of their range.
+// Plans a render. `machine` NULL: that of the scene's context. A picture that cannot be rendered has a plan
+// too, whose `problem` says why; VPL_INVALID_ARGUMENT is for options out of their range.
 vplResult vplPlan_Create(const vplScene* scene, const vplRenderOptions* options, const vplMachine* machine,
                          vplPlan** planOut);
 

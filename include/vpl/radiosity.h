@@ -269,8 +269,8 @@ typedef enum vplVertexWeight {
 typedef struct vplPatchMesh {
     const vplPatchSides* sides;
     const vplVec3* positions; // metres
-    const vplVec3*
-        normals; // unit: the mean over the patches at a vertex, of shading normals on smooth objects
+    // Unit: the mean over the patches at a vertex, of shading normals on smooth objects.
+    const vplVec3* normals;
     const uint32_t* indices; // three per triangle
     const int* patchOf;      // of each triangle
     const uint8_t*

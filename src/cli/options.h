@@ -19,8 +19,8 @@ struct Option {
     size_t offset;    // in Arguments
     double low, high; // of numbers
     const char* help;
-    const vplOption*
-        render; // the row of vpl/options.def, which has default and range; NULL: one of the program's own
+    // The row of vpl/options.def, which has default and range; NULL: one of the program's own.
+    const vplOption* render;
 };
 
 // The program's own options, then those of rendering.

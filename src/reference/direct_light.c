@@ -171,9 +171,9 @@ static Connection connectToEmitter(const vplPathScene* s, const vplPathVertex* v
     return c;
 }
 
-// Adds one emitter, chosen with a probability proportional to its unoccluded light: weighted reservoir sampling
-// by one number that is rescaled at every step. For equal variance it takes 0.83x to 0.97x the time of all
-// emitters (3 to 8 point lights in the room).
+// Adds one emitter, chosen with a probability proportional to its unoccluded light: weighted reservoir
+// sampling by one number that is rescaled at every step. For equal variance it takes 0.83x to 0.97x the time
+// of all emitters (3 to 8 point lights in the room).
 static void addEmitter(vplPathState* path, const vplPathVertex* v, double choice, vplRadiance* sum)
 {
     const vplEmission* emission = path->scene->emission;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Counts and bytes of a plan. A stage that ran while decisions were made is known exactly; for the others sizes follow from
-// what they allocate. tests/test_plan.c compares the sum with what rendering holds.
+// Counts and bytes of a plan. A stage that ran while decisions were made is known exactly; for the others
+// sizes follow from what they allocate. tests/test_plan.c compares the sum with what rendering holds.
 #include "render/plan.h"
 #include "render/stages/ssvp.h"
 #include "visibility/hemi_map.h"

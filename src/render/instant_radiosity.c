@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights: simulate particles, render the cube shadow map of
-// the point light, render the scene lit by it with shadows, then add every virtual light, without shadows.
-// Departs: placement by the camera's view or by reflective shadow maps, batches and shadows of virtual lights, which the
-// document proposes, are options.
+// Based on: Emanuele Franchi and Lorenzo Ferrante, Virtual Point Lights: simulate particles, render the cube
+// shadow map of the point light, render the scene lit by it with shadows, then add every virtual light,
+// without shadows.
+// Departs: placement by the camera's view or by reflective shadow maps, batches and shadows of virtual
+// lights, which the document proposes, are options.
 #include "render/stage.h"
 
 const vplStageId VPL_INSTANT_RADIOSITY_RECIPE[] = {

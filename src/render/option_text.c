@@ -109,8 +109,8 @@ static vplResult setSize(const Setting* s)
 
 // ---- choices
 
-// The number of the choice in "a|b|c:K" that `value` names, or -1. A choice that ends with ":K" takes an index, whose
-// text is stored in *indexOut; else it is NULL.
+// The number of the choice in "a|b|c:K" that `value` names, or -1. A choice that ends with ":K" takes an
+// index, whose text is stored in *indexOut; else it is NULL.
 static int findChoice(const char* choices, const char* value, const char** indexOut)
 {
     for (int i = 0;; i++) {

@@ -31,8 +31,8 @@ void vplPasses_Add(vplPasses* p, int pass, const vplImage* image)
     }
 }
 
-// The two halves of the passes differ by their errors: half of that is expected in their mean. What both have in common
-// (the error of direct light, light lost or moved by the accumulation) is not in it.
+// The two halves of the passes differ by their errors: half of that is expected in their mean. What both have
+// in common (the error of direct light, light lost or moved by the accumulation) is not in it.
 static void estimateError(const vplPasses* p, int count, const vplImage* image, vplRenderStats* stats)
 {
     const size_t values = vplValueCount(image);

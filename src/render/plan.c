@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every decision of a render, in one place: what "usual" and "auto" mean, which stages run, and what cannot be done.
+// Every decision of a render, in one place: what "usual" and "auto" mean, which stages run, and what cannot
+// be done.
 #include "render/plan.h"
 
 #include "render/options.h"

@@ -5,7 +5,8 @@
 
 #include "render/runner.h"
 
-// Plans with a runner, which keeps the results of stages that decisions needed; the plan's render finds them there.
+// Plans with a runner, which keeps the results of stages that decisions needed; the plan's render finds them
+// there.
 vplResult vplMakePlan(vplRunner* runner, const vplRenderOptions* options, const vplMachine* machine,
                       vplPlan** planOut);
 

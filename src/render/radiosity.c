@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Based on: Dan Hemgren, Radiosity in Realtime Rendering: surfaces are bisected into patches, form factors are found between
-// them, what emitters give to each patch is reflected from patch to patch until it changes no more, and drawn, smooth from
-// vertex to vertex, over the direct light of every pixel.
-// Departs where its discussion asks for more: only sides that light can reach take part, light and form factors are means
-// over patches, far patches exchange light in groups, and patches can be small where light changes much. Light goes on from
-// frame to frame, as proposed there after Burenius.
+// Based on: Dan Hemgren, Radiosity in Realtime Rendering: surfaces are bisected into patches, form factors
+// are found between them, what emitters give to each patch is reflected from patch to patch until it changes
+// no more, and drawn, smooth from vertex to vertex, over the direct light of every pixel.
+// Departs where its discussion asks for more: only sides that light can reach take part, light and form
+// factors are means over patches, far patches exchange light in groups, and patches can be small where light
+// changes much. Light goes on from frame to frame, as proposed there after Burenius.
 #include "render/stage.h"
 
 const vplStageId VPL_RADIOSITY_RECIPE[] = {

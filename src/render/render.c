@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The public calls: a plan, then its stages pass by pass until a count, a time or an error estimate ends them.
+// The public calls: a plan, then its stages pass by pass until a count, a time or an error estimate ends
+// them.
 #include "base/clock.h"
 #include "math/scalar.h"
 #include "render/passes.h"
@@ -137,7 +138,8 @@ static double shareOf(const vplRenderer* r, int passes)
     return share < 1 ? share : 1;
 }
 
-// Direct light in the first pass, then virtual lights: those of each pass make a picture, and the passes' mean counts.
+// Direct light in the first pass, then virtual lights: those of each pass make a picture, and the passes'
+// mean counts.
 static vplResult addPass(vplRenderer* r)
 {
     if (r->done == 0) {

@@ -168,9 +168,9 @@ static uint64_t hashView(uint64_t state, const vplView* v)
     return hashNumbers(state, numbers, sizeof numbers / sizeof *numbers);
 }
 
-// Hashes the values that a stage's key names: options; the posed SCENE, its EMITTERS and the VIEW; the PASS; the SHIFT of
-// SSVP's patterns, and whether its clusters SEE; the BIAS rule; what PLACEMENT of particles depends on; what drafts of ADAPTIVE patches are made with; and
-// ALWAYS, which is never the same again.
+// Hashes the values that a stage's key names: options; the posed SCENE, its EMITTERS and the VIEW; the PASS;
+// the SHIFT of SSVP's patterns, and whether its clusters SEE; the BIAS rule; what PLACEMENT of particles
+// depends on; what drafts of ADAPTIVE patches are made with; and ALWAYS, which is never the same again.
 static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
 {
     const vplRenderOptions* o = &run->plan->options;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The one loop that runs stages: order, timing, progress, cancellation, and keeping results from frame to frame.
+// The one loop that runs stages: order, timing, progress, cancellation, and keeping results from frame to
+// frame.
 #ifndef VPL_RENDER_RUNNER_H
 #define VPL_RENDER_RUNNER_H
 
@@ -49,8 +50,8 @@ vplResult vplRunner_RunStage(vplRunner* runner, vplStageId id);
 // Runs the stages of the plan up to `last`.
 vplResult vplRunner_RunPlan(vplRunner* runner, const vplPlan* plan, vplStageId last);
 
-// A runner for stages within the stage under way: it sees the same results, needs a store of its own, and its progress is
-// that of the part under way. Its statistics and time are added by vplRunner_Unnest.
+// A runner for stages within the stage under way: it sees the same results, needs a store of its own, and its
+// progress is that of the part under way. Its statistics and time are added by vplRunner_Unnest.
 vplRunner vplRunner_Nest(const vplRun* run);
 void vplRunner_Unnest(const vplRun* run, const vplRunner* nested);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stages: what a picture is made of. A stage is a function from the plan and the results of other stages to a new value,
-// which later stages read and nobody changes.
+// Stages: what a picture is made of. A stage is a function from the plan and the results of other stages to a
+// new value, which later stages read and nobody changes.
 #ifndef VPL_RENDER_STAGE_H
 #define VPL_RENDER_STAGE_H
 
@@ -48,8 +48,8 @@ typedef struct vplRun {
     const vplScene* scene;
     const vplPlan* plan;
     const void* results[VPL_STAGE_COUNT];
-    void*
-        before; // of a stage that continues: its result of the frame or pass before, which it may change and return
+    // Of a stage that continues: its result of the frame or pass before, which it may change and return.
+    void* before;
     uint32_t builds[VPL_STAGE_COUNT]; // how often each result was made: tells two results of a stage apart
     int pass;
     int parts;                // vplPart: what the picture stage adds up
@@ -79,7 +79,8 @@ extern const vplStage VPL_STAGES[VPL_STAGE_COUNT];
 extern const vplStageId VPL_DIRECT_RECIPE[], VPL_INSTANT_RADIOSITY_RECIPE[], VPL_KELLER_RECIPE[],
     VPL_SSVP_RECIPE[], VPL_RADIOSITY_RECIPE[], VPL_PATH_RECIPE[];
 
-// Progress within the stage under way; pass both to calls that take a progress callback. NULL where nobody listens.
+// Progress within the stage under way; pass both to calls that take a progress callback. NULL where nobody
+// listens.
 vplProgressFcn* vplRun_Progress(const vplRun* run);
 void* vplRun_ProgressUser(const vplRun* run);
 

@@ -169,8 +169,8 @@ vplFacet vplGetFacet(const vplShading* shading, int triangle);
 // Points shown by a block of pixels.
 typedef struct vplPoints {
     const vplSurface* surface; // positions, and the normals that light is received with
-    const vplSurface*
-        plane; // the same with the triangles' own normals; equals `surface` where none is smooth
+    // The same with the triangles' own normals; equals `surface` where none is smooth.
+    const vplSurface* plane;
     int triangle[VPL_LANES]; // index in geometry->normals, -1 where nothing is
 } vplPoints;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The shadow factor of 16 fragments by a hemi-octahedral map. Compiled once per instruction set; all give the same
-// bits.
+// The shadow factor of 16 fragments by a hemi-octahedral map. Compiled once per instruction set; all give the
+// same bits.
 //
-// The texel's 1/t along its centre is compared with the fragment's own plane there, and with the
-// fragment itself, whichever is nearer: a plane never shadows itself at any angle.
+// The texel's 1/t along its centre is compared with the fragment's own plane there, and with the fragment
+// itself, whichever is nearer: a plane never shadows itself at any angle.
 #include "math/scalar.h"
 #include "visibility/kernels.h"
 #include "visibility/map_gather.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Fills one triangle into a hemi-octahedral map. Included by the kernel that draws them.
 //
-// A texel at (u, v) in [-1, 1]^2 has the direction d = (p, q, 1 - |p| - |q|), p = (u + v) / 2, q = (u - v) / 2, in
-// the light's frame; where p and q keep their signs d is linear in u and v. A point t d lies on a triangle's
-// plane where 1/t = n.d / n.corner, which is linear, too, and the nearest is the largest.
+// A texel at (u, v) in [-1, 1]^2 has the direction d = (p, q, 1 - |p| - |q|), p = (u + v) / 2, q = (u - v) /
+// 2, in the light's frame; where p and q keep their signs d is linear in u and v. A point t d lies on a
+// triangle's plane where 1/t = n.d / n.corner, which is linear, too, and the nearest is the largest.
 #ifndef VPL_VISIBILITY_HEMI_FILL_H
 #define VPL_VISIBILITY_HEMI_FILL_H
 

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Tests 16 points against the bounds of a cube map. Compiled once per instruction set; all give the same bits.
+// Tests 16 points against the bounds of a cube map. Compiled once per instruction set; all give the same
+// bits.
 //
 // Let p be a point seen from the light, r its distance, R the reach of the samples' offsets, which are
-// perpendicular to p, and m the largest of p's components, which picks the face.
-// Texels: a sample at p + d, |d| <= R, lies in the face's plane at a distance of at most |d| sqrt(1 + s^2) /
-// (m - R) from p's own s = right / m, and the same with u = up / m; sqrt(1 + s^2) is at most 1 + s^2 / 2. If
-// that square lies inside the face, so do all samples. The regions that meet the squares of all 16 points
-// bound every texel that is sampled.
-// Shadowed: all samples are if the limit exceeds the farthest distance times far, the expression that every
-// sample compares, which is monotone. Lit: the same with the nearest distance.
-// Lit by the receiver's plane: let n be its normal and h > 0 the least n.q of all points q in the regions'
-// box. A texel in direction d shows q = D d, so D >= h / n.d, and limit (n.d) <= h is enough. The angle
-// between p and d is at most that of the offset, whose tangent is k = R / r, and that between the sample and
-// its texel's centre. The latter has a tangent of at most e / (|c| - e sin c) where e = texelTangent, c = (s,
-// u, 1) at the sample, and sin c is the sine of its angle to the middle of the face. The sample's |c| is at
-// least p's own, r / m, less sin p times the R / (m - R) r / m that they are apart at most, because |c| is
-// convex. With t the tangent of the latter, the angle a of both has tan a = (t + k) / (1 - t k) and cos a =
-// (1 - t k) / sqrt((1 + t^2) (1 + k^2)). If n is further from p than a, n.d is at most along cos a + across
-// sin a, with the normal's parts along p and across, otherwise at most its length.
-// Rounding: the direction of a sample is known to some ten roundings of 2^-24 (9 of the angle, 8192 texels:
-// 2^-9 texel), the frame of offsets to 2^-18 of their length (`reach` has 1e-5 more), `most` and `length` to
-// twelve roundings of the normal's length, h to three of its terms. The margins below are 16 each, 4 for h.
+// perpendicular to p, and m the largest of p's components, which picks the face. Texels: a sample at p + d,
+// |d| <= R, lies in the face's plane at a distance of at most |d| sqrt(1 + s^2) / (m - R) from p's own s =
+// right / m, and the same with u = up / m; sqrt(1 + s^2) is at most 1 + s^2 / 2. If that square lies inside
+// the face, so do all samples. The regions that meet the squares of all 16 points bound every texel that is
+// sampled. Shadowed: all samples are if the limit exceeds the farthest distance times far, the expression
+// that every sample compares, which is monotone. Lit: the same with the nearest distance. Lit by the
+// receiver's plane: let n be its normal and h > 0 the least n.q of all points q in the regions' box. A texel
+// in direction d shows q = D d, so D >= h / n.d, and limit (n.d) <= h is enough. The angle between p and d is
+// at most that of the offset, whose tangent is k = R / r, and that between the sample and its texel's centre.
+// The latter has a tangent of at most e / (|c| - e sin c) where e = texelTangent, c = (s, u, 1) at the
+// sample, and sin c is the sine of its angle to the middle of the face. The sample's |c| is at least p's own,
+// r / m, less sin p times the R / (m - R) r / m that they are apart at most, because |c| is convex. With t
+// the tangent of the latter, the angle a of both has tan a = (t + k) / (1 - t k) and cos a = (1 - t k) /
+// sqrt((1 + t^2) (1 + k^2)). If n is further from p than a, n.d is at most along cos a + across sin a, with
+// the normal's parts along p and across, otherwise at most its length. Rounding: the direction of a sample is
+// known to some ten roundings of 2^-24 (9 of the angle, 8192 texels: 2^-9 texel), the frame of offsets to
+// 2^-18 of their length (`reach` has 1e-5 more), `most` and `length` to twelve roundings of the normal's
+// length, h to three of its terms. The margins below are 16 each, 4 for h.
 #include "visibility/cube_bounds.h"
 #include "visibility/cube_texel.h"
 #include "visibility/kernels.h"

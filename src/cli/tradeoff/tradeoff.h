@@ -36,8 +36,8 @@ extern const char* const FAMILY_NAMES[FAMILY_COUNT];
 typedef struct Sweep {
     const char* name;  // as in --sweeps; rows of one name belong together
     const char* words; // the change; the last word is an option that takes each of the values
-    const char*
-        values; // with spaces between; @X is X times the scene's diagonal, in metres; NULL: its choices
+    // With spaces between; @X is X times the scene's diagonal, in metres; NULL: its choices.
+    const char* values;
     const char* meaning; // of the knob, for the report; NULL: no knob, only points of the plot
 } Sweep;
 

@@ -106,8 +106,8 @@ double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoints* p, const
 
 typedef struct vplLinkPair {
     int32_t p, q;
-    // Some ray between their parents was not blocked. A pair that is divided for its shape alone then casts no
-    // rays.
+    // Some ray between their parents was not blocked. A pair that is divided for its shape alone then casts
+    // no rays.
     bool visible;
     float weight; // the fraction of all work, halved by each division
 } vplLinkPair;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How many short rays give back the light that the clamp of near virtual lights takes away, and how much that is.
+// How many short rays give back the light that the clamp of near virtual lights takes away, and how much that
+// is.
 #include "base/clock.h"
 #include "geometry/triangle.h"
 #include "math/scalar.h"
@@ -8,7 +9,8 @@
 
 #include <math.h>
 
-// What a pixel spends on virtual lights, in shadow rays: a light without one costs a fraction of a nanosecond.
+// What a pixel spends on virtual lights, in shadow rays: a light without one costs a fraction of a
+// nanosecond.
 static double workOf(const vplPlan* plan, const vplVirtualLights* lights)
 {
     const vplPipelineOptions* o = &plan->options.pipeline;
@@ -18,8 +20,8 @@ static double workOf(const vplPlan* plan, const vplVirtualLights* lights)
     return fmin(lights->count / classes, most) * each;
 }
 
-// Few lights are enough for what a ray meets, if each of them is clamped like so few: where D is the radius of a light's
-// share of all surfaces, and on area lights with half of the chosen lights.
+// Few lights are enough for what a ray meets, if each of them is clamped like so few: where D is the radius
+// of a light's share of all surfaces, and on area lights with half of the chosen lights.
 enum { MIN_HIT_LIGHTS = 16 };
 
 static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
@@ -29,10 +31,10 @@ static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
     return (int)fmax(MIN_HIT_LIGHTS, fmin(ceil(shares), lights->count));
 }
 
-// One ray for every so many lights that a pixel meets, so that the squared errors of both fall alike: relative error
-// squared times time is 1.4 with a ray for 16 lights, 1.0 with one for 48 (cornell-area, 2048 particles). Where hits meet
-// more lights, D is smaller and hits are as much rarer as that takes more time with sqrt(MIN_HIT_LIGHTS / hitLights)
-// as many rays.
+// One ray for every so many lights that a pixel meets, so that the squared errors of both fall alike:
+// relative error squared times time is 1.4 with a ray for 16 lights, 1.0 with one for 48 (cornell-area, 2048
+// particles). Where hits meet more lights, D is smaller and hits are as much rarer as that takes more time
+// with sqrt(MIN_HIT_LIGHTS / hitLights) as many rays.
 enum { LIGHTS_PER_RAY = 48, MIN_RAYS = 2, MAX_RAYS = 4096 };
 
 static int raysOf(const vplRun* run, const vplVirtualLights* lights)
@@ -85,8 +87,8 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
     return def;
 }
 
-// A point takes about 7 us and a light with a shadow ray per pixel 31 ns: so many points take about half a hundredth of
-// the picture's time.
+// A point takes about 7 us and a light with a shadow ray per pixel 31 ns: so many points take about half a
+// hundredth of the picture's time.
 enum { POINT_SHARE = 40000, MIN_POINTS = 32, MAX_POINTS = 1024, POINT_RAYS = 4 };
 
 static int pointsToAsk(const vplPlan* plan, const vplVirtualLights* lights)

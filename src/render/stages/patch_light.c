@@ -21,7 +21,8 @@ typedef struct Chunk {
     int firstPoint[CHUNK_SIDES + 1];
 } Chunk;
 
-// Points of `samples` open cells, spread evenly over their numbers; a single one is the incentre where it can be reached.
+// Points of `samples` open cells, spread evenly over their numbers; a single one is the incentre where it can
+// be reached.
 static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint* points)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
@@ -201,8 +202,8 @@ static vplResult gather(const vplRun* run, vplSolution* s)
     return result;
 }
 
-// The document's "slight lag": the sweeps of a frame begin with the radiosities of the frame before, as long as form
-// factors are the same.
+// The document's "slight lag": the sweeps of a frame begin with the radiosities of the frame before, as long
+// as form factors are the same.
 vplResult vplMakeSolution(const vplRun* run, void** resultOut)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Refinement asks how light changes at vertices, where means of patches would hide how dark a corner is, and how direct
-// light changes.
+// Refinement asks how light changes at vertices, where means of patches would hide how dark a corner is, and
+// how direct light changes.
 #include "render/stages/patch_priority.h"
 #include "render/stages/results.h"
 

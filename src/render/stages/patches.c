@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What radiosity divides surfaces into, and how the parts exchange light: patches, uniform or adaptive, the sides that
-// light can reach, their mesh, and form factors of all pairs or links.
+// What radiosity divides surfaces into, and how the parts exchange light: patches, uniform or adaptive, the
+// sides that light can reach, their mesh, and form factors of all pairs or links.
 #include "render/runner.h"
 #include "render/stages/make.h"
 #include "render/stages/patch_priority.h"
@@ -20,8 +20,9 @@ static vplResult bisect(const vplRun* run, int count, vplPatches** patchesOut)
 
 // ---- adaptive patches
 
-// Rounds begin with a quarter of the patches and grow by half: four drafts and a solution. Doubling leaves 1.6 times the
-// squared error; smaller steps gain 3 to 6 % for twice the rounds (cornell-area, room-area; 500 to 4000 patches).
+// Rounds begin with a quarter of the patches and grow by half: four drafts and a solution. Doubling leaves
+// 1.6 times the squared error; smaller steps gain 3 to 6 % for twice the rounds (cornell-area, room-area; 500
+// to 4000 patches).
 static const double ADAPTIVE_START = 0.25, ADAPTIVE_GROWTH = 1.5;
 enum { ADAPTIVE_ROUNDS = 4 }; // usually
 
@@ -202,8 +203,8 @@ void vplDestroyPatchMesh(void* result)
 
 // ---- form factors
 
-// One pair of points instead of four leaves the pictures' error as it is and takes two thirds of the drafts' time
-// (cornell-area, 4000 patches).
+// One pair of points instead of four leaves the pictures' error as it is and takes two thirds of the drafts'
+// time (cornell-area, 4000 patches).
 enum { DRAFT_SAMPLES = 1 };
 
 vplResult vplMakeFormFactors(const vplRun* run, void** resultOut)

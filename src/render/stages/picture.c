@@ -31,8 +31,8 @@ static vplResult shadeView(const vplRun* run, const vplView* view, const vplShad
     return patches ? vplDrawPatchView(run, view, image) : VPL_SUCCESS;
 }
 
-// Sample i of `count` of every pixel: Hammersley points, so that edges along the axes, too, are cut at as many places as
-// there are samples.
+// Sample i of `count` of every pixel: Hammersley points, so that edges along the axes, too, are cut at as
+// many places as there are samples.
 static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i, int count, vplImage* image)
 {
     vplShadeDef def = *plain;

@@ -104,7 +104,8 @@ typedef struct vplSolution {
     vplArena* arena;
 } vplSolution;
 
-// VPL_STAGE_VERTEX_LIGHT: irradiance of reflected light at the vertices of the patch mesh, [vertex][front, back].
+// VPL_STAGE_VERTEX_LIGHT: irradiance of reflected light at the vertices of the patch mesh, [vertex][front,
+// back].
 typedef struct vplVertexLight {
     vplRgb* corners;
     vplArena* arena;

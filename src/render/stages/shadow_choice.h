@@ -23,8 +23,8 @@ typedef struct vplShadowCosts {
 // Grows with lights, pixels and facing; maps also with trianglesAbove and mapSize, rays with triangles.
 vplShadowCosts vplEstimateShadows(const vplShadowLoad* load);
 
-// Samples a few pixels and lights. The answer depends on scene and options alone, not on the machine: else pictures
-// would.
+// Samples a few pixels and lights. The answer depends on scene and options alone, not on the machine: else
+// pictures would.
 vplShadowLoad vplMeasureShadowLoad(const vplGeometry* geometry, const vplView* view, double pixels,
                                    const vplShadeLight* lights, int lightCount, int mapSize);
 

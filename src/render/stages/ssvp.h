@@ -5,13 +5,15 @@
 
 #include "render/stages/results.h"
 
-// Shift of the sample patterns: 0, the points as published, for seed 0, the first pass and frames that keep their patterns.
+// Shift of the sample patterns: 0, the points as published, for seed 0, the first pass and frames that keep
+// their patterns.
 uint64_t vplSsvpShift(const vplRun* run);
 
 // The share of each light's light that stays in the scene, by rays; in arena memory.
 vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, vplArena* arena, float** useOut);
 
-// Whether lights see by the maps of their clusters, whether there is a second bounce, and whether clusters are shown.
+// Whether lights see by the maps of their clusters, whether there is a second bounce, and whether clusters
+// are shown.
 static inline bool vplSsvpSees(const vplPlan* plan)
 {
     return plan->options.lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER;

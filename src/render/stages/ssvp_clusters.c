@@ -12,8 +12,8 @@ static bool follows(const vplRun* run, uint64_t shift, uint64_t lastShift)
 
 // ---- clusters
 
-// Clusters are for lights whose light stays in the scene: weighted by their use, 8 clusters of Sponza have a FLIP of 0.192
-// against paths, unweighted 0.248.
+// Clusters are for lights whose light stays in the scene: weighted by their use, 8 clusters of Sponza have a
+// FLIP of 0.192 against paths, unweighted 0.248.
 static vplResult findClusters(const vplRun* run, const vplLightSet* lights, vplArena* scratch,
                               vplBounceClusters* c)
 {
@@ -77,8 +77,8 @@ typedef struct Viewing {
     const vplBounceMaps* last; // NULL: none that counts
 } Viewing;
 
-// The light that a cluster sees from: that of the last frame as long as it is one of its lights, so that what is seen does
-// not jump; else the nearest to the mean. -1: none.
+// The light that a cluster sees from: that of the last frame as long as it is one of its lights, so that what
+// is seen does not jump; else the nearest to the mean. -1: none.
 static int findViewpoint(const Viewing* v, int cluster)
 {
     if (v->run->plan->options.ssvp.place == VPL_CLUSTER_PLACE_MEAN) {
@@ -93,8 +93,8 @@ static int findViewpoint(const Viewing* v, int cluster)
     return v->clusters->clusters[cluster].nearest;
 }
 
-// Always lifted off the surface, also from mid-air: a mean that lies on a wall but for rounding would see the wall as half
-// of space.
+// Always lifted off the surface, also from mid-air: a mean that lies on a wall but for rounding would see the
+// wall as half of space.
 static vplParaboloidPlace placeOf(const Viewing* v, int i)
 {
     const vplPlan* plan = v->run->plan;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Lights of SSVP: samples of reflective shadow maps whose light stays in the scene, and samples of what clusters see.
+// Lights of SSVP: samples of reflective shadow maps whose light stays in the scene, and samples of what
+// clusters see.
 #include "base/rng.h"
 #include "lights/light_set.h"
 #include "math/vec.h"
@@ -39,8 +40,8 @@ vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, vplArena
     return VPL_SUCCESS;
 }
 
-// The use of a light that moves a little changes by a ray or two of sixteen. If weights followed at once, the picture
-// would flicker: they follow within some frames.
+// The use of a light that moves a little changes by a ray or two of sixteen. If weights followed at once, the
+// picture would flicker: they follow within some frames.
 static const float FOLLOW = 0.1f;
 
 // Samples of the frame or pass before, if they are the same.
@@ -109,8 +110,9 @@ static vplResult sampleAll(const vplRun* run, int count, uint64_t shift, vplLigh
                                    (const vplReflectiveMap* const*)maps->maps, maps->count, &def, setOut);
 }
 
-// How many times as many samples as lights are taken: a power of two, and that of the last frame as long as it leaves half
-// to five quarters of the lights, since samples must not all move with every move of the light.
+// How many times as many samples as lights are taken: a power of two, and that of the last frame as long as
+// it leaves half to five quarters of the lights, since samples must not all move with every move of the
+// light.
 static int oversample(const vplBounceLights* last, int most, int count, double kept)
 {
     const int before = last != NULL && count > 0 ? last->sampleCount / count : 0;
