@@ -37,6 +37,7 @@ static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Out
 // of equal depth that are added up.
 static vplResult fill(const Bench* b, int planes, Outcome* outcome)
 {
+    const float depth = 0.5f; // one place, so that the rasterizer sets the triangle up once
     float depths[LAYERS + 1];
     vplFramebuffer framebuffer = vplDefaultFramebuffer(b->image->width, b->image->height);
     vplPipeline pipeline = vplDefaultPipeline();
@@ -48,8 +49,8 @@ static vplResult fill(const Bench* b, int planes, Outcome* outcome)
     TRY(vplRaster_Create(b->context, &framebuffer, &raster));
     pipeline.vertex = coverVertices;
     for (int i = 0; i < LAYERS + (planes > 0) && result == VPL_SUCCESS; i++) {
-        depths[i] = planes > 0 ? 0.5f : (float)(LAYERS - i) / (LAYERS + 1);
-        pipeline.vertexUniforms = &depths[i];
+        depths[i] = (float)(LAYERS - i) / (LAYERS + 1);
+        pipeline.vertexUniforms = planes > 0 ? &depth : &depths[i];
         result = vplRaster_Draw(raster, &COVER, &pipeline);
         if (planes > 0) {
             pipeline.depthCompare = VPL_DEPTH_EQUAL;
