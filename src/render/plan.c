@@ -33,9 +33,11 @@ static void choosePipeline(vplPlan* p)
     const bool ssvp = o->method == VPL_METHOD_SSVP;
     if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
         o->pipeline.kind = ssvp ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
-        vplDecide(p, "pipeline",
-                  ssvp ? "neighbours share lights, as the document has it"
-                       : "one G-buffer, then all lights per tile");
+        if (p->showsVirtual) {
+            vplDecide(p, "pipeline",
+                      ssvp ? "neighbours share lights, as the document has it"
+                           : "one G-buffer, then all lights per tile");
+        }
     }
     if (o->shadow.rsmSize == 0) {
         o->shadow.rsmSize = ssvp ? 1024 : 256;

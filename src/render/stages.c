@@ -135,6 +135,24 @@ static bool needsPatches(const vplPlan* p, char* why)
                                    : "the picture shows no light of patches");
 }
 
+static bool needsSides(const vplPlan* p, char* why)
+{
+    const bool needed = needsPatches(p, why);
+    return needed ? BECAUSE(true, "only sides of patches that light can reach take part") : false;
+}
+
+static bool needsPatchMesh(const vplPlan* p, char* why)
+{
+    const bool needed = needsPatches(p, why);
+    return needed ? BECAUSE(true, "patches are drawn by their vertices") : false;
+}
+
+static bool needsClusteredLights(const vplPlan* p, char* why)
+{
+    const bool needed = needsFirstBounce(p, why);
+    return needed ? BECAUSE(true, "the lights of all bounces in one list") : false;
+}
+
 static bool needsFormFactors(const vplPlan* p, char* why)
 {
     const bool needed = VPL_SHOWS[p->options.output.show].patches >= VPL_PATCH_FACTORS;
@@ -148,8 +166,13 @@ static bool needsPatchLight(const vplPlan* p, char* why)
 {
     const bool needed = VPL_SHOWS[p->options.output.show].patches == VPL_PATCH_LIGHT;
     return BECAUSE(needed, "%s",
-                   needed ? "light from emitters to sides and between them"
-                          : "the picture shows no light of patches");
+                   needed ? "what emitters send to each side" : "the picture shows no light of patches");
+}
+
+static bool needsSolution(const vplPlan* p, char* why)
+{
+    const bool needed = needsPatchLight(p, why);
+    return needed ? BECAUSE(true, "sides exchange light until it changes no more") : false;
 }
 
 static bool needsVertexLight(const vplPlan* p, char* why)
@@ -223,7 +246,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
     [VPL_STAGE_CLUSTERED_LIGHTS] = {
         "list", 0.2, IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) |
             IN(SECOND_PARABOLOIDS), "SEES",
-        needsFirstBounce, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
+        needsClusteredLights, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
     [VPL_STAGE_VIRTUAL_LIGHTS] = {
         "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),
         "method lighting show show-index compensation min-distance PASS",
@@ -233,10 +256,10 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
     [VPL_STAGE_SIDES] = {
         "reachable sides", 0.1, IN(GEOMETRY) | IN(PATCHES), "form-factors camera seed",
-        needsPatches, vplMakeSides, vplDestroySides, .report = vplReportSides},
+        needsSides, vplMakeSides, vplDestroySides, .report = vplReportSides},
     [VPL_STAGE_PATCH_MESH] = {
         "patch mesh", 0.11, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "",
-        needsPatches, vplMakePatchMesh, vplDestroyPatchMesh},
+        needsPatchMesh, vplMakePatchMesh, vplDestroyPatchMesh},
     [VPL_STAGE_FORM_FACTORS] = {
         "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
@@ -245,7 +268,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsPatchLight, vplMakePatchLight, vplDestroyPatchLight},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
-        needsPatchLight, vplMakeSolution, vplDestroySolution, .report = vplReportSolution, .continues = true},
+        needsSolution, vplMakeSolution, vplDestroySolution, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
         "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
         needsVertexLight, vplMakeVertexLight, vplDestroyVertexLight},
