@@ -2,6 +2,8 @@
 // Plans: pure, with every decision made, and true of what rendering then does.
 #include "scenes.h"
 
+#include <stdlib.h>
+
 static const char* const METHODS[] = {"instant-radiosity", "direct", "path", "keller", "ssvp", "radiosity"};
 enum { METHOD_COUNT = 6 };
 
@@ -26,6 +28,15 @@ static vplPlan* planOf(const vplScene* scene, const vplRenderOptions* options)
         fail_msg("%s", takeMessage());
     }
     return plan;
+}
+
+static char* describe(const vplPlan* plan)
+{
+    const size_t length = vplPlan_Describe(plan, NULL, 0);
+    char* text = malloc(length + 1);
+    assert_int_equal(vplPlan_Describe(plan, text, length + 1), length);
+    assert_int_equal(strlen(text), length);
+    return text;
 }
 
 static bool hasStage(const vplPlan* plan, const char* name)
@@ -57,6 +68,10 @@ TEST(TwoPlansOfTheSameAreEqual, 2)
         const vplRenderOptions options = OPTIONS("method", METHODS[method], "size", "64x36"),
                                before = options;
         vplPlan *a = planOf(scene, &options), *b = planOf(scene, &options);
+        char *textOfA = describe(a), *textOfB = describe(b);
+        assert_string_equal(textOfA, textOfB);
+        free(textOfA);
+        free(textOfB);
         assert_memory_equal(&options, &before, sizeof before);
         assert_memory_equal(&a->options, &b->options, offsetof(vplRenderOptions, problem));
         assert_int_equal(a->stageCount, b->stageCount);
@@ -142,11 +157,11 @@ TEST(EachMethodRunsTheStagesOfItsDocument, 1)
         "geometry, shadow map, area lights, shading",
         "geometry, paths",
         "geometry, clamp distance, particles, shadow map, virtual lights, shading",
-        "geometry, reflective map, first bounce, clusters, paraboloid, second bounce, second clusters, "
-        "second "
-        "paraboloid, list, area lights, virtual lights, shading",
-        "geometry, patches, reachable sides, patch mesh, form factors, patch light, solve, corners, shadow "
-        "map, area lights, shading"};
+        ("geometry, reflective map, first bounce, clusters, paraboloid, second bounce, second clusters, "
+         "second "
+         "paraboloid, list, area lights, virtual lights, shading"),
+        ("geometry, patches, reachable sides, patch mesh, form factors, patch light, solve, corners, shadow "
+         "map, area lights, shading")};
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
     addEmitter(scene, VPL_EMITTER_POINT, (vplVec3){0, 2, 0}, (vplVec3){0, -1, 0}, 1);
     for (int method = 0; method < METHOD_COUNT; method++) {
@@ -263,6 +278,9 @@ TEST(WhatCannotBeRenderedHasAPlanThatSaysWhy, 1)
         if (strlen(plan->problem) < 12) {
             fail_msg("%s %s has no problem", refused[i][0], refused[i][1]);
         }
+        char* text = describe(plan);
+        assert_non_null(strstr(text, plan->problem));
+        free(text);
         const vplResult result = vplRender(scene, &options, &image, NULL);
         assert_true(result == plan->refusal && result != VPL_SUCCESS && image == NULL);
         const char* message = takeMessage();
@@ -276,6 +294,21 @@ TEST(WhatCannotBeRenderedHasAPlanThatSaysWhy, 1)
     bad.particles.count = -1;
     assert_int_equal(vplPlan_Create(scene, &bad, NULL, &none), VPL_INVALID_ARGUMENT);
     assert_null(none);
+    vplScene_Destroy(scene);
+}
+
+TEST(DescriptionsAreCutLikeSnprintf, 1)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    const vplRenderOptions options = OPTIONS("size", "8x8");
+    vplPlan* plan = planOf(scene, &options);
+    char *all = describe(plan), few[20];
+    memset(few, 'x', sizeof few);
+    assert_int_equal(vplPlan_Describe(plan, few, 10), strlen(all));
+    assert_memory_equal(few, all, 9);
+    assert_true(few[9] == 0 && few[10] == 'x');
+    free(all);
+    vplPlan_Destroy(plan);
     vplScene_Destroy(scene);
 }
 
