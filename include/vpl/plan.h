@@ -37,10 +37,11 @@ typedef struct vplDecision {
 
 // Read only. Two plans of the same scene, options and machine are equal.
 typedef struct vplPlan {
-    vplRenderOptions options; // nothing in it is "usual", "auto" or negative, but for maxBounces -1: no limit
-    vplLighting
-        shading;        // formulas of shading: physical for Keller also where particles lose light as printed
-    vplSampler sampler; // of particles
+    // Nothing in it is "usual", "auto" or negative but for maxBounces -1 (no limit), lengths of shadow maps' bias and
+    // PCF that follow each map's far distance, and row sums of links, which have a rule of their own.
+    vplRenderOptions options;
+    // Formulas of shading: physical for Keller also where particles lose light as printed.
+    vplLighting shading;
     vplBiasRule biasRule; // of shadow maps of emitters
     int linkAbove;        // patches exchange light by links where more sides than this take part
     float nearDistance;   // metres; least clamp distance of compensated lights; 0: none
