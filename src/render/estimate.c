@@ -235,7 +235,7 @@ static void sumUp(vplPlan* p, vplStageId id, const vplPlanStage* stage)
     }
 }
 
-vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
+void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const Scale s = {.plan = p,
@@ -269,5 +269,4 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
     }
     p->pictureBytes = (int64_t)(12 * s.pixels);
     countDraws(&s, p);
-    return VPL_SUCCESS;
 }

@@ -1,167 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Every decision of a render, in one place: what "usual" and "auto" mean, which stages run, and what cannot
-// be done.
+// A plan from start to end: poses, decisions (decisions.c), what cannot be rendered, stages, and estimates.
 #include "render/plan.h"
 
 #include "render/options.h"
 #include "render/show.h"
-#include "render/stages/results.h"
 
-#include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-void vplDecide(vplPlan* plan, const char* option, const char* format, ...)
-{
-    if (plan->decisionCount < VPL_MAX_DECISIONS) {
-        vplDecision* d = &plan->decisions[plan->decisionCount++];
-        va_list arguments;
-        d->name = option;
-        vplRenderOptions_Get(&plan->options, option, d->value, sizeof d->value);
-        va_start(arguments, format);
-        vsnprintf(d->why, sizeof d->why, format, arguments);
-        va_end(arguments);
-    }
-}
-
-// ---- decisions that options and method alone make
-
-static void choosePipeline(vplPlan* p)
-{
-    vplRenderOptions* o = &p->options;
-    const bool ssvp = o->method == VPL_METHOD_SSVP;
-    if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
-        o->pipeline.kind = ssvp ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
-        if (p->showsVirtual) {
-            vplDecide(p, "pipeline",
-                      ssvp ? "neighbours share lights, as the document has it"
-                           : "one G-buffer, then all lights per tile");
-        }
-    }
-    if (o->shadow.rsmSize == 0) {
-        o->shadow.rsmSize = ssvp ? 1024 : 256;
-        if (ssvp || o->particles.placement == VPL_PLACEMENT_RSM) {
-            vplDecide(p, "rsm-size",
-                      ssvp ? "direct light takes its shadows from it, too"
-                           : "first hits need no more texels");
-        }
-    }
-}
-
-static void chooseParticles(vplPlan* p)
-{
-    vplRenderOptions* o = &p->options;
-    const bool keller = o->method == VPL_METHOD_KELLER, byView = o->particles.placement == VPL_PLACEMENT_VIEW;
-    const bool mirror = o->lighting == VPL_LIGHTING_DOCUMENTED && !keller;
-    const bool shown = (VPL_USE_PARTICLES & 1 << o->method) != 0;
-    if (o->particles.sampler == VPL_SAMPLER_AUTO) { // by view: error 0.64 in sponza-sun, 0.91 in room
-        o->particles.sampler = keller || byView ? VPL_SAMPLER_HALTON : VPL_SAMPLER_RANDOM;
-        if (shown) {
-            vplDecide(p, "sampler",
-                      keller   ? "as Keller's document has it"
-                      : byView ? "less noise among so many candidates"
-                               : "the document's particles start at random");
-        }
-    }
-    if (o->particles.bounce == VPL_BOUNCE_AUTO) {
-        o->particles.bounce = mirror ? VPL_BOUNCE_REFLECT : VPL_BOUNCE_DIFFUSE;
-        if (shown) {
-            vplDecide(p, "bounce",
-                      mirror ? "particles reflect like mirrors in documented lighting"
-                             : "surfaces are diffuse");
-        }
-    }
-}
-
-static void chooseShadows(vplPlan* p)
-{
-    vplRenderOptions* o = &p->options;
-    const bool documented = p->shading == VPL_LIGHTING_DOCUMENTED;
-    const bool pair = o->shadow.bias >= 0 || o->shadow.biasSlope >= 0;
-    const bool exact = o->shadow.bias == VPL_BIAS_OPTION_EXACT;
-    p->emitterRays = o->lights.shadows == VPL_LIGHT_SHADOWS_RAY;
-    p->biasRule = pair || (documented && !exact) ? VPL_BIAS_PAIR : VPL_BIAS_EXACT;
-    if (o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL) {
-        o->lights.shadows = o->method == VPL_METHOD_KELLER ? VPL_LIGHT_SHADOWS_AUTO
-                            : o->method == VPL_METHOD_SSVP ? VPL_LIGHT_SHADOWS_CLUSTER
-                                                           : VPL_LIGHT_SHADOWS_NONE;
-        if (p->showsVirtual && o->lights.shadows != VPL_LIGHT_SHADOWS_AUTO) {
-            vplDecide(p, "light-shadows",
-                      o->method == VPL_METHOD_SSVP ? "lights of a cluster share its paraboloid map"
-                                                   : "the document draws virtual lights without shadows");
-        }
-    }
-}
-
-static void chooseCompensation(vplPlan* p)
-{
-    vplRenderOptions* o = &p->options;
-    const bool keller = o->method == VPL_METHOD_KELLER;
-    const bool pays =
-        keller && o->lighting == VPL_LIGHTING_PHYSICAL && o->lights.shadows != VPL_LIGHT_SHADOWS_NONE;
-    if (o->lights.compensation == VPL_COMPENSATION_USUAL) {
-        o->lights.compensation = pays ? VPL_COMPENSATION_RAYS : VPL_COMPENSATION_NONE;
-        if (p->showsVirtual) {
-            vplDecide(p, "compensation",
-                      pays     ? "short rays find the light that the clamp takes away"
-                      : keller ? "it needs physical lighting and shadows"
-                               : "only keller's lights stand for all light near by");
-        }
-    }
-    const vplShow show = o->output.show;
-    const bool shown = show == VPL_SHOW_PICTURE || show == VPL_SHOW_INDIRECT || show == VPL_SHOW_OVERLAY ||
-                       show == VPL_SHOW_DIRECT;
-    p->compensates = o->lights.compensation == VPL_COMPENSATION_RAYS && shown && p->showsVirtual &&
-                     o->lights.minDistance != 0 && p->shading == VPL_LIGHTING_PHYSICAL;
-    p->estimatesLoss = show != VPL_SHOW_LIGHT && o->sequence.history == NULL && // frames have no time for it
-                       p->shading == VPL_LIGHTING_PHYSICAL && (p->showsDirect || p->compensates);
-}
-
-static void chooseRadiosity(vplPlan* p)
-{
-    vplRadiosityOptions* o = &p->options.radiosity;
-    const bool incentre = o->formFactors == VPL_FORM_FACTORS_INCENTRE;
-    if (o->rowSums == VPL_ROW_SUMS_USUAL && o->hierarchy == VPL_HIERARCHY_OFF) {
-        o->rowSums = incentre ? VPL_ROW_SUMS_KEEP : VPL_ROW_SUMS_CLAMP;
-        vplDecide(p, "row-sums",
-                  incentre ? "as the document has it" : "no patch sends more light than it has");
-    }
-    if (o->lightSamples == 0) {
-        o->lightSamples = incentre ? 1 : VPL_PATCH_CELLS;
-        vplDecide(p, "patch-light", incentre ? "as the document has it" : "the mean over the patch");
-    }
-}
-
-// What the picture adds up.
-static void choosePicture(const vplScene* scene, vplPlan* p)
-{
-    const vplRenderOptions* o = &p->options;
-    const vplShowRow* row = &VPL_SHOWS[o->output.show];
-    const bool keller = o->method == VPL_METHOD_KELLER;
-    const bool lit = (VPL_USE_VIRTUAL_LIGHTS & 1 << o->method) != 0 &&
-                     (o->method != VPL_METHOD_SSVP || o->maxBounces != 0);
-    p->shading = keller ? VPL_LIGHTING_PHYSICAL : o->lighting;
-    p->showsDirect = row->direct && o->method != VPL_METHOD_PATH;
-    p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
-    p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
-    p->progressive = row->passes && p->showsVirtual &&
-                     (o->stop.passes > 1 || o->stop.budgetMs > 0 || o->stop.maxError > 0);
-    for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
-        const vplRgb e = vplScene_GetMaterial(scene, i)->emission;
-        p->hasAreaLights = p->hasAreaLights || e.r > 0 || e.g > 0 || e.b > 0;
-    }
-}
-
-static void chooseRays(vplPlan* p)
-{
-    bool direct = p->hasAreaLights || p->emitterRays;
-    for (int i = 0; i < p->emitterCount; i++) {
-        direct = direct || p->emitters[i].type == VPL_EMITTER_DIRECTIONAL;
-    }
-    p->castsRays = p->showsVirtual || p->showsPatches || p->options.method == VPL_METHOD_PATH ||
-                   (p->showsDirect && direct);
-}
 
 // ---- what cannot be rendered
 
@@ -220,102 +65,6 @@ static void refuse(vplPlan* p)
     }
 }
 
-// ---- decisions that need the scene's geometry
-
-static vplResult chooseClamp(vplRunner* r, vplPlan* p)
-{
-    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    if (!p->showsVirtual || p->options.lights.minDistance >= 0) {
-        p->options.lights.minDistance = p->showsVirtual ? p->options.lights.minDistance : 0;
-        return VPL_SUCCESS;
-    }
-    p->clampArea = vplGeometry_Area(g);
-    if (p->compensates && g->triangleCount > 0) {
-        TRY(vplRunner_RunStage(r, VPL_STAGE_NEAR_DISTANCE));
-        const vplNearDistance* near = r->run.results[VPL_STAGE_NEAR_DISTANCE];
-        p->nearDistance = near->metres;
-    }
-    return VPL_SUCCESS;
-}
-
-static vplResult countLights(vplRunner* r, vplPlan* p)
-{
-    vplRenderOptions* o = &p->options;
-    if ((VPL_USE_PARTICLES & 1 << o->method) == 0) {
-        return VPL_SUCCESS;
-    }
-    if (o->method == VPL_METHOD_KELLER && o->output.show == VPL_SHOW_DIRECT) {
-        o->particles.reflectivity = 0;
-        vplDecide(p, "reflectivity", "lights on the emitters are all that direct light needs");
-    } else if (o->particles.reflectivity < 0) {
-        o->particles.reflectivity = vplGeometry_MeanReflectance(r->run.results[VPL_STAGE_GEOMETRY]);
-        vplDecide(p, "reflectivity", "the mean reflectance over the area of the scene");
-    }
-    return vplCountParticles(r->run.context, o->particles.count, o->particles.reflectivity,
-                             p->particlesPerStep, VPL_MAX_STEPS_REPORTED, &p->stepCount, &p->virtualLights);
-}
-
-// SSVP's lights, most.
-static void countSsvpLights(vplPlan* p)
-{
-    const vplRenderOptions* o = &p->options;
-    const int bounces = o->maxBounces < 0 || o->maxBounces > 2 ? 2 : o->maxBounces;
-    const int lights[2] = {o->ssvp.firstBounce, o->ssvp.secondBounce};
-    for (int i = 0; i < bounces && o->method == VPL_METHOD_SSVP; i++) {
-        p->stepCount += lights[i] > 0;
-        p->particlesPerStep[i] = lights[i];
-        p->virtualLights += lights[i];
-    }
-}
-
-static void decideClamp(const vplRunner* r, vplPlan* p)
-{
-    if (p->clampArea > 0) {
-        const double passes = p->options.stop.passes > 1 ? p->options.stop.passes : 1;
-        p->options.lights.minDistance = vplClampDistance(&r->run, (double)p->virtualLights);
-        vplDecide(p, "min-distance", "%s%s",
-                  p->nearDistance > 0 && p->options.lights.minDistance <= p->nearDistance
-                      ? "within it surfaces see a fifth of what they see; nearer light is found by short rays"
-                      : "the radius of a disc with one light's share of the area of the scene",
-                  passes > 1 ? "; less in later passes" : "");
-    }
-}
-
-// Whether patches exchange light in groups.
-static vplResult chooseLinks(vplRunner* r, vplPlan* p)
-{
-    vplRadiosityOptions* o = &p->options.radiosity;
-    p->linkAbove = o->hierarchy == VPL_HIERARCHY_ON    ? -1
-                   : o->hierarchy == VPL_HIERARCHY_OFF ? INT_MAX
-                                                       : VPL_ALL_PAIRS;
-    p->patches = o->patches;
-    p->patchSides = o->patches; // in rooms, which light fills from one side
-    if (o->placement == VPL_PATCHES_UNIFORM && p->showsPatches) {
-        TRY(vplRunner_RunStage(r, VPL_STAGE_PATCHES));
-        TRY(vplRunner_RunStage(r, VPL_STAGE_SIDES));
-        const vplPatches* patches = r->run.results[VPL_STAGE_PATCHES];
-        const vplPatchSides* sides = r->run.results[VPL_STAGE_SIDES];
-        p->patches = patches->patchCount;
-        p->longestEdge = (double)patches->longestEdge;
-        p->patchSides = sides->count;
-    }
-    p->linked = p->patchSides > p->linkAbove;
-    p->formFactorBytes = (int64_t)p->patchSides * p->patchSides * (int64_t)sizeof(float);
-    if (o->hierarchy == VPL_HIERARCHY_AUTO) {
-        o->hierarchy = p->linked ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
-        vplDecide(p, "hierarchy",
-                  "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
-                  VPL_ALL_PAIRS);
-    }
-    if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
-        p->refusal = VPL_LIMIT;
-        snprintf(p->problem, sizeof p->problem,
-                 "form factors of %d sides take %lld bytes, at most %lld are allowed; use --hierarchy on",
-                 p->patchSides, (long long)p->formFactorBytes, (long long)VPL_MAX_FORM_FACTOR_BYTES);
-    }
-    return VPL_SUCCESS;
-}
-
 // ---- stages
 
 static const vplStageId* recipeOf(vplMethod method)
@@ -357,28 +106,6 @@ static void listStages(vplPlan* p)
     }
 }
 
-// Maps or rays for virtual lights, by what each will cost for the lights of the first pass.
-static vplResult chooseLightShadows(vplRunner* r, vplPlan* p)
-{
-    char why[VPL_PLAN_TEXT];
-    vplLightShadows* shadows = &p->options.lights.shadows;
-    if (*shadows != VPL_LIGHT_SHADOWS_AUTO) {
-        return VPL_SUCCESS;
-    }
-    if (!p->showsVirtual || p->virtualLights == 0 || p->options.pipeline.kind == VPL_ACCUMULATE_LIGHTCUTS) {
-        *shadows = VPL_LIGHT_SHADOWS_RAY;
-        if (p->showsVirtual) {
-            vplDecide(p, "light-shadows", "a pixel asks about few of the lights, and nobody knows which");
-        }
-        return VPL_SUCCESS;
-    }
-    TRY(vplRunner_RunPlan(r, p, VPL_STAGE_VIRTUAL_LIGHTS));
-    const vplVirtualLights* lights = r->run.results[VPL_STAGE_VIRTUAL_LIGHTS];
-    *shadows = vplChooseLightShadows(&r->run, lights, p, why);
-    vplDecide(p, "light-shadows", "%s", why);
-    return VPL_SUCCESS;
-}
-
 // ---- the plan
 
 static vplResult pose(const vplScene* scene, vplPlan* p)
@@ -400,27 +127,15 @@ static vplResult decideAll(vplRunner* r, vplPlan* p)
 {
     p->refusal = VPL_INVALID_ARGUMENT;
     TRY(pose(r->run.scene, p));
-    choosePicture(r->run.scene, p);
-    choosePipeline(p);
-    chooseParticles(p);
-    chooseShadows(p);
-    chooseCompensation(p);
-    chooseRays(p);
+    vplDecideByOptions(r->run.scene, p);
     refuse(p);
-    TRY(vplRunner_RunStage(r, VPL_STAGE_GEOMETRY));
-    if (p->problem[0] != 0) {
+    if (p->problem[0] != 0) { // before anything is built
         return VPL_SUCCESS;
     }
-    TRY(chooseClamp(r, p));
-    TRY(countLights(r, p));
-    countSsvpLights(p);
-    decideClamp(r, p);
-    if (p->options.method == VPL_METHOD_RADIOSITY) {
-        TRY(chooseLinks(r, p));
-        chooseRadiosity(p);
-    }
+    TRY(vplRunner_RunStage(r, VPL_STAGE_GEOMETRY));
+    TRY(vplDecideByGeometry(r, p));
     listStages(p);
-    TRY(chooseLightShadows(r, p));
+    TRY(vplDecideLightShadows(r, p));
     listStages(p); // shadows may have decided what clusters are for
     return VPL_SUCCESS;
 }
@@ -440,8 +155,8 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
         result = decideAll(r, p);
         r->plans = false;
     }
-    if (result == VPL_SUCCESS) {
-        result = vplEstimatePlan(r, machine, p);
+    if (result == VPL_SUCCESS && r->run.results[VPL_STAGE_GEOMETRY] != NULL) {
+        vplEstimatePlan(r, machine, p);
     }
     return vplArena_Deliver(arena, result, p, planOut);
 }

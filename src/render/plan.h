@@ -10,10 +10,16 @@
 vplResult vplMakePlan(vplRunner* runner, const vplRenderOptions* options, const vplMachine* machine,
                       vplPlan** planOut);
 
-// Fills in counts and bytes: what stages hold that ran already, and what the others will.
-vplResult vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
+// Decisions that need only the options and the declared scene.
+void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 
-// Adds a decision to the plan: the value of the option as it is now, and why.
-void vplDecide(vplPlan* plan, const char* option, const char* format, ...) VPL_PRINTF(3, 4);
+// Decisions that need the scene's geometry, which the runner has, or results of stages, which it then runs.
+vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
+
+// Maps or rays for virtual lights, by what each will cost for the lights of the first pass.
+vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
+
+// Fills in counts and bytes: what stages hold that ran already, and what the others will.
+void vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
 
 #endif

@@ -132,6 +132,12 @@ static uint64_t hashNumbers(uint64_t state, const double* numbers, int count)
     return state;
 }
 
+static uint64_t hashBits(uint64_t state, uint64_t bits)
+{
+    const uint32_t words[] = {(uint32_t)bits, (uint32_t)(bits >> 32)};
+    return vplHashWords(state, words, 2);
+}
+
 static uint64_t hashEmitters(uint64_t state, const vplPlan* plan)
 {
     for (int i = 0; i < plan->emitterCount; i++) {
@@ -189,19 +195,17 @@ static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
             const double pass[] = {run->pass, run->plan->progressive};
             state = hashNumbers(state, pass, 2);
         } else if (strcmp(word, "SHIFT") == 0) {
-            const uint64_t shift = vplSsvpShift(run);
-            state = vplHashWords(state, (const uint32_t[]){(uint32_t)shift, (uint32_t)(shift >> 32)}, 2);
+            state = hashBits(state, vplSsvpShift(run));
         } else if (strcmp(word, "BIAS") == 0) {
-            state = vplHashWords(state, (const uint32_t[]){run->plan->biasRule}, 1);
+            state = hashBits(state, run->plan->biasRule);
         } else if (strcmp(word, "SEES") == 0) {
-            state = vplHashWords(state, (const uint32_t[]){vplSsvpSees(run->plan)}, 1);
+            state = hashBits(state, vplSsvpSees(run->plan));
         } else if (strcmp(word, "ADAPTIVE") == 0) {
             const bool adaptive = o->radiosity.placement == VPL_PATCHES_ADAPTIVE;
             const char* drafts = "form-factors form-samples row-sums link-error patch-light camera seed";
-            const uint64_t drafted = adaptive ? findKey(run, drafts, build) : 0;
-            state = vplHashWords(state, (const uint32_t[]){(uint32_t)drafted, (uint32_t)(drafted >> 32)}, 2);
+            state = hashBits(state, adaptive ? findKey(run, drafts, build) : 0);
         } else if (strcmp(word, "ALWAYS") == 0) {
-            state = vplHashWords(state, &build, 1);
+            state = hashBits(state, build);
         } else if (strcmp(word, "PLACEMENT") == 0) {
             const bool byView = o->particles.placement == VPL_PLACEMENT_VIEW;
             const double placement[] = {o->particles.placement, o->lights.shadows != VPL_LIGHT_SHADOWS_NONE};
@@ -211,7 +215,7 @@ static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
             state =
                 vplHashWords(state, (const uint32_t[]){(uint32_t)run->scene->stamp, run->plan->castsRays}, 2);
         } else if (strcmp(word, "seed") == 0) {
-            state = vplHashWords(state, (const uint32_t[]){(uint32_t)o->seed, (uint32_t)(o->seed >> 32)}, 2);
+            state = hashBits(state, o->seed);
         } else {
             const double value = vplOption_GetNumber(vplFindOption(word), o);
             state = hashNumbers(state, &value, 1);

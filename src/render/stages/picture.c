@@ -138,7 +138,7 @@ static vplResult shade(const vplRun* run, const Shading* s, int parts, int first
     }
     // Of all lights at once, whatever batch is shown.
     const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
-    if (near) {
+    if (near && (plan->compensates || plan->estimatesLoss)) {
         compensation = vplMakeCompensation(run, v, s->shadows);
         def.compensation = plan->compensates ? &compensation : NULL;
     }
