@@ -13,8 +13,8 @@ void VPL_KERNEL(vplHemiMapFactor)(const vplHemiMap* map, const vplSurface* surfa
                                   float factor[restrict VPL_LANES])
 {
     const vplVec3 o = map->position, r = map->right, u = map->up, f = map->forward;
-    const int32_t size = map->size, last = size - 1, blocks = vplHemiMap_Blocks(size);
-    const float half = 0.5f * (float)size, scale = 1 / (float)size;
+    const int32_t size = map->size, blocks = vplHemiMap_Blocks(size);
+    const float last = (float)(size - 1), half = 0.5f * (float)size, scale = 1 / (float)size;
     const float tolerated = 1 + vplHemiMap_Tolerance(size);
     float limit[VPL_LANES], stored[VPL_LANES];
     int32_t place[VPL_LANES], lit[VPL_LANES];
@@ -25,10 +25,9 @@ void VPL_KERNEL(vplHemiMapFactor)(const vplHemiMap* map, const vplSurface* surfa
         const float z = dx * f.x + dy * f.y + dz * f.z;
         const float facing = dx * mx + dy * my + dz * mz;
         const float inverse = 1 / vplMaxf(fabsf(x) + fabsf(y) + fabsf(z), 1e-30f);
-        int32_t column = (int32_t)(((x + y) * inverse + 1) * half),
-                row = (int32_t)(((x - y) * inverse + 1) * half);
-        column = column < last ? column : last;
-        row = row < last ? row : last;
+        // The maximum makes 0 of NaN.
+        const int32_t column = (int32_t)vplMinf(vplMaxf(((x + y) * inverse + 1) * half, 0), last),
+                      row = (int32_t)vplMinf(vplMaxf(((x - y) * inverse + 1) * half, 0), last);
         place[l] = vplHemiMap_Place(blocks, column, row);
         // The texel's centre, and 1/t of the fragment's plane there.
         const float cu = (float)(2 * column + 1) * scale - 1, cv = (float)(2 * row + 1) * scale - 1;
