@@ -144,7 +144,7 @@ static void checkBound(vplContext* context, const vplLightTree* tree, vplCluster
 {
     float bound[VPL_LANES];
     vplGetShadingKernels(context->isa, lighting)
-        .clusterBound(s, &tree->nodes[c.node], inverseSquare(minDistance), bound);
+        ->clusterBound(s, &tree->nodes[c.node], inverseSquare(minDistance), bound);
     for (int i = c.first; i < c.first + c.count; i++) {
         vplShadeLight light = tree->lights[i].light;
         light.r = light.g = light.b = 1;
@@ -203,7 +203,7 @@ TEST(BoundsOfSmallClustersAreTight, 1)
         }
         float bound[VPL_LANES], part[3][VPL_LANES] = {{0}};
         vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL)
-            .clusterBound(&s, &tree->nodes[0], INFINITY, bound);
+            ->clusterBound(&s, &tree->nodes[0], INFINITY, bound);
         vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &s, lights, 1, part);
         for (int l = 0; l < VPL_LANES; l++) {
             const float d2 = s.px[l] * s.px[l] + s.py[l] * s.py[l] + s.pz[l] * s.pz[l];
@@ -233,8 +233,8 @@ TEST_ALONE(InstructionSetsBoundAlike)
             vplContext* other = openIsaContext(1, (vplIsa)isa);
             for (int lighting = 0; lighting < 2 && other != NULL; lighting++) {
                 float a[VPL_LANES], b[VPL_LANES];
-                vplGetShadingKernels(VPL_ISA_SCALAR, (vplLighting)lighting).clusterBound(&s, node, 25, a);
-                vplGetShadingKernels((vplIsa)isa, (vplLighting)lighting).clusterBound(&s, node, 25, b);
+                vplGetShadingKernels(VPL_ISA_SCALAR, (vplLighting)lighting)->clusterBound(&s, node, 25, a);
+                vplGetShadingKernels((vplIsa)isa, (vplLighting)lighting)->clusterBound(&s, node, 25, b);
                 assert_memory_equal(a, b, sizeof a);
             }
             if (other != NULL) {

@@ -74,7 +74,7 @@ TEST(RepresentativesErrByLessThanTheBoundAlsoInShadow, 2)
         vplShadeLight* lights = rollTreeLights((Kind)kind, COUNT, 3);
         vplLightTree* tree = plant(context, lights, COUNT);
         const vplShading s = {.geometry = g,
-                              .kernels = vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL),
+                              .kernels = *vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL),
                               .lights = {.inverseClamp = 1 / 0.04f}};
         for (int round = 0; round < ROUNDS; round++) {
             vplSurface surface;

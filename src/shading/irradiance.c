@@ -19,7 +19,7 @@ void vplAccumulateLights(const vplContext* context, vplLighting lighting, float 
                          float irradiance[3][VPL_LANES])
 {
     vplGetShadingKernels(context->isa, lighting)
-        .addLights(surface, lights, count, vplInverseSquare(minDistance), irradiance);
+        ->addLights(surface, lights, count, vplInverseSquare(minDistance), irradiance);
 }
 
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out)

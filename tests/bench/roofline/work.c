@@ -70,7 +70,7 @@ double cullLights(void* work, int which)
     const vplBounds bounds = {{-0.5f, 0, -0.5f, 0, 1, 0}, {0.5f, 0, 0.5f, 0, 1, 0}};
     float* const columns[6] = {w->columns[0], w->columns[1], w->columns[2],
                                w->columns[3], w->columns[4], w->columns[5]};
-    vplCullFcn* cull = vplGetShadingKernels(w->context->isa, VPL_LIGHTING_PHYSICAL).cull;
+    vplCullFcn* cull = vplGetShadingKernels(w->context->isa, VPL_LIGHTING_PHYSICAL)->cull;
     int32_t keep[VPL_LIGHT_GROUP];
     for (int first = 0; first < LIGHTS; first += VPL_LIGHT_GROUP) {
         cull(&bounds, columns, first, VPL_LIGHT_GROUP, keep);
