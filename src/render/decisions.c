@@ -181,8 +181,8 @@ static vplResult chooseClamp(vplRunner* r, vplPlan* p)
     p->clampArea = vplGeometry_Area(g);
     if (p->compensates && g->triangleCount > 0) {
         TRY(vplRunner_RunStage(r, VPL_STAGE_NEAR_DISTANCE));
-        const vplNearDistance* near = r->run.results[VPL_STAGE_NEAR_DISTANCE];
-        p->nearDistance = near->metres;
+        const float* near = r->run.results[VPL_STAGE_NEAR_DISTANCE];
+        p->nearDistance = *near;
     }
     return VPL_SUCCESS;
 }

@@ -189,7 +189,7 @@ static EstimateFcn* const ESTIMATES[VPL_STAGE_COUNT] = {
 static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
 {
     const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights;
-    const vplVirtualLights* known = r->store->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
+    const vplVirtualLights* known = r->history->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
     return known != NULL ? known->count : p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
 }
 
@@ -254,7 +254,7 @@ void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
     p->peakBytes = (peak > before ? peak : before) - foreign;
     for (int i = 0; i < p->stageCount; i++) {
         vplPlanStage* stage = &p->stages[i];
-        const vplSlot* slot = &r->store->slots[stage->id];
+        const vplSlot* slot = &r->history->slots[stage->id];
         if (slot->result != NULL) { // it ran while decisions were made, and is part of `live`
             stage->bytes = slot->bytes;
             stage->scratch = slot->scratch;

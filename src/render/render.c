@@ -10,67 +10,36 @@
 #include "render/stages/results.h"
 #include "scene/scene.h"
 
-// ---- what frames hand on
+// ---- histories
 
-struct vplHistory {
-    vplContext* context;
-    uint64_t sceneStamp; // of the scene of the first frame; 0: none yet
-    vplStore* store;     // NULL while a renderer has it
-};
-
-vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut)
+// Opens the history that the options name, or a new one where there is none or another renderer uses it.
+static vplResult openHistory(const vplScene* scene, vplHistory* shared, vplHistory** historyOut)
 {
-    vplHistory* history = vplAllocZero(context, 1, sizeof *history);
-    if (history == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    if (shared != NULL && shared->context != scene->context) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.sequence.history was made with another context than the scene's");
     }
-    history->context = context;
-    *historyOut = history;
+    if (shared != NULL && shared->sceneStamp != 0 && shared->sceneStamp != scene->stamp) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.sequence.history is of another scene, or something was added to the "
+                       "scene since");
+    }
+    if (shared == NULL || shared->busy) {
+        return vplHistory_Create(scene->context, historyOut);
+    }
+    shared->busy = true;
+    shared->sceneStamp = scene->stamp;
+    *historyOut = shared;
     return VPL_SUCCESS;
 }
 
-void vplHistory_Destroy(vplHistory* history)
+static void closeHistory(vplHistory* history, bool shared)
 {
-    if (history != NULL) {
-        vplStore_Destroy(history->store);
-        vplFree(history->context, history);
+    if (shared) {
+        history->busy = false;
+    } else {
+        vplHistory_Destroy(history);
     }
-}
-
-// The store of the frame before, or a new one.
-static vplResult takeStore(const vplScene* scene, const vplRenderOptions* options, vplStore** storeOut)
-{
-    vplHistory* history = options->sequence.history;
-    if (history != NULL) {
-        if (history->context != scene->context) {
-            return vplFail(
-                scene->context, VPL_INVALID_ARGUMENT,
-                "vplRenderOptions.sequence.history was made with another context than the scene's");
-        }
-        if (history->sceneStamp != 0 && history->sceneStamp != scene->stamp) {
-            return vplFail(
-                scene->context, VPL_INVALID_ARGUMENT,
-                "vplRenderOptions.sequence.history is of another scene, or something was added to the "
-                "scene since");
-        }
-        if (history->store != NULL) {
-            *storeOut = history->store;
-            history->store = NULL;
-            return VPL_SUCCESS;
-        }
-    }
-    return vplStore_Create(scene->context, storeOut);
-}
-
-static void giveStore(const vplScene* scene, vplHistory* history, vplStore* store)
-{
-    if (history == NULL) {
-        vplStore_Destroy(store);
-        return;
-    }
-    vplStore_Destroy(history->store);
-    history->store = store;
-    history->sceneStamp = scene->stamp;
 }
 
 // ---- a render as a loop of steps
@@ -79,7 +48,7 @@ struct vplRenderer {
     vplRunner runner;
     vplPlan* plan;
     vplPasses passes;
-    vplHistory* history;
+    bool shared;            // the history is the caller's
     int done;               // passes
     double start, cpuStart; // ms
     double passMs;          // of all passes
@@ -90,18 +59,19 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
 {
     vplContext* context = vplScene_GetContext(scene);
     const double start = vplClockMs(), cpuStart = vplCpuMs();
-    vplStore* store;
-    TRY(takeStore(scene, options, &store));
+    vplHistory* history;
+    TRY(openHistory(scene, options->sequence.history, &history));
+    const bool shared = history == options->sequence.history;
     vplRenderer* r = vplAllocZero(context, 1, sizeof *r);
     if (r == NULL) {
-        vplStore_Destroy(store);
+        closeHistory(history, shared);
         return VPL_OUT_OF_MEMORY;
     }
-    r->history = options->sequence.history;
+    r->shared = shared;
     r->start = start;
     r->cpuStart = cpuStart;
     r->passes.context = context;
-    r->runner = vplRunner_Begin(scene, store);
+    r->runner = vplRunner_Begin(scene, history);
     r->runner.progress = options->progress;
     r->runner.progressUser = options->progressUser;
     r->runner.stats.clampLoss = r->runner.stats.errorEstimate = r->runner.stats.relativeErrorEstimate = -1;
@@ -256,7 +226,7 @@ void vplRenderer_Destroy(vplRenderer* r)
         vplContext* context = r->runner.run.context;
         vplPasses_Free(&r->passes);
         vplPlan_Destroy(r->plan);
-        giveStore(r->runner.run.scene, r->history, r->runner.store);
+        closeHistory(r->runner.history, r->shared);
         vplFree(context, r);
     }
 }
@@ -314,7 +284,7 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
     TRY(vplRenderer_Create(scene, &o, &r));
     const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, stage);
     if (result == VPL_SUCCESS && ssvp) {
-        vplClusteredLights* lights = r->runner.store->slots[stage].result;
+        vplClusteredLights* lights = r->runner.history->slots[stage].result;
         *setOut = lights->set;
         lights->set = NULL;
     } else if (result == VPL_SUCCESS) {

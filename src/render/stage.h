@@ -54,6 +54,9 @@ typedef struct vplRun {
     int pass;
     int parts;                // vplPart: what the picture stage adds up
     bool draft;               // of a round of adaptive patches before the last
+    vplArena* arena;          // memory of the result
+    vplArena* scratch;        // memory that is freed when the stage ends
+    vplProgressFcn* progress; // of the stage under way; its `user` is the runner; NULL where nobody listens
     struct vplRunner* runner; // for timing of parts of a stage, progress and nested runs
     vplRenderStats* stats;    // counts of work are added here
 } vplRun;
@@ -67,7 +70,7 @@ typedef struct vplStage {
     // Whether the picture needs it; writes the reason for either into `why`, VPL_PLAN_TEXT bytes.
     bool (*isNeeded)(const vplPlan* plan, char* why);
     vplResult (*make)(const vplRun* run, void** resultOut); // a result is destroyed also where it failed
-    void (*destroy)(void* result);                          // NULL is allowed
+    void (*destroy)(void* result);     // frees objects that its arena does not own; NULL: there are none
     void (*report)(const vplRun* run); // what statistics tell of the result, kept or new; may be NULL
     bool continues;                    // it wants its result of before
 } vplStage;
@@ -78,11 +81,6 @@ extern const vplStage VPL_STAGES[VPL_STAGE_COUNT];
 // The recipes of the methods: stages in the order in which they run, ended by VPL_STAGE_COUNT.
 extern const vplStageId VPL_DIRECT_RECIPE[], VPL_INSTANT_RADIOSITY_RECIPE[], VPL_KELLER_RECIPE[],
     VPL_SSVP_RECIPE[], VPL_RADIOSITY_RECIPE[], VPL_PATH_RECIPE[];
-
-// Progress within the stage under way; pass both to calls that take a progress callback. NULL where nobody
-// listens.
-vplProgressFcn* vplRun_Progress(const vplRun* run);
-void* vplRun_ProgressUser(const vplRun* run);
 
 // Part i of `count` of the stage under way begins: progress is that of the part.
 void vplRun_BeginPart(const vplRun* run, int i, int count);

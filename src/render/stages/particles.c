@@ -18,8 +18,8 @@ static vplParticleDef describeParticles(const vplRun* run)
     def.bounce = o->particles.bounce;
     def.geometry = o->particles.geometry;
     def.seed = o->seed;
-    def.progress = vplRun_Progress(run);
-    def.progressUser = vplRun_ProgressUser(run);
+    def.progress = run->progress;
+    def.progressUser = run->runner;
     return def;
 }
 

@@ -77,16 +77,16 @@ static vplResult lightChunk(const vplRun* run, const vplShadeDef* def, int first
 }
 
 // Shadows come by rays, since there are fewer patches than texels.
-static vplResult lightSides(const vplRun* run, int sideCount, vplArena* scratch, vplPatchLight* light)
+static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* light)
 {
     const int room = sideCount < CHUNK_SIDES ? sideCount : CHUNK_SIDES;
     const size_t points = (size_t)room * (size_t)run->plan->options.radiosity.lightSamples;
     const int emitterCount = run->plan->emitterCount;
-    vplShadow* shadows = vplArena_AllocZero(scratch, (size_t)emitterCount, sizeof *shadows);
-    Chunk* chunk = vplArena_AllocZero(scratch, 1, sizeof *chunk);
-    vplSurfacePoint* places = vplArena_Alloc(scratch, points, sizeof *places);
-    vplRgb* irradiance = vplArena_Alloc(scratch, points, sizeof *irradiance);
-    TRY(vplArena_Check(scratch));
+    vplShadow* shadows = vplArena_AllocZero(run->scratch, (size_t)emitterCount, sizeof *shadows);
+    Chunk* chunk = vplArena_AllocZero(run->scratch, 1, sizeof *chunk);
+    vplSurfacePoint* places = vplArena_Alloc(run->scratch, points, sizeof *places);
+    vplRgb* irradiance = vplArena_Alloc(run->scratch, points, sizeof *irradiance);
+    TRY(vplArena_Check(run->scratch));
     *chunk = (Chunk){.points = places, .irradiance = irradiance, .light = light};
     const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                              .emitters = run->plan->emitters,
@@ -114,28 +114,16 @@ vplResult vplMakePatchLight(const vplRun* run, void** resultOut)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const size_t count = (size_t)sides->count;
-    vplArena* arena = vplArena_Create(run->context);
-    vplPatchLight* light = vplArena_Alloc(arena, 1, sizeof *light);
-    vplRgb* direct = vplArena_AllocZero(arena, count, sizeof *direct);
-    float* spread = vplArena_AllocZero(arena, count, sizeof *spread);
-    vplRgb* source = vplArena_AllocZero(arena, count, sizeof *source);
-    vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        vplArena* scratch = vplArena_Create(run->context);
-        *light = (vplPatchLight){direct, spread, source, arena};
-        result = lightSides(run, sides->count, scratch, light);
-        vplArena_Destroy(scratch);
-    }
-    if (result == VPL_SUCCESS) {
-        findSource(sides, light);
-    }
-    return vplArena_Deliver(arena, result, light, resultOut);
-}
-
-void vplDestroyPatchLight(void* result)
-{
-    vplPatchLight* light = result;
-    vplArena_Destroy(light != NULL ? light->arena : NULL);
+    vplPatchLight* light = vplArena_Alloc(run->arena, 1, sizeof *light);
+    vplRgb* direct = vplArena_AllocZero(run->arena, count, sizeof *direct);
+    float* spread = vplArena_AllocZero(run->arena, count, sizeof *spread);
+    vplRgb* source = vplArena_AllocZero(run->arena, count, sizeof *source);
+    TRY(vplArena_Check(run->arena));
+    *light = (vplPatchLight){direct, spread, source};
+    *resultOut = light;
+    TRY(lightSides(run, sides->count, light));
+    findSource(sides, light);
+    return VPL_SUCCESS;
 }
 
 // ---- exchange
@@ -176,8 +164,8 @@ static vplResult solve(const vplRun* run, bool first, vplSolution* s)
     def.residual = run->draft ? fmax(o->residual, DRAFT_RESIDUAL) : o->residual;
     def.spectrum = first && !run->draft;
     def.continues = run->plan->options.sequence.history != NULL || run->draft;
-    def.progress = vplRun_Progress(run);
-    def.progressUser = vplRun_ProgressUser(run);
+    def.progress = run->progress;
+    def.progressUser = run->runner;
     TRY(vplSolveRadiosity(&transport, &def, light->source, s->radiosity, &s->stats));
     if (!first) {
         s->stats.spectralRadius = last.spectralRadius;
@@ -192,14 +180,10 @@ static vplResult solve(const vplRun* run, bool first, vplSolution* s)
 static vplResult gather(const vplRun* run, vplSolution* s)
 {
     const vplTransport transport = vplTransportOf(run);
-    vplRgb* reflected = vplAlloc(run->context, (size_t)transport.sides->count, sizeof *reflected);
-    if (reflected == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)transport.sides->count, sizeof *reflected);
+    TRY(vplArena_Check(run->scratch));
     vplFindReflected(transport.sides, s->radiosity, reflected);
-    const vplResult result = vplGatherRadiosity(&transport, reflected, s->irradiance);
-    vplFree(run->context, reflected);
-    return result;
+    return vplGatherRadiosity(&transport, reflected, s->irradiance);
 }
 
 // The document's "slight lag": the sweeps of a frame begin with the radiosities of the frame before, as long
@@ -213,16 +197,11 @@ vplResult vplMakeSolution(const vplRun* run, void** resultOut)
     vplSolution* s = run->before;
     const bool first = s == NULL || s->factorBuild != build;
     if (first) {
-        vplArena* arena = vplArena_Create(run->context);
-        s = vplArena_AllocZero(arena, 1, sizeof *s);
-        vplRgb* radiosity = vplArena_AllocZero(arena, count, sizeof *radiosity);
-        vplRgb* irradiance = vplArena_AllocZero(arena, count, sizeof *irradiance);
-        if (vplArena_Check(arena) != VPL_SUCCESS) {
-            vplArena_Destroy(arena);
-            return VPL_OUT_OF_MEMORY;
-        }
-        *s = (vplSolution){
-            .radiosity = radiosity, .irradiance = irradiance, .factorBuild = build, .arena = arena};
+        s = vplArena_Alloc(run->arena, 1, sizeof *s);
+        vplRgb* radiosity = vplArena_AllocZero(run->arena, count, sizeof *radiosity);
+        vplRgb* irradiance = vplArena_AllocZero(run->arena, count, sizeof *irradiance);
+        TRY(vplArena_Check(run->arena));
+        *s = (vplSolution){.radiosity = radiosity, .irradiance = irradiance, .factorBuild = build};
     }
     *resultOut = s;
     if (first || run->plan->options.sequence.coherence == VPL_COHERENCE_OFF) {
@@ -230,12 +209,6 @@ vplResult vplMakeSolution(const vplRun* run, void** resultOut)
     }
     TRY(solve(run, first, s));
     return gather(run, s);
-}
-
-void vplDestroySolution(void* result)
-{
-    vplSolution* s = result;
-    vplArena_Destroy(s != NULL ? s->arena : NULL);
 }
 
 void vplReportSolution(const vplRun* run)
@@ -251,22 +224,9 @@ vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
-    vplArena* arena = vplArena_Create(run->context);
-    vplVertexLight* light = vplArena_Alloc(arena, 1, sizeof *light);
-    vplRgb* corners = vplArena_Alloc(arena, 2 * (size_t)mesh->vertexCount, sizeof *corners);
-    vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        *light = (vplVertexLight){corners, arena};
-        result = vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
-    }
-    return vplArena_Deliver(arena, result, light, resultOut);
-}
-
-void vplDestroyVertexLight(void* result)
-{
-    vplVertexLight* light = result;
-    vplArena_Destroy(light != NULL ? light->arena : NULL);
+    vplRgb* corners = vplArena_Alloc(run->arena, 2 * (size_t)mesh->vertexCount, sizeof *corners);
+    TRY(vplArena_Check(run->arena));
+    *resultOut = corners;
+    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners));
+    return vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
 }

@@ -60,7 +60,7 @@ static vplResult draw(const vplRun* run, const vplView* view, vplArena* scratch,
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
-    const vplVertexLight* vertices = run->results[VPL_STAGE_VERTEX_LIGHT];
+    const vplRgb* corners = run->results[VPL_STAGE_VERTEX_LIGHT];
     const bool light = o->output.show == VPL_SHOW_PICTURE || o->output.show == VPL_SHOW_INDIRECT;
     const bool smooth = light && o->radiosity.interpolation == VPL_INTERPOLATION_GOURAUD;
     float(*clip)[4] = vplArena_Alloc(scratch, (size_t)mesh->vertexCount, sizeof *clip);
@@ -70,7 +70,7 @@ static vplResult draw(const vplRun* run, const vplView* view, vplArena* scratch,
         TRY(findValues(run, values));
     }
     const vplPatchDraw def = {.mesh = mesh,
-                              .vertexValues = smooth ? vertices->corners : NULL,
+                              .vertexValues = smooth ? corners : NULL,
                               .values = light ? solution->irradiance : values,
                               .reflect = light,
                               .outlines = o->output.show == VPL_SHOW_PATCHES};

@@ -46,7 +46,7 @@ vplResult vplMakePaths(const vplRun* run, void** resultOut)
     const int left = run->plan->options.path.samples - run->pass * PASS_SAMPLES;
     const int samples = left > 0 && left < PASS_SAMPLES ? left : PASS_SAMPLES;
     *resultOut = tracer;
-    return vplPathTracer_Pass(tracer, samples, vplRun_Progress(run), vplRun_ProgressUser(run), 0, 1);
+    return vplPathTracer_Pass(tracer, samples, run->progress, run->runner, 0, 1);
 }
 
 void vplDestroyPaths(void* result)

@@ -5,18 +5,15 @@
 
 #include "render/stage.h"
 
-// VPL_STAGE_NEAR_DISTANCE: within which surfaces see a fifth of what they see.
-typedef struct vplNearDistance {
-    float metres;
-    vplArena* arena;
-} vplNearDistance;
+// VPL_STAGE_NEAR_DISTANCE has a float: the metres within which surfaces see a fifth of what they see.
+// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light at the vertices of the patch
+// mesh, [vertex][front, back].
 
 // VPL_STAGE_EMITTER_MAPS: one entry per emitter.
 typedef struct vplEmitterMaps {
     vplCubeMap** maps;  // NULL: the emitter's shadows come by rays
     vplShadow* shadows; // of the maps
     int count;
-    vplArena* arena;
 } vplEmitterMaps;
 
 // VPL_STAGE_AREA_LIGHTS: points that stand for all area lights in direct light.
@@ -24,14 +21,12 @@ typedef struct vplAreaLights {
     vplShadeLight* lights;
     int count;
     float minDistance; // metres
-    vplArena* arena;
 } vplAreaLights;
 
 // VPL_STAGE_REFLECTIVE_MAPS: one per emitter.
 typedef struct vplReflectiveMaps {
     vplReflectiveMap** maps; // NULL where the emitter has no power
     int count;
-    vplArena* arena;
 } vplReflectiveMaps;
 
 // VPL_STAGE_VIRTUAL_LIGHTS: the lights that the picture adds up.
@@ -43,7 +38,6 @@ typedef struct vplVirtualLights {
     int first;             // lights before this one only light what compensation's rays meet
     int emitterLightCount; // the first lights, if they lie on area lights
     float minDistance;     // clamp, metres
-    vplArena* arena;
 } vplVirtualLights;
 
 // VPL_STAGE_FIRST_BOUNCE and VPL_STAGE_SECOND_BOUNCE.
@@ -52,14 +46,12 @@ typedef struct vplBounceLights {
     uint64_t shift; // of the sample pattern
     float* use; // of each sample of the reflective maps: the share of its light that stays; NULL: not asked
     int sampleCount; // of them
-    vplArena* arena;
 } vplBounceLights;
 
 // VPL_STAGE_CLUSTERS and VPL_STAGE_SECOND_CLUSTERS.
 typedef struct vplBounceClusters {
     vplLightClusters* clusters;
     uint64_t shift; // of the sample pattern
-    vplContext* context;
 } vplBounceClusters;
 
 // VPL_STAGE_PARABOLOIDS and VPL_STAGE_SECOND_PARABOLOIDS.
@@ -68,7 +60,6 @@ typedef struct vplBounceMaps {
     int* viewpoints;         // of each cluster: `particle` of the light that it sees from; -1: of none
     int count;
     uint64_t shift;
-    vplArena* arena;
 } vplBounceMaps;
 
 // VPL_STAGE_CLUSTERED_LIGHTS: the lights of both bounces as one list.
@@ -77,14 +68,12 @@ typedef struct vplClusteredLights {
     int* clusterOf;            // of each light: index in `shadows`
     vplParaboloidMap* shadows; // maps of both bounces
     int shadowCount;           // 0 where lights do not see by clusters
-    vplArena* arena;
 } vplClusteredLights;
 
 // VPL_STAGE_FORM_FACTORS: of all pairs, or links.
 typedef struct vplExchangeFactors {
     vplFormFactors* factors;
     vplLinks* links;
-    vplContext* context;
 } vplExchangeFactors;
 
 // VPL_STAGE_PATCH_LIGHT: light of emitters, one entry per side.
@@ -92,7 +81,6 @@ typedef struct vplPatchLight {
     vplRgb* direct; // irradiance, W/m^2
     float* spread;  // its standard deviation over the side
     vplRgb* source; // radiosity: emission and reflected direct light, W/m^2
-    vplArena* arena;
 } vplPatchLight;
 
 // VPL_STAGE_SOLUTION: one entry per side, W/m^2.
@@ -101,15 +89,7 @@ typedef struct vplSolution {
     vplRgb* irradiance; // of light that was reflected at least once
     vplSolveStats stats;
     uint32_t factorBuild; // of the form factors that it is of
-    vplArena* arena;
 } vplSolution;
-
-// VPL_STAGE_VERTEX_LIGHT: irradiance of reflected light at the vertices of the patch mesh, [vertex][front,
-// back].
-typedef struct vplVertexLight {
-    vplRgb* corners;
-    vplArena* arena;
-} vplVertexLight;
 
 // ---- what stages share
 

@@ -9,8 +9,8 @@
 // their patterns.
 uint64_t vplSsvpShift(const vplRun* run);
 
-// The share of each light's light that stays in the scene, by rays; in arena memory.
-vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, vplArena* arena, float** useOut);
+// Measures by rays which share of each light's light stays in the scene; the shares are scratch memory.
+vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** useOut);
 
 // Whether lights see by the maps of their clusters, whether there is a second bounce, and whether clusters
 // are shown.

@@ -66,14 +66,11 @@ static vplResult sortByCluster(const vplRun* run, const vplClusteredLights* clus
                                vplVirtualLights* v)
 {
     const size_t count = (size_t)v->count;
-    vplArena* scratch = vplArena_Create(run->context);
-    int* starts = vplArena_AllocZero(scratch, (size_t)clustered->shadowCount + 1, sizeof *starts);
-    vplShadeLight* sorted = vplArena_Alloc(v->arena, count, sizeof *sorted);
-    v->clusters = vplArena_Alloc(v->arena, count, sizeof *v->clusters);
-    if (vplArena_Check(scratch) != VPL_SUCCESS || vplArena_Check(v->arena) != VPL_SUCCESS) {
-        vplArena_Destroy(scratch);
-        return VPL_OUT_OF_MEMORY;
-    }
+    int* starts = vplArena_AllocZero(run->scratch, (size_t)clustered->shadowCount + 1, sizeof *starts);
+    vplShadeLight* sorted = vplArena_Alloc(run->arena, count, sizeof *sorted);
+    v->clusters = vplArena_Alloc(run->arena, count, sizeof *v->clusters);
+    TRY(vplArena_Check(run->scratch));
+    TRY(vplArena_Check(run->arena));
     const int* of = clustered->clusterOf + first;
     for (size_t i = 0; i < count; i++) {
         starts[of[i] + 1]++;
@@ -87,40 +84,24 @@ static vplResult sortByCluster(const vplRun* run, const vplClusteredLights* clus
         v->clusters[at] = of[i];
     }
     v->lights = sorted;
-    vplArena_Destroy(scratch);
     return VPL_SUCCESS;
-}
-
-static vplResult prepare(const vplRun* run, const vplClusteredLights* clustered, vplVirtualLights* v)
-{
-    vplLightSet shown;
-    TRY(choose(run, v, &shown));
-    v->lights = vplArena_Alloc(v->arena, (size_t)shown.lightCount, sizeof *v->lights);
-    TRY(vplArena_Check(v->arena));
-    v->count = vplPrepareLights(&shown, run->plan->shading, v->lights);
-    v->minDistance = vplClampDistance(run, v->set->lightCount);
-    const bool clusters = clustered != NULL && clustered->clusterOf != NULL;
-    return clusters ? sortByCluster(run, clustered, (int)(shown.lights - v->set->lights), v) : VPL_SUCCESS;
 }
 
 vplResult vplMakeVirtualLights(const vplRun* run, void** resultOut)
 {
     const vplClusteredLights* clustered = run->results[VPL_STAGE_CLUSTERED_LIGHTS];
-    vplArena* arena = vplArena_Create(run->context);
-    vplVirtualLights* v = vplArena_AllocZero(arena, 1, sizeof *v);
-    vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        v->arena = arena;
-        v->set = clustered != NULL ? clustered->set : run->results[VPL_STAGE_PARTICLES];
-        result = prepare(run, clustered, v);
-    }
-    return vplArena_Deliver(arena, result, v, resultOut);
-}
-
-void vplDestroyVirtualLights(void* result)
-{
-    vplVirtualLights* v = result;
-    vplArena_Destroy(v != NULL ? v->arena : NULL);
+    vplVirtualLights* v = vplArena_AllocZero(run->arena, 1, sizeof *v);
+    vplLightSet shown;
+    TRY(vplArena_Check(run->arena));
+    *resultOut = v;
+    v->set = clustered != NULL ? clustered->set : run->results[VPL_STAGE_PARTICLES];
+    TRY(choose(run, v, &shown));
+    v->lights = vplArena_Alloc(run->arena, (size_t)shown.lightCount, sizeof *v->lights);
+    TRY(vplArena_Check(run->arena));
+    v->count = vplPrepareLights(&shown, run->plan->shading, v->lights);
+    v->minDistance = vplClampDistance(run, v->set->lightCount);
+    const bool clusters = clustered != NULL && clustered->clusterOf != NULL;
+    return clusters ? sortByCluster(run, clustered, (int)(shown.lights - v->set->lights), v) : VPL_SUCCESS;
 }
 
 void vplReportVirtualLights(const vplRun* run)
