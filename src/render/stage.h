@@ -94,7 +94,4 @@ static inline void vplRun_AddRaster(const vplRun* run, const vplRasterStats* sta
     run->stats->fragments += stats->fragments;
 }
 
-// Writes a reason into `why` and is `needed`.
-#define BECAUSE(needed, ...) (snprintf(why, VPL_PLAN_TEXT, __VA_ARGS__), (needed))
-
 #endif
