@@ -175,27 +175,12 @@ static void countDraws(const Scale* s, vplPlan* p)
     p->drawCalls = objects * (6 * maps + (1 + passes) * antialias) + patchDraws * antialias;
 }
 
-static void sumUp(vplPlan* p, vplStageId id, const vplPlanStage* stage)
-{
-    switch (id) {
-    case VPL_STAGE_EMITTER_MAPS:
-    case VPL_STAGE_REFLECTIVE_MAPS:
-    case VPL_STAGE_PARABOLOIDS:
-    case VPL_STAGE_SECOND_PARABOLOIDS:
-        p->shadowMapBytes += stage->bytes;
-        break;
-    case VPL_STAGE_AREA_LIGHTS:
-    case VPL_STAGE_PARTICLES:
-    case VPL_STAGE_FIRST_BOUNCE:
-    case VPL_STAGE_SECOND_BOUNCE:
-    case VPL_STAGE_CLUSTERED_LIGHTS:
-    case VPL_STAGE_VIRTUAL_LIGHTS:
-        p->lightBytes += stage->bytes;
-        break;
-    default:
-        break;
-    }
-}
+enum {
+    SHADOW_MAPS = 1 << VPL_STAGE_EMITTER_MAPS | 1 << VPL_STAGE_REFLECTIVE_MAPS | 1 << VPL_STAGE_PARABOLOIDS |
+                  1 << VPL_STAGE_SECOND_PARABOLOIDS,
+    LIGHTS = 1 << VPL_STAGE_AREA_LIGHTS | 1 << VPL_STAGE_PARTICLES | 1 << VPL_STAGE_FIRST_BOUNCE |
+             1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS
+};
 
 void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
 {
@@ -227,7 +212,8 @@ void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
             live += stage->bytes;
             p->peakBytes = live + stage->scratch > p->peakBytes ? live + stage->scratch : p->peakBytes;
         }
-        sumUp(p, (vplStageId)stage->id, stage);
+        p->shadowMapBytes += (1 << stage->id & SHADOW_MAPS) != 0 ? stage->bytes : 0;
+        p->lightBytes += (1 << stage->id & LIGHTS) != 0 ? stage->bytes : 0;
     }
     p->pictureBytes = (int64_t)(12 * s.pixels);
     countDraws(&s, p);

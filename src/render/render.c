@@ -3,12 +3,13 @@
 // them.
 #include "base/clock.h"
 #include "math/scalar.h"
-#include "render/passes.h"
 #include "render/plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 #include "scene/scene.h"
+
+#include <math.h>
 
 // ---- histories
 
@@ -47,7 +48,8 @@ static void closeHistory(vplHistory* history, bool shared)
 struct vplRenderer {
     vplRunner runner;
     vplPlan* plan;
-    vplPasses passes;
+    vplImage* base;         // all of the picture; direct light alone where passes add the rest
+    double* sums[2];        // of the pictures of passes with even and odd numbers; NULL without passes
     bool shared;            // the history is the caller's
     int done;               // passes
     double start, cpuStart; // ms
@@ -70,7 +72,6 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     r->shared = shared;
     r->start = start;
     r->cpuStart = cpuStart;
-    r->passes.context = context;
     r->runner = vplRunner_Begin(scene, history);
     r->runner.progress = options->progress;
     r->runner.progressUser = options->progressUser;
@@ -108,15 +109,25 @@ static double shareOf(const vplRenderer* r, int passes)
     return share < 1 ? share : 1;
 }
 
-// Direct light in the first pass, then virtual lights: those of each pass make a picture, and the passes'
-// mean counts.
+static vplResult openSums(vplRenderer* r)
+{
+    for (int half = 0; half < 2; half++) {
+        r->sums[half] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[half]);
+        if (r->sums[half] == NULL) {
+            return VPL_OUT_OF_MEMORY;
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums.
 static vplResult addPass(vplRenderer* r)
 {
     if (r->done == 0) {
         r->runner.run.parts = VPL_PART_DIRECT;
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
-        r->passes.base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(vplPasses_Open(&r->passes, r->passes.base));
+        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+        TRY(openSums(r));
         r->runner.run.parts = VPL_PART_INDIRECT;
         TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
     } else {
@@ -124,7 +135,9 @@ static vplResult addPass(vplRenderer* r)
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
     }
     vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-    vplPasses_Add(&r->passes, r->done, image);
+    for (size_t k = 0; k < vplValueCount(image); k++) {
+        r->sums[r->done % 2][k] += (double)image->pixels[k];
+    }
     vplImage_Destroy(image);
     return VPL_SUCCESS;
 }
@@ -140,11 +153,31 @@ static vplResult runPass(vplRenderer* r)
     TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_COUNT));
     if (r->plan->options.method != VPL_METHOD_PATH) {
         const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-        vplImage_Destroy(r->passes.base);
-        r->passes.base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        return show->drawOver != NULL ? show->drawOver(run, r->passes.base) : VPL_SUCCESS;
+        vplImage_Destroy(r->base);
+        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+        return show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS;
     }
     return VPL_SUCCESS;
+}
+
+// The means of the even and the odd passes differ by their errors: half of the difference is the error to expect
+// in the mean of both. Errors that both share (of direct light, and light that the accumulation loses or moves)
+// are not in it.
+static void estimateError(vplRenderer* r, const vplImage* image)
+{
+    const size_t values = vplValueCount(image);
+    const int odd = r->done / 2, even = r->done - odd;
+    vplRenderStats* stats = &r->runner.stats;
+    double squares = 0, sum = 0;
+    for (size_t k = 0; k < values && odd > 0; k++) {
+        const double half = 0.5 * (r->sums[0][k] / even - r->sums[1][k] / odd);
+        squares += half * half;
+        sum += (double)image->pixels[k];
+    }
+    if (odd > 0) {
+        stats->errorEstimate = sqrt(squares / (double)values);
+        stats->relativeErrorEstimate = sum > 0 ? stats->errorEstimate * (double)values / sum : 0;
+    }
 }
 
 static vplResult resolve(vplRenderer* r, vplImage** imageOut)
@@ -154,11 +187,18 @@ static vplResult resolve(vplRenderer* r, vplImage** imageOut)
     if (r->plan->options.method == VPL_METHOD_PATH) {
         return vplResolvePaths(run, imageOut);
     }
-    TRY(vplPasses_Resolve(&r->passes, r->done, imageOut, &r->runner.stats));
+    TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
+    for (size_t k = 0; k < vplValueCount(r->base); k++) {
+        const double mean = r->plan->progressive ? (r->sums[0][k] + r->sums[1][k]) / r->done : 0;
+        (*imageOut)->pixels[k] = (float)((double)r->base->pixels[k] + mean);
+    }
+    if (r->plan->progressive) {
+        estimateError(r, *imageOut);
+    }
     return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
 }
 
-// Whether the options' count of passes, error or time is reached.
+// Tests whether the options' count of passes, error or time is reached.
 static vplResult isDone(vplRenderer* r, bool* doneOut)
 {
     const vplRenderOptions* o = &r->plan->options;
@@ -224,7 +264,9 @@ void vplRenderer_Destroy(vplRenderer* r)
 {
     if (r != NULL) {
         vplContext* context = r->runner.run.context;
-        vplPasses_Free(&r->passes);
+        vplImage_Destroy(r->base);
+        vplFree(context, r->sums[0]);
+        vplFree(context, r->sums[1]);
         vplPlan_Destroy(r->plan);
         closeHistory(r->runner.history, r->shared);
         vplFree(context, r);
@@ -239,8 +281,8 @@ static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* 
     if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH) {
         return vplRenderer_GetImage(r, imageOut, statsOut);
     }
-    *imageOut = r->passes.base;
-    r->passes.base = NULL;
+    *imageOut = r->base;
+    r->base = NULL;
     if (statsOut != NULL) {
         finishStats(r, *imageOut, statsOut);
     }

@@ -162,12 +162,6 @@ static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, u
         const uint64_t shift = vplSsvpShift(run);
         return hashBytes(state, &shift, sizeof shift);
     }
-    if (strcmp(word, "BIAS") == 0) { // the rule
-        return hashNumber(state, plan->biasRule);
-    }
-    if (strcmp(word, "SEES") == 0) { // lights see by the maps of their clusters
-        return hashNumber(state, vplSsvpSees(plan));
-    }
     if (strcmp(word, "ADAPTIVE") == 0) { // adaptive patches depend on all that their drafts are made with
         const char* drafts = "form-factors form-samples row-sums link-error patch-light camera seed";
         const uint64_t inner =

@@ -192,9 +192,10 @@ static bool needsPaths(const vplPlan* p, char* why)
 
 // ---- the table
 
-#define IN(stage)  (1u << VPL_STAGE_##stage)
-#define SSVP_KEY   "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
-#define MAP_KEY    "paraboloid hemispheres cluster-place SEES show max-bounces second-bounce coherence SHIFT"
+#define IN(stage) (1u << VPL_STAGE_##stage)
+#define SSVP_KEY  "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
+#define MAP_KEY                                                                                              \
+    "paraboloid hemispheres cluster-place light-shadows show max-bounces second-bounce coherence SHIFT"
 #define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"
 
 // clang-format off
@@ -206,7 +207,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "clamp distance", 0.03, IN(GEOMETRY), "VIEW",
         needsNearDistance, vplMakeNearDistance, NULL},
     [VPL_STAGE_EMITTER_MAPS] = {
-        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS BIAS shadow-map bias bias-slope pcf pcf-offset size antialias",
+        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size antialias",
         needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps},
     [VPL_STAGE_AREA_LIGHTS] = {
         "area lights", 0.15, IN(GEOMETRY), "area-light-samples",
@@ -238,7 +239,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsSecondClusters, vplMakeSecondParaboloids, vplDestroyParaboloids, .continues = true},
     [VPL_STAGE_CLUSTERED_LIGHTS] = {
         "list", 0.2, IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) |
-            IN(SECOND_PARABOLOIDS), "SEES",
+            IN(SECOND_PARABOLOIDS), "light-shadows",
         needsClusteredLights, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
     [VPL_STAGE_VIRTUAL_LIGHTS] = {
         "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),
