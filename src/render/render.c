@@ -88,7 +88,7 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     return VPL_SUCCESS;
 }
 
-// The share of the whole that so many passes are, as far as it can be told.
+// Estimates the share of the whole render that `passes` are, for progress.
 static double shareOf(const vplRenderer* r, int passes)
 {
     const vplStopOptions* o = &r->plan->options.stop;
@@ -275,7 +275,7 @@ void vplRenderer_Destroy(vplRenderer* r)
 
 // ---- in one call
 
-// The last picture: it may be given away where no pass follows.
+// Takes the last picture. Where no pass follows it is given away without a copy.
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
     if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH) {

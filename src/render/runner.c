@@ -212,7 +212,8 @@ static bool isFresh(const vplRunner* r, vplStageId id, uint64_t key)
     return fresh;
 }
 
-// Before a result is made anew: what was made from the old one goes, but for what continues it.
+// Before a result is made anew, frees the results that were made from the old one. Results that later stages
+// continue from stay.
 static void emptyFrom(vplHistory* history, vplStageId id)
 {
     uint32_t stale = 1u << id;

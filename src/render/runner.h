@@ -10,9 +10,9 @@
 typedef struct vplSlot {
     void* result;
     vplArena* arena;                       // owns the result's memory
-    uint64_t key;                          // of the options and poses that it was made for
+    uint64_t key;                          // hash of the options and poses that it was made for
     uint32_t build;                        // 1, 2, ...: how often it was made
-    uint32_t inputBuilds[VPL_STAGE_COUNT]; // of the results that it was made from
+    uint32_t inputBuilds[VPL_STAGE_COUNT]; // builds of the results that it was made from
     int64_t bytes, scratch;                // as measured when it was made
 } vplSlot;
 
@@ -28,17 +28,17 @@ typedef struct vplRunner {
     vplRun run;
     vplHistory* history;
     vplRenderStats stats;
-    bool plans; // results serve decisions: they are not reported yet
+    bool plans; // results serve decisions and are not reported yet
     vplProgressFcn* progress;
     void* progressUser;
     double stepFrom, stepTo;   // share of the whole that the pass under way has
     double stageFrom, stageTo; // share of the pass that the stage under way has
     double partFrom, partTo;   // share of the stage that its part under way has
-    double startMs;            // of a nested runner
-    double partMs;             // that vplRun_AddTime took from the stage under way
+    double startMs;            // when a nested runner began
+    double partMs;             // time that vplRun_AddTime took from the stage under way
     vplClampLoss loss;         // of all passes
-    size_t heldBytes; // by the context when the runner began: the scene, and what is not of this render
-    size_t peakBytes; // of the context, before its counter was set back
+    size_t heldBytes; // held by the context when the runner began: the scene and the caller's other memory
+    size_t peakBytes; // most that the context held before its counter was reset
 } vplRunner;
 
 // A runner without a plan. It borrows the history.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the table of stages refers to.
+// The functions that the table of stages refers to.
 #ifndef VPL_RENDER_STAGES_MAKE_H
 #define VPL_RENDER_STAGES_MAKE_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of patches: what emitters give to them, and what they then exchange.
+// Light of patches: direct light of emitters, and the light that patches then exchange.
 #include "base/rng.h"
 #include "geometry/triangle.h"
 #include "radiosity/sides/side.h"
@@ -21,8 +21,8 @@ typedef struct Chunk {
     int firstPoint[CHUNK_SIDES + 1];
 } Chunk;
 
-// Points of `samples` open cells, spread evenly over their numbers; a single one is the incentre where it can
-// be reached.
+// Places one point in each of `samples` open cells, spread evenly over their numbers. A single point is the
+// incentre if all cells are open. Returns the number of points.
 static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint* points)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
@@ -76,7 +76,7 @@ static vplResult lightChunk(const vplRun* run, const vplShadeDef* def, int first
     return VPL_SUCCESS;
 }
 
-// Shadows come by rays, since there are fewer patches than texels.
+// Casts shadows by rays, because there are fewer patches than shadow maps have texels.
 static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* light)
 {
     const int room = sideCount < CHUNK_SIDES ? sideCount : CHUNK_SIDES;
@@ -148,10 +148,10 @@ vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOu
     return VPL_SUCCESS;
 }
 
-// Solutions of drafts are loose, which saves a fifth of the time; with 0.01 patches are placed less well.
+// Drafts are solved less exactly, which saves a fifth of the time. With 0.01 patches are placed less well.
 static const double DRAFT_RESIDUAL = 0.003;
 
-// How fast light dies away is asked once: it depends on form factors alone, which are kept.
+// Finds the spectral radius only in the first solution: it depends on form factors alone, which are kept.
 static vplResult solve(const vplRun* run, bool first, vplSolution* s)
 {
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
@@ -176,7 +176,7 @@ static vplResult solve(const vplRun* run, bool first, vplSolution* s)
     return VPL_SUCCESS;
 }
 
-// What was reflected at least once arrives here; light of area lights themselves is direct.
+// Finds the irradiance by light that was reflected at least once. Light of area lights themselves is direct.
 static vplResult gather(const vplRun* run, vplSolution* s)
 {
     const vplTransport transport = vplTransportOf(run);
@@ -186,8 +186,8 @@ static vplResult gather(const vplRun* run, vplSolution* s)
     return vplGatherRadiosity(&transport, reflected, s->irradiance);
 }
 
-// The document's "slight lag": the sweeps of a frame begin with the radiosities of the frame before, as long
-// as form factors are the same.
+// The sweeps of a frame begin with the radiosities of the last frame as long as form factors are the same, which
+// the document calls a "slight lag".
 vplResult vplMakeSolution(const vplRun* run, void** resultOut)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];

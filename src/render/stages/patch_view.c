@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Patches on pictures: smooth indirect light, or a stage to look at; and as a mesh for other tools.
+// Draws patches on pictures, as smooth indirect light or as a stage to look at, and writes them as a mesh.
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "render/stages/make.h"
@@ -82,7 +82,7 @@ vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* ima
     return result;
 }
 
-// All light: direct light, too, is the mean of a patch here.
+// The mesh has all light. Direct light is the mean over each patch, too.
 vplResult vplWritePatchMesh(const vplRun* run, vplArena* scratch, float scale, const char* path)
 {
     const vplRadiosityOptions* o = &run->plan->options.radiosity;

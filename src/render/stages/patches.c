@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What radiosity divides surfaces into, and how the parts exchange light: patches, uniform or adaptive, the
-// sides that light can reach, their mesh, and form factors of all pairs or links.
+// The stages that prepare radiosity: patches, uniform or adaptive, the sides of patches that light can reach,
+// the mesh of patches, and form factors of all pairs or links.
 #include "render/runner.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
@@ -68,7 +68,7 @@ static vplResult findPriorities(const vplRun* run, vplArena* scratch, float* pri
     return vplFindPatchPriority(mesh, &def, priorityOut);
 }
 
-// Light of a draft, and `count` patches, of which those are divided that it asks for.
+// Solves a draft and divides the patches where the solution asks for it, until there are `count`.
 static vplResult refine(vplRunner* draft, vplPatches* patches, int count, vplPatches** patchesOut)
 {
     draft->run.results[VPL_STAGE_PATCHES] = patches;
@@ -146,7 +146,8 @@ void vplReportPatches(const vplRun* run)
     run->stats->patches = patches->patchCount;
 }
 
-// ---- poses: sides are found once for all frames, so they count as reachable from wherever cameras and emitters pass
+// ---- poses: sides are found once for all frames, so a side counts as reachable if light or a camera reaches it from any
+// point of their paths
 
 // Poses per path, evenly spaced from its first key to its last.
 enum { POSES = 9 };

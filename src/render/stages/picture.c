@@ -67,7 +67,7 @@ static vplResult shadeSamples(const vplRun* run, const vplShadeDef* def, double*
     return VPL_SUCCESS;
 }
 
-// ---- what it shades with
+// ---- the lights to shade with
 
 static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* def)
 {
@@ -83,7 +83,7 @@ static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* 
     }
 }
 
-// Virtual lights v->first + first .. + count - 1.
+// Adds `count` virtual lights, beginning with v->first + first.
 static void addVirtual(const vplRun* run, const vplVirtualLights* v, const vplHemiMaps* maps, int first,
                        int count, vplShadeDef* def)
 {
@@ -136,7 +136,7 @@ static vplResult shade(const vplRun* run, const Shading* s, int parts, int first
     if (count > 0) {
         addVirtual(run, v, s->lightMaps, first, count, &def);
     }
-    // Of all lights at once, whatever batch is shown.
+    // Compensation is computed once, for all batches together.
     const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
     if (near && (plan->compensates || plan->estimatesLoss)) {
         compensation = vplMakeCompensation(run, v, s->shadows);
@@ -165,7 +165,7 @@ static vplResult drawLightMaps(const vplRun* run, Shading* s, int first, int cou
     return VPL_SUCCESS;
 }
 
-// As many lights have maps at the same time as fit into memory; each such batch is added to the picture.
+// Shades lights in batches, as many as have maps that fit into memory, and sums the pictures of the batches.
 static vplResult shadeBatches(const vplRun* run, Shading* s, int total, vplImage* image)
 {
     const size_t values = vplValueCount(image);

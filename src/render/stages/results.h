@@ -35,7 +35,7 @@ typedef struct vplVirtualLights {
     vplShadeLight* lights;
     int* clusters; // of each light, in the order of clusters; NULL: lights do not see by clusters
     int count;
-    int first;             // lights before this one only light what compensation's rays meet
+    int first;             // lights before this one only light the hits of compensation's rays
     int emitterLightCount; // the first lights, if they lie on area lights
     float minDistance;     // clamp, metres
 } vplVirtualLights;
@@ -88,7 +88,7 @@ typedef struct vplSolution {
     vplRgb* radiosity;  // all light
     vplRgb* irradiance; // of light that was reflected at least once
     vplSolveStats stats;
-    uint32_t factorBuild; // of the form factors that it is of
+    uint32_t factorBuild; // identifies the form factors that it was solved with
 } vplSolution;
 
 // ---- what stages share
@@ -108,25 +108,26 @@ static inline vplTransport vplTransportOf(const vplRun* run)
 // The clamp distance of a pass with so many lights, metres.
 float vplClampDistance(const vplRun* run, double lights);
 
-// How the light that the clamp takes away is found again; `shadows` are those of the emitters.
+// Describes the short rays that find the light that the clamp takes away. `shadows` are those of the emitters.
 vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights* lights,
                                        const vplShadow* shadows);
 
-// Adds a pass to the loss by the clamp that statistics tell.
+// Measures the light that the clamp takes away in this pass, and adds it to the statistics.
 vplResult vplEstimateLoss(const vplRun* run, const vplVirtualLights* lights, const vplShadeDef* shown,
                           vplCompensationDef compensation);
 
-// VPL_LIGHT_SHADOWS_MAP or RAY, whichever is cheaper; writes what it costs into the plan and why into `why`.
+// Returns VPL_LIGHT_SHADOWS_MAP or RAY, whichever is cheaper; writes the costs into the plan and the reason into
+// `why`.
 vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights* lights, vplPlan* plan,
                                       char* why);
 
-// Draws patches: smooth indirect light added to a picture, or a stage to look at.
+// Draws patches over a picture, as smooth indirect light or as the values that --show asks for.
 vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* image);
 
-// What sides radiate of light that they did not make themselves.
+// Finds the reflected part of the radiosity of sides: all but their emission.
 void vplFindReflected(const vplPatchSides* sides, const vplRgb* radiosity, vplRgb* reflectedOut);
 
-// Irradiance of sides by what sides send, and by emitters.
+// Finds the irradiance of sides by the light that sides send and by emitters.
 vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOut);
 
 #endif

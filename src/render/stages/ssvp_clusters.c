@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Clusters of SSVP, what they see, and the lights of both bounces as one list.
+// Clusters of SSVP, their paraboloid maps, and the lights of both bounces as one list.
 #include "lights/light_set.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 
-// The frame or pass before counts where it had the same samples.
+// True if the frame or pass before had the same samples, so that its result is a start for this one.
 static bool follows(const vplRun* run, uint64_t shift, uint64_t lastShift)
 {
     return run->plan->options.sequence.coherence == VPL_COHERENCE_ON && shift == lastShift;
@@ -60,11 +60,11 @@ typedef struct Viewing {
     const vplLightSet* lights;
     const vplLightClusters* clusters;
     vplBounceMaps* maps;
-    const vplBounceMaps* last; // NULL: none that counts
+    const vplBounceMaps* last; // NULL: no map of a last frame with the same samples
 } Viewing;
 
-// The light that a cluster sees from: that of the last frame as long as it is one of its lights, so that what
-// is seen does not jump; else the nearest to the mean. -1: none.
+// Finds the light that a cluster sees from. It stays that of the last frame as long as the cluster has this light,
+// so that the view does not jump; else it is the light nearest to the mean. -1: none.
 static int findViewpoint(const Viewing* v, int cluster)
 {
     if (v->run->plan->options.ssvp.place == VPL_CLUSTER_PLACE_MEAN) {
@@ -79,8 +79,8 @@ static int findViewpoint(const Viewing* v, int cluster)
     return v->clusters->clusters[cluster].nearest;
 }
 
-// Always lifted off the surface, also from mid-air: a mean that lies on a wall but for rounding would see the
-// wall as half of space.
+// Viewpoints are always lifted as if they were on a surface, also in mid-air: a mean that lies on a wall but for
+// rounding would see the wall as half of space.
 static vplParaboloidPlace placeOf(const Viewing* v, int i)
 {
     const vplPlan* plan = v->run->plan;
@@ -95,7 +95,7 @@ static vplParaboloidPlace placeOf(const Viewing* v, int i)
                                 .onSurface = true};
 }
 
-// With triangles where surfaces are asked for, not only distances.
+// Maps have triangles where later stages need surfaces besides distances.
 static vplResult makeMaps(const vplRun* run, const vplBounceLights* bounce, const vplBounceClusters* c,
                           bool triangles, void** resultOut)
 {

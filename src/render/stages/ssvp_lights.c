@@ -26,9 +26,9 @@ uint64_t vplSsvpShift(const vplRun* run)
     return ((uint64_t)r.v[0] << 32 | r.v[1]) | 1;
 }
 
-// ---- of what use lights are
+// ---- the use of lights: the share of their light that stays in the scene
 
-// Rays per light: weights change by sixteenths.
+// Rays per light. Weights are multiples of a sixteenth.
 enum { USE_RAYS = 16 };
 
 vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** useOut)
@@ -41,10 +41,10 @@ vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** 
 }
 
 // The use of a light that moves a little changes by a ray or two of sixteen. If weights followed at once, the
-// picture would flicker: they follow within some frames.
+// picture would flicker. So they follow by a tenth of the change per frame.
 static const float FOLLOW = 0.1f;
 
-// Samples of the frame or pass before, if they are the same.
+// The samples of the last frame or pass, if they had the same pattern; else NULL.
 static const vplBounceLights* lastOf(const vplRun* run, uint64_t shift)
 {
     const vplBounceLights* last = run->before;
@@ -74,7 +74,7 @@ static vplResult followUse(const vplRun* run, const vplLightSet* set, int count,
 
 // ---- the first bounce
 
-// How many of the first-bounce lights come from area lights: their share of the power.
+// Gives area lights the share of the first-bounce lights that they have of the power.
 static vplResult countAreaLightSamples(const vplRun* run, int* countOut)
 {
     vplEmission* emission;
@@ -100,7 +100,7 @@ static vplResult shootFromAreaLights(const vplRun* run, int count, uint64_t shif
     return vplSimulateParticles(run->results[VPL_STAGE_GEOMETRY], NULL, 0, &def, setOut);
 }
 
-// As the document takes them.
+// Samples the reflective maps as the document does.
 static vplResult sampleAll(const vplRun* run, int count, uint64_t shift, vplLightSet** setOut)
 {
     const vplReflectiveMaps* maps = run->results[VPL_STAGE_REFLECTIVE_MAPS];
@@ -111,9 +111,8 @@ static vplResult sampleAll(const vplRun* run, int count, uint64_t shift, vplLigh
                                    (const vplReflectiveMap* const*)maps->maps, maps->count, &def, setOut);
 }
 
-// How many times as many samples as lights are taken: a power of two, and that of the last frame as long as
-// it leaves half to five quarters of the lights, since samples must not all move with every move of the
-// light.
+// Finds how many times more samples than lights to take: a power of two. The factor of the last frame stays as
+// long as it leaves 0.4 to 1.25 times the wanted lights, because a change of the factor moves all samples.
 static int oversample(const vplBounceLights* last, int most, int count, double kept)
 {
     const int before = last != NULL && count > 0 ? last->sampleCount / count : 0;

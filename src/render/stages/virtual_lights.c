@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-// Lights of step 0 that lie on surfaces: Keller's, which stand for their emission.
+// Counts the lights of step 0 that lie on surfaces. They are Keller's, and stand for emission.
 static int countEmitterLights(const vplLightSet* set)
 {
     int count = 0;
@@ -15,8 +15,8 @@ static int countEmitterLights(const vplLightSet* set)
     return count;
 }
 
-// A light stands for its share of all surfaces; nearer than the radius of that share it is no point. Half as
-// much leaves 5 to 35 % more rmse, and twice as much takes a few per cent of the light away (room, room-area,
+// A light stands for its share of all surfaces; nearer than the radius of that share it is no point. Half the
+// distance leaves 5 to 35 % more rmse, and twice as much takes a few per cent of the light away (room, room-area,
 // cornell-area; 32 to 2048 particles). Where rays find the light that is taken away, the clamp need not fall
 // with the number of lights, and then the square of the error falls like 1/N.
 float vplClampDistance(const vplRun* run, double lights)
@@ -30,8 +30,8 @@ float vplClampDistance(const vplRun* run, double lights)
     return (float)(lights > 0 && plan->compensates ? fmax(share, (double)plan->nearDistance) : share);
 }
 
-// The lights of the set that are shown: all, or one, or all but those on the emitters. These must be kept
-// where rays meet what they light.
+// Chooses the lights of the set that are shown: all, one, or all but those on the emitters. With compensation,
+// lights on the emitters stay, because they light the hits of short rays.
 static vplResult choose(const vplRun* run, vplVirtualLights* v, vplLightSet* shown)
 {
     const vplRenderOptions* o = &run->plan->options;
@@ -60,8 +60,7 @@ static vplResult choose(const vplRun* run, vplVirtualLights* v, vplLightSet* sho
     return VPL_SUCCESS;
 }
 
-// Lights of one cluster follow each other, in the order that they had. `first` is the set's index of the
-// first light.
+// Sorts lights by cluster and keeps the order within each. `first` is the set's index of the first light.
 static vplResult sortByCluster(const vplRun* run, const vplClusteredLights* clustered, int first,
                                vplVirtualLights* v)
 {
