@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Decisions resolve the options "usual" and "auto": first those that follow from options and method, then those
-// that need the scene's geometry.
+// Decisions resolve the options "usual" and "auto": first those that follow from options and method, then
+// those that need the scene's geometry.
 #include "render/plan.h"
 
 #include "render/show.h"

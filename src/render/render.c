@@ -34,9 +34,9 @@ static vplResult openHistory(const vplScene* scene, vplHistory* shared, vplHisto
     return VPL_SUCCESS;
 }
 
-static void closeHistory(vplHistory* history, bool shared)
+static void closeHistory(vplHistory* history)
 {
-    if (shared) {
+    if (history->busy) { // it is the caller's
         history->busy = false;
     } else {
         vplHistory_Destroy(history);
@@ -50,7 +50,6 @@ struct vplRenderer {
     vplPlan* plan;
     vplImage* base;         // all of the picture; direct light alone where passes add the rest
     double* sums[2];        // of the pictures of passes with even and odd numbers; NULL without passes
-    bool shared;            // the history is the caller's
     int done;               // passes
     double start, cpuStart; // ms
     double passMs;          // of all passes
@@ -63,13 +62,11 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     const double start = vplClockMs(), cpuStart = vplCpuMs();
     vplHistory* history;
     TRY(openHistory(scene, options->sequence.history, &history));
-    const bool shared = history == options->sequence.history;
     vplRenderer* r = vplAllocZero(context, 1, sizeof *r);
     if (r == NULL) {
-        closeHistory(history, shared);
+        closeHistory(history);
         return VPL_OUT_OF_MEMORY;
     }
-    r->shared = shared;
     r->start = start;
     r->cpuStart = cpuStart;
     r->runner = vplRunner_Begin(scene, history);
@@ -160,9 +157,9 @@ static vplResult runPass(vplRenderer* r)
     return VPL_SUCCESS;
 }
 
-// The means of the even and the odd passes differ by their errors: half of the difference is the error to expect
-// in the mean of both. Errors that both share (of direct light, and light that the accumulation loses or moves)
-// are not in it.
+// The means of the even and the odd passes differ by their errors: half of the difference is the error to
+// expect in the mean of both. Errors that both share (of direct light, and light that the accumulation loses
+// or moves) are not in it.
 static void estimateError(vplRenderer* r, const vplImage* image)
 {
     const size_t values = vplValueCount(image);
@@ -268,7 +265,7 @@ void vplRenderer_Destroy(vplRenderer* r)
         vplFree(context, r->sums[0]);
         vplFree(context, r->sums[1]);
         vplPlan_Destroy(r->plan);
-        closeHistory(r->runner.history, r->shared);
+        closeHistory(r->runner.history);
         vplFree(context, r);
     }
 }

@@ -20,7 +20,7 @@ typedef struct vplSlot {
 struct vplHistory {
     vplContext* context;
     uint64_t sceneStamp; // identifies the scene of the first frame; 0: no frame yet
-    bool busy;           // a renderer uses it
+    bool busy;           // a renderer uses it, which does not own it
     vplSlot slots[VPL_STAGE_COUNT];
 };
 
@@ -50,8 +50,8 @@ vplResult vplRunner_RunStage(vplRunner* runner, vplStageId id);
 // Runs the stages of the plan up to `last`.
 vplResult vplRunner_RunPlan(vplRunner* runner, const vplPlan* plan, vplStageId last);
 
-// A runner for stages within the stage under way: it sees the same results, needs a history of its own, and its
-// progress is that of the part under way. Its statistics and time are added by vplRunner_Unnest.
+// A runner for stages within the stage under way: it sees the same results, needs a history of its own, and
+// its progress is that of the part under way. Its statistics and time are added by vplRunner_Unnest.
 vplRunner vplRunner_Nest(const vplRun* run);
 void vplRunner_Unnest(const vplRun* run, const vplRunner* nested);
 

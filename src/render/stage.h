@@ -48,7 +48,8 @@ typedef struct vplRun {
     const vplScene* scene;
     const vplPlan* plan;
     const void* results[VPL_STAGE_COUNT];
-    // The last result of a stage that continues, from the frame or pass before. The stage may change and return it.
+    // The last result of a stage that continues, from the frame or pass before. The stage may change and
+    // return it.
     void* before;
     uint32_t builds[VPL_STAGE_COUNT]; // counts how often each result was made, which tells two results apart
     int pass;
@@ -65,9 +66,11 @@ typedef struct vplStage {
     const char* name; // as in vplRenderStats.stages
     double progress;  // share of a pass that is done when the stage ends
     uint32_t inputs;  // bits: 1 << vplStageId
-    // Names everything besides the inputs that the result depends on: options, and words in capitals (hashValue).
+    // Names everything besides the inputs that the result depends on: options, and words in capitals
+    // (hashValue).
     const char* key;
-    // Returns true if the picture needs it, and writes the reason for either answer into `why`, VPL_PLAN_TEXT bytes.
+    // Returns true if the picture needs it, and writes the reason for either answer into `why`, VPL_PLAN_TEXT
+    // bytes.
     bool (*isNeeded)(const vplPlan* plan, char* why);
     vplResult (*make)(const vplRun* run, void** resultOut); // a result is destroyed also where it failed
     void (*destroy)(void* result);     // frees objects that its arena does not own; NULL: there are none

@@ -205,16 +205,16 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsGeometry, vplMakeGeometry, vplDestroyGeometry, .report = vplReportGeometry},
     [VPL_STAGE_NEAR_DISTANCE] = {
         "clamp distance", 0.03, IN(GEOMETRY), "VIEW",
-        needsNearDistance, vplMakeNearDistance, NULL},
+        needsNearDistance, vplMakeNearDistance, NULL, .report = NULL},
     [VPL_STAGE_EMITTER_MAPS] = {
         "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size antialias",
-        needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps},
+        needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps, .report = NULL},
     [VPL_STAGE_AREA_LIGHTS] = {
         "area lights", 0.15, IN(GEOMETRY), "area-light-samples",
-        needsAreaLights, vplMakeAreaLights, NULL},
+        needsAreaLights, vplMakeAreaLights, NULL, .report = NULL},
     [VPL_STAGE_REFLECTIVE_MAPS] = {
         "reflective map", 0.05, IN(GEOMETRY), "EMITTERS rsm-size",
-        needsReflectiveMaps, vplMakeReflectiveMaps, vplDestroyReflectiveMaps},
+        needsReflectiveMaps, vplMakeReflectiveMaps, vplDestroyReflectiveMaps, .report = NULL},
     [VPL_STAGE_PARTICLES] = {
         "particles", 0.1, IN(GEOMETRY) | IN(REFLECTIVE_MAPS) | IN(NEAR_DISTANCE),
         "method lighting particles reflectivity sampler bounce particle-geometry seed EMITTERS PASS PLACEMENT",
@@ -253,23 +253,23 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsSides, vplMakeSides, vplDestroySides, .report = vplReportSides},
     [VPL_STAGE_PATCH_MESH] = {
         "patch mesh", 0.11, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "",
-        needsPatchMesh, vplMakePatchMesh, vplDestroyPatchMesh},
+        needsPatchMesh, vplMakePatchMesh, vplDestroyPatchMesh, .report = NULL},
     [VPL_STAGE_FORM_FACTORS] = {
         "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
     [VPL_STAGE_PATCH_LIGHT] = {
         "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed EMITTERS",
-        needsPatchLight, vplMakePatchLight, NULL},
+        needsPatchLight, vplMakePatchLight, NULL, .report = NULL},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
         needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
         "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
-        needsVertexLight, vplMakeVertexLight, NULL},
+        needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
             IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(SOLUTION) | IN(VERTEX_LIGHT), "ALWAYS",
-        needsPicture, vplMakePicture, vplDestroyImage},
+        needsPicture, vplMakePicture, vplDestroyImage, .report = NULL},
     [VPL_STAGE_PATHS] = {
         "paths", 1, IN(GEOMETRY), "ALWAYS",
         needsPaths, vplMakePaths, vplDestroyPaths, .continues = true},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The stages for emitters: shadow maps of points and spots, points on area lights, and reflective shadow maps.
+// The stages for emitters: shadow maps of points and spots, points on area lights, and reflective shadow
+// maps.
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 

@@ -24,8 +24,9 @@ void vplReportGeometry(const vplRun* run)
     run->stats->objects = g->objectCount;
 }
 
-// The share of directions in which a surface sees something nearer than the distance. Around this share squared
-// error times time is flat in rooms; larger shares make smooth parts of Sponza noisy (bench/lightcuts, room: 0.16 at 1 m, 0.14 at 1.8 m).
+// The share of directions in which a surface sees something nearer than the distance. Around this share
+// squared error times time is flat in rooms; larger shares make smooth parts of Sponza noisy
+// (bench/lightcuts, room: 0.16 at 1 m, 0.14 at 1.8 m).
 static const double NEAR_SHARE = 0.2;
 
 vplResult vplMakeNearDistance(const vplRun* run, void** resultOut)

@@ -186,8 +186,8 @@ static vplResult gather(const vplRun* run, vplSolution* s)
     return vplGatherRadiosity(&transport, reflected, s->irradiance);
 }
 
-// The sweeps of a frame begin with the radiosities of the last frame as long as form factors are the same, which
-// the document calls a "slight lag".
+// The sweeps of a frame begin with the radiosities of the last frame as long as form factors are the same,
+// which the document calls a "slight lag".
 vplResult vplMakeSolution(const vplRun* run, void** resultOut)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];

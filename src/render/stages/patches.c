@@ -89,7 +89,7 @@ static vplResult refine(vplRunner* draft, vplPatches* patches, int count, vplPat
     return result;
 }
 
-// Each round has stages and a store of its own.
+// Each round runs its stages with a history of its own.
 static vplResult runDraft(const vplRun* run, vplPatches* patches, int count, vplPatches** patchesOut)
 {
     vplRunner draft = vplRunner_Nest(run);
@@ -146,8 +146,10 @@ void vplReportPatches(const vplRun* run)
     run->stats->patches = patches->patchCount;
 }
 
-// ---- poses: sides are found once for all frames, so a side counts as reachable if light or a camera reaches it from any
-// point of their paths
+// ---- poses
+//
+// Sides are found once for all frames. So a side counts as reachable if light or a camera reaches it from any
+// point of their paths.
 
 // Poses per path, evenly spaced from its first key to its last.
 enum { POSES = 9 };

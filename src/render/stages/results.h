@@ -6,8 +6,8 @@
 #include "render/stage.h"
 
 // VPL_STAGE_NEAR_DISTANCE has a float: the metres within which surfaces see a fifth of what they see.
-// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light at the vertices of the patch
-// mesh, [vertex][front, back].
+// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light at the vertices of the
+// patch mesh, [vertex][front, back].
 
 // VPL_STAGE_EMITTER_MAPS: one entry per emitter.
 typedef struct vplEmitterMaps {
@@ -108,7 +108,8 @@ static inline vplTransport vplTransportOf(const vplRun* run)
 // The clamp distance of a pass with so many lights, metres.
 float vplClampDistance(const vplRun* run, double lights);
 
-// Describes the short rays that find the light that the clamp takes away. `shadows` are those of the emitters.
+// Describes the short rays that find the light that the clamp takes away. `shadows` are those of the
+// emitters.
 vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights* lights,
                                        const vplShadow* shadows);
 
@@ -116,8 +117,8 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
 vplResult vplEstimateLoss(const vplRun* run, const vplVirtualLights* lights, const vplShadeDef* shown,
                           vplCompensationDef compensation);
 
-// Returns VPL_LIGHT_SHADOWS_MAP or RAY, whichever is cheaper; writes the costs into the plan and the reason into
-// `why`.
+// Returns VPL_LIGHT_SHADOWS_MAP or RAY, whichever is cheaper; writes the costs into the plan and the reason
+// into `why`.
 vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights* lights, vplPlan* plan,
                                       char* why);
 

@@ -5,8 +5,8 @@
 
 #include "render/stages/results.h"
 
-// The shift of the sample patterns. It is 0, which leaves the points as published, for seed 0 in the first pass
-// of frames that keep their patterns.
+// The shift of the sample patterns. It is 0, which leaves the points as published, for seed 0 in the first
+// pass of frames that keep their patterns.
 uint64_t vplSsvpShift(const vplRun* run);
 
 // Measures by rays which share of each light's light stays in the scene; the shares are scratch memory.

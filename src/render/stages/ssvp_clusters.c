@@ -12,8 +12,8 @@ static bool follows(const vplRun* run, uint64_t shift, uint64_t lastShift)
 
 // ---- clusters
 
-// Lights are weighted by the share of their light that stays in the scene: 8 clusters of Sponza have a FLIP of
-// 0.192 against paths with these weights, and 0.248 without.
+// Lights are weighted by the share of their light that stays in the scene: 8 clusters of Sponza have a FLIP
+// of 0.192 against paths with these weights, and 0.248 without.
 static vplResult makeClusters(const vplRun* run, const vplBounceLights* bounce, void** resultOut)
 {
     const vplSsvpOptions* o = &run->plan->options.ssvp;
@@ -63,8 +63,8 @@ typedef struct Viewing {
     const vplBounceMaps* last; // NULL: no map of a last frame with the same samples
 } Viewing;
 
-// Finds the light that a cluster sees from. It stays that of the last frame as long as the cluster has this light,
-// so that the view does not jump; else it is the light nearest to the mean. -1: none.
+// Finds the light that a cluster sees from. It stays that of the last frame as long as the cluster has this
+// light, so that the view does not jump; else it is the light nearest to the mean. -1: none.
 static int findViewpoint(const Viewing* v, int cluster)
 {
     if (v->run->plan->options.ssvp.place == VPL_CLUSTER_PLACE_MEAN) {
@@ -79,8 +79,8 @@ static int findViewpoint(const Viewing* v, int cluster)
     return v->clusters->clusters[cluster].nearest;
 }
 
-// Viewpoints are always lifted as if they were on a surface, also in mid-air: a mean that lies on a wall but for
-// rounding would see the wall as half of space.
+// Viewpoints are always lifted as if they were on a surface, also in mid-air: a mean that lies on a wall but
+// for rounding would see the wall as half of space.
 static vplParaboloidPlace placeOf(const Viewing* v, int i)
 {
     const vplPlan* plan = v->run->plan;

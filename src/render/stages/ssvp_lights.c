@@ -111,8 +111,8 @@ static vplResult sampleAll(const vplRun* run, int count, uint64_t shift, vplLigh
                                    (const vplReflectiveMap* const*)maps->maps, maps->count, &def, setOut);
 }
 
-// Finds how many times more samples than lights to take: a power of two. The factor of the last frame stays as
-// long as it leaves 0.4 to 1.25 times the wanted lights, because a change of the factor moves all samples.
+// Finds how many times more samples than lights to take: a power of two. The factor of the last frame stays
+// as long as it leaves 0.4 to 1.25 times the wanted lights, because a change of the factor moves all samples.
 static int oversample(const vplBounceLights* last, int most, int count, double kept)
 {
     const int before = last != NULL && count > 0 ? last->sampleCount / count : 0;

@@ -16,9 +16,9 @@ static int countEmitterLights(const vplLightSet* set)
 }
 
 // A light stands for its share of all surfaces; nearer than the radius of that share it is no point. Half the
-// distance leaves 5 to 35 % more rmse, and twice as much takes a few per cent of the light away (room, room-area,
-// cornell-area; 32 to 2048 particles). Where rays find the light that is taken away, the clamp need not fall
-// with the number of lights, and then the square of the error falls like 1/N.
+// distance leaves 5 to 35 % more rmse, and twice as much takes a few per cent of the light away (room,
+// room-area, cornell-area; 32 to 2048 particles). Where rays find the light that is taken away, the clamp
+// need not fall with the number of lights, and then the square of the error falls like 1/N.
 float vplClampDistance(const vplRun* run, double lights)
 {
     const vplPlan* plan = run->plan;
@@ -30,8 +30,8 @@ float vplClampDistance(const vplRun* run, double lights)
     return (float)(lights > 0 && plan->compensates ? fmax(share, (double)plan->nearDistance) : share);
 }
 
-// Chooses the lights of the set that are shown: all, one, or all but those on the emitters. With compensation,
-// lights on the emitters stay, because they light the hits of short rays.
+// Chooses the lights of the set that are shown: all, one, or all but those on the emitters. With
+// compensation, lights on the emitters stay, because they light the hits of short rays.
 static vplResult choose(const vplRun* run, vplVirtualLights* v, vplLightSet* shown)
 {
     const vplRenderOptions* o = &run->plan->options;
