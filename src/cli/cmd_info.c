@@ -165,8 +165,7 @@ static json_t* sceneJson(const Info* info, const vplPlan* plan)
     const int* objects = info->objectsOfType;
     const int* emitters = info->emittersOfType;
     return json_pack("{s:i, s:i, s:{s:i, s:i, s:i, s:i}, s:{s:i, s:I, s:I}, s:{s:i, s:i, s:i, s:i}, s:{s:i, "
-                     "s:f, s:f}, s:i, s:i, "
-                     "s:f, s:o, s:o, s:f, s:f, s:f, s:o}",
+                     "s:f, s:f}, s:i, s:i, s:f, s:o, s:o, s:f, s:f, s:f, s:o}",
                      "cameras", info->cameras, "materials", info->materials, "objects", "total",
                      info->objects, "quad", objects[VPL_OBJECT_QUAD], "box", objects[VPL_OBJECT_BOX], "mesh",
                      objects[VPL_OBJECT_MESH], "meshes", "total", info->meshes, "vertices",

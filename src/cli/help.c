@@ -18,59 +18,44 @@ static const char* const ESSENTIALS[] = {"method", "size",      "camera",       
 const Command COMMANDS[] = {
     {"render", RENDER, 1, runRender, "vpl render SCENE -o FILE [options]", "renders a picture",
      "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
-     "or a mesh "
-     "(.obj), which gets a camera that sees all of it and, if nothing emits, a light.",
+     "or a mesh (.obj), which gets a camera that sees all of it and, if nothing emits, a light.",
      NULL},
     {"bake", BAKE, 1, runBake, "vpl bake SCENE -o FILE [options]",
      "writes the patches of radiosity as a mesh",
      "Finds the light of SCENE by --method radiosity and writes its patches as a binary PLY mesh with "
-     "colours at the "
-     "vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity in W/m^2 as properties r, g, "
-     "b.",
+     "colours at the vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity in W/m^2 as "
+     "properties r, g, b.",
      " size antialias show interpolation "},
     {"lights", LIGHTS, 1, runLights, "vpl lights SCENE [options]", "lists the virtual lights",
      "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of "
-     "--show "
-     "light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux in "
-     "watts that "
-     "the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N.",
+     "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "
+     "in watts that the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N.",
      " antialias show pipeline batch interleave cut-error passes budget max-error "},
     {"compare", COMPARE, 2, runCompare, "vpl compare A B [options]",
      "measures how far picture A is from reference B",
      "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), trimmed_relmse "
-     "(the same "
-     "without the 0.1 % of the pixels where it is largest), psnr (dB), ssim and flip (all three of values "
-     "clamped to "
-     "[0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and max_difference with its "
-     "pixel. "
-     "--regions adds a table of blocks.",
+     "(the same without the 0.1 % of the pixels where it is largest), psnr (dB), ssim and flip (all three of "
+     "values clamped to [0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and "
+     "max_difference with its pixel. --regions adds a table of blocks.",
      NULL},
     {"info", INFO, 1, runInfo, "vpl info SCENE [options]",
      "says what is in a scene, and what rendering it requires",
      "Prints counts, bounds, mean reflectance, and the plan of a render with the same options: decisions, "
-     "stages and "
-     "memory.",
+     "stages and memory.",
      NULL},
     {"tradeoff", TRADEOFF, 1, runTradeoff, "vpl tradeoff SCENE -o DIR [options]",
      "measures error against time",
      "Renders SCENE with many settings and several seeds, compares each picture with a reference, and writes "
-     "to DIR: "
-     "report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot), "
-     "tradeoff.csv "
-     "(every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options given here "
-     "change the "
-     "base that the sweeps start from: " TRADEOFF_BASE
-     ". Physical lighting only: the documented formulas have no "
-     "truth to compare with.",
+     "to DIR: report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot), "
+     "tradeoff.csv (every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options "
+     "given here change the base that the sweeps start from: " TRADEOFF_BASE
+     ". Physical lighting only: the documented formulas have no truth to compare with.",
      NULL},
     {"bench", BENCH, 0, runBench, "vpl bench [options]", "times every stage",
      "Times the stages on the built-in room: medians of the wall clock and of processor time, counts, "
-     "hashes, and "
-     "what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. With "
-     "--scaling, how "
-     "time grows with lights, pixels, triangles, threads and the shadow map's size: exponents fitted over "
-     "all points "
-     "and over the upper half, and the part of the time that does not grow.",
+     "hashes, and what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. "
+     "With --scaling, how time grows with lights, pixels, triangles, threads and the shadow map's size: "
+     "exponents fitted over all points and over the upper half, and the part of the time that does not grow.",
      NULL},
 };
 

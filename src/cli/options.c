@@ -159,8 +159,7 @@ static const Option OWN[] = {
      "PNG only; usual: reinhard for ssvp, else none", NULL},
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
-     "statistics "
-     "are numbered in the same way",
+     "statistics are numbered in the same way",
      NULL},
     {"stats", "FILE", NULL, RENDER | BAKE, readText, AT(stats), 0, 0, "write statistics as JSON", NULL},
     {"explain", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(explain), 0, 0,
@@ -169,8 +168,7 @@ static const Option OWN[] = {
      "print the plan and do nothing", NULL},
     {"reference", "FILES", NULL, TRADEOFF, readText, AT(reference), 0, 0,
      "the true picture, linear and of the same size, or two independent ones, A,B, whose noise cancels; "
-     "default: "
-     "path traced",
+     "default: path traced",
      NULL},
     {"reference-spp", "N", NULL, TRADEOFF, readInt, AT(referenceSpp), 2, VPL_MAX_SAMPLES,
      "paths per pixel of the reference; default: as many as a third of the time allows", NULL},

@@ -142,23 +142,21 @@ void addAnswers(const Tradeoff* t, Text* html)
     addSummary(t, 0.05, &t->settings[found], html);
     addText(html, "<ul>\n");
     addFloors(t, html);
+    addText(html, "<li><em>Error</em> is the root-mean-square difference from the true picture divided by "
+                  "the true picture's mean, over all pixels: the <code>relative_rmse</code> of <code>vpl "
+                  "compare</code>, less the truth's own noise.</li>\n"
+                  "<li><em>Energy</em> is all light in the picture divided by all light in the truth: 1 is "
+                  "right, less is darker.</li>\n</ul>\n");
     addText(html,
-            "<li><em>Error</em> is the root-mean-square difference from the true picture divided by the true "
-            "picture's mean, over all pixels: the <code>relative_rmse</code> of <code>vpl compare</code>, "
-            "less the "
-            "truth's own noise.</li>\n"
-            "<li><em>Energy</em> is all light in the picture divided by all light in the truth: 1 is right, "
-            "less is darker.</li>\n</ul>\n");
-    addText(html, "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th "
-                  "class=\"n\">measured error</th><th class=\"n\">energy</th><th>cheapest setting, to copy"
-                  "</th></tr>\n");
+            "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th class=\"n\">measured "
+            "error</th><th class=\"n\">energy</th><th>cheapest setting, to copy</th></tr>\n");
     bool above = false;
     for (int i = 0; i < LIMIT_COUNT; i++) {
         addRow(t, LIMITS[i], &above, html);
     }
     addText(html, "</table>\n%s",
-            above ? "<p class=\"small\"><sup>a</sup> the median of the seeds; the worst seed lies above "
-                    "the limit.</p>\n"
+            above ? "<p class=\"small\"><sup>a</sup> the median of the seeds; the worst seed lies above the "
+                    "limit.</p>\n"
                   : "");
     addFamilies(t, html);
 }

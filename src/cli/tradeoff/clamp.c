@@ -151,11 +151,9 @@ void addClamp(const Tradeoff* t, Text* html)
         return;
     }
     findColumns(&clamp);
-    addText(
-        html,
-        "<h2>The clamp: blotches against lost light</h2>\n<p>A virtual light lights what is nearer than D "
-        "only as if it were D away. A small D leaves bright blotches around the lights, a large one "
-        "loses light, in corners first. All else as in the base, <code>");
+    addText(html, "<h2>The clamp: blotches against lost light</h2>\n<p>A virtual light lights what is nearer "
+                  "than D only as if it were D away. A small D leaves bright blotches around the lights, a "
+                  "large one loses light, in corners first. All else as in the base, <code>");
     addWords(html, t->settings[0].command);
     addText(html, "</code>.</p>\n");
     drawClamp(&clamp);

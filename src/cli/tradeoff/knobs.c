@@ -136,12 +136,11 @@ void addKnobs(const Tradeoff* t, Text* html)
     qsort(knobs, (size_t)count, sizeof *knobs, compareKnobs);
     addText(html, "<h2>What each knob buys</h2>\n<p>One option at a time is changed from the base, <code>");
     addWords(html, base->command);
-    addText(html,
-            "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor time "
-            "added for each factor of two by which the error falls. A change counts only if all seeds agree "
-            "and it is larger than 2 %% (error) or 10 %% (time).</p>\n<table><tr><th>knob</th><th>change</th>"
-            "<th class=\"n\">error</th><th class=\"n\">processor time</th><th>verdict</th><th "
-            "class=\"n\">per halving</th></tr>\n");
+    addText(html, "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor "
+                  "time added for each factor of two by which the error falls. A change counts only if all "
+                  "seeds agree and it is larger than 2 %% (error) or 10 %% "
+                  "(time).</p>\n<table><tr><th>knob</th><th>change</th><th class=\"n\">error</th><th "
+                  "class=\"n\">processor time</th><th>verdict</th><th class=\"n\">per halving</th></tr>\n");
     for (int i = 0; i < count; i++) {
         addKnob(base, &knobs[i], html);
     }

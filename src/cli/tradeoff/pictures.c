@@ -89,11 +89,10 @@ void addPictures(const Tradeoff* t, Text* html)
     vplWriteOptions options = vplDefaultWriteOptions();
     options.exposure = t->arguments->exposure != 0 ? (float)t->arguments->exposure : chooseExposure(t);
     int count = choosePoints(t, chosen);
-    addText(
-        html,
-        "<h2>What it looks like</h2>\n<p>Settings on the front of the plot, by their numbers there; first "
-        "seed; exposure %+g stops.</p>\n",
-        (double)options.exposure);
+    addText(html,
+            "<h2>What it looks like</h2>\n<p>Settings on the front of the plot, by their numbers there; "
+            "first seed; exposure %+g stops.</p>\n",
+            (double)options.exposure);
     for (int i = 0; i < count; i++) {
         addPoint(t, chosen[i], &options, html);
     }

@@ -36,8 +36,8 @@ static void addGrid(const Plot* p)
             "together</text>\n",
             (PLOT_LEFT + PLOT_RIGHT) / 2, HEIGHT - 12);
     addText(p->svg,
-            "<text transform=\"translate(16 %d) rotate(-90)\" text-anchor=\"middle\">error: rmse / mean "
-            "of the truth</text>\n",
+            "<text transform=\"translate(16 %d) rotate(-90)\" text-anchor=\"middle\">error: rmse / mean of "
+            "the truth</text>\n",
             (TOP + BOTTOM) / 2);
 }
 
