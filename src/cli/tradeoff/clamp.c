@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Error and energy against --min-distance: the larger the clamp distance, the fewer bright blotches, the less
 // light.
-#include "cli/tradeoff/report.h"
 #include "cli/tradeoff/svg.h"
 
 #include <math.h>
@@ -24,10 +23,7 @@ static double distanceOf(const Setting* s)
 
 static void findPoints(const Tradeoff* t, Clamp* clamp)
 {
-    uint64_t bits = 0;
-    for (int i = 0; i < SWEEP_COUNT; i++) {
-        bits |= strcmp(SWEEPS[i].name, "min-distance") == 0 ? UINT64_C(1) << i : 0;
-    }
+    const uint64_t bits = findSweeps("min-distance", strlen("min-distance"));
     for (int i = 0; i < t->settingCount && clamp->count < MAX_POINTS; i++) {
         const Setting* s = &t->settings[i];
         if ((s->sweeps & bits) != 0 && isMeasured(s)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // report.html: one file that needs no other, no network and no scripts.
-#include "cli/tradeoff/report.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -51,15 +51,13 @@ static void addHead(const Tradeoff* t, Text* html)
 static void addReference(const Tradeoff* t, Text* html)
 {
     const Reference* r = &t->reference;
-    char text[32];
-    formatTime(r->ms, text, sizeof text);
     addText(html, "<li>The truth: ");
     if (r->spp > 0) {
         addText(html,
                 "path traced in two independent halves with %d paths per pixel in all (%s of processor "
                 "time), through the centres of pixels as all methods draw: jagged edges do not count as "
                 "error. <code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
-                r->spp, text);
+                r->spp, formatTime(r->ms).text);
     } else {
         addText(html, "<code>");
         addEscaped(html, t->arguments->reference);
@@ -69,19 +67,15 @@ static void addReference(const Tradeoff* t, Text* html)
         addText(html, " Its own error is not known; small errors may be the file's.</li>\n");
         return;
     }
-    formatPercent(r->error, text, sizeof text);
     addText(
         html,
-        " It is noisy by %s itself, but the noise of the halves is independent and cancels in the mean of ",
-        text);
-    formatPercent(r->resolution, text, sizeof text);
-    addText(html,
-            "(x &minus; a)(x &minus; b). What remains unknown is <strong>%s</strong>, two standard errors; "
-            "no error below that is claimed.</li>\n",
-            text);
+        " It is noisy by %s itself, but the noise of the halves is independent and cancels in the mean of (x "
+        "&minus; a)(x &minus; b). What remains unknown is <strong>%s</strong>, two standard errors; "
+        "no error below that is claimed.</li>\n",
+        formatPercent(r->error).text, formatPercent(r->resolution).text);
 }
 
-// "AMD EPYC ...", or what uname says where /proc/cpuinfo has no such line.
+// Writes the processor's name from /proc/cpuinfo ("AMD EPYC ..."), or the architecture from uname without it.
 static void describeMachine(char* text, size_t size)
 {
     struct utsname system;
@@ -154,7 +148,6 @@ static void addAllSettings(const Tradeoff* t, Text* html)
             "class=\"n\">error</th><th class=\"n\">least to most</th><th class=\"n\">energy</th></tr>\n");
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
-        char text[32], low[32], high[32];
         addText(html, "<tr><td><code>%s</code>", s->change[0] ? s->change : "the base");
         if (!isMeasured(s)) {
             addText(html, "</td><td colspan=\"5\">not measured: ");
@@ -162,18 +155,16 @@ static void addAllSettings(const Tradeoff* t, Text* html)
             addText(html, "</td></tr>\n");
             continue;
         }
-        formatTime(s->cpuMs, text, sizeof text);
-        addText(html, "</td><td class=\"n\">%d</td><td class=\"n\">%s</td>", s->runCount, text);
-        formatPercent(s->error, text, sizeof text);
-        formatPercent(s->errorLow, low, sizeof low);
-        formatPercent(s->errorHigh, high, sizeof high);
+        addText(html, "</td><td class=\"n\">%d</td><td class=\"n\">%s</td>", s->runCount,
+                formatTime(s->cpuMs).text);
         addText(html, "<td class=\"n\">%s</td><td class=\"n\">%s to %s</td><td class=\"n\">%.3f</td></tr>\n",
-                text, low, high, s->energy);
+                formatPercent(s->error).text, formatPercent(s->errorLow).text,
+                formatPercent(s->errorHigh).text, s->energy);
     }
     addText(html, "</table></div></details>\n");
 }
 
-void addMethod(const Tradeoff* t, Text* html)
+static void addMethod(const Tradeoff* t, Text* html)
 {
     addText(html, "<h2>How it was measured</h2>\n<ul>\n");
     addReference(t, html);
