@@ -86,8 +86,8 @@ bool isGiven(const Arguments* arguments, const char* name);
 // Sets options by words "--name value --name value"; complains and returns false if one is wrong.
 bool setOptions(vplRenderOptions* options, const char* words);
 
-// vpl help TOPIC SUBJECT: the topic is NULL, a command or "options", which alone has subjects. Returns false after
-// complaining.
+// vpl help TOPIC SUBJECT: the topic is NULL, a command or "options", which alone has subjects. Returns false
+// after complaining.
 bool printHelp(const char* topic, const char* subject);
 
 // One sentence on stderr, starting with "vpl: ".
@@ -102,13 +102,15 @@ vplLogFcn logToStderr;
 // Makes a context that logs to stderr; NULL after complaining.
 vplContext* openContext(const Arguments* arguments);
 
-// Returns the exit code for a result. A file error is bad input (2) if `reading`, else a failure to write (1).
+// Returns the exit code for a result. A file error is bad input (2) if `reading`, else a failure to write
+// (1).
 int exitCode(vplResult result, bool reading);
 
 // Writes vplPlan_Describe's text.
 int printPlan(const vplPlan* plan, FILE* file);
 
-// Loads the scene, prints the plan if --explain or --dry-run asks for it, and calls `work` unless it is a dry run.
+// Loads the scene, prints the plan if --explain or --dry-run asks for it, and calls `work` unless it is a dry
+// run.
 typedef int SceneWork(const Arguments* arguments, const vplScene* scene);
 int runOnScene(const Arguments* arguments, SceneWork* work);
 
@@ -130,14 +132,17 @@ void catchInterrupts(void);
 
 // Infinity and NaN become null, because JSON has no such numbers.
 json_t* numberJson(double value);
+json_t* integersJson(const int* values, int count);
 
-// Writes JSON to a file, or to stdout if the path is NULL, and frees it. Complains unless it returns EXIT_DONE.
+// Writes JSON to a file, or to stdout if the path is NULL, and frees it. Complains unless it returns
+// EXIT_DONE.
 int writeJson(json_t* root, int digits, const char* path);
 
 // Writes the statistics of a render as JSON.
 int writeStats(vplContext* context, const char* path, const vplRenderStats* stats);
 
-// Returns true if a file can probably be written there; complains otherwise. Called before hours of rendering.
+// Returns true if a file can probably be written there; complains otherwise. Called before hours of
+// rendering.
 bool checkOutput(const char* path);
 
 // Writes the file name of frame `number` of frames up to `last`: "-0012" before the extension, at least four

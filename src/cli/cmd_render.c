@@ -11,7 +11,8 @@ static bool isEmpty(const float* pixel)
     return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0;
 }
 
-// Makes metres and normals visible in a PNG: the nearest is white, the farthest is dark; normals are (n + 1) / 2.
+// Makes metres and normals visible in a PNG: the nearest is white, the farthest is dark; normals are (n + 1)
+// / 2.
 static void prepareForEyes(vplImage* image, vplShow show)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
@@ -100,7 +101,7 @@ static int renderFrame(const Arguments* a, const vplScene* scene, const vplRende
     vplImage* image = NULL;
     vplRenderStats stats;
     Files files;
-    nameFiles(a, (int)options->sequence.frame, &files); // checkFiles has found that names are not too long
+    nameFiles(a, (int)options->sequence.frame, &files); // runRender has checked their lengths
     Sequence* sequence = options->progressUser;
     vplResult result = vplRender(scene, options, &image, &stats);
     endProgress(&sequence->progress);
@@ -146,17 +147,6 @@ static int renderScene(const Arguments* a, const vplScene* scene)
     return code;
 }
 
-// Checks the files of the first frame; those of the others differ in digits only.
-static bool checkFiles(const Arguments* a)
-{
-    Files files;
-    if (!nameFiles(a, a->frames[0], &files)) {
-        complain("%s: the name is too long", a->output);
-        return false;
-    }
-    return checkOutput(files.output) && (a->stats == NULL || checkOutput(files.stats));
-}
-
 int runRender(const Arguments* a)
 {
     if (a->dryRun) {
@@ -174,7 +164,12 @@ int runRender(const Arguments* a)
         complain("%s: both the picture and the statistics would be written there", a->output);
         return EXIT_USAGE;
     }
-    if (!checkFiles(a)) {
+    Files files; // of the first frame; the names of the others differ in digits only
+    const bool named = nameFiles(a, a->frames[0], &files);
+    if (!named) {
+        complain("%s: the name is too long", a->output);
+    }
+    if (!named || !checkOutput(files.output) || (a->stats != NULL && !checkOutput(files.stats))) {
         return EXIT_COULD_NOT;
     }
     return runOnScene(a, renderScene);

@@ -73,7 +73,7 @@ const Command* findCommand(const char* name)
 
 // ---- text
 
-// Prints words from `column` on and breaks lines at spaces and behind "|"; further lines begin at `indent`.
+// Prints words from `column` on. Breaks lines at spaces and after "|"; further lines begin at `indent`.
 static void printWrapped(const char* text, int column, int indent)
 {
     bool space = false;
@@ -92,7 +92,7 @@ static void printWrapped(const char* text, int column, int indent)
     putchar('\n');
 }
 
-// Adds the words of "a|b|c" whose bits are set, with commas between, within two brackets.
+// Adds the words of "a|b|c" whose bits are set, with commas between, in brackets.
 static void appendWords(char* text, const char* open, const char* words, int bits, const char* close)
 {
     for (int bit = 1; words != NULL; bit <<= 1) {
@@ -106,7 +106,7 @@ static void appendWords(char* text, const char* open, const char* words, int bit
     strcat(text, close);
 }
 
-// The names of the sweeps, each once, in the order of the table.
+// Adds the names of the sweeps, each once, in the order of the table.
 static void appendSweeps(char text[TEXT])
 {
     for (int i = 0; i < SWEEP_COUNT; i++) {
@@ -116,12 +116,13 @@ static void appendSweeps(char text[TEXT])
     }
 }
 
-// The help of an option, its default, and who uses it if not all do: methods and pipelines, or commands.
+// Writes the help of an option, its default, and the methods, pipelines or commands that use it if not all
+// do.
 static void describeOption(const Option* o, bool commands, char text[TEXT])
 {
     const vplRenderOptions defaults = vplDefaultRenderOptions();
     const int users = o->render != NULL ? o->render->users : VPL_USE_ALL;
-    char value[64] = "";
+    char value[64];
     snprintf(value, sizeof value, "%s", o->default_ != NULL ? o->default_ : "");
     if (o->render != NULL) {
         vplRenderOptions_Get(&defaults, o->name, value, sizeof value);
@@ -141,7 +142,7 @@ static void describeOption(const Option* o, bool commands, char text[TEXT])
     }
 }
 
-// Text of a man page: dashes that are no hyphens.
+// Prints text of a man page, in which a plain - is a hyphen and not a dash.
 static void printManual(const char* text)
 {
     for (; *text != 0; text++) {
@@ -172,14 +173,12 @@ static void printOption(const Option* o, bool manual)
     printWrapped(text, INDENT, INDENT);
 }
 
-// The program's own options that a command takes; all: of all commands.
+// Prints the program's own options that any of the commands takes.
 static void printOwn(int commands, bool manual)
 {
-    int count;
-    const Option* options = getOptions(&count);
-    for (int i = 0; i < count; i++) {
-        if (options[i].render == NULL && (options[i].commands & commands) != 0) {
-            printOption(&options[i], manual);
+    for (const Option* o = getOptions(); o->name != NULL; o++) {
+        if (o->render == NULL && (o->commands & commands) != 0) {
+            printOption(o, manual);
         }
     }
 }
@@ -196,17 +195,16 @@ static bool contains(const char* text, const char* word)
     return false;
 }
 
-// Prints the options of the groups whose heading contains the subject (NULL: all), or the option of that
-// name, under their headings. Returns how many there were.
+// Prints the option named by the subject, or the options of all groups whose heading contains it (NULL: all
+// groups), under their headings. Returns their number.
 static int printSubject(const char* subject, bool manual)
 {
-    int count, printed = 0;
-    const Option* options = getOptions(&count);
+    int printed = 0;
     const vplOption* named =
         subject != NULL ? vplFindOption(subject + 2 * (strncmp(subject, "--", 2) == 0)) : NULL;
     const char* group = "";
-    for (int i = 0; i < count; i++) {
-        const vplOption* o = options[i].render;
+    for (const Option* option = getOptions(); option->name != NULL; option++) {
+        const vplOption* o = option->render;
         if (o == NULL || (named != NULL && o != named) ||
             (named == NULL && subject != NULL && !contains(o->group, subject))) {
             continue;
@@ -215,7 +213,7 @@ static int printSubject(const char* subject, bool manual)
             printf(manual ? ".SS %s\n" : "\n%s\n", o->group);
             group = o->group;
         }
-        printOption(&options[i], manual);
+        printOption(option, manual);
         printed++;
     }
     return printed;
@@ -223,32 +221,28 @@ static int printSubject(const char* subject, bool manual)
 
 static void printEssentials(void)
 {
-    int count;
-    const Option* options = getOptions(&count);
     for (size_t k = 0; k < sizeof ESSENTIALS / sizeof *ESSENTIALS; k++) {
-        for (int i = 0; i < count; i++) {
-            if (options[i].render != NULL && strcmp(options[i].name, ESSENTIALS[k]) == 0) {
-                printOption(&options[i], false);
+        for (const Option* o = getOptions(); o->name != NULL; o++) {
+            if (o->render != NULL && strcmp(o->name, ESSENTIALS[k]) == 0) {
+                printOption(o, false);
             }
         }
     }
 }
 
-// The names of all options under their headings.
+// Prints the names of all options under their headings.
 static void printSubjects(void)
 {
-    int count;
-    const Option* options = getOptions(&count);
-    const char* group = "";
     puts("\nAll options of rendering; vpl help options SUBJECT (or NAME) explains them:");
-    for (int i = 0; i < count; i++) {
+    for (const Option* o = getOptions(); o->name != NULL;) {
         char text[TEXT] = "";
-        if (options[i].render == NULL || strcmp(options[i].render->group, group) == 0) {
+        const char* group = o->render != NULL ? o->render->group : NULL;
+        if (group == NULL) {
+            o++;
             continue;
         }
-        group = options[i].render->group;
-        for (int k = i; k < count && strcmp(options[k].render->group, group) == 0; k++) {
-            sprintf(text + strlen(text), "%s--%s", k > i ? " " : "", options[k].name);
+        for (; o->name != NULL && strcmp(o->render->group, group) == 0; o++) {
+            sprintf(text + strlen(text), "%s--%s", text[0] != 0 ? " " : "", o->name);
         }
         printf("  %s\n%*s", group, INDENT, "");
         printWrapped(text, INDENT, INDENT);

@@ -78,6 +78,15 @@ json_t* numberJson(double value)
     return isfinite(value) ? json_real(value) : json_null();
 }
 
+json_t* integersJson(const int* values, int count)
+{
+    json_t* array = json_array();
+    for (int i = 0; i < count; i++) {
+        json_array_append_new(array, json_integer(values[i]));
+    }
+    return array;
+}
+
 int writeJson(json_t* root, int digits, const char* path)
 {
     char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(digits));

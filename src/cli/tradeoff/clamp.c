@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Error and energy against --min-distance: the larger the clamp distance, the fewer bright blotches, the less
-// light.
+// Error and energy against --min-distance: a larger clamp distance removes bright blotches, but also light.
 #include "cli/tradeoff/svg.h"
 
 #include <math.h>
@@ -11,7 +10,7 @@ enum { PANEL = 200, GAP = 34, TOP = 26, BOTTOM = 56, MAX_POINTS = 32 };
 
 typedef struct Clamp {
     const Setting* points[MAX_POINTS]; // by ascending distance
-    int column[MAX_POINTS];            // points of one distance stand in one column
+    int column[MAX_POINTS];            // points of one distance share a column
     int count, columns;
     Text* svg;
 } Clamp;
@@ -45,13 +44,13 @@ static void findColumns(Clamp* c)
     }
 }
 
-// Evenly spaced: the distances run over decades and begin with 0.
+// Columns are evenly spaced, because distances span decades and begin with 0.
 static double atX(const Clamp* c, int i)
 {
     return PLOT_LEFT + (PLOT_RIGHT - PLOT_LEFT) * (c->column[i] + 0.5) / c->columns;
 }
 
-// A round step that makes three to eight of them.
+// Chooses a round step between grid lines, for two to eight of them.
 static double stepOf(double span)
 {
     double step = pow(10, floor(log10(span / 2)));

@@ -6,16 +6,17 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// Numbers the points of the Pareto front 1, 2, 3... by ascending cost, and all others 0. The front is thinned:
-// the error of each of its points is less than (1 - gain) times that of the point before; gain 0 keeps all.
-// The first of equal points counts. A point with a NAN is never on the front. Returns the number of points on it.
+// Numbers the points of the Pareto front 1, 2, 3... by ascending cost, and all others 0. The front is
+// thinned: the error of each of its points is less than (1 - gain) times that of the point before; gain 0
+// keeps all. The first of equal points counts. A point with a NAN is never on the front. Returns the number
+// of points on it.
 int numberFront(const double* cost, const double* error, int count, double gain, int* numbers);
 
 // Index of the cheapest point with error <= limit, -1 if there is none; of equal costs the first.
 int cheapestWithin(const double* cost, const double* error, int count, double limit);
 
-// The cost of halving the error on the way from point 0 to point 1: the added cost per factor of two by which the
-// error falls. Negative if point 1 costs less; INFINITY if the error does not fall.
+// The cost of halving the error on the way from point 0 to point 1: the added cost per factor of two by which
+// the error falls. Negative if point 1 costs less; INFINITY if the error does not fall.
 double costPerHalving(double cost0, double error0, double cost1, double error1);
 
 // The error at which a series levels off; error[i] was measured with work[i] (ascending). NAN unless the last
@@ -30,13 +31,14 @@ bool logRange(const double* values, int count, double* low, double* high);
 // than four decades. Returns their number, at most `most`.
 int logTicks(double low, double high, double* ticks, int most);
 
-// The mean of (x - a)(x - b). If a and b are independent and right on average, their noise cancels and the mean
-// is the squared error of x alone; (x - a)^2 would include the noise of a. The mean may be negative near 0.
+// The mean of (x - a)(x - b). If a and b are independent and right on average, their noise cancels and the
+// mean is the squared error of x alone; (x - a)^2 would include the noise of a. The mean may be negative near
+// 0.
 double jointSquare(const float* x, const float* a, const float* b, size_t count);
 
-// The standard error of jointSquare for an x without error, estimated from the difference of a and b. If their
-// noise a' and b' is normal and has variance v, a'b' has variance v^2 and the mean of (a' - b')^4 is 12 v^2.
-// Noise with more outliers makes the estimate too large, not too small.
+// The standard error of jointSquare for an x without error, estimated from the difference of a and b. If
+// their noise a' and b' is normal and has variance v, a'b' has variance v^2 and the mean of (a' - b')^4 is 12
+// v^2. Noise with more outliers makes the estimate too large, not too small.
 double jointUncertainty(const float* a, const float* b, size_t count);
 
 // A short text by value. It can be an argument of printf: formatTime(ms).text lives until the call returns.

@@ -9,8 +9,8 @@
 // More would make a page of many megabytes.
 enum { MAX_PICTURES = 10 };
 
-// Chooses the exposure that all pictures share: whole stops, so that nine in ten of the reference's lit values
-// are at most 0.8.
+// Chooses the exposure that all pictures share: whole stops, so that nine in ten of the reference's lit
+// values are at most 0.8.
 static float chooseExposure(const Tradeoff* t)
 {
     const vplImage* image = t->reference.image;
@@ -66,7 +66,8 @@ static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions*
     addText(html, "</div>\n");
 }
 
-// Chooses points of the front by ascending cost: all, or if they are too many evenly spaced ones and the last.
+// Chooses points of the front by ascending cost: all, or if they are too many evenly spaced ones and the
+// last.
 static int choosePoints(const Tradeoff* t, const Setting** chosen)
 {
     const Setting* front[MAX_SETTINGS];

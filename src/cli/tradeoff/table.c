@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Stages differ by method: the columns are all that occurred, in the order of their first run.
+// Columns of stages, which differ by method: all that occurred, in the order of their first run.
 typedef struct Stages {
     const char* names[MAX_STAGE_NAMES];
     int count;

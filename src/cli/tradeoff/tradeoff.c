@@ -109,15 +109,6 @@ static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOu
     return vplContext_Create(&def, contextOut);
 }
 
-static int checkCamera(const Tradeoff* t)
-{
-    int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.output.camera;
-    if (camera >= cameras) {
-        complain("--camera is %d, the scene has %d (from 0)", camera, cameras);
-    }
-    return camera < cameras ? EXIT_DONE : EXIT_USAGE;
-}
-
 static int readScene(Tradeoff* t)
 {
     const char* path = t->arguments->positionals[0];
@@ -134,7 +125,12 @@ static int readScene(Tradeoff* t)
     code = exitCode(vplGeometry_Create(t->scene, &geometry), true);
     t->diagonal = geometry ? (double)vplGeometry_Diagonal(geometry) : 0;
     vplGeometry_Destroy(geometry);
-    return code == EXIT_DONE ? checkCamera(t) : code;
+    const int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.output.camera;
+    if (code == EXIT_DONE && camera >= cameras) {
+        complain("--camera is %d, the scene has %d (from 0)", camera, cameras);
+        code = EXIT_USAGE;
+    }
+    return code;
 }
 
 static int run(Tradeoff* t)

@@ -8,10 +8,11 @@
 #include "cli/tradeoff/math.h"
 #include "cli/tradeoff/text.h"
 
-// The base of vpl tradeoff, as changes to the defaults of vpl render: a size that allows many pictures, enough
-// particles to see something, and the sampler and hard shadows that match the reference of a point light. The
-// seed is not 0, because the first Halton point of seed 0 is the origin in all dimensions. Its particle survives to
-// the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error instead of 18 %).
+// The base of vpl tradeoff, as changes to the defaults of vpl render: a size that allows many pictures,
+// enough particles to see something, and the sampler and hard shadows that match the reference of a point
+// light. The seed is not 0, because the first Halton point of seed 0 is the origin in all dimensions. Its
+// particle survives to the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error
+// instead of 18 %).
 #define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --seed 1 --shadow-map 256 --pcf 1"
 
 enum { MAX_SETTINGS = 512, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
@@ -145,7 +146,8 @@ int findCheapest(const Tradeoff* t, Family family, double limit);
 // Lists the settings on the front, the cheapest first, and returns their number.
 int listFront(const Tradeoff* t, const Setting* front[MAX_SETTINGS]);
 
-// Returns the error at which a family of virtual lights levels off as particles grow in number; NAN if it does not.
+// Returns the error at which a family of virtual lights levels off as particles grow in number; NAN if it
+// does not.
 double findFloor(const Tradeoff* t, Family family);
 
 // Parts of report.html.
