@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The third sweep over an OBJ file: faces, which are cut into triangles.
 #include "scene/obj.h"
+#include "scene/obj_number.h"
 
 #include <string.h>
 
@@ -18,24 +19,16 @@ typedef struct Sweep {
     int64_t crossingCount;
 } Sweep;
 
-// Reads one index of a corner, up to the next '/'. Large values saturate. False if there are no digits.
+// Reads one index of a corner, up to the next '/'. False if it is no integer.
 static bool readInteger(vplWord* word, vplWord* numberOut, int64_t* out)
 {
     const char* p = word->start;
-    bool negative = p < word->end && *p == '-';
-    p += p < word->end && (*p == '-' || *p == '+');
-    const char* digits = p;
-    int64_t value = 0;
-    for (; p < word->end && *p >= '0' && *p <= '9'; p++) {
-        value = value > (int64_t)1 << 40 ? value : 10 * value + (*p - '0');
-    }
-    bool good = p > digits && (p == word->end || *p == '/');
+    const bool good = vplReadInteger(&p, word->end, out) && (p == word->end || *p == '/');
     while (p < word->end && *p != '/') {
         p++;
     }
     *numberOut = (vplWord){word->start, p};
     word->start = p;
-    *out = negative ? -value : value;
     return good;
 }
 
