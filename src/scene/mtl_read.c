@@ -5,11 +5,10 @@
 typedef struct Mtl {
     vplText text;
     vplObjMaterials* materials;
-    int current;               // material being defined; -1: none yet, or defined before
-    bool started;              // a newmtl was read
-    const char* firstBright;   // the first Kd above 1
-    const char* firstRepeated; // the first newmtl whose name has a definition
-    long long brightCount, repeatedCount;
+    int current;       // material being defined; -1: none yet, or defined before
+    bool started;      // a newmtl was read
+    vplTally bright;   // Kd above 1
+    vplTally repeated; // newmtl with a name that has a definition already
     vplUnknownWords unknown;
 } Mtl;
 
@@ -40,7 +39,7 @@ static vplResult beginMaterial(Mtl* m, vplWord line)
     m->current = number;
     if (m->materials->list[number].defined) {
         m->current = -1;
-        m->firstRepeated = m->repeatedCount++ == 0 ? name.start : m->firstRepeated;
+        vplTally_Add(&m->repeated, name.start);
     }
     m->materials->list[number].defined = true;
     return VPL_SUCCESS;
@@ -72,7 +71,7 @@ static vplResult readReflectance(Mtl* m, vplWord line, vplWord keyword)
     bool understood;
     TRY(readColour(m, line, "a reflectance", &kd, &understood));
     if (understood && (kd.r > 1 || kd.g > 1 || kd.b > 1)) {
-        m->firstBright = m->brightCount++ == 0 ? keyword.start : m->firstBright;
+        vplTally_Add(&m->bright, keyword.start);
         kd = (vplRgb){kd.r > 1 ? 1 : kd.r, kd.g > 1 ? 1 : kd.g, kd.b > 1 ? 1 : kd.b};
     }
     if (understood && m->current >= 0) {
@@ -92,20 +91,10 @@ static vplResult readEmission(Mtl* m, vplWord line)
     return VPL_SUCCESS;
 }
 
-// True for the constants of shading models with highlights and transparency, which nearly every file has.
-static bool isConstant(vplWord keyword)
-{
-    static const char* const words[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "Tr", "d", "illum"};
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        if (vplWord_Is(keyword, words[i])) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static vplResult readLine(Mtl* m, vplWord line)
 {
+    // Constants of shading models with highlights and transparency, which nearly every file has.
+    static const char* const ignored[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "Tr", "d", "illum", NULL};
     vplWord keyword;
     vplNextWord(&line, &keyword);
     if (vplWord_Is(keyword, "newmtl")) {
@@ -120,23 +109,10 @@ static vplResult readLine(Mtl* m, vplWord line)
     if (vplWord_Is(keyword, "Ke")) {
         return readEmission(m, line);
     }
-    if (!isConstant(keyword)) {
+    if (!vplWord_IsAmong(keyword, ignored)) {
         vplText_WarnOnce(&m->text, &m->unknown, keyword);
     }
     return VPL_SUCCESS;
-}
-
-static void warn(const Mtl* m)
-{
-    if (m->brightCount > 0) {
-        vplText_WarnAt(&m->text, m->firstBright, "Kd above 1 is taken as 1 (%lld such lines)",
-                       m->brightCount);
-    }
-    if (m->repeatedCount > 0) {
-        vplText_WarnAt(&m->text, m->firstRepeated,
-                       "this material has a definition already, which stays (%lld such materials)",
-                       m->repeatedCount);
-    }
 }
 
 static vplResult readLines(Mtl* m)
@@ -146,7 +122,9 @@ static vplResult readLines(Mtl* m)
     while (vplText_NextLine(&m->text, &at, &line)) {
         TRY(readLine(m, line));
     }
-    warn(m);
+    vplText_WarnTally(&m->text, &m->bright, "Kd above 1 is taken as 1", "lines");
+    vplText_WarnTally(&m->text, &m->repeated, "this material has a definition already, which stays",
+                      "materials");
     return VPL_SUCCESS;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the three sweeps over an OBJ file share. The first counts and reads the MTL files, the second reads
-// points and normals, the third faces.
+// Types that the three sweeps over an OBJ file share. The first sweep counts and reads the MTL files, the
+// second reads points and normals, the third reads faces.
 #ifndef VPL_SCENE_OBJ_H
 #define VPL_SCENE_OBJ_H
 
@@ -63,19 +63,6 @@ typedef struct vplObjMesh {
     vplVec3* cornerNormal;
     size_t pointCapacity, normalCapacity;
 } vplObjMesh;
-
-typedef enum vplObjStatement {
-    VPL_OBJ_POINT,      // v
-    VPL_OBJ_NORMAL,     // vn
-    VPL_OBJ_FACE,       // f
-    VPL_OBJ_MATERIAL,   // usemtl
-    VPL_OBJ_LIBRARY,    // mtllib
-    VPL_OBJ_IGNORED,    // vt, g, o, s: irrelevant to a mesh
-    VPL_OBJ_UNSUPPORTED // anything else
-} vplObjStatement;
-
-// Cuts the keyword off a line.
-vplObjStatement vplObj_ReadKeyword(vplWord* line, vplWord* keywordOut);
 
 // The three sweeps, in this order.
 vplResult vplObj_Count(vplObj* obj);

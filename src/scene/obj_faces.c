@@ -15,8 +15,7 @@ typedef struct Sweep {
     uint32_t cornerPoints[VPL_MAX_CORNERS];
     int64_t cornerNormals[VPL_MAX_CORNERS]; // -1: none
     vplVec3 positions[VPL_MAX_CORNERS];
-    const char* firstCrossing; // face whose outline crosses itself
-    int64_t crossingCount;
+    vplTally crossing; // faces whose outline crosses itself
 } Sweep;
 
 // Reads one index of a corner, up to the next '/'. False if it is no integer.
@@ -105,7 +104,7 @@ static vplResult addPolygon(Sweep* s, int corners, const char* face)
     }
     const bool hasArea = s->mesh->emptyCount < emptyBefore + s->polygon.triangleCount;
     if (!s->polygon.simple && hasArea) {
-        s->firstCrossing = s->crossingCount++ == 0 ? face : s->firstCrossing;
+        vplTally_Add(&s->crossing, face);
     }
     return VPL_SUCCESS;
 }
@@ -123,20 +122,15 @@ static vplResult readFace(Sweep* s, vplWord line, const char* face)
 static vplResult readLine(Sweep* s, vplWord line)
 {
     vplWord keyword;
-    switch (vplObj_ReadKeyword(&line, &keyword)) {
-    case VPL_OBJ_POINT:
-        s->points++;
-        break;
-    case VPL_OBJ_NORMAL:
-        s->normals++;
-        break;
-    case VPL_OBJ_FACE:
+    vplNextWord(&line, &keyword);
+    if (vplWord_Is(keyword, "f")) {
         return readFace(s, line, keyword.start);
-    case VPL_OBJ_MATERIAL:
-        return vplObjMaterials_Get(&s->obj->materials, vplRestOfLine(line), &s->material);
-    default:
-        break;
     }
+    if (vplWord_Is(keyword, "usemtl")) {
+        return vplObjMaterials_Get(&s->obj->materials, vplRestOfLine(line), &s->material);
+    }
+    s->points += vplWord_Is(keyword, "v");
+    s->normals += vplWord_Is(keyword, "vn");
     return VPL_SUCCESS;
 }
 
@@ -147,18 +141,15 @@ static vplResult readLines(Sweep* s)
     while (vplText_NextLine(&s->obj->text, &at, &line)) {
         TRY(readLine(s, line));
     }
-    if (s->crossingCount > 0) {
-        vplText_WarnAt(&s->obj->text, s->firstCrossing,
-                       "the outline of this face crosses itself; its triangles may overlap (%lld such faces)",
-                       (long long)s->crossingCount);
-    }
+    vplText_WarnTally(&s->obj->text, &s->crossing,
+                      "the outline of this face crosses itself; its triangles may overlap", "faces");
     return VPL_SUCCESS;
 }
 
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
 {
     if (obj->triangleCount == 0) {
-        return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size, VPL_PARSE_ERROR,
+        return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size,
                               "found the end of the file, expected a face (f)");
     }
     const size_t triangles = (size_t)obj->triangleCount;

@@ -26,6 +26,17 @@ static void warnOfUndefined(const vplObj* obj)
     }
 }
 
+static bool isPrefixTaken(const vplScene* scene, const char* prefix)
+{
+    for (int i = 0; i < scene->materialCount; i++) {
+        const char* name = scene->materials[i].name;
+        if (name != NULL && strncmp(name, prefix, strlen(prefix)) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // A prefix for the names of a file's materials that no name in the scene has: "room.obj:", or with the number
 // of the mesh, from 1, "room.obj(2):". Files may share material names, and one file may be read twice.
 static char* makePrefix(const vplScene* scene, const char* path, vplArena* scratch)
@@ -37,16 +48,8 @@ static char* makePrefix(const vplScene* scene, const char* path, vplArena* scrat
         return NULL;
     }
     snprintf(prefix, size, "%s:", base);
-    bool taken = true;
-    for (int number = scene->meshCount + 1; taken; number++) {
-        taken = false;
-        for (int i = 0; i < scene->materialCount && !taken; i++) {
-            const char* name = scene->materials[i].name;
-            taken = name != NULL && strncmp(name, prefix, strlen(prefix)) == 0;
-        }
-        if (taken) {
-            snprintf(prefix, size, "%s(%d):", base, number);
-        }
+    for (int number = scene->meshCount + 1; isPrefixTaken(scene, prefix); number++) {
+        snprintf(prefix, size, "%s(%d):", base, number);
     }
     return prefix;
 }
@@ -162,8 +165,6 @@ static vplResult readText(vplObj* obj, vplObjMesh* mesh)
 
 static vplResult loadObj(vplScene* scene, vplObj* obj, const char* path, vplObjMesh* mesh, int* indexOut)
 {
-    TRY(vplArena_Check(obj->scratch));
-    TRY(vplArena_Check(mesh->arena));
     TRY(vplText_Open(obj->context, path, &obj->text));
     const vplResult result = readText(obj, mesh);
     vplText_Close(&obj->text);
@@ -179,7 +180,7 @@ vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut)
                   .scratch = scratch,
                   .materials = {.names = {.index = {.arena = scratch}}},
                   .libraries = {.index = {.arena = scratch}}};
-    vplObjMesh mesh = {.arena = scratch != NULL ? vplArena_Create(scene->context) : NULL};
+    vplObjMesh mesh = {.arena = vplArena_Create(scene->context)};
     const int materialCount = scene->materialCount;
     const vplResult result = loadObj(scene, &obj, path, &mesh, indexOut);
     if (result != VPL_SUCCESS) {
