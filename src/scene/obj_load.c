@@ -124,7 +124,9 @@ static vplResult addMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int* in
 {
     vplHashIndex_Close(&mesh->corners);
     const size_t triangles = (size_t)mesh->triangleCount, capacity = (size_t)obj->triangleCount;
-    vplMeshDef def = {.vertexCount = (int)mesh->vertexCount, .triangleCount = (int)mesh->triangleCount};
+    vplMeshDef def = vplDefaultMeshDef();
+    def.vertexCount = (int)mesh->vertexCount;
+    def.triangleCount = (int)mesh->triangleCount;
     def.positions = placeVertices(obj, mesh);
     def.indices = shrink(mesh->arena, mesh->indices, capacity, triangles, 3 * sizeof *mesh->indices);
     def.normals = shrink(mesh->arena, mesh->cornerNormal, mesh->normalCapacity, mesh->vertexCount,

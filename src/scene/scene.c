@@ -142,11 +142,9 @@ vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material
 
 vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* arena, int* indexOut)
 {
-    vplMeshDef adopted = *mesh;
-    adopted.cookie = MESH_COOKIE;
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
-        result = append(scene, LIST(scene, mesh, meshes), &adopted, indexOut);
+        result = append(scene, LIST(scene, mesh, meshes), mesh, indexOut);
     }
     if (result == VPL_SUCCESS) {
         vplArena_Absorb(scene->arena, arena);
