@@ -8,7 +8,7 @@
 // Linear RGB of t, clamped to [0, 1]: black, violet, red, orange, yellow, white.
 vplRgb vplFalseColour(float t);
 
-// The same in the magma colours of FLIP's maps: black, violet, red, pale yellow.
+// Linear RGB of t, clamped to [0, 1], in the magma colours of FLIP's maps: black, violet, red, pale yellow.
 vplRgb vplMagma(float t);
 
 // Height of the colour bar below a picture of this width; 0 if the picture is too narrow for one.

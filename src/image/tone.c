@@ -40,30 +40,39 @@ static double luminance(const float* pixel)
     return 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
 }
 
-// Rows per parallel section, which computes logarithms. Sums over pixels are taken after it, in the order of
-// the pixels.
+// Rows per parallel section. Sums over pixels are taken after it, in the order of the pixels.
 enum { BAND = 64 };
+
+typedef struct Row {
+    double largest;
+    int counted;
+} Row;
 
 typedef struct Reinhard {
     vplImage* image;
     double delta, scale, white;
     bool skipBlack;
     int firstRow;
-    double* logs; // of a band's pixels; NAN for those that do not count
+    double* logs; // of a band's pixels; 0 for those that do not count
+    Row rows[BAND];
 } Reinhard;
 
 static void findLogs(void* data, int row, int worker)
 {
     (void)worker;
-    const Reinhard* r = data;
+    Reinhard* r = data;
     const int width = r->image->width;
     const float* pixels = r->image->pixels + 3 * (size_t)(r->firstRow + row) * (size_t)width;
     double* logs = r->logs + (size_t)row * (size_t)width;
+    Row found = {0, 0};
     for (int x = 0; x < width; x++) {
         const double y = luminance(pixels + 3 * (size_t)x);
         const bool counts = isfinite(y) && y + (r->skipBlack ? 0 : r->delta) > 0;
-        logs[x] = counts ? vplLn(y + r->delta) : (double)NAN;
+        logs[x] = counts ? vplLn(y + r->delta) : 0;
+        found.counted += counts;
+        found.largest = counts && y > found.largest ? y : found.largest;
     }
+    r->rows[row] = found;
 }
 
 static void mapRow(void* data, int row, int worker)
@@ -97,14 +106,12 @@ static void sumBand(Reinhard* r, Sums* sums)
     const vplImage* image = r->image;
     const int rows = image->height - r->firstRow < BAND ? image->height - r->firstRow : BAND;
     vplParallelFor(image->context, rows, findLogs, r);
-    const float* pixel = image->pixels + 3 * (size_t)r->firstRow * (size_t)image->width;
-    for (size_t i = 0; i < (size_t)rows * (size_t)image->width; i++, pixel += 3) {
-        if (!isnan(r->logs[i])) {
-            sums->log += r->logs[i];
-            sums->counted++;
-            const double y = luminance(pixel);
-            sums->largest = y > sums->largest ? y : sums->largest;
-        }
+    for (int row = 0; row < rows; row++) {
+        sums->largest = r->rows[row].largest > sums->largest ? r->rows[row].largest : sums->largest;
+        sums->counted += (size_t)r->rows[row].counted;
+    }
+    for (size_t i = 0; i < (size_t)rows * (size_t)image->width; i++) {
+        sums->log += r->logs[i];
     }
 }
 

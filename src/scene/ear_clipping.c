@@ -11,7 +11,7 @@
 #include "math/double3.h"
 #include "math/vec.h"
 
-// How strict the test for an ear is. Decreases when an outline has no ear left.
+// The tests that an ear must pass, the strictest first. An outline that has no ear left gets the next rule.
 typedef enum Rule {
     RULE_CLOSED = 0, // no corner may lie in or on the ear: every simple polygon has such ears
     RULE_OPEN,       // no corner may lie inside

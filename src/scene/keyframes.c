@@ -137,21 +137,6 @@ const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, i
     return scene->emitters[index].track.keys;
 }
 
-vplFault vplCheckKeyFrame(double before, double frame)
-{
-    vplFault fault = {NULL, -1, ""};
-    if (!(fabs(frame) <= VPL_MAX_FRAME)) {
-        fault.field = "frame";
-        snprintf(fault.text, sizeof fault.text, "is %g, must be in [%d, %d]", frame, -VPL_MAX_FRAME,
-                 VPL_MAX_FRAME);
-    } else if (!(frame > before)) {
-        fault.field = "frame";
-        snprintf(fault.text, sizeof fault.text, "is %g, must be greater than that of the key before (%g)",
-                 frame, before);
-    }
-    return fault;
-}
-
 static vplFault checkCameraKey(const void* def, const void* key)
 {
     const vplCameraDef posed = vplApplyCameraKey(def, key);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reads MTL files: Kd is the reflectance, Ke the emission. libvpl's surfaces have no other property.
+#include "math/scalar.h"
 #include "scene/obj.h"
 
 typedef struct Mtl {
@@ -45,48 +46,32 @@ static vplResult beginMaterial(Mtl* m, vplWord line)
     return VPL_SUCCESS;
 }
 
-// Reads one number for all channels, or three. *understoodOut is false for a colour that is not RGB.
-static vplResult readColour(Mtl* m, vplWord line, const char* what, vplRgb* out, bool* understoodOut)
+// Reads Kd or Ke: one number for all channels, or three. Colours that are not RGB have no effect.
+static vplResult readColour(Mtl* m, vplWord line, vplWord keyword)
 {
+    const bool reflectance = vplWord_Is(keyword, "Kd");
     vplWord ahead = line, word;
     float v[3];
     int count = 0;
     vplNextWord(&ahead, &word);
-    *understoodOut = !vplWord_Is(word, "spectral") && !vplWord_Is(word, "xyz");
-    if (!*understoodOut) {
+    if (vplWord_Is(word, "spectral") || vplWord_Is(word, "xyz")) {
         vplText_WarnOnce(&m->text, &m->unknown, word);
         return VPL_SUCCESS;
     }
     ahead = line;
     while (count < 3 && (vplNextWord(&ahead, &word) || count != 1)) {
-        TRY(vplText_Number(&m->text, &line, what, 0, VPL_MAX_MAGNITUDE, &v[count++]));
+        TRY(vplText_Number(&m->text, &line, reflectance ? "a reflectance" : "a radiance", 0,
+                           VPL_MAX_MAGNITUDE, &v[count++]));
     }
-    *out = count == 1 ? (vplRgb){v[0], v[0], v[0]} : (vplRgb){v[0], v[1], v[2]};
-    return vplText_RequireEnd(&m->text, line);
-}
-
-static vplResult readReflectance(Mtl* m, vplWord line, vplWord keyword)
-{
-    vplRgb kd;
-    bool understood;
-    TRY(readColour(m, line, "a reflectance", &kd, &understood));
-    if (understood && (kd.r > 1 || kd.g > 1 || kd.b > 1)) {
+    TRY(vplText_RequireEnd(&m->text, line));
+    vplRgb colour = count == 1 ? (vplRgb){v[0], v[0], v[0]} : (vplRgb){v[0], v[1], v[2]};
+    if (reflectance && (colour.r > 1 || colour.g > 1 || colour.b > 1)) {
         vplTally_Add(&m->bright, keyword.start);
-        kd = (vplRgb){kd.r > 1 ? 1 : kd.r, kd.g > 1 ? 1 : kd.g, kd.b > 1 ? 1 : kd.b};
+        colour = (vplRgb){vplMinf(colour.r, 1), vplMinf(colour.g, 1), vplMinf(colour.b, 1)};
     }
-    if (understood && m->current >= 0) {
-        m->materials->list[m->current].diffuse = kd;
-    }
-    return VPL_SUCCESS;
-}
-
-static vplResult readEmission(Mtl* m, vplWord line)
-{
-    vplRgb ke;
-    bool understood;
-    TRY(readColour(m, line, "a radiance", &ke, &understood));
-    if (understood && m->current >= 0) {
-        m->materials->list[m->current].emission = ke;
+    if (m->current >= 0) {
+        vplObjMaterial* material = &m->materials->list[m->current];
+        *(reflectance ? &material->diffuse : &material->emission) = colour;
     }
     return VPL_SUCCESS;
 }
@@ -103,11 +88,8 @@ static vplResult readLine(Mtl* m, vplWord line)
     if (!m->started) {
         return vplText_FailWord(&m->text, keyword, "newmtl");
     }
-    if (vplWord_Is(keyword, "Kd")) {
-        return readReflectance(m, line, keyword);
-    }
-    if (vplWord_Is(keyword, "Ke")) {
-        return readEmission(m, line);
+    if (vplWord_Is(keyword, "Kd") || vplWord_Is(keyword, "Ke")) {
+        return readColour(m, line, keyword);
     }
     if (!vplWord_IsAmong(keyword, ignored)) {
         vplText_WarnOnce(&m->text, &m->unknown, keyword);

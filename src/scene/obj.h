@@ -29,7 +29,6 @@ vplResult vplObjMaterials_Get(vplObjMaterials* materials, vplWord name, int* out
 vplResult vplMtl_Read(vplContext* context, const char* path, vplObjMaterials* materials);
 
 typedef struct vplObj {
-    vplContext* context;
     vplArena* scratch; // owns everything here but the text
     vplText text;
     vplObjMaterials materials;

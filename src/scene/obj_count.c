@@ -40,17 +40,18 @@ static vplResult readLibraryAt(vplObj* obj, const char* path, vplWord name, bool
         vplText_WarnAt(&obj->text, name.start, "there is no file %s; its materials are grey", path);
     }
     TRY(vplNames_Add(&obj->libraries, path, length, &number));
-    return *foundOut ? vplMtl_Read(obj->context, path, &obj->materials) : VPL_SUCCESS;
+    return *foundOut ? vplMtl_Read(obj->text.context, path, &obj->materials) : VPL_SUCCESS;
 }
 
 static vplResult readLibrary(vplObj* obj, vplWord name, bool warn, bool* foundOut)
 {
-    char* path = vplPathBeside(obj->context, obj->text.file, name.start, (size_t)(name.end - name.start));
+    char* path =
+        vplPathBeside(obj->text.context, obj->text.file, name.start, (size_t)(name.end - name.start));
     if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     const vplResult result = readLibraryAt(obj, path, name, warn, foundOut);
-    vplFree(obj->context, path);
+    vplFree(obj->text.context, path);
     return result;
 }
 
@@ -107,7 +108,7 @@ vplResult vplObj_Count(vplObj* obj)
         TRY(countLine(obj, line));
     }
     if (obj->pointCount > VPL_MAX_TRIANGLES || obj->triangleCount > VPL_MAX_TRIANGLES) {
-        return vplFail(obj->context, VPL_LIMIT,
+        return vplFail(obj->text.context, VPL_LIMIT,
                        "%s: %lld points (v) and %lld triangles, at most %d are allowed", obj->text.file,
                        (long long)obj->pointCount, (long long)obj->triangleCount, VPL_MAX_TRIANGLES);
     }

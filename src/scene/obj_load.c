@@ -16,12 +16,12 @@ static void warnOfUndefined(const vplObj* obj)
     for (uint32_t i = 0; i < obj->materials.names.index.count; i++) {
         const vplObjMaterial* material = &obj->materials.list[i];
         if (!material->defined && material->sceneIndex >= 0 && count++ < MOST_UNDEFINED) {
-            vplLog(obj->context, VPL_LOG_WARNING, "%s: material \"%.80s\" is not defined, taken as grey",
+            vplLog(obj->text.context, VPL_LOG_WARNING, "%s: material \"%.80s\" is not defined, taken as grey",
                    obj->text.file, obj->materials.names.names[i]);
         }
     }
     if (count > MOST_UNDEFINED) {
-        vplLog(obj->context, VPL_LOG_WARNING, "%s: %d materials in all are not defined", obj->text.file,
+        vplLog(obj->text.context, VPL_LOG_WARNING, "%s: %d materials in all are not defined", obj->text.file,
                count);
     }
 }
@@ -144,15 +144,15 @@ static vplResult addMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int* in
 static vplResult checkMesh(const vplObj* obj, const vplObjMesh* mesh)
 {
     if (mesh->triangleCount == 0) {
-        return vplFail(obj->context, VPL_PARSE_ERROR,
+        return vplFail(obj->text.context, VPL_PARSE_ERROR,
                        "%s:1:1: found only faces without area, expected one that has some", obj->text.file);
     }
     if (mesh->vertexCount > VPL_MAX_TRIANGLES) {
-        return vplFail(obj->context, VPL_LIMIT, "%s: %u different corners, at most %d are allowed",
+        return vplFail(obj->text.context, VPL_LIMIT, "%s: %u different corners, at most %d are allowed",
                        obj->text.file, mesh->vertexCount, VPL_MAX_TRIANGLES);
     }
     if (mesh->emptyCount > 0) {
-        vplLog(obj->context, VPL_LOG_INFO, "%s: left out %lld triangles without area", obj->text.file,
+        vplLog(obj->text.context, VPL_LOG_INFO, "%s: left out %lld triangles without area", obj->text.file,
                (long long)mesh->emptyCount);
     }
     return VPL_SUCCESS;
@@ -167,7 +167,7 @@ static vplResult readText(vplObj* obj, vplObjMesh* mesh)
 
 static vplResult loadObj(vplScene* scene, vplObj* obj, const char* path, vplObjMesh* mesh, int* indexOut)
 {
-    TRY(vplText_Open(obj->context, path, &obj->text));
+    TRY(vplText_Open(scene->context, path, &obj->text));
     const vplResult result = readText(obj, mesh);
     vplText_Close(&obj->text);
     TRY(result);
@@ -178,8 +178,7 @@ static vplResult loadObj(vplScene* scene, vplObj* obj, const char* path, vplObjM
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut)
 {
     vplArena* scratch = vplArena_Create(scene->context);
-    vplObj obj = {.context = scene->context,
-                  .scratch = scratch,
+    vplObj obj = {.scratch = scratch,
                   .materials = {.names = {.index = {.arena = scratch}}},
                   .libraries = {.index = {.arena = scratch}}};
     vplObjMesh mesh = {.arena = vplArena_Create(scene->context)};

@@ -188,7 +188,7 @@ void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...
     va_end(arguments);
 }
 
-// How many bytes of a word messages show.
+// The number of bytes that messages show of a word.
 static int shownLength(vplWord word)
 {
     return word.end - word.start > 60 ? 60 : (int)(word.end - word.start);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the functions that read scene files share.
+// Helpers and state of the functions that read scene files.
 #ifndef VPL_SCENE_SCENE_JSON_H
 #define VPL_SCENE_SCENE_JSON_H
 
