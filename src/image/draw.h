@@ -17,7 +17,7 @@ int vplColourBar_GetHeight(int width);
 typedef vplRgb vplColourFcn(float t);
 
 // Draws a bar of these colours from row `top` on, with numbers from 0 to `largest`.
-void vplColourBar_Draw(vplImage* image, int top, int height, float largest, vplColourFcn* colour);
+void vplColourBar_Draw(vplImage* image, int top, float largest, vplColourFcn* colour);
 
 // Draws a filled disc with a dark rim, clipped to the picture.
 void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour);

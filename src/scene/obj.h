@@ -68,14 +68,8 @@ vplResult vplObj_Count(vplObj* obj);
 vplResult vplObj_ReadPoints(vplObj* obj);
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh);
 
-// Corners of a triangle.
-typedef struct vplObjCorners {
-    uint32_t points[3];
-    int64_t normals[3]; // -1: none
-} vplObjCorners;
-
-// Adds a triangle, unless it has no area.
-vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const vplObjCorners* corners,
-                                 int material);
+// Adds a triangle, unless it has no area. A normal of -1 means none.
+vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const uint32_t points[3],
+                                 const int64_t normals[3], int material);
 
 #endif

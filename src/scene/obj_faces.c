@@ -86,9 +86,9 @@ static vplResult readCorner(Sweep* s, vplWord corner, int i)
 
 static vplResult addTriangle(Sweep* s, int a, int b, int c)
 {
-    const vplObjCorners corners = {{s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]},
-                                   {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]}};
-    return vplObjMesh_AddTriangle(s->obj, s->mesh, &corners, s->material);
+    const uint32_t points[3] = {s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]};
+    const int64_t normals[3] = {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]};
+    return vplObjMesh_AddTriangle(s->obj, s->mesh, points, normals, s->material);
 }
 
 static vplResult addPolygon(Sweep* s, int corners, const char* face)

@@ -75,7 +75,6 @@ vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
 void vplText_Close(vplText* text)
 {
     vplFree(text->context, text->bytes);
-    text->bytes = NULL;
 }
 
 static vplWord skipBlanks(vplWord line)
