@@ -186,16 +186,12 @@ static vplResult readRoot(vplSceneLoader* l)
     return readArray(l, &root, "lights", readEmitter);
 }
 
-static vplResult readFile(vplScene* scene, const char* path)
+static vplResult readFile(vplSceneLoader* l, const char* path)
 {
-    vplArena* scratch = vplArena_Create(scene->context);
-    vplSceneLoader loader = {.scene = scene, .scratch = scratch, .meshFiles = {.index = {.arena = scratch}}};
-    vplResult result = vplJsonFile_Open(scene->context, path, &loader.json);
-    if (result == VPL_SUCCESS) {
-        result = readRoot(&loader);
-        vplJsonFile_Close(&loader.json);
-    }
-    vplArena_Destroy(scratch);
+    TRY(vplArena_Check(l->scratch));
+    TRY(vplJsonFile_Open(l->scene->context, path, &l->json));
+    const vplResult result = readRoot(l);
+    vplJsonFile_Close(&l->json);
     return result;
 }
 
@@ -203,7 +199,11 @@ static vplResult loadJson(vplContext* context, const char* path, vplScene** scen
 {
     vplScene* scene;
     TRY(vplScene_Create(context, &scene));
-    return vplArena_Deliver(scene->arena, readFile(scene, path), scene, sceneOut);
+    vplArena* scratch = vplArena_Create(context);
+    vplSceneLoader loader = {.scene = scene, .scratch = scratch, .meshFiles = {.index = {.arena = scratch}}};
+    const vplResult result = readFile(&loader, path);
+    vplArena_Destroy(scratch);
+    return vplArena_Deliver(scene->arena, result, scene, sceneOut);
 }
 
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)
