@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks a text without NUL bytes that jansson has accepted: the syntax is valid, so only strings, which may
-// contain any bracket, and nesting matter. Runs when an error is reported.
+// Walks a text without NUL bytes that jansson has accepted. The syntax is valid, so only brackets and strings,
+// which may contain brackets, matter. Runs when an error is reported.
 #include "scene/json_locate.h"
 
 #include <stdio.h>

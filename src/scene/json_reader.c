@@ -72,7 +72,7 @@ vplJson vplJson_Root(const vplJsonFile* file)
     return (vplJson){.file = file, .value = file->root};
 }
 
-// The root has no step of its own.
+// The path to a value; NULL for the root.
 static const vplJsonPath* pathOf(const vplJson* at)
 {
     return at->value == at->file->root ? NULL : &at->path;

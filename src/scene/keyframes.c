@@ -38,7 +38,7 @@ vplEmitterDef vplApplyEmitterKey(const vplEmitterDef* def, const vplEmitterKey* 
 
 // ---- interpolation
 
-// In double, because the difference of two floats may overflow or lose digits.
+// Interpolates in double, because the difference of two floats may overflow or lose digits.
 static float lerp(double t, float a, float b)
 {
     return (float)((double)a + t * ((double)b - (double)a));
@@ -149,7 +149,7 @@ static vplFault checkEmitterKey(const void* def, const void* key)
     return vplCheckEmitter(&posed);
 }
 
-// Keys to be set.
+// The keys of a path that the user sets, either of cameras or of emitters.
 typedef struct Keys {
     const char* type;
     const void* keys;

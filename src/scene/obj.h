@@ -40,7 +40,7 @@ typedef struct vplObj {
     bool hasNormals;       // a face refers to one
     // From the second sweep.
     vplVec3* points;          // without duplicates
-    uint32_t differentPoints; // how many these are
+    uint32_t differentPoints; // the number of points
     uint32_t* pointOf;        // the point of each v
     vplVec3* normals;         // unit vectors, or 0 where the file has a zero vector
 } vplObj;
@@ -56,7 +56,7 @@ typedef struct vplObjMesh {
     uint32_t vertexCount;
     // Without normals: the vertex of each point.
     uint32_t* vertexOf;
-    // With normals: an index of the vertices by point and normal, and both for each vertex.
+    // With normals: an index of the vertices by point and normal, and the point and normal of each vertex.
     vplHashIndex corners;
     uint32_t* cornerPoint;
     vplVec3* cornerNormal;

@@ -34,7 +34,7 @@ static bool readInteger(vplWord* word, vplWord* numberOut, int64_t* out)
 // The elements that an index may refer to.
 typedef struct Range {
     const char* kind;
-    int64_t before; // the line
+    int64_t before; // those before the line of the face
     int64_t total;
 } Range;
 

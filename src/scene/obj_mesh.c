@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-// The triangle's unit normal, by the order of its corners; false if it has no area. Double: no triangle of
-// floats underflows, and floats of similar size give an exact 0.
+// Finds the triangle's unit normal from the order of its corners; false if it has no area. Computes in double,
+// where no triangle of floats underflows and where floats of similar size give an exact 0.
 static bool findNormal(vplVec3 a, vplVec3 b, vplVec3 c, vplVec3* out)
 {
     double u[3], v[3], n[3];

@@ -53,7 +53,7 @@ vplResult vplText_Number(const vplText* text, vplWord* line, const char* what, f
 // Fails if anything is left of the line.
 vplResult vplText_RequireEnd(const vplText* text, vplWord line);
 
-// Counts places of one kind. Only the first is reported.
+// Counts places of one kind in a text, of which only the first is reported.
 typedef struct vplTally {
     const char* first;
     long long count;
@@ -64,7 +64,7 @@ void vplTally_Add(vplTally* tally, const char* at);
 // Warns "file:line:column: sentence (3 such things)", unless there is no such place.
 void vplText_WarnTally(const vplText* text, const vplTally* tally, const char* sentence, const char* things);
 
-// Unknown words. Each is reported once.
+// Unknown words that were reported.
 enum { VPL_MOST_UNKNOWN = 16 };
 typedef struct vplUnknownWords {
     vplWord words[VPL_MOST_UNKNOWN];
