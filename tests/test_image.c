@@ -158,9 +158,9 @@ TEST(ReinhardCanLeaveBlackOut, 1)
     assert_true(mapped[1] == mapped[0]);
     assertNear((double)mapped[0], 0.152542, 1e-5, "grey", 0);
     assert_true(mapped[2] > 0.9f);
-// X110: one bad pixel must not blacken the others.
 }
 
+// X110: one bad pixel must not blacken the others.
 TEST(ReinhardIgnoresPixelsThatAreNotFinite, 1)
 {
     const float bad[] = {NAN, INFINITY, -INFINITY};

@@ -5,8 +5,8 @@
 // `bench/flicker SCENE [METHOD [FRAMES [WIDTH HEIGHT]]]`; the program gives the camera and the first light a
 // path of its own: over 60 frames a twentieth of the scene's diagonal, or 6 degrees. METHOD: ssvp,
 // instant-radiosity or keller; instant-radiosity and keller are coherent if all frames use one seed.
-//   change  mean |I(t+1) - I(t)| / mean I
-//   flicker   mean |I(t+1) - 2 I(t) + I(t-1)| / 2 / mean I: 0 where light changes linearly
+//   change   mean |I(t+1) - I(t)| / mean I
+//   flicker  mean |I(t+1) - 2 I(t) + I(t-1)| / 2 / mean I: 0 where light changes linearly
 // Both are measured on linear pictures and on each frame tone-mapped with Reinhard's operator. A surface
 // point is reprojected into the other frames; only points in the interior of the same surface in all three
 // frames count.

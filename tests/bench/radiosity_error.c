@@ -6,7 +6,7 @@
 // u: uniform patches only; a: adaptive patches only; f: 500 to 4000 patches.
 //   relmse   mean of (a - b)(a - c) / ((b + c) / 2 + 0.01)^2 over pixels away from discontinuities:
 //            all neighbours show one plane, to 1 mm
-//   all    the same over all pixels
+//   all      the same over all pixels
 //   energy   sum of a / sum of b
 // Times are wall-clock ms of the whole picture. The program runs several patch counts and both placements of
 // patches.

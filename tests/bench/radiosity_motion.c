@@ -2,10 +2,11 @@
 // Measures radiosity with a moving light and unchanged form factors. `bench/radiosity_motion SCENE [WIDTH
 // HEIGHT]`; the first light moves a little each frame and jumps between frames 20 and 21. Each frame does one
 // sweep, as the document proposes after Burenius.
-//   first    ms of the first frame, which makes patches and form factors
-//   frame    median ms of the other frames, which include:
-//   light    the emitters' light at patches; solve: the sweep, corners and drawing; the rest is direct light
-//   lag k    RMSE / mean of the indirect picture k frames after the jump, against the converged one
+//   first      ms of the first frame, which makes patches and form factors
+//   frame      median ms of the other frames, and the frames per second
+//   light      median ms of the emitters' light at patches
+//   solve      median ms of the stage solve
+//   lag k      RMSE / mean of the indirect picture k frames after the jump, against the converged one
 #include "bench.h"
 
 #include <math.h>

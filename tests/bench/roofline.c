@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Compares the hot loops with the limits of the machine: bench/roofline [--isa I] [--rounds N] [--loop NAME]
-//   first table   peaks: arithmetic, conversions, table look-ups and bandwidth, per instruction set, one
-// thread
-//                 and all; measured by loops that do nothing else (roofline/peaks_kernel.c)
+//   first table   peaks: arithmetic, conversions, table look-ups and bandwidth, per instruction set, on one
+//                 thread and on all; measured by loops that do nothing else (roofline/peaks_kernel.c)
 //   second table  each hot loop on one thread: its rate, cycles per 16 lanes, its roof from the operations
-// that
-//                 its source needs (roofline/loops.c), the share of the roof reached, and the limiting
-// resource
-//   below it      for loops below half of their roof: the gain from vectors, and variants with one change
-// each;
+//                 in its source (roofline/loops.c), the share of the roof reached, the limiting resource
+//   below it      for loops below half of their roof: the gain from vectors, and variants with one change;
 //                 a variant that is faster shows what limits the loop
 // With --loop NAME that loop alone runs for ten seconds, for a profiler. The program measures processor time
 // of the thread in rounds and prints the best round, because other load on the machine only makes rounds
