@@ -279,7 +279,7 @@ TEST(ClustersOfTheLastFrameAreFoundAgainAtOnce, 1)
     assert_int_equal(moved, 0);
     vplLightClusters_Destroy(again);
 
-    const int counts[] = {3, 12}; // fewer clusters keep the first seeds; more add lights far from them
+    const int counts[] = {3, 12}; // fewer: the last frame's first ones; more: also lights far from them
     for (int k = 0; k < 2; k++) {
         def.count = counts[k];
         def.maxIterations = 0;

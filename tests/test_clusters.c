@@ -85,9 +85,9 @@ TEST(AssignmentsCentresAndIterationsAreThoseOfTheTable, 1)
     assert_int_equal(compared, 16);
 }
 
-// Makes the lights of a row of kmeans.csv. kmeans.json lists only some sets, but the lights of `corner` are
-// the first of the listed set, those of `thin_wall` are the same on both sides of a wall, and
-// `opposite_normals` follows from its description. Returns false if the lights are unknown.
+// Makes the lights of a row of kmeans.csv. kmeans.json lists only some sets: the lights of `corner` are its
+// corner_24_4, those of `thin_wall` are the same moved to both sides of a wall, and those of
+// `opposite_normals` are coincident_8_3 with opposite normals. Returns false if the lights are unknown.
 static bool lightsOfRow(const json_t* root, const Table* t, int row, Lights* l)
 {
     const char* set = cell(t, row, "set");

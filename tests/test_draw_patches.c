@@ -318,8 +318,8 @@ TEST(IrradianceIsReflectedAndAdded, 1)
         assertNear((double)left[0], 2 + 8 * 0.5 / 3.14159265358979, 1e-6, "red", smooth);
         assertNear((double)left[1], 2 + 8 * 0.25 / 3.14159265358979, 1e-6, "green", smooth);
         assert_true(left[2] == 2 && out[0] == 2);
-        // The right half has no side: it is black, or reflects the irradiance of its corners with its
-        // material.
+        // The right half has no side: flat drawing adds nothing there, and interpolated drawing reflects its
+        // corners' irradiance with its material.
         assertNear((double)right[0], smooth ? 2 + 8 * 0.5 / 3.14159265358979 : 2, 1e-6, "right", smooth);
         free(values);
         free(corners);

@@ -459,8 +459,8 @@ TEST(RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes, 1)
     vplGeometry_Destroy(g);
 }
 
-// Refining all patches repeatedly gives the patches of a threshold; patches keep the data that later ones
-// share.
+// Refining all patches equals one round of a threshold. Refined patches stay valid after those that they were
+// made from are destroyed.
 TEST(RefiningEverythingIsARound, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
