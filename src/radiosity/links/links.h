@@ -63,30 +63,24 @@ vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tre
 // each pair took 0.35 of the whole time.
 enum { VPL_JUDGE_POINTS = 4 };
 
-typedef struct vplNodePoints {
-    vplVec3 at[VPL_JUDGE_POINTS];
-    int side[VPL_JUDGE_POINTS];
-} vplNodePoints;
+typedef struct vplLinkPoint {
+    vplVec3 at;
+    int side;
+} vplLinkPoint;
 
 // The input of refinement.
 typedef struct vplLinkWork {
     const vplPatchSides* sides;
     const struct vplLinkTree* tree;
     const vplLinkDef* def;
-    vplNodePoints* points; // of each node
+    vplLinkPoint (*points)[VPL_JUDGE_POINTS]; // of each node
 } vplLinkWork;
 
 enum { VPL_LINK_POINTS = 32 }; // the most on either of two nodes
 
-typedef struct vplLinkPoints {
-    int count;
-    vplVec3 at[VPL_LINK_POINTS];
-    int side[VPL_LINK_POINTS];
-} vplLinkPoints;
-
 // `count` points on the open cells of a node, stratified by area. The random numbers are those of the pair of
 // `node` and `other`; those of a node with itself give vplLinkWork.points.
-void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoints* pointsOut);
+void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoint* pointsOut);
 
 // The unoccluded terms cos cos / (pi r^2), 1/m^2, between point i of one node and point k of another.
 typedef struct vplLinkTerms {
@@ -94,12 +88,13 @@ typedef struct vplLinkTerms {
     float of[VPL_LINK_POINTS][VPL_LINK_POINTS];
 } vplLinkTerms;
 
-void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoints* p, const vplLinkPoints* q,
+// Fills termsOut->of for termsOut->count points on either node.
+void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
                       vplLinkTerms* termsOut);
 
 // The visible fraction of the terms, by rays between def->samples pairs of points: (0, 0), (1, 1), ..., then
 // (0, 1), (1, 2), .... Adds how many rays it cast to *rays.
-double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoints* p, const vplLinkPoints* q,
+double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
                           const vplLinkTerms* terms, int* rays);
 
 // ---- one pair of nodes (link_pair.c)
