@@ -7,7 +7,6 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/links/links.h"
-#include "radiosity/sides/planes.h"
 #include "radiosity/sides/side.h"
 
 enum {

@@ -66,12 +66,6 @@ struct vplPatchesAround {
     vplPatchAround* list;
 };
 
-// The position of corner `corner` of triangle `triangle`.
-static inline vplVec3 vplPatchMesh_Corner(const vplPatchMesh* mesh, int triangle, int corner)
-{
-    return mesh->positions[mesh->indices[3 * (size_t)triangle + (size_t)corner]];
-}
-
 // One face of a triangle of the mesh, for sums of vertex values over sides.
 typedef struct vplMeshFace {
     int side;

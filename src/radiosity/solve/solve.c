@@ -177,50 +177,50 @@ vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* de
 
 // ---- F B alone
 
-// Opens an exchange and gathers: its sums are F times radiosity.
-static vplResult gather(vplArena* scratch, const vplTransport* transport, const vplRgb* radiosity,
-                        vplExchange* exchange)
+// Writes the irradiance of each side, or its residual where there is a source.
+static vplResult gather(vplArena* scratch, const vplTransport* transport, const vplRgb* source,
+                        const vplRgb* radiosity, vplRgb* out)
 {
-    TRY(vplExchange_Open(scratch, transport, exchange));
-    vplPlanes planes = vplPlanes_Alloc(scratch, exchange->count);
+    vplExchange e;
+    TRY(vplExchange_Open(scratch, transport, &e));
+    vplPlanes planes = vplPlanes_Alloc(scratch, e.count);
     TRY(vplArena_Check(scratch));
-    vplPlanes_Read(&planes, radiosity, exchange->count);
-    vplExchange_Gather(exchange, &planes);
+    vplPlanes_Read(&planes, radiosity, e.count);
+    vplExchange_Gather(&e, &planes);
+    for (int i = 0; i < e.count; i++) {
+        double* v = e.sums[i];
+        if (source != NULL) {
+            const vplRgb s = source[i], b = radiosity[i];
+            v[0] = (double)s.r + (double)e.reflectance.c[0][i] * v[0] - (double)b.r;
+            v[1] = (double)s.g + (double)e.reflectance.c[1][i] * v[1] - (double)b.g;
+            v[2] = (double)s.b + (double)e.reflectance.c[2][i] * v[2] - (double)b.b;
+        }
+        out[i] = (vplRgb){vplClampToFloat(v[0]), vplClampToFloat(v[1]), vplClampToFloat(v[2])};
+    }
     return VPL_SUCCESS;
+}
+
+static vplResult checkAndGather(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
+                                vplRgb* out)
+{
+    TRY(vplTransport_Check(transport));
+    if (source != NULL) {
+        TRY(checkValues(transport, source, "source"));
+    }
+    TRY(checkValues(transport, radiosity, "radiosity"));
+    vplArena* scratch = vplArena_Create(transport->sides->context);
+    const vplResult result = gather(scratch, transport, source, radiosity, out);
+    vplArena_Destroy(scratch);
+    return result;
 }
 
 vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radiosity, vplRgb* irradianceOut)
 {
-    TRY(vplTransport_Check(transport));
-    TRY(checkValues(transport, radiosity, "radiosity"));
-    vplExchange e = {.count = 0};
-    vplArena* scratch = vplArena_Create(transport->sides->context);
-    const vplResult result = gather(scratch, transport, radiosity, &e);
-    for (int i = 0; i < e.count && result == VPL_SUCCESS; i++) {
-        irradianceOut[i] = (vplRgb){vplClampToFloat(e.sums[i][0]), vplClampToFloat(e.sums[i][1]),
-                                    vplClampToFloat(e.sums[i][2])};
-    }
-    vplArena_Destroy(scratch);
-    return result;
+    return checkAndGather(transport, NULL, radiosity, irradianceOut);
 }
 
 vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
                                vplRgb* residualOut)
 {
-    TRY(vplTransport_Check(transport));
-    TRY(checkValues(transport, source, "source"));
-    TRY(checkValues(transport, radiosity, "radiosity"));
-    vplExchange e = {.count = 0};
-    vplArena* scratch = vplArena_Create(transport->sides->context);
-    const vplResult result = gather(scratch, transport, radiosity, &e);
-    for (int i = 0; i < e.count && result == VPL_SUCCESS; i++) {
-        const double r = (double)e.reflectance.c[0][i] * e.sums[i][0];
-        const double g = (double)e.reflectance.c[1][i] * e.sums[i][1];
-        const double b = (double)e.reflectance.c[2][i] * e.sums[i][2];
-        residualOut[i] = (vplRgb){vplClampToFloat((double)source[i].r + r - (double)radiosity[i].r),
-                                  vplClampToFloat((double)source[i].g + g - (double)radiosity[i].g),
-                                  vplClampToFloat((double)source[i].b + b - (double)radiosity[i].b)};
-    }
-    vplArena_Destroy(scratch);
-    return result;
+    return checkAndGather(transport, source, radiosity, residualOut);
 }

@@ -4,7 +4,7 @@
 #define VPL_RADIOSITY_SOLVE_H
 
 #include "radiosity/links/links.h"
-#include "radiosity/sides/planes.h"
+#include "radiosity/sides/side.h"
 
 // ---- the exchange (exchange.c)
 
