@@ -22,13 +22,6 @@ static int listOpen(const vplPatchSide* side, int cells[VPL_PATCH_CELLS])
     return count;
 }
 
-// A ray that leaves the side at a point: its origin, and the triangles that it must not hit.
-static vplRay leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 from)
-{
-    const vplHit start = vplPatchSide_HitAt(sides, side, from);
-    return vplGeometry_Leave(sides->patches->geometry, &start, side->normal);
-}
-
 // ---- samples
 
 // Sixteen strata of equal area: the cells of a side whose cells are all open.
@@ -46,7 +39,7 @@ static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorS
         const int cell = cells[vplMini((int)place, open - 1)];
         const vplVec3 at = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
         vplSetLane(samples->at[p], lane, at);
-        vplSetLane(samples->origin[p], lane, leave(work->sides, side, at).origin);
+        vplSetLane(samples->origin[p], lane, vplPatchSide_Leave(work->sides, side, at, side->normal).origin);
     }
 }
 
@@ -109,7 +102,7 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
         const vplVec3 way = vplSub(side->corners[c], centre);
         block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
     }
-    const vplRay ray = leave(work->sides, side, side->incentre);
+    const vplRay ray = vplPatchSide_Leave(work->sides, side, side->incentre, side->normal);
     block->skipFirst[lane] = ray.skip.first;
     block->skipCount[lane] = ray.skip.count;
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {

@@ -78,7 +78,6 @@ double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const 
                           const vplLinkTerms* terms, int* rays)
 {
     const vplPatchSides* sides = work->sides;
-    const vplGeometry* g = sides->patches->geometry;
     const int n = terms->count, samples = work->def->samples;
     double open = 0, visible = 0;
     for (int first = 0; first < samples; first += VPL_RAY_PACKET) {
@@ -90,13 +89,12 @@ double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const 
             amount[l] = first + l < samples ? terms->of[i][k] : 0;
             open += (double)amount[l];
             if (amount[l] > 0) {
-                const vplHit start = vplPatchSide_HitAt(sides, &sides->sides[p[i].side], p[i].at);
-                const vplRay ray = vplGeometry_Leave(
-                    g, &start, vplWayToLight(q[k].at, sides->sides[q[k].side].normal, p[i].at));
+                const vplVec3 way = vplWayToLight(q[k].at, sides->sides[q[k].side].normal, p[i].at);
+                const vplRay ray = vplPatchSide_Leave(sides, &sides->sides[p[i].side], p[i].at, way);
                 vplRayPacket_Set(&packet, l, &ray);
             }
         }
-        *rays += vplGeometry_Darken(g, &packet, 1, amount);
+        *rays += vplGeometry_Darken(sides->patches->geometry, &packet, 1, amount);
         for (int l = 0; l < VPL_RAY_PACKET; l++) {
             visible += (double)amount[l];
         }

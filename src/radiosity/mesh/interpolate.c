@@ -121,11 +121,6 @@ static void findMissing(const Sharpening* s, const vplRgb* vertexValues)
     }
 }
 
-static float addClamped(float value, float change)
-{
-    return vplMaxf(value + change, 0);
-}
-
 static vplResult sharpen(vplArena* scratch, Sharpening* s, vplVertexWeight weight, int rounds,
                          vplRgb* vertexValues)
 {
@@ -139,8 +134,9 @@ static vplResult sharpen(vplArena* scratch, Sharpening* s, vplVertexWeight weigh
         TRY(vplPatchMesh_Interpolate(s->mesh, weight, s->missing, s->change));
         for (size_t i = 0; i < vertices; i++) {
             vplRgb* v = &vertexValues[i];
-            *v = (vplRgb){addClamped(v->r, s->change[i].r), addClamped(v->g, s->change[i].g),
-                          addClamped(v->b, s->change[i].b)};
+            v->r = vplMaxf(v->r + s->change[i].r, 0);
+            v->g = vplMaxf(v->g + s->change[i].g, 0);
+            v->b = vplMaxf(v->b + s->change[i].b, 0);
         }
     }
     return VPL_SUCCESS;

@@ -62,22 +62,27 @@ int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 
 // ---- rays
 
-vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
+vplRay vplPatchSide_Leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at, vplVec3 direction)
 {
     const vplPatches* patches = sides->patches;
     const vplGeometry* g = patches->geometry;
     const int triangle = vplPatches_TriangleOf(patches, side->patch);
-    return (vplHit){.object = g->owners[triangle],
-                    .face = vplGeometry_FaceOf(g, triangle),
-                    .triangle = triangle,
-                    .position = at,
-                    .normal = g->normals[triangle]};
+    const vplHit start = {.object = g->owners[triangle],
+                          .face = vplGeometry_FaceOf(g, triangle),
+                          .triangle = triangle,
+                          .position = at,
+                          .normal = g->normals[triangle]};
+    return vplGeometry_Leave(g, &start, direction);
 }
 
-int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction)
+int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray)
 {
-    const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
-    return patch < 0 ? -1 : vplSideOf(sides, patch, vplDot(direction, hit->normal) > 0);
+    vplHit hit;
+    if (!vplGeometry_ClosestHit(sides->patches->geometry, ray, &hit)) {
+        return -1;
+    }
+    const int patch = vplPatches_Find(sides->patches, hit.triangle, hit.position);
+    return patch < 0 ? -1 : vplSideOf(sides, patch, vplDot(ray->direction, hit.normal) > 0);
 }
 
 // ---- values

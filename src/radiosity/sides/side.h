@@ -27,11 +27,12 @@ vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k);
 // The k-th open cell.
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
 
-// The point `at` of a side as a hit, from which rays leave.
-vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
+// The ray that leaves a side at its point `at`.
+vplRay vplPatchSide_Leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at,
+                          vplVec3 direction);
 
-// The side that a ray in `direction` hits; -1: one that light does not reach.
-int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction);
+// The side that a ray hits; -1: none, or one that light does not reach.
+int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray);
 
 // The reflectance of a patch. `side`: the patch's side, or -1.
 vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side);
