@@ -9,8 +9,6 @@
 // The first stream of random numbers; each chunk of sixteen samples takes the next.
 enum { SAMPLE_STREAM = 0x46460000 };
 
-enum { ALL_CELLS = (1 << VPL_PATCH_CELLS) - 1 };
-
 static int listOpen(const vplPatchSide* side, int cells[VPL_PATCH_CELLS])
 {
     int count = 0;
@@ -112,7 +110,7 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
             vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
         block->area[lane] = 0.5f * vplLength(cross);
     } else {
-        (side->open == ALL_CELLS ? fillWhole : fillPart)(side, lane, block);
+        (side->open == VPL_ALL_CELLS ? fillWhole : fillPart)(side, lane, block);
         block->area[lane] = side->area;
     }
 }

@@ -133,7 +133,7 @@ static int markLit(const Batch* b)
         const vplLitHit* hit = &b->vertices[i];
         if (hit->side >= 0 && s->open[hit->side] == 0) {
             s->litPoint[hit->side] = hit->point;
-            s->open[hit->side] = 0xffff;
+            s->open[hit->side] = VPL_ALL_CELLS;
             added++;
         }
     }

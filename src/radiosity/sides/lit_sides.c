@@ -17,7 +17,7 @@ enum {
 
 static void markLit(const vplLitSearch* s, const vplLitSample* sample, vplVec3 from)
 {
-    s->nextOpen[sample->side] = 0xffff;
+    s->nextOpen[sample->side] = VPL_ALL_CELLS;
     s->nextLitPoint[sample->side] = vplLitSearch_MoveTowards(s, sample->side / 2, sample->point, from);
 }
 

@@ -50,7 +50,7 @@ vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k)
 
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 {
-    if (side->open == (1 << VPL_PATCH_CELLS) - 1) { // most sides
+    if (side->open == VPL_ALL_CELLS) { // most sides
         return k;
     }
     unsigned open = side->open;

@@ -9,6 +9,9 @@
 #include "base/arena.h"
 #include "radiosity/radiosity_kernels.h"
 
+// vplPatchSide.open where all cells are open.
+enum { VPL_ALL_CELLS = (1 << VPL_PATCH_CELLS) - 1 };
+
 // Index in sides->sides of a patch's front (0) or back (1); -1: light does not reach it.
 static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
 {
