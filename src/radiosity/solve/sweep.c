@@ -137,7 +137,7 @@ void vplSolve_Sweep(vplSolve* solve)
 {
     solve->change = solve->largest = 0;
     solve->finite = true;
-    switch (solve->solver) {
+    switch (solve->stats.solver) {
     case VPL_SOLVER_JACOBI:
         sweepJacobi(solve);
         break;
