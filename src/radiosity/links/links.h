@@ -25,7 +25,7 @@ struct vplLinkTree {
     vplLinkNode* nodes; // the root first, parents before children
     int nodeCount;
     int* order;       // sides, sorted so that those of each node are consecutive
-    double* areaUpTo; // the area of all sides before each in `order`; one more than sides
+    double* areaUpTo; // the summed area of the sides before each in `order`; one more than sides
     // Links sorted by receiver: a node's irradiance is the sum of factor times the sender's radiosity over
     // the links firstOf[node] .. firstOf[node + 1] - 1.
     int64_t* firstOf;
@@ -59,8 +59,8 @@ vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tre
 
 // ---- points on nodes (link_points.c)
 
-// The points of each node by which pairs are judged: 16 pairs, one block of lanes. Drawing them again for
-// each pair took 0.35 of the whole time.
+// Each node has four points by which all its pairs are judged: 16 pairs of points, one block of lanes. Drawing
+// points again for each pair took 0.35 of the whole time.
 enum { VPL_JUDGE_POINTS = 4 };
 
 typedef struct vplLinkPoint {
@@ -101,10 +101,10 @@ double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const 
 
 typedef struct vplLinkPair {
     int32_t p, q;
-    // Some ray between their parents was not blocked. A pair that is divided for its shape alone then casts
-    // no rays.
+    // Some ray between their parents was not blocked. If form factors vary too much over such a pair, it is
+    // divided without further rays.
     bool visible;
-    float weight; // the fraction of all work, halved by each division
+    float weight; // the fraction of all work, for the progress; halved by each division
 } vplLinkPair;
 
 typedef enum vplLinkVerdict {

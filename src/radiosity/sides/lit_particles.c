@@ -15,7 +15,7 @@ enum {
     BATCH = 1024, // particles
     TASK = BATCH / VPL_LIT_PARTICLE_TASKS,
     BOUNCES = 8,
-    VERTICES = BOUNCES + 1, // of a path; the first is the start, if that is on a surface
+    VERTICES = BOUNCES + 1, // of a path; the first is its start
     STREAM = 0x5ead0001     // of random numbers
 };
 
@@ -70,9 +70,9 @@ static int tracePath(const Batch* b, uint64_t particle, vplVec3 direction, vplLi
     return count;
 }
 
-// Drops the vertices that are no news or not certain. A hit near an edge may round to the wrong side of a
-// wall, which makes the rest of the path wrong, so each segment up to a new side is tested again between
-// offset points.
+// Drops vertices on sides that are lit already, and vertices that may be wrong: a hit near an edge may round
+// to the wrong side of a wall, which makes the rest of the path wrong, so each segment up to a new side is
+// tested again between offset points.
 static void confirm(const vplLitSearch* s, vplLitHit* path, int count, int64_t* rays)
 {
     for (int i = 0, sure = 0; i < count; i++) {

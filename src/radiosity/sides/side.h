@@ -34,7 +34,7 @@ int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
 vplRay vplPatchSide_Leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at,
                           vplVec3 direction);
 
-// The side that a ray hits; -1: none, or one that light does not reach.
+// The side that a ray hits; -1: the ray hits nothing, or a side that light does not reach.
 int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray);
 
 // The reflectance of a patch. `side`: the patch's side, or -1.
