@@ -9,32 +9,19 @@
 // The first stream of random numbers; each chunk of sixteen samples takes the next.
 enum { SAMPLE_STREAM = 0x46460000 };
 
-static int listOpen(const vplPatchSide* side, int cells[VPL_PATCH_CELLS])
-{
-    int count = 0;
-    for (int k = 0; k < VPL_PATCH_CELLS; k++) {
-        if (side->open >> k & 1) {
-            cells[count++] = k;
-        }
-    }
-    return count;
-}
-
 // ---- samples
 
 // Sixteen strata of equal area: the cells of a side whose cells are all open.
 static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorSamples* samples)
 {
     const vplPatchSide* side = &work->sides->sides[index];
-    const int lane = index % VPL_SIDE_LANES;
-    int cells[VPL_PATCH_CELLS];
-    const int open = listOpen(side, cells);
+    const int lane = index % VPL_SIDE_LANES, open = __builtin_popcount(side->open);
     for (int p = 0; p < VPL_FACTOR_SAMPLES; p++) {
         const vplRandom4 r = vplRandomAt(work->def.seed, SAMPLE_STREAM + (uint32_t)chunk,
                                          (uint64_t)index * VPL_FACTOR_SAMPLES + (uint64_t)p);
         const int stratum = p % 4 * 4 + p / 4;
         const float place = ((float)stratum + vplUnitFloat(r.v[0])) * (float)open / VPL_FACTOR_SAMPLES;
-        const int cell = cells[vplMini((int)place, open - 1)];
+        const int cell = vplPatchSide_OpenCell(side, vplMini((int)place, open - 1));
         const vplVec3 at = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
         vplSetLane(samples->at[p], lane, at);
         vplSetLane(samples->origin[p], lane, vplPatchSide_Leave(work->sides, side, at, side->normal).origin);
@@ -68,14 +55,13 @@ static void fillWhole(const vplPatchSide* side, int lane, vplFactorBlock* block)
 // belongs to two thirds counts in both, by its fractions.
 static void fillPart(const vplPatchSide* side, int lane, vplFactorBlock* block)
 {
-    int cells[VPL_PATCH_CELLS];
-    const int open = listOpen(side, cells);
+    const int open = __builtin_popcount(side->open);
     for (int q = 0; q < VPL_QUADRATURE_POINTS; q++) {
         vplVec3 sum = {0, 0, 0};
         for (int c = 0; c < open; c++) {
             const int low = vplMaxi(3 * c, q * open), high = vplMini(3 * c + 3, (q + 1) * open);
             if (high > low) {
-                const vplVec3 at = vplPatchSide_CellCentre(side, cells[c]);
+                const vplVec3 at = vplPatchSide_CellCentre(side, vplPatchSide_OpenCell(side, c));
                 sum = vplAdd(sum, vplScale((float)(high - low) / (float)open, at));
             }
         }
