@@ -67,7 +67,7 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
     def.output = stage->flags & STAGE_NORMALS ? VPL_OUTPUT_NORMALS : VPL_OUTPUT_RADIANCE;
     vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), image->width, image->height);
     vplShadeStats stats;
-    TRY(vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats));
+    TRY(vplShadeView(geometry, &view, &def, image, &stats));
     const double pixels = (double)image->width * image->height;
     outcome->drawCalls = stats.raster.drawCalls;
     outcome->fragments = stats.raster.fragments;
