@@ -7,7 +7,7 @@
 #include "base/arena.h"
 #include "base/hash.h"
 
-#define SPOT_ANGLE 1.1 // outer, radians
+#define SPOT_ANGLE 1.1 // outer angle, radians
 
 static const vplEmitterType EMITTERS[] = {VPL_EMITTER_POINT, VPL_EMITTER_SPOT, VPL_EMITTER_DIRECTIONAL};
 
@@ -147,7 +147,7 @@ bool isInView(const ShadowMap* m, vplVec3 point)
     switch (m->kind) {
     case MAP_HEMI:
         return along > 0;
-    case MAP_PARABOLOID: // what lies beyond the rim is not known, within a texel of it
+    case MAP_PARABOLOID: // the map is undefined beyond the rim and within a texel of it
         return along > 4 * 1.41421356f / (float)m->paraboloids->size * length;
     case MAP_REFLECTIVE_SPOT:
         return along > 0.01f + (float)cos(SPOT_ANGLE) * length;

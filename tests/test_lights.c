@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Particle counts and the particle simulation. Covers extremes X029 to X048.
+// Tests of particle counts and the particle simulation. Covers extremes X029 to X048.
 #include "scenes.h"
 
 #include "math/vec.h"
@@ -44,7 +44,7 @@ TEST(EveryTotalOfTheTable, 1)
     freeTable(&t);
 }
 
-// X036, X037: exact below the stated limits, refused beyond, never endless.
+// X036, X037: totals are exact below the documented limits and refused beyond them, and the call always ends.
 TEST(ExtremeTotalsAreExactOrRefused, 1)
 {
     Table t = loadTable("counts_extreme.csv");
@@ -66,7 +66,7 @@ TEST(ExtremeTotalsAreExactOrRefused, 1)
     freeTable(&t);
 }
 
-// X036, X038 to X040: each row of counts_invalid.csv, as its third column asks.
+// X036, X038 to X040: each row of counts_invalid.csv must give the result in its third column.
 TEST(InvalidCountsAreRefused, 1)
 {
     const struct {
@@ -97,7 +97,7 @@ TEST(InvalidCountsAreRefused, 1)
     }
 }
 
-// Simulates one set of room_particles.csv with its own first directions and compares every row.
+// Simulates one set of room_particles.csv with the set's own first directions and compares every row.
 static void checkSet(vplContext* context, const vplGeometry* room, const Table* t, const char* name)
 {
     Table objects = loadTable("room_objects.csv");
@@ -187,7 +187,8 @@ TEST(TenParticlesAtHalfMake18Lights, 1)
     vplGeometry_Destroy(cube);
 }
 
-// vpl_weights.csv: in a closed room the lights of step k carry the flux 4 pi I rho^(k+1), whatever the floor.
+// vpl_weights.csv: in a closed room the lights of step k carry the flux 4 pi I rho^(k+1), whatever floor()
+// cuts off the counts.
 TEST(FluxOfEachStepIsThatOfTheTable, 2)
 {
     Table t = loadTable("vpl_weights.csv");
@@ -261,12 +262,11 @@ TEST_ALONE(LightsDoNotDependOnThreads)
     }
 }
 
-// The first floor(rho^k N) particles must by themselves cover all directions: their mean direction is small.
+// The first floor(rho^k N) particles alone must cover all directions: their mean direction is short.
 TEST(AnyFirstParticlesCoverTheSphere, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
-    // Random points: 3 standard deviations of the mean of n unit vectors; the others: better than that by
-    // far.
+    // Random points: 3 standard deviations of the mean of n unit vectors; the other samplers are much better.
     const double allowed[] = {
         [VPL_SAMPLER_RANDOM] = 3, [VPL_SAMPLER_HALTON] = 0.7, [VPL_SAMPLER_HAMMERSLEY] = 0.7};
     for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
@@ -277,7 +277,7 @@ TEST(AnyFirstParticlesCoverTheSphere, 2)
         for (int n = 16; n <= 1024; n *= 2) {
             vplVec3 sum = {0, 0, 0};
             for (int i = 0; i < n; i++) {
-                sum = vplAdd(sum, vplNormalize(set->lights[i].position)); // the cube's light is at the origin
+                sum = vplAdd(sum, vplNormalize(set->lights[i].position)); // the light is at the origin
             }
             assertNear((double)vplLength(sum) / n, 0, allowed[sampler] / sqrt(n), "mean direction", sampler);
         }
@@ -306,7 +306,7 @@ TEST(DoublingTheEmitterDoublesEveryBit, 1)
     vplGeometry_Destroy(room);
 }
 
-// Two emitters of 1 and 3 W/sr share the particles one to three, and the total flux is that of both.
+// Two emitters of 1 and 3 W/sr share the particles one to three, and the total flux is the sum of both.
 TEST(EmittersShareParticlesByPower, 1)
 {
     vplGeometry* cube = closedCube(context, 1);
@@ -333,7 +333,7 @@ TEST(EmittersShareParticlesByPower, 1)
     vplGeometry_Destroy(cube);
 }
 
-// X048: after a thousand mirror bounces in a closed cube particles still land on its walls.
+// X048: after a thousand specular or diffuse bounces in a closed cube, particles still land on its walls.
 TEST(AThousandBouncesStayOnTheWalls, 2)
 {
     vplGeometry* cube = closedCube(context, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cells of sides of patches, and which are open in the report's box.
+// Tests of the cells of patch sides, and of the open ones in the report's box.
 #include "sides_cases.h"
 
 // ---- cells
@@ -9,8 +9,8 @@ static vplPatchSide sideOf(vplVec3 a, vplVec3 b, vplVec3 c)
     return (vplPatchSide){.open = 0xffff, .corners = {a, b, c}};
 }
 
-// Sixteen triangles that tile theirs: points of a cell are found in it again, their mean is where its centre
-// is, and the means of all cells have the patch's.
+// Sixteen triangles tile the patch: points of a cell are found in that cell, their mean is the cell's centre,
+// and the mean of all cells is the patch's.
 TEST_ALONE(CellsTileThePatch)
 {
     const vplPatchSide s = sideOf(vplVec(1, 2, 3), vplVec(4, 2, 1), vplVec(0, 5, 2));
@@ -37,7 +37,7 @@ TEST_ALONE(CellsTileThePatch)
     }
 }
 
-// Cell 0 is at corner 0, 5 at corner 1, 10 at corner 2, 15 in the middle; extreme u and v stay within.
+// Cell 0 is at corner 0, 5 at corner 1, 10 at corner 2, 15 in the centre; extreme u and v give valid cells.
 TEST_ALONE(CellsAreInTheStatedOrder)
 {
     const vplPatchSide s = sideOf(vplVec(0, 0, 0), vplVec(4, 0, 0), vplVec(0, 4, 0));
@@ -56,8 +56,8 @@ TEST_ALONE(CellsAreInTheStatedOrder)
 
 // ---- the report's box
 
-// How much of a cell stands under a block, from 16 x 16 points: blocks are the model's triangles whose fronts
-// look up.
+// Returns the share of a cell that stands under a block, from 16 x 16 points. Blocks are the model's
+// triangles whose fronts face up.
 static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g)
 {
     int covered = 0;
@@ -72,8 +72,8 @@ static double coveredShare(const vplPatchSide* s, int cell, const vplGeometry* g
     return covered / 256.0;
 }
 
-// Fronts of all 784 patches but for those of the floor that a block stands on; no backs, and no cell that a
-// block covers whole. Cells of which most is free are open, and of those alone.
+// The sides are the fronts of all 784 patches except those of the floor that a block covers entirely. No
+// backs are open, and no cell that a block covers. Cells that are mostly free are open, others are not.
 TEST(TheReportsBoxHasItsFrontsButUnderBlocks, 2)
 {
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
@@ -104,7 +104,7 @@ TEST(TheReportsBoxHasItsFrontsButUnderBlocks, 2)
         covered += dark;
         partly += front >= 0 && open != 0xffff;
     }
-    assert_true(more <= 10); // 8 points tell halves of most of about a hundred cells
+    assert_true(more <= 10); // 8 points misjudge a few of about a hundred partly covered cells
     assert_int_equal(covered, 7);
     assert_true(partly >= 25);
     assert_int_equal(s->count, 777);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arithmetic of vpl tradeoff, and the PNG that its report embeds.
+// Tests of the arithmetic of vpl tradeoff, and of the PNG that its report embeds.
 #include "test.h"
 
 #include "cli/bench/measure.h"
@@ -18,36 +18,35 @@ TEST_ALONE(MedianIsTheMiddleOrTheMeanOfTwo)
 
 TEST_ALONE(FrontHoldsWhatNothingBeats)
 {
-    //                     front, beaten, front, equal, front, dearer, not measured
+    // on front, dominated, on front, equal, on front, costlier, not measured
     const double cost[] = {1, 2, 2, 2, 5, 6, NAN}, error[] = {9, 9, 7, 7, 1, 1, NAN};
-    bool onFront[7];
-    assert_int_equal(markFront(cost, error, 7, 0, onFront), 3);
-    const bool wanted[] = {true, false, true, false, true, false, false};
-    assert_memory_equal(onFront, wanted, sizeof wanted);
+    int numbers[7];
+    assert_int_equal(numberFront(cost, error, 7, 0, numbers), 3);
+    const int wanted[] = {1, 0, 2, 0, 3, 0, 0};
+    assert_memory_equal(numbers, wanted, sizeof wanted);
 }
 
-// By definition, in random cases: a point is on the front if and only if no other is as good in both and
-// better in one, or equal and before it.
+// Checks the definition on random cases: a point is on the front if and only if no other point is at least as
+// good in both values and better in one, or equal and before it.
 TEST_ALONE(FrontFollowsItsDefinition)
 {
     enum { COUNT = 12 };
     for (uint64_t seed = 0; seed < 500; seed++) {
         double cost[COUNT], error[COUNT];
-        bool onFront[COUNT];
-        int marked = 0;
+        int numbers[COUNT], marked = 0;
         for (int i = 0; i < COUNT; i++) { // few values, so that there are ties
             cost[i] = floor(6 * uniformAt(seed, 2 * (uint64_t)i));
             error[i] = 1 + floor(6 * uniformAt(seed, 2 * (uint64_t)i + 1));
         }
-        int count = markFront(cost, error, COUNT, 0, onFront);
+        int count = numberFront(cost, error, COUNT, 0, numbers);
         for (int i = 0; i < COUNT; i++) {
             bool beaten = false;
             for (int j = 0; j < COUNT; j++) {
                 bool as = cost[j] <= cost[i] && error[j] <= error[i];
                 beaten |= as && (cost[j] < cost[i] || error[j] < error[i] || j < i);
             }
-            assert_int_equal(onFront[i], !beaten);
-            marked += onFront[i];
+            assert_int_equal(numbers[i] > 0, !beaten);
+            marked += numbers[i] > 0;
         }
         assert_int_equal(count, marked);
     }
@@ -56,9 +55,9 @@ TEST_ALONE(FrontFollowsItsDefinition)
 TEST_ALONE(ThinFrontLeavesOutSmallGains)
 {
     const double cost[] = {1, 2, 3, 4}, error[] = {10, 9.8, 9.6, 5};
-    bool onFront[4];
-    assert_int_equal(markFront(cost, error, 4, 0.03, onFront), 3); // 9.8 is not 3 % below 10, 9.6 is
-    assert_true(onFront[0] && !onFront[1] && onFront[2] && onFront[3]);
+    int numbers[4];
+    assert_int_equal(numberFront(cost, error, 4, 0.03, numbers), 3); // 9.8 is not 3 % below 10, 9.6 is
+    assert_true(numbers[0] == 1 && numbers[1] == 0 && numbers[2] == 2 && numbers[3] == 3);
 }
 
 TEST_ALONE(CheapestWithinALimit)
@@ -93,15 +92,15 @@ TEST_ALONE(JointSquareIsFreeOfTheReferencesNoise)
 {
     enum { COUNT = 100000 };
     static float x[COUNT], a[COUNT], b[COUNT];
-    for (uint64_t i = 0; i < COUNT; i++) { // the truth is 1, the halves have noise of deviation 0.5
+    for (uint64_t i = 0; i < COUNT; i++) { // the truth is 1; the halves have noise of deviation 0.5
         double spread = 0.5 * sqrt(12);
         a[i] = (float)(1 + spread * (uniformAt(1, i) - 0.5));
         b[i] = (float)(1 + spread * (uniformAt(2, i) - 0.5));
         x[i] = i % 2 ? 1.1f : 0.9f;
     }
     double uncertainty = jointUncertainty(a, b, COUNT);
-    // Variance 0.25 each: a'b' has deviation 0.25, their mean 0.25 / sqrt(n); uniform noise is less spiky
-    // than normal noise, (a' - b')^4 is 9.6 v^2 for it.
+    // Each variance v is 0.25: a'b' has deviation 0.25, their mean 0.25 / sqrt(n). Uniform noise has lighter
+    // tails than normal noise; its (a' - b')^4 averages 9.6 v^2.
     assertNear(uncertainty, 0.25 * sqrt(9.6 / 12) / sqrt(COUNT), 0.02 * uncertainty, "uncertainty", 0);
     assertNear(jointSquare(x, a, b, COUNT), 0.01, 3 * uncertainty, "mean squared error", 0);
     assertNear(jointSquare(a, a, b, COUNT), 0, 3 * uncertainty, "a judged by itself and b", 0);
@@ -129,17 +128,12 @@ TEST_ALONE(TimesAndSharesReadWell)
         const char* text;
     } times[] = {{0.834, "0.83 ms"}, {4.26, "4.3 ms"},  {999.4, "999 ms"},
                  {1240, "1.24 s"},   {12400, "12.4 s"}, {200000, "3 min 20 s"}};
-    char text[32];
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
-        formatTime(times[i].ms, text, sizeof text);
-        assert_string_equal(text, times[i].text);
+        assert_string_equal(formatTime(times[i].ms).text, times[i].text);
     }
-    formatPercent(0.0083, text, sizeof text);
-    assert_string_equal(text, "0.83 %");
-    formatPercent(0.142, text, sizeof text);
-    assert_string_equal(text, "14.2 %");
-    formatPercent(1.3, text, sizeof text);
-    assert_string_equal(text, "130 %");
+    assert_string_equal(formatPercent(0.0083).text, "0.83 %");
+    assert_string_equal(formatPercent(0.142).text, "14.2 %");
+    assert_string_equal(formatPercent(1.3).text, "130 %");
 }
 
 TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)

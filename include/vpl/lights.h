@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Virtual lights: plain arrays, and what makes them: particles, reflective shadow maps, clusters.
+// Virtual lights as plain arrays, and the ways to make them: particles, reflective shadow maps, clusters.
 #ifndef VPL_LIGHTS_H
 #define VPL_LIGHTS_H
 
@@ -30,10 +30,10 @@ typedef enum vplBounce {
     VPL_BOUNCE_DIFFUSE   // cosine-distributed
 } vplBounce;
 
-// Whose recipe is followed, that is, what step 0 is.
+// The document that defines where paths start, and so which lights step 0 holds.
 typedef enum vplParticleStart {
     VPL_START_FIRST_HIT = 0, // Franchi and Ferrante: all N particles are shot, their first hits are step 0
-    VPL_START_EMITTER        // Keller: where the N particles start are lights, too, and are step 0
+    VPL_START_EMITTER        // Keller: the N points on emitters where particles start are step 0
 } vplParticleStart;
 
 // The geometry that stops particles.
@@ -62,7 +62,7 @@ typedef struct vplReflectiveMap {
     const float* depth; // of the texel's centre along forward from `origin`, in `unit`s; +infinity: nothing
     float unit;         // metres; directional: the length of the view
     const int32_t* triangle; // index in the geometry, -1 where nothing is
-    // Of each face: unit; right, up and forward are left-handed, as a cube map's.
+    // The frame of each face: unit vectors, left-handed as those of a cube map.
     vplVec3 right[6], up[6], forward[6];
     double extent[2]; // tangents of half the view, across and up; directional: half its size, metres
     vplVec3 origin;   // the emitter; directional: the centre of the view's near side
@@ -81,33 +81,34 @@ void vplReflectiveMap_Destroy(vplReflectiveMap* map);
 // Index of the texel that a ray of the emitter goes through; -1 where its view does not reach.
 int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray);
 
-// The hit of the ray through a texel's centre, inside its triangle, and the ray's unit direction. False where
-// nothing is.
+// Finds the hit of the ray through a texel's centre, inside its triangle, and the ray's unit direction.
+// Returns false where no surface is.
 bool vplReflectiveMap_GetHit(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                              vplHit* hitOut, vplVec3* directionOut);
 
 // The surface that a texel shows.
 typedef struct vplReflectiveTexel {
     float distance; // metres from the emitter; directional: from the near side of its view
-    // Metres: the hit of the ray through the texel's centre; just inside the triangle where that is up to
-    // 1/256 texel outside its edge.
+    // Metres: the hit of the ray through the texel's centre. If the ray passes the triangle by up to 1/256
+    // texel, the point just inside its edge.
     vplVec3 position;
     vplVec3 normal; // unit, interpolated on smooth objects, on the lit side
     vplRgb albedo;  // diffuse reflectance, [0, 1]
-    vplRgb flux;    // W: incident, what the emitter sends through the texel; it leaves times albedo
+    vplRgb flux;    // W: incident flux, sent by the emitter through the texel; times albedo is reflected
     int triangle;   // index in the geometry
 } vplReflectiveTexel;
 
-// False where nothing is. Solid angles are exact, and a spot's falloff is taken at centres: in a closed room
-// the flux of all texels is a point emitter's power to rounding, and a spot's power but for up to 1/size^2.
+// Returns false where no surface is. Solid angles are exact; a spot's falloff is taken at centres. In a
+// closed room the flux of all texels is a point emitter's power to rounding, and a spot's power but for up to
+// 1/size^2.
 // Departs from Dachsbacher and Stamminger: flux is incident, so that it adds up for any colours.
 bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* geometry, int64_t texel,
                                vplReflectiveTexel* texelOut);
 
-// The shadowed share, [0, 1], of the emitter's light at 16 points: the bilinear weight of those of four
-// texels that show something nearer than both the point and its plane, by more than half a texel's side. So
-// no plane shadows itself, and an object that near to a surface casts no shadow on it. Where all rays within
-// a texel's side agree, so does the factor. 0 where the map's view does not reach.
+// The shadowed share, [0, 1], of the emitter's light at 16 points: the bilinear weight of those of the four
+// nearest texels that show a surface nearer than both the point and its plane, by more than half a texel's
+// side. So no plane shadows itself, and an object within that distance of a surface casts no shadow on it.
+// Where all rays within a texel's side agree, the factor agrees with them. 0 outside the map's view.
 void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES]);
 
@@ -115,8 +116,8 @@ void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface*
 
 typedef struct vplVirtualLight {
     vplVec3 position; // metres
-    // Unit; of the surface, on the side the particle came from (documented: as declared). Where a particle
-    // leaves a point or comes from a direction: its own direction.
+    // Unit normal of the surface, on the side that the particle came from (documented: as declared). For a
+    // light that is a point or directional emitter: the particle's direction.
     vplVec3 normal;
     // Documented: the light L the particle carries after attenuation, in the emitter's unit. Physical, and
     // Keller's: flux in W that the surface sends out if one particle carried all.
@@ -126,7 +127,7 @@ typedef struct vplVirtualLight {
     float weight;
     int step;     // k: 0 for the first hit
     int particle; // [0, N)
-    int object;   // that it lies on; -1: it is the emitter itself (Keller, step 0 of points and directions)
+    int object;   // the object it lies on; -1: it is a point or directional emitter (Keller, step 0)
 } vplVirtualLight;
 
 typedef struct vplParticleDef {
@@ -179,7 +180,7 @@ typedef struct vplLightSet {
     const vplVirtualLight* lights; // by step, then by particle
     int lightCount;
     const int* stepCounts;   // nominal particles per step: floor(rho^k N)
-    const int* lightsInStep; // lights really left in each step
+    const int* lightsInStep; // lights made in each step
     int stepCount;
     int escaped; // particles that left the scene before their last step
     int64_t rays;
@@ -194,7 +195,7 @@ typedef struct vplLightSet {
 // leaves a virtual light; the first floor(rho^k N) particles go on. A particle that hits nothing ends without
 // a light; the weights keep the nominal counts.
 // Source: Franchi and Ferrante, Virtual Point Lights, "Particle Simulation"; Keller, Instant Radiosity, 1997,
-// section 4, as they tell it under "Keller's Instant Radiosity".
+// section 4, as Franchi and Ferrante summarise it under "Keller's Instant Radiosity".
 vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                                const vplParticleDef* def, vplLightSet** setOut);
 
@@ -203,7 +204,8 @@ void vplLightSet_Destroy(vplLightSet* set);
 
 // ---- lights for what a camera sees
 
-// Lights are candidates first; each is measured by its contribution to some points that the camera sees.
+// More lights than needed are made as candidates, and the contribution of each to some visible points is
+// measured.
 typedef struct vplPlacementDef {
     vplLighting lighting; // formulas by which the lights will light; default VPL_LIGHTING_PHYSICAL
     vplCameraDef camera;  // default vplDefaultCameraDef()
@@ -217,7 +219,7 @@ typedef struct vplPlacementDef {
     bool shadows;             // the lights will cast shadows; default true
     float fluxShare;          // share of the probabilities by flux alone, (0, 1]; default 0.1
     uint64_t seed;            // default 0
-    int64_t index;            // of a pass: each makes another choice; default 0
+    int64_t index;            // index of the pass: each pass chooses anew; default 0
     vplProgressFcn* progress; // default NULL
     void* progressUser;
     uint32_t cookie; // set by vplDefaultPlacementDef
@@ -240,8 +242,8 @@ vplResult vplMeasureLights(const vplGeometry* geometry, const vplLightSet* set, 
 vplResult vplChooseLights(const vplLightSet* candidates, const float* contributions, double count,
                           const vplPlacementDef* def, vplLightSet** setOut);
 
-// Both: simulates F N particles and leaves about as many lights as N would. The set's N is that of all
-// candidates.
+// Simulates F N particles, measures their lights and chooses about as many as N particles would leave. The
+// set's N is that of all candidates.
 vplResult vplPlaceLights(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                          const vplParticleDef* particles, const vplPlacementDef* def, vplLightSet** setOut);
 
@@ -270,7 +272,7 @@ enum { VPL_MAX_USE_RAYS = 4096 };
 // VPL_MAX_USE_RAYS], the share that hit something. Unlike vplMeasureLights it does not depend on a camera.
 vplResult vplMeasureUse(const vplGeometry* geometry, const vplLightSet* set, int rayCount, float* useOut);
 
-// How many lights vplKeepUseful is expected to keep.
+// The expected number of lights that vplKeepUseful keeps.
 double vplCountUseful(const vplLightSet* set, const float* use);
 
 // Keeps each light with the probability of its use, at least 1/16, and divides its weight by that: the mean
@@ -290,14 +292,16 @@ typedef struct vplClusterDef {
     vplClusterMetric metric; // default VPL_CLUSTER_ONE_MINUS
     double w1;               // 1/metres, >= 0; default 0.6
     double w2;               // >= 0; default 0.4
-    int maxIterations; // [0, 10000]; default 32, because the mean minimises no metric, and the printed one cycles
+    // [0, 10000]; default 32: no metric is minimised by means, so k-means may cycle.
+    int maxIterations;
     // Indices of `count` lights that clusters start from. NULL (default): lights far from each other, or all
     // lights in their order if there are no more than clusters.
     const int* seeds;
-    // Clusters of the last frame: those with lights are started from, others at lights far from them. NULL
-    // (default).
+    // Clusters of the last frame: those with lights are the start, the others start at lights far from them.
+    // NULL (default): none.
     const struct vplLightClusters* last;
-    // Of the lights, finite, >= 0: of means, and of distances where clusters start. NULL (default): all 1.
+    // One weight per light, finite, >= 0, for the means of clusters and for the choice of the lights that
+    // they start from. NULL (default): all 1.
     const float* weights;
     uint32_t cookie; // set by vplDefaultClusterDef
 } vplClusterDef;
@@ -309,7 +313,7 @@ typedef struct vplLightCluster {
     vplVec3 normal;   // unit: of the sum of its lights' normals; unchanged where that is 0
     vplRgb flux;      // sum of its lights' flux, W (as weighted: what the picture gets)
     int lightCount;
-    int nearest; // index of its light nearest to the mean (by the metric), -1 where it has none
+    int nearest; // index of its light nearest to the mean (by the metric), -1 if it has none
     // None of its lights shines behind it: all lie within 1e-4 of the diagonal of the box around all lights
     // (and 4 roundings of float) of the plane through position with this normal, and no normal differs by
     // more than 1e-4. True where it has no lights.
@@ -326,18 +330,18 @@ typedef enum vplClusterEnd {
 typedef struct vplLightClusters {
     const vplLightCluster* clusters;
     int count;
-    const int* of; // per light: its cluster
+    const int* of; // the cluster of each light
     int lightCount;
-    int iterations; // how often clusters moved
+    int iterations; // iterations in which clusters moved
     int emptyCount; // clusters without lights: they keep their positions
     vplClusterEnd end;
     vplContext* context;
     struct vplArena* arena; // owns the clusters
 } vplLightClusters;
 
-// K-means in double precision; equal distances go to the lowest index. Lights of object -1 must not be among
-// them. 256 lights take 0.15 ms in 8 clusters, 0.3 ms in 32; the time grows with lights times clusters times
-// iterations.
+// Clusters lights by k-means in double precision; equal distances go to the lowest index. No light may be an
+// emitter itself (object -1). 256 lights take 0.15 ms in 8 clusters, 0.3 ms in 32; the time grows with lights
+// times clusters times iterations.
 // Source: Aranha, Macedo and Apolinario, section II-A, equation 2; Dong et al., Real-time Indirect
 // Illumination with Clustered Visibility, VMV 2009. Departs: the normal term, which as printed keeps equal
 // normals apart.
@@ -353,7 +357,7 @@ typedef enum vplSecondWeight {
 } vplSecondWeight;
 
 typedef struct vplSecondBounceDef {
-    int count;              // of all clusters together, [0, VPL_MAX_LIGHTS]; default 256
+    int count;              // samples of all clusters together, [0, VPL_MAX_LIGHTS]; default 256
     vplSecondWeight weight; // default VPL_SECOND_WEIGHT_COSINE
     uint64_t shift;         // as in vplRsmSampleDef, besides a shift per cluster; default 0
     uint32_t cookie;        // set by vplDefaultSecondBounceDef

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a picture is asked to be: methods, stages to show, and every option, which all come from
-// vpl/options.def.
+// Render options: methods, stages to show, and every other option, all of which come from vpl/options.def.
 #ifndef VPL_OPTIONS_H
 #define VPL_OPTIONS_H
 
@@ -22,7 +21,7 @@ typedef enum vplMethod {
     VPL_METHOD_RADIOSITY // Hemgren, Radiosity in Realtime Rendering
 } vplMethod;
 
-// What the picture shows.
+// The content of the picture.
 typedef enum vplShow {
     VPL_SHOW_PICTURE = 0,
     VPL_SHOW_DEPTH,         // distance along the view axis, metres
@@ -34,105 +33,105 @@ typedef enum vplShow {
     VPL_SHOW_LIGHT,         // light of virtual light `showLight` only
     VPL_SHOW_OVERLAY,       // the picture with the virtual lights drawn on it, coloured by step
     VPL_SHOW_BOUNCE,        // path: light after `showBounce` reflections before the eye's last; 0 is direct
-    // of SSVP:
+    // SSVP only:
     VPL_SHOW_RSM,         // reflective shadow maps: position, normal, albedo and flux side by side
     VPL_SHOW_RSM_SAMPLES, // the picture with the first-bounce lights drawn on it
     VPL_SHOW_CLUSTERS,    // the same with clusters, and each first-bounce light in its cluster's colour
     VPL_SHOW_PARABOLOID, // the map of cluster `showLight`: position, normal, albedo and distance side by side
     VPL_SHOW_SECOND_BOUNCE, // the picture with the second-bounce lights drawn on it
-    VPL_SHOW_GATHER,        // indirect irradiance before pixels share it, W/m^2: of every pixel's own lights
-    VPL_SHOW_DENOISED,      // after that
-    // of radiosity, without interpolation:
+    VPL_SHOW_GATHER,        // indirect irradiance of every pixel by its own lights only, W/m^2
+    VPL_SHOW_DENOISED,      // the same after neighbours have shared theirs
+    // radiosity only, without interpolation:
     VPL_SHOW_PATCHES,         // patches with their outlines, in the colours of their surfaces
     VPL_SHOW_PATCH_RADIOSITY, // radiosity / pi of each patch: emission, direct and indirect light, W/(m^2 sr)
-    VPL_SHOW_FORM_FACTOR_SUMS, // sum of each patch's form factors, before they were clamped or normalised: 1 in closed
-                               // rooms
-    VPL_SHOW_RESIDUAL          // what each patch's radiosity still lacks, / pi, W/(m^2 sr): absolute values
+    VPL_SHOW_FORM_FACTOR_SUMS, // row sums of form factors as computed: 1 in closed rooms
+    VPL_SHOW_RESIDUAL // error of each patch's radiosity after the last sweep, absolute, / pi, W/(m^2 sr)
 } vplShow;
 
-// Most paths per pixel, and most bounces of a path.
+// Upper limits of paths per pixel and of bounces per path.
 enum { VPL_MAX_SAMPLES = 1 << 24, VPL_MAX_BOUNCES = 1 << 16 };
 
-// Whether light from a virtual light is stopped by what is between.
+// Shadows of virtual lights.
 typedef enum vplLightShadows {
     // As the method's document draws: instant radiosity none, Keller's auto, SSVP by the paraboloid map of a
     // light's cluster.
     VPL_LIGHT_SHADOWS_USUAL = 0,
-    VPL_LIGHT_SHADOWS_NONE,   // it is not: as Franchi and Ferrante draw
+    VPL_LIGHT_SHADOWS_NONE,   // no shadows: as Franchi and Ferrante draw
     VPL_LIGHT_SHADOWS_MAP,    // a map of the half space above each virtual light, one sample: as Keller draws
     VPL_LIGHT_SHADOWS_RAY,    // a ray per pixel and light: exact
     VPL_LIGHT_SHADOWS_AUTO,   // map or ray, whichever will be cheaper by the measurements of bench/crossover
     VPL_LIGHT_SHADOWS_CLUSTER // SSVP: by the paraboloid map of the light's cluster
 } vplLightShadows;
 
-// Where virtual lights go.
+// Placement of virtual lights.
 typedef enum vplLightPlacement {
     VPL_PLACEMENT_PARTICLES = 0, // where particles land
     VPL_PLACEMENT_RSM,           // first hits are texels of reflective shadow maps
     VPL_PLACEMENT_VIEW           // particles, of which those are kept that light what the camera sees
 } vplLightPlacement;
 
-// What becomes of the light that minDistance takes away.
+// Treatment of the light that the clamp at minDistance takes away.
 typedef enum vplCompensation {
     VPL_COMPENSATION_USUAL = 0, // rays for Keller's method with physical lighting and shadows, else none
-    VPL_COMPENSATION_NONE,      // it is lost
-    VPL_COMPENSATION_RAYS       // short rays from each pixel find it
+    VPL_COMPENSATION_NONE,      // that light is lost
+    VPL_COMPENSATION_RAYS       // short rays from each pixel add it again
 } vplCompensation;
 
-// Where in a pixel the path tracer looks.
+// Positions in a pixel at which the path tracer starts its paths.
 typedef enum vplPixel {
-    VPL_PIXEL_AREA = 0, // everywhere: the pixel is the mean over its square, edges are smooth
-    VPL_PIXEL_CENTRE    // its centre, as all other methods do: for comparing with them
+    VPL_PIXEL_AREA = 0, // all over the pixel, which is the mean over its square: edges are smooth
+    VPL_PIXEL_CENTRE    // the centre, as in all other methods, for comparing with them
 } vplPixel;
 
-// Where a cluster looks from.
+// Viewpoint of a cluster of lights.
 typedef enum vplClusterPlace {
-    VPL_CLUSTER_PLACE_MEMBER = 0, // from its light that is nearest to the mean: on a surface
-    VPL_CLUSTER_PLACE_MEAN // from the mean, as the document has it: maybe in mid-air or inside of something
+    VPL_CLUSTER_PLACE_MEMBER = 0, // its light nearest to the mean, which is on a surface
+    VPL_CLUSTER_PLACE_MEAN // the mean of its lights, as in the document: maybe in mid-air or inside an object
 } vplClusterPlace;
 
-// What form factors are found between.
+// Form factors are computed for all pairs of patch sides, or for links between groups of them.
 typedef enum vplHierarchy {
     VPL_HIERARCHY_AUTO = 0, // all pairs up to VPL_ALL_PAIRS sides, else links
     VPL_HIERARCHY_OFF,      // all pairs of sides
-    VPL_HIERARCHY_ON        // links between groups of them
+    VPL_HIERARCHY_ON        // links between groups of sides
 } vplHierarchy;
 
-// More sides of patches than this are linked in groups: as many as VPL_MAX_FORM_FACTOR_BYTES allow. Links are
-// five times as fast there and err ten to twenty times as much (bench/form_factors, bench/radiosity_error):
-// more patches should not make a picture worse where nobody asked for it.
+// Patch sides beyond which VPL_HIERARCHY_AUTO uses links: the most that VPL_MAX_FORM_FACTOR_BYTES allows for
+// all pairs. The limit is no lower because links are five times as fast there, but their error is ten to
+// twenty times as large (bench/form_factors, bench/radiosity_error): asking for more patches should not make
+// a picture worse.
 enum { VPL_ALL_PAIRS = 16384 };
 
-// Where patches are small.
+// Distribution of patch sizes.
 typedef enum vplPatchPlacement {
-    VPL_PATCHES_UNIFORM = 0, // everywhere alike, as in the document
-    VPL_PATCHES_ADAPTIVE     // where light changes much: found from solutions with fewer patches
+    VPL_PATCHES_UNIFORM = 0, // one size everywhere, as in the document
+    VPL_PATCHES_ADAPTIVE     // smaller where light changes much, by solutions with fewer patches
 } vplPatchPlacement;
 
-// How light varies over a patch.
+// Interpolation of radiosity over a patch.
 typedef enum vplInterpolation {
-    VPL_INTERPOLATION_GOURAUD = 0, // linearly between the patches' corners
-    VPL_INTERPOLATION_NONE         // not at all
+    VPL_INTERPOLATION_GOURAUD = 0, // linear between the patches' corners
+    VPL_INTERPOLATION_NONE         // constant
 } vplInterpolation;
 
-// Whether frames of a sequence have anything to do with each other.
+// Coherence between the frames of a sequence.
 typedef enum vplCoherence {
-    // New sample patterns for each frame, and clusters that start from the frame's own lights The same
-    // patterns in all frames, and clusters that start from those of the frame before. Radiosities go on from
-    // those of the frame before, `iterations` sweeps a frame: light that moved arrives with the lag of its
-    // bounces.
+    // Each frame has its own sample patterns, and k-means starts from the frame's own lights.
     VPL_COHERENCE_OFF = 0,
+    // All frames have the same sample patterns, and k-means starts from the clusters of the frame before. The
+    // radiosity solver starts from the solution of the frame before and makes `iterations` sweeps per frame:
+    // light that moved arrives with the lag of its bounces.
     VPL_COHERENCE_ON
 } vplCoherence;
 
-// What frames of a sequence hand on to each other; see vpl/render.h.
+// Results that frames of a sequence share; see vpl/render.h.
 typedef struct vplHistory vplHistory;
 
-// Most passes of a render.
+// Upper limit of passes per render.
 enum { VPL_MAX_PASSES = 1 << 20 };
 
 // Values of vplShadowOptions.bias that are no length.
-#define VPL_BIAS_OPTION_AUTO  (-1.0f) // VPL_BIAS_EXACT, with documented lighting or a biasSlope VPL_BIAS_PAIR
+#define VPL_BIAS_OPTION_AUTO  (-1.0f) // VPL_BIAS_EXACT; VPL_BIAS_PAIR with documented lighting or a biasSlope
 #define VPL_BIAS_OPTION_EXACT (-2.0f) // VPL_BIAS_EXACT
 
 // ---- the fields: meaning, unit, range and default of each stand in vpl/options.def
@@ -183,7 +182,7 @@ typedef struct vplRadiosityOptions {
 typedef struct vplSequenceOptions {
 #define VPL_SEQUENCE_OPTION VPL_OPTION_FIELD
 #include <vpl/options.def>
-    vplHistory* history; // what the frame before hands on; NULL (default): nothing
+    vplHistory* history; // results of the frame before; NULL (default): every frame starts anew
 } vplSequenceOptions;
 
 typedef struct vplStopOptions {
@@ -204,7 +203,7 @@ typedef struct vplRenderOptions {
     vplRadiosityOptions radiosity;
     vplSequenceOptions sequence;
     vplStopOptions stop;
-    vplProgressFcn* progress; // NULL (default): nobody listens
+    vplProgressFcn* progress; // called with the progress; NULL (default): never
     void* progressUser;       // passed to progress
     char problem[256];        // why the last vplRenderOptions_Set failed; empty if it did not
     uint32_t cookie;          // set by vplDefaultRenderOptions
@@ -223,13 +222,13 @@ vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, cons
 // is no such option or `size` bytes are too few.
 vplResult vplRenderOptions_Get(const vplRenderOptions* options, const char* name, char* textOut, size_t size);
 
-// Whether the method and pipeline of `options` make any use of an option. If not, and reasonOut is not NULL,
-// it gets what stands against it, such as "--method keller".
+// Tells whether the method and pipeline of `options` use an option. If not, and reasonOut is not NULL, it
+// gets the setting because of which the option has no effect, such as "--method keller".
 bool vplRenderOptions_IsUsed(const vplRenderOptions* options, const char* name, char* reasonOut, size_t size);
 
 // ---- the table
 
-// Methods that make use of an option, and pipelines: without a pipeline's bit it is used by all of them.
+// Methods and pipelines that use an option. An option without a pipeline's bit is used by all pipelines.
 enum {
     VPL_USE_INSTANT_RADIOSITY = 1 << VPL_METHOD_INSTANT_RADIOSITY,
     VPL_USE_DIRECT = 1 << VPL_METHOD_DIRECT,

@@ -86,7 +86,7 @@ typedef enum vplFormFactorKind {
     VPL_FORM_FACTORS_INCENTRE
 } vplFormFactorKind;
 
-// How rows of form factors are corrected whose sum is not what it should be.
+// Correction of rows of form factors whose sums are not those of a closed or open room.
 typedef enum vplRowSums {
     VPL_ROW_SUMS_USUAL = 0, // clamped for Monte Carlo, kept for incentres
     VPL_ROW_SUMS_KEEP,
@@ -231,7 +231,7 @@ typedef struct vplSolveStats {
     double rowSumMin, rowSumMean, rowSumMax; // of F as used; the mean is weighted by area
 } vplSolveStats;
 
-// How light is exchanged: by form factors or by links.
+// The exchange of light between sides: by form factors or by links.
 typedef struct vplTransport {
     const vplPatchSides* sides;
     const vplFormFactors* factors; // NULL: by links
@@ -273,8 +273,8 @@ typedef struct vplPatchMesh {
     const vplVec3* normals;
     const uint32_t* indices; // three per triangle
     const int* patchOf;      // of each triangle
-    const uint8_t*
-        edges; // of each triangle: bit k: the edge from corner k on is an edge of the patch, no cut
+    // One byte per triangle. Bit k: the edge from corner k is an edge of the patch, not a cut.
+    const uint8_t* edges;
     int vertexCount, triangleCount;
     int hangingVertices;             // positions at which some patch's edge was cut
     struct vplPatchesAround* around; // the patches at each vertex

@@ -9,11 +9,11 @@
 extern "C" {
 #endif
 
-// What frames of a sequence hand on to each other: the geometry, and for SSVP and radiosity what the light
-// sees, lights, clusters, patches and form factors, as long as nothing that they depend on has changed.
-// Frames are rendered one after another, in any order, with one scene, to which nothing may be added, and
-// options that may change. Pictures have the same bits as without a history, but for what `coherence` says.
-// It must outlive renderers that use it.
+// Results of stages that frames of a sequence share: the geometry, and for SSVP and radiosity reflective
+// maps, lights, clusters, patches and form factors. A result is reused as long as nothing that it depends on
+// has changed. Frames are rendered one after another, in any order, with one scene, to which nothing may be
+// added; options may change. Pictures have the same bits as without a history, except where
+// sequence.coherence says otherwise. A history must outlive the renderers that use it.
 vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut);
 
 // NULL is allowed.
@@ -37,35 +37,35 @@ typedef struct vplRenderStats {
     int virtualLights;
     int escaped;   // particles that left the scene
     int stepCount; // steps of the particle simulation
-    // floor(rho^k N), by which lights are weighted; of all candidates where lights are chosen.
+    // floor(rho^k N), by which lights are weighted; where lights are chosen by use, the count of all
+    // candidates.
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
-    int lightsPerStep[VPL_MAX_STEPS_REPORTED]; // lights that were really left
+    int lightsPerStep[VPL_MAX_STEPS_REPORTED]; // virtual lights that were made
     double reflectivity;                       // as used
     float minDistance;                         // as used, metres
-    // Share of the virtual lights' light that minDistance takes away, or would without compensation: an estimate
-    // from some pixels; negative where there is none.
+    // Share of the virtual lights' light that the clamp takes away, or would take away without compensation.
+    // An estimate from some pixels; negative: not estimated.
     double clampLoss;
     vplLightShadows lightShadows; // as used: none, map, ray or cluster
-    // What maps and rays were expected to take where they were chosen by cost, ms of one core of the machine of
-    // bench/crossover.
+    // Estimated costs of shadow maps and rays, if shadows were chosen by cost; see vplPlan.
     double shadowMapEstimateMs, shadowRayEstimateMs;
 
-    // Lightcuts: pairs of a pixel and a virtual light that were evaluated; pixels that show something, of all
-    // passes and samples; most virtual lights evaluated for one pixel.
+    // Lightcuts: evaluated pairs of a pixel and a virtual light; pixels that show a surface, over all passes
+    // and samples; largest number of virtual lights evaluated for one pixel.
     int64_t lightEvaluations, cutPixels;
     int largestCut;
     int clusters, clusterIterations; // SSVP: clusters of first-bounce lights; iterations of k-means
 
     int patches, patchSides; // radiosity: patches, and sides of them that light reaches
-    bool linked;             // by the hierarchy
+    bool linked;             // radiosity: light was exchanged by links
     int64_t formFactors;     // radiosity: pairs of sides, or links
-    vplSolveStats solve;     // radiosity: of the last frame
+    vplSolveStats solve;     // radiosity: the solver of the last frame
 
-    int passes; // that the picture is the mean of; path: of up to 32 paths per pixel each
-    // Expected rmse of the picture, from two independent halves of the samples or passes, and the same divided by
-    // the picture's mean; negative where there is none.
+    int passes; // the picture is their mean; path tracing: up to 32 paths per pixel each
+    // Estimated rmse of the picture, from two independent halves of the samples or passes, and the same
+    // divided by the picture's mean; negative: not estimated.
     double errorEstimate, relativeErrorEstimate;
-    size_t peakBytes;   // most memory that the context held during the call
+    size_t peakBytes;   // most memory that the context held at a time during the call
     uint64_t imageHash; // vplImage_Hash
 } vplRenderStats;
 
@@ -80,24 +80,24 @@ vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplI
 vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float exposure, const char* path,
                   vplRenderStats* statsOut);
 
-// The same step by step, for windows, deadlines and progressive output: after each step there is a picture of
-// all that was done. Steps give the same bits as one call of vplRender. One step is one pass.
+// Renders step by step, for windows, deadlines and progressive output: after each step the picture so far can
+// be read. Steps give the same bits as one call of vplRender. One step is one pass.
 typedef struct vplRenderer vplRenderer;
 
 vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
                              vplRenderer** rendererOut);
 
-// Does one pass. *doneOut is set where the options ask for no more; further steps are allowed and make the
-// picture better, where it is made of passes at all. After a failure the renderer can only be destroyed.
+// Renders one pass. *doneOut says whether all that the options ask for is done; further steps are allowed and
+// improve pictures that are means of passes. After a failure the renderer can only be destroyed.
 vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
 
-// The picture so far, at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
+// Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
 vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRenderStats* statsOut);
 
 // NULL is allowed. The scene must outlive the renderer.
 void vplRenderer_Destroy(vplRenderer* renderer);
 
-// The virtual lights that vplRender would use (in its first pass); destroy with vplLightSet_Destroy.
+// Makes the virtual lights that vplRender uses in its first pass; destroy them with vplLightSet_Destroy.
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut);
 
 #ifdef __cplusplus

@@ -61,7 +61,7 @@ typedef struct vplLightFormula {
 void vplAccumulateLights(const vplContext* context, vplLightFormula formula, const vplSurface* surface,
                          const vplShadeLight* lights, int count, float irradiance[3][VPL_LANES]);
 
-// How virtual lights reach the pixels. The first three give the same bits.
+// Ways to add up virtual lights. The first three give the same bits.
 typedef enum vplAccumulation {
     VPL_ACCUMULATE_MULTIPASS = 0, // one pass over the scene per light, depth EQUAL, additive
     VPL_ACCUMULATE_BATCHED,       // one pass per `batch` lights

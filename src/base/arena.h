@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How errors travel and who owns memory, everywhere in the library.
+// The idioms of the whole library for errors (TRY) and for ownership of memory (vplArena).
 //
 // Errors: a function that can fail returns vplResult, and TRY passes a failure on to the caller.
 // Memory: an object has one arena, and so has a call that needs scratch memory. Several allocations are

@@ -22,26 +22,11 @@ void vplTriangleBlock_Fill(vplTriangleBlock* block, const vplGeometry* g, const 
     }
 }
 
+VPL_KERNEL_TABLE(tables, vplRayKernels, VPL_RAY_KERNELS);
+
 // AVX-512 uses the AVX2 kernels: eight lanes fill no 512-bit register (bench/rays on Zen 4: AVX2 traces 1.05x
 // the rays).
-#if defined(__x86_64__)
-#define DECLARE(field, type, name) extern type name##_scalar, name##_sse2, name##_avx2;
-#define AVX2(field, type, name)    name##_avx2,
-#else
-#define DECLARE(field, type, name) extern type name##_scalar, name##_sse2;
-#define AVX2(field, type, name)    name##_sse2,
-#endif
-#define SSE2(field, type, name)   name##_sse2,
-#define SCALAR(field, type, name) name##_scalar,
-
-VPL_RAY_KERNELS(DECLARE)
-
 const vplRayKernels* vplGetRayKernels(vplIsa isa)
 {
-    static const vplRayKernels kernels[VPL_ISA_COUNT] = {[VPL_ISA_AUTO] = {VPL_RAY_KERNELS(SSE2)},
-                                                         [VPL_ISA_SCALAR] = {VPL_RAY_KERNELS(SCALAR)},
-                                                         [VPL_ISA_SSE2] = {VPL_RAY_KERNELS(SSE2)},
-                                                         [VPL_ISA_AVX2] = {VPL_RAY_KERNELS(AVX2)},
-                                                         [VPL_ISA_AVX512] = {VPL_RAY_KERNELS(AVX2)}};
-    return &kernels[isa];
+    return &tables[isa == VPL_ISA_AVX512 ? VPL_ISA_AVX2 : isa];
 }

@@ -7,6 +7,8 @@
 
 #include <vpl/geometry.h>
 
+#include "base/isa.h"
+
 enum {
     VPL_BVH_WIDTH = 8,  // children of a node, and triangles of a block
     VPL_BVH_DEPTH = 64, // deepest tree; the builder halves ranges before it gets there
@@ -102,16 +104,14 @@ typedef bool vplTraceAnyFcn(const vplBvh* bvh, const vplRay* ray, float tMax);
 // The same for a packet: bit i of the result is ray i.
 typedef uint32_t vplTraceAnyPacketFcn(const vplBvh* bvh, const vplRayPacket* rays, float tMax);
 
-// All kernels of this folder: field of vplRayKernels, type, function.
+// All kernels of this folder: X(type, field, function).
 #define VPL_RAY_KERNELS(X)                                                                                   \
-    X(closest, vplTraceClosestFcn, vplTraceClosest)                                                          \
-    X(any, vplTraceAnyFcn, vplTraceAny)                                                                      \
-    X(anyPacket, vplTraceAnyPacketFcn, vplTraceAnyPacket)
+    X(vplTraceClosestFcn, closest, vplTraceClosest)                                                          \
+    X(vplTraceAnyFcn, any, vplTraceAny)                                                                      \
+    X(vplTraceAnyPacketFcn, anyPacket, vplTraceAnyPacket)
 
 typedef struct vplRayKernels {
-#define VPL_RAY_FIELD(field, type, name) type* field;
-    VPL_RAY_KERNELS(VPL_RAY_FIELD)
-#undef VPL_RAY_FIELD
+    VPL_RAY_KERNELS(VPL_KERNEL_FIELD)
 } vplRayKernels;
 
 const vplRayKernels* vplGetRayKernels(vplIsa isa);

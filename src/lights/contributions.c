@@ -84,12 +84,12 @@ static void measureChunk(void* data, int chunk, int worker)
 static vplResult measureAll(Measuring* m, vplArena* scratch, int64_t* raysOut)
 {
     vplContext* context = m->geometry->context;
-    const vplLightsKernels kernels = vplGetLightsKernels(context->isa);
+    const vplLightsKernels* kernels = vplGetLightsKernels(context->isa);
     const int chunks = (m->set->lightCount + CHUNK - 1) / CHUNK;
     const float distance = m->def->minDistance;
     TRY(vplSampleView(m->geometry, m->def, scratch, &m->blocks, &m->blockCount));
     m->reflect =
-        m->def->lighting == VPL_LIGHTING_DOCUMENTED ? kernels.reflectDocumented : kernels.reflectPhysical;
+        m->def->lighting == VPL_LIGHTING_DOCUMENTED ? kernels->reflectDocumented : kernels->reflectPhysical;
     m->inverseClamp = distance > 0 ? 1 / (distance * distance) : INFINITY;
     m->rays = vplArena_Alloc(scratch, (size_t)chunks, sizeof *m->rays);
     TRY(vplArena_Check(scratch));

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "lights/kernels.h"
 
-#define TABLE(type, field, function) VPL_KERNEL_TABLE(function##Table, type, function);
-VPL_LIGHTS_KERNELS(TABLE)
+VPL_KERNEL_TABLE(tables, vplLightsKernels, VPL_LIGHTS_KERNELS);
 
-vplLightsKernels vplGetLightsKernels(vplIsa isa)
+const vplLightsKernels* vplGetLightsKernels(vplIsa isa)
 {
-#define ENTRY(type, field, function) .field = function##Table[isa],
-    return (vplLightsKernels){VPL_LIGHTS_KERNELS(ENTRY)};
+    return &tables[isa];
 }

@@ -25,18 +25,13 @@ typedef void vplReflectiveFactorFcn(const vplReflectiveMap* map, const vplSurfac
     X(vplReflectiveFactorFcn, reflectiveFactor, vplReflectiveFactor)
 
 typedef struct vplLightsKernels {
-#define VPL_FIELD(type, field, function) type* field;
-    VPL_LIGHTS_KERNELS(VPL_FIELD)
-#undef VPL_FIELD
+    VPL_LIGHTS_KERNELS(VPL_KERNEL_FIELD)
 } vplLightsKernels;
 
-vplLightsKernels vplGetLightsKernels(vplIsa isa);
+const vplLightsKernels* vplGetLightsKernels(vplIsa isa);
 
-// In *_kernel.c: the prototypes of this instruction set.
 #ifdef VPL_KERNEL_ISA
-#define VPL_PROTOTYPE(type, field, function) type VPL_KERNEL(function);
-VPL_LIGHTS_KERNELS(VPL_PROTOTYPE)
-#undef VPL_PROTOTYPE
+VPL_LIGHTS_KERNELS(VPL_KERNEL_PROTOTYPE)
 #endif
 
 #endif

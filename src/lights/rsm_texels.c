@@ -157,5 +157,5 @@ int64_t vplReflectiveMap_Find(const vplReflectiveMap* map, const vplRay* ray)
 void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES])
 {
-    vplGetLightsKernels(map->context->isa).reflectiveFactor(map, surface, factorOut);
+    vplGetLightsKernels(map->context->isa)->reflectiveFactor(map, surface, factorOut);
 }

@@ -119,30 +119,26 @@ typedef vplTileFcn vplAddPatchTileFcn;
 
 // ---- the table
 
-// KERNEL(field, Name): the function vpl<Name>, of type vpl<Name>Fcn.
-#define VPL_RADIOSITY_KERNELS(KERNEL)                                                                        \
-    KERNEL(estimateFactors, EstimateFactors)                                                                 \
-    KERNEL(pointTerms, PointTerms)                                                                           \
-    KERNEL(pairTerms, PairTerms)                                                                             \
-    KERNEL(scaledSum, ScaledSum)                                                                             \
-    KERNEL(scaleRow, ScaleRow)                                                                               \
-    KERNEL(rowDot, RowDot)                                                                                   \
-    KERNEL(shoot, Shoot)                                                                                     \
-    KERNEL(shadePatch, ShadePatch)                                                                           \
-    KERNEL(addPatchTile, AddPatchTile)
+// X(type, field, function)
+#define VPL_RADIOSITY_KERNELS(X)                                                                             \
+    X(vplEstimateFactorsFcn, estimateFactors, vplEstimateFactors)                                            \
+    X(vplPointTermsFcn, pointTerms, vplPointTerms)                                                           \
+    X(vplPairTermsFcn, pairTerms, vplPairTerms)                                                              \
+    X(vplScaledSumFcn, scaledSum, vplScaledSum)                                                              \
+    X(vplScaleRowFcn, scaleRow, vplScaleRow)                                                                 \
+    X(vplRowDotFcn, rowDot, vplRowDot)                                                                       \
+    X(vplShootFcn, shoot, vplShoot)                                                                          \
+    X(vplShadePatchFcn, shadePatch, vplShadePatch)                                                           \
+    X(vplAddPatchTileFcn, addPatchTile, vplAddPatchTile)
 
-#define VPL_KERNEL_FIELD(field, Name) vpl##Name##Fcn* field;
 typedef struct vplRadiosityKernels {
     VPL_RADIOSITY_KERNELS(VPL_KERNEL_FIELD)
 } vplRadiosityKernels;
-#undef VPL_KERNEL_FIELD
 
 const vplRadiosityKernels* vplGetRadiosityKernels(vplIsa isa);
 
 #ifdef VPL_KERNEL_ISA
-#define VPL_KERNEL_PROTOTYPE(field, Name) vpl##Name##Fcn VPL_KERNEL(vpl##Name);
 VPL_RADIOSITY_KERNELS(VPL_KERNEL_PROTOTYPE)
-#undef VPL_KERNEL_PROTOTYPE
 #endif
 
 #endif

@@ -15,24 +15,19 @@ typedef void vplDrawTileFcn(vplTileState* state, const vplRaster* raster, const 
 // Shades the kept blocks of a mesh by all passes of a chain.
 typedef void vplRunPassesFcn(vplTileState* state, const vplRaster* raster, int firstCommand);
 
-// X(type, field, function, instruction set)
-#define VPL_RASTER_KERNELS(X, isa)                                                                           \
-    X(vplDrawTileFcn, drawTile, vplDrawTile, isa)                                                            \
-    X(vplRunPassesFcn, runPasses, vplRunPasses, isa)
-
-#define VPL_PROTOTYPE(type, field, function, isa) type VPL_JOIN(function, isa);
+// X(type, field, function)
+#define VPL_RASTER_KERNELS(X)                                                                                \
+    X(vplDrawTileFcn, drawTile, vplDrawTile)                                                                 \
+    X(vplRunPassesFcn, runPasses, vplRunPasses)
 
 typedef struct vplRasterKernels {
-#define VPL_FIELD(type, field, function, isa) type* field;
-    VPL_RASTER_KERNELS(VPL_FIELD, )
-#undef VPL_FIELD
+    VPL_RASTER_KERNELS(VPL_KERNEL_FIELD)
 } vplRasterKernels;
 
 const vplRasterKernels* vplRasterKernels_Get(vplIsa isa);
 
-// In *_kernel.c: the prototypes of this instruction set.
 #ifdef VPL_KERNEL_ISA
-VPL_RASTER_KERNELS(VPL_PROTOTYPE, VPL_KERNEL_ISA)
+VPL_RASTER_KERNELS(VPL_KERNEL_PROTOTYPE)
 #endif
 
 #endif

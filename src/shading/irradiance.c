@@ -18,7 +18,7 @@ void vplAccumulateLights(const vplContext* context, vplLightFormula formula, con
                          const vplShadeLight* lights, int count, float irradiance[3][VPL_LANES])
 {
     vplGetShadingKernels(context->isa, formula.lighting)
-        .addLights(surface, lights, count, vplInverseSquare(formula.minDistance), irradiance);
+        ->addLights(surface, lights, count, vplInverseSquare(formula.minDistance), irradiance);
 }
 
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out)

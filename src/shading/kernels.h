@@ -47,15 +47,11 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
                                const struct vplPoints* points, float irradiance[restrict 3][VPL_LANES],
                                int64_t* rays);
 
-// Kernels of which there is one for each vplLighting: X(type, field, function without Documented or
-// Physical).
-#define VPL_LIGHTING_KERNELS(X)                                                                              \
-    X(vplLightKernelFcn, addLights, vplAddLights)                                                            \
-    X(vplCullFcn, cull, vplCull)                                                                             \
-    X(vplClusterBoundFcn, clusterBound, vplClusterBound)
-
-// X(type, field, function). Tile and task kernels get the vplShading as data.
-#define VPL_SHADING_KERNELS(X)                                                                               \
+// The kernels of one vplLighting: X(type, field, function). Tile and task kernels get the vplShading as data.
+#define VPL_SHADING_KERNELS(X, Lighting)                                                                     \
+    X(vplLightKernelFcn, addLights, vplAddLights##Lighting)                                                  \
+    X(vplCullFcn, cull, vplCull##Lighting)                                                                   \
+    X(vplClusterBoundFcn, clusterBound, vplClusterBound##Lighting)                                           \
     X(vplPointKernelFcn, lightPoint, vplLightsOfPoint)                                                       \
     X(vplAddEmittersFcn, addEmitters, vplAddEmitters)                                                        \
     X(vplFragmentFcn, surface, vplShadeSurface)   /* surface shader of the passes */                         \
@@ -70,24 +66,18 @@ typedef void vplAddEmittersFcn(const struct vplShading* shading, const struct vp
     X(vplTileFcn, interleaved, vplInterleaveTile) /* the lights of a pixel's class */                        \
     X(vplTaskFcn, filter, vplFilterTask)          /* means over the classes of neighbours */
 
+#define VPL_DOCUMENTED_KERNELS(X) VPL_SHADING_KERNELS(X, Documented)
+#define VPL_PHYSICAL_KERNELS(X)   VPL_SHADING_KERNELS(X, Physical)
+
 typedef struct vplShadingKernels {
-#define VPL_FIELD(type, field, function) type* field;
-    VPL_LIGHTING_KERNELS(VPL_FIELD)
-    VPL_SHADING_KERNELS(VPL_FIELD)
-#undef VPL_FIELD
+    VPL_DOCUMENTED_KERNELS(VPL_KERNEL_FIELD)
 } vplShadingKernels;
 
-vplShadingKernels vplGetShadingKernels(vplIsa isa, vplLighting lighting);
+const vplShadingKernels* vplGetShadingKernels(vplIsa isa, vplLighting lighting);
 
-// In *_kernel.c: the prototypes of this instruction set.
 #ifdef VPL_KERNEL_ISA
-#define VPL_PROTOTYPE(type, field, function) type VPL_KERNEL(function);
-#define VPL_PROTOTYPES(type, field, function)                                                                \
-    type VPL_KERNEL(function##Documented), VPL_KERNEL(function##Physical);
-VPL_LIGHTING_KERNELS(VPL_PROTOTYPES)
-VPL_SHADING_KERNELS(VPL_PROTOTYPE)
-#undef VPL_PROTOTYPE
-#undef VPL_PROTOTYPES
+VPL_DOCUMENTED_KERNELS(VPL_KERNEL_PROTOTYPE)
+VPL_PHYSICAL_KERNELS(VPL_KERNEL_PROTOTYPE)
 #endif
 
 #endif

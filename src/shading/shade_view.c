@@ -19,7 +19,7 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
         .geometry = geometry,
         .view = view,
         .def = def,
-        .kernels = vplGetShadingKernels(geometry->context->isa, def->lighting),
+        .kernels = *vplGetShadingKernels(geometry->context->isa, def->lighting),
         .direct = {.emitters = def->emitters,
                    .shadows = def->shadows,
                    .maps = def->emitterMaps,

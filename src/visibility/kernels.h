@@ -56,31 +56,26 @@ typedef void vplDrawParaboloidFcn(const struct vplBvh* bvh, const vplParaboloidM
 typedef void vplParaboloidFactorFcn(const vplParaboloidMap* map, const vplSurface* surface,
                                     float factor[restrict VPL_LANES]);
 
-// ---- the list: X(type, field, function, instruction set)
+// ---- the list: X(type, field, function)
 
-#define VPL_VISIBILITY_KERNELS(X, isa)                                                                       \
-    X(vplShadowBiasFcn, shadowBias, vplShadowBias, isa)                                                      \
-    X(vplShadowFactorFcn, shadowFactor, vplShadowFactor, isa)                                                \
-    X(vplTestBoundsFcn, testBounds, vplTestBounds, isa)                                                      \
-    X(vplBoundRegionsFcn, boundRegions, vplBoundRegions, isa)                                                \
-    X(vplDrawHemiMapFcn, drawHemiMap, vplDrawHemiMap, isa)                                                   \
-    X(vplHemiMapFactorFcn, hemiMapFactor, vplHemiMapFactor, isa)                                             \
-    X(vplDrawParaboloidFcn, drawParaboloid, vplDrawParaboloid, isa)                                          \
-    X(vplParaboloidFactorFcn, paraboloidFactor, vplParaboloidFactor, isa)
-
-#define VPL_PROTOTYPE(type, field, function, isa) type VPL_JOIN(function, isa);
+#define VPL_VISIBILITY_KERNELS(X)                                                                            \
+    X(vplShadowBiasFcn, shadowBias, vplShadowBias)                                                           \
+    X(vplShadowFactorFcn, shadowFactor, vplShadowFactor)                                                     \
+    X(vplTestBoundsFcn, testBounds, vplTestBounds)                                                           \
+    X(vplBoundRegionsFcn, boundRegions, vplBoundRegions)                                                     \
+    X(vplDrawHemiMapFcn, drawHemiMap, vplDrawHemiMap)                                                        \
+    X(vplHemiMapFactorFcn, hemiMapFactor, vplHemiMapFactor)                                                  \
+    X(vplDrawParaboloidFcn, drawParaboloid, vplDrawParaboloid)                                               \
+    X(vplParaboloidFactorFcn, paraboloidFactor, vplParaboloidFactor)
 
 typedef struct vplVisibilityKernels {
-#define VPL_FIELD(type, field, function, isa) type* field;
-    VPL_VISIBILITY_KERNELS(VPL_FIELD, )
-#undef VPL_FIELD
+    VPL_VISIBILITY_KERNELS(VPL_KERNEL_FIELD)
 } vplVisibilityKernels;
 
 const vplVisibilityKernels* vplVisibilityKernels_Get(vplIsa isa);
 
-// In *_kernel.c: the prototypes of this instruction set.
 #ifdef VPL_KERNEL_ISA
-VPL_VISIBILITY_KERNELS(VPL_PROTOTYPE, VPL_KERNEL_ISA)
+VPL_VISIBILITY_KERNELS(VPL_KERNEL_PROTOTYPE)
 #endif
 
 #endif

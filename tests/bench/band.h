@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where maps and rays must agree on shadows of virtual lights: shared by a benchmark and a test.
+// Conditions under which shadow maps and rays must agree on shadows of virtual lights. A benchmark and a test
+// share them.
 #ifndef VPL_BAND_H
 #define VPL_BAND_H
 
@@ -9,7 +10,7 @@
 
 #include <vpl/lights.h>
 
-// By the ray that shading casts.
+// Returns whether the shadow ray that shading casts finds the light hidden.
 static inline bool isDark(const vplGeometry* g, const vplHit* hit, const vplShadeLight* l)
 {
     const vplVec3 way =
@@ -24,8 +25,8 @@ static inline bool isDarkBetween(const vplGeometry* g, vplVec3 eye, vplVec3 to)
     return vplGeometry_IsOccluded(g, &ray, 1);
 }
 
-// Whether all rays from the eye say the same as the point's own: to its plane within the footprint around it, and to
-// places nearer to the eye by the band.
+// Returns whether all rays around the one from the eye to the point agree with it (`dark`): rays to the
+// point's plane within the footprint, and rays that end nearer to the eye by the band.
 static inline bool isSureWithin(const vplGeometry* g, vplVec3 eye, vplVec3 point, vplVec3 normal,
                                 float footprint, float band, bool dark)
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as a picture, through each decoder: either one sentence, or a picture that can be compared, hashed
-// and encoded again.
+// Passes arbitrary bytes to each image decoder: it must either log one sentence, or return a picture that can
+// be compared, hashed and encoded again.
 #include "fuzz.h"
 
 #include "image/image_file.h"
@@ -8,13 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-typedef vplResult DecodeFcn(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                            vplImage** imageOut);
-
-typedef vplResult EncodeFcn(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
-
-// A picture of floats survives PFM and EXR bit for bit.
-static void requireRoundTrip(vplContext* context, const vplImage* image, EncodeFcn* encode, DecodeFcn* decode)
+// Requires that a picture of floats survives PFM and EXR bit for bit.
+static void requireRoundTrip(vplContext* context, const vplImage* image, vplEncodeFcn* encode,
+                             vplDecodeFcn* decode)
 {
     vplWriteOptions options = vplDefaultWriteOptions();
     vplByteBuffer buffer = {.context = context};
@@ -28,7 +24,7 @@ static void requireRoundTrip(vplContext* context, const vplImage* image, EncodeF
     vplFree(context, buffer.bytes);
 }
 
-// Equal to itself, or refused because a pixel is not finite.
+// Requires that a picture equals itself, or is refused because a pixel is not finite.
 static void requireComparison(const vplImage* image)
 {
     vplComparison comparison;
@@ -40,14 +36,14 @@ static void requireComparison(const vplImage* image)
     REQUIRE(result == (finite ? VPL_SUCCESS : VPL_INVALID_ARGUMENT));
     REQUIRE(result != VPL_SUCCESS || (comparison.rmse == 0 && comparison.relmse == 0));
     if ((size_t)image->width * (size_t)image->height > 256) {
-        return; // these two are slow
+        return; // the two checks below are slow
     }
     double ssim = 1, flip = 0;
     REQUIRE(vplImage_Ssim(image, image, &ssim, NULL) == result && ssim == 1);
     REQUIRE(vplImage_Flip(image, image, VPL_DEFAULT_PPD, &flip, NULL) == result && flip == 0);
 }
 
-static void tryDecoder(DecodeFcn* decoder, const uint8_t* bytes, size_t size)
+static void tryDecoder(vplDecodeFcn* decoder, const uint8_t* bytes, size_t size)
 {
     FuzzLog log = {{0}, 0};
     vplContext* context = openFuzzContext(&log);
@@ -73,7 +69,7 @@ static void tryDecoder(DecodeFcn* decoder, const uint8_t* bytes, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
 {
-    static DecodeFcn* const decoders[] = {vplDecodePfm, vplDecodeHdr, vplDecodeLdr, vplDecodeExr};
+    static vplDecodeFcn* const decoders[] = {vplDecodePfm, vplDecodeHdr, vplDecodeLdr, vplDecodeExr};
     for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++) {
         tryDecoder(decoders[i], bytes, size);
     }

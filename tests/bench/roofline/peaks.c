@@ -3,9 +3,15 @@
 
 #include "base/isa.h"
 
-VPL_KERNEL_TABLE(PEAKS, PeakFcn, runPeak);
+#define PEAK_KERNELS(X) X(PeakFcn, run, runPeak)
+
+typedef struct PeakKernels {
+    PEAK_KERNELS(VPL_KERNEL_FIELD)
+} PeakKernels;
+
+VPL_KERNEL_TABLE(PEAKS, PeakKernels, PEAK_KERNELS);
 
 PeakFcn* getPeak(vplIsa isa)
 {
-    return PEAKS[isa];
+    return PEAKS[isa].run;
 }
