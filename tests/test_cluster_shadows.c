@@ -290,8 +290,7 @@ TEST_ALONE(WhatClustersCannotDoIsRefused)
         def.accumulation = i < 3 ? ways[i] : VPL_ACCUMULATE_DEFERRED;
         def.lightRays = i == 3;
         s.clusters[5] = i == 4 ? -2 : i == 5 ? COUNT : 0;
-        assert_int_equal(vplShadeView(s.geometry, &s.view, &def, NULL, NULL, image, NULL),
-                         VPL_INVALID_ARGUMENT);
+        assert_int_equal(vplShadeView(s.geometry, &s.view, &def, image, NULL), VPL_INVALID_ARGUMENT);
         const char* message = takeMessage();
         assert_true(strstr(message, i < 3    ? "deferred and interleaved shading only"
                                     : i == 3 ? "no maps or rays of their own"

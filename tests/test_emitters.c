@@ -138,7 +138,7 @@ static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplSh
     def.lightShadows = map ? maps->maps : NULL;
     vplImage* image;
     assert_int_equal(vplImage_Create(g->context, view->width, view->height, &image), VPL_SUCCESS);
-    if (vplShadeView(g, view, &def, NULL, NULL, image, NULL) != VPL_SUCCESS) {
+    if (vplShadeView(g, view, &def, image, NULL) != VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
     vplHemiMaps_Destroy(maps);

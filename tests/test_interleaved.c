@@ -278,7 +278,7 @@ TEST(SizesOfBlocksOutOfRangeAreRefused, 1)
     for (int i = 0; i < 3; i++) {
         vplShadeDef def = stageDef(NULL, 0, 4);
         def.interleave = wrong[i];
-        assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_INVALID_ARGUMENT);
+        assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_INVALID_ARGUMENT);
         assert_true(strstr(takeMessage(), "vplShadeDef.interleave is ") != NULL);
     }
     vplImage_Destroy(image);

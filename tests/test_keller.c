@@ -158,7 +158,7 @@ static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
         const vplVec3 d = vplNormalize(set->lights[i].position);
         float e[3][VPL_LANES] = {{0}};
         lights[i] = (vplShadeLight){d.x, d.y, d.z, -d.x, -d.y, -d.z, lights[i].r, lights[i].g, lights[i].b};
-        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &surface, &lights[i], 1, e);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0}, &surface, &lights[i], 1, e);
         sum += (double)e[0][0];
     }
     free(lights);
@@ -265,10 +265,11 @@ TEST(PassesAddUpToOneWalk, 2)
 {
     enum { PASSES = 64, N = 7 };
     vplGeometry* cube = buildGeometry(closedCubeScene(context, 0.7f, 3));
-    int counts[64], steps, sums[64] = {0};
-    int64_t total;
+    int counts[64], sums[64] = {0};
+    vplStepTotals totals;
     double flux[64] = {0};
-    assert_int_equal(vplCountParticles(context, PASSES * N, 0.7, counts, 64, &steps, &total), VPL_SUCCESS);
+    assert_int_equal(vplCountParticles(context, &(vplParticlePass){0, PASSES * N, 0.7}, counts, 64, &totals),
+                     VPL_SUCCESS);
     for (int pass = 0; pass < PASSES; pass++) {
         vplParticleDef def = kellerDef(N, 0.7);
         def.pass = true;
@@ -282,7 +283,7 @@ TEST(PassesAddUpToOneWalk, 2)
         }
         vplLightSet_Destroy(set);
     }
-    for (int k = 0; k < steps; k++) {
+    for (int k = 0; k < totals.stepCount; k++) {
         assert_int_equal(sums[k], counts[k]);
         const double wanted = 3 * VPL_PI * 24 * pow(0.7, k);
         assertNear(flux[k], wanted * counts[k] / (PASSES * N * pow(0.7, k)), 1e-4 * wanted, "flux", k);

@@ -150,7 +150,7 @@ static void checkBound(vplContext* context, const vplLightTree* tree, vplCluster
         vplShadeLight light = tree->lights[i].light;
         light.r = light.g = light.b = 1;
         float part[3][VPL_LANES] = {{0}};
-        vplAccumulateLights(context, lighting, minDistance, s, &light, 1, part);
+        vplAccumulateLights(context, (vplLightFormula){lighting, minDistance}, s, &light, 1, part);
         for (int l = 0; l < VPL_LANES; l++) {
             if (!(part[0][l] <= bound[l])) {
                 fail_msg("cluster %d of %d lights, light %d, lane %d: %.9g is more than %.9g", c.node,
@@ -205,7 +205,7 @@ TEST(BoundsOfSmallClustersAreTight, 1)
         float bound[VPL_LANES], part[3][VPL_LANES] = {{0}};
         vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL)
             ->clusterBound(&s, &tree->nodes[0], INFINITY, bound);
-        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &s, lights, 1, part);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0}, &s, lights, 1, part);
         for (int l = 0; l < VPL_LANES; l++) {
             const float d2 = s.px[l] * s.px[l] + s.py[l] * s.py[l] + s.pz[l] * s.pz[l];
             const float most = part[0][l] * d2; // the product of the two cosines

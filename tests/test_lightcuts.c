@@ -239,7 +239,7 @@ TEST(TwiceTheLightIsTwiceThePicture, 2)
         def.lightCount = COUNT;
         def.lightRays = true;
         assert_int_equal(vplImage_Create(context, SIZE, SIZE, &images[k]), VPL_SUCCESS);
-        assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, images[k], NULL), VPL_SUCCESS);
+        assert_int_equal(vplShadeView(g, &view, &def, images[k], NULL), VPL_SUCCESS);
     }
     for (int i = 0; i < 3 * SIZE * SIZE; i++) {
         assert_true(images[0]->pixels[i] > 0 && images[1]->pixels[i] == 2 * images[0]->pixels[i]);
@@ -273,7 +273,7 @@ TEST(NastyLightsLeaveNoNan, 2)
             def.lightCount = COUNT;
             def.lightRays = true;
             assert_int_equal(vplImage_Create(context, SIZE, SIZE, &images[k]), VPL_SUCCESS);
-            assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, images[k], NULL), VPL_SUCCESS);
+            assert_int_equal(vplShadeView(g, &view, &def, images[k], NULL), VPL_SUCCESS);
         }
         for (int i = 0; i < 3 * SIZE * SIZE; i++) {
             assert_true(isfinite(images[0]->pixels[i]) && images[0]->pixels[i] >= 0);
@@ -354,12 +354,14 @@ TEST(CutsCanBeCancelledAndWrongErrorsAreRefused, 1)
     static const float wrong[] = {0, -1, 1.5f, NAN};
     for (int i = 0; i < 4; i++) {
         def.cutError = wrong[i];
-        assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_INVALID_ARGUMENT);
+        assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_INVALID_ARGUMENT);
         assert_true(strstr(takeMessage(), "vplShadeDef.cutError is ") != NULL);
     }
     def.cutError = 0.02f;
     int asked = 0;
-    assert_int_equal(vplShadeView(g, &view, &def, stopAtOnce, &asked, image, NULL), VPL_CANCELLED);
+    def.progress = stopAtOnce;
+    def.progressUser = &asked;
+    assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_CANCELLED);
     assert_int_equal(asked, 1);
     vplImage_Destroy(image);
     free(lights);

@@ -11,13 +11,13 @@ TEST(EveryCountOfTheTableIsTheDecimalOne, 1)
     Table t = loadTable("counts.csv");
     static int counts[VPL_MAX_STEPS];
     for (int row = 0; row < t.rows; row++) {
-        int n = (int)number(&t, row, "N"), k = (int)number(&t, row, "k"), steps;
-        int64_t total;
-        if (vplCountParticles(context, n, number(&t, row, "rho"), counts, VPL_MAX_STEPS, &steps, &total) !=
-            VPL_SUCCESS) {
+        int n = (int)number(&t, row, "N"), k = (int)number(&t, row, "k");
+        const vplParticlePass pass = {0, n, number(&t, row, "rho")};
+        vplStepTotals totals;
+        if (vplCountParticles(context, &pass, counts, VPL_MAX_STEPS, &totals) != VPL_SUCCESS) {
             fail_msg("row %d: %s", row, takeMessage());
         }
-        int count = k < steps ? counts[k] : 0;
+        int count = k < totals.stepCount ? counts[k] : 0;
         if (count != (int)number(&t, row, "dec")) {
             fail_msg("row %d: floor(%s^%d %d) is %d, wanted %s", row, cell(&t, row, "rho"), k, n, count,
                      cell(&t, row, "dec"));
@@ -30,16 +30,16 @@ TEST(EveryTotalOfTheTable, 1)
 {
     Table t = loadTable("counts_totals.csv");
     for (int row = 0; row < t.rows; row++) {
-        int n = (int)number(&t, row, "N"), steps;
-        int64_t total;
-        vplResult result = vplCountParticles(context, n, number(&t, row, "rho"), NULL, 0, &steps, &total);
+        const vplParticlePass pass = {0, (int)number(&t, row, "N"), number(&t, row, "rho")};
+        vplStepTotals totals;
+        vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
         if (number(&t, row, "total_sum_k>=0") > VPL_MAX_LIGHTS) {
             assert_int_equal(result, VPL_LIMIT);
             continue;
         }
         assert_int_equal(result, VPL_SUCCESS);
-        assert_int_equal(steps, (int)number(&t, row, "steps"));
-        assert_int_equal(total, (int64_t)number(&t, row, "total_sum_k>=0"));
+        assert_int_equal(totals.stepCount, (int)number(&t, row, "steps"));
+        assert_int_equal(totals.lightCount, (int64_t)number(&t, row, "total_sum_k>=0"));
     }
     freeTable(&t);
 }
@@ -51,15 +51,14 @@ TEST(ExtremeTotalsAreExactOrRefused, 1)
     int exact = 0;
     for (int row = 0; row < t.rows; row++) {
         double wanted = number(&t, row, "total"), steps = number(&t, row, "steps");
-        int made;
-        int64_t total;
-        vplResult result = vplCountParticles(context, (int)number(&t, row, "N"), number(&t, row, "rho"), NULL,
-                                             0, &made, &total);
+        const vplParticlePass pass = {0, (int)number(&t, row, "N"), number(&t, row, "rho")};
+        vplStepTotals totals;
+        vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
         if (wanted > VPL_MAX_LIGHTS || steps > VPL_MAX_STEPS) {
             assert_int_equal(result, VPL_LIMIT);
         } else {
             assert_int_equal(result, VPL_SUCCESS);
-            assert_true((double)total == wanted && made == (int)steps);
+            assert_true((double)totals.lightCount == wanted && totals.stepCount == (int)steps);
             exact++;
         }
     }
@@ -89,12 +88,12 @@ TEST(InvalidCountsAreRefused, 1)
         {0.5, INT32_MAX, VPL_INVALID_ARGUMENT, 0, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        int steps = -1;
-        int64_t total = -1;
-        vplResult result = vplCountParticles(context, cases[i].n, cases[i].rho, NULL, 0, &steps, &total);
+        const vplParticlePass pass = {0, cases[i].n, cases[i].rho};
+        vplStepTotals totals = {-1, -1};
+        vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
         assert_int_equal(result, cases[i].result);
-        assert_int_equal(steps, result == VPL_SUCCESS ? cases[i].steps : -1);
-        assert_int_equal(total, result == VPL_SUCCESS ? cases[i].total : -1);
+        assert_int_equal(totals.stepCount, result == VPL_SUCCESS ? cases[i].steps : -1);
+        assert_int_equal(totals.lightCount, result == VPL_SUCCESS ? cases[i].total : -1);
     }
 }
 

@@ -260,7 +260,7 @@ static vplResult shadeClusters(Attempt* a)
     TRY(openRoom(a, "tests/data/room.json"));
     TRY(vplImage_Create(a->context, 8, 6, &a->image));
     const vplView view = vplView_Create(vplScene_GetCamera(a->scene, 0), 8, 6);
-    return vplShadeView(a->geometry, &view, &def, NULL, NULL, a->image, NULL);
+    return vplShadeView(a->geometry, &view, &def, a->image, NULL);
 }
 
 // ---- uses of shadow maps (tests/test_shadow_maps.c tests the maps of all kinds)

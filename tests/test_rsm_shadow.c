@@ -56,7 +56,7 @@ static vplImage* shaded(const vplGeometry* g, const vplShadeDef* def, vplShadeSt
     const vplView view = vplView_Create(&camera, 90, 60);
     vplImage* image = NULL;
     if (vplImage_Create(g->context, 90, 60, &image) != VPL_SUCCESS ||
-        vplShadeView(g, &view, def, NULL, NULL, image, stats) != VPL_SUCCESS) {
+        vplShadeView(g, &view, def, image, stats) != VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
     return image;

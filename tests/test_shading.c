@@ -27,7 +27,7 @@ static double irradiance(vplContext* context, vplLighting lighting, float minDis
     vplSurface surface;
     float e[3][VPL_LANES] = {{0}};
     fillSurface(&surface, p, n);
-    vplAccumulateLights(context, lighting, minDistance, &surface, lights, count, e);
+    vplAccumulateLights(context, (vplLightFormula){lighting, minDistance}, &surface, lights, count, e);
     for (int l = 1; l < VPL_LANES; l++) {
         assert_true(e[0][l] == e[0][0]);
     }
@@ -116,15 +116,16 @@ TEST(FurnaceSphereIsExact, 1)
     Table t = loadTable("furnace_sphere.csv");
     for (int row = 0; row < t.rows; row++) {
         double radius = number(&t, row, "R"), rho = number(&t, row, "rho"), intensity = number(&t, row, "I");
-        int n = (int)number(&t, row, "N"), steps;
+        int n = (int)number(&t, row, "N");
         int counts[64];
-        int64_t total;
-        assert_int_equal(vplCountParticles(context, n, rho, counts, 64, &steps, &total), VPL_SUCCESS);
-        assert_int_equal(steps, (int)number(&t, row, "steps"));
+        vplStepTotals totals;
+        assert_int_equal(vplCountParticles(context, &(vplParticlePass){0, n, rho}, counts, 64, &totals),
+                         VPL_SUCCESS);
+        assert_int_equal(totals.stepCount, (int)number(&t, row, "steps"));
         vplVec3 at = vplScale((float)radius, vplNormalize(vplVec(0.3f, -0.5f, 0.8f))),
                 normal = vplNormalize(vplNegate(at));
         double e = number(&t, row, "E_direct");
-        for (int k = 0; k < steps; k++) {
+        for (int k = 0; k < totals.stepCount; k++) {
             double flux = 4 * VPL_PI * intensity * pow(rho, k + 1);
             for (int i = 0; i < counts[k]; i++) {
                 vplVec3 d = fibonacci(i, n); // anywhere on the sphere
@@ -144,13 +145,14 @@ TEST(DocumentedFurnaceSphereIsThatOfTheTable, 1)
     Table t = loadTable("furnace_sphere_documented.csv");
     for (int row = 0; row < t.rows; row++) {
         double rho = number(&t, row, "rho"), radius = number(&t, row, "R"), sum = 0;
-        int n = (int)number(&t, row, "N"), steps;
+        int n = (int)number(&t, row, "N");
         int counts[64];
-        int64_t total;
-        assert_int_equal(vplCountParticles(context, n, rho, counts, 64, &steps, &total), VPL_SUCCESS);
+        vplStepTotals totals;
+        assert_int_equal(vplCountParticles(context, &(vplParticlePass){0, n, rho}, counts, 64, &totals),
+                         VPL_SUCCESS);
         vplVec3 direction = vplNormalize(vectorOf(&t, row, ""));
         vplVec3 at = vplScale((float)radius, direction);
-        for (int k = 0; k < steps; k++) {
+        for (int k = 0; k < totals.stepCount; k++) {
             double carried = number(&t, row, "I") * pow(rho / VPL_PI, k + 1);
             for (int i = 0; i < counts[k]; i++) {
                 vplVec3 d = vplScale(k % 2 ? -(float)radius : (float)radius, vplNormalize(fibonacci(i, n)));
@@ -329,10 +331,11 @@ TEST(EveryPointOfTheRoomIsLitAsTheTableSays, 2)
         vplDirectIrradiance(&shading, &shading.direct, &points, e, &rays);
         checkRgb(&t, row, "phys_direct", e, rho);
         memset(e, 0, sizeof e);
-        vplAccumulateLights(context, VPL_LIGHTING_DOCUMENTED, 0, &surface, lights, count, e);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_DOCUMENTED, 0}, &surface, lights, count,
+                            e);
         checkRgb(&t, row, "doc_indirect", e, rho);
         memset(e, 0, sizeof e);
-        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &surface, lights, count, e);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0}, &surface, lights, count, e);
         checkRgb(&t, row, "kernelG", e, rho);
     }
     vplCubeMap_Destroy(map);
@@ -410,7 +413,7 @@ static vplImage* shadeFloor(vplContext* context, vplShadeDef def, int width, int
     vplView view = vplView_Create(&camera, width, height);
     vplImage* image;
     assert_int_equal(vplImage_Create(context, width, height, &image), VPL_SUCCESS);
-    assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_SUCCESS);
+    assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_SUCCESS);
     vplGeometry_Destroy(g);
     return image;
 }

@@ -81,7 +81,8 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
         map->texels = maps->texels + (size_t)i * texelsOf(maps->size);
         map->context = maps->context;
     }
-    return vplParallelForProgress(maps->context, count, drawMap, &drawing, progress, user, 0, 1);
+    return vplParallelForProgress(maps->context, count, drawMap, &drawing,
+                                  (vplProgressRange){progress, user, 0, 1});
 }
 
 int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place)

@@ -135,7 +135,8 @@ vplResult vplParaboloidMaps_Draw(vplParaboloidMaps* maps, const vplGeometry* geo
     for (int i = 0; i < count; i++) {
         place(maps, i, &places[i]);
     }
-    return vplParallelForProgress(maps->context, 2 * count, drawHemisphere, &drawing, progress, user, 0, 1);
+    return vplParallelForProgress(maps->context, 2 * count, drawHemisphere, &drawing,
+                                  (vplProgressRange){progress, user, 0, 1});
 }
 
 bool vplParaboloidMap_GetHit(const vplParaboloidMap* map, const vplGeometry* geometry,

@@ -67,7 +67,7 @@ static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int 
     def.lightRays = rays;
     def.lightShadows = maps ? maps->maps : NULL;
     const double start = cpuMs();
-    check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
+    check(vplShadeView(b->geometry, view, &def, image, NULL));
     return cpuMs() - start;
 }
 

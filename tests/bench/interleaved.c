@@ -45,7 +45,7 @@ static vplResult shade(void* user, int way)
     def.interleave = sides[way];
     def.lights = b->lights;
     def.lightCount = b->lightCount;
-    return vplShadeView(b->geometry, &view, &def, NULL, NULL, b->images[way], NULL);
+    return vplShadeView(b->geometry, &view, &def, b->images[way], NULL);
 }
 
 static void print(const Bench* b, const Times* times, int runs)

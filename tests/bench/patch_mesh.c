@@ -63,7 +63,7 @@ static void runOnce(const vplPatchSides* sides, const vplView* view, vplImage* i
                              .output = VPL_OUTPUT_DEPTH,
                              .batch = 1};
     start = cpuMs();
-    check(vplShadeView(sides->patches->geometry, view, &def, NULL, NULL, image, NULL));
+    check(vplShadeView(sides->patches->geometry, view, &def, image, NULL));
     t->depth[run] = cpuMs() - start;
     free(values);
     free(corners);

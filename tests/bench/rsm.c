@@ -116,7 +116,7 @@ static double light(const Bench* b, const vplView* view, const vplReflectiveMap*
                        .shadows = &none,
                        .emitterMaps = &map};
     const double start = cpuMs();
-    check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
+    check(vplShadeView(b->geometry, view, &def, image, NULL));
     return cpuMs() - start;
 }
 

@@ -110,7 +110,7 @@ static vplResult shade(void* user, int which)
         def.clusterShadows = b->maps->maps;
         def.clusterCount = b->clusterCount;
     }
-    return vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->images[which], NULL);
+    return vplShadeView(b->geometry, &b->view, &def, b->images[which], NULL);
 }
 
 static void print(const Bench* b, const Times* times, int runs)

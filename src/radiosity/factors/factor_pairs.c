@@ -306,8 +306,8 @@ vplResult vplFactorWork_FillRows(vplFactorWork* work)
                        .analyticPairs = vplArena_AllocZero(work->scratch, tasks, sizeof(int64_t)),
                        .samples = vplArena_AllocZero(work->scratch, samples, sizeof *shared.samples)};
     TRY(vplArena_Check(work->scratch));
-    TRY(vplParallelForProgress(work->context, work->blockCount, fillRow, &shared, work->def.progress,
-                               work->def.progressUser, 0, 1));
+    TRY(vplParallelForProgress(work->context, work->blockCount, fillRow, &shared,
+                               (vplProgressRange){work->def.progress, work->def.progressUser, 0, 1}));
     for (int i = 0; i < work->blockCount; i++) {
         work->factors->rays += shared.rays[i];
         work->factors->analyticPairs += shared.analyticPairs[i];

@@ -112,8 +112,8 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
         r->count = r->pairCount < BATCH ? r->pairCount : BATCH;
         r->first = r->pairCount - r->count;
         TRY(vplParallelForProgress(r->context, (int)((r->count + TASK - 1) / TASK), judgeTask, r,
-                                   def->progress, def->progressUser, VPL_LINKS_PROGRESS * done,
-                                   VPL_LINKS_PROGRESS * done));
+                                   (vplProgressRange){def->progress, def->progressUser,
+                                                      VPL_LINKS_PROGRESS * done, VPL_LINKS_PROGRESS * done}));
         TRY(finishBatch(r, list, &done));
     }
     return VPL_SUCCESS;

@@ -65,9 +65,9 @@ static vplResult findEnclosed(EnclosedTest* t, vplArena* scratch, int64_t* rays)
     const int count = t->sides->count;
     t->rays = vplArena_AllocZero(scratch, (size_t)count, sizeof *t->rays);
     TRY(vplArena_Check(scratch));
-    const vplResult result =
-        vplParallelForProgress(t->sides->context, (count + TASK - 1) / TASK, testTask, t, t->def->progress,
-                               t->def->progressUser, VPL_LINKS_PROGRESS, 1);
+    const vplResult result = vplParallelForProgress(
+        t->sides->context, (count + TASK - 1) / TASK, testTask, t,
+        (vplProgressRange){t->def->progress, t->def->progressUser, VPL_LINKS_PROGRESS, 1});
     for (int i = 0; i < count; i++) {
         *rays += t->rays[i];
     }

@@ -98,8 +98,8 @@ vplResult vplPatchMesh_Gather(const vplPatchMesh* mesh, const vplVertexGather* g
     if (g.cast == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    const vplResult result = vplParallelForProgress(context, chunks, gatherChunk, &g, gather->progress,
-                                                    gather->progressUser, 0, 1);
+    const vplResult result = vplParallelForProgress(
+        context, chunks, gatherChunk, &g, (vplProgressRange){gather->progress, gather->progressUser, 0, 1});
     for (int i = 0; i < chunks && raysOut != NULL; i++) {
         *raysOut += g.cast[i];
     }

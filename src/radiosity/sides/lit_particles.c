@@ -150,8 +150,9 @@ static vplResult shootBatches(Batch* b)
     const int most = vplMaxi(turns, 1 + 2 * s->patches->patchCount / BATCH);
     for (int i = 0, added = BATCH; i < most && (i < turns || added >= BATCH); i++) {
         b->first = (int64_t)i * BATCH;
-        TRY(vplParallelForProgress(s->context, VPL_LIT_PARTICLE_TASKS, shootTask, b, s->def->progress,
-                                   s->def->progressUser, 0.3 * i / most, 0.3 * (i + 1) / most));
+        TRY(vplParallelForProgress(s->context, VPL_LIT_PARTICLE_TASKS, shootTask, b,
+                                   (vplProgressRange){s->def->progress, s->def->progressUser, 0.3 * i / most,
+                                                      0.3 * (i + 1) / most}));
         added = markLit(b);
     }
     return VPL_SUCCESS;

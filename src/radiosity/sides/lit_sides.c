@@ -107,8 +107,9 @@ vplResult vplLitSearch_ForAllSides(vplLitSearch* s, vplExamineFcn* examine, cons
 {
     const int tasks = (s->patches->patchCount + VPL_LIT_TASK_PATCHES - 1) / VPL_LIT_TASK_PATCHES;
     Pass pass = {s, examine};
-    TRY(vplParallelForProgress(s->context, tasks, examineTask, &pass, s->def->progress, s->def->progressUser,
-                               range[0], range[1]));
+    TRY(vplParallelForProgress(
+        s->context, tasks, examineTask, &pass,
+        (vplProgressRange){s->def->progress, s->def->progressUser, range[0], range[1]}));
     *newOut = adopt(s, tasks);
     s->pass++;
     return VPL_SUCCESS;

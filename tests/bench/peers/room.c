@@ -79,7 +79,7 @@ static void makeGrid(Room* room)
 static int64_t countCovered(Room* room)
 {
     vplShadeDef def = {.accumulation = VPL_ACCUMULATE_DEFERRED, .output = VPL_OUTPUT_DEPTH};
-    demand(vplShadeView(room->geometry, &room->view, &def, NULL, NULL, room->image, NULL) == VPL_SUCCESS,
+    demand(vplShadeView(room->geometry, &room->view, &def, room->image, NULL) == VPL_SUCCESS,
            "the room cannot be drawn");
     int64_t covered = 0;
     for (int i = 0; i < room->view.width * room->view.height; i++) {

@@ -16,7 +16,7 @@ static void shade(Room* room, const Row* row, bool direct)
     def.lights = row->lighting == VPL_LIGHTING_DOCUMENTED ? room->documented : room->physical;
     def.lightCount = row->lights;
     vplShadeStats stats;
-    demand(vplShadeView(room->geometry, &room->view, &def, NULL, NULL, room->image, &stats) == VPL_SUCCESS,
+    demand(vplShadeView(room->geometry, &room->view, &def, room->image, &stats) == VPL_SUCCESS,
            "libvpl cannot draw the room");
     room->draws += stats.raster.drawCalls;
 }
