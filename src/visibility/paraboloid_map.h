@@ -48,16 +48,4 @@ static inline float vplParaboloidMap_Tolerance(int size)
     return 2 * 1.41421356f / (float)size;
 }
 
-// The band of vplParaboloidMap_FactorBlock, 2.5 f + b, metres, and the footprint f, a texel's diagonal: the
-// four centres around a point are no further from it.
-static inline float vplParaboloidMap_Band(const vplParaboloidMap* map, vplVec3 point, vplVec3 normal,
-                                          float* footprintOut)
-{
-    const vplVec3 way = vplSub(point, map->position);
-    const float r = fmaxf(vplLength(way), 1e-30f);
-    const float f = 1.41421356f * 2 * (r + fabsf(vplDot(way, map->forward))) / (float)map->size;
-    *footprintOut = f;
-    return vplShadowBand(r, f, fminf(fabsf(vplDot(way, normal)) / r, 1));
-}
-
 #endif
