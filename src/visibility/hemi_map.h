@@ -16,6 +16,13 @@ static inline int32_t vplHemiMap_Blocks(int32_t size)
     return (size + VPL_BLOCK_SIDE - 1) / VPL_BLOCK_SIDE;
 }
 
+// Texels of all blocks.
+static inline size_t vplHemiMap_Texels(int32_t size)
+{
+    const size_t blocks = (size_t)vplHemiMap_Blocks(size);
+    return blocks * blocks * VPL_LANES;
+}
+
 // The index of a texel.
 static inline int32_t vplHemiMap_Place(int32_t blocks, int32_t column, int32_t row)
 {

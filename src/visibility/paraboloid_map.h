@@ -6,13 +6,6 @@
 
 #include "visibility/hemi_map.h"
 
-// Texels of a hemisphere while it is drawn.
-static inline size_t vplParaboloidMap_Drawn(int size)
-{
-    const size_t blocks = (size_t)vplHemiMap_Blocks(size);
-    return blocks * blocks * VPL_LANES;
-}
-
 // Texels from one row to the next. Rows and columns at the sides are stored twice, so that a point always has
 // two.
 static inline int32_t vplParaboloidMap_Stride(int size)
