@@ -7,6 +7,7 @@
 #ifndef VPL_VISIBILITY_HEMI_FILL_H
 #define VPL_VISIBILITY_HEMI_FILL_H
 
+#include "math/double3.h"
 #include "visibility/hemi_map.h"
 #include "visibility/map_fill.h"
 
@@ -97,8 +98,7 @@ static int cut(double (*restrict points)[3], int count, const double side[3])
     memcpy(from, points, (size_t)count * sizeof *from);
     for (int i = 0; i < count; i++) {
         const double *a = from[i], *b = from[(i + 1) % count];
-        const double da = side[0] * a[0] + side[1] * a[1] + side[2] * a[2];
-        const double db = side[0] * b[0] + side[1] * b[1] + side[2] * b[2];
+        const double da = vplDot3(side, a), db = vplDot3(side, b);
         if (da >= 0) {
             memcpy(points[kept++], a, sizeof from[0]);
         }
@@ -147,9 +147,7 @@ static void fillCut(const vplHemiMap* map, const vplVec3 corner[3], float* texel
         }
         double points[MAX_CUT][3];
         for (int i = 0; i < 3; i++) {
-            points[i][0] = (double)corner[i].x;
-            points[i][1] = (double)corner[i].y;
-            points[i][2] = (double)corner[i].z;
+            vplToDouble3(corner[i], points[i]);
         }
         int count = cut(points, 3, (const double[]){0, 0, 1});
         count = count > 0 ? cut(points, count, (const double[]){(double)right, 0, 0}) : 0;

@@ -53,11 +53,6 @@ static inline float vplHemiMap_Tolerance(int size)
     return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
 }
 
-static inline float vplLargestOf(vplVec3 p)
-{
-    return fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
-}
-
 // 64 units in the last place of a coordinate: more than the rounding of surfaces.
 static inline float vplLightLift(float largest)
 {

@@ -154,9 +154,7 @@ static Texels boundsOf(const vplVec3 corner[3], int32_t size)
     Box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
     double p[3][3], e[3][3], n[3];
     for (int k = 0; k < 3; k++) {
-        p[k][0] = (double)corner[k].x;
-        p[k][1] = (double)corner[k].y;
-        p[k][2] = (double)corner[k].z;
+        vplToDouble3(corner[k], p[k]);
         const double across = p[k][0] * p[k][0] + p[k][1] * p[k][1], z = p[k][2];
         const double length = sqrt(across + z * z);
         if (!(across > 0) && !(z > 0)) { // the eye itself, or straight behind it
