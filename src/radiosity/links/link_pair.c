@@ -105,7 +105,7 @@ static bool isBehind(const Pair* pair, const vplLinkNode* node, const vplLinkNod
                                 n.z > 0 ? node->high.z : node->low.z};
         most = vplDot(n, vplSub(corner, from));
     }
-    const float largest = fmaxf(fabsf(from.x), fmaxf(fabsf(from.y), fabsf(from.z)));
+    const float largest = vplLargestOf(from);
     return most <= 0x1p-20f * (largest + node->radius + plane->radius);
 }
 

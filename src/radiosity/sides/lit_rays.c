@@ -51,7 +51,7 @@ static int firstBelow(const vplLitSearch* s, vplVec3 offset, vplVec3 down, int t
     const vplRay ray = {offset, down, {triangle, s->geometry->triangleCount - triangle}};
     vplHit hit;
     ++*rays;
-    const bool found = vplClosestHitWithin(s->geometry, &ray, 1 + VPL_COPLANAR, &hit);
+    const bool found = vplClosestHit(s->geometry, &ray, 1 + VPL_COPLANAR, NULL, &hit);
     return found && hit.t > 1 - VPL_COPLANAR ? hit.triangle : triangle;
 }
 
@@ -63,7 +63,7 @@ bool vplLitSearch_Offset(const vplLitSearch* s, int side, vplVec3 point, int64_t
     vplHit hit;
     *offsetOut = ray.origin;
     ++*rays;
-    if (!vplClosestHitWithin(s->geometry, &ray, 1 + VPL_COPLANAR, &hit)) {
+    if (!vplClosestHit(s->geometry, &ray, 1 + VPL_COPLANAR, NULL, &hit)) {
         return true;
     }
     return hit.t > 1 - VPL_COPLANAR && hit.triangle > triangle &&
