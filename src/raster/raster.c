@@ -18,12 +18,7 @@ vplPipeline vplDefaultPipeline(void)
 
 vplFramebuffer vplDefaultFramebuffer(int width, int height)
 {
-    vplFramebuffer framebuffer = {0};
-    framebuffer.width = width;
-    framebuffer.height = height;
-    framebuffer.depth.clear = 1;
-    framebuffer.cookie = FRAMEBUFFER_COOKIE;
-    return framebuffer;
+    return (vplFramebuffer){.width = width, .height = height, .depth.clear = 1, .cookie = FRAMEBUFFER_COOKIE};
 }
 
 vplResult vplRaster_Create(vplContext* context, const vplFramebuffer* framebuffer, vplRaster** rasterOut)
@@ -187,9 +182,7 @@ static vplResult prepare(vplRaster* raster)
     raster->run = vplArena_Create(raster->context);
     TRY(vplFindPasses(raster));
     const double start = vplClockMs();
-    raster->stats.trianglesIn = 0;
-    raster->stats.trianglesBinned = 0;
-    raster->stats.fragments = 0;
+    raster->stats = (vplRasterStats){.drawCalls = raster->stats.drawCalls};
     for (int i = 0; i < raster->shadedCount; i++) {
         TRY(vplShadeVertices(raster, &raster->shaded[i]));
         raster->stats.trianglesIn += raster->shaded[i].mesh.triangleCount;

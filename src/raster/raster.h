@@ -6,6 +6,7 @@
 #include <vpl/raster.h>
 
 #include "base/arena.h"
+#include "math/scalar.h"
 
 enum {
     VPL_SUBPIXEL_BITS = 8,
@@ -43,14 +44,17 @@ typedef struct vplPixelBox {
 
 static inline vplPixelBox vplTriangle_PixelBox(const vplScreenVertex v[3])
 {
-    int32_t minX = v[0].x, maxX = v[0].x, minY = v[0].y, maxY = v[0].y;
-    for (int i = 1; i < 3; i++) {
-        minX = v[i].x < minX ? v[i].x : minX;
-        maxX = v[i].x > maxX ? v[i].x : maxX;
-        minY = v[i].y < minY ? v[i].y : minY;
-        maxY = v[i].y > maxY ? v[i].y : maxY;
-    }
+    const int32_t minX = vplMini(vplMini(v[0].x, v[1].x), v[2].x);
+    const int32_t maxX = vplMaxi(vplMaxi(v[0].x, v[1].x), v[2].x);
+    const int32_t minY = vplMini(vplMini(v[0].y, v[1].y), v[2].y);
+    const int32_t maxY = vplMaxi(vplMaxi(v[0].y, v[1].y), v[2].y);
     return (vplPixelBox){(minX + 127) >> 8, (maxX - 128) >> 8, (minY + 127) >> 8, (maxY - 128) >> 8};
+}
+
+// The element of a tile's storage, blocks of 4 x 4, that holds pixel (x, y) of the tile.
+static inline int32_t vplTile_Element(int32_t x, int32_t y)
+{
+    return ((y >> 2) * VPL_TILE_BLOCKS + (x >> 2)) * VPL_LANES + (y & 3) * VPL_BLOCK_SIDE + (x & 3);
 }
 
 // The result of the vertex stage for one mesh, vertex shader and uniforms.
@@ -129,7 +133,7 @@ enum {
 #define VPL_SMALLEST_W 1e-30
 
 typedef struct vplClipVertex {
-    double x, y, z, w;
+    double at[4]; // x, y, z, w
     float varying[VPL_MAX_VARYINGS];
 } vplClipVertex;
 

@@ -22,19 +22,13 @@ static void fill(float* storage, float value)
     }
 }
 
-// Element of the tile storage that holds pixel (x, y) of the tile.
-static int swizzle(int x, int y)
-{
-    return ((y >> 2) * VPL_TILE_BLOCKS + (x >> 2)) * VPL_LANES + (y & 3) * VPL_BLOCK_SIDE + (x & 3);
-}
-
 static void loadPlane(const vplRaster* r, const vplTile* tile, const vplPlane* plane, float* storage)
 {
     fill(storage, plane->clear);
     for (int y = 0; plane->load && plane->pixels && y < tile->height; y++) {
         const float* row = plane->pixels + (size_t)(tile->y + y) * (size_t)r->framebuffer.width + tile->x;
         for (int x = 0; x < tile->width; x++) {
-            storage[swizzle(x, y)] = row[x];
+            storage[vplTile_Element(x, y)] = row[x];
         }
     }
 }
@@ -45,10 +39,10 @@ static void storePlane(const vplRaster* r, const vplTile* tile, const vplPlane* 
         float* row = plane->pixels + (size_t)(tile->y + y) * (size_t)r->framebuffer.width + tile->x;
         int x = 0;
         for (; x + VPL_BLOCK_SIDE <= tile->width; x += VPL_BLOCK_SIDE) {
-            memcpy(row + x, storage + swizzle(x, y), VPL_BLOCK_SIDE * sizeof(float));
+            memcpy(row + x, storage + vplTile_Element(x, y), VPL_BLOCK_SIDE * sizeof(float));
         }
         for (; x < tile->width; x++) {
-            row[x] = storage[swizzle(x, y)];
+            row[x] = storage[vplTile_Element(x, y)];
         }
     }
 }
@@ -161,8 +155,8 @@ static void runTile(void* data, int number, int worker)
     vplTile* tile = &state->tile;
     tile->x = index % r->tilesX * VPL_TILE_SIDE;
     tile->y = index / r->tilesX * VPL_TILE_SIDE;
-    tile->width = f->width - tile->x < VPL_TILE_SIDE ? f->width - tile->x : VPL_TILE_SIDE;
-    tile->height = f->height - tile->y < VPL_TILE_SIDE ? f->height - tile->y : VPL_TILE_SIDE;
+    tile->width = vplMini(f->width - tile->x, VPL_TILE_SIDE);
+    tile->height = vplMini(f->height - tile->y, VPL_TILE_SIDE);
     const int* bin = r->bins + r->binStart[index];
     const int count = r->binStart[index + 1] - r->binStart[index];
     if (count == 0 && !r->hasTasks) {

@@ -77,7 +77,7 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
     }
 }
 
-// Whether all depths in blocks x0 to x1, y0 to y1 are nearer than the triangle.
+// True if all depths in blocks x0 to x1, y0 to y1 are nearer than the triangle.
 static bool isHidden(const Draw* d, int x0, int y0, int x1, int y1)
 {
     const Batch* t = d->batch;

@@ -25,8 +25,8 @@ static inline size_t vplParaboloidMap_Place(int size, int column, int row)
     return (size_t)(row + 1) * (size_t)vplParaboloidMap_Stride(size) + (size_t)(column + 1);
 }
 
-// How far from the middle texels hold surfaces. With a back hemisphere they do so beyond the rim of the disk,
-// by more than a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the rim are
+// Texels up to this distance from the middle hold surfaces. With a back hemisphere that is beyond the rim of the
+// disk by more than a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the rim are
 // valid.
 static inline float vplParaboloidMap_Rim(int size, int hemispheres)
 {
