@@ -243,9 +243,8 @@ endef
 $(foreach isa,$(ISAS),$(eval $(call KERNEL_RULE,$(isa))))
 
 # OpenEXR may come or go between two builds.
-EXR_OBJECTS := $(BUILD)/obj/src/image/exr.o $(BUILD)/obj/src/image/exr_stream.o
-$(EXR_OBJECTS): $(BUILD)/obj/exr-$(EXR)
-$(EXR_OBJECTS): ALL_CFLAGS += -DVPL_EXR=$(EXR)
+$(BUILD)/obj/src/image/exr.o: $(BUILD)/obj/exr-$(EXR)
+$(BUILD)/obj/src/image/exr.o: ALL_CFLAGS += -DVPL_EXR=$(EXR)
 $(BUILD)/obj/exr-$(EXR):
 	@mkdir -p $(@D)
 	@rm -f $(BUILD)/obj/exr-*

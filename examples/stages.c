@@ -21,7 +21,54 @@ static void check(vplResult result, const char* stage)
     }
 }
 
-// Prints the irradiance of the first and last of 16 points along the front of the floor.
+static vplScene* loadScene(vplContext* context, const char* file)
+{
+    vplScene* scene;
+    check(vplScene_Load(context, file, &scene), "scene");
+    if (vplScene_GetEmitterCount(scene) == 0 || vplScene_GetEmitter(scene, 0)->type != VPL_EMITTER_POINT) {
+        fprintf(stderr, "the scene's first light must be a point light\n");
+        exit(2);
+    }
+    return scene;
+}
+
+// 1. Particles leave the light, and each hit leaves a virtual light.
+static vplLightSet* simulateParticles(const vplGeometry* geometry, const vplEmitterDef* light)
+{
+    vplParticleDef particles = vplDefaultParticleDef();
+    particles.particleCount = 100;
+    vplLightSet* set;
+    check(vplSimulateParticles(geometry, light, 1, &particles, &set), "particles");
+    printf("%d lights in %d steps, %d particles escaped\n", set->lightCount, set->stepCount, set->escaped);
+    return set;
+}
+
+// 2. The cube shadow map of the light gives the shadow at any point. The shadow refers to the map.
+static vplCubeMap* castShadow(const vplGeometry* geometry, const vplEmitterDef* light, vplShadow* shadow)
+{
+    vplCubeMapDef mapDef = vplDefaultCubeMapDef();
+    vplShadowDef shadowDef = vplDefaultShadowDef();
+    vplVec3 point = {-2, 0, -2}, up = {0, 1, 0};
+    vplCubeMap* map;
+    mapDef.position = light->position;
+    check(vplCubeMap_Create(geometry, &mapDef, NULL, NULL, &map), "cube map");
+    check(vplShadow_Create(map, &shadowDef, shadow), "shadow");
+    printf("shadow factor at (-2, 0, -2): %g\n", (double)vplShadow_Factor(shadow, point, up));
+    return map;
+}
+
+static vplShadeLight* prepareLights(const vplLightSet* set)
+{
+    vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
+    if (lights == NULL && set->lightCount > 0) {
+        fprintf(stderr, "out of memory\n");
+        exit(1);
+    }
+    vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
+    return lights;
+}
+
+// 3. The light kernel lights 16 points at once, here along the front of the floor.
 static void lightFloor(const vplContext* context, const vplShadeLight* lights, int lightCount)
 {
     vplSurface surface;
@@ -38,6 +85,22 @@ static void lightFloor(const vplContext* context, const vplShadeLight* lights, i
            (double)irradiance[0][VPL_LANES - 1]);
 }
 
+// 4. The picture: direct light with shadows, then one additive pass per virtual light.
+static void shadePicture(const vplGeometry* geometry, const vplCameraDef* camera, const vplShadeDef* def,
+                         const char* file)
+{
+    vplView view = vplView_Create(camera, 320, 240);
+    vplImage* image;
+    vplShadeStats stats;
+    check(vplImage_Create(geometry->context, 320, 240, &image), "image");
+    check(vplShadeView(geometry, &view, def, NULL, NULL, image, &stats), "shading");
+    printf("%lld draw calls, %lld fragments\n", (long long)stats.raster.drawCalls,
+           (long long)stats.raster.fragments);
+    check(vplToneMap_Reinhard(image, NULL), "tone map");
+    check(vplImage_Write(image, file, NULL), "picture");
+    vplImage_Destroy(image);
+}
+
 int main(int count, char** words)
 {
     if (count < 3) {
@@ -48,46 +111,17 @@ int main(int count, char** words)
     contextDef.log = printMessage;
     contextDef.logUser = stderr;
     vplContext* context;
-    vplScene* scene;
-    vplGeometry* geometry;
     check(vplContext_Create(&contextDef, &context), "context");
-    check(vplScene_Load(context, words[1], &scene), "scene");
-    check(vplGeometry_Create(scene, &geometry), "geometry");
-    if (vplScene_GetEmitterCount(scene) == 0 || vplScene_GetEmitter(scene, 0)->type != VPL_EMITTER_POINT) {
-        fprintf(stderr, "the scene's first light must be a point light\n");
-        return 2;
-    }
+    vplScene* scene = loadScene(context, words[1]);
     const vplEmitterDef* light = vplScene_GetEmitter(scene, 0);
+    vplGeometry* geometry;
+    check(vplGeometry_Create(scene, &geometry), "geometry");
 
-    // 1. Particles. Each hit leaves a virtual light.
-    vplParticleDef particles = vplDefaultParticleDef();
-    particles.particleCount = 100;
-    vplLightSet* set;
-    check(vplSimulateParticles(geometry, light, 1, &particles, &set), "particles");
-    printf("%d lights in %d steps, %d particles escaped\n", set->lightCount, set->stepCount, set->escaped);
-
-    // 2. The cube shadow map of the light, and how much of one point is in shadow.
-    vplCubeMapDef mapDef = vplDefaultCubeMapDef();
-    mapDef.position = light->position;
-    vplCubeMap* map;
-    check(vplCubeMap_Create(geometry, &mapDef, NULL, NULL, &map), "cube map");
-    vplShadowDef shadowDef = vplDefaultShadowDef();
+    vplLightSet* set = simulateParticles(geometry, light);
     vplShadow shadow;
-    check(vplShadow_Create(map, &shadowDef, &shadow), "shadow");
-    vplVec3 point = {-2, 0, -2}, up = {0, 1, 0};
-    printf("shadow factor at (-2, 0, -2): %g\n", (double)vplShadow_Factor(&shadow, point, up));
-
-    // 3. The light kernel, on 16 points at once.
-    vplShadeLight* lights = malloc((size_t)set->lightCount * sizeof *lights);
-    if (lights == NULL && set->lightCount > 0) {
-        fprintf(stderr, "out of memory\n");
-        return 1;
-    }
-    vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, lights);
+    vplCubeMap* map = castShadow(geometry, light, &shadow);
+    vplShadeLight* lights = prepareLights(set);
     lightFloor(context, lights, set->lightCount);
-
-    // 4. The picture: direct light with shadows, then one additive pass per virtual light.
-    vplView view = vplView_Create(vplScene_GetCamera(scene, 0), 320, 240);
     vplShadeDef def = {0};
     def.accumulation = VPL_ACCUMULATE_MULTIPASS;
     def.minDistance = 0.2f;
@@ -97,16 +131,8 @@ int main(int count, char** words)
     def.lights = lights;
     def.lightCount = set->lightCount;
     def.emission = true;
-    vplImage* image;
-    vplShadeStats stats;
-    check(vplImage_Create(context, 320, 240, &image), "image");
-    check(vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats), "shading");
-    printf("%lld draw calls, %lld fragments\n", (long long)stats.raster.drawCalls,
-           (long long)stats.raster.fragments);
-    check(vplToneMap_Reinhard(image, NULL), "tone map");
-    check(vplImage_Write(image, words[2], NULL), "picture");
+    shadePicture(geometry, vplScene_GetCamera(scene, 0), &def, words[2]);
 
-    vplImage_Destroy(image);
     free(lights);
     vplCubeMap_Destroy(map);
     vplLightSet_Destroy(set);

@@ -20,10 +20,10 @@ TEST_ALONE(FrontHoldsWhatNothingBeats)
 {
     //                     front, beaten, front, equal, front, dearer, not measured
     const double cost[] = {1, 2, 2, 2, 5, 6, NAN}, error[] = {9, 9, 7, 7, 1, 1, NAN};
-    bool onFront[7];
-    assert_int_equal(markFront(cost, error, 7, 0, onFront), 3);
-    const bool wanted[] = {true, false, true, false, true, false, false};
-    assert_memory_equal(onFront, wanted, sizeof wanted);
+    int numbers[7];
+    assert_int_equal(numberFront(cost, error, 7, 0, numbers), 3);
+    const int wanted[] = {1, 0, 2, 0, 3, 0, 0};
+    assert_memory_equal(numbers, wanted, sizeof wanted);
 }
 
 // By definition, in random cases: a point is on the front if and only if no other is as good in both and
@@ -33,21 +33,20 @@ TEST_ALONE(FrontFollowsItsDefinition)
     enum { COUNT = 12 };
     for (uint64_t seed = 0; seed < 500; seed++) {
         double cost[COUNT], error[COUNT];
-        bool onFront[COUNT];
-        int marked = 0;
+        int numbers[COUNT], marked = 0;
         for (int i = 0; i < COUNT; i++) { // few values, so that there are ties
             cost[i] = floor(6 * uniformAt(seed, 2 * (uint64_t)i));
             error[i] = 1 + floor(6 * uniformAt(seed, 2 * (uint64_t)i + 1));
         }
-        int count = markFront(cost, error, COUNT, 0, onFront);
+        int count = numberFront(cost, error, COUNT, 0, numbers);
         for (int i = 0; i < COUNT; i++) {
             bool beaten = false;
             for (int j = 0; j < COUNT; j++) {
                 bool as = cost[j] <= cost[i] && error[j] <= error[i];
                 beaten |= as && (cost[j] < cost[i] || error[j] < error[i] || j < i);
             }
-            assert_int_equal(onFront[i], !beaten);
-            marked += onFront[i];
+            assert_int_equal(numbers[i] > 0, !beaten);
+            marked += numbers[i] > 0;
         }
         assert_int_equal(count, marked);
     }
@@ -56,9 +55,9 @@ TEST_ALONE(FrontFollowsItsDefinition)
 TEST_ALONE(ThinFrontLeavesOutSmallGains)
 {
     const double cost[] = {1, 2, 3, 4}, error[] = {10, 9.8, 9.6, 5};
-    bool onFront[4];
-    assert_int_equal(markFront(cost, error, 4, 0.03, onFront), 3); // 9.8 is not 3 % below 10, 9.6 is
-    assert_true(onFront[0] && !onFront[1] && onFront[2] && onFront[3]);
+    int numbers[4];
+    assert_int_equal(numberFront(cost, error, 4, 0.03, numbers), 3); // 9.8 is not 3 % below 10, 9.6 is
+    assert_true(numbers[0] == 1 && numbers[1] == 0 && numbers[2] == 2 && numbers[3] == 3);
 }
 
 TEST_ALONE(CheapestWithinALimit)
@@ -129,17 +128,12 @@ TEST_ALONE(TimesAndSharesReadWell)
         const char* text;
     } times[] = {{0.834, "0.83 ms"}, {4.26, "4.3 ms"},  {999.4, "999 ms"},
                  {1240, "1.24 s"},   {12400, "12.4 s"}, {200000, "3 min 20 s"}};
-    char text[32];
     for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
-        formatTime(times[i].ms, text, sizeof text);
-        assert_string_equal(text, times[i].text);
+        assert_string_equal(formatTime(times[i].ms).text, times[i].text);
     }
-    formatPercent(0.0083, text, sizeof text);
-    assert_string_equal(text, "0.83 %");
-    formatPercent(0.142, text, sizeof text);
-    assert_string_equal(text, "14.2 %");
-    formatPercent(1.3, text, sizeof text);
-    assert_string_equal(text, "130 %");
+    assert_string_equal(formatPercent(0.0083).text, "0.83 %");
+    assert_string_equal(formatPercent(0.142).text, "14.2 %");
+    assert_string_equal(formatPercent(1.3).text, "130 %");
 }
 
 TEST(EncodedPngIsTheFileThatWouldBeWritten, 1)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Words of the command line to options.
+// Parses the words of the command line.
 #include "cli/options.h"
 #include "cli/tradeoff/tradeoff.h"
 
@@ -8,7 +8,7 @@
 
 // ---- names
 
-// Edit distance, to guess what was meant by a misspelt option.
+// The edit distance of two words, to suggest an option for a misspelt one.
 static int distance(const char* a, const char* b)
 {
     int row[32];
@@ -32,26 +32,24 @@ static int distance(const char* a, const char* b)
     return row[n];
 }
 
-// The option that a word names, "--name" or "--name=value"; NULL after complaining if the command has none
-// such.
+// Returns the command's option that a word, "--name" or "--name=value", names; NULL after complaining.
 static const Option* findOption(const Command* command, const char* word)
 {
     char name[48], candidate[48], nearest[48] = "";
-    int count, least = 3;
+    int least = 3;
     bool elsewhere = false;
-    const Option* options = getOptions(&count);
     snprintf(name, sizeof name, "%.*s", (int)(word[1] == '-' ? strcspn(word, "=") : strlen(word)), word);
-    for (int i = 0; i < count; i++) {
-        snprintf(candidate, sizeof candidate, "%s%s", dashesOf(&options[i]), options[i].name);
+    for (const Option* o = getOptions(); o->name != NULL; o++) {
+        snprintf(candidate, sizeof candidate, "%s%s", dashesOf(o), o->name);
         const bool equal = strcmp(candidate, name) == 0;
         const bool begun = strncmp(name, candidate, strlen(name)) == 0; // "--reflect" for "--reflectivity"
         const int far = begun ? 1 : distance(name, candidate);
         elsewhere |= equal;
-        if ((options[i].commands & command->bit) == 0) {
+        if ((o->commands & command->bit) == 0) {
             continue;
         }
         if (equal) {
-            return &options[i];
+            return o;
         }
         if (strlen(name) > 3 && far < least) {
             least = far;
@@ -87,11 +85,9 @@ static Arguments defaultArguments(const char* command)
     Arguments a = {.command = findCommand(command), .frames = {0, -1}, .ppd = VPL_DEFAULT_PPD};
     a.render = vplDefaultRenderOptions();
     a.context = vplDefaultContextDef();
-    int count;
-    const Option* options = getOptions(&count);
-    for (int i = 0; i < count; i++) {
-        if (options[i].default_ != NULL) {
-            options[i].read(&options[i], options[i].default_, &a);
+    for (const Option* o = getOptions(); o->name != NULL; o++) {
+        if (o->default_ != NULL) {
+            o->read(o, o->default_, &a);
         }
     }
     if (a.command->bit == TRADEOFF) {

@@ -47,10 +47,10 @@ typedef struct Command {
 extern const Command COMMANDS[];
 extern const int COMMAND_COUNT;
 
-// NULL if there is none of that name.
+// Returns NULL if no command has that name.
 const Command* findCommand(const char* name);
 
-// What the words of a command line ask for.
+// The options and other words of a command line.
 struct Arguments {
     const Command* command;
     const char* const* words; // the whole line
@@ -80,13 +80,13 @@ struct Arguments {
 // Fills `arguments`, or prints one sentence to stderr and returns false.
 bool parseArguments(int count, const char* const* words, Arguments* arguments);
 
-// Whether the command line names an option; without dashes.
+// Returns true if the command line names an option; the name is without dashes.
 bool isGiven(const Arguments* arguments, const char* name);
 
 // Sets options by words "--name value --name value"; complains and returns false if one is wrong.
 bool setOptions(vplRenderOptions* options, const char* words);
 
-// vpl help WORD WORD: `topic` may be NULL, a command or "options"; `subject` is one of the latter. False
+// vpl help TOPIC SUBJECT: the topic is NULL, a command or "options", which alone has subjects. Returns false
 // after complaining.
 bool printHelp(const char* topic, const char* subject);
 
@@ -96,25 +96,28 @@ __attribute__((format(printf, 1, 2)))
 #endif
 void complain(const char* format, ...);
 
+// Prints messages of the library as --quiet and -v ask for. Takes the Arguments.
+vplLogFcn logToStderr;
+
 // Makes a context that logs to stderr; NULL after complaining.
 vplContext* openContext(const Arguments* arguments);
 
-// Exit code of a result; `reading` says whether a file error was met while reading input.
+// Returns the exit code for a result. A file error is bad input (2) if `reading`, else a failure to write
+// (1).
 int exitCode(vplResult result, bool reading);
 
 // Writes vplPlan_Describe's text.
 int printPlan(const vplPlan* plan, FILE* file);
 
-// Loads the scene that the words name, prints the plan if --explain or --dry-run asks for it, and without the
-// latter lets `work` have the scene.
-typedef int SceneWork(const Arguments* arguments, vplContext* context, const vplScene* scene);
+// Loads the scene, prints the plan if --explain or --dry-run asks for it, and calls `work` unless it is a dry
+// run.
+typedef int SceneWork(const Arguments* arguments, const vplScene* scene);
 int runOnScene(const Arguments* arguments, SceneWork* work);
 
 // Flushes stdout; complains and returns EXIT_COULD_NOT if anything was lost.
 int finishOutput(int code);
 
-// Progress bar with the time left, on stderr if that is a terminal; also notices SIGINT. Both take a
-// Progress.
+// A progress bar with the time left, on stderr if that is a terminal. showProgress takes the Progress.
 typedef struct Progress {
     double start, lastDrawn;
     bool visible;
@@ -124,24 +127,26 @@ Progress beginProgress(bool quiet);
 vplProgressFcn showProgress;
 void endProgress(Progress* progress);
 
-// From now on SIGINT and SIGTERM make showProgress return false; a second one kills.
+// From now on SIGINT and SIGTERM make showProgress return false; a second signal ends the program.
 void catchInterrupts(void);
 
-// JSON knows no infinity: what is not finite is null.
+// Infinity and NaN become null, because JSON has no such numbers.
 json_t* numberJson(double value);
+json_t* integersJson(const int* values, int count);
 
-// Writes JSON to a file, or to stdout if that is NULL, and lets go of it. Complains unless it returns
+// Writes JSON to a file, or to stdout if the path is NULL, and frees it. Complains unless it returns
 // EXIT_DONE.
 int writeJson(json_t* root, int digits, const char* path);
 
 // Writes the statistics of a render as JSON.
 int writeStats(vplContext* context, const char* path, const vplRenderStats* stats);
 
-// True if a file can probably be written there; complains otherwise. Asked before hours of rendering.
+// Returns true if a file can probably be written there; complains otherwise. Called before hours of
+// rendering.
 bool checkOutput(const char* path);
 
-// The name of frame `number` of frames up to `last`: "-0012" before the extension, at least four digits.
-// False if it does not fit.
+// Writes the file name of frame `number` of frames up to `last`: "-0012" before the extension, at least four
+// digits. last < 0: the name itself. Returns false if it does not fit.
 bool numberName(const char* name, int number, int last, char* out, size_t size);
 
 // Writes a whole file beside its target and renames it, or leaves everything as it was and complains.

@@ -44,6 +44,9 @@ static json_t* describe(const Findings* f, double ppd)
                              numberJson(c->psnr), "ssim", numberJson(f->ssim), "flip", numberJson(f->flip),
                              "flip_ppd", ppd, "energy_ratio", numberJson(c->energyRatio), "max_difference",
                              numberJson(c->maxDifference), "max_x", c->maxX, "max_y", c->maxY);
+    if (f->regionCount == 0) {
+        return root;
+    }
     json_t* regions = json_array();
     for (int i = 0; i < f->regionCount; i++) {
         const vplRegion* r = &f->regions[i];
@@ -52,18 +55,15 @@ static json_t* describe(const Findings* f, double ppd)
                                                  numberJson(r->meanA), "mean_b", numberJson(r->meanB),
                                                  "ratio", numberJson(r->ratio), "rmse", numberJson(r->rmse)));
     }
-    if (f->regionCount > 0) {
-        json_object_set(root, "regions", regions);
-    }
-    json_decref(regions);
+    json_object_set_new(root, "regions", regions);
     return root;
 }
 
 static vplResult compareRegions(const Arguments* a, const vplImage* first, const vplImage* second,
                                 Findings* findings)
 {
-    bool fits =
-        a->regions[0] <= first->width && a->regions[1] <= first->height; // or the library says what is wrong
+    // Without room for one pixel per region, vplImage_CompareRegions refuses.
+    const bool fits = a->regions[0] <= first->width && a->regions[1] <= first->height;
     findings->regionCount = a->regions[0] * a->regions[1];
     findings->regions = fits ? calloc((size_t)findings->regionCount, sizeof *findings->regions) : NULL;
     if (fits && findings->regions == NULL) {
@@ -102,7 +102,7 @@ static int writeHeatmap(const Arguments* a, const vplImage* first, const vplImag
     def.ppd = a->ppd;
     int code = exitCode(vplImage_HeatmapOf(first, second, &def, &map), true);
     if (code == EXIT_DONE) {
-        catchInterrupts(); // no temporary file stays behind
+        catchInterrupts(); // an interrupt leaves no temporary file
         code = exitCode(vplImage_Write(map, a->heatmap, NULL), false);
     }
     vplImage_Destroy(map);
@@ -125,7 +125,7 @@ static int compare(const Arguments* a, const vplImage* first, const vplImage* se
     return code == EXIT_DONE && a->heatmap != NULL ? writeHeatmap(a, first, second) : code;
 }
 
-// Replaces both pictures by what --region asks for.
+// Replaces both pictures by their --region.
 static int cropBoth(const int region[4], vplImage* images[2])
 {
     if (images[0]->width != images[1]->width || images[0]->height != images[1]->height) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// vpl lights and vpl bake: what pictures are made from, for other programs.
+// vpl lights and vpl bake: virtual lights and lit patches, for other programs.
 #include "cli/cli.h"
 
 #include <stdio.h>
@@ -19,9 +19,8 @@ static void printLights(const vplLightSet* set)
     }
 }
 
-static int listLights(const Arguments* a, vplContext* context, const vplScene* scene)
+static int listLights(const Arguments* a, const vplScene* scene)
 {
-    (void)context;
     vplLightSet* set = NULL;
     int code = exitCode(vplMakeLights(scene, &a->render, &set), true);
     if (code == EXIT_DONE) {
@@ -42,7 +41,7 @@ int runLights(const Arguments* a)
 
 // ---- patches
 
-static int bake(const Arguments* a, vplContext* context, const vplScene* scene)
+static int bake(const Arguments* a, const vplScene* scene)
 {
     catchInterrupts();
     Progress progress = beginProgress(a->quiet);
@@ -57,7 +56,7 @@ static int bake(const Arguments* a, vplContext* context, const vplScene* scene)
                  stats.solve.iterations);
     }
     if (code == EXIT_DONE && a->stats != NULL) {
-        code = writeStats(context, a->stats, &stats);
+        code = writeStats(vplScene_GetContext(scene), a->stats, &stats);
     }
     return code;
 }

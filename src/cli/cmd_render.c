@@ -11,8 +11,8 @@ static bool isEmpty(const float* pixel)
     return pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 0;
 }
 
-// Makes values other than light visible in a PNG: metres from nearest (white) to farthest (dark), normals as
-// (n + 1) / 2.
+// Makes metres and normals visible in a PNG: the nearest is white, the farthest is dark; normals are (n + 1)
+// / 2.
 static void prepareForEyes(vplImage* image, vplShow show)
 {
     size_t count = 3 * (size_t)image->width * (size_t)image->height;
@@ -70,20 +70,18 @@ static void sayMore(const vplRenderStats* stats)
     }
 }
 
-static bool isSequence(const Arguments* a)
-{
-    return a->frames[1] >= 0;
-}
+// The files of one frame.
+typedef struct Files {
+    char output[PATH_MAX], stats[PATH_MAX]; // stats is empty without --stats
+} Files;
 
-// The name of a file of one frame, PATH_MAX bytes; `name` may be NULL. False if it is too long.
-static bool nameFrame(const char* name, const Arguments* a, int frame, char* out)
+// Returns false if a name is too long.
+static bool nameFiles(const Arguments* a, int frame, Files* files)
 {
-    out[0] = 0;
-    if (name == NULL) {
-        return true;
-    }
-    return isSequence(a) ? numberName(name, frame, a->frames[1], out, PATH_MAX)
-                         : snprintf(out, PATH_MAX, "%s", name) < PATH_MAX;
+    const int last = a->frames[1];
+    files->stats[0] = 0;
+    return numberName(a->output, frame, last, files->output, PATH_MAX) &&
+           (a->stats == NULL || numberName(a->stats, frame, last, files->stats, PATH_MAX));
 }
 
 // The progress bar covers all frames.
@@ -98,12 +96,12 @@ static bool showSequence(void* user, double fraction)
     return showProgress(&s->progress, (s->done + fraction) / s->count);
 }
 
-// Renders one picture to `output`, and its statistics to `stats` unless that is NULL.
-static int renderPicture(const Arguments* a, vplContext* context, const vplScene* scene,
-                         const vplRenderOptions* options, const char* output, const char* statsFile)
+static int renderFrame(const Arguments* a, const vplScene* scene, const vplRenderOptions* options)
 {
     vplImage* image = NULL;
     vplRenderStats stats;
+    Files files;
+    nameFiles(a, (int)options->sequence.frame, &files); // runRender has checked their lengths
     Sequence* sequence = options->progressUser;
     vplResult result = vplRender(scene, options, &image, &stats);
     endProgress(&sequence->progress);
@@ -118,50 +116,35 @@ static int renderPicture(const Arguments* a, vplContext* context, const vplScene
     if (a->verbose) {
         sayMore(&stats);
     }
-    code = writePicture(a, image, output);
-    if (code == EXIT_DONE && statsFile != NULL) {
-        code = writeStats(context, statsFile, &stats);
+    code = writePicture(a, image, files.output);
+    if (code == EXIT_DONE && a->stats != NULL) {
+        code = writeStats(vplScene_GetContext(scene), files.stats, &stats);
     }
     vplImage_Destroy(image);
     return code;
 }
 
-static int renderScene(const Arguments* a, vplContext* context, const vplScene* scene)
+static int renderScene(const Arguments* a, const vplScene* scene)
 {
     catchInterrupts();
     Sequence sequence = {beginProgress(a->quiet), 0, 1};
     vplRenderOptions options = a->render;
     options.progress = showSequence;
     options.progressUser = &sequence;
-    if (!isSequence(a)) {
-        return renderPicture(a, context, scene, &options, a->output, a->stats);
+    if (a->frames[1] < 0) {
+        return renderFrame(a, scene, &options);
     }
-    int code = exitCode(vplHistory_Create(context, &options.sequence.history), false);
+    int code = exitCode(vplHistory_Create(vplScene_GetContext(scene), &options.sequence.history), false);
     sequence.count = a->frames[1] - a->frames[0] + 1;
     for (; code == EXIT_DONE && sequence.done < sequence.count; sequence.done++) {
-        const int frame = a->frames[0] + sequence.done;
-        char output[PATH_MAX], stats[PATH_MAX];
-        options.sequence.frame = frame;
+        options.sequence.frame = a->frames[0] + sequence.done;
         if (a->verbose) {
-            complain("frame %d", frame);
+            complain("frame %d", a->frames[0] + sequence.done);
         }
-        nameFrame(a->output, a, frame, output);
-        nameFrame(a->stats, a, frame, stats);
-        code = renderPicture(a, context, scene, &options, output, a->stats ? stats : NULL);
+        code = renderFrame(a, scene, &options);
     }
     vplHistory_Destroy(options.sequence.history);
     return code;
-}
-
-// Checks the files of the first frame; those of the others differ in digits only.
-static bool checkFiles(const Arguments* a)
-{
-    char output[PATH_MAX], stats[PATH_MAX];
-    if (!nameFrame(a->output, a, a->frames[0], output) || !nameFrame(a->stats, a, a->frames[0], stats)) {
-        complain("%s: the name is too long", a->output);
-        return false;
-    }
-    return checkOutput(output) && (a->stats == NULL || checkOutput(stats));
 }
 
 int runRender(const Arguments* a)
@@ -181,7 +164,12 @@ int runRender(const Arguments* a)
         complain("%s: both the picture and the statistics would be written there", a->output);
         return EXIT_USAGE;
     }
-    if (!checkFiles(a)) {
+    Files files; // of the first frame; the names of the others differ in digits only
+    const bool named = nameFiles(a, a->frames[0], &files);
+    if (!named) {
+        complain("%s: the name is too long", a->output);
+    }
+    if (!named || !checkOutput(files.output) || (a->stats != NULL && !checkOutput(files.stats))) {
         return EXIT_COULD_NOT;
     }
     return runOnScene(a, renderScene);

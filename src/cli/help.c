@@ -18,59 +18,44 @@ static const char* const ESSENTIALS[] = {"method", "size",      "camera",       
 const Command COMMANDS[] = {
     {"render", RENDER, 1, runRender, "vpl render SCENE -o FILE [options]", "renders a picture",
      "Renders SCENE and writes a picture. Files appear whole or not at all. SCENE is a scene file (.json), "
-     "or a mesh "
-     "(.obj), which gets a camera that sees all of it and, if nothing emits, a light.",
+     "or a mesh (.obj), which gets a camera that sees all of it and, if nothing emits, a light.",
      NULL},
     {"bake", BAKE, 1, runBake, "vpl bake SCENE -o FILE [options]",
      "writes the patches of radiosity as a mesh",
      "Finds the light of SCENE by --method radiosity and writes its patches as a binary PLY mesh with "
-     "colours at the "
-     "vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity in W/m^2 as properties r, g, "
-     "b.",
+     "colours at the vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity in W/m^2 as "
+     "properties r, g, b.",
      " size antialias show interpolation "},
     {"lights", LIGHTS, 1, runLights, "vpl lights SCENE [options]", "lists the virtual lights",
      "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of "
-     "--show "
-     "light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux in "
-     "watts that "
-     "the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N.",
+     "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "
+     "in watts that the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N.",
      " antialias show pipeline batch interleave cut-error passes budget max-error "},
     {"compare", COMPARE, 2, runCompare, "vpl compare A B [options]",
      "measures how far picture A is from reference B",
      "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), trimmed_relmse "
-     "(the same "
-     "without the 0.1 % of the pixels where it is largest), psnr (dB), ssim and flip (all three of values "
-     "clamped to "
-     "[0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and max_difference with its "
-     "pixel. "
-     "--regions adds a table of blocks.",
+     "(the same without the 0.1 % of the pixels where it is largest), psnr (dB), ssim and flip (all three of "
+     "values clamped to [0, 1]; psnr and ssim sRGB-encoded), energy_ratio (sum of A / sum of B) and "
+     "max_difference with its pixel. --regions adds a table of blocks.",
      NULL},
     {"info", INFO, 1, runInfo, "vpl info SCENE [options]",
      "says what is in a scene, and what rendering it requires",
      "Prints counts, bounds, mean reflectance, and the plan of a render with the same options: decisions, "
-     "stages and "
-     "memory.",
+     "stages and memory.",
      NULL},
     {"tradeoff", TRADEOFF, 1, runTradeoff, "vpl tradeoff SCENE -o DIR [options]",
      "measures error against time",
      "Renders SCENE with many settings and several seeds, compares each picture with a reference, and writes "
-     "to DIR: "
-     "report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot), "
-     "tradeoff.csv "
-     "(every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options given here "
-     "change the "
-     "base that the sweeps start from: " TRADEOFF_BASE
-     ". Physical lighting only: the documented formulas have no "
-     "truth to compare with.",
+     "to DIR: report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot), "
+     "tradeoff.csv (every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options "
+     "given here change the base that the sweeps start from: " TRADEOFF_BASE
+     ". Physical lighting only: the documented formulas have no truth to compare with.",
      NULL},
     {"bench", BENCH, 0, runBench, "vpl bench [options]", "times every stage",
      "Times the stages on the built-in room: medians of the wall clock and of processor time, counts, "
-     "hashes, and "
-     "what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. With "
-     "--scaling, how "
-     "time grows with lights, pixels, triangles, threads and the shadow map's size: exponents fitted over "
-     "all points "
-     "and over the upper half, and the part of the time that does not grow.",
+     "hashes, and what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. "
+     "With --scaling, how time grows with lights, pixels, triangles, threads and the shadow map's size: "
+     "exponents fitted over all points and over the upper half, and the part of the time that does not grow.",
      NULL},
 };
 
@@ -88,7 +73,7 @@ const Command* findCommand(const char* name)
 
 // ---- text
 
-// Prints words from `column` on and breaks lines at spaces and behind "|"; further lines begin at `indent`.
+// Prints words from `column` on. Breaks lines at spaces and after "|"; further lines begin at `indent`.
 static void printWrapped(const char* text, int column, int indent)
 {
     bool space = false;
@@ -107,7 +92,7 @@ static void printWrapped(const char* text, int column, int indent)
     putchar('\n');
 }
 
-// Adds the words of "a|b|c" whose bits are set, with commas between, within two brackets.
+// Adds the words of "a|b|c" whose bits are set, with commas between, in brackets.
 static void appendWords(char* text, const char* open, const char* words, int bits, const char* close)
 {
     for (int bit = 1; words != NULL; bit <<= 1) {
@@ -121,7 +106,7 @@ static void appendWords(char* text, const char* open, const char* words, int bit
     strcat(text, close);
 }
 
-// The names of the sweeps, each once, in the order of the table.
+// Adds the names of the sweeps, each once, in the order of the table.
 static void appendSweeps(char text[TEXT])
 {
     for (int i = 0; i < SWEEP_COUNT; i++) {
@@ -131,12 +116,13 @@ static void appendSweeps(char text[TEXT])
     }
 }
 
-// The help of an option, its default, and who uses it if not all do: methods and pipelines, or commands.
+// Writes the help of an option, its default, and the methods, pipelines or commands that use it if not all
+// do.
 static void describeOption(const Option* o, bool commands, char text[TEXT])
 {
     const vplRenderOptions defaults = vplDefaultRenderOptions();
     const int users = o->render != NULL ? o->render->users : VPL_USE_ALL;
-    char value[64] = "";
+    char value[64];
     snprintf(value, sizeof value, "%s", o->default_ != NULL ? o->default_ : "");
     if (o->render != NULL) {
         vplRenderOptions_Get(&defaults, o->name, value, sizeof value);
@@ -156,7 +142,7 @@ static void describeOption(const Option* o, bool commands, char text[TEXT])
     }
 }
 
-// Text of a man page: dashes that are no hyphens.
+// Prints text of a man page, in which a plain - is a hyphen and not a dash.
 static void printManual(const char* text)
 {
     for (; *text != 0; text++) {
@@ -187,14 +173,12 @@ static void printOption(const Option* o, bool manual)
     printWrapped(text, INDENT, INDENT);
 }
 
-// The program's own options that a command takes; all: of all commands.
+// Prints the program's own options that any of the commands takes.
 static void printOwn(int commands, bool manual)
 {
-    int count;
-    const Option* options = getOptions(&count);
-    for (int i = 0; i < count; i++) {
-        if (options[i].render == NULL && (options[i].commands & commands) != 0) {
-            printOption(&options[i], manual);
+    for (const Option* o = getOptions(); o->name != NULL; o++) {
+        if (o->render == NULL && (o->commands & commands) != 0) {
+            printOption(o, manual);
         }
     }
 }
@@ -211,17 +195,16 @@ static bool contains(const char* text, const char* word)
     return false;
 }
 
-// Prints the options of the groups whose heading contains the subject (NULL: all), or the option of that
-// name, under their headings. Returns how many there were.
+// Prints the option named by the subject, or the options of all groups whose heading contains it (NULL: all
+// groups), under their headings. Returns their number.
 static int printSubject(const char* subject, bool manual)
 {
-    int count, printed = 0;
-    const Option* options = getOptions(&count);
+    int printed = 0;
     const vplOption* named =
         subject != NULL ? vplFindOption(subject + 2 * (strncmp(subject, "--", 2) == 0)) : NULL;
     const char* group = "";
-    for (int i = 0; i < count; i++) {
-        const vplOption* o = options[i].render;
+    for (const Option* option = getOptions(); option->name != NULL; option++) {
+        const vplOption* o = option->render;
         if (o == NULL || (named != NULL && o != named) ||
             (named == NULL && subject != NULL && !contains(o->group, subject))) {
             continue;
@@ -230,7 +213,7 @@ static int printSubject(const char* subject, bool manual)
             printf(manual ? ".SS %s\n" : "\n%s\n", o->group);
             group = o->group;
         }
-        printOption(&options[i], manual);
+        printOption(option, manual);
         printed++;
     }
     return printed;
@@ -238,32 +221,28 @@ static int printSubject(const char* subject, bool manual)
 
 static void printEssentials(void)
 {
-    int count;
-    const Option* options = getOptions(&count);
     for (size_t k = 0; k < sizeof ESSENTIALS / sizeof *ESSENTIALS; k++) {
-        for (int i = 0; i < count; i++) {
-            if (options[i].render != NULL && strcmp(options[i].name, ESSENTIALS[k]) == 0) {
-                printOption(&options[i], false);
+        for (const Option* o = getOptions(); o->name != NULL; o++) {
+            if (o->render != NULL && strcmp(o->name, ESSENTIALS[k]) == 0) {
+                printOption(o, false);
             }
         }
     }
 }
 
-// The names of all options under their headings.
+// Prints the names of all options under their headings.
 static void printSubjects(void)
 {
-    int count;
-    const Option* options = getOptions(&count);
-    const char* group = "";
     puts("\nAll options of rendering; vpl help options SUBJECT (or NAME) explains them:");
-    for (int i = 0; i < count; i++) {
+    for (const Option* o = getOptions(); o->name != NULL;) {
         char text[TEXT] = "";
-        if (options[i].render == NULL || strcmp(options[i].render->group, group) == 0) {
+        const char* group = o->render != NULL ? o->render->group : NULL;
+        if (group == NULL) {
+            o++;
             continue;
         }
-        group = options[i].render->group;
-        for (int k = i; k < count && strcmp(options[k].render->group, group) == 0; k++) {
-            sprintf(text + strlen(text), "%s--%s", k > i ? " " : "", options[k].name);
+        for (; o->name != NULL && strcmp(o->render->group, group) == 0; o++) {
+            sprintf(text + strlen(text), "%s--%s", text[0] != 0 ? " " : "", o->name);
         }
         printf("  %s\n%*s", group, INDENT, "");
         printWrapped(text, INDENT, INDENT);

@@ -18,7 +18,7 @@ void complain(const char* format, ...)
     va_end(arguments);
 }
 
-static void logToStderr(void* user, vplLogLevel level, const char* message)
+void logToStderr(void* user, vplLogLevel level, const char* message)
 {
     const Arguments* arguments = user;
     if (level == VPL_LOG_ERROR) {
@@ -99,7 +99,7 @@ int runOnScene(const Arguments* a, SceneWork* work)
         code = explain(a, scene);
     }
     if (code == EXIT_DONE && !a->dryRun) {
-        code = work(a, context, scene);
+        code = work(a, scene);
     }
     vplScene_Destroy(scene);
     vplContext_Destroy(context);

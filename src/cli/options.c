@@ -8,8 +8,8 @@
 
 // ---- readers
 
-// Whole numbers without a sign, with `separator` between, into `out`. Returns how many; 0 if it is anything
-// else.
+// Reads whole numbers without a sign, separated by `separator`. Returns their number; 0 if the text is
+// anything else.
 static int parseNumbers(const char* text, char separator, double low, double high, int* out, int most)
 {
     for (int count = 0; count < most;) {
@@ -101,7 +101,7 @@ static bool readGrid(const Option* o, const char* value, Arguments* a)
            refuse(o, value, "COLUMNSxROWS, each in [1, %d]", VPL_MAX_IMAGE_SIZE);
 }
 
-// Whether the rectangle lies inside the pictures is checked when they are read.
+// The rectangle is checked against the pictures when they are read.
 static bool readRegion(const Option* o, const char* value, Arguments* a)
 {
     const int* r = a->region;
@@ -115,7 +115,7 @@ static bool readFrames(const Option* o, const char* value, Arguments* a)
     if (parseNumbers(value, ':', 0, VPL_MAX_FRAME, f, 2) != 2) {
         return refuse(o, value, "FIRST:LAST, two numbers in [0, %d]", VPL_MAX_FRAME);
     }
-    a->render.sequence.frame = f[0]; // that of the plan
+    a->render.sequence.frame = f[0]; // the plan describes the first frame
     return (f[0] <= f[1] && f[1] - f[0] < MAX_FRAMES) || refuse(o, value, "1 to %d frames", MAX_FRAMES);
 }
 
@@ -159,8 +159,7 @@ static const Option OWN[] = {
      "PNG only; usual: reinhard for ssvp, else none", NULL},
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
-     "statistics "
-     "are numbered in the same way",
+     "statistics are numbered in the same way",
      NULL},
     {"stats", "FILE", NULL, RENDER | BAKE, readText, AT(stats), 0, 0, "write statistics as JSON", NULL},
     {"explain", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(explain), 0, 0,
@@ -169,8 +168,7 @@ static const Option OWN[] = {
      "print the plan and do nothing", NULL},
     {"reference", "FILES", NULL, TRADEOFF, readText, AT(reference), 0, 0,
      "the true picture, linear and of the same size, or two independent ones, A,B, whose noise cancels; "
-     "default: "
-     "path traced",
+     "default: path traced",
      NULL},
     {"reference-spp", "N", NULL, TRADEOFF, readInt, AT(referenceSpp), 2, VPL_MAX_SAMPLES,
      "paths per pixel of the reference; default: as many as a third of the time allows", NULL},
@@ -209,7 +207,7 @@ static const Option OWN[] = {
     {"help", NULL, NULL, ~0, readFlag, AT(help), 0, 0, "print the help of a command", NULL},
 };
 
-const Option* getOptions(int* countOut)
+const Option* getOptions(void)
 {
     enum { OWN_COUNT = sizeof OWN / sizeof *OWN, MOST = 200 };
     static Option all[MOST];
@@ -219,7 +217,7 @@ const Option* getOptions(int* countOut)
         const vplOption* render = vplGetOptions(&renderCount);
         memcpy(all, OWN, sizeof OWN);
         count = OWN_COUNT;
-        for (const vplOption* r = render; r < render + renderCount && count < MOST; r++) {
+        for (const vplOption* r = render; r < render + renderCount && count < MOST - 1; r++) {
             const int method = strcmp(r->name, "method") == 0 ? TRADEOFF : 0;
             const int size = strcmp(r->name, "size") == 0 ? BENCH : 0;
             if (r->kind != VPL_OPTION_PART) {
@@ -232,7 +230,6 @@ const Option* getOptions(int* countOut)
             }
         }
     }
-    *countOut = count;
     return all;
 }
 

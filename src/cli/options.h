@@ -12,8 +12,8 @@ typedef bool ReadFcn(const Option* option, const char* value, Arguments* argumen
 
 struct Option {
     const char* name;     // without dashes: one for a letter, two for a word
-    const char* value;    // what it takes: "N", or its choices: "a|b|c"; NULL: a flag
-    const char* default_; // as a value, or NULL: none, or the help says what
+    const char* value;    // the kind of value, "N", or the choices, "a|b|c"; NULL: a flag
+    const char* default_; // as a value; NULL: none, or described by the help
     int commands;         // bits
     ReadFcn* read;
     size_t offset;    // in Arguments
@@ -23,8 +23,8 @@ struct Option {
     const vplOption* render;
 };
 
-// The program's own options, then those of rendering.
-const Option* getOptions(int* countOut);
+// The program's own options, then those of rendering; the name of the last row is NULL.
+const Option* getOptions(void);
 
 // "--" or "-", by the length of the name.
 const char* dashesOf(const Option* option);

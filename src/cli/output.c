@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files and JSON that the program itself writes. Paths are checked before the work; files appear whole or not
-// at all.
+// Files and JSON that the program itself writes. Paths are checked early; files appear whole or not at all.
 #include "cli/cli.h"
 
 #include <errno.h>
@@ -50,6 +49,9 @@ bool checkOutput(const char* path)
 
 bool numberName(const char* name, int number, int last, char* out, size_t size)
 {
+    if (last < 0) {
+        return (size_t)snprintf(out, size, "%s", name) < size;
+    }
     int digits = 4;
     for (int rest = last / 10000; rest > 0; rest /= 10) {
         digits++;
@@ -62,30 +64,27 @@ bool numberName(const char* name, int number, int last, char* out, size_t size)
     return length >= 0 && (size_t)length < size;
 }
 
-static void complainOf(void* user, vplLogLevel level, const char* message)
-{
-    (void)user;
-    if (level == VPL_LOG_ERROR) {
-        complain("%s", message);
-    }
-}
-
 bool writeTextFile(const char* path, const char* text)
 {
-    vplContextDef def = vplDefaultContextDef();
-    def.log = complainOf;
-    vplContext* context;
-    if (vplContext_Create(&def, &context) != VPL_SUCCESS) {
-        return false;
-    }
-    vplResult result = vplWriteFile(context, path, text, strlen(text));
+    const Arguments quiet = {.context = vplDefaultContextDef(), .quiet = true};
+    vplContext* context = openContext(&quiet);
+    const bool written = context != NULL && vplWriteFile(context, path, text, strlen(text)) == VPL_SUCCESS;
     vplContext_Destroy(context);
-    return result == VPL_SUCCESS;
+    return written;
 }
 
 json_t* numberJson(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t* integersJson(const int* values, int count)
+{
+    json_t* array = json_array();
+    for (int i = 0; i < count; i++) {
+        json_array_append_new(array, json_integer(values[i]));
+    }
+    return array;
 }
 
 int writeJson(json_t* root, int digits, const char* path)

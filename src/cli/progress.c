@@ -9,7 +9,7 @@
 static volatile sig_atomic_t interrupted;
 static volatile double firstInterrupt; // ms; read and written by the handler alone
 
-// The second one kills, unless it comes at once: timeout(1) sends every signal twice.
+// The second signal ends the program, unless it follows at once, because timeout(1) sends every signal twice.
 static void onInterrupt(int number)
 {
     if (!interrupted) {

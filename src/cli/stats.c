@@ -3,15 +3,6 @@
 
 #include <stdio.h>
 
-static json_t* intArray(const int* values, int count)
-{
-    json_t* array = json_array();
-    for (int i = 0; i < count; i++) {
-        json_array_append_new(array, json_integer(values[i]));
-    }
-    return array;
-}
-
 static void addRadiosity(json_t* root, const vplRenderStats* stats)
 {
     if (stats->patches == 0) {
@@ -21,7 +12,7 @@ static void addRadiosity(json_t* root, const vplRenderStats* stats)
     json_object_set_new(root, "patch_sides", json_integer(stats->patchSides));
     json_object_set_new(root, stats->linked ? "links" : "form_factors", json_integer(stats->formFactors));
     if (s->rowSumMax == 0) {
-        return; // nothing was exchanged, or asked for
+        return; // no light was exchanged, or no statistics were asked for
     }
     json_object_set_new(root, "iterations", json_integer(s->iterations));
     json_object_set_new(root, "residual", json_real(s->residual));
@@ -75,8 +66,8 @@ int writeStats(vplContext* context, const char* path, const vplRenderStats* s)
                   "s:i, s:s, s:I, s:s}",
                   "stages_ms", stages, "total_ms", s->totalMs, "cpu_ms", s->cpuMs, "draw_calls",
                   (json_int_t)s->drawCalls, "fragments", (json_int_t)s->fragments, "virtual_lights",
-                  s->virtualLights, "lights_per_step", intArray(s->particlesPerStep, s->stepCount),
-                  "lights_left_per_step", intArray(s->lightsPerStep, s->stepCount), "escaped", s->escaped,
+                  s->virtualLights, "lights_per_step", integersJson(s->particlesPerStep, s->stepCount),
+                  "lights_left_per_step", integersJson(s->lightsPerStep, s->stepCount), "escaped", s->escaped,
                   "ray_object_tests", (json_int_t)s->rayObjectTests, "rays", (json_int_t)s->rays, "objects",
                   s->objects, "triangles", s->triangles, "patches", s->patches, "min_distance",
                   (double)s->minDistance, "reflectivity", s->reflectivity, "passes", s->passes, "threads",

@@ -50,13 +50,10 @@ static void setPixel(vplImage* image, int x, int y, vplRgb colour)
     }
 }
 
-// Rows of 5 bits, top first.
-typedef struct Glyph {
+static const struct {
     char character;
-    uint8_t rows[7];
-} Glyph;
-
-static const Glyph GLYPHS[] = {
+    uint8_t rows[7]; // of 5 bits, top first
+} GLYPHS[] = {
     {'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},
     {'2', {14, 17, 1, 2, 4, 8, 31}},     {'3', {31, 2, 4, 2, 1, 17, 14}},
     {'4', {2, 6, 10, 18, 31, 2, 2}},     {'5', {31, 16, 30, 1, 1, 17, 14}},
@@ -86,11 +83,8 @@ int vplColourBar_GetHeight(int width)
     return width >= 160 ? 26 : 0;
 }
 
-void vplColourBar_Draw(vplImage* image, int top, int height, float largest, vplColourFcn* colour)
+void vplColourBar_Draw(vplImage* image, int top, float largest, vplColourFcn* colour)
 {
-    if (height == 0) {
-        return;
-    }
     for (int x = 0; x < image->width; x++) {
         for (int y = top + 2; y < top + 14; y++) {
             setPixel(image, x, y, colour((float)x / (float)(image->width - 1)));
@@ -112,10 +106,8 @@ static void drawMark(vplImage* image, float x, float y, float radius, bool squar
     if (!(fabsf(x) < 1e6f && fabsf(y) < 1e6f)) {
         return;
     }
-    int x0 = (int)floorf(x - radius), x1 = (int)ceilf(x + radius);
-    int y0 = (int)floorf(y - radius), y1 = (int)ceilf(y + radius);
-    for (int j = vplMaxi(y0, 0); j <= vplMini(y1, image->height - 1); j++) {
-        for (int i = vplMaxi(x0, 0); i <= vplMini(x1, image->width - 1); i++) {
+    for (int j = (int)floorf(y - radius); j <= (int)ceilf(y + radius); j++) {
+        for (int i = (int)floorf(x - radius); i <= (int)ceilf(x + radius); i++) {
             float dx = (float)i + 0.5f - x, dy = (float)j + 0.5f - y;
             float d = square ? vplMaxf(fabsf(dx), fabsf(dy)) : sqrtf(dx * dx + dy * dy);
             if (d <= radius) {

@@ -8,7 +8,7 @@
 // Linear RGB of t, clamped to [0, 1]: black, violet, red, orange, yellow, white.
 vplRgb vplFalseColour(float t);
 
-// The same in the magma colours of FLIP's maps: black, violet, red, pale yellow.
+// Linear RGB of t, clamped to [0, 1], in the magma colours of FLIP's maps: black, violet, red, pale yellow.
 vplRgb vplMagma(float t);
 
 // Height of the colour bar below a picture of this width; 0 if the picture is too narrow for one.
@@ -17,7 +17,7 @@ int vplColourBar_GetHeight(int width);
 typedef vplRgb vplColourFcn(float t);
 
 // Draws a bar of these colours from row `top` on, with numbers from 0 to `largest`.
-void vplColourBar_Draw(vplImage* image, int top, int height, float largest, vplColourFcn* colour);
+void vplColourBar_Draw(vplImage* image, int top, float largest, vplColourFcn* colour);
 
 // Draws a filled disc with a dark rim, clipped to the picture.
 void vplDrawDisc(vplImage* image, float x, float y, float radius, vplRgb colour);

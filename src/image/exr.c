@@ -33,13 +33,116 @@ vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* byt
 
 #else
 
-#include "image/exr_stream.h"
+#include <OpenEXR/openexr.h>
 
 #include <string.h>
+
+// Returns from the calling function with the result of `expression` unless it succeeded.
+#define TRY_EXR(expression)                                                                                  \
+    do {                                                                                                     \
+        const exr_result_t tryResult = (expression);                                                         \
+        if (tryResult != EXR_ERR_SUCCESS) {                                                                  \
+            return tryResult;                                                                                \
+        }                                                                                                    \
+    } while (0)
 
 bool vplHasExr(void)
 {
     return true;
+}
+
+// ---- reading from and writing to memory
+
+// The user data of OpenEXRCore's callbacks.
+typedef struct Stream {
+    const uint8_t* bytes; // to read
+    size_t size;
+    vplByteBuffer* buffer; // to write
+    char reason[160];      // of the first error, which OpenEXRCore would print
+} Stream;
+
+static void keepReason(exr_const_context_t exr, exr_result_t code, const char* message)
+{
+    (void)code;
+    void* user;
+    if (exr == NULL || exr_get_user_data(exr, &user) != EXR_ERR_SUCCESS || user == NULL) {
+        return;
+    }
+    Stream* s = user;
+    if (s->reason[0] != 0) {
+        return;
+    }
+    // The message quotes names from the file, which may contain any byte.
+    size_t length = 0;
+    for (; message[length] != 0 && length + 1 < sizeof s->reason; length++) {
+        bool printable = message[length] >= 0x20 && message[length] < 0x7F;
+        s->reason[length] = printable ? message[length] : '?';
+    }
+    s->reason[length] = 0;
+}
+
+static int64_t readStream(exr_const_context_t exr, void* user, void* to, uint64_t size, uint64_t offset,
+                          exr_stream_error_func_ptr_t fail)
+{
+    (void)exr;
+    (void)fail;
+    const Stream* s = user;
+    if (offset >= s->size) {
+        return 0;
+    }
+    uint64_t count = s->size - offset < size ? s->size - offset : size;
+    memcpy(to, s->bytes + offset, count);
+    return (int64_t)count;
+}
+
+static int64_t sizeStream(exr_const_context_t exr, void* user)
+{
+    (void)exr;
+    return (int64_t)((const Stream*)user)->size;
+}
+
+// Appends, except for the table of chunks, which is overwritten at the end.
+static int64_t writeStream(exr_const_context_t exr, void* user, const void* from, uint64_t size,
+                           uint64_t offset, exr_stream_error_func_ptr_t fail)
+{
+    (void)exr;
+    (void)fail;
+    static const uint8_t zeros[256];
+    vplByteBuffer* buffer = ((Stream*)user)->buffer;
+    while (buffer->size < offset && !buffer->failed) {
+        uint64_t gap = offset - buffer->size;
+        vplByteBuffer_Append(buffer, zeros, gap < sizeof zeros ? gap : sizeof zeros);
+    }
+    if (buffer->failed) {
+        return -1;
+    }
+    uint64_t over = buffer->size - offset < size ? buffer->size - offset : size;
+    if (over > 0) {
+        memcpy(buffer->bytes + offset, from, over);
+    }
+    vplByteBuffer_Append(buffer, (const uint8_t*)from + over, size - over);
+    return buffer->failed ? -1 : (int64_t)size;
+}
+
+static void closeStream(exr_const_context_t exr, void* user, int failed)
+{
+    (void)exr;
+    (void)user;
+    (void)failed;
+}
+
+// The set-up of an OpenEXRCore context that uses the stream.
+static exr_context_initializer_t describeStream(Stream* s)
+{
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = keepReason;
+    init.user_data = s;
+    init.read_fn = s->buffer ? NULL : readStream;
+    init.size_fn = s->buffer ? NULL : sizeStream;
+    init.write_fn = s->buffer ? writeStream : NULL;
+    init.destroy_fn = closeStream;
+    init.max_image_width = init.max_image_height = VPL_MAX_IMAGE_SIZE;
+    return init;
 }
 
 // ---- writing
@@ -105,8 +208,8 @@ static exr_result_t encode(exr_context_t* exr, const vplImage* image, exr_encode
 vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
 {
     (void)options;
-    vplExrStream stream = {.buffer = buffer};
-    const exr_context_initializer_t init = vplExrStream_Describe(&stream);
+    Stream stream = {.buffer = buffer};
+    const exr_context_initializer_t init = describeStream(&stream);
     exr_context_t exr = NULL;
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_result_t r = encode(&exr, image, &pipeline, &init);
@@ -200,8 +303,7 @@ static exr_result_t readRows(exr_context_t exr, const Layout* layout, vplImage* 
     return EXR_ERR_SUCCESS;
 }
 
-static vplResult failReading(vplContext* context, const char* path, const vplExrStream* stream,
-                             exr_result_t r)
+static vplResult failReading(vplContext* context, const char* path, const Stream* stream, exr_result_t r)
 {
     if (r == EXR_ERR_OUT_OF_MEMORY) {
         return vplFail(context, VPL_OUT_OF_MEMORY, "%s: out of memory while decoding", path);
@@ -210,7 +312,7 @@ static vplResult failReading(vplContext* context, const char* path, const vplExr
                    stream->reason[0] ? stream->reason : exr_get_default_error_message(r));
 }
 
-static vplResult decode(vplContext* context, exr_context_t exr, const char* path, const vplExrStream* stream,
+static vplResult decode(vplContext* context, exr_context_t exr, const char* path, const Stream* stream,
                         vplImage** imageOut)
 {
     Layout layout;
@@ -234,8 +336,8 @@ static vplResult decode(vplContext* context, exr_context_t exr, const char* path
 vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
                        vplImage** imageOut)
 {
-    vplExrStream stream = {.bytes = bytes, .size = size};
-    const exr_context_initializer_t init = vplExrStream_Describe(&stream);
+    Stream stream = {.bytes = bytes, .size = size};
+    const exr_context_initializer_t init = describeStream(&stream);
     exr_context_t exr = NULL;
     const exr_result_t r = exr_start_read(&exr, "picture.exr", &init);
     if (r != EXR_ERR_SUCCESS) {

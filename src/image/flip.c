@@ -231,7 +231,8 @@ static void compareRow(void* data, int y, int worker)
         double error = pixelError(f, a, b, x);
         sum += error;
         if (f->map != NULL) {
-            vplSetGrey(f->map, (int)x, y, (float)error);
+            float* pixel = f->map->pixels + 3 * ((size_t)y * width + x);
+            pixel[0] = pixel[1] = pixel[2] = (float)error;
         }
     }
     f->rows[y] = sum;

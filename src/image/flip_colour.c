@@ -15,7 +15,7 @@ static const double TO_XYZ[3][3] = {
     {1425312.0 / 73733382, 8788810.0 / 73733382, 70074185.0 / 73733382},
 };
 
-// XYZ divided by the XYZ of white.
+// Converts linear RGB to XYZ divided by the XYZ of white.
 static void toRelativeXyz(const double rgb[3], double xyz[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -24,7 +24,7 @@ static void toRelativeXyz(const double rgb[3], double xyz[3])
     }
 }
 
-// The inverse, by Cramer's rule.
+// Converts back, with the inverse matrix by Cramer's rule.
 static void fromRelativeXyz(const double relative[3], double rgb[3])
 {
     const double(*m)[3] = TO_XYZ;

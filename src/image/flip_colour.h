@@ -10,7 +10,7 @@ void vplToOpponent(const float rgb[3], float opponent[3]);
 // clamping to the RGB cube.
 double vplHuntHyab(const float a[3], const float b[3]);
 
-// The same between linear green and blue, which is the largest distance.
+// That distance between linear green and blue, the largest that two colours can have.
 double vplHuntHyabOfGreenAndBlue(void);
 
 #endif

@@ -87,7 +87,9 @@ static vplResult colour(const vplImage* map, float scale, vplColourFcn* colours,
         image->pixels[3 * i + 1] = c.g;
         image->pixels[3 * i + 2] = c.b;
     }
-    vplColourBar_Draw(image, map->height, barHeight, scale, colours);
+    if (barHeight > 0) {
+        vplColourBar_Draw(image, map->height, scale, colours);
+    }
     *imageOut = image;
     return VPL_SUCCESS;
 }

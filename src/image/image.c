@@ -59,14 +59,10 @@ vplWriteOptions vplDefaultWriteOptions(void)
     return (vplWriteOptions){0, VPL_TONEMAP_NONE, VPL_WRITE_COOKIE};
 }
 
-typedef vplResult EncodeFcn(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
-typedef vplResult DecodeFcn(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                            vplImage** imageOut);
-
 typedef struct Format {
     const char* extension;
-    EncodeFcn* encode; // NULL: read only
-    DecodeFcn* decode;
+    vplEncodeFcn* encode; // NULL: read only
+    vplDecodeFcn* decode;
 } Format;
 
 static const Format FORMATS[] = {

@@ -10,19 +10,14 @@
 
 enum { VPL_WRITE_COOKIE = 0x56504c32, VPL_REINHARD_COOKIE = 0x56504c33, VPL_HEATMAP_COOKIE = 0x56504c48 };
 
-vplResult vplEncodePng(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
-vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
-vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
-vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
+// Encoders append a file to the buffer. The caller checks buffer->failed.
+typedef vplResult vplEncodeFcn(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
+vplEncodeFcn vplEncodePng, vplEncodeHdr, vplEncodePfm, vplEncodeExr;
 
-vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut);
-vplResult vplDecodeHdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut);
-vplResult vplDecodePfm(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut);
-vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut);
+// Decoders read a whole file. `path` is for messages.
+typedef vplResult vplDecodeFcn(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                               vplImage** imageOut);
+vplDecodeFcn vplDecodeLdr, vplDecodeHdr, vplDecodePfm, vplDecodeExr;
 
 // True if OpenEXR is built in. If not, vplEncodeExr and vplDecodeExr fail with a message.
 bool vplHasExr(void);

@@ -29,12 +29,6 @@ double vplSumInOrder(const double* values, int count)
     return sum;
 }
 
-void vplSetGrey(vplImage* image, int x, int y, float value)
-{
-    float* p = image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-    p[0] = p[1] = p[2] = value;
-}
-
 // A sum without its `capacity` largest terms. A min-heap holds these, so that they never enter the sum,
 // however large.
 typedef struct TrimmedSum {

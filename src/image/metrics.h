@@ -11,7 +11,4 @@ vplResult vplRequirePair(const vplImage* a, const vplImage* b);
 // Adds numbers from first to last, the order of summation of all metrics.
 double vplSumInOrder(const double* values, int count);
 
-// Sets all three channels of a pixel.
-void vplSetGrey(vplImage* image, int x, int y, float value);
-
 #endif

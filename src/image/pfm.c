@@ -10,10 +10,11 @@
 
 static uint32_t readWord(const uint8_t* bytes, bool little)
 {
-    return little ? (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
-                        (uint32_t)bytes[3] << 24
-                  : (uint32_t)bytes[3] | (uint32_t)bytes[2] << 8 | (uint32_t)bytes[1] << 16 |
-                        (uint32_t)bytes[0] << 24;
+    uint32_t word = 0;
+    for (int b = 0; b < 4; b++) {
+        word |= (uint32_t)bytes[little ? b : 3 - b] << 8 * b;
+    }
+    return word;
 }
 
 vplResult vplEncodePfm(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)

@@ -8,8 +8,8 @@
 
 vplResult vplImage_Crop(const vplImage* image, int x, int y, int width, int height, vplImage** imageOut)
 {
-    bool inside = x >= 0 && y >= 0 && width >= 1 && height >= 1 && x < image->width && y < image->height &&
-                  width <= image->width - x && height <= image->height - y;
+    bool inside = x >= 0 && y >= 0 && width >= 1 && height >= 1 && width <= image->width - x &&
+                  height <= image->height - y;
     if (!inside) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "region %dx%d at (%d, %d) must lie inside the picture, which is %dx%d", width, height,

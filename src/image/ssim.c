@@ -128,11 +128,9 @@ static void compareRow(void* data, int y, int worker)
 // Replaces the similarities of the three channels of each pixel of the map by their mean.
 static void averageMap(vplImage* map)
 {
-    for (int y = 0; y < map->height; y++) {
-        for (int x = 0; x < map->width; x++) {
-            const float* p = map->pixels + 3 * ((size_t)y * (size_t)map->width + (size_t)x);
-            vplSetGrey(map, x, y, (float)(((double)p[0] + p[1] + p[2]) / 3));
-        }
+    for (size_t i = 0; i < (size_t)map->width * (size_t)map->height; i++) {
+        float* p = map->pixels + 3 * i;
+        p[0] = p[1] = p[2] = (float)(((double)p[0] + p[1] + p[2]) / 3);
     }
 }
 

@@ -121,9 +121,9 @@ static float largestCoordinate(vplVec3 p)
     return fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
 }
 
-// Whether a point on a surface is visible from the vertex; the cosine is at the point. The shadow ray must
-// not hit that surface, which rounding puts before or behind the point: it stops short by the rounding of
-// coordinates, enlarged at grazing angles.
+// Tests whether a point on a surface is visible from the vertex; the cosine is at the point. The shadow ray
+// must not hit that surface, which rounding puts before or behind the point: it stops short by the rounding
+// of coordinates, enlarged at grazing angles.
 static bool isVisible(vplPathState* path, const vplPathVertex* v, vplVec3 point, double distance,
                       double cosine)
 {

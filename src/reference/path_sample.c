@@ -4,7 +4,6 @@
 // reflection only multiplies the throughput by rho. James Arvo and David Kirk, Particle Transport and Image
 // Synthesis, SIGGRAPH 1990: Russian roulette. Nothing is clamped: without the rare bright paths the mean
 // would be biased.
-#include "reference/path_sample.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 #include "reference/direct_light.h"

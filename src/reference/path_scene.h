@@ -50,35 +50,6 @@ typedef struct vplPathScene {
 // it.
 vplResult vplPathScene_Init(vplPathScene* scene, const vplGeometry* geometry, const vplPathDef* def);
 
-// One path while it is followed.
-typedef struct vplPathState {
-    const vplPathScene* scene;
-    uint64_t stream; // of its numbers: one for each half of a pixel's samples
-    uint32_t index;  // of the path in the stream
-    int64_t rays;    // cast so far
-} vplPathState;
-
-// Draws the four numbers in [0, 1) of set `set` of the path.
-void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4]);
-
-// The ray through a position in pixel (x, y), from the near plane. t counts the depth beyond that plane, so
-// the camera sees hits with t <= far - near.
-vplRay vplPathScene_CameraRay(const vplPathScene* scene, int x, int y, const float offset[2]);
-
-// A point where a path is reflected.
-typedef struct vplPathVertex {
-    vplHit hit;
-    vplVec3 normal;  // of the surface, on the side that the path came from
-    vplVec3 shading; // normal to shade with, on the same side
-    vplRgb rho;
-    double density; // per square metre, of reflections that lead here; infinite for what the camera sees
-} vplPathVertex;
-
-vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
-
-// The radiance that the surface emits against `direction`.
-vplRgb vplPathScene_EmissionAt(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
-
 // Radiance, or a part of it.
 typedef struct vplRadiance {
     double r, g, b;
@@ -106,5 +77,37 @@ static inline void vplRadiance_Add(vplRadiance* sum, vplRadiance a)
     sum->g += a.g;
     sum->b += a.b;
 }
+
+// One path while it is followed.
+typedef struct vplPathState {
+    const vplPathScene* scene;
+    uint64_t stream; // of its numbers: one for each half of a pixel's samples
+    uint32_t index;  // of the path in the stream
+    int64_t rays;    // cast so far
+} vplPathState;
+
+// Draws the four numbers in [0, 1) of set `set` of the path.
+void vplPath_Draw(const vplPathState* path, uint32_t set, float out[4]);
+
+// Follows a path through pixel (x, y) and adds its radiance to *sum.
+void vplPath_Follow(vplPathState* path, int x, int y, vplRadiance* sum);
+
+// The ray through a position in pixel (x, y), from the near plane. t counts the depth beyond that plane, so
+// the camera sees hits with t <= far - near.
+vplRay vplPathScene_CameraRay(const vplPathScene* scene, int x, int y, const float offset[2]);
+
+// A point where a path is reflected.
+typedef struct vplPathVertex {
+    vplHit hit;
+    vplVec3 normal;  // of the surface, on the side that the path came from
+    vplVec3 shading; // normal to shade with, on the same side
+    vplRgb rho;
+    double density; // per square metre, of reflections that lead here; infinite for what the camera sees
+} vplPathVertex;
+
+vplPathVertex vplPathVertex_Make(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
+
+// The radiance that the surface emits against `direction`.
+vplRgb vplPathScene_EmissionAt(const vplPathScene* scene, const vplHit* hit, vplVec3 direction);
 
 #endif

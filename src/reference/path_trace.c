@@ -3,20 +3,15 @@
 // scrambled sequences; the difference of their means estimates the error.
 #include "reference/path_trace.h"
 #include "base/arena.h"
-#include "reference/path_sample.h"
 
 #include <float.h>
 #include <math.h>
 
 enum { TILE = 16, HALVES = 2 };
 
-typedef struct PixelSum {
-    vplRadiance half[HALVES];
-} PixelSum;
-
 struct vplPathTracer {
     vplPathScene scene;
-    PixelSum* sums;
+    vplRadiance (*sums)[HALVES]; // of each pixel
     int64_t* tileRays;
     int columns, rows; // of tiles
     int done, now;     // samples per pixel, before this pass and in it
@@ -29,7 +24,8 @@ vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* de
     vplArena* arena = vplArena_Create(geometry->context);
     vplPathTracer* t = vplArena_AllocZero(arena, 1, sizeof *t);
     const int columns = (def->width + TILE - 1) / TILE, rows = (def->height + TILE - 1) / TILE;
-    PixelSum* sums = vplArena_AllocZero(arena, (size_t)def->width * (size_t)def->height, sizeof *sums);
+    vplRadiance(*sums)[HALVES] =
+        vplArena_AllocZero(arena, (size_t)def->width * (size_t)def->height, sizeof *sums);
     int64_t* tileRays = vplArena_AllocZero(arena, (size_t)(columns * rows), sizeof *tileRays);
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
@@ -58,7 +54,7 @@ static void tracePixel(vplPathTracer* t, int x, int y, int64_t* rays)
     for (int i = t->done; i < t->done + t->now; i++) {
         const uint64_t half = i & 1;
         vplPathState path = {&t->scene, HALVES * (uint64_t)pixel + half, (uint32_t)i / HALVES, 0};
-        vplPath_Follow(&path, x, y, &t->sums[pixel].half[half]);
+        vplPath_Follow(&path, x, y, &t->sums[pixel][half]);
         *rays += path.rays;
     }
 }
@@ -109,7 +105,7 @@ void vplPathTracer_Resolve(const vplPathTracer* tracer, vplImage* image, vplPath
     double count[HALVES] = {(tracer->done + 1) / HALVES, tracer->done / HALVES}, squares = 0, total = 0;
     size_t pixels = (size_t)image->width * (size_t)image->height;
     for (size_t i = 0; i < pixels; i++) {
-        const vplRadiance *a = &tracer->sums[i].half[0], *b = &tracer->sums[i].half[1];
+        const vplRadiance *a = &tracer->sums[i][0], *b = &tracer->sums[i][1];
         const double channels[3][HALVES] = {{a->r, b->r}, {a->g, b->g}, {a->b, b->b}};
         for (int c = 0; c < 3; c++) {
             const double* half = channels[c];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What "usual" and "auto" mean: decisions that options and method make, and those that need the scene's geometry.
+// Decisions resolve the options "usual" and "auto": first those that follow from options and method, then
+// those that need the scene's geometry.
 #include "render/plan.h"
 
 #include "render/show.h"
@@ -129,7 +130,7 @@ static void chooseRadiosity(vplPlan* p)
     }
 }
 
-// What the picture adds up.
+// Decides which kinds of light the picture adds up.
 static void choosePicture(const vplScene* scene, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
@@ -181,8 +182,8 @@ static vplResult chooseClamp(vplRunner* r, vplPlan* p)
     p->clampArea = vplGeometry_Area(g);
     if (p->compensates && g->triangleCount > 0) {
         TRY(vplRunner_RunStage(r, VPL_STAGE_NEAR_DISTANCE));
-        const vplNearDistance* near = r->run.results[VPL_STAGE_NEAR_DISTANCE];
-        p->nearDistance = near->metres;
+        const float* near = r->run.results[VPL_STAGE_NEAR_DISTANCE];
+        p->nearDistance = *near;
     }
     return VPL_SUCCESS;
 }
@@ -204,7 +205,7 @@ static vplResult countLights(vplRunner* r, vplPlan* p)
                              p->particlesPerStep, VPL_MAX_STEPS_REPORTED, &p->stepCount, &p->virtualLights);
 }
 
-// SSVP's lights, most.
+// Counts the most lights that SSVP can have.
 static void countSsvpLights(vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
@@ -230,7 +231,7 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
     }
 }
 
-// Whether patches exchange light in groups.
+// Decides whether patches exchange light in groups.
 static vplResult chooseLinks(vplRunner* r, vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
@@ -277,7 +278,6 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
     return VPL_SUCCESS;
 }
 
-// Maps or rays for virtual lights, by what each will cost for the lights of the first pass.
 vplResult vplDecideLightShadows(vplRunner* r, vplPlan* p)
 {
     char why[VPL_PLAN_TEXT];

@@ -37,36 +37,7 @@ static double rsmFaces(const vplPlan* p)
 
 // ---- stages
 
-static Bytes emitterMaps(const Scale* s)
-{
-    const double size = s->plan->options.shadow.mapSize, shadow = sizeof(vplShadow);
-    return (Bytes){countMaps(s->plan, false) * 6 * size * size * sizeof(float) +
-                       s->plan->emitterCount * shadow,
-                   2e5 + RASTER_CUBE * s->triangles};
-}
-
-static Bytes areaLights(const Scale* s)
-{
-    return (Bytes){s->plan->options.lights.areaLightSamples * (double)sizeof(vplShadeLight), 0};
-}
-
-static Bytes reflectiveMaps(const Scale* s)
-{
-    const double size = s->plan->options.shadow.rsmSize; // a distance and a triangle per texel
-    return (Bytes){rsmFaces(s->plan) * size * size * 8, 1.5e5 + RASTER_VIEW * s->triangles};
-}
-
-static Bytes virtualLightSet(const Scale* s)
-{
-    return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4};
-}
-
-static Bytes preparedLights(const Scale* s)
-{
-    return (Bytes){s->lights * sizeof(vplShadeLight), 0};
-}
-
-// Of both hemispheres, whether they are used or not.
+// Maps of both hemispheres, whether they are used or not, for the clusters of at most so many lights.
 static Bytes paraboloids(const Scale* s, double lights, double values)
 {
     const int size = s->plan->options.ssvp.paraboloidSize;
@@ -76,52 +47,24 @@ static Bytes paraboloids(const Scale* s, double lights, double values)
     return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
 }
 
-static Bytes firstParaboloids(const Scale* s)
+static Bytes formFactors(const Scale* s, double sides)
 {
-    const bool surfaces = vplSsvpHasSecondBounce(s->plan) || vplSsvpShowsClusters(s->plan);
-    return paraboloids(s, s->plan->options.ssvp.firstBounce, surfaces ? 2 : 1);
+    return s->plan->linked ? (Bytes){800 * sides, 700 * sides} : (Bytes){4 * sides * sides, 515 * sides};
 }
 
-static Bytes secondParaboloids(const Scale* s)
+static Bytes patchLight(const Scale* s, double sides)
 {
-    return paraboloids(s, s->plan->options.ssvp.secondBounce, 1);
+    const double chunk = sides < 4096 ? sides : 4096;
+    return (Bytes){28 * sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
 }
 
-static Bytes patchMesh(const Scale* s)
-{
-    return (Bytes){98.0 * s->plan->patches, 98.0 * s->plan->patches};
-}
-
-static Bytes formFactors(const Scale* s)
-{
-    return s->plan->linked ? (Bytes){800 * s->sides, 700 * s->sides}
-                           : (Bytes){4 * s->sides * s->sides, 515 * s->sides};
-}
-
-static Bytes patchLight(const Scale* s)
-{
-    const double chunk = s->sides < 4096 ? s->sides : 4096;
-    return (Bytes){28 * s->sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
-}
-
-static Bytes solution(const Scale* s)
-{
-    return (Bytes){24 * s->sides, (s->plan->linked ? 152 : 72) * s->sides};
-}
-
-static Bytes vertexLight(const Scale* s)
-{
-    return (Bytes){14.0 * s->plan->patches, 57.0 * s->plan->patches};
-}
-
-// The last draft of adaptive patches has two thirds of them.
+// The last draft of adaptive patches has two thirds of the final sides.
 static Bytes adaptivePatches(const Scale* s)
 {
-    Scale draft = *s;
-    draft.sides = s->sides / 1.5;
-    const Bytes factors = formFactors(&draft), light = patchLight(&draft), solved = solution(&draft);
+    const double sides = s->sides / 1.5;
+    const Bytes factors = formFactors(s, sides), light = patchLight(s, sides);
     return (Bytes){70.0 * s->plan->patches,
-                   factors.held + light.held + light.scratch + solved.held + 300 * draft.sides};
+                   factors.held + light.held + light.scratch + 24 * sides + 300 * sides};
 }
 
 static double pipelineScratch(const Scale* s)
@@ -154,34 +97,53 @@ static Bytes picture(const Scale* s)
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
 
-// Sums of two halves, and the picture they resolve to.
-static Bytes paths(const Scale* s)
+static Bytes estimate(const Scale* s, vplStageId id)
 {
-    return (Bytes){60 * s->pixels, 0};
+    const vplPlan* p = s->plan;
+    const vplRenderOptions* o = &p->options;
+    const double shadowTexels = (double)o->shadow.mapSize * o->shadow.mapSize,
+                 rsmTexels = (double)o->shadow.rsmSize * o->shadow.rsmSize;
+    const bool surfaces = vplSsvpHasSecondBounce(p) || vplSsvpShowsClusters(p);
+    switch (id) {
+    case VPL_STAGE_EMITTER_MAPS:
+        return (Bytes){countMaps(p, false) * 6 * shadowTexels * sizeof(float) +
+                           p->emitterCount * (double)sizeof(vplShadow),
+                       2e5 + RASTER_CUBE * s->triangles};
+    case VPL_STAGE_AREA_LIGHTS:
+        return (Bytes){o->lights.areaLightSamples * (double)sizeof(vplShadeLight), 0};
+    case VPL_STAGE_REFLECTIVE_MAPS: // a distance and a triangle per texel
+        return (Bytes){rsmFaces(p) * rsmTexels * 8, 1.5e5 + RASTER_VIEW * s->triangles};
+    case VPL_STAGE_PARTICLES:
+    case VPL_STAGE_FIRST_BOUNCE:
+    case VPL_STAGE_SECOND_BOUNCE:
+    case VPL_STAGE_CLUSTERED_LIGHTS:
+        return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4};
+    case VPL_STAGE_PARABOLOIDS: // distances, and triangles where surfaces are asked for
+        return paraboloids(s, o->ssvp.firstBounce, surfaces ? 2 : 1);
+    case VPL_STAGE_SECOND_PARABOLOIDS:
+        return paraboloids(s, o->ssvp.secondBounce, 1);
+    case VPL_STAGE_VIRTUAL_LIGHTS:
+        return (Bytes){s->lights * sizeof(vplShadeLight), 0};
+    case VPL_STAGE_PATCHES:
+        return adaptivePatches(s);
+    case VPL_STAGE_PATCH_MESH:
+        return (Bytes){98.0 * p->patches, 98.0 * p->patches};
+    case VPL_STAGE_FORM_FACTORS:
+        return formFactors(s, s->sides);
+    case VPL_STAGE_PATCH_LIGHT:
+        return patchLight(s, s->sides);
+    case VPL_STAGE_SOLUTION:
+        return (Bytes){24 * s->sides, (p->linked ? 152 : 72) * s->sides};
+    case VPL_STAGE_VERTEX_LIGHT:
+        return (Bytes){14.0 * p->patches, 57.0 * p->patches};
+    case VPL_STAGE_PICTURE:
+        return picture(s);
+    case VPL_STAGE_PATHS: // sums of two halves, and the picture that they resolve to
+        return (Bytes){60 * s->pixels, 0};
+    default: // little
+        return (Bytes){0, 0};
+    }
 }
-
-typedef Bytes EstimateFcn(const Scale* scale);
-
-static EstimateFcn* const ESTIMATES[VPL_STAGE_COUNT] = {
-    [VPL_STAGE_EMITTER_MAPS] = emitterMaps,
-    [VPL_STAGE_AREA_LIGHTS] = areaLights,
-    [VPL_STAGE_REFLECTIVE_MAPS] = reflectiveMaps,
-    [VPL_STAGE_PARTICLES] = virtualLightSet,
-    [VPL_STAGE_FIRST_BOUNCE] = virtualLightSet,
-    [VPL_STAGE_PARABOLOIDS] = firstParaboloids,
-    [VPL_STAGE_SECOND_BOUNCE] = virtualLightSet,
-    [VPL_STAGE_SECOND_PARABOLOIDS] = secondParaboloids,
-    [VPL_STAGE_CLUSTERED_LIGHTS] = virtualLightSet,
-    [VPL_STAGE_VIRTUAL_LIGHTS] = preparedLights,
-    [VPL_STAGE_PATCHES] = adaptivePatches,
-    [VPL_STAGE_PATCH_MESH] = patchMesh,
-    [VPL_STAGE_FORM_FACTORS] = formFactors,
-    [VPL_STAGE_PATCH_LIGHT] = patchLight,
-    [VPL_STAGE_SOLUTION] = solution,
-    [VPL_STAGE_VERTEX_LIGHT] = vertexLight,
-    [VPL_STAGE_PICTURE] = picture,
-    [VPL_STAGE_PATHS] = paths,
-};
 
 // ---- the plan
 
@@ -189,7 +151,7 @@ static EstimateFcn* const ESTIMATES[VPL_STAGE_COUNT] = {
 static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
 {
     const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights;
-    const vplVirtualLights* known = r->store->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
+    const vplVirtualLights* known = r->history->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
     return known != NULL ? known->count : p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
 }
 
@@ -213,27 +175,12 @@ static void countDraws(const Scale* s, vplPlan* p)
     p->drawCalls = objects * (6 * maps + (1 + passes) * antialias) + patchDraws * antialias;
 }
 
-static void sumUp(vplPlan* p, vplStageId id, const vplPlanStage* stage)
-{
-    switch (id) {
-    case VPL_STAGE_EMITTER_MAPS:
-    case VPL_STAGE_REFLECTIVE_MAPS:
-    case VPL_STAGE_PARABOLOIDS:
-    case VPL_STAGE_SECOND_PARABOLOIDS:
-        p->shadowMapBytes += stage->bytes;
-        break;
-    case VPL_STAGE_AREA_LIGHTS:
-    case VPL_STAGE_PARTICLES:
-    case VPL_STAGE_FIRST_BOUNCE:
-    case VPL_STAGE_SECOND_BOUNCE:
-    case VPL_STAGE_CLUSTERED_LIGHTS:
-    case VPL_STAGE_VIRTUAL_LIGHTS:
-        p->lightBytes += stage->bytes;
-        break;
-    default:
-        break;
-    }
-}
+enum {
+    SHADOW_MAPS = 1 << VPL_STAGE_EMITTER_MAPS | 1 << VPL_STAGE_REFLECTIVE_MAPS | 1 << VPL_STAGE_PARABOLOIDS |
+                  1 << VPL_STAGE_SECOND_PARABOLOIDS,
+    LIGHTS = 1 << VPL_STAGE_AREA_LIGHTS | 1 << VPL_STAGE_PARTICLES | 1 << VPL_STAGE_FIRST_BOUNCE |
+             1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS
+};
 
 void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
 {
@@ -247,25 +194,26 @@ void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
                      .lights = (double)p->virtualLights,
                      .drawn = (double)drawnLights(r, p),
                      .sides = p->patchSides};
-    // What else the context holds is not of this render, but for the scene.
+    // The caller's own memory in the context does not count, but the scene's does.
     const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplArena_GetBytes(r->run.scene->arena);
     const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;
     int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign;
     p->peakBytes = (peak > before ? peak : before) - foreign;
     for (int i = 0; i < p->stageCount; i++) {
         vplPlanStage* stage = &p->stages[i];
-        const vplSlot* slot = &r->store->slots[stage->id];
+        const vplSlot* slot = &r->history->slots[stage->id];
         if (slot->result != NULL) { // it ran while decisions were made, and is part of `live`
             stage->bytes = slot->bytes;
             stage->scratch = slot->scratch;
-        } else if (ESTIMATES[stage->id] != NULL) {
-            const Bytes bytes = ESTIMATES[stage->id](&s);
+        } else {
+            const Bytes bytes = estimate(&s, (vplStageId)stage->id);
             stage->bytes = (int64_t)bytes.held;
             stage->scratch = (int64_t)bytes.scratch;
             live += stage->bytes;
             p->peakBytes = live + stage->scratch > p->peakBytes ? live + stage->scratch : p->peakBytes;
         }
-        sumUp(p, (vplStageId)stage->id, stage);
+        p->shadowMapBytes += (1 << stage->id & SHADOW_MAPS) != 0 ? stage->bytes : 0;
+        p->lightBytes += (1 << stage->id & LIGHTS) != 0 ? stage->bytes : 0;
     }
     p->pictureBytes = (int64_t)(12 * s.pixels);
     countDraws(&s, p);

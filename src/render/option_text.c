@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Where a value goes, and who is told why it does not.
+// A value to set, and the options that receive it or the reason why it is refused.
 typedef struct Setting {
     vplRenderOptions* options;
     const vplOption* option;
@@ -32,7 +32,7 @@ static void store(const Setting* s, const void* value, size_t size)
     memcpy((char*)s->options + s->option->offset, value, size);
 }
 
-// Whether strtol or strtod stopped before the end, or skipped blanks at the beginning.
+// True if strtol or strtod stopped before the end, or skipped blanks at the beginning.
 static bool isPast(const char* value, const char* end)
 {
     return end == value || *end != 0 || *value == ' ' || (*value >= '\t' && *value <= '\r');

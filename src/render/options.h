@@ -8,7 +8,7 @@
 // The value of a number or choice; 0 for a seed.
 double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* options);
 
-// Every option in its range, and a camera of the scene.
+// Checks that every option is in its range and the camera is one of the scene's.
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
 
 #endif

@@ -164,11 +164,11 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
 vplResult vplPlan_Create(const vplScene* scene, const vplRenderOptions* options, const vplMachine* machine,
                          vplPlan** planOut)
 {
-    vplStore* store;
-    TRY(vplStore_Create(vplScene_GetContext(scene), &store));
-    vplRunner runner = vplRunner_Begin(scene, store);
+    vplHistory* history;
+    TRY(vplHistory_Create(vplScene_GetContext(scene), &history));
+    vplRunner runner = vplRunner_Begin(scene, history);
     const vplResult result = vplMakePlan(&runner, options, machine, planOut);
-    vplStore_Destroy(store);
+    vplHistory_Destroy(history);
     return result;
 }
 

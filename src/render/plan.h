@@ -16,10 +16,10 @@ void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 // Decisions that need the scene's geometry, which the runner has, or results of stages, which it then runs.
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
-// Maps or rays for virtual lights, by what each will cost for the lights of the first pass.
+// Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.
 vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 
-// Fills in counts and bytes: what stages hold that ran already, and what the others will.
+// Fills in counts and bytes: measured for stages that ran already, estimated for the others.
 void vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
 
 #endif

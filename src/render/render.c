@@ -3,74 +3,44 @@
 // them.
 #include "base/clock.h"
 #include "math/scalar.h"
-#include "render/passes.h"
 #include "render/plan.h"
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 #include "scene/scene.h"
 
-// ---- what frames hand on
+#include <math.h>
 
-struct vplHistory {
-    vplContext* context;
-    uint64_t sceneStamp; // of the scene of the first frame; 0: none yet
-    vplStore* store;     // NULL while a renderer has it
-};
+// ---- histories
 
-vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut)
+// Opens the history that the options name, or a new one where there is none or another renderer uses it.
+static vplResult openHistory(const vplScene* scene, vplHistory* shared, vplHistory** historyOut)
 {
-    vplHistory* history = vplAllocZero(context, 1, sizeof *history);
-    if (history == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    if (shared != NULL && shared->context != scene->context) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.sequence.history was made with another context than the scene's");
     }
-    history->context = context;
-    *historyOut = history;
+    if (shared != NULL && shared->sceneStamp != 0 && shared->sceneStamp != scene->stamp) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.sequence.history is of another scene, or something was added to the "
+                       "scene since");
+    }
+    if (shared == NULL || shared->busy) {
+        return vplHistory_Create(scene->context, historyOut);
+    }
+    shared->busy = true;
+    shared->sceneStamp = scene->stamp;
+    *historyOut = shared;
     return VPL_SUCCESS;
 }
 
-void vplHistory_Destroy(vplHistory* history)
+static void closeHistory(vplHistory* history)
 {
-    if (history != NULL) {
-        vplStore_Destroy(history->store);
-        vplFree(history->context, history);
+    if (history->busy) { // it is the caller's
+        history->busy = false;
+    } else {
+        vplHistory_Destroy(history);
     }
-}
-
-// The store of the frame before, or a new one.
-static vplResult takeStore(const vplScene* scene, const vplRenderOptions* options, vplStore** storeOut)
-{
-    vplHistory* history = options->sequence.history;
-    if (history != NULL) {
-        if (history->context != scene->context) {
-            return vplFail(
-                scene->context, VPL_INVALID_ARGUMENT,
-                "vplRenderOptions.sequence.history was made with another context than the scene's");
-        }
-        if (history->sceneStamp != 0 && history->sceneStamp != scene->stamp) {
-            return vplFail(
-                scene->context, VPL_INVALID_ARGUMENT,
-                "vplRenderOptions.sequence.history is of another scene, or something was added to the "
-                "scene since");
-        }
-        if (history->store != NULL) {
-            *storeOut = history->store;
-            history->store = NULL;
-            return VPL_SUCCESS;
-        }
-    }
-    return vplStore_Create(scene->context, storeOut);
-}
-
-static void giveStore(const vplScene* scene, vplHistory* history, vplStore* store)
-{
-    if (history == NULL) {
-        vplStore_Destroy(store);
-        return;
-    }
-    vplStore_Destroy(history->store);
-    history->store = store;
-    history->sceneStamp = scene->stamp;
 }
 
 // ---- a render as a loop of steps
@@ -78,8 +48,8 @@ static void giveStore(const vplScene* scene, vplHistory* history, vplStore* stor
 struct vplRenderer {
     vplRunner runner;
     vplPlan* plan;
-    vplPasses passes;
-    vplHistory* history;
+    vplImage* base;         // all of the picture; direct light alone where passes add the rest
+    double* sums[2];        // of the pictures of passes with even and odd numbers; NULL without passes
     int done;               // passes
     double start, cpuStart; // ms
     double passMs;          // of all passes
@@ -90,18 +60,16 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
 {
     vplContext* context = vplScene_GetContext(scene);
     const double start = vplClockMs(), cpuStart = vplCpuMs();
-    vplStore* store;
-    TRY(takeStore(scene, options, &store));
+    vplHistory* history;
+    TRY(openHistory(scene, options->sequence.history, &history));
     vplRenderer* r = vplAllocZero(context, 1, sizeof *r);
     if (r == NULL) {
-        vplStore_Destroy(store);
+        closeHistory(history);
         return VPL_OUT_OF_MEMORY;
     }
-    r->history = options->sequence.history;
     r->start = start;
     r->cpuStart = cpuStart;
-    r->passes.context = context;
-    r->runner = vplRunner_Begin(scene, store);
+    r->runner = vplRunner_Begin(scene, history);
     r->runner.progress = options->progress;
     r->runner.progressUser = options->progressUser;
     r->runner.stats.clampLoss = r->runner.stats.errorEstimate = r->runner.stats.relativeErrorEstimate = -1;
@@ -117,7 +85,7 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     return VPL_SUCCESS;
 }
 
-// The share of the whole that so many passes are, as far as it can be told.
+// Estimates the share of the whole render that `passes` are, for progress.
 static double shareOf(const vplRenderer* r, int passes)
 {
     const vplStopOptions* o = &r->plan->options.stop;
@@ -138,15 +106,25 @@ static double shareOf(const vplRenderer* r, int passes)
     return share < 1 ? share : 1;
 }
 
-// Direct light in the first pass, then virtual lights: those of each pass make a picture, and the passes'
-// mean counts.
+static vplResult openSums(vplRenderer* r)
+{
+    for (int half = 0; half < 2; half++) {
+        r->sums[half] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[half]);
+        if (r->sums[half] == NULL) {
+            return VPL_OUT_OF_MEMORY;
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums.
 static vplResult addPass(vplRenderer* r)
 {
     if (r->done == 0) {
         r->runner.run.parts = VPL_PART_DIRECT;
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
-        r->passes.base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(vplPasses_Open(&r->passes, r->passes.base));
+        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+        TRY(openSums(r));
         r->runner.run.parts = VPL_PART_INDIRECT;
         TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
     } else {
@@ -154,7 +132,9 @@ static vplResult addPass(vplRenderer* r)
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
     }
     vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-    vplPasses_Add(&r->passes, r->done, image);
+    for (size_t k = 0; k < vplValueCount(image); k++) {
+        r->sums[r->done % 2][k] += (double)image->pixels[k];
+    }
     vplImage_Destroy(image);
     return VPL_SUCCESS;
 }
@@ -170,11 +150,31 @@ static vplResult runPass(vplRenderer* r)
     TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_COUNT));
     if (r->plan->options.method != VPL_METHOD_PATH) {
         const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-        vplImage_Destroy(r->passes.base);
-        r->passes.base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        return show->drawOver != NULL ? show->drawOver(run, r->passes.base) : VPL_SUCCESS;
+        vplImage_Destroy(r->base);
+        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+        return show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS;
     }
     return VPL_SUCCESS;
+}
+
+// The means of the even and the odd passes differ by their errors: half of the difference is the error to
+// expect in the mean of both. Errors that both share (of direct light, and light that the accumulation loses
+// or moves) are not in it.
+static void estimateError(vplRenderer* r, const vplImage* image)
+{
+    const size_t values = vplValueCount(image);
+    const int odd = r->done / 2, even = r->done - odd;
+    vplRenderStats* stats = &r->runner.stats;
+    double squares = 0, sum = 0;
+    for (size_t k = 0; k < values && odd > 0; k++) {
+        const double half = 0.5 * (r->sums[0][k] / even - r->sums[1][k] / odd);
+        squares += half * half;
+        sum += (double)image->pixels[k];
+    }
+    if (odd > 0) {
+        stats->errorEstimate = sqrt(squares / (double)values);
+        stats->relativeErrorEstimate = sum > 0 ? stats->errorEstimate * (double)values / sum : 0;
+    }
 }
 
 static vplResult resolve(vplRenderer* r, vplImage** imageOut)
@@ -184,11 +184,18 @@ static vplResult resolve(vplRenderer* r, vplImage** imageOut)
     if (r->plan->options.method == VPL_METHOD_PATH) {
         return vplResolvePaths(run, imageOut);
     }
-    TRY(vplPasses_Resolve(&r->passes, r->done, imageOut, &r->runner.stats));
+    TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
+    for (size_t k = 0; k < vplValueCount(r->base); k++) {
+        const double mean = r->plan->progressive ? (r->sums[0][k] + r->sums[1][k]) / r->done : 0;
+        (*imageOut)->pixels[k] = (float)((double)r->base->pixels[k] + mean);
+    }
+    if (r->plan->progressive) {
+        estimateError(r, *imageOut);
+    }
     return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
 }
 
-// Whether the options' count of passes, error or time is reached.
+// Tests whether the options' count of passes, error or time is reached.
 static vplResult isDone(vplRenderer* r, bool* doneOut)
 {
     const vplRenderOptions* o = &r->plan->options;
@@ -254,23 +261,25 @@ void vplRenderer_Destroy(vplRenderer* r)
 {
     if (r != NULL) {
         vplContext* context = r->runner.run.context;
-        vplPasses_Free(&r->passes);
+        vplImage_Destroy(r->base);
+        vplFree(context, r->sums[0]);
+        vplFree(context, r->sums[1]);
         vplPlan_Destroy(r->plan);
-        giveStore(r->runner.run.scene, r->history, r->runner.store);
+        closeHistory(r->runner.history);
         vplFree(context, r);
     }
 }
 
 // ---- in one call
 
-// The last picture: it may be given away where no pass follows.
+// Takes the last picture. Where no pass follows it is given away without a copy.
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
     if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH) {
         return vplRenderer_GetImage(r, imageOut, statsOut);
     }
-    *imageOut = r->passes.base;
-    r->passes.base = NULL;
+    *imageOut = r->base;
+    r->base = NULL;
     if (statsOut != NULL) {
         finishStats(r, *imageOut, statsOut);
     }
@@ -314,7 +323,7 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
     TRY(vplRenderer_Create(scene, &o, &r));
     const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, stage);
     if (result == VPL_SUCCESS && ssvp) {
-        vplClusteredLights* lights = r->runner.store->slots[stage].result;
+        vplClusteredLights* lights = r->runner.history->slots[stage].result;
         *setOut = lights->set;
         lights->set = NULL;
     } else if (result == VPL_SUCCESS) {

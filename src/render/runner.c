@@ -9,43 +9,48 @@
 
 #include <string.h>
 
-// ---- the store
+// ---- results of stages
 
-vplResult vplStore_Create(vplContext* context, vplStore** storeOut)
+vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut)
 {
-    vplStore* store = vplAllocZero(context, 1, sizeof *store);
-    if (store == NULL) {
+    vplHistory* history = vplAllocZero(context, 1, sizeof *history);
+    if (history == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    store->context = context;
-    *storeOut = store;
+    history->context = context;
+    *historyOut = history;
     return VPL_SUCCESS;
 }
 
-static void empty(vplStore* store, vplStageId id)
+static void empty(vplHistory* history, vplStageId id)
 {
-    VPL_STAGES[id].destroy(store->slots[id].result);
-    store->slots[id].result = NULL;
+    vplSlot* slot = &history->slots[id];
+    if (slot->result != NULL && VPL_STAGES[id].destroy != NULL) {
+        VPL_STAGES[id].destroy(slot->result);
+    }
+    vplArena_Destroy(slot->arena);
+    slot->result = NULL;
+    slot->arena = NULL;
 }
 
-void vplStore_Destroy(vplStore* store)
+void vplHistory_Destroy(vplHistory* history)
 {
-    if (store != NULL) {
+    if (history != NULL) {
         for (int id = VPL_STAGE_COUNT; id-- > 0;) { // results refer to those before them
-            empty(store, id);
+            empty(history, id);
         }
-        vplFree(store->context, store);
+        vplFree(history->context, history);
     }
 }
 
 // ---- progress and time
 
-vplRunner vplRunner_Begin(const vplScene* scene, vplStore* store)
+vplRunner vplRunner_Begin(const vplScene* scene, vplHistory* history)
 {
     vplContext* context = vplScene_GetContext(scene);
     vplContext_ResetPeakBytes(context);
     return (vplRunner){.run = {.context = context, .scene = scene},
-                       .store = store,
+                       .history = history,
                        .stepTo = 1,
                        .heldBytes = vplContext_GetBytes(context)};
 }
@@ -56,16 +61,6 @@ static bool forwardProgress(void* user, double fraction)
     const double part = r->partFrom + (r->partTo - r->partFrom) * fraction;
     const double stage = r->stageFrom + (r->stageTo - r->stageFrom) * part;
     return r->progress(r->progressUser, r->stepFrom + (r->stepTo - r->stepFrom) * stage);
-}
-
-vplProgressFcn* vplRun_Progress(const vplRun* run)
-{
-    return run->runner->progress != NULL ? forwardProgress : NULL;
-}
-
-void* vplRun_ProgressUser(const vplRun* run)
-{
-    return run->runner;
 }
 
 void vplRun_BeginPart(const vplRun* run, int i, int count)
@@ -122,104 +117,85 @@ size_t vplRunner_PeakBytes(vplRunner* r)
 
 // ---- keys
 
-static uint64_t hashNumbers(uint64_t state, const double* numbers, int count)
+static uint64_t hashBytes(uint64_t state, const void* bytes, size_t size)
 {
-    for (int i = 0; i < count; i++) {
-        uint32_t words[2];
-        memcpy(words, &numbers[i], sizeof words);
-        state = vplHashWords(state, words, 2);
-    }
-    return state;
+    uint32_t words[sizeof(vplView) / sizeof(uint32_t)]; // the longest value
+    memcpy(words, bytes, size);
+    return vplHashWords(state, words, size / sizeof *words);
 }
 
-static uint64_t hashBits(uint64_t state, uint64_t bits)
+static uint64_t hashNumber(uint64_t state, double number)
 {
-    const uint32_t words[] = {(uint32_t)bits, (uint32_t)(bits >> 32)};
-    return vplHashWords(state, words, 2);
+    return hashBytes(state, &number, sizeof number);
 }
 
 static uint64_t hashEmitters(uint64_t state, const vplPlan* plan)
 {
     for (int i = 0; i < plan->emitterCount; i++) {
-        const vplEmitterDef* e = &plan->emitters[i];
-        const double numbers[] = {(double)e->type,        (double)e->position.x,  (double)e->position.y,
-                                  (double)e->position.z,  (double)e->direction.x, (double)e->direction.y,
-                                  (double)e->direction.z, (double)e->intensity.r, (double)e->intensity.g,
-                                  (double)e->intensity.b, (double)e->innerAngle,  (double)e->outerAngle};
-        state = hashNumbers(state, numbers, sizeof numbers / sizeof *numbers);
+        state = hashBytes(state, &plan->emitters[i], offsetof(vplEmitterDef, cookie));
     }
     return state;
 }
 
-static uint64_t hashView(uint64_t state, const vplView* v)
+static uint64_t hashView(uint64_t state, const vplPlan* plan)
 {
-    const double numbers[] = {(double)v->eye.x,
-                              (double)v->eye.y,
-                              (double)v->eye.z,
-                              (double)v->right.x,
-                              (double)v->right.y,
-                              (double)v->right.z,
-                              (double)v->up.x,
-                              (double)v->up.y,
-                              (double)v->up.z,
-                              (double)v->forward.x,
-                              (double)v->forward.y,
-                              (double)v->forward.z,
-                              v->scaleX,
-                              v->scaleY,
-                              v->near,
-                              v->far,
-                              v->width,
-                              v->height};
-    return hashNumbers(state, numbers, sizeof numbers / sizeof *numbers);
+    return hashBytes(state, &plan->view, sizeof plan->view);
 }
 
-// Hashes the values that a stage's key names: options; the posed SCENE, its EMITTERS and the VIEW; the PASS;
-// the SHIFT of SSVP's patterns, and whether its clusters SEE; the BIAS rule; what PLACEMENT of particles
-// depends on; what drafts of ADAPTIVE patches are made with; and ALWAYS, which is never the same again.
+static uint64_t findKey(const vplRun* run, const char* key, uint32_t build);
+
+// Hashes one value that a key names: an option, or a word in capitals.
+static uint64_t hashValue(const vplRun* run, const char* word, uint32_t build, uint64_t state)
+{
+    const vplPlan* plan = run->plan;
+    const vplRenderOptions* o = &plan->options;
+    if (strcmp(word, "EMITTERS") == 0) { // posed
+        return hashEmitters(state, plan);
+    }
+    if (strcmp(word, "VIEW") == 0) { // posed
+        return hashView(state, plan);
+    }
+    if (strcmp(word, "PASS") == 0) {
+        return hashNumber(hashNumber(state, run->pass), plan->progressive);
+    }
+    if (strcmp(word, "SHIFT") == 0) { // of SSVP's sample patterns
+        const uint64_t shift = vplSsvpShift(run);
+        return hashBytes(state, &shift, sizeof shift);
+    }
+    if (strcmp(word, "ADAPTIVE") == 0) { // adaptive patches depend on all that their drafts are made with
+        const char* drafts = "form-factors form-samples row-sums link-error patch-light camera seed";
+        const uint64_t inner =
+            o->radiosity.placement == VPL_PATCHES_ADAPTIVE ? findKey(run, drafts, build) : 0;
+        return hashBytes(state, &inner, sizeof inner);
+    }
+    if (strcmp(word, "ALWAYS") == 0) { // never the same again
+        return hashNumber(state, build);
+    }
+    if (strcmp(word, "PLACEMENT") == 0) { // particles that are placed by the view depend on it
+        const bool byView = o->particles.placement == VPL_PLACEMENT_VIEW;
+        state = hashNumber(state, o->particles.placement);
+        return byView ? hashNumber(hashView(state, plan), o->lights.shadows != VPL_LIGHT_SHADOWS_NONE)
+                      : state;
+    }
+    if (strcmp(word, "SCENE") == 0) {
+        return hashNumber(hashNumber(state, (double)run->scene->stamp), plan->castsRays);
+    }
+    if (strcmp(word, "seed") == 0) { // 64 bits, which a double does not hold
+        return hashBytes(state, &o->seed, sizeof o->seed);
+    }
+    return hashNumber(state, vplOption_GetNumber(vplFindOption(word), o));
+}
+
+// Hashes the values that a stage's key names, with spaces between the names.
 static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
 {
-    const vplRenderOptions* o = &run->plan->options;
-    const double draft = run->draft;
-    uint64_t state = hashNumbers(0, &draft, 1);
+    uint64_t state = hashNumber(0, run->draft);
     while (*key != 0) {
         char word[32] = "";
         const size_t length = strcspn(key, " ");
-        memcpy(word, key, length < sizeof word ? length : sizeof word - 1);
+        memcpy(word, key, length);
         key += length + (key[length] == ' ');
-        if (strcmp(word, "EMITTERS") == 0) {
-            state = hashEmitters(state, run->plan);
-        } else if (strcmp(word, "VIEW") == 0) {
-            state = hashView(state, &run->plan->view);
-        } else if (strcmp(word, "PASS") == 0) {
-            const double pass[] = {run->pass, run->plan->progressive};
-            state = hashNumbers(state, pass, 2);
-        } else if (strcmp(word, "SHIFT") == 0) {
-            state = hashBits(state, vplSsvpShift(run));
-        } else if (strcmp(word, "BIAS") == 0) {
-            state = hashBits(state, run->plan->biasRule);
-        } else if (strcmp(word, "SEES") == 0) {
-            state = hashBits(state, vplSsvpSees(run->plan));
-        } else if (strcmp(word, "ADAPTIVE") == 0) {
-            const bool adaptive = o->radiosity.placement == VPL_PATCHES_ADAPTIVE;
-            const char* drafts = "form-factors form-samples row-sums link-error patch-light camera seed";
-            state = hashBits(state, adaptive ? findKey(run, drafts, build) : 0);
-        } else if (strcmp(word, "ALWAYS") == 0) {
-            state = hashBits(state, build);
-        } else if (strcmp(word, "PLACEMENT") == 0) {
-            const bool byView = o->particles.placement == VPL_PLACEMENT_VIEW;
-            const double placement[] = {o->particles.placement, o->lights.shadows != VPL_LIGHT_SHADOWS_NONE};
-            state =
-                hashNumbers(byView ? hashView(state, &run->plan->view) : state, placement, byView ? 2 : 1);
-        } else if (strcmp(word, "SCENE") == 0) {
-            state =
-                vplHashWords(state, (const uint32_t[]){(uint32_t)run->scene->stamp, run->plan->castsRays}, 2);
-        } else if (strcmp(word, "seed") == 0) {
-            state = hashBits(state, o->seed);
-        } else {
-            const double value = vplOption_GetNumber(vplFindOption(word), o);
-            state = hashNumbers(state, &value, 1);
-        }
+        state = hashValue(run, word, build, state);
     }
     return state;
 }
@@ -228,7 +204,7 @@ static uint64_t findKey(const vplRun* run, const char* key, uint32_t build)
 
 static bool isFresh(const vplRunner* r, vplStageId id, uint64_t key)
 {
-    const vplSlot* slot = &r->store->slots[id];
+    const vplSlot* slot = &r->history->slots[id];
     bool fresh = slot->result != NULL && slot->key == key;
     for (int i = 0; i < VPL_STAGE_COUNT && fresh; i++) {
         fresh = (VPL_STAGES[id].inputs & 1u << i) == 0 || slot->inputBuilds[i] == r->run.builds[i];
@@ -236,8 +212,9 @@ static bool isFresh(const vplRunner* r, vplStageId id, uint64_t key)
     return fresh;
 }
 
-// Before a result is made anew: what was made from the old one goes, but for what continues it.
-static void emptyFrom(vplStore* store, vplStageId id)
+// Before a result is made anew, frees the results that were made from the old one. Results that later stages
+// continue from stay.
+static void emptyFrom(vplHistory* history, vplStageId id)
 {
     uint32_t stale = 1u << id;
     for (int i = id + 1; i < VPL_STAGE_COUNT; i++) {
@@ -245,7 +222,7 @@ static void emptyFrom(vplStore* store, vplStageId id)
     }
     for (int i = VPL_STAGE_COUNT; i-- > (int)id;) {
         if ((stale & 1u << i) != 0 && !VPL_STAGES[i].continues) {
-            empty(store, i);
+            empty(history, i);
         }
     }
 }
@@ -253,9 +230,9 @@ static void emptyFrom(vplStore* store, vplStageId id)
 static vplResult make(vplRunner* r, vplStageId id)
 {
     const vplStage* stage = &VPL_STAGES[id];
-    vplSlot* slot = &r->store->slots[id];
+    vplSlot* slot = &r->history->slots[id];
     vplContext* context = r->run.context;
-    emptyFrom(r->store, id);
+    emptyFrom(r->history, id);
     r->run.before = slot->result;
     r->stageFrom = r->stageTo;
     r->stageTo = stage->progress > r->stageFrom ? stage->progress : r->stageFrom;
@@ -266,14 +243,22 @@ static vplResult make(vplRunner* r, vplStageId id)
     const int64_t held = (int64_t)vplContext_GetBytes(context);
     const double start = vplClockMs();
     void* result = NULL;
-    const vplResult made = stage->make(&r->run, &result);
+    r->run.arena = vplArena_Create(context);
+    r->run.scratch = vplArena_Create(context);
+    vplResult made = vplArena_Check(r->run.arena);
+    made = made == VPL_SUCCESS ? vplArena_Check(r->run.scratch) : made;
+    made = made == VPL_SUCCESS ? stage->make(&r->run, &result) : made;
+    vplArena_Destroy(r->run.scratch);
     addTime(&r->stats, stage->name, vplClockMs() - start - r->partMs);
-    if (result != slot->result) {
-        empty(r->store, id);
+    if (result != NULL && result == slot->result) { // the stage has changed its last result
+        vplArena_Destroy(r->run.arena);
+    } else {
+        empty(r->history, id);
+        slot->result = result;
+        slot->arena = r->run.arena;
     }
-    slot->result = result;
-    if (made != VPL_SUCCESS) { // what was half made, or half changed, is of no use
-        empty(r->store, id);
+    if (made != VPL_SUCCESS) { // a result that is incomplete is of no use
+        empty(r->history, id);
         return made;
     }
     slot->bytes = (int64_t)vplContext_GetBytes(context) - held;
@@ -285,8 +270,9 @@ static vplResult make(vplRunner* r, vplStageId id)
 
 vplResult vplRunner_RunStage(vplRunner* r, vplStageId id)
 {
-    vplSlot* slot = &r->store->slots[id];
+    vplSlot* slot = &r->history->slots[id];
     r->run.runner = r;
+    r->run.progress = r->progress != NULL ? forwardProgress : NULL;
     r->run.stats = &r->stats;
     const uint64_t key = findKey(&r->run, VPL_STAGES[id].key, slot->build);
     if (!isFresh(r, id, key)) {
@@ -317,8 +303,8 @@ vplResult vplRunner_RunPlan(vplRunner* r, const vplPlan* plan, vplStageId last)
 
 void* vplRunner_Take(vplRunner* r, vplStageId id)
 {
-    void* result = r->store->slots[id].result;
-    r->store->slots[id].result = NULL;
+    void* result = r->history->slots[id].result;
+    r->history->slots[id].result = NULL;
     r->run.results[id] = NULL;
     return result;
 }

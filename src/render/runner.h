@@ -6,56 +6,56 @@
 
 #include "render/stage.h"
 
-// What a stage left.
+// The last result of a stage.
 typedef struct vplSlot {
     void* result;
-    uint64_t key;                          // of the options and poses that it was made for
+    vplArena* arena;                       // owns the result's memory
+    uint64_t key;                          // hash of the options and poses that it was made for
     uint32_t build;                        // 1, 2, ...: how often it was made
-    uint32_t inputBuilds[VPL_STAGE_COUNT]; // of the results that it was made from
+    uint32_t inputBuilds[VPL_STAGE_COUNT]; // builds of the results that it was made from
     int64_t bytes, scratch;                // as measured when it was made
 } vplSlot;
 
-// Results of all stages, kept between passes, and with a history between frames.
-typedef struct vplStore {
+// The results of all stages, kept between passes, and between frames that share a history.
+struct vplHistory {
     vplContext* context;
+    uint64_t sceneStamp; // identifies the scene of the first frame; 0: no frame yet
+    bool busy;           // a renderer uses it, which does not own it
     vplSlot slots[VPL_STAGE_COUNT];
-} vplStore;
-
-vplResult vplStore_Create(vplContext* context, vplStore** storeOut);
-void vplStore_Destroy(vplStore* store); // NULL is allowed
+};
 
 typedef struct vplRunner {
     vplRun run;
-    vplStore* store;
+    vplHistory* history;
     vplRenderStats stats;
-    bool plans; // results serve decisions: they are not reported yet
+    bool plans; // results serve decisions and are not reported yet
     vplProgressFcn* progress;
     void* progressUser;
     double stepFrom, stepTo;   // share of the whole that the pass under way has
     double stageFrom, stageTo; // share of the pass that the stage under way has
     double partFrom, partTo;   // share of the stage that its part under way has
-    double startMs;            // of a nested runner
-    double partMs;             // that vplRun_AddTime took from the stage under way
+    double startMs;            // when a nested runner began
+    double partMs;             // time that vplRun_AddTime took from the stage under way
     vplClampLoss loss;         // of all passes
-    size_t heldBytes; // by the context when the runner began: the scene, and what is not of this render
-    size_t peakBytes; // of the context, before its counter was set back
+    size_t heldBytes; // held by the context when the runner began: the scene and the caller's other memory
+    size_t peakBytes; // most that the context held before its counter was reset
 } vplRunner;
 
-// A runner without a plan. It borrows the store.
-vplRunner vplRunner_Begin(const vplScene* scene, vplStore* store);
+// A runner without a plan. It borrows the history.
+vplRunner vplRunner_Begin(const vplScene* scene, vplHistory* history);
 
-// Runs a stage whose inputs are there, unless its result in the store is still right.
+// Runs a stage whose inputs are there, unless its result in the history is still right.
 vplResult vplRunner_RunStage(vplRunner* runner, vplStageId id);
 
 // Runs the stages of the plan up to `last`.
 vplResult vplRunner_RunPlan(vplRunner* runner, const vplPlan* plan, vplStageId last);
 
-// A runner for stages within the stage under way: it sees the same results, needs a store of its own, and its
-// progress is that of the part under way. Its statistics and time are added by vplRunner_Unnest.
+// A runner for stages within the stage under way: it sees the same results, needs a history of its own, and
+// its progress is that of the part under way. Its statistics and time are added by vplRunner_Unnest.
 vplRunner vplRunner_Nest(const vplRun* run);
 void vplRunner_Unnest(const vplRun* run, const vplRunner* nested);
 
-// Takes a result out of the store; the caller destroys it.
+// Takes a result out of the history; the caller destroys it.
 void* vplRunner_Take(vplRunner* runner, vplStageId id);
 
 // Most bytes that the context held since the runner began.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What --show can show: one row each.
+// The table of the values of --show.
 #ifndef VPL_RENDER_SHOW_H
 #define VPL_RENDER_SHOW_H
 
 #include "render/stage.h"
 
-// How far radiosity must go.
+// The last result of radiosity that a picture needs.
 typedef enum vplPatchNeed {
     VPL_NO_PATCHES,
     VPL_PATCHES_ONLY,
@@ -16,11 +16,11 @@ typedef enum vplPatchNeed {
 typedef struct vplShowRow {
     bool direct;           // emission, and light from emitters and area lights
     bool lights;           // light of virtual lights
-    bool passes;           // it may be the mean of passes
+    bool passes;           // the picture may be the mean of passes
     vplPatchNeed patches;  // of radiosity
     vplShadeOutput output; // of the picture stage
-    int methods;           // that have it
-    const char* otherwise; // what other methods are told
+    int methods;           // VPL_USE_... of the methods that have it
+    const char* otherwise; // the sentence for other methods
     // Draws a result instead of the picture, or over it; NULL: not.
     vplResult (*draw)(const vplRun* run, vplImage** imageOut);
     vplResult (*drawOver)(const vplRun* run, vplImage* image);
@@ -29,10 +29,10 @@ typedef struct vplShowRow {
 // One row per vplShow.
 extern const vplShowRow VPL_SHOWS[];
 
-// Why the method has nothing of the kind to show; NULL: it has.
+// Returns the reason why the method cannot show it, or NULL if it can.
 const char* vplRefuseShow(const vplRenderOptions* options);
 
-// Whether only patches are seen, without light of pixels.
+// True if the picture shows only values of patches, and no direct light of pixels.
 static inline bool vplShowsPatchesAlone(vplShow show)
 {
     return show >= VPL_SHOW_PATCHES && show <= VPL_SHOW_RESIDUAL;

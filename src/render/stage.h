@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Stages: what a picture is made of. A stage is a function from the plan and the results of other stages to a
-// new value, which later stages read and nobody changes.
+// A picture is made in stages. A stage is a function from the plan and the results of other stages to a new
+// value, which later stages read and nobody changes.
 #ifndef VPL_RENDER_STAGE_H
 #define VPL_RENDER_STAGE_H
 
@@ -42,18 +42,22 @@ typedef enum vplPart {
     VPL_PART_INDIRECT = 2 // light of virtual lights
 } vplPart;
 
-// What a stage reads. Results are indexed by vplStageId; NULL where a stage did not run.
+// The inputs of a stage. Results are indexed by vplStageId and NULL where a stage did not run.
 typedef struct vplRun {
     vplContext* context;
     const vplScene* scene;
     const vplPlan* plan;
     const void* results[VPL_STAGE_COUNT];
-    // Of a stage that continues: its result of the frame or pass before, which it may change and return.
+    // The last result of a stage that continues, from the frame or pass before. The stage may change and
+    // return it.
     void* before;
-    uint32_t builds[VPL_STAGE_COUNT]; // how often each result was made: tells two results of a stage apart
+    uint32_t builds[VPL_STAGE_COUNT]; // counts how often each result was made, which tells two results apart
     int pass;
     int parts;                // vplPart: what the picture stage adds up
-    bool draft;               // of a round of adaptive patches before the last
+    bool draft;               // it is a round of adaptive patches before the last
+    vplArena* arena;          // memory of the result
+    vplArena* scratch;        // memory that is freed when the stage ends
+    vplProgressFcn* progress; // of the stage under way; its `user` is the runner; NULL where nobody listens
     struct vplRunner* runner; // for timing of parts of a stage, progress and nested runs
     vplRenderStats* stats;    // counts of work are added here
 } vplRun;
@@ -62,14 +66,16 @@ typedef struct vplStage {
     const char* name; // as in vplRenderStats.stages
     double progress;  // share of a pass that is done when the stage ends
     uint32_t inputs;  // bits: 1 << vplStageId
-    // What the result depends on besides its inputs: names of options, and words in capitals, see findKey.
+    // Names everything besides the inputs that the result depends on: options, and words in capitals
+    // (hashValue).
     const char* key;
-    // Whether the picture needs it; writes the reason for either into `why`, VPL_PLAN_TEXT bytes.
+    // Returns true if the picture needs it, and writes the reason for either answer into `why`, VPL_PLAN_TEXT
+    // bytes.
     bool (*isNeeded)(const vplPlan* plan, char* why);
     vplResult (*make)(const vplRun* run, void** resultOut); // a result is destroyed also where it failed
-    void (*destroy)(void* result);                          // NULL is allowed
-    void (*report)(const vplRun* run); // what statistics tell of the result, kept or new; may be NULL
-    bool continues;                    // it wants its result of before
+    void (*destroy)(void* result);     // frees objects that its arena does not own; NULL: there are none
+    void (*report)(const vplRun* run); // adds the result, kept or new, to the statistics; may be NULL
+    bool continues;                    // it starts from its last result
 } vplStage;
 
 // One row per vplStageId.
@@ -78,11 +84,6 @@ extern const vplStage VPL_STAGES[VPL_STAGE_COUNT];
 // The recipes of the methods: stages in the order in which they run, ended by VPL_STAGE_COUNT.
 extern const vplStageId VPL_DIRECT_RECIPE[], VPL_INSTANT_RADIOSITY_RECIPE[], VPL_KELLER_RECIPE[],
     VPL_SSVP_RECIPE[], VPL_RADIOSITY_RECIPE[], VPL_PATH_RECIPE[];
-
-// Progress within the stage under way; pass both to calls that take a progress callback. NULL where nobody
-// listens.
-vplProgressFcn* vplRun_Progress(const vplRun* run);
-void* vplRun_ProgressUser(const vplRun* run);
 
 // Part i of `count` of the stage under way begins: progress is that of the part.
 void vplRun_BeginPart(const vplRun* run, int i, int count);
@@ -95,8 +96,5 @@ static inline void vplRun_AddRaster(const vplRun* run, const vplRasterStats* sta
     run->stats->drawCalls += stats->drawCalls;
     run->stats->fragments += stats->fragments;
 }
-
-// Writes a reason into `why` and is `needed`.
-#define BECAUSE(needed, ...) (snprintf(why, VPL_PLAN_TEXT, __VA_ARGS__), (needed))
 
 #endif

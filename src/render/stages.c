@@ -4,23 +4,43 @@
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 
 // ---- needs: true or false, and the reason
 
+static const char NOT_DIRECT[] = "the picture shows no direct light";
+static const char NOT_VIRTUAL[] = "the picture shows no virtual lights";
+static const char NOT_PATCHES[] = "the picture shows no light of patches";
+static const char NOT_SECOND[] = "there is no second bounce";
+
+__attribute__((format(printf, 3, 4))) static bool because(char* why, bool needed, const char* format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(why, VPL_PLAN_TEXT, format, arguments);
+    va_end(arguments);
+    return needed;
+}
+
+static bool choose(char* why, bool needed, const char* reason, const char* otherwise)
+{
+    return because(why, needed, "%s", needed ? reason : otherwise);
+}
+
 static bool needsGeometry(const vplPlan* p, char* why)
 {
-    return BECAUSE(true, p->castsRays ? "all stages read it; rays are cast, so it has a ray tree"
-                                      : "all stages read it; no ray is cast, so it has no ray tree");
+    return because(why, true, "all stages read it; %s",
+                   p->castsRays ? "rays are cast, so it has a ray tree"
+                                : "no ray is cast, so it has no ray tree");
 }
 
 static bool needsNearDistance(const vplPlan* p, char* why)
 {
-    if (p->compensates && p->clampArea > 0) {
-        return BECAUSE(true, "short rays give back what the clamp takes away, so lights are clamped where "
-                             "surfaces are near to each other");
-    }
-    return BECAUSE(false, p->compensates ? "--min-distance is given" : "no short rays give light back");
+    return choose(why, p->compensates && p->clampArea > 0,
+                  "short rays give back what the clamp takes away, so lights are clamped where surfaces are "
+                  "near to each other",
+                  p->compensates ? "--min-distance is given" : "no short rays give light back");
 }
 
 static bool needsEmitterMaps(const vplPlan* p, char* why)
@@ -29,179 +49,153 @@ static bool needsEmitterMaps(const vplPlan* p, char* why)
     for (int i = 0; i < p->emitterCount; i++) {
         casting += p->emitters[i].type != VPL_EMITTER_DIRECTIONAL;
     }
-    if (!p->showsDirect && !p->compensates) {
-        return BECAUSE(false, "the picture shows no direct light");
-    }
-    if (p->options.method == VPL_METHOD_SSVP) {
-        return BECAUSE(false, "reflective maps serve as shadow maps");
-    }
-    if (p->emitterRays || casting == 0) {
-        return BECAUSE(false, casting == 0 ? "no emitter is a point or a spot" : "rays replace shadow maps");
-    }
-    return BECAUSE(true, "shadows of %d emitter%s with 6 faces of %d^2 texels", casting,
-                   casting > 1 ? "s" : "", p->options.shadow.mapSize);
+    const char* problem = !p->showsDirect && !p->compensates     ? NOT_DIRECT
+                          : p->options.method == VPL_METHOD_SSVP ? "reflective maps serve as shadow maps"
+                          : casting == 0                         ? "no emitter is a point or a spot"
+                          : p->emitterRays                       ? "rays replace shadow maps"
+                                                                 : NULL;
+    return problem != NULL ? because(why, false, "%s", problem)
+                           : because(why, true, "shadows of %d emitter%s with 6 faces of %d^2 texels",
+                                     casting, casting > 1 ? "s" : "", p->options.shadow.mapSize);
 }
 
 static bool needsAreaLights(const vplPlan* p, char* why)
 {
-    if (!p->showsDirect && !p->compensates) {
-        return BECAUSE(false, "the picture shows no direct light");
-    }
-    if (!p->hasAreaLights || p->options.lighting == VPL_LIGHTING_DOCUMENTED) {
-        return BECAUSE(false,
-                       p->hasAreaLights ? "documented lighting has no area lights" : "no material emits");
-    }
-    if (p->options.method == VPL_METHOD_KELLER) {
-        return BECAUSE(false, "virtual lights stand for area lights, too");
-    }
-    return BECAUSE(true, "%d points stand for all area lights in direct light",
-                   p->options.lights.areaLightSamples);
+    const bool documented = p->options.lighting == VPL_LIGHTING_DOCUMENTED;
+    const char* problem = !p->showsDirect && !p->compensates ? NOT_DIRECT
+                          : !p->hasAreaLights                ? "no material emits"
+                          : documented                       ? "documented lighting has no area lights"
+                          : p->options.method == VPL_METHOD_KELLER
+                              ? "virtual lights stand for area lights, too"
+                              : NULL;
+    return problem != NULL ? because(why, false, "%s", problem)
+                           : because(why, true, "%d points stand for all area lights in direct light",
+                                     p->options.lights.areaLightSamples);
 }
 
 static bool needsReflectiveMaps(const vplPlan* p, char* why)
 {
     if (p->options.method != VPL_METHOD_SSVP) {
-        const bool placed = p->showsVirtual && p->options.particles.placement == VPL_PLACEMENT_RSM;
-        return BECAUSE(placed,
-                       placed ? "first hits of particles are its texels" : "particles find first hits");
+        return choose(why, p->showsVirtual && p->options.particles.placement == VPL_PLACEMENT_RSM,
+                      "first hits of particles are its texels", "particles find first hits");
     }
-    if (p->showsVirtual || p->options.output.show == VPL_SHOW_RSM) {
-        return BECAUSE(true, "first-bounce lights are samples of it");
-    }
-    return BECAUSE(!p->emitterRays,
-                   p->emitterRays ? "rays replace shadow maps" : "shadows of emitters are taken from it");
+    const bool sampled = p->showsVirtual || p->options.output.show == VPL_SHOW_RSM;
+    return choose(why, sampled || !p->emitterRays,
+                  sampled ? "first-bounce lights are samples of it" : "shadows of emitters are taken from it",
+                  "rays replace shadow maps");
 }
 
 static bool needsParticles(const vplPlan* p, char* why)
 {
-    return BECAUSE(p->showsVirtual, "%s",
-                   p->showsVirtual ? "virtual lights are where particles land"
-                                   : "the picture shows no virtual lights");
+    return choose(why, p->showsVirtual, "virtual lights are where particles land", NOT_VIRTUAL);
 }
 
 static bool needsFirstBounce(const vplPlan* p, char* why)
 {
-    return BECAUSE(p->showsVirtual, "%s",
-                   p->showsVirtual              ? "light that was reflected once"
-                   : p->options.maxBounces == 0 ? "--max-bounces is 0"
-                                                : "the picture shows no virtual lights");
+    return choose(why, p->showsVirtual, "light that was reflected once",
+                  p->options.maxBounces == 0 ? "--max-bounces is 0" : NOT_VIRTUAL);
 }
 
 static bool needsClusters(const vplPlan* p, char* why)
 {
-    if (!p->showsVirtual) {
-        return BECAUSE(false, "there are no virtual lights");
-    }
-    const bool needed = vplSsvpSees(p) || vplSsvpHasSecondBounce(p) || vplSsvpShowsClusters(p);
-    return BECAUSE(needed, "%s",
-                   vplSsvpSees(p) ? "lights of a cluster share what it sees"
-                   : needed       ? "the second bounce begins from clusters"
-                                  : "lights do not see by clusters, and there is no second bounce");
+    const bool second = vplSsvpHasSecondBounce(p), sees = vplSsvpSees(p);
+    return choose(why, p->showsVirtual && (sees || second || vplSsvpShowsClusters(p)),
+                  sees ? "lights of a cluster share what it sees" : "the second bounce begins from clusters",
+                  p->showsVirtual ? "lights do not see by clusters, and there is no second bounce"
+                                  : "there are no virtual lights");
 }
 
 static bool needsParaboloids(const vplPlan* p, char* why)
 {
-    const bool needed = needsClusters(p, why);
-    return needed ? BECAUSE(true, "what each of %d clusters sees", p->options.ssvp.clusters) : false;
+    return needsClusters(p, why) &&
+           because(why, true, "what each of %d clusters sees", p->options.ssvp.clusters);
 }
 
 static bool needsSecondBounce(const vplPlan* p, char* why)
 {
-    const bool needed = p->showsVirtual && vplSsvpHasSecondBounce(p);
-    return BECAUSE(needed, "%s", needed ? "light that was reflected twice" : "there is no second bounce");
+    return choose(why, p->showsVirtual && vplSsvpHasSecondBounce(p), "light that was reflected twice",
+                  NOT_SECOND);
 }
 
 static bool needsSecondClusters(const vplPlan* p, char* why)
 {
-    if (!p->showsVirtual || !vplSsvpHasSecondBounce(p)) {
-        return BECAUSE(false, "there is no second bounce");
-    }
-    return BECAUSE(vplSsvpSees(p), "%s",
-                   vplSsvpSees(p) ? "second-bounce lights of a cluster share what it sees"
-                                  : "lights do not see by clusters");
-}
-
-static bool needsVirtualLights(const vplPlan* p, char* why)
-{
-    return BECAUSE(p->showsVirtual, "%s",
-                   p->showsVirtual ? "the lights that shading adds up"
-                                   : "the picture shows no virtual lights");
-}
-
-static bool needsPatches(const vplPlan* p, char* why)
-{
-    return BECAUSE(p->showsPatches, "%s",
-                   p->showsPatches ? "surfaces exchange light as patches"
-                                   : "the picture shows no light of patches");
-}
-
-static bool needsSides(const vplPlan* p, char* why)
-{
-    const bool needed = needsPatches(p, why);
-    return needed ? BECAUSE(true, "only sides of patches that light can reach take part") : false;
-}
-
-static bool needsPatchMesh(const vplPlan* p, char* why)
-{
-    const bool needed = needsPatches(p, why);
-    return needed ? BECAUSE(true, "patches are drawn by their vertices") : false;
+    return needsSecondBounce(p, why) &&
+           choose(why, vplSsvpSees(p), "second-bounce lights of a cluster share what it sees",
+                  "lights do not see by clusters");
 }
 
 static bool needsClusteredLights(const vplPlan* p, char* why)
 {
-    const bool needed = needsFirstBounce(p, why);
-    return needed ? BECAUSE(true, "the lights of all bounces in one list") : false;
+    return needsFirstBounce(p, why) && because(why, true, "the lights of all bounces in one list");
+}
+
+static bool needsVirtualLights(const vplPlan* p, char* why)
+{
+    return choose(why, p->showsVirtual, "the lights that shading adds up", NOT_VIRTUAL);
+}
+
+static bool needsPatches(const vplPlan* p, char* why)
+{
+    return choose(why, p->showsPatches, "surfaces exchange light as patches", NOT_PATCHES);
+}
+
+static bool needsSides(const vplPlan* p, char* why)
+{
+    return choose(why, p->showsPatches, "only sides of patches that light can reach take part", NOT_PATCHES);
+}
+
+static bool needsPatchMesh(const vplPlan* p, char* why)
+{
+    return choose(why, p->showsPatches, "patches are drawn by their vertices", NOT_PATCHES);
 }
 
 static bool needsFormFactors(const vplPlan* p, char* why)
 {
-    const bool needed = VPL_SHOWS[p->options.output.show].patches >= VPL_PATCH_FACTORS;
-    return BECAUSE(needed, "%s",
-                   !needed     ? "the picture shows no exchange of light"
-                   : p->linked ? "groups of patches exchange light by links"
-                               : "shares of light between all pairs of sides");
+    return choose(why, VPL_SHOWS[p->options.output.show].patches >= VPL_PATCH_FACTORS,
+                  p->linked ? "groups of patches exchange light by links"
+                            : "shares of light between all pairs of sides",
+                  "the picture shows no exchange of light");
 }
 
 static bool needsPatchLight(const vplPlan* p, char* why)
 {
-    const bool needed = VPL_SHOWS[p->options.output.show].patches == VPL_PATCH_LIGHT;
-    return BECAUSE(needed, "%s",
-                   needed ? "what emitters send to each side" : "the picture shows no light of patches");
+    return choose(why, VPL_SHOWS[p->options.output.show].patches == VPL_PATCH_LIGHT,
+                  "what emitters send to each side", NOT_PATCHES);
 }
 
 static bool needsSolution(const vplPlan* p, char* why)
 {
-    const bool needed = needsPatchLight(p, why);
-    return needed ? BECAUSE(true, "sides exchange light until it changes no more") : false;
+    return needsPatchLight(p, why) && because(why, true, "sides exchange light until it changes no more");
 }
 
 static bool needsVertexLight(const vplPlan* p, char* why)
 {
     const vplShow show = p->options.output.show;
     const bool lit = show == VPL_SHOW_PICTURE || show == VPL_SHOW_INDIRECT;
-    const bool smooth = p->options.radiosity.interpolation == VPL_INTERPOLATION_GOURAUD;
-    return BECAUSE(lit && smooth, "%s",
-                   lit && smooth ? "light is interpolated between the vertices of patches"
-                                 : "light of patches is shown as it is");
+    return choose(why, lit && p->options.radiosity.interpolation == VPL_INTERPOLATION_GOURAUD,
+                  "light is interpolated between the vertices of patches",
+                  "light of patches is shown as it is");
 }
 
 static bool needsPicture(const vplPlan* p, char* why)
 {
-    return BECAUSE(true, "%dx%d pixels, %d sample%s each", p->options.output.width, p->options.output.height,
-                   p->options.output.antialias, p->options.output.antialias > 1 ? "s" : "");
+    const vplOutputOptions* o = &p->options.output;
+    return because(why, true, "%dx%d pixels, %d sample%s each", o->width, o->height, o->antialias,
+                   o->antialias > 1 ? "s" : "");
 }
 
 static bool needsPaths(const vplPlan* p, char* why)
 {
-    return BECAUSE(true, "%d paths for each of %dx%d pixels", p->options.path.samples,
+    return because(why, true, "%d paths for each of %dx%d pixels", p->options.path.samples,
                    p->options.output.width, p->options.output.height);
 }
 
 // ---- the table
 
-#define IN(stage)  (1u << VPL_STAGE_##stage)
-#define SSVP_KEY   "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
-#define MAP_KEY    "paraboloid hemispheres cluster-place SEES show max-bounces second-bounce coherence SHIFT"
+#define IN(stage) (1u << VPL_STAGE_##stage)
+#define SSVP_KEY  "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
+#define MAP_KEY                                                                                              \
+    "paraboloid hemispheres cluster-place light-shadows show max-bounces second-bounce coherence SHIFT"
 #define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"
 
 // clang-format off
@@ -211,13 +205,13 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsGeometry, vplMakeGeometry, vplDestroyGeometry, .report = vplReportGeometry},
     [VPL_STAGE_NEAR_DISTANCE] = {
         "clamp distance", 0.03, IN(GEOMETRY), "VIEW",
-        needsNearDistance, vplMakeNearDistance, vplDestroyNearDistance, .report = NULL},
+        needsNearDistance, vplMakeNearDistance, NULL, .report = NULL},
     [VPL_STAGE_EMITTER_MAPS] = {
-        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS BIAS shadow-map bias bias-slope pcf pcf-offset size antialias",
+        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size antialias",
         needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps, .report = NULL},
     [VPL_STAGE_AREA_LIGHTS] = {
         "area lights", 0.15, IN(GEOMETRY), "area-light-samples",
-        needsAreaLights, vplMakeAreaLights, vplDestroyAreaLights, .report = NULL},
+        needsAreaLights, vplMakeAreaLights, NULL, .report = NULL},
     [VPL_STAGE_REFLECTIVE_MAPS] = {
         "reflective map", 0.05, IN(GEOMETRY), "EMITTERS rsm-size",
         needsReflectiveMaps, vplMakeReflectiveMaps, vplDestroyReflectiveMaps, .report = NULL},
@@ -245,12 +239,12 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsSecondClusters, vplMakeSecondParaboloids, vplDestroyParaboloids, .continues = true},
     [VPL_STAGE_CLUSTERED_LIGHTS] = {
         "list", 0.2, IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) |
-            IN(SECOND_PARABOLOIDS), "SEES",
+            IN(SECOND_PARABOLOIDS), "light-shadows",
         needsClusteredLights, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
     [VPL_STAGE_VIRTUAL_LIGHTS] = {
         "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),
         "method lighting show show-index compensation min-distance PASS",
-        needsVirtualLights, vplMakeVirtualLights, vplDestroyVirtualLights, .report = vplReportVirtualLights},
+        needsVirtualLights, vplMakeVirtualLights, NULL, .report = vplReportVirtualLights},
     [VPL_STAGE_PATCHES] = {
         "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement ADAPTIVE",
         needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
@@ -265,13 +259,13 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
     [VPL_STAGE_PATCH_LIGHT] = {
         "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed EMITTERS",
-        needsPatchLight, vplMakePatchLight, vplDestroyPatchLight, .report = NULL},
+        needsPatchLight, vplMakePatchLight, NULL, .report = NULL},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
-        needsSolution, vplMakeSolution, vplDestroySolution, .report = vplReportSolution, .continues = true},
+        needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
         "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
-        needsVertexLight, vplMakeVertexLight, vplDestroyVertexLight, .report = NULL},
+        needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
             IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(SOLUTION) | IN(VERTEX_LIGHT), "ALWAYS",

@@ -11,7 +11,7 @@
 #include "math/double3.h"
 #include "math/vec.h"
 
-// How strict the test for an ear is. Decreases when an outline has no ear left.
+// The tests that an ear must pass, the strictest first. An outline that has no ear left gets the next rule.
 typedef enum Rule {
     RULE_CLOSED = 0, // no corner may lie in or on the ear: every simple polygon has such ears
     RULE_OPEN,       // no corner may lie inside
@@ -158,12 +158,10 @@ static int findEar(vplEarClipper* g, int start, Rule* rule)
             i = g->next[i];
         } while (i != start);
         ++*rule;
-        for (i = g->next[start]; *rule < RULE_NONE; i = g->next[i]) {
+        do {
             g->ear[i] = isEar(g, i, *rule);
-            if (i == start) {
-                break;
-            }
-        }
+            i = g->next[i];
+        } while (i != start);
     }
     return -1;
 }
@@ -186,10 +184,8 @@ static void clipEars(vplEarClipper* g, int count)
         emit(g, previous, tip, next);
         g->next[previous] = next;
         g->previous[next] = previous;
-        if (rule < RULE_NONE) {
-            g->ear[previous] = isEar(g, previous, rule);
-            g->ear[next] = isEar(g, next, rule);
-        }
+        g->ear[previous] = isEar(g, previous, rule);
+        g->ear[next] = isEar(g, next, rule);
         start = g->next[next]; // moving on gives fewer thin triangles than staying
     }
     emit(g, g->previous[start], start, g->next[start]);

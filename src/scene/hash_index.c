@@ -3,25 +3,24 @@
 
 #include <string.h>
 
-uint32_t vplHashIndex_First(const vplHashIndex* index, uint32_t hash)
+// The first entry with this hash in the chain from `entry` on.
+static uint32_t follow(const vplHashIndex* index, uint32_t entry, uint32_t hash)
 {
-    if (index->headCount == 0) {
-        return VPL_NO_ENTRY;
-    }
-    uint32_t entry = index->heads[hash & (index->headCount - 1)];
     while (entry != VPL_NO_ENTRY && index->entries[entry].hash != hash) {
         entry = index->entries[entry].next;
     }
     return entry;
 }
 
+uint32_t vplHashIndex_First(const vplHashIndex* index, uint32_t hash)
+{
+    return index->headCount == 0 ? VPL_NO_ENTRY
+                                 : follow(index, index->heads[hash & (index->headCount - 1)], hash);
+}
+
 uint32_t vplHashIndex_Next(const vplHashIndex* index, uint32_t entry)
 {
-    uint32_t hash = index->entries[entry].hash;
-    do {
-        entry = index->entries[entry].next;
-    } while (entry != VPL_NO_ENTRY && index->entries[entry].hash != hash);
-    return entry;
+    return follow(index, index->entries[entry].next, index->entries[entry].hash);
 }
 
 static void link(vplHashIndex* index, uint32_t entry)

@@ -32,7 +32,7 @@ vplResult vplHashIndex_Reserve(vplHashIndex* index, size_t count);
 // Adds element number index->count.
 vplResult vplHashIndex_Add(vplHashIndex* index, uint32_t hash);
 
-// Frees the memory before its arena does.
+// Frees the memory early. Otherwise its arena does.
 void vplHashIndex_Close(vplHashIndex* index);
 
 // The hash of a few words.

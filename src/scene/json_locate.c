@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks a text without NUL bytes that jansson has accepted: the syntax is valid, so only strings, which may
-// contain any bracket, and nesting matter. Runs when an error is reported.
+// Walks a text without NUL bytes that jansson has accepted. The syntax is valid, so only brackets and strings,
+// which may contain brackets, matter. Runs when an error is reported.
 #include "scene/json_locate.h"
 
 #include <stdio.h>
@@ -27,30 +27,18 @@ static void skipString(Cursor* c)
     c->at++;
 }
 
+// Moves to the comma or bracket behind a value.
 static void skipValue(Cursor* c)
 {
     int depth = 0;
-    do {
-        skipSpace(c);
-        if (c->at >= c->end) {
-            return;
-        }
+    while (c->at < c->end && (depth > 0 || strchr(",]}", *c->at) == NULL)) {
         if (*c->at == '"') {
             skipString(c);
-        } else if (*c->at == '{' || *c->at == '[') {
-            depth++;
-            c->at++;
-        } else if (*c->at == '}' || *c->at == ']') {
-            depth--;
-            c->at++;
-        } else if (*c->at == ',' || *c->at == ':') {
-            c->at++;
         } else {
-            while (c->at < c->end && strchr(" \t\r\n,:]}", *c->at) == NULL) {
-                c->at++;
-            }
+            depth += (*c->at == '{' || *c->at == '[') - (*c->at == '}' || *c->at == ']');
+            c->at++;
         }
-    } while (depth > 0 && c->at < c->end);
+    }
 }
 
 // Compares keys as written: the keys of scene files have no escapes.
@@ -60,53 +48,42 @@ static bool keyEquals(const char* at, const char* end, const char* key)
     return (size_t)(end - at) > length + 1 && strncmp(at + 1, key, length) == 0 && at[length + 1] == '"';
 }
 
-// Moves from an opening bracket to the value, or the key, of one of its children. False if there is no such
-// child.
+// Moves from a value to one of its children, or to the key of the child. False if there is no such child.
 static bool enter(Cursor* c, const vplJsonPath* step, bool atKey)
 {
-    bool object = *c->at == '{';
-    if (object != (step->key != NULL)) {
+    const bool object = step->key != NULL;
+    Cursor child = *c;
+    if (child.at >= child.end || *child.at != (object ? '{' : '[')) {
         return false;
     }
-    c->at++;
     for (int i = 0;; i++) {
-        skipSpace(c);
-        if (c->at >= c->end || *c->at == '}' || *c->at == ']') {
+        child.at++; // the bracket or comma
+        skipSpace(&child);
+        if (child.at >= child.end || *child.at == '}' || *child.at == ']') {
             return false;
         }
-        const char* start = c->at;
+        const char* start = child.at;
         if (object) {
-            skipString(c);
-            skipSpace(c);
-            c->at++; // the colon
-            skipSpace(c);
+            skipString(&child);
+            skipSpace(&child);
+            child.at++; // the colon
+            skipSpace(&child);
         }
         if (object ? keyEquals(start, c->end, step->key) : i == step->index) {
-            c->at = atKey ? start : c->at;
+            c->at = atKey ? start : child.at;
             return true;
         }
-        skipValue(c);
-        skipSpace(c);
-        if (c->at < c->end && *c->at == ',') {
-            c->at++;
+        skipValue(&child);
+        if (child.at >= child.end || *child.at != ',') {
+            return false;
         }
     }
 }
 
+// Moves from the root to the value at `path`. Stops where there is no such child.
 static bool descend(Cursor* c, const vplJsonPath* path, bool atKey)
 {
-    if (path == NULL) {
-        return true;
-    }
-    if (!descend(c, path->parent, false)) {
-        return false;
-    }
-    Cursor found = *c;
-    if (c->at >= c->end || (*c->at != '{' && *c->at != '[') || !enter(&found, path, atKey)) {
-        return false;
-    }
-    *c = found;
-    return true;
+    return path == NULL || (descend(c, path->parent, false) && enter(c, path, atKey));
 }
 
 vplJsonPlace vplJson_Locate(const char* text, size_t size, const vplJsonPath* path, bool atKey)
@@ -133,10 +110,8 @@ vplJsonPlace vplJson_PlaceOf(const char* text, size_t offset)
 
 void vplJson_FormatPath(const vplJsonPath* path, char* buffer, size_t size)
 {
-    if (path == NULL || size < 2) {
-        if (size > 0) {
-            buffer[0] = 0;
-        }
+    if (path == NULL) {
+        buffer[0] = 0;
         return;
     }
     vplJson_FormatPath(path->parent, buffer, size);

@@ -72,7 +72,7 @@ vplJson vplJson_Root(const vplJsonFile* file)
     return (vplJson){.file = file, .value = file->root};
 }
 
-// The root has no step of its own.
+// The path to a value; NULL for the root.
 static const vplJsonPath* pathOf(const vplJson* at)
 {
     return at->value == at->file->root ? NULL : &at->path;
@@ -109,16 +109,19 @@ vplResult vplJson_Fail(const vplJson* at, const char* format, ...)
     return failAt(at, false, message);
 }
 
+static vplResult require(const vplJson* at, bool right, const char* expected)
+{
+    return right ? VPL_SUCCESS : vplJson_Fail(at, "is %s, must be %s", typeName(at->value), expected);
+}
+
 vplResult vplJson_RequireObject(const vplJson* at)
 {
-    return json_is_object(at->value) ? VPL_SUCCESS
-                                     : vplJson_Fail(at, "is %s, must be an object", typeName(at->value));
+    return require(at, json_is_object(at->value), "an object");
 }
 
 vplResult vplJson_RequireArray(const vplJson* at)
 {
-    return json_is_array(at->value) ? VPL_SUCCESS
-                                    : vplJson_Fail(at, "is %s, must be an array", typeName(at->value));
+    return require(at, json_is_array(at->value), "an array");
 }
 
 static bool isListed(const char* const* keys, const char* key)
@@ -159,9 +162,7 @@ vplResult vplJson_CheckKeys(const vplJson* object, const char* const* keys)
 
 static vplResult readNumber(const vplJson* at, double* out)
 {
-    if (!json_is_number(at->value)) {
-        return vplJson_Fail(at, "is %s, must be a number", typeName(at->value));
-    }
+    TRY(require(at, json_is_number(at->value), "a number"));
     double number = json_number_value(at->value);
     if (!(fabs(number) <= FLT_MAX)) {
         return vplJson_Fail(at, "is %g, beyond the range of a float (%g)", number, (double)FLT_MAX);
@@ -196,32 +197,18 @@ vplResult vplJson_ReadDoubles(const vplJson* object, const char* key, int count,
     return VPL_SUCCESS;
 }
 
-vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, float* out)
+vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, void* out)
 {
     double values[16];
-    for (int i = 0; i < count; i++) {
-        values[i] = out[i];
+    float floats[16];
+    if (vplJson_Member(object, key).value == NULL) {
+        return VPL_SUCCESS;
     }
     TRY(vplJson_ReadDoubles(object, key, count, values));
     for (int i = 0; i < count; i++) {
-        out[i] = (float)values[i];
+        floats[i] = (float)values[i];
     }
-    return VPL_SUCCESS;
-}
-
-vplResult vplJson_ReadVec3(const vplJson* object, const char* key, vplVec3* out)
-{
-    float v[3] = {out->x, out->y, out->z};
-    TRY(vplJson_ReadFloats(object, key, 3, v));
-    *out = (vplVec3){v[0], v[1], v[2]};
-    return VPL_SUCCESS;
-}
-
-vplResult vplJson_ReadRgb(const vplJson* object, const char* key, vplRgb* out)
-{
-    float v[3] = {out->r, out->g, out->b};
-    TRY(vplJson_ReadFloats(object, key, 3, v));
-    *out = (vplRgb){v[0], v[1], v[2]};
+    memcpy(out, floats, (size_t)count * sizeof *floats);
     return VPL_SUCCESS;
 }
 
@@ -231,9 +218,7 @@ vplResult vplJson_ReadString(const vplJson* object, const char* key, const char*
     if (member.value == NULL) {
         return VPL_SUCCESS;
     }
-    if (!json_is_string(member.value)) {
-        return vplJson_Fail(&member, "is %s, must be a string", typeName(member.value));
-    }
+    TRY(require(&member, json_is_string(member.value), "a string"));
     *out = json_string_value(member.value);
     return VPL_SUCCESS;
 }

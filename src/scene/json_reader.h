@@ -3,8 +3,6 @@
 #ifndef VPL_SCENE_JSON_READER_H
 #define VPL_SCENE_JSON_READER_H
 
-#include <vpl/vecmath.h>
-
 #include "base/context.h"
 #include "scene/json_locate.h"
 
@@ -48,12 +46,10 @@ vplResult vplJson_RequireArray(const vplJson* at);
 vplResult vplJson_CheckKeys(const vplJson* object, const char* const* keys);
 
 // Each reads the member `key` of an object. A missing member leaves *out as it is. Arrays must have `count`
-// numbers.
+// numbers. ReadFloats reads at most 16 of them, into an array of float, a vplVec3 or a vplRgb.
 vplResult vplJson_ReadNumber(const vplJson* object, const char* key, double* out);
 vplResult vplJson_ReadDoubles(const vplJson* object, const char* key, int count, double* out);
-vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, float* out);
-vplResult vplJson_ReadVec3(const vplJson* object, const char* key, vplVec3* out);
-vplResult vplJson_ReadRgb(const vplJson* object, const char* key, vplRgb* out);
+vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, void* out);
 vplResult vplJson_ReadString(const vplJson* object, const char* key, const char** out);
 
 #endif

@@ -38,7 +38,7 @@ vplEmitterDef vplApplyEmitterKey(const vplEmitterDef* def, const vplEmitterKey* 
 
 // ---- interpolation
 
-// In double, because the difference of two floats may overflow or lose digits.
+// Interpolates in double, because the difference of two floats may overflow or lose digits.
 static float lerp(double t, float a, float b)
 {
     return (float)((double)a + t * ((double)b - (double)a));
@@ -52,16 +52,6 @@ static vplVec3 lerpVec(double t, vplVec3 a, vplVec3 b)
 static vplRgb lerpRgb(double t, vplRgb a, vplRgb b)
 {
     return (vplRgb){lerp(t, a.r, b.r), lerp(t, a.g, b.g), lerp(t, a.b, b.b)};
-}
-
-static const vplTrack* findTrack(const vplTrackList* list, int index)
-{
-    for (int i = 0; i < list->count; i++) {
-        if (list->tracks[i].index == index) {
-            return &list->tracks[i];
-        }
-    }
-    return NULL;
 }
 
 // Both types of key begin with their frame.
@@ -94,19 +84,11 @@ static Interval findInterval(const vplTrack* track, size_t size, double frame)
     return (Interval){low, low + 1, (frame - from) / (frameOf(track->keys, size, low + 1) - from)};
 }
 
-static vplResult reportPose(const vplScene* scene, const char* what, int index, double frame,
-                            const vplFault* fault)
-{
-    return fault->field == NULL ? VPL_SUCCESS
-                                : vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s %d at frame %g: %s %s",
-                                          what, index, frame, fault->field, fault->text);
-}
-
 vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut)
 {
-    const vplTrack* track = findTrack(&scene->cameraTracks, index);
-    vplCameraDef def = scene->cameras[index];
-    if (track != NULL) {
+    const vplTrack* track = &scene->cameras[index].track;
+    vplCameraDef def = scene->cameras[index].def;
+    if (track->count > 0) {
         const vplCameraKey* keys = track->keys;
         const Interval i = findInterval(track, sizeof *keys, frame);
         const vplCameraKey *a = &keys[i.key], *b = &keys[i.next];
@@ -114,8 +96,9 @@ vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vp
         def.target = lerpVec(i.t, a->target, b->target);
         def.up = lerpVec(i.t, a->up, b->up);
         def.fovY = a->fovY + i.t * (b->fovY - a->fovY);
-        const vplFault fault = vplCheckCamera(&def);
-        TRY(reportPose(scene, "camera", index, frame, &fault));
+        char subject[64];
+        snprintf(subject, sizeof subject, "camera %d at frame %g: ", index, frame);
+        TRY(vplScene_ReportFault(scene, subject, vplCheckCamera(&def)));
     }
     *defOut = def;
     return VPL_SUCCESS;
@@ -123,17 +106,18 @@ vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vp
 
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut)
 {
-    const vplTrack* track = findTrack(&scene->emitterTracks, index);
-    vplEmitterDef def = scene->emitters[index];
-    if (track != NULL) {
+    const vplTrack* track = &scene->emitters[index].track;
+    vplEmitterDef def = scene->emitters[index].def;
+    if (track->count > 0) {
         const vplEmitterKey* keys = track->keys;
         const Interval i = findInterval(track, sizeof *keys, frame);
         const vplEmitterKey *a = &keys[i.key], *b = &keys[i.next];
         def.position = lerpVec(i.t, a->position, b->position);
         def.direction = lerpVec(i.t, a->direction, b->direction);
         def.intensity = lerpRgb(i.t, a->intensity, b->intensity);
-        const vplFault fault = vplCheckEmitter(&def);
-        TRY(reportPose(scene, "light", index, frame, &fault));
+        char subject[64];
+        snprintf(subject, sizeof subject, "light %d at frame %g: ", index, frame);
+        TRY(vplScene_ReportFault(scene, subject, vplCheckEmitter(&def)));
     }
     *defOut = def;
     return VPL_SUCCESS;
@@ -141,119 +125,89 @@ vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, v
 
 // ---- storage
 
-static const void* getKeys(const vplTrackList* list, int index, int* countOut)
-{
-    const vplTrack* track = findTrack(list, index);
-    *countOut = track ? track->count : 0;
-    return track ? track->keys : NULL;
-}
-
 const vplCameraKey* vplScene_GetCameraPath(const vplScene* scene, int index, int* countOut)
 {
-    return getKeys(&scene->cameraTracks, index, countOut);
+    *countOut = scene->cameras[index].track.count;
+    return scene->cameras[index].track.keys;
 }
 
 const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, int* countOut)
 {
-    return getKeys(&scene->emitterTracks, index, countOut);
+    *countOut = scene->emitters[index].track.count;
+    return scene->emitters[index].track.keys;
 }
 
-vplFault vplCheckKeyFrame(double before, double frame)
+static vplFault checkCameraKey(const void* def, const void* key)
 {
-    vplFault fault = {NULL, -1, ""};
-    if (!(fabs(frame) <= VPL_MAX_FRAME)) {
-        fault.field = "frame";
-        snprintf(fault.text, sizeof fault.text, "is %g, must be in [%d, %d]", frame, -VPL_MAX_FRAME,
-                 VPL_MAX_FRAME);
-    } else if (!(frame > before)) {
-        fault.field = "frame";
-        snprintf(fault.text, sizeof fault.text, "is %g, must be greater than that of the key before (%g)",
-                 frame, before);
-    }
-    return fault;
+    const vplCameraDef posed = vplApplyCameraKey(def, key);
+    return vplCheckCamera(&posed);
 }
 
-static vplFault checkCameraKey(const vplScene* scene, int index, const void* key)
+static vplFault checkEmitterKey(const void* def, const void* key)
 {
-    const vplCameraDef def = vplApplyCameraKey(&scene->cameras[index], key);
-    return vplCheckCamera(&def);
+    const vplEmitterDef posed = vplApplyEmitterKey(def, key);
+    return vplCheckEmitter(&posed);
 }
 
-static vplFault checkEmitterKey(const vplScene* scene, int index, const void* key)
+// The keys of a path that the user sets, either of cameras or of emitters.
+typedef struct Keys {
+    const char* type;
+    const void* keys;
+    size_t size; // of a key
+    int count;
+    vplFault (*check)(const void* def, const void* key);
+} Keys;
+
+static vplResult checkIndex(const vplScene* scene, const char* type, int index, int count)
 {
-    const vplEmitterDef def = vplApplyEmitterKey(&scene->emitters[index], key);
-    return vplCheckEmitter(&def);
+    return index >= 0 && index < count
+               ? VPL_SUCCESS
+               : vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                         "%s: index is %d, must be one of the scene's %d", type, index, count);
 }
 
-// Cameras or emitters, as the functions below need to know them.
-typedef struct Kind {
-    vplTrackList* list;
-    int count;        // of cameras or emitters
-    const char* type; // of the keys
-    size_t size;      // of a key
-    vplFault (*check)(const vplScene* scene, int index, const void* key);
-} Kind;
-
-static vplResult checkKeys(const vplScene* scene, const Kind* kind, int index, const void* keys, int count)
+static vplResult checkKeys(const vplScene* scene, const Keys* k, const void* def)
 {
-    if (index < 0 || index >= kind->count) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s: index is %d, must be one of the scene's %d",
-                       kind->type, index, kind->count);
-    }
-    if (count < 0 || count > VPL_MAX_KEYS) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s: count is %d, must be in [0, %d]",
-                       kind->type, count, VPL_MAX_KEYS);
+    if (k->count < 0 || k->count > VPL_MAX_KEYS) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s: count is %d, must be in [0, %d]", k->type,
+                       k->count, VPL_MAX_KEYS);
     }
     double before = -INFINITY;
-    for (int k = 0; k < count; k++) {
-        const double frame = frameOf(keys, kind->size, k);
-        vplFault fault = vplCheckKeyFrame(before, frame);
-        fault = fault.field ? fault : kind->check(scene, index, (const char*)keys + (size_t)k * kind->size);
-        if (fault.field != NULL) {
-            char component[16] = "";
-            if (fault.index >= 0) {
-                snprintf(component, sizeof component, "[%d]", fault.index);
-            }
-            return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s %d: %s%s %s", kind->type, k, fault.field,
-                           component, fault.text);
-        }
+    for (int i = 0; i < k->count; i++) {
+        char subject[64];
+        snprintf(subject, sizeof subject, "%s %d: ", k->type, i);
+        const double frame = frameOf(k->keys, k->size, i);
+        TRY(vplScene_ReportFault(scene, subject, vplCheckKeyFrame(before, frame)));
+        TRY(vplScene_ReportFault(scene, subject, k->check(def, (const char*)k->keys + (size_t)i * k->size)));
         before = frame;
     }
     return VPL_SUCCESS;
 }
 
-// Copies the keys. They replace those that the camera or emitter had.
-static vplResult setKeys(vplScene* scene, const Kind* kind, int index, const void* keys, int count)
+// Replaces the keys of a track by a copy of others.
+static vplResult setKeys(vplScene* scene, const Keys* k, const void* def, vplTrack* track)
 {
-    TRY(checkKeys(scene, kind, index, keys, count));
-    vplTrackList* list = kind->list;
-    TRY(vplArena_Reserve(scene->arena, &list->tracks, &list->capacity, (size_t)list->count + 1,
-                         sizeof *list->tracks));
-    void* copy = count > 0 ? vplArena_Copy(scene->arena, keys, (size_t)count, kind->size) : NULL;
-    if (count > 0 && copy == NULL) {
-        return VPL_OUT_OF_MEMORY;
+    TRY(checkKeys(scene, k, def));
+    void* copy = NULL;
+    if (k->count > 0) {
+        copy = vplArena_Copy(scene->arena, k->keys, (size_t)k->count, k->size);
+        TRY(copy != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY);
     }
-    const vplTrack* found = findTrack(list, index);
-    if (found != NULL) {
-        vplArena_Free(scene->arena, found->keys);
-        list->tracks[found - list->tracks] = list->tracks[--list->count];
-    }
-    if (count > 0) {
-        list->tracks[list->count++] = (vplTrack){index, count, copy};
-    }
+    vplArena_Free(scene->arena, track->keys);
+    *track = (vplTrack){copy, k->count};
     return VPL_SUCCESS;
 }
 
 vplResult vplScene_SetCameraPath(vplScene* scene, int index, const vplCameraKey* keys, int count)
 {
-    const Kind kind = {&scene->cameraTracks, scene->cameraCount, "vplCameraKey", sizeof *keys,
-                       checkCameraKey};
-    return setKeys(scene, &kind, index, keys, count);
+    const Keys k = {"vplCameraKey", keys, sizeof *keys, count, checkCameraKey};
+    TRY(checkIndex(scene, k.type, index, scene->cameraCount));
+    return setKeys(scene, &k, &scene->cameras[index].def, &scene->cameras[index].track);
 }
 
 vplResult vplScene_SetEmitterPath(vplScene* scene, int index, const vplEmitterKey* keys, int count)
 {
-    const Kind kind = {&scene->emitterTracks, scene->emitterCount, "vplEmitterKey", sizeof *keys,
-                       checkEmitterKey};
-    return setKeys(scene, &kind, index, keys, count);
+    const Keys k = {"vplEmitterKey", keys, sizeof *keys, count, checkEmitterKey};
+    TRY(checkIndex(scene, k.type, index, scene->emitterCount));
+    return setKeys(scene, &k, &scene->emitters[index].def, &scene->emitters[index].track);
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Reads MTL files: Kd is the reflectance, Ke the emission. libvpl's surfaces have no other property.
+#include "math/scalar.h"
 #include "scene/obj.h"
 
 typedef struct Mtl {
     vplText text;
     vplObjMaterials* materials;
-    int current;               // material being defined; -1: none yet, or defined before
-    bool started;              // a newmtl was read
-    const char* firstBright;   // the first Kd above 1
-    const char* firstRepeated; // the first newmtl whose name has a definition
-    long long brightCount, repeatedCount;
+    int current;       // material being defined; -1: none yet, or defined before
+    bool started;      // a newmtl was read
+    vplTally bright;   // Kd above 1
+    vplTally repeated; // newmtl with a name that has a definition already
     vplUnknownWords unknown;
 } Mtl;
 
@@ -40,72 +40,46 @@ static vplResult beginMaterial(Mtl* m, vplWord line)
     m->current = number;
     if (m->materials->list[number].defined) {
         m->current = -1;
-        m->firstRepeated = m->repeatedCount++ == 0 ? name.start : m->firstRepeated;
+        vplTally_Add(&m->repeated, name.start);
     }
     m->materials->list[number].defined = true;
     return VPL_SUCCESS;
 }
 
-// Reads one number for all channels, or three. *understoodOut is false for a colour that is not RGB.
-static vplResult readColour(Mtl* m, vplWord line, const char* what, vplRgb* out, bool* understoodOut)
+// Reads Kd or Ke: one number for all channels, or three. Colours that are not RGB have no effect.
+static vplResult readColour(Mtl* m, vplWord line, vplWord keyword)
 {
+    const bool reflectance = vplWord_Is(keyword, "Kd");
     vplWord ahead = line, word;
     float v[3];
     int count = 0;
     vplNextWord(&ahead, &word);
-    *understoodOut = !vplWord_Is(word, "spectral") && !vplWord_Is(word, "xyz");
-    if (!*understoodOut) {
+    if (vplWord_Is(word, "spectral") || vplWord_Is(word, "xyz")) {
         vplText_WarnOnce(&m->text, &m->unknown, word);
         return VPL_SUCCESS;
     }
     ahead = line;
     while (count < 3 && (vplNextWord(&ahead, &word) || count != 1)) {
-        TRY(vplText_Number(&m->text, &line, what, 0, VPL_MAX_MAGNITUDE, &v[count++]));
+        TRY(vplText_Number(&m->text, &line, reflectance ? "a reflectance" : "a radiance", 0,
+                           VPL_MAX_MAGNITUDE, &v[count++]));
     }
-    *out = count == 1 ? (vplRgb){v[0], v[0], v[0]} : (vplRgb){v[0], v[1], v[2]};
-    return vplText_RequireEnd(&m->text, line);
-}
-
-static vplResult readReflectance(Mtl* m, vplWord line, vplWord keyword)
-{
-    vplRgb kd;
-    bool understood;
-    TRY(readColour(m, line, "a reflectance", &kd, &understood));
-    if (understood && (kd.r > 1 || kd.g > 1 || kd.b > 1)) {
-        m->firstBright = m->brightCount++ == 0 ? keyword.start : m->firstBright;
-        kd = (vplRgb){kd.r > 1 ? 1 : kd.r, kd.g > 1 ? 1 : kd.g, kd.b > 1 ? 1 : kd.b};
+    TRY(vplText_RequireEnd(&m->text, line));
+    vplRgb colour = count == 1 ? (vplRgb){v[0], v[0], v[0]} : (vplRgb){v[0], v[1], v[2]};
+    if (reflectance && (colour.r > 1 || colour.g > 1 || colour.b > 1)) {
+        vplTally_Add(&m->bright, keyword.start);
+        colour = (vplRgb){vplMinf(colour.r, 1), vplMinf(colour.g, 1), vplMinf(colour.b, 1)};
     }
-    if (understood && m->current >= 0) {
-        m->materials->list[m->current].diffuse = kd;
+    if (m->current >= 0) {
+        vplObjMaterial* material = &m->materials->list[m->current];
+        *(reflectance ? &material->diffuse : &material->emission) = colour;
     }
     return VPL_SUCCESS;
-}
-
-static vplResult readEmission(Mtl* m, vplWord line)
-{
-    vplRgb ke;
-    bool understood;
-    TRY(readColour(m, line, "a radiance", &ke, &understood));
-    if (understood && m->current >= 0) {
-        m->materials->list[m->current].emission = ke;
-    }
-    return VPL_SUCCESS;
-}
-
-// True for the constants of shading models with highlights and transparency, which nearly every file has.
-static bool isConstant(vplWord keyword)
-{
-    static const char* const words[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "Tr", "d", "illum"};
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        if (vplWord_Is(keyword, words[i])) {
-            return true;
-        }
-    }
-    return false;
 }
 
 static vplResult readLine(Mtl* m, vplWord line)
 {
+    // Constants of shading models with highlights and transparency, which nearly every file has.
+    static const char* const ignored[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "Tr", "d", "illum", NULL};
     vplWord keyword;
     vplNextWord(&line, &keyword);
     if (vplWord_Is(keyword, "newmtl")) {
@@ -114,29 +88,13 @@ static vplResult readLine(Mtl* m, vplWord line)
     if (!m->started) {
         return vplText_FailWord(&m->text, keyword, "newmtl");
     }
-    if (vplWord_Is(keyword, "Kd")) {
-        return readReflectance(m, line, keyword);
+    if (vplWord_Is(keyword, "Kd") || vplWord_Is(keyword, "Ke")) {
+        return readColour(m, line, keyword);
     }
-    if (vplWord_Is(keyword, "Ke")) {
-        return readEmission(m, line);
-    }
-    if (!isConstant(keyword)) {
+    if (!vplWord_IsAmong(keyword, ignored)) {
         vplText_WarnOnce(&m->text, &m->unknown, keyword);
     }
     return VPL_SUCCESS;
-}
-
-static void warn(const Mtl* m)
-{
-    if (m->brightCount > 0) {
-        vplText_WarnAt(&m->text, m->firstBright, "Kd above 1 is taken as 1 (%lld such lines)",
-                       m->brightCount);
-    }
-    if (m->repeatedCount > 0) {
-        vplText_WarnAt(&m->text, m->firstRepeated,
-                       "this material has a definition already, which stays (%lld such materials)",
-                       m->repeatedCount);
-    }
 }
 
 static vplResult readLines(Mtl* m)
@@ -146,7 +104,9 @@ static vplResult readLines(Mtl* m)
     while (vplText_NextLine(&m->text, &at, &line)) {
         TRY(readLine(m, line));
     }
-    warn(m);
+    vplText_WarnTally(&m->text, &m->bright, "Kd above 1 is taken as 1", "lines");
+    vplText_WarnTally(&m->text, &m->repeated, "this material has a definition already, which stays",
+                      "materials");
     return VPL_SUCCESS;
 }
 

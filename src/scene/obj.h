@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the three sweeps over an OBJ file share. The first counts and reads the MTL files, the second reads
-// points and normals, the third faces.
+// Types that the three sweeps over an OBJ file share. The first sweep counts and reads the MTL files, the
+// second reads points and normals, the third reads faces.
 #ifndef VPL_SCENE_OBJ_H
 #define VPL_SCENE_OBJ_H
 
@@ -29,7 +29,6 @@ vplResult vplObjMaterials_Get(vplObjMaterials* materials, vplWord name, int* out
 vplResult vplMtl_Read(vplContext* context, const char* path, vplObjMaterials* materials);
 
 typedef struct vplObj {
-    vplContext* context;
     vplArena* scratch; // owns everything here but the text
     vplText text;
     vplObjMaterials materials;
@@ -41,7 +40,7 @@ typedef struct vplObj {
     bool hasNormals;       // a face refers to one
     // From the second sweep.
     vplVec3* points;          // without duplicates
-    uint32_t differentPoints; // how many these are
+    uint32_t differentPoints; // the number of points
     uint32_t* pointOf;        // the point of each v
     vplVec3* normals;         // unit vectors, or 0 where the file has a zero vector
 } vplObj;
@@ -57,39 +56,20 @@ typedef struct vplObjMesh {
     uint32_t vertexCount;
     // Without normals: the vertex of each point.
     uint32_t* vertexOf;
-    // With normals: an index of the vertices by point and normal, and both for each vertex.
+    // With normals: an index of the vertices by point and normal, and the point and normal of each vertex.
     vplHashIndex corners;
     uint32_t* cornerPoint;
     vplVec3* cornerNormal;
     size_t pointCapacity, normalCapacity;
 } vplObjMesh;
 
-typedef enum vplObjStatement {
-    VPL_OBJ_POINT,      // v
-    VPL_OBJ_NORMAL,     // vn
-    VPL_OBJ_FACE,       // f
-    VPL_OBJ_MATERIAL,   // usemtl
-    VPL_OBJ_LIBRARY,    // mtllib
-    VPL_OBJ_IGNORED,    // vt, g, o, s: irrelevant to a mesh
-    VPL_OBJ_UNSUPPORTED // anything else
-} vplObjStatement;
-
-// Cuts the keyword off a line.
-vplObjStatement vplObj_ReadKeyword(vplWord* line, vplWord* keywordOut);
-
 // The three sweeps, in this order.
 vplResult vplObj_Count(vplObj* obj);
 vplResult vplObj_ReadPoints(vplObj* obj);
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh);
 
-// Corners of a triangle.
-typedef struct vplObjCorners {
-    uint32_t points[3];
-    int64_t normals[3]; // -1: none
-} vplObjCorners;
-
-// Adds a triangle, unless it has no area.
-vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const vplObjCorners* corners,
-                                 int material);
+// Adds a triangle, unless it has no area. A normal of -1 means none.
+vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const uint32_t points[3],
+                                 const int64_t normals[3], int material);
 
 #endif

@@ -8,23 +8,6 @@
 
 enum { MOST_MISSING = 8 }; // warnings about missing MTL files
 
-vplObjStatement vplObj_ReadKeyword(vplWord* line, vplWord* keywordOut)
-{
-    static const struct {
-        const char* word;
-        vplObjStatement statement;
-    } known[] = {{"v", VPL_OBJ_POINT},    {"f", VPL_OBJ_FACE},          {"vn", VPL_OBJ_NORMAL},
-                 {"vt", VPL_OBJ_IGNORED}, {"g", VPL_OBJ_IGNORED},       {"o", VPL_OBJ_IGNORED},
-                 {"s", VPL_OBJ_IGNORED},  {"usemtl", VPL_OBJ_MATERIAL}, {"mtllib", VPL_OBJ_LIBRARY}};
-    vplNextWord(line, keywordOut);
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        if (vplWord_Is(*keywordOut, known[i].word)) {
-            return known[i].statement;
-        }
-    }
-    return VPL_OBJ_UNSUPPORTED;
-}
-
 // Counts the triangles of a face and notes whether a corner names a normal.
 static vplResult countFace(vplObj* obj, vplWord line, vplWord keyword)
 {
@@ -37,8 +20,8 @@ static vplResult countFace(vplObj* obj, vplWord line, vplWord keyword)
                           (slash != NULL && memchr(slash + 1, '/', (size_t)(word.end - slash - 1)) != NULL);
     }
     if (corners < 3 || corners > VPL_MAX_CORNERS) {
-        return vplText_FailAt(&obj->text, keyword.start, VPL_PARSE_ERROR,
-                              "found a face of %d corners, expected 3 to %d", corners, VPL_MAX_CORNERS);
+        return vplText_FailAt(&obj->text, keyword.start, "found a face of %d corners, expected 3 to %d",
+                              corners, VPL_MAX_CORNERS);
     }
     obj->triangleCount += corners - 2;
     return VPL_SUCCESS;
@@ -57,17 +40,18 @@ static vplResult readLibraryAt(vplObj* obj, const char* path, vplWord name, bool
         vplText_WarnAt(&obj->text, name.start, "there is no file %s; its materials are grey", path);
     }
     TRY(vplNames_Add(&obj->libraries, path, length, &number));
-    return *foundOut ? vplMtl_Read(obj->context, path, &obj->materials) : VPL_SUCCESS;
+    return *foundOut ? vplMtl_Read(obj->text.context, path, &obj->materials) : VPL_SUCCESS;
 }
 
 static vplResult readLibrary(vplObj* obj, vplWord name, bool warn, bool* foundOut)
 {
-    char* path = vplPathBeside(obj->context, obj->text.file, name.start, (size_t)(name.end - name.start));
+    char* path =
+        vplPathBeside(obj->text.context, obj->text.file, name.start, (size_t)(name.end - name.start));
     if (path == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     const vplResult result = readLibraryAt(obj, path, name, warn, foundOut);
-    vplFree(obj->context, path);
+    vplFree(obj->text.context, path);
     return result;
 }
 
@@ -97,25 +81,21 @@ static vplResult noteMaterial(vplObj* obj, vplWord line)
 
 static vplResult countLine(vplObj* obj, vplWord line)
 {
+    static const char* const ignored[] = {"vt", "g", "o", "s", NULL}; // irrelevant to a mesh
     vplWord keyword;
-    switch (vplObj_ReadKeyword(&line, &keyword)) {
-    case VPL_OBJ_POINT:
+    vplNextWord(&line, &keyword);
+    if (vplWord_Is(keyword, "v")) {
         obj->pointCount++;
-        break;
-    case VPL_OBJ_NORMAL:
-        obj->normalCount++;
-        break;
-    case VPL_OBJ_FACE:
+    } else if (vplWord_Is(keyword, "f")) {
         return countFace(obj, line, keyword);
-    case VPL_OBJ_MATERIAL:
+    } else if (vplWord_Is(keyword, "vn")) {
+        obj->normalCount++;
+    } else if (vplWord_Is(keyword, "usemtl")) {
         return noteMaterial(obj, line);
-    case VPL_OBJ_LIBRARY:
+    } else if (vplWord_Is(keyword, "mtllib")) {
         return readLibraries(obj, line);
-    case VPL_OBJ_IGNORED:
-        break;
-    case VPL_OBJ_UNSUPPORTED:
+    } else if (!vplWord_IsAmong(keyword, ignored)) {
         vplText_WarnOnce(&obj->text, &obj->unknown, keyword);
-        break;
     }
     return VPL_SUCCESS;
 }
@@ -128,7 +108,7 @@ vplResult vplObj_Count(vplObj* obj)
         TRY(countLine(obj, line));
     }
     if (obj->pointCount > VPL_MAX_TRIANGLES || obj->triangleCount > VPL_MAX_TRIANGLES) {
-        return vplFail(obj->context, VPL_LIMIT,
+        return vplFail(obj->text.context, VPL_LIMIT,
                        "%s: %lld points (v) and %lld triangles, at most %d are allowed", obj->text.file,
                        (long long)obj->pointCount, (long long)obj->triangleCount, VPL_MAX_TRIANGLES);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The third sweep over an OBJ file: faces, which are cut into triangles.
 #include "scene/obj.h"
+#include "scene/obj_number.h"
 
 #include <string.h>
 
@@ -14,35 +15,26 @@ typedef struct Sweep {
     uint32_t cornerPoints[VPL_MAX_CORNERS];
     int64_t cornerNormals[VPL_MAX_CORNERS]; // -1: none
     vplVec3 positions[VPL_MAX_CORNERS];
-    const char* firstCrossing; // face whose outline crosses itself
-    int64_t crossingCount;
+    vplTally crossing; // faces whose outline crosses itself
 } Sweep;
 
-// Reads one index of a corner, up to the next '/'. Large values saturate. False if there are no digits.
+// Reads one index of a corner, up to the next '/'. False if it is no integer.
 static bool readInteger(vplWord* word, vplWord* numberOut, int64_t* out)
 {
     const char* p = word->start;
-    bool negative = p < word->end && *p == '-';
-    p += p < word->end && (*p == '-' || *p == '+');
-    const char* digits = p;
-    int64_t value = 0;
-    for (; p < word->end && *p >= '0' && *p <= '9'; p++) {
-        value = value > (int64_t)1 << 40 ? value : 10 * value + (*p - '0');
-    }
-    bool good = p > digits && (p == word->end || *p == '/');
+    const bool good = vplReadInteger(&p, word->end, out) && (p == word->end || *p == '/');
     while (p < word->end && *p != '/') {
         p++;
     }
     *numberOut = (vplWord){word->start, p};
     word->start = p;
-    *out = negative ? -value : value;
     return good;
 }
 
 // The elements that an index may refer to.
 typedef struct Range {
     const char* kind;
-    int64_t before; // the line
+    int64_t before; // those before the line of the face
     int64_t total;
 } Range;
 
@@ -94,9 +86,9 @@ static vplResult readCorner(Sweep* s, vplWord corner, int i)
 
 static vplResult addTriangle(Sweep* s, int a, int b, int c)
 {
-    const vplObjCorners corners = {{s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]},
-                                   {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]}};
-    return vplObjMesh_AddTriangle(s->obj, s->mesh, &corners, s->material);
+    const uint32_t points[3] = {s->cornerPoints[a], s->cornerPoints[b], s->cornerPoints[c]};
+    const int64_t normals[3] = {s->cornerNormals[a], s->cornerNormals[b], s->cornerNormals[c]};
+    return vplObjMesh_AddTriangle(s->obj, s->mesh, points, normals, s->material);
 }
 
 static vplResult addPolygon(Sweep* s, int corners, const char* face)
@@ -112,7 +104,7 @@ static vplResult addPolygon(Sweep* s, int corners, const char* face)
     }
     const bool hasArea = s->mesh->emptyCount < emptyBefore + s->polygon.triangleCount;
     if (!s->polygon.simple && hasArea) {
-        s->firstCrossing = s->crossingCount++ == 0 ? face : s->firstCrossing;
+        vplTally_Add(&s->crossing, face);
     }
     return VPL_SUCCESS;
 }
@@ -130,20 +122,15 @@ static vplResult readFace(Sweep* s, vplWord line, const char* face)
 static vplResult readLine(Sweep* s, vplWord line)
 {
     vplWord keyword;
-    switch (vplObj_ReadKeyword(&line, &keyword)) {
-    case VPL_OBJ_POINT:
-        s->points++;
-        break;
-    case VPL_OBJ_NORMAL:
-        s->normals++;
-        break;
-    case VPL_OBJ_FACE:
+    vplNextWord(&line, &keyword);
+    if (vplWord_Is(keyword, "f")) {
         return readFace(s, line, keyword.start);
-    case VPL_OBJ_MATERIAL:
-        return vplObjMaterials_Get(&s->obj->materials, vplRestOfLine(line), &s->material);
-    default:
-        break;
     }
+    if (vplWord_Is(keyword, "usemtl")) {
+        return vplObjMaterials_Get(&s->obj->materials, vplRestOfLine(line), &s->material);
+    }
+    s->points += vplWord_Is(keyword, "v");
+    s->normals += vplWord_Is(keyword, "vn");
     return VPL_SUCCESS;
 }
 
@@ -154,18 +141,15 @@ static vplResult readLines(Sweep* s)
     while (vplText_NextLine(&s->obj->text, &at, &line)) {
         TRY(readLine(s, line));
     }
-    if (s->crossingCount > 0) {
-        vplText_WarnAt(&s->obj->text, s->firstCrossing,
-                       "the outline of this face crosses itself; its triangles may overlap (%lld such faces)",
-                       (long long)s->crossingCount);
-    }
+    vplText_WarnTally(&s->obj->text, &s->crossing,
+                      "the outline of this face crosses itself; its triangles may overlap", "faces");
     return VPL_SUCCESS;
 }
 
 vplResult vplObj_ReadFaces(vplObj* obj, vplObjMesh* mesh)
 {
     if (obj->triangleCount == 0) {
-        return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size, VPL_PARSE_ERROR,
+        return vplText_FailAt(&obj->text, obj->text.bytes + obj->text.size,
                               "found the end of the file, expected a face (f)");
     }
     const size_t triangles = (size_t)obj->triangleCount;

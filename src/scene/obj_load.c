@@ -16,14 +16,25 @@ static void warnOfUndefined(const vplObj* obj)
     for (uint32_t i = 0; i < obj->materials.names.index.count; i++) {
         const vplObjMaterial* material = &obj->materials.list[i];
         if (!material->defined && material->sceneIndex >= 0 && count++ < MOST_UNDEFINED) {
-            vplLog(obj->context, VPL_LOG_WARNING, "%s: material \"%.80s\" is not defined, taken as grey",
+            vplLog(obj->text.context, VPL_LOG_WARNING, "%s: material \"%.80s\" is not defined, taken as grey",
                    obj->text.file, obj->materials.names.names[i]);
         }
     }
     if (count > MOST_UNDEFINED) {
-        vplLog(obj->context, VPL_LOG_WARNING, "%s: %d materials in all are not defined", obj->text.file,
+        vplLog(obj->text.context, VPL_LOG_WARNING, "%s: %d materials in all are not defined", obj->text.file,
                count);
     }
+}
+
+static bool isPrefixTaken(const vplScene* scene, const char* prefix)
+{
+    for (int i = 0; i < scene->materialCount; i++) {
+        const char* name = scene->materials[i].name;
+        if (name != NULL && strncmp(name, prefix, strlen(prefix)) == 0) {
+            return true;
+        }
+    }
+    return false;
 }
 
 // A prefix for the names of a file's materials that no name in the scene has: "room.obj:", or with the number
@@ -37,16 +48,8 @@ static char* makePrefix(const vplScene* scene, const char* path, vplArena* scrat
         return NULL;
     }
     snprintf(prefix, size, "%s:", base);
-    bool taken = true;
-    for (int number = scene->meshCount + 1; taken; number++) {
-        taken = false;
-        for (int i = 0; i < scene->materialCount && !taken; i++) {
-            const char* name = scene->materials[i].name;
-            taken = name != NULL && strncmp(name, prefix, strlen(prefix)) == 0;
-        }
-        if (taken) {
-            snprintf(prefix, size, "%s(%d):", base, number);
-        }
+    for (int number = scene->meshCount + 1; isPrefixTaken(scene, prefix); number++) {
+        snprintf(prefix, size, "%s(%d):", base, number);
     }
     return prefix;
 }
@@ -121,7 +124,9 @@ static vplResult addMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int* in
 {
     vplHashIndex_Close(&mesh->corners);
     const size_t triangles = (size_t)mesh->triangleCount, capacity = (size_t)obj->triangleCount;
-    vplMeshDef def = {.vertexCount = (int)mesh->vertexCount, .triangleCount = (int)mesh->triangleCount};
+    vplMeshDef def = vplDefaultMeshDef();
+    def.vertexCount = (int)mesh->vertexCount;
+    def.triangleCount = (int)mesh->triangleCount;
     def.positions = placeVertices(obj, mesh);
     def.indices = shrink(mesh->arena, mesh->indices, capacity, triangles, 3 * sizeof *mesh->indices);
     def.normals = shrink(mesh->arena, mesh->cornerNormal, mesh->normalCapacity, mesh->vertexCount,
@@ -139,15 +144,15 @@ static vplResult addMesh(vplScene* scene, vplObj* obj, vplObjMesh* mesh, int* in
 static vplResult checkMesh(const vplObj* obj, const vplObjMesh* mesh)
 {
     if (mesh->triangleCount == 0) {
-        return vplFail(obj->context, VPL_PARSE_ERROR,
+        return vplFail(obj->text.context, VPL_PARSE_ERROR,
                        "%s:1:1: found only faces without area, expected one that has some", obj->text.file);
     }
     if (mesh->vertexCount > VPL_MAX_TRIANGLES) {
-        return vplFail(obj->context, VPL_LIMIT, "%s: %u different corners, at most %d are allowed",
+        return vplFail(obj->text.context, VPL_LIMIT, "%s: %u different corners, at most %d are allowed",
                        obj->text.file, mesh->vertexCount, VPL_MAX_TRIANGLES);
     }
     if (mesh->emptyCount > 0) {
-        vplLog(obj->context, VPL_LOG_INFO, "%s: left out %lld triangles without area", obj->text.file,
+        vplLog(obj->text.context, VPL_LOG_INFO, "%s: left out %lld triangles without area", obj->text.file,
                (long long)mesh->emptyCount);
     }
     return VPL_SUCCESS;
@@ -162,9 +167,7 @@ static vplResult readText(vplObj* obj, vplObjMesh* mesh)
 
 static vplResult loadObj(vplScene* scene, vplObj* obj, const char* path, vplObjMesh* mesh, int* indexOut)
 {
-    TRY(vplArena_Check(obj->scratch));
-    TRY(vplArena_Check(mesh->arena));
-    TRY(vplText_Open(obj->context, path, &obj->text));
+    TRY(vplText_Open(scene->context, path, &obj->text));
     const vplResult result = readText(obj, mesh);
     vplText_Close(&obj->text);
     TRY(result);
@@ -175,11 +178,10 @@ static vplResult loadObj(vplScene* scene, vplObj* obj, const char* path, vplObjM
 vplResult vplScene_LoadObj(vplScene* scene, const char* path, int* indexOut)
 {
     vplArena* scratch = vplArena_Create(scene->context);
-    vplObj obj = {.context = scene->context,
-                  .scratch = scratch,
+    vplObj obj = {.scratch = scratch,
                   .materials = {.names = {.index = {.arena = scratch}}},
                   .libraries = {.index = {.arena = scratch}}};
-    vplObjMesh mesh = {.arena = scratch != NULL ? vplArena_Create(scene->context) : NULL};
+    vplObjMesh mesh = {.arena = vplArena_Create(scene->context)};
     const int materialCount = scene->materialCount;
     const vplResult result = loadObj(scene, &obj, path, &mesh, indexOut);
     if (result != VPL_SUCCESS) {

@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-// The triangle's unit normal, by the order of its corners; false if it has no area. Double: no triangle of
-// floats underflows, and floats of similar size give an exact 0.
+// Finds the triangle's unit normal from the order of its corners; false if it has no area. Computes in double,
+// where no triangle of floats underflows and where floats of similar size give an exact 0.
 static bool findNormal(vplVec3 a, vplVec3 b, vplVec3 c, vplVec3* out)
 {
     double u[3], v[3], n[3];
@@ -68,24 +68,24 @@ static vplResult findCornerVertex(vplObjMesh* mesh, uint32_t point, vplVec3 norm
     return i == VPL_NO_ENTRY ? addCorner(mesh, hash, point, normal) : VPL_SUCCESS;
 }
 
-vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const vplObjCorners* corners,
-                                 int material)
+vplResult vplObjMesh_AddTriangle(const vplObj* obj, vplObjMesh* mesh, const uint32_t points[3],
+                                 const int64_t normals[3], int material)
 {
     vplVec3 flat;
     const vplVec3* p = obj->points;
-    if (!findNormal(p[corners->points[0]], p[corners->points[1]], p[corners->points[2]], &flat)) {
+    if (!findNormal(p[points[0]], p[points[1]], p[points[2]], &flat)) {
         mesh->emptyCount++;
         return VPL_SUCCESS;
     }
     uint32_t* index = mesh->indices + 3 * (size_t)mesh->triangleCount;
     for (int k = 0; k < 3; k++) {
         if (!obj->hasNormals) {
-            index[k] = findPointVertex(mesh, corners->points[k]);
+            index[k] = findPointVertex(mesh, points[k]);
             continue;
         }
-        vplVec3 n = corners->normals[k] >= 0 ? obj->normals[corners->normals[k]] : flat;
+        vplVec3 n = normals[k] >= 0 ? obj->normals[normals[k]] : flat;
         n = n.x == 0 && n.y == 0 && n.z == 0 ? flat : n;
-        TRY(findCornerVertex(mesh, corners->points[k], n, &index[k]));
+        TRY(findCornerVertex(mesh, points[k], n, &index[k]));
     }
     mesh->materials[mesh->triangleCount++] = material;
     return VPL_SUCCESS;

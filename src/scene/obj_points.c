@@ -54,12 +54,12 @@ static vplResult readLines(vplObj* obj, vplHashIndex* index)
         if (line.start[0] != 'v') { // most lines of most files are faces
             continue;
         }
-        vplObjStatement statement = vplObj_ReadKeyword(&line, &keyword);
-        if (statement == VPL_OBJ_POINT) {
+        vplNextWord(&line, &keyword);
+        if (vplWord_Is(keyword, "v")) {
             TRY(readThree(obj, &line, "a coordinate", VPL_MAX_MAGNITUDE, &v));
             TRY(skipExtras(obj, line));
             TRY(weld(obj, index, v, &obj->pointOf[point++]));
-        } else if (statement == VPL_OBJ_NORMAL) {
+        } else if (vplWord_Is(keyword, "vn")) {
             TRY(readThree(obj, &line, "a normal's component", 3.4e38f, &v));
             TRY(vplText_RequireEnd(&obj->text, line));
             obj->normals[normal++] = vplNormalize(v);

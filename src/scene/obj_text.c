@@ -44,7 +44,7 @@ static vplResult normalise(vplText* t)
             i = i + 1 < t->size ? endLine(t, i + 1, '\v') : i;
             behindBlank = true;
         } else if (c == 0) {
-            return vplText_FailAt(t, b + i, VPL_PARSE_ERROR, "found a NUL byte, expected text");
+            return vplText_FailAt(t, b + i, "found a NUL byte, expected text");
         } else if (c == '\v' || c == '\f') {
             b[i] = ' ';
             behindBlank = true;
@@ -75,7 +75,6 @@ vplResult vplText_Open(vplContext* context, const char* file, vplText* textOut)
 void vplText_Close(vplText* text)
 {
     vplFree(text->context, text->bytes);
-    text->bytes = NULL;
 }
 
 static vplWord skipBlanks(vplWord line)
@@ -129,10 +128,22 @@ vplWord vplRestOfLine(vplWord line)
     return line;
 }
 
+static bool isSame(vplWord a, vplWord b)
+{
+    return a.end - a.start == b.end - b.start && memcmp(a.start, b.start, (size_t)(a.end - a.start)) == 0;
+}
+
 bool vplWord_Is(vplWord word, const char* text)
 {
-    size_t length = strlen(text);
-    return (size_t)(word.end - word.start) == length && memcmp(word.start, text, length) == 0;
+    return isSame(word, (vplWord){text, text + strlen(text)});
+}
+
+bool vplWord_IsAmong(vplWord word, const char* const* texts)
+{
+    while (*texts != NULL && !vplWord_Is(word, *texts)) {
+        texts++;
+    }
+    return *texts != NULL;
 }
 
 // Line and column from 1; columns count bytes.
@@ -159,13 +170,13 @@ static void logAt(const vplText* text, const char* at, vplLogLevel level, const 
     vplLog(text->context, level, "%s:%lld:%lld: %s", text->file, line, column, message);
 }
 
-vplResult vplText_FailAt(const vplText* text, const char* at, vplResult result, const char* format, ...)
+vplResult vplText_FailAt(const vplText* text, const char* at, const char* format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
     logAt(text, at, VPL_LOG_ERROR, format, arguments);
     va_end(arguments);
-    return result;
+    return VPL_PARSE_ERROR;
 }
 
 void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...)
@@ -176,6 +187,12 @@ void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...
     va_end(arguments);
 }
 
+// The number of bytes that messages show of a word.
+static int shownLength(vplWord word)
+{
+    return word.end - word.start > 60 ? 60 : (int)(word.end - word.start);
+}
+
 vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format, ...)
 {
     char expected[256];
@@ -183,13 +200,11 @@ vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format
     va_start(arguments, format);
     vsnprintf(expected, sizeof expected, format, arguments);
     va_end(arguments);
-    int length = word.end - word.start > 60 ? 60 : (int)(word.end - word.start);
-    if (length == 0) {
-        return vplText_FailAt(text, word.start, VPL_PARSE_ERROR, "found the end of the line, expected %s",
-                              expected);
+    if (word.start == word.end) {
+        return vplText_FailAt(text, word.start, "found the end of the line, expected %s", expected);
     }
-    return vplText_FailAt(text, word.start, VPL_PARSE_ERROR, "found \"%.*s\", expected %s", length,
-                          word.start, expected);
+    return vplText_FailAt(text, word.start, "found \"%.*s\", expected %s", shownLength(word), word.start,
+                          expected);
 }
 
 vplResult vplText_Number(const vplText* text, vplWord* line, const char* what, float low, float high,
@@ -214,12 +229,22 @@ vplResult vplText_RequireEnd(const vplText* text, vplWord line)
     return vplNextWord(&line, &word) ? vplText_FailWord(text, word, "the end of the line") : VPL_SUCCESS;
 }
 
+void vplTally_Add(vplTally* tally, const char* at)
+{
+    tally->first = tally->count++ == 0 ? at : tally->first;
+}
+
+void vplText_WarnTally(const vplText* text, const vplTally* tally, const char* sentence, const char* things)
+{
+    if (tally->count > 0) {
+        vplText_WarnAt(text, tally->first, "%s (%lld such %s)", sentence, tally->count, things);
+    }
+}
+
 void vplText_WarnOnce(const vplText* text, vplUnknownWords* unknown, vplWord word)
 {
-    size_t length = (size_t)(word.end - word.start);
     for (int i = 0; i < unknown->count; i++) {
-        const vplWord known = unknown->words[i];
-        if ((size_t)(known.end - known.start) == length && memcmp(known.start, word.start, length) == 0) {
+        if (isSame(unknown->words[i], word)) {
             return;
         }
     }
@@ -227,7 +252,7 @@ void vplText_WarnOnce(const vplText* text, vplUnknownWords* unknown, vplWord wor
         return;
     }
     unknown->words[unknown->count++] = word;
-    vplText_WarnAt(text, word.start, "%.*s is not supported and has no effect%s",
-                   length > 60 ? 60 : (int)length, word.start,
+    vplText_WarnAt(text, word.start, "%.*s is not supported and has no effect%s", shownLength(word),
+                   word.start,
                    unknown->count == VPL_MOST_UNKNOWN ? "; further such statements are not reported" : "");
 }

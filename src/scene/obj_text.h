@@ -35,13 +35,15 @@ vplWord vplRestOfLine(vplWord line);
 
 bool vplWord_Is(vplWord word, const char* text);
 
+// True if the word is one of the texts, which NULL ends.
+bool vplWord_IsAmong(vplWord word, const char* const* texts);
+
 // Logs "file:line:column: found ..., expected ..." for a word, or for the end of the line if it is empty.
 // Returns VPL_PARSE_ERROR.
 vplResult vplText_FailWord(const vplText* text, vplWord word, const char* format, ...) VPL_PRINTF(3, 4);
 
-// Logs "file:line:column: sentence" for a place in the text. FailAt returns `result`.
-vplResult vplText_FailAt(const vplText* text, const char* at, vplResult result, const char* format, ...)
-    VPL_PRINTF(4, 5);
+// Logs "file:line:column: sentence" for a place in the text. FailAt returns VPL_PARSE_ERROR.
+vplResult vplText_FailAt(const vplText* text, const char* at, const char* format, ...) VPL_PRINTF(3, 4);
 void vplText_WarnAt(const vplText* text, const char* at, const char* format, ...) VPL_PRINTF(3, 4);
 
 // Reads the next word as a number in [low, high]; `what` completes "expected ...".
@@ -51,7 +53,18 @@ vplResult vplText_Number(const vplText* text, vplWord* line, const char* what, f
 // Fails if anything is left of the line.
 vplResult vplText_RequireEnd(const vplText* text, vplWord line);
 
-// Unknown words. Each is reported once.
+// Counts places of one kind in a text, of which only the first is reported.
+typedef struct vplTally {
+    const char* first;
+    long long count;
+} vplTally;
+
+void vplTally_Add(vplTally* tally, const char* at);
+
+// Warns "file:line:column: sentence (3 such things)", unless there is no such place.
+void vplText_WarnTally(const vplText* text, const vplTally* tally, const char* sentence, const char* things);
+
+// Unknown words that were reported.
 enum { VPL_MOST_UNKNOWN = 16 };
 typedef struct vplUnknownWords {
     vplWord words[VPL_MOST_UNKNOWN];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { CAMERA_COOKIE = 0x56504c34, MATERIAL_COOKIE, OBJECT_COOKIE, EMITTER_COOKIE, MESH_COOKIE };
@@ -55,19 +56,24 @@ void vplScene_Destroy(vplScene* scene)
     vplArena_Destroy(scene != NULL ? scene->arena : NULL);
 }
 
-static vplResult report(const vplScene* scene, const char* type, bool initialised, const vplFault* fault)
+vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault)
 {
-    if (!initialised) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s was not made by its default function", type);
-    }
-    if (fault->field == NULL) {
+    if (fault.field == NULL) {
         return VPL_SUCCESS;
     }
-    if (fault->index >= 0) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s.%s[%d] %s", type, fault->field, fault->index,
-                       fault->text);
+    char component[16] = "";
+    if (fault.index >= 0) {
+        snprintf(component, sizeof component, "[%d]", fault.index);
     }
-    return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s.%s %s", type, fault->field, fault->text);
+    return vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s%s%s %s", subject, fault.field, component,
+                   fault.text);
+}
+
+static vplResult requireCookie(const vplScene* scene, const char* type, bool present)
+{
+    return present ? VPL_SUCCESS
+                   : vplFail(scene->context, VPL_INVALID_ARGUMENT, "%s was not made by its default function",
+                             type);
 }
 
 // One of the scene's growing arrays.
@@ -108,15 +114,16 @@ static vplResult copyName(vplScene* scene, const char** name)
 
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut)
 {
-    const vplFault fault = vplCheckCamera(def);
-    TRY(report(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE, &fault));
-    return append(scene, LIST(scene, camera, cameras), def, indexOut);
+    const vplCamera camera = {.def = *def};
+    TRY(requireCookie(scene, "vplCameraDef", def->cookie == CAMERA_COOKIE));
+    TRY(vplScene_ReportFault(scene, "vplCameraDef.", vplCheckCamera(def)));
+    return append(scene, LIST(scene, camera, cameras), &camera, indexOut);
 }
 
 vplResult vplScene_AddMaterial(vplScene* scene, const vplMaterialDef* def, int* indexOut)
 {
-    const vplFault fault = vplCheckMaterial(def);
-    TRY(report(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE, &fault));
+    TRY(requireCookie(scene, "vplMaterialDef", def->cookie == MATERIAL_COOKIE));
+    TRY(vplScene_ReportFault(scene, "vplMaterialDef.", vplCheckMaterial(def)));
     for (int i = 0; def->name != NULL && i < scene->materialCount; i++) {
         if (scene->materials[i].name != NULL && strcmp(scene->materials[i].name, def->name) == 0) {
             return vplFail(scene->context, VPL_INVALID_ARGUMENT,
@@ -135,11 +142,9 @@ vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material
 
 vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* arena, int* indexOut)
 {
-    vplMeshDef adopted = *mesh;
-    adopted.cookie = MESH_COOKIE;
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
-        result = append(scene, LIST(scene, mesh, meshes), &adopted, indexOut);
+        result = append(scene, LIST(scene, mesh, meshes), mesh, indexOut);
     }
     if (result == VPL_SUCCESS) {
         vplArena_Absorb(scene->arena, arena);
@@ -156,8 +161,8 @@ static void* copyArray(vplArena* arena, const void* from, int count, size_t size
 
 vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut)
 {
-    const vplFault fault = vplCheckMesh(def, scene->materialCount);
-    TRY(report(scene, "vplMeshDef", def->cookie == MESH_COOKIE, &fault));
+    TRY(requireCookie(scene, "vplMeshDef", def->cookie == MESH_COOKIE));
+    TRY(vplScene_ReportFault(scene, "vplMeshDef.", vplCheckMesh(def, scene->materialCount)));
     vplArena* arena = vplArena_Create(scene->context);
     vplMeshDef copy = *def;
     copy.positions = copyArray(arena, def->positions, def->vertexCount, sizeof *def->positions);
@@ -169,8 +174,8 @@ vplResult vplScene_AddMesh(vplScene* scene, const vplMeshDef* def, int* indexOut
 
 vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* indexOut)
 {
-    const vplFault fault = vplCheckTransform(&def->transform);
-    TRY(report(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE, &fault));
+    TRY(requireCookie(scene, "vplObjectDef", def->cookie == OBJECT_COOKIE));
+    TRY(vplScene_ReportFault(scene, "vplObjectDef.", vplCheckTransform(&def->transform)));
     if (def->type != VPL_OBJECT_QUAD && def->type != VPL_OBJECT_BOX && def->type != VPL_OBJECT_MESH) {
         return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                        "vplObjectDef.type is %d, must be a vplObjectType", (int)def->type);
@@ -194,27 +199,28 @@ vplResult vplScene_AddObject(vplScene* scene, const vplObjectDef* def, int* inde
 
 vplResult vplScene_AddEmitter(vplScene* scene, const vplEmitterDef* def, int* indexOut)
 {
-    const vplFault fault = vplCheckEmitter(def);
-    TRY(report(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE, &fault));
-    return append(scene, LIST(scene, emitter, emitters), def, indexOut);
+    const vplEmitter emitter = {.def = *def};
+    TRY(requireCookie(scene, "vplEmitterDef", def->cookie == EMITTER_COOKIE));
+    TRY(vplScene_ReportFault(scene, "vplEmitterDef.", vplCheckEmitter(def)));
+    return append(scene, LIST(scene, emitter, emitters), &emitter, indexOut);
 }
 
 // Defines vplScene_GetThingCount and vplScene_GetThing.
-#define GETTERS(Thing, one, many)                                                                            \
+#define GETTERS(Thing, thingCount, element)                                                                  \
     int vplScene_Get##Thing##Count(const vplScene* scene)                                                    \
     {                                                                                                        \
-        return scene->one##Count;                                                                            \
+        return scene->thingCount;                                                                            \
     }                                                                                                        \
     const vpl##Thing##Def* vplScene_Get##Thing(const vplScene* scene, int index)                             \
     {                                                                                                        \
-        return &scene->many[index];                                                                          \
+        return &scene->element;                                                                              \
     }
 
-GETTERS(Camera, camera, cameras)
-GETTERS(Material, material, materials)
-GETTERS(Mesh, mesh, meshes)
-GETTERS(Object, object, objects)
-GETTERS(Emitter, emitter, emitters)
+GETTERS(Camera, cameraCount, cameras[index].def)
+GETTERS(Material, materialCount, materials[index])
+GETTERS(Mesh, meshCount, meshes[index])
+GETTERS(Object, objectCount, objects[index])
+GETTERS(Emitter, emitterCount, emitters[index].def)
 
 vplContext* vplScene_GetContext(const vplScene* scene)
 {

@@ -7,32 +7,33 @@
 
 #include "base/arena.h"
 
-// The keyframes of one camera or emitter.
+// The keyframes of a camera or emitter. One that stands still has none.
 typedef struct vplTrack {
-    int index; // of the camera or emitter
-    int count; // of keys, at least 1
-    void* keys;
+    void* keys; // vplCameraKey or vplEmitterKey
+    int count;
 } vplTrack;
 
-// The tracks of all cameras, or of all emitters, that move; in no order.
-typedef struct vplTrackList {
-    vplTrack* tracks;
-    size_t capacity;
-    int count;
-} vplTrackList;
+typedef struct vplCamera {
+    vplCameraDef def;
+    vplTrack track;
+} vplCamera;
+
+typedef struct vplEmitter {
+    vplEmitterDef def;
+    vplTrack track;
+} vplEmitter;
 
 struct vplScene {
     vplContext* context;
     vplArena* arena; // owns the scene and everything in it
     uint64_t stamp;  // changes with each addition
-    vplCameraDef* cameras;
+    vplCamera* cameras;
     vplMaterialDef* materials;
     vplMeshDef* meshes;
     vplObjectDef* objects;
-    vplEmitterDef* emitters;
+    vplEmitter* emitters;
     int cameraCount, materialCount, meshCount, objectCount, emitterCount;
     size_t cameraCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
-    vplTrackList cameraTracks, emitterTracks;
 };
 
 // Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure
@@ -57,6 +58,9 @@ vplFault vplCheckMaterial(const vplMaterialDef* def);
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
+
+// Logs a fault, if there is one, as "<subject><field> <text>"; fails if there is one.
+vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault);
 
 // Checks that a key may follow one at frame `before`.
 vplFault vplCheckKeyFrame(double before, double frame);

@@ -8,44 +8,33 @@
 
 static const double DEGREE = VPL_PI / 180;
 
-// The key in a scene file for a def's field.
-static const char* keyOf(const char* field)
+// The key in a scene file for a def's field: another name, if the file uses that.
+static const char* keyOf(const vplJson* object, const char* field)
 {
     static const char* const pairs[][2] = {{"fovY", "fov_y"},
                                            {"innerAngle", "inner_angle"},
                                            {"outerAngle", "outer_angle"},
-                                           {"transform", "matrix"}};
+                                           {"transform", "matrix"},
+                                           {"intensity", "irradiance"}}; // of a directional emitter
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-        if (strcmp(field, pairs[i][0]) == 0) {
+        if (strcmp(field, pairs[i][0]) == 0 && json_object_get(object->value, pairs[i][1]) != NULL) {
             return pairs[i][1];
         }
     }
     return field;
 }
 
-vplResult vplJson_ReportFault(const vplJson* object, const char* key, const vplFault* fault)
+vplResult vplJson_ReportFault(const vplJson* object, vplFault fault)
 {
-    if (fault->field == NULL) {
+    if (fault.field == NULL) {
         return VPL_SUCCESS;
     }
-    const vplJson member = vplJson_Member(object, key ? key : keyOf(fault->field));
-    const vplJson component = vplJson_Element(&member, fault->index);
-    return vplJson_Fail(fault->index >= 0 ? &component : &member, "%s", fault->text);
+    const vplJson member = vplJson_Member(object, keyOf(object, fault.field));
+    const vplJson component = vplJson_Element(&member, fault.index);
+    return vplJson_Fail(fault.index >= 0 ? &component : &member, "%s", fault.text);
 }
 
-const char* vplJson_IntensityKey(vplEmitterType type)
-{
-    return type == VPL_EMITTER_DIRECTIONAL ? "irradiance" : "intensity";
-}
-
-vplResult vplJson_ReportEmitterFault(const vplJson* object, vplEmitterType type, const vplFault* fault)
-{
-    const bool intensity = fault->field != NULL && strcmp(fault->field, "intensity") == 0;
-    return vplJson_ReportFault(object, intensity ? vplJson_IntensityKey(type) : NULL, fault);
-}
-
-// Reads an angle in degrees, in the open interval (above, below), into radians.
-static vplResult readAngle(const vplJson* object, const char* key, double above, double below, double* out)
+vplResult vplJson_ReadAngle(const vplJson* object, const char* key, double above, double below, double* out)
 {
     const vplJson member = vplJson_Member(object, key);
     double degrees = 0;
@@ -61,24 +50,18 @@ static vplResult readAngle(const vplJson* object, const char* key, double above,
     return VPL_SUCCESS;
 }
 
-vplResult vplJson_ReadFieldOfView(const vplJson* object, double* out)
-{
-    return readAngle(object, "fov_y", 0, 180, out);
-}
-
 static vplResult readCamera(vplSceneLoader* l, const vplJson* camera)
 {
     static const char* const keys[] = {"!eye", "!target", "up", "fov_y", "near", "far", "path", NULL};
     vplCameraDef def = vplDefaultCameraDef();
     TRY(vplJson_CheckKeys(camera, keys));
-    TRY(vplJson_ReadVec3(camera, "eye", &def.eye));
-    TRY(vplJson_ReadVec3(camera, "target", &def.target));
-    TRY(vplJson_ReadVec3(camera, "up", &def.up));
-    TRY(vplJson_ReadFieldOfView(camera, &def.fovY));
+    TRY(vplJson_ReadFloats(camera, "eye", 3, &def.eye));
+    TRY(vplJson_ReadFloats(camera, "target", 3, &def.target));
+    TRY(vplJson_ReadFloats(camera, "up", 3, &def.up));
+    TRY(vplJson_ReadAngle(camera, "fov_y", 0, 180, &def.fovY));
     TRY(vplJson_ReadNumber(camera, "near", &def.near));
     TRY(vplJson_ReadNumber(camera, "far", &def.far));
-    const vplFault fault = vplCheckCamera(&def);
-    TRY(vplJson_ReportFault(camera, NULL, &fault));
+    TRY(vplJson_ReportFault(camera, vplCheckCamera(&def)));
     int index;
     TRY(vplScene_AddCamera(l->scene, &def, &index));
     return vplSceneLoader_ReadCameraPath(l, camera, index);
@@ -100,10 +83,9 @@ static vplResult readMaterials(vplSceneLoader* l, const vplJson* root)
         vplMaterialDef def = vplDefaultMaterialDef();
         def.name = name;
         TRY(vplJson_CheckKeys(&material, keys));
-        TRY(vplJson_ReadRgb(&material, "diffuse", &def.diffuse));
-        TRY(vplJson_ReadRgb(&material, "emission", &def.emission));
-        const vplFault fault = vplCheckMaterial(&def);
-        TRY(vplJson_ReportFault(&material, NULL, &fault));
+        TRY(vplJson_ReadFloats(&material, "diffuse", 3, &def.diffuse));
+        TRY(vplJson_ReadFloats(&material, "emission", 3, &def.emission));
+        TRY(vplJson_ReportFault(&material, vplCheckMaterial(&def)));
         TRY(vplScene_AddMaterial(l->scene, &def, NULL));
     }
     return VPL_SUCCESS;
@@ -141,18 +123,18 @@ static vplResult readEmitter(vplSceneLoader* l, const vplJson* emitter)
     def.type = (vplEmitterType)type;
     TRY(vplJson_CheckKeys(emitter, keys[type]));
     TRY(vplJson_ReadString(emitter, "name", &name));
-    TRY(vplJson_ReadVec3(emitter, "position", &def.position));
-    TRY(vplJson_ReadVec3(emitter, "direction", &def.direction));
-    TRY(vplJson_ReadRgb(emitter, vplJson_IntensityKey(def.type), &def.intensity));
-    TRY(readAngle(emitter, "outer_angle", 0, 90, &def.outerAngle));
-    TRY(readAngle(emitter, "inner_angle", -1e-300, 90, &def.innerAngle));
+    TRY(vplJson_ReadFloats(emitter, "position", 3, &def.position));
+    TRY(vplJson_ReadFloats(emitter, "direction", 3, &def.direction));
+    TRY(vplJson_ReadFloats(emitter, "intensity", 3, &def.intensity));
+    TRY(vplJson_ReadFloats(emitter, "irradiance", 3, &def.intensity));
+    TRY(vplJson_ReadAngle(emitter, "outer_angle", 0, 90, &def.outerAngle));
+    TRY(vplJson_ReadAngle(emitter, "inner_angle", -1e-300, 90, &def.innerAngle));
     if (def.type == VPL_EMITTER_SPOT && def.innerAngle > def.outerAngle) { // vplCheckEmitter reports radians
         const vplJson member = vplJson_Member(emitter, "inner_angle");
         return vplJson_Fail(&member, "is %g degrees, must be at most outer_angle (%g)",
                             def.innerAngle / DEGREE, def.outerAngle / DEGREE);
     }
-    const vplFault fault = vplCheckEmitter(&def);
-    TRY(vplJson_ReportEmitterFault(emitter, def.type, &fault));
+    TRY(vplJson_ReportFault(emitter, vplCheckEmitter(&def)));
     TRY(vplScene_AddEmitter(l->scene, &def, &index));
     return vplSceneLoader_ReadEmitterPath(l, emitter, index);
 }
@@ -192,7 +174,7 @@ static vplResult readCameras(vplSceneLoader* l, const vplJson* root)
     return readArray(l, root, "cameras", readCamera);
 }
 
-static vplResult readScene(vplSceneLoader* l)
+static vplResult readRoot(vplSceneLoader* l)
 {
     static const char* const keys[] = {"camera", "cameras", "materials", "!objects", "lights", NULL};
     const vplJson root = vplJson_Root(&l->json);
@@ -204,28 +186,24 @@ static vplResult readScene(vplSceneLoader* l)
     return readArray(l, &root, "lights", readEmitter);
 }
 
+static vplResult readFile(vplSceneLoader* l, const char* path)
+{
+    TRY(vplArena_Check(l->scratch));
+    TRY(vplJsonFile_Open(l->scene->context, path, &l->json));
+    const vplResult result = readRoot(l);
+    vplJsonFile_Close(&l->json);
+    return result;
+}
+
 static vplResult loadJson(vplContext* context, const char* path, vplScene** sceneOut)
 {
-    vplSceneLoader loader = {.scratch = vplArena_Create(context)};
-    loader.meshFiles.index.arena = loader.scratch;
-    vplResult result = vplArena_Check(loader.scratch);
-    if (result == VPL_SUCCESS) {
-        result = vplJsonFile_Open(context, path, &loader.json);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplScene_Create(context, &loader.scene);
-        if (result == VPL_SUCCESS) {
-            result = readScene(&loader);
-        }
-        vplJsonFile_Close(&loader.json);
-    }
-    vplArena_Destroy(loader.scratch);
-    if (result != VPL_SUCCESS) {
-        vplScene_Destroy(loader.scene);
-        return result;
-    }
-    *sceneOut = loader.scene;
-    return VPL_SUCCESS;
+    vplScene* scene;
+    TRY(vplScene_Create(context, &scene));
+    vplArena* scratch = vplArena_Create(context);
+    vplSceneLoader loader = {.scene = scene, .scratch = scratch, .meshFiles = {.index = {.arena = scratch}}};
+    const vplResult result = readFile(&loader, path);
+    vplArena_Destroy(scratch);
+    return vplArena_Deliver(scene->arena, result, scene, sceneOut);
 }
 
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)

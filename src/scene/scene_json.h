@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the functions that read scene files share.
+// Helpers and state of the functions that read scene files.
 #ifndef VPL_SCENE_SCENE_JSON_H
 #define VPL_SCENE_SCENE_JSON_H
 
@@ -15,18 +15,11 @@ typedef struct vplSceneLoader {
     vplNames meshFiles; // paths of the scene's meshes, in their order
 } vplSceneLoader;
 
-// Logs a fault, if there is one, as "file:line:column: path sentence" of a member of `object`. `key`
-// overrides the field's own.
-vplResult vplJson_ReportFault(const vplJson* object, const char* key, const vplFault* fault);
+// Logs a fault, if there is one, as "file:line:column: path sentence" of a member of `object`.
+vplResult vplJson_ReportFault(const vplJson* object, vplFault fault);
 
-// The same for an emitter, whose intensity has the key below.
-vplResult vplJson_ReportEmitterFault(const vplJson* object, vplEmitterType type, const vplFault* fault);
-
-// The key of an emitter's intensity: "irradiance" for directional emitters, else "intensity".
-const char* vplJson_IntensityKey(vplEmitterType type);
-
-// Reads "fov_y", degrees, into radians.
-vplResult vplJson_ReadFieldOfView(const vplJson* object, double* out);
+// Reads an angle in degrees, in the open interval (above, below), into radians.
+vplResult vplJson_ReadAngle(const vplJson* object, const char* key, double above, double below, double* out);
 
 // Reads "type", before all other keys: it decides which of them are known. *out is its index among `names`,
 // which NULL ends; `expected` completes "must be ...".

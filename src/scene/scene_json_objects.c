@@ -28,7 +28,7 @@ static vplResult readScale(const vplJson* object, vplVec3* out)
         *out = (vplVec3){(float)uniform, (float)uniform, (float)uniform};
         return VPL_SUCCESS;
     }
-    return vplJson_ReadVec3(object, "scale", out);
+    return vplJson_ReadFloats(object, "scale", 3, out);
 }
 
 // Reads "rotate", degrees, into quarter turns.
@@ -55,20 +55,22 @@ static vplResult readTransform(const vplJson* object, vplMat4* out)
             return vplJson_Fail(&matrix, "excludes \"translate\", \"rotate\" and \"scale\"");
         }
         TRY(vplJson_ReadFloats(object, "matrix", 16, out->m));
-        const vplFault fault = vplCheckTransform(out);
-        return vplJson_ReportFault(object, NULL, &fault);
+        return vplJson_ReportFault(object, vplCheckTransform(out));
     }
     vplVec3 translate = {0, 0, 0}, scale = {1, 1, 1};
     double quarters[3] = {0, 0, 0};
-    TRY(vplJson_ReadVec3(object, "translate", &translate));
+    TRY(vplJson_ReadFloats(object, "translate", 3, &translate));
     TRY(readRotation(object, quarters));
     TRY(readScale(object, &scale));
     const vplAffine a = vplAffine_FromParts(translate, quarters, scale);
     *out = vplAffine_ToMat4(&a);
     vplFault fault = vplCheckTransform(out);
-    const bool translation = fault.index >= 12; // in the last column; otherwise the scale is at fault
-    fault.index = translation ? fault.index - 12 : -1;
-    return vplJson_ReportFault(object, translation ? "translate" : "scale", &fault);
+    if (fault.field != NULL) {
+        const bool translation = fault.index >= 12; // in the last column; otherwise the scale is at fault
+        fault.field = translation ? "translate" : "scale";
+        fault.index = translation ? fault.index - 12 : -1;
+    }
+    return vplJson_ReportFault(object, fault);
 }
 
 // Reads the file of a mesh, unless an earlier object named the same file.

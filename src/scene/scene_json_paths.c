@@ -6,13 +6,48 @@
 #include <math.h>
 #include <string.h>
 
-// Gets the array "path" and memory for its keys. *countOut is 0 if there is none.
-static vplResult openPath(vplSceneLoader* l, const vplJson* path, size_t size, void* keysOut, int* countOut)
+// Reads one key and checks it. `before` is the frame of the key before it, `def` the camera or emitter.
+typedef vplResult ReadKeyFcn(const vplJson* at, const void* def, double before, void* key);
+
+static vplResult readCameraKey(const vplJson* at, const void* def, double before, void* out)
 {
-    *countOut = 0;
-    if (path->value == NULL) {
-        return VPL_SUCCESS;
-    }
+    static const char* const names[] = {"!frame", "eye", "target", "up", "fov_y", NULL};
+    vplCameraKey* key = out;
+    *key = vplMakeCameraKey(def, 0);
+    TRY(vplJson_CheckKeys(at, names));
+    TRY(vplJson_ReadNumber(at, "frame", &key->frame));
+    TRY(vplJson_ReadFloats(at, "eye", 3, &key->eye));
+    TRY(vplJson_ReadFloats(at, "target", 3, &key->target));
+    TRY(vplJson_ReadFloats(at, "up", 3, &key->up));
+    TRY(vplJson_ReadAngle(at, "fov_y", 0, 180, &key->fovY));
+    const vplCameraDef posed = vplApplyCameraKey(def, key);
+    TRY(vplJson_ReportFault(at, vplCheckKeyFrame(before, key->frame)));
+    return vplJson_ReportFault(at, vplCheckCamera(&posed));
+}
+
+static vplResult readEmitterKey(const vplJson* at, const void* def, double before, void* out)
+{
+    static const char* const names[][5] = {
+        [VPL_EMITTER_POINT] = {"!frame", "position", "intensity", NULL},
+        [VPL_EMITTER_SPOT] = {"!frame", "position", "direction", "intensity", NULL},
+        [VPL_EMITTER_DIRECTIONAL] = {"!frame", "direction", "irradiance", NULL}};
+    vplEmitterKey* key = out;
+    *key = vplMakeEmitterKey(def, 0);
+    TRY(vplJson_CheckKeys(at, names[((const vplEmitterDef*)def)->type]));
+    TRY(vplJson_ReadNumber(at, "frame", &key->frame));
+    TRY(vplJson_ReadFloats(at, "position", 3, &key->position));
+    TRY(vplJson_ReadFloats(at, "direction", 3, &key->direction));
+    TRY(vplJson_ReadFloats(at, "intensity", 3, &key->intensity));
+    TRY(vplJson_ReadFloats(at, "irradiance", 3, &key->intensity));
+    const vplEmitterDef posed = vplApplyEmitterKey(def, key);
+    TRY(vplJson_ReportFault(at, vplCheckKeyFrame(before, key->frame)));
+    return vplJson_ReportFault(at, vplCheckEmitter(&posed));
+}
+
+// Reads the keys of an array into memory of the loader.
+static vplResult readKeys(vplSceneLoader* l, const vplJson* path, const void* def, ReadKeyFcn* readKey,
+                          size_t size, char** keysOut)
+{
     TRY(vplJson_RequireArray(path));
     const size_t count = json_array_size(path->value);
     if (count == 0) {
@@ -21,71 +56,35 @@ static vplResult openPath(vplSceneLoader* l, const vplJson* path, size_t size, v
     if (count > VPL_MAX_KEYS) {
         return vplJson_Fail(path, "has %zu keys, must have at most %d", count, VPL_MAX_KEYS);
     }
-    void* keys = vplArena_Alloc(l->scratch, count, size);
-    *countOut = (int)count;
-    memcpy(keysOut, &keys, sizeof keys);
-    return keys != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-}
-
-static vplResult readCameraKey(const vplJson* at, const vplCameraDef* def, double before, vplCameraKey* key)
-{
-    static const char* const names[] = {"!frame", "eye", "target", "up", "fov_y", NULL};
-    *key = vplMakeCameraKey(def, 0);
-    TRY(vplJson_CheckKeys(at, names));
-    TRY(vplJson_ReadNumber(at, "frame", &key->frame));
-    TRY(vplJson_ReadVec3(at, "eye", &key->eye));
-    TRY(vplJson_ReadVec3(at, "target", &key->target));
-    TRY(vplJson_ReadVec3(at, "up", &key->up));
-    TRY(vplJson_ReadFieldOfView(at, &key->fovY));
-    const vplCameraDef posed = vplApplyCameraKey(def, key);
-    vplFault fault = vplCheckKeyFrame(before, key->frame);
-    fault = fault.field ? fault : vplCheckCamera(&posed);
-    return vplJson_ReportFault(at, NULL, &fault);
+    *keysOut = vplArena_Alloc(l->scratch, count, size);
+    TRY(vplArena_Check(l->scratch));
+    double before = -INFINITY;
+    for (size_t k = 0; k < count; k++) {
+        const vplJson element = vplJson_Element(path, (int)k);
+        TRY(readKey(&element, def, before, *keysOut + k * size));
+        memcpy(&before, *keysOut + k * size, sizeof before); // both types of key begin with their frame
+    }
+    return VPL_SUCCESS;
 }
 
 vplResult vplSceneLoader_ReadCameraPath(vplSceneLoader* l, const vplJson* camera, int index)
 {
     const vplJson path = vplJson_Member(camera, "path");
-    const vplCameraDef def = *vplScene_GetCamera(l->scene, index);
-    vplCameraKey* keys;
-    int count;
-    TRY(openPath(l, &path, sizeof *keys, &keys, &count));
-    for (int k = 0; k < count; k++) {
-        const vplJson element = vplJson_Element(&path, k);
-        TRY(readCameraKey(&element, &def, k > 0 ? keys[k - 1].frame : -INFINITY, &keys[k]));
+    char* keys = NULL;
+    if (path.value == NULL) {
+        return VPL_SUCCESS;
     }
-    return count > 0 ? vplScene_SetCameraPath(l->scene, index, keys, count) : VPL_SUCCESS;
-}
-
-static vplResult readEmitterKey(const vplJson* at, const vplEmitterDef* def, double before,
-                                vplEmitterKey* key)
-{
-    static const char* const names[][5] = {
-        [VPL_EMITTER_POINT] = {"!frame", "position", "intensity", NULL},
-        [VPL_EMITTER_SPOT] = {"!frame", "position", "direction", "intensity", NULL},
-        [VPL_EMITTER_DIRECTIONAL] = {"!frame", "direction", "irradiance", NULL}};
-    *key = vplMakeEmitterKey(def, 0);
-    TRY(vplJson_CheckKeys(at, names[def->type]));
-    TRY(vplJson_ReadNumber(at, "frame", &key->frame));
-    TRY(vplJson_ReadVec3(at, "position", &key->position));
-    TRY(vplJson_ReadVec3(at, "direction", &key->direction));
-    TRY(vplJson_ReadRgb(at, vplJson_IntensityKey(def->type), &key->intensity));
-    const vplEmitterDef posed = vplApplyEmitterKey(def, key);
-    vplFault fault = vplCheckKeyFrame(before, key->frame);
-    fault = fault.field ? fault : vplCheckEmitter(&posed);
-    return vplJson_ReportEmitterFault(at, def->type, &fault);
+    TRY(readKeys(l, &path, &l->scene->cameras[index].def, readCameraKey, sizeof(vplCameraKey), &keys));
+    return vplScene_SetCameraPath(l->scene, index, (vplCameraKey*)keys, (int)json_array_size(path.value));
 }
 
 vplResult vplSceneLoader_ReadEmitterPath(vplSceneLoader* l, const vplJson* emitter, int index)
 {
     const vplJson path = vplJson_Member(emitter, "path");
-    const vplEmitterDef def = *vplScene_GetEmitter(l->scene, index);
-    vplEmitterKey* keys;
-    int count;
-    TRY(openPath(l, &path, sizeof *keys, &keys, &count));
-    for (int k = 0; k < count; k++) {
-        const vplJson element = vplJson_Element(&path, k);
-        TRY(readEmitterKey(&element, &def, k > 0 ? keys[k - 1].frame : -INFINITY, &keys[k]));
+    char* keys = NULL;
+    if (path.value == NULL) {
+        return VPL_SUCCESS;
     }
-    return count > 0 ? vplScene_SetEmitterPath(l->scene, index, keys, count) : VPL_SUCCESS;
+    TRY(readKeys(l, &path, &l->scene->emitters[index].def, readEmitterKey, sizeof(vplEmitterKey), &keys));
+    return vplScene_SetEmitterPath(l->scene, index, (vplEmitterKey*)keys, (int)json_array_size(path.value));
 }

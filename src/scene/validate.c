@@ -168,3 +168,14 @@ vplFault vplCheckEmitter(const vplEmitterDef* def)
     }
     return f;
 }
+
+vplFault vplCheckKeyFrame(double before, double frame)
+{
+    if (!(fabs(frame) <= VPL_MAX_FRAME)) {
+        return fault("frame", -1, "is %g, must be in [%d, %d]", frame, -VPL_MAX_FRAME, VPL_MAX_FRAME);
+    }
+    if (!(frame > before)) {
+        return fault("frame", -1, "is %g, must be greater than that of the key before (%g)", frame, before);
+    }
+    return FINE;
+}

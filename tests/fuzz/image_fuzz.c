@@ -8,13 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-typedef vplResult DecodeFcn(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                            vplImage** imageOut);
-
-typedef vplResult EncodeFcn(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer);
-
 // A picture of floats survives PFM and EXR bit for bit.
-static void requireRoundTrip(vplContext* context, const vplImage* image, EncodeFcn* encode, DecodeFcn* decode)
+static void requireRoundTrip(vplContext* context, const vplImage* image, vplEncodeFcn* encode,
+                             vplDecodeFcn* decode)
 {
     vplWriteOptions options = vplDefaultWriteOptions();
     vplByteBuffer buffer = {.context = context};
@@ -47,7 +43,7 @@ static void requireComparison(const vplImage* image)
     REQUIRE(vplImage_Flip(image, image, VPL_DEFAULT_PPD, &flip, NULL) == result && flip == 0);
 }
 
-static void tryDecoder(DecodeFcn* decoder, const uint8_t* bytes, size_t size)
+static void tryDecoder(vplDecodeFcn* decoder, const uint8_t* bytes, size_t size)
 {
     FuzzLog log = {{0}, 0};
     vplContext* context = openFuzzContext(&log);
@@ -73,7 +69,7 @@ static void tryDecoder(DecodeFcn* decoder, const uint8_t* bytes, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
 {
-    static DecodeFcn* const decoders[] = {vplDecodePfm, vplDecodeHdr, vplDecodeLdr, vplDecodeExr};
+    static vplDecodeFcn* const decoders[] = {vplDecodePfm, vplDecodeHdr, vplDecodeLdr, vplDecodeExr};
     for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++) {
         tryDecoder(decoders[i], bytes, size);
     }

@@ -64,7 +64,7 @@ static vplResult measureAll(const Arguments* a, Table* t)
 static int runStages(const Arguments* a, Table* t)
 {
     for (int i = 0; i < STAGE_COUNT; i++) {
-        const bool slow = (STAGES[i].flags & STAGE_SLOW) != 0;
+        const bool slow = (STAGES[i].flags & SLOW) != 0;
         if (isAskedFor(a, STAGES[i].name) && (!slow || a->all || a->stage != NULL)) {
             t->rows[t->rowCount++].stage = &STAGES[i];
         }

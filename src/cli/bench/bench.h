@@ -15,9 +15,9 @@ typedef struct Bench {
     vplGeometry* geometry;
     vplLightSet* set;
     vplShadeLight* lights; // of all virtual lights
-    vplImage* image;       // what shading stages draw into, of the size asked for
-    vplImage* quarter;     // the same for stages of rays: a quarter of the width and height
-    // Made when a stage first asks for them:
+    vplImage* image;       // the target of shading stages, of the size asked for
+    vplImage* quarter;     // the target of stages of rays: a quarter of the width and height
+    // Made when a stage first needs them:
     vplCubeMap* map;
     vplShadow shadow;
     vplImage* picture; // lit directly and by 18 lights, for the stages of pictures
@@ -27,12 +27,13 @@ typedef struct Bench {
 
 // Counts and results of one run of a stage.
 typedef struct Outcome {
-    double work;      // what the rate is of, in `unit`
+    double work;      // in `unit`; the rate is work / time
     const char* unit; // NULL: no rate
     double pixelLights;
-    int64_t drawCalls, fragments, triangles, rays;
+    vplRasterStats raster;
+    int64_t rays;
     uint64_t hash;
-    const vplImage* image; // hashed when the clock has stopped; NULL: `hash` is all
+    const vplImage* image; // hashed when the clock has stopped; NULL: the stage has computed the hash
 } Outcome;
 
 typedef struct Stage Stage;
@@ -47,17 +48,17 @@ struct Stage {
 };
 
 enum {
-    STAGE_DIRECT = 1,  // light of the emitter, too
-    STAGE_RAYS = 2,    // virtual lights cast shadow rays; drawn into `quarter`
-    STAGE_SLOW = 4,    // runs only with --all or when asked for by name
-    STAGE_NORMALS = 8, // show normals instead of light
-    STAGE_SERIAL = 16  // one thread by what the stage is: no speed-up is expected
+    DIRECT = 1,  // light of the emitter, too
+    RAYS = 2,    // virtual lights cast shadow rays; drawn into `quarter`
+    SLOW = 4,    // runs only with --all or when asked for by name
+    NORMALS = 8, // show normals instead of light
+    SERIAL = 16  // always on one thread
 };
 
 extern const Stage STAGES[];
 extern const int STAGE_COUNT;
 
-// What was measured of one stage, for each thread count.
+// The measurements of one stage, for each thread count.
 typedef struct Row {
     const Stage* stage;
     int runs;
@@ -76,14 +77,15 @@ typedef struct Table {
 
 // ---- room.c
 
-// Makes the room, its lights and images. `threads` 0 is one per processor. A Bench of zeros may be closed.
+// Makes the room, its lights and images. `threads` 0 is one per processor. Close it even after a failure.
+// closeBench accepts a Bench of zeros.
 vplResult openBench(const Arguments* a, int threads, int width, int height, Bench* b);
 void closeBench(Bench* b);
 
 // 16 spheres of about triangleCount triangles in all, with bumps, in front of the room's camera.
 vplResult buildField(vplContext* context, int triangleCount, vplScene** sceneOut);
 
-// Make what is missing.
+// Make these inputs unless they exist.
 vplResult needShadow(Bench* b);
 vplResult needPicture(Bench* b);
 vplResult needField(Bench* b);
@@ -111,17 +113,17 @@ static inline void addFloat(uint64_t* hash, float value)
     addHash(hash, bits);
 }
 
-// Draws b->geometry's virtual lights as the stage says, into `image`.
+// Shades a geometry with the first of b->lights into `image`, as the stage asks.
 vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, vplImage* image,
                     Outcome* outcome);
 
-// The closest hits of one ray per pixel of a camera's view.
+// Casts one ray through each pixel's centre and hashes the triangles and distances of the closest hits.
 void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
                Outcome* outcome);
 
 // ---- bench.c, print.c, scaling.c
 
-// Whether --stage asks for a thing of this name.
+// Returns true if --stage is absent or part of the name.
 bool isAskedFor(const Arguments* a, const char* name);
 
 void printTable(const Arguments* a, const Table* table);

@@ -8,10 +8,10 @@
 // One triangle over the whole picture.
 extern const vplMesh COVER;
 
-// Its corners (-1, -1), (3, -1), (-1, 3) at a depth, which is the uniforms: a float.
+// Its corners are (-1, -1), (3, -1) and (-1, 3). The uniforms are its depth, a float.
 void coverVertices(const void* uniforms, int first, int count, const vplVertices* out);
 
-// 1, 2, 3, 4 in planes 0 to 3.
+// Writes 1, 2, 3 and 4 to planes 0 to 3.
 void coverFragments(const void* uniforms, vplFragments* f);
 
 #endif

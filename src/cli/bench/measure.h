@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How all benchmarks measure, those of vpl bench and the programs of tests/bench: clocks, medians, and runs
-// of several ways in turn.
+// Measuring in vpl bench and the programs of tests/bench: clocks, medians, and runs of several ways in turn.
 #ifndef VPL_CLI_BENCH_MEASURE_H
 #define VPL_CLI_BENCH_MEASURE_H
 
@@ -14,8 +13,7 @@ double wallMs(void);
 // Milliseconds of processor time of all threads.
 double cpuMs(void);
 
-// The middle value, or the mean of the two middle ones; NAN of none. `values` may be in any order and stays
-// so.
+// The middle value, or the mean of the two middle ones; NAN of none. `values` may be in any order.
 double medianOf(const double* values, int count);
 
 // Times of one run, or medians over several runs; ms.
@@ -32,8 +30,8 @@ typedef struct Measurement {
     double warmUp;  // seconds: the first run of all ways does not count if none takes longer; 0: it counts
 } Measurement;
 
-// Medians of each way. runsOut, how many runs counted, may be NULL. Before each run, threads that still look
-// out for work of the last go to sleep.
+// Writes the medians of each way. runsOut, the number of runs that counted, may be NULL. Pauses before each
+// run, so that threads which still spin after the last one go to sleep.
 vplResult measureInTurn(const Measurement* measurement, Times* mediansOut, int* runsOut);
 
 #endif

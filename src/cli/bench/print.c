@@ -54,7 +54,7 @@ static void printRow(const Table* t, const Row* row)
     printf("%-35s %4d", row->stage->name, row->runs);
     for (int c = 0; c < t->columns; c++) {
         printf(" %9.2f %9.2f", row->times[c].wall, row->times[c].cpu);
-        if (c > 0 && (row->stage->flags & STAGE_SERIAL) != 0) {
+        if (c > 0 && (row->stage->flags & SERIAL) != 0) {
             printf("      -     - ");
         } else if (c > 0) {
             double e = efficiency(t, row, c);
@@ -63,8 +63,8 @@ static void printRow(const Table* t, const Row* row)
         same = same && row->outcomes[c].hash == row->outcomes[0].hash;
     }
     const Outcome* o = &row->outcomes[0];
-    printf(" %6s %6s %6s %6s  %016llx", shorten((double)o->drawCalls, text[0]),
-           shorten((double)o->fragments, text[1]), shorten((double)o->triangles, text[2]),
+    printf(" %6s %6s %6s %6s  %016llx", shorten((double)o->raster.drawCalls, text[0]),
+           shorten((double)o->raster.fragments, text[1]), shorten((double)o->raster.trianglesIn, text[2]),
            shorten((double)o->rays, text[3]), (unsigned long long)o->hash);
     printRate(&row->outcomes[t->columns - 1], row->times[t->columns - 1].wall);
     printf("%s\n", same ? "" : "  DIFFERS BETWEEN THREAD COUNTS");
@@ -102,10 +102,10 @@ static json_t* columnJson(const Table* t, const Row* row, int column)
     return json_pack("{s:s, s:i, s:f, s:f, s:i, s:f, s:f, s:I, s:I, s:I, s:I, s:f, s:f, s:s, s:s}", "stage",
                      row->stage->name, "threads", t->threads[column], "ms", row->times[column].wall, "cpu_ms",
                      row->times[column].cpu, "runs", row->runs, "speed_up", speedUp(row, column),
-                     "efficiency", efficiency(t, row, column), "draw_calls", (json_int_t)o->drawCalls,
-                     "fragments", (json_int_t)o->fragments, "triangles", (json_int_t)o->triangles, "rays",
-                     (json_int_t)o->rays, "pixel_lights", o->pixelLights, "work", o->work, "unit",
-                     o->unit ? o->unit : "", "hash", hash);
+                     "efficiency", efficiency(t, row, column), "draw_calls", (json_int_t)o->raster.drawCalls,
+                     "fragments", (json_int_t)o->raster.fragments, "triangles",
+                     (json_int_t)o->raster.trianglesIn, "rays", (json_int_t)o->rays, "pixel_lights",
+                     o->pixelLights, "work", o->work, "unit", o->unit ? o->unit : "", "hash", hash);
 }
 
 int printTableJson(const Table* t)

@@ -10,20 +10,16 @@
 
 enum { LAYERS = 8 };
 
-// Runs what was recorded, unless that failed, and destroys the raster. The picture's floats hold its first
-// plane.
+// Runs the recorded draws, unless recording failed, and destroys the raster. Its first plane is b->image's
+// floats.
 static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Outcome* outcome)
 {
-    vplRasterStats stats;
     if (result == VPL_SUCCESS) {
-        result = vplRaster_Run(raster, NULL, NULL, &stats);
+        result = vplRaster_Run(raster, NULL, NULL, &outcome->raster);
     }
     if (result == VPL_SUCCESS) {
         const int count = b->image->width * b->image->height;
-        outcome->drawCalls = stats.drawCalls;
-        outcome->fragments = stats.fragments;
-        outcome->triangles = stats.trianglesIn;
-        outcome->work = (double)outcome->fragments;
+        outcome->work = (double)outcome->raster.fragments;
         outcome->unit = "fragments";
         for (int i = 0; i < count; i += 97) {
             addFloat(&outcome->hash, b->image->pixels[i]);
@@ -33,8 +29,8 @@ static vplResult finish(vplRaster* raster, vplResult result, const Bench* b, Out
     return result;
 }
 
-// Layers one nearer than the other into the depth buffer or, if there are planes, one depth and then layers
-// of equal depth that are added up.
+// Without planes, draws layers into the depth buffer, each nearer than the one before. With planes, draws one
+// layer of depth, and then adds up layers of equal depth.
 static vplResult fill(const Bench* b, int planes, Outcome* outcome)
 {
     const float depth = 0.5f; // one place, so that the rasterizer sets the triangle up once
@@ -129,7 +125,7 @@ vplResult runSmallTriangles(Bench* b, const Stage* stage, Outcome* outcome)
         result = vplRaster_Draw(raster, &mesh, &pipeline);
     }
     result = finish(raster, result, b, outcome);
-    outcome->work = (double)outcome->triangles;
+    outcome->work = (double)outcome->raster.trianglesIn;
     outcome->unit = "triangles";
     free(indices);
     return result;

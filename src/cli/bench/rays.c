@@ -10,16 +10,15 @@ vplResult runGeometry(Bench* b, const Stage* stage, Outcome* outcome)
     vplGeometry* geometry;
     TRY(needField(b));
     TRY(vplGeometry_Create(b->field, &geometry));
-    hitPixels(geometry, vplScene_GetCamera(b->field, 0), 16, 16, outcome); // shows that the tree is right
+    hitPixels(geometry, vplScene_GetCamera(b->field, 0), 16, 16, outcome); // the hash tests the tree
     outcome->rays = 0;
-    outcome->triangles = geometry->triangleCount;
+    outcome->raster.trianglesIn = geometry->triangleCount;
     outcome->work = geometry->triangleCount;
     outcome->unit = "triangles";
     vplGeometry_Destroy(geometry);
     return VPL_SUCCESS;
 }
 
-// Casts one ray through each pixel's centre and hashes the triangles and distances of the hits.
 void hitPixels(const vplGeometry* geometry, const vplCameraDef* camera, int width, int height,
                Outcome* outcome)
 {

@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Scenes of vpl bench, made in code so that the program needs no files: a room, and a field of bumpy spheres
-// for stages with many triangles.
+// Scenes of vpl bench, made in code so that the program needs no files: a room, and bumpy spheres for stages
+// with many triangles.
 #include "cli/bench/bench.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void addObject(vplScene* scene, vplObjectType type, int material, vplVec3 place, double turnX,
-                      double turnY, vplVec3 size)
+typedef struct Object {
+    vplObjectType type;
+    int material;
+    vplVec3 place;
+    double turnX, turnY; // degrees
+    vplVec3 size;
+} Object;
+
+static void addObject(vplScene* scene, const Object* o)
 {
     vplObjectDef def = vplDefaultObjectDef();
-    const double rotate[3] = {turnX * VPL_PI / 180, turnY * VPL_PI / 180, 0};
-    def.type = type;
-    def.material = material;
-    def.transform = vplMat4_FromParts(place, rotate, size);
+    const double rotate[3] = {o->turnX * VPL_PI / 180, o->turnY * VPL_PI / 180, 0};
+    def.type = o->type;
+    def.material = o->material;
+    def.transform = vplMat4_FromParts(o->place, rotate, o->size);
     vplScene_AddObject(scene, &def, NULL);
 }
 
@@ -39,13 +46,7 @@ static void addEmitter(vplScene* scene)
 static vplResult buildRoom(vplContext* context, vplScene** sceneOut)
 {
     static const vplRgb colours[] = {{0.725f, 0.71f, 0.68f}, {0.63f, 0.065f, 0.05f}, {0.14f, 0.45f, 0.091f}};
-    static const struct {
-        vplObjectType type;
-        int colour;
-        vplVec3 place;
-        double turnX, turnY; // degrees
-        vplVec3 size;
-    } objects[] = {
+    static const Object objects[] = {
         {VPL_OBJECT_QUAD, 0, {0, 0, 0}, -90, 0, {5, 5, 1}},
         {VPL_OBJECT_QUAD, 0, {0, 5, 0}, 90, 0, {5, 5, 1}},
         {VPL_OBJECT_QUAD, 0, {0, 2.5f, -2.5f}, 0, 0, {5, 5, 1}},
@@ -61,8 +62,7 @@ static vplResult buildRoom(vplContext* context, vplScene** sceneOut)
         vplScene_AddMaterial(*sceneOut, &material, NULL);
     }
     for (size_t i = 0; i < sizeof objects / sizeof *objects; i++) {
-        addObject(*sceneOut, objects[i].type, objects[i].colour, objects[i].place, objects[i].turnX,
-                  objects[i].turnY, objects[i].size);
+        addObject(*sceneOut, &objects[i]);
     }
     addEmitter(*sceneOut);
     addCamera(*sceneOut);
@@ -115,8 +115,10 @@ vplResult buildField(vplContext* context, int triangleCount, vplScene** sceneOut
         result = vplScene_AddMesh(s, &mesh, NULL);
     }
     for (int i = 0; i < SPHERES && result == VPL_SUCCESS; i++) {
-        vplVec3 place = {1.2f * (float)(i % 4) - 1.8f, 0.7f + 1.2f * (float)(i / 4), 0.3f * (float)(i % 3)};
-        addObject(s, VPL_OBJECT_MESH, 0, place, 23.0 * i, 41.0 * i, (vplVec3){0.6f, 0.6f, 0.6f});
+        const vplVec3 place = {1.2f * (float)(i % 4) - 1.8f, 0.7f + 1.2f * (float)(i / 4),
+                               0.3f * (float)(i % 3)};
+        const Object sphere = {VPL_OBJECT_MESH, 0, place, 23.0 * i, 41.0 * i, {0.6f, 0.6f, 0.6f}};
+        addObject(s, &sphere);
     }
     free(positions);
     free(indices);
@@ -156,7 +158,7 @@ vplResult needPicture(Bench* b)
 {
     if (b->picture == NULL) {
         const Stage lit = {
-            .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = 18, .batch = 1, .flags = STAGE_DIRECT};
+            .accumulation = VPL_ACCUMULATE_DEFERRED, .lights = 18, .batch = 1, .flags = DIRECT};
         Outcome outcome;
         TRY(vplImage_Create(b->context, b->image->width, b->image->height, &b->picture));
         TRY(shadeInto(b, b->geometry, &lit, b->picture, &outcome));
@@ -196,9 +198,6 @@ vplResult openBench(const Arguments* a, int threads, int width, int height, Benc
 
 void closeBench(Bench* b)
 {
-    if (b->context == NULL) {
-        return; // it was refused
-    }
     free(b->lights);
     vplImage_Destroy(b->image);
     vplImage_Destroy(b->quarter);

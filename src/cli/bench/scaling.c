@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// vpl bench --scaling: how time grows with the amount of work. Constant costs flatten the exponent that least
-// squares find over all points. Two more figures are therefore printed: the exponent of the upper half of the
-// points, where constant costs weigh least, and the constant a of the fit a + b n^p with the expected p, with
-// the fit's largest error.
+// vpl bench --scaling: the growth of time with the amount of work. Constant costs flatten the exponent that
+// least squares find over all points. Two more figures are therefore printed: the exponent of the upper half
+// of the points, where constant costs weigh least, and the constant a of the fit a + b n^p with the expected
+// p and the fit's largest error.
+#include "cli/bench/bench.h"
 #include "cli/bench/fit.h"
-#include "cli/bench/series.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,18 +15,143 @@
 #define TOLERANCE          0.15
 #define SECONDS_PER_SERIES 15.0
 
-typedef struct Measured {
+enum { MAX_POINTS = 16 };
+
+typedef struct Series Series;
+
+// One series: what it varies and measures, and the results.
+typedef struct Sweep {
+    const Arguments* arguments;
     const Series* series;
+    Bench bench;
+    Bench benches[MAX_POINTS]; // what a series makes for each of its points: an image, a field or all
     double n[MAX_POINTS], ms[MAX_POINTS], cpuMs[MAX_POINTS];
     int points, runs;
     bool oneThread;
     double exponent, upper; // of all points, and of the upper half
     FixedFit fit;
-} Measured;
+} Sweep;
+
+struct Series {
+    const char* name;
+    const char* unit; // what n counts
+    double expected;  // exponent of n in the time
+    const char* why;
+    double least, most;                        // n goes from one to the other...
+    double factor;                             // ...in such steps
+    vplResult (*prepare)(Sweep* s, int point); // NULL: nothing to do; may replace n by the exact value
+    vplResult (*run)(Sweep* s, int point);
+};
+
+// ---- the series
+
+static const Stage SHADED = {.accumulation = VPL_ACCUMULATE_DEFERRED, .lights = 64, .batch = 1};
+
+static vplResult shadeLights(Sweep* s, int point)
+{
+    Stage stage = SHADED;
+    stage.lights = (int)s->n[point];
+    Outcome outcome = {0};
+    return shadeInto(&s->bench, s->bench.geometry, &stage, s->bench.image, &outcome);
+}
+
+// n is the number of pixels of a picture of 16:9.
+static vplResult makeImage(Sweep* s, int point)
+{
+    const int height = (int)(sqrt(s->n[point] * 9 / 16) + 0.5), width = (int)(height * 16.0 / 9 + 0.5);
+    s->n[point] = (double)width * height;
+    return vplImage_Create(s->bench.context, width, height, &s->benches[point].image);
+}
+
+static vplResult shadePixels(Sweep* s, int point)
+{
+    Outcome outcome = {0};
+    return shadeInto(&s->bench, s->bench.geometry, &SHADED, s->benches[point].image, &outcome);
+}
+
+static vplResult makeField(Sweep* s, int point)
+{
+    Bench* b = &s->benches[point];
+    TRY(buildField(s->bench.context, (int)s->n[point], &b->field));
+    TRY(vplGeometry_Create(b->field, &b->fieldGeometry));
+    s->n[point] = b->fieldGeometry->triangleCount;
+    return VPL_SUCCESS;
+}
+
+static vplResult buildTree(Sweep* s, int point)
+{
+    vplGeometry* geometry;
+    TRY(vplGeometry_Create(s->benches[point].field, &geometry));
+    vplGeometry_Destroy(geometry);
+    return VPL_SUCCESS;
+}
+
+static vplResult drawTriangles(Sweep* s, int point)
+{
+    const Stage stage = {.accumulation = VPL_ACCUMULATE_DEFERRED, .batch = 1, .flags = NORMALS};
+    Outcome outcome = {0};
+    return shadeInto(&s->bench, s->benches[point].fieldGeometry, &stage, s->bench.image, &outcome);
+}
+
+static vplResult traceTriangles(Sweep* s, int point)
+{
+    Outcome outcome = {0};
+    hitPixels(s->benches[point].fieldGeometry, vplScene_GetCamera(s->benches[point].field, 0), 256, 144,
+              &outcome);
+    return VPL_SUCCESS;
+}
+
+static vplResult openThreads(Sweep* s, int point)
+{
+    const vplImage* image = s->bench.image;
+    return openBench(s->arguments, (int)s->n[point], image->width, image->height, &s->benches[point]);
+}
+
+static vplResult shadeThreads(Sweep* s, int point)
+{
+    Bench* b = &s->benches[point];
+    Stage stage = SHADED;
+    stage.lights = 512;
+    Outcome outcome = {0};
+    return shadeInto(b, b->geometry, &stage, b->image, &outcome);
+}
+
+static vplResult drawCubeMap(Sweep* s, int point)
+{
+    vplCubeMapDef def = vplDefaultCubeMapDef();
+    def.position = vplScene_GetEmitter(s->bench.scene, 0)->position;
+    def.size = (int)s->n[point];
+    vplCubeMap* map;
+    TRY(vplCubeMap_Create(s->bench.geometry, &def, NULL, NULL, &map));
+    vplCubeMap_Destroy(map);
+    return VPL_SUCCESS;
+}
+
+static const Series SERIES[] = {
+    {"deferred against lights", "lights", 1, "each light costs each pixel the same", 16, 2048, 2, NULL,
+     shadeLights},
+    {"deferred, 64 lights, against pixels", "pixels", 1, "each pixel costs the same; 240p to 2160p",
+     426 * 240, 3840 * 2160, 2.0837, makeImage, shadePixels},
+    {"geometry and tree against triangles", "triangles", 1, "n log n: a little above 1", 1024, 1 << 20, 4,
+     makeField, buildTree},
+    {"G-buffer against triangles", "triangles", 1, "at most: triangles smaller than a pixel mostly end early",
+     1024, 1 << 20, 4, makeField, drawTriangles},
+    {"closest hits against triangles", "triangles", 0, "log n, and what no longer fits the caches", 1024,
+     1 << 20, 4, makeField, traceTriangles},
+    {"deferred, 512 lights, against threads", "threads", -1, "tiles are independent", 1, 0, 2, openThreads,
+     shadeThreads},
+    {"cube shadow map against size", "texels along a face", 2,
+     "each texel costs the same, until maps outgrow the caches", 256, 4096, 2, NULL, drawCubeMap},
+};
+
+enum { SERIES_COUNT = sizeof SERIES / sizeof *SERIES };
+
+// ---- measuring
 
 // Threads go up to the number of processors, by doubling, and to that number itself.
-static void choosePoints(const Series* series, Sweep* s)
+static void choosePoints(Sweep* s)
 {
+    const Series* series = s->series;
     const bool threads = series->most == 0;
     const double most = threads ? (double)sysconf(_SC_NPROCESSORS_ONLN) : series->most;
     for (double n = series->least; n < most * 1.01 && s->points < MAX_POINTS; n *= series->factor) {
@@ -37,17 +162,15 @@ static void choosePoints(const Series* series, Sweep* s)
     }
 }
 
-static vplResult openSweep(const Arguments* a, const Series* series, Sweep* s)
+static vplResult openSweep(Sweep* s)
 {
-    memset(s, 0, sizeof *s);
-    s->arguments = a;
-    s->series = series;
+    const Arguments* a = s->arguments;
     const bool sized = isGiven(a, "size");
     TRY(openBench(a, a->threadsCount > 0 ? a->threads[0] : 1, sized ? a->render.output.width : 640,
                   sized ? a->render.output.height : 360, &s->bench));
-    choosePoints(series, s);
-    for (int i = 0; i < s->points && series->prepare != NULL; i++) {
-        TRY(series->prepare(s, i));
+    choosePoints(s);
+    for (int i = 0; i < s->points && s->series->prepare != NULL; i++) {
+        TRY(s->series->prepare(s, i));
     }
     return VPL_SUCCESS;
 }
@@ -55,9 +178,6 @@ static vplResult openSweep(const Arguments* a, const Series* series, Sweep* s)
 static void closeSweep(Sweep* s)
 {
     for (int i = 0; i < s->points; i++) {
-        vplGeometry_Destroy(s->geometries[i]);
-        vplScene_Destroy(s->scenes[i]);
-        vplImage_Destroy(s->images[i]);
         closeBench(&s->benches[i]);
     }
     closeBench(&s->bench);
@@ -70,41 +190,32 @@ static vplResult runPoint(void* user, int point)
 }
 
 // On one thread, processor time is used: other programs do not disturb it.
-static void fitSeries(Measured* m)
+static void fitSweep(Sweep* s)
 {
-    const double* times = m->oneThread ? m->cpuMs : m->ms;
-    const int half = m->points > 3 ? m->points / 2 : 0;
-    m->exponent = fitExponent(m->n, times, m->points);
-    m->upper = fitExponent(m->n + half, times + half, m->points - half);
-    m->fit = fitFixed(m->n, times, m->points, m->series->expected);
+    const double* times = s->oneThread ? s->cpuMs : s->ms;
+    const int half = s->points > 3 ? s->points / 2 : 0;
+    s->exponent = fitExponent(s->n, times, s->points);
+    s->upper = fitExponent(s->n + half, times + half, s->points - half);
+    s->fit = fitFixed(s->n, times, s->points, s->series->expected);
 }
 
-static vplResult measureSweep(const Arguments* a, Sweep* s, Measured* m)
+static vplResult measureSweep(Sweep* s)
 {
     Times times[MAX_POINTS];
-    TRY(openSweep(a, m->series, s));
-    const Measurement measurement = {runPoint, s, s->points, a->runs, SECONDS_PER_SERIES, INFINITY};
-    TRY(measureInTurn(&measurement, times, &m->runs));
-    m->points = s->points;
-    m->oneThread = vplContext_GetWorkerCount(s->bench.context) == 1 && m->series->most > 0;
+    TRY(openSweep(s));
+    const Measurement measurement = {runPoint,           s,       s->points, s->arguments->runs,
+                                     SECONDS_PER_SERIES, INFINITY};
+    TRY(measureInTurn(&measurement, times, &s->runs));
+    s->oneThread = vplContext_GetWorkerCount(s->bench.context) == 1 && s->series->most > 0;
     for (int i = 0; i < s->points; i++) {
-        m->n[i] = s->n[i];
-        m->ms[i] = times[i].wall;
-        m->cpuMs[i] = times[i].cpu;
+        s->ms[i] = times[i].wall;
+        s->cpuMs[i] = times[i].cpu;
     }
-    fitSeries(m);
+    fitSweep(s);
     return VPL_SUCCESS;
 }
 
-static vplResult measureSeries(const Arguments* a, Measured* m)
-{
-    static Sweep sweep;
-    const vplResult result = measureSweep(a, &sweep, m);
-    closeSweep(&sweep);
-    return result;
-}
-
-static void printSeries(const Measured* m)
+static void printSweep(const Sweep* m)
 {
     const Series* s = m->series;
     const double* times = m->oneThread ? m->cpuMs : m->ms;
@@ -127,7 +238,7 @@ static void printSeries(const Measured* m)
     }
 }
 
-static json_t* seriesJson(const Measured* m)
+static json_t* sweepJson(const Sweep* m)
 {
     json_t* points = json_array();
     for (int i = 0; i < m->points; i++) {
@@ -144,21 +255,24 @@ static json_t* seriesJson(const Measured* m)
 
 int runScaling(const Arguments* a)
 {
-    static Measured measured;
+    static Sweep sweep;
     json_t* root = json_array();
     int ran = 0, code = EXIT_DONE;
     for (int i = 0; i < SERIES_COUNT && code == EXIT_DONE; i++) {
         if (!isAskedFor(a, SERIES[i].name)) {
             continue;
         }
-        measured.series = &SERIES[i];
-        code = exitCode(measureSeries(a, &measured), true);
+        memset(&sweep, 0, sizeof sweep);
+        sweep.arguments = a;
+        sweep.series = &SERIES[i];
+        code = exitCode(measureSweep(&sweep), true);
         if (code == EXIT_DONE && a->json) {
-            json_array_append_new(root, seriesJson(&measured));
+            json_array_append_new(root, sweepJson(&sweep));
         } else if (code == EXIT_DONE) {
-            printSeries(&measured);
+            printSweep(&sweep);
             fflush(stdout);
         }
+        closeSweep(&sweep);
         ran++;
     }
     if (a->json && code == EXIT_DONE && ran > 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The stages that vpl bench times. Each makes what it needs beyond Bench, so that any may run alone.
+// The stages that vpl bench times. Each can run alone: it makes everything that it needs beyond openBench.
 #include "cli/bench/bench.h"
 
 static vplResult runParticles(Bench* b, const Stage* stage, Outcome* outcome)
@@ -24,9 +24,7 @@ static vplResult runCubeMap(Bench* b, const Stage* stage, Outcome* outcome)
     def.position = vplScene_GetEmitter(b->scene, 0)->position;
     vplCubeMap* map;
     TRY(vplCubeMap_Create(b->geometry, &def, NULL, NULL, &map));
-    outcome->drawCalls = map->stats.drawCalls;
-    outcome->fragments = map->stats.fragments;
-    outcome->triangles = map->stats.trianglesIn;
+    outcome->raster = map->stats;
     outcome->work = 6.0 * def.size * def.size;
     outcome->unit = "texels";
     for (int i = 0; i < 6 * def.size * def.size; i += 997) {
@@ -36,7 +34,7 @@ static vplResult runCubeMap(Bench* b, const Stage* stage, Outcome* outcome)
     return VPL_SUCCESS;
 }
 
-// Once per map, for the soft shadows of direct light.
+// Each map is bounded once, for the soft shadows of direct light.
 static vplResult runMapBounds(Bench* b, const Stage* stage, Outcome* outcome)
 {
     (void)stage;
@@ -49,7 +47,7 @@ static vplResult runMapBounds(Bench* b, const Stage* stage, Outcome* outcome)
 vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, vplImage* image,
                     Outcome* outcome)
 {
-    const bool rays = (stage->flags & STAGE_RAYS) != 0, direct = (stage->flags & STAGE_DIRECT) != 0;
+    const bool rays = (stage->flags & RAYS) != 0, direct = (stage->flags & DIRECT) != 0;
     TRY(direct ? needShadow(b) : VPL_SUCCESS);
     vplShadeDef def = {0};
     def.lighting = stage->lighting;
@@ -64,14 +62,12 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
     def.lights = b->lights;
     def.lightCount = stage->lights;
     def.lightRays = rays;
-    def.output = stage->flags & STAGE_NORMALS ? VPL_OUTPUT_NORMALS : VPL_OUTPUT_RADIANCE;
+    def.output = stage->flags & NORMALS ? VPL_OUTPUT_NORMALS : VPL_OUTPUT_RADIANCE;
     vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), image->width, image->height);
     vplShadeStats stats;
     TRY(vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats));
     const double pixels = (double)image->width * image->height;
-    outcome->drawCalls = stats.raster.drawCalls;
-    outcome->fragments = stats.raster.fragments;
-    outcome->triangles = stats.raster.trianglesIn;
+    outcome->raster = stats.raster;
     outcome->rays = stats.shadowRays;
     outcome->pixelLights = pixels * stage->lights;
     outcome->work = rays ? (double)stats.shadowRays : stage->lights ? outcome->pixelLights : pixels;
@@ -82,14 +78,14 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
 
 vplResult runShading(Bench* b, const Stage* stage, Outcome* outcome)
 {
-    return shadeInto(b, b->geometry, stage, stage->flags & STAGE_RAYS ? b->quarter : b->image, outcome);
+    return shadeInto(b, b->geometry, stage, stage->flags & RAYS ? b->quarter : b->image, outcome);
 }
 
 static vplResult runFieldView(Bench* b, const Stage* stage, Outcome* outcome)
 {
     TRY(needField(b));
     TRY(shadeInto(b, b->fieldGeometry, stage, b->image, outcome));
-    outcome->work = (double)outcome->triangles;
+    outcome->work = (double)outcome->raster.trianglesIn;
     outcome->unit = "triangles";
     return VPL_SUCCESS;
 }
@@ -125,11 +121,6 @@ static vplResult runToneMap(Bench* b, const Stage* stage, Outcome* outcome)
     return vplToneMap_Reinhard(b->image, &def);
 }
 
-#define SLOW       STAGE_SLOW
-#define RAYS       STAGE_RAYS
-#define DIRECT     STAGE_DIRECT
-#define NORMALS    STAGE_NORMALS
-#define SERIAL     STAGE_SERIAL
 #define DOCUMENTED VPL_LIGHTING_DOCUMENTED
 #define PHYSICAL   VPL_LIGHTING_PHYSICAL
 #define MULTIPASS  VPL_ACCUMULATE_MULTIPASS

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The first part of the report: which settings reach 5 % error, and what do they cost?
-#include "cli/tradeoff/report.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -25,10 +25,9 @@ static void addCommand(const Tradeoff* t, const Setting* s, Text* html)
     addText(html, " -o picture.png</code>");
 }
 
-// *above is set if the worst seed lies above the limit.
+// Adds the cheapest setting within a limit. Sets *above if the error of its worst seed exceeds the limit.
 static void addRow(const Tradeoff* t, double limit, bool* above, Text* html)
 {
-    char text[32];
     int found = findCheapest(t, FAMILY_COUNT, limit);
     addText(html, "<tr><th>%g %%</th>", 100 * limit);
     if (!isJudged(t, limit)) {
@@ -41,30 +40,27 @@ static void addRow(const Tradeoff* t, double limit, bool* above, Text* html)
     }
     const Setting* s = &t->settings[found];
     *above = *above || s->errorHigh > limit;
-    formatTime(s->cpuMs, text, sizeof text);
-    addText(html, "<td class=\"n\"><strong>%s</strong></td>", text);
-    formatPercent(s->error, text, sizeof text);
-    addText(html, "<td class=\"n\">%s%s</td>", text, s->errorHigh > limit ? "<sup>a</sup>" : "");
+    addText(html, "<td class=\"n\"><strong>%s</strong></td><td class=\"n\">%s%s</td>",
+            formatTime(s->cpuMs).text, formatPercent(s->error).text,
+            s->errorHigh > limit ? "<sup>a</sup>" : "");
     addText(html, "<td class=\"n\">%.3f</td><td>", s->energy);
     addCommand(t, s, html);
     addText(html, "</td></tr>\n");
 }
 
-// The least error of a family; FAMILY_COUNT: of all.
+// Returns the least error of a family, or of all for FAMILY_COUNT.
 static double leastError(const Tradeoff* t, Family family)
 {
     double least = INFINITY;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
-        least =
-            isMeasured(s) && (family == FAMILY_COUNT || s->family == family) ? fmin(least, s->error) : least;
+        least = isMeasuredOf(s, family) ? fmin(least, s->error) : least;
     }
     return least;
 }
 
 static void addFamily(const Tradeoff* t, Family family, Text* html)
 {
-    char text[32];
     double least = leastError(t, family);
     if (!isfinite(least)) {
         return;
@@ -72,14 +68,14 @@ static void addFamily(const Tradeoff* t, Family family, Text* html)
     addText(html, "<tr><td><span class=\"dot d%d\"></span>%s</td>", family, FAMILY_NAMES[family]);
     for (int i = 0; i < LIMIT_COUNT; i++) {
         int found = isJudged(t, LIMITS[i]) ? findCheapest(t, family, LIMITS[i]) : -1;
-        formatTime(found >= 0 ? t->settings[found].cpuMs : 0, text, sizeof text);
-        addText(html, "<td class=\"n\">%s</td>", found >= 0 ? text : "&ndash;");
+        addText(html, "<td class=\"n\">%s</td>",
+                found >= 0 ? formatTime(t->settings[found].cpuMs).text : "&ndash;");
     }
-    formatPercent(fmax(least, t->reference.resolution), text, sizeof text);
-    addText(html, "<td class=\"n\">%s%s</td></tr>\n", least <= t->reference.resolution ? "&le; " : "", text);
+    addText(html, "<td class=\"n\">%s%s</td></tr>\n", least <= t->reference.resolution ? "&le; " : "",
+            formatPercent(fmax(least, t->reference.resolution)).text);
 }
 
-// The cheapest setting of each family: the best of all is not always the one to use.
+// Adds the cheapest setting of each family, because the best of all is not always the one to use.
 static void addFamilies(const Tradeoff* t, Text* html)
 {
     addText(html, "<h3>The same for each method: processor time</h3>\n<table><tr><th>error at most</th>");
@@ -95,20 +91,18 @@ static void addFamilies(const Tradeoff* t, Text* html)
 
 static void addSummary(const Tradeoff* t, double limit, const Setting* s, Text* html)
 {
-    char cpu[32], error[32];
-    formatTime(s->cpuMs, cpu, sizeof cpu);
-    formatPercent(s->error, error, sizeof error);
+    const Label cpu = formatTime(s->cpuMs);
     addText(html, "<p class=\"answer\">");
     if (s->error <= limit && isJudged(t, limit)) {
         addText(html, "<strong>%g %% error costs %s</strong> of processor time per %dx%d picture",
-                100 * limit, cpu, s->options.output.width, s->options.output.height);
+                100 * limit, cpu.text, s->options.output.width, s->options.output.height);
     } else {
         addText(html, "<strong>%g %% error %s.</strong> The least error was %s for %s of processor time",
                 100 * limit,
                 isJudged(t, limit)
                     ? "was not reached in the time given"
                     : "cannot be judged with this reference; more <code>--time</code> makes a better one",
-                error, cpu);
+                formatPercent(s->error).text, cpu.text);
     }
     addText(html, ", by %s:<br>", FAMILY_NAMES[s->family]);
     addCommand(t, s, html);
@@ -121,12 +115,10 @@ static void addFloors(const Tradeoff* t, Text* html)
         double floor = findFloor(t, (Family)f);
         // A family does not level off there if another clamp distance or shadow map lowers its error further.
         if (floor > t->reference.resolution && leastError(t, (Family)f) > 0.85 * floor) {
-            char text[32];
-            formatPercent(floor, text, sizeof text);
             addText(html,
                     "<li>%c%s stop getting better at about <strong>%s</strong>, however many there are: "
                     "%s</li>\n",
-                    toupper(FAMILY_NAMES[f][0]), FAMILY_NAMES[f] + 1, text,
+                    toupper(FAMILY_NAMES[f][0]), FAMILY_NAMES[f] + 1, formatPercent(floor).text,
                     f == FAMILY_UNSHADOWED
                         ? "they shine through walls, so they settle on a wrong answer. No number of "
                           "particles helps; shadows or path tracing do."
@@ -142,23 +134,21 @@ void addAnswers(const Tradeoff* t, Text* html)
     addSummary(t, 0.05, &t->settings[found], html);
     addText(html, "<ul>\n");
     addFloors(t, html);
+    addText(html, "<li><em>Error</em> is the root-mean-square difference from the true picture divided by "
+                  "the true picture's mean, over all pixels: the <code>relative_rmse</code> of <code>vpl "
+                  "compare</code>, less the truth's own noise.</li>\n"
+                  "<li><em>Energy</em> is all light in the picture divided by all light in the truth: 1 is "
+                  "right, less is darker.</li>\n</ul>\n");
     addText(html,
-            "<li><em>Error</em> is the root-mean-square difference from the true picture divided by the true "
-            "picture's mean, over all pixels: the <code>relative_rmse</code> of <code>vpl compare</code>, "
-            "less the "
-            "truth's own noise.</li>\n"
-            "<li><em>Energy</em> is all light in the picture divided by all light in the truth: 1 is right, "
-            "less is darker.</li>\n</ul>\n");
-    addText(html, "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th "
-                  "class=\"n\">measured error</th><th class=\"n\">energy</th><th>cheapest setting, to copy"
-                  "</th></tr>\n");
+            "<table><tr><th>error at most</th><th class=\"n\">processor time</th><th class=\"n\">measured "
+            "error</th><th class=\"n\">energy</th><th>cheapest setting, to copy</th></tr>\n");
     bool above = false;
     for (int i = 0; i < LIMIT_COUNT; i++) {
         addRow(t, LIMITS[i], &above, html);
     }
     addText(html, "</table>\n%s",
-            above ? "<p class=\"small\"><sup>a</sup> the median of the seeds; the worst seed lies above "
-                    "the limit.</p>\n"
+            above ? "<p class=\"small\"><sup>a</sup> the median of the seeds; the worst seed lies above the "
+                    "limit.</p>\n"
                   : "");
     addFamilies(t, html);
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Error and energy against --min-distance: the larger the clamp distance, the fewer bright blotches, the less
-// light.
-#include "cli/tradeoff/report.h"
+// Error and energy against --min-distance: a larger clamp distance removes bright blotches, but also light.
 #include "cli/tradeoff/svg.h"
 
 #include <math.h>
@@ -12,7 +10,7 @@ enum { PANEL = 200, GAP = 34, TOP = 26, BOTTOM = 56, MAX_POINTS = 32 };
 
 typedef struct Clamp {
     const Setting* points[MAX_POINTS]; // by ascending distance
-    int column[MAX_POINTS];            // points of one distance stand in one column
+    int column[MAX_POINTS];            // points of one distance share a column
     int count, columns;
     Text* svg;
 } Clamp;
@@ -24,10 +22,7 @@ static double distanceOf(const Setting* s)
 
 static void findPoints(const Tradeoff* t, Clamp* clamp)
 {
-    uint64_t bits = 0;
-    for (int i = 0; i < SWEEP_COUNT; i++) {
-        bits |= strcmp(SWEEPS[i].name, "min-distance") == 0 ? UINT64_C(1) << i : 0;
-    }
+    const uint64_t bits = findSweeps("min-distance", strlen("min-distance"));
     for (int i = 0; i < t->settingCount && clamp->count < MAX_POINTS; i++) {
         const Setting* s = &t->settings[i];
         if ((s->sweeps & bits) != 0 && isMeasured(s)) {
@@ -49,13 +44,13 @@ static void findColumns(Clamp* c)
     }
 }
 
-// Evenly spaced: the distances run over decades and begin with 0.
+// Columns are evenly spaced, because distances span decades and begin with 0.
 static double atX(const Clamp* c, int i)
 {
     return PLOT_LEFT + (PLOT_RIGHT - PLOT_LEFT) * (c->column[i] + 0.5) / c->columns;
 }
 
-// A round step that makes three to eight of them.
+// Chooses a round step between grid lines, for two to eight of them.
 static double stepOf(double span)
 {
     double step = pow(10, floor(log10(span / 2)));
@@ -151,11 +146,9 @@ void addClamp(const Tradeoff* t, Text* html)
         return;
     }
     findColumns(&clamp);
-    addText(
-        html,
-        "<h2>The clamp: blotches against lost light</h2>\n<p>A virtual light lights what is nearer than D "
-        "only as if it were D away. A small D leaves bright blotches around the lights, a large one "
-        "loses light, in corners first. All else as in the base, <code>");
+    addText(html, "<h2>The clamp: blotches against lost light</h2>\n<p>A virtual light lights what is nearer "
+                  "than D only as if it were D away. A small D leaves bright blotches around the lights, a "
+                  "large one loses light, in corners first. All else as in the base, <code>");
     addWords(html, t->settings[0].command);
     addText(html, "</code>.</p>\n");
     drawClamp(&clamp);

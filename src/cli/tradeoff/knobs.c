@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What each option buys: compares every sweep of one option with the base, seed by seed.
-#include "cli/tradeoff/report.h"
+// The part of the report on single options: compares every sweep of one option with the base, seed by seed.
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -35,8 +35,8 @@ static int errorTrend(const Setting* base, const Setting* s)
     return below == common ? -1 : above == common ? 1 : 0;
 }
 
-// Times that differ by less than a tenth, or whose bands overlap, count as equal: machines are too noisy to
-// tell.
+// Returns -1 or 1 if the time falls or grows. Times that differ by less than a tenth, or whose bands overlap,
+// count as equal because measured times are noisy.
 static int costTrend(const Setting* base, const Setting* s)
 {
     bool above = s->cpuMs > 1.1 * base->cpuMs && s->cpuLow > base->cpuHigh;
@@ -104,23 +104,19 @@ static void addKnob(const Setting* base, const Knob* knob, Text* html)
 {
     static const char* const words[] = {"less error for no more time", "less error for more time",
                                         "saves time at the same error", ""};
-    char from[32], to[32];
     addText(html, "<tr><td>%s</td>", knob->sweep->meaning);
     if (knob->best == NULL) {
         addNothing(knob, html);
         return;
     }
-    formatPercent(base->error, from, sizeof from);
-    formatPercent(knob->best->error, to, sizeof to);
     addText(html, "<td><code>");
     addWords(html, knob->best->change);
-    addText(html, "</code></td><td class=\"n\">%s &rarr; %s</td>", from, to);
-    formatTime(base->cpuMs, from, sizeof from);
-    formatTime(knob->best->cpuMs, to, sizeof to);
-    addText(html, "<td class=\"n\">%s &rarr; %s</td><td>%s</td>", from, to, words[knob->verdict]);
-    formatTime(knob->perHalving, from, sizeof from);
+    addText(html, "</code></td><td class=\"n\">%s &rarr; %s</td>", formatPercent(base->error).text,
+            formatPercent(knob->best->error).text);
+    addText(html, "<td class=\"n\">%s &rarr; %s</td><td>%s</td>", formatTime(base->cpuMs).text,
+            formatTime(knob->best->cpuMs).text, words[knob->verdict]);
     addText(html, "<td class=\"n\">%s</td></tr>\n",
-            knob->verdict == VERDICT_BUYS   ? from
+            knob->verdict == VERDICT_BUYS   ? formatTime(knob->perHalving).text
             : knob->verdict == VERDICT_FREE ? "free"
                                             : "&ndash;");
 }
@@ -136,12 +132,11 @@ void addKnobs(const Tradeoff* t, Text* html)
     qsort(knobs, (size_t)count, sizeof *knobs, compareKnobs);
     addText(html, "<h2>What each knob buys</h2>\n<p>One option at a time is changed from the base, <code>");
     addWords(html, base->command);
-    addText(html,
-            "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor time "
-            "added for each factor of two by which the error falls. A change counts only if all seeds agree "
-            "and it is larger than 2 %% (error) or 10 %% (time).</p>\n<table><tr><th>knob</th><th>change</th>"
-            "<th class=\"n\">error</th><th class=\"n\">processor time</th><th>verdict</th><th "
-            "class=\"n\">per halving</th></tr>\n");
+    addText(html, "</code>. The table shows the change that pays best. <em>Per halving</em> is the processor "
+                  "time added for each factor of two by which the error falls. A change counts only if all "
+                  "seeds agree and it is larger than 2 %% (error) or 10 %% "
+                  "(time).</p>\n<table><tr><th>knob</th><th>change</th><th class=\"n\">error</th><th "
+                  "class=\"n\">processor time</th><th>verdict</th><th class=\"n\">per halving</th></tr>\n");
     for (int i = 0; i < count; i++) {
         addKnob(base, &knobs[i], html);
     }

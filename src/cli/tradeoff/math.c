@@ -18,20 +18,19 @@ static int nextOnFront(const double* cost, const double* error, int count, doubl
     return next;
 }
 
-// Points cheaper than a marked one have errors above the limit, or they would have been marked first.
-int markFront(const double* cost, const double* error, int count, double gain, bool* onFront)
+// Points cheaper than a numbered one have errors above the limit, or they would have been numbered first.
+int numberFront(const double* cost, const double* error, int count, double gain, int* numbers)
 {
-    int marked = 0;
+    int found = 0;
     for (int i = 0; i < count; i++) {
-        onFront[i] = false;
+        numbers[i] = 0;
     }
     double limit = INFINITY;
     for (int i = nextOnFront(cost, error, count, limit); i >= 0; i = nextOnFront(cost, error, count, limit)) {
-        onFront[i] = true;
-        marked++;
+        numbers[i] = ++found;
         limit = (1 - gain) * error[i];
     }
-    return marked;
+    return found;
 }
 
 int cheapestWithin(const double* cost, const double* error, int count, double limit)
@@ -119,26 +118,25 @@ double jointUncertainty(const float* a, const float* b, size_t count)
     return sqrt(sum / 12) / (double)count;
 }
 
-// Two digits below 10, all whole ones above: no more than timing repeats.
-static int decimals(double value)
+// Two digits below 10 ms, three below 100 s: measured times repeat no better.
+Label formatTime(double ms)
 {
-    return value < 1 ? 2 : value < 10 ? 1 : 0;
-}
-
-void formatTime(double ms, char* text, size_t size)
-{
+    Label label;
     if (ms < 999.5) {
-        snprintf(text, size, "%.*f ms", decimals(ms), ms);
+        snprintf(label.text, sizeof label.text, "%.*f ms", ms < 1 ? 2 : ms < 10 ? 1 : 0, ms);
     } else if (ms < 99950) {
-        snprintf(text, size, "%.*f s", ms < 9995 ? 2 : 1, ms / 1000);
+        snprintf(label.text, sizeof label.text, "%.*f s", ms < 9995 ? 2 : 1, ms / 1000);
     } else {
         int seconds = (int)fmin(ms / 1000 + 0.5, 2e9);
-        snprintf(text, size, "%d min %d s", seconds / 60, seconds % 60);
+        snprintf(label.text, sizeof label.text, "%d min %d s", seconds / 60, seconds % 60);
     }
+    return label;
 }
 
-void formatPercent(double fraction, char* text, size_t size)
+Label formatPercent(double fraction)
 {
+    Label label;
     double percent = 100 * fraction;
-    snprintf(text, size, "%.*f %%", percent < 1 ? 2 : percent < 99.95 ? 1 : 0, percent);
+    snprintf(label.text, sizeof label.text, "%.*f %%", percent < 1 ? 2 : percent < 99.95 ? 1 : 0, percent);
+    return label;
 }

@@ -58,7 +58,7 @@ static double foresee(const Tradeoff* t, const Setting* s)
                    : guess[s->family] * pixels * s->work * pipeline;
 }
 
-// Short renders are repeated and the least time counts: what disturbs a machine only ever adds.
+// Short renders are repeated and the least time counts, because disturbances only add time.
 enum { REPEATS = 3, SHORT_MS = 100 };
 
 static vplResult timeAgain(Tradeoff* t, const vplRenderOptions* options, vplRenderStats* stats)
@@ -110,18 +110,18 @@ static void measureSeed(Tradeoff* t, Setting* s)
     vplImage_Destroy(image);
 }
 
-// Pictures are kept for the report; those of settings that another one beats are not needed any more.
+// The report shows pictures of the front only.
 static void dropPictures(Tradeoff* t)
 {
     for (int i = 0; i < t->settingCount; i++) {
-        if (!t->settings[i].onFront) {
+        if (t->settings[i].number == 0) {
             vplImage_Destroy(t->settings[i].image);
             t->settings[i].image = NULL;
         }
     }
 }
 
-// The setting that will be the cheapest of those with `done` seeds; NULL if there is none left.
+// Returns the setting with `done` seeds whose next picture should take the least time; NULL if none is left.
 static Setting* findNext(Tradeoff* t, int done, double* ms)
 {
     Setting* next = NULL;
@@ -139,14 +139,11 @@ static Setting* findNext(Tradeoff* t, int done, double* ms)
 
 static void say(const Setting* s)
 {
-    char time[32], error[32];
     const char* change = s->change[0] ? s->change : "(base)";
-    formatTime(s->cpuMs, time, sizeof time);
-    formatPercent(s->error, error, sizeof error);
     if (s->problem[0] != 0 || s->exhausted) {
         complain("%s: %s", change, s->exhausted ? "no time left" : s->problem);
     } else {
-        complain("%-10s %-10s %s", time, error, change);
+        complain("%-10s %-10s %s", formatTime(s->cpuMs).text, formatPercent(s->error).text, change);
     }
 }
 
@@ -169,24 +166,13 @@ static void measureRound(Tradeoff* t, int round, double end)
     }
 }
 
-static bool makeRoom(Tradeoff* t)
-{
-    bool good = true;
-    for (int i = 0; i < t->settingCount && good; i++) {
-        t->settings[i].runs = calloc((size_t)t->arguments->seeds, sizeof(Run));
-        good = t->settings[i].runs != NULL;
-    }
-    return good;
-}
-
-// Renders again the pictures of settings that came to the front only with later seeds, after their picture
-// was dropped.
+// Renders again the pictures of settings that came to the front after their picture was dropped.
 static void restorePictures(Tradeoff* t)
 {
     t->deadline = INFINITY;
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
-        if (s->onFront && s->image == NULL) {
+        if (s->number > 0 && s->image == NULL) {
             vplRenderStats stats;
             renderQuietly(t, t->scene, &s->options, &s->image, &stats);
         }
@@ -203,16 +189,21 @@ static void warmUp(Tradeoff* t)
 
 int measureSettings(Tradeoff* t)
 {
-    if (!makeRoom(t)) {
+    const int seeds = t->arguments->seeds;
+    t->runs = calloc((size_t)t->settingCount * (size_t)seeds, sizeof *t->runs);
+    if (t->runs == NULL) {
         complain("out of memory");
         return EXIT_COULD_NOT;
     }
+    for (int i = 0; i < t->settingCount; i++) {
+        t->settings[i].runs = t->runs + (size_t)i * (size_t)seeds;
+    }
     warmUp(t);
-    for (int round = 0; round < t->arguments->seeds; round++) {
+    for (int round = 0; round < seeds; round++) {
         // The first seed gets more than its share of the time: one seed of an expensive setting is better
         // than none, and the seeds of expensive settings differ least.
         double now = 1e-3 * wallMs(), left = t->deadline - now;
-        int rounds = t->arguments->seeds - round;
+        int rounds = seeds - round;
         measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.6 : 1.0 / rounds));
     }
     restorePictures(t);

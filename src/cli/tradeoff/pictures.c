@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures of the front, each beside the reference and the difference.
-#include "cli/tradeoff/report.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,8 +9,8 @@
 // More would make a page of many megabytes.
 enum { MAX_PICTURES = 10 };
 
-// Chooses whole stops such that nine in ten of the reference's lit values end at or below 0.8. All pictures
-// share them, so that they can be compared.
+// Chooses the exposure that all pictures share: whole stops, so that nine in ten of the reference's lit
+// values are at most 0.8.
 static float chooseExposure(const Tradeoff* t)
 {
     const vplImage* image = t->reference.image;
@@ -47,10 +47,9 @@ static double heatScale(const Tradeoff* t)
 
 static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions* options, Text* html)
 {
-    char time[32], error[32], caption[128];
-    formatTime(s->cpuMs, time, sizeof time);
-    formatPercent(s->runs[0].error, error, sizeof error);
-    addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number, time, error);
+    char caption[128];
+    addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number,
+            formatTime(s->cpuMs).text, formatPercent(s->runs[0].error).text);
     addWords(html, s->command);
     addText(html, "</code></p>\n<div class=\"row\">");
     addFigure(html, s->image, options, FAMILY_NAMES[s->family]);
@@ -67,7 +66,8 @@ static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions*
     addText(html, "</div>\n");
 }
 
-// Points of the front by ascending cost; every n-th where there are too many, and always the last.
+// Chooses points of the front by ascending cost: all, or if they are too many evenly spaced ones and the
+// last.
 static int choosePoints(const Tradeoff* t, const Setting** chosen)
 {
     const Setting* front[MAX_SETTINGS];
@@ -89,11 +89,10 @@ void addPictures(const Tradeoff* t, Text* html)
     vplWriteOptions options = vplDefaultWriteOptions();
     options.exposure = t->arguments->exposure != 0 ? (float)t->arguments->exposure : chooseExposure(t);
     int count = choosePoints(t, chosen);
-    addText(
-        html,
-        "<h2>What it looks like</h2>\n<p>Settings on the front of the plot, by their numbers there; first "
-        "seed; exposure %+g stops.</p>\n",
-        (double)options.exposure);
+    addText(html,
+            "<h2>What it looks like</h2>\n<p>Settings on the front of the plot, by their numbers there; "
+            "first seed; exposure %+g stops.</p>\n",
+            (double)options.exposure);
     for (int i = 0; i < count; i++) {
         addPoint(t, chosen[i], &options, html);
     }

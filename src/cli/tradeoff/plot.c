@@ -9,26 +9,25 @@ enum { HEIGHT = 560, TOP = 66, BOTTOM = HEIGHT - 54, MAX_TICKS = 40 };
 
 typedef struct Plot {
     Axis x, y; // ms, error
+    const Setting* front[MAX_SETTINGS];
+    int frontCount;
     Text* svg;
 } Plot;
 
 static void addGrid(const Plot* p)
 {
     double ticks[MAX_TICKS];
-    char label[32];
     int count = logTicks(p->x.low, p->x.high, ticks, MAX_TICKS);
     for (int i = 0; i < count; i++) {
         double x = pixelOf(&p->x, ticks[i]);
-        formatTime(ticks[i], label, sizeof label);
         addText(p->svg, "<line class=\"grid\" x1=\"%.1f\" x2=\"%.1f\" y1=\"%d\" y2=\"%d\"/>", x, x, TOP,
                 BOTTOM);
         addText(p->svg, "<text class=\"soft\" x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">%s</text>\n", x,
-                BOTTOM + 18, label);
+                BOTTOM + 18, formatTime(ticks[i]).text);
     }
     count = logTicks(p->y.low, p->y.high, ticks, MAX_TICKS);
     for (int i = 0; i < count; i++) {
-        formatPercent(ticks[i], label, sizeof label);
-        addGridLine(p->svg, pixelOf(&p->y, ticks[i]), label);
+        addGridLine(p->svg, pixelOf(&p->y, ticks[i]), formatPercent(ticks[i]).text);
     }
     addFrame(p->svg, TOP, BOTTOM);
     addText(p->svg,
@@ -36,8 +35,8 @@ static void addGrid(const Plot* p)
             "together</text>\n",
             (PLOT_LEFT + PLOT_RIGHT) / 2, HEIGHT - 12);
     addText(p->svg,
-            "<text transform=\"translate(16 %d) rotate(-90)\" text-anchor=\"middle\">error: rmse / mean "
-            "of the truth</text>\n",
+            "<text transform=\"translate(16 %d) rotate(-90)\" text-anchor=\"middle\">error: rmse / mean of "
+            "the truth</text>\n",
             (TOP + BOTTOM) / 2);
 }
 
@@ -56,40 +55,34 @@ static void addKey(const Tradeoff* t, Text* svg)
 
 static void addPoint(const Plot* p, const Setting* s)
 {
-    char time[32], error[32];
     double x = pixelOf(&p->x, s->cpuMs), y = pixelOf(&p->y, s->error);
-    formatTime(s->cpuMs, time, sizeof time);
-    formatPercent(s->error, error, sizeof error);
     addText(p->svg, "<g><title>");
     addEscaped(p->svg, s->change[0] ? s->change : "the base");
-    addText(p->svg, ": %s, %s error</title>", time, error);
+    addText(p->svg, ": %s, %s error</title>", formatTime(s->cpuMs).text, formatPercent(s->error).text);
     addText(p->svg, "<path class=\"f%d band\" d=\"M%.1f %.1fH%.1fM%.1f %.1fV%.1f\"/>", s->family,
             pixelOf(&p->x, s->cpuLow), y, pixelOf(&p->x, s->cpuHigh), x, pixelOf(&p->y, s->errorLow),
             pixelOf(&p->y, s->errorHigh));
-    addMarker(p->svg, s->family, s->onFront, x, y);
+    addMarker(p->svg, s->family, s->number > 0, x, y);
     addText(p->svg, "</g>\n");
 }
 
 // Draws a step line through the front: the least error within a time.
-static void addFront(const Tradeoff* t, const Plot* p)
+static void addFront(const Plot* p)
 {
-    const Setting* front[MAX_SETTINGS];
-    const int count = listFront(t, front);
     addText(p->svg, "<path class=\"front\" d=\"");
-    for (int i = 0; i < count; i++) {
-        addText(p->svg, i == 0 ? "M%.1f %.1f" : "H%.1fV%.1f", pixelOf(&p->x, front[i]->cpuMs),
-                pixelOf(&p->y, front[i]->error));
+    for (int i = 0; i < p->frontCount; i++) {
+        addText(p->svg, i == 0 ? "M%.1f %.1f" : "H%.1fV%.1f", pixelOf(&p->x, p->front[i]->cpuMs),
+                pixelOf(&p->y, p->front[i]->error));
     }
     addText(p->svg, "\"/>\n");
 }
 
-static void addNumbers(const Tradeoff* t, const Plot* p)
+static void addNumbers(const Plot* p)
 {
-    const Setting* front[MAX_SETTINGS];
-    const int count = listFront(t, front);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < p->frontCount; i++) {
+        const Setting* s = p->front[i];
         addText(p->svg, "<text class=\"number\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%d</text>",
-                pixelOf(&p->x, front[i]->cpuMs) - 7, pixelOf(&p->y, front[i]->error) + 14, front[i]->number);
+                pixelOf(&p->x, s->cpuMs) - 7, pixelOf(&p->y, s->error) + 14, s->number);
     }
     addText(p->svg, "\n");
 }
@@ -127,6 +120,7 @@ void writePlot(const Tradeoff* t, Text* svg)
     Plot p = {.x = {.from = PLOT_LEFT, .to = PLOT_RIGHT, .logarithmic = true},
               .y = {.from = BOTTOM, .to = TOP, .logarithmic = true},
               .svg = svg};
+    p.frontCount = listFront(t, p.front);
     if (!scale(t, &p)) {
         return; // nothing differs from the reference
     }
@@ -137,14 +131,14 @@ void writePlot(const Tradeoff* t, Text* svg)
     for (int pass = 0; pass < 2; pass++) { // the front on top
         for (int i = 0; i < t->settingCount; i++) {
             const Setting* s = &t->settings[i];
-            if (isMeasured(s) && s->error > 0 && s->onFront == (pass == 1)) {
+            if (isMeasured(s) && s->error > 0 && (s->number > 0) == (pass == 1)) {
                 addPoint(&p, s);
             }
         }
         if (pass == 0) {
-            addFront(t, &p);
+            addFront(&p);
         }
     }
-    addNumbers(t, &p);
+    addNumbers(&p);
     addText(svg, "</svg>\n");
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The reference: read from files, or path traced as two independent halves a and b. The error of a picture x
-// is the mean of (x - a)(x - b), in which the reference's noise cancels; (x - a)^2 would include it. Based
-// on: Fabrice Rousselle, Claude Knaus and Matthias Zwicker, Adaptive Rendering with Non-Local Means
-// Filtering, SIGGRAPH Asia 2012, section 4: two buffers, so that the noise of one is independent of the
-// other's.
+// The reference: read from files, or path traced as two independent halves a and b. The squared error of a
+// picture x is the mean of (x - a)(x - b), in which the reference's noise cancels; (x - a)^2 would include
+// it. The two buffers are those of: Fabrice Rousselle, Claude Knaus and Matthias Zwicker, Adaptive Rendering
+// with Non-Local Means Filtering, SIGGRAPH Asia 2012, section 4.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <limits.h>
@@ -55,8 +54,8 @@ static int readReference(Tradeoff* t)
     return code == EXIT_DONE ? readPicture(t, comma + 1, &r->halves[1]) : code;
 }
 
-// Paths per pixel for one half: those that fit into a sixth of the time, as 2^k or 3 * 2^k so that machines
-// come to equal numbers more often than not.
+// Returns the paths per pixel for one half: as many as fit into a sixth of the time, rounded down to 2^k or 3
+// * 2^k so that similar machines choose equal numbers.
 static int chooseSamples(const Tradeoff* t, double msPerSample)
 {
     double fitting = 1e3 * (t->deadline - t->start) / 6 / msPerSample;
@@ -127,7 +126,7 @@ static int joinHalves(Tradeoff* t)
         square += difference * difference;
         r->image->pixels[i] = 0.5f * (a->pixels[i] + b->pixels[i]);
     }
-    // Halves of variance 2v differ by 4v, their mean has v: half the difference.
+    // Halves of variance 2v have a difference of variance 4v and a mean of variance v: half the deviation.
     r->error = 0.5 * sqrt(square / (double)countOf(a));
     // Two standard errors.
     r->resolution = sqrt(2 * jointUncertainty(a->pixels, b->pixels, countOf(a)));

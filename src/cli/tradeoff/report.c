@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // report.html: one file that needs no other, no network and no scripts.
-#include "cli/tradeoff/report.h"
+#include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,10 +26,9 @@ static const char CSS[] =
 static void addHead(const Tradeoff* t, Text* html)
 {
     const vplRenderOptions* o = &t->arguments->render;
-    addText(html,
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-            "content=\"width=device-width,initial-scale=1\">\n<meta name=\"color-scheme\" "
-            "content=\"light dark\">\n<title>Error against time: ");
+    addText(html, "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">\n<meta "
+                  "name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<meta "
+                  "name=\"color-scheme\" content=\"light dark\">\n<title>Error against time: ");
     addEscaped(html, t->arguments->positionals[0]);
     addText(html, "</title>\n<style>\n");
     writeStyle(html);
@@ -52,16 +51,13 @@ static void addHead(const Tradeoff* t, Text* html)
 static void addReference(const Tradeoff* t, Text* html)
 {
     const Reference* r = &t->reference;
-    char text[32];
-    formatTime(r->ms, text, sizeof text);
     addText(html, "<li>The truth: ");
     if (r->spp > 0) {
-        addText(
-            html,
-            "path traced in two independent halves with %d paths per pixel in all (%s of processor time), "
-            "through the centres of pixels as all methods draw: jagged edges do not count as error. "
-            "<code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
-            r->spp, text);
+        addText(html,
+                "path traced in two independent halves with %d paths per pixel in all (%s of processor "
+                "time), through the centres of pixels as all methods draw: jagged edges do not count as "
+                "error. <code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
+                r->spp, formatTime(r->ms).text);
     } else {
         addText(html, "<code>");
         addEscaped(html, t->arguments->reference);
@@ -71,20 +67,15 @@ static void addReference(const Tradeoff* t, Text* html)
         addText(html, " Its own error is not known; small errors may be the file's.</li>\n");
         return;
     }
-    formatPercent(r->error, text, sizeof text);
     addText(
         html,
-        " It is noisy by %s itself, but the noise of the halves is independent and cancels in the mean of ",
-        text);
-    formatPercent(r->resolution, text, sizeof text);
-    addText(
-        html,
-        "(x &minus; a)(x &minus; b). What remains unknown is <strong>%s</strong>, two standard errors; no "
-        "error below that is claimed.</li>\n",
-        text);
+        " It is noisy by %s itself, but the noise of the halves is independent and cancels in the mean of (x "
+        "&minus; a)(x &minus; b). What remains unknown is <strong>%s</strong>, two standard errors; "
+        "no error below that is claimed.</li>\n",
+        formatPercent(r->error).text, formatPercent(r->resolution).text);
 }
 
-// "AMD EPYC ...", or what uname says where /proc/cpuinfo has no such line.
+// Writes the processor's name from /proc/cpuinfo ("AMD EPYC ..."), or the architecture from uname without it.
 static void describeMachine(char* text, size_t size)
 {
     struct utsname system;
@@ -114,12 +105,11 @@ static void addMachine(const Tradeoff* t, Text* html)
     }
     addText(html, "<li>The machine: ");
     addEscaped(html, machine);
-    addText(
-        html,
-        ", %d threads, %s instructions, libvpl %s, %s. Pictures and errors are the same on every machine; "
-        "times are not.</li>\n",
-        vplContext_GetWorkerCount(t->context), vplIsa_GetName(vplContext_GetIsa(t->context)), vplGetVersion(),
-        date);
+    addText(html,
+            ", %d threads, %s instructions, libvpl %s, %s. Pictures and errors are the same on every "
+            "machine; times are not.</li>\n",
+            vplContext_GetWorkerCount(t->context), vplIsa_GetName(vplContext_GetIsa(t->context)),
+            vplGetVersion(), date);
 }
 
 static void addLeftOut(const Tradeoff* t, Text* html)
@@ -152,14 +142,12 @@ static void addLeftOut(const Tradeoff* t, Text* html)
 
 static void addAllSettings(const Tradeoff* t, Text* html)
 {
-    addText(
-        html,
-        "<details><summary>All settings</summary><div class=\"scroll\"><table>\n<tr><th>change from the base"
-        "</th><th class=\"n\">seeds</th><th class=\"n\">processor time</th><th class=\"n\">error</th>"
-        "<th class=\"n\">least to most</th><th class=\"n\">energy</th></tr>\n");
+    addText(html,
+            "<details><summary>All settings</summary><div class=\"scroll\"><table>\n<tr><th>change from the "
+            "base</th><th class=\"n\">seeds</th><th class=\"n\">processor time</th><th "
+            "class=\"n\">error</th><th class=\"n\">least to most</th><th class=\"n\">energy</th></tr>\n");
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
-        char text[32], low[32], high[32];
         addText(html, "<tr><td><code>%s</code>", s->change[0] ? s->change : "the base");
         if (!isMeasured(s)) {
             addText(html, "</td><td colspan=\"5\">not measured: ");
@@ -167,37 +155,31 @@ static void addAllSettings(const Tradeoff* t, Text* html)
             addText(html, "</td></tr>\n");
             continue;
         }
-        formatTime(s->cpuMs, text, sizeof text);
-        addText(html, "</td><td class=\"n\">%d</td><td class=\"n\">%s</td>", s->runCount, text);
-        formatPercent(s->error, text, sizeof text);
-        formatPercent(s->errorLow, low, sizeof low);
-        formatPercent(s->errorHigh, high, sizeof high);
+        addText(html, "</td><td class=\"n\">%d</td><td class=\"n\">%s</td>", s->runCount,
+                formatTime(s->cpuMs).text);
         addText(html, "<td class=\"n\">%s</td><td class=\"n\">%s to %s</td><td class=\"n\">%.3f</td></tr>\n",
-                text, low, high, s->energy);
+                formatPercent(s->error).text, formatPercent(s->errorLow).text,
+                formatPercent(s->errorHigh).text, s->energy);
     }
     addText(html, "</table></div></details>\n");
 }
 
-void addMethod(const Tradeoff* t, Text* html)
+static void addMethod(const Tradeoff* t, Text* html)
 {
     addText(html, "<h2>How it was measured</h2>\n<ul>\n");
     addReference(t, html);
-    addText(
-        html,
-        "<li>Every setting was rendered with up to %d seed%s from %llu; figures are medians, bands run from "
-        "the least to the most. Settings ran from the cheapest to the dearest.</li>\n"
-        "<li>Processor time is the time of all threads together for the whole of <code>vpl render</code> "
-        "without reading the scene and writing the picture, here measured on %d thread%s. Several threads "
-        "share "
-        "it, so one waits less. Of short renders the fastest of three counts.</li>\n",
-        t->arguments->seeds, t->arguments->seeds == 1 ? "" : "s",
-        (unsigned long long)t->arguments->render.seed, vplContext_GetWorkerCount(t->context),
-        vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
+    addText(html,
+            "<li>Every setting was rendered with up to %d seed%s from %llu; figures are medians, bands run "
+            "from the least to the most. Settings ran from the cheapest to the dearest.</li>\n"
+            "<li>Processor time is the time of all threads together for the whole of <code>vpl render</code> "
+            "without reading the scene and writing the picture, here measured on %d thread%s. Several "
+            "threads share it, so one waits less. Of short renders the fastest of three counts.</li>\n",
+            t->arguments->seeds, t->arguments->seeds == 1 ? "" : "s",
+            (unsigned long long)t->arguments->render.seed, vplContext_GetWorkerCount(t->context),
+            vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
     addMachine(t, html);
-    addText(
-        html,
-        "<li>Physical lighting only: the documented formulas have no falloff with distance, so there is no "
-        "truth to compare them with.</li>\n");
+    addText(html, "<li>Physical lighting only: the documented formulas have no falloff with distance, so "
+                  "there is no truth to compare them with.</li>\n");
     addLeftOut(t, html);
     addText(html, "<li>Every figure of every run is in <code>tradeoff.csv</code>.</li>\n</ul>\n");
     addAllSettings(t, html);

@@ -13,7 +13,7 @@ static const char PATCHES[] = "100 300 1000 3000 10000 30000";
 
 static const char DISTANCES[] = "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4";
 
-// As values: the choices of the option, but for those that leave the choice to the library.
+// Stands for the choices of the option, except auto and usual, which leave the choice to the library.
 #define CHOICES NULL
 
 const Sweep SWEEPS[] = {
@@ -98,34 +98,30 @@ const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
                                                 "radiosity",
                                                 "path tracing"};
 
-// Returns the index of a name's first row in SWEEPS, or -1.
-static int findSweep(const char* name, int length)
+uint64_t findSweeps(const char* name, size_t length)
 {
+    uint64_t bits = 0;
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        if ((int)strlen(SWEEPS[i].name) == length && strncmp(name, SWEEPS[i].name, (size_t)length) == 0) {
-            return i;
-        }
+        const bool equal = strlen(SWEEPS[i].name) == length && strncmp(name, SWEEPS[i].name, length) == 0;
+        bits |= equal ? UINT64_C(1) << i : 0;
     }
-    return -1;
+    return bits;
 }
 
-// Marks the sweeps that "a,b,c" names; NULL names all. False after complaining of a name that is none.
-static bool chooseSweeps(const char* list, bool chosen[])
+// Returns the bits of the sweeps that "a,b,c" names; NULL names all. 0 after complaining of an unknown name.
+static uint64_t chooseSweeps(const char* list)
 {
-    for (int i = 0; i < SWEEP_COUNT; i++) {
-        chosen[i] = list == NULL;
-    }
+    uint64_t chosen = list == NULL ? UINT64_MAX : 0;
     for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
-        const int length = (int)strcspn(at, ","), first = findSweep(at, length);
-        if (first < 0) {
-            complain("--sweeps names \"%.*s\"; vpl help tradeoff lists the sweeps", length, at);
-            return false;
+        const size_t length = strcspn(at, ",");
+        const uint64_t named = findSweeps(at, length);
+        if (named == 0) {
+            complain("--sweeps names \"%.*s\"; vpl help tradeoff lists the sweeps", (int)length, at);
+            return 0;
         }
-        for (int i = first; i < SWEEP_COUNT; i++) {
-            chosen[i] = chosen[i] || strcmp(SWEEPS[i].name, SWEEPS[first].name) == 0;
-        }
+        chosen |= named;
     }
-    return true;
+    return chosen;
 }
 
 static Family familyOf(const vplRenderOptions* o)
@@ -161,7 +157,7 @@ static double workOf(const vplRenderOptions* o)
                : 50 + o->particles.count / (1 - reflectivity);
 }
 
-// Writes the options in which `o` differs from `plain`, but for those that the method of `o` makes no use of.
+// Writes the options in which `o` differs from `plain`, except those that the method of `o` does not use.
 static void writeDifference(const vplRenderOptions* plain, const vplRenderOptions* o, char* words,
                             size_t size)
 {
@@ -187,7 +183,7 @@ void writeCommand(const vplRenderOptions* o, char* words, size_t size)
     writeDifference(&plain, o, words, size);
 }
 
-// Sets options that the method makes no use of to their defaults, so that equal settings compare equal.
+// Sets options that the method does not use to their defaults, so that equal settings compare equal.
 static void forgetUnused(vplRenderOptions* o)
 {
     const vplRenderOptions plain = vplDefaultRenderOptions();
@@ -228,7 +224,7 @@ static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
     return true;
 }
 
-// Copies words; @X becomes a length in metres, of two digits so that a command line reads well.
+// Copies words and replaces @X by a length in metres, of two digits to keep commands short.
 static void expandLengths(const Tradeoff* t, const char* from, char* words, size_t size)
 {
     size_t used = 0;
@@ -271,17 +267,14 @@ static bool addSweep(Tradeoff* t, int index)
 
 bool listSettings(Tradeoff* t)
 {
-    bool chosen[MAX_SWEEPS];
+    const uint64_t chosen = chooseSweeps(t->arguments->sweeps);
     uint64_t knobs = 0;
-    if (!chooseSweeps(t->arguments->sweeps, chosen)) {
-        return false;
-    }
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        knobs |= chosen[i] && SWEEPS[i].meaning != NULL ? UINT64_C(1) << i : 0;
+        knobs |= SWEEPS[i].meaning != NULL ? chosen & UINT64_C(1) << i : 0;
     }
-    bool good = addSetting(t, "", knobs);
+    bool good = chosen != 0 && addSetting(t, "", knobs);
     for (int i = 0; i < SWEEP_COUNT && good; i++) {
-        good = !chosen[i] || addSweep(t, i);
+        good = (chosen >> i & 1) == 0 || addSweep(t, i);
     }
     return good;
 }

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Summaries of runs: medians, bands, the front, the cheapest setting for an error, the least error of a
-// family.
+// Summaries of runs: medians, bands, the front, the cheapest setting for an error, and a family's floor.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
 #include <string.h>
 
-// Each point of the front lowers the error by at least this share; less may be chance, and crowds the plot.
+// Each point of the front lowers the error by at least this share. Less may be chance, and crowds the plot.
 static const double FRONT_GAIN = 0.03;
 
-// The median over the seeds of a double of Run, and the least and the most.
+// Returns the median over the seeds of the double at an offset in Run, and its range.
 static double band(const Setting* s, size_t offset, double* low, double* high)
 {
     double values[64]; // --seeds takes no more
@@ -26,7 +25,7 @@ static double band(const Setting* s, size_t offset, double* low, double* high)
 void summarise(Tradeoff* t)
 {
     double cost[MAX_SETTINGS], error[MAX_SETTINGS];
-    bool onFront[MAX_SETTINGS];
+    int numbers[MAX_SETTINGS];
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
         double low, high;
@@ -37,14 +36,9 @@ void summarise(Tradeoff* t)
         cost[i] = s->cpuMs;
         error[i] = s->error;
     }
-    markFront(cost, error, t->settingCount, FRONT_GAIN, onFront);
+    numberFront(cost, error, t->settingCount, FRONT_GAIN, numbers);
     for (int i = 0; i < t->settingCount; i++) {
-        Setting* s = &t->settings[i];
-        s->onFront = onFront[i];
-        s->number = 1;
-        for (int j = 0; j < t->settingCount; j++) {
-            s->number += onFront[j] && cost[j] < cost[i];
-        }
+        t->settings[i].number = numbers[i];
     }
 }
 
@@ -53,9 +47,8 @@ int findCheapest(const Tradeoff* t, Family family, double limit)
     double cost[MAX_SETTINGS], error[MAX_SETTINGS];
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
-        bool counts = isMeasured(s) && (family == FAMILY_COUNT || s->family == family);
         cost[i] = s->cpuMs;
-        error[i] = counts ? s->error : NAN;
+        error[i] = isMeasuredOf(s, family) ? s->error : NAN;
     }
     return cheapestWithin(cost, error, t->settingCount, limit);
 }
@@ -64,13 +57,9 @@ int listFront(const Tradeoff* t, const Setting* front[MAX_SETTINGS])
 {
     int count = 0;
     for (int i = 0; i < t->settingCount; i++) {
-        const Setting* s = &t->settings[i];
-        if (s->onFront) {
-            int at = count++;
-            for (; at > 0 && front[at - 1]->number > s->number; at--) {
-                front[at] = front[at - 1];
-            }
-            front[at] = s;
+        if (t->settings[i].number > 0) {
+            front[t->settings[i].number - 1] = &t->settings[i];
+            count++;
         }
     }
     return count;
@@ -80,9 +69,10 @@ double findFloor(const Tradeoff* t, Family family)
 {
     double work[MAX_SETTINGS], error[MAX_SETTINGS];
     int count = 0;
-    for (int i = 0; i < t->settingCount; i++) { // particles stand in ascending order
+    for (int i = 0; i < t->settingCount; i++) { // particle counts ascend
         const Setting* s = &t->settings[i];
-        // The first rows of SWEEPS are particles for none, map, ray and Keller, in the order of the families.
+        // The first rows of SWEEPS vary the particles without shadows, with maps, with rays and of Keller's
+        // method: they are in the order of the families.
         if (isMeasured(s) && s->family == family && (s->sweeps >> (family - FAMILY_UNSHADOWED) & 1) != 0) {
             work[count] = s->work;
             error[count++] = s->error;

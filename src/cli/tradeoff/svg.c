@@ -24,7 +24,7 @@ void beginSvg(Text* svg, int height, const char* label, bool ownStyle)
     addText(svg, "<rect class=\"back\" width=\"%d\" height=\"%d\"/>\n", PLOT_WIDTH, height);
 }
 
-// Okabe and Ito, Color Universal Design, 2008: told apart also by those who see fewer colours; and by shape.
+// Colours for readers with any colour vision: Okabe and Ito, Color Universal Design, 2008.
 void writeStyle(Text* css)
 {
     static const char light[] = "--ink:#1b1b1b;--soft:#5c5c5c;--paper:#ffffff;--panel:#f4f4f1;--line:#d5d5d0;"

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What the plots share: axes, grids, and the markers and colours of families.
+// Parts of both plots: axes, grids, and the markers and colours of families.
 #ifndef VPL_CLI_TRADEOFF_SVG_H
 #define VPL_CLI_TRADEOFF_SVG_H
 
 #include "cli/tradeoff/tradeoff.h"
 
-enum {
-    PLOT_WIDTH = 900,
-    PLOT_LEFT = 72,
-    PLOT_RIGHT = PLOT_WIDTH - 24
-}; // pixels: of all; from and to where data are
+// Pixels: the width of a plot, and the left and right end of its data.
+enum { PLOT_WIDTH = 900, PLOT_LEFT = 72, PLOT_RIGHT = PLOT_WIDTH - 24 };
 
-// Values from low to high stand between two pixels.
+// Maps values from low to high to pixels.
 typedef struct Axis {
     double low, high;
     double from, to; // pixels

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Stages differ by method: the columns are all that occurred, in the order of their first run.
+// Columns of stages, which differ by method: all that occurred, in the order of their first run.
 typedef struct Stages {
     const char* names[MAX_STAGE_NAMES];
     int count;
@@ -30,7 +30,7 @@ static bool isColumn(const vplOption* o)
     return o->kind != VPL_OPTION_PART && o->kind != VPL_OPTION_SEED;
 }
 
-// A heading: a name with underscores.
+// Adds a heading: the name, with underscores instead of dashes and spaces.
 static void addHeading(const char* prefix, const char* name, Text* csv)
 {
     addText(csv, "%s", prefix);
@@ -96,7 +96,7 @@ static void addRow(const Tradeoff* t, int index, const Run* run, const Stages* s
     const Setting* s = &t->settings[index];
     addText(csv, "%d,%s,", index, FAMILY_NAMES[s->family]);
     addSweeps(s, csv);
-    addText(csv, "%d,%llu,", s->onFront, (unsigned long long)run->seed);
+    addText(csv, "%d,%llu,", s->number > 0, (unsigned long long)run->seed);
     int count;
     const vplOption* options = vplGetOptions(&count);
     for (int i = 0; i < count; i++) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Text that grows: the report, the plot and the table are put together in memory and written at once.
+// Growing text: the report, the plot and the table are composed in memory and then written whole.
 #ifndef VPL_CLI_TRADEOFF_TEXT_H
 #define VPL_CLI_TRADEOFF_TEXT_H
 
 #include <vpl/image.h>
 
-// Start with {0}; bytes is NULL while empty and is freed with free. Once `failed` (out of memory) it stays
-// so.
+// Starts as {0}. The owner frees bytes, which is NULL while empty. `failed` (out of memory) is final.
 typedef struct Text {
     char* bytes;
     size_t size, capacity;
@@ -21,10 +20,10 @@ void addText(Text* text, const char* format, ...);
 // Adds text with the characters of HTML markup as entities.
 void addEscaped(Text* text, const char* plain);
 
-// Adds words of a command line such that lines break between options only: half a word cannot be copied.
+// Adds words of a command line so that lines break between words only.
 void addWords(Text* html, const char* words);
 
-// Adds a cell of a CSV row, in quotes where it needs them, and a comma behind it.
+// Adds a cell of a CSV row, in quotes if necessary, and a comma.
 void addCell(Text* text, const char* plain);
 
 // Adds a picture as data:image/png;base64,... (RFC 2397), so that a page needs no other file.

@@ -15,29 +15,25 @@ static const char* const FILES[] = {"tradeoff.csv", "tradeoff.svg", "report.html
 
 enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
-// Prints errors and warnings of the library, but keeps errors quietly while settings are tried out.
+// Keeps the last error of the library, and prints errors and warnings unless settings are being tried out.
 static void keepLog(void* user, vplLogLevel level, const char* message)
 {
     Tradeoff* t = user;
     if (level == VPL_LOG_ERROR) {
         snprintf(t->message, sizeof t->message, "%s", message);
     }
-    if (level == VPL_LOG_ERROR ? !t->silent
-                               : level == VPL_LOG_WARNING && !t->arguments->quiet && !t->silent) {
-        complain("%s%s", level == VPL_LOG_WARNING ? "warning: " : "", message);
+    if (!t->silent && level != VPL_LOG_INFO) {
+        logToStderr((void*)t->arguments, level, message);
     }
 }
 
+// Returns false if the path is too long. prepareFolder has checked this for all files.
 static bool joinPath(const char* folder, const char* name, char* path)
 {
-    int length = snprintf(path, PATH_MAX, "%s/%s", folder, name);
-    if (length >= PATH_MAX) {
-        complain("%s: the name is too long", folder);
-    }
-    return length < PATH_MAX;
+    return snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX;
 }
 
-// Makes the folder if it is missing and checks that all files can be written. *made: it was missing.
+// Makes the folder if it is missing, and then sets *made. Checks that all files can be written.
 static bool prepareFolder(const char* folder, bool* made)
 {
     char path[PATH_MAX];
@@ -47,7 +43,11 @@ static bool prepareFolder(const char* folder, bool* made)
         return false;
     }
     for (int i = 0; i < FILE_COUNT; i++) {
-        if (!joinPath(folder, FILES[i], path) || !checkOutput(path)) {
+        if (!joinPath(folder, FILES[i], path)) {
+            complain("%s: the name is too long", folder);
+            return false;
+        }
+        if (!checkOutput(path)) {
             return false;
         }
     }
@@ -59,10 +59,10 @@ static bool writeResult(const Tradeoff* t, const char* name, void write(const Tr
     char path[PATH_MAX];
     Text text = {0};
     write(t, &text);
-    bool good = joinPath(t->arguments->output, name, path);
-    if (good && (text.failed || text.bytes == NULL)) {
+    joinPath(t->arguments->output, name, path);
+    bool good = !text.failed && text.bytes != NULL;
+    if (!good) {
         complain("%s: out of memory", path);
-        good = false;
     }
     good = good && writeTextFile(path, text.bytes);
     free(text.bytes);
@@ -74,8 +74,8 @@ static int writeResults(Tradeoff* t)
     char path[PATH_MAX];
     const char* folder = t->arguments->output;
     for (int i = 0; i < 2 && t->reference.spp > 0; i++) {
-        if (!joinPath(folder, i == 0 ? "reference-a.pfm" : "reference-b.pfm", path) ||
-            vplImage_Write(t->reference.halves[i], path, NULL) != VPL_SUCCESS) {
+        joinPath(folder, i == 0 ? "reference-a.pfm" : "reference-b.pfm", path);
+        if (vplImage_Write(t->reference.halves[i], path, NULL) != VPL_SUCCESS) {
             return EXIT_COULD_NOT;
         }
     }
@@ -109,15 +109,6 @@ static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOu
     return vplContext_Create(&def, contextOut);
 }
 
-static int checkCamera(const Tradeoff* t)
-{
-    int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.output.camera;
-    if (camera >= cameras) {
-        complain("--camera is %d, the scene has %d (from 0)", camera, cameras);
-    }
-    return camera < cameras ? EXIT_DONE : EXIT_USAGE;
-}
-
 static int readScene(Tradeoff* t)
 {
     const char* path = t->arguments->positionals[0];
@@ -134,7 +125,12 @@ static int readScene(Tradeoff* t)
     code = exitCode(vplGeometry_Create(t->scene, &geometry), true);
     t->diagonal = geometry ? (double)vplGeometry_Diagonal(geometry) : 0;
     vplGeometry_Destroy(geometry);
-    return code == EXIT_DONE ? checkCamera(t) : code;
+    const int cameras = vplScene_GetCameraCount(t->scene), camera = t->arguments->render.output.camera;
+    if (code == EXIT_DONE && camera >= cameras) {
+        complain("--camera is %d, the scene has %d (from 0)", camera, cameras);
+        code = EXIT_USAGE;
+    }
+    return code;
 }
 
 static int run(Tradeoff* t)
@@ -164,8 +160,8 @@ static void destroy(Tradeoff* t)
 {
     for (int i = 0; i < t->settingCount; i++) {
         vplImage_Destroy(t->settings[i].image);
-        free(t->settings[i].runs);
     }
+    free(t->runs);
     vplImage_Destroy(t->reference.image);
     vplImage_Destroy(t->reference.halves[0]);
     vplImage_Destroy(t->reference.halves[1]);

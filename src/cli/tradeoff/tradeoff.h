@@ -8,11 +8,11 @@
 #include "cli/tradeoff/math.h"
 #include "cli/tradeoff/text.h"
 
-// What the base of vpl tradeoff differs in from the defaults of vpl render: a size that allows many pictures,
-// enough particles to see something, the sampler and hard shadows that the truth of a point light wants, and
-// a seed other than 0, with which the first Halton point is the origin in all dimensions: the particle that
-// it drives goes on to the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error,
-// else 18 %).
+// The base of vpl tradeoff, as changes to the defaults of vpl render: a size that allows many pictures,
+// enough particles to see something, and the sampler and hard shadows that match the reference of a point
+// light. The seed is not 0, because the first Halton point of seed 0 is the origin in all dimensions. Its
+// particle survives to the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error
+// instead of 18 %).
 #define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --seed 1 --shadow-map 256 --pcf 1"
 
 enum { MAX_SETTINGS = 512, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
@@ -36,7 +36,7 @@ extern const char* const FAMILY_NAMES[FAMILY_COUNT];
 typedef struct Sweep {
     const char* name;  // as in --sweeps; rows of one name belong together
     const char* words; // the change; the last word is an option that takes each of the values
-    // With spaces between; @X is X times the scene's diagonal, in metres; NULL: its choices.
+    // Separated by spaces; @X is X times the scene's diagonal, in metres. NULL: the option's choices.
     const char* values;
     const char* meaning; // of the knob, for the report; NULL: no knob, only points of the plot
 } Sweep;
@@ -63,15 +63,15 @@ typedef struct Setting {
     uint64_t sweeps;          // bit i: belongs to SWEEPS[i]
     Family family;
     double work; // foreseen, in units that only compare settings of one family and pipeline
-    Run* runs;
+    Run* runs;   // of Tradeoff.runs
     int runCount;
     double error, errorLow, errorHigh; // as errorOf: median, least and most of the seeds
     double cpuMs, cpuLow, cpuHigh, wallMs;
-    double energy;           // median of the ratio to the truth's
-    char problem[SENTENCE];  // why it was not measured; empty: it was, or time ran out before
-    bool onFront, exhausted; // exhausted: left out for lack of time
-    int number;              // on the front: 1 is the cheapest
-    vplImage* image;         // of the first seed, kept while no other setting is better in all ways
+    double energy;          // median of the ratio to the truth's
+    char problem[SENTENCE]; // why it was not measured; empty: it was, or time ran out before
+    bool exhausted;         // left out for lack of time
+    int number;             // on the front, where 1 is the cheapest; 0: not on the front
+    vplImage* image;        // of the first seed, kept while the setting is on the front
 } Setting;
 
 // The reference picture.
@@ -95,6 +95,7 @@ typedef struct Tradeoff {
     Reference reference;
     Setting settings[MAX_SETTINGS];
     int settingCount;
+    Run* runs; // of all settings
     Progress progress;
     double start, deadline; // seconds; INFINITY: none
     bool interrupted;
@@ -104,6 +105,9 @@ typedef struct Tradeoff {
 
 // ---- settings
 
+// Returns the bits of the rows of SWEEPS that have a name.
+uint64_t findSweeps(const char* name, size_t length);
+
 // Fills in the base and all settings of the chosen sweeps; complains and returns false if a name is unknown.
 bool listSettings(Tradeoff* t);
 
@@ -112,11 +116,11 @@ void writeCommand(const vplRenderOptions* options, char* words, size_t size);
 
 // ---- measuring
 
-// Reads or path-traces the reference. A sentence was printed unless it returns EXIT_DONE.
+// Reads or path-traces the reference. Prints a sentence unless it returns EXIT_DONE.
 int makeReference(Tradeoff* t);
 
 // The error of a picture: root mean square difference from the reference / mean of the reference. With two
-// halves it is free of the reference's own noise. Never below the reference's resolution.
+// halves it is free of the reference's own noise. It is at least the reference's resolution.
 double errorOf(const Reference* r, const vplImage* image, const vplComparison* comparison);
 
 // Renders all settings that fit into the time. EXIT_DONE also if interrupted; then t->interrupted says so.
@@ -136,19 +140,31 @@ void writeStyle(Text* css); // colours of both the plots and the report
 void writePlot(const Tradeoff* t, Text* svg);
 void writeReport(const Tradeoff* t, Text* html);
 
-// The index of the cheapest setting of a family (FAMILY_COUNT: any) with a median error within the limit, or
-// -1.
+// Returns the index of a family's (FAMILY_COUNT: any) cheapest setting with a median error <= limit, or -1.
 int findCheapest(const Tradeoff* t, Family family, double limit);
 
-// The settings on the front, the cheapest first; returns how many.
+// Lists the settings on the front, the cheapest first, and returns their number.
 int listFront(const Tradeoff* t, const Setting* front[MAX_SETTINGS]);
 
-// The error that a family without shadows cannot get below however many particles; NAN where none shows.
+// Returns the error at which a family of virtual lights levels off as particles grow in number; NAN if it
+// does not.
 double findFloor(const Tradeoff* t, Family family);
+
+// Parts of report.html.
+void addAnswers(const Tradeoff* t, Text* html);  // words and table: the settings for 5 % error
+void addPictures(const Tradeoff* t, Text* html); // the front beside the truth
+void addClamp(const Tradeoff* t, Text* html);    // error and energy against --min-distance
+void addKnobs(const Tradeoff* t, Text* html);    // each option against the base
 
 static inline bool isMeasured(const Setting* s)
 {
     return s->runCount > 0;
+}
+
+// FAMILY_COUNT: of any family.
+static inline bool isMeasuredOf(const Setting* s, Family family)
+{
+    return isMeasured(s) && (family == FAMILY_COUNT || s->family == family);
 }
 
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How many short rays give back the light that the clamp of near virtual lights takes away, and how much that
-// is.
+// The clamp of near virtual lights takes light away, and short rays give it back. This file chooses the
+// number of rays and measures how much light was lost.
 #include "base/clock.h"
 #include "geometry/triangle.h"
 #include "math/scalar.h"
@@ -9,8 +9,8 @@
 
 #include <math.h>
 
-// What a pixel spends on virtual lights, in shadow rays: a light without one costs a fraction of a
-// nanosecond.
+// The time that a pixel spends on virtual lights, in units of a shadow ray. A light without a shadow ray
+// costs a fraction of a nanosecond.
 static double workOf(const vplPlan* plan, const vplVirtualLights* lights)
 {
     const vplPipelineOptions* o = &plan->options.pipeline;
@@ -20,8 +20,8 @@ static double workOf(const vplPlan* plan, const vplVirtualLights* lights)
     return fmin(lights->count / classes, most) * each;
 }
 
-// Few lights are enough for what a ray meets, if each of them is clamped like so few: where D is the radius
-// of a light's share of all surfaces, and on area lights with half of the chosen lights.
+// A hit of a short ray is lit by few of the lights, each clamped as if there were only these. So many lights
+// are enough that the clamp distance is the radius of one light's share of all surfaces.
 enum { MIN_HIT_LIGHTS = 16 };
 
 static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
@@ -31,10 +31,10 @@ static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
     return (int)fmax(MIN_HIT_LIGHTS, fmin(ceil(shares), lights->count));
 }
 
-// One ray for every so many lights that a pixel meets, so that the squared errors of both fall alike:
-// relative error squared times time is 1.4 with a ray for 16 lights, 1.0 with one for 48 (cornell-area, 2048
-// particles). Where hits meet more lights, D is smaller and hits are as much rarer as that takes more time
-// with sqrt(MIN_HIT_LIGHTS / hitLights) as many rays.
+// One ray for every 48 lights that a pixel evaluates, so that the squared errors of both fall alike: relative
+// error squared times time is 1.4 with a ray for 16 lights, 1.0 with one for 48 (cornell-area, 2048
+// particles). Where a hit evaluates more lights, the clamp distance is smaller and hits are rarer by the same
+// factor; the number of rays falls with the square root of that factor.
 enum { LIGHTS_PER_RAY = 48, MIN_RAYS = 2, MAX_RAYS = 4096 };
 
 static int raysOf(const vplRun* run, const vplVirtualLights* lights)
@@ -44,6 +44,7 @@ static int raysOf(const vplRun* run, const vplVirtualLights* lights)
     return (int)fmin(fmax(ceil(rays), MIN_RAYS), MAX_RAYS);
 }
 
+// The distance for lights on area lights, which are half of the lights that a hit evaluates.
 static float areaLightDistance(const vplGeometry* g)
 {
     double area = 0;
@@ -87,8 +88,8 @@ vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights
     return def;
 }
 
-// A point takes about 7 us and a light with a shadow ray per pixel 31 ns: so many points take about half a
-// hundredth of the picture's time.
+// The loss is estimated at some points. A point takes about 7 us, and a light with a shadow ray 31 ns per
+// pixel, so one point for 40000 shadow rays takes about half a per cent of the picture's time.
 enum { POINT_SHARE = 40000, MIN_POINTS = 32, MAX_POINTS = 1024, POINT_RAYS = 4 };
 
 static int pointsToAsk(const vplPlan* plan, const vplVirtualLights* lights)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What the table of stages refers to.
+// The functions that the table of stages refers to.
 #ifndef VPL_RENDER_STAGES_MAKE_H
 #define VPL_RENDER_STAGES_MAKE_H
 
 #include "render/stage.h"
 
 typedef vplResult vplMakeFcn(const vplRun* run, void** resultOut);
-typedef void vplDestroyFcn(void* result); // NULL is allowed
+typedef void vplDestroyFcn(void* result);
 typedef void vplReportFcn(const vplRun* run);
 
 vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeAreaLights, vplMakeReflectiveMaps,
@@ -15,11 +15,9 @@ vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeArea
     vplMakePatches, vplMakeSides, vplMakePatchMesh, vplMakeFormFactors, vplMakePatchLight, vplMakeSolution,
     vplMakeVertexLight, vplMakePicture, vplMakePaths;
 
-vplDestroyFcn vplDestroyGeometry, vplDestroyNearDistance, vplDestroyEmitterMaps, vplDestroyAreaLights,
-    vplDestroyReflectiveMaps, vplDestroyLightSet, vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids,
-    vplDestroyClusteredLights, vplDestroyVirtualLights, vplDestroyPatches, vplDestroySides,
-    vplDestroyPatchMesh, vplDestroyFormFactors, vplDestroyPatchLight, vplDestroySolution,
-    vplDestroyVertexLight, vplDestroyImage, vplDestroyPaths;
+vplDestroyFcn vplDestroyGeometry, vplDestroyEmitterMaps, vplDestroyReflectiveMaps, vplDestroyLightSet,
+    vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyClusteredLights, vplDestroyPatches,
+    vplDestroySides, vplDestroyPatchMesh, vplDestroyFormFactors, vplDestroyImage, vplDestroyPaths;
 
 vplReportFcn vplReportGeometry, vplReportParticles, vplReportClusteredLights, vplReportVirtualLights,
     vplReportPatches, vplReportSides, vplReportFormFactors, vplReportSolution;

@@ -18,13 +18,13 @@ static vplParticleDef describeParticles(const vplRun* run)
     def.bounce = o->particles.bounce;
     def.geometry = o->particles.geometry;
     def.seed = o->seed;
-    def.progress = vplRun_Progress(run);
-    def.progressUser = vplRun_ProgressUser(run);
+    def.progress = run->progress;
+    def.progressUser = run->runner;
     return def;
 }
 
-// More candidates help where few particles come near to what is seen (flat.json: 64 per particle leave 0.71
-// of the error of 32). Judging 32 costs as much as shading 8192 pixels.
+// More candidates per particle help where few particles land near visible surfaces (flat.json: 64 candidates
+// leave 0.71 of the error of 32). Judging 32 candidates costs as much as shading 8192 pixels.
 static int oversamplingFor(const vplOutputOptions* o)
 {
     const double times = (double)o->width * o->height * o->antialias / 4096;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of patches: what emitters give to them, and what they then exchange.
+// Light of patches: direct light of emitters, and the light that patches then exchange.
 #include "base/rng.h"
 #include "geometry/triangle.h"
 #include "radiosity/sides/side.h"
@@ -21,8 +21,8 @@ typedef struct Chunk {
     int firstPoint[CHUNK_SIDES + 1];
 } Chunk;
 
-// Points of `samples` open cells, spread evenly over their numbers; a single one is the incentre where it can
-// be reached.
+// Places one point in each of `samples` open cells, spread evenly over their numbers. A single point is the
+// incentre if all cells are open. Returns the number of points.
 static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint* points)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
@@ -76,17 +76,17 @@ static vplResult lightChunk(const vplRun* run, const vplShadeDef* def, int first
     return VPL_SUCCESS;
 }
 
-// Shadows come by rays, since there are fewer patches than texels.
-static vplResult lightSides(const vplRun* run, int sideCount, vplArena* scratch, vplPatchLight* light)
+// Casts shadows by rays, because there are fewer patches than shadow maps have texels.
+static vplResult lightSides(const vplRun* run, int sideCount, vplPatchLight* light)
 {
     const int room = sideCount < CHUNK_SIDES ? sideCount : CHUNK_SIDES;
     const size_t points = (size_t)room * (size_t)run->plan->options.radiosity.lightSamples;
     const int emitterCount = run->plan->emitterCount;
-    vplShadow* shadows = vplArena_AllocZero(scratch, (size_t)emitterCount, sizeof *shadows);
-    Chunk* chunk = vplArena_AllocZero(scratch, 1, sizeof *chunk);
-    vplSurfacePoint* places = vplArena_Alloc(scratch, points, sizeof *places);
-    vplRgb* irradiance = vplArena_Alloc(scratch, points, sizeof *irradiance);
-    TRY(vplArena_Check(scratch));
+    vplShadow* shadows = vplArena_AllocZero(run->scratch, (size_t)emitterCount, sizeof *shadows);
+    Chunk* chunk = vplArena_AllocZero(run->scratch, 1, sizeof *chunk);
+    vplSurfacePoint* places = vplArena_Alloc(run->scratch, points, sizeof *places);
+    vplRgb* irradiance = vplArena_Alloc(run->scratch, points, sizeof *irradiance);
+    TRY(vplArena_Check(run->scratch));
     *chunk = (Chunk){.points = places, .irradiance = irradiance, .light = light};
     const vplShadeDef def = {.lighting = VPL_LIGHTING_PHYSICAL,
                              .emitters = run->plan->emitters,
@@ -114,28 +114,16 @@ vplResult vplMakePatchLight(const vplRun* run, void** resultOut)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const size_t count = (size_t)sides->count;
-    vplArena* arena = vplArena_Create(run->context);
-    vplPatchLight* light = vplArena_Alloc(arena, 1, sizeof *light);
-    vplRgb* direct = vplArena_AllocZero(arena, count, sizeof *direct);
-    float* spread = vplArena_AllocZero(arena, count, sizeof *spread);
-    vplRgb* source = vplArena_AllocZero(arena, count, sizeof *source);
-    vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        vplArena* scratch = vplArena_Create(run->context);
-        *light = (vplPatchLight){direct, spread, source, arena};
-        result = lightSides(run, sides->count, scratch, light);
-        vplArena_Destroy(scratch);
-    }
-    if (result == VPL_SUCCESS) {
-        findSource(sides, light);
-    }
-    return vplArena_Deliver(arena, result, light, resultOut);
-}
-
-void vplDestroyPatchLight(void* result)
-{
-    vplPatchLight* light = result;
-    vplArena_Destroy(light != NULL ? light->arena : NULL);
+    vplPatchLight* light = vplArena_Alloc(run->arena, 1, sizeof *light);
+    vplRgb* direct = vplArena_AllocZero(run->arena, count, sizeof *direct);
+    float* spread = vplArena_AllocZero(run->arena, count, sizeof *spread);
+    vplRgb* source = vplArena_AllocZero(run->arena, count, sizeof *source);
+    TRY(vplArena_Check(run->arena));
+    *light = (vplPatchLight){direct, spread, source};
+    *resultOut = light;
+    TRY(lightSides(run, sides->count, light));
+    findSource(sides, light);
+    return VPL_SUCCESS;
 }
 
 // ---- exchange
@@ -160,10 +148,10 @@ vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOu
     return VPL_SUCCESS;
 }
 
-// Solutions of drafts are loose, which saves a fifth of the time; with 0.01 patches are placed less well.
+// Drafts are solved less exactly, which saves a fifth of the time. With 0.01 patches are placed less well.
 static const double DRAFT_RESIDUAL = 0.003;
 
-// How fast light dies away is asked once: it depends on form factors alone, which are kept.
+// Finds the spectral radius only in the first solution: it depends on form factors alone, which are kept.
 static vplResult solve(const vplRun* run, bool first, vplSolution* s)
 {
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
@@ -176,8 +164,8 @@ static vplResult solve(const vplRun* run, bool first, vplSolution* s)
     def.residual = run->draft ? fmax(o->residual, DRAFT_RESIDUAL) : o->residual;
     def.spectrum = first && !run->draft;
     def.continues = run->plan->options.sequence.history != NULL || run->draft;
-    def.progress = vplRun_Progress(run);
-    def.progressUser = vplRun_ProgressUser(run);
+    def.progress = run->progress;
+    def.progressUser = run->runner;
     TRY(vplSolveRadiosity(&transport, &def, light->source, s->radiosity, &s->stats));
     if (!first) {
         s->stats.spectralRadius = last.spectralRadius;
@@ -188,22 +176,18 @@ static vplResult solve(const vplRun* run, bool first, vplSolution* s)
     return VPL_SUCCESS;
 }
 
-// What was reflected at least once arrives here; light of area lights themselves is direct.
+// Finds the irradiance by light that was reflected at least once. Light of area lights themselves is direct.
 static vplResult gather(const vplRun* run, vplSolution* s)
 {
     const vplTransport transport = vplTransportOf(run);
-    vplRgb* reflected = vplAlloc(run->context, (size_t)transport.sides->count, sizeof *reflected);
-    if (reflected == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)transport.sides->count, sizeof *reflected);
+    TRY(vplArena_Check(run->scratch));
     vplFindReflected(transport.sides, s->radiosity, reflected);
-    const vplResult result = vplGatherRadiosity(&transport, reflected, s->irradiance);
-    vplFree(run->context, reflected);
-    return result;
+    return vplGatherRadiosity(&transport, reflected, s->irradiance);
 }
 
-// The document's "slight lag": the sweeps of a frame begin with the radiosities of the frame before, as long
-// as form factors are the same.
+// The sweeps of a frame begin with the radiosities of the last frame as long as form factors are the same,
+// which the document calls a "slight lag".
 vplResult vplMakeSolution(const vplRun* run, void** resultOut)
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
@@ -213,16 +197,11 @@ vplResult vplMakeSolution(const vplRun* run, void** resultOut)
     vplSolution* s = run->before;
     const bool first = s == NULL || s->factorBuild != build;
     if (first) {
-        vplArena* arena = vplArena_Create(run->context);
-        s = vplArena_AllocZero(arena, 1, sizeof *s);
-        vplRgb* radiosity = vplArena_AllocZero(arena, count, sizeof *radiosity);
-        vplRgb* irradiance = vplArena_AllocZero(arena, count, sizeof *irradiance);
-        if (vplArena_Check(arena) != VPL_SUCCESS) {
-            vplArena_Destroy(arena);
-            return VPL_OUT_OF_MEMORY;
-        }
-        *s = (vplSolution){
-            .radiosity = radiosity, .irradiance = irradiance, .factorBuild = build, .arena = arena};
+        s = vplArena_Alloc(run->arena, 1, sizeof *s);
+        vplRgb* radiosity = vplArena_AllocZero(run->arena, count, sizeof *radiosity);
+        vplRgb* irradiance = vplArena_AllocZero(run->arena, count, sizeof *irradiance);
+        TRY(vplArena_Check(run->arena));
+        *s = (vplSolution){.radiosity = radiosity, .irradiance = irradiance, .factorBuild = build};
     }
     *resultOut = s;
     if (first || run->plan->options.sequence.coherence == VPL_COHERENCE_OFF) {
@@ -230,12 +209,6 @@ vplResult vplMakeSolution(const vplRun* run, void** resultOut)
     }
     TRY(solve(run, first, s));
     return gather(run, s);
-}
-
-void vplDestroySolution(void* result)
-{
-    vplSolution* s = result;
-    vplArena_Destroy(s != NULL ? s->arena : NULL);
 }
 
 void vplReportSolution(const vplRun* run)
@@ -251,22 +224,9 @@ vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
-    vplArena* arena = vplArena_Create(run->context);
-    vplVertexLight* light = vplArena_Alloc(arena, 1, sizeof *light);
-    vplRgb* corners = vplArena_Alloc(arena, 2 * (size_t)mesh->vertexCount, sizeof *corners);
-    vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        *light = (vplVertexLight){corners, arena};
-        result = vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners);
-    }
-    if (result == VPL_SUCCESS) {
-        result = vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
-    }
-    return vplArena_Deliver(arena, result, light, resultOut);
-}
-
-void vplDestroyVertexLight(void* result)
-{
-    vplVertexLight* light = result;
-    vplArena_Destroy(light != NULL ? light->arena : NULL);
+    vplRgb* corners = vplArena_Alloc(run->arena, 2 * (size_t)mesh->vertexCount, sizeof *corners);
+    TRY(vplArena_Check(run->arena));
+    *resultOut = corners;
+    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners));
+    return vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
 }

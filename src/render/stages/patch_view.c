@@ -1,55 +1,48 @@
 // SPDX-License-Identifier: MIT
-// Patches on pictures: smooth indirect light, or a stage to look at; and as a mesh for other tools.
+// Draws patches on pictures, as smooth indirect light or as a stage to look at, and writes them as a mesh.
 #include "math/scalar.h"
+#include "math/vec.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
 #include <math.h>
 
-// What --show form-factor-sums and residual show of a side; values are zero before.
-static vplResult findSums(const vplRun* run, vplRgb* values)
+static vplResult findSums(const vplTransport* transport, vplRgb* values)
 {
-    const vplTransport transport = vplTransportOf(run);
-    for (int i = 0; i < transport.sides->count; i++) {
-        const float sum = transport.factors != NULL ? transport.factors->rowSums[i] : 1;
+    for (int i = 0; i < transport->sides->count; i++) {
+        const float sum = transport->factors != NULL ? transport->factors->rowSums[i] : 1;
         values[i] = (vplRgb){sum, sum, sum};
     }
-    return transport.factors != NULL ? VPL_SUCCESS : vplGatherRadiosity(&transport, values, values);
+    return transport->factors != NULL ? VPL_SUCCESS : vplGatherRadiosity(transport, values, values);
 }
 
-static vplResult findResidual(const vplRun* run, vplRgb* values)
+// Finds the value of each side that --show asks for. The values are zero before.
+static vplResult findValues(const vplRun* run, vplShow show, vplRgb* values)
 {
-    const vplTransport transport = vplTransportOf(run);
+    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplPatchLight* light = run->results[VPL_STAGE_PATCH_LIGHT];
     const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
     const float scale = (float)(1 / VPL_PI);
-    TRY(vplRadiosityResidual(&transport, light->source, s->radiosity, values));
-    for (int i = 0; i < transport.sides->count; i++) {
-        values[i] =
-            (vplRgb){scale * fabsf(values[i].r), scale * fabsf(values[i].g), scale * fabsf(values[i].b)};
-    }
-    return VPL_SUCCESS;
-}
-
-static vplResult findValues(const vplRun* run, vplRgb* values)
-{
-    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
-    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
-    const vplShow show = run->plan->options.output.show;
-    const float scale = (float)(1 / VPL_PI);
-    if (show == VPL_SHOW_FORM_FACTOR_SUMS) {
-        return findSums(run, values);
-    }
-    if (show == VPL_SHOW_RESIDUAL) {
-        return findResidual(run, values);
-    }
-    for (int i = 0; i < sides->count; i++) {
-        if (show == VPL_SHOW_PATCHES) {
+    if (show == VPL_SHOW_PATCHES) {
+        for (int i = 0; i < sides->count; i++) {
             values[i] = sides->sides[i].reflectance;
-        } else {
-            const vplRgb b = s->radiosity[i];
-            values[i] = (vplRgb){scale * b.r, scale * b.g, scale * b.b};
         }
+        return VPL_SUCCESS;
+    }
+    if (show == VPL_SHOW_PATCH_RADIOSITY) {
+        for (int i = 0; i < sides->count; i++) {
+            values[i] = vplRgbScale(scale, s->radiosity[i]);
+        }
+        return VPL_SUCCESS;
+    }
+    const vplTransport transport = vplTransportOf(run);
+    if (show == VPL_SHOW_FORM_FACTOR_SUMS) {
+        return findSums(&transport, values);
+    }
+    TRY(vplRadiosityResidual(&transport, light->source, s->radiosity, values));
+    for (int i = 0; i < sides->count; i++) {
+        const vplRgb v = values[i];
+        values[i] = vplRgbScale(scale, (vplRgb){fabsf(v.r), fabsf(v.g), fabsf(v.b)});
     }
     return VPL_SUCCESS;
 }
@@ -60,17 +53,17 @@ static vplResult draw(const vplRun* run, const vplView* view, vplArena* scratch,
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
-    const vplVertexLight* vertices = run->results[VPL_STAGE_VERTEX_LIGHT];
+    const vplRgb* corners = run->results[VPL_STAGE_VERTEX_LIGHT];
     const bool light = o->output.show == VPL_SHOW_PICTURE || o->output.show == VPL_SHOW_INDIRECT;
     const bool smooth = light && o->radiosity.interpolation == VPL_INTERPOLATION_GOURAUD;
     float(*clip)[4] = vplArena_Alloc(scratch, (size_t)mesh->vertexCount, sizeof *clip);
     vplRgb* values = vplArena_AllocZero(scratch, light ? 0 : (size_t)sides->count, sizeof *values);
     TRY(vplArena_Check(scratch));
     if (!light) {
-        TRY(findValues(run, values));
+        TRY(findValues(run, o->output.show, values));
     }
     const vplPatchDraw def = {.mesh = mesh,
-                              .vertexValues = smooth ? vertices->corners : NULL,
+                              .vertexValues = smooth ? corners : NULL,
                               .values = light ? solution->irradiance : values,
                               .reflect = light,
                               .outlines = o->output.show == VPL_SHOW_PATCHES};
@@ -89,7 +82,7 @@ vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* ima
     return result;
 }
 
-// All light: direct light, too, is the mean of a patch here.
+// The mesh has all light. Direct light is the mean over each patch, too.
 vplResult vplWritePatchMesh(const vplRun* run, vplArena* scratch, float scale, const char* path)
 {
     const vplRadiosityOptions* o = &run->plan->options.radiosity;

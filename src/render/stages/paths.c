@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Path tracing: each pass adds paths to all pixels. What --show asks for is a range of bounces.
+// Path tracing: each pass adds paths to all pixels. --show chooses a range of bounces.
 #include "reference/path_trace.h"
 #include "render/stages/make.h"
 
@@ -35,7 +35,7 @@ static vplPathDef describe(const vplPlan* plan)
     return def;
 }
 
-// The tracer of the passes before goes on; pass 0 begins a new one.
+// Pass 0 creates a tracer; later passes add paths to it.
 vplResult vplMakePaths(const vplRun* run, void** resultOut)
 {
     vplPathTracer* tracer = run->pass > 0 ? run->before : NULL;
@@ -46,7 +46,7 @@ vplResult vplMakePaths(const vplRun* run, void** resultOut)
     const int left = run->plan->options.path.samples - run->pass * PASS_SAMPLES;
     const int samples = left > 0 && left < PASS_SAMPLES ? left : PASS_SAMPLES;
     *resultOut = tracer;
-    return vplPathTracer_Pass(tracer, samples, vplRun_Progress(run), vplRun_ProgressUser(run), 0, 1);
+    return vplPathTracer_Pass(tracer, samples, run->progress, run->runner, 0, 1);
 }
 
 void vplDestroyPaths(void* result)

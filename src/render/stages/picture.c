@@ -18,8 +18,8 @@ static vplResult shadeView(const vplRun* run, const vplView* view, const vplShad
     if (vplShowsPatchesAlone(run->plan->options.output.show)) {
         memset(image->pixels, 0, vplValueCount(image) * sizeof *image->pixels);
     } else {
-        TRY(vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, def, vplRun_Progress(run),
-                         vplRun_ProgressUser(run), image, &stats));
+        TRY(vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, def, run->progress, run->runner, image,
+                         &stats));
     }
     vplRun_AddRaster(run, &stats.raster);
     run->stats->rays += stats.shadowRays;
@@ -67,7 +67,7 @@ static vplResult shadeSamples(const vplRun* run, const vplShadeDef* def, double*
     return VPL_SUCCESS;
 }
 
-// ---- what it shades with
+// ---- the lights to shade with
 
 static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* def)
 {
@@ -83,7 +83,7 @@ static void addDirect(const vplRun* run, const vplShadow* shadows, vplShadeDef* 
     }
 }
 
-// Virtual lights v->first + first .. + count - 1.
+// Adds `count` virtual lights, beginning with v->first + first.
 static void addVirtual(const vplRun* run, const vplVirtualLights* v, const vplHemiMaps* maps, int first,
                        int count, vplShadeDef* def)
 {
@@ -116,12 +116,12 @@ static vplShadeDef describe(const vplRun* run)
                          .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL};
 }
 
-// What a call of the stage holds besides its picture.
+// The memory of one call of the stage, besides its picture.
 typedef struct Shading {
-    vplArena* arena;
     const vplShadow* shadows; // of emitters
     double* sums;             // of samples; NULL for one
     vplHemiMaps* lightMaps;   // of a batch of virtual lights; NULL if they have none
+    vplHemiMapPlace* places;  // of these maps
 } Shading;
 
 static vplResult shade(const vplRun* run, const Shading* s, int parts, int first, int count, vplImage* image)
@@ -136,7 +136,7 @@ static vplResult shade(const vplRun* run, const Shading* s, int parts, int first
     if (count > 0) {
         addVirtual(run, v, s->lightMaps, first, count, &def);
     }
-    // Of all lights at once, whatever batch is shown.
+    // Compensation is computed once, for all batches together.
     const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
     if (near && (plan->compensates || plan->estimatesLoss)) {
         compensation = vplMakeCompensation(run, v, s->shadows);
@@ -155,30 +155,26 @@ static vplResult drawLightMaps(const vplRun* run, Shading* s, int first, int cou
 {
     const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
     const double start = vplClockMs();
-    vplHemiMapPlace* places = vplAlloc(run->context, (size_t)count, sizeof *places);
-    vplResult result = places != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
-    for (int i = 0; i < count && places != NULL; i++) {
+    for (int i = 0; i < count; i++) {
         const vplShadeLight* l = &v->lights[v->first + first + i];
-        places[i] = (vplHemiMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
+        s->places[i] = (vplHemiMapPlace){{l->px, l->py, l->pz}, {l->nx, l->ny, l->nz}};
     }
-    if (result == VPL_SUCCESS) {
-        result = vplHemiMaps_Draw(s->lightMaps, run->results[VPL_STAGE_GEOMETRY], places, count,
-                                  vplRun_Progress(run), vplRun_ProgressUser(run));
-    }
-    vplFree(run->context, places);
+    TRY(vplHemiMaps_Draw(s->lightMaps, run->results[VPL_STAGE_GEOMETRY], s->places, count, run->progress,
+                         run->runner));
     vplRun_AddTime(run, "light shadow maps", start);
-    return result;
+    return VPL_SUCCESS;
 }
 
-// As many lights have maps at the same time as fit into memory; each such batch is added to the picture.
+// Shades lights in batches, as many as have maps that fit into memory, and sums the pictures of the batches.
 static vplResult shadeBatches(const vplRun* run, Shading* s, int total, vplImage* image)
 {
     const size_t values = vplValueCount(image);
     const vplLightOptions* o = &run->plan->options.lights;
     const size_t room = ((size_t)o->mapMemory << 20) / vplHemiMaps_BytesPerMap(o->mapSize);
     const int batch = room >= (size_t)total ? total : room > 0 ? (int)room : 1;
-    float* sum = vplArena_Alloc(s->arena, batch < total ? values : 0, sizeof *sum);
-    TRY(vplArena_Check(s->arena));
+    float* sum = vplArena_Alloc(run->scratch, batch < total ? values : 0, sizeof *sum);
+    s->places = vplArena_Alloc(run->scratch, (size_t)batch, sizeof *s->places);
+    TRY(vplArena_Check(run->scratch));
     TRY(vplHemiMaps_Create(run->context, o->mapSize, batch, &s->lightMaps));
     for (int first = 0; first < total; first += batch) {
         const int count = total - first < batch ? total - first : batch;
@@ -201,10 +197,11 @@ static vplResult shadePicture(const vplRun* run, Shading* s, vplImage* image)
     const vplEmitterMaps* maps = run->results[VPL_STAGE_EMITTER_MAPS];
     const bool many = plan->options.output.antialias > 1;
     const int lights = v != NULL && (run->parts & VPL_PART_INDIRECT) != 0 ? v->count - v->first : 0;
-    s->shadows = maps != NULL ? maps->shadows
-                              : vplArena_AllocZero(s->arena, (size_t)plan->emitterCount, sizeof(vplShadow));
-    s->sums = many ? vplArena_Alloc(s->arena, vplValueCount(image), sizeof *s->sums) : NULL;
-    TRY(vplArena_Check(s->arena));
+    s->shadows = maps != NULL
+                     ? maps->shadows
+                     : vplArena_AllocZero(run->scratch, (size_t)plan->emitterCount, sizeof(vplShadow));
+    s->sums = many ? vplArena_Alloc(run->scratch, vplValueCount(image), sizeof *s->sums) : NULL;
+    TRY(vplArena_Check(run->scratch));
     return lights > 0 && plan->options.lights.shadows == VPL_LIGHT_SHADOWS_MAP
                ? shadeBatches(run, s, lights, image)
                : shade(run, s, run->parts, 0, lights, image);
@@ -222,10 +219,9 @@ vplResult vplMakePicture(const vplRun* run, void** resultOut)
     }
     TRY(vplImage_Create(run->context, o->width, o->height, &image));
     *resultOut = image;
-    Shading shading = {.arena = vplArena_Create(run->context)};
-    const vplResult result = shading.arena != NULL ? shadePicture(run, &shading, image) : VPL_OUT_OF_MEMORY;
+    Shading shading = {0};
+    const vplResult result = shadePicture(run, &shading, image);
     vplHemiMaps_Destroy(shading.lightMaps);
-    vplArena_Destroy(shading.arena);
     return result;
 }
 

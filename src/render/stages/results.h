@@ -5,18 +5,15 @@
 
 #include "render/stage.h"
 
-// VPL_STAGE_NEAR_DISTANCE: within which surfaces see a fifth of what they see.
-typedef struct vplNearDistance {
-    float metres;
-    vplArena* arena;
-} vplNearDistance;
+// VPL_STAGE_NEAR_DISTANCE has a float: the metres within which surfaces see a fifth of what they see.
+// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light at the vertices of the
+// patch mesh, [vertex][front, back].
 
 // VPL_STAGE_EMITTER_MAPS: one entry per emitter.
 typedef struct vplEmitterMaps {
     vplCubeMap** maps;  // NULL: the emitter's shadows come by rays
     vplShadow* shadows; // of the maps
     int count;
-    vplArena* arena;
 } vplEmitterMaps;
 
 // VPL_STAGE_AREA_LIGHTS: points that stand for all area lights in direct light.
@@ -24,14 +21,12 @@ typedef struct vplAreaLights {
     vplShadeLight* lights;
     int count;
     float minDistance; // metres
-    vplArena* arena;
 } vplAreaLights;
 
 // VPL_STAGE_REFLECTIVE_MAPS: one per emitter.
 typedef struct vplReflectiveMaps {
     vplReflectiveMap** maps; // NULL where the emitter has no power
     int count;
-    vplArena* arena;
 } vplReflectiveMaps;
 
 // VPL_STAGE_VIRTUAL_LIGHTS: the lights that the picture adds up.
@@ -40,10 +35,9 @@ typedef struct vplVirtualLights {
     vplShadeLight* lights;
     int* clusters; // of each light, in the order of clusters; NULL: lights do not see by clusters
     int count;
-    int first;             // lights before this one only light what compensation's rays meet
+    int first;             // lights before this one only light the hits of compensation's rays
     int emitterLightCount; // the first lights, if they lie on area lights
     float minDistance;     // clamp, metres
-    vplArena* arena;
 } vplVirtualLights;
 
 // VPL_STAGE_FIRST_BOUNCE and VPL_STAGE_SECOND_BOUNCE.
@@ -52,14 +46,12 @@ typedef struct vplBounceLights {
     uint64_t shift; // of the sample pattern
     float* use; // of each sample of the reflective maps: the share of its light that stays; NULL: not asked
     int sampleCount; // of them
-    vplArena* arena;
 } vplBounceLights;
 
 // VPL_STAGE_CLUSTERS and VPL_STAGE_SECOND_CLUSTERS.
 typedef struct vplBounceClusters {
     vplLightClusters* clusters;
     uint64_t shift; // of the sample pattern
-    vplContext* context;
 } vplBounceClusters;
 
 // VPL_STAGE_PARABOLOIDS and VPL_STAGE_SECOND_PARABOLOIDS.
@@ -68,7 +60,6 @@ typedef struct vplBounceMaps {
     int* viewpoints;         // of each cluster: `particle` of the light that it sees from; -1: of none
     int count;
     uint64_t shift;
-    vplArena* arena;
 } vplBounceMaps;
 
 // VPL_STAGE_CLUSTERED_LIGHTS: the lights of both bounces as one list.
@@ -77,14 +68,12 @@ typedef struct vplClusteredLights {
     int* clusterOf;            // of each light: index in `shadows`
     vplParaboloidMap* shadows; // maps of both bounces
     int shadowCount;           // 0 where lights do not see by clusters
-    vplArena* arena;
 } vplClusteredLights;
 
 // VPL_STAGE_FORM_FACTORS: of all pairs, or links.
 typedef struct vplExchangeFactors {
     vplFormFactors* factors;
     vplLinks* links;
-    vplContext* context;
 } vplExchangeFactors;
 
 // VPL_STAGE_PATCH_LIGHT: light of emitters, one entry per side.
@@ -92,7 +81,6 @@ typedef struct vplPatchLight {
     vplRgb* direct; // irradiance, W/m^2
     float* spread;  // its standard deviation over the side
     vplRgb* source; // radiosity: emission and reflected direct light, W/m^2
-    vplArena* arena;
 } vplPatchLight;
 
 // VPL_STAGE_SOLUTION: one entry per side, W/m^2.
@@ -100,16 +88,8 @@ typedef struct vplSolution {
     vplRgb* radiosity;  // all light
     vplRgb* irradiance; // of light that was reflected at least once
     vplSolveStats stats;
-    uint32_t factorBuild; // of the form factors that it is of
-    vplArena* arena;
+    uint32_t factorBuild; // identifies the form factors that it was solved with
 } vplSolution;
-
-// VPL_STAGE_VERTEX_LIGHT: irradiance of reflected light at the vertices of the patch mesh, [vertex][front,
-// back].
-typedef struct vplVertexLight {
-    vplRgb* corners;
-    vplArena* arena;
-} vplVertexLight;
 
 // ---- what stages share
 
@@ -128,25 +108,27 @@ static inline vplTransport vplTransportOf(const vplRun* run)
 // The clamp distance of a pass with so many lights, metres.
 float vplClampDistance(const vplRun* run, double lights);
 
-// How the light that the clamp takes away is found again; `shadows` are those of the emitters.
+// Describes the short rays that find the light that the clamp takes away. `shadows` are those of the
+// emitters.
 vplCompensationDef vplMakeCompensation(const vplRun* run, const vplVirtualLights* lights,
                                        const vplShadow* shadows);
 
-// Adds a pass to the loss by the clamp that statistics tell.
+// Measures the light that the clamp takes away in this pass, and adds it to the statistics.
 vplResult vplEstimateLoss(const vplRun* run, const vplVirtualLights* lights, const vplShadeDef* shown,
                           vplCompensationDef compensation);
 
-// VPL_LIGHT_SHADOWS_MAP or RAY, whichever is cheaper; writes what it costs into the plan and why into `why`.
+// Returns VPL_LIGHT_SHADOWS_MAP or RAY, whichever is cheaper; writes the costs into the plan and the reason
+// into `why`.
 vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights* lights, vplPlan* plan,
                                       char* why);
 
-// Draws patches: smooth indirect light added to a picture, or a stage to look at.
+// Draws patches over a picture, as smooth indirect light or as the values that --show asks for.
 vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* image);
 
-// What sides radiate of light that they did not make themselves.
+// Finds the reflected part of the radiosity of sides: all but their emission.
 void vplFindReflected(const vplPatchSides* sides, const vplRgb* radiosity, vplRgb* reflectedOut);
 
-// Irradiance of sides by what sides send, and by emitters.
+// Finds the irradiance of sides by the light that sides send and by emitters.
 vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOut);
 
 #endif

@@ -10,9 +10,9 @@
 
 // Nanoseconds of one core of an AMD EPYC (Zen 4, AVX-512), fitted to `bench/crossover` over room,
 // cornell-area, sibenik-spot, conference-spot and sponza-sun with 64x64 to 1280x720 pixels, 16 to 256 lights
-// and maps of 64, 128 and 256 texels a side (tests/data/crossover.csv); single terms are off by a factor of
-// up to 2, rays by 1/1.8 at 64x64 and 1.8 at 640x360, where neighbours take the same way. They are the same
-// on every machine: else pictures would not be.
+// and maps of 64, 128 and 256 texels a side (tests/data/crossover.csv). Single terms are off by a factor of
+// up to 2, rays by 1/1.8 at 64x64 and 1.8 at 640x360, where rays of neighbours are coherent. The constants
+// are the same on every machine, so that pictures are.
 static const double DRAW_TRIANGLE = 25;  // a triangle above the light's plane
 static const double DRAW_TEXEL = 0.4;    // a texel, and again for each power of two of these triangles
 static const double LOOKUP_PIXEL = 2.3;  // a pixel and a light,
@@ -21,7 +21,8 @@ static const double RAY_PIXEL = 1;
 static const double RAY_FACING = 50; // a ray,
 static const double RAY_DEPTH = 4;   // and each power of two of the scene's triangles
 
-// Straight between powers of two: exact everywhere, which libraries' logarithms are not.
+// Interpolates linearly between powers of two. Unlike the logarithms of C libraries it has the same bits
+// everywhere.
 static double log2Of(double x)
 {
     int exponent;

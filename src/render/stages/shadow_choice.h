@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Whether virtual lights cast shadows by maps or by rays: what each will cost, from measurements.
+// Estimates what shadows of virtual lights cost by maps and by rays, to choose between them.
 #ifndef VPL_RENDER_STAGES_SHADOW_CHOICE_H
 #define VPL_RENDER_STAGES_SHADOW_CHOICE_H
 
 #include <vpl/shading.h>
 
-// What the costs depend on.
+// The numbers that the costs depend on.
 typedef struct vplShadowLoad {
     double lights;
     double pixels;         // that ask about each light
@@ -15,16 +15,17 @@ typedef struct vplShadowLoad {
     double mapSize;        // texels along a side
 } vplShadowLoad;
 
-// Milliseconds of one core, about.
+// Estimates in milliseconds of one core.
 typedef struct vplShadowCosts {
     double mapMs, rayMs;
 } vplShadowCosts;
 
-// Grows with lights, pixels and facing; maps also with trianglesAbove and mapSize, rays with triangles.
+// Both costs grow with lights, pixels and facing; that of maps also with trianglesAbove and mapSize, that of
+// rays with triangles.
 vplShadowCosts vplEstimateShadows(const vplShadowLoad* load);
 
-// Samples a few pixels and lights. The answer depends on scene and options alone, not on the machine: else
-// pictures would.
+// Samples a few pixels and lights. The answer depends on scene and options only, not on the machine, since
+// pictures must not depend on the machine.
 vplShadowLoad vplMeasureShadowLoad(const vplGeometry* geometry, const vplView* view, double pixels,
                                    const vplShadeLight* lights, int lightCount, int mapSize);
 

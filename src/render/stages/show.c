@@ -62,7 +62,7 @@ vplResult vplShowClusterMap(const vplRun* run, vplImage** imageOut)
 static bool isHidden(const vplView* view, const vplGeometry* geometry, vplVec3 position)
 {
     const vplVec3 way = vplSub(position, view->eye);
-    const float begin = (float)view->near / vplDot(view->forward, way); // where the view begins
+    const float begin = (float)view->near / vplDot(view->forward, way); // at the near plane
     const vplRay ray = {vplAdd(view->eye, vplScale(begin, way)), vplScale(1 - begin, way), {0, 0}};
     return vplGeometry_IsOccluded(geometry, &ray, 0.9999f);
 }
@@ -119,7 +119,7 @@ vplResult vplDrawSecondBounce(const vplRun* run, vplImage* image)
     return markBounce(run, run->results[VPL_STAGE_SECOND_BOUNCE], BLUE, image);
 }
 
-// Hues that differ from those of the next clusters: a golden section of the circle apart.
+// The hues of successive clusters are a golden section of the colour circle apart, so they differ.
 static vplRgb colourOf(int cluster)
 {
     const float hue = 6 * fmodf(0.618034f * (float)cluster, 1);

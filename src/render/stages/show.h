@@ -5,28 +5,32 @@
 
 #include "render/stage.h"
 
-// Results instead of a picture: the first emitter's cube map unfolded into a cross, metres; its reflective
-// shadow map, or the paraboloid map of a cluster, four pictures side by side.
+// Results instead of a picture: the first emitter's cube map unfolded into a cross, in metres; a reflective
+// shadow map; the paraboloid map of a cluster.
 vplResult vplShowCubeMap(const vplRun* run, vplImage** imageOut);
 vplResult vplShowReflectiveMaps(const vplRun* run, vplImage** imageOut);
 vplResult vplShowClusterMap(const vplRun* run, vplImage** imageOut);
 
-// Marks over a picture, small where the camera cannot see them: virtual lights as discs in the colour of
-// their step; first-bounce lights; these in the colours of their clusters, with the clusters' viewpoints;
-// second-bounce lights.
+// Marks over a picture, smaller where the camera cannot see them: virtual lights as discs in the colour of
+// their step; first-bounce lights; first-bounce lights in the colours of their clusters, with the clusters'
+// viewpoints; second-bounce lights.
 vplResult vplDrawVirtualLights(const vplRun* run, vplImage* image);
 vplResult vplDrawFirstBounce(const vplRun* run, vplImage* image);
 vplResult vplDrawClusters(const vplRun* run, vplImage* image);
 vplResult vplDrawSecondBounce(const vplRun* run, vplImage* image);
 
-// ---- single maps: position (0 to 1 from one end of the scene's bounds to the other), normal ((n + 1) / 2, of the side
-// that is seen), reflectance, and a fourth as a share of its largest number; black where nothing is
+// ---- single maps
+//
+// Four pictures side by side: position (0 to 1 from one end of the scene's bounds to the other), normal ((n +
+// 1) / 2, of the side that is seen), reflectance, and a fourth quantity divided by its largest value. They
+// are black where a texel sees nothing.
 
-// What an emitter lights first; the fourth is flux. The six faces of a point are unfolded as those of its
-// shadow map.
+// Shows a reflective shadow map; the fourth picture is flux. The six faces of a point light are unfolded as
+// those of its shadow map.
 vplResult vplShowReflectiveMap(const vplReflectiveMap* map, const vplGeometry* geometry, vplImage** imageOut);
 
-// What a cluster sees, one row per hemisphere; the fourth is distance. The map must have triangles.
+// Shows a paraboloid map, one row per hemisphere; the fourth picture is distance. The map must have
+// triangles.
 vplResult vplShowParaboloidMap(const vplParaboloidMap* map, const vplGeometry* geometry, vplImage** imageOut);
 
 #endif

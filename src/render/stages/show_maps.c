@@ -7,7 +7,7 @@
 
 enum { PARTS = 4 };
 
-// What the four pictures show of a texel.
+// The values of a texel that the four pictures show.
 typedef struct Texel {
     vplVec3 position, normal;
     vplRgb albedo, last;
@@ -15,7 +15,7 @@ typedef struct Texel {
 
 // ---- pictures
 
-// Of maps with `size` texels a side, columns * rows of them.
+// Creates a picture for columns * rows maps with `size` texels a side.
 static vplResult createImage(vplContext* context, int size, int columns, int rows, vplImage** imageOut)
 {
     const int most = VPL_MAX_IMAGE_SIZE / PARTS / columns;
@@ -50,7 +50,7 @@ static void putTexel(const vplGeometry* g, const Texel* t, int x, int y, vplImag
     }
 }
 
-// The fourth picture by its largest number.
+// Divides the fourth picture by its largest number.
 static void scaleLast(vplImage* image)
 {
     const size_t width = 3 * (size_t)image->width, first = width / PARTS * (PARTS - 1);
@@ -76,7 +76,7 @@ typedef struct Shown {
     vplImage* image;
 } Shown;
 
-// A row of a face. The cross: +y above, -x +z +x -z in a row, -y below.
+// Shows a row of a face. The cross has +y above, -x +z +x -z in a row, and -y below.
 static void showReflectiveRow(void* data, int row, int worker)
 {
     static const int columns[6] = {2, 0, 1, 1, 1, 3}, rows[6] = {1, 1, 0, 2, 1, 1};
@@ -94,7 +94,7 @@ static void showReflectiveRow(void* data, int row, int worker)
     }
 }
 
-// A row of a hemisphere, from the bottom.
+// Shows a row of a hemisphere, counted from the bottom.
 static void showParaboloidRow(void* data, int row, int worker)
 {
     (void)worker;

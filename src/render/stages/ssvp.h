@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
-// What the stages of SSVP share.
+// Functions that the stages of SSVP share.
 #ifndef VPL_RENDER_STAGES_SSVP_H
 #define VPL_RENDER_STAGES_SSVP_H
 
 #include "render/stages/results.h"
 
-// Shift of the sample patterns: 0, the points as published, for seed 0, the first pass and frames that keep
-// their patterns.
+// The shift of the sample patterns. It is 0, which leaves the points as published, for seed 0 in the first
+// pass of frames that keep their patterns.
 uint64_t vplSsvpShift(const vplRun* run);
 
-// The share of each light's light that stays in the scene, by rays; in arena memory.
-vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, vplArena* arena, float** useOut);
+// Measures by rays which share of each light's light stays in the scene; the shares are scratch memory.
+vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** useOut);
 
-// Whether lights see by the maps of their clusters, whether there is a second bounce, and whether clusters
-// are shown.
+// The first says that lights cast shadows by the maps of their clusters.
 static inline bool vplSsvpSees(const vplPlan* plan)
 {
     return plan->options.lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER;

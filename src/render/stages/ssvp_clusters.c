@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Clusters of SSVP, what they see, and the lights of both bounces as one list.
+// Clusters of SSVP, their paraboloid maps, and the lights of both bounces as one list.
 #include "lights/light_set.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 
-// The frame or pass before counts where it had the same samples.
+// True if the frame or pass before had the same samples, so that its result is a start for this one.
 static bool follows(const vplRun* run, uint64_t shift, uint64_t lastShift)
 {
     return run->plan->options.sequence.coherence == VPL_COHERENCE_ON && shift == lastShift;
@@ -12,12 +12,15 @@ static bool follows(const vplRun* run, uint64_t shift, uint64_t lastShift)
 
 // ---- clusters
 
-// Clusters are for lights whose light stays in the scene: weighted by their use, 8 clusters of Sponza have a
-// FLIP of 0.192 against paths, unweighted 0.248.
-static vplResult findClusters(const vplRun* run, const vplLightSet* lights, vplArena* scratch,
-                              vplBounceClusters* c)
+// Lights are weighted by the share of their light that stays in the scene: 8 clusters of Sponza have a FLIP
+// of 0.192 against paths with these weights, and 0.248 without.
+static vplResult makeClusters(const vplRun* run, const vplBounceLights* bounce, void** resultOut)
 {
     const vplSsvpOptions* o = &run->plan->options.ssvp;
+    vplBounceClusters* c = vplArena_Alloc(run->arena, 1, sizeof *c);
+    TRY(vplArena_Check(run->arena));
+    *c = (vplBounceClusters){NULL, bounce->shift};
+    *resultOut = c;
     const vplBounceClusters* last = run->before;
     float* weights = NULL;
     vplClusterDef def = vplDefaultClusterDef();
@@ -27,24 +30,10 @@ static vplResult findClusters(const vplRun* run, const vplLightSet* lights, vplA
     def.w2 = o->w2;
     def.last = last != NULL && follows(run, c->shift, last->shift) ? last->clusters : NULL;
     if (o->oversampling > 1) {
-        TRY(vplMeasureLightUse(run, lights, scratch, &weights));
+        TRY(vplMeasureLightUse(run, bounce->lights, &weights));
     }
     def.weights = weights;
-    return vplFindClusters(lights, &def, &c->clusters);
-}
-
-static vplResult makeClusters(const vplRun* run, const vplBounceLights* bounce, void** resultOut)
-{
-    vplBounceClusters* c = vplAlloc(run->context, 1, sizeof *c);
-    if (c == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
-    *c = (vplBounceClusters){NULL, bounce->shift, run->context};
-    *resultOut = c;
-    vplArena* scratch = vplArena_Create(run->context);
-    const vplResult result = findClusters(run, bounce->lights, scratch, c);
-    vplArena_Destroy(scratch);
-    return result;
+    return vplFindClusters(bounce->lights, &def, &c->clusters);
 }
 
 vplResult vplMakeClusters(const vplRun* run, void** resultOut)
@@ -60,10 +49,7 @@ vplResult vplMakeSecondClusters(const vplRun* run, void** resultOut)
 void vplDestroyClusters(void* result)
 {
     vplBounceClusters* c = result;
-    if (c != NULL) {
-        vplLightClusters_Destroy(c->clusters);
-        vplFree(c->context, c);
-    }
+    vplLightClusters_Destroy(c->clusters);
 }
 
 // ---- paraboloid maps
@@ -74,11 +60,11 @@ typedef struct Viewing {
     const vplLightSet* lights;
     const vplLightClusters* clusters;
     vplBounceMaps* maps;
-    const vplBounceMaps* last; // NULL: none that counts
+    const vplBounceMaps* last; // NULL: no map of a last frame with the same samples
 } Viewing;
 
-// The light that a cluster sees from: that of the last frame as long as it is one of its lights, so that what
-// is seen does not jump; else the nearest to the mean. -1: none.
+// Finds the light that a cluster sees from. It stays that of the last frame as long as the cluster has this
+// light, so that the view does not jump; else it is the light nearest to the mean. -1: none.
 static int findViewpoint(const Viewing* v, int cluster)
 {
     if (v->run->plan->options.ssvp.place == VPL_CLUSTER_PLACE_MEAN) {
@@ -93,8 +79,8 @@ static int findViewpoint(const Viewing* v, int cluster)
     return v->clusters->clusters[cluster].nearest;
 }
 
-// Always lifted off the surface, also from mid-air: a mean that lies on a wall but for rounding would see the
-// wall as half of space.
+// Viewpoints are always lifted as if they were on a surface, also in mid-air: a mean that lies on a wall but
+// for rounding would see the wall as half of space.
 static vplParaboloidPlace placeOf(const Viewing* v, int i)
 {
     const vplPlan* plan = v->run->plan;
@@ -109,45 +95,31 @@ static vplParaboloidPlace placeOf(const Viewing* v, int i)
                                 .onSurface = true};
 }
 
-static vplResult drawMaps(const Viewing* v, bool triangles, vplArena* scratch)
-{
-    const vplRun* run = v->run;
-    const int count = v->maps->count;
-    vplParaboloidPlace* places = vplArena_Alloc(scratch, (size_t)count, sizeof *places);
-    TRY(vplArena_Check(scratch));
-    for (int i = 0; i < count; i++) {
-        places[i] = placeOf(v, i);
-    }
-    TRY(vplParaboloidMaps_Create(run->context, run->plan->options.ssvp.paraboloidSize, count, triangles,
-                                 &v->maps->maps));
-    return vplParaboloidMaps_Draw(v->maps->maps, run->results[VPL_STAGE_GEOMETRY], places, count,
-                                  vplRun_Progress(run), vplRun_ProgressUser(run));
-}
-
-// With triangles where surfaces are asked for, not only distances.
+// Maps have triangles where later stages need surfaces besides distances.
 static vplResult makeMaps(const vplRun* run, const vplBounceLights* bounce, const vplBounceClusters* c,
                           bool triangles, void** resultOut)
 {
-    vplArena* arena = vplArena_Create(run->context);
     const int count = c->clusters->count;
-    vplBounceMaps* maps = vplArena_AllocZero(arena, 1, sizeof *maps);
-    int* viewpoints = vplArena_Alloc(arena, (size_t)count, sizeof *viewpoints);
     const vplBounceMaps* last = run->before;
-    if (vplArena_Check(arena) != VPL_SUCCESS) {
-        vplArena_Destroy(arena);
-        return VPL_OUT_OF_MEMORY;
-    }
-    *maps = (vplBounceMaps){NULL, viewpoints, count, c->shift, arena};
+    vplBounceMaps* maps = vplArena_Alloc(run->arena, 1, sizeof *maps);
+    int* viewpoints = vplArena_Alloc(run->arena, (size_t)count, sizeof *viewpoints);
+    vplParaboloidPlace* places = vplArena_Alloc(run->scratch, (size_t)count, sizeof *places);
+    TRY(vplArena_Check(run->arena));
+    TRY(vplArena_Check(run->scratch));
+    *maps = (vplBounceMaps){NULL, viewpoints, count, c->shift};
     *resultOut = maps;
-    vplArena* scratch = vplArena_Create(run->context);
     const Viewing v = {.run = run,
                        .lights = bounce->lights,
                        .clusters = c->clusters,
                        .maps = maps,
                        .last = last != NULL && follows(run, c->shift, last->shift) ? last : NULL};
-    const vplResult result = drawMaps(&v, triangles, scratch);
-    vplArena_Destroy(scratch);
-    return result;
+    for (int i = 0; i < count; i++) {
+        places[i] = placeOf(&v, i);
+    }
+    TRY(vplParaboloidMaps_Create(run->context, run->plan->options.ssvp.paraboloidSize, count, triangles,
+                                 &maps->maps));
+    return vplParaboloidMaps_Draw(maps->maps, run->results[VPL_STAGE_GEOMETRY], places, count, run->progress,
+                                  run->runner);
 }
 
 vplResult vplMakeParaboloids(const vplRun* run, void** resultOut)
@@ -165,10 +137,7 @@ vplResult vplMakeSecondParaboloids(const vplRun* run, void** resultOut)
 void vplDestroyParaboloids(void* result)
 {
     vplBounceMaps* maps = result;
-    if (maps != NULL) {
-        vplParaboloidMaps_Destroy(maps->maps);
-        vplArena_Destroy(maps->arena);
-    }
+    vplParaboloidMaps_Destroy(maps->maps);
 }
 
 // ---- both bounces as one list
@@ -180,9 +149,9 @@ static vplResult listShadows(const vplRun* run, vplClusteredLights* l)
     const vplBounceMaps* maps[2] = {run->results[VPL_STAGE_PARABOLOIDS],
                                     run->results[VPL_STAGE_SECOND_PARABOLOIDS]};
     const int shadows = maps[0]->count + (maps[1] != NULL ? maps[1]->count : 0);
-    l->clusterOf = vplArena_Alloc(l->arena, (size_t)l->set->lightCount, sizeof *l->clusterOf);
-    l->shadows = vplArena_Alloc(l->arena, (size_t)shadows, sizeof *l->shadows);
-    TRY(vplArena_Check(l->arena));
+    l->clusterOf = vplArena_Alloc(run->arena, (size_t)l->set->lightCount, sizeof *l->clusterOf);
+    l->shadows = vplArena_Alloc(run->arena, (size_t)shadows, sizeof *l->shadows);
+    TRY(vplArena_Check(run->arena));
     for (int k = 0, at = 0; k < 2 && maps[k] != NULL; k++) {
         const int first = l->shadowCount;
         for (int i = 0; i < clusters[k]->clusters->lightCount; i++) {
@@ -200,13 +169,8 @@ vplResult vplMakeClusteredLights(const vplRun* run, void** resultOut)
     const vplBounceLights* bounce[2] = {run->results[VPL_STAGE_FIRST_BOUNCE],
                                         run->results[VPL_STAGE_SECOND_BOUNCE]};
     const vplLightSet none = {.context = run->context, .particleCount = 1};
-    vplArena* arena = vplArena_Create(run->context);
-    vplClusteredLights* l = vplArena_AllocZero(arena, 1, sizeof *l);
-    if (vplArena_Check(arena) != VPL_SUCCESS) {
-        vplArena_Destroy(arena);
-        return VPL_OUT_OF_MEMORY;
-    }
-    l->arena = arena;
+    vplClusteredLights* l = vplArena_AllocZero(run->arena, 1, sizeof *l);
+    TRY(vplArena_Check(run->arena));
     *resultOut = l;
     TRY(vplLightSet_Join(bounce[0]->lights, bounce[1] != NULL ? bounce[1]->lights : &none, &l->set));
     return vplSsvpSees(run->plan) ? listShadows(run, l) : VPL_SUCCESS;
@@ -215,10 +179,7 @@ vplResult vplMakeClusteredLights(const vplRun* run, void** resultOut)
 void vplDestroyClusteredLights(void* result)
 {
     vplClusteredLights* l = result;
-    if (l != NULL) {
-        vplLightSet_Destroy(l->set);
-        vplArena_Destroy(l->arena);
-    }
+    vplLightSet_Destroy(l->set);
 }
 
 void vplReportClusteredLights(const vplRun* run)

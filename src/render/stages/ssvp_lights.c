@@ -26,25 +26,25 @@ uint64_t vplSsvpShift(const vplRun* run)
     return ((uint64_t)r.v[0] << 32 | r.v[1]) | 1;
 }
 
-// ---- of what use lights are
+// ---- the use of lights: the share of their light that stays in the scene
 
-// Rays per light: weights change by sixteenths.
+// Rays per light. Weights are multiples of a sixteenth.
 enum { USE_RAYS = 16 };
 
-vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, vplArena* arena, float** useOut)
+vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** useOut)
 {
-    *useOut = vplArena_Alloc(arena, (size_t)set->lightCount, sizeof **useOut);
-    TRY(vplArena_Check(arena));
+    *useOut = vplArena_Alloc(run->scratch, (size_t)set->lightCount, sizeof **useOut);
+    TRY(vplArena_Check(run->scratch));
     TRY(vplMeasureUse(run->results[VPL_STAGE_GEOMETRY], set, USE_RAYS, *useOut));
     run->stats->rays += USE_RAYS * (int64_t)set->lightCount;
     return VPL_SUCCESS;
 }
 
 // The use of a light that moves a little changes by a ray or two of sixteen. If weights followed at once, the
-// picture would flicker: they follow within some frames.
+// picture would flicker. So they follow by a tenth of the change per frame.
 static const float FOLLOW = 0.1f;
 
-// Samples of the frame or pass before, if they are the same.
+// The samples of the last frame or pass, if they had the same pattern; else NULL.
 static const vplBounceLights* lastOf(const vplRun* run, uint64_t shift)
 {
     const vplBounceLights* last = run->before;
@@ -53,13 +53,14 @@ static const vplBounceLights* lastOf(const vplRun* run, uint64_t shift)
 }
 
 // Moves the use of each sample from its last value towards the measured one, and keeps it for the next frame.
-static vplResult followUse(const vplBounceLights* last, const vplLightSet* set, int count, float* use,
+static vplResult followUse(const vplRun* run, const vplLightSet* set, int count, float* use,
                            vplBounceLights* b)
 {
+    const vplBounceLights* last = lastOf(run, b->shift);
     const bool follows = last != NULL && last->use != NULL && last->sampleCount == count;
     b->sampleCount = count;
-    b->use = vplArena_Alloc(b->arena, (size_t)count, sizeof *b->use);
-    TRY(vplArena_Check(b->arena));
+    b->use = vplArena_Alloc(run->arena, (size_t)count, sizeof *b->use);
+    TRY(vplArena_Check(run->arena));
     for (int i = 0; i < count; i++) {
         b->use[i] = follows ? last->use[i] : -1;
     }
@@ -73,7 +74,7 @@ static vplResult followUse(const vplBounceLights* last, const vplLightSet* set, 
 
 // ---- the first bounce
 
-// How many of the first-bounce lights come from area lights: their share of the power.
+// Gives area lights the share of the first-bounce lights that they have of the power.
 static vplResult countAreaLightSamples(const vplRun* run, int* countOut)
 {
     vplEmission* emission;
@@ -99,7 +100,7 @@ static vplResult shootFromAreaLights(const vplRun* run, int count, uint64_t shif
     return vplSimulateParticles(run->results[VPL_STAGE_GEOMETRY], NULL, 0, &def, setOut);
 }
 
-// As the document takes them.
+// Samples the reflective maps as the document does.
 static vplResult sampleAll(const vplRun* run, int count, uint64_t shift, vplLightSet** setOut)
 {
     const vplReflectiveMaps* maps = run->results[VPL_STAGE_REFLECTIVE_MAPS];
@@ -110,9 +111,8 @@ static vplResult sampleAll(const vplRun* run, int count, uint64_t shift, vplLigh
                                    (const vplReflectiveMap* const*)maps->maps, maps->count, &def, setOut);
 }
 
-// How many times as many samples as lights are taken: a power of two, and that of the last frame as long as
-// it leaves half to five quarters of the lights, since samples must not all move with every move of the
-// light.
+// Finds how many times more samples than lights to take: a power of two. The factor of the last frame stays
+// as long as it leaves 0.4 to 1.25 times the wanted lights, because a change of the factor moves all samples.
 static int oversample(const vplBounceLights* last, int most, int count, double kept)
 {
     const int before = last != NULL && count > 0 ? last->sampleCount / count : 0;
@@ -128,26 +128,26 @@ static int oversample(const vplBounceLights* last, int most, int count, double k
     return factor;
 }
 
-// So many samples, and of what use each is. The set is the caller's also on failure.
-static vplResult sampleAndMeasure(const vplRun* run, int count, vplBounceLights* b, vplArena* scratch,
-                                  vplLightSet** setOut, float** useOut)
+// Takes `count` samples and measures the use of each. The set is the caller's also on failure.
+static vplResult sampleAndMeasure(const vplRun* run, int count, vplBounceLights* b, vplLightSet** setOut,
+                                  float** useOut)
 {
     vplLightSet_Destroy(*setOut);
     *setOut = NULL;
     TRY(sampleAll(run, count, b->shift, setOut));
-    TRY(vplMeasureLightUse(run, *setOut, scratch, useOut));
-    return followUse(lastOf(run, b->shift), *setOut, count, *useOut, b);
+    TRY(vplMeasureLightUse(run, *setOut, useOut));
+    return followUse(run, *setOut, count, *useOut, b);
 }
 
-static vplResult keepUseful(const vplRun* run, int count, vplBounceLights* b, vplArena* scratch,
-                            vplLightSet** all, vplLightSet** setOut)
+static vplResult keepUseful(const vplRun* run, int count, vplBounceLights* b, vplLightSet** all,
+                            vplLightSet** setOut)
 {
     float* use;
-    TRY(sampleAndMeasure(run, count, b, scratch, all, &use));
+    TRY(sampleAndMeasure(run, count, b, all, &use));
     const int factor = oversample(lastOf(run, b->shift), run->plan->options.ssvp.oversampling, count,
                                   vplCountUseful(*all, use));
     if (factor > 1) {
-        TRY(sampleAndMeasure(run, factor * count, b, scratch, all, &use));
+        TRY(sampleAndMeasure(run, factor * count, b, all, &use));
     }
     return vplKeepUseful(*all, use, b->shift, setOut);
 }
@@ -157,11 +157,9 @@ static vplResult sampleMaps(const vplRun* run, int count, vplBounceLights* b, vp
     if (run->plan->options.ssvp.oversampling <= 1) {
         return sampleAll(run, count, b->shift, setOut);
     }
-    vplArena* scratch = vplArena_Create(run->context);
     vplLightSet* all = NULL;
-    const vplResult result = keepUseful(run, count, b, scratch, &all, setOut);
+    const vplResult result = keepUseful(run, count, b, &all, setOut);
     vplLightSet_Destroy(all);
-    vplArena_Destroy(scratch);
     return result;
 }
 
@@ -186,13 +184,11 @@ static vplResult sampleFirst(const vplRun* run, vplBounceLights* b)
 
 static vplResult beginBounce(const vplRun* run, void** resultOut)
 {
-    vplArena* arena = vplArena_Create(run->context);
-    vplBounceLights* b = vplArena_AllocZero(arena, 1, sizeof *b);
-    if (b != NULL) {
-        b->arena = arena;
-        b->shift = vplSsvpShift(run);
-    }
-    return vplArena_Deliver(arena, vplArena_Check(arena), b, resultOut);
+    vplBounceLights* b = vplArena_AllocZero(run->arena, 1, sizeof *b);
+    TRY(vplArena_Check(run->arena));
+    b->shift = vplSsvpShift(run);
+    *resultOut = b;
+    return VPL_SUCCESS;
 }
 
 vplResult vplMakeFirstBounce(const vplRun* run, void** resultOut)
@@ -220,8 +216,5 @@ vplResult vplMakeSecondBounce(const vplRun* run, void** resultOut)
 void vplDestroyBounce(void* result)
 {
     vplBounceLights* b = result;
-    if (b != NULL) {
-        vplLightSet_Destroy(b->lights);
-        vplArena_Destroy(b->arena);
-    }
+    vplLightSet_Destroy(b->lights);
 }

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-// Lights of step 0 that lie on surfaces: Keller's, which stand for their emission.
+// Counts the lights of step 0 that lie on surfaces. They are Keller's, and stand for emission.
 static int countEmitterLights(const vplLightSet* set)
 {
     int count = 0;
@@ -15,10 +15,10 @@ static int countEmitterLights(const vplLightSet* set)
     return count;
 }
 
-// A light stands for its share of all surfaces; nearer than the radius of that share it is no point. Half as
-// much leaves 5 to 35 % more rmse, and twice as much takes a few per cent of the light away (room, room-area,
-// cornell-area; 32 to 2048 particles). Where rays find the light that is taken away, the clamp need not fall
-// with the number of lights, and then the square of the error falls like 1/N.
+// A light stands for its share of all surfaces; nearer than the radius of that share it is no point. Half the
+// distance leaves 5 to 35 % more rmse, and twice as much takes a few per cent of the light away (room,
+// room-area, cornell-area; 32 to 2048 particles). Where rays find the light that is taken away, the clamp
+// need not fall with the number of lights, and then the square of the error falls like 1/N.
 float vplClampDistance(const vplRun* run, double lights)
 {
     const vplPlan* plan = run->plan;
@@ -30,8 +30,8 @@ float vplClampDistance(const vplRun* run, double lights)
     return (float)(lights > 0 && plan->compensates ? fmax(share, (double)plan->nearDistance) : share);
 }
 
-// The lights of the set that are shown: all, or one, or all but those on the emitters. These must be kept
-// where rays meet what they light.
+// Chooses the lights of the set that are shown: all, one, or all but those on the emitters. With
+// compensation, lights on the emitters stay, because they light the hits of short rays.
 static vplResult choose(const vplRun* run, vplVirtualLights* v, vplLightSet* shown)
 {
     const vplRenderOptions* o = &run->plan->options;
@@ -60,20 +60,16 @@ static vplResult choose(const vplRun* run, vplVirtualLights* v, vplLightSet* sho
     return VPL_SUCCESS;
 }
 
-// Lights of one cluster follow each other, in the order that they had. `first` is the set's index of the
-// first light.
+// Sorts lights by cluster and keeps the order within each. `first` is the set's index of the first light.
 static vplResult sortByCluster(const vplRun* run, const vplClusteredLights* clustered, int first,
                                vplVirtualLights* v)
 {
     const size_t count = (size_t)v->count;
-    vplArena* scratch = vplArena_Create(run->context);
-    int* starts = vplArena_AllocZero(scratch, (size_t)clustered->shadowCount + 1, sizeof *starts);
-    vplShadeLight* sorted = vplArena_Alloc(v->arena, count, sizeof *sorted);
-    v->clusters = vplArena_Alloc(v->arena, count, sizeof *v->clusters);
-    if (vplArena_Check(scratch) != VPL_SUCCESS || vplArena_Check(v->arena) != VPL_SUCCESS) {
-        vplArena_Destroy(scratch);
-        return VPL_OUT_OF_MEMORY;
-    }
+    int* starts = vplArena_AllocZero(run->scratch, (size_t)clustered->shadowCount + 1, sizeof *starts);
+    vplShadeLight* sorted = vplArena_Alloc(run->arena, count, sizeof *sorted);
+    v->clusters = vplArena_Alloc(run->arena, count, sizeof *v->clusters);
+    TRY(vplArena_Check(run->scratch));
+    TRY(vplArena_Check(run->arena));
     const int* of = clustered->clusterOf + first;
     for (size_t i = 0; i < count; i++) {
         starts[of[i] + 1]++;
@@ -87,40 +83,24 @@ static vplResult sortByCluster(const vplRun* run, const vplClusteredLights* clus
         v->clusters[at] = of[i];
     }
     v->lights = sorted;
-    vplArena_Destroy(scratch);
     return VPL_SUCCESS;
-}
-
-static vplResult prepare(const vplRun* run, const vplClusteredLights* clustered, vplVirtualLights* v)
-{
-    vplLightSet shown;
-    TRY(choose(run, v, &shown));
-    v->lights = vplArena_Alloc(v->arena, (size_t)shown.lightCount, sizeof *v->lights);
-    TRY(vplArena_Check(v->arena));
-    v->count = vplPrepareLights(&shown, run->plan->shading, v->lights);
-    v->minDistance = vplClampDistance(run, v->set->lightCount);
-    const bool clusters = clustered != NULL && clustered->clusterOf != NULL;
-    return clusters ? sortByCluster(run, clustered, (int)(shown.lights - v->set->lights), v) : VPL_SUCCESS;
 }
 
 vplResult vplMakeVirtualLights(const vplRun* run, void** resultOut)
 {
     const vplClusteredLights* clustered = run->results[VPL_STAGE_CLUSTERED_LIGHTS];
-    vplArena* arena = vplArena_Create(run->context);
-    vplVirtualLights* v = vplArena_AllocZero(arena, 1, sizeof *v);
-    vplResult result = vplArena_Check(arena);
-    if (result == VPL_SUCCESS) {
-        v->arena = arena;
-        v->set = clustered != NULL ? clustered->set : run->results[VPL_STAGE_PARTICLES];
-        result = prepare(run, clustered, v);
-    }
-    return vplArena_Deliver(arena, result, v, resultOut);
-}
-
-void vplDestroyVirtualLights(void* result)
-{
-    vplVirtualLights* v = result;
-    vplArena_Destroy(v != NULL ? v->arena : NULL);
+    vplVirtualLights* v = vplArena_AllocZero(run->arena, 1, sizeof *v);
+    vplLightSet shown;
+    TRY(vplArena_Check(run->arena));
+    *resultOut = v;
+    v->set = clustered != NULL ? clustered->set : run->results[VPL_STAGE_PARTICLES];
+    TRY(choose(run, v, &shown));
+    v->lights = vplArena_Alloc(run->arena, (size_t)shown.lightCount, sizeof *v->lights);
+    TRY(vplArena_Check(run->arena));
+    v->count = vplPrepareLights(&shown, run->plan->shading, v->lights);
+    v->minDistance = vplClampDistance(run, v->set->lightCount);
+    const bool clusters = clustered != NULL && clustered->clusterOf != NULL;
+    return clusters ? sortByCluster(run, clustered, (int)(shown.lights - v->set->lights), v) : VPL_SUCCESS;
 }
 
 void vplReportVirtualLights(const vplRun* run)
