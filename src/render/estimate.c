@@ -88,7 +88,7 @@ static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
     double scratch = pipelineScratch(s) + RASTER_VIEW * s->triangles;
-    scratch += o->output.antialias > 1 ? 24 * s->pixels : 0;
+    scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
         const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
         const double most = o->lights.mapMemory * 1048576.0;
@@ -158,13 +158,13 @@ static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
 static void countDraws(const Scale* s, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
-    const int64_t objects = (int64_t)s->objects, antialias = o->output.antialias;
+    const int64_t objects = (int64_t)s->objects, supersample = o->output.supersample;
     if (o->method == VPL_METHOD_PATH) {
         p->paths = (int64_t)s->pixels * o->path.samples;
         return;
     }
     if (o->method == VPL_METHOD_SSVP) {
-        p->drawCalls = objects * ((int64_t)rsmFaces(p) + antialias);
+        p->drawCalls = objects * ((int64_t)rsmFaces(p) + supersample);
         return;
     }
     const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
@@ -172,7 +172,7 @@ static void countDraws(const Scale* s, vplPlan* p)
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
-    p->drawCalls = objects * (6 * maps + (1 + passes) * antialias) + patchDraws * antialias;
+    p->drawCalls = objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample;
 }
 
 enum {

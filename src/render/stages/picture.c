@@ -49,7 +49,7 @@ static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i,
 
 static vplResult shadeSamples(const vplRun* run, const vplShadeDef* def, double* sums, vplImage* image)
 {
-    const int count = run->plan->options.output.antialias;
+    const int count = run->plan->options.output.supersample;
     const size_t values = vplValueCount(image);
     if (count == 1) {
         return shadeSample(run, def, 0, 1, image);
@@ -111,6 +111,7 @@ static vplShadeDef describe(const vplRun* run)
                          .batch = o->pipeline.batch,
                          .interleave = o->pipeline.interleave,
                          .cutError = o->pipeline.cutError,
+                         .samples = o->output.show == VPL_SHOW_PICTURE ? o->output.antialias : 0,
                          .minDistance = v != NULL ? v->minDistance : 0,
                          .particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles.count,
                          .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL};
@@ -195,7 +196,7 @@ static vplResult shadePicture(const vplRun* run, Shading* s, vplImage* image)
     const vplPlan* plan = run->plan;
     const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
     const vplEmitterMaps* maps = run->results[VPL_STAGE_EMITTER_MAPS];
-    const bool many = plan->options.output.antialias > 1;
+    const bool many = plan->options.output.supersample > 1;
     const int lights = v != NULL && (run->parts & VPL_PART_INDIRECT) != 0 ? v->count - v->first : 0;
     s->shadows = maps != NULL
                      ? maps->shadows
