@@ -7,6 +7,8 @@
 #include "scene/scene.h"
 #include "visibility/paraboloid_map.h"
 
+#include <math.h>
+
 typedef struct Scale {
     const vplPlan* plan;
     double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
@@ -84,10 +86,23 @@ static double pipelineScratch(const Scale* s)
     }
 }
 
+// Samples of a tile per worker; for the filter of interleaved shading a share and half an edge per pixel; and one more
+// picture of patches.
+static double sampleScratch(const Scale* s)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
+    const double tile = (o->output.antialias + 1) * 16384.0 + 1024;
+    const double tiles = ceil(o->output.width / 64.0) * ceil(o->output.height / 64.0);
+    return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + 32768 * tiles : 0) +
+                                         (s->plan->showsPatches ? 12 * s->pixels : 0)
+                                   : 0;
+}
+
 static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    double scratch = pipelineScratch(s) + RASTER_VIEW * s->triangles;
+    double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
         const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;

@@ -180,6 +180,10 @@ static bool needsVertexLight(const vplPlan* p, char* why)
 static bool needsPicture(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
+    if (o->antialias > 1) {
+        return because(why, true, "%dx%d pixels; at edges the mean of %d samples", o->width, o->height,
+                       o->antialias);
+    }
     return because(why, true, "%dx%d pixels, %d sample%s each", o->width, o->height, o->supersample,
                    o->supersample > 1 ? "s" : "");
 }

@@ -45,7 +45,8 @@ static inline vplVec3 vplSightOf(const vplView* v, int x, int y, vplSubPixel at)
 }
 
 // Where a line of sight meets a triangle's plane: distance along the view axis, in the range of the corners'.
-static inline float vplEdgeDistance(const vplShading* s, int triangle, const vplCachedFacet* facet, vplVec3 sight)
+static inline float vplEdgeDistance(const vplShading* s, int triangle, const vplCachedFacet* facet,
+                                    vplVec3 sight)
 {
     const vplTriangleCorners t = vplGeometry_Corners(s->geometry, triangle);
     float least = INFINITY, most = 0;
@@ -58,14 +59,14 @@ static inline float vplEdgeDistance(const vplShading* s, int triangle, const vpl
     return vplMinf(vplMaxf(w, vplMaxf(least, (float)s->view->near)), most); // NaN becomes the least
 }
 
-static inline bool vplIsOneSurface(const vplShading* s, const vplCachedFacet* a, const vplCachedFacet* b, float distance,
-                                   vplVec3 sight)
+static inline bool vplIsOneSurface(const vplShading* s, const vplCachedFacet* a, const vplCachedFacet* b,
+                                   float distance, vplVec3 sight)
 {
     const float width = 2 / (float)(s->view->height * s->view->scaleY) * distance;
     const float apart = distance * vplDot(a->normal, sight) - a->offset;
     const float least = a->smooth && b->smooth ? EDGE_SMOOTH_COSINE : EDGE_COSINE;
-    return memcmp(&a->reflector, &b->reflector, sizeof a->reflector) == 0 && vplDot(a->normal, b->normal) >= least &&
-           fabsf(apart) <= EDGE_PIXELS * width;
+    return memcmp(&a->reflector, &b->reflector, sizeof a->reflector) == 0 &&
+           vplDot(a->normal, b->normal) >= least && fabsf(apart) <= EDGE_PIXELS * width;
 }
 
 // The sample of a set that is nearest to the mean of them.
@@ -89,8 +90,8 @@ static inline int vplMiddleSample(uint32_t samples, int count)
 }
 
 // Sorts the samples of a pixel (x, y) of the picture by surfaces; `centre` is the triangle in its centre, -1: none.
-static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int element, int x, int y, int centre,
-                                vplFacetCache* cache, vplEdgePixel* out)
+static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int element, int x, int y,
+                                int centre, vplFacetCache* cache, vplEdgePixel* out)
 {
     vplCoverage found[VPL_MAX_SAMPLES_PER_PIXEL];
     vplCachedFacet facets[VPL_MAX_SAMPLES_PER_PIXEL + 1]; // the last one is the centre's
@@ -135,14 +136,15 @@ static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int el
 // ---- their light
 
 // Puts a surface of pixel (x, y) into a free lane.
-static inline void vplPushEdge(const vplShading* s, const vplEdgeSurface* surface, int x, int y, vplFacetCache* cache,
-                               vplEdgeBlock* e)
+static inline void vplPushEdge(const vplShading* s, const vplEdgeSurface* surface, int x, int y,
+                               vplFacetCache* cache, vplEdgeBlock* e)
 {
     const vplGeometry* g = s->geometry;
     const vplCachedFacet* facet = vplFacetCache_Get(s, surface->triangle, cache);
     const vplVec3 sight = vplSightOf(s->view, x, y, vplSubPixel_OfSample(surface->sample, s->def->samples));
     const float distance = vplEdgeDistance(s, surface->triangle, facet, sight);
-    const vplVec3 p = vplGeometry_Inside(g, surface->triangle, vplAdd(s->view->eye, vplScale(distance, sight)));
+    const vplVec3 p =
+        vplGeometry_Inside(g, surface->triangle, vplAdd(s->view->eye, vplScale(distance, sight)));
     vplVec3 n = facet->normal;
     if (facet->smooth) {
         const vplTriangleCorners t = vplGeometry_Corners(g, surface->triangle);
@@ -193,8 +195,8 @@ static inline void vplFillEdges(vplEdgeBlock* e)
 }
 
 // Lights the surfaces that wait and adds them to their pixels.
-static inline void vplFlushEdges(const vplShading* s, vplLightEdgesFcn* light, void* user, vplFacetCache* cache,
-                                 vplEdgeBlock* e, int64_t* rays)
+static inline void vplFlushEdges(const vplShading* s, vplLightEdgesFcn* light, void* user,
+                                 vplFacetCache* cache, vplEdgeBlock* e, int64_t* rays)
 {
     if (e->count == 0) {
         return;
@@ -213,8 +215,8 @@ static inline void vplFlushEdges(const vplShading* s, vplLightEdgesFcn* light, v
 }
 
 // Adds compensation of all lanes, if the render has one.
-static inline void vplCompensateEdges(const vplShading* s, const vplEdgeBlock* e, float irradiance[3][VPL_LANES],
-                                      int64_t* rays)
+static inline void vplCompensateEdges(const vplShading* s, const vplEdgeBlock* e,
+                                      float irradiance[3][VPL_LANES], int64_t* rays)
 {
     uint32_t pixels[VPL_LANES] = {0};
     if (s->compensation != NULL) {
@@ -254,11 +256,12 @@ static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int 
 // Visits the pixels of a finished tile at edges: called with their surfaces.
 typedef void vplEdgePixelFcn(const vplShading* s, void* user, int x, int y, const vplEdgePixel* pixel);
 
-static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache, vplEdgePixelFcn* visit,
-                                 void* user)
+static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+                                 vplEdgePixelFcn* visit, void* user)
 {
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
-        const int x0 = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, y0 = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
+        const int x0 = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
+                  y0 = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
         if (x0 >= tile->width || y0 >= tile->height) {
             continue;
         }
@@ -268,7 +271,8 @@ static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFa
             const int l = __builtin_ctz(lanes), x = x0 + l % VPL_BLOCK_SIDE, y = y0 + l / VPL_BLOCK_SIDE;
             if (x < tile->width && y < tile->height) {
                 vplEdgePixel pixel;
-                vplFindEdges(s, tile, block * VPL_LANES + l, tile->x + x, tile->y + y, centre[l], cache, &pixel);
+                vplFindEdges(s, tile, block * VPL_LANES + l, tile->x + x, tile->y + y, centre[l], cache,
+                             &pixel);
                 visit(s, user, tile->x + x, tile->y + y, &pixel);
             }
         }
@@ -301,8 +305,8 @@ static inline void vplShadeEdgePixel(const vplShading* s, void* user, int x, int
 }
 
 // Smooths the edges in a tile whose pixels are written. `light` adds all light to a block.
-static inline void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache, vplLightEdgesFcn* light,
-                                 void* user)
+static inline void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+                                 vplLightEdgesFcn* light, void* user)
 {
     vplTileSums* tileSums = tile->scratch;
     vplEdgeBlock waiting;

@@ -29,14 +29,15 @@ static inline bool isInPart(const Part* part, const vplKeptEdge* e)
 }
 
 // The mean indirect irradiance around an edge. Returns false where no pixel shows its surface.
-static inline bool meanAroundEdge(const vplShading* s, vplFilterScratch* scratch, const Part* part, const vplKeptEdge* e,
-                                  float mean[3])
+static inline bool meanAroundEdge(const vplShading* s, vplFilterScratch* scratch, const Part* part,
+                                  const vplKeptEdge* e, float mean[3])
 {
     const vplInterleave* w = s->state;
     const vplView* v = s->view;
     const int side = w->side, x = e->x - part->x, y = e->y - part->y;
     const vplCachedFacet facet = *vplFacetCache_Get(s, e->surface.triangle, &scratch->facets);
-    const vplVec3 n = facet.normal, sight = vplSightOf(v, e->x, e->y, vplSubPixel_OfSample(e->surface.sample, s->def->samples));
+    const vplVec3 n = facet.normal,
+                  sight = vplSightOf(v, e->x, e->y, vplSubPixel_OfSample(e->surface.sample, s->def->samples));
     const float slack = MAX_DISTANCE * vplEdgeDistance(s, e->surface.triangle, &facet, sight);
     const float forward = vplDot(n, v->forward), up = vplDot(n, v->up), right = vplDot(n, v->right);
     float sum[3] = {0, 0, 0}, weights = 0;
@@ -48,7 +49,8 @@ static inline bool meanAroundEdge(const vplShading* s, vplFilterScratch* scratch
                                  n.z * scratch->normal[2][row][at];
             const float ahead = forward + scratch->up[row] * up + scratch->right[at] * right;
             const float above = fabsf(scratch->distance[row][at] * ahead - facet.offset);
-            const float weight = cosine >= MIN_NORMALS && above <= slack ? weightOf(side, i) * weightOf(side, k) : 0;
+            const float weight =
+                cosine >= MIN_NORMALS && above <= slack ? weightOf(side, i) * weightOf(side, k) : 0;
             weights += weight;
             for (int c = 0; c < 3; c++) {
                 sum[c] += weight * scratch->indirect[c][row][at];
@@ -71,7 +73,8 @@ static inline void lightLoneEdges(const vplShading* s, void* user, vplEdgeBlock*
     vplAddAllLights(s, &e->block, rays);
 }
 
-static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, const Part* part, KeptEdges kept)
+static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, const Part* part,
+                               KeptEdges kept)
 {
     vplEdgeBlock lone;
     int64_t rays = 0;
