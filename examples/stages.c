@@ -80,7 +80,8 @@ static void lightFloor(const vplContext* context, const vplShadeLight* lights, i
         surface.nx[l] = surface.nz[l] = 0;
         surface.ny[l] = 1;
     }
-    vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0.2f, &surface, lights, lightCount, irradiance);
+    vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0.2f}, &surface, lights, lightCount,
+                        irradiance);
     printf("irradiance along the front of the floor: %g ... %g W/m^2\n", (double)irradiance[0][0],
            (double)irradiance[0][VPL_LANES - 1]);
 }
@@ -93,7 +94,7 @@ static void shadePicture(const vplGeometry* geometry, const vplCameraDef* camera
     vplImage* image;
     vplShadeStats stats;
     check(vplImage_Create(geometry->context, 320, 240, &image), "image");
-    check(vplShadeView(geometry, &view, def, NULL, NULL, image, &stats), "shading");
+    check(vplShadeView(geometry, &view, def, image, &stats), "shading");
     printf("%lld draw calls, %lld fragments\n", (long long)stats.raster.drawCalls,
            (long long)stats.raster.fragments);
     check(vplToneMap_Reinhard(image, NULL), "tone map");

@@ -60,7 +60,7 @@ void assertSame(const vplLightClusters* a, const vplLightClusters* b)
     assert_memory_equal(a->of, b->of, (size_t)a->lightCount * sizeof *a->of);
     for (int j = 0; j < a->count; j++) {
         const vplLightCluster *x = &a->clusters[j], *y = &b->clusters[j];
-        assert_memory_equal(x, y, offsetof(vplLightCluster, lightCount)); // floats
+        assert_memory_equal(x, y, offsetof(vplLightCluster, lightCount)); // compares the floats
         assert_true(x->lightCount == y->lightCount && x->nearest == y->nearest && x->flat == y->flat);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lights by hand for tests of clusters, and the clusters of them.
+// Makes lights by hand for tests of clusters, and clusters them.
 #ifndef VPL_TESTS_CLUSTER_LIGHTS_H
 #define VPL_TESTS_CLUSTER_LIGHTS_H
 
@@ -23,11 +23,10 @@ vplLightClusters* find(const vplLightSet* set, const vplClusterDef* def);
 
 vplClusterMetric metricOf(const char* name);
 
-// Lights on the walls of a box of about 4 x 3 x 5 metres.
+// Places lights on the walls of a box of about 4 x 3 x 5 metres.
 void fillRoom(Lights* l, uint64_t room);
 
-// kmeans_cycles.csv, whose rooms are not given: 10, 0 and 0 of 300 (X107). The metric without clamping is not
-// in it.
+// Asserts that two clusterings are equal to the bit.
 void assertSame(const vplLightClusters* a, const vplLightClusters* b);
 
 #endif

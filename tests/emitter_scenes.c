@@ -89,7 +89,7 @@ vplRenderOptions zooOptions(int shadows)
     vplRenderOptions o = vplDefaultRenderOptions();
     o.output.width = 35;
     o.output.height = 25;
-    o.particles.count = 36; // about 70 lights, more than a group of them
+    o.particles.count = 36; // makes about 70 lights, more than one group
     o.lights.areaLightSamples = 9;
     o.shadow.mapSize = 32;
     o.lights.mapSize = 8;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles for tests of form factors: from tables, and at random.
+// Triangles for tests of form factors, from tables and at random.
 #ifndef VPL_TESTS_FACTOR_CASES_H
 #define VPL_TESTS_FACTOR_CASES_H
 
@@ -9,14 +9,16 @@ vplVec3 cornerOf(const Table* t, int row, const char* letter, int i);
 
 void swapCorners(vplVec3 t[3]);
 
-// The tables do not say which side is the front: that which sees something.
+// Returns the form factor of the winding of b that a sees: the tables do not say which side is the front.
+// Reverses b if needed.
 double factorOfEitherSide(const vplVec3 a[3], vplVec3 b[3]);
 
 void assertRelative(double value, double wanted, double tolerance, const char* what, int row);
 
 vplVec3 rollPoint(uint64_t seed, uint64_t index, float size, vplVec3 at);
 
-// Up to 8 apart, up to a hundred times as large, and cutting each other's planes as often as not.
+// Makes two random triangles, up to 8 apart, whose sizes differ by up to a factor of ten; b is wound so that
+// a sees it. About half of the pairs cross each other's planes.
 void rollPair(uint64_t seed, vplVec3 a[3], vplVec3 b[3]);
 
 double areaOf(const vplVec3 t[3]);

@@ -75,7 +75,7 @@ static void discard(Attempt* a)
     }
 }
 
-// One run. Returns whether an allocation failed; if none did the scenario must succeed.
+// Runs a scenario once. Returns whether an allocation failed; if none did, the scenario must succeed.
 static bool failOne(const char* name, Scenario* scenario, const char* path, int variant, long n,
                     bool stayEmpty)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Running out of memory: the n-th allocation fails, for every n, and each time the answer is
-// VPL_OUT_OF_MEMORY, one sentence is logged, nothing leaks and no file is left. New memory is filled with
-// junk, so success cannot depend on it.
+// Tests of out-of-memory behaviour: the n-th allocation fails, for every n, and each time the call returns
+// VPL_OUT_OF_MEMORY, logs one sentence, leaks nothing and leaves no file. New memory is filled with junk, so
+// that no code can rely on zeroed memory.
 #ifndef VPL_TESTS_FAILING_H
 #define VPL_TESTS_FAILING_H
 
@@ -9,7 +9,7 @@
 
 #include "base/arena.h" // TRY
 
-// One run of a scenario. It stores what it makes here, and the fixture destroys it.
+// One run of a scenario. The scenario stores here what it makes, and the fixture destroys it.
 typedef struct Attempt {
     vplContext* context;
     const char* path; // the file to write, if the scenario writes one
@@ -21,7 +21,7 @@ typedef struct Attempt {
     vplLightClusters *clusters, *nextClusters;
     vplHistory* history;
     vplPatches *patches, *finer;
-    vplPatchSides *sides, *handMade; // by the library, and by openSides
+    vplPatchSides *sides, *handMade; // `sides` by the library, `handMade` by openSides
     vplPatchMesh* mesh;
     vplFormFactors* factors;
     vplReflectiveMap* reflective;
@@ -29,17 +29,17 @@ typedef struct Attempt {
     vplCubeMap* cube;
     ShadowMap map;
     Shape shape;
-    void* blocks[4]; // of malloc
+    void* blocks[4]; // from malloc
 } Attempt;
 
 typedef vplResult Scenario(Attempt* attempt);
 
-// Runs each variant of a scenario until no allocation is left to fail, in two ways: only the n-th fails, or
-// all from the n-th on. `extension` is that of the file.
+// Runs each variant of a scenario until no allocation is left to fail, in two ways: only the n-th allocation
+// fails, or all from the n-th on fail. `extension` is the extension of the file that the scenario writes.
 void failEveryAllocation(const char* name, Scenario* scenario, const char* extension, int variants);
 
-// A context whose n-th allocation fails (-1: none) and, if stayEmpty, all after it. NULL if already its own
-// does.
+// State of an allocator whose n-th allocation fails (-1: none) and, with stayEmpty, all after it. openFailing
+// returns NULL if the context's own allocation fails.
 typedef struct Failing {
     long allocations; // so far
     long failAt;

@@ -10,7 +10,7 @@
 static Test *first, *last;
 static int testCount;
 
-// Called before main, file by file.
+// Appends a test to the list. Each test file calls it before main, through its constructors.
 void registerTest(Test* test)
 {
     *(last != NULL ? &last->next : &first) = test;
@@ -18,7 +18,7 @@ void registerTest(Test* test)
     testCount++;
 }
 
-// "memory" of "tests/test_memory.c".
+// Returns the suite of a test: "memory" for "tests/test_memory.c".
 static const char* suiteOf(const Test* test)
 {
     static char suite[64];
@@ -39,7 +39,8 @@ static bool takeOption(int* count, char** words, const char* option)
     return false;
 }
 
-// Words name suites, or parts of the names of tests. "-word" excludes; other words, if any, include.
+// Returns whether the command line selects a test. Words name suites or parts of test names; "-word"
+// excludes, other words, if any, include.
 static bool isWanted(int count, char** words, const Test* test)
 {
     bool any = false, included = false;
@@ -75,7 +76,7 @@ static size_t run(const char* suite, const struct CMUnitTest* tests, size_t coun
     return bad < 0 ? count : (size_t)bad;
 }
 
-// One by one: cmocka knows only how long a group takes.
+// Runs tests one by one, because cmocka reports times only for whole groups.
 static size_t runTimed(const char* suite, const struct CMUnitTest* tests, size_t count)
 {
     size_t bad = 0;

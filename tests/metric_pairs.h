@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pairs of pictures for tests of metrics, from whole numbers: the same in other implementations.
+// Makes pairs of pictures for tests of metrics, from integer arithmetic, so that other implementations can
+// make the same.
 #ifndef VPL_TESTS_METRIC_PAIRS_H
 #define VPL_TESTS_METRIC_PAIRS_H
 
@@ -7,16 +8,16 @@
 
 #include <stdlib.h>
 
-// 32 bits in, 32 well-mixed bits out.
+// Hashes 32 bits to 32 well-mixed bits.
 uint32_t mix(uint32_t n);
 
-// A byte of noise for value `index`.
+// Returns a byte of noise for value `index`.
 int noise(uint32_t seed, uint32_t index);
 
 int referenceValue(int pair, int x, int y, int channel, int width);
 
-// Grain on ramps, edges shifted by (2, 1), or noise with colours that are swapped and beyond 1 here and
-// there.
+// Returns a value of the test picture: ramps with grain, edges shifted by (2, 1), or noise with some colours
+// swapped or above 1.
 float testValue(int pair, int x, int y, int channel, int width);
 
 typedef struct Pair {

@@ -107,7 +107,7 @@ uint16_t frontsOpen(const vplPatches* patches, int patch, int face)
     return face == 0 ? 0xffff : 0;
 }
 
-// The centre of the inscribed circle: corners weighted by the lengths of the edges opposite to them.
+// Returns the incentre: corners weighted by the lengths of the opposite edges.
 static vplVec3 incentreOf(const vplVec3 p[3])
 {
     double edge[3], centre[3] = {0};
@@ -211,7 +211,7 @@ void closeFronts(SidesFixture* f)
 
 void boxCorners(float x, float y, float z, vplVec3 corners[36])
 {
-    // Of each face: where it is, and two ways along it whose cross product leads inside.
+    // Each face has an origin and two axes whose cross product points inwards.
     static const int faces[6][3][3] = {{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
                                        {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
                                        {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}};

@@ -87,7 +87,7 @@ void addSphere(vplScene* scene, int material, vplVec3 centre, float radius, int 
 
 vplEmitterDef* addWhite(vplScene* scene, vplEmitterType type, vplVec3 position, float intensity)
 {
-    static vplEmitterDef def; // for the caller to compare with
+    static vplEmitterDef def; // static, so that the caller can compare with it
     def = vplDefaultEmitterDef();
     def.type = type;
     def.position = position;

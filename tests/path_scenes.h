@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes in code and pictures of them for tests of path tracing.
+// Scenes made in code and pictures of them, for tests of path tracing.
 #ifndef VPL_TESTS_PATH_SCENES_H
 #define VPL_TESTS_PATH_SCENES_H
 
@@ -13,14 +13,14 @@ vplScene* newScene(vplContext* context);
 
 int addGrey(vplScene* scene, float rho, float emission);
 
-// `quarters` quarter turns about x: 0 faces +z, -1 up, 1 down.
+// Adds a quad after `quarters` quarter turns about x: 0 faces +z, -1 up, 1 down.
 void addQuad(vplScene* scene, int material, vplVec3 place, int quarters, float size);
 
-// The cube [-1, 1]^3 as six quads that face inwards.
+// Adds the cube [-1, 1]^3 as six quads that face inwards.
 void addRoom(vplScene* scene, int material);
 
-// A sphere of radius 1 made of an octahedron's faces, each cut into n^2; with normals of the true sphere or
-// none.
+// Adds a sphere of radius `radius`: an octahedron whose faces are cut into n^2 triangles each, with the true
+// sphere's normals if `smooth`.
 void addSphere(vplScene* scene, int material, vplVec3 centre, float radius, int n, bool smooth);
 
 vplEmitterDef* addWhite(vplScene* scene, vplEmitterType type, vplVec3 position, float intensity);
@@ -31,7 +31,7 @@ vplRenderOptions pathOptions(int size, int samples);
 
 double meanOfImage(const vplImage* image, int channel);
 
-// Mean of one channel of a small picture.
+// Returns the mean of one channel of a small picture.
 double radianceOf(const vplScene* scene, const vplRenderOptions* options, int channel);
 
 #define ROOM      "examples/scenes/room.json"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rooms and pictures for tests of radiosity as a whole.
+// Rooms and pictures for end-to-end tests of radiosity.
 #ifndef VPL_TESTS_RADIOSITY_PICTURES_H
 #define VPL_TESTS_RADIOSITY_PICTURES_H
 
@@ -8,7 +8,7 @@
 
 #include "math/vec.h"
 
-// A box on the floor of a closed room, lit by an area light or a point.
+// Makes a closed room with a box on the floor, lit by an area light or a point light.
 vplScene* boxRoom(vplContext* context, float rho, bool areaLight);
 
 vplRenderOptions radiosityOptions(int patches);

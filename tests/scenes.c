@@ -63,7 +63,7 @@ vplScene* closedCubeScene(vplContext* context, float rho, float emission)
     material.emission = (vplRgb){emission, 0.5f * emission, 0.25f * emission};
     assert_int_equal(vplScene_AddMaterial(scene, &material, &wall), VPL_SUCCESS);
     for (int face = 0; face < 6; face++) {
-        float side = face & 1 ? -1 : 1; // the wall at `side` on axis face / 2, turned towards the middle
+        float side = face & 1 ? -1 : 1; // the wall at `side` on axis face / 2, turned inwards
         double rotate[3] = {0, 0, 0};
         vplVec3 place = {0, 0, 0};
         if (face / 2 == 0) {

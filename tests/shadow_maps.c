@@ -7,7 +7,7 @@
 #include "base/arena.h"
 #include "base/hash.h"
 
-#define SPOT_ANGLE 1.1 // outer, radians
+#define SPOT_ANGLE 1.1 // outer angle, radians
 
 static const vplEmitterType EMITTERS[] = {VPL_EMITTER_POINT, VPL_EMITTER_SPOT, VPL_EMITTER_DIRECTIONAL};
 
@@ -147,7 +147,7 @@ bool isInView(const ShadowMap* m, vplVec3 point)
     switch (m->kind) {
     case MAP_HEMI:
         return along > 0;
-    case MAP_PARABOLOID: // what lies beyond the rim is not known, within a texel of it
+    case MAP_PARABOLOID: // the map is undefined beyond the rim and within a texel of it
         return along > 4 * 1.41421356f / (float)m->paraboloids->size * length;
     case MAP_REFLECTIVE_SPOT:
         return along > 0.01f + (float)cos(SPOT_ANGLE) * length;
@@ -161,7 +161,7 @@ bool isSureAt(const ShadowMap* m, vplVec3 p, vplVec3 n, bool dark)
     if (m->kind == MAP_CUBE) {
         const vplVec3 way = wayToMap(m, p);
         const float r = vplLength(way), f = r * m->shadow.texelTangent;
-        const float band = vplShadowBand(r, f, fminf(fabsf(vplDot(way, n)) / r, 1));
+        const float band = bandAt(r, f, fminf(fabsf(vplDot(way, n)) / r, 1));
         return isSureWithin(m->geometry, m->position, p, n, f, band, dark);
     }
     return m->kind == MAP_SOFT_CUBE ? false

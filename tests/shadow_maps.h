@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shadow maps of every kind behind one interface, for tests of what all of them promise.
+// Shadow maps of all kinds behind one interface, for tests of their common properties.
 #ifndef VPL_TESTS_SHADOW_MAPS_H
 #define VPL_TESTS_SHADOW_MAPS_H
 
@@ -10,7 +10,7 @@ typedef enum MapKind {
     MAP_SOFT_CUBE,       // 16 samples
     MAP_HEMI,            // hemi-octahedral
     MAP_PARABOLOID,      // one hemisphere
-    MAP_TWO_PARABOLOIDS, // both
+    MAP_TWO_PARABOLOIDS, // both hemispheres
     MAP_REFLECTIVE_POINT,
     MAP_REFLECTIVE_SPOT,
     MAP_REFLECTIVE_DIRECTIONAL,
@@ -22,7 +22,7 @@ typedef struct ShadowMap {
     const vplGeometry* geometry;
     vplVec3 position, forward;
     vplCubeMap* cube;
-    vplShadow shadow; // of the cube
+    vplShadow shadow; // the cube's
     vplHemiMaps* hemi;
     vplParaboloidMaps* paraboloids;
     vplReflectiveMap* reflective;
@@ -30,8 +30,8 @@ typedef struct ShadowMap {
 
 const char* nameOfKind(MapKind kind);
 
-// A map of what is seen from `position` around (cubes, points, two paraboloids) or along `forward`. On
-// failure it must be closed as well.
+// Makes a map from `position` in all directions (cubes, points, two paraboloids) or along `forward`. The
+// caller must close the map on failure, too.
 vplResult tryOpenMap(ShadowMap* map, MapKind kind, const vplGeometry* geometry, vplVec3 position,
                      vplVec3 forward, int size);
 ShadowMap openMap(MapKind kind, const vplGeometry* geometry, vplVec3 position, vplVec3 forward, int size);
@@ -41,21 +41,21 @@ void setPoint(vplSurface* surface, int lane, vplVec3 position, vplVec3 normal);
 void factorBlock(const ShadowMap* map, const vplSurface* surface, float factorOut[VPL_LANES]);
 float factorAt(const ShadowMap* map, vplVec3 position, vplVec3 normal);
 
-// From a point to the light: to the position, or 20 m against the direction.
+// Returns the vector from a point to the light: to its position, or 20 m against its direction.
 vplVec3 wayToMap(const ShadowMap* map, vplVec3 point);
 
-// Whether the map covers the point: in the cone of a spot, before the plane of a half space and not at its
-// rim.
+// Returns whether the map covers the point: it must lie in the cone of a spot, or in front of the plane of a
+// half space and away from its rim.
 bool isInView(const ShadowMap* map, vplVec3 point);
 
-// Whether the rays around the one to the point all say `dark`, so that the map must say the same.
+// Returns whether the rays around the one to the point all agree on `dark`, so that the map must agree, too.
 bool isSureAt(const ShadowMap* map, vplVec3 point, vplVec3 normal, bool dark);
 
-// Whether a ray from position along d (or one a hair beside it, to the right or up: edges go to either side)
-// meets something at 1 / stored times d; 0: nothing.
+// Returns whether the ray from position along d, or one 2e-6 beside it (an edge may fall on either side),
+// hits a surface at t = 1 / stored; stored 0: no hit.
 bool holdsRay(const vplGeometry* g, const vplVec3 positionRightUp[3], vplVec3 d, float stored);
 
-// Of all texels.
+// Returns the hash of all texels.
 uint64_t hashMap(const ShadowMap* map);
 
 #endif

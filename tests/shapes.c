@@ -25,7 +25,7 @@ void freeShape(Shape* shape)
     *shape = (Shape){0};
 }
 
-// The two triangles of a quad whose corners go round.
+// Adds the two triangles of a quad whose corners are in order around it.
 static void addFlat(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c, vplVec3 d)
 {
     addTriangle(shape, a, b, c);
@@ -38,7 +38,7 @@ static void addOnSphere(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c, int level
         addTriangle(shape, a, b, c);
         return;
     }
-    // Sums do not depend on the order, so both triangles at an edge get the same middle.
+    // Floating-point addition is commutative, so both triangles at an edge get the same midpoint.
     vplVec3 ab = vplNormalize(vplAdd(a, b)), bc = vplNormalize(vplAdd(b, c)), ca = vplNormalize(vplAdd(c, a));
     addOnSphere(shape, a, ab, ca, levels - 1);
     addOnSphere(shape, ab, b, bc, levels - 1);

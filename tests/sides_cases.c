@@ -91,7 +91,7 @@ void assertSide(const vplPatchSides* s, int index)
                vplPatches_Area(s->patches, side->patch) * __builtin_popcount(side->open) / VPL_PATCH_CELLS,
                1e-6, "area", index);
     double distances[3];
-    for (int k = 0; k < 3; k++) { // from the edges
+    for (int k = 0; k < 3; k++) { // distances from the edges
         const vplVec3 edge = vplNormalize(vplSub(c[(k + 1) % 3], c[k]));
         distances[k] = (double)vplDot(vplCross(edge, vplSub(side->incentre, c[k])), side->normal);
     }

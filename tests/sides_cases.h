@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rooms for tests of sides of patches.
+// Rooms for tests of patch sides.
 #ifndef VPL_TESTS_SIDES_CASES_H
 #define VPL_TESTS_SIDES_CASES_H
 
@@ -15,10 +15,10 @@ extern const vplVec3 NEAR_CEILING;
 
 void addFlat(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c, vplVec3 d);
 
-// The box from low to high; fronts inside where `inward`.
+// Adds the box from low to high; its fronts are inside if `inward`.
 void addBox(Shape* shape, vplVec3 low, vplVec3 high, bool inward);
 
-// A floor [-2, 2]^2 at y = 0, its front up.
+// Adds a floor [-2, 2]^2 at y = 0 that faces up.
 void addFloor(Shape* shape);
 
 typedef struct Case {
@@ -28,15 +28,15 @@ typedef struct Case {
     vplPatchSides* sides;
 } Case;
 
-// Frees the shape.
+// Makes geometry, patches and sides of a shape. It frees the shape.
 Case openCase(Shape* shape, float size, const vplVec3* emitter);
 
 void closeCase(Case* c);
 
 int triangleOf(const vplPatches* p, int patch);
 
-// Sides among triangles first .. first + count - 1, front or back; the number of patches there in
-// *patchesOut.
+// Counts the sides of triangles first .. first + count - 1, front or back; *patchesOut is the number of their
+// patches.
 int countSides(const vplPatchSides* s, int first, int count, bool back, int* patchesOut);
 
 void assertAll(const vplPatchSides* s, int first, int count, bool back);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Solving B = E + rho F B in tests.
+// Solves B = E + rho F B for tests.
 #ifndef VPL_TESTS_SOLVING_H
 #define VPL_TESTS_SOLVING_H
 
@@ -14,21 +14,23 @@ extern const vplSolver SOLVERS[];
 
 vplSolveDef sweeps(vplSolver solver, int iterations);
 
-// From B = E.
+// Solves from the initial value B = E.
 vplSolveStats solve(const Exchange* e, const vplSolveDef* def, const vplRgb* source, vplRgb* radiosity);
 
 vplRgb grey(double x);
 
-// Relative to the wanted value.
+// Asserts a tolerance relative to the wanted value.
 void assertRatio(double value, double wanted, double tolerance, const char* what, int row);
 
 enum { MANY = 300 }; // more than one block and one chunk, no multiple of either
 
 void fillSources(vplRgb* source, int count, uint64_t seed);
 
-// Inside of a sphere all receive the same: H = sum a E / (1 - sum a rho), a the shares of area.
+// Returns the irradiance inside a sphere, equal everywhere: H = sum a E / (1 - sum a rho), where a is a
+// side's share of the area.
 double sphereIrradiance(const Exchange* e, const vplRgb* source, int channel);
-// The unit cube's faces; opposite ones: Howell's catalogue, C-11; both as in ff_analytic.csv.
+// Makes the unit cube's six faces. The factor of opposite faces is C-11 in Howell's catalogue; all factors
+// are those of ff_analytic.csv.
 void openCube(Exchange* e, vplContext* context, float rho);
 
 #endif

@@ -53,7 +53,7 @@ vplImage* shadeStage(const vplGeometry* g, const vplView* view, const vplShadeDe
 {
     vplImage* image;
     assert_int_equal(vplImage_Create(g->context, view->width, view->height, &image), VPL_SUCCESS);
-    assert_int_equal(vplShadeView(g, view, def, NULL, NULL, image, NULL), VPL_SUCCESS);
+    assert_int_equal(vplShadeView(g, view, def, image, NULL), VPL_SUCCESS);
     return image;
 }
 

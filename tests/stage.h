@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: MIT
-// A small scene for tests of shading, lights over it, and what a camera sees of it.
+// A small scene for tests of shading, lights above it, and the surfaces that a camera sees.
 #ifndef VPL_TESTS_STAGE_H
 #define VPL_TESTS_STAGE_H
 
 #include "shapes.h"
 
-// A step in a floor, a wall behind it, and nothing beyond: normals that differ, and planes that do.
+// Makes a floor with a step and a wall behind it in front of an empty background: surfaces that differ in
+// normal, and surfaces that differ only in plane.
 vplGeometry* stage(vplContext* context);
 
 vplView stageView(vplVec3 eye, int width, int height);
 
-// Lights above, which shine down. The caller frees.
+// Makes lights above the stage that shine down. The caller frees them.
 vplShadeLight* rollLights(int count, uint64_t seed);
 
-// Physical; side 0: deferred, else interleaved.
+// Shades with physical lighting; side 0: deferred, else interleaved with this side.
 vplShadeDef stageDef(const vplShadeLight* lights, int count, int side);
 
 vplImage* shadeStage(const vplGeometry* g, const vplView* view, const vplShadeDef* def);
 
-// What a pixel shows: distance along the view axis, the place from the eye, the normal.
+// The surface in a pixel: depth along the view axis, position relative to the eye, normal.
 typedef struct PixelSample {
     double w, p[3], n[3];
 } PixelSample;
 
-// One per pixel. The caller frees.
+// Returns one sample per pixel. The caller frees them.
 PixelSample* samplePixels(const vplGeometry* g, const vplView* view);
 
 #endif

@@ -24,7 +24,7 @@ const char* takeMessage(void)
     return taken;
 }
 
-// A host's own scheduler: threads that take tasks from a counter.
+// A thread pool like that of a host program: threads take tasks from a counter.
 typedef struct Crew {
     vplTaskFcn* task;
     void* data;
@@ -73,7 +73,7 @@ vplContext* openIsaContext(int workers, vplIsa isa)
     def.workerCount = workers;
     def.isa = isa;
     def.log = keepMessage;
-#ifdef VPL_TEST_PTHREADS // for the thread sanitizer, which does not know OpenMP's own synchronisation
+#ifdef VPL_TEST_PTHREADS // for the thread sanitizer, which cannot see OpenMP's synchronisation
     def.parallelFor = threadedFor;
 #endif
     vplContext* context = NULL;
@@ -113,7 +113,7 @@ static char* readText(const char* name)
     return text;
 }
 
-// Splits one line at commas that are not inside quotes; cells point into the line.
+// Splits a line at commas outside quotes; the cells point into the line.
 static int splitLine(char* line, char** cells, int most)
 {
     int count = 0;
@@ -205,7 +205,7 @@ double number(const Table* table, int row, const char* name)
     double value = strtod(text, &end);
     const char* slash = strchr(text, '/');
     if (slash != NULL) {
-        value /= strtod(slash + 1, &end); // "1/512"
+        value /= strtod(slash + 1, &end); // a fraction such as "1/512"
     }
     if (end == text || *end != 0) {
         fail_msg("row %d, %s: \"%s\" is no number", row, name, text);

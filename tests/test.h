@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all test files share: suites, contexts whose messages can be read, tables of exact answers.
+// Declarations that all test files share: suites, contexts that record messages, tables of exact answers.
 #ifndef VPL_TESTS_TEST_H
 #define VPL_TESTS_TEST_H
 
@@ -15,9 +15,9 @@
 #include <stdio.h>
 #include <string.h>
 
-// A test, which registers itself: TEST(SharedEdgeIsCoveredOnce, 2) { ... } has a `context` with two threads,
-// of which nothing may be left in the end; TEST_ALONE(...) has none. SLOW, in the end, is for tests that take
-// a second or more because they are about statistics, or try many cases of one thing: `vpl-tests --quick`
+// Defines and registers a test. TEST(SharedEdgeIsCoveredOnce, 2) { ... } gets a `context` with two threads,
+// which must hold no memory at the end of the test; TEST_ALONE(...) gets none. SLOW as last argument marks
+// tests that take a second or more, because they measure statistics or try many cases: `vpl-tests --quick`
 // leaves them out.
 #define TEST(name, ...)                                                                                      \
     static void name(vplContext* context);                                                                   \
@@ -39,7 +39,7 @@
 enum { SLOW = 1 };
 
 typedef struct Test {
-    const char *name, *file; // the file is its suite
+    const char *name, *file; // the file gives the suite
     void (*run)(vplContext* context);
     void (*runAlone)(void);
     int workers;
@@ -49,29 +49,29 @@ typedef struct Test {
 
 void registerTest(Test* test);
 
-// A context with `workers` threads whose last message is kept. Never NULL.
+// Opens a context with `workers` threads that records its last message. Never NULL.
 vplContext* openTestContext(int workers);
 
-// The same with a chosen instruction set; NULL if this machine lacks it.
+// Does the same with a chosen instruction set; NULL if this machine lacks it.
 vplContext* openIsaContext(int workers, vplIsa isa);
 
-// A vplParallelForFcn made of threads, as a host program might have.
+// A vplParallelForFcn that runs on threads, as a host program's might.
 void threadedFor(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data);
 
 // Fails unless a hash is the same for 1, 2, 3 and 7 workers and every instruction set. hashOf closes the
 // context.
 void assertSameEverywhere(uint64_t (*hashOf)(vplContext* context));
 
-// A vplProgressFcn that refuses when it is asked for the third time; `user` is an int that counts.
+// A vplProgressFcn that cancels on its third call; `user` is an int that counts the calls.
 bool refuseThird(void* user, double fraction);
 
-// Destroys it and fails the test if any memory is still held.
+// Destroys the context and fails the test if any memory is still held.
 void closeTestContext(vplContext* context);
 
-// The last message logged through any test context; empty if none since the last call.
+// Returns the last message logged through any test context; empty if there was none since the last call.
 const char* takeMessage(void);
 
-// A table from tests/data, comments skipped. Cells are read by column name.
+// A table from tests/data without its comments. Cells are read by column name.
 typedef struct Table {
     char* text;
     char** cells; // rows * columns
@@ -81,27 +81,27 @@ typedef struct Table {
 
 Table loadTable(const char* name);
 void freeTable(Table* table);
-int columnOf(const Table* table, const char* name); // fails the test if there is none
+int columnOf(const Table* table, const char* name); // fails the test if there is no such column
 const char* cell(const Table* table, int row, const char* name);
 bool isEmpty(const Table* table, int row, const char* name);
 double number(const Table* table, int row, const char* name);
 
-// Three columns such as px, py, pz from a prefix "p" (suffixes x, y, z).
+// Returns the vector of three columns such as px, py, pz, which a prefix such as "p" names.
 vplVec3 vectorOf(const Table* table, int row, const char* prefix);
 
-// Fails, naming row and values, unless |value - wanted| <= tolerance. NaN fails.
+// Fails with row and values unless |value - wanted| <= tolerance. NaN fails.
 void assertNear(double value, double wanted, double tolerance, const char* what, int row);
 
-// Counter-based uniform random number in [0, 1) for seeded cases: the same on every machine.
+// Returns a counter-based uniform random number in [0, 1) for seeded cases, the same on every machine.
 double uniformAt(uint64_t seed, uint64_t index);
 
-// The benchmark room (tests/data/room.json), or the same with a front wall and the camera inside.
+// Loads the benchmark room (tests/data/room.json), or the same with a front wall and the camera inside.
 vplScene* loadScene(vplContext* context, const char* name);
 
-// A scene from a file, or a failed test with the library's sentence.
+// Loads a scene from a file; a failure fails the test with the library's message.
 vplScene* openScene(vplContext* context, const char* path);
 
-// vplRender, or a failed test with the library's sentence. statsOut may be NULL.
+// Calls vplRender; a failure fails the test with the library's message. statsOut may be NULL.
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);
 
 #endif

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The arena: everything is freed with it, failing allocations are reported, memory is aligned.
+// Tests of the arena: destroying it frees everything, failed allocations are reported, memory is aligned.
 #include "test.h"
 
 #include "base/arena.h"
 
 #include <stdlib.h>
 
-// Allows a number of allocations, then fails.
+// An allocator that allows a number of allocations, then fails.
 typedef struct Quota {
     int left;
     int held; // blocks not yet freed
@@ -52,12 +52,12 @@ TEST_ALONE(DestroyingAnArenaFreesEverythingInIt)
     for (size_t i = 0; i < 100; i++) {
         char* bytes = vplArena_Alloc(arena, i, 7);
         assert_non_null(bytes);
-        memset(bytes, 0xCD, 7 * i); // the links between blocks must survive
+        memset(bytes, 0xCD, 7 * i); // overwriting a block must not damage the links between blocks
     }
     assert_int_equal(vplArena_Check(arena), VPL_SUCCESS);
     vplArena_Destroy(arena);
     vplArena_Destroy(NULL);
-    closeTestContext(context); // fails if anything is held
+    closeTestContext(context); // fails if memory is still held
 }
 
 TEST(MemoryOfAnArenaIsAligned, 1)
@@ -107,13 +107,13 @@ TEST(ReservingKeepsElements, 1)
     const int* copy = vplArena_Copy(arena, numbers, 1000, sizeof *numbers);
     assert_memory_equal(copy, numbers, 1000 * sizeof *numbers);
     assert_string_equal(vplArena_CopyString(arena, "name"), "name");
-    assert_true(vplContext_GetBytes(context) < 4 * 1000 * sizeof *numbers); // old blocks are not kept
+    assert_true(vplContext_GetBytes(context) < 4 * 1000 * sizeof *numbers); // old blocks are freed
     vplArena_Destroy(arena);
 }
 
 TEST(AnAbsorbedArenaIsFreedWithTheOther, 1)
 {
-    for (int blocks = 0; blocks < 4; blocks++) { // none, one or two in either
+    for (int blocks = 0; blocks < 4; blocks++) { // no, one or two blocks in either arena
         vplArena *arena = vplArena_Create(context), *source = vplArena_Create(context);
         void* first = NULL;
         for (int i = 0; i < blocks; i++) {
@@ -126,7 +126,7 @@ TEST(AnAbsorbedArenaIsFreedWithTheOther, 1)
     }
 }
 
-// Creates an object of one arena, two arrays and a growing one: 6 allocations.
+// Creates an object of one arena, two arrays and a growing array: 6 allocations.
 static vplResult makeObject(vplContext* context, void** objectOut)
 {
     vplArena* arena = vplArena_Create(context);
@@ -150,12 +150,12 @@ static vplResult makeObject(vplContext* context, void** objectOut)
 TEST_ALONE(EveryFailedAllocationIsReportedAndNothingLeaks)
 {
     for (int allowed = 0; allowed <= 6; allowed++) {
-        Quota quota = {1 + allowed, 0}; // one for the context
+        Quota quota = {1 + allowed, 0}; // one more for the context
         vplContext* context = openQuota(&quota);
         void* object = NULL;
         const vplResult result = makeObject(context, &object);
         assert_int_equal(result, allowed < 6 ? VPL_OUT_OF_MEMORY : VPL_SUCCESS);
-        assert_int_equal(object != NULL, allowed == 6); // untouched on failure
+        assert_int_equal(object != NULL, allowed == 6); // the output is untouched on failure
         closeQuota(context, &quota);
     }
 }

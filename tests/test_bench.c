@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The arithmetic of vpl bench --scaling.
+// Tests of the arithmetic of vpl bench --scaling.
 #include "test.h"
 
 #include "cli/bench/fit.h"
 
 enum { COUNT = 8 };
 
-// Powers of two from `first`.
+// Fills x with powers of two times `first`.
 static void doublings(double first, double* x)
 {
     for (int i = 0; i < COUNT; i++) {
@@ -28,7 +28,7 @@ TEST_ALONE(ExponentOfAPowerIsItself)
     }
 }
 
-// The slope of least squares through (0, 0), (1, 1), (2, 1) in logarithms of two is 1/2.
+// The least-squares line through (0, 0), (1, 1), (2, 1) in base-2 logarithms has slope 1/2.
 TEST_ALONE(ExponentIsOfLeastSquares)
 {
     const double x[] = {1, 2, 4}, y[] = {1, 2, 2}, turned[] = {4, 1, 2}, with[] = {2, 1, 2};
@@ -80,7 +80,7 @@ TEST_ALONE(FixedPartIsFound)
     }
 }
 
-// No other pair of numbers has less of what it minimises.
+// No perturbed pair of coefficients has a smaller sum of relative squares.
 TEST_ALONE(FixedFitIsOfLeastRelativeSquares)
 {
     double x[COUNT], y[COUNT];

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Bounds of cube maps: they hold for every texel, and never change a shadow.
+// Tests of cube map bounds: they are valid for every texel, and never change a shadow.
 #include "scenes.h"
 #include "shapes.h"
 
 #include "math/vec.h"
 #include "visibility/cube_bounds.h"
-#include "visibility/shadow.h"
+#include "base/context.h"
+#include "visibility/kernels.h"
 
 #include <stdlib.h>
 
 static const float FAR = 7;
 
-// Random planes before one another, cut by random lines; noise, holes to infinity, and rough patches.
+// Fills a face with random planes cut by random lines, with noise, with holes to infinity, or with rough
+// patches.
 static void fillFace(float* texels, int size, uint64_t seed, int kind)
 {
-    double n[4][6]; // a plane, and the line that cuts it
+    double n[4][6]; // a plane, and the line that clips it
     for (uint64_t k = 0; k < 24; k++) {
         n[k / 6][k % 6] = 2 * uniformAt(seed, k) - 1;
     }
@@ -94,7 +96,8 @@ static double pick(uint64_t seed, uint64_t* index)
     return uniformAt(seed, (*index)++);
 }
 
-// The normal of what the map shows around a direction: of a plane through three texels. Zero where something is infinite.
+// Returns the normal of the surface in the map around a direction, from the plane through three texels; zero
+// if a texel is infinite.
 static vplVec3 shownNormal(const vplCubeMap* map, vplVec3 direction)
 {
     vplVec3 p[3];
@@ -109,7 +112,8 @@ static vplVec3 shownNormal(const vplCubeMap* map, vplVec3 direction)
     return vplNormalize(vplCross(vplSub(p[1], p[0]), vplSub(p[2], p[0])));
 }
 
-// Sixteen points near each other, anywhere, most of them close to what the map has stored in their direction.
+// Makes sixteen points near each other at a random position, mostly close to the depth that the map stores in
+// their direction.
 static void randomBlock(const vplCubeMap* map, uint64_t seed, vplSurface* surface)
 {
     uint64_t at = 0;
@@ -141,7 +145,8 @@ static void randomBlock(const vplCubeMap* map, uint64_t seed, vplSurface* surfac
     }
 }
 
-// Compares with all samples taken; counts the points that needed none, and how many of them lie in shadow.
+// Compares with shadows that take all samples; counts the points that needed none, and how many of those are
+// in shadow.
 static void compareShadows(const vplShadow* shadow, const vplSurface* surface, int64_t told[2])
 {
     vplCubeMap bare = *shadow->map;
@@ -150,7 +155,8 @@ static void compareShadows(const vplShadow* shadow, const vplSurface* surface, i
     bare.bounds = NULL;
     without.map = &bare;
     vplShadow_FactorBlock(&without, surface, wanted);
-    const int count = vplShadow_FactorBlockCounted(shadow, surface, factor);
+    const vplVisibilityKernels* kernels = vplVisibilityKernels_Get(bare.context->isa);
+    const int count = kernels->shadowFactor(shadow, surface, factor);
     assert_memory_equal(factor, wanted, sizeof factor);
     if (count == VPL_LANES) {
         for (int l = 0; l < VPL_LANES; l++) {
@@ -198,7 +204,8 @@ TEST_ALONE(BoundsNeverChangeAShadowOfRandomMaps, SLOW)
     }
 }
 
-// On surfaces as they are: planes must be told where samples come within a rounding of the limit.
+// Uses the surfaces of a real room: bounds must decide for planes where samples differ from the limit only by
+// rounding.
 TEST(BoundsTellMostOfARoom, 2)
 {
     vplGeometry* g = tableRoom(context);
@@ -229,7 +236,7 @@ TEST(BoundsTellMostOfARoom, 2)
     }
     assert_true(all > 16 * 1000 && 2 * (told[0] + told[1]) > all);
     assert_int_equal(vplCubeMap_Redraw(map, g, &def, NULL, NULL), VPL_SUCCESS);
-    assert_null(map->bounds); // they were the old texels'
+    assert_null(map->bounds); // they belonged to the old texels
     vplCubeMap_Destroy(map);
     vplGeometry_Destroy(g);
 }

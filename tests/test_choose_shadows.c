@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether virtual lights take maps or rays: the rule, what it is asked with, and that pictures are those of
-// what it chose. Lights whose maps do not fit into memory at the same time.
+// Tests of the choice between maps and rays for shadows of virtual lights: the rule, its input, and that
+// pictures equal those of the chosen way. Also lights whose maps do not fit into memory at once.
 #include "scenes.h"
 
 #include "render/stages/shadow_choice.h"
@@ -29,7 +29,8 @@ TEST_ALONE(CostsGrowWithWhatTheyDependOn)
     }
 }
 
-// More pixels speak for maps, more triangles above the lights against them.
+// As pixels increase, the rule switches to maps once; as triangles above the lights increase, it switches
+// back to rays once.
 TEST_ALONE(TheRuleTurnsOnce)
 {
     for (int lights = 1; lights < 5000; lights *= 7) {
@@ -52,9 +53,9 @@ TEST_ALONE(TheRuleTurnsOnce)
     }
 }
 
-// Winners of bench/crossover as measured: tests/data/crossover.csv. Where one takes at least a quarter
-// longer, the rule finds the cheaper in 95 % of the cells, and what it takes is never more than 1.4 times as
-// dear.
+// tests/data/crossover.csv has the times that bench/crossover measured. Among the cells in which one way
+// takes at least a quarter longer, the rule finds the faster in 95 %, and its choice never takes more than
+// 1.4 times as long.
 TEST_ALONE(TheRuleAgreesWithTheMeasuredTable)
 {
     Table t = loadTable("crossover.csv");
@@ -116,7 +117,7 @@ TEST_ALONE(AutoRendersWhatItSaysItChose)
             vplImage_Destroy(renderScene(scene, &o, &named));
             assert_true(named.imageHash == chosen.imageHash);
             assert_true(named.lightShadows == cases[i].wanted && named.shadowRayEstimateMs == 0);
-        } else { // RAY alone also replaces the emitter's map: indirect light is the same
+        } else { // RAY also replaces the emitter's map; indirect light must be the same
             o.output.show = VPL_SHOW_INDIRECT;
             vplImage_Destroy(renderScene(scene, &o, &named));
             o.lights.shadows = VPL_LIGHT_SHADOWS_AUTO;
@@ -128,7 +129,7 @@ TEST_ALONE(AutoRendersWhatItSaysItChose)
     }
 }
 
-// Maps of 2048 x 2048 texels: three fit into what is allowed.
+// Maps have 2048 x 2048 texels, of which three fit into the memory limit.
 TEST(LightsWhoseMapsDoNotFitAreAddedInBatches, 2)
 {
     vplScene* scene = loadScene(context, "room.json");

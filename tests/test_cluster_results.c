@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Clusters: what is handed on with them, extremes, where they start, and mistakes.
+// Tests of clusters: their flux and nearest light, extremes, initialization, and invalid input.
 #include "cluster_lights.h"
 
-// ---- what is handed on
+// ---- flux, nearest light, bounds
 
 TEST(FluxIsThatOfTheLightsAndTheNearestIsOneOfThem, 1)
 {
@@ -64,7 +64,7 @@ TEST(FlatClustersLieOnOnePlaneWithOneNormal, 1)
 {
     Lights l;
     beginLights(&l, context, 50);
-    const float tilt = 0.6f; // a plane at an angle, far from the origin, so that its points are rounded
+    const float tilt = 0.6f; // a tilted plane far from the origin, so that its points are rounded
     for (int i = 0; i < 50; i++) {
         const float u = (float)(i % 7), v = (float)(i / 7);
         l.lights[i].normal = (vplVec3){-tilt, 0.8f, 0};
@@ -189,8 +189,8 @@ TEST(InASphereTheNearestLightIsOnItsWall, 1)
         const double out = sqrt((double)(p.x * p.x + p.y * p.y + p.z * p.z));
         const double away = sqrt((double)((p.x - on.x) * (p.x - on.x) + (p.y - on.y) * (p.y - on.y) +
                                           (p.z - on.z) * (p.z - on.z)));
-        assert_true(out < 4.9);          // in mid-air
-        assert_true(away < 5 - out + 1); // the nearest is where it should be: 200 lights are 1.25 m apart
+        assert_true(out < 4.9);          // the mean is off the wall
+        assert_true(away < 5 - out + 1); // as near as 200 lights, 1.25 m apart, allow
         assert_false(c->flat);
     }
     vplLightClusters_Destroy(clusters);
@@ -219,7 +219,7 @@ TEST(HugeNumbersStayFinite, 1)
     }
 }
 
-// ---- where they start
+// ---- initialization
 
 TEST(ClustersFarFromEachOtherStartBetterThanEveryNthLight, 1)
 {
@@ -251,7 +251,7 @@ TEST(ClustersFarFromEachOtherStartBetterThanEveryNthLight, 1)
             vplLightClusters_Destroy(clusters);
         }
     }
-    assert_true(sums[0] < 0.98 * sums[1]); // 0.96 when it was written
+    assert_true(sums[0] < 0.98 * sums[1]); // 0.96 when the test was written
 }
 
 TEST(ClustersOfTheLastFrameAreFoundAgainAtOnce, 1)
@@ -268,7 +268,7 @@ TEST(ClustersOfTheLastFrameAreFoundAgainAtOnce, 1)
     assertSame(again, first);
     vplLightClusters_Destroy(again);
 
-    for (int i = 0; i < 256; i++) { // a small step of the light
+    for (int i = 0; i < 256; i++) { // the light moves by a small step
         l.lights[i].position.x += 0.01f;
     }
     again = find(&l.set, &def);
@@ -279,7 +279,7 @@ TEST(ClustersOfTheLastFrameAreFoundAgainAtOnce, 1)
     assert_int_equal(moved, 0);
     vplLightClusters_Destroy(again);
 
-    const int counts[] = {3, 12}; // fewer: the first ones; more: the others far from them
+    const int counts[] = {3, 12}; // fewer: the last frame's first ones; more: also lights far from them
     for (int k = 0; k < 2; k++) {
         def.count = counts[k];
         def.maxIterations = 0;
@@ -306,7 +306,7 @@ TEST(EmptyClustersOfTheLastFrameStartAnew, 1)
     vplLightClusters_Destroy(together);
 }
 
-// ---- mistakes
+// ---- invalid input
 
 static void refuse(const vplLightSet* set, const vplClusterDef* def, const char* sentence)
 {
@@ -316,7 +316,7 @@ static void refuse(const vplLightSet* set, const vplClusterDef* def, const char*
     assert_string_equal(takeMessage(), sentence);
 }
 
-// A light of weight 3 counts as three, one of 0 as none; where all weigh alike nothing changes.
+// A light of weight 3 counts three times, one of weight 0 does not count; equal weights change nothing.
 TEST(WeightsMoveMeans, 1)
 {
     Lights l;
@@ -332,7 +332,7 @@ TEST(WeightsMoveMeans, 1)
     assertNear((double)clusters->clusters[0].position.x, 4.0 / 5, 1e-7, "mean", 0);
     assert_int_equal(clusters->clusters[0].lightCount, 4);
     vplLightClusters_Destroy(clusters);
-    def.count = 2; // what weighs nothing is never far
+    def.count = 2; // a light of weight 0 is never chosen as the farthest
     weights[3] = 0;
     clusters = find(&l.set, &def);
     assert_int_equal(clusters->of[0], 0);

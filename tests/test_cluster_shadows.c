@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lights that share what their clusters see, with maps that are made here texel by texel.
+// Tests of lights that share their cluster's visibility, with maps that the tests fill texel by texel.
 #include "stage.h"
 
 #include "math/vec.h"
@@ -9,7 +9,7 @@
 
 enum { WIDTH = 131, HEIGHT = 75, COUNT = 300, SIZE = 8, TEXELS = 2 * (SIZE + 2) * (SIZE + 2) };
 
-static const float nothing[TEXELS]; // is seen: light reaches all of the hemispheres that were drawn
+static const float nothing[TEXELS]; // an empty map: light reaches all points of the drawn hemispheres
 
 static vplParaboloidMap farMapOf(vplContext* context, const float* texels, vplVec3 position, int hemispheres)
 {
@@ -23,7 +23,8 @@ static vplParaboloidMap farMapOf(vplContext* context, const float* texels, vplVe
                               .context = context};
 }
 
-// Light reaches everything or, from high above up into one hemisphere, nothing.
+// Returns an empty map that sees everything (`all`), or one high above that has only its upper hemisphere and
+// sees nothing of the stage.
 static vplParaboloidMap seeing(vplContext* context, bool all)
 {
     return farMapOf(context, nothing, vplVec(0, all ? 3 : 100, 0), all ? 2 : 1);
@@ -38,7 +39,7 @@ typedef struct Setting {
     vplParaboloidMap maps[COUNT];
 } Setting;
 
-// In clusters of 40, of which every other one sees nothing.
+// Opens a setting with clusters of 40 lights, every other one of which sees nothing.
 static Setting openSetting(vplContext* context, vplGeometry* geometry)
 {
     Setting s = {.context = context, .geometry = geometry};
@@ -92,7 +93,7 @@ TEST_ALONE(OneClusterThatSeesAllHasTheBitsOfNoShadows)
     closeSetting(&s);
 }
 
-// Also where there is no map at all.
+// The bits also agree if there is no map at all.
 TEST_ALONE(LightsWithoutAClusterHaveTheBitsOfNoShadows)
 {
     Setting s = openStage();
@@ -117,8 +118,8 @@ TEST_ALONE(InterleavedByOneIsDeferredBitForBit)
     closeSetting(&s);
 }
 
-// As many clusters as lights, of which every third sees: the bits of these lights alone, as far as they are
-// one group.
+// Each light has a cluster of its own, and every third cluster sees the stage: the picture has the bits of
+// these lights alone, as long as they form one group.
 TEST_ALONE(ClustersOfOneLightAreMapsOfTheirOwn)
 {
     enum { FEW = VPL_LIGHT_GROUP };
@@ -136,8 +137,8 @@ TEST_ALONE(ClustersOfOneLightAreMapsOfTheirOwn)
     closeSetting(&s);
 }
 
-// Clusters that come and go in the list, lights without one between them: the sum of those that reach
-// anything.
+// Clusters change at every light of the list, with unclustered lights between: the picture is the sum of the
+// lights that are visible.
 TEST_ALONE(AnyOrderOfClustersGivesTheSameSum)
 {
     Setting s = openStage();
@@ -159,8 +160,9 @@ TEST_ALONE(AnyOrderOfClustersGivesTheSameSum)
     closeSetting(&s);
 }
 
-// One map that samples up from a metre above the floor: what is below gets nothing, what is above all.
-// Interleaved, each pixel asks for itself: those whose window lies on one side know what neighbours share.
+// The map holds the hemisphere above a height of one metre over the floor: points below get no light, points
+// above all of it. Interleaved pixels look up the map each for themselves; those whose window lies on one
+// side of the boundary are compared.
 TEST_ALONE(VisibilityIsThatOfEachPoint)
 {
     Setting s = openStage();
@@ -190,8 +192,8 @@ TEST_ALONE(VisibilityIsThatOfEachPoint)
     closeSetting(&s);
 }
 
-// Far above a floor, which half of the clusters a class has lights of makes no difference: the sum is that of
-// deferred shading, with clusters of many and of few lights, and few or many clusters.
+// Light from far above a floor does not depend on which clusters a class has lights of: the sum is that of
+// deferred shading, for clusters of many and of few lights, and for few and many clusters.
 TEST_ALONE(EachLightIsInOneClass)
 {
     vplContext* context = openTestContext(2);
@@ -228,7 +230,7 @@ TEST_ALONE(EachLightIsInOneClass)
 
 // ---- the same bits
 
-// The stage below a smooth sphere, whose points have two normals.
+// Makes the stage below a smooth sphere, whose points have geometric and shading normals.
 static vplGeometry* smoothStage(vplContext* context)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -246,7 +248,7 @@ static vplGeometry* smoothStage(vplContext* context)
 
 TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)
 {
-    static float spots[TEXELS]; // some ways are long, some are short
+    static float spots[TEXELS]; // some distances are long, some short
     Dice dice = {5, 0};
     for (int i = 0; i < TEXELS; i++) {
         spots[i] = roll(&dice, 0, 0.8f);
@@ -272,7 +274,7 @@ TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)
     }
 }
 
-// ---- what is refused
+// ---- refusals
 
 TEST_ALONE(WhatClustersCannotDoIsRefused)
 {
@@ -288,8 +290,7 @@ TEST_ALONE(WhatClustersCannotDoIsRefused)
         def.accumulation = i < 3 ? ways[i] : VPL_ACCUMULATE_DEFERRED;
         def.lightRays = i == 3;
         s.clusters[5] = i == 4 ? -2 : i == 5 ? COUNT : 0;
-        assert_int_equal(vplShadeView(s.geometry, &s.view, &def, NULL, NULL, image, NULL),
-                         VPL_INVALID_ARGUMENT);
+        assert_int_equal(vplShadeView(s.geometry, &s.view, &def, image, NULL), VPL_INVALID_ARGUMENT);
         const char* message = takeMessage();
         assert_true(strstr(message, i < 3    ? "deferred and interleaved shading only"
                                     : i == 3 ? "no maps or rays of their own"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the bound of near virtual lights takes away, and whether short rays bring back exactly that.
+// Tests of bias compensation: short rays must add exactly the light that clamping near virtual lights
+// removes.
 #include "shapes.h"
 
 #include "math/vec.h"
@@ -11,7 +12,7 @@
 
 enum { SIDE = 96, PLANE_RAYS = 1024 };
 
-// The plane at height h that faces down, and under it a floor that reflects nothing.
+// Makes the plane at height h that faces down, above a floor that reflects nothing.
 static vplGeometry* planeOver(vplContext* context, float h, float size)
 {
     vplScene* scene;
@@ -32,7 +33,7 @@ static vplGeometry* planeOver(vplContext* context, float h, float size)
     return buildGeometry(scene);
 }
 
-// Lights that stand for the plane within 2 D of the receiver.
+// Makes virtual lights that represent the plane within 2 D of the receiver.
 static vplShadeLight* gridOver(float h, float distance)
 {
     vplShadeLight* lights = malloc(SIDE * SIDE * sizeof *lights);
@@ -45,7 +46,7 @@ static vplShadeLight* gridOver(float h, float distance)
     return lights;
 }
 
-// E / pi that compensation adds to the receiver, mean over 16 points of one place.
+// Returns the E / pi that compensation adds to the receiver, averaged over 16 points at one position.
 static double givenBack(const vplGeometry* g, const vplShadeDef* def)
 {
     vplView view = {.width = 1, .height = 1};
@@ -73,8 +74,8 @@ static double givenBack(const vplGeometry* g, const vplShadeDef* def)
     return sum;
 }
 
-// Of a plane at height h the bound keeps (h^2/c)(1 + ln(c/h^2)). Rays alone give back the rest, and so do
-// rays within a fifth of D with the lights beyond.
+// For a plane at height h, clamping keeps the share (h^2/c)(1 + ln(c/h^2)). Rays alone must add the rest, and
+// so must rays within a fifth of D combined with the lights beyond.
 TEST(PlaneGetsBackWhatTheClampTakes, 1)
 {
     Table t = loadTable("vpl_clamp_plane.csv");
@@ -97,7 +98,7 @@ TEST(PlaneGetsBackWhatTheClampTakes, 1)
                                  .lightCount = SIDE * SIDE,
                                  .compensation = &near};
         assertNear(givenBack(g, &def), lost, 1e-3, "by rays alone", row);
-        near.emitterLightDistance = 0.2f * distance; // the cells of the grid measure D / 24
+        near.emitterLightDistance = 0.2f * distance; // the grid's cells measure D / 24
         assertNear(givenBack(g, &def), lost, 4e-3, "by rays and lights", row);
         free(lights);
         vplGeometry_Destroy(g);
@@ -105,7 +106,7 @@ TEST(PlaneGetsBackWhatTheClampTakes, 1)
     freeTable(&t);
 }
 
-// ---- a closed room whose walls all reflect and emit alike: everything is E / (1 - rho)
+// ---- a closed room whose walls reflect and emit equally: radiance is E / (1 - rho) everywhere
 
 static vplScene* furnace(vplContext* context, float rho, vplVec3 eye, vplVec3 target, double fovY)
 {
@@ -118,7 +119,7 @@ static vplScene* furnace(vplContext* context, float rho, vplVec3 eye, vplVec3 ta
     for (int face = 0; face < 6; face++) {
         static const vplVec3 places[6] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                           {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
-        static const double turns[6][2] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}, {0, 2}, {0, 0}}; // about x, y
+        static const double turns[6][2] = {{0, -1}, {0, 1}, {1, 0}, {-1, 0}, {0, 2}, {0, 0}}; // about x and y
         vplObjectDef def = vplDefaultObjectDef();
         const double rotate[3] = {turns[face][0] * VPL_PI / 2, turns[face][1] * VPL_PI / 2, 0};
         def.transform = vplMat4_FromParts(places[face], rotate, (vplVec3){2, 2, 1});
@@ -185,7 +186,7 @@ TEST(LossIsWhatCompensationAdds, 2, SLOW)
         vplRenderOptions o = kellerOptions(64, 2000, distances[i]);
         meanOf(scene, &o, &with);
         o.lights.compensation = VPL_COMPENSATION_NONE;
-        const double lost = 2 - meanOf(scene, &o, &without); // of 1 that virtual lights bring
+        const double lost = 2 - meanOf(scene, &o, &without); // of the 1 that virtual lights contribute
         assertNear(without.clampLoss, lost, 0.03 + 0.05 * lost, "estimated without", i);
         assertNear(with.clampLoss, lost, 0.03 + 0.05 * lost, "estimated with", i);
         o.output.show = VPL_SHOW_LIGHT;
@@ -195,14 +196,15 @@ TEST(LossIsWhatCompensationAdds, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-// X: walls that lose nothing and a bound beyond all light: nothing but the limit ends a walk.
+// White walls lose no energy and the clamp distance is infinite: only the limit on the path length ends a
+// walk.
 TEST(WhiteWallsAndAnInfiniteClampDistanceEnd, 2)
 {
     vplScene* scene = furnace(context, 1, (vplVec3){0.3f, 0.2f, 0.6f}, (vplVec3){-0.2f, 0, -1}, VPL_PI / 2);
     vplRenderOptions o = kellerOptions(2, 10, 1e15f);
     o.particles.reflectivity = 0.5;
     const double mean = meanOf(scene, &o, NULL);
-    assert_true(mean > 900 && mean < 1100); // a bounce, one more emission
+    assert_true(mean > 900 && mean < 1100); // each bounce adds one emission
     vplScene_Destroy(scene);
 }
 
@@ -259,8 +261,8 @@ TEST(PipelinesGiveTheSameBits, 2)
     }
 }
 
-// Direct light of area lights and the rest are found by different rays, and must still be parts of one
-// picture.
+// Different rays find the direct light of area lights and the remaining light; their pictures must still add
+// up to one.
 TEST(PartsAddUpOnAverage, 2)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
@@ -284,8 +286,8 @@ static double pathMean(const vplScene* scene)
     return meanOf(scene, &o, NULL);
 }
 
-// Instant radiosity with its area lights and shadow maps, Keller's with a point light, shadows by maps,
-// interleaving.
+// Covers instant radiosity with its area lights and shadow maps, Keller's with a point light, shadows by
+// maps, and interleaving.
 TEST(EveryKindOfLightIsGivenBack, 2, SLOW)
 {
     static const struct {
@@ -320,7 +322,7 @@ TEST(EveryKindOfLightIsGivenBack, 2, SLOW)
     }
 }
 
-// Where rays bring nearly all light, more passes with the same rays would not help.
+// Compensation rays bring nearly all light here: the error falls only if later passes cast different rays.
 TEST(PassesCastOtherRays, 2)
 {
     vplScene* scene =
@@ -340,8 +342,9 @@ TEST(PassesCastOtherRays, 2)
     vplScene_Destroy(scene);
 }
 
-// From inside a unit sphere cosine-distributed rays go 2 cos, whose square is uniform in [0, 4]: the mean of
-// max(0, 1 - d^2/D^2) is D^2/8 up to D = 2. Where nothing is seen, everything is near.
+// From inside a unit sphere, cosine-distributed rays have length d = 2 cos, whose square is uniform in [0,
+// 4]: the mean of max(0, 1 - d^2/D^2) is D^2/8 up to D = 2. If no surface is visible, the distance is the
+// scene's diagonal.
 TEST(NearDistanceOfASphereIsThatOfItsChords, 2)
 {
     Shape shape = icosphere(4);
@@ -355,14 +358,14 @@ TEST(NearDistanceOfASphereIsThatOfItsChords, 2)
     camera.fovY = 1;
     camera.near = 0.01;
     vplView view = vplView_Create(&camera, 100, 100);
-    static const double shares[] = {0.1, 0.2, 0.45}; // nearer, flat triangles see nothing of their own
+    static const double shares[] = {0.1, 0.2, 0.45}; // below, flat triangles do not see themselves
     for (int i = 0; i < 3; i++) {
         float distance;
         assert_int_equal(vplFindNearDistance(sphere, &view, shares[i], &distance), VPL_SUCCESS);
         assertNear((double)distance, sqrt(8 * shares[i]), 0.02 * sqrt(8 * shares[i]), "distance", i);
     }
     float distance;
-    camera.eye = vplVec(0, 0, -9); // looks away
+    camera.eye = vplVec(0, 0, -9); // looks away from the sphere
     camera.target = vplVec(0, 0, -10);
     view = vplView_Create(&camera, 100, 100);
     assert_int_equal(vplFindNearDistance(sphere, &view, 0.2, &distance), VPL_SUCCESS);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Patches drawn flat, interpolated and with outlines.
+// Tests of drawing patches: flat, interpolated and with outlines.
 #include "patch_support.h"
 #include "stage.h"
 
@@ -60,7 +60,7 @@ static int pixelsOf(const Canvas* c)
     return c->image->width * c->image->height;
 }
 
-// A camera in the box [-1, 1]^3 that looks to where no wall is straight.
+// Returns a camera at a random position in the box [-1, 1]^3 with a random direction.
 static vplCameraDef insideCamera(Dice* dice)
 {
     vplCameraDef camera = vplDefaultCameraDef();
@@ -100,7 +100,7 @@ TEST_ALONE(ClipCoordinatesAreThoseOfTheCamera)
 
 // ---- coverage
 
-// Sees what shading sees, pixel for pixel: the depth of a room with boxes, and ones from patches.
+// Patches must cover exactly the pixels in which shading sees a surface, here of a room with boxes.
 TEST(UndividedPatchesCoverWhatTheViewCovers, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -125,7 +125,7 @@ TEST(UndividedPatchesCoverWhatTheViewCovers, 2)
     closeMesh(m);
 }
 
-// X100: where a large patch meets small ones nothing shines through, whatever the angle.
+// X100: no pixel shows the background where a large patch meets small ones, from any angle.
 TEST(ClosedRoomHasNoHoles, 2)
 {
     Dice dice = {1, 0};
@@ -165,7 +165,7 @@ TEST(EqualCornersGiveThatValueToAllPixels, 2)
     closeMesh(m);
 }
 
-// Where the middle of a pixel sees the closed cube.
+// Returns the point of the closed cube that the centre of a pixel sees.
 static vplVec3 seenFrom(const vplView* v, const vplGeometry* g, int x, int y)
 {
     const double across = ((x + 0.5) * 2 / v->width - 1) / v->scaleX,
@@ -178,9 +178,9 @@ static vplVec3 seenFrom(const vplView* v, const vplGeometry* g, int x, int y)
     return hit.position;
 }
 
-// Red, green and blue are x, y and z of what is seen: in perspective, also of patches that the near plane
-// cuts. Off by rounding, 8e-8 in the mean; at most 1.1e-4, where snapping to 1/256 pixel covers one whose
-// centre is outside.
+// Red, green and blue are the x, y and z of the visible point, which tests perspective interpolation, also
+// for patches that the near plane clips. Errors are rounding, 8e-8 on average; at most 1.1e-4, where snapping
+// to 1/256 pixel covers a pixel whose centre is outside.
 TEST(LinearValuesAreReproduced, 2)
 {
     Dice dice = {7, 0};
@@ -209,8 +209,7 @@ TEST(LinearValuesAreReproduced, 2)
     closeMesh(m);
 }
 
-// Values of `draw` at the middle of the picture, of a square of 2 by 2 patches that is seen straight from
-// `distance`.
+// Opens only the fronts of patches left of x = 0.
 static uint16_t leftOpen(const vplPatches* patches, int patch, int face)
 {
     const vplPatchNode* n = &patches->nodes[patches->patches[patch]];
@@ -232,7 +231,8 @@ static vplCameraDef lookAtOrigin(vplVec3 eye)
     return camera;
 }
 
-// The square [-1, 1]^2 at z = 0 that faces +z in four triangles about its middle, and a wall behind it.
+// Makes the square [-1, 1]^2 at z = 0 that faces +z, as four triangles around its centre, with a wall behind
+// it.
 static vplPatchMesh* screenMesh(vplContext* context, bool wall, OpenFcn* open)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -254,7 +254,7 @@ static uint16_t wallOpen(const vplPatches* patches, int patch, int face)
     return patch == patches->patchCount - 1 && face == 0 ? 0xffff : 0;
 }
 
-// What no light reaches is black, from both sides, and hides the bright wall behind it.
+// Unlit sides are drawn black, from both directions, and hide the bright wall behind them.
 TEST(DarkSidesHideWhatIsBehindThem, 1)
 {
     vplPatchMesh* m = screenMesh(context, true, wallOpen);
@@ -269,7 +269,7 @@ TEST(DarkSidesHideWhatIsBehindThem, 1)
     closeMesh(m);
 }
 
-// From the front 1, from behind 10.
+// The value is 1 seen from the front, 10 seen from behind.
 TEST(EachSideHasItsOwnValues, 1)
 {
     vplPatchMesh* m = screenMesh(context, false, allOpen);
@@ -296,8 +296,8 @@ TEST(EachSideHasItsOwnValues, 1)
     closeMesh(m);
 }
 
-// rho / pi times irradiance, each patch with its own: light of shared corners does not take colour along. And
-// it is added to what the picture held.
+// Each patch shows rho / pi times irradiance with its own rho: interpolated light at shared corners does not
+// carry colour to neighbours. The result is added to the picture's previous value.
 TEST(IrradianceIsReflectedAndAdded, 1)
 {
     vplPatchMesh* m = screenMesh(context, false, leftOpen);
@@ -318,7 +318,8 @@ TEST(IrradianceIsReflectedAndAdded, 1)
         assertNear((double)left[0], 2 + 8 * 0.5 / 3.14159265358979, 1e-6, "red", smooth);
         assertNear((double)left[1], 2 + 8 * 0.25 / 3.14159265358979, 1e-6, "green", smooth);
         assert_true(left[2] == 2 && out[0] == 2);
-        // The right half is no side: black, or as its material reflects what its corners have.
+        // The right half has no side: flat drawing adds nothing there, and interpolated drawing reflects its
+        // corners' irradiance with its material.
         assertNear((double)right[0], smooth ? 2 + 8 * 0.5 / 3.14159265358979 : 2, 1e-6, "right", smooth);
         free(values);
         free(corners);
@@ -327,8 +328,8 @@ TEST(IrradianceIsReflectedAndAdded, 1)
     closeMesh(m);
 }
 
-// Dark within a pixel of the lines between patches, the full value elsewhere; the cuts that join a hanging
-// vertex to a corner are no lines.
+// Outlines are dark within a pixel of the edges between patches, and the full value elsewhere; the cuts that
+// join a hanging vertex to a corner are not drawn.
 TEST(OutlinesAreAtEdgesOfPatches, 1)
 {
     vplPatchMesh* m = screenMesh(context, false, frontsOpen);
@@ -336,11 +337,11 @@ TEST(OutlinesAreAtEdgesOfPatches, 1)
     vplRgb* values = listOf(m->sides->count, (vplRgb){1, 1, 1});
     int dark[2] = {0, 0};
     for (int cut = 0; cut < 2; cut++) {
-        if (cut) { // the line from lower left to the middle is no edge
+        if (cut) { // the line from lower left to the centre is no edge
             uint8_t* edges = (uint8_t*)m->edges;
             for (int i = 0; i < 3 * m->triangleCount; i++) {
-                const vplVec3 a = vplPatchMesh_Corner(m, i / 3, i % 3),
-                              b = vplPatchMesh_Corner(m, i / 3, (i + 1) % 3);
+                const vplVec3 a = m->positions[m->indices[i]],
+                              b = m->positions[m->indices[i / 3 * 3 + (i + 1) % 3]];
                 if (a.x == a.y && a.x <= 0 && b.x == b.y && b.x <= 0) {
                     edges[i / 3] &= (uint8_t) ~(1u << i % 3);
                 }
@@ -362,12 +363,12 @@ TEST(OutlinesAreAtEdgesOfPatches, 1)
         closeCanvas(&c);
     }
     assert_int_equal(dark[0], 44);
-    assert_in_range(dark[1], 32, 34); // around the middle other edges are near
+    assert_in_range(dark[1], 32, 34); // near the centre other edges are close
     free(values);
     closeMesh(m);
 }
 
-// ---- borders
+// ---- extremes
 
 TEST(WrongDrawsAreRefused, 1)
 {
@@ -400,7 +401,7 @@ TEST(DrawsCanBeCancelled, 1)
     closeMesh(m);
 }
 
-// Nothing to draw is a picture, too.
+// A scene without triangles gives a valid picture.
 TEST(SceneWithoutTrianglesDrawsNothing, 1)
 {
     vplPatchMesh* m = meshOf(openSides(openPatches(buildGeometry(sceneOf(context, 0.5f)), 1, 1), frontsOpen));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The list of all that emits: powers against their integrals, particles against the light they stand for.
+// Tests of the list of emission sources: powers against integrals, particles against the light that they
+// represent.
 #include "scenes.h"
 
 #include "geometry/emission.h"
@@ -36,7 +37,7 @@ static vplEmitterDef emitterOf(vplEmitterType type, vplRgb intensity)
     def.type = type;
     def.intensity = intensity;
     def.position = (vplVec3){1, 2, 3};
-    def.direction = (vplVec3){1, -2, 2}; // of length 3
+    def.direction = (vplVec3){1, -2, 2}; // its length is 3
     return def;
 }
 
@@ -79,8 +80,8 @@ TEST_ALONE(PowersAreTheIntegralsOfTheirLight)
         emitters[i] = emitterOf(VPL_EMITTER_SPOT, light);
     }
     emitters[0].type = VPL_EMITTER_POINT;
-    emitters[2].innerAngle = emitters[2].outerAngle; // a hard edge
-    emitters[3].intensity = (vplRgb){0, 0, 0};       // no source at all
+    emitters[2].innerAngle = emitters[2].outerAngle; // a sharp edge
+    emitters[3].intensity = (vplRgb){0, 0, 0};       // not a source
     emitters[4].type = VPL_EMITTER_DIRECTIONAL;
     addAreaLight(&w, VPL_OBJECT_QUAD, (vplVec3){4, 5, 6}, (double[3]){1, 2, 3}, (vplVec3){2, 3, 1}, light);
     addAreaLight(&w, VPL_OBJECT_BOX, (vplVec3){-4, 5, 6}, (double[3]){3, 2, 1}, (vplVec3){1, 2, 3}, light);
@@ -118,7 +119,7 @@ TEST_ALONE(PowersAreTheIntegralsOfTheirLight)
     closeWorld(&w);
 }
 
-// Each source gets its share of the particles, and with the flux they carry all give back the power.
+// Each source gets its share of the particles, and their total flux is its power.
 TEST_ALONE(ParticlesShareThePowerAmongTheSources)
 {
     World w = openWorld();
@@ -171,7 +172,7 @@ TEST_ALONE(SpotParticlesFollowTheFalloff)
         }
         assertNear(shares[i], wanted, 0.003, "share", i);
     }
-    const float* axis = &w.emission->emitters[0].direction.x; // no azimuth is preferred
+    const float* axis = &w.emission->emitters[0].direction.x; // azimuth is uniform
     assertNear((double)mean.x, along * (double)axis[0], 3e-3, "x", 0);
     assertNear((double)mean.y, along * (double)axis[1], 3e-3, "y", 0);
     assertNear((double)mean.z, along * (double)axis[2], 3e-3, "z", 0);
@@ -206,7 +207,7 @@ TEST_ALONE(AreaLightParticlesLeaveTheFrontByTheCosine)
     closeWorld(&w);
 }
 
-// What lands on a floor is the sun's irradiance times the floor seen from the sun.
+// The flux on a floor is the directional light's irradiance times the floor's projected area.
 TEST_ALONE(SunParticlesFallEvenlyOnAllThereIs)
 {
     World w = openWorld();
@@ -224,7 +225,7 @@ TEST_ALONE(SunParticlesFallEvenlyOnAllThereIs)
             left += hit.position.x < 7 ? (double)p.flux.r / COUNT : 0;
         }
     }
-    const double wanted = 3 * 4 * 2.0 / 3; // the sun's direction has a cosine of 2/3
+    const double wanted = 3 * 4 * 2.0 / 3; // the cosine to the light's direction is 2/3
     assertNear(landed, wanted, 0.01 * wanted, "flux", 0);
     assertNear(left, wanted / 2, 0.015 * wanted, "flux on one half", 0);
     closeWorld(&w);
@@ -237,7 +238,7 @@ TEST_ALONE(AnyNumbersTakeASource)
     for (int i = 0; i < 4; i++) {
         emitters[i] = emitterOf(VPL_EMITTER_POINT, (vplRgb){i & 1 ? 1e15f : 1e-15f, 0, 0});
     }
-    emitters[3].intensity.r = 1e-15f; // weaker than the sum's last digit, and last
+    emitters[3].intensity.r = 1e-15f; // last in the list, and below one ulp of the sum
     freeze(&w, emitters, 4);
     static const double choices[] = {0, 1e-300, 0.5, 1 - 0x1p-53};
     static const float numbers[] = {0, 0.5f, 0x1.fffffep-1f};

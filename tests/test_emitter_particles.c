@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Particles of all kinds of emitters, and light of all kinds at once.
+// Tests of particles from all emitter types, and of scenes that combine all types.
 #include "emitter_scenes.h"
 
-// ---- all kinds of emitters at once
+// ---- all emitter types at once
 
 static void checkAccumulations(vplContext* context, int shadows, uint64_t wanted)
 {
@@ -102,7 +102,7 @@ static vplLightSet* simulate(const vplGeometry* g, int particles, vplParticleGeo
     return set;
 }
 
-// A closed cube of 2 m, reflectance 0.5, with area lights of one or two colours in it, turned any way.
+// Makes a closed cube of 2 m with one or two area lights of different colours in it, at various rotations.
 static vplScene* areaLightCube(vplContext* context, int areaLights, float rho)
 {
     vplScene* scene = sceneOf(context, rho);
@@ -120,9 +120,9 @@ static vplScene* areaLightCube(vplContext* context, int areaLights, float rho)
     return scene;
 }
 
-// All that area lights send out reaches a wall, and rho of it goes on: of the flux of the lights of step 0
-// the mean of the channels is exact for every single particle, the colour within what N choices of a source
-// leave open.
+// All light of the area lights reaches a wall, which reflects rho of it. The channels' mean flux of lights of
+// step 0 is exact for every single particle; the flux of a colour is random, because N particles choose their
+// sources.
 TEST(AreaLightsShootTheirPower, 2)
 {
     enum { N = 20000 };
@@ -162,7 +162,7 @@ TEST(AreaLightsShootTheirPower, 2)
     }
 }
 
-// Where all objects are boxes and quads, they are their own bounding boxes.
+// The bounding boxes of boxes and quads are the objects themselves.
 TEST(BoxesInsteadOfBoxesGiveTheSameLights, 2)
 {
     vplGeometry* g = buildGeometry(areaLightCube(context, 2, 0.5f));
@@ -184,7 +184,8 @@ TEST(BoxesInsteadOfBoxesGiveTheSameLights, 2)
     vplGeometry_Destroy(g);
 }
 
-// A ball is met at its box, all around; a ball that glows lets its own light out.
+// Particles hit a sphere at its bounding box, from all sides; a sphere that emits lets its own particles out
+// of the box.
 TEST(ParticlesStopAtTheBoxOfAMesh, 2)
 {
     for (int glows = 0; glows < 2; glows++) {
@@ -244,7 +245,7 @@ static double energyOf(const vplScene* scene, const vplRenderOptions* options)
     return sum;
 }
 
-// Virtual lights with shadows by rays and path tracing are two estimates of one picture. Four seeds of 512
+// Virtual lights with ray-traced shadows and path tracing estimate the same picture. Four seeds of 512
 // particles leave about 1 % of noise in the mean (tests/bench/energy.sh: larger pictures, more particles).
 TEST(EnergyIsThatOfPathTracing, 2, SLOW)
 {
@@ -267,7 +268,7 @@ TEST(EnergyIsThatOfPathTracing, 2, SLOW)
             sum += energyOf(scene, &o);
         }
         assertNear(sum / 4 / truth, 1, 0.025, scenes[i], i);
-        o.lights.shadows = VPL_LIGHT_SHADOWS_NONE; // light through boxes is seen
+        o.lights.shadows = VPL_LIGHT_SHADOWS_NONE; // shows light through boxes
         assert_true(energyOf(scene, &o) > 1.01 * sum / 4);
         vplScene_Destroy(scene);
     }

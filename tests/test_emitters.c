@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Spots, parallel light and area lights against formulas; the shadows of virtual lights; smooth surfaces.
+// Tests of spot, directional and area lights against formulas; shadows of virtual lights; smooth surfaces.
 #include "emitter_scenes.h"
 
 TEST(SpotAndSunAreAnalytic, 1)
 {
     enum { SIZE = 64 };
-    for (int which = 0; which < 4; which++) { // spot and sun, by maps and by rays
+    for (int which = 0; which < 4; which++) { // spot and directional light, each by maps and by rays
         const bool sun = which & 1;
         vplScene* scene = sceneOf(context, 0.5f);
         addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
@@ -41,19 +41,21 @@ TEST(SpotAndSunAreAnalytic, 1)
     }
 }
 
-// From a point to the rectangle [0, a] x [0, b] in a plane parallel to it at distance 1, the point below a
-// corner. Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-3.
+// Returns the form factor from a point to the rectangle [0, a] x [0, b] in a parallel plane at distance 1,
+// with the point below a corner. Source: Howell, A Catalog of Radiation Heat Transfer Configuration Factors,
+// B-3.
 static double cornerFactor(double a, double b)
 {
     const double p = sqrt(1 + a * a), q = sqrt(1 + b * b);
     return (a / p * atan(b / p) + b / q * atan(a / q)) / (2 * VPL_PI);
 }
 
-// An area light of 1 x 1 m, 1 m above the floor: the radiance of the floor is rho L F.
+// An area light of 1 x 1 m hangs 1 m above the floor; the floor's radiance is rho L F.
 TEST(AreaLightsConvergeToTheFormFactor, 1)
 {
     enum { SIZE = 8 };
-    // Largest relative error below the area light and 0.1 m around; it falls as 1 / count.
+    // Each case gives the largest relative error below the area light and within 0.1 m around it; it falls as
+    // 1 / count.
     const struct {
         int count;
         double error;
@@ -72,7 +74,7 @@ TEST(AreaLightsConvergeToTheFormFactor, 1)
         for (int i = 0; i < SIZE * SIZE; i++) {
             double x, z, factor = 0;
             floorPoint(i, SIZE, 0.5, 1.2, &x, &z);
-            for (int corner = 0; corner < 4; corner++) { // four rectangles with a corner above the point
+            for (int corner = 0; corner < 4; corner++) { // rectangles with a corner above the point
                 double a = 0.5 + (corner & 1 ? x : -x), b = 0.5 + (corner & 2 ? z : -z);
                 factor += copysign(1, a) * copysign(1, b) * cornerFactor(fabs(a), fabs(b));
             }
@@ -84,8 +86,8 @@ TEST(AreaLightsConvergeToTheFormFactor, 1)
     vplScene_Destroy(scene);
 }
 
-// Indirect light of the room: maps of 512 x 512 texels (as many as 6 of 209 x 209) are 0.1 % of it off, where
-// shadows stop 10 %.
+// Compares indirect light of the room. Maps of 512 x 512 texels (as many texels as 6 faces of 209 x 209)
+// differ from rays by 0.1 %; shadows remove 10 % of the light.
 TEST(RayAndMapShadowsAgree, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -115,11 +117,11 @@ TEST(RayAndMapShadowsAgree, 2)
     vplScene_Destroy(scene);
 }
 
-// ---- stages with lights given by hand
+// ---- scenes with lights made by hand
 
 enum { VIEW = 48 };
 
-// A picture of `geometry` from its scene's camera, by one virtual light with shadows by rays or a map.
+// Renders `geometry` from its scene's camera, with one virtual light whose shadows come from rays or a map.
 static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplShadeLight* light, bool map)
 {
     vplShadeDef def = {
@@ -136,7 +138,7 @@ static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplSh
     def.lightShadows = map ? maps->maps : NULL;
     vplImage* image;
     assert_int_equal(vplImage_Create(g->context, view->width, view->height, &image), VPL_SUCCESS);
-    if (vplShadeView(g, view, &def, NULL, NULL, image, NULL) != VPL_SUCCESS) {
+    if (vplShadeView(g, view, &def, image, NULL) != VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
     vplHemiMaps_Destroy(maps);
@@ -145,7 +147,7 @@ static vplImage* shadeOne(const vplGeometry* g, const vplView* view, const vplSh
 
 enum { BY_POINT, BY_SPOT, BY_SUN, BY_AREA_LIGHT, BY_VIRTUAL_LIGHT, LIGHT_KINDS };
 
-// Direct light of one source, above or wherever `place` is, shining towards `aim`; or of one virtual light
+// Renders direct light of one source at `place` that shines towards `aim`, or the light of one virtual light
 // there.
 static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool smooth, float blocker,
                          const vplCameraDef* camera, vplVec3 place, vplVec3 aim, bool map)
@@ -170,7 +172,7 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
         vplGeometry_Destroy(g);
         return image;
     }
-    if (kind == BY_AREA_LIGHT) { // so small that one light stands for it
+    if (kind == BY_AREA_LIGHT) { // so small that one virtual light represents it
         Shape areaLight = {0};
         vplVec3 t, b;
         vplTangentFrame(d, &t, &b);
@@ -202,8 +204,8 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     return image;
 }
 
-// A square of 1 m halfway between the light and the floor: nothing in its shadow, the unshadowed bits beside
-// it.
+// A square of 1 m hangs halfway between the light and the floor: pixels in its shadow are black, pixels
+// beside it have the bits of the unshadowed picture.
 TEST(RayShadowsAreExact, 1)
 {
     vplCameraDef camera = vplDefaultCameraDef();
@@ -219,7 +221,7 @@ TEST(RayShadowsAreExact, 1)
         for (int i = 0; i < VIEW * VIEW; i++) {
             double x, z;
             floorPoint(i, VIEW, (double)camera.eye.y, half, &x, &z);
-            const double share = kind == BY_SUN ? 0 : 0.5; // of the way to the light, where the square is
+            const double share = kind == BY_SUN ? 0 : 0.5; // the square's place on the way to the light
             const double across =
                 fmax(fabs(x + share * ((double)place.x - x)), fabs(z + share * ((double)place.z - z)));
             if (across < 0.5 - 1e-3) {
@@ -238,13 +240,14 @@ TEST(RayShadowsAreExact, 1)
 
 // ---- smooth surfaces
 
-// Light is received with the interpolated normal, but from the triangle's own side only, by every kind of
-// light.
+// Irradiance uses the interpolated normal, but only light from the triangle's own side counts, for every type
+// of light.
 TEST(SmoothTrianglesAreDarkFromBehind, 1)
 {
     vplCameraDef camera = vplDefaultCameraDef();
     camera.up = vplVec(0, 0, -1);
-    // In the plane y = 0, around (0, 0, 0.1); as its own normals the corners point up to 80 degrees away.
+    // The triangle lies in the plane y = 0, around (0, 0, 0.1); its corners, used as normals, lean up to 80
+    // degrees from the true one.
     Shape shape = {0};
     addTriangle(&shape, vplVec(-1, 0.2f, -1), vplVec(0, 0.2f, 1), vplVec(1, 0.2f, -1));
     for (int below = 0; below < 2; below++) {
@@ -252,7 +255,8 @@ TEST(SmoothTrianglesAreDarkFromBehind, 1)
         for (int kind = 0; kind < LIGHT_KINDS; kind++) {
             for (int map = 0; map < 2; map++) {
                 for (int behind = 0; behind < 2; behind++) {
-                    // 0.15 m off the plane: seen by normals that lean towards it, also where it is behind
+                    // The light is 0.15 m off the plane: normals that lean towards it see it even where it is
+                    // behind.
                     const float side = (below != behind) ? 0.05f : 0.35f;
                     const vplVec3 place = {1.5f, side, -1}, aim = {0, 0.2f, -0.2f};
                     vplImage* image = shadeBy(kind, context, &shape, true, 0, &camera, place, aim, map);
@@ -273,8 +277,8 @@ TEST(SmoothTrianglesAreDarkFromBehind, 1)
     freeShape(&shape);
 }
 
-// A roof of two triangles that share their ridge, and normals there. Across it the light goes on as it goes
-// on beside it; without normals it jumps.
+// Two triangles form a roof with shared normals at the ridge. With normals, radiance changes across the ridge
+// as it does beside it; without normals it jumps.
 TEST(SmoothMeshesShadeWithoutSeams, 1)
 {
     const vplVec3 corners[4] = {{0, 0, -1}, {0, 0, 1}, {-1, -0.3f, 0}, {1, -0.3f, 0}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// EXR pictures: written and read back, and files put together here byte by byte from the format's description
-// ("The OpenEXR File Layout"), so that the reader is checked by more than our own writer.
+// Tests of EXR pictures: they are written and read back, and the reader also gets files that the tests
+// assemble byte by byte from the format's description ("The OpenEXR File Layout"), so that it does not depend
+// on our own writer.
 #include "test.h"
 
 #include <stdlib.h>
@@ -8,14 +9,14 @@
 
 enum { UINT = 0, HALF = 1, FLOAT = 2 };
 
-// A picture without compression: what a test wants of it.
+// The parameters of an uncompressed EXR file.
 typedef struct Recipe {
     const char* channels; // one letter each, in alphabetical order
     int type;
     int x, y, width, height; // data window
     int sampling;
-    uint32_t flags;         // of the version field: 0x200 is tiled
-    const uint32_t* values; // bits of a value by channel; pixels add nothing to it
+    uint32_t flags;         // of the version field: 0x200 means tiled
+    const uint32_t* values; // bits of one value per channel; each pixel adds 0
 } Recipe;
 
 typedef struct File {
@@ -133,7 +134,7 @@ static bool hasExr(void)
 
 static const uint32_t ONES[4] = {0x3f800000, 0x3f800000, 0x3f800000, 0x3f800000};
 
-// Where OpenEXR is not built in, both directions say so, and nothing is written.
+// Without OpenEXR, reading and writing are refused with a message, and no file is written.
 TEST(WithoutOpenExrASentenceSaysSo, 1)
 {
     vplImage *image = NULL, *back = NULL;
@@ -154,7 +155,7 @@ TEST(WithoutOpenExrASentenceSaysSo, 1)
     vplImage_Destroy(back);
 }
 
-// Sizes around 16 rows, of which ZIP makes one chunk.
+// The sizes surround 16 rows, the chunk height of ZIP compression.
 TEST(ExrKeepsEveryBit, 1)
 {
     static const int sizes[][2] = {{1, 1}, {13, 7}, {5, 16}, {40, 17}, {3, 100}, {200, 33}};
@@ -198,8 +199,8 @@ TEST(HalfFloatGreyAndFurtherChannelsAreRead, 1)
         {{"BGR", HALF, 0, 0, 5, 3, 1, 0, halves}, 65504, -2, 0.5f},
         {{"BGR", HALF, 0, 0, 5, 3, 1, 0, tiny}, 1, 0, 0x1p-24f},
         {{"BGR", FLOAT, 0, 0, 7, 4, 1, 0, floats}, 42, -2, 0.5f},
-        {{"BGR", FLOAT, -3, -20, 7, 4, 1, 0, floats}, 42, -2, 0.5f}, // the data window may begin anywhere
-        {{"ABGRZ", FLOAT, 10, 100, 1, 9, 1, 0, more}, 42, -2, 0.5f}, // alpha and depth are left out
+        {{"BGR", FLOAT, -3, -20, 7, 4, 1, 0, floats}, 42, -2, 0.5f}, // the data window may start anywhere
+        {{"ABGRZ", FLOAT, 10, 100, 1, 9, 1, 0, more}, 42, -2, 0.5f}, // alpha and depth are ignored
         {{"Y", HALF, 0, 0, 6, 2, 1, 0, halves}, 0.5f, 0.5f, 0.5f},
         {{"AY", FLOAT, 0, 0, 6, 2, 1, 0, more}, 0.5f, 0.5f, 0.5f},
     };
@@ -225,7 +226,7 @@ TEST(OtherKindsAreRefusedInASentence, 1)
         {{"Z", FLOAT, 0, 0, 4, 4, 1, 0, ONES}, "must be R, G and B, or Y"},
         {{"RY", FLOAT, 0, 0, 4, 4, 1, 0, ONES}, "must be R, G and B, or Y"},
         {{"BGR", FLOAT, 0, 0, 16, 16, 1, 0x200, ONES}, "tiled or deep"},
-        {{"BGR", FLOAT, 0, 0, 4, 4, 1, 0x1000, ONES}, "EXR picture"}, // says it has several parts
+        {{"BGR", FLOAT, 0, 0, 4, 4, 1, 0x1000, ONES}, "EXR picture"}, // claims to have several parts
     };
     for (size_t i = 0; hasExr() && i < sizeof cases / sizeof *cases; i++) {
         File f = build(cases[i].recipe);
@@ -239,7 +240,7 @@ TEST(OtherKindsAreRefusedInASentence, 1)
     }
 }
 
-// A header that asks for more than 16384 pixels a side.
+// A header that requests more than 16384 pixels per side is refused.
 TEST(TooLargePicturesAreRefused, 1)
 {
     File f = build((Recipe){"BGR", FLOAT, 0, 0, 4, 4, 1, 0, ONES});

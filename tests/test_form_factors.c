@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Form factors of all pairs of patches: tests/data/incentre_estimator.csv, closed boxes, what stands between,
-// X093-X095.
+// Tests of form factors between all pairs of patches: tests/data/incentre_estimator.csv, closed boxes,
+// occlusion, X093-X095.
 #include "patch_support.h"
 
 #include "base/hash.h"
@@ -44,7 +44,7 @@ static double sumOf(const vplFormFactors* f, int i)
     return sum;
 }
 
-// A_i F_ij = A_j F_ji, all between 0 and 1.
+// Asserts reciprocity, A_i F_ij = A_j F_ji, and factors between 0 and 1.
 static void assertReciprocal(const SidesFixture* s, const vplFormFactors* f)
 {
     for (int i = 0; i < f->count; i++) {
@@ -60,7 +60,7 @@ static void assertReciprocal(const SidesFixture* s, const vplFormFactors* f)
 
 // ---- one ray between incentres
 
-// By power iteration; a tenth of the vector is added so that it does not swing.
+// Returns the spectral radius by power iteration; adding a tenth of the vector prevents oscillation.
 static double spectralRadius(const vplFormFactors* f)
 {
     const size_t n = (size_t)f->count;
@@ -120,7 +120,7 @@ static void loadTriangles(const char* name, int count, vplVec3* corners)
     freeTable(&t);
 }
 
-// The lab's normals point the other way round; fronts are inside the room.
+// Reverses the winding: the lab's normals have the opposite sign; fronts are inside the room.
 static void turnTriangle(vplVec3* corners)
 {
     const vplVec3 swap = corners[1];
@@ -159,7 +159,7 @@ TEST(IncentresOfACubeAreThoseOfTheTable, 2)
     freeTable(&t);
 }
 
-// All sides of the report's box that face the room.
+// Returns all sides of the report's box that face the room.
 static vplPatchSides* sidesOfBox(const vplPatches* patches)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
@@ -191,7 +191,7 @@ TEST(IncentresOfTheReportsBoxAreThoseOfTheTable, 2)
 
 // ---- closed rooms
 
-// Measured: at most 0.0025, by three points for a side where pairs are not near.
+// Row sums err by at most 0.0025 as measured, with three points per side for pairs that are not near.
 TEST(ClosedBoxesClose, 2)
 {
     for (int rounds = 0; rounds <= 6; rounds++) {
@@ -228,7 +228,7 @@ TEST(NormalisedRowsSumToOneAndStayReciprocal, 2)
     closeFronts(&s);
 }
 
-// Sums that were too large come down, those that were not may only fall; `keep` changes nothing.
+// Row sums above 1 come down, the others may only decrease; `keep` changes nothing.
 TEST(ClampedRowsNeverSumToMoreThanOne, 1)
 {
     SidesFixture s;
@@ -253,9 +253,9 @@ TEST(ClampedRowsNeverSumToMoreThanOne, 1)
     closeFronts(&s);
 }
 
-// ---- what the estimators find
+// ---- the values of the estimators
 
-// Mean over seeds of the share that side 0 sends to side 1, and the standard error of it.
+// Returns the mean over seeds of the form factor from side 0 to side 1, and its standard error.
 static double meanOfSeeds(const SidesFixture* s, vplFormFactorDef def, int seeds, double* errorOut)
 {
     double sum = 0, squares = 0;
@@ -292,14 +292,14 @@ TEST(PairsOfPointsFindTheIntegralWhateverTheirNumber, 1)
     }
     vplFormFactorDef def = vplDefaultFormFactorDef();
     vplFormFactors* f = create(&s, &def);
-    assert_int_equal(f->rays, 0); // nothing can stand between
-    // Points in the middles of quarters, for these: 0.4 %.
+    assert_int_equal(f->rays, 0); // no occluder
+    // Midpoints of the quarters as sample points err by 0.4 % here.
     assertNear(factorAt(f, 0, 1), wanted, 0.01 * wanted, "known", 0);
     vplFormFactors_Destroy(f);
     closeFronts(&s);
 }
 
-// A screen between the two: all of it, and a part that hides about a half.
+// An occluder between the two sides hides all of the factor, or about half of it.
 TEST(WhatStandsBetweenTakesItsShare, 1)
 {
     vplVec3 corners[9];
@@ -328,7 +328,7 @@ TEST(WhatStandsBetweenTakesItsShare, 1)
     assertNear(shares[1][1], shares[1][0], 0.005, "share", 1);
 }
 
-// Of a side whose cells at corner 0 are open, only that quarter takes part.
+// Only the quarter at corner 0 has open cells, so only that quarter exchanges light.
 TEST(ClosedCellsExchangeNothing, 1)
 {
     for (int near = 0; near < 2; near++) {
@@ -361,7 +361,7 @@ TEST(ClosedCellsExchangeNothing, 1)
 
 // ---- extremes
 
-// X095: two triangles with an edge in common and any angle between them, at any size.
+// X095: two triangles share an edge, at all angles and scales.
 TEST(TouchingAndCoplanarSidesAreNumbers, 1)
 {
     for (int degrees = 0; degrees <= 180; degrees += 10) {
@@ -385,7 +385,7 @@ TEST(TouchingAndCoplanarSidesAreNumbers, 1)
     }
 }
 
-// A box that is 2^20 times as large or as small has the same bits.
+// Form factors of a box scaled by 2^20 or 2^-20 have the same bits.
 TEST(FactorsDoNotDependOnTheSizeOfTheScene, 1)
 {
     uint64_t hashes[3];
@@ -402,7 +402,7 @@ TEST(FactorsDoNotDependOnTheSizeOfTheScene, 1)
     assert_true(hashes[0] == hashes[1] && hashes[2] == hashes[1]);
 }
 
-// ---- same bits, refusals
+// ---- determinism, refusals
 
 static uint64_t hashOfBox(vplContext* context)
 {

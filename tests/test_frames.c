@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Paths of cameras and emitters, and what frames hand on to each other: never anything that a picture shows.
+// Tests of paths of cameras and emitters, and of histories: data kept between frames never changes a picture.
 #include "scenes.h"
 
 #include "base/context.h"
@@ -53,7 +53,7 @@ TEST(PosesAreLinearBetweenKeysAndHeldBeyondThem, 1)
         assert_memory_equal(&pose.up, &declared.up, sizeof pose.up);
         assert_true(pose.eye.y == declared.eye.y && pose.near == declared.near && pose.far == declared.far);
     }
-    assert_true(poseCamera(scene, 0).eye.x == 0.1f); // keys are met exactly
+    assert_true(poseCamera(scene, 0).eye.x == 0.1f); // poses at keys are exact
     assert_true(poseCamera(scene, 10).eye.x == 2 && poseCamera(scene, -4).fovY == 0.5);
     vplScene_Destroy(scene);
 }
@@ -86,7 +86,7 @@ TEST(OneKeyIsAConstantAndNoKeyTheDeclaration, 1)
     int count = -1;
     assert_null(vplScene_GetEmitterPath(scene, 0, &count));
     assert_int_equal(count, 0);
-    for (int again = 0; again < 3; again++) { // a path replaces the one before
+    for (int again = 0; again < 3; again++) { // a new path replaces the old one
         assert_int_equal(vplScene_SetEmitterPath(scene, 0, &key, 1), VPL_SUCCESS);
         assert_non_null(vplScene_GetEmitterPath(scene, 0, &count));
         assert_int_equal(count, 1);
@@ -132,12 +132,12 @@ TEST(BadPathsAreRefusedAndChangeNothing, 1)
     vplScene_Destroy(scene);
 }
 
-// Each key is good, what is between is not: a sentence, and no picture.
+// Each key is valid, but the interpolated pose is not: the renderer logs a message and returns no picture.
 TEST(PosesThatDegenerateAreRefused, 1)
 {
     vplScene* scene = loadScene(context, "room.json");
     vplCameraKey keys[] = {cameraKey(scene, 0, 0, 0.5), cameraKey(scene, 2, 0, 0.5)};
-    keys[1].eye.z = -keys[0].eye.z; // through the target
+    keys[1].eye.z = -keys[0].eye.z; // the camera passes through the target
     assert_int_equal(vplScene_SetCameraPath(scene, 0, keys, 2), VPL_SUCCESS);
     vplRenderOptions options = vplDefaultRenderOptions();
     options.output.width = options.output.height = 8;
@@ -178,7 +178,7 @@ TEST(FilesSayWhatChangesAndTheRestIsAsDeclared, 1)
                 keys[0].fovY == camera->fovY);
     assert_true(keys[1].frame == 30 && keys[1].target.y == 2 && keys[1].up.y == 1);
     assertNear(keys[2].fovY, 36 * VPL_PI / 180, 1e-15, "fov_y", 2);
-    assert_true(keys[2].target.y == camera->target.y); // not that of the key before
+    assert_true(keys[2].target.y == camera->target.y); // not the value of the key before
     const vplEmitterKey* lights = vplScene_GetEmitterPath(scene, 0, &count);
     assert_int_equal(count, 2);
     assert_true(lights[0].position.x == -1 && lights[1].position.x == 1 && lights[1].direction.x == 0.5f);
@@ -237,7 +237,7 @@ static uint64_t hashOf(const vplScene* scene, const vplRenderOptions* options)
     return stats.imageHash;
 }
 
-// A scene without paths in which camera and light are declared as they are at a frame.
+// Makes a scene without paths whose camera and light are set to their poses at a frame.
 static vplScene* standingRoom(vplContext* context, double frame)
 {
     vplScene* moving = movingRoom(context);
@@ -285,7 +285,7 @@ TEST_ALONE(AHistoryChangesNoPicture, SLOW)
         vplScene* scene = movingRoom(context);
         vplHistory* history = NULL;
         assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
-        for (int k = 0; k < KINDS; k++) { // one history for all methods
+        for (int k = 0; k < KINDS; k++) { // all methods use one history
             for (int f = 0; f < 6; f++) {
                 vplRenderOptions options = optionsOf(&kinds[k]);
                 options.sequence.frame = frames[f];
@@ -316,7 +316,7 @@ TEST(AHistoryBuildsTheGeometryOnce, 1)
         hashOf(scene, &options);
         assert_true(vplContext_GetBytes(context) == held);
     }
-    vplLightSet* set = NULL; // what asks for lights alone uses it, too
+    vplLightSet* set = NULL; // vplMakeLights uses the history, too
     assert_int_equal(vplMakeLights(scene, &options, &set), VPL_SUCCESS);
     vplLightSet_Destroy(set);
     vplHistory_Destroy(history);
@@ -346,9 +346,9 @@ TEST_ALONE(AHistoryOfAnotherSceneIsRefused)
     refuseHistory(other, &options, sentence);
     refuseHistory(abroad, &options,
                   "vplRenderOptions.sequence.history was made with another context than the scene's");
-    hashOf(scene, &options); // still good
+    hashOf(scene, &options); // the history is still usable
     vplScene_SetCameraPath(scene, 0, NULL, 0);
-    hashOf(scene, &options); // how things move may change
+    hashOf(scene, &options); // paths may change between frames
     vplObjectDef object = vplDefaultObjectDef();
     assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
     refuseHistory(scene, &options, sentence);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Irradiance at the vertices of patches, gathered by rays.
+// Tests of irradiance at the vertices of patches, gathered by rays.
 #include "patch_support.h"
 
 #include "base/hash.h"
@@ -15,7 +15,7 @@ static void addQuad(Shape* shape, vplVec3 a, vplVec3 b, vplVec3 c, vplVec3 d)
     addTriangle(shape, a, c, d);
 }
 
-// A floor and a wall behind it, 2 m by 2 m each, whose fronts see each other.
+// Makes a floor and a wall behind it, 2 m by 2 m each, whose fronts face each other.
 static vplPatchMesh* openCorner(vplContext* context, float size)
 {
     Shape shape = {0};
@@ -31,7 +31,7 @@ static bool isWall(const vplPatchSide* side)
     return side->normal.z > 0.5f;
 }
 
-// The wall radiates 1 W/m^2.
+// Sets the radiosity of the wall to 1 W/m^2 in red, half of it in green, a quarter in blue.
 static vplRgb* lightWall(const vplPatchMesh* m)
 {
     vplRgb* values = calloc((size_t)m->sides->count, sizeof *values);
@@ -52,7 +52,7 @@ static vplRgb* gatherOf(const vplPatchMesh* m, const vplRgb* values, int rays, i
     return out;
 }
 
-// Of the lit wall, from a point of the floor.
+// Returns the form factor from a point of the floor to the lit wall.
 static double shareOf(const vplPatchMesh* m, vplVec3 point)
 {
     double sum = 0;
@@ -68,8 +68,8 @@ static bool isInside(vplVec3 p)
     return p.y == 0 && p.z > 0.01f && p.z < 1.99f && fabsf(p.x) < 0.99f;
 }
 
-// Within the floor vertices are where they are, and the rest is the closed form: with less error than that
-// many rays would have that know nothing of each other.
+// Inside the floor, the closed form gives a vertex' irradiance. The error must be smaller than that of as
+// many independent random rays.
 TEST(VerticesOfAFloorGetWhatAWallSendsThere, 2)
 {
     enum { RAYS = 256 };
@@ -86,20 +86,20 @@ TEST(VerticesOfAFloorGetWhatAWallSendsThere, 2)
             squares += error * error / (f * (1 - f) / RAYS);
             assertNear((double)here.g, 0.5 * (double)here.r, 1e-6, "green", v);
             assertNear((double)here.b, 0.25 * (double)here.r, 1e-6, "blue", v);
-            assert_true(e[2 * v + 1].r == 0); // nothing is behind a floor
+            assert_true(e[2 * v + 1].r == 0); // no light comes from below the floor
             count++;
         }
     }
     assert_true(count > 50);
     assert_true(sqrt(squares / count) < 0.5);
-    assert_int_equal(cast, (int64_t)RAYS * m->vertexCount); // fronts only
+    assert_int_equal(cast, (int64_t)RAYS * m->vertexCount); // only fronts cast rays
     free(e);
     free(values);
     closeMesh(m);
 }
 
-// A vertex between floor and wall belongs to both, and sees the other's light at its foot: nearly a half of
-// all it could. Means over the patches there know nothing of it.
+// A vertex where floor and wall meet belongs to both. At the foot of the wall, the floor receives nearly half
+// of all the light that it could. Means over the patches there do not show this.
 TEST(TheFootOfAWallIsLitByTheWall, 1)
 {
     vplPatchMesh* m = openCorner(context, 0.8f);
@@ -127,7 +127,7 @@ static uint16_t backsOpen(const vplPatches* patches, int patch, int face)
     return face == 1 ? 0xffff : 0;
 }
 
-// In a closed room all of whose patches radiate alike, every ray meets one.
+// In a closed room whose patches all have the same radiosity, every ray hits a patch.
 TEST(InAFurnaceEveryVertexGetsAll, 2)
 {
     Shape shape = gridBox(2);

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Rays against quads and boxes: tables of exact answers, then properties. Covers extremes X001 to X031.
+// Tests of rays against quads and boxes: tables of exact answers, then properties. Covers extremes X001 to
+// X031.
 #include "scenes.h"
 
 #include "math/vec.h"
 
-static const double UNIT = 0x1p-53;   // rounding unit of the arithmetic
-static const double RESULT = 0x1p-24; // and of the results
-static const double C = 1.5;          // what a plain implementation needs
+static const double UNIT = 0x1p-53;   // unit roundoff of the arithmetic
+static const double RESULT = 0x1p-24; // unit roundoff of the results
+static const double C = 1.5;          // the error constant of a plain implementation
 
 static void checkHit(const Table* t, int row, const vplHit* hit, double wantedT)
 {
     double ampT = number(t, row, "amp_t"), ampP = number(t, row, "amp_p");
     assertNear((double)hit->t, wantedT, C * UNIT * ampT + RESULT * wantedT + 1e-45, "t", row);
     vplVec3 p = vectorOf(t, row, "w");
-    // Positions go back through the model matrix, whose largest element scales the local error.
+    // Hit positions are transformed by the model matrix, whose largest element scales the local error.
     double size = 0;
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 4; j++) {
@@ -52,7 +53,8 @@ TEST(EveryRayQuadVerdictOfTheTable, 1)
         vplHit hit;
         bool found = vplRay_HitQuad(&ray, &placement, &hit);
         bool wanted = strcmp(status, "hit") == 0;
-        // t_overflows_float: a hit in real numbers, out of float's range: a stated miss (X017).
+        // t_overflows_float: the exact hit distance exceeds float's range; the documented result is a miss
+        // (X017).
         wanted = wanted && strcmp(cell(&t, row, "cat"), "t_overflows_float") != 0;
         if (found != wanted) {
             bool exact = number(&t, row, "exactarith") == 1;
@@ -141,7 +143,7 @@ TEST(EveryRayOfTheRoomMeetsTheObjectOfTheTable, 1)
     vplGeometry_Destroy(room);
 }
 
-// X003, X004: no scale is too small or too large for the inverse.
+// X003, X004: scales of any magnitude have a usable inverse.
 TEST(AnyUniformScaleGivesTheSameHit, 1)
 {
     const float scales[] = {1, 1e-13f, 1e-6f, 1e6f, 1e12f};
@@ -160,7 +162,7 @@ TEST(AnyUniformScaleGivesTheSameHit, 1)
     }
 }
 
-// X008, X001: what has no inverse is refused where it is made.
+// X008, X001: creation refuses matrices without an inverse.
 TEST(SingularAndNonFiniteMatricesAreRefused, 1)
 {
     vplPlacement placement;
@@ -179,7 +181,7 @@ TEST(SingularAndNonFiniteMatricesAreRefused, 1)
     }
 }
 
-// X029: floor and box bottom lie in one plane; the lower index is reported, from both sides.
+// X029: two surfaces lie in one plane; the lower object index is reported, from both sides.
 TEST(AmongEqualDistancesTheLowestObjectWins, 1)
 {
     vplScene* scene;
@@ -197,15 +199,15 @@ TEST(AmongEqualDistancesTheLowestObjectWins, 1)
     assert_true(vplGeometry_ClosestHit(geometry, &ray, &hit));
     assert_int_equal(hit.object, 0);
     ray = vplGeometry_Leave(geometry, &hit, ray.direction);
-    ray.origin.z = 2; // the others are at the same place
+    ray.origin.z = 2; // the other objects lie at the same place
     assert_true(vplGeometry_ClosestHit(geometry, &ray, &hit));
     assert_int_equal(hit.object, 1);
     vplGeometry_Destroy(geometry);
     vplScene_Destroy(scene);
 }
 
-// X022, X031: a particle that bounces inside a box meets its other faces, and one that leaves never comes
-// back.
+// X022, X031: a particle that bounces inside a box hits the box's other faces, and one that leaves never hits
+// it again.
 TEST(ABoxIsLeftOrCrossedFromItsOwnFace, 1)
 {
     for (uint64_t i = 0; i < 2000; i++) {
@@ -218,12 +220,12 @@ TEST(ABoxIsLeftOrCrossedFromItsOwnFace, 1)
                      (float)uniformAt(i, 5) - 0.5f};
         vplRay ray = {{1, 2, 3}, d, {0, 0}};
         vplHit out, next;
-        assert_true(vplRay_HitBox(&ray, &placement, VPL_FACE_NONE, &out)); // from the middle
+        assert_true(vplRay_HitBox(&ray, &placement, VPL_FACE_NONE, &out)); // from the centre outwards
         assert_true(vplDot(out.normal, d) > 0);
         ray.origin = out.position;
-        assert_false(vplRay_HitBox(&ray, &placement, out.face, &next)); // onwards: outside
+        assert_false(vplRay_HitBox(&ray, &placement, out.face, &next)); // continues outwards: no hit
         ray.direction = vplNegate(d);
-        assert_true(vplRay_HitBox(&ray, &placement, out.face, &next)); // back: across
+        assert_true(vplRay_HitBox(&ray, &placement, out.face, &next)); // goes back: hits the opposite side
         assert_int_not_equal(next.face, out.face);
         assertNear((double)next.t, 2 * (double)out.t, 1e-5 * (double)out.t + 1e-5, "t", (int)i);
     }
@@ -245,8 +247,8 @@ TEST(MeanReflectanceIsThatOfTheTable, 1)
     vplGeometry_Destroy(room);
 }
 
-// Triangles and ray tests describe the same surfaces: corners lie on the boxes, normals agree with winding,
-// also under mirroring matrices (X005).
+// Triangles and ray tests describe the same surfaces: corners lie on the boxes, and normals agree with the
+// winding, also under mirroring matrices (X005).
 TEST(TrianglesWindTowardsTheirNormals, 1)
 {
     for (int mirror = 0; mirror < 8; mirror++) {

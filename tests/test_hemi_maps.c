@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Shadow maps of half spaces: what a texel holds, where they agree with rays, and what they do at extremes.
+// Tests of hemi-octahedral shadow maps: the content of texels, agreement with rays, and extremes.
 #include "bench/band.h"
 #include "shadow_maps.h"
 
@@ -26,7 +26,7 @@ static float factorOf(const vplHemiMap* map, vplVec3 p, vplVec3 n)
     return factor[0];
 }
 
-// Where a texel's centre looks.
+// Returns the direction of a texel's centre.
 static vplVec3 directionOf(const vplHemiMap* map, int column, int row)
 {
     const float u = (float)(2 * column + 1) / (float)map->size - 1;
@@ -44,7 +44,7 @@ TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
         for (int light = 0; light < 40; light++) {
             vplHit hit;
             const vplHemiMapPlace place = rollPlace(g, &dice, &hit);
-            const int size = 1 + light; // whole blocks and parts of them
+            const int size = 1 + light; // sizes that are multiples of a block, and sizes that are not
             vplHemiMaps* maps = drawMaps(g, size, &place, 1);
             const vplHemiMap* map = &maps->maps[0];
             const vplVec3 from[] = {map->position, map->right, map->up};
@@ -52,7 +52,7 @@ TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
                 const vplVec3 d = directionOf(map, i % size, i / size);
                 const float stored =
                     map->texels[vplHemiMap_Place(vplHemiMap_Blocks(size), i % size, i / size)];
-                // Along the horizon the light's own surface is met or not, as rounding wants.
+                // At the horizon, rounding decides whether the ray hits the light's own surface.
                 if (vplDot(d, map->forward) > 1e-3f && !holdsRay(g, from, d, stored)) {
                     fail_msg("scene %d, light %d, texel %d of %d^2: 1/t is %.9g", which, light, i, size,
                              (double)stored);
@@ -64,8 +64,8 @@ TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
     }
 }
 
-// Nothing in a convex room hides one wall from another: not the surface that a light lies on, nor those that
-// meet it in an edge or a corner, wherever the room is.
+// In a convex room no wall occludes another, at any position of the room: neither the surface that the light
+// lies on, nor surfaces that share an edge or a corner with it.
 TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
 {
     static const vplVec3 offsets[] = {{0, 0, 0}, {1, 1, 1}, {-1, 1, 0}, {300, -20, 7}};
@@ -91,10 +91,10 @@ TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
                 const vplHemiMapPlace p = rollPlace(g, &dice, &hit);
                 const vplVec3 local = vplSub(p.position, offsets[o]),
                               way = vplSub(place.position, p.position);
-                // Two coordinates near 1: by an edge, where the map is in its band. A light in the point's
-                // own plane lights nothing.
+                // Two coordinates near 1 mean that the point lies at an edge, within the map's band. A light
+                // in the plane of the point does not light it.
                 float band, footprint;
-                band = vplHemiMap_Band(&maps->maps[0], p.position, p.normal, &footprint);
+                band = hemiMapBand(&maps->maps[0], p.position, p.normal, &footprint);
                 const int close =
                     (fabsf(local.x) > 1 - band) + (fabsf(local.y) > 1 - band) + (fabsf(local.z) > 1 - band);
                 if (vplDot(way, p.normal) > 1e-3f && vplDot(way, n) < -1e-3f) {
@@ -122,12 +122,12 @@ TEST(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot, 1)
         assert_true(factorOf(&maps->maps[0], p, vplNormalize(vplSub(place.position, p))) == 0);
         assert_true(factorOf(&maps->maps[0], vplVec(p.x, -p.y, p.z), vplVec(0, 1, 0)) == 1);
     }
-    // The light itself: no number that is none.
+    // The light's own position must give a number, not NaN.
     const float self = factorOf(&maps->maps[0], maps->maps[0].position, vplVec(0, -1, 0));
     assert_true(self == 0 || self == 1);
     vplHemiMaps_Destroy(maps);
     vplGeometry_Destroy(g);
-    // Nothing at all.
+    // An empty scene gives an empty map.
     g = buildGeometry(sceneOf(context, 0.5f));
     maps = drawMaps(g, 1, &place, 1);
     assert_true(maps->maps[0].texels[0] == 0);
@@ -135,7 +135,7 @@ TEST(AnEmptyHalfSpaceIsLitAndWhatLiesBehindIsNot, 1)
     vplGeometry_Destroy(g);
 }
 
-// One texel looks straight up.
+// The map's single texel looks straight up.
 TEST(AMapOfOneTexelKnowsWhatIsStraightAbove, 1)
 {
     for (int side = -1; side <= 1; side += 2) {

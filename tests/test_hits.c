@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a hit says, and where a ray goes that leaves it: meshes, boxes and quads in any placement.
+// Tests of hit records and of rays that leave a hit: meshes, boxes and quads with arbitrary transforms.
 #include "scenes.h"
 #include "shapes.h"
 
@@ -7,7 +7,7 @@
 #include "math/matrix.h"
 #include "math/vec.h"
 
-// Scaled, rotated, sheared and mirrored by chance, or by none of them.
+// Returns a transform that randomly scales, rotates, shears and mirrors, or leaves some of these out.
 static vplMat4 rollTransform(Dice* dice, bool shear)
 {
     const double rotate[3] = {roll(dice, -3, 3), roll(dice, -3, 3), roll(dice, -3, 3)};
@@ -33,9 +33,9 @@ static vplGeometry* oneObject(vplContext* context, vplObjectType type, const vpl
     return buildGeometry(scene);
 }
 
-// A direction on the given side of a normal, one in four close to the plane: outward 1e-4 off it, inward
-// 1e-2. A hit is off its plane by rounding, and at an edge a ray that goes in more slowly than that passes
-// outside.
+// Returns a direction on the given side of a plane. One in four is close to the plane: 1e-4 off it outwards,
+// 1e-2 off it inwards. Inward ones cannot be closer: a hit is off its plane by rounding, and near an edge
+// such a ray would pass outside.
 static vplVec3 rollSide(Dice* dice, vplVec3 normal, bool outward)
 {
     const vplVec3 d = rollUnit(dice);
@@ -46,7 +46,7 @@ static vplVec3 rollSide(Dice* dice, vplVec3 normal, bool outward)
     return cosine * wanted > 0 ? d : vplSub(d, vplScale(2 * cosine, normal));
 }
 
-// From inside or outside onto a convex body around `centre`, then on from there to either side.
+// Casts rays from inside or outside onto a convex body around `centre`, and from each hit on to either side.
 static void checkConvex(const vplGeometry* g, vplVec3 centre, float size, Dice* dice, int row)
 {
     for (int i = 0; i < 1000; i++) {
@@ -117,13 +117,13 @@ TEST(RaysLeaveBoxesAndQuads, 1)
     }
 }
 
-// Six quads around a room: who leaves one of them meets another, in the corners too.
+// Six quads form a room: a ray that leaves one hits another, in the corners, too.
 TEST(WallsOfARoomAreLeftForOtherWalls, 1)
 {
     vplGeometry* g = closedCube(context, 0.5f);
     Dice dice = {3, 0};
     for (int i = 0; i < 20000; i++) {
-        vplVec3 target = rollVec(&dice, 1); // towards a corner, an edge, or anywhere
+        vplVec3 target = rollVec(&dice, 1); // towards a corner, an edge, or any point
         target.x = i % 3 == 0 ? copysignf(1 - 1e-5f, target.x) : target.x;
         target.y = i % 3 <= 1 ? copysignf(1 - 1e-5f, target.y) : target.y;
         target.z = copysignf(1, target.z);
@@ -140,8 +140,8 @@ TEST(WallsOfARoomAreLeftForOtherWalls, 1)
     vplGeometry_Destroy(g);
 }
 
-// Triangles find the face, the shape itself says where: the very bits of vplRay_HitQuad and vplRay_HitBox.
-// Only at edges, where rounding decides, could one miss what the other hits: none of these rays comes that
+// Triangles find the face, and the analytic shape gives the hit point: the bits are those of vplRay_HitQuad
+// and vplRay_HitBox. The two could disagree on hit or miss only at edges, by rounding; no ray here comes that
 // near.
 TEST(BoxesAndQuadsAreHitToTheLastDigit, 1)
 {
@@ -179,8 +179,8 @@ TEST(BoxesAndQuadsAreHitToTheLastDigit, 1)
 TEST(SmoothNormalsAreInterpolated, 1)
 {
     const vplVec3 corners[3] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
-    const vplVec3 normals[3] = {{0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}, {0, 0, 5}}; // any length
-    for (int back = 0; back < 2; back++) { // normals that look the other way are turned
+    const vplVec3 normals[3] = {{0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}, {0, 0, 5}}; // of any length
+    for (int back = 0; back < 2; back++) { // normals that point to the other side are flipped
         vplVec3 given[3];
         for (int i = 0; i < 3; i++) {
             given[i] = vplScale(back ? -1 : 1, normals[i]);
@@ -215,7 +215,7 @@ TEST(SmoothNormalsAreInterpolated, 1)
     }
 }
 
-// A quad made of triangles keeps its front where a quad has it, mirrored or not.
+// The front of a quad made of triangles is where that of an analytic quad is, mirrored or not.
 TEST(TheFrontOfAMirroredMeshStaysTheFront, 1)
 {
     for (int i = 0; i < 32; i++) {
@@ -255,9 +255,9 @@ TEST(TheFrontOfAMirroredMeshStaysTheFront, 1)
     }
 }
 
-// ---- boxes instead of meshes
+// ---- bounding boxes instead of meshes
 
-// A box given as triangles is its own bounding box; quads stay quads.
+// The bounding box of a box made of triangles is the box itself; quads stay quads.
 TEST(AMeshIsMetAtItsBox, 1)
 {
     int hits = 0;
@@ -295,7 +295,8 @@ TEST(AMeshIsMetAtItsBox, 1)
     assert_true(hits > 5000);
 }
 
-// Points of a triangle stay as they are; others go to where their weights are at least 2^-16.
+// Points of a triangle stay unchanged; other points move to where their barycentric weights are at least
+// 2^-16.
 TEST(PointsBesideATriangleAreMovedInside, 1)
 {
     int moved = 0;
@@ -315,7 +316,7 @@ TEST(PointsBesideATriangleAreMovedInside, 1)
         if (was) {
             assert_true(memcmp(&inside, &point, sizeof point) == 0);
         }
-        // The weights of what came back, from areas; the rounding of a point on a sliver shows in them.
+        // The barycentric weights of the result, from areas. On slivers they show the rounding of the point.
         const double area = (double)vplLength(vplCross(u, v));
         const vplVec3 r = vplSub(inside, p[0]), n = vplScale((float)(1 / (area * area)), vplCross(u, v));
         const double wb = (double)vplDot(vplCross(r, v), n), wc = (double)vplDot(vplCross(u, r), n);

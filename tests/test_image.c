@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures: files, tone, comparison. Covers extremes X109 to X112.
+// Tests of pictures: files, tone mapping, comparison. Covers extremes X109 to X112.
 #include "test.h"
 
 #include "image/srgb.h"
@@ -37,7 +37,7 @@ TEST_ALONE(SrgbIsThatOfTheTables)
     for (int row = 0; row + 1 < t.rows; row++) { // the last row is a remark
         float linear = (float)number(&t, row, "linear");
         assertNear((double)vplSrgb_Encode(linear), number(&t, row, "encoded_clamped"), 2e-7, "encode", row);
-        // One row lies 2e-8 below a threshold, which a float cannot.
+        // One row lies 2e-8 below a rounding threshold, closer than a float can represent.
         double scaled = 255 * number(&t, row, "encoded_clamped");
         if (fabs(scaled - floor(scaled) - 0.5) > 1e-5) {
             assert_int_equal(vplSrgb_Code(linear), (int)number(&t, row, "code8"));
@@ -80,8 +80,8 @@ TEST(ReinhardIsThatOfTheTable, 1)
         int count = parseList(cell(&t, row, "luminances"), in);
         for (int kind = 0; kind < 2; kind++) {
             const char* column = kind ? "Ld_white=max" : "Ld_simple";
-            // Where the geometric mean is 0 the formula divides by 0: the table is empty, black stays black
-            // and no number is not finite (X109).
+            // If the geometric mean is 0, the formula divides by 0: the table's cell is empty, black stays
+            // black and all results are finite (X109).
             bool defined =
                 !isEmpty(&t, row, column) && parseList(cell(&t, row, column), kind ? white : simple) == count;
             vplImage* image;
@@ -110,7 +110,8 @@ TEST(ReinhardKeepsChromaticityAsInTheTable, 1)
 {
     Table t = loadTable("reinhard_rgb.csv");
     for (int row = 0; row < t.rows; row++) {
-        // One pixel is its own mean, so the key sets the scaled luminance: a / L_avg * Y = key.
+        // A picture of one pixel has that pixel's luminance as its mean, so the key is the scaled luminance:
+        // a / L_avg * Y = key.
         double scaled = number(&t, row, "a_over_Lavg") * number(&t, row, "Y_709");
         if (!(scaled > 0 && scaled <= 1)) {
             continue;
@@ -135,12 +136,11 @@ TEST(ReinhardKeepsChromaticityAsInTheTable, 1)
     freeTable(&t);
 }
 
-// X110: one bad pixel must not blacken the others.
-// What shows nothing leaves the rest as if it were not there; by default it counts, as published.
+// With skipBlack the background does not affect the other pixels; by default it counts, as published.
 TEST(ReinhardCanLeaveBlackOut, 1)
 {
     float mapped[3] = {0, 0, 0};
-    for (int way = 0; way < 3; way++) { // a grey picture alone, then beside as much black: left out, counted
+    for (int way = 0; way < 3; way++) { // grey alone, with as much black left out, with as much black counted
         vplImage* image;
         assert_int_equal(vplImage_Create(context, way > 0 ? 8 : 4, 2, &image), VPL_SUCCESS);
         for (int y = 0; y < 2; y++) {
@@ -160,6 +160,7 @@ TEST(ReinhardCanLeaveBlackOut, 1)
     assert_true(mapped[2] > 0.9f);
 }
 
+// X110: one bad pixel must not blacken the others.
 TEST(ReinhardIgnoresPixelsThatAreNotFinite, 1)
 {
     const float bad[] = {NAN, INFINITY, -INFINITY};
@@ -331,7 +332,7 @@ TEST(HashSeesEveryBitAndTheShape, 1)
     vplImage_Destroy(b);
 }
 
-// Around every place where the code changes, and at values that are no light.
+// Tests values around every threshold between codes, and values that are not valid light.
 TEST_ALONE(CodesByTableAreThoseOfTheFormula)
 {
     vplSrgbTable table;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Interleaved shading against deferred shading and against its definition, written out pixel by pixel.
+// Tests of interleaved shading against deferred shading and against its definition, evaluated pixel by pixel.
 #include "stage.h"
 
 #include "math/vec.h"
@@ -18,8 +18,8 @@ static bool oneSurface(const PixelSample* a, const PixelSample* b)
     return b->w > 0 && cosine >= 0.9 && fabs(apart) <= 0.01 * a->w;
 }
 
-// The definition: pictures of the lights of each class alone, of which each pixel gives the one of its own
-// class.
+// The definition: for each class, renders a picture with the lights of that class alone. A pixel's own value
+// comes from the picture of its own class.
 static vplImage** classPictures(const vplGeometry* g, const vplView* view, const vplShadeLight* lights,
                                 int count, int side)
 {
@@ -37,8 +37,9 @@ static vplImage** classPictures(const vplGeometry* g, const vplView* view, const
     return pictures;
 }
 
-// Weights fall from K in the middle to 1 at K - 1 pixels from it. Of a row those pixels count that lie on the
-// surface of its pixel in the middle's column, of rows those whose pixel there lies on that of the middle.
+// The filter's weights fall from K at the centre to 1 at K - 1 pixels from it. The filter is separable:
+// within a row, pixels count that lie on the surface of the row's pixel in the centre column; rows count
+// whose pixel in that column lies on the surface of the centre.
 static double expected(vplImage** pictures, const PixelSample* samples, int x, int y, int side, int channel)
 {
     const int width = pictures[0]->width, height = pictures[0]->height;
@@ -82,8 +83,8 @@ static void checkDefinition(const vplGeometry* g, int width, int height, int sid
     free(lights);
 }
 
-// Sides that divide tiles and such that do not; sizes likewise; fewer lights than classes, and more than a
-// group.
+// Covers sides and picture sizes that divide tiles and ones that do not, fewer lights than classes, and more
+// lights than a group.
 TEST(EveryPixelIsThatOfTheDefinition, 2, SLOW)
 {
     vplGeometry* g = stage(context);
@@ -95,8 +96,8 @@ TEST(EveryPixelIsThatOfTheDefinition, 2, SLOW)
     vplGeometry_Destroy(g);
 }
 
-// Away from the picture's border every light counts exactly once, and what is linear over the window keeps
-// its value: lights 2 km above a floor are, to a float.
+// Away from the picture's border every light counts exactly once, and the filter preserves values that are
+// linear over the window, as those of lights 2 km above a floor are, to float precision.
 TEST(FarLightsOnAFloorAreThoseOfDeferredShading, 2)
 {
     enum { COUNT = 9 * 256, WIDTH = 100, HEIGHT = 80 };
@@ -128,15 +129,16 @@ TEST(FarLightsOnAFloorAreThoseOfDeferredShading, 2)
     vplGeometry_Destroy(g);
 }
 
-// A wall whose lights all lie in its plane gets exactly nothing, however bright the floor that it stands on.
+// All lights lie in the plane of a wall, which therefore gets exactly no light, however bright the floor
+// below it is.
 TEST(NoLightLeaksOverAnEdge, 2)
 {
-    enum { SIZE = 96, COUNT = 300 }; // each of 256 classes has one
+    enum { SIZE = 96, COUNT = 300 }; // one or two lights in each of 256 classes
     vplGeometry* g = stage(context);
     const vplView view = stageView(vplVec(0, 2, 5), SIZE, SIZE);
     vplShadeLight* lights = rollLights(COUNT, 3);
     for (int i = 0; i < COUNT; i++) {
-        lights[i].pz = -2.5f; // behind the wall, above the floor
+        lights[i].pz = -2.5f; // in the wall's plane, above the floor
     }
     vplShadeDef def = stageDef(lights, COUNT, 0);
     def.output = VPL_OUTPUT_NORMALS;
@@ -177,7 +179,7 @@ static vplRenderOptions optionsOf(int side)
     return o;
 }
 
-// A room with a smooth ball, so that normals and planes differ.
+// Makes a room with a smooth sphere, whose shading normals differ from its geometric normals.
 static vplScene* ballRoom(vplContext* context)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -229,8 +231,9 @@ TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)
     }
 }
 
-// 512 lights and more in the room, with each kind of shadow fewer: the same energy, and a bounded
-// error. Without shadows it is 6, 10 and 14 %, at 1920 x 1080 0.9, 2.1 and 4.4 % (edges count less there).
+// Tests 512 lights or more in the room, fewer with each kind of shadow: the energy must be the same, and the
+// error bounded. Without shadows the error is 6, 10 and 14 %, at 1920 x 1080 0.9, 2.1 and 4.4 % (edges are a
+// smaller part there).
 TEST(IndirectLightKeepsItsEnergy, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -275,7 +278,7 @@ TEST(SizesOfBlocksOutOfRangeAreRefused, 1)
     for (int i = 0; i < 3; i++) {
         vplShadeDef def = stageDef(NULL, 0, 4);
         def.interleave = wrong[i];
-        assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_INVALID_ARGUMENT);
+        assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_INVALID_ARGUMENT);
         assert_true(strstr(takeMessage(), "vplShadeDef.interleave is ") != NULL);
     }
     vplImage_Destroy(image);

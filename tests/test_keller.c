@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Keller's Instant Radiosity against tables and closed forms: counts, weights, what closed rooms glow with,
-// and how emitters share the particles.
+// Tests of Keller's Instant Radiosity against tables and closed forms: counts, weights, radiance in closed
+// rooms, and the distribution of particles over emitters.
 #include "shapes.h"
 
 #include "math/vec.h"
@@ -17,7 +17,7 @@ static int addGlow(vplScene* scene, float rho, float emission)
     return index;
 }
 
-// A one-sided area light that looks down.
+// Adds a one-sided area light that faces down.
 static void addAreaLight(vplScene* scene, vplVec3 centre, float size, float emission)
 {
     vplObjectDef object = vplDefaultObjectDef();
@@ -36,7 +36,7 @@ static void addCamera(vplScene* scene)
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
 }
 
-// The cube [-1, 1]^3 with an area light of half its width below its ceiling.
+// Makes the cube [-1, 1]^3 with an area light of half its width below its ceiling.
 static vplScene* areaLightRoom(vplContext* context, float rho)
 {
     vplScene* scene = closedCubeScene(context, rho, 0);
@@ -61,8 +61,8 @@ static vplLightSet* simulate(const vplGeometry* geometry, vplParticleDef def)
     return set;
 }
 
-// counts_totals.csv: N lights on the emitter, then floor(rho N), floor(rho^2 N) and so on, each after one
-// more ray: 10 particles at rho = 0.5 leave 18 lights by 8 rays.
+// counts_totals.csv: N lights on the emitter, then floor(rho N), floor(rho^2 N) and so on, each step after
+// one more ray: 10 particles at rho = 0.5 leave 18 lights and cast 8 rays.
 TEST(CountsAndRaysAreThoseOfTheTable, 2)
 {
     vplGeometry* room = buildGeometry(areaLightRoom(context, 0.5f));
@@ -92,8 +92,8 @@ TEST(CountsAndRaysAreThoseOfTheTable, 2)
     vplGeometry_Destroy(room);
 }
 
-// vpl_weights.csv: N/M_k, and the lights of step k carry the area light's power times rho^k (documented:
-// (rho/pi)^k).
+// vpl_weights.csv: the weights are N/M_k, and the lights of step k carry the area light's power times rho^k
+// (documented: (rho/pi)^k).
 TEST(FluxOfEachStepIsThatOfTheTable, 2)
 {
     Table t = loadTable("vpl_weights.csv");
@@ -122,7 +122,7 @@ TEST(FluxOfEachStepIsThatOfTheTable, 2)
     freeTable(&t);
 }
 
-// A sphere of radius 1 that glows inwards with radiance 1.
+// Makes a sphere of radius 1 that emits radiance 1 inwards.
 static vplGeometry* glowingSphere(vplContext* context, float rho)
 {
     vplScene* scene;
@@ -140,8 +140,8 @@ static vplGeometry* glowingSphere(vplContext* context, float rho)
     return buildGeometry(scene);
 }
 
-// The red irradiance at a point of the unit sphere, of lights moved onto it: each gives a quarter of its
-// intensity.
+// Returns the red irradiance at a point of the unit sphere from lights moved onto the sphere: each
+// contributes a quarter of its intensity.
 static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
 {
     const vplVec3 at = vplNormalize(vplVec(0.3f, -0.5f, 0.8f));
@@ -158,16 +158,16 @@ static double irradianceOnSphere(vplContext* context, const vplLightSet* set)
         const vplVec3 d = vplNormalize(set->lights[i].position);
         float e[3][VPL_LANES] = {{0}};
         lights[i] = (vplShadeLight){d.x, d.y, d.z, -d.x, -d.y, -d.z, lights[i].r, lights[i].g, lights[i].b};
-        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &surface, &lights[i], 1, e);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0}, &surface, &lights[i], 1, e);
         sum += (double)e[0][0];
     }
     free(lights);
     return sum;
 }
 
-// estimator_factors.csv, "Keller furnace": walls that emit Le and reflect rho glow with Le / (1 - rho); as
-// printed, with Le (1 + rho / (1 - rho/pi)). On a sphere any light gives any point the same, so that the sum
-// is exact but for the steps that floor(rho^j N) = 0 cuts off.
+// estimator_factors.csv, "Keller furnace": walls that emit Le and reflect rho have radiance Le / (1 - rho);
+// as printed, Le (1 + rho / (1 - rho/pi)). On a sphere a light has the same effect on every point, so the sum
+// is exact apart from the steps that floor(rho^j N) = 0 cuts off.
 TEST_ALONE(ClosedRoomsGlowAsTheFormulasSay)
 {
     static const struct {
@@ -194,8 +194,8 @@ TEST_ALONE(ClosedRoomsGlowAsTheFormulasSay)
     }
 }
 
-// Area light, point, spot and sun get particles by power. Where they start from no surface, the light is the
-// emitter.
+// Area, point, spot and directional lights get particles in proportion to power. If a particle starts from no
+// surface, its first virtual light is at the emitter.
 TEST(EmittersOfAllKindsShareByPower, 2)
 {
     vplScene* scene = areaLightRoom(context, 0.5f);
@@ -235,7 +235,7 @@ TEST(EmittersOfAllKindsShareByPower, 2)
     vplGeometry_Destroy(room);
 }
 
-// Passes go on where the last ended: two of N particles are the first 2 N of the sequence.
+// Later passes continue the sequence: two passes of N particles are the first 2 N of the sequence.
 TEST(LaterPassesGoOnWithTheSequence, 1)
 {
     vplGeometry* room = buildGeometry(areaLightRoom(context, 0.5f));
@@ -251,7 +251,7 @@ TEST(LaterPassesGoOnWithTheSequence, 1)
         for (int i = 0; i < N; i++) {
             same += memcmp(&all->lights[N + i].position, &second->lights[i].position, sizeof(vplVec3)) == 0;
         }
-        // Hammersley points are a set of N: another N are shifted.
+        // A Hammersley set depends on N: another pass is the same set, shifted.
         assert_int_equal(same, sampler == VPL_SAMPLER_HAMMERSLEY ? 0 : N);
         vplLightSet_Destroy(all);
         vplLightSet_Destroy(second);
@@ -259,16 +259,17 @@ TEST(LaterPassesGoOnWithTheSequence, 1)
     vplGeometry_Destroy(room);
 }
 
-// Passes of a walk: their counts add up to floor(rho^k P N), steps that no single pass of N would reach
-// included, and lights of step k weigh rho^-k, so that they carry power rho^k in the mean.
+// Passes add up to one random walk: their counts sum to floor(rho^k P N), including steps that a single pass
+// of N would not reach, and lights of step k have weight rho^-k, so that they carry power rho^k on average.
 TEST(PassesAddUpToOneWalk, 2)
 {
     enum { PASSES = 64, N = 7 };
     vplGeometry* cube = buildGeometry(closedCubeScene(context, 0.7f, 3));
-    int counts[64], steps, sums[64] = {0};
-    int64_t total;
+    int counts[64], sums[64] = {0};
+    vplStepTotals totals;
     double flux[64] = {0};
-    assert_int_equal(vplCountParticles(context, PASSES * N, 0.7, counts, 64, &steps, &total), VPL_SUCCESS);
+    assert_int_equal(vplCountParticles(context, &(vplParticlePass){0, PASSES * N, 0.7}, counts, 64, &totals),
+                     VPL_SUCCESS);
     for (int pass = 0; pass < PASSES; pass++) {
         vplParticleDef def = kellerDef(N, 0.7);
         def.pass = true;
@@ -282,7 +283,7 @@ TEST(PassesAddUpToOneWalk, 2)
         }
         vplLightSet_Destroy(set);
     }
-    for (int k = 0; k < steps; k++) {
+    for (int k = 0; k < totals.stepCount; k++) {
         assert_int_equal(sums[k], counts[k]);
         const double wanted = 3 * VPL_PI * 24 * pow(0.7, k);
         assertNear(flux[k], wanted * counts[k] / (PASSES * N * pow(0.7, k)), 1e-4 * wanted, "flux", k);
@@ -305,8 +306,8 @@ static vplRenderOptions smallOptions(void)
     return o;
 }
 
-// With no particle shot, a point light's picture is its direct light bit for bit: N lights at one place are
-// one.
+// If no particle bounces, a point light's picture is its direct light bit for bit: N virtual lights at one
+// position are merged.
 TEST(PointEmittersAreDrawnAsThemselves, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -322,7 +323,7 @@ TEST(PointEmittersAreDrawnAsThemselves, 2)
     vplScene_Destroy(scene);
 }
 
-// Direct and indirect light are parts of the picture.
+// Direct and indirect light add up to the picture.
 TEST(PartsAddUp, 2)
 {
     vplScene* scene = areaLightRoom(context, 0.7f);
@@ -347,13 +348,13 @@ TEST(PartsAddUp, 2)
     vplScene_Destroy(scene);
 }
 
-// X031, X036: no particles, one particle, a black room, an area light that lights nothing.
+// X031, X036: no particles, one particle, a black room, an area light that faces away from the room.
 TEST(OddRoomsGiveFinitePictures, 2)
 {
     for (int i = 0; i < 4; i++) {
         vplScene* scene = areaLightRoom(context, i == 2 ? 0.0f : 0.9f);
         if (i == 3) {
-            addAreaLight(scene, vplVec(0, -50, 0), 1, 1e6f); // outside, looks away: takes all particles
+            addAreaLight(scene, vplVec(0, -50, 0), 1, 1e6f); // outside, faces away: takes all particles
         }
         vplRenderOptions o = smallOptions();
         o.particles.count = i == 0 ? 0 : i == 1 ? 1 : 20;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The light tree, and the bound of what its clusters can give.
+// Tests of the light tree and of the bounds on its clusters' light.
 #include "tree_lights.h"
 
 // ---- the tree
@@ -28,7 +28,7 @@ static void checkContents(const vplLightTree* tree, vplCluster c)
                c.node);
 }
 
-// Returns how deep it goes.
+// Checks a subtree and returns its depth.
 static int checkTree(const vplLightTree* tree, vplCluster c)
 {
     if (c.count == 1) {
@@ -92,8 +92,8 @@ TEST_ALONE(TreesAreTheSameForAnyNumberOfWorkers)
     assert_true(hashTree(openTestContext(7), COUNT) == wanted);
 }
 
-// Over many trees, the
-// place of the root's representative is the mean of all places by intensity.
+// Over many trees, the mean position of the root's representative is the mean of all positions weighted by
+// intensity.
 TEST(RepresentativesAreDrawnByIntensity, 1)
 {
     enum { COUNT = 64, TREES = 4000 };
@@ -114,7 +114,8 @@ TEST(RepresentativesAreDrawnByIntensity, 1)
 
 // ---- the bound
 
-// Points that are hard to bound: on lights, near them, within and beyond the box, and facing along it.
+// Makes points that are hard to bound: on lights, near them, inside and outside the box, and with tangential
+// normals.
 static vplSurface rollPoints(Dice* dice, const vplLightTree* tree, vplCluster c)
 {
     vplSurface s;
@@ -138,7 +139,7 @@ static float inverseSquare(float distance)
     return distance > 0 ? 1 / (distance * distance) : INFINITY;
 }
 
-// No light of the cluster gives more than the bound, not by one bit.
+// Asserts that no light of the cluster exceeds the bound, by not even one bit.
 static void checkBound(vplContext* context, const vplLightTree* tree, vplCluster c, const vplSurface* s,
                        vplLighting lighting, float minDistance)
 {
@@ -149,7 +150,7 @@ static void checkBound(vplContext* context, const vplLightTree* tree, vplCluster
         vplShadeLight light = tree->lights[i].light;
         light.r = light.g = light.b = 1;
         float part[3][VPL_LANES] = {{0}};
-        vplAccumulateLights(context, lighting, minDistance, s, &light, 1, part);
+        vplAccumulateLights(context, (vplLightFormula){lighting, minDistance}, s, &light, 1, part);
         for (int l = 0; l < VPL_LANES; l++) {
             if (!(part[0][l] <= bound[l])) {
                 fail_msg("cluster %d of %d lights, light %d, lane %d: %.9g is more than %.9g", c.node,
@@ -186,8 +187,8 @@ TEST(NoLightGivesMoreThanTheBoundOfItsCluster, 1)
     }
 }
 
-// Two lights 1 cm apart, seen from a metre and more: the bound is at most 8 % above what they give, and 0
-// behind them and where they are behind.
+// Two lights are 1 cm apart, seen from a metre or more: the bound is at most 8 % above their light, and 0 for
+// points behind the lights or with the lights behind them.
 TEST(BoundsOfSmallClustersAreTight, 1)
 {
     vplShadeLight lights[2] = {{0, 0, 0, 0, 1, 0, 1, 1, 1}, {0.01f, 0, 0, 0, 1, 0, 1, 1, 1}};
@@ -204,10 +205,10 @@ TEST(BoundsOfSmallClustersAreTight, 1)
         float bound[VPL_LANES], part[3][VPL_LANES] = {{0}};
         vplGetShadingKernels(context->isa, VPL_LIGHTING_PHYSICAL)
             ->clusterBound(&s, &tree->nodes[0], INFINITY, bound);
-        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &s, lights, 1, part);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0}, &s, lights, 1, part);
         for (int l = 0; l < VPL_LANES; l++) {
             const float d2 = s.px[l] * s.px[l] + s.py[l] * s.py[l] + s.pz[l] * s.pz[l];
-            const float most = part[0][l] * d2; // cos cos
+            const float most = part[0][l] * d2; // the product of the two cosines
             lit += most > 0.3f;
             assert_true(!(most > 0.3f) || bound[l] <= 1.08f * part[0][l]);
             const float here = -(s.nx[l] * s.px[l] + s.ny[l] * s.py[l] + s.nz[l] * s.pz[l]);

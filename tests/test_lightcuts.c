@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Cuts through the light tree: the error of clusters with shadows, and pictures.
+// Tests of lightcuts: the error of clusters with shadows, and pictures.
 #include "tree_lights.h"
 
 // ---- clusters with shadows
 
-// 16 points on triangles of the geometry, facing either way.
+// Makes 16 points on triangles of the geometry, on either side.
 static void rollSeen(Dice* dice, const vplGeometry* g, vplSurface* s, vplPoints* points)
 {
     for (int l = 0; l < VPL_LANES; l++) {
@@ -27,7 +27,7 @@ static void rollSeen(Dice* dice, const vplGeometry* g, vplSurface* s, vplPoints*
     points->surface = points->plane = s;
 }
 
-// What a cluster's lights give, what its representative gives for them, and its bound: r + g + b of a lane.
+// For each lane, r + g + b of a cluster's lights, of its representative in place of them, and of its bound.
 typedef struct Judged {
     double all[VPL_LANES], one[VPL_LANES], bound[VPL_LANES];
 } Judged;
@@ -88,7 +88,7 @@ TEST(RepresentativesErrByLessThanTheBoundAlsoInShadow, 2)
             Judged j;
             judge(&s, tree, c, &points, &j);
             for (int l = 0; l < VPL_LANES; l++) {
-                // 1e-5: rounding of the sum of 600 lights.
+                // 1e-5 allows for rounding of the sum of 600 lights.
                 assert_true(fabs(j.one[l] - j.all[l]) <= j.bound[l] + 1e-5 * j.all[l]);
                 const double share = j.bound[l] > 0 ? fabs(j.one[l] - j.all[l]) / j.bound[l] : 0;
                 worst = share > worst ? share : worst;
@@ -97,7 +97,7 @@ TEST(RepresentativesErrByLessThanTheBoundAlsoInShadow, 2)
         vplLightTree_Destroy(tree);
         free(lights);
     }
-    assert_true(worst > 0.25); // the bound is worth something
+    assert_true(worst > 0.25); // the bound is not too loose
     vplGeometry_Destroy(g);
     vplScene_Destroy(scene);
 }
@@ -118,7 +118,7 @@ static vplRenderOptions optionsOf(int particles, vplLightShadows shadows)
     o.lights.mapSize = 16;
     o.lights.areaLightSamples = 4;
     o.pipeline.kind = VPL_ACCUMULATE_LIGHTCUTS;
-    o.lights.compensation = VPL_COMPENSATION_NONE; // its rays depend on how lights are added up
+    o.lights.compensation = VPL_COMPENSATION_NONE; // its rays depend on how lights are accumulated
     return o;
 }
 
@@ -127,7 +127,8 @@ static double sumOf(const vplImage* image, int i)
     return (double)image->pixels[3 * i] + (double)image->pixels[3 * i + 1] + (double)image->pixels[3 * i + 2];
 }
 
-// Largest error of a pixel as a share of its light, or of a sixteenth of what it would be without shadows.
+// Returns the largest error of a pixel relative to its light, or to a sixteenth of its unshadowed light if
+// that is more.
 static double worstPixel(const vplImage* image, const vplImage* truth, const vplImage* open)
 {
     double worst = 0;
@@ -139,7 +140,7 @@ static double worstPixel(const vplImage* image, const vplImage* truth, const vpl
     return worst;
 }
 
-// Every pixel, each kind of shadow, both models of lighting, three errors.
+// Covers every pixel, all kinds of shadows, both lighting models and three error thresholds.
 TEST(NoPixelErrsByMoreThanAsked, 2, SLOW)
 {
     static const float errors[] = {0.01f, 0.02f, 0.1f};
@@ -172,8 +173,8 @@ TEST(NoPixelErrsByMoreThanAsked, 2, SLOW)
     }
 }
 
-// With next to no error every light is reached, also where the cut's memory ends first: 40,000 lights are
-// more than twice what it holds.
+// With almost no permitted error the cut reaches every light, also if the cut's memory is full first: 40,000
+// lights are more than twice its capacity.
 TEST(NoErrorIsTheSumOfAllLights, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -215,7 +216,7 @@ TEST(TenfoldLightsAreLessThanTwofoldWork, 2, SLOW)
     }
 }
 
-// Doubling all lights doubles every bit: errors are shares.
+// Doubling all lights doubles every pixel bit for bit, because errors are relative.
 TEST(TwiceTheLightIsTwiceThePicture, 2)
 {
     enum { COUNT = 3000, SIZE = 24 };
@@ -238,7 +239,7 @@ TEST(TwiceTheLightIsTwiceThePicture, 2)
         def.lightCount = COUNT;
         def.lightRays = true;
         assert_int_equal(vplImage_Create(context, SIZE, SIZE, &images[k]), VPL_SUCCESS);
-        assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, images[k], NULL), VPL_SUCCESS);
+        assert_int_equal(vplShadeView(g, &view, &def, images[k], NULL), VPL_SUCCESS);
     }
     for (int i = 0; i < 3 * SIZE * SIZE; i++) {
         assert_true(images[0]->pixels[i] > 0 && images[1]->pixels[i] == 2 * images[0]->pixels[i]);
@@ -249,8 +250,8 @@ TEST(TwiceTheLightIsTwiceThePicture, 2)
     vplGeometry_Destroy(g);
 }
 
-// Every kind of lights, unbounded, some of them on what they light: finite, not negative, and where a picture
-// by all lights is 0 so is this.
+// Uses all arrangements of lights, unclamped, some on the surfaces that they light: pixels must be finite and
+// not negative, and 0 where the picture of all lights is 0.
 TEST(NastyLightsLeaveNoNan, 2)
 {
     enum { COUNT = 500, SIZE = 20 };
@@ -272,7 +273,7 @@ TEST(NastyLightsLeaveNoNan, 2)
             def.lightCount = COUNT;
             def.lightRays = true;
             assert_int_equal(vplImage_Create(context, SIZE, SIZE, &images[k]), VPL_SUCCESS);
-            assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, images[k], NULL), VPL_SUCCESS);
+            assert_int_equal(vplShadeView(g, &view, &def, images[k], NULL), VPL_SUCCESS);
         }
         for (int i = 0; i < 3 * SIZE * SIZE; i++) {
             assert_true(isfinite(images[0]->pixels[i]) && images[0]->pixels[i] >= 0);
@@ -353,19 +354,21 @@ TEST(CutsCanBeCancelledAndWrongErrorsAreRefused, 1)
     static const float wrong[] = {0, -1, 1.5f, NAN};
     for (int i = 0; i < 4; i++) {
         def.cutError = wrong[i];
-        assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_INVALID_ARGUMENT);
+        assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_INVALID_ARGUMENT);
         assert_true(strstr(takeMessage(), "vplShadeDef.cutError is ") != NULL);
     }
     def.cutError = 0.02f;
     int asked = 0;
-    assert_int_equal(vplShadeView(g, &view, &def, stopAtOnce, &asked, image, NULL), VPL_CANCELLED);
+    def.progress = stopAtOnce;
+    def.progressUser = &asked;
+    assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_CANCELLED);
     assert_int_equal(asked, 1);
     vplImage_Destroy(image);
     free(lights);
     vplGeometry_Destroy(g);
 }
 
-// Light that the bound takes away comes back in cuts, too: by the same short rays as in deferred shading.
+// Bias compensation works with lightcuts, too, by the same short rays as in deferred shading.
 TEST(CompensatedCutsKeepTheLight, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -375,7 +378,7 @@ TEST(CompensatedCutsKeepTheLight, 2)
     o.output.height = 36;
     o.shadow.mapSize = 64;
     o.particles.count = 300;
-    o.lights.minDistance = 3; // nearly all that virtual lights give
+    o.lights.minDistance = 3; // clamps nearly all light of virtual lights
     o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
     o.output.show = VPL_SHOW_INDIRECT;
     vplImage* deferred = renderScene(scene, &o, NULL);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Particle counts and the particle simulation. Covers extremes X029 to X048.
+// Tests of particle counts and the particle simulation. Covers extremes X029 to X048.
 #include "scenes.h"
 
 #include "math/vec.h"
@@ -11,13 +11,13 @@ TEST(EveryCountOfTheTableIsTheDecimalOne, 1)
     Table t = loadTable("counts.csv");
     static int counts[VPL_MAX_STEPS];
     for (int row = 0; row < t.rows; row++) {
-        int n = (int)number(&t, row, "N"), k = (int)number(&t, row, "k"), steps;
-        int64_t total;
-        if (vplCountParticles(context, n, number(&t, row, "rho"), counts, VPL_MAX_STEPS, &steps, &total) !=
-            VPL_SUCCESS) {
+        int n = (int)number(&t, row, "N"), k = (int)number(&t, row, "k");
+        const vplParticlePass pass = {0, n, number(&t, row, "rho")};
+        vplStepTotals totals;
+        if (vplCountParticles(context, &pass, counts, VPL_MAX_STEPS, &totals) != VPL_SUCCESS) {
             fail_msg("row %d: %s", row, takeMessage());
         }
-        int count = k < steps ? counts[k] : 0;
+        int count = k < totals.stepCount ? counts[k] : 0;
         if (count != (int)number(&t, row, "dec")) {
             fail_msg("row %d: floor(%s^%d %d) is %d, wanted %s", row, cell(&t, row, "rho"), k, n, count,
                      cell(&t, row, "dec"));
@@ -30,36 +30,35 @@ TEST(EveryTotalOfTheTable, 1)
 {
     Table t = loadTable("counts_totals.csv");
     for (int row = 0; row < t.rows; row++) {
-        int n = (int)number(&t, row, "N"), steps;
-        int64_t total;
-        vplResult result = vplCountParticles(context, n, number(&t, row, "rho"), NULL, 0, &steps, &total);
+        const vplParticlePass pass = {0, (int)number(&t, row, "N"), number(&t, row, "rho")};
+        vplStepTotals totals;
+        vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
         if (number(&t, row, "total_sum_k>=0") > VPL_MAX_LIGHTS) {
             assert_int_equal(result, VPL_LIMIT);
             continue;
         }
         assert_int_equal(result, VPL_SUCCESS);
-        assert_int_equal(steps, (int)number(&t, row, "steps"));
-        assert_int_equal(total, (int64_t)number(&t, row, "total_sum_k>=0"));
+        assert_int_equal(totals.stepCount, (int)number(&t, row, "steps"));
+        assert_int_equal(totals.lightCount, (int64_t)number(&t, row, "total_sum_k>=0"));
     }
     freeTable(&t);
 }
 
-// X036, X037: exact below the stated limits, refused beyond, never endless.
+// X036, X037: totals are exact below the documented limits and refused beyond them, and the call always ends.
 TEST(ExtremeTotalsAreExactOrRefused, 1)
 {
     Table t = loadTable("counts_extreme.csv");
     int exact = 0;
     for (int row = 0; row < t.rows; row++) {
         double wanted = number(&t, row, "total"), steps = number(&t, row, "steps");
-        int made;
-        int64_t total;
-        vplResult result = vplCountParticles(context, (int)number(&t, row, "N"), number(&t, row, "rho"), NULL,
-                                             0, &made, &total);
+        const vplParticlePass pass = {0, (int)number(&t, row, "N"), number(&t, row, "rho")};
+        vplStepTotals totals;
+        vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
         if (wanted > VPL_MAX_LIGHTS || steps > VPL_MAX_STEPS) {
             assert_int_equal(result, VPL_LIMIT);
         } else {
             assert_int_equal(result, VPL_SUCCESS);
-            assert_true((double)total == wanted && made == (int)steps);
+            assert_true((double)totals.lightCount == wanted && totals.stepCount == (int)steps);
             exact++;
         }
     }
@@ -67,7 +66,7 @@ TEST(ExtremeTotalsAreExactOrRefused, 1)
     freeTable(&t);
 }
 
-// X036, X038 to X040: each row of counts_invalid.csv, as its third column asks.
+// X036, X038 to X040: each row of counts_invalid.csv must give the result in its third column.
 TEST(InvalidCountsAreRefused, 1)
 {
     const struct {
@@ -89,16 +88,16 @@ TEST(InvalidCountsAreRefused, 1)
         {0.5, INT32_MAX, VPL_INVALID_ARGUMENT, 0, 0},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        int steps = -1;
-        int64_t total = -1;
-        vplResult result = vplCountParticles(context, cases[i].n, cases[i].rho, NULL, 0, &steps, &total);
+        const vplParticlePass pass = {0, cases[i].n, cases[i].rho};
+        vplStepTotals totals = {-1, -1};
+        vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
         assert_int_equal(result, cases[i].result);
-        assert_int_equal(steps, result == VPL_SUCCESS ? cases[i].steps : -1);
-        assert_int_equal(total, result == VPL_SUCCESS ? cases[i].total : -1);
+        assert_int_equal(totals.stepCount, result == VPL_SUCCESS ? cases[i].steps : -1);
+        assert_int_equal(totals.lightCount, result == VPL_SUCCESS ? cases[i].total : -1);
     }
 }
 
-// Simulates one set of room_particles.csv with its own first directions and compares every row.
+// Simulates one set of room_particles.csv with the set's own first directions and compares every row.
 static void checkSet(vplContext* context, const vplGeometry* room, const Table* t, const char* name)
 {
     Table objects = loadTable("room_objects.csv");
@@ -188,7 +187,8 @@ TEST(TenParticlesAtHalfMake18Lights, 1)
     vplGeometry_Destroy(cube);
 }
 
-// vpl_weights.csv: in a closed room the lights of step k carry the flux 4 pi I rho^(k+1), whatever the floor.
+// vpl_weights.csv: in a closed room the lights of step k carry the flux 4 pi I rho^(k+1), whatever floor()
+// cuts off the counts.
 TEST(FluxOfEachStepIsThatOfTheTable, 2)
 {
     Table t = loadTable("vpl_weights.csv");
@@ -262,12 +262,11 @@ TEST_ALONE(LightsDoNotDependOnThreads)
     }
 }
 
-// The first floor(rho^k N) particles must by themselves cover all directions: their mean direction is small.
+// The first floor(rho^k N) particles alone must cover all directions: their mean direction is short.
 TEST(AnyFirstParticlesCoverTheSphere, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
-    // Random points: 3 standard deviations of the mean of n unit vectors; the others: better than that by
-    // far.
+    // Random points: 3 standard deviations of the mean of n unit vectors; the other samplers are much better.
     const double allowed[] = {
         [VPL_SAMPLER_RANDOM] = 3, [VPL_SAMPLER_HALTON] = 0.7, [VPL_SAMPLER_HAMMERSLEY] = 0.7};
     for (int sampler = VPL_SAMPLER_RANDOM; sampler <= VPL_SAMPLER_HAMMERSLEY; sampler++) {
@@ -278,7 +277,7 @@ TEST(AnyFirstParticlesCoverTheSphere, 2)
         for (int n = 16; n <= 1024; n *= 2) {
             vplVec3 sum = {0, 0, 0};
             for (int i = 0; i < n; i++) {
-                sum = vplAdd(sum, vplNormalize(set->lights[i].position)); // the cube's light is at the origin
+                sum = vplAdd(sum, vplNormalize(set->lights[i].position)); // the light is at the origin
             }
             assertNear((double)vplLength(sum) / n, 0, allowed[sampler] / sqrt(n), "mean direction", sampler);
         }
@@ -307,7 +306,7 @@ TEST(DoublingTheEmitterDoublesEveryBit, 1)
     vplGeometry_Destroy(room);
 }
 
-// Two emitters of 1 and 3 W/sr share the particles one to three, and the total flux is that of both.
+// Two emitters of 1 and 3 W/sr share the particles one to three, and the total flux is the sum of both.
 TEST(EmittersShareParticlesByPower, 1)
 {
     vplGeometry* cube = closedCube(context, 1);
@@ -334,7 +333,7 @@ TEST(EmittersShareParticlesByPower, 1)
     vplGeometry_Destroy(cube);
 }
 
-// X048: after a thousand mirror bounces in a closed cube particles still land on its walls.
+// X048: after a thousand specular or diffuse bounces in a closed cube, particles still land on its walls.
 TEST(AThousandBouncesStayOnTheWalls, 2)
 {
     vplGeometry* cube = closedCube(context, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Elementary functions, random numbers, sequences and warps. Covers extremes X043 to X046.
+// Tests of elementary functions, random numbers, sequences and warps. Covers extremes X043 to X046.
 #include "test.h"
 
 #include "base/rng.h"
@@ -58,7 +58,7 @@ TEST_ALONE(ElementaryFunctionsAreDefinedAtTheirEnds)
     assertNear(vplAcos(2), 0, 0, "acos", 0);
 }
 
-// The published known-answer vectors of Philox 4x32-10 (Random123, kat_vectors).
+// Philox 4x32-10 must give the published known-answer vectors (Random123, kat_vectors).
 TEST_ALONE(PhiloxGivesThePublishedNumbers)
 {
     const uint32_t zeros[4] = {0, 0, 0, 0}, ones[4] = {~0u, ~0u, ~0u, ~0u};
@@ -112,7 +112,7 @@ TEST_ALONE(WarpsAreThoseOfTheTable)
     freeTable(&t);
 }
 
-// X046: orthonormal and right-handed for every normal, the poles included.
+// X046: frames are orthonormal and right-handed for every normal, including the poles.
 TEST_ALONE(FramesAreOrthonormalForEveryNormal)
 {
     for (uint64_t i = 0; i < 20000; i++) {
@@ -134,7 +134,7 @@ TEST_ALONE(NormalizeKeepsTheDirectionOfAnyLength)
     const float lengths[] = {1e-42f, 1e-30f, 1, 1e30f, 3e38f};
     for (int i = 0; i < 5; i++) {
         vplVec3 n = vplNormalize(vplVec(0.6f * lengths[i], 0, -0.8f * lengths[i]));
-        assertNear((double)n.x, 0.6, i == 0 ? 1e-2 : 2e-7, "x", i); // a denormal has few digits
+        assertNear((double)n.x, 0.6, i == 0 ? 1e-2 : 2e-7, "x", i); // a denormal has few significant bits
         assertNear((double)n.z, -0.8, i == 0 ? 1e-2 : 2e-7, "z", i);
     }
     vplVec3 zero = vplNormalize(vplVec(0, 0, 0));
@@ -144,7 +144,7 @@ TEST_ALONE(NormalizeKeepsTheDirectionOfAnyLength)
 TEST_ALONE(MatricesMoveAsTheyShould)
 {
     vplMat4 m = vplMat4_FromParts((vplVec3){1, 2, 3}, (double[3]){VPL_PI / 2, 0, 0}, (vplVec3){2, 2, 2});
-    vplVec3 p = vplMat4_TransformPoint(&m, (vplVec3){0, 1, 0}); // y turns to z
+    vplVec3 p = vplMat4_TransformPoint(&m, (vplVec3){0, 1, 0}); // the rotation takes y to z
     assert_true(p.x == 1 && p.y == 2 && p.z == 5);
     vplVec3 d = vplMat4_TransformDirection(&m, (vplVec3){0, 1, 0});
     assert_true(d.x == 0 && d.y == 0 && d.z == 2);
@@ -157,12 +157,13 @@ TEST_ALONE(MatricesMoveAsTheyShould)
     assertNear((double)vplLength(vplSub(once, twice)), 0, 1e-6, "product", 0);
     vplMat4 projection = vplMat4_Perspective(VPL_PI / 2, 1, 1, 9);
     assertNear((double)projection.m[0], 1, 1e-7, "scale", 0);
-    // Depth 0 at near, 1 at far.
+    // Depth is 0 at near, 1 at far.
     assertNear((double)(projection.m[10] * -1 + projection.m[14]), 0, 1e-6, "near", 0);
     assertNear((double)(projection.m[10] * -9 + projection.m[14]) / 9, 1, 1e-6, "far", 0);
 }
 
-// The first eight points, worked out by hand from the primitive polynomials and first numbers of Joe and Kuo.
+// The first eight points, derived by hand from the primitive polynomials and direction numbers of Joe and
+// Kuo.
 TEST_ALONE(SobolPointsAreThePublishedOnes)
 {
     static const double wanted[8][VPL_SOBOL_DIMENSIONS] = {
@@ -185,8 +186,8 @@ TEST_ALONE(SobolPointsAreThePublishedOnes)
     }
 }
 
-// Scrambled and shuffled, the first 2^k points still put one into each stratum of every dimension, and one
-// into each of the cells of any shape that halving the first two dimensions k times makes.
+// After scrambling and shuffling, the first 2^k points still have one point in each stratum of every
+// dimension, and one in each elementary interval of the first two dimensions, of all shapes with area 2^-k.
 TEST_ALONE(ScrambledPointsKeepTheirStrata)
 {
     enum { K = 8, COUNT = 1 << K };
@@ -215,7 +216,7 @@ TEST_ALONE(ScrambledPointsKeepTheirStrata)
     }
 }
 
-// One place of a sequence looks uniform over all streams, and two streams have nothing to do with each other.
+// A sequence's point of a given index is uniform over all streams, and two streams are uncorrelated.
 TEST_ALONE(StreamsAreIndependent)
 {
     enum { STREAMS = 20000 };

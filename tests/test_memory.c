@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every scenario of the table below, with every allocation failing in turn (tests/failing.h).
+// Runs every scenario of the table below with each allocation failing in turn (tests/failing.h).
 #include "failing.h"
 #include "patch_support.h"
 
@@ -15,7 +15,7 @@ static vplResult readJson(Attempt* a)
     return vplScene_Load(a->context, "tests/data/room.json", &a->scene);
 }
 
-// The second file is read into a scene that has the names already.
+// The second file is read into a scene that has the same names already.
 static vplResult readMeshes(Attempt* a)
 {
     static const char* const scenes[] = {"tests/data/obj/meshes.json", "tests/data/obj/everything.obj",
@@ -30,7 +30,7 @@ static vplResult openRoom(Attempt* a, const char* path)
     return vplGeometry_Create(a->scene, &a->geometry);
 }
 
-// A ball of 320 triangles that emits light.
+// Adds a sphere of 320 triangles that emits light.
 static vplResult addBall(Attempt* a)
 {
     vplMaterialDef material = vplDefaultMaterialDef();
@@ -74,7 +74,7 @@ static vplResult loadAndRender(Attempt* a, const char* from, const vplRenderOpti
     return render(a, options);
 }
 
-// The whole program: scene file in, picture file out. Variants: pipelines.
+// Runs the whole program, from scene file to picture file. Variants: pipelines.
 static vplResult renderAndWrite(Attempt* a)
 {
     vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 32, 6);
@@ -102,7 +102,7 @@ static vplResult compensate(Attempt* a)
     return loadAndRender(a, "examples/scenes/room-area.json", &options);
 }
 
-// Variants: no shadows of virtual lights, maps and rays, each with a pipeline of its own.
+// Variants: virtual lights without shadows, with maps and with rays, each with a different pipeline.
 static vplResult renderBall(Attempt* a)
 {
     vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 8, 2);
@@ -114,7 +114,7 @@ static vplResult renderBall(Attempt* a)
     return render(a, &options);
 }
 
-// Variants: two lights, and so many that the top of their tree is built before its parts.
+// Variants: two lights, and so many that the top of the light tree is built before its subtrees.
 static vplResult renderCuts(Attempt* a)
 {
     vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 4, a->variant ? 2000 : 1);
@@ -142,7 +142,7 @@ static vplResult renderSsvp(Attempt* a)
     return loadAndRender(a, "tests/data/room.json", &options);
 }
 
-// ---- frames of a sequence, in which the emitter moves
+// ---- frames of a sequence with a moving emitter
 
 static vplResult renderFrames(Attempt* a, vplRenderOptions options, int frames)
 {
@@ -180,7 +180,7 @@ static vplResult renderRadiosity(Attempt* a)
     vplRenderOptions options = radiosityOptions();
     options.radiosity.hierarchy = a->variant == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
     options.radiosity.placement = a->variant == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
-    options.radiosity.patches = a->variant == 2 ? 20 : 16; // fewer are not refined
+    options.radiosity.patches = a->variant == 2 ? 20 : 16; // fewer patches are not refined
     TRY(vplScene_Load(a->context, "tests/data/corner-path.json", &a->scene));
     return renderFrames(a, options, 2);
 }
@@ -196,7 +196,7 @@ static vplResult bake(Attempt* a)
 
 // ---- stages of virtual lights
 
-// Variants: placements. That of the view is called by itself, with few candidates and few points.
+// Variants: placements. The placement for the view is called directly, with few candidates and few points.
 static vplResult placeLights(Attempt* a)
 {
     vplRenderOptions options = optionsOf(VPL_METHOD_INSTANT_RADIOSITY, 32, 6);
@@ -227,7 +227,7 @@ static vplResult findClusters(Attempt* a)
     return vplFindClusters(&set, &def, &a->nextClusters);
 }
 
-// Interleaved lights of eight clusters. Variants: before neighbours share, after that.
+// Shades interleaved lights of eight clusters. Variants: output before and after neighbours share irradiance.
 static vplResult shadeClusters(Attempt* a)
 {
     enum { LIGHTS = 16, CLUSTERS = 8 };
@@ -260,10 +260,10 @@ static vplResult shadeClusters(Attempt* a)
     TRY(openRoom(a, "tests/data/room.json"));
     TRY(vplImage_Create(a->context, 8, 6, &a->image));
     const vplView view = vplView_Create(vplScene_GetCamera(a->scene, 0), 8, 6);
-    return vplShadeView(a->geometry, &view, &def, NULL, NULL, a->image, NULL);
+    return vplShadeView(a->geometry, &view, &def, a->image, NULL);
 }
 
-// ---- what is done with shadow maps (all kinds themselves: tests/test_shadow_maps.c)
+// ---- uses of shadow maps (tests/test_shadow_maps.c tests the maps of all kinds)
 
 static vplResult boundCube(Attempt* a)
 {
@@ -274,7 +274,7 @@ static vplResult boundCube(Attempt* a)
     return vplCubeMap_FindBounds(a->cube);
 }
 
-// Variants: without triangles, and with them and lights of the second bounce.
+// Variants: without triangles, and with triangles and lights of the second bounce.
 static vplResult drawParaboloids(Attempt* a)
 {
     const vplParaboloidPlace place = {{0, 1, 0}, {0, 1, 0}, 2, false};
@@ -290,7 +290,7 @@ static vplResult drawParaboloids(Attempt* a)
                : vplSampleParaboloidMaps(a->geometry, &clusters, a->paraboloids, &def, &a->lights);
 }
 
-// Variants: types of emitters. The map, its lights and its picture.
+// Draws a map, samples its lights and shows it as a picture. Variants: emitter types.
 static vplResult sampleReflectiveMap(Attempt* a)
 {
     vplReflectiveMapDef def = vplDefaultReflectiveMapDef();
@@ -314,7 +314,7 @@ static vplResult openPatchesOf(Attempt* a, const char* path, int count)
     return vplPatches_Create(a->geometry, &def, &a->patches);
 }
 
-// Every `step`-th patch is bisected, so that edges of others are cut.
+// Bisects every `step`-th patch, so that neighbours get hanging vertices on their edges.
 static vplResult refine(Attempt* a, int step, int most)
 {
     float* priorities = a->blocks[0] = calloc((size_t)a->patches->patchCount, sizeof *priorities);
@@ -324,7 +324,7 @@ static vplResult refine(Attempt* a, int step, int most)
     return vplPatches_Refine(a->patches, priorities, most, &a->finer);
 }
 
-// Variants: what an area light reaches, and what a viewpoint sees besides.
+// Variants: sides that an area light reaches, and in addition sides that a viewpoint sees.
 static vplResult findSides(Attempt* a)
 {
     vplPatchSidesDef def = vplDefaultPatchSidesDef();
@@ -346,7 +346,8 @@ static vplResult findFactors(Attempt* a)
     return vplFormFactors_Create(a->handMade, &def, &a->factors);
 }
 
-// A room in uneven patches: mesh, picture without and with values of vertices, and file.
+// Divides a room into patches of different sizes, then makes the mesh, pictures without and with vertex
+// values, and a file.
 static vplResult meshAndWrite(Attempt* a)
 {
     TRY(openPatchesOf(a, "tests/data/room.json", 100));
@@ -433,7 +434,7 @@ EVERY_FAILED_ALLOCATION(AComparison, compareAndMap, "png", 3)
 EVERY_FAILED_ALLOCATION(AnEncodedPng, encodePng, "png", 1)
 // clang-format on
 
-// ---- jansson allocates by itself
+// ---- jansson's own allocations
 
 static long jsonAllocations, jsonFailAt;
 
@@ -442,7 +443,7 @@ static void* failingJsonAlloc(size_t size)
     return jsonAllocations++ == jsonFailAt ? NULL : malloc(size);
 }
 
-// When it has no memory for a key, jansson itself believes that there is none, and calls it a syntax error.
+// If jansson runs out of memory for a key, it reports a syntax error as if the key were missing.
 TEST_ALONE(EveryFailedAllocationOfJanssonIsReported)
 {
     vplResult result = VPL_OUT_OF_MEMORY;

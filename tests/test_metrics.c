@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// SSIM, FLIP and heat maps: against other implementations (tests/data/metrics.csv), exact relations, odd
-// sizes, refusals.
+// Tests of SSIM, FLIP and heat maps: against other implementations (tests/data/metrics.csv), by exact
+// relations, with odd sizes, and refusals.
 #include "metric_pairs.h"
 
 static float valueAt(const vplImage* map, int x, int y)
@@ -8,8 +8,8 @@ static float valueAt(const vplImage* map, int x, int y)
     return map->pixels[3 * (y * map->width + x)];
 }
 
-// Other implementations agree to 1e-8 (SSIM) and 2e-5 (FLIP, which they and we compute in float: where
-// nothing but rounding makes an edge, its square root shows).
+// Other implementations agree to 1e-8 for SSIM and to 2e-5 for FLIP. They and we compute FLIP in float: where
+// an edge comes from rounding alone, FLIP's square root magnifies it.
 TEST(SsimAndFlipAreThoseOfOtherImplementations, 2)
 {
     Table t = loadTable("metrics.csv");
@@ -67,8 +67,8 @@ TEST(SsimAndFlipAreSymmetric, 2)
     }
 }
 
-// Two flat pictures have no variance: SSIM is (2 m n + C1) / (m^2 + n^2 + C1) of the encoded values, whatever
-// the size, though below 11 pixels borders are mirrored.
+// Two constant pictures have no variance: SSIM is (2 m n + C1) / (m^2 + n^2 + C1) of the encoded values, at
+// any size, including sizes below 11 pixels, at which borders are mirrored.
 TEST(SsimOfFlatPicturesIsItsLuminanceTerm, 1)
 {
     static const int sizes[][2] = {{20, 20}, {11, 5}, {4, 30}, {1, 1}};
@@ -86,7 +86,7 @@ TEST(SsimOfFlatPicturesIsItsLuminanceTerm, 1)
     }
 }
 
-// Beyond the window's reach a local change has no effect, and the borders do not count in the mean.
+// A local change has no effect beyond the window's radius, and the mean leaves the borders out.
 TEST(SsimSeesWithinItsWindowOnly, 1)
 {
     Pair p = makePair(context, 1, 32, 32);
@@ -108,8 +108,8 @@ TEST(SsimSeesWithinItsWindowOnly, 1)
     freePair(p);
 }
 
-// Green and blue are the two colours that are farthest apart, so by definition their colour error is 1; away
-// from edges that is all there is. Clamping makes 9 the same as 1.
+// Green and blue are the two colours with the largest distance, so by definition their colour error is 1;
+// away from edges FLIP has no other term. Clamping makes 9 the same as 1.
 TEST(FlipOfGreenAndBlueIsOne, 1)
 {
     vplImage *green = makeFlat(context, 24, 24, 0, 9, -3), *blue = makeFlat(context, 24, 24, 0, 0, 1);
@@ -119,7 +119,7 @@ TEST(FlipOfGreenAndBlueIsOne, 1)
     vplImage_Destroy(green);
     vplImage_Destroy(blue);
     // Black and white differ by 100 in L*. Green is (87.7347, -86.1827, 83.1793) and blue (32.2970, 79.1875,
-    // -107.8602) in L*a*b* (Bruce Lindbloom's tables); Hunt's effect multiplies a and b by L/100.
+    // -107.8602) in L*a*b* (Bruce Lindbloom's tables); the Hunt adjustment multiplies a and b by L/100.
     double da = 0.877347 * -86.1827 - 0.322970 * 79.1875, db = 0.877347 * 83.1793 - 0.322970 * -107.8602;
     double largest = pow(87.7347 - 32.2970 + sqrt(da * da + db * db), 0.7), knee = 0.4 * largest;
     double wanted = 0.95 + 0.05 * (pow(100, 0.7) - knee) / (largest - knee);
@@ -148,7 +148,7 @@ TEST(AFlipMapIsInRangeAndItsMeanIsTheMean, 1)
     }
 }
 
-// The farther the eye, the less is seen of grain.
+// FLIP of fine grain decreases with viewing distance.
 TEST(FlipOfGrainFallsWithDistance, 2)
 {
     Pair p = makePair(context, 0, 48, 48);
@@ -193,7 +193,7 @@ static Bits measureBits(vplContext* context)
     return bits;
 }
 
-// The numbers written here hold for every compiler, optimisation and machine as well.
+// The expected numbers hold for every compiler, optimisation level and machine.
 TEST_ALONE(ThreadsAndMachinesChangeNoBitOfAMetric)
 {
     Bits first = {0};
@@ -214,7 +214,7 @@ TEST(HeatMapsShowWhatTheyAreOf, 2)
 {
     Pair p = makePair(context, 1, 200, 60);
     memcpy(p.a->pixels, p.b->pixels, (size_t)3 * 200 * 60 * sizeof(float));
-    for (int i = 0; i < 3 * 60; i++) { // the top left 20x20 is turned around
+    for (int i = 0; i < 3 * 60; i++) { // the top left 20x20 pixels are reversed
         for (int x = 0; i < 3 * 20 && x < 20; x++) {
             p.a->pixels[3 * (i / 3 * 200 + x) + i % 3] = 1 - p.b->pixels[3 * (i / 3 * 200 + x) + i % 3];
         }
@@ -228,7 +228,7 @@ TEST(HeatMapsShowWhatTheyAreOf, 2)
         const float *same = map->pixels + 3 * (50 * 200 + 150), *other = map->pixels + 3 * (10 * 200 + 10);
         assert_true(same[0] < 0.002f && same[1] < 0.002f && same[2] < 0.002f);
         assert_true(other[0] + other[1] + other[2] > 0.3f);
-        // The right end of the bar is the colour of the largest value.
+        // The right end of the bar has the colour of the largest value.
         const float* end = map->pixels + 3 * (65 * 200 + 199);
         assert_true(of == VPL_HEAT_FLIP ? end[0] > 0.9f && end[2] < 0.6f : end[0] == 1 && end[2] == 1);
         vplImage_Destroy(map);
@@ -266,7 +266,7 @@ TEST(BadArgumentsAreRefusedInASentence, 1)
     freePair(p);
 }
 
-// By every metric, whichever picture it is in, naming the pixel.
+// Every metric refuses a non-finite pixel in either picture and names the pixel.
 TEST(PicturesThatAreNotFiniteAreRefused, 1)
 {
     static const float bad[] = {NAN, INFINITY, -INFINITY};
@@ -305,7 +305,7 @@ TEST(PicturesOfDifferentSizeAreRefused, 1)
     freePair(q);
 }
 
-// Values that a renderer may well make: metrics stay finite and in range.
+// For extreme values that a renderer may produce, metrics stay finite and in range.
 TEST(HugeAndNegativeValuesGiveFiniteMetrics, 1)
 {
     Pair p = makePair(context, 2, 20, 20);

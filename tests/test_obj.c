@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// OBJ and MTL files: what is right arrives as it was written, what is damaged is named by file, line and
-// column.
+// Tests of OBJ and MTL files: valid files arrive as they were written, damaged ones are reported by file,
+// line and column.
 #include "obj_support.h"
 
 // ---- damaged files
@@ -73,8 +73,8 @@ TEST_ALONE(EveryFormOfAFaceGivesTheSameTriangle)
         POINTS "vn 0 0 1\nf 1/7/1 2/8/1 3/-9/-1\n",
         POINTS "f -3 -2 -1\n",
         POINTS "f +1 02 3\n",
-        POINTS "f -3 -2 -1\nv 5 5 5\nv 6 6 6\n", // counted from the line, not from the end
-        "f 1 2 3\n" POINTS,                      // points may follow
+        POINTS "f -3 -2 -1\nv 5 5 5\nv 6 6 6\n", // negative indices count from the line, not from the end
+        "f 1 2 3\n" POINTS,                      // points may follow the face
         "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",
         "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3",
         "v 0 0 0\nv 1 0 0\rv 0 1 0\r\n\r\n\n\rf 1 2 3\r",
@@ -90,7 +90,7 @@ TEST_ALONE(EveryFormOfAFaceGivesTheSameTriangle)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         Desk d;
         openDesk(&d);
-        if (strstr(texts[i], "0#1") != NULL) { // no comment without a blank before it: a bad number
+        if (strstr(texts[i], "0#1") != NULL) { // a comment needs a blank before "#": a bad number
             writeText(d.obj, texts[i]);
             assert_int_equal(vplScene_LoadObj(d.scene, d.obj, NULL), VPL_PARSE_ERROR);
             assert_non_null(strstr(d.said, ":4:7: found \"0#1\""));
@@ -128,7 +128,7 @@ TEST_ALONE(AFileOfEverythingIsRead)
     assert_string_equal(d.said, "info: tests/data/obj/everything.obj: left out 1 triangles without area\n");
     const vplMeshDef* m = vplScene_GetMesh(d.scene, mesh);
     assert_int_equal(m->triangleCount, 2 + 2 + 3 + 1 + 1);
-    assert_int_equal(vplScene_GetMaterialCount(d.scene), 3); // the unused one stays out
+    assert_int_equal(vplScene_GetMaterialCount(d.scene), 3); // the unused one is left out
     static const char* const names[] = {"everything.obj:brick", "everything.obj:fine paint",
                                         "everything.obj:lamp # hot"};
     for (int i = 0; i < 3; i++) {
@@ -164,7 +164,7 @@ TEST_ALONE(CornersWithTheSamePointAndNormalShareAVertex)
     assert_true(edged->vertexCount == 24 && edged->triangleCount == 12);
     for (int i = 0; i < edged->vertexCount; i++) {
         vplVec3 n = edged->normals[i];
-        assert_true(fabsf(n.x) + fabsf(n.y) + fabsf(n.z) == 1); // of unit length
+        assert_true(fabsf(n.x) + fabsf(n.y) + fabsf(n.z) == 1); // normalized
     }
     const vplMeshDef* repeated = readText(&d, "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"
                                               "v 0 -0 0\nv 1 1 0\nv 0 1 0\nvn 7 7 7\nf 4 5 6\n");
@@ -185,7 +185,8 @@ TEST_ALONE(PointsWithoutTrianglesAreLeftOut)
     closeDesk(&d);
 }
 
-// Collinear corners are found even where the coordinates are not round; the tiniest triangle stays.
+// The reader detects collinear corners also if coordinates are not round numbers; the tiniest triangle with
+// an area stays.
 TEST_ALONE(OnlyTrianglesWithoutAreaAreLeftOut)
 {
     Desk d;
@@ -221,7 +222,7 @@ TEST_ALONE(CornersWithoutANormalGetTheTriangles)
     closeDesk(&d);
 }
 
-// A grid of floats written with nine digits comes back bit for bit, and reading it needs little memory.
+// A grid of floats written with nine digits is read back bit for bit, in little memory.
 TEST_ALONE(AGridComesBackAsItWasWritten)
 {
     enum { SIDE = 150 };
@@ -231,7 +232,7 @@ TEST_ALONE(AGridComesBackAsItWasWritten)
     FILE* file = fopen(d.obj, "w");
     assert_non_null(file);
     for (int i = 0; i < SIDE * SIDE; i++) {
-        double height = 0.05 * uniformAt(1, (uint64_t)i); // low enough that all squares are fans
+        double height = 0.05 * uniformAt(1, (uint64_t)i); // so flat that all squares become fans
         points[i] = (vplVec3){(float)(i % SIDE) / 7, (float)height, (float)(i / SIDE) * 0.11f};
         fprintf(file, "v %.9g %.9g %.9g\n", (double)points[i].x, (double)points[i].y, (double)points[i].z);
     }

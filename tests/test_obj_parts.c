@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parts of the OBJ reader by themselves: numbers become the nearest floats, and every polygon is covered
+// Tests of the OBJ reader's parts: numbers become the nearest floats, and triangulation covers every polygon
 // once.
 #include "test.h"
 
@@ -28,27 +28,27 @@ TEST_ALONE(NumbersAreTheNearestFloats)
 {
     static const char* const texts[] = {
         "0", "-0", "1", "+1", "-1", "1.", ".5", "-.5e1", "0.1", "1e0", "1E+2", "100e-2", "000123.4500",
-        // halfway between two floats, and just beside it
+        // halfway between two floats, and next to it
         "16777217", "16777219", "16777217.0000000000000000000000000000000000000001",
         "16777216.9999999999999999999999999999999999999999", "33554434", "33554438",
         "1.00000005960464477539062500000000000000000000000001", "1.000000059604644775390625",
         "1.0000000596046447753906249999999999999999999999999", "0.100000001490116119384765625",
-        // the smallest, half of it, and the borders of the normal ones
+        // the smallest denormal, half of it, and the smallest normal float
         "1e-45", "7.006492321624085e-46", "7.0064923216240853546186479164495e-46",
         "7.0064923216240853546186479164496e-46", "7.0064923216240854e-46", "1.1754943508222875e-38",
         "1.17549429e-38", "1.1754942807573642918e-38", "1e-46", "1e-400", "4.7e-324",
         "1e-99999999999999999999",
-        // the largest, and beyond
+        // the largest float, and beyond
         "3.4028234663852886e38", "3.4028235677973366e38", "3.40282356779733661637e38",
         "3.4028235677973366163753939545814e38", "3.4028235677973367e38", "1e39", "1e400",
         "1e99999999999999999999", "0e99999999999999999999",
-        // more digits than 64 bits hold, before and behind the point
+        // more digits than 64 bits hold, before and after the decimal point
         "123456789012345678901234567890", "0.000000000000000000000000000000123456789012345678901234567890",
         "9007199254740993", "9007199254740992.5e-10", "18446744073709551616", "0.00000000000000000000e30"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         assertNearest(texts[i]);
     }
-    char text[400] = "0."; // 300 digits that follow a midpoint exactly, then one more
+    char text[400] = "0."; // 300 digits that equal a midpoint exactly, then one more
     strcat(text, "000000059604644775390625");
     memset(text + strlen(text), '0', 300);
     text[2 + 24 + 300] = 0;
@@ -94,7 +94,7 @@ TEST_ALONE(WhatIsNoNumberIsRefused)
     }
 }
 
-// ---- polygons: whole numbers as coordinates make areas exact
+// ---- polygons: integer coordinates make areas exact
 
 static vplEarClipper polygon;
 
@@ -114,8 +114,9 @@ static void addArea(double* sum, const vplVec3* a, const vplVec3* b, const vplVe
     }
 }
 
-// n - 2 triangles, each of some area and turned like the outline, whose areas add up to the outline's own
-// (shoelace): then none overlaps another or sticks out. Gives a hash of the triangles.
+// Asserts that the polygon gives n - 2 triangles of positive area with the outline's orientation, whose areas
+// sum to the outline's area (shoelace formula): then none overlaps another or sticks out. Returns a hash of
+// the triangles.
 static uint64_t assertCovered(const vplVec3* corners, int count, const char* what, int row)
 {
     double outline[3] = {0, 0, 0}, sum = 0;
@@ -143,7 +144,7 @@ static uint64_t assertCovered(const vplVec3* corners, int count, const char* wha
     return vplHashWords(0, (const uint32_t*)polygon.triangles, 3 * (size_t)polygon.triangleCount);
 }
 
-// The outline in six planes, both ways round, starting at every corner.
+// Tests the outline in six planes, in both orientations, from every starting corner.
 static void assertCoveredEveryWay(const float (*outline)[2], int count, const char* what)
 {
     vplVec3 corners[VPL_MAX_CORNERS];
@@ -212,7 +213,7 @@ TEST_ALONE(PolygonsAreCoveredOnce)
              {3, -1}}); // star
 }
 
-// A hole is joined to the outline by an edge that is walked twice: two corners are repeated.
+// A hole is joined to the outline by an edge that is walked twice, which repeats two corners.
 TEST_ALONE(HolesJoinedByADoubleEdgeAreCutOut)
 {
     COVERED({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}});
@@ -234,7 +235,8 @@ TEST_ALONE(HolesJoinedByADoubleEdgeAreCutOut)
              {1, 1}}); // two holes in a row
 }
 
-// Random outlines that do not cross themselves: a ring of whole-numbered corners in all directions.
+// Makes a random outline without self-intersections: a ring of integer corners in several directions from the
+// centre.
 static int randomOutline(uint64_t seed, vplVec3* corners)
 {
     enum { DIRECTIONS = 12 };
@@ -245,7 +247,7 @@ static int randomOutline(uint64_t seed, vplVec3* corners)
     for (int i = 0; i < DIRECTIONS; i++) {
         vplRandom4 r = vplRandomAt(seed, 2, (uint64_t)i);
         if (around[i][0] * around[i][1] != 0 && r.v[0] % 4 == 0) {
-            continue; // the axes stay, or the ring would not go round
+            continue; // the axes stay, so that the ring encloses the centre
         }
         float size = (float)(1 + r.v[1] % 60);
         float x = size * (float)around[i][0], y = size * (float)around[i][1];
@@ -267,7 +269,7 @@ TEST_ALONE(RandomPolygonsAreCoveredOnce)
         uint64_t hash = assertCovered(corners, count, "seed", (int)seed);
         uint32_t words[2] = {(uint32_t)hash, (uint32_t)(hash >> 32)};
         checksum = vplHashWords(checksum, words, 2);
-        concave += polygon.triangles[0][0] != 0; // a fan starts at corner 0
+        concave += polygon.triangles[0][0] != 0; // a fan would start at corner 0
     }
     assert_true(concave > 10000);
     if (checksum != 0x057965586b7d7458) {
@@ -292,7 +294,8 @@ TEST_ALONE(AThousandCornersAreCoveredOnce)
     assertCovered(corners, VPL_MAX_CORNERS, "spiral", 0);
 }
 
-// What is not a polygon in a plane ends all the same, with as many triangles.
+// Outlines that are not planar simple polygons must not cause an endless loop; they give as many triangles as
+// others.
 TEST_ALONE(CrossingOutlinesEnd)
 {
     static vplVec3 corners[VPL_MAX_CORNERS];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Meshes in scenes: their materials, JSON scenes that name OBJ files, and OBJ files given as scenes.
+// Tests of meshes in scenes: their materials, JSON scenes that name OBJ files, and OBJ files loaded as
+// scenes.
 #include "obj_support.h"
 
 #include <stdlib.h>
@@ -15,14 +16,14 @@ TEST_ALONE(MissingFilesAndMaterialsAreToldOnceAndGrey)
                  "usemtl white\nf 1 2 3\nusemtl black\nf 1 2 3\nusemtl white\nf 1 2 3\nusemtl idle\n");
     assert_int_equal(countOf(d.said, "a.obj:1:8: there is no file"), 1);
     assert_int_equal(countOf(d.said, "/none.mtl; its materials are grey"), 1);
-    assert_int_equal(countOf(d.said, "a.obj:3:8: there is no file"), 1); // a folder
+    assert_int_equal(countOf(d.said, "a.obj:3:8: there is no file"), 1); // the path is a folder
     assert_int_equal(countOf(d.said, "a.obj:3:10: there is no file"), 1);
     assert_int_equal(countOf(d.said, "material \"white\" is not defined, taken as grey"), 1);
     assert_int_equal(countOf(d.said, "material \"black\" is not defined, taken as grey"), 1);
-    assert_int_equal(countOf(d.said, "\n"), 5); // nothing of the material that no face uses
+    assert_int_equal(countOf(d.said, "\n"), 5); // no message about the material that no face uses
     assert_int_equal(countOf(d.said, "warning: "), 5);
     assert_int_equal(vplScene_GetMaterialCount(d.scene), 3);
-    assert_null(vplScene_GetMaterial(d.scene, 0)->name); // of the face above all usemtl
+    assert_null(vplScene_GetMaterial(d.scene, 0)->name); // material of the face before the first usemtl
     for (int i = 0; i < 3; i++) {
         assertColour(vplScene_GetMaterial(d.scene, i)->diffuse, 0.5, 0.5, 0.5);
         assertColour(vplScene_GetMaterial(d.scene, i)->emission, 0, 0, 0);
@@ -83,7 +84,7 @@ TEST_ALONE(FacesThatCrossThemselvesAreToldOnce)
     openDesk(&d);
     const vplMeshDef* mesh =
         readText(&d, "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 2 1 0\nv 9 9 1\n"
-                     "f 1 2 3 4\nf 1 2 4 3\nf 1 2 3 4\nf 1 2 2 1\n"); // the last one has no area
+                     "f 1 2 3 4\nf 1 2 4 3\nf 1 2 3 4\nf 1 2 2 1\n"); // the last face has no area
     assert_int_equal(mesh->triangleCount, 6);
     assert_int_equal(countOf(d.said, "\n"), 2);
     assert_int_equal(countOf(d.said, "left out 2 triangles without area"), 1);
@@ -193,7 +194,7 @@ TEST_ALONE(DamageInAMeshIsNamedByItsOwnFile)
 
 // ---- OBJ files as scenes
 
-// Every corner of the bounds lies in the picture, also in a square one, and between near and far.
+// Asserts that every corner of the bounds is in the picture, also in a square one, and between near and far.
 static void assertSeen(const vplScene* scene)
 {
     const vplCameraDef* camera = vplScene_GetCamera(scene, 0);
@@ -266,7 +267,7 @@ TEST_ALONE(BoundsThatNoCameraCanSeeAreRefused)
     }
 }
 
-// The ending decides, in capitals, too; anything else is read as JSON.
+// The file extension decides, in upper case, too; files with other extensions are read as JSON.
 TEST_ALONE(TheEndingOfThePathDecides)
 {
     Desk d;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The option table (vpl/options.def): defaults, checks, text in both directions, and who uses what.
+// Tests of the option table (vpl/options.def): defaults, checks, conversion from and to text, and the methods
+// that use an option.
 #include "test.h"
 
 #include "render/options.h"
@@ -10,7 +11,8 @@ enum {
 
 typedef vplRenderOptions Options;
 
-// The text of the i-th value to try, the default not among the first two; false if there are no more.
+// Writes the i-th test value of an option, where neither of the first two is the default. Returns false if
+// there are no more.
 static bool sampleOf(const vplOption* option, int i, char text[64])
 {
     static const char* const wide[] = {"0.25", "0.5", "0.1", "1e-05", "auto", "exact"};
@@ -79,7 +81,7 @@ TEST_ALONE(EveryRowHasItsOwnNameAndSaysWhatItIs)
     int count;
     const vplOption* table = vplGetOptions(&count);
     for (int i = 0; i < count; i++) {
-        assert_ptr_equal(vplFindOption(table[i].name), &table[i]); // the first of that name
+        assert_ptr_equal(vplFindOption(table[i].name), &table[i]); // finds the first option of that name
         assert_true(strlen(table[i].help) > 5 && strlen(table[i].group) > 2 && strlen(table[i].field) > 2);
         assert_true(table[i].kind == VPL_OPTION_PART || table[i].value[0] != 0);
         assert_true(table[i].users != 0);
@@ -129,7 +131,7 @@ static bool isOther(const Options* options, size_t offset, size_t size)
     return memcmp((const char*)options + offset, (const char*)&usual + offset, size) != 0;
 }
 
-// The first sample of each option changes the field that the row names, and no other.
+// The first test value of each option changes the field that the row names, and no other.
 TEST_ALONE(EveryOptionSetsItsOwnField)
 {
 #define VPL_OPTION_ROW(group, prefix, kind, type, member, default_, low, high, option, ...)                  \
@@ -168,7 +170,7 @@ TEST_ALONE(EveryOptionSetsItsOwnField)
     }
 }
 
-// A sample of fields by hand: the table cannot be wrong in both places.
+// A few fields are checked by hand, so that the test does not depend on the table that it tests.
 TEST_ALONE(NamesOfTheCommandLineMeanTheseFields)
 {
     Options o = vplDefaultRenderOptions();
@@ -204,7 +206,7 @@ static void assertRefused(const char* name, const char* value)
         strlen(options.problem) < strlen(quoted) + 10) {
         fail_msg("%s \"%s\": %s", name, value, options.problem);
     }
-    assert_int_equal(vplRenderOptions_Set(&options, "seed", "1"), VPL_SUCCESS); // a problem does not stay
+    assert_int_equal(vplRenderOptions_Set(&options, "seed", "1"), VPL_SUCCESS); // valid: clears the problem
     assert_true(options.problem[0] == 0);
 }
 
@@ -304,7 +306,7 @@ TEST_ALONE(TextThatDoesNotFitIsRefused)
     assert_string_equal(text, "64");
 }
 
-// Every field that is a number, set below its range by hand.
+// The check names every numeric field that is set below its range by hand.
 TEST(FieldsOutOfTheirRangeAreNamedByTheCheck, 1)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -336,7 +338,7 @@ TEST(FieldsOutOfTheirRangeAreNamedByTheCheck, 1)
     }
     const Options usual = vplDefaultRenderOptions();
     assert_int_equal(vplCheckOptions(scene, &usual), VPL_SUCCESS);
-    Options other = usual; // a camera that the scene has not
+    Options other = usual; // a camera that the scene does not have
     other.output.camera = 1;
     assert_int_equal(vplCheckOptions(scene, &other), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "output.camera is 1, must be in [0, 0]"));
@@ -412,7 +414,7 @@ TEST_ALONE(PipelinesUseTheseOptions)
         }
     }
     Options ssvp = vplDefaultRenderOptions();
-    ssvp.method = VPL_METHOD_SSVP; // its usual pipeline is interleaved
+    ssvp.method = VPL_METHOD_SSVP; // its default pipeline is interleaved
     assert_true(vplRenderOptions_IsUsed(&ssvp, "interleave", NULL, 0));
     assert_false(vplRenderOptions_IsUsed(&ssvp, "batch", NULL, 0));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Packets of sixteen rays; the ray tree: built with any number of workers, later, or not at all.
+// Tests of packets of sixteen rays, and of the BVH: built with any number of workers, built later, or not at
+// all.
 #include "shapes.h"
 
 #include "base/context.h"
@@ -17,7 +18,7 @@ enum { TO_A_POINT, PARALLEL, ALONG_AXES, ANYWHERE, ONE_AND_THE_SAME, PACKET_KIND
 static vplRay makeRay(int kind, int lane, const vplVec3* common, Dice* dice)
 {
     vplRay ray = {rollVec(dice, 3), rollUnit(dice), {(int)roll(dice, 0, 300), lane % 4 == 0 ? 40 : 0}};
-    if (kind == TO_A_POINT) { // from a patch, as pixels of a block cast them
+    if (kind == TO_A_POINT) { // from points of a patch, as pixels of a block cast them
         ray.origin = vplAdd(common[0], vplScale(0.1f, ray.origin));
         ray.direction = vplSub(common[1], ray.origin);
     } else if (kind == PARALLEL) {
@@ -38,7 +39,7 @@ static void comparePacket(const vplGeometry* g, int kind, Dice* dice, int* hits,
     const vplVec3 common[2] = {rollVec(dice, 2), rollVec(dice, 1)};
     const float limits[] = {INFINITY, 1, 0.4f};
     vplRayPacket packet;
-    memset(&packet, 0xCD, sizeof packet); // whatever is in lanes that are not there
+    memset(&packet, 0xCD, sizeof packet); // inactive lanes may hold anything
     packet.active = 0;
     for (int lane = 0; lane < VPL_RAY_PACKET; lane++) {
         const vplRay ray = makeRay(kind, lane, common, dice);
@@ -63,7 +64,7 @@ static void comparePacket(const vplGeometry* g, int kind, Dice* dice, int* hits,
     }
 }
 
-// A tree of 1280 triangles, and 20 triangles that are tested without one.
+// Tests a BVH of 1280 triangles, and 20 triangles that rays test without a BVH.
 TEST_ALONE(SixteenRaysSayWhatEachSaysAlone)
 {
     for (int isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
@@ -119,7 +120,7 @@ static uint64_t hashTree(const vplBvh* bvh)
                         (size_t)bvh->blockCount * sizeof *bvh->blocks / sizeof(uint32_t));
 }
 
-// 20480 triangles are several waves of splits.
+// 20480 triangles take several parallel rounds of splits.
 TEST_ALONE(TheTreeIsTheSameForAnyNumberOfWorkers)
 {
     uint64_t first = 0;
@@ -168,7 +169,7 @@ static vplRayPacket packetOfCrowd(void)
     return packet;
 }
 
-// Hits have the same bits without a tree, with one that is built later, and with one that was built at once.
+// Hits have the same bits without a BVH, with one that is built later, and with one that was built at once.
 TEST(RaysNeedNoTree, 4)
 {
     vplGeometry *whole = ballOf(context, 4, false), *g = ballOf(context, 4, true);
@@ -184,7 +185,7 @@ TEST(RaysNeedNoTree, 4)
     assert_int_equal(vplGeometry_BuildRayTree(g), VPL_SUCCESS);
     const size_t after = vplContext_GetBytes(context);
     assert_true(after > before + 5120 * sizeof(float[9]));
-    assert_int_equal(vplGeometry_BuildRayTree(g), VPL_SUCCESS); // does nothing
+    assert_int_equal(vplGeometry_BuildRayTree(g), VPL_SUCCESS); // does nothing the second time
     assert_true(vplContext_GetBytes(context) == after && hashTree(g->rayTree) == hashTree(whole->rayTree));
     vplParallelFor(context, RAYS, castOne, &with);
     assert_memory_equal(wanted.t, with.t, sizeof wanted.t);
@@ -201,7 +202,7 @@ TEST(CountedRaysTestEveryObjectOfSmallScenes, 1)
             int tests = 0;
             vplHit hit;
             const vplRay ray = {{0, 0, 0}, {1, 2, 3}, {0, 0}};
-            assert_true(vplClosestHit(g, &ray, &hit, &tests));
+            assert_true(vplClosestHit(g, &ray, INFINITY, &tests, &hit));
             const bool everyObject = forRaster || g->rayTree->blockCount <= VPL_COUNTED_BLOCKS;
             assert_true(everyObject == (forRaster || level == 0));
             assert_true(everyObject ? tests == g->objectCount : tests < g->rayTree->blockCount);

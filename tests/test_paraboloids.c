@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Paraboloid maps: the projection, what a texel holds, where they agree with rays, and what they do at
-// extremes.
+// Tests of paraboloid maps: the projection, the content of texels, agreement with rays, and extremes.
 #include "bench/band.h"
 #include "shadow_maps.h"
 
@@ -34,7 +33,7 @@ static size_t placeOf(const vplParaboloidMap* map, int hemisphere, int i)
            vplParaboloidMap_Place(map->size, i % map->size, i / map->size);
 }
 
-// Where texel i looks, in the map's frame; its length is 1 + p^2.
+// Returns the direction of texel i in the map's frame; its length is 1 + p^2.
 static vplVec3 localOf(const vplParaboloidMap* map, int hemisphere, int i)
 {
     const float x = (float)(2 * (i % map->size) + 1) / (float)map->size - 1;
@@ -96,7 +95,8 @@ TEST_ALONE(UnprojectionIsTheInverse)
     freeTable(&t);
 }
 
-// X043: the first Hammersley point and those next to 1 among them; X104: the mean over the disk is 1.
+// X043: the samples include the first Hammersley point and points next to 1; X104: the mean weight over the
+// disk is 1.
 TEST_ALONE(WeightsOfDiskSamplesFollowTheTable)
 {
     Table t = loadTable("disk_maps.csv");
@@ -139,13 +139,13 @@ static void checkTexels(const vplGeometry* g, const vplParaboloidMap* map, int w
         const int triangle = map->triangles[placeOf(map, hemisphere, texel)];
         assert_true((stored > 0) == (triangle >= 0) && stored >= 0 && stored < INFINITY);
         if (fabs(p - rim) < 1e-5) {
-            continue; // in or out
+            continue; // rounding decides between inside and outside
         }
         if (p > rim) {
             assert_true(stored == 0);
             continue;
         }
-        // Along the horizon the place's own surface is met or not, as rounding wants.
+        // At the horizon, rounding decides whether the ray hits the place's own surface.
         const bool own = map->hemispheres == 1 && local.z < 2e-3f;
         if (!own && !holdsRay(g, from, d, stored * length)) {
             fail_msg("scene %d, place %d, hemisphere %d, texel %d of %d^2: 1/distance is %.9g", which, place,
@@ -173,7 +173,7 @@ TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
         Dice dice = {7, 0};
         for (int i = 0; i < 40; i++) {
             const vplParaboloidPlace place = rollPlaceOf(g, &dice, i % 2);
-            vplParaboloidMaps* maps = drawMaps(g, 1 + i, &place, 1); // whole blocks and parts of them
+            vplParaboloidMaps* maps = drawMaps(g, 1 + i, &place, 1); // full and partial blocks
             checkTexels(g, &maps->maps[0], which, i);
             vplParaboloidMaps_Destroy(maps);
         }
@@ -181,19 +181,19 @@ TEST(EachTexelHoldsWhatARayThroughItsCentreMeets, 2)
     }
 }
 
-// ---- bounds: nothing that lies in a triangle is lost, and nothing beside it is drawn
+// ---- bounds: a triangle covers all texels whose directions hit it, and no others
 
 static vplVec3 nastyCorner(Dice* dice, int kind)
 {
     const vplVec3 p = rollVec(dice, 1);
     switch (kind % 6) {
-    case 0: // anywhere, also behind
+    case 0: // anywhere, also behind the map
         return p;
     case 1: // huge
         return vplScale(1000, p);
     case 2: // across the horizon
         return vplVec(p.x, p.y, 0.02f * p.z);
-    case 3: // close to the axis, before or behind
+    case 3: // close to the axis, in front or behind
         return vplVec(0.01f * p.x, 0.01f * p.y, p.z);
     case 4: // near
         return vplScale(0.01f, p);
@@ -223,7 +223,8 @@ static void widen(const vplVec3 corner[3], double p[3][3])
     }
 }
 
-// Sines of the angles between a direction and the planes of a triangle's edges, the least: positive inside.
+// Returns the least sine of the angles between a direction and the planes of a triangle's edges; positive
+// inside.
 static double depthIn(const vplVec3 corner[3], vplVec3 direction)
 {
     double p[3][3], e[3], least = INFINITY;
@@ -238,7 +239,7 @@ static double depthIn(const vplVec3 corner[3], vplVec3 direction)
     return least;
 }
 
-// Distance of a triangle's plane as a share of that of its nearest corner.
+// Returns the distance of the triangle's plane relative to that of its nearest corner.
 static double heightOf(const vplVec3 corner[3])
 {
     double p[3][3], a[3], b[3], n[3];
@@ -264,7 +265,7 @@ TEST(BoundsOfTrianglesLoseNoTexel, 1)
         if (i % 4 == 0) { // a needle
             corner[2] = vplAdd(corner[1], vplScale(0.02f, rollVec(&dice, 1)));
         }
-        for (int k = 1; k < 3 && i % 7 == 0; k++) { // a small one
+        for (int k = 1; k < 3 && i % 7 == 0; k++) { // a small triangle
             corner[k] = vplAdd(corner[0], vplScale(0.4f * vplLength(corner[0]), rollVec(&dice, 1)));
         }
         vplScene* scene = sceneOf(context, 0.5f);
@@ -283,7 +284,7 @@ TEST(BoundsOfTrianglesLoseNoTexel, 1)
             const vplVec3 d = toWorld(map, localOf(map, h, texel));
             const bool covered = map->texels[placeOf(map, h, texel)] > 0;
             const double depth = depthIn(corner, d);
-            // From its edge a triangle may be seen or not.
+            // Seen edge-on, a triangle may be covered or not.
             if (height > 1e-5 && vplLength(d) - 1 < rim * rim - 1e-5f && covered != (depth > 0) &&
                 fabs(depth) > 1e-5) {
                 for (int k = 0; k < 3; k++) {
@@ -329,8 +330,8 @@ TEST(SharedEdgesLeaveNoHoles, 2)
     }
 }
 
-// A thin band along an edge covers the image of its middle, and not the middle of the chord between its ends,
-// which is up to 169 of 512 texels off.
+// A thin band along an edge must cover the projection of its midpoint, but not the midpoint of the chord
+// between its projected ends, which is up to 169 texels (of 512) away.
 TEST(EdgesBendAsTheyShould, 1)
 {
     Table t = loadTable("paraboloid_edge_error.csv");
@@ -357,7 +358,7 @@ TEST(EdgesBendAsTheyShould, 1)
         for (int which = 0; which < 2; which++) {
             const double* p = which ? chord : middle;
             int at[2];
-            for (int k = 0; k < 2; k++) { // the map's axes may be turned
+            for (int k = 0; k < 2; k++) { // the map's axes may be rotated
                 const double x = (double)frame[k][0] * p[0] + (double)frame[k][1] * p[1];
                 at[k] = (int)((x + 1) * 0.5 * MAP);
             }
@@ -378,7 +379,7 @@ TEST(EdgesBendAsTheyShould, 1)
 
 // ---- shadows
 
-// Means of clusters may lie anywhere: in a solid, on a vertex, an edge or a surface.
+// Means of clusters may lie anywhere: inside a solid, on a vertex, an edge or a surface.
 TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
 {
     vplGeometry* g = clutter(context, 1);
@@ -407,7 +408,7 @@ TEST(PlacesInMidAirGiveNumbersAnywhere, 2)
     vplGeometry_Destroy(g);
 }
 
-// ---- everywhere, and not at all
+// ---- refusals, determinism, extremes
 
 TEST(MapsCanBeRefusedAndCancelled, 1)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the rasterizer does once instead of many times must give the bits of doing it many times.
+// Tests of rasterizer optimisations: work that is done once for many passes must give the bits of doing it in
+// every pass.
 #include "raster_support.h"
 
 #include <stdlib.h>
@@ -15,7 +16,7 @@ static const uint32_t* ascending(void)
     return indices;
 }
 
-// Adds something that depends on the pass, the place and the varyings.
+// Adds a value that depends on the pass, the position and the varyings.
 static void addNumber(const void* uniforms, vplFragments* f)
 {
     const float number = *(const float*)uniforms;
@@ -40,8 +41,8 @@ static void addNumbers(const void* const* uniforms, int count, vplFragments* f)
 
 typedef enum Way { PLAIN, KEPT, FUSED, MIXED } Way;
 
-// A soup in two meshes, then passes over both, by draws that are not recognised as passes, that are, that are
-// fused, and that would be but for different masks.
+// Draws a soup in two meshes, then passes over both, as draws that are not recognised as passes, draws that
+// are, fused passes, and draws that only different masks keep from being passes.
 static uint64_t drawPasses(vplContext* context, const ClipVertex* v, Way way, int64_t* fragments)
 {
     static const float numbers[PASSES] = {1, 0.1f, 0.3f, 2, 7, 0.7f, 1e-3f, 5, 3, 11, 0.01f};
@@ -160,7 +161,7 @@ static void placeVertices(const void* uniforms, int first, int count, const vplV
     }
 }
 
-// Also where there is nothing to interpolate.
+// Surface shaders also work without varyings to interpolate.
 TEST(SurfaceShadersMayMakeAllVaryings, 1)
 {
     const ClipVertex v[3] = {{-1, -1, 0.5f, 1, {0}}, {3, -1, 0.5f, 1, {0}}, {-1, 3, 0.5f, 1, {0}}};
@@ -179,8 +180,8 @@ TEST(SurfaceShadersMayMakeAllVaryings, 1)
     freeCanvas(&c);
 }
 
-// Triangles in one draw, whose hidden blocks are left out, against a draw for each, which knows of none
-// hidden.
+// One draw of all triangles, which skips hidden blocks, must equal one draw per triangle, which knows of no
+// hidden blocks.
 TEST(HiddenBlocksAreHidden, 1)
 {
     for (uint64_t seed = 0; seed < 20; seed++) {
@@ -212,11 +213,12 @@ TEST(HiddenBlocksAreHidden, 1)
     }
 }
 
-// Depth-only draws have paths of their own, also for triangles of a few pixels.
+// Depth-only draws, which have code of their own, give the depth of shaded draws, also for triangles of a few
+// pixels.
 TEST(DepthAloneIsTheDepthOfShadedDraws, 1)
 {
     for (uint64_t seed = 0; seed < 60; seed++) {
-        const int width = 20 + (int)(seed * 7), height = 200 - (int)(seed * 3); // pixels of many sizes
+        const int width = 20 + (int)(seed * 7), height = 200 - (int)(seed * 3); // pictures of many sizes
         ClipVertex* v = makeSoup(2100 + seed, TRIANGLES);
         Canvas one = makeCanvas(width, height, 0), two = makeCanvas(width, height, 0);
         vplPipeline p = showPipeline(v);
@@ -231,7 +233,7 @@ TEST(DepthAloneIsTheDepthOfShadedDraws, 1)
     }
 }
 
-// The document's shader: distance from the eye of a 90 degree view, over far.
+// The document's shader: the distance from the eye, for a 90 degree view, relative to far.
 static void writeDistance(const void* uniforms, vplFragments* f)
 {
     const float scale = *(const float*)uniforms;
@@ -267,7 +269,7 @@ TEST(DistancesNeedNoShader, 1)
     }
 }
 
-// Plane 1: the triangle counted through all meshes. Depth: w.
+// Writes the triangle's index over all meshes to plane 1, and w to depth.
 static void nameFragments(const void* uniforms, vplFragments* f)
 {
     for (int l = 0; l < VPL_LANES; l++) {
@@ -296,8 +298,8 @@ static vplRasterStats drawNamed(vplContext* context, const Canvas* canvas, const
     return stats;
 }
 
-// However depth is written; w, along the axis, is a shader's but for outlines, where that is clamped
-// otherwise.
+// This holds for depth from a shader and for the rasterizer's own. Its w, along the axis, equals the shader's
+// except at outlines, where the two clamp w differently.
 TEST(FramebuffersNameWhoWroteDepthLast, 2)
 {
     enum { SPLIT = 17 };

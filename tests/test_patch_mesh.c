@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles from patches, and means at their vertices. Covers extremes X100 and X101.
+// Tests of the triangle mesh of patches and of means at its vertices. Covers extremes X100 and X101.
 #include "patch_support.h"
 
 #include "base/hash.h"
@@ -10,7 +10,7 @@
 
 static vplVec3 cornerOf(const vplPatchMesh* m, int triangle, int corner)
 {
-    return vplPatchMesh_Corner(m, triangle, corner % 3);
+    return m->positions[m->indices[3 * triangle + corner % 3]];
 }
 
 static bool same(vplVec3 a, vplVec3 b)
@@ -29,7 +29,7 @@ static double triangleArea(const vplPatchMesh* m, int t)
     return areaOf(cornerOf(m, t, 0), cornerOf(m, t, 1), cornerOf(m, t, 2));
 }
 
-// Whether p lies strictly inside the edge from a to b.
+// Returns whether p lies strictly inside the edge from a to b.
 static bool liesInside(vplVec3 p, vplVec3 a, vplVec3 b)
 {
     const vplVec3 d = vplSub(b, a), e = vplSub(p, a);
@@ -38,7 +38,7 @@ static bool liesInside(vplVec3 p, vplVec3 a, vplVec3 b)
     return t > 1e-4 && t < 1 - 1e-4 && off < 1e-4;
 }
 
-// Corners of triangles that lie inside edges of others.
+// Counts triangle corners that lie inside edges of other triangles.
 static int countLoose(const vplPatchMesh* m)
 {
     int loose = 0;
@@ -50,9 +50,10 @@ static int countLoose(const vplPatchMesh* m)
     return loose;
 }
 
-// ---- cuts
+// ---- hanging vertices
 
-// X100: 12 at 120 patches, none in the report's meshes; counted by the table in another way, by geometry.
+// X100: 12 hanging vertices at 120 patches, none in the report's meshes. The table counts them in a different
+// way, by geometry.
 TEST_ALONE(HangingVerticesAreThoseOfTheTable)
 {
     Table t = loadTable("subdivision_mesh.csv");
@@ -78,7 +79,7 @@ TEST_ALONE(HangingVerticesAreThoseOfTheTable)
     freeTable(&t);
 }
 
-// A random cut of a closed surface in patches of very different sizes.
+// Makes the mesh of a closed surface in patches of very different sizes, from random bisections.
 static vplPatchMesh* unevenMesh(vplContext* context, bool ball, bool smooth, int rounds, uint64_t seed,
                                 OpenFcn* open)
 {
@@ -101,7 +102,7 @@ static bool hasEdge(const vplPatchMesh* m, vplVec3 from, vplVec3 to)
     return false;
 }
 
-// Nothing shines through: both triangles at an edge have the same two ends, bit for bit.
+// The mesh is watertight: both triangles at an edge have the same two ends, bit for bit.
 TEST(EveryEdgeOfAClosedSurfaceHasTwoTriangles, 2)
 {
     int cuts = 0;
@@ -116,8 +117,8 @@ TEST(EveryEdgeOfAClosedSurfaceHasTwoTriangles, 2)
     assert_true(cuts > 100);
 }
 
-// Of a patch as a whole: pieces fill it, none is thinner than halving makes it, and its outline has its
-// length.
+// For each patch as a whole: its triangles fill it, no triangle is thinner than halving makes it, and their
+// outline has the length of the patch's.
 TEST(PiecesFillTheirPatch, 2)
 {
     vplPatchMesh* m = unevenMesh(context, true, false, 7, 3, frontsOpen);
@@ -151,7 +152,7 @@ TEST(PiecesFillTheirPatch, 2)
     closeMesh(m);
 }
 
-// ---- what shares a vertex
+// ---- shared vertices
 
 static int verticesOf(bool ball, bool smooth)
 {
@@ -163,24 +164,25 @@ static int verticesOf(bool ball, bool smooth)
     return count;
 }
 
-// The faces of an icosahedron meet at 41.8 degrees: apart, unless it is a ball with 12 normals.
+// Faces of an icosahedron meet at 41.8 degrees, so they share no vertices, except on a smooth sphere with 12
+// normals.
 TEST_ALONE(SurfacesShareVerticesWhereTheyGoOn)
 {
     assert_int_equal(verticesOf(false, false),
-                     24); // four on each face of a box, whose triangles share the diagonal
+                     24); // four per face of a box, whose two triangles share the diagonal
     assert_int_equal(verticesOf(true, false), 60);
     assert_int_equal(verticesOf(true, true), 12);
 }
 
-// Strips of a cylinder of `parts` sides of 15 degrees, in the order of `step`; only neighbours are within 20
-// degrees.
+// Makes a mesh of four triangles around a tip, 15 degrees apart, added in the given order. Only neighbours
+// have normals within 20 degrees.
 static vplPatchMesh* fanMesh(vplContext* context, const int order[4])
 {
     vplScene* scene = sceneOf(context, 0.5f);
     Shape shape = {0};
     for (int i = 0; i < 4; i++) {
         const double from = order[i] * 15, to = from + 15, degree = 3.14159265358979 / 180;
-        // A cone about z whose tip is the origin: all triangles meet there.
+        // The triangles lie on a cone about z and meet at its tip, the origin.
         addTriangle(&shape, vplVec(0, 0, 0),
                     vplVec((float)cos(from * degree), (float)sin(from * degree), 0.1f),
                     vplVec((float)cos(to * degree), (float)sin(to * degree), 0.1f));
@@ -196,13 +198,13 @@ TEST_ALONE(OrderOfTrianglesDoesNotMatter)
     for (int i = 0; i < 4; i++) {
         vplContext* context = openTestContext(1);
         vplPatchMesh* m = fanMesh(context, orders[i]);
-        assert_int_equal(m->vertexCount, 6); // the tip, and five around
+        assert_int_equal(m->vertexCount, 6); // the tip, and five around it
         closeMesh(m);
         closeTestContext(context);
     }
 }
 
-// A floor of two objects, one beside the other, and a wall on it.
+// The floor consists of two adjacent objects, and a wall stands on it.
 TEST(CoplanarObjectsShareAndWallsDoNot, 1)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -266,16 +268,16 @@ TEST(EqualValuesStayTheSameBits, 2)
     closeMesh(m);
 }
 
-// A square of two triangles, of which the second is cut once: by its own diagonal's middle the first is cut,
-// too. Corners at the diagonal's ends: 45 degrees of either. At its middle: 180 of the first, 90 of each
-// half.
+// Makes a square of two triangles. The second is bisected once; the midpoint of the diagonal is a hanging
+// vertex, at which the first is cut, too. Angles at the diagonal's ends: 45 degrees of each triangle. At its
+// midpoint: 180 of the first, 90 of each half of the second.
 static vplPatchMesh* squareMesh(vplContext* context, OpenFcn* open)
 {
     vplScene* scene = sceneOf(context, 0.5f);
     Shape shape = {0};
     addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 0, 0), vplVec(1, 1, 0));
     addTriangle(&shape, vplVec(0, 0, 0), vplVec(1, 1, 0), vplVec(0, 1, 0));
-    addTriangle(&shape, vplVec(5, 0, 0), vplVec(6, 0, 0), vplVec(6, 1, 0)); // alone
+    addTriangle(&shape, vplVec(5, 0, 0), vplVec(6, 0, 0), vplVec(6, 1, 0)); // a separate triangle
     addShape(scene, &shape, false, NULL);
     freeShape(&shape);
     vplPatches *whole = openPatches(buildGeometry(scene), 100, 0), *p = NULL;
@@ -308,13 +310,14 @@ static double meanAt(const vplPatchMesh* m, vplVertexWeight weight, float x, flo
     return mean;
 }
 
-// Hanging vertices take from all patches around, also from the one on whose edge they lie.
+// A hanging vertex averages all patches around it, including the one whose edge it lies on.
 TEST(VerticesAreMeansByAngleAreaOrCount, 1)
 {
     vplPatchMesh* m = squareMesh(context, frontsOpen);
     assert_int_equal(m->hangingVertices, 1);
     assert_int_equal(m->triangleCount, 5);
-    // Halves of the second: (0,1),(0,0),middle and (0,1),middle,(1,1), in some order; 2 and 6.
+    // The halves of the second are (0,1),(0,0),midpoint and (0,1),midpoint,(1,1), in some order, with values
+    // 2 and 6.
     const double atOrigin = meanAt(m, VPL_VERTEX_WEIGHT_EQUAL, 0, 0), other = 2 * atOrigin - 1;
     assert_true(other == 2 || other == 6);
     assertNear(meanAt(m, VPL_VERTEX_WEIGHT_ANGLE, 0, 0), (1 + other) / 2, 1e-6, "45 and 45 degrees", 0);
@@ -327,15 +330,15 @@ TEST(VerticesAreMeansByAngleAreaOrCount, 1)
     closeMesh(m);
 }
 
-// Patch 0 is under a box; of patch 1 light reaches a quarter.
+// Patch 0 is under a box; a quarter of patch 1 is open.
 static uint16_t underBox(const vplPatches* patches, int patch, int face)
 {
     (void)patches;
     return face == 1 || patch == 0 ? 0 : patch == 1 ? 0x1111 : 0xffff;
 }
 
-// X101: a floor that no light reaches darkens nothing beside it, and what is partly covered counts for as
-// much as is open.
+// X101: a closed side of the floor does not darken its neighbours, and a partly covered side has the weight
+// of its open part.
 TEST(CoveredPatchesDarkenNothing, 1)
 {
     vplPatchMesh* m = squareMesh(context, underBox);
@@ -346,7 +349,7 @@ TEST(CoveredPatchesDarkenNothing, 1)
     closeMesh(m);
 }
 
-// With sides chosen at random: each corner of a side that counts has a value, so no triangle fades to black.
+// Sides are open at random: each corner of an open side has a value, so no triangle fades to black.
 TEST(NoCornerOfALitSideIsBlack, 1)
 {
     vplPatchMesh* m = unevenMesh(context, false, false, 6, 2, diceOpen);
@@ -377,8 +380,8 @@ TEST(WrongValuesAreRefused, 1)
     closeMesh(m);
 }
 
-// How far what is interpolated lies from the value of the sides on which it does, on the mean over triangles'
-// area.
+// Returns the mean over the sides, weighted by area, of the difference between a side's value and the mean of
+// the interpolated values on it.
 static double missingOf(const vplPatchMesh* m, const vplRgb* values, const vplRgb* corners)
 {
     double* sums = calloc(2 * (size_t)m->sides->count, sizeof *sums);
@@ -428,7 +431,8 @@ TEST(SharpeningShowsEachPatchItsOwnLight, 2)
     closeMesh(m);
 }
 
-// A patch of which a part only has light keeps its corners: its value is that part's. Nothing falls below 0.
+// Sharpening leaves corners of partly open sides unchanged, because such a side's value is that of its open
+// part. No value becomes negative.
 TEST(SharpeningLeavesPartsAloneAndNothingIsNegative, 2)
 {
     for (int part = 0; part < 2; part++) {

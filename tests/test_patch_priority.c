@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where more patches are wanted: what vplFindPatchPriority says, and that following it pays.
+// Tests of adaptive patches: the priorities of vplFindPatchPriority, and the gain from refining by them.
 #include "patch_support.h"
 
 #include "math/vec.h"
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// A floor under a light that is much nearer to one place than to others: irradiance cos^4 / height^2.
+// Irradiance cos^4 / height^2 of a floor below a light that is much nearer to one point than to others.
 static double irradianceAt(vplVec3 p)
 {
     const double x = (double)p.x - 0.7, z = (double)p.z + 0.4, height = 0.5;
@@ -37,7 +37,7 @@ static double meanOver(const vplPatchSide* side, double (*at)(vplVec3))
     return sum / (16 * VPL_PATCH_CELLS);
 }
 
-// Takes over the patches.
+// Makes sides, mesh and values for the patches, and takes ownership of them.
 static void fillField(Field* f, vplPatches* patches, double (*at)(vplVec3))
 {
     f->patches = patches;
@@ -126,7 +126,7 @@ TEST_ALONE(NoLightAndEvenLightNeedNoPatches)
     }
 }
 
-// Light that grows from the middle on: no patch beside the slope is worth as much as any on it.
+// Light increases from the centre on: every patch on the slope has a higher priority than any other.
 TEST_ALONE(SlopesHaveAHigherPriorityThanPlains)
 {
     Field f = openField(0.5f, ramp);
@@ -139,7 +139,7 @@ TEST_ALONE(SlopesHaveAHigherPriorityThanPlains)
         most = high < -0.4f ? fmaxf(most, f.worth[i]) : most;
         least = low > 0 ? fminf(least, f.worth[i]) : least;
     }
-    assert_true(least > 1.3f * most); // of what is even, its area alone counts
+    assert_true(least > 1.3f * most); // a patch with even light has the priority of its area alone
     closeField(&f);
 }
 
@@ -161,8 +161,8 @@ TEST_ALONE(AShadowsBoundaryHasAHighPriority)
     closeField(&f);
 }
 
-// Direct light that changes across a patch errs in what the patch reflects; even light, however bright, does
-// not.
+// Direct light that varies across a patch causes an error in the light that the patch reflects; even light,
+// however bright, does not.
 TEST_ALONE(ChangesOfDirectLightHaveAHighPriority)
 {
     Field f = openField(0.5f, one);
@@ -194,7 +194,7 @@ TEST_ALONE(ChangesOfDirectLightHaveAHighPriority)
     closeField(&f);
 }
 
-// Mean over the floor of the square of the relative error of what is drawn.
+// Returns the mean over the floor of the squared relative error of the interpolated values.
 static double errorOf(const Field* f)
 {
     double sum = 0, total = 0;
@@ -237,7 +237,7 @@ static void refineTo(Field* f, int count)
     }
 }
 
-// As many patches as a size gives, placed by worth, have less than half the squared error.
+// Patches placed by priority have less than half the squared error of as many patches of one size.
 TEST_ALONE(PatchesByPriorityHalveTheError)
 {
     for (float size = 0.36f; size > 0.1f; size *= 0.5f) {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Which sides of patches light reaches, and where (X101).
+// Tests of finding the sides of patches that light reaches, and their open cells (X101).
 #include "sides_cases.h"
 
-// ---- what light does not reach
+// ---- unlit sides
 
-// A crate on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside is dark, and so is
-// what it stands on: open cells make up the floor less its base, but for those that it covers in part.
+// A crate stands on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside and the floor
+// below it are dark: the open cells have the area of the floor minus the crate's base, except for cells that
+// the base covers partly.
 TEST_ALONE(TheInsideOfACrateAndTheFloorUnderItAreDark)
 {
-    for (int sunk = 0; sunk < 3; sunk++) { // on the floor, into it, and a hair above
+    for (int sunk = 0; sunk < 3; sunk++) { // on the floor, sunk into it, and slightly above
         Shape shape = {0};
         addFloor(&shape);
         const float bottom = sunk == 0 ? 0 : sunk == 1 ? -0.1f : 1e-5f;
@@ -20,12 +21,12 @@ TEST_ALONE(TheInsideOfACrateAndTheFloorUnderItAreDark)
         for (int i = 0; i < c.sides->count; i++) {
             area += triangleOf(c.patches, c.sides->sides[i].patch) < 2 ? (double)c.sides->sides[i].area : 0;
         }
-        assertNear(area, 16 - 1.7 * 1.6, 0.35, "open floor", sunk); // a cell is 0.009, 76 of them are in part
+        assertNear(area, 16 - 1.7 * 1.6, 0.35, "open floor", sunk); // a cell is 0.009, 76 are partly covered
         closeCase(&c);
     }
 }
 
-// Twenty seeds and other sizes: rounding lets no light through a wall.
+// Twenty seeds and different patch sizes: rounding lets no light through a wall.
 TEST(NoSeedLightsTheBackOfAWall, 2, SLOW)
 {
     vplGeometry* g = testModel(context, MODEL_METRES, 0.5f);
@@ -50,7 +51,7 @@ TEST(NoSeedLightsTheBackOfAWall, 2, SLOW)
     vplGeometry_Destroy(g);
 }
 
-// Two closed rooms beside each other, an emitter in one.
+// Two closed rooms lie side by side, with an emitter in one.
 TEST_ALONE(ARoomWithoutAnEmitterTakesNoPart)
 {
     Shape shape = {0};
@@ -75,7 +76,7 @@ TEST_ALONE(WithoutLightThereAreNoSides)
     closeCase(&c);
 }
 
-// What an eye sees takes part, dark as it is.
+// Sides that a viewpoint sees are included, even if they are dark.
 TEST_ALONE(WhatAViewpointSeesTakesPart)
 {
     Shape shape = {0};
@@ -96,7 +97,7 @@ TEST_ALONE(WhatAViewpointSeesTakesPart)
     closeCase(&c);
 }
 
-// ---- what it reaches
+// ---- lit sides
 
 TEST_ALONE(OneTriangleHasTheSideThatFacesTheEmitter)
 {
@@ -132,7 +133,7 @@ TEST(AnAreaLightAloneIsASide, 1)
     freeShape(&shape);
 }
 
-// A curtain that hangs in a lit room: light on one side, and from the walls on the other.
+// A curtain hangs in a lit room: direct light reaches one side, light from the walls the other.
 TEST_ALONE(ACurtainHasBothSides)
 {
     Shape shape = {0};
@@ -147,7 +148,7 @@ TEST_ALONE(ACurtainHasBothSides)
     closeCase(&c);
 }
 
-// Of triangles in one place rays meet the first: it has the light of both sides, the other has none.
+// Rays hit the first of two coincident triangles: it gets the light of both sides, the other none.
 TEST_ALONE(OfTwoTrianglesInOnePlaceTheFirstHasTheLight)
 {
     for (int turned = 0; turned < 2; turned++) {
@@ -167,8 +168,8 @@ TEST_ALONE(OfTwoTrianglesInOnePlaceTheFirstHasTheLight)
     }
 }
 
-// Five rooms in a row with doors a tenth of the wall, which do not face each other; the emitter is in the
-// first. All walls of all rooms are met, at few patches and at many.
+// Five rooms in a row are connected by doors of a tenth of the wall, which do not face each other; the
+// emitter is in the first room. All walls of all rooms must be found, with few patches and with many.
 TEST_ALONE(LightGoesThroughDoorsToTheLastRoom)
 {
     for (int fine = 0; fine < 2; fine++) {
@@ -193,7 +194,7 @@ TEST_ALONE(LightGoesThroughDoorsToTheLastRoom)
     }
 }
 
-// An emitter of a millionth of another's power, alone in its room, and the only one of a hundred triangles.
+// One emitter has a millionth of the other's power, but is the only one in its room.
 TEST(AWeakAreaLightLightsItsRoom, 1)
 {
     Shape shape = {0};
@@ -218,7 +219,7 @@ TEST(AWeakAreaLightLightsItsRoom, 1)
     freeShape(&shape);
 }
 
-// A poster half a millimetre off the wall (triangles 0 and 1) covers it; the wall around it is light.
+// A poster half a millimetre off the wall (triangles 0 and 1) covers it; the wall around the poster is lit.
 TEST_ALONE(APosterCoversItsWall)
 {
     Shape shape = {0};
@@ -235,9 +236,9 @@ TEST_ALONE(APosterCoversItsWall)
     closeCase(&c);
 }
 
-// ---- the rest
+// ---- whole sides
 
-// `whole`: of each triangle that light reaches, all patches on that side, none of them in part.
+// `whole` opens, for each triangle that light reaches, all patches on that side, with all their cells.
 TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
 {
     Shape shape = {0};
@@ -252,7 +253,7 @@ TEST_ALONE(WholeSidesAreThoseOfWholeTriangles)
     def.emitterCount = 1;
     def.wholeTriangles = true;
     assert_int_equal(vplPatchSides_Create(c.patches, &def, &s), VPL_SUCCESS);
-    assert_true(s->count > c.sides->count); // what is under the box
+    assert_true(s->count > c.sides->count); // includes patches under the box
     for (int i = 0; i < 2 * c.patches->patchCount; i++) {
         bool reached = false;
         for (int k = 0; k < 2 * c.patches->patchCount; k++) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles bisected at longest edges: tests/data/subdivision_*.csv, X093, X097 to X099.
+// Tests of triangles bisected at their longest edges: tests/data/subdivision_*.csv, X093, X097 to X099.
 #include "patch_support.h"
 
 #include "base/hash.h"
@@ -29,9 +29,10 @@ static bool startsWith(const Table* t, int row, const char* text)
     return strncmp(cell(t, row, "rule"), text, strlen(text)) == 0;
 }
 
-// Lengths of the lab's unit are roots of numbers that float holds, so the two floats beside a length tell it
-// from T on both sides, and T that equals a length (82.5, 138.75, 165 ...) does not bisect it (X097). From
-// below without the seventh round: its thresholds (98.1, half of 196.2) are not among the table's.
+// Squared lengths in the lab's unit are exact in float, so a threshold T that is the next float above or
+// below a length is on the right side of it. Edges of length T exactly (82.5, 138.75, 165 ...) are not
+// bisected (X097). Thresholds from below are tested without the seventh round, because the table lacks that
+// round's lengths (98.1, half of 196.2).
 TEST(EveryThresholdGivesTheTablesCountsFromBothSides, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
@@ -51,7 +52,8 @@ TEST(EveryThresholdGivesTheTablesCountsFromBothSides, 1)
     vplGeometry_Destroy(g);
 }
 
-// T = 0.5 in the lab's own float coordinates, the length of halves of walls: 464, a hair below 784 (X097).
+// T = 0.5 in the lab's own float coordinates equals half the length of walls: 464 patches, slightly below it
+// 784 (X097).
 TEST(ScaledThresholdsInFloatGiveTheTablesCounts, 1)
 {
     vplGeometry* g = testModel(context, MODEL_SCALED, 0.5f);
@@ -71,8 +73,8 @@ TEST(ScaledThresholdsInFloatGiveTheTablesCounts, 1)
     vplGeometry_Destroy(g);
 }
 
-// Triangles with their corners in another order: other edges are first among equals, counts are the same
-// (X099).
+// Triangles with permuted corners: another of several equal longest edges comes first, but counts are the
+// same (X099).
 TEST(CountsDoNotDependOnWhichOfEqualEdgesIsFirst, 1)
 {
     Table model = loadTable("cornell_testmodel.csv"), t = loadTable("subdivision_counts.csv");
@@ -127,7 +129,7 @@ static double shortestEdge(const vplPatches* p)
     return shortest;
 }
 
-// Whether a point lies inside some patch's edge, not at its ends.
+// Returns whether a point lies inside some patch's edge, not at its ends.
 static bool isHanging(const vplPatches* p, vplVec3 at)
 {
     for (int i = 0; i < p->patchCount; i++) {
@@ -189,7 +191,7 @@ static bool isSame(vplVec3 a, vplVec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-// What vpl/geometry.h says of nodes, on triangles of all shapes.
+// Asserts what vpl/geometry.h says about nodes, for triangles of all shapes.
 static void assertNodes(const vplPatches* p)
 {
     int patches = 0;
@@ -260,7 +262,7 @@ TEST(NodesAreWhatTheHeaderSays, 1)
     }
 }
 
-// Points of each patch, a hair inside, are found in it, and corners of the triangle in a patch that has them.
+// Points slightly inside a patch are found in it, and corners of the triangle in a patch that has them.
 TEST(PointsAreFoundInTheirPatch, 1)
 {
     Shape shape = looseTriangles(20, 8);
@@ -285,7 +287,8 @@ TEST(PointsAreFoundInTheirPatch, 1)
 
 // ---- extremes
 
-// X093: needles that are lines and points have no patch, also beside others; and no half ever has no area.
+// X093: triangles that degenerate to lines or points have no patch, also beside others, and no bisection
+// makes a patch without area.
 TEST(TrianglesWithoutAreaHaveNoPatch, 1)
 {
     Shape shape = {0};
@@ -320,8 +323,8 @@ static void expectFailure(const vplGeometry* g, vplPatchDef def, vplResult wante
     assert_string_equal(takeMessage(), sentence);
 }
 
-// X098: T of 0 is the count's; below 0 and not finite are refused; tiny T is refused before memory is taken,
-// or ended by rounds, or by floats that have nothing between them.
+// X098: T = 0 leaves the choice to the count; negative and non-finite T are refused; a tiny T is refused
+// before memory is allocated, or ends after the last round, or where float has no midpoint.
 TEST(TinyThresholdsEnd, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
@@ -348,7 +351,7 @@ TEST(TinyThresholdsEnd, 1)
     vplGeometry_Destroy(g);
 }
 
-// A triangle of a few units in the last place: patches end where float does.
+// The triangle is a few ulps large: bisection ends at float's resolution.
 TEST(EdgesEndWhereFloatDoes, 1)
 {
     const float u = 0x1p-23f;
@@ -395,8 +398,9 @@ static vplPatches* byCount(const vplGeometry* g, int count)
     return p;
 }
 
-// A count is met as soon as all edges of one length are bisected: one class less is too few, and the patches
-// are those of a threshold. Edges of the metre model are alike only to rounding and yet go together.
+// A count is met once all edges of the same length are bisected: bisecting one length less gives too few
+// patches, and the patches are those of a threshold. In metres, edges have equal lengths only up to rounding,
+// but still go together.
 TEST(ACountBisectsTheLongestFirstAllOfALengthTogether, 1)
 {
     vplGeometry* lab = testModel(context, MODEL_LAB, 0.5f);
@@ -407,7 +411,7 @@ TEST(ACountBisectsTheLongestFirstAllOfALengthTogether, 1)
         assert_true(p->patchCount >= counts[i]);
         assert_int_equal(q->patchCount, p->patchCount);
         assert_int_equal(countOf(lab, p->longestEdge, VPL_MAX_PATCH_ROUNDS), p->patchCount);
-        if (counts[i] > 30) { // one class of lengths less
+        if (counts[i] > 30) { // one length less
             const float more = nextafterf(p->longestEdge, INFINITY);
             int fewer = p->patchCount;
             for (float size = more; fewer == p->patchCount; size *= 1.0005f) {
@@ -455,7 +459,8 @@ TEST(RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes, 1)
     vplGeometry_Destroy(g);
 }
 
-// Refining all, again and again, is what a threshold does; old patches outlive nothing they need.
+// Refining all patches equals one round of a threshold. Refined patches stay valid after those that they were
+// made from are destroyed.
 TEST(RefiningEverythingIsARound, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The path-traced reference against analytic answers: furnaces, direct light, and bounces.
+// Tests of the path-traced reference against analytic answers: furnaces, direct light, and bounces.
 #include "path_scenes.h"
 
-// ---- a furnace: where all walls reflect rho and emit E, everything is E / (1 - rho)
+// ---- a furnace: if all walls reflect rho and emit E, radiance is E / (1 - rho) everywhere
 
 TEST_ALONE(FurnaceGlowsEverywhereAlike, SLOW)
 {
@@ -33,8 +33,8 @@ TEST_ALONE(FurnaceGlowsEverywhereAlike, SLOW)
     }
 }
 
-// A perfect reflector among walls that emit E shows E, or it makes or loses energy. Interpolated normals may
-// lose what would have to be reflected into the surface, but never gain.
+// A white body among walls that emit E must show E, or energy is lost or made. Interpolated normals may lose
+// light that would be reflected into the surface, but never gain any.
 TEST_ALONE(WhiteBodyInAFurnaceVanishes)
 {
     for (int smooth = 0; smooth < 2; smooth++) {
@@ -60,7 +60,7 @@ TEST_ALONE(WhiteBodyInAFurnaceVanishes)
 
 // ---- direct light with an analytic answer
 
-static const double NARROW = 1e-7; // angle of view: what one small pixel sees is a point
+static const double NARROW = 1e-7; // angle of view: a small pixel sees a single point
 
 TEST(PointLightFollowsTheInverseSquare, 1)
 {
@@ -82,7 +82,7 @@ TEST(PointLightFollowsTheInverseSquare, 1)
 TEST(SpotFadesSmoothlyBetweenItsAngles, 1)
 {
     static const struct {
-        double angle, share; // degrees; 3x^2 - 2x^3 of the cosine
+        double angle, share; // degrees; the falloff 3x^2 - 2x^3 of the cosine
     } cases[] = {{0, 1}, {15, 1}, {19.9, 1}, {25, -1}, {28, -1}, {30.1, 0}, {45, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double angle = cases[i].angle * VPL_PI / 180, inner = cos(VPL_PI / 9), outer = cos(VPL_PI / 6);
@@ -116,7 +116,8 @@ TEST(DirectionalLightGoesByTheCosine, 1)
     vplScene_Destroy(scene);
 }
 
-// Form factor of a rectangle from a parallel surface element under one corner; a, b sides over the distance.
+// Returns the form factor from a surface element to a parallel rectangle with a corner above it; a, b: sides
+// relative to the distance.
 static double cornerFactor(double a, double b)
 {
     double p = sqrt(1 + a * a), q = sqrt(1 + b * b);
@@ -151,7 +152,7 @@ TEST(OnlyTheFrontOfAnAreaLightEmits, 1)
     for (int behind = 0; behind < 2; behind++) {
         vplScene* scene = newScene(context);
         addQuad(scene, addGrey(scene, 0, 5), (vplVec3){0, 0, 0}, 0, 1);
-        addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, -1}, 0, 4); // what the back faces
+        addQuad(scene, addGrey(scene, 0.5f, 0), (vplVec3){0, 0, -1}, 0, 4); // faces the back of the first
         addCamera(scene, (vplVec3){0, 0, behind ? -0.5f : 1}, (vplVec3){0, 0, 0}, NARROW);
         addCamera(scene, (vplVec3){0.3f, 0, -0.5f}, (vplVec3){0.3f, 0, -1}, NARROW);
         vplRenderOptions options = pathOptions(1, 16);
@@ -164,7 +165,8 @@ TEST(OnlyTheFrontOfAnAreaLightEmits, 1)
 
 // ---- bounces with known answers
 
-// The mean over all pixels is within four of its standard deviations, and those are within a share of it.
+// Asserts that the mean of all pixels is within four of its standard deviations, and that the deviation is
+// less than `share` of it.
 static void assertMean(const vplScene* scene, const vplRenderOptions* options, double wanted, double share,
                        const char* what, int row)
 {
@@ -202,8 +204,8 @@ TEST(CubeMatchesTheTableBounceByBounce, 2, SLOW)
     freeTable(&t);
 }
 
-// A light in the middle of a sphere: rho/pi I/R^2 / (1 - rho) everywhere. The mesh is inside the sphere by up
-// to 1 - cos(its edges' half angle), 0.05 %, and R^2 twice that.
+// A light in the centre of a sphere gives radiance rho/pi I/R^2 / (1 - rho) everywhere. The mesh lies inside
+// the sphere by up to 1 - cos(half the angle of its edges), 0.05 %, which changes R^2 by twice as much.
 TEST(SphereMatchesTheTable, 2, SLOW)
 {
     Table t = loadTable("furnace_sphere.csv");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The path-traced reference against itself and the pixels of the rasterizer: parts, errors, bits, and what
-// must not break it.
+// Tests of the path-traced reference against itself and the rasterizer's pixels: parts of the picture,
+// errors, bits, and extremes.
 #include "path_scenes.h"
 
-// Whatever is shown, the same paths are followed, so parts add up to the whole but for rounding.
+// All outputs follow the same paths, so parts add up to the whole except for rounding.
 TEST(PartsAddUpToThePicture, 2)
 {
     static const char* const scenes[] = {ROOM, AREA_ROOM};
@@ -28,7 +28,7 @@ TEST(PartsAddUpToThePicture, 2)
             assertNear((double)bounces[4]->pixels[i], 0, 0, "a bounce beyond the last", i);
             emitted += (double)direct->pixels[i] - (double)bounces[0]->pixels[i];
         }
-        assert_true(s == 0 ? emitted == 0 : emitted > 100); // bounce 0 has no emission in it
+        assert_true(s == 0 ? emitted == 0 : emitted > 100); // bounce 0 contains no emission
         vplImage_Destroy(picture);
         vplImage_Destroy(direct);
         vplImage_Destroy(indirect);
@@ -51,13 +51,14 @@ static double squaredDifference(const vplImage* a, const vplImage* b)
     return squares / (3.0 * a->width * a->height);
 }
 
-// Few bright pixels make most of the error, so a single pair of pictures says little: twelve pairs are taken.
+// A few bright pixels make most of the error, so a single pair of pictures proves little: the test takes
+// twelve.
 TEST(ErrorEstimatePredictsTheDifferenceOfSeeds, 2, SLOW)
 {
     static const char* const scenes[] = {ROOM, AREA_ROOM};
     for (int s = 0; s < 2; s++) {
         vplScene* scene = openScene(context, scenes[s]);
-        vplRenderOptions options = pathOptions(40, 15); // odd: the halves differ in size
+        vplRenderOptions options = pathOptions(40, 15); // odd, so that the halves differ in size
         double found = 0, predicted = 0;
         for (int pair = 0; pair < 12; pair++) {
             vplImage* images[2];
@@ -80,7 +81,7 @@ TEST(ErrorEstimatePredictsTheDifferenceOfSeeds, 2, SLOW)
         vplRenderStats stats;
         options.path.samples = 1;
         vplImage_Destroy(renderScene(scene, &options, &stats));
-        assert_true(stats.errorEstimate < 0); // nothing to compare with
+        assert_true(stats.errorEstimate < 0); // one sample has nothing to compare with
         vplScene_Destroy(scene);
     }
 }
@@ -103,8 +104,8 @@ static vplImage* traceWith(const vplScene* scene, const vplGeometry* geometry, c
     return image;
 }
 
-// Every emitter type, an area light, and a smooth sphere: what each way finds is the same light. Pictures
-// differ by no more than their error estimates say, and so do their means.
+// The scene has every emitter type, an area light and a smooth sphere; all sampling techniques must find the
+// same light. Pictures, and their means, differ by no more than their error estimates allow.
 TEST(AllWaysOfFindingLightAgree, 2, SLOW)
 {
     vplScene* scene = newScene(context);
@@ -118,7 +119,7 @@ TEST(AllWaysOfFindingLightAgree, 2, SLOW)
     addCamera(scene, (vplVec3){0, 0, 0.9f}, (vplVec3){0, -0.1f, -1}, 1.4);
     assert_int_equal(vplGeometry_Create(scene, &geometry), VPL_SUCCESS);
     vplPathDef def = vplDefaultPathDef();
-    def.emission = false; // its edges would hide the rest
+    def.emission = false; // aliasing at visible emitters would dominate the error
     def.lastBounce = 4;
     vplPathStats stats, other;
     vplImage* all = traceWith(scene, geometry, &def, 1024, &stats);
@@ -137,8 +138,7 @@ TEST(AllWaysOfFindingLightAgree, 2, SLOW)
         double predicted =
             stats.errorEstimate * stats.errorEstimate + other.errorEstimate * other.errorEstimate;
         assertNear(sqrt(squaredDifference(all, image) / predicted), 1, 0.2, "found / predicted", i);
-        for (int c = 0; c < 2;
-             c++) { // the mean of 576 pixels: three standard deviations, and red is less noisy
+        for (int c = 0; c < 2; c++) { // mean of 576 pixels: three standard deviations; red is less noisy
             assertNear(meanOfImage(image, c), meanOfImage(all, c), 2 * 3 * sqrt(predicted) / 24, "mean", i);
         }
         vplImage_Destroy(image);
@@ -208,15 +208,15 @@ TEST(PassesOfAnySizeEndInTheSameBits, 2)
     vplScene_Destroy(scene);
 }
 
-// Where all samples of a pixel show one surface, the rasterizer must show it there, too; and most pixels are
-// so.
+// If all samples of a pixel see the same surface, the rasterizer must show that surface there; this must hold
+// for most pixels.
 TEST(PixelsAreTheRasterizersPixels, 2)
 {
     vplScene* scene = newScene(context);
     for (int i = 0; i < 40; i++) {
         vplObjectDef def = vplDefaultObjectDef();
         def.type = i & 1 ? VPL_OBJECT_BOX : VPL_OBJECT_QUAD;
-        // No mixture of two of these has the square of its red as green.
+        // Red is i and green i^2, so no mixture of two of these colours equals a third.
         vplMaterialDef material = vplDefaultMaterialDef();
         material.diffuse = (vplRgb){0, 0, 0};
         material.emission = (vplRgb){(float)(i + 1), (float)((i + 1) * (i + 1)), 0};
@@ -231,7 +231,7 @@ TEST(PixelsAreTheRasterizersPixels, 2)
         assert_int_equal(vplScene_AddObject(scene, &def, NULL), VPL_SUCCESS);
     }
     vplCameraDef camera = vplDefaultCameraDef();
-    camera.near = 3.2; // both cut through objects
+    camera.near = 3.2; // both planes cut through objects
     camera.far = 6.5;
     assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
     vplRenderOptions options = pathOptions(96, 64);
@@ -253,17 +253,17 @@ TEST(PixelsAreTheRasterizersPixels, 2)
     vplScene_Destroy(scene);
 }
 
-// ---- what must not break it
+// ---- extremes
 
 TEST(LightsOnSurfacesAndEdgesGiveNumbers, 2)
 {
     vplScene* scene = newScene(context);
     int grey = addGrey(scene, 1, 0), areaLight = addGrey(scene, 0.5f, 1e15f);
     addRoom(scene, grey);
-    addQuad(scene, areaLight, (vplVec3){0, -1, 0}, -1, 0.5f);        // in the floor
-    addQuad(scene, areaLight, (vplVec3){0, 0, -1}, 0, 1e-6f);        // tiny, in the wall
+    addQuad(scene, areaLight, (vplVec3){0, -1, 0}, -1, 0.5f);        // coplanar with the floor
+    addQuad(scene, areaLight, (vplVec3){0, 0, -1}, 0, 1e-6f);        // tiny, coplanar with a wall
     addQuad(scene, grey, (vplVec3){0, 0, 0}, -1, 1e-15f);            // a speck
-    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 1, 0}, 5e14f);   // in the ceiling
+    addWhite(scene, VPL_EMITTER_POINT, (vplVec3){0, 1, 0}, 5e14f);   // in the ceiling's plane
     addWhite(scene, VPL_EMITTER_POINT, (vplVec3){1, 1, -1}, 1);      // in a corner
     addWhite(scene, VPL_EMITTER_SPOT, (vplVec3){0, -1, 0}, 1);       // on an area light
     addWhite(scene, VPL_EMITTER_DIRECTIONAL, (vplVec3){0, 0, 0}, 1); // along the walls
@@ -281,7 +281,7 @@ TEST(LightsOnSurfacesAndEdgesGiveNumbers, 2)
     vplScene_Destroy(scene);
 }
 
-// Nothing absorbs and nothing lets out: paths end all the same.
+// Nothing absorbs light and no ray escapes; paths must end anyway.
 TEST(PerfectMirrorRoomEnds, 1)
 {
     vplScene* scene = newScene(context);

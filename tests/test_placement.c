@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Lights for what a camera sees: judged right, chosen without bias, whatever the threads.
+// Tests of choosing virtual lights for what a camera sees: correct weights, unbiased choice, the same for any
+// number of threads.
 #include "scenes.h"
 
 #include "math/vec.h"
 
 #include <stdlib.h>
 
-// ---- what lights are worth
+// ---- contributions of lights
 
-// A camera four metres above a floor that sees next to nothing but the point below it.
+// Returns a camera four metres above a floor that sees almost only the point below it.
 static vplPlacementDef narrowDef(void)
 {
     vplPlacementDef def = vplDefaultPlacementDef();
@@ -37,7 +38,8 @@ static float worthOf(const vplGeometry* g, const vplVirtualLight* light, const v
     return worth;
 }
 
-// rho sum(flux)/pi cos cos / d^2, bounded; documented: rho sum(L) cos. Nothing from below, nor past a wall.
+// The contribution is rho sum(flux)/pi cos cos / d^2, clamped; documented: rho sum(L) cos. Lights below the
+// floor or behind a wall contribute nothing.
 TEST(ALightsWeightIsWhatTheFloorReflects, 2)
 {
     vplGeometry* floor = floorQuad(context, vplVec(0, 0, 0), 10, 0.25f);
@@ -53,7 +55,7 @@ TEST(ALightsWeightIsWhatTheFloorReflects, 2)
     def = narrowDef();
     const vplVirtualLight below = lightAt(vplVec(3, -4, 0), vplVec(0, 1, 0), 10);
     assert_true(worthOf(floor, &below, &def) == 0);
-    def.camera.far = 3.9; // the floor is cut away
+    def.camera.far = 3.9; // beyond this far plane the floor is cut away
     assert_true(worthOf(floor, &slant, &def) == 0);
     vplGeometry_Destroy(floor);
 }
@@ -90,7 +92,7 @@ static vplLightSet* candidatesOf(const vplGeometry* g, int particles)
     return set;
 }
 
-// Some contributions: none, little, much.
+// Makes contributions that are zero, small and large.
 static float* someContributions(const vplLightSet* set)
 {
     float* c = malloc((size_t)set->lightCount * sizeof *c);
@@ -111,7 +113,8 @@ static vplLightSet* chooseSome(const vplLightSet* from, const float* contributio
     return set;
 }
 
-// Each light's weight, summed over all choices in which it is, must be its own weight times their number.
+// A light's weight, summed over all choices that include it, must be its original weight times the number of
+// choices.
 TEST(EachLightKeepsItsWeightInTheMean, 1)
 {
     enum { CHOICES = 20000 };
@@ -123,7 +126,7 @@ TEST(EachLightKeepsItsWeightInTheMean, 1)
     for (int k = 0; k < CHOICES; k++) {
         vplLightSet* set = chooseSome(all, contributions, 40, k);
         assert_true(abs(set->lightCount - 40) <= 1);
-        for (int i = 0, at = 0; i < set->lightCount; i++, at++) { // in the order that they had, none twice
+        for (int i = 0, at = 0; i < set->lightCount; i++, at++) { // in their original order, none twice
             while (at < all->lightCount && (all->lights[at].step != set->lights[i].step ||
                                             all->lights[at].particle != set->lights[i].particle)) {
                 at++;
@@ -134,7 +137,8 @@ TEST(EachLightKeepsItsWeightInTheMean, 1)
         vplLightSet_Destroy(set);
     }
     for (int i = 0; i < all->lightCount; i++) {
-        // The least probability: a tenth of a share of the flux, 40 * 0.1 / 198 or more: 4 deviations.
+        // The least probability is a tenth of a share of the flux, 40 * 0.1 / 198 or more; the bound is 4
+        // deviations.
         assertNear(sums[i] / CHOICES, 1, 4 * sqrt(50.0 / CHOICES), "weight", i);
     }
     free(sums);
@@ -143,7 +147,7 @@ TEST(EachLightKeepsItsWeightInTheMean, 1)
     vplGeometry_Destroy(cube);
 }
 
-// The closed form: step k carries 4 pi I rho^(k+1). The mean over choices must find it.
+// In closed form, step k carries 4 pi I rho^(k+1). The mean over choices must agree.
 TEST(ChosenFluxIsThatOfAClosedRoom, 1)
 {
     enum { CHOICES = 2000 };
@@ -186,7 +190,7 @@ TEST(AllAreKeptWhereAllAreWanted, 1)
     assert_memory_equal(set->lights, all->lights, (size_t)all->lightCount * sizeof *all->lights);
     vplLightSet_Destroy(set);
     for (int i = 0; i < all->lightCount;
-         i++) { // nothing is seen: by flux alone, which is the same for a step
+         i++) { // no surface is seen: the choice uses flux alone, equal within a step
         contributions[i] = 0;
     }
     set = chooseSome(all, contributions, 30, 0);
@@ -234,7 +238,7 @@ static double energyOf(const vplScene* scene, const vplRenderOptions* options)
     return sum;
 }
 
-// Mean and its deviation over many seeds of the picture's sum.
+// Returns the mean of the picture's sum over many seeds, and its standard deviation.
 static double meanEnergy(const vplScene* scene, vplRenderOptions o, double* deviation)
 {
     enum { SEEDS = 40 };
@@ -251,7 +255,7 @@ static double meanEnergy(const vplScene* scene, vplRenderOptions o, double* devi
 
 TEST(PicturesAreThoseOfPlainParticlesInTheMean, 2, SLOW)
 {
-    // Instant radiosity and Keller's, with rays and without shadows, documented lighting.
+    // Variants: instant radiosity and Keller's, with rays and without shadows, and documented lighting.
     for (int variant = 0; variant < 5; variant++) {
         vplScene* scene =
             loadScene(context, variant == 1 ? "../../examples/scenes/room-area.json" : "room.json");
@@ -272,7 +276,7 @@ TEST(PicturesAreThoseOfPlainParticlesInTheMean, 2, SLOW)
     }
 }
 
-// In a flat whose area lights are in seven other rooms, nearly all lights are chosen where they reach the
+// In a flat whose area lights are in seven other rooms, nearly all chosen lights are ones that reach the
 // camera's room.
 TEST(LightsBehindWallsAreLeftOut, 2)
 {
@@ -370,7 +374,7 @@ TEST(DoublingTheEmitterChoosesTheSameLights, 1)
 }
 
 // X040 and beyond: no particles; walls that reflect nothing; the brightest and the dimmest emitters; a camera
-// that sees nothing but the sky.
+// that sees only the background.
 TEST(ExtremesStayFinite, 1)
 {
     const float intensities[] = {VPL_MAX_MAGNITUDE, 1e-30f, 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plans: pure, with every decision made, and true of what rendering then does.
+// Tests of plans: they are reproducible, contain every decision, and predict the rendering correctly.
 #include "scenes.h"
 
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 static const char* const METHODS[] = {"instant-radiosity", "direct", "path", "keller", "ssvp", "radiosity"};
 enum { METHOD_COUNT = 6 };
 
-// Options from pairs of words: "size", "32x24", ..., NULL.
+// Makes options from pairs of words: "size", "32x24", ..., NULL.
 static vplRenderOptions optionsOf(const char* const* words)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
@@ -59,7 +59,7 @@ static bool isLeftOut(const vplPlan* plan, const char* name)
     return false;
 }
 
-// ---- pure
+// ---- reproducibility
 
 TEST(TwoPlansOfTheSameAreEqual, 2)
 {
@@ -85,7 +85,7 @@ TEST(TwoPlansOfTheSameAreEqual, 2)
     vplScene_Destroy(scene);
 }
 
-// Machines change estimates, never a decision.
+// The machine affects estimates, never a decision.
 TEST(MachinesChangeNoDecision, 1)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
@@ -106,8 +106,8 @@ TEST(MachinesChangeNoDecision, 1)
     vplScene_Destroy(scene);
 }
 
-// Of all options that the method uses; lengths of bias and filter are of each shadow map its own: shares of
-// its `far`.
+// A plan sets all options that the method uses. Only lengths of bias and filter stay automatic, because each
+// shadow map has its own: they are proportional to its `far`.
 TEST(NothingIsLeftToTheLibrary, 1)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
@@ -173,7 +173,7 @@ TEST(EachMethodRunsTheStagesOfItsDocument, 1)
     vplScene_Destroy(scene);
 }
 
-// Every input of a stage runs before it, and every stage and all that is left out has a reason.
+// Every input of a stage runs before it, and every stage and everything left out has a reason.
 TEST(InputsComeFirstAndReasonsAreGiven, 1)
 {
     vplScene* scene = openScene(context, "examples/scenes/room-area.json");
@@ -314,7 +314,7 @@ TEST(DescriptionsAreCutLikeSnprintf, 1)
 
 // ---- memory
 
-// About twenty pictures: scene x method x size x threads.
+// Covers about twenty pictures: scene x method x size x threads.
 TEST_ALONE(PeakBytesAreTrueWithin15Percent)
 {
     static const char* const scenes[] = {"examples/scenes/room-area.json", "examples/scenes/testmodel.json",

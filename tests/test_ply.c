@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lit meshes as PLY files, read back byte by byte.
+// Tests of writing lit meshes as PLY files, which are read back byte by byte.
 #include "patch_support.h"
 
 #include "math/vec.h"
@@ -45,7 +45,7 @@ static vplVec3 vecAt(const Ply* ply, int vertex, int offset)
     return vplVec(floatAt(at), floatAt(at + 4), floatAt(at + 8));
 }
 
-// The header is exactly this.
+// Reads a file; its header must be exactly this text.
 static Ply readPly(const char* path)
 {
     Ply ply = {0};
@@ -77,7 +77,7 @@ static Ply readPly(const char* path)
     return ply;
 }
 
-// The square [0, 1]^2 at z = 0 in two triangles, and a third beside it that nothing reaches.
+// Makes the square [0, 1]^2 at z = 0 in two triangles, and a third triangle beside it that no light reaches.
 static vplPatchMesh* flatMesh(vplContext* context, OpenFcn* open)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -90,7 +90,7 @@ static vplPatchMesh* flatMesh(vplContext* context, OpenFcn* open)
     return meshOf(openSides(openPatches(buildGeometry(scene), 100, 0), open));
 }
 
-// Fronts of the first two, the back of the second.
+// Opens the fronts of the first two patches and the back of the second.
 static uint16_t someOpen(const vplPatches* patches, int patch, int face)
 {
     (void)patches;
@@ -111,7 +111,7 @@ static Ply writeAndRead(const vplPatchMesh* m, const vplRgb* irradiance, float s
     return ply;
 }
 
-// Irradiance is x + 2 at fronts, 8 at backs; the first patch reflects other colours than the second.
+// Writes a file with irradiance x + 2 at fronts, 8 at backs; the two lit patches have different reflectances.
 static Ply bake(vplContext* context, vplPatchMesh** meshOut)
 {
     vplPatchMesh* m = *meshOut = flatMesh(context, someOpen);
@@ -128,7 +128,8 @@ static Ply bake(vplContext* context, vplPatchMesh** meshOut)
     return writeAndRead(m, irradiance, 0.25f);
 }
 
-// Three fronts (the third as its material) and one back; where two reflectances meet each has its vertex.
+// The file has three fronts (the third with its material's colour) and one back; where two reflectances meet,
+// each has a vertex of its own.
 TEST(FileHasAllFrontsAndTheLitBacks, 1)
 {
     vplPatchMesh* m;
@@ -138,7 +139,7 @@ TEST(FileHasAllFrontsAndTheLitBacks, 1)
     for (int f = 0; f < 4; f++) {
         const vplVec3 a = vecAt(&ply, cornerOf(&ply, f, 0), 0), b = vecAt(&ply, cornerOf(&ply, f, 1), 0),
                       c = vecAt(&ply, cornerOf(&ply, f, 2), 0), n = vplCross(vplSub(b, a), vplSub(c, a));
-        assert_true(n.z == (f < 3 ? 1 : -1)); // twice its area: of the back, seen from behind
+        assert_true(n.z == (f < 3 ? 1 : -1)); // twice the area; the back is wound to be seen from behind
         for (int k = 0; k < 3; k++) {
             assert_true(vecAt(&ply, cornerOf(&ply, f, k), 12).z == n.z);
         }
@@ -165,7 +166,7 @@ TEST(ColoursAreRadiosity, 1)
     closeMesh(m);
 }
 
-// Of one reflectance vertices are those of the mesh.
+// With one reflectance for all, the file's vertices are those of the mesh.
 TEST(VerticesAreSharedWhereColoursAgree, 1)
 {
     vplPatchMesh* m = flatMesh(context, frontsOpen);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Form factors of a point and a triangle: closed forms, and what holds for all of them.
+// Tests of form factors from a point to a triangle: closed forms, and properties of all pairs.
 #include "factor_cases.h"
 
 // ---- a point and a triangle
 
-// Of a fan: corners in order, convex.
+// Returns the form factor from a point to a convex polygon, whose corners are in order, as a fan of
+// triangles.
 static double pointFactorOfFan(vplVec3 point, vplVec3 normal, const vplVec3* corners, int count)
 {
     double sum = 0;
@@ -14,7 +15,7 @@ static double pointFactorOfFan(vplVec3 point, vplVec3 normal, const vplVec3* cor
     return sum;
 }
 
-// From below the corner of a rectangle a x b, c above.
+// Returns the form factor from a point to a rectangle a x b at height c, with a corner above the point.
 static double pointFactorOfCorner(vplVec3 normal, const float v[3])
 {
     const float a = v[0], b = v[1], c = v[2];
@@ -22,8 +23,8 @@ static double pointFactorOfCorner(vplVec3 normal, const float v[3])
                             (const vplVec3[4]){{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}}, 4);
 }
 
-// Lengths are floats: 0.001 is wrong by 5e-8 of it, and the smallest factors by as much. In millimetres all
-// lengths are exact, and 4e-16 are measured.
+// Lengths are rounded to float: 0.001 has a relative error of 5e-8, and so do the smallest factors. In
+// millimetres all lengths are exact, and the measured error is 4e-16.
 TEST_ALONE(CornersOfRectanglesAreThoseOfTheClosedForms)
 {
     Table t = loadTable("ff_analytic.csv");
@@ -54,7 +55,8 @@ TEST_ALONE(CornersOfRectanglesAreThoseOfTheClosedForms)
     freeTable(&t);
 }
 
-// A regular polygon of so many corners, h above its middle's foot.
+// Returns the form factor from a point to a regular polygon of `count` corners, centred at height h above the
+// point.
 static double pointFactorOfRing(double radius, float h, int count)
 {
     const vplVec3 point = {0, 0, 0}, up = {0, 0, 1};
@@ -69,9 +71,9 @@ static double pointFactorOfRing(double radius, float h, int count)
     return sum;
 }
 
-// A disk lies between polygons in it and around it, whatever their corners' rounding, which is less than the
-// 2^-22 that they are moved. One of the same area has the same factor to (pi / count)^4 and the mean of the
-// corners' rounding: 8e-10 of it are measured.
+// A disk lies between its inscribed and circumscribed polygons. Both are scaled by 2^-22, which is more than
+// the rounding of corners. A polygon of the same area has the same factor up to (pi / count)^4 and the
+// corners' mean rounding: the measured error is 8e-10.
 TEST_ALONE(DisksAreThoseOfTheClosedForm)
 {
     enum { CORNERS = 4096 };
@@ -85,7 +87,7 @@ TEST_ALONE(DisksAreThoseOfTheClosedForm)
         const char* parameters = cell(&t, row, "parameters");
         double r, h;
         assert_int_equal(sscanf(parameters, "r=%lf h=%lf", &r, &h), 2);
-        if ((double)(float)h != h) { // in millimetres it is exact
+        if ((double)(float)h != h) { // the height is exact in millimetres
             r *= 1000;
             h *= 1000;
         }
@@ -114,7 +116,7 @@ static double heightAbove(vplVec3 point, vplVec3 normal, vplVec3 p)
            ((double)p.z - point.z) * normal.z;
 }
 
-// Of two windings one is seen, and none of what is below the horizon.
+// The point sees one of a triangle's two windings, and neither if the triangle is below its horizon.
 TEST_ALONE(PointsSeeOneSideAndNothingBehindThem)
 {
     int seen = 0, behind = 0;
@@ -141,12 +143,12 @@ TEST_ALONE(PointsSeeOneSideAndNothingBehindThem)
     assert_true(seen > MOST_CASES / 2 && behind > MOST_CASES / 10);
 }
 
-// Whatever the element's direction, a closed box is all it sees: triangles are cut at its horizon so that
-// nothing is lost and nothing is counted twice.
+// A closed box is all that the element sees, in any direction: clipping triangles at its horizon must lose
+// nothing and count nothing twice.
 TEST_ALONE(BoxesAroundAPointSumToOne)
 {
-    // Corner i of the box has the upper x, y, z where bits 0, 1, 2 of i are set; counter-clockwise seen from
-    // inside.
+    // Corner i of the box has the upper x, y, z if bits 0, 1, 2 of i are set; faces are counter-clockwise
+    // seen from inside.
     static const int faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1},
                                     {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
     static const float sizes[4][3] = {{1, 1, 1}, {1, 2, 3}, {1, 1, 1000}, {1000, 1, 1000}};
@@ -156,9 +158,9 @@ TEST_ALONE(BoxesAroundAPointSumToOne)
         vplVec3 point = {size[0] * (float)uniformAt(seed, 0), size[1] * (float)uniformAt(seed, 1),
                          size[2] * (float)uniformAt(seed, 2)};
         vplVec3 ahead = normal;
-        if (seed % 3 == 1) { // as near to the floor as the table's rows
+        if (seed % 3 == 1) { // as near to the floor as the table's points
             point.z = 0.001f;
-        } else if (seed % 3 == 2) { // a part of the floor
+        } else if (seed % 3 == 2) { // the element lies in the floor
             point.z = 0;
             ahead = (vplVec3){0, 0, 1};
         }
@@ -175,12 +177,13 @@ TEST_ALONE(BoxesAroundAPointSumToOne)
     }
 }
 
-// The part of a triangle that is seen ends at the horizon: where its edges end below is all the same.
+// The visible part of a triangle ends at the horizon: the length of its edges below the horizon does not
+// matter.
 TEST_ALONE(WhatIsBelowTheHorizonChangesNothing)
 {
     const vplVec3 point = {0, 0, 0}, up = {0, 0, 1}, left = {-0.25f, 1, -1.5f}, right = {-0.5f, -1, -2};
     for (uint64_t seed = 0; seed < 500; seed++) {
-        // Multiples of 2^-10, so that the longer edges are exact.
+        // Coordinates are multiples of 2^-10, so that the longer edges are exact.
         const vplVec3 top = {0.5f + rintf((float)uniformAt(seed, 0) * 0x1p10f) * 0x1p-10f,
                              rintf((float)uniformAt(seed, 1) * 0x1p10f) * 0x1p-10f,
                              rintf((float)uniformAt(seed, 2) * 0x1p10f) * 0x1p-10f + 0x1p-10f};
@@ -202,7 +205,7 @@ TEST_ALONE(WhatIsBelowTheHorizonChangesNothing)
     }
 }
 
-// The same bits, of whatever size and wherever: near and far, cut and whole.
+// Factors have the same bits at any scale and position, for near and far triangles, clipped or not.
 TEST_ALONE(PointFactorsDoNotDependOnTheUnitOrThePlace)
 {
     static const int powers[6] = {-100, -33, -30, 30, 33, 100};
@@ -211,7 +214,7 @@ TEST_ALONE(PointFactorsDoNotDependOnTheUnitOrThePlace)
         vplVec3 a[3], b[3], moved[3];
         rollPair(seed, a, b);
         const float step = 0x1p-10f, far = 4096;
-        for (int i = 0; i < 3; i++) { // so that places a few thousand away are exact
+        for (int i = 0; i < 3; i++) { // rounded, so that moved positions are exact
             b[i] = (vplVec3){rintf(b[i].x / step) * step, rintf(b[i].y / step) * step,
                              rintf(b[i].z / step) * step};
             moved[i] = (vplVec3){b[i].x + far, b[i].y - far, b[i].z + far};
@@ -236,16 +239,17 @@ TEST_ALONE(PointFactorsDoNotDependOnTheUnitOrThePlace)
     assert_true(seen > MOST_CASES / 3);
 }
 
-// Seen at an angle: along its edges almost all cancels, at 2^20 sizes 6 digits and at 2^60 all that doubles
-// have.
+// The triangle is seen at an angle: the terms of the integral along its edges cancel, by 6 digits at a
+// distance of 2^20 sizes, and by all digits of double at 2^60.
 TEST_ALONE(FarTrianglesAreTheirAreaOverTheSquare)
 {
-    // Its middle is the origin, so that what follows the first term has the square of the distance below it.
+    // The centroid is the origin, so that the next term of the series is smaller by the square of the
+    // distance.
     const vplVec3 triangle[3] = {{-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}}, normal = {0.6f, 0, -0.8f};
     const double length = sqrt((double)normal.x * normal.x + (double)normal.z * normal.z);
     for (int power = 4; power <= 60; power++) {
         const float d = ldexpf(1, power);
-        const vplVec3 point = {-2 * d, d, 2 * d}; // 3d from it
+        const vplVec3 point = {-2 * d, d, 2 * d}; // at distance 3d
         const double f = vplPointFormFactor(point, normal, triangle);
         const double square = 9 * (double)d * d,
                      cosine = (2 * (double)normal.x - 2 * (double)normal.z) / (3 * length);
@@ -254,14 +258,15 @@ TEST_ALONE(FarTrianglesAreTheirAreaOverTheSquare)
     }
 }
 
-// Halves are nearer for their size than the whole, so that one is along edges and the other over the area.
+// Halves are nearer relative to their size than the whole, so that one may use the integral along the edges
+// and the other the integral over the area.
 TEST_ALONE(HalvesSeenFromAPointSumToTheWhole)
 {
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
         rollPair(seed, a, b);
-        for (int i = 0; i < 3; i++) { // so that the middle is exact
+        for (int i = 0; i < 3; i++) { // so that the midpoint is exact
             b[i] = (vplVec3){rintf(b[i].x * 0x1p14f) * 0x1p-14f, rintf(b[i].y * 0x1p14f) * 0x1p-14f,
                              rintf(b[i].z * 0x1p14f) * 0x1p-14f};
         }
@@ -278,12 +283,12 @@ TEST_ALONE(HalvesSeenFromAPointSumToTheWhole)
     assert_true(seen > MOST_CASES / 3);
 }
 
-// Of the middles of the parts of a, n to an edge.
+// Returns the mean factor from the centroids of the triangles that a is divided into, n per edge.
 static double meanOfPointFactors(const vplVec3 a[3], vplVec3 normal, const vplVec3 b[3], int n)
 {
     double sum = 0;
     for (int i = 0; i < n; i++) {
-        for (int k = 0; k < 2 * i + 1; k++) { // in strip i, up and down by turns
+        for (int k = 0; k < 2 * i + 1; k++) { // in strip i, triangles alternate in orientation
             const double u = (i - k / 2 + (k & 1 ? -1 / 3.0 : 1 / 3.0)) / n,
                          v = (k / 2 + (k & 1 ? 2 / 3.0 : 1 / 3.0)) / n;
             const vplVec3 point = {(float)(a[0].x + u * (a[1].x - a[0].x) + v * (a[2].x - a[0].x)),
@@ -295,8 +300,8 @@ static double meanOfPointFactors(const vplVec3 a[3], vplVec3 normal, const vplVe
     return sum / ((double)n * n);
 }
 
-// What a triangle sends is the mean of what its points send. The middle of a part errs by its size squared,
-// which the difference of two such means takes away, and by the rounding of points to floats.
+// A triangle's form factor is the mean of its points' factors. Centroids of parts cause an error proportional
+// to their squared size, which the difference of two such means removes; points are rounded to float.
 TEST_ALONE(MeansOverPointsAreFactorsOfTriangles)
 {
     int compared = 0, cut = 0;
@@ -312,7 +317,7 @@ TEST_ALONE(MeansOverPointsAreFactorsOfTriangles)
         for (int i = 0; i < 3; i++) {
             behind = behind || heightAbove(a[0], normal, b[i]) < 0;
         }
-        // The mean is of a smooth function where all of a is in front of b, and b is some way off.
+        // The averaged function is smooth if all of a is in front of b and b is some distance away.
         const double wanted = vplTriangleFormFactor(a, b);
         if (!(wanted > 1e-4) || !(b[0].z > 0.6f && b[1].z > 0.6f && b[2].z > 0.6f) ||
             !(vplPointFormFactor(a[0], normal, b) > 0 && vplPointFormFactor(a[1], normal, b) > 0 &&
@@ -328,8 +333,8 @@ TEST_ALONE(MeansOverPointsAreFactorsOfTriangles)
     assert_true(compared > 50 && cut > 10);
 }
 
-// Over the middle of a triangle all is seen, over its edges half, over a corner the corner's share of the
-// turn.
+// A point next to a triangle's interior sees all of it, a point next to an edge half, a point next to a
+// corner the corner's share of the full angle.
 TEST_ALONE(PointsOnATriangleSeeItsShareOfTheTurn)
 {
     const vplVec3 triangle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, down = {0, 0, -1};
@@ -350,8 +355,8 @@ TEST_ALONE(PointsOnATriangleSeeItsShareOfTheTurn)
     }
 }
 
-// Corners and middles of edges, which are exact, in planes at any angle; and what has no area, or no
-// direction.
+// Tests corners and midpoints of edges, which are exact, in planes at any angle; then triangles without area
+// and normals without direction.
 TEST_ALONE(PointsInThePlaneAndNoAreaSeeNothing)
 {
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
@@ -381,7 +386,7 @@ TEST_ALONE(PointsInThePlaneAndNoAreaSeeNothing)
         assert_true(vplPointFormFactor(origin, (vplVec3){0, 0, bad}, over) == 0);
         assert_true(vplPointFormFactor(origin, up, (const vplVec3[3]){over[0], over[1], {bad, 0, 1}}) == 0);
     }
-    // Behind the element, and with an edge on its horizon.
+    // The triangle is behind the element, or has an edge on its horizon.
     assert_true(vplPointFormFactor(origin, (vplVec3){0, 0, -1}, over) == 0);
     assert_true(vplPointFormFactor(origin, up, (const vplVec3[3]){{1, 0, 0}, {1, 1, 0}, {1, 0, -1}}) == 0);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Radiosity as a whole: what its pictures are made of and converge to, light that moves, and what happens at
-// its extremes. The stages have suites of their own: patches, patchSides, formFactors, radiositySolve, links,
-// patchMesh, drawPatches.
+// End-to-end tests of radiosity: the parts of its pictures, convergence, moving lights, and extremes. The
+// stages have suites of their own: patches, patchSides, formFactors, radiositySolve, links, patchMesh,
+// drawPatches.
 #include "radiosity_pictures.h"
 
-// ---- what a picture is
+// ---- parts of a picture
 
 TEST(PictureIsDirectLightAndPatches, 2)
 {
@@ -49,7 +49,8 @@ TEST(PicturesComeNearerToPathsAsPatchesShrink, 2, SLOW)
     }
 }
 
-// What errors against two truths of independent noise have in common.
+// Returns the mean product of the errors against two truths of independent noise, in which their noise
+// cancels.
 static double commonError(const vplImage* image, vplImage* const truth[2])
 {
     double sum = 0;
@@ -62,8 +63,8 @@ static double commonError(const vplImage* image, vplImage* const truth[2])
     return sum / count;
 }
 
-// Measured: 0.00071 with 980 patches, where 1624 of one size give 0.00092 (bench/radiosity_error has more,
-// off edges).
+// Measured: 0.00071 with 980 adaptive patches, 0.00092 with 1624 uniform ones (bench/radiosity_error measures
+// more, also away from edges).
 TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)
 {
     vplScene* scene = loadScene(context, "../../examples/scenes/room-area.json");
@@ -95,8 +96,8 @@ TEST(AdaptivePatchesAreBetterThanMoreUniformOnes, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-// In a closed room whose walls all emit, light is the same everywhere: Le / (1 - rho), of which Le rho^2 / (1
-// - rho) was reflected at least twice, the eye's last reflection counted.
+// In a closed room whose walls all emit, radiance is Le / (1 - rho) everywhere, of which Le rho^2 / (1 - rho)
+// has been reflected at least twice, including the last reflection towards the eye.
 TEST(FurnaceIsUniform, 2)
 {
     static const float rhos[] = {0, 0.1f, 0.5f, 0.9f, 0.99f};
@@ -147,8 +148,8 @@ TEST_ALONE(PicturesHaveTheSameBitsEverywhere)
 
 // ---- the report's saturation
 
-// X094. With the document's estimator and few patches there is too much light, or no solution; with ours
-// there is not.
+// X094. With the document's estimator and few patches the picture is too bright, or there is no solution;
+// with ours neither happens.
 TEST(OneSampleFormFactorsSaturateAndOursDoNot, 2, SLOW)
 {
     vplScene* scene = boxRoom(context, 0.75f, false);
@@ -170,7 +171,7 @@ TEST(DivergenceIsASentence, 2)
 {
     vplScene* scene = closedCubeScene(context, 0.9f, 1);
     aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
-    vplRenderOptions o = radiosityOptions(12); // spectral radius 1.55
+    vplRenderOptions o = radiosityOptions(12); // the spectral radius is 1.55
     o.radiosity.formFactors = VPL_FORM_FACTORS_INCENTRE;
     vplImage* image = NULL;
     for (int solver = 0; solver <= VPL_SOLVER_SHOOTING; solver++) {
@@ -188,7 +189,7 @@ TEST(DivergenceIsASentence, 2)
     vplScene_Destroy(scene);
 }
 
-// X096: no solution, but as many sweeps as were asked for, and a warning.
+// X096: a room without a solution ends after the requested number of sweeps, with a warning.
 TEST(WhiteClosedRoomEndsWithAWarning, 2)
 {
     vplScene* scene = boxRoom(context, 1, false);
@@ -243,7 +244,7 @@ TEST(OneTriangleReflectsNothingToItself, 2)
     vplScene_Destroy(scene);
 }
 
-// Two walls in the same place: each patch is there twice, light is not.
+// Two walls coincide: each patch exists twice, but its light must not.
 TEST(CoplanarDuplicatesDoNotDoubleLight, 2)
 {
     double means[2];
@@ -262,7 +263,7 @@ TEST(CoplanarDuplicatesDoNotDoubleLight, 2)
     assertNear(means[1], means[0], 0.05 * means[0], "light of a floor that is there twice", 0);
 }
 
-// The inside of another closed box has no light, and takes no part.
+// The inside of another closed box is unlit and must not be divided into sides.
 TEST(RoomsWithoutLightTakeNoPart, 2)
 {
     vplRenderStats stats[2];
@@ -273,7 +274,7 @@ TEST(RoomsWithoutLightTakeNoPart, 2)
         }
         vplRenderOptions o = radiosityOptions(1);
         o.radiosity.patchSize = 0.5f;
-        o.output.show = VPL_SHOW_INDIRECT; // shadow maps have the distance of the farthest corner for a unit
+        o.output.show = VPL_SHOW_INDIRECT; // shadow maps have the farthest corner's distance as unit
         vplImage_Destroy(renderScene(scene, &o, &stats[other]));
         vplScene_Destroy(scene);
     }
@@ -282,8 +283,8 @@ TEST(RoomsWithoutLightTakeNoPart, 2)
     assert_true(stats[1].imageHash == stats[0].imageHash);
 }
 
-// X101. Corners of floor patches under the box have no light; nothing near it may be dark for that. Compared
-// are flat patches beside the box, of which none is much darker than paths say.
+// X101. Floor patches under the box have unlit corners, which must not darken anything near the box. The test
+// compares patches beside the box: none may be much darker than the path tracer's result.
 TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
 {
     vplScene* scene = closedCubeScene(context, 0.7f, 0);
@@ -297,7 +298,7 @@ TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
         o.radiosity.vertexWeight = equal ? VPL_VERTEX_WEIGHT_EQUAL : VPL_VERTEX_WEIGHT_ANGLE;
         o.radiosity.formFactors = equal ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
         vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
-        const double energy = compare(image, truth).energyRatio; // the document's is too bright as a whole
+        const double energy = compare(image, truth).energyRatio; // the document's is too bright overall
         least[equal] = 10;
         for (int i = 0; i < 40 * 30; i++) {
             const double ratio = (double)image->pixels[3 * i] / (double)truth->pixels[3 * i];
@@ -305,13 +306,13 @@ TEST(NothingIsDarkBecauseItTouchesABox, 2, SLOW)
         }
         vplImage_Destroy(image);
     }
-    assert_true(least[0] > 0.8); // 0.9
-    assert_true(least[1] < 0.7); // its figure 7
+    assert_true(least[0] > 0.8); // measured: 0.9
+    assert_true(least[1] < 0.7); // as in the document's figure 7
     vplImage_Destroy(truth);
     vplScene_Destroy(scene);
 }
 
-// ---- what is refused
+// ---- refusals
 
 TEST(WhatIsNotPossibleIsASentence, 1)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Radiosity of frames in which a light moves.
+// Tests of radiosity in frames with a moving light.
 #include "radiosity_pictures.h"
 
 // ---- a light that moves
@@ -12,7 +12,7 @@ static void movePath(vplScene* scene)
     assert_int_equal(vplScene_SetEmitterPath(scene, 0, keys, 2), VPL_SUCCESS);
 }
 
-// Frame 0, then frame 1 again and again: one sweep each time.
+// Renders frame 0, then frame 1 repeatedly: each time does one sweep.
 TEST(LightThatJumpedArrivesSweepBySweep, 2)
 {
     vplScene* scene = boxRoom(context, 0.7f, false);
@@ -58,28 +58,28 @@ TEST(FormFactorsAreKeptAndNothingElseChanges, 2)
     assert_true(kept.imageHash == alone.imageHash);
     assert_true(kept.rays < alone.rays / 4);
     o.radiosity.patches = 200;
-    vplImage_Destroy(renderScene(scene, &o, &kept)); // other patches are made anew
+    vplImage_Destroy(renderScene(scene, &o, &kept)); // a different number of patches makes them anew
     assert_true(kept.patches < alone.patches);
     vplHistory_Destroy(o.sequence.history);
     vplScene_Destroy(scene);
 }
 
-// A vplProgressFcn that refuses from the n-th time on; `user` is an int that counts down.
+// A vplProgressFcn that cancels from the n-th call on; `user` is an int that counts down.
 static bool refuseLater(void* user, double fraction)
 {
     (void)fraction;
     return --*(int*)user > 0;
 }
 
-// Wherever the first frame was cancelled, the next of the same history is as if it had not been.
+// Wherever the first frame was cancelled, the next frame of the same history is the same as without it.
 TEST(CancelledFramesLeaveNothingBehind, 1)
 {
     vplScene* scene = boxRoom(context, 0.7f, false);
     vplRenderOptions o = radiosityOptions(40);
     vplRenderStats alone, after;
-    o.shadow.mapSize = 32; // as many steps as ever, all of them short
+    o.shadow.mapSize = 32; // the same number of steps, all of them short
     o.sequence.coherence =
-        VPL_COHERENCE_OFF; // light that was found before pixels were cancelled may be gone on from
+        VPL_COHERENCE_OFF; // a coherent solver could start from light of the cancelled frame
     vplImage_Destroy(renderScene(scene, &o, &alone));
     int cancelled = 0;
     for (int last = 1, done = 0; !done; last++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// B = E + rho F B with form factors made by hand: tests/data/two_patch.csv, furnace.csv, gs_cube6.csv,
-// gs_rates.csv.
+// Tests of B = E + rho F B with form factors made by hand: tests/data/two_patch.csv, furnace.csv,
+// gs_cube6.csv, gs_rates.csv.
 #include "solving.h"
 
 // ---- two patches
@@ -38,7 +38,7 @@ TEST(TwoPatchesAreThoseOfTheTable, 1)
         for (size_t i = 0; i < sizeof cases / sizeof *cases && !singular; i++) {
             const vplSolveDef def = sweeps(cases[i].solver, cases[i].iterations);
             const vplSolveStats stats = solve(&e, &def, source, b);
-            // Values are floats; 25 bounces of 0.99^2 lose digits in proportion.
+            // Values are floats; 25 bounces of 0.99^2 lose precision proportionally.
             assertRatio((double)b[0].r, number(&t, row, cases[i].b1), 1e-5, cases[i].b1, row);
             assertRatio((double)b[1].b, number(&t, row, cases[i].b2), 1e-5, cases[i].b2, row);
             assertNear(stats.spectralRadius, number(&t, row, "rate_jacobi"), 1e-6, "radius", row);
@@ -99,7 +99,7 @@ TEST(AFurnaceGlowsByTheGeometricSeries, 1)
             const vplSolveDef def = sweeps(VPL_SOLVER_JACOBI, iterations[k]);
             const vplSolveStats stats = solve(&e, &def, source, b);
             for (int i = 0; i < COUNT; i++) {
-                // 0.999^100 of a rho that is rounded to 2^-25.
+                // The error is that of 0.999^100 if rho is rounded to 2^-25.
                 assertRatio((double)b[i].g, number(&t, row, column), 1e-5, column, row);
             }
             assertNear(stats.spectralRadius, number(&t, row, "rho"), 1e-6, "radius", row);
@@ -136,8 +136,8 @@ TEST(AlgorithmOneOnACubeIsThatOfTheTable, 1)
     freeTable(&t);
 }
 
-// Sweeps from darkness, as the table counts, until all are within 1e-3 of the solution. The row sums' last
-// bits are worth some sweeps at 0.99, so the solution is that of these rows.
+// Counts the sweeps from B = 0, as the table does, until all values are within 1e-3 of the solution. At 0.99
+// rounding errors of the row sums change the count, so the solution is computed from the same rounded rows.
 static int sweepsNeeded(const Exchange* e, vplSolver solver)
 {
     vplRgb source[6], b[6] = {{0, 0, 0}}, exact[6];
@@ -209,7 +209,7 @@ TEST(AMovedLightStartsFromTheOldSolution, 1)
     fillSphere(&e, 21);
     fillSources(before, MANY, 22);
     memcpy(after, before, sizeof after);
-    for (int i = 0; i < 10; i++) { // a little of the light moves
+    for (int i = 0; i < 10; i++) { // a small part of the light moves
         after[i].r += 0.5f;
         after[MANY - 1 - i].r *= 0.5f;
     }
@@ -260,7 +260,7 @@ TEST(ResidualsEndIt, 1)
 
 static uint64_t solveHash(vplContext* context)
 {
-    enum { LARGE = 1109 }; // rows enough for workers to share Jacobi sweeps
+    enum { LARGE = 1109 }; // enough rows for workers to share Jacobi sweeps
     Exchange e;
     vplRgb source[LARGE], b[LARGE];
     uint64_t hash = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Properties of the rasterizer that hold for any triangles.
+// Tests of the rasterizer's properties that hold for any triangles.
 #include "raster_support.h"
 
 #include "base/hash.h"
@@ -18,16 +18,16 @@ TEST(EqualTouchesExactlyWhatLessLeft, 2)
         Canvas c = makeCanvas(90, 70, 0);
         c.framebuffer.planes[0].clear = -1;
         vplPipeline less = showPipeline(v), equal = showPipeline(v);
-        less.planeMask = 2; // the owner into plane 1
+        less.planeMask = 2; // writes the owner to plane 1
         equal.depthCompare = VPL_DEPTH_EQUAL;
         equal.depthWrite = false;
         equal.blend = VPL_BLEND_ADD;
-        equal.planeMask = 1; // one per pass into plane 0, from -1
+        equal.planeMask = 1; // adds one per pass to plane 0, from -1
         vplRaster* raster;
         assert_int_equal(vplRaster_Create(context, &c.framebuffer, &raster), VPL_SUCCESS);
         assert_int_equal(vplRaster_Draw(raster, &mesh, &less), VPL_SUCCESS);
         for (int pass = 0; pass < 3; pass++) {
-            equal.ownerTest = pass == 2; // with and without
+            equal.ownerTest = pass == 2; // without and with the owner test
             assert_int_equal(vplRaster_Draw(raster, &mesh, &equal), VPL_SUCCESS);
         }
         assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);
@@ -44,8 +44,8 @@ TEST(EqualTouchesExactlyWhatLessLeft, 2)
     }
 }
 
-// A grid of jittered vertices fills a rectangle: every centre inside is covered by one triangle, whatever the
-// jitter, the diagonals and the windings.
+// A grid of jittered vertices fills a rectangle: every pixel centre inside is covered by exactly one
+// triangle, whatever the jitter, the diagonals and the windings.
 TEST(SharedEdgeIsCoveredOnce, 1)
 {
     enum { N = 9 };
@@ -58,7 +58,7 @@ TEST(SharedEdgeIsCoveredOnce, 1)
             bool inner = x > 0 && y > 0 && x < N - 1 && y < N - 1;
             double jx = inner ? uniformAt(seed, (uint64_t)i * 4) - 0.5 : 0;
             double jy = inner ? uniformAt(seed, (uint64_t)i * 4 + 1) - 0.5 : 0;
-            int step = seed % 2 ? 8 * 256 : 8 * 256 + 37; // on pixel centres or off
+            int step = seed % 2 ? 8 * 256 : 8 * 256 + 37; // vertices on pixel centres, or off them
             v[i] = fixedVertex(128 + (int)(step * (x + 0.45 * jx)), 128 + (int)(step * (y + 0.45 * jy)), 0.5f,
                                80, 80);
         }
@@ -74,8 +74,7 @@ TEST(SharedEdgeIsCoveredOnce, 1)
         p.blend = VPL_BLEND_ADD;
         p.depthCompare = VPL_DEPTH_ALWAYS;
         drawList(context, &c, &p, indices, N * N, count);
-        int side =
-            seed % 2 ? 64 : 66; // the centres in the rectangle; right and bottom edges do not own theirs
+        int side = seed % 2 ? 64 : 66; // pixel centres inside; the fill rule excludes right and bottom edges
         for (int i = 0; i < 80 * 80; i++) {
             bool inside = i % 80 < side && i / 80 < side;
             assertNear((double)c.planes[0][i], inside, 0, "times drawn", i);
@@ -119,7 +118,7 @@ TEST_ALONE(BitsDoNotDependOnThreadsOrInstructionSet)
     }
 }
 
-// Pinned bits: compiler, optimisation level and architecture may not change them either.
+// The expected hash is fixed: compiler, optimisation level and architecture must not change it.
 TEST(BitsOfASoupArePinned, 2)
 {
     uint64_t hash = soupHash(context, 1);
@@ -148,10 +147,10 @@ TEST(CullingKeepsOneSide, 1)
     assert_true(fragments[0] == fragments[1] + fragments[2]);
 }
 
-// Two overlapping rectangles in each compare mode, with depth writes on and off.
+// Draws two overlapping rectangles with each depth compare mode, with depth writes on and off.
 TEST(DepthComparesAndWritesAsAsked, 1)
 {
-    const float depths[3] = {0.5f, 0.25f, 0.75f}; // equal, nearer, farther than 0.5
+    const float depths[3] = {0.5f, 0.25f, 0.75f}; // equal to, nearer than, farther than 0.5
     const bool passes[4][3] = {{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, 1, 1}};
     for (int compare = 0; compare < 4; compare++) {
         for (int i = 0; i < 3; i++) {
@@ -197,7 +196,7 @@ TEST(LoadKeepsAndClearReplacesWhatWasThere, 1)
     }
 }
 
-// X076, X073, X079: what cannot be drawn is dropped and disturbs nothing.
+// X076, X073, X079: invalid triangles are dropped and affect nothing else.
 TEST(BadTrianglesDrawNothing, 1)
 {
     const float bad[] = {NAN, INFINITY, -INFINITY};
@@ -214,7 +213,7 @@ TEST(BadTrianglesDrawNothing, 1)
     const ClipVertex dull[4][3] = {
         {{0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}, {0.5f, 0.5f, 0.5f, 1, {0}}}, // a line
         {{0, 0, 0.5f, 1, {0}}, {0, 0, 0.5f, 1, {0}}, {1, 1, 0.5f, 1, {0}}},       // a repeated vertex
-        {{0, 0, -1, -1, {0}}, {1, 0, -1, -1, {0}}, {0, 1, -1, -1, {0}}},          // all behind
+        {{0, 0, -1, -1, {0}}, {1, 0, -1, -1, {0}}, {0, 1, -1, -1, {0}}},          // all behind the eye
         {{0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}, {0, 0, 0, 0, {0}}},                // w = 0
     };
     for (int i = 0; i < 4; i++) {
@@ -225,7 +224,7 @@ TEST(BadTrianglesDrawNothing, 1)
     }
 }
 
-// Huge but finite coordinates are clipped to the guard band, not wrapped.
+// Huge but finite coordinates are clipped to the guard band and do not wrap around.
 TEST(HugeTrianglesCoverThePicture, 1)
 {
     const float sizes[] = {10, 1e4f, 1e10f, 1e30f};
@@ -270,7 +269,7 @@ TEST(WrongArgumentsAreRefusedWithASentence, 1)
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
     p.surface = NULL;
     p.varyingCount = 0;
-    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_SUCCESS); // empty is fine
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_SUCCESS); // an empty mesh is valid
     assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);
     vplRaster_Destroy(raster);
 }

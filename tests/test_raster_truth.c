@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rasterizer against tables of exact answers: coverage bit for bit, interpolation and clipping to stated
-// errors. Covers extremes X071 to X081.
+// Tests of the rasterizer against tables of exact answers: coverage bit for bit, interpolation and clipping
+// within documented errors. Covers extremes X071 to X081.
 #include "raster_support.h"
 
 #include "raster/raster.h"
@@ -51,7 +51,7 @@ TEST(EveryTriangleOfTheTableFillsBitForBit, 1)
     freeTable(&t);
 }
 
-// Expands "-1*64 3*2" into owner[64].
+// Expands a run-length code such as "-1*64 3*2" into owner[64].
 static void expandRow(const char* runs, int* owner, int width)
 {
     int at = 0;
@@ -135,8 +135,8 @@ TEST_ALONE(VerticesSnapToNearestEven)
     freeTable(&t);
 }
 
-// The table's tolerance: perspective barycentrics carry a few roundings, and varyings are formed from corner
-// 0, so errors scale with the spread of the corners' values.
+// The tolerance is the table's: perspective barycentrics carry a few roundings, and varyings are differences
+// from corner 0, so errors scale with the spread of the corners' values.
 TEST(VaryingsDepthAndWAreThoseOfTheTable, 1)
 {
     Table t = loadTable("persp.csv");
@@ -213,14 +213,14 @@ TEST(NearClipCoversWhatTheHomogeneousTestSays, 1)
             map = *end == ' ' ? end + 1 : end;
         }
         assert_int_equal(at, 1024);
-        // Barycentrics of the original corners survive the clip, and snapping does not move them.
+        // Barycentrics refer to the original corners after clipping, and snapping does not move them.
         for (int pixelRow = 0; pixelRow < pixels.rows; pixelRow++) {
             if (strcmp(cell(&pixels, pixelRow, "tri"), cell(&t, row, "tri")) != 0) {
                 continue;
             }
             int pixel = (int)number(&pixels, pixelRow, "py") * 32 + (int)number(&pixels, pixelRow, "px");
             if (c.planes[0][pixel] != 1) {
-                continue; // nearer to the outline than 1/64
+                continue; // nearer to the outline than 1/64 pixel
             }
             const char* names[3] = {"lam0", "lam1", "lam2"};
             for (int i = 0; i < 3; i++) {
@@ -230,7 +230,7 @@ TEST(NearClipCoversWhatTheHomogeneousTestSays, 1)
             tested++;
         }
     }
-    assert_true(tested > 100); // the tables were thinned independently
+    assert_true(tested > 100); // each table is a random subset of its own
     freeCanvas(&c);
     freeTable(&pixels);
     freeTable(&t);

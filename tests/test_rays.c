@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays through triangles: the tree against all triangles, closed surfaces without leaks, ties, nothing to
-// hit.
+// Tests of rays against triangles: the BVH against all triangles, closed surfaces without leaks, ties, and
+// scenes without surfaces.
 #include "shapes.h"
 
 #include "base/context.h"
@@ -13,7 +13,7 @@
 
 enum { BIG_AND_TINY, COPIES, GRID, QUADS_AT_1E3, QUADS_AT_1E6, NEEDLES, AT_1E_10, AT_1E10, KINDS };
 
-// 200 triangles of a kind, 25 blocks and more: a tree of two levels.
+// Makes 200 triangles of a kind, 25 blocks and more, which give a BVH of two levels.
 static Shape makeSoup(int kind, Dice* dice)
 {
     Shape soup = {0};
@@ -23,7 +23,7 @@ static Shape makeSoup(int kind, Dice* dice)
             float size = ldexpf(8, -(int)roll(dice, 0, 24));
             u = vplScale(size, u);
             v = vplScale(size, v);
-        } else if (kind == COPIES && i % 10 != 0) { // ten of each
+        } else if (kind == COPIES && i % 10 != 0) { // ten copies of each
             const vplVec3* p = soup.corners + 3 * (i - 1);
             addTriangle(&soup, p[0], p[1], p[2]);
             continue;
@@ -51,7 +51,7 @@ static Shape makeSoup(int kind, Dice* dice)
     return soup;
 }
 
-// A ray that has something to do with one of the triangles; `extent` is the size of all of them.
+// Makes a ray aimed at a feature of one of the triangles; `extent` is the size of all of them.
 static vplRay makeRay(int index, const Shape* soup, float extent, Dice* dice)
 {
     static const float lengths[] = {1, 1e-30f, 1e-12f, 1e12f, 1e27f};
@@ -60,7 +60,7 @@ static vplRay makeRay(int index, const Shape* soup, float extent, Dice* dice)
     const float s = roll(dice, -0.5f, 1.5f), t = roll(dice, 0, 1);
     vplVec3 target = p[0], from = vplAdd(p[0], rollVec(dice, extent));
     switch (index % 8) {
-    case 0: // anywhere near
+    case 0: // near the triangle
         target = vplAdd(p[0], rollVec(dice, 0.1f * extent));
         break;
     case 1: // a corner
@@ -79,7 +79,7 @@ static vplRay makeRay(int index, const Shape* soup, float extent, Dice* dice)
         from = vplSub(p[0], vplAdd(vplScale(3, u), vplScale(s, v)));
         target = vplAdd(p[0], vplAdd(vplScale(t, u), v));
         break;
-    case 6: // along an axis, the zeros of both signs
+    case 6: // along an axis, with zeros of both signs
         target = vplAdd(p[0], vplAdd(vplScale(t, u), vplScale(1 - t, v)));
         from = target;
         *(index & 8 ? &from.x : index & 16 ? &from.y : &from.z) += s * extent;
@@ -97,7 +97,8 @@ static vplRay makeRay(int index, const Shape* soup, float extent, Dice* dice)
     return (vplRay){from, d, skip};
 }
 
-// Tree and all triangles, closest and any, by one instruction set; folds what was found into `state`.
+// Compares the BVH with all triangles, closest and any hit, for one instruction set; folds the results into
+// `state`.
 static uint64_t compareOne(const vplBvh* tree, const vplBvh* all, const vplRay* ray, vplIsa isa,
                            uint64_t state, int* hits)
 {
@@ -160,7 +161,8 @@ TEST(TreeAgreesWithAllTriangles, 1)
 
 enum { SURFACES = 4, PLACES = 4 };
 
-// Around the origin, with a corner in it, with a face through it, far away: 100 times its size.
+// Makes a closed surface around the origin, with a corner or a face at the origin, or 100 times its size
+// away.
 static Shape makeClosed(int which, int place, float scale, vplVec3* centreOut)
 {
     Shape shape = which == 0   ? icosphere(2)
@@ -189,7 +191,8 @@ static vplVec3 pointOn(const Shape* shape, int index, Dice* dice)
                             : vplAdd(p[0], vplAdd(along, vplScale(t, vplSub(p[2], p[0]))));
 }
 
-// At corners, at edges and anywhere, from inside and from far outside across it: always a hit.
+// Rays aim at corners, at edges and anywhere, from inside and through the surface from far outside: they must
+// always hit.
 TEST(SharedEdgesLetNothingThrough, 1)
 {
     static const float scales[] = {1e-3f, 1, 1e5f};
@@ -206,12 +209,12 @@ TEST(SharedEdgesLetNothingThrough, 1)
             const vplVec3 within = vplAdd(centre, vplScale(0.8f * scale, rollUnit(&dice)));
             const vplVec3 target = pointOn(&shape, k, &dice);
             vplRay ray = {within, vplSub(target, within), {0, 0}};
-            if (k & 1) { // from outside, through the target's neighbourhood to a point within
+            if (k & 1) { // from outside, past the target to a point inside
                 const float far = scale * ldexpf(1, k / 2 % 11);
                 ray.origin = vplAdd(target, vplScale(far, vplNormalize(vplSub(target, within))));
                 ray.direction = vplSub(within, ray.origin);
             }
-            const float limit = k & 1 ? 1 : INFINITY; // before the point within
+            const float limit = k & 1 ? 1 : INFINITY; // before the point inside
             vplHit hit;
             leaks += !vplGeometry_ClosestHit(g, &ray, &hit) || !(hit.t < limit) ||
                      !vplGeometry_IsOccluded(g, &ray, limit);
@@ -224,8 +227,8 @@ TEST(SharedEdgesLetNothingThrough, 1)
     }
 }
 
-// Where edges run along axes, the box of a triangle ends where the triangle does. Seen from a thousand times
-// as far as it is large, both tests are off by more than it is padded: each must still find the same side.
+// If edges are parallel to axes, a triangle's bounding box ends at the edge. From a distance of a thousand
+// times its size, both tests have errors above the box's padding, but must decide consistently.
 TEST(EdgesAlongAxesHoldFromAfar, 1)
 {
     vplVec3 centre;
@@ -236,7 +239,7 @@ TEST(EdgesAlongAxesHoldFromAfar, 1)
     Dice dice = {1, 0};
     int leaks = 0;
     enum { RAYS = 60000 };
-    for (int i = 0; i < RAYS; i++) { // the second row of cells, next to the origin
+    for (int i = 0; i < RAYS; i++) { // in the second row of cells, next to the origin
         const vplVec3* p = shape.corners + 3 * (16 + i % 16);
         vplVec3 target = vplAdd(p[0], vplScale(roll(&dice, 0, 1), vplSub(p[1], p[0])));
         vplVec3 d = rollUnit(&dice);
@@ -254,10 +257,10 @@ TEST(EdgesAlongAxesHoldFromAfar, 1)
     freeShape(&shape);
 }
 
-// ---- ties, and nothing to hit
+// ---- ties, and scenes without surfaces
 
-// Eight triangles in one plane, again and again in three objects. Of the same triangle the lowest copy is
-// hit, whatever the tree makes of it; which of the eight is nearest, if any, is a matter of rounding.
+// Three objects have eight different triangles in one plane, eight copies of each. Among copies the lowest
+// index is hit, whatever the BVH's layout; rounding may decide which of the eight is nearest.
 TEST(EqualDistancesGoToTheLowestTriangle, 1)
 {
     Shape wall = {0};
@@ -286,7 +289,7 @@ TEST(EqualDistancesGoToTheLowestTriangle, 1)
     freeShape(&wall);
 }
 
-// No plane separates them: the tree is built by halving, and stays as shallow as that makes it.
+// No plane separates the copies: the BVH is built by halving the list, and must be as shallow as that allows.
 TEST(AThousandCopiesOfATriangleAreATreeOfHalves, 1)
 {
     Shape copies = {0};
@@ -318,7 +321,7 @@ TEST(AThousandCopiesOfATriangleAreATreeOfHalves, 1)
     freeShape(&copies);
 }
 
-// A scene of objects that have no surface, and one of none.
+// Tests a scene of objects without surface, and one without objects.
 TEST(WithoutSurfacesNothingIsEverHit, 1)
 {
     for (int which = 0; which < 5; which++) {

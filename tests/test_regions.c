@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Trimmed relmse, and regions of pictures.
+// Tests of trimmed relMSE, and of regions of pictures.
 #include "metric_pairs.h"
 
 static int compareDoubles(const void* a, const void* b)
@@ -8,7 +8,7 @@ static int compareDoubles(const void* a, const void* b)
     return (x > y) - (x < y);
 }
 
-// Against sorting, for sizes around the thousands, with ties and with fireflies.
+// Compares with sorting, for sizes around multiples of a thousand, with ties and with fireflies.
 TEST(TrimmedRelmseLeavesOutTheLargestThousandth, 1)
 {
     static const int widths[] = {1, 999, 1000, 1001, 1999, 2000, 7777, 12000};
@@ -108,4 +108,5 @@ TEST(ACropIsItsRectangle, 1)
     freePair(p);
 }
 
-// Each kind is black where nothing differs and bright where much does; FLIP's bright end is pale yellow.
+// Each kind of heat map is black where pictures agree and bright where they differ much; FLIP's bright end is
+// pale yellow.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one-call level: exact relations between whole pictures, counts, and refusals.
+// Tests of vplRender: exact relations between whole pictures, counts, and refusals.
 #include "scenes.h"
 
 #include <stdlib.h>
@@ -72,7 +72,8 @@ TEST(OpenRoomsKeepNominalCountsAndReportEscapes, 1)
     vplScene_Destroy(scene);
 }
 
-// All pipelines, batch sizes around the group size, threads and instruction sets: one hash.
+// All pipelines, batch sizes around the group size, numbers of threads and instruction sets give the same
+// hash.
 TEST_ALONE(EveryPipelineGivesTheSameBits)
 {
     for (int lighting = 0; lighting < 2; lighting++) {
@@ -131,7 +132,7 @@ TEST_ALONE(AHostsOwnSchedulerGivesTheSameBits)
     assert_true(hashes[0] == hashes[1]);
 }
 
-// Two floors in one plane: depth EQUAL alone would light both and add twice.
+// Two floors are coplanar: with the depth test EQUAL alone, both would be lit and added.
 TEST(CoplanarSurfacesAreLitOnce, 1)
 {
     uint64_t hashes[3];
@@ -149,7 +150,7 @@ TEST(CoplanarSurfacesAreLitOnce, 1)
     assert_true(hashes[0] == hashes[2] && hashes[1] == hashes[2]);
 }
 
-// Builds the room by hand, scaled and lit by `intensity`: numbers that are powers of two change no digit.
+// Builds the room by hand, scaled and lit by `intensity`: powers of two change only exponents.
 static vplImage* scaledRoom(vplContext* context, float scale, float intensity, vplLighting lighting)
 {
     vplScene *from = loadScene(context, "room.json"), *scene;
@@ -197,8 +198,8 @@ TEST(DoublingTheLightDoublesEveryPixel, 2)
     }
 }
 
-// Physical light is scale-free: twice the size with four times the intensity is the same picture, bit for
-// bit.
+// Physical light is scale-invariant: twice the size with four times the intensity gives the same picture, bit
+// for bit.
 TEST(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture, 2)
 {
     vplImage* small = scaledRoom(context, 1, 8, VPL_LIGHTING_PHYSICAL);
@@ -211,7 +212,7 @@ TEST(TwiceTheSizeWithFourTimesTheLightIsTheSamePicture, 2)
     vplImage_Destroy(huge);
 }
 
-// Point light above a plane: rho/pi I cos / d^2, against the value at each pixel's own point.
+// A point light above a plane: rho/pi I cos / d^2, compared at each pixel's own point.
 TEST(APlaneUnderAPointLightIsLitAsInTheBook, 1)
 {
     vplScene* scene;
@@ -248,8 +249,8 @@ TEST(APlaneUnderAPointLightIsLitAsInTheBook, 1)
     vplScene_Destroy(scene);
 }
 
-// X090: documented direct light falls as 1/N and the indirect sum does not; physical light depends on
-// neither.
+// X090: documented direct light decreases as 1/N and the indirect sum does not; physical light does not
+// depend on N.
 TEST(DocumentedDirectLightFallsWithN, 2)
 {
     vplScene* scene = loadScene(context, "room-closed.json");
@@ -340,7 +341,7 @@ TEST(StagesShowWhatTheySay, 2)
     image = renderScene(scene, &o, NULL);
     assert_int_equal(image->width, 4 * o.shadow.mapSize);
     assert_int_equal(image->height, 3 * o.shadow.mapSize);
-    // Straight up, in the middle of the upper face, is the ceiling, half a metre away.
+    // Straight up, in the centre of the upper face, is the ceiling, half a metre away.
     int above = 3 * (o.shadow.mapSize / 2 * image->width + o.shadow.mapSize + o.shadow.mapSize / 2);
     assertNear((double)image->pixels[above], 0.5, 1e-3, "distance of the ceiling", 0);
     vplImage_Destroy(image);
@@ -359,7 +360,7 @@ TEST(StagesShowWhatTheySay, 2)
     vplScene_Destroy(scene);
 }
 
-// Only the front of an emitting quad shines.
+// Only the front of a quad emits light.
 TEST(EmissionLeavesTheFrontOnly, 1)
 {
     for (int back = 0; back < 2; back++) {
@@ -421,7 +422,7 @@ TEST(ProgressRisesAndCancels, 1)
     vplScene_Destroy(scene);
 }
 
-// X031, X042, X092: odd scenes give finite pictures.
+// X031, X042, X092: unusual scenes give finite pictures.
 TEST(OddScenesGiveFinitePictures, 2)
 {
     const vplVec3 places[] = {{-0.9f, 1.65f, -0.8f}, {0, 4.5f, 30},     {0, 5, 0}, {0, 0, 0},
@@ -431,7 +432,7 @@ TEST(OddScenesGiveFinitePictures, 2)
             vplScene* scene = loadScene(context, "room.json");
             vplEmitterDef emitter = *vplScene_GetEmitter(scene, 0);
             emitter.position =
-                places[i]; // in a box, outside, on the ceiling, on the floor, in the eye, far away
+                places[i]; // in a box, outside, on the ceiling, on the floor, at the eye, far away
             assert_int_equal(vplScene_AddEmitter(scene, &emitter, NULL), VPL_SUCCESS);
             vplRenderOptions o = smallOptions();
             o.lighting = (vplLighting)lighting;
@@ -447,14 +448,14 @@ TEST(OddScenesGiveFinitePictures, 2)
     }
 }
 
-// How much of pixel `i` of 8 the interval [a, b] of the picture's [-1, 1] covers.
+// Returns the share of pixel `i` of 8 that the interval [a, b] of the picture's [-1, 1] covers.
 static double coverage(int i, double a, double b)
 {
     double from = fmax((a + 1) * 4, i), to = fmin((b + 1) * 4, i + 1);
     return to > from ? to - from : 0;
 }
 
-// A glowing square that covers parts of pixels: its mean over a pixel is its share of it.
+// A square that emits light covers parts of pixels: a pixel's mean is the share that the square covers.
 TEST(AntialiasingIsTheBoxFilter, 2)
 {
     vplScene* scene;
@@ -487,7 +488,7 @@ TEST(AntialiasingIsTheBoxFilter, 2)
         }
         vplImage_Destroy(image);
     }
-    assert_true(worst[0] > 0.4); // the centre alone is in or out
+    assert_true(worst[0] > 0.4); // the centre alone is either in or out
     assert_true(worst[1] < 0.1);
     assert_true(worst[2] < 0.012);
     o.output.antialias = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renders step by step: the same bits as one call, pictures at any time, and three ways to end.
+// Tests of rendering step by step: the same bits as one call, pictures at any time, and three stop criteria.
 #include "scenes.h"
 
 static vplRenderOptions progressiveOptions(void)
@@ -14,7 +14,7 @@ static vplRenderOptions progressiveOptions(void)
     return o;
 }
 
-// Steps until done, looking at the picture after every `look`-th step.
+// Steps until done and gets the picture after every `look`-th step.
 static uint64_t hashOfSteps(const vplScene* scene, const vplRenderOptions* o, int look, int* stepsOut)
 {
     vplRenderer* r;
@@ -43,7 +43,7 @@ static uint64_t hashOfSteps(const vplScene* scene, const vplRenderOptions* o, in
     return hash;
 }
 
-// Every method, with one pass and with several; pictures taken on the way change nothing.
+// Covers every method, with one pass and with several; getting pictures between steps changes nothing.
 TEST_ALONE(StepsGiveTheBitsOfOneCall)
 {
     static const vplMethod methods[] = {VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_KELLER, VPL_METHOD_PATH,
@@ -77,7 +77,7 @@ static vplImage* truthOf(const vplScene* scene, const vplRenderOptions* like)
     return renderScene(scene, &o, NULL);
 }
 
-// The error falls with the passes, and what is estimated from their halves is of its size.
+// The error decreases with passes, and the estimate from the passes' two halves is of the same size.
 TEST(MorePassesAreBetterAndSaySo, 2, SLOW)
 {
     vplScene* scene = loadScene(context, "room.json");
@@ -91,10 +91,10 @@ TEST(MorePassesAreBetterAndSaySo, 2, SLOW)
         vplComparison m;
         vplImage* image = renderScene(scene, &o, &stats);
         assert_int_equal(vplImage_Compare(image, truth, &m), VPL_SUCCESS);
-        assert_true(m.rmse < 0.7 * before); // light that is cut off near surfaces keeps it from 0.35
+        assert_true(m.rmse < 0.7 * before); // clamped light near surfaces keeps the ratio above 0.35
         before = m.rmse;
-        // Low-discrepancy halves differ by more than their mean is wrong; light cut off and steps left out
-        // are not seen.
+        // Low-discrepancy halves differ by more than the error of their mean; the estimate does not include
+        // light lost by clamping and by omitted steps.
         assert_true(stats.errorEstimate > 0.3 * m.rmse && stats.errorEstimate < 3 * m.rmse);
         vplImage_Destroy(image);
     }
@@ -112,10 +112,10 @@ TEST(AnErrorOrATimeEndsIt, 2)
     assert_true(stats.passes > 2 && stats.relativeErrorEstimate <= 0.08);
     const int enough = stats.passes;
     o.stop.maxError = 0;
-    o.stop.passes = enough - 1; // one less is not enough
+    o.stop.passes = enough - 1; // one pass less is not enough
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.relativeErrorEstimate > 0.08);
-    o.stop.maxError = 0.08; // whatever comes first
+    o.stop.maxError = 0.08; // the first criterion that holds ends the render
     o.stop.passes = enough + 10;
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_int_equal(stats.passes, enough);
@@ -129,7 +129,7 @@ TEST(AnErrorOrATimeEndsIt, 2)
     vplScene_Destroy(scene);
 }
 
-// A path traced picture ends by its error, too.
+// Path tracing stops at its error threshold, too.
 TEST(PathsEndByTheirError, 2)
 {
     vplScene* scene = loadScene(context, "room.json");

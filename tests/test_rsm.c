@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reflective shadow maps: all the light is in them, and it is where it arrives.
+// Tests of reflective shadow maps: they contain all the light, at the points where it arrives.
 #include "shapes.h"
 
 #include "geometry/emission.h"
@@ -32,7 +32,7 @@ static vplEmitterDef emitterOf(vplEmitterType type, vplVec3 position, vplVec3 di
     return e;
 }
 
-// One texel a face is enough: solid angles are exact.
+// One texel per face is enough, because texels' solid angles are exact.
 TEST(APointInAClosedCubeSends4PiI, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
@@ -41,7 +41,7 @@ TEST(APointInAClosedCubeSends4PiI, 2)
         vplReflectiveMap* map = mapOf(cube, &e, size);
         assert_int_equal(map->faceCount, 6);
         assertNear(fluxOf(map, cube), 8 * VPL_PI, 1e-5, "flux", size);
-        for (size_t i = 0; i < texelsOf(map); i++) { // of a cube's texels the one at a corner is smallest
+        for (size_t i = 0; i < texelsOf(map); i++) { // a cube map's corner texels have the smallest angle
             vplReflectiveTexel texel;
             assert_true(vplReflectiveMap_GetTexel(map, cube, (int64_t)i, &texel));
             const double share = (double)texel.flux.g * size * size / (8 * VPL_PI / 6);
@@ -53,7 +53,7 @@ TEST(APointInAClosedCubeSends4PiI, 2)
     vplGeometry_Destroy(cube);
 }
 
-// The falloff is taken at texels' centres: the error falls with their number.
+// The falloff is evaluated at texel centres: the error decreases with the number of texels.
 TEST(ASpotSendsItsPower, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
@@ -72,7 +72,7 @@ TEST(ASpotSendsItsPower, 2)
     vplGeometry_Destroy(cube);
 }
 
-// E times the area seen along the light.
+// The flux is E times the projected area.
 TEST(TheSunSendsWhatTheFloorMeets, 2)
 {
     vplGeometry* floor = floorQuad(context, vplVec(100, 3, -50), 10, 0.5f);
@@ -102,8 +102,8 @@ static vplEmitterDef someEmitter(int k)
     return e;
 }
 
-// Each texel's point is on its triangle's plane, in the direction of its centre, and the first that a ray
-// meets; its normal faces the emitter.
+// Each texel's point lies in its triangle's plane, in the direction of the texel's centre, and is the first
+// hit of a ray; its normal faces the emitter.
 TEST(TexelsAreWhereRaysLand, 2)
 {
     enum { SIZE = 40 };
@@ -140,13 +140,14 @@ TEST(TexelsAreWhereRaysLand, 2)
                      fabsf(met.t - texel.distance - (sun ? 1.0f : 0.0f)) > 1e-5f;
         }
         assert_true(filled > SIZE * SIZE / 2);
-        assert_true(other <= filled / 500); // where a texel's centre is on an edge
+        assert_true(other <= filled / 500); // texels whose centre lies on an edge
         vplReflectiveMap_Destroy(map);
     }
     vplGeometry_Destroy(room);
 }
 
-// Particles of a map are those of rays, moved by a texel's footprint at most, as seen from the emitter.
+// Particles from a map are those traced by rays, moved by at most a texel's footprint as seen from the
+// emitter.
 TEST(ParticlesMoveByATexelAtMost, 2)
 {
     enum { SIZE = 64, COUNT = 3000 };
@@ -198,8 +199,8 @@ TEST(ParticlesMoveByATexelAtMost, 2)
     vplGeometry_Destroy(room);
 }
 
-// On a smooth ball, normals are those of the ball, towards the emitter, and so are particles' shading
-// normals.
+// On a smooth sphere, the map's normals are the sphere's, facing the emitter, and so are the particles'
+// shading normals.
 TEST(SmoothObjectsHaveTheirNormals, 1)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -240,8 +241,8 @@ TEST(AnEmptySceneGivesAnEmptyMap, 1)
     vplScene_Destroy(scene);
 }
 
-// An emitter on a wall of a closed cube, and a hair in front of it: at most all of its power arrives, at
-// least half does, and everything is finite.
+// An emitter lies on a wall of a closed cube, or slightly in front of it: at most all and at least half of
+// its power arrives, and everything is finite.
 TEST(AnEmitterMayTouchASurface, 1)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
@@ -307,7 +308,7 @@ TEST_ALONE(MapsDoNotDependOnThreadsOrIsa)
     }
 }
 
-// Four pictures side by side, of a point a cross each; each texel at its place.
+// The picture shows four parts side by side, for a point light a cross each, with each texel in its place.
 TEST(ShownMapsHaveFourParts, 2)
 {
     enum { SIZE = 24 };
@@ -328,7 +329,7 @@ TEST(ShownMapsHaveFourParts, 2)
             brightest = i / 3 % image->width >= 3 * width ? fmaxf(brightest, image->pixels[i]) : brightest;
         }
         assert_true(least >= 0 && most <= 1 && brightest == 1);
-        vplReflectiveTexel t; // the first of face -y, in the cross below the middle
+        vplReflectiveTexel t; // the first texel of face -y, below the centre of the cross
         int64_t texel = cross ? 3 * SIZE * SIZE : 0;
         while (!vplReflectiveMap_GetTexel(map, room, texel, &t)) {
             texel++;
@@ -366,7 +367,7 @@ TEST(BadMapsAreRefused, 1)
     def = (vplReflectiveMapDef){.size = 4};
     assert_int_equal(vplReflectiveMap_Create(cube, &def, NULL, NULL, &map), VPL_INVALID_ARGUMENT);
     assert_null(map);
-    const vplReflectiveMap* const none[] = {NULL}; // no map for the only emitter: rays
+    const vplReflectiveMap* const none[] = {NULL}; // no map for the only emitter: rays are used
     vplParticleDef particles = vplDefaultParticleDef();
     vplEmitterDef emitter = vplDefaultEmitterDef();
     vplLightSet* set = NULL;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// First-bounce lights of reflective maps: where the Hammersley points fall, and all the light that is
-// reflected.
+// Tests of first-bounce lights from reflective shadow maps: the positions of the Hammersley points, and the
+// total reflected flux.
 #include "shapes.h"
 
 #include "geometry/triangle.h"
@@ -32,7 +32,7 @@ static vplEmitterDef someEmitter(int k)
     return e;
 }
 
-// What the lights send out, W: green, or all that are of particles first .. end - 1.
+// Returns the green flux of the lights that belong to particles first .. end - 1, in W.
 static double fluxOf(const vplLightSet* set, int first, int end)
 {
     double sum = 0;
@@ -55,7 +55,7 @@ static double reflectedBy(const vplGeometry* g, const vplReflectiveMap* map)
     return sum;
 }
 
-// As many points as texels, a power of two a side: each texel is met once.
+// With as many points as texels, in a square map of a power of two, each texel is sampled once.
 TEST(AsManyPointsAsTexelsMeetEachOnce, 2)
 {
     vplGeometry* room = tableRoom(context);
@@ -99,7 +99,7 @@ TEST(AClosedRoomReflectsPowerTimesAlbedo, 2)
     vplGeometry_Destroy(cube);
 }
 
-// Seen straight from above, light k lies in the texel that (k/n, vdc(k)) falls into.
+// Seen straight from above, light k lies in the texel that contains (k/n, vdc(k)).
 TEST(PointsAreThoseOfTheDocument, 1)
 {
     enum { SIZE = 512 };
@@ -116,7 +116,7 @@ TEST(PointsAreThoseOfTheDocument, 1)
             light = set->lights[i].particle == k ? &set->lights[i] : light;
         }
         const double x = number(&t, row, "k/n") * SIZE, y = number(&t, row, "vdc") * SIZE;
-        if (light != NULL) { // the view is a hair wider than the floor
+        if (light != NULL) { // the view is slightly wider than the floor
             const vplVec3 p = vplSub(light->position, map->origin);
             const double column = (vplDot(p, map->right[0]) / map->extent[0] + 1) * SIZE / 2;
             const double line = (1 - vplDot(p, map->up[0]) / map->extent[1]) * SIZE / 2;
@@ -131,7 +131,7 @@ TEST(PointsAreThoseOfTheDocument, 1)
     vplGeometry_Destroy(ground);
 }
 
-// Each light lies in a triangle that the emitter sees, turned to it, and names its object.
+// Each light lies in a triangle that the emitter sees, faces the emitter, and refers to its object.
 TEST(LightsLieOnWhatIsLit, 2)
 {
     vplGeometry* room = tableRoom(context);
@@ -168,7 +168,8 @@ TEST(LightsLieOnWhatIsLit, 2)
     vplGeometry_Destroy(room);
 }
 
-// Shares go by power and add up to n; each map's own light is right whatever its share; NULL has none.
+// Lights are shared in proportion to power and add up to n; each map's flux is right whatever its share; a
+// NULL map gets none.
 TEST(MapsShareTheLightsByPower, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
@@ -183,7 +184,7 @@ TEST(MapsShareTheLightsByPower, 2)
     for (int n = 2; n <= 4096; n *= 2) {
         vplLightSet* set = sample(cube, maps, 5, n, 0);
         assert_int_equal(set->lightCount, n);
-        int first = 1; // of the strong one
+        int first = 1; // the stronger emitter's
         while (first < n && set->lights[first].weight == set->lights[0].weight) {
             first++;
         }
@@ -196,7 +197,7 @@ TEST(MapsShareTheLightsByPower, 2)
         }
         vplLightSet_Destroy(set);
     }
-    vplLightSet* one = sample(cube, maps, 5, 1, 0); // for the stronger one
+    vplLightSet* one = sample(cube, maps, 5, 1, 0); // for the stronger emitter
     assert_true(one->lightCount == 1 && one->lights[0].weight == 1);
     vplLightSet_Destroy(one);
     vplReflectiveMap_Destroy(weak);
@@ -223,7 +224,7 @@ TEST(ShiftedPointsAreRightOnAverage, 2)
             vplLightSet_Destroy(set);
         }
         const double mean = sum / SHIFTS, deviation = sqrt((squares / SHIFTS - mean * mean) / SHIFTS);
-        assert_true(deviation > 0); // shifts differ
+        assert_true(deviation > 0); // shifts must differ
         assertNear(mean, 1, 4 * deviation, "mean", k);
         vplReflectiveMap_Destroy(map);
     }
@@ -245,7 +246,7 @@ TEST(LightlessMapsGiveNoLights, 1)
         const vplReflectiveMap* const* maps;
         int mapCount, count, escaped;
     } cases[] = {{black, (const vplReflectiveMap* const*)&dark, 1, 100, 0},   // X: black albedo
-                 {floor, (const vplReflectiveMap* const*)&away, 1, 100, 100}, // light that sees nothing
+                 {floor, (const vplReflectiveMap* const*)&away, 1, 100, 100}, // the light hits nothing
                  {floor, none, 1, 100, 0},
                  {floor, NULL, 0, 100, 0},
                  {black, (const vplReflectiveMap* const*)&dark, 1, 0, 0}};
@@ -261,7 +262,7 @@ TEST(LightlessMapsGiveNoLights, 1)
     vplGeometry_Destroy(floor);
 }
 
-// A map of one texel a face: all of a face's lights lie in one place.
+// With one texel per face, all of a face's lights lie at one point.
 TEST(OneTexelIsEnough, 1)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
@@ -323,7 +324,7 @@ TEST_ALONE(LightsDoNotDependOnThreadsOrIsa)
     free(wanted);
 }
 
-// In a closed room all rays meet a wall, under the sky none does, and beside a tall wall half of them do.
+// In a closed room all rays hit a wall, under an open sky none does, and beside a tall wall half of them do.
 TEST(LightsAreWeightedByWhatTheySee, 3)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
@@ -364,7 +365,8 @@ TEST(LightsAreWeightedByWhatTheySee, 3)
     vplGeometry_Destroy(half);
 }
 
-// All that stays weighs what all weighed, on average over the shifts; in a closed room nothing changes.
+// The selected lights have, on average over shifts, the weight of all lights; in a closed room nothing
+// changes.
 TEST(UsefulLightsStandForAll, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reflective maps as shadow maps: planes do not shadow themselves, and rays say the same but near edges.
+// Tests of reflective shadow maps used for shadows: planes do not shadow themselves, and rays agree except
+// near edges.
 #include "shadow_maps.h"
 
 #include "math/vec.h"
@@ -21,7 +22,8 @@ static vplEmitterDef someEmitter(int k)
     return emitterOf((vplEmitterType)k, vplVec(0.4f, 4.1f, 1.2f), direction); // the room is open in front
 }
 
-// Behind a spot, outside of its square and beyond everything; also for points that are no numbers.
+// Points behind a spot, outside its square or beyond all surfaces are lit; so are positions that are not
+// finite.
 TEST(NothingIsShadowedOutsideOfTheView, 1)
 {
     vplGeometry* floor = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
@@ -31,7 +33,7 @@ TEST(NothingIsShadowedOutsideOfTheView, 1)
         const vplVec3 places[4] = {{0, 3, 0},
                                    {100, 3, 0},
                                    {0, 2, 0},
-                                   {NAN, INFINITY, -INFINITY}}; // above, aside, at the emitter, nowhere
+                                   {NAN, INFINITY, -INFINITY}}; // above, beside, at the emitter, not finite
         vplSurface s;
         float factor[VPL_LANES];
         for (int l = 0; l < VPL_LANES; l++) {
@@ -54,14 +56,14 @@ static vplImage* shaded(const vplGeometry* g, const vplShadeDef* def, vplShadeSt
     const vplView view = vplView_Create(&camera, 90, 60);
     vplImage* image = NULL;
     if (vplImage_Create(g->context, 90, 60, &image) != VPL_SUCCESS ||
-        vplShadeView(g, &view, def, NULL, NULL, image, stats) != VPL_SUCCESS) {
+        vplShadeView(g, &view, def, image, stats) != VPL_SUCCESS) {
         fail_msg("%s", takeMessage());
     }
     return image;
 }
 
-// Direct light by the map: no ray, no cube map, the same bits in all pipelines, and little that differs from
-// rays.
+// Direct light by the map casts no rays and draws no cube map, has the same bits in all pipelines, and
+// differs little from ray-traced shadows.
 TEST(EmittersTakeTheirShadowsFromTheirMaps, 2)
 {
     vplGeometry* room = tableRoom(context);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Scene files: every broken one says what is wrong where, and what is right arrives as it was written.
+// Tests of scene files: broken ones are reported with reason and position, valid ones arrive as they were
+// written.
 #include "test.h"
 
 #include <stdlib.h>
@@ -7,7 +8,7 @@
 
 static const double DEGREE = VPL_PI / 180;
 
-// Loads a scene from text by way of a temporary file.
+// Loads a scene from text through a temporary file.
 static vplResult loadText(vplContext* context, const char* text, vplScene** sceneOut)
 {
     char path[] = "/tmp/vpl-scene-XXXXXX";
@@ -51,7 +52,7 @@ TEST(EveryBrokenSceneSaysWhatIsWrongWhere, 1)
     freeTable(&t);
 }
 
-// Strings may hold any bracket, quote or backslash; none of them may mislead the search for a position.
+// Strings may contain brackets, quotes and backslashes; none may mislead the search for a position.
 TEST(PositionsAreFoundBehindConfusingStrings, 1)
 {
     vplScene* scene = NULL;
@@ -77,7 +78,7 @@ TEST(WhatIsNoFileIsAFileError, 1)
     }
 }
 
-// ---- what is right arrives as it was written
+// ---- valid files
 
 static void assertVector(vplVec3 v, double x, double y, double z)
 {
@@ -89,7 +90,7 @@ static void assertRgb(vplRgb c, double r, double g, double b)
     assert_true(c.r == (float)r && c.g == (float)g && c.b == (float)b);
 }
 
-// By value: 0 and -0 are the same.
+// Compares by value: 0 and -0 are equal.
 static void assertMatrix(const vplMat4* found, const vplMat4* wanted)
 {
     for (int i = 0; i < 16; i++) {
@@ -99,13 +100,14 @@ static void assertMatrix(const vplMat4* found, const vplMat4* wanted)
     }
 }
 
-// Corner i of the unit quad through a matrix.
+// Returns corner i of the unit quad, transformed by a matrix.
 static vplVec3 cornerOf(const vplMat4* m, int i)
 {
     return vplMat4_TransformPoint(m, (vplVec3){i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, 0});
 }
 
-// Both matrices span the same square, to the bit, with the same front: its corners may be numbered otherwise.
+// Asserts that both matrices give the same quad, to the bit, with the same front; the order of its corners
+// may differ.
 static void assertSameQuad(const vplMat4* a, const vplMat4* b, int row)
 {
     for (int i = 0; i < 4; i++) {
@@ -174,7 +176,7 @@ TEST(TheRoomIsThatOfTheTable, 1)
     "{\"camera\": {\"eye\": [0, 0, 5], \"target\": [0, 0, 0]}, \"materials\": {\"m\": {}}, \"objects\": "    \
     "[" objects "]}"
 
-// Turns p about an axis, counter-clockwise seen from the axis' positive end.
+// Rotates p about an axis, counter-clockwise seen from the axis' positive end.
 static void turn(double p[3], int axis, double degrees)
 {
     double c = cos(degrees * DEGREE), s = sin(degrees * DEGREE);
@@ -207,7 +209,7 @@ TEST(ScaleThenRotateXyzThenTranslate, 1)
     vplScene_Destroy(scene);
 }
 
-// Every combination of quarter turns is a matrix of 0, 1 and -1 without rounding dust.
+// Every combination of quarter turns gives a matrix of exact 0, 1 and -1.
 TEST(QuarterTurnsAreExact, 1)
 {
     for (int i = 0; i < 125; i++) {
@@ -283,7 +285,7 @@ TEST(CamerasAndLightsOfEveryKind, 1)
     vplScene_Destroy(scene);
 }
 
-// JSON knows escapes and numbers of any length; a key is what it says, not how it is spelt.
+// JSON has escapes and numbers of any length; keys are compared after their escapes are decoded.
 TEST(JsonIsReadAsJson, 1)
 {
     vplScene* scene =

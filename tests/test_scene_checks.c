@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Scenes by hand: every bad number is refused by name, and a refusal changes nothing.
+// Tests of scenes made by hand: each bad number is refused by name, and a refusal changes nothing.
 #include "test.h"
 
-// One number of a def, what it is set to, and what the refusal must say.
+// A numeric field of a def, the bad value to set, and the text of the refusal.
 typedef struct BadNumber {
     size_t offset;
     bool wide; // a double
@@ -22,7 +22,7 @@ static void setNumber(void* def, const BadNumber* bad)
     memcpy(place, bad->wide ? (const void*)&bad->value : (const void*)&narrow, bad->wide ? 8 : 4);
 }
 
-enum { UNTOUCHED = -7 }; // what an index output holds before the call, and after a refusal
+enum { UNTOUCHED = -7 }; // an index output's value before the call, and after a refusal
 
 static void assertRefused(vplResult result, const char* text, int index)
 {
@@ -177,7 +177,7 @@ TEST(DefsThatWereNeverFilledInAreRefused, 1)
     assertRefused(vplScene_AddEmitter(scene, &emitter, NULL), "vplEmitterDef was not made by its default",
                   UNTOUCHED);
     camera = vplDefaultCameraDef();
-    camera.cookie++; // one kind of def is not another
+    camera.cookie++; // as that of a def of another type
     assertRefused(vplScene_AddCamera(scene, &camera, NULL), "vplCameraDef was not made by its default",
                   UNTOUCHED);
     vplScene_Destroy(scene);

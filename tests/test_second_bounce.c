@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Lights of the second bounce: how much light they carry, and where they lie.
+// Tests of second-bounce lights: their flux and their positions.
 #include "shapes.h"
 
 #include "base/hash.h"
 #include "math/vec.h"
 #include "render/stages/show.h"
 
-// Clusters on the floor of the cube [-1, 1]^3, of flux (4, 2, 1) W each.
+// There are five clusters on the floor of the cube [-1, 1]^3, of flux (4, 2, 1) W each.
 enum { CLUSTERS = 5 };
 
 typedef struct Stand {
@@ -46,7 +46,7 @@ static vplLightSet* sampleStand(const Stand* s, const vplSecondBounceDef* def)
     return set;
 }
 
-// W, as the picture gets them.
+// Returns the flux of all lights as the picture gets it, in W.
 static vplRgb fluxOf(const vplLightSet* set)
 {
     double sum[3] = {0};
@@ -60,7 +60,7 @@ static vplRgb fluxOf(const vplLightSet* set)
     return (vplRgb){(float)sum[0], (float)sum[1], (float)sum[2]};
 }
 
-// In a closed box whose walls reflect a share a, the second bounce is a times the first.
+// In a closed box of reflectance a, the second bounce carries a times the first.
 TEST_ALONE(SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst)
 {
     Stand s;
@@ -68,7 +68,7 @@ TEST_ALONE(SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst)
     const double wanted = 0.6 * 4 * CLUSTERS;
     static const struct {
         int count;
-        double error; // share
+        double error; // relative
     } runs[] = {{32 * CLUSTERS, 0.004},
                 {256 * CLUSTERS, 0.003},
                 {16384 * CLUSTERS, 0.0002},
@@ -87,9 +87,9 @@ TEST_ALONE(SecondBounceOfAClosedBoxIsAlbedoTimesTheFirst)
     closeStand(&s);
 }
 
-// X104: without the weight the sum is the same where all is white, and too much of it lies along the horizon:
-// below 10 degrees a diffuse light sends sin^2 10 = 3.0 % of its flux, and 1 - tan^2 40 = 29.6 % of the disk
-// lies there.
+// X104: without the weight, the sum is the same if all walls are alike, but too much of it comes from near
+// the horizon: a diffuse light sends sin^2 10 = 3.0 % of its flux below 10 degrees, but 1 - tan^2 40 = 29.6 %
+// of the disk lies there.
 TEST_ALONE(PrintedWeightsBrightenTheHorizon)
 {
     Stand s;
@@ -128,7 +128,7 @@ TEST_ALONE(LightsLieOnWhatTheirClusterSeesAndFaceIt)
     assert_int_equal(set->stepCounts[1], 256);
     assert_int_equal(set->lightsInStep[0], 0);
     assert_int_equal(set->lightsInStep[1], set->lightCount);
-    assert_true(set->lightCount >= 254); // what lies on the rim carries nothing
+    assert_true(set->lightCount >= 254); // lights on the rim carry nothing
     for (int i = 0; i < set->lightCount; i++) {
         const vplVirtualLight* v = &set->lights[i];
         const vplVec3 p = v->position;
@@ -142,7 +142,7 @@ TEST_ALONE(LightsLieOnWhatTheirClusterSeesAndFaceIt)
     closeStand(&s);
 }
 
-// The same from frame to frame; another shift, other points; clusters do not sample alike.
+// Samples are the same in all frames; another shift gives other points, and clusters have different samples.
 TEST_ALONE(PointsAreTheSameFromFrameToFrame)
 {
     Stand s;
@@ -211,7 +211,7 @@ TEST_ALONE(APictureOfAMapShowsPositionsNormalsAlbedoAndDistance)
     assert_int_equal(vplShowParaboloidMap(&s.maps->maps[2], s.geometry, &image), VPL_SUCCESS);
     assert_true(image->width == 4 * 33 && image->height == 33);
     const float* row = image->pixels + 3 * 16 * (size_t)image->width; // straight up, from (0, -1, 0.2)
-    float far = 0;                                                    // the longest distance is white
+    float far = 0;                                                    // the longest distance is drawn white
     for (int i = 0; i < 33 * 33; i++) {
         const float texel = s.maps->maps[2].texels[i];
         far = texel > 0 ? fmaxf(far, 1 / texel) : far;
@@ -222,7 +222,7 @@ TEST_ALONE(APictureOfAMapShowsPositionsNormalsAlbedoAndDistance)
         for (int c = 0; c < 3; c++) {
             assertNear((double)row[3 * (k * 33 + 16) + c], (double)wanted[k][c], 1e-4, "pixel", 3 * k + c);
         }
-        assert_true(image->pixels[3 * k * 33] == 0); // the corner lies outside of the disk
+        assert_true(image->pixels[3 * k * 33] == 0); // the corner lies outside the disk
     }
     vplImage_Destroy(image);
     closeStand(&s);

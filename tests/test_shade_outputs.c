@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Indirect irradiance as it is shown before and after neighbours share it.
+// Tests of the outputs of indirect irradiance before and after neighbouring pixels share it.
 #include "stage.h"
 
 #include "math/vec.h"
@@ -13,14 +13,14 @@ typedef struct Setting {
     vplGeometry* geometry;
     vplView view;
     vplShadeLight* lights;
-    vplEmitterDef sun; // direct light, which none of this shows
+    vplEmitterDef sun; // direct light, which these outputs leave out
     vplShadow shadow;
 } Setting;
 
 static Setting openSetting(void)
 {
     Setting s = {.context = openTestContext(2)};
-    s.geometry = stage(s.context); // of reflectance 1/2
+    s.geometry = stage(s.context); // its reflectance is 1/2
     s.view = stageView(vplVec(1, 2, 5), WIDTH, HEIGHT);
     s.lights = rollLights(COUNT, 11);
     s.sun = vplDefaultEmitterDef();
@@ -43,7 +43,7 @@ static vplImage* show(const Setting* s, vplAccumulation accumulation, int side, 
     def.accumulation = accumulation;
     def.output = output;
     def.batch = 7;
-    def.cutError = 1e-6f; // all lights
+    def.cutError = 1e-6f; // small enough that every light is evaluated
     if (output != VPL_OUTPUT_RADIANCE) {
         def.emitters = &s->sun;
         def.shadows = &s->shadow;
@@ -53,7 +53,7 @@ static vplImage* show(const Setting* s, vplAccumulation accumulation, int side, 
     return shadeStage(s->geometry, &s->view, &def);
 }
 
-// Returns how many values are not 0.
+// Asserts that image is factor times other. Returns the number of nonzero values.
 static int assertTimes(const vplImage* image, const vplImage* other, double factor)
 {
     int lit = 0;
@@ -78,7 +78,7 @@ TEST_ALONE(DenoisedIrradianceTimesReflectanceIsThePicture)
     closeSetting(&s);
 }
 
-// Of class c the lights c, c + K^2, ..., K^2 times as bright.
+// Pixels of class c get the lights c, c + K^2, ..., which are K^2 times as bright.
 TEST_ALONE(GatheredIrradianceIsThatOfEachPixelsClass)
 {
     enum { SIDE = 3 };
@@ -108,7 +108,7 @@ TEST_ALONE(GatheredIrradianceIsThatOfEachPixelsClass)
     closeSetting(&s);
 }
 
-// However virtual lights are accumulated, and without light of emitters.
+// The outputs are the same for all ways of accumulating virtual lights, and exclude the emitters' light.
 TEST_ALONE(WhereNobodySharesBothAreTheIrradiance)
 {
     Setting s = openSetting();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The light kernel, direct light and sums against exact answers. Covers extremes X085 to X092.
+// Tests of the light kernel, direct light and sums against exact answers. Covers extremes X085 to X092.
 #include "scenes.h"
 
 #include "math/vec.h"
@@ -20,14 +20,14 @@ static void fillSurface(vplSurface* s, vplVec3 p, vplVec3 n)
     }
 }
 
-// Irradiance that lights[0 .. count) cast on one point, red channel.
+// Returns the red irradiance of lights[0 .. count) at one point.
 static double irradiance(vplContext* context, vplLighting lighting, float minDistance, vplVec3 p, vplVec3 n,
                          const vplShadeLight* lights, int count)
 {
     vplSurface surface;
     float e[3][VPL_LANES] = {{0}};
     fillSurface(&surface, p, n);
-    vplAccumulateLights(context, lighting, minDistance, &surface, lights, count, e);
+    vplAccumulateLights(context, (vplLightFormula){lighting, minDistance}, &surface, lights, count, e);
     for (int l = 1; l < VPL_LANES; l++) {
         assert_true(e[0][l] == e[0][0]);
     }
@@ -52,13 +52,14 @@ TEST(EveryKernelValueOfTheTable, 1)
         double documented = irradiance(context, VPL_LIGHTING_DOCUMENTED, 0, x, nx, &light, 1);
         double wanted = number(&t, row, "G"), wantedBounded = number(&t, row, "G_clamped_r2");
         assert_true(isfinite(bounded) && bounded >= 0 && isfinite(documented));
-        // Stated range: d^2 must be a float. Beyond, the result is between 0 and the bound (X087, X088).
+        // The documented range requires that float can hold d^2. Beyond it, the result is between 0 and the
+        // bound (X087, X088).
         double r2 = number(&t, row, "r2");
         if (r2 != 0 && (r2 < FLT_MIN || r2 > FLT_MAX)) {
             assert_true(bounded <= wantedBounded * (1 + 1e-6) && bounded >= 0);
             continue;
         }
-        // Each cosine carries the rounding of a dot product of unit vectors, 3e-7, whatever its own size.
+        // Each cosine carries the rounding error of a dot product of unit vectors, 3e-7 absolute.
         double slack = 1e-6, scale = r2 > 0 ? 3e-7 / r2 : 0;
         assertNear(open, wanted, slack * wanted + scale, category, row);
         assertNear(bounded, wantedBounded, slack * wantedBounded + fmin(scale, 3e-7 / number(&t, row, "c")),
@@ -68,7 +69,8 @@ TEST(EveryKernelValueOfTheTable, 1)
     freeTable(&t);
 }
 
-// A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), by 20,000 rings.
+// A plane of uniform radiance L seen from height h: E / (pi L) with r^2 -> max(r^2, c), integrated over
+// 20,000 rings.
 TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
 {
     Table t = loadTable("vpl_clamp_plane.csv");
@@ -76,8 +78,8 @@ TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
     vplShadeLight* rings = malloc(RINGS * sizeof *rings);
     for (int row = 0; row < t.rows; row++) {
         double h = number(&t, row, "h"), c = number(&t, row, "c"), sum = 0;
-        // Rings from 1e-3 to 1e3 times the larger of h and sqrt(c), evenly in the logarithm, and a disc
-        // inside.
+        // The rings go from 1e-3 to 1e3 times the larger of h and sqrt(c), evenly in the logarithm, with a
+        // disc inside.
         double unit = fmax(h, sqrt(c)), inner = 1e-3 * fmin(h, sqrt(c)),
                ratio = pow(1e3 * unit / inner, 1.0 / RINGS);
         double r = inner;
@@ -92,14 +94,14 @@ TEST(ClampLosesOnAPlaneWhatTheTableSays, 1)
             sum += irradiance(context, VPL_LIGHTING_PHYSICAL, (float)sqrt(c), vplVec(0, (float)h, 0),
                               vplVec(0, -1, 0), rings + i, count);
         }
-        // The rings end at 1000 units: they miss (h / (1000 unit))^2 at most.
+        // The rings end at 1000 units and miss at most (h / (1000 unit))^2.
         assertNear(sum / VPL_PI, number(&t, row, "fraction_kept_r2clamp"), 2e-4, "fraction kept", row);
     }
     free(rings);
     freeTable(&t);
 }
 
-// The first directions of the tables: spherical Fibonacci points about y.
+// Returns the first directions of the tables: spherical Fibonacci points about y.
 static vplVec3 fibonacci(int i, int count)
 {
     double y = 1 - (2.0 * i + 1) / count, r = sqrt(1 - y * y),
@@ -107,22 +109,23 @@ static vplVec3 fibonacci(int i, int count)
     return vplVec((float)(r * cos(angle)), (float)y, (float)(r * sin(angle)));
 }
 
-// In a sphere lit from its centre G is 1/(4 R^2) between all points: the physical sum is exact for any
+// In a sphere lit from its centre, G is 1/(4 R^2) between all points: the physical sum is exact for any
 // lights.
 TEST(FurnaceSphereIsExact, 1)
 {
     Table t = loadTable("furnace_sphere.csv");
     for (int row = 0; row < t.rows; row++) {
         double radius = number(&t, row, "R"), rho = number(&t, row, "rho"), intensity = number(&t, row, "I");
-        int n = (int)number(&t, row, "N"), steps;
+        int n = (int)number(&t, row, "N");
         int counts[64];
-        int64_t total;
-        assert_int_equal(vplCountParticles(context, n, rho, counts, 64, &steps, &total), VPL_SUCCESS);
-        assert_int_equal(steps, (int)number(&t, row, "steps"));
+        vplStepTotals totals;
+        assert_int_equal(vplCountParticles(context, &(vplParticlePass){0, n, rho}, counts, 64, &totals),
+                         VPL_SUCCESS);
+        assert_int_equal(totals.stepCount, (int)number(&t, row, "steps"));
         vplVec3 at = vplScale((float)radius, vplNormalize(vplVec(0.3f, -0.5f, 0.8f))),
                 normal = vplNormalize(vplNegate(at));
         double e = number(&t, row, "E_direct");
-        for (int k = 0; k < steps; k++) {
+        for (int k = 0; k < totals.stepCount; k++) {
             double flux = 4 * VPL_PI * intensity * pow(rho, k + 1);
             for (int i = 0; i < counts[k]; i++) {
                 vplVec3 d = fibonacci(i, n); // anywhere on the sphere
@@ -142,13 +145,14 @@ TEST(DocumentedFurnaceSphereIsThatOfTheTable, 1)
     Table t = loadTable("furnace_sphere_documented.csv");
     for (int row = 0; row < t.rows; row++) {
         double rho = number(&t, row, "rho"), radius = number(&t, row, "R"), sum = 0;
-        int n = (int)number(&t, row, "N"), steps;
+        int n = (int)number(&t, row, "N");
         int counts[64];
-        int64_t total;
-        assert_int_equal(vplCountParticles(context, n, rho, counts, 64, &steps, &total), VPL_SUCCESS);
+        vplStepTotals totals;
+        assert_int_equal(vplCountParticles(context, &(vplParticlePass){0, n, rho}, counts, 64, &totals),
+                         VPL_SUCCESS);
         vplVec3 direction = vplNormalize(vectorOf(&t, row, ""));
         vplVec3 at = vplScale((float)radius, direction);
-        for (int k = 0; k < steps; k++) {
+        for (int k = 0; k < totals.stepCount; k++) {
             double carried = number(&t, row, "I") * pow(rho / VPL_PI, k + 1);
             for (int i = 0; i < counts[k]; i++) {
                 vplVec3 d = vplScale(k % 2 ? -(float)radius : (float)radius, vplNormalize(fibonacci(i, n)));
@@ -162,7 +166,7 @@ TEST(DocumentedFurnaceSphereIsThatOfTheTable, 1)
     freeTable(&t);
 }
 
-// Irradiance of the lights of one step at the floor point (u, -1, v) of the closed cube.
+// Returns the irradiance of one step's lights at the floor point (u, -1, v) of the closed cube.
 static double stepIrradiance(vplContext* context, const vplLightSet* set, vplLighting lighting, int step,
                              double u, double v)
 {
@@ -219,8 +223,8 @@ TEST(LightsInACubeConvergeToTheTable, 2, SLOW)
         for (int k = 0; k < 3; k++) {
             double mean = sums[row][k], error = sqrt((squares[row][k] - mean * mean) / (SEEDS - 1));
             assertNear(mean, number(&t, row, columns[k]), 3 * error + 3e-5, columns[k], row);
-            // Three standard errors say something only if they are small. The point at (0.9, 0.9) has two
-            // walls 0.1 away, and 1/d^2 of the few lights there is noisy.
+            // A tolerance of three standard errors is meaningful only if they are small. The point at (0.9,
+            // 0.9) is 0.1 from two walls, where 1/d^2 of a few lights is noisy.
             assert_true(error < (number(&t, row, "u") > 0.8 ? 0.02 : 0.005) * mean);
         }
     }
@@ -248,7 +252,7 @@ TEST(DocumentedLightsInACubeConvergeToTheTable, 2)
     freeTable(&t);
 }
 
-// The virtual lights of set A of room_particles.csv, as a kernel wants them.
+// Returns the virtual lights of set A of room_particles.csv in the kernel's form.
 static int tableLights(vplShadeLight* lights)
 {
     Table t = loadTable("room_particles.csv");
@@ -327,10 +331,11 @@ TEST(EveryPointOfTheRoomIsLitAsTheTableSays, 2)
         vplDirectIrradiance(&shading, &shading.direct, &points, e, &rays);
         checkRgb(&t, row, "phys_direct", e, rho);
         memset(e, 0, sizeof e);
-        vplAccumulateLights(context, VPL_LIGHTING_DOCUMENTED, 0, &surface, lights, count, e);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_DOCUMENTED, 0}, &surface, lights, count,
+                            e);
         checkRgb(&t, row, "doc_indirect", e, rho);
         memset(e, 0, sizeof e);
-        vplAccumulateLights(context, VPL_LIGHTING_PHYSICAL, 0, &surface, lights, count, e);
+        vplAccumulateLights(context, (vplLightFormula){VPL_LIGHTING_PHYSICAL, 0}, &surface, lights, count, e);
         checkRgb(&t, row, "kernelG", e, rho);
     }
     vplCubeMap_Destroy(map);
@@ -339,7 +344,7 @@ TEST(EveryPointOfTheRoomIsLitAsTheTableSays, 2)
     freeTable(&t);
 }
 
-// estimator_factors.csv: the same particles under both lightings differ by known factors.
+// estimator_factors.csv: results of the two lightings for the same particles differ by known factors.
 TEST(BothLightingsDifferByTheFactorsOfTheTable, 1)
 {
     vplGeometry* cube = closedCube(context, 0.7f);
@@ -348,7 +353,7 @@ TEST(BothLightingsDifferByTheFactorsOfTheTable, 1)
     def.particleCount = 50;
     def.reflectivity = 0.6;
     def.sampler = VPL_SAMPLER_HALTON;
-    def.bounce = VPL_BOUNCE_REFLECT; // so that they hit the same places
+    def.bounce = VPL_BOUNCE_REFLECT; // the same hit points for both lightings
     vplEmitterDef emitter = vplDefaultEmitterDef();
     vplLightSet* physical;
     assert_int_equal(vplSimulateParticles(cube, &emitter, 1, &def, &physical), VPL_SUCCESS);
@@ -367,7 +372,7 @@ TEST(BothLightingsDifferByTheFactorsOfTheTable, 1)
     vplGeometry_Destroy(cube);
 }
 
-// depth_precision.csv: the camera's z/w, and what rounding it to float hides.
+// depth_precision.csv: the camera's z/w, and the depth differences that rounding to float hides.
 TEST_ALONE(DepthIsThatOfTheTable)
 {
     Table t = loadTable("depth_precision.csv");
@@ -385,7 +390,7 @@ TEST_ALONE(DepthIsThatOfTheTable)
         float clip[4], world[3];
         vplVertices out = {&clip[0], &clip[1], &clip[2], &clip[3], {&world[0], &world[1], &world[2]}};
         vplCameraVertices(&uniforms, 0, 1, &out);
-        // The view depth is a float: half its last bit moves z/w by slope times that.
+        // The view depth is a float: half an ulp of it changes z/w by slope times that.
         double slope = camera.far / (camera.far - camera.near) * camera.near / (z * z);
         assertNear((double)clip[2] / (double)clip[3], wanted, 1.5e-7 * wanted + 6e-8 * z * slope + 1e-12,
                    "z/w", row);
@@ -399,7 +404,7 @@ TEST_ALONE(DepthIsThatOfTheTable)
     freeTable(&t);
 }
 
-// A picture of a floor from above, lit by `lights`.
+// Renders a floor from above, lit by `lights`.
 static vplImage* shadeFloor(vplContext* context, vplShadeDef def, int width, int height)
 {
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 10, 0.5f);
@@ -408,12 +413,12 @@ static vplImage* shadeFloor(vplContext* context, vplShadeDef def, int width, int
     vplView view = vplView_Create(&camera, width, height);
     vplImage* image;
     assert_int_equal(vplImage_Create(context, width, height, &image), VPL_SUCCESS);
-    assert_int_equal(vplShadeView(g, &view, &def, NULL, NULL, image, NULL), VPL_SUCCESS);
+    assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_SUCCESS);
     vplGeometry_Destroy(g);
     return image;
 }
 
-// X091: a million equal lights are a million times one, which a float sum could not count.
+// X091: a million equal lights give a million times one light; a float sum would stop growing.
 TEST(AMillionEqualLightsAddUp, 2)
 {
     enum { COUNT = 1000000 };
@@ -436,7 +441,7 @@ TEST(AMillionEqualLightsAddUp, 2)
     free(lights);
 }
 
-// X112, X092: sizes that are no multiple of a tile or block, and no light at all.
+// X112, X092: picture sizes that are no multiple of a tile or block, and no light at all.
 TEST(EveryPixelOfAnySizeIsShadedOnce, 2)
 {
     vplShadeLight light = lightAt(vplVec(0, 5, 0), vplVec(0, -1, 0), 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What shadow maps of every kind promise, each promise once: cube maps (hard and soft), hemi-octahedral maps,
+// Tests of properties that shadow maps of all kinds share: cube maps (hard and soft), hemi-octahedral maps,
 // paraboloid maps and reflective maps as shadow maps.
 #include "failing.h"
 #include "shadow_maps.h"
@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "math/vec.h"
 
-// A square of 98 triangles through `middle`, perpendicular to `n`, 12 m a side.
+// Makes a square of 98 triangles through `middle`, perpendicular to `n`, 12 m per side.
 static vplGeometry* plane(vplContext* context, int turn, vplVec3 offset, vplVec3* nOut, vplVec3* middleOut)
 {
     vplScene* scene = sceneOf(context, 0.5f);
@@ -27,15 +27,15 @@ static vplGeometry* plane(vplContext* context, int turn, vplVec3 offset, vplVec3
     return g;
 }
 
-// A point of a triangle, as floats round it.
+// Returns a random point of a triangle, rounded to floats.
 static vplVec3 rollOn(const vplGeometry* g, Dice* dice)
 {
     const int triangle = (int)roll(dice, 0, (float)g->triangleCount);
     return vplGeometry_SampleTriangle(g, triangle, roll(dice, 0, 1), roll(dice, 0, 1)).position;
 }
 
-// The plane is turned anyhow and lies near to the origin or far away; light comes at all angles down to a
-// hundredth of a degree, from 15 m, into maps of one texel and of many.
+// The plane has arbitrary rotation and lies near the origin or far away. Light comes from 15 m at angles down
+// to a hundredth of a degree above the plane, into maps of one texel and of many.
 TEST(APlaneNeverShadowsItself, 2, SLOW)
 {
     static const double degrees[] = {0, 30, 60, 80, 88, 89.5, 89.9, 89.99};
@@ -46,8 +46,8 @@ TEST(APlaneNeverShadowsItself, 2, SLOW)
         vplGeometry* g = plane(context, turn, rollVec(&dice, turn < 3 ? 3 : 300), &n, &middle);
         vplTangentFrame(n, &tangent, &bitangent);
         for (int k = 0; k < 4 * MAP_KINDS; k++) {
-            // Maps of half spaces and cubes hold distances, of which rounding at 300 m is a hundredth of 2.6
-            // mm above.
+            // Hemi-octahedral, paraboloid and cube maps store distances, whose rounding error at 300 m is a
+            // hundredth of the light's 2.6 mm above the plane.
             const bool rounded = turn >= 3 && k / 4 < MAP_REFLECTIVE_POINT;
             for (size_t d = 0; d < sizeof degrees / sizeof *degrees - rounded; d++) {
                 const double angle = degrees[d] * VPL_PI / 180;
@@ -69,7 +69,7 @@ TEST(APlaneNeverShadowsItself, 2, SLOW)
     }
 }
 
-// The map is a tenth of a millimetre to 4 m above a floor and looks anywhere at it.
+// The map lies 0.1 mm to 4 m above a floor and points in any direction at it.
 TEST(AFloorThatLightGrazesDoesNotShadowItself, 1)
 {
     vplGeometry* g = floorQuad(context, vplVec(3, 0.25f, -2), 10, 0.5f);
@@ -96,7 +96,7 @@ typedef struct Tally {
     int pairs, dark, sure, apart;
 } Tally;
 
-// Compares a map with rays at points anywhere in the scene.
+// Compares a map with rays at random points of the scene.
 static void compareWithRays(const ShadowMap* m, Dice* dice, int points, Tally* tally)
 {
     for (int i = 0; i < points; i++) {
@@ -122,8 +122,8 @@ static void compareWithRays(const ShadowMap* m, Dice* dice, int points, Tally* t
     }
 }
 
-// Maps anywhere in the room's objects, in a ball in a box, and in an empty cube, where nothing is dark. Light
-// from a direction needs a scene that is open on a side.
+// Maps are at random places among the room's objects, around a sphere in a box, and in an empty cube without
+// shadows. Directional light needs a scene that is open on one side.
 TEST(MapsAndRaysAgreeOutsideTheBand, 2)
 {
     for (int k = 0; k < 3 * MAP_KINDS; k++) {
@@ -156,7 +156,8 @@ TEST(MapsAndRaysAgreeOutsideTheBand, 2)
     }
 }
 
-// From inside of a box all that lies beyond it is dark: also where faces, hemispheres and texels meet.
+// Everything outside a closed box must be dark for a map inside it, also where faces, hemispheres and texels
+// meet.
 TEST(NoLightGoesThroughSeams, 1)
 {
     vplGeometry* g = closedCube(context, 0.5f);
@@ -169,11 +170,11 @@ TEST(NoLightGoesThroughSeams, 1)
             ShadowMap m = openMap((MapKind)(k / 3), g, vplVec(0, 0, 0), forward, sizes[k % 3]);
             for (int i = 0; i < 400; i++) {
                 vplVec3 d = rollUnit(&dice);
-                if (i % 2) { // where faces of a cube meet, along their edges
+                if (i % 2) { // on the seams of a cube map's faces, along their edges
                     d = vplVec(i & 2 ? 1 : -1, i & 4 ? 1 : -1, roll(&dice, -1, 1));
                     d = i % 3 == 0 ? d : i % 3 == 1 ? vplVec(d.z, d.x, d.y) : vplVec(d.y, d.z, d.x);
                 }
-                if (i % 5 == 0) { // where hemispheres meet
+                if (i % 5 == 0) { // on the seam of the hemispheres
                     d = vplCross(forward, d);
                 }
                 const vplVec3 p = vplScale(directional ? 0.5f : 6, vplNormalize(d));
@@ -194,7 +195,7 @@ TEST(WithNothingThereAllIsLit, 1)
     vplGeometry* below = floorQuad(context, vplVec(0, -5, 0), 2, 0.5f);
     Dice dice = {1, 0};
     for (int k = 0; k < MAP_KINDS; k++) {
-        const float up = k == MAP_REFLECTIVE_DIRECTIONAL ? -1 : 1; // from below the floor would be dark
+        const float up = k == MAP_REFLECTIVE_DIRECTIONAL ? -1 : 1; // from below, the floor would be dark
         ShadowMap m = openMap((MapKind)k, below, vplVec(0.3f, 0, 0.2f), vplVec(0, up, 0), 5);
         for (int i = 0; i < 100; i++) {
             const vplVec3 p = vplVec(roll(&dice, -9, 9), roll(&dice, 0.1f, 9), roll(&dice, -9, 9));
@@ -207,8 +208,9 @@ TEST(WithNothingThereAllIsLit, 1)
     vplGeometry_Destroy(below);
 }
 
-// Half spaces that are not drawn are dark, as nothing shines there; beyond the cone of a spot nothing is
-// drawn either, but the spot's own light ends there.
+// The half space that a map does not draw is dark, because its light does not shine there. Beyond a spot's
+// cone nothing is drawn either, but points count as unshadowed, because the spot's own falloff ends its
+// light.
 TEST(WhatIsBehindAMapOfAHalfSpaceIsDark, 1)
 {
     vplGeometry* g = floorQuad(context, vplVec(0, 0, 0), 2, 0.5f);
@@ -235,7 +237,7 @@ TEST(OddPointsGetAShareOfLight, 1)
         ShadowMap m = openMap((MapKind)k, g, odd[0], vplVec(0, -1, 0), 16);
         for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
             if (m.cube != NULL && !isfinite(odd[i].x)) {
-                continue; // cube maps are asked about places only
+                continue; // cube maps require finite points
             }
             const float factor = factorAt(&m, odd[i], vplVec(0, -1, 0));
             assert_true(factor >= 0 && factor <= 1 + 1e-6f);
@@ -254,7 +256,7 @@ static void rollBlock(const vplGeometry* g, Dice* dice, vplSurface* s)
     }
 }
 
-// No lane knows of its neighbours.
+// Lanes do not affect each other.
 TEST(ABlockHasTheBitsOfSingleLookups, 1)
 {
     vplGeometry* g = clutter(context, 0);
@@ -275,7 +277,7 @@ TEST(ABlockHasTheBitsOfSingleLookups, 1)
                 between += single > 0 && single < 1;
             }
         }
-        assert_true((between > 0) == (k != MAP_CUBE && k != MAP_HEMI)); // these know yes and no only
+        assert_true((between > 0) == (k != MAP_CUBE && k != MAP_HEMI)); // these two kinds give only 0 or 1
         closeMap(&m);
     }
     vplGeometry_Destroy(g);
@@ -311,8 +313,8 @@ TEST_ALONE(MapsAndFactorsHaveTheSameBitsEverywhere)
     assertSameEverywhere(hashOf);
 }
 
-// A wall between map and point is found at all sizes but the coarsest, and the way to a point beside it is
-// free.
+// Maps of all sizes except the coarsest find a wall between map and point, and leave a point beside the wall
+// lit.
 TEST(MapsOfAllSizesTellAWallFromNone, 2)
 {
     static const int sizes[] = {1, 2, 3, 5, 7, 16, 64, 257, 1024};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// B = E + rho F B where it has no solution (X094, X096), at extremes, and where it is refused.
+// Tests of B = E + rho F B without a solution (X094, X096), at extremes, and of refusals.
 #include "solving.h"
 
-// ---- what diverges (X094)
+// ---- divergence (X094)
 
 TEST(WhatDivergesIsRefusedWithItsRadius, 1)
 {
@@ -15,7 +15,7 @@ TEST(WhatDivergesIsRefusedWithItsRadius, 1)
             fillSphere(&e, 41);
             setReflectance(&e, 0.5f);
             for (size_t i = 0; i < (size_t)MANY * MANY; i++) {
-                e.rows[i] *= large ? 100 : 3; // radius 50, 1.5
+                e.rows[i] *= large ? 100 : 3; // spectral radius 50 or 1.5
             }
             fillSources(source, MANY, 42);
             memcpy(b, source, sizeof b);
@@ -31,7 +31,7 @@ TEST(WhatDivergesIsRefusedWithItsRadius, 1)
     }
 }
 
-// Few sweeps do not hide it.
+// Divergence is refused even if few sweeps are requested.
 TEST(AFewSweepsOfWhatDivergesAreRefusedToo, 1)
 {
     Exchange e;
@@ -130,8 +130,8 @@ TEST(NoSweepsChangeNothing, 1)
 
 TEST(TheBrightestSideShootsFirst, 1)
 {
-    // Progress at once is what shooting is for: one sweep takes most of the light further than one of
-    // Jacobi's does.
+    // Shooting should converge faster at first: one sweep of it must distribute more of the light than one
+    // Jacobi sweep.
     Exchange e;
     vplRgb source[MANY], shot[MANY], gathered[MANY], exact[MANY];
     openExchange(&e, context, MANY);

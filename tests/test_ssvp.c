@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// SSVP as a whole: what it must converge to, what its toggles leave, and what happens at its extremes. The
-// stages have suites of their own: rsm, clusters, paraboloid, secondBounce, interleaved.
+// End-to-end tests of SSVP: its limits, its toggles, and extremes. The stages have suites of their own: rsm,
+// clusters, paraboloid, secondBounce, interleaved.
 #include "scenes.h"
 #include "shapes.h"
 
@@ -13,7 +13,7 @@ static void addBox(vplScene* scene)
     addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.25f, -0.7f, -0.2f), 0, 0.5, vplVec(0.5f, 0.6f, 0.5f));
 }
 
-// A spot that shines at a wall of the closed cube [-1, 1]^3, in which a box stands.
+// Makes the closed cube [-1, 1]^3 with a box in it and a spot that shines at a wall.
 static vplScene* spotRoom(vplContext* context, float rho)
 {
     vplScene* scene = closedCubeScene(context, rho, 0);
@@ -23,7 +23,7 @@ static vplScene* spotRoom(vplContext* context, float rho)
     return scene;
 }
 
-// A box on a floor between a red and a white wall: also the sun reaches it.
+// Makes a box on a floor between a red and a white wall, open so that directional light reaches it, too.
 static vplScene* corner(vplContext* context, vplEmitterType type)
 {
     vplScene* scene = sceneOf(context, 0.7f);
@@ -58,7 +58,7 @@ static double meanOf(const vplImage* image)
     return sum / (double)values;
 }
 
-// Root of the mean square of the difference, as a share of the second picture's mean.
+// Returns the root mean square of the difference, relative to the second picture's mean.
 static double differenceOf(const vplImage* a, const vplImage* b)
 {
     const size_t values = 3 * (size_t)a->width * (size_t)a->height;
@@ -81,7 +81,7 @@ static double meanOfRender(const vplScene* scene, const vplRenderOptions* o)
 
 // ---- limits
 
-// Renders with such shadows of virtual lights.
+// Renders with the given kind of shadows for virtual lights.
 static vplImage* renderWith(const vplScene* scene, vplRenderOptions o, vplLightShadows shadows)
 {
     o.lights.shadows = shadows;
@@ -89,8 +89,8 @@ static vplImage* renderWith(const vplScene* scene, vplRenderOptions o, vplLightS
 }
 
 // The document: "for the hypothetical scenario where we have as many clusters as VPLs ... the technique is
-// indistinguishable from the original Instant Radiosity". Each light then sees by a map of its own, and what
-// is left is how maps and rays differ at the edges of shadows: the same as with Keller's map per light.
+// indistinguishable from the original Instant Radiosity". Each light then has a map of its own; the remaining
+// error is the difference between maps and rays at shadow edges, as with Keller's map per light.
 TEST(AsManyClustersAsLightsAreInstantRadiosity, 2, SLOW)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -106,10 +106,10 @@ TEST(AsManyClustersAsLightsAreInstantRadiosity, 2, SLOW)
     assertNear(meanOf(clusters) / meanOf(rays), 1, 0.01, "energy", 0);
     assertNear(differenceOf(clusters, rays), 0, 0.01, "clusters and rays", 0);
     assertNear(differenceOf(clusters, maps), 0, 0.02, "clusters and maps", 0);
-    assert_true(differenceOf(none, rays) > 5 * differenceOf(clusters, rays)); // shadows matter here
+    assert_true(differenceOf(none, rays) > 5 * differenceOf(clusters, rays)); // shadows matter in this scene
     o.ssvp.clusters = 8;
     vplImage* few = renderWith(scene, o, VPL_LIGHT_SHADOWS_CLUSTER);
-    assert_true(differenceOf(few, rays) > 2 * differenceOf(clusters, rays)); // and so does their number
+    assert_true(differenceOf(few, rays) > 2 * differenceOf(clusters, rays)); // so does the number of clusters
     vplImage* all[5] = {rays, clusters, maps, none, few};
     for (int i = 0; i < 5; i++) {
         vplImage_Destroy(all[i]);
@@ -117,7 +117,7 @@ TEST(AsManyClustersAsLightsAreInstantRadiosity, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-// Light of one and of two bounces is that of the path tracer, which knows no maps, clusters or virtual
+// Light of one and of two bounces must equal that of the path tracer, which uses no maps, clusters or virtual
 // lights.
 TEST(EachBounceHasTheLightOfPaths, 2, SLOW)
 {
@@ -129,7 +129,7 @@ TEST(EachBounceHasTheLightOfPaths, 2, SLOW)
             o.ssvp.firstBounce = o.ssvp.secondBounce = 8192;
             o.ssvp.clusters = 64;
             o.lights.minDistance = 0.01f;
-            o.pipeline.kind = VPL_ACCUMULATE_DEFERRED; // sharing moves light at edges
+            o.pipeline.kind = VPL_ACCUMULATE_DEFERRED; // interleaved sharing would move light across edges
             o.maxBounces = bounces;
             o.output.show = VPL_SHOW_INDIRECT;
             o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
@@ -147,8 +147,8 @@ TEST(EachBounceHasTheLightOfPaths, 2, SLOW)
     }
 }
 
-// The weight that the document leaves out: without it light near the rim of each map counts as much as that
-// along the axis, where it is eight times as bright.
+// The document omits the weight: without it, light near the rim of each map counts as much as light along the
+// axis, where it is eight times as bright.
 TEST(PrintedWeightsMoveTheSecondBounce, 1)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -196,7 +196,7 @@ TEST(BouncesAreToggled, 2)
     vplScene_Destroy(scene);
 }
 
-// Every stage can be looked at; what is not there is a sentence.
+// Every stage can be shown; stages that do not exist are refused with a message.
 TEST(EveryStageIsShown, 2)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -249,8 +249,8 @@ static uint64_t hashOfFrame(vplScene* scene, vplRenderOptions o, vplHistory* his
     return stats.imageHash;
 }
 
-// Where the light stands still, so do its lights and clusters; where patterns are new for each frame, they do
-// not.
+// Lights and clusters are the same in all frames while the light does not move; if patterns change per frame,
+// they are not.
 TEST(StillLightsKeepTheirBits, 2)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -264,7 +264,7 @@ TEST(StillLightsKeepTheirBits, 2)
     assert_true(hashOfFrame(scene, o, history, 2) != alone);
     assert_true(hashOfFrame(scene, o, history, 2) == hashOfFrame(scene, o, NULL, 2));
     o.sequence.coherence = VPL_COHERENCE_ON;
-    o.ssvp.clusters = 5; // changes what is kept
+    o.ssvp.clusters = 5; // changes the kept data
     const uint64_t five = hashOfFrame(scene, o, NULL, 0);
     vplHistory_Destroy(history);
     assert_int_equal(vplHistory_Create(context, &history), VPL_SUCCESS);
@@ -273,7 +273,7 @@ TEST(StillLightsKeepTheirBits, 2)
     vplScene_Destroy(scene);
 }
 
-// A frame for which nobody looked at the maps leaves none; the next one does not go without.
+// A frame that needed no maps draws none; the next frame draws the maps that it needs.
 TEST(MapsThatWereNotNeededAreDrawnWhenTheyAre, 2)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -289,7 +289,7 @@ TEST(MapsThatWereNotNeededAreDrawnWhenTheyAre, 2)
     vplScene_Destroy(scene);
 }
 
-// Passes are no frames: each has samples of its own, whatever those of the pass before were of use.
+// Passes are not frames: each has samples of its own, and does not start from the pass before.
 TEST(PassesHaveNothingToDoWithEachOther, 2)
 {
     vplScene* scene = corner(context, VPL_EMITTER_SPOT);
@@ -310,7 +310,7 @@ static void assertFinite(const vplScene* scene, vplRenderOptions o)
     vplImage_Destroy(image);
 }
 
-// X092, X105: fewer lights than clusters, and one; a map of one texel.
+// X092, X105: fewer lights than clusters, a single light, and a map of one texel.
 TEST(FewerLightsThanClustersAndMapsOfOneTexel, 2)
 {
     vplScene* scene = spotRoom(context, 0.6f);
@@ -331,7 +331,7 @@ TEST(FewerLightsThanClustersAndMapsOfOneTexel, 2)
     vplScene_Destroy(scene);
 }
 
-// X108: the cube's walls facing each other, and a ball from within: centroids hang in mid-air, normals
+// X108: the facing walls of a cube, and a sphere seen from inside: centroids lie in mid-air, and normals
 // cancel.
 TEST(CentroidsInMidAirLightTheBallTheyAreIn, 2)
 {
@@ -351,7 +351,7 @@ TEST(CentroidsInMidAirLightTheBallTheyAreIn, 2)
         vplImage* clusters = renderScene(scene, &o, NULL);
         o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
         vplImage* rays = renderScene(scene, &o, NULL);
-        assert_true(meanOf(clusters) > 0.9 * meanOf(rays)); // nothing is in the way inside a ball
+        assert_true(meanOf(clusters) > 0.9 * meanOf(rays)); // nothing occludes inside a sphere
         vplImage_Destroy(clusters);
         vplImage_Destroy(rays);
     }
@@ -375,7 +375,7 @@ TEST(BlackScenesAndLightsThatSeeNothingStayBlack, 2)
     vplScene_Destroy(dark);
 }
 
-// Surfaces that emit have no reflective map: particles take their share of the first bounce.
+// Reflective shadow maps do not support emitting surfaces: particles make their part of the first bounce.
 TEST(SsvpReflectsAreaLights, 2, SLOW)
 {
     vplScene* scene = closedCubeScene(context, 0.6f, 0);
@@ -401,7 +401,7 @@ TEST(SsvpReflectsAreaLights, 2, SLOW)
     vplScene_Destroy(scene);
 }
 
-// What SSVP cannot do is said.
+// SSVP refuses options that it does not support, with a sentence.
 TEST(WhatIsNotPossibleIsASentence, 1)
 {
     vplScene* scene = spotRoom(context, 0.5f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arithmetic of vpl tradeoff, and the PNG that its report embeds.
+// Tests of the arithmetic of vpl tradeoff, and of the PNG that its report embeds.
 #include "test.h"
 
 #include "cli/bench/measure.h"
@@ -18,7 +18,7 @@ TEST_ALONE(MedianIsTheMiddleOrTheMeanOfTwo)
 
 TEST_ALONE(FrontHoldsWhatNothingBeats)
 {
-    //                     front, beaten, front, equal, front, dearer, not measured
+    // on front, dominated, on front, equal, on front, costlier, not measured
     const double cost[] = {1, 2, 2, 2, 5, 6, NAN}, error[] = {9, 9, 7, 7, 1, 1, NAN};
     int numbers[7];
     assert_int_equal(numberFront(cost, error, 7, 0, numbers), 3);
@@ -26,8 +26,8 @@ TEST_ALONE(FrontHoldsWhatNothingBeats)
     assert_memory_equal(numbers, wanted, sizeof wanted);
 }
 
-// By definition, in random cases: a point is on the front if and only if no other is as good in both and
-// better in one, or equal and before it.
+// Checks the definition on random cases: a point is on the front if and only if no other point is at least as
+// good in both values and better in one, or equal and before it.
 TEST_ALONE(FrontFollowsItsDefinition)
 {
     enum { COUNT = 12 };
@@ -92,15 +92,15 @@ TEST_ALONE(JointSquareIsFreeOfTheReferencesNoise)
 {
     enum { COUNT = 100000 };
     static float x[COUNT], a[COUNT], b[COUNT];
-    for (uint64_t i = 0; i < COUNT; i++) { // the truth is 1, the halves have noise of deviation 0.5
+    for (uint64_t i = 0; i < COUNT; i++) { // the truth is 1; the halves have noise of deviation 0.5
         double spread = 0.5 * sqrt(12);
         a[i] = (float)(1 + spread * (uniformAt(1, i) - 0.5));
         b[i] = (float)(1 + spread * (uniformAt(2, i) - 0.5));
         x[i] = i % 2 ? 1.1f : 0.9f;
     }
     double uncertainty = jointUncertainty(a, b, COUNT);
-    // Variance 0.25 each: a'b' has deviation 0.25, their mean 0.25 / sqrt(n); uniform noise is less spiky
-    // than normal noise, (a' - b')^4 is 9.6 v^2 for it.
+    // Each variance v is 0.25: a'b' has deviation 0.25, their mean 0.25 / sqrt(n). Uniform noise has lighter
+    // tails than normal noise; its (a' - b')^4 averages 9.6 v^2.
     assertNear(uncertainty, 0.25 * sqrt(9.6 / 12) / sqrt(COUNT), 0.02 * uncertainty, "uncertainty", 0);
     assertNear(jointSquare(x, a, b, COUNT), 0.01, 3 * uncertainty, "mean squared error", 0);
     assertNear(jointSquare(a, a, b, COUNT), 0, 3 * uncertainty, "a judged by itself and b", 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Form factors of two triangles: tests/data/ff_triangles.csv, ff_cube12.csv, ff_analytic.csv, ff_closure.csv,
-// and what holds for all of them.
+// Tests of form factors between two triangles: tests/data/ff_triangles.csv, ff_cube12.csv, ff_analytic.csv,
+// ff_closure.csv, and properties of all pairs.
 #include "factor_cases.h"
 
 TEST_ALONE(FactorsOfPairsAreThoseOfTheTable)
@@ -27,7 +27,7 @@ TEST_ALONE(RowsOfACubeAreThoseOfTheTableAndSumToOne)
         for (int k = 0; k < 3; k++) {
             corners[i][k] = cornerOf(&t, i, "v", k);
         }
-        // The front is inside: that from which the middle of the cube is seen.
+        // The front is the side that faces the cube's centre.
         const vplVec3 *p = corners[i], m = {0.5f, 0.5f, 0.5f};
         const vplVec3 u = {p[1].x - p[0].x, p[1].y - p[0].y, p[1].z - p[0].z};
         const vplVec3 v = {p[2].x - p[0].x, p[2].y - p[0].y, p[2].z - p[0].z};
@@ -54,7 +54,7 @@ TEST_ALONE(RowsOfACubeAreThoseOfTheTableAndSumToOne)
 
 // ---- rectangles, as two triangles each
 
-// From rectangle a to rectangle b, corners in order.
+// Returns the form factor from rectangle a to rectangle b, with corners in order.
 static double factorOfRectangles(const vplVec3 a[4], const vplVec3 b[4])
 {
     double sum = 0, all = 0;
@@ -78,14 +78,15 @@ static double factorOfParallel(float a, float b, float c)
                               (const vplVec3[4]){{0, 0, c}, {0, b, c}, {a, b, c}, {a, 0, c}});
 }
 
-// w x l on the floor, l x h on the wall at its edge.
+// Returns the form factor from the floor, w x l, to the wall at its edge, l x h.
 static double factorOfPerpendicular(float w, float l, float h)
 {
     return factorOfRectangles((const vplVec3[4]){{0, 0, 0}, {w, 0, 0}, {w, l, 0}, {0, l, 0}},
                               (const vplVec3[4]){{0, 0, 0}, {0, l, 0}, {0, l, h}, {0, 0, h}});
 }
 
-// Lengths are floats: 0.001 is wrong by 5e-8 of it. Those that are exact agree to 1e-11.
+// Lengths are rounded to float: 0.001 has a relative error of 5e-8. Lengths that float holds exactly agree to
+// 1e-11.
 TEST_ALONE(RectanglesAreThoseOfTheClosedForms)
 {
     Table t = loadTable("ff_analytic.csv");
@@ -150,14 +151,15 @@ TEST_ALONE(BothDirectionsExchangeTheSame)
     assert_true(seen > MOST_CASES / 2);
 }
 
-// Halves are smaller than the whole, so that other formulas and other cuts do for them: all must agree.
+// Halves are smaller than the whole, so that other formulas and other clipping apply to them: the results
+// must agree.
 TEST_ALONE(HalvesSumToTheWhole)
 {
     int seen = 0;
     for (uint64_t seed = 0; seed < MOST_CASES; seed++) {
         vplVec3 a[3], b[3];
         rollPair(seed, a, b);
-        // Of corners that are multiples of 2^-14, so that the middle is exact.
+        // Corners are multiples of 2^-14, so that the midpoint is exact.
         for (int i = 0; i < 3; i++) {
             b[i] = (vplVec3){rintf(b[i].x * 0x1p14f) * 0x1p-14f, rintf(b[i].y * 0x1p14f) * 0x1p-14f,
                              rintf(b[i].z * 0x1p14f) * 0x1p-14f};
@@ -174,7 +176,7 @@ TEST_ALONE(HalvesSumToTheWhole)
     assert_true(seen > MOST_CASES / 2);
 }
 
-// Of every size that floats have: the same share, and a number.
+// Triangles scaled over all magnitudes of float have the same form factor, and it is finite.
 TEST_ALONE(FactorsDoNotDependOnTheUnit)
 {
     for (uint64_t seed = 0; seed < 100; seed++) {
@@ -192,7 +194,7 @@ TEST_ALONE(FactorsDoNotDependOnTheUnit)
     }
 }
 
-// X093, X095, and whatever touches.
+// X093, X095: coplanar, touching, coincident and degenerate triangles give finite factors.
 TEST_ALONE(PlanesTouchesAndDuplicatesAreNumbers)
 {
     const vplVec3 floor[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, over[3] = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}};
@@ -209,8 +211,8 @@ TEST_ALONE(PlanesTouchesAndDuplicatesAreNumbers)
     assert_true(f >= 0 && f <= 1 && g >= 0 && g <= 1 && f + g > 0);
 }
 
-// Two triangles with an edge in common, folded: from 1 where they lie on each other to 0 where they are in
-// one plane.
+// Two triangles share an edge at a varying angle: the factor falls from 1, folded onto each other, to 0,
+// coplanar.
 TEST_ALONE(FoldedPairsFallFromOneToZero)
 {
     double last = 1;

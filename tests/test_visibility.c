@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cube maps, bias and PCF. Covers extremes X049 to X070.
+// Tests of cube maps, bias and PCF. Covers extremes X049 to X070.
 #include "scenes.h"
 
 #include "math/vec.h"
@@ -47,8 +47,7 @@ TEST_ALONE(EveryDirectionOfTheTableFindsItsTexel)
             int wantedI = (int)number(&t, row, column);
             *column = 'j';
             int wantedJ = (int)number(&t, row, column);
-            // A float s may lie on the other side of a texel's edge only where s * size is an integer to
-            // rounding.
+            // Rounding may put s into the neighbouring texel only if s * size is an integer up to rounding.
             bool edgeI = fabs((double)p.s * sizes[k] - rint((double)p.s * sizes[k])) < 1e-7 * sizes[k];
             bool edgeJ = fabs((double)p.t * sizes[k] - rint((double)p.t * sizes[k])) < 1e-7 * sizes[k];
             assert_true(p.column == wantedI || (edgeI && abs(p.column - wantedI) == 1));
@@ -69,7 +68,7 @@ static vplCubeMap* makeMap(const vplGeometry* g, vplVec3 position, int size)
     return map;
 }
 
-// X053 to X056: in the cube [-1, 1]^3 the distance along any direction is known, and no texel is left out.
+// X053 to X056: in the cube [-1, 1]^3 the distance along any direction is known, and every texel is drawn.
 TEST(TexelsHoldTheDistanceOfTheWall, 2)
 {
     vplGeometry* cube = closedCube(context, 0.5f);
@@ -96,7 +95,7 @@ TEST(TexelsHoldTheDistanceOfTheWall, 2)
     vplGeometry_Destroy(cube);
 }
 
-// shadow_distance.csv: a small quad at the point, facing the light, is found at its distance.
+// shadow_distance.csv: the map stores the distance of a small quad at the point that faces the light.
 TEST(StoredDistancesAreRadialAndUnclamped, 1)
 {
     Table t = loadTable("shadow_distance.csv");
@@ -109,7 +108,7 @@ TEST(StoredDistancesAreRadialAndUnclamped, 1)
         assert_string_equal(faces[at.face], cell(&t, row, "face"));
         assertNear((double)at.s, number(&t, row, "s"), 3e-6, "s", row);
         assertNear((double)at.t, number(&t, row, "t"), 3e-6, "t", row);
-        // A sphere of quads would do; one quad perpendicular to the ray and as wide as two texels is enough.
+        // One quad perpendicular to the ray and two texels wide is enough to cover the texel.
         double dist = number(&t, row, "dist");
         vplScene* scene;
         vplGeometry* g;
@@ -134,7 +133,7 @@ TEST(StoredDistancesAreRadialAndUnclamped, 1)
         def.far = (float)number(&t, row, "far");
         vplCubeMap* map;
         assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
-        // The texel's own ray is off by up to a texel's half diagonal, 1.27 degrees: 1 - cos is 2.5e-4.
+        // The texel's own ray deviates by up to half a texel's diagonal, 1.27 degrees: 1 - cos is 2.5e-4.
         assertNear((double)vplCubeMap_Distance(map, d), dist, 3e-4 * dist, "distance", row);
         clamped += number(&t, row, "clamped") == 1;
         vplCubeMap_Destroy(map);
@@ -145,7 +144,7 @@ TEST(StoredDistancesAreRadialAndUnclamped, 1)
     freeTable(&t);
 }
 
-// A map whose six texels all hold one stored value.
+// A map whose six texels all store the same value.
 typedef struct FlatMap {
     vplCubeMap map;
     float texels[6];
@@ -205,14 +204,15 @@ TEST(ExactBiasIsThatOfTheTable, 1)
         shadow.texelTangent = (float)tan(number(&t, row, "alpha"));
         double wanted = number(&t, row, "bias_over_r_exact"), cosine = number(&t, row, "n_dot_l");
         double bias = (double)vplShadow_Bias(&shadow, 3, (float)cosine) / 3 - 0x1p-20;
-        // Near 90 degrees a float cosine is known to 6e-8 only, and the bias falls by that over alpha.
+        // Near 90 degrees a float cosine is known only to 6e-8, which changes the bias by that over alpha.
         assertNear(bias, wanted, 4e-7 + 6e-8 / number(&t, row, "alpha"), "bias", row);
     }
     freeTable(&t);
 }
 
-// bias_texel.csv: a fragment in the worst corner of a texel against the distance at the texel's centre. Ours
-// must be enough (no acne), and is at most the table's closed form with the largest texel's angle.
+// bias_texel.csv compares a fragment at the worst corner of a texel with the distance at the texel's centre.
+// Our bias must suffice (no acne), and must not exceed the table's closed form with the largest texel's
+// angle.
 TEST(ExactBiasIsEnoughInEveryTexelOfTheTable, 1)
 {
     Table t = loadTable("bias_texel.csv");
@@ -221,7 +221,7 @@ TEST(ExactBiasIsEnoughInEveryTexelOfTheTable, 1)
     int tested = 0;
     for (int row = 0; row < t.rows; row++) {
         if (!isfinite(number(&t, row, "r_max_corner"))) {
-            continue; // X067: a corner looks past the horizon
+            continue; // X067: a corner lies beyond the plane's horizon
         }
         flat.map.size = (int)number(&t, row, "R");
         vplShadow shadow = exactShadow(&flat.map, 1, 0);
@@ -235,7 +235,7 @@ TEST(ExactBiasIsEnoughInEveryTexelOfTheTable, 1)
     freeTable(&t);
 }
 
-// bias_pair.csv: our automatic pair, b_s = alpha r and b_dmax = 5.6 b_s, is enough up to 80 degrees.
+// bias_pair.csv: our automatic pair, b_s = alpha r and b_dmax = 5.6 b_s, suffices up to 80 degrees.
 TEST(AutomaticPairIsEnoughUpTo80Degrees, 1)
 {
     Table t = loadTable("bias_pair.csv");
@@ -260,7 +260,7 @@ TEST(AutomaticPairIsEnoughUpTo80Degrees, 1)
     freeTable(&t);
 }
 
-// A wall standing on the floor at x = x0, and the floor.
+// Makes a floor and a wall that stands on it at x = x0.
 static vplGeometry* wallOnFloor(vplContext* context, float x0)
 {
     vplScene* scene;
@@ -280,7 +280,7 @@ static vplGeometry* wallOnFloor(vplContext* context, float x0)
     return g;
 }
 
-// peter_panning.csv: how far behind a wall light leaks, to the size of a texel on the floor.
+// peter_panning.csv: the width of the light leak behind a wall, to the size of a texel on the floor.
 TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 2)
 {
     Table t = loadTable("peter_panning.csv");
@@ -291,7 +291,7 @@ TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 2)
                gap = number(&t, row, "gap_exact");
         double theta = atan2(x0 + gap, h), texel = 2 * h / SIZE * (1 + pow((x0 + gap) / h, 2));
         if (h != 1 || x0 + gap > 5) {
-            continue; // the table scales with h; far out the floor ends
+            continue; // the table is for h = 1, and the floor is finite
         }
         vplGeometry* g = wallOnFloor(context, (float)x0);
         vplCubeMap* map = makeMap(g, (vplVec3){0, (float)h, 0.01f}, SIZE);
@@ -307,7 +307,7 @@ TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 2)
                vplShadow_Factor(&shadow, (vplVec3){(float)x, 0, 0.01f}, (vplVec3){0, 1, 0}) == 0) {
             x += step;
         }
-        // The stored distance is a texel centre's: off by half a texel, in slope as well.
+        // The stored distance is that of a texel's centre: it is off by half a texel, in the slope as well.
         assertNear(x - x0, gap, 1.5 * texel * (1 + tan(theta)), "gap", row);
         tested++;
         vplCubeMap_Destroy(map);
@@ -317,7 +317,7 @@ TEST(LightLeaksBehindAWallAsFarAsTheTableSays, 2)
     freeTable(&t);
 }
 
-// A quad that shadows the half-space x < edge (measured on the floor, 2 below the light), halfway down.
+// Draws the map of a quad, halfway down, that shadows the half-plane x < edge of the floor 2 below the light.
 static vplCubeMap* halfPlaneMap(vplContext* context, float edge, int size, vplGeometry** geometryOut)
 {
     vplGeometry* g = floorQuad(context, (vplVec3){edge / 2 - 5, -1, 0}, 10, 0.5f);
@@ -330,7 +330,7 @@ TEST(PcfGivesTheExpectationOfADisc, 2)
     Table t = loadTable("pcf_halfplane.csv");
     const float e = 0.2f;
     for (int row = 0; row < t.rows; row++) {
-        // Positive x: the edge is moved so far that less of the kernel is covered.
+        // Positive x: the edge is moved so that it covers less of the kernel.
         double x = number(&t, row, "x_over_e"), wanted = number(&t, row, "disk");
         vplGeometry* g;
         vplCubeMap* map = halfPlaneMap(context, (float)-x * e, 1024, &g);
@@ -340,8 +340,8 @@ TEST(PcfGivesTheExpectationOfADisc, 2)
             double s = (double)vplShadow_Factor(&shadow, (vplVec3){0, -2, 0}, (vplVec3){0, 1, 0});
             double count = s * samples[k];
             assertNear(count, rint(count), 1e-5, "k/S", row);
-            // Low-discrepancy points: better than the 2 standard deviations that random ones would need, plus
-            // what falls into the texels along the edge (a texel is 1/102 of the kernel's radius).
+            // Low-discrepancy points stay below the 2 standard deviations of random ones. The tolerance also
+            // allows for the texels along the edge (a texel is 1/102 of the kernel's radius).
             double slack = x == 0 ? 2.0 / samples[k] : 2 * sqrt(number(&t, row, "varS_disk") / samples[k]);
             assertNear(s, wanted, slack + 0.015, "s", row);
         }
@@ -351,7 +351,7 @@ TEST(PcfGivesTheExpectationOfADisc, 2)
     freeTable(&t);
 }
 
-// pcf_grid.csv with the table's own offsets put in place of ours: exact counts.
+// pcf_grid.csv: the table's own offsets replace ours, and counts must be exact.
 TEST(PcfCountsTheGridsOfTheTable, 2)
 {
     Table t = loadTable("pcf_grid.csv");
@@ -368,7 +368,7 @@ TEST(PcfCountsTheGridsOfTheTable, 2)
             onEdge |= fabs((double)shadow.offsets[i][0] + number(&t, row, "x_over_e")) < 0.015;
         }
         double s = (double)vplShadow_Factor(&shadow, (vplVec3){0, -2, 0}, (vplVec3){0, 1, 0});
-        if (!onEdge) { // a sample in the edge itself may fall on either side of a texel
+        if (!onEdge) { // a sample on the edge may fall on either side of a texel's boundary
             assertNear(s, number(&t, row, "factor"), 0, "s", row);
         }
         vplCubeMap_Destroy(map);
@@ -377,7 +377,7 @@ TEST(PcfCountsTheGridsOfTheTable, 2)
     freeTable(&t);
 }
 
-// X057, X059, X067, X069: nothing there, fragment in the light, one texel, kernel wider than the distance.
+// X057, X059, X067, X069: an empty map, a fragment at the light, one texel, a kernel wider than the distance.
 TEST(DegenerateShadowsAreDefined, 1)
 {
     FlatMap flat;
@@ -443,7 +443,7 @@ TEST(ShadowMapsRefuseBadDefs, 1)
     vplGeometry_Destroy(g);
 }
 
-// Also with bounds, which belong to what was drawn before.
+// The bits also agree with bounds, which redrawing must invalidate.
 TEST(RedrawnMapsAreThoseOfNewOnes, 2)
 {
     vplGeometry* room = wallOnFloor(context, 0.5f);

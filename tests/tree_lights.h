@@ -13,12 +13,12 @@
 #include <stdlib.h>
 
 typedef enum Kind {
-    KIND_CLOUD,   // anywhere, facing anywhere
+    KIND_CLOUD,   // random positions and normals
     KIND_WALLS,   // on the inside of a cube
     KIND_FAR,     // in a small box 1000 km from the origin
-    KIND_SERIES,  // 2^-i m from a corner: each half holds all but one
-    KIND_POINT,   // all at one place
-    KIND_SAME,    // and all facing one way
+    KIND_SERIES,  // 2^-i m from a corner: one half contains all but one
+    KIND_POINT,   // all at one position
+    KIND_SAME,    // all at one position with one normal
     KIND_HUGE,    // up to 1e17 m apart
     KIND_UNEQUAL, // a few are brighter by 1e12, some are black
     KIND_BACK,    // pairs of opposite normals

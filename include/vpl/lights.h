@@ -154,12 +154,26 @@ typedef struct vplParticleDef {
 
 vplParticleDef vplDefaultParticleDef(void);
 
+// N particles that follow `first` others of the same walk.
+typedef struct vplParticlePass {
+    int64_t first;
+    int count;           // N, [0, VPL_MAX_LIGHTS]
+    double reflectivity; // rho, [0, 1)
+} vplParticlePass;
+
+typedef struct vplStepTotals {
+    int stepCount;
+    int64_t lightCount; // in all steps
+} vplStepTotals;
+
 // floor(rho^k N) for k = 0, 1, ... until it is 0, for the decimal number that rho was written as: 0.7 * 10 is
-// 7. Fills at most `capacity` counts (NULL to count only). *stepsOut is the number of steps, *totalOut the
-// sum. VPL_LIMIT beyond VPL_MAX_STEPS steps or VPL_MAX_LIGHTS lights.
-// Source: Keller, Instant Radiosity, 1997, section 4; the rule against rounding is derived in particles.c.
-vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts,
-                            int capacity, int* stepsOut, int64_t* totalOut);
+// 7. After `first` particles step k gets the growth, floor(rho^k (first + N)) - floor(rho^k first), which may
+// be 0 though a later step gets some. Fills at most `capacity` counts (NULL to count only). VPL_LIMIT beyond
+// VPL_MAX_STEPS steps or VPL_MAX_LIGHTS lights.
+// Source: Keller, Instant Radiosity, 1997, section 4; the rule against rounding is derived in
+// particle_counts.c.
+vplResult vplCountParticles(vplContext* context, const vplParticlePass* pass, int* counts, int capacity,
+                            vplStepTotals* totalsOut);
 
 // A set of virtual lights. Read only.
 typedef struct vplLightSet {

@@ -47,15 +47,19 @@ void vplView_ToClip(const vplView* view, const vplVec3* points, int count, float
 // documented attenuation.
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out);
 
+typedef struct vplLightFormula {
+    vplLighting lighting;
+    float minDistance; // clamp distance, metres; 0: no clamp; physical only
+} vplLightFormula;
+
 // Adds lights[0 .. count) to the irradiance of 16 points, one after another.
 //   documented: E += L (n.l)+                       (Franchi and Ferrante, no distance, isotropic)
 //   physical:   E += I (n.l)+ (m.-l)+ / max(d^2, minDistance^2)   (Keller 1997, clamped)
 // l is the unit vector to the light, m the light's normal, minDistance the clamp distance (metres, 0: no
 // clamp). A point that coincides with a light receives nothing from it. Distances up to 1e18 m; below 1e-19 m
 // the square underflows and the result is between 0 and the clamped value.
-void vplAccumulateLights(const vplContext* context, vplLighting lighting, float minDistance,
-                         const vplSurface* surface, const vplShadeLight* lights, int count,
-                         float irradiance[3][VPL_LANES]);
+void vplAccumulateLights(const vplContext* context, vplLightFormula formula, const vplSurface* surface,
+                         const vplShadeLight* lights, int count, float irradiance[3][VPL_LANES]);
 
 // Ways to add up virtual lights. The first three give the same bits.
 typedef enum vplAccumulation {
@@ -148,6 +152,8 @@ typedef struct vplShadeDef {
     float cutError;                         // lightcuts: see vplRenderOptions
     bool emission;                          // the picture shows the emission of surfaces
     const vplCompensationDef* compensation; // physical only; NULL: light taken by the clamp is lost
+    vplProgressFcn* progress;               // called while vplShadeView draws; default NULL
+    void* progressUser;
 } vplShadeDef;
 
 typedef struct vplShadeStats {
@@ -160,7 +166,7 @@ typedef struct vplShadeStats {
 
 // Draws the geometry into `image`, which has the view's size.
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
-                       vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut);
+                       vplImage* image, vplShadeStats* statsOut);
 
 // Points on the geometry, each with the side that it is lit from.
 typedef struct vplSurfacePoint {

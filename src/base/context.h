@@ -55,9 +55,17 @@ size_t vplAllocatedBytes(const void* memory);
 // Runs task(data, i, worker) for i in [0, count), on the calling thread if there is one worker or one task.
 void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data);
 
-// The same, and calls `progress` (may be NULL) on the calling thread as tasks end, with fractions that grow
-// from `from` to `to`. Returns VPL_CANCELLED if it returned false, else VPL_SUCCESS.
+// The part of a longer job that a loop does: `progress` (may be NULL) is called with fractions that grow from
+// `from` to `to`.
+typedef struct vplProgressRange {
+    vplProgressFcn* progress;
+    void* user;
+    double from, to;
+} vplProgressRange;
+
+// vplParallelFor that calls range.progress on the calling thread as tasks end. Returns VPL_CANCELLED if that
+// returned false, else VPL_SUCCESS.
 vplResult vplParallelForProgress(vplContext* context, int count, vplTaskFcn* task, void* data,
-                                 vplProgressFcn* progress, void* user, double from, double to);
+                                 vplProgressRange range);
 
 #endif

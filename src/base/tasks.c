@@ -36,9 +36,7 @@ void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data
 typedef struct Watched {
     vplTaskFcn* task;
     void* data;
-    vplProgressFcn* progress;
-    void* user;
-    double from, to;
+    vplProgressRange range;
     int count;
     atomic_int done;
     atomic_bool cancelled;
@@ -53,24 +51,25 @@ static void watchedTask(void* data, int index, int worker)
     }
     w->task(w->data, index, worker);
     int done = 1 + atomic_fetch_add_explicit(&w->done, 1, memory_order_relaxed);
-    if (worker == 0 && !w->progress(w->user, w->from + (w->to - w->from) * done / w->count)) {
+    const vplProgressRange* r = &w->range;
+    if (worker == 0 && !r->progress(r->user, r->from + (r->to - r->from) * done / w->count)) {
         atomic_store_explicit(&w->cancelled, true, memory_order_relaxed);
     }
 }
 
 vplResult vplParallelForProgress(vplContext* context, int count, vplTaskFcn* task, void* data,
-                                 vplProgressFcn* progress, void* user, double from, double to)
+                                 vplProgressRange range)
 {
     // A host's scheduler may run worker 0 on any thread: `progress` is called before and after only.
     bool hosted = context->def.parallelFor != NULL && context->workerCount > 1;
-    if (progress == NULL || hosted) {
-        if (progress != NULL && !progress(user, from)) {
+    if (range.progress == NULL || hosted) {
+        if (range.progress != NULL && !range.progress(range.user, range.from)) {
             return VPL_CANCELLED;
         }
         vplParallelFor(context, count, task, data);
-        return progress != NULL && !progress(user, to) ? VPL_CANCELLED : VPL_SUCCESS;
+        return range.progress != NULL && !range.progress(range.user, range.to) ? VPL_CANCELLED : VPL_SUCCESS;
     }
-    Watched watched = {task, data, progress, user, from, to, count, 0, false};
+    Watched watched = {task, data, range, count, 0, false};
     vplParallelFor(context, count, watchedTask, &watched);
     return atomic_load(&watched.cancelled) ? VPL_CANCELLED : VPL_SUCCESS;
 }

@@ -93,8 +93,8 @@ static vplResult measureAll(Measuring* m, vplArena* scratch, int64_t* raysOut)
     m->inverseClamp = distance > 0 ? 1 / (distance * distance) : INFINITY;
     m->rays = vplArena_Alloc(scratch, (size_t)chunks, sizeof *m->rays);
     TRY(vplArena_Check(scratch));
-    TRY(vplParallelForProgress(context, chunks, measureChunk, m, m->def->progress, m->def->progressUser, 0.2,
-                               1));
+    TRY(vplParallelForProgress(context, chunks, measureChunk, m,
+                               (vplProgressRange){m->def->progress, m->def->progressUser, 0.2, 1}));
     for (int i = 0; i < chunks; i++) {
         *raysOut += m->rays[i];
     }

@@ -236,7 +236,8 @@ static vplResult build(vplLightTree* tree, const vplShadeLight* lights, vplProgr
     b.seed = seedOf(lights, tree->lightCount);
     vplResult result = buildTop(&b);
     if (result == VPL_SUCCESS) {
-        result = vplParallelForProgress(tree->context, b.rangeCount, subtreeTask, &b, progress, user, 0, 1);
+        result = vplParallelForProgress(tree->context, b.rangeCount, subtreeTask, &b,
+                                        (vplProgressRange){progress, user, 0, 1});
     }
     for (int i = b.rangeCount - 1; i >= 0 && result == VPL_SUCCESS; i--) {
         if (b.ranges[i].halved) {

@@ -7,7 +7,7 @@
 //
 // Passes of one long walk: the counts of all particles so far are floor(rho^k (first + N)), and a pass gets
 // the growth. So steps that a pass of N particles would never reach get their share now and then.
-#include "lights/particles.h"
+#include <vpl/lights.h>
 
 #include "base/arena.h"
 
@@ -20,17 +20,6 @@ static int64_t countAt(double w, int step)
         return (int64_t)r;
     }
     return (int64_t)floor(w);
-}
-
-vplResult vplCountParticles(vplContext* context, int particleCount, double reflectivity, int* counts,
-                            int capacity, int* stepsOut, int64_t* totalOut)
-{
-    const vplParticlePass pass = {0, particleCount, reflectivity};
-    vplStepTotals totals;
-    TRY(vplCountPass(context, &pass, counts, capacity, &totals));
-    *stepsOut = totals.stepCount;
-    *totalOut = totals.lightCount;
-    return VPL_SUCCESS;
 }
 
 static vplResult checkPass(const vplContext* context, const vplParticlePass* pass)
@@ -46,8 +35,8 @@ static vplResult checkPass(const vplContext* context, const vplParticlePass* pas
     return VPL_SUCCESS;
 }
 
-vplResult vplCountPass(vplContext* context, const vplParticlePass* pass, int* counts, int capacity,
-                       vplStepTotals* totalsOut)
+vplResult vplCountParticles(vplContext* context, const vplParticlePass* pass, int* counts, int capacity,
+                            vplStepTotals* totalsOut)
 {
     TRY(checkPass(context, pass));
     double before = (double)pass->first, after = (double)(pass->first + pass->count);

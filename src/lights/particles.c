@@ -47,7 +47,7 @@ static vplVec3 reflect(vplVec3 d, vplVec3 n)
 static bool trace(Simulation* s, int particle, const vplRay* ray, vplHit* hit)
 {
     if (s->def.geometry == VPL_PARTICLE_GEOMETRY_EXACT) {
-        return vplClosestHit(s->geometry, ray, hit, &s->testsOf[particle]);
+        return vplClosestHit(s->geometry, ray, INFINITY, &s->testsOf[particle], hit);
     }
     const vplHit from = *hit;
     s->testsOf[particle] += s->geometry->objectCount;
@@ -190,7 +190,7 @@ static vplResult prepare(Simulation* s, vplContext* context, vplArena* scratch)
     TRY(vplArena_Check(scratch));
     const vplParticlePass pass = passOf(&s->def);
     vplStepTotals totals;
-    TRY(vplCountPass(context, &pass, s->stepCounts, s->stepCount, &totals));
+    TRY(vplCountParticles(context, &pass, s->stepCounts, s->stepCount, &totals));
     double weight = 1;
     for (int i = 0, at = 0; i < s->stepCount; at += s->stepCounts[i], i++) {
         s->stepStart[i] = at;
@@ -218,7 +218,7 @@ static vplResult simulate(Simulation* s, int lightCount, vplArena* scratch, vplL
     }
     const vplResult result =
         vplParallelForProgress(context, (s->def.particleCount + CHUNK - 1) / CHUNK, followChunk, s,
-                               s->def.progress, s->def.progressUser, 0, 1);
+                               (vplProgressRange){s->def.progress, s->def.progressUser, 0, 1});
     if (result == VPL_SUCCESS) {
         collect(s, arrays.lightsInStep, set);
     }
@@ -233,7 +233,7 @@ vplResult vplSimulateParticles(const vplGeometry* geometry, const vplEmitterDef*
     vplStepTotals totals;
     vplEmission* emission = NULL;
     TRY(vplParticleDef_Check(context, emitters, emitterCount, def));
-    TRY(vplCountPass(context, &pass, NULL, 0, &totals));
+    TRY(vplCountParticles(context, &pass, NULL, 0, &totals));
     if (!vplParticleDef_NeedsPoints(def)) {
         TRY(vplEmission_Create(geometry, emitters, emitterCount, &emission));
     }

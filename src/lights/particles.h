@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parts of the particle simulation: how many particles reach each step, their numbers in [0, 1), and
-// where they start.
+// Parts of the particle simulation: the particles' numbers in [0, 1), and where they start.
 #ifndef VPL_LIGHTS_PARTICLES_H
 #define VPL_LIGHTS_PARTICLES_H
 
@@ -13,25 +12,6 @@ bool vplParticleDef_NeedsPoints(const vplParticleDef* def);
 
 vplResult vplParticleDef_Check(const vplContext* context, const vplEmitterDef* emitters, int emitterCount,
                                const vplParticleDef* def);
-
-// ---- counts
-
-// N particles that follow `first` others of the same walk.
-typedef struct vplParticlePass {
-    int64_t first;
-    int count; // N
-    double reflectivity;
-} vplParticlePass;
-
-typedef struct vplStepTotals {
-    int stepCount;
-    int64_t lightCount; // in all steps
-} vplStepTotals;
-
-// As vplCountParticles: a step gets floor(rho^k (first + N)) - floor(rho^k first). It may get none though a
-// later one gets some.
-vplResult vplCountPass(vplContext* context, const vplParticlePass* pass, int* counts, int capacity,
-                       vplStepTotals* totalsOut);
 
 // ---- samples
 

@@ -55,7 +55,7 @@ vplResult vplPlacementDef_Check(const vplContext* context, const vplPlacementDef
     return VPL_SUCCESS;
 }
 
-// How many times the particles may be multiplied.
+// Returns by how many times the particles may be multiplied.
 static int oversample(const vplPlacementDef* def, int particles, int64_t lights)
 {
     int64_t times = lights > 0 ? MAX_CANDIDATES / lights : 1;
@@ -64,7 +64,7 @@ static int oversample(const vplPlacementDef* def, int particles, int64_t lights)
     return times > 1 ? (int)times : 1;
 }
 
-// How many lights the particles that were asked for would leave, estimated from many more of them.
+// Estimates, from many more particles, how many lights the particles that were asked for would leave.
 static double countPlain(const vplLightSet* candidates, const int* counts, int stepCount)
 {
     double sum = 0;
@@ -79,42 +79,37 @@ static double countPlain(const vplLightSet* candidates, const int* counts, int s
 }
 
 // Measures the candidates and chooses among them.
-static vplResult choose(const vplGeometry* geometry, const vplParticleDef* particles,
-                        const vplPlacementDef* def, vplArena* scratch, vplLightSet* candidates,
-                        vplLightSet** setOut)
+static vplResult choose(const vplGeometry* geometry, const vplParticlePass* plain, const vplPlacementDef* def,
+                        vplArena* scratch, vplLightSet* candidates, vplLightSet** setOut)
 {
-    vplContext* context = geometry->context;
-    int steps;
-    int64_t total, rays;
-    TRY(vplCountParticles(context, particles->particleCount, particles->reflectivity, NULL, 0, &steps,
-                          &total));
-    int* counts = vplArena_Alloc(scratch, (size_t)steps, sizeof *counts);
+    vplStepTotals totals;
+    int64_t rays;
+    int* counts = vplArena_Alloc(scratch, (size_t)candidates->stepCount, sizeof *counts);
     float* contributions = vplArena_Alloc(scratch, (size_t)candidates->lightCount, sizeof *contributions);
     TRY(vplArena_Check(scratch));
-    TRY(vplCountParticles(context, particles->particleCount, particles->reflectivity, counts, steps, &steps,
-                          &total));
+    TRY(vplCountParticles(geometry->context, plain, counts, candidates->stepCount, &totals));
     TRY(vplMeasureLights(geometry, candidates, def, contributions, &rays));
     candidates->rays += rays;
-    return vplChooseLights(candidates, contributions, countPlain(candidates, counts, steps), def, setOut);
+    const double count = countPlain(candidates, counts, totals.stepCount);
+    return vplChooseLights(candidates, contributions, count, def, setOut);
 }
 
 vplResult vplPlaceLights(const vplGeometry* geometry, const vplEmitterDef* emitters, int emitterCount,
                          const vplParticleDef* particles, const vplPlacementDef* def, vplLightSet** setOut)
 {
     vplContext* context = geometry->context;
-    int steps;
-    int64_t total;
+    const vplParticlePass plain = {0, particles->particleCount, particles->reflectivity};
+    vplStepTotals totals;
     TRY(vplPlacementDef_Check(context, def));
-    TRY(vplCountParticles(context, particles->particleCount, particles->reflectivity, NULL, 0, &steps,
-                          &total));
+    TRY(vplCountParticles(context, &plain, NULL, 0, &totals));
     vplParticleDef many = *particles;
-    const int times = oversample(def, particles->particleCount, total);
+    const int times = oversample(def, plain.count, totals.lightCount);
     many.particleCount *= times;
     many.firstParticle *= times;
     vplLightSet* candidates;
     TRY(vplSimulateParticles(geometry, emitters, emitterCount, &many, &candidates));
     vplArena* scratch = vplArena_Create(context);
-    const vplResult result = choose(geometry, particles, def, scratch, candidates, setOut);
+    const vplResult result = choose(geometry, &plain, def, scratch, candidates, setOut);
     vplArena_Destroy(scratch);
     vplLightSet_Destroy(candidates);
     return result;

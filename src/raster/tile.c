@@ -315,8 +315,8 @@ static vplResult runTiles(Run* run, vplArena* scratch, vplProgressFcn* progress,
 {
     vplContext* context = run->rasters[0]->context;
     TRY(makeStates(run, scratch));
-    TRY(vplParallelForProgress(context, run->firstTile[run->rasterCount], runTile, run, progress, user, 0,
-                               1));
+    TRY(vplParallelForProgress(context, run->firstTile[run->rasterCount], runTile, run,
+                               (vplProgressRange){progress, user, 0, 1}));
     for (int i = 0; i < run->rasterCount; i++) {
         for (int tile = run->firstTile[i]; tile < run->firstTile[i + 1]; tile++) {
             run->rasters[i]->stats.fragments += run->tileFragments[tile];

@@ -76,7 +76,7 @@ vplResult vplPathTracer_Pass(vplPathTracer* tracer, int samples, vplProgressFcn*
 {
     tracer->now = samples;
     vplResult result = vplParallelForProgress(tracer->context, tracer->columns * tracer->rows, traceTile,
-                                              tracer, progress, user, from, to);
+                                              tracer, (vplProgressRange){progress, user, from, to});
     tracer->done += samples;
     return result;
 }

@@ -219,8 +219,12 @@ static vplResult countLights(vplRunner* r, vplPlan* p)
         o->particles.reflectivity = vplGeometry_MeanReflectance(r->run.results[VPL_STAGE_GEOMETRY]);
         decide(p, "reflectivity", "the mean reflectance over the area of the scene");
     }
-    return vplCountParticles(r->run.context, o->particles.count, o->particles.reflectivity,
-                             p->particlesPerStep, VPL_MAX_STEPS_REPORTED, &p->stepCount, &p->virtualLights);
+    const vplParticlePass pass = {0, o->particles.count, o->particles.reflectivity};
+    vplStepTotals totals;
+    TRY(vplCountParticles(r->run.context, &pass, p->particlesPerStep, VPL_MAX_STEPS_REPORTED, &totals));
+    p->stepCount = totals.stepCount;
+    p->virtualLights = totals.lightCount;
+    return VPL_SUCCESS;
 }
 
 // Counts the most lights that SSVP can have.

@@ -43,8 +43,7 @@ static double rsmFaces(const vplPlan* p)
 static Bytes paraboloids(const Scale* s, double lights, double values)
 {
     const int size = s->plan->options.ssvp.paraboloidSize;
-    const double texels = 2 * (double)vplParaboloidMap_Texels(size),
-                 drawn = (double)vplParaboloidMap_Drawn(size);
+    const double texels = 2 * (double)vplParaboloidMap_Texels(size), drawn = (double)vplHemiMap_Texels(size);
     const double count = lights < s->plan->options.ssvp.clusters ? lights : s->plan->options.ssvp.clusters;
     return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
 }

@@ -154,8 +154,9 @@ static vplResult filterInterleaved(vplShading* shading, vplShadeStats* stats)
     (void)stats;
     const vplInterleave* w = shading->state;
     vplTaskFcn* task = shading->def->output == VPL_OUTPUT_GATHER ? showUnfiltered : shading->kernels.filter;
-    return vplParallelForProgress(shading->geometry->context, w->tilesX * w->tilesY, task, shading,
-                                  shading->progress, shading->progressUser, 1, 1);
+    return vplParallelForProgress(
+        shading->geometry->context, w->tilesX * w->tilesY, task, shading,
+        (vplProgressRange){shading->def->progress, shading->def->progressUser, 1, 1});
 }
 
 const vplStrategy vplInterleavedStrategy = {

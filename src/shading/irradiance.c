@@ -14,12 +14,11 @@ _Static_assert((int)VPL_RAY_PACKET == VPL_LANES, "a block of pixels is a packet 
 
 // ---- the public kernel
 
-void vplAccumulateLights(const vplContext* context, vplLighting lighting, float minDistance,
-                         const vplSurface* surface, const vplShadeLight* lights, int count,
-                         float irradiance[3][VPL_LANES])
+void vplAccumulateLights(const vplContext* context, vplLightFormula formula, const vplSurface* surface,
+                         const vplShadeLight* lights, int count, float irradiance[3][VPL_LANES])
 {
-    vplGetShadingKernels(context->isa, lighting)
-        ->addLights(surface, lights, count, vplInverseSquare(minDistance), irradiance);
+    vplGetShadingKernels(context->isa, formula.lighting)
+        ->addLights(surface, lights, count, vplInverseSquare(formula.minDistance), irradiance);
 }
 
 int vplPrepareLights(const vplLightSet* set, vplLighting lighting, vplShadeLight* out)

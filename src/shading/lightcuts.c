@@ -6,8 +6,8 @@
 static bool askOnly(void* user, double fraction)
 {
     (void)fraction;
-    const vplShading* s = user;
-    return s->progress(s->progressUser, 0);
+    const vplShadeDef* def = ((const vplShading*)user)->def;
+    return def->progress(def->progressUser, 0);
 }
 
 static vplResult openLightcuts(vplShading* shading, vplFramebuffer* framebuffer)
@@ -26,7 +26,7 @@ static vplResult openLightcuts(vplShading* shading, vplFramebuffer* framebuffer)
         }
     }
     return vplLightTree_Create(context, shading->lights.lights, shading->lights.count,
-                               shading->progress ? askOnly : NULL, shading, &lightcuts->tree);
+                               shading->def->progress ? askOnly : NULL, shading, &lightcuts->tree);
 }
 
 static vplResult recordLightcuts(vplShading* shading, vplRaster* raster)

@@ -127,7 +127,7 @@ static vplResult draw(vplShading* s, const vplStrategy* strategy, const vplFrame
     TRY(vplRaster_Create(s->geometry->context, framebuffer, &raster));
     vplResult result = strategy->tile(s, raster);
     if (result == VPL_SUCCESS) {
-        result = vplRaster_Run(raster, s->progress, s->progressUser, stats);
+        result = vplRaster_Run(raster, s->def->progress, s->def->progressUser, stats);
     }
     vplRaster_Destroy(raster);
     return result;
@@ -145,15 +145,13 @@ static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats
 }
 
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
-                       vplProgressFcn* progress, void* user, vplImage* image, vplShadeStats* statsOut)
+                       vplImage* image, vplShadeStats* statsOut)
 {
     TRY(vplShadeDef_Check(geometry->context, view, def, image));
     vplShadeStats stats = {0};
     vplShading shading = vplShading_Make(geometry, view, def);
     shading.image = image;
     shading.shadowRays = &stats.shadowRays;
-    shading.progress = progress;
-    shading.progressUser = user;
     shading.arena = vplArena_Create(geometry->context);
     const vplStrategy* strategy = chooseStrategy(def);
     const vplResult result = shade(&shading, strategy, &stats);

@@ -75,8 +75,6 @@ typedef struct vplShading {
     struct vplCompensator* compensation; // NULL: light taken by the clamp is lost
     void* state;                         // of the strategy
     int64_t* shadowRays;                 // counted atomically: sums of integers do not depend on the order
-    vplProgressFcn* progress;            // may be NULL
-    void* progressUser;
 } vplShading;
 
 // A render without picture, objects, emitter rays and arena.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Acne and peter-panning, measured: shadow factors of all visible points of the room against ray-traced
-// shadows, for static bias only, dynamic only, both, and the exact rule, over map sizes, hard and filtered.
-//   acne     lit by the ray, but more than half shadowed by the map, % of the points that face the light
-//   leak     shadowed by the ray, but less than half by the map
-//   error    mean |s - ray| over the same points: for 16 samples it includes the soft edge itself
+// Measures shadow acne and peter-panning: compares the cube map's shadow factors at all visible points of the
+// room with ray-traced shadows, for static bias only, dynamic bias only, both, and the exact rule, over map
+// sizes, with hard and filtered shadows.
+//   acne   lit by the ray, but more than half shadowed by the map, % of the points that face the light
+//   leak   shadowed by the ray, but less than half shadowed by the map
+//   error  mean |s - ray| over the same points; with 16 samples it includes the soft edge itself
 #include "bench.h"
 
 #include <vpl/vpl.h>
@@ -17,10 +18,10 @@ enum { SIZE = 384 };
 
 typedef struct Point {
     vplVec3 position, normal;
-    bool lit; // by the ray
+    bool lit; // according to the ray
 } Point;
 
-// The visible points that face the light.
+// Collects the visible points that face the light.
 static int findPoints(const vplGeometry* g, const vplView* view, vplVec3 light, Point* points)
 {
     int count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// That the tree and all blocks give the same bits, for rays that graze: bench/agree SCENE [RAYS], and how many of
-// them differed.
+// Checks with grazing rays that the BVH and a loop over all triangle blocks give the same bits, and prints
+// how many rays differed: bench/agree SCENE [RAYS].
 #include "bench.h"
 #include "math/sampling.h"
 
@@ -27,8 +27,8 @@ static vplVec3 mix(vplVec3 a, vplVec3 b, float t)
     return vplAdd(vplScale(1 - t, a), vplScale(t, b));
 }
 
-// Ray i: anywhere in the bounds; from one edge to another; along an edge; in the plane of a triangle; along an
-// axis from a corner.
+// Makes ray i, of one of several kinds: between two points of the bounds; from one edge to another; along an
+// edge; in the plane of a triangle; along an axis from a corner.
 static vplRay makeTestRay(const vplGeometry* g, uint64_t i)
 {
     const vplRandom4 a = vplRandomAt(7, 1, i), b = vplRandomAt(7, 2, i);
@@ -44,7 +44,7 @@ static vplRay makeTestRay(const vplGeometry* g, uint64_t i)
         ray.origin = mix(from, cornerOf(g, a.v[2], 1), s);
         ray.direction = vplSub(mix(to, cornerOf(g, b.v[2], 1), t), ray.origin);
         break;
-    case 4: // at an edge, from anywhere
+    case 4: // from any point towards an edge
         ray.direction = vplSub(mix(to, cornerOf(g, b.v[2], 1), t), ray.origin);
         break;
     case 5:
@@ -77,7 +77,8 @@ typedef struct Agreement {
     int64_t *hits, *wrong; // per chunk
 } Agreement;
 
-// The closest of all triangles for each of CHUNK rays. Blocks in groups that stay in cache, rays inside.
+// Finds the closest hit over all triangles for each of CHUNK rays. The outer loop takes groups of blocks that
+// stay in cache, the inner one rays.
 static void testAll(const Trees* b, const vplRay* rays, int count, vplRawHit* truth)
 {
     enum { GROUP = 64 };
@@ -114,7 +115,7 @@ static void compareChunk(void* data, int chunk, int worker)
         vplRawHit hit;
         b->closest(b->tree, &rays[i], INFINITY, &hit);
         hit.blocks = truth[i].blocks = 0;
-        // Up to the hit nothing may be, and just beyond it something must.
+        // Any-hit queries must find nothing in front of the closest hit and something just beyond it.
         const bool found = truth[i].triangle >= 0,
                    any = b->any(b->tree, &rays[i], nextafterf(truth[i].t, INFINITY)),
                    before = b->any(b->tree, &rays[i], truth[i].t);

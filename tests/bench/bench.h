@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What benchmarks share.
+// Helpers that the benchmarks share.
 #ifndef VPL_BENCH_H
 #define VPL_BENCH_H
 
@@ -30,7 +30,7 @@ static inline void say(void* user, vplLogLevel level, const char* message)
     }
 }
 
-// 0 workers: as many as there are processors.
+// Opens a context and a scene. 0 workers: one per processor.
 static inline void openScene(const char* path, int workers, vplIsa isa, vplContext** contextOut,
                              vplScene** sceneOut)
 {
@@ -42,7 +42,7 @@ static inline void openScene(const char* path, int workers, vplIsa isa, vplConte
     check(vplScene_Load(*contextOut, path, sceneOut));
 }
 
-// Through the centre of a pixel.
+// Returns the direction of the ray through the centre of a pixel.
 static inline vplVec3 rayThrough(const vplView* v, int x, int y)
 {
     float sx = (float)((2 * (x + 0.5) / v->width - 1) / v->scaleX);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Where k-means starts: lights far from each other against every n/C-th one, by the sum of the distances of all lights
-// from their clusters in the end, and by processor time. `bench/clusters SCENE...`: 256 first hits of each; and the
-// mean of 200 random rooms.
+// Compares two initializations of k-means, farthest-point seeds and every n/C-th light, by the final sum of
+// distances from lights to their clusters and by processor time. `bench/clusters SCENE...`: 256 first hits of
+// each scene; then the mean over 200 random rooms.
 #include "bench.h"
 
 #include <math.h>
@@ -40,7 +40,7 @@ static void addRun(const vplLightSet* set, int count, const int* seeds, Outcome*
     vplLightClusters_Destroy(clusters);
 }
 
-// [0]: every n/C-th light; [1]: the default.
+// Runs k-means with both initializations: outcomes[0] with every n/C-th light, outcomes[1] with the default.
 static void addBoth(const vplLightSet* set, int count, Outcome outcomes[2])
 {
     int seeds[LIGHTS];
@@ -88,7 +88,7 @@ static float unit(uint64_t room, uint64_t index)
     return vplUnitFloat(vplRandomAt(room, 0, index).v[0]);
 }
 
-// Lights by chance on the walls of a box of 2 to 10 metres.
+// Places lights at random on the walls of a box of 2 to 10 metres.
 static void fillRoom(uint64_t room, vplVirtualLight* lights)
 {
     const float size[3] = {2 + 8 * unit(room, 0), 2 + 4 * unit(room, 1), 2 + 8 * unit(room, 2)};

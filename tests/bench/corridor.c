@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The path tracer against another renderer: `bench/corridor SCENE REFERENCE [SAMPLES]`. The reference is text: rows of
-// means of square blocks of a picture, top row first, at most four bounces before the eye's. Blocks of ours are
-// rendered as one pixel each, which is the same mean. Printed are ratios ours / theirs, over larger and larger blocks,
-// with the deviation that our own error estimate explains.
-// The scene is that of Laurent Noel and Venceslas Biri, Skeleton based Vertex Connection Resampling for Bidirectional
-// Path Tracing, Pacific Graphics 2015; it is not part of libvpl.
+// Compares the path tracer with another renderer: `bench/corridor SCENE REFERENCE [SAMPLES]`. The reference
+// is a text file of means over square blocks of a picture, row by row from the top, rendered with at most
+// four bounces before the eye's vertex. Our path tracer renders each block as one pixel, which has the same
+// mean. The program prints ratios ours / theirs over larger and larger blocks, with the deviation that our
+// own error estimate explains.
+// The scene is that of Laurent Noel and Venceslas Biri, Skeleton based Vertex Connection Resampling for
+// Bidirectional Path Tracing, Pacific Graphics 2015; it is not part of libvpl.
 #include "cli/bench/measure.h"
 #include "reference/path_trace.h"
 
@@ -94,7 +95,7 @@ static vplResult trace(const vplScene* scene, const vplGeometry* geometry, int s
     def.camera = vplScene_GetCamera(scene, 0);
     def.width = def.height = SIZE;
     def.lastBounce = BOUNCES;
-    def.rouletteFrom = 1e-30; // paths are short as it is
+    def.rouletteFrom = 1e-30; // no roulette: lastBounce already limits paths
     vplPathTracer* tracer = NULL;
     vplImage* image = NULL;
     vplPathStats stats;

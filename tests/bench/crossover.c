@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Shadows of virtual lights by maps and by rays: what they cost and where they disagree.
-// `bench/crossover [--quick] [SCENE...]`: for each scene, picture size and number of lights the processor time of
-// shading with rays, and of drawing and shading with maps of 64 and 128 texels, alternated in one run. Without shadows the
-// same lights take what is said as `none`. Rays that would take more than MOST_MS are not cast (-).
-// Then points that the camera sees times lights: the share where the answers differ, and how much of that lies outside
-// the band that vplHemiMap_FactorBlock states.
+// Compares shadows of virtual lights by maps and by rays: their cost and their agreement.
+// `bench/crossover [--quick] [SCENE...]`: for each scene, picture size and number of lights the program
+// measures the processor time of shading with rays, and of drawing and shading with maps of 64 and 128
+// texels, alternated in one run. The column `none` is the time of the same lights without shadows. Rays that
+// would take more than MOST_MS are not cast (-).
+// The second part tests pairs of a visible point and a light: the share of pairs on which map and ray differ,
+// and how much of that lies outside the band that vplHemiMap_FactorBlock states.
 #include "band.h"
 #include "bench.h"
 
@@ -24,7 +25,7 @@ typedef struct Bench {
     int lightCount;
 } Bench;
 
-// Lights of all steps, evenly chosen.
+// Takes lights from all path lengths at equal strides.
 static void makeLights(Bench* b)
 {
     vplParticleDef def = vplDefaultParticleDef();
@@ -37,7 +38,7 @@ static void makeLights(Bench* b)
     vplShadeLight* all = malloc((size_t)set->lightCount * sizeof *all);
     const int count = vplPrepareLights(set, VPL_LIGHTING_PHYSICAL, all);
     b->lightCount = count < MOST_LIGHTS ? count : MOST_LIGHTS;
-    // A stride that is odd, so that the first few, too, are of everywhere.
+    // The stride is odd, so that the first few lights, too, are spread over the scene.
     for (int i = 0; i < b->lightCount; i++) {
         b->lights[i] = all[(int64_t)i * 619 % b->lightCount * count / b->lightCount];
     }
@@ -55,7 +56,7 @@ static void placesOf(const Bench* b, int first, int count, vplHemiMapPlace* plac
 
 // ---- cost
 
-// Without shadows (maps NULL, no rays), by rays, or by maps.
+// Times shading without shadows (maps NULL, no rays), with rays, or with maps.
 static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int first, int lights,
                       const vplHemiMaps* maps, bool rays)
 {
@@ -66,7 +67,7 @@ static double shadeMs(const Bench* b, const vplView* view, vplImage* image, int 
     def.lightRays = rays;
     def.lightShadows = maps ? maps->maps : NULL;
     const double start = cpuMs();
-    check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
+    check(vplShadeView(b->geometry, view, &def, image, NULL));
     return cpuMs() - start;
 }
 
@@ -74,7 +75,7 @@ typedef struct Cell {
     double none, ray, draw[MAP_SIZES], look[MAP_SIZES];
 } Cell;
 
-// Batch by batch, as renders do.
+// Draws maps and shades in batches that fit into map memory, as renders do.
 static void measureMaps(const Bench* b, const vplView* view, vplImage* image, int lights, int size,
                         double* drawMs, double* lookMs)
 {
@@ -123,7 +124,8 @@ static Cell measure(const Bench* b, int width, int height, int lights, int runs)
     return cell;
 }
 
-// One line; ratios are rays to maps. * where the rule of choose_shadows.c takes the dearer.
+// Prints one row. Ratios are the time of rays over that of maps. * marks rows in which the rule of
+// choose_shadows.c picks the slower way.
 static void printCell(const Cell* cell, vplShadowLoad load)
 {
     printf(" %9.1f", cell->none);

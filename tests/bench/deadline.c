@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// How long a picture takes to an error: many virtual lights and the path tracer in one run, on two threads.
-// `bench/deadline SCENE FOLDER [SIZE [PATHS]]`: the reference is traced as two independent halves a and b of PATHS
-// paths a pixel (512) and kept in FOLDER. error: root of the mean of (x - a)(x - b), in which the halves' noise cancels,
-// by the mean of the reference. region: the same of the means of 8 x 8 regions, each by its own mean: the root mean
-// square, and the largest.
+// Measures the time that a picture takes to reach an error, with many virtual lights and with the path
+// tracer, alternated in one run on two threads.
+// `bench/deadline SCENE FOLDER [SIZE [PATHS]]`: the reference is traced as two independent halves a and b of
+// PATHS paths per pixel (default 512) and kept in FOLDER. error: the root of the mean of (x - a)(x - b), in
+// which the halves' noise cancels, relative to the mean of the reference. region: the same error of the means
+// over 8 x 8 regions, each relative to its own mean: the root mean square, and the largest.
 #include "bench.h"
 
 #include <math.h>
@@ -70,7 +71,8 @@ static Truth findTruth(const vplScene* scene, const char* path, const char* fold
     return truth;
 }
 
-// Root of a mean of products that may be less than 0 where the error is below the reference's own.
+// Returns the root of a mean of products, 0 where it is negative because the error is below the reference's
+// own.
 static double rootOf(double mean)
 {
     return mean > 0 ? sqrt(mean) : 0;
@@ -122,7 +124,7 @@ static void measure(const vplScene* scene, const Truth* truth, const Line* line,
     double wall[RUNS], cpu[RUNS], errors[RUNS], rms[RUNS], largest[RUNS];
     vplRenderStats stats;
     for (int i = 0; i < RUNS; i++) {
-        o.seed = 7 + (uint64_t)i; // none of the reference
+        o.seed = 7 + (uint64_t)i; // unlike the seeds of the reference
         vplImage* image;
         check(vplRender(scene, &o, &image, &stats));
         wall[i] = stats.totalMs;

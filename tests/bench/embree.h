@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Intel Embree 3 doing the same, where it was found at build time.
+// Traces the same rays with Intel Embree 3, if it was found at build time.
 #ifndef VPL_BENCH_EMBREE_H
 #define VPL_BENCH_EMBREE_H
 
@@ -76,12 +76,12 @@ static inline int tracePackets(RTCScene scene, struct RTCIntersectContext* conte
 }
 
 typedef struct EmbreeWay {
-    bool any;      // whether there is a hit before 1, not the closest
-    bool packets;  // 16 at once
-    bool coherent; // a hint
+    bool any;      // any hit before t = 1 instead of the closest
+    bool packets;  // packets of 16 rays
+    bool coherent; // passes Embree the hint that rays are coherent
 } EmbreeWay;
 
-// The number of hits.
+// Traces all rays and returns the number of hits.
 static inline int traceEmbree(RTCScene scene, const vplRay* rays, int count, EmbreeWay way)
 {
     struct RTCIntersectContext context;

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
-// How much pictures of a sequence flicker: for a camera that moves and for a light that moves slowly, with coherence on
-// and off, the mean change of pixels from frame to frame and what of it is no even change.
-// `bench/flicker SCENE [METHOD [FRAMES [WIDTH HEIGHT]]]`; the camera, and the first light, get a path of their own: over
-// 60 frames a twentieth of the scene's diagonal, or 6 degrees. METHOD: ssvp, instant-radiosity or keller, whose coherence is
-// that all frames have one seed.
-//   change    mean |I(t+1) - I(t)| / mean I
-//   flicker   mean |I(t+1) - 2 I(t) + I(t-1)| / 2 / mean I: 0 where light changes evenly
-// linear, and of what Reinhard's operator makes of each frame. A point is looked up where it is in the other frames;
-// only points that are in the middle of the same surface in all three count.
+// Measures flicker in a sequence of pictures, once with a moving camera and once with a slowly moving light,
+// with temporal coherence on and off: the mean change of pixels from frame to frame, and the part of it that
+// is not linear in time.
+// `bench/flicker SCENE [METHOD [FRAMES [WIDTH HEIGHT]]]`; the program gives the camera and the first light a
+// path of its own: over 60 frames a twentieth of the scene's diagonal, or 6 degrees. METHOD: ssvp,
+// instant-radiosity or keller; instant-radiosity and keller are coherent if all frames use one seed.
+//   change   mean |I(t+1) - I(t)| / mean I
+//   flicker  mean |I(t+1) - 2 I(t) + I(t-1)| / 2 / mean I: 0 where light changes linearly
+// Both are measured on linear pictures and on each frame tone-mapped with Reinhard's operator. A surface
+// point is reprojected into the other frames; only points in the interior of the same surface in all three
+// frames count.
 #include "bench.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { MAX_FRAMES = 1000 };
-static const double SAME_DEPTH = 0.02, SAME_NORMAL = 0.98; // of neighbours on one surface
+static const double SAME_DEPTH = 0.02, SAME_NORMAL = 0.98; // for pixels of one surface
 
 typedef struct Frame {
     vplView view;
@@ -119,13 +121,13 @@ static const float* pixelOf(const vplImage* image, int x, int y)
     return image->pixels + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
 }
 
-// Pixels around a point and their weights.
+// The four pixels around a point and their bilinear weights.
 typedef struct Place {
     int x[4], y[4];
     float weight[4];
 } Place;
 
-// False where the point leaves the picture, is hidden or lies at an edge.
+// Reprojects a point into a frame. Returns false if it leaves the picture, is hidden or lies at an edge.
 static bool findPlace(const Frame* frame, vplVec3 point, const float* normal, Place* place)
 {
     float fx, fy;
@@ -133,7 +135,7 @@ static bool findPlace(const Frame* frame, vplVec3 point, const float* normal, Pl
         return false;
     }
     const double depth = (double)vplDot(vplSub(point, frame->view.eye), frame->view.forward);
-    // A thousandth of a pixel is rounding.
+    // Rounding moves points by up to a thousandth of a pixel.
     const double cx = floor((double)fx - 0.5 + 1e-3), cy = floor((double)fy - 0.5 + 1e-3);
     const float sx = (float)fmax(0, (double)fx - 0.5 - cx), sy = (float)fmax(0, (double)fy - 0.5 - cy);
     for (int k = 0; k < 4; k++) {
@@ -186,7 +188,7 @@ static void addPixel(Sums* s, const float* now, const double before[3], const do
     }
 }
 
-// Frame t between its neighbours. Returns how many of its pixels count.
+// Measures frame t against its two neighbours. Returns how many of its pixels count.
 static int64_t measure(const Bench* b, int t, Sums* linear, Sums* mapped)
 {
     const Frame *before = &b->frames[t - 1], *now = &b->frames[t], *after = &b->frames[t + 1];

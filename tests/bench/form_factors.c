@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What form factors cost, and what rays, the tree and the integral along edges do for it:
+// Measures the cost of form factors, and the share of rays, the BVH and the contour integral in it:
 // bench/form_factors SCENE [--runs N] [--most PATCHES] [--brute PATCHES]
-// Milliseconds of processor time on one thread, medians of alternated runs, for about 784, 3000, 12000 and 50000 patches, up to
-// --most (default 4000; all pairs of 50000 are refused). Times: of the first way. Ways that test every triangle run up to --brute patches (default 1000). Error: the mean over
-// rows of the sum of |F - F of 64 samples|, up to 1000 patches.
+// The program prints milliseconds of processor time on one thread, medians of alternated runs, for about 784,
+// 3000, 12000 and 50000 patches, up to --most (default 4000; all pairs of 50000 are refused). Ratios are
+// relative to the first way. Ways that test every triangle run up to --brute patches (default 1000). The
+// error is the mean over rows of the sum of |F - F of 64 samples|, up to 1000 patches.
 #include "bench.h"
 
 #include <math.h>
@@ -38,7 +39,7 @@ static vplFormFactors* create(const vplPatchSides* sides, const Way* way, int sa
     return factors;
 }
 
-// Weighted by area.
+// Returns the mean over rows, weighted by area, of the sum of |F - truth|.
 static double errorOf(const vplPatchSides* sides, const vplFormFactors* f, const vplFormFactors* truth)
 {
     double sum = 0, area = 0;
@@ -104,7 +105,7 @@ static double measure(const vplPatchSides* sides, int runs, int brute)
     return first;
 }
 
-// The hierarchy, beside the same `first`.
+// Measures the hierarchy of links; `first` is the time of the first way, for the ratio.
 static void measureLinks(const vplPatchSides* sides, int runs, double first)
 {
     double times[MOST_RUNS];

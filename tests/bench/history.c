@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Compares frames of a scene rendered without a history and with one, alternately: medians of processor time, of the
-// kernel's part of it, and of the pages that the kernel had to clear.
+// Compares frames of a scene rendered with and without a history, in alternation: medians of processor time,
+// of its system time, and of the pages that the operating system's kernel had to clear.
 // `bench/history SCENE [METHOD [WIDTH HEIGHT [RUNS]]]`; METHOD: direct (default), interleaved or ssvp.
 #include "bench.h"
 

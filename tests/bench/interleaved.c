@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What interleaved shading is worth: processor and wall-clock time of the indirect light of a scene, alternated with
-// deferred shading of the same lights, pixels times lights, and the error it makes.
-// `bench/interleaved SCENE [LIGHTS [RUNS [WIDTH HEIGHT]]]`; medians; the shadow map and direct light are left out.
+// Measures the gain of interleaved shading: processor and wall-clock time of a scene's indirect light,
+// alternated with deferred shading of the same lights, the number of pixel-light pairs, and the error.
+// `bench/interleaved SCENE [LIGHTS [RUNS [WIDTH HEIGHT]]]`; figures are medians; the shadow map and direct
+// light are left out.
 #include "bench.h"
 
 enum { SIDES = 6 };
@@ -20,7 +21,7 @@ static void makeLights(Bench* b, int lights)
 {
     vplParticleDef particles = vplDefaultParticleDef();
     vplLightSet* set;
-    particles.particleCount = lights; // more lights than asked for come of it, also of few that escape
+    particles.particleCount = lights; // gives more lights than asked for, even if many particles escape
     particles.sampler = VPL_SAMPLER_HALTON;
     check(vplSimulateParticles(b->geometry, vplScene_GetEmitter(b->scene, 0),
                                vplScene_GetEmitterCount(b->scene), &particles, &set));
@@ -44,7 +45,7 @@ static vplResult shade(void* user, int way)
     def.interleave = sides[way];
     def.lights = b->lights;
     def.lightCount = b->lightCount;
-    return vplShadeView(b->geometry, &view, &def, NULL, NULL, b->images[way], NULL);
+    return vplShadeView(b->geometry, &view, &def, b->images[way], NULL);
 }
 
 static void print(const Bench* b, const Times* times, int runs)

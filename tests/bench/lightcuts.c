@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What lightcuts cost and how far they are off: lights evaluated per pixel, processor time of whole renders, tree
-// included, and the error of each pixel against the sum over all lights.
-// `bench/lightcuts SCENE [instant-radiosity|keller [WIDTH HEIGHT [MOST [MOST_JUDGED [ERROR]]]]]`: ten times as many
-// particles from 1,000 to MOST; deferred shading of all lights stands beside them up to MOST_JUDGED.
+// Measures cost and error of lightcuts: lights evaluated per pixel, processor time of whole renders including
+// the light tree, and the error of each pixel against the sum over all lights.
+// `bench/lightcuts SCENE [instant-radiosity|keller [WIDTH HEIGHT [MOST [MOST_JUDGED [ERROR]]]]]`: runs with
+// 1,000 particles and ten times as many each, up to MOST; up to MOST_JUDGED the program also shades all
+// lights, deferred, for comparison.
 #include "bench.h"
 
 #include <string.h>
@@ -10,7 +11,7 @@
 typedef struct Bench {
     const vplScene* scene;
     vplRenderOptions options;
-    int judged; // most particles that deferred shading is asked for
+    int judged; // largest number of particles for which deferred shading runs, too
 } Bench;
 
 typedef struct Run {
@@ -40,7 +41,8 @@ static int compareDoubles(const void* a, const void* b)
     return (x > y) - (x < y);
 }
 
-// Errors as shares of a pixel's light, or where shadows leave less than a sixteenth, of that. `own`: of its light.
+// Prints errors relative to a pixel's light, or to a sixteenth of its unshadowed light (`open`) if shadows
+// leave less. `own`: relative to the pixel's light in any case.
 static void printErrors(const vplImage* image, const vplImage* truth, const vplImage* open)
 {
     const int pixels = image->width * image->height;
@@ -63,7 +65,7 @@ static void printErrors(const vplImage* image, const vplImage* truth, const vplI
     free(errors);
 }
 
-// Indirect light, of which nothing is hidden by what emitters add.
+// Measures indirect light alone, so that emitted light hides no error.
 static void measure(const Bench* b, vplLightShadows shadows)
 {
     Run cut = runOnce(b, VPL_ACCUMULATE_LIGHTCUTS, shadows, VPL_SHOW_INDIRECT);

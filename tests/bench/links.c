@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The hierarchy against all pairs: links, rays, processor time, memory and what irradiance they differ by.
+// Compares hierarchical radiosity's links with all pairs: links, rays, processor time, memory and the
+// difference in irradiance.
 //   links SCENE [ERROR [POINTS [PATCHES ...]]]
 #include "bench.h"
 
@@ -8,7 +9,8 @@
 
 enum { MOST_DENSE = 6000, RUNS = 3 };
 
-// What a lamp under the middle of the ceiling makes of each side, and what sides emit: light as uneven as any.
+// Returns each side's radiosity from its emission and a lamp below the middle of the ceiling, which lights
+// the sides very unevenly.
 static vplRgb* lightSides(const vplPatchSides* sides)
 {
     const vplGeometry* g = sides->patches->geometry;
@@ -28,7 +30,7 @@ static vplRgb* lightSides(const vplPatchSides* sides)
 }
 
 typedef struct Difference {
-    double rms, mean; // shares of the mean over the area of the second
+    double rms, mean; // relative to the area-weighted mean of b
 } Difference;
 
 static Difference differ(const vplPatchSides* sides, const vplRgb* a, const vplRgb* b)
@@ -65,7 +67,7 @@ static Row timeLinks(const vplPatchSides* sides, const vplLinkDef* def)
     return row;
 }
 
-// Processor ms of one sweep.
+// Returns the processor time of one sweep, ms.
 static double sweepMs(const vplTransport* transport, vplSolver solver, const vplRgb* source)
 {
     enum { SWEEPS = 20 };

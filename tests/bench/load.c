@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Time and memory that reading scenes takes: build/bench/load FILE... Processor time, the best of fifteen.
+// Measures time and memory of reading scenes: build/bench/load FILE... Times are processor time, the best of
+// fifteen.
 #include "cli/bench/measure.h"
 
 #include <vpl/vpl.h>
@@ -11,7 +12,7 @@ enum { RUNS = 15 };
 
 typedef struct Load {
     double milliseconds;
-    size_t peak, mesh; // bytes held at most while reading; bytes of the meshes' arrays
+    size_t peak, mesh; // bytes: the most allocated at once while reading, and the meshes' arrays
     long long vertices, triangles;
 } Load;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Paraboloid maps: build/bench/paraboloid [--quick] [--agree] [--two] SCENE...: what drawing 1 to 32 maps costs (wall and processor time,
-// medians), one hemisphere from places on surfaces, both from places in mid-air; what a look-up of 16 points that the
-// camera sees costs; and how far look-ups and rays agree.
+// Paraboloid maps: build/bench/paraboloid [--quick] [--agree] [--two] SCENE...: measures the cost of drawing
+// 1 to 32 maps (wall-clock and processor time, medians), of one hemisphere at points on surfaces and of both
+// at points in mid-air; the cost of a look-up of 16 visible points; and the agreement of look-ups and rays.
 #include "band.h"
 #include "bench.h"
 
@@ -13,7 +13,7 @@ typedef struct Bench {
     vplContext* context;
     vplScene* scene;
     vplGeometry* geometry;
-    vplParaboloidPlace places[2][MOST]; // on surfaces; in mid-air: between two of them
+    vplParaboloidPlace places[2][MOST]; // [0]: on surfaces; [1]: in mid-air, between two surface points
     vplSurface* blocks;
     vplHit* hits;
     int pointCount;
@@ -38,7 +38,7 @@ static void makePlaces(Bench* b)
     vplLightSet_Destroy(set);
 }
 
-// Points that the camera sees, 4 x 4 pixels to a block.
+// Makes visible points in blocks of 4 x 4 pixels.
 static void makePoints(Bench* b)
 {
     const vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), POINTS_X, POINTS_Y);
@@ -117,7 +117,7 @@ static void timeLooking(const Bench* b, const char* name, const vplParaboloidMap
     printf("%-18s %4d: %.1f ns per 16 look-ups (%g)\n", name, maps->size, medianOf(ns, RUNS), (double)sum);
 }
 
-// By a ray that neither end shadows.
+// Returns whether a ray between the two points is blocked; surfaces at the ends do not block it.
 static bool isBlocked(const vplGeometry* g, const vplHit* hit, vplVec3 to)
 {
     const vplRay ray = vplGeometry_Leave(g, hit, vplSub(to, hit->position));
@@ -135,7 +135,7 @@ static void compareWithRays(const Bench* b, const char* name, const vplParaboloi
             const vplVec3 way = hit->triangle < 0 ? vplVec(0, 0, 0) : vplSub(map->position, hit->position);
             const float rim = map->hemispheres == 2 ? -1 : 4 * 1.41421356f / (float)map->size;
             if (!(vplDot(way, hit->normal) > 0 && -vplDot(way, map->forward) > rim * vplLength(way))) {
-                continue; // light falls from nowhere, or within a texel of the rim
+                continue; // unlit, or within a texel of the map's rim
             }
             float factor[VPL_LANES];
             vplParaboloidMap_FactorBlock(map, &b->blocks[i / VPL_LANES], factor);
@@ -194,7 +194,7 @@ int main(int argc, char** argv)
 {
     static Bench b;
     bool quick = false, draw = true;
-    int workers = 1; // idle threads spin, which other programs' work turns into milliseconds
+    int workers = 1; // idle workers spin, and other programs' load turns that into milliseconds
     printf("scene, texels a side, places, kept; for counts of maps: ms wall (processor)\n");
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--quick") == 0) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What patches cost after the light is known: the mesh, means at its vertices, and pictures of it, beside a deferred
-// picture of the same view that only shows depth. Medians of milliseconds of processor time, one
-// thread unless --threads.
+// Measures the cost of patches after the light is known: building the mesh, averaging at its vertices, and
+// drawing it, compared with a deferred picture of the same view that only shows depth. Figures are medians of
+// milliseconds of processor time, on one thread unless --threads is given.
 //   patch_mesh [--threads N] SCENE...
 #include "bench.h"
 
@@ -9,7 +9,7 @@
 
 enum { RUNS = 15, WIDTH = 1280, HEIGHT = 720 };
 
-// Both sides of all patches are lit.
+// Makes both sides of all patches lit.
 static vplPatchSides* fillSides(const vplPatches* p)
 {
     const int count = 2 * p->patchCount;
@@ -63,7 +63,7 @@ static void runOnce(const vplPatchSides* sides, const vplView* view, vplImage* i
                              .output = VPL_OUTPUT_DEPTH,
                              .batch = 1};
     start = cpuMs();
-    check(vplShadeView(sides->patches->geometry, view, &def, NULL, NULL, image, NULL));
+    check(vplShadeView(sides->patches->geometry, view, &def, image, NULL));
     t->depth[run] = cpuMs() - start;
     free(values);
     free(corners);
@@ -71,8 +71,8 @@ static void runOnce(const vplPatchSides* sides, const vplView* view, vplImage* i
     vplPatchMesh_Destroy(mesh);
 }
 
-// All of about a size; or from an eighth of them by three rounds, in each of which chance bisects them, so that edges
-// are cut.
+// Makes patches of about one size; or, if uneven, an eighth as many that are bisected at random in three
+// rounds, so that neighbours split edges.
 static vplPatches* divide(const vplGeometry* g, int count, bool uneven)
 {
     vplPatchDef def = vplDefaultPatchDef();

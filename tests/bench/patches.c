@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What patches cost, and the sides of them that light reaches: milliseconds of processor time of one thread, medians of
-// five, and rays. `patches SCENE [COUNT ...]`
+// Measures the cost of patches and of finding their lit sides: milliseconds of processor time of one thread,
+// medians of five, and numbers of rays. `patches SCENE [COUNT ...]`
 #include "cli/bench/measure.h"
 
 #include <vpl/vpl.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the path tracer's choices are worth: error of the picture, rays, time, and variance times time against the
-// first line of each group (smaller is better). `bench/path SCENE [SAMPLES [SIZE]]`.
+// Measures the value of the path tracer's techniques: error of the picture, rays, time, and variance times
+// time relative to the first line of each group (smaller is better). `bench/path SCENE [SAMPLES [SIZE]]`.
 #include "cli/bench/measure.h"
 #include "reference/path_trace.h"
 
@@ -113,7 +113,7 @@ static int run(const vplScene* scene, const vplGeometry* geometry, int samples, 
         def.emitterCount = vplScene_GetEmitterCount(scene);
         def.emitters = def.emitterCount ? vplScene_GetEmitter(scene, 0) : NULL;
         def.width = def.height = size;
-        def.emission = false; // the edges of what is seen to emit would hide the rest
+        def.emission = false; // aliasing at the edges of visible emitters would dominate the error
         LINES[i].adjust(&def);
         vplPathStats stats;
         double ms;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// How near radiosity comes to the truth as patches shrink. `bench/radiosity_error SCENE TRUTH.pfm TRUTH.pfm [OPTIONS]`: the
-// truths are indirect light of different seeds (vpl render SCENE --method path --pixel centre --show indirect --seed S), so
-// that their noise is not counted; OPTIONS, in one word, are letters:
+// Measures the error of radiosity as patches shrink. `bench/radiosity_error SCENE TRUTH.pfm TRUTH.pfm
+// [OPTIONS]`: the truths are indirect light of different seeds (vpl render SCENE --method path --pixel centre
+// --show indirect --seed S), so that their noise is not counted. OPTIONS is one word of letters:
 // i: the document's estimator; h: the hierarchy; c: rows clamped; n: no interpolation;
 // u: uniform patches only; a: adaptive patches only; f: 500 to 4000 patches.
-//   relmse   mean of (a - b)(a - c) / ((b + c) / 2 + 0.01)^2 over pixels off discontinuities: all around show one plane, to 1 mm
+//   relmse   mean of (a - b)(a - c) / ((b + c) / 2 + 0.01)^2 over pixels away from discontinuities:
+//            all neighbours show one plane, to 1 mm
 //   all      the same over all pixels
 //   energy   sum of a / sum of b
-// ms are of the wall clock, of the whole picture; with several patch counts and both placements.
+// Times are wall-clock ms of the whole picture. The program runs several patch counts and both placements of
+// patches.
 #include "bench.h"
 
 #include <math.h>
@@ -25,7 +27,7 @@ static vplImage* show(const vplScene* scene, const vplImage* like, vplShow what)
     return image;
 }
 
-// Distance of each pixel's surface's plane from the origin; infinity where nothing is.
+// Returns for each pixel the distance of its surface's plane from the origin; infinity for the background.
 static float* findPlanes(const vplScene* scene, const vplImage* depth, const vplImage* normals)
 {
     const vplView view = vplView_Create(vplScene_GetCamera(scene, 0), depth->width, depth->height);
@@ -39,7 +41,7 @@ static float* findPlanes(const vplScene* scene, const vplImage* depth, const vpl
     return planes;
 }
 
-// Whether two pixels show one plane.
+// Returns whether two pixels show one plane.
 static bool isSame(const vplImage* normals, const float* planes, int i, int k)
 {
     const float *n = normals->pixels + 3 * i, *m = normals->pixels + 3 * k;
@@ -68,7 +70,8 @@ static bool* findSmooth(const vplScene* scene, const vplImage* like)
     return smooth;
 }
 
-// What is common to the errors against two truths of independent noise is that of the picture.
+// Returns the relative MSE of the picture. The product of its errors against two independent truths cancels
+// their noise.
 static double relmseOf(const vplImage* image, vplImage* const truth[2], const bool* mask)
 {
     double sum = 0, count = 0;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A light that moves over kept form factors. `bench/radiosity_motion SCENE [WIDTH HEIGHT]`; the first light gets a path: a
-// little way each frame, and between frames 20 and 21 a jump. One sweep a frame, as the document proposes after Burenius.
+// Measures radiosity with a moving light and unchanged form factors. `bench/radiosity_motion SCENE [WIDTH
+// HEIGHT]`; the first light moves a little each frame and jumps between frames 20 and 21. Each frame does one
+// sweep, as the document proposes after Burenius.
 //   first      ms of the first frame, which makes patches and form factors
-//   frame      median ms of the others, of which
-//   light      emitters' light at patches, solve: the sweep, corners and drawing: the rest is direct light
-//   lag k      the indirect picture k frames after the jump against the converged one: rmse / mean
+//   frame      median ms of the other frames, and the frames per second
+//   light      median ms of the emitters' light at patches
+//   solve      median ms of the stage solve
+//   lag k      RMSE / mean of the indirect picture k frames after the jump, against the converged one
 #include "bench.h"
 
 #include <math.h>

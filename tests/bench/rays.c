@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// How fast rays are: bench/rays SCENE [--runs N] [--isa NAME] [--all] [--only KIND]
-// Millions of rays per second of processor time, on one thread, medians of alternated runs, and as a share of Intel
-// Embree's (robust scene, built at high quality) where it was found at build time. The last line is the time to build
-// the tree against Embree's at medium quality, on one thread and on all. --all: also without a tree.
-// --only: rays of this number in the table, and no building.
+// Measures ray throughput: bench/rays SCENE [--runs N] [--isa NAME] [--all] [--only KIND]
+// The program prints millions of rays per second of processor time on one thread, medians of alternated runs,
+// and the share of Intel Embree's rate (robust scene, built at high quality) if Embree was found at build
+// time. The last line compares the time to build the BVH with Embree's at medium quality, on one thread and
+// on all.
+// --all: also traces without a BVH. --only: traces only the rays of this number in the table, and skips the
+// build times.
 #include "bench.h"
 #include "embree.h"
 #include "math/sampling.h"
@@ -34,7 +36,7 @@ static float unit(int index, uint32_t stream, int word)
 
 // ---- rays to measure
 
-// In blocks of 4 x 4 pixels, as they are shaded.
+// Makes camera rays in blocks of 4 x 4 pixels, the order in which shading traces them.
 static void makeCameraRays(Bench* b)
 {
     const vplView v = vplView_Create(vplScene_GetCamera(b->scene, 0), SIDE, SIDE);
@@ -48,7 +50,7 @@ static void makeCameraRays(Bench* b)
     b->rayCount = MOST_RAYS;
 }
 
-// Replaces the camera's rays by what follows them.
+// Replaces each camera ray by the secondary ray from its hit.
 static void followRays(Bench* b, bool shadow)
 {
     int count = 0;
@@ -67,7 +69,7 @@ static void followRays(Bench* b, bool shadow)
     b->rayCount = count;
 }
 
-// From anywhere in the bounds to anywhere else.
+// Makes rays between random pairs of points in the bounds.
 static void makeRandomRays(Bench* b)
 {
     const vplVec3 low = b->geometry->boundsMin, size = vplSub(b->geometry->boundsMax, low);
@@ -170,7 +172,7 @@ static void measure(Bench* b, int runs, bool brute, int only)
 #endif
 }
 
-// One thread by processor time, more by the clock on the wall.
+// Measures the build time: processor time for one thread, wall-clock time for several.
 static void measureBuild(const char* path, int workers, int runs)
 {
     Bench b = {0};

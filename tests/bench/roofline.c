@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// How near the hot loops come to what the machine can do: bench/roofline [--isa I] [--rounds N] [--loop NAME]
-//   first table   peaks: arithmetic, conversions, table look-ups and bandwidth, per instruction set, one thread and
-//                 all; measured by loops that do nothing else (roofline/peaks_kernel.c)
-//   second table  each hot loop on one thread: its rate, cycles for 16 lanes of it, its roof from the operations
-//                 that its source asks for (roofline/loops.c), the share of the roof reached, and what the roof is
-//   below it      the loops below half of their roof: what vectors gain there, and variants with one thing changed
-//                 each: what gets faster tells what the loop was waiting for
-// With --loop NAME that loop alone runs for ten seconds, to be looked at with a profiler. Everything is measured in
-// rounds, by the processor time of the thread; figures are the best of the rounds, because what else runs on the
-// machine only takes away.
+// Compares the hot loops with the limits of the machine: bench/roofline [--isa I] [--rounds N] [--loop NAME]
+//   first table   peaks: arithmetic, conversions, table look-ups and bandwidth, per instruction set, on one
+//                 thread and on all; measured by loops that do nothing else (roofline/peaks_kernel.c)
+//   second table  each hot loop on one thread: its rate, cycles per 16 lanes, its roof from the operations
+//                 in its source (roofline/loops.c), the share of the roof reached, the limiting resource
+//   below it      for loops below half of their roof: the gain from vectors, and variants with one change;
+//                 a variant that is faster shows what limits the loop
+// With --loop NAME that loop alone runs for ten seconds, for a profiler. The program measures processor time
+// of the thread in rounds and prints the best round, because other load on the machine only makes rounds
+// slower.
 #include "roofline/roofline.h"
 
 #include "base/isa.h"
@@ -44,7 +44,7 @@ static const char* const PEAK_NAMES[PEAK_COUNT] = {"multiply and add, both count
                                                    "clock, cycles"};
 
 typedef struct Bench {
-    vplContext* context; // of all threads
+    vplContext* context; // with all threads
     int threads, rounds;
     Arena arenas[MOST_THREADS];
     double one[VPL_ISA_COUNT][PEAK_COUNT], all[VPL_ISA_COUNT][PEAK_COUNT]; // per second
@@ -137,7 +137,8 @@ static double loopRate(const Loop* loop, Work* work)
     return done / seconds;
 }
 
-// Seconds of one item by the resource that takes longest, and its name. Resources are taken to work side by side.
+// Returns the time of one item in seconds, by the resource that takes longest, and that resource's name. The
+// model assumes that all resources work in parallel.
 static double roofSeconds(const Costs* c, const double* peak, const char** what)
 {
     const struct {
@@ -204,7 +205,7 @@ static void printPeaks(const Bench* b, const bool* wanted)
     printf("\n");
 }
 
-// The index of a loop that others are variants of.
+// Returns the index of the loop that variants refer to.
 static int findLoop(const char* name)
 {
     for (int i = 0; i < LOOP_COUNT; i++) {
@@ -220,7 +221,7 @@ static double shareOfRoof(const Bench* b, vplIsa isa, int loop, const char** wha
     return b->loops[isa][loop] * roofSeconds(&LOOPS[loop].costs, b->one[isa], what);
 }
 
-// What measurements say of a loop far from its roof: whether width helps it at all, and its variants.
+// Explains a loop far from its roof by measurements: the gain from vector width, and the loop's variants.
 static void explainLoop(const Bench* b, vplIsa isa, int loop)
 {
     const double gain = b->loops[isa][loop] / b->loops[VPL_ISA_SCALAR][loop];
@@ -260,7 +261,7 @@ static void printLoops(const Bench* b, vplIsa isa)
     }
 }
 
-// For a profiler.
+// Runs one loop alone, for a profiler.
 static int runAlone(const char* name, vplIsa isa)
 {
     const Loop* loop = &LOOPS[findLoop(name)];

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Reflective shadow maps against rays: build/bench/rsm SCENE...: what a map costs, what a particle's first flight
-// costs either way, from how many particles on the map pays, and how far the picture moves; then direct light of the first
-// emitter at 1920x1080, its shadows by rays and by the map. Processor time, medians.
+// Compares reflective shadow maps with rays: build/bench/rsm SCENE...: the cost of a map, the cost of a
+// particle's first segment with the map and with rays, the number of particles from which the map pays, and
+// the difference in the picture; then direct light of the first emitter at 1920x1080 with shadows by rays and
+// by the map. Figures are medians of processor time.
 #include "bench.h"
 #include "rsm_band.h"
 
@@ -16,7 +17,7 @@ typedef struct Bench {
     int emitterCount;
 } Bench;
 
-// Maps of all emitters.
+// Draws maps of all emitters.
 static void drawMaps(const Bench* b, int size, vplReflectiveMap** maps)
 {
     for (int i = 0; i < b->emitterCount; i++) {
@@ -34,7 +35,7 @@ static void destroyMaps(const Bench* b, vplReflectiveMap** maps)
     }
 }
 
-// Milliseconds of first flights only.
+// Returns the milliseconds of the particles' first segments only.
 static double simulate(const Bench* b, vplReflectiveMap** maps)
 {
     vplParticleDef def = vplDefaultParticleDef();
@@ -49,7 +50,7 @@ static double simulate(const Bench* b, vplReflectiveMap** maps)
     return ms;
 }
 
-// Indirect light without shadows; size 0: by rays.
+// Renders indirect light without shadows; size 0: with rays instead of a map.
 static vplImage* picture(const Bench* b, int size, uint64_t seed)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
@@ -105,7 +106,7 @@ static void measure(const Bench* b, const char* name)
 
 // ---- shadows
 
-// Direct light of one emitter; map NULL: by rays.
+// Shades direct light of one emitter; map NULL: shadows by rays.
 static double light(const Bench* b, const vplView* view, const vplReflectiveMap* map, vplImage* image)
 {
     const vplShadow none = {0};
@@ -115,11 +116,11 @@ static double light(const Bench* b, const vplView* view, const vplReflectiveMap*
                        .shadows = &none,
                        .emitterMaps = &map};
     const double start = cpuMs();
-    check(vplShadeView(b->geometry, view, &def, NULL, NULL, image, NULL));
+    check(vplShadeView(b->geometry, view, &def, image, NULL));
     return cpuMs() - start;
 }
 
-// Shares of the pixels that differ by more than 1 % and by more than half of the larger one.
+// Counts the shares of pixels that differ by more than 1 % and by more than half of the larger value.
 static void countDifferent(const vplImage* a, const vplImage* b, double* someOut, double* muchOut)
 {
     const size_t pixels = (size_t)a->width * (size_t)a->height;
@@ -133,7 +134,8 @@ static void countDifferent(const vplImage* a, const vplImage* b, double* someOut
     *muchOut = 100.0 * (double)much / (double)pixels;
 }
 
-// A point that a pixel shows, if it faces the emitter, and whether a ray finds it in shadow.
+// Finds the point that a pixel shows. Returns whether it faces the emitter, and in `dark` whether a ray finds
+// it in shadow.
 static bool seePoint(const Bench* b, const vplView* view, int x, int y, vplHit* hit, vplVec3* normal,
                      bool* dark)
 {
@@ -152,7 +154,8 @@ static bool seePoint(const Bench* b, const vplView* view, int x, int y, vplHit* 
             vplSpot_Falloff(e, -(double)vplDot(vplNormalize(way), vplNormalize(e->direction))) > 0);
 }
 
-// Of every `STEP`-th pixel each way: how often map and rays disagree, and that they do not where they must not.
+// Compares map and rays at every `STEP`-th pixel each way: counts where they disagree, and checks that they
+// agree at all points where they must.
 static void measureAgreement(const Bench* b, const vplView* view, const vplReflectiveMap* map)
 {
     enum { STEP = 11 };

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Where reflective maps and rays must agree on an emitter's shadow: shared by a benchmark and a test.
+// Condition under which reflective shadow maps and rays must agree on an emitter's shadow. A benchmark and a
+// test share it.
 #ifndef VPL_RSM_BAND_H
 #define VPL_RSM_BAND_H
 
 #include "lights/rsm.h"
 #include "math/vec.h"
 
-// A ray of the map's emitter that passes `across` and `down` metres (at distance 1 of other than parallel views) from
-// the one through `point`; its length is 1 per `depthOut`, the point's depth.
+// Returns a ray of the map's emitter that passes the ray through `point` at an offset of `across` and `down`
+// metres (at distance 1 unless the projection is parallel). Its length is 1 per `depthOut`, the point's
+// depth.
 static inline vplRay rayBeside(const vplReflectiveMap* m, int face, vplVec3 point, float across, float down,
                                float* depthOut)
 {
@@ -31,9 +33,9 @@ static inline int faceOf(const vplReflectiveMap* m, vplVec3 point)
     return p.face;
 }
 
-// Whether all rays that pass within a texel and a 128th (coverage is snapped to 1/256) of the point say what the
-// point's own says: that something is nearer than the point, and than its plane there, by the tolerance; or that nothing
-// is nearer than both. Then the map must say the same.
+// Returns whether all rays that pass within a texel and a 128th (coverage is snapped to 1/256) of the point
+// agree with the point's own ray (`dark`): either all find an occluder nearer than the point and its plane by
+// the tolerance, or none finds one nearer than both. Then the map must agree, too.
 static inline bool isSureReflective(const vplGeometry* g, const vplReflectiveMap* m, vplVec3 point,
                                     vplVec3 normal, bool dark)
 {

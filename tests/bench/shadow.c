@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Soft shadows with and without the bounds of the cube map, on all points that a camera sees and that face the
-// scene's first point light: `bench/shadow SCENE [WIDTH HEIGHT [SAMPLES]]`. Both give the same bits, or it fails.
-// One thread, runs alternated, medians of processor time.
+// Compares soft shadows with and without the cube map's bounds, at all points that a camera sees and that
+// face the scene's first point light: `bench/shadow SCENE [WIDTH HEIGHT [SAMPLES]]`. Both must give the same
+// bits; if not, the program fails. It uses one thread and alternated runs, and prints medians of processor
+// time.
 #include "bench.h"
 
 #include "visibility/cube_bounds.h"
-#include "visibility/shadow.h"
+#include "visibility/kernels.h"
 
 #include <vpl/vpl.h>
 
@@ -15,7 +16,8 @@
 
 enum { RUNS = 11 };
 
-// A block of 4 x 4 pixels; false where nothing in it faces the light. Lanes that see nothing lie in the origin.
+// Fills a block of 4 x 4 pixels; returns false if nothing in it faces the light. Lanes that see no surface
+// get position 0.
 static bool findBlock(const vplGeometry* g, const vplView* view, vplVec3 light, int x, int y, vplSurface* s)
 {
     bool faces = false;
@@ -34,10 +36,10 @@ static bool findBlock(const vplGeometry* g, const vplView* view, vplVec3 light, 
 }
 
 typedef struct Counts {
-    int64_t told, blocksTold, same, blocksSame; // without samples; all samples alike
+    int64_t told, blocksTold, same, blocksSame; // decided by bounds without samples; all samples agree
 } Counts;
 
-// Both ways: without bounds, and with them.
+// The two compared ways: without bounds, and with them.
 typedef struct Factors {
     const vplShadow* shadows[2];
     float* out[2];
@@ -64,7 +66,8 @@ static void count(const vplShadow* shadow, const vplSurface* blocks, int blockCo
 {
     for (int i = 0; i < blockCount; i++) {
         float factor[VPL_LANES];
-        int told = vplShadow_FactorBlockCounted(shadow, &blocks[i], factor), same = 0;
+        const vplVisibilityKernels* kernels = vplVisibilityKernels_Get(shadow->map->context->isa);
+        int told = kernels->shadowFactor(shadow, &blocks[i], factor), same = 0;
         for (int l = 0; l < VPL_LANES; l++) {
             same += factor[l] == 0 || factor[l] == 1;
         }

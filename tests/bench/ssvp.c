@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What a frame's shading costs once memory is there: G-buffer, classes of lights, sharing, and the visibility of
-// clusters; alternated, medians of processor and wall-clock time, and errors against all lights in every pixel. The last
-// line deals lights out otherwise: each class has lights of one or two clusters, instead of some of every cluster.
+// Measures the shading of a frame whose memory is already allocated: G-buffer, interleaved light classes,
+// sharing, and the visibility of clusters. Runs are alternated; figures are medians of processor and
+// wall-clock time, and errors against all lights in every pixel. The last line assigns lights to classes
+// differently: each class has the lights of one or two clusters, instead of some of every cluster.
 // `bench/ssvp SCENE [LIGHTS [RUNS [WIDTH HEIGHT [CLUSTERS [THREADS]]]]]`; direct light is left out.
 #include "bench.h"
 
@@ -14,7 +15,7 @@ typedef struct Way {
     vplShadeOutput output;
     int side; // 1: deferred
     bool lights, clusters, whole;
-    int before, truth; // ways that it is measured against
+    int before, truth; // indices of the ways that its time and its error are compared with
 } Way;
 
 enum { ALL, ALL_CLUSTERS, GBUFFER, CLASSES, SHARED, CLUSTER_CLASSES, CLUSTER_SHARED, WHOLE, WAYS };
@@ -40,7 +41,8 @@ typedef struct Bench {
     vplImage* images[WAYS];
 } Bench;
 
-// `count` of the particles' lights, evenly. In their order they are spread like halves of the scene's light paths are.
+// Takes `count` of the particles' lights at equal strides. Their order spreads any run of them over the
+// scene.
 static void makeLights(Bench* b, int count)
 {
     vplParticleDef particles = vplDefaultParticleDef();
@@ -66,7 +68,8 @@ static int alongX(const void* a, const void* b)
     return (x > y) - (x < y);
 }
 
-// Slices of the scene across x, of equal numbers of lights, each with a map of its own where its middle light is.
+// Makes clusters as slices of the scene across x with equal numbers of lights, each with a map at its middle
+// light.
 static void makeClusters(Bench* b, int count)
 {
     vplParaboloidPlace places[MAX_CLUSTERS];
@@ -107,7 +110,7 @@ static vplResult shade(void* user, int which)
         def.clusterShadows = b->maps->maps;
         def.clusterCount = b->clusterCount;
     }
-    return vplShadeView(b->geometry, &b->view, &def, NULL, NULL, b->images[which], NULL);
+    return vplShadeView(b->geometry, &b->view, &def, b->images[which], NULL);
 }
 
 static void print(const Bench* b, const Times* times, int runs)
@@ -127,7 +130,7 @@ static void print(const Bench* b, const Times* times, int runs)
 int main(int count, char** words)
 {
     static Bench b;
-    // As a sequence of frames does: memory is kept, and no page is cleared twice.
+    // As in a sequence of frames, freed memory is kept, and no page is cleared twice.
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     int runs = count > 3 ? atoi(words[3]) : 9;
@@ -143,7 +146,7 @@ int main(int count, char** words)
     makeLights(&b, count > 2 ? atoi(words[2]) : 512);
     makeClusters(&b, count > 6 ? atoi(words[6]) : 8);
     Times times[WAYS];
-    const Measurement measurement = {shade, &b, WAYS, runs, 0, INFINITY}; // the first makes memory
+    const Measurement measurement = {shade, &b, WAYS, runs, 0, INFINITY}; // the first run allocates memory
     check(measureInTurn(&measurement, times, NULL));
     print(&b, times, runs);
     for (int i = 0; i < WAYS; i++) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What few clusters cost SSVP. `bench/ssvp_error SCENE [TRUTH.pfm]`: pictures of 4, 8 and 16 clusters against that of 32,
-// tone-mapped, 1920 x 1080, as the document compares them (0.1259, 0.1020 and 0.0806); then, at the truth's size, the
-// error of 4 to 256 clusters, of one and two bounces, against a path-traced picture. rmse: of values in [0, 1] after tone
-// mapping; coded: of the same as sRGB codes; error: root mean square by the truth's mean, linear.
+// Measures the error of SSVP with few clusters. `bench/ssvp_error SCENE [TRUTH.pfm]`: compares pictures of 4,
+// 8 and 16 clusters with that of 32, tone-mapped, at 1920 x 1080, as the document does (0.1259, 0.1020 and
+// 0.0806); then, at the truth's size, 4 to 256 clusters with one and two bounces against a path-traced
+// picture. rmse: of values in [0, 1] after tone mapping; coded: of the same as sRGB codes; error: root mean
+// square relative to the truth's mean, linear.
 #include "bench.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ static vplImage* renderClusters(const vplScene* scene, int width, int height, in
 static vplComparison compareToned(vplImage* a, vplImage* b)
 {
     vplReinhardDef tone = vplDefaultReinhardDef();
-    tone.skipBlack = true; // as pictures are written
+    tone.skipBlack = true; // the default for written pictures
     check(vplToneMap_Reinhard(a, &tone));
     check(vplToneMap_Reinhard(b, &tone));
     vplComparison c;
@@ -33,7 +34,7 @@ static vplComparison compareToned(vplImage* a, vplImage* b)
     return c;
 }
 
-// psnr is of sRGB codes: its mean square is 10^(-psnr / 10).
+// Returns the RMSE of sRGB codes from the PSNR: the mean square is 10^(-psnr / 10).
 static double codedOf(const vplComparison* c)
 {
     return isfinite(c->psnr) ? pow(10, -c->psnr / 20) : 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the fuzz targets share. Each target is linked with libFuzzer, or with replay.c to run a corpus once.
+// Helpers that the fuzz targets share. Each target is linked with libFuzzer, or with replay.c, which runs a
+// corpus once.
 #ifndef VPL_TESTS_FUZZ_FUZZ_H
 #define VPL_TESTS_FUZZ_FUZZ_H
 
@@ -10,7 +11,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);
 
-// What must hold for every input; abort() is what both libFuzzer and the replay notice.
+// States a condition that must hold for every input; both libFuzzer and the replay notice abort().
 #define REQUIRE(condition)                                                                                   \
     do {                                                                                                     \
         if (!(condition)) {                                                                                  \
@@ -19,7 +20,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);
         }                                                                                                    \
     } while (0)
 
-// Refuses blocks that only a lying header asks for, so that fuzzing stays fast and needs little memory.
+// Refuses blocks over 64 MB, which only corrupt headers request, so that fuzzing stays fast and needs little
+// memory.
 static inline void* fuzzAlloc(void* user, void* memory, size_t oldSize, size_t newSize)
 {
     (void)user;
@@ -31,7 +33,7 @@ static inline void* fuzzAlloc(void* user, void* memory, size_t oldSize, size_t n
     return newSize > ((size_t)64 << 20) ? NULL : realloc(memory, newSize);
 }
 
-// The last message, so that a failure without its sentence is found.
+// Keeps the last message, so that the target finds failures without a message.
 typedef struct FuzzLog {
     char message[1200];
     int errors;
@@ -62,7 +64,8 @@ static inline void closeFuzzContext(vplContext* context)
     vplContext_Destroy(context);
 }
 
-// True if the text is one line of valid UTF-8 without control characters: what a terminal can show.
+// Returns whether the text is one line of valid UTF-8 without control characters, which any terminal can
+// show.
 static inline bool isPrintable(const char* text)
 {
     for (const unsigned char* p = (const unsigned char*)text; *p != 0; p++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as a picture, through each decoder: either one sentence, or a picture that can be compared, hashed
-// and encoded again.
+// Passes arbitrary bytes to each image decoder: it must either log one sentence, or return a picture that can
+// be compared, hashed and encoded again.
 #include "fuzz.h"
 
 #include "image/image_file.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-// A picture of floats survives PFM and EXR bit for bit.
+// Requires that a picture of floats survives PFM and EXR bit for bit.
 static void requireRoundTrip(vplContext* context, const vplImage* image, vplEncodeFcn* encode,
                              vplDecodeFcn* decode)
 {
@@ -24,7 +24,7 @@ static void requireRoundTrip(vplContext* context, const vplImage* image, vplEnco
     vplFree(context, buffer.bytes);
 }
 
-// Equal to itself, or refused because a pixel is not finite.
+// Requires that a picture equals itself, or is refused because a pixel is not finite.
 static void requireComparison(const vplImage* image)
 {
     vplComparison comparison;
@@ -36,7 +36,7 @@ static void requireComparison(const vplImage* image)
     REQUIRE(result == (finite ? VPL_SUCCESS : VPL_INVALID_ARGUMENT));
     REQUIRE(result != VPL_SUCCESS || (comparison.rmse == 0 && comparison.relmse == 0));
     if ((size_t)image->width * (size_t)image->height > 256) {
-        return; // these two are slow
+        return; // the two checks below are slow
     }
     double ssim = 1, flip = 0;
     REQUIRE(vplImage_Ssim(image, image, &ssim, NULL) == result && ssim == 1);

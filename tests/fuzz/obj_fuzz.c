@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as an OBJ file and, behind the first byte 0x1F, the MTL file that it may name as "100": either one
-// sentence with file, line and column and a scene as it was, or a valid mesh, the same when read again.
+// Passes arbitrary bytes as an OBJ file and, after the first byte 0x1F, as the MTL file that it may name
+// "100". The reader must either log one sentence with file, line and column and leave the scene unchanged, or
+// make a valid mesh, which a second reading reproduces.
 #define _GNU_SOURCE
 #include "fuzz.h"
 
@@ -17,7 +18,7 @@ enum { OBJ_FILE = 99, MTL_FILE = 100 };
 
 #define FOLDER "/proc/self/fd/"
 
-// The reader opens files by name; a file in memory has one under /proc.
+// Gives bytes in memory a file name under /proc, because the reader opens files by name.
 static void writeMemoryFile(int number, const uint8_t* bytes, size_t size)
 {
     int fd = memfd_create("obj", MFD_CLOEXEC);
@@ -60,7 +61,7 @@ static uint64_t hashMesh(const vplScene* scene)
     return vplHashWords(hash, (const uint32_t*)mesh->materials, triangles);
 }
 
-// 0 if the file was refused.
+// Loads the file and returns the hash of its mesh, 0 if the file was refused.
 static uint64_t load(void)
 {
     FuzzLog log = {{0}, 0};
@@ -86,7 +87,7 @@ static uint64_t load(void)
     return hash;
 }
 
-// What we take for a number, the C library does, too, and gives it the same bits.
+// Requires that strtof accepts every number that libvpl accepts, with the same bits.
 static void requireNumber(const uint8_t* bytes, size_t size)
 {
     char text[512], *end;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Runs a fuzz target over every file of the folders named on the command line, without libFuzzer. With -v each
-// name is printed before its turn, so that the last one is that of a crash.
+// Runs a fuzz target over every file of the folders named on the command line, without libFuzzer. With -v it
+// prints each name before the run, so that after a crash the last name is the input at fault.
 #include "fuzz.h"
 
 #include <dirent.h>
 #include <string.h>
 #include <sys/stat.h>
 
-// Exactly `size` bytes on the heap, so that a sanitizer sees a read past the end. False if it is no file.
+// Runs one file. The input is a heap block of exactly `size` bytes, so that a sanitizer sees a read past the
+// end. Returns false if the path is not a regular file.
 static bool replayFile(const char* path)
 {
     struct stat info;
@@ -51,5 +52,5 @@ int main(int wordCount, char** words)
         count += replayFolder(words[i], verbose);
     }
     printf("%d inputs replayed\n", count);
-    return count == 0; // a corpus that was not found must not pass
+    return count == 0; // an empty or missing corpus must not pass
 }

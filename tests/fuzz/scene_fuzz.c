@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Any bytes as a scene file: either one sentence with file, line and column, or a scene that every pipeline
-// renders to the same finite bits.
+// Passes arbitrary bytes as a scene file: the reader must either log one sentence with file, line and column,
+// or make a scene that every pipeline renders to reproducible, finite bits.
 #define _GNU_SOURCE
 #include "fuzz.h"
 
@@ -11,7 +11,7 @@
 
 #define FOLDER "/proc/self/fd/"
 
-// The reader opens files by name; a file in memory has one under /proc.
+// Gives bytes in memory a file name under /proc, because the reader opens files by name.
 static int writeMemoryFile(const uint8_t* bytes, size_t size, char* name, size_t nameSize)
 {
     int fd = memfd_create("scene", MFD_CLOEXEC);
@@ -71,7 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
         }
     } else {
         REQUIRE(result == VPL_PARSE_ERROR && scene == NULL && log.errors == 1);
-        REQUIRE(strncmp(log.message, FOLDER, strlen(FOLDER)) == 0); // the scene's own, or a mesh's beside it
+        REQUIRE(strncmp(log.message, FOLDER, strlen(FOLDER)) == 0); // the scene file, or a mesh beside it
         size_t file = strcspn(log.message, ":");
         int line, column, used = 0;
         REQUIRE(sscanf(log.message + file, ":%d:%d: %n", &line, &column, &used) == 2 && used > 0);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Golden pictures: `vpl-golden check golden OUT` renders all and compares the hashes of the float images;
-// `vpl-golden write golden` rewrites them. The PNGs are for eyes, hashes.txt is what counts. On a mismatch
-// the picture, its difference from the golden PNG times eight, and the first differing pixel are shown.
+// `vpl-golden write golden` rewrites them. hashes.txt decides; the PNGs are for people to look at. On a
+// mismatch the program shows the picture, eight times its difference from the golden PNG, and the first
+// differing pixel.
 #include <vpl/vpl.h>
 
 #include <math.h>
@@ -197,7 +198,7 @@ static void ssvp(vplRenderOptions* o)
     o->shadow.rsmSize = 128;
 }
 
-// What the document prints where a later reading differs from it.
+// Selects the document's printed variants wherever libvpl's default follows a later reading of it.
 static void ssvpPrinted(vplRenderOptions* o)
 {
     ssvp(o);
@@ -230,13 +231,13 @@ static void paraboloid(vplRenderOptions* o)
 static void radiosity(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_RADIOSITY;
-    o->radiosity.patchSize = 0.45f; // 784 patches of the report's box
+    o->radiosity.patchSize = 0.45f; // gives 784 patches of the report's box
 }
 
 static void radiosityIncentre(vplRenderOptions* o)
 {
     radiosity(o);
-    o->radiosity.subdivisions = 3; // 192, and too bright
+    o->radiosity.subdivisions = 3; // gives 192 patches, and too bright a picture
     o->radiosity.formFactors = VPL_FORM_FACTORS_INCENTRE;
     o->radiosity.vertexWeight = VPL_VERTEX_WEIGHT_EQUAL;
     o->radiosity.interpolation = VPL_INTERPOLATION_NONE;
@@ -352,7 +353,7 @@ static bool writePng(const Case* c, const vplImage* image, const char* folder, c
     return vplImage_Write(image, path, &write) == VPL_SUCCESS;
 }
 
-// The hash recorded for a name, or 0.
+// Returns the hash recorded for a name, or 0.
 static uint64_t recordedHash(const char* folder, const char* name)
 {
     char path[512], line[256], found[128];

@@ -65,7 +65,7 @@ vplResult shadeInto(Bench* b, const vplGeometry* geometry, const Stage* stage, v
     def.output = stage->flags & NORMALS ? VPL_OUTPUT_NORMALS : VPL_OUTPUT_RADIANCE;
     vplView view = vplView_Create(vplScene_GetCamera(b->scene, 0), image->width, image->height);
     vplShadeStats stats;
-    TRY(vplShadeView(geometry, &view, &def, NULL, NULL, image, &stats));
+    TRY(vplShadeView(geometry, &view, &def, image, &stats));
     const double pixels = (double)image->width * image->height;
     outcome->raster = stats.raster;
     outcome->rays = stats.shadowRays;

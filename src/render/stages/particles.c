@@ -35,16 +35,15 @@ static vplResult placeByView(const vplRun* run, const vplParticleDef* particles,
 {
     const vplPlan* plan = run->plan;
     vplPlacementDef def = vplDefaultPlacementDef();
-    int steps;
-    int64_t lights;
-    TRY(vplCountParticles(run->context, particles->particleCount, particles->reflectivity, NULL, 0, &steps,
-                          &lights));
+    const vplParticlePass plain = {0, particles->particleCount, particles->reflectivity};
+    vplStepTotals totals;
+    TRY(vplCountParticles(run->context, &plain, NULL, 0, &totals));
     def.lighting = plan->shading;
     def.camera = plan->camera;
     def.width = plan->options.output.width;
     def.height = plan->options.output.height;
     def.oversampling = oversamplingFor(&plan->options.output);
-    def.minDistance = vplClampDistance(run, (double)lights);
+    def.minDistance = vplClampDistance(run, (double)totals.lightCount);
     def.shadows = plan->options.lights.shadows != VPL_LIGHT_SHADOWS_NONE;
     def.seed = plan->options.seed;
     def.index = run->pass;

@@ -39,8 +39,7 @@ static vplResult shadeView(const vplRun* run, const vplView* view, const vplShad
     if (vplShowsPatchesAlone(run->plan->options.output.show)) {
         memset(image->pixels, 0, vplValueCount(image) * sizeof *image->pixels);
     } else {
-        TRY(vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, def, run->progress, run->runner, image,
-                         &stats));
+        TRY(vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, def, image, &stats));
     }
     vplRun_AddRaster(run, &stats.raster);
     run->stats->rays += stats.shadowRays;
@@ -135,7 +134,9 @@ static vplShadeDef describe(const vplRun* run)
                          .samples = o->output.antialias,
                          .minDistance = v != NULL ? v->minDistance : 0,
                          .particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles.count,
-                         .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL};
+                         .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL,
+                         .progress = run->progress,
+                         .progressUser = run->runner};
 }
 
 // The memory of one call of the stage, besides its picture.

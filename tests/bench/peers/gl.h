@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The OpenGL side's insides.
+// Internal declarations of the OpenGL side.
 #ifndef VPL_BENCH_PEERS_GL_H
 #define VPL_BENCH_PEERS_GL_H
 
@@ -9,7 +9,7 @@
 #include <GL/glcorearb.h>
 
 typedef enum Program {
-    PROGRAM_DEPTH, // nothing but depth
+    PROGRAM_DEPTH, // writes only depth
     PROGRAM_ONE_LIGHT,
     PROGRAM_INSTANCE, // one light per instance
     PROGRAM_BATCH,    // + lighting
@@ -57,15 +57,15 @@ enum {
     TEXTURE_PARTS
 };
 
-// A uniform block of 64 KB, the most that llvmpipe takes.
+// Size of a uniform block of 64 KB, the maximum of llvmpipe.
 enum { LIGHT_VECTORS = 4096, FACETS = 1024 };
 
-// Lights of a batch: COUNT in the shaders. More need more registers than there are, fewer blend more often:
+// Lights per batch: COUNT in the shaders. More lights run out of registers, fewer need more blending passes:
 // 0.79, 0.98, 1.05 and 0.89 G/s with 6, 9, 12 and 18 documented lights, 0.71, 0.86 and 0.81 with 6, 9 and 12
-// physical ones (512 in all). Eighteen fit into one pass, the most that varyings have room for.
+// physical ones (512 in all). One pass holds at most eighteen lights, the limit of the varyings.
 enum { BATCH_PHYSICAL = 9, BATCH_DOCUMENTED = 12, BATCH_FEW = 18, BATCH_INTERLEAVED = 16 };
 
-// The first lights of a list, and black ones after them.
+// The first lights of a list, padded with black ones.
 typedef struct LightSet {
     int key;
     GLuint buffer;
@@ -88,8 +88,8 @@ struct Gl {
     GLuint cubeDepth, cubeColour, cubeBuffer;
     GLuint cubeDepthFrames[6], cubeColourFrames[6];
     int vertexCount, gridCount;
-    float toClip[16];        // of the camera
-    float faceToClip[6][16]; // of the cube's faces
+    float toClip[16];        // the camera's
+    float faceToClip[6][16]; // of the cube map's faces
     int64_t draws;
 };
 
@@ -97,16 +97,16 @@ void makeGlPrograms(Gl* gl);
 void makeGlRoom(Gl* gl);
 void makeGlTargets(Gl* gl);
 
-// "#define TAPS ..." for the shaders.
+// Writes "#define TAPS ..." for the shaders.
 void writeTaps(const Gl* gl, char* text, size_t size);
 
-// The uniform buffer of the first `count` lights.
+// Returns the uniform buffer of the first `count` lights.
 GLuint findLights(Gl* gl, bool documented, int count);
 
-// All state that the ways differ in, set in one place.
+// The OpenGL state that differs between ways; setState sets all of it.
 typedef struct State {
     GLuint frame;
-    GLenum compare; // of depth; 0: no test
+    GLenum compare; // depth test; 0: none
     bool depthWrite, add;
 } State;
 
@@ -115,7 +115,7 @@ void useProgram(Gl* gl, Program program);
 void drawRoom(Gl* gl);
 void drawScreen(Gl* gl);
 
-// Clears the depth to 1, or all channels of the colour.
+// Clears depth to 1 if `depth`, and all channels of the colour to `colour`.
 void clearTarget(float colour, bool depth);
 void drawGbuffer(Gl* gl);
 

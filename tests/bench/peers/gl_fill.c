@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OpenGL's rasterizer alone: layers over the whole picture, and many small triangles.
+// Measures OpenGL's rasterizer alone: layers that cover the whole picture, and many small triangles.
 #include "gl.h"
 
 static void clearDepth(void)
@@ -8,7 +8,7 @@ static void clearDepth(void)
     glClearBufferfv(GL_DEPTH, 0, &one);
 }
 
-// count 0: one triangle in the middle of depth.
+// Draws `count` layers; 0: one triangle at medium depth.
 static void drawLayers(Gl* gl, int count, int nearer)
 {
     glUniform1i(AT_LAYER_COUNT, nearer);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Based on: Alexander Keller and Wolfgang Heidrich, Interleaved Sampling, EGWR 2001, as Benjamin Segovia and others
-// split the G-buffer for it, Non-interleaved Deferred Shading of Interleaved Sample Patterns, Graphics Hardware
-// 2006: sixteen small pictures, each lit by its sixteenth of the lights, and a box over 4 x 4 pixels.
+// Based on: Alexander Keller and Wolfgang Heidrich, Interleaved Sampling, EGWR 2001, with the G-buffer split
+// by Benjamin Segovia et al., Non-interleaved Deferred Shading of Interleaved Sample Patterns, Graphics
+// Hardware 2006: sixteen small pictures, each lit by a sixteenth of the lights, and a box filter over 4 x 4
+// pixels.
 #include "gl.h"
 
 void glInterleaved(Gl* gl, const Row* row)

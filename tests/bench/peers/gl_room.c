@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The room for OpenGL: its triangles, lights, camera and cube as buffers and matrices.
+// Puts the room into OpenGL: triangles, lights, camera and cube map as buffers and matrices.
 #include "gl.h"
 
 #include <stdio.h>
@@ -23,7 +23,7 @@ static void attribute(GLuint array, int location, int binding, int components, i
     glVertexArrayAttribBinding(array, (GLuint)location, (GLuint)binding);
 }
 
-// Three vertices per triangle, in the scene's order: position, normal, rho / pi, number.
+// Writes three vertices per triangle, in the scene's order: position, normal, rho / pi, triangle index.
 static void fillTriangles(const vplGeometry* g, float* vertices, float (*facets)[2][4])
 {
     for (int t = 0; t < g->triangleCount; t++) {
@@ -72,7 +72,7 @@ static void makeTriangles(Gl* gl)
     roomArray(gl, gl->lightsArray);
 }
 
-// Uniform vectors of a light: position, (normal,) colour.
+// Packs a light into uniform vectors: position, (normal,) colour.
 static int packLight(const Room* room, bool documented, int i, float (*out)[4])
 {
     const vplShadeLight l = documented ? room->documented[i] : room->physical[i];
@@ -117,10 +117,10 @@ GLuint findLights(Gl* gl, bool documented, int count)
     return gl->lightSets[i].buffer;
 }
 
-// Lights i, i + 16, i + 32 ... one after another; and one per instance.
+// Packs lights i, i + 16, i + 32 ... one after another, and one light per instance.
 static void makeLights(Gl* gl)
 {
-    static float split[2 * LIGHT_VECTORS][4]; // bound 64 KB from any part on
+    static float split[2 * LIGHT_VECTORS][4]; // padded, so that 64 KB can be bound from any part on
     const int groups = INTERLEAVE * INTERLEAVE;
     for (int i = 0; i < INTERLEAVED_LIGHTS; i++) {
         packLight(gl->room, true, i, &split[2 * (i % groups * (INTERLEAVED_LIGHTS / groups) + i / groups)]);
@@ -132,7 +132,7 @@ static void makeLights(Gl* gl)
     attribute(gl->lightsArray, 5, 1, 3, 4);
 }
 
-// The direct light with libvpl's bias.
+// Packs the direct light with libvpl's bias.
 static void makeDirect(Gl* gl)
 {
     const Room* room = gl->room;
@@ -151,7 +151,7 @@ static void makeDirect(Gl* gl)
     glBindBufferBase(GL_UNIFORM_BUFFER, BLOCK_DIRECT, gl->direct);
 }
 
-// Row `row` of a matrix that takes a world point relative to `from` along `axis`.
+// Sets row `row` of a matrix that transforms a world point, relative to `from`, along `axis`.
 static void setRow(float m[16], int row, double scale, vplVec3 axis, vplVec3 from, double add)
 {
     const double x = scale * axis.x, y = scale * axis.y, z = scale * axis.z;
@@ -166,7 +166,8 @@ static void makeMatrices(Gl* gl)
     const vplView* v = &gl->room->view;
     const double depth = v->far / (v->far - v->near);
     setRow(gl->toClip, 0, v->scaleX, v->right, v->eye, 0);
-    // Upside down: row 0 is the top, as libvpl's, so that centres on edges belong to the same triangles.
+    // The picture is upside down: row 0 is the top, as in libvpl, so that pixel centres on edges fall into
+    // the same triangles.
     setRow(gl->toClip, 1, -v->scaleY, v->up, v->eye, 0);
     setRow(gl->toClip, 2, depth, v->forward, v->eye, -depth * v->near);
     setRow(gl->toClip, 3, 1, v->forward, v->eye, 0);
@@ -175,7 +176,7 @@ static void makeMatrices(Gl* gl)
         const vplCubeFrame frame = vplCube_GetFrame(face);
         float* m = gl->faceToClip[face];
         setRow(m, 0, 1, frame.right, map->position, 0);
-        setRow(m, 1, -1, frame.up, map->position, 0); // row 0 of a face of OpenGL's is its top
+        setRow(m, 1, -1, frame.up, map->position, 0); // row 0 of a face is its top in OpenGL
         setRow(m, 2, 1, frame.forward, map->position, -(double)map->near);
         setRow(m, 3, 1, frame.forward, map->position, 0);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// OpenGL 4.5 core without a window: EGL's surfaceless platform, programs, textures.
+// Sets up OpenGL 4.5 core without a window: EGL's surfaceless platform, programs, textures.
 #include "gl.h"
 
 #include <EGL/egl.h>
@@ -87,7 +87,7 @@ static GLuint makeTexture(GLenum target, GLenum format, int width, int height)
     return texture;
 }
 
-// Layer -1: the whole texture.
+// Makes a framebuffer object. Layer -1: the whole texture.
 static GLuint makeFrame(GLuint colour, GLuint depth, int colourLayer, int depthLayer)
 {
     GLuint frame;
@@ -132,7 +132,7 @@ void makeGlTargets(Gl* gl)
 
 Gl* openGl(const Room* room, int threads)
 {
-    // Read by llvmpipe when it starts; 0: it draws in the calling thread.
+    // llvmpipe reads LP_NUM_THREADS when it starts; with 0 it draws in the calling thread.
     char count[12];
     snprintf(count, sizeof count, "%d", threads == 1 ? 0 : threads);
     setenv("LP_NUM_THREADS", count, 1);
@@ -146,9 +146,9 @@ Gl* openGl(const Room* room, int threads)
     makeGlPrograms(gl);
     makeGlRoom(gl);
     makeGlTargets(gl);
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE); // depth from 0 to 1, as libvpl
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE); // depth from 0 to 1, as in libvpl
     glBlendFunc(GL_ONE, GL_ONE);
-    glCubeDepth(gl, NULL); // direct light needs one
+    glCubeDepth(gl, NULL); // direct light needs a cube map
     demand(glGetError() == GL_NO_ERROR, "OpenGL reports an error");
     return gl;
 }
@@ -192,7 +192,7 @@ void readGl(Gl* gl, Product product, float* out)
 {
     demand(glGetError() == GL_NO_ERROR, "OpenGL reports an error");
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    if (product == PRODUCT_CUBE) { // its rows are libvpl's already
+    if (product == PRODUCT_CUBE) { // its rows are already in libvpl's order
         glGetTextureImage(gl->cubeDepth, 0, GL_DEPTH_COMPONENT, GL_FLOAT, 6 * CUBE_SIZE * CUBE_SIZE * 4, out);
         return;
     }

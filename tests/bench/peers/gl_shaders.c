@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shaders: the documented and the physical formulas of <vpl/shading.h> and the shadow test of
-// src/visibility/shadow_kernel.c, written as one writes them for a GPU.
+// The shaders evaluate the documented and the physical formulas of <vpl/shading.h> and the shadow test of
+// src/visibility/shadow_kernel.c, in the usual GPU style.
 #include "gl.h"
 
 static const char ROOM_VERTEX[] = "layout(location = 0) in vec3 position;\n"
@@ -31,7 +31,7 @@ static const char ROOM_VERTEX[] = "layout(location = 0) in vec3 position;\n"
                                   "#endif\n"
                                   "}\n";
 
-// One triangle at depth 1, so that GREATER leaves out what shows nothing.
+// Draws one triangle at depth 1: the depth test GREATER rejects pixels that show no surface.
 static const char SCREEN_VERTEX[] =
     "void main() {\n"
     "    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);\n"
@@ -70,7 +70,8 @@ static const char ONE_LIGHT_FRAGMENT[] =
     "    result = vec4(COLOUR * (max(dot(n, l), 0.0) * inversesqrt(dot(l, l))), 0.0);\n"
     "}\n";
 
-// Several lights at once, as flat varyings: Mesa 22.3 loads uniforms lane by lane, and varyings by broadcast.
+// Passes several lights at once as flat varyings: Mesa 22.3 loads uniforms lane by lane, but varyings by
+// broadcast.
 #define VECTORS_OUT                                                                                          \
     "layout(std140, binding = 0) uniform Lights { vec4 lights[4096]; };\n"                                   \
     "flat out vec3 vectors[COUNT * VECTORS];\n"                                                              \
@@ -117,7 +118,7 @@ static const char GBUFFER_FRAGMENT[] = "in vec3 p;\n"
                                        "layout(location = 0) out vec4 result;\n"
                                        "void main() { result = vec4(p, id); }\n";
 
-// The surface of a fragment, from the rasterizer or from the G-buffer.
+// Reads the surface of a fragment from the rasterizer or from the G-buffer.
 #define SURFACE                                                                                              \
     "#ifdef FORWARD\n"                                                                                       \
     "in vec3 p;\n"                                                                                           \
@@ -158,7 +159,8 @@ static const char GBUFFER_FRAGMENT[] = "in vec3 p;\n"
     "    return sum;\n"                                                                                      \
     "}\n"
 
-// TAPS: one for each sample, with its place on the disc in metres, because constants are faster than uniforms.
+// TAPS has one TAP per sample, with its position on the disc in metres as constants, which are faster than
+// uniforms.
 #define DIRECT                                                                                                     \
     "layout(binding = 1) uniform samplerCube cube;\n"                                                              \
     "layout(std140, binding = 2) uniform Direct { vec4 place, intensity, bias; };\n" /* far; 1 / N; b_s, b_dmax */ \
@@ -210,7 +212,7 @@ static const char CUBE_FRAGMENT[] = "in vec3 p;\n"
                                     "#endif\n"
                                     "void main() { gl_FragDepth = length(p - place.xyz) / place.w; }\n";
 
-// One of 16 pictures side by side, each of every fourth pixel across and down.
+// Draws one of 16 pictures side by side; each holds every fourth pixel across and down.
 static const char INTERLEAVE_VERTEX[] = VECTORS_OUT
     "void main() {\n"
     "    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 1.0, 1.0);\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The room drawn by OpenGL in the ways that a renderer would choose from.
+// Draws the room with OpenGL in the ways that a renderer would choose from.
 #include "gl.h"
 
 enum { LIGHTS_OF_DRAW = LIGHT_VECTORS / 3 }; // physical lights in one block
@@ -58,7 +58,7 @@ void clearTarget(float colour, bool depth)
     }
 }
 
-// Depth first, so that every pixel is shaded once.
+// Lays down depth first, so that every pixel is shaded once.
 static void drawDepth(Gl* gl)
 {
     setState(gl, (State){gl->depthFrame, GL_LESS, true, false});
@@ -76,7 +76,7 @@ void drawGbuffer(Gl* gl)
     drawRoom(gl);
 }
 
-// The block of the first lights of a row.
+// Returns the uniform block of the row's lights.
 static GLuint lightsOf(Gl* gl, const Row* row)
 {
     return findLights(gl, row->lighting == VPL_LIGHTING_DOCUMENTED, row->lights);
@@ -94,7 +94,7 @@ static void addPasses(Gl* gl, int count)
     }
 }
 
-// The same passes as instances of one draw.
+// Draws the passes of all lights as instances of one draw.
 static void addInstances(Gl* gl, int count)
 {
     setState(gl, (State){gl->colourFrame, GL_EQUAL, false, true});
@@ -103,7 +103,7 @@ static void addInstances(Gl* gl, int count)
     gl->draws++;
 }
 
-// As addInstances with several lights per instance. The last batch may be filled up with black lights.
+// Does the same as addInstances with several lights per instance. The last batch is padded with black lights.
 static void addBatches(Gl* gl, const Row* row)
 {
     const bool documented = row->lighting == VPL_LIGHTING_DOCUMENTED;
@@ -147,7 +147,7 @@ void glInstances(Gl* gl, const Row* row)
     addInstances(gl, row->lights);
 }
 
-// As few draws as the size of uniform blocks allows.
+// Draws as few times as the size of uniform blocks allows.
 static void shadeWithLights(Gl* gl, const Row* row, bool forward)
 {
     const bool documented = row->lighting == VPL_LIGHTING_DOCUMENTED;
@@ -214,7 +214,7 @@ void glCubeColour(Gl* gl, const Row* row)
     drawCube(gl, true);
 }
 
-// Needs the depth of drawDepth or the G-buffer.
+// Shades in one draw. It needs the depth of drawDepth or the G-buffer.
 static void shadeOnce(Gl* gl, Program program, bool forward, int lights)
 {
     setState(gl, (State){gl->colourFrame, forward ? GL_EQUAL : GL_GREATER, false, false});

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// libvpl against Mesa's llvmpipe, both drawing the same room in one process that alternates them:
+// Compares libvpl with Mesa's llvmpipe: both draw the same room in one process that alternates them:
 //   bench/peers [--scene FILE] [--size WxH] [--threads 1|2] [--runs N] [--only TEXT] [--markdown]
-// One thread is measured in processor time, more in wall-clock time. Where OpenGL has several ways to draw a
-// row, the fastest counts. A row's results are compared, so that what is timed is the same picture.
+// One thread is measured in processor time, several in wall-clock time. If OpenGL has several ways to draw a
+// row, the fastest counts. The results of a row are compared, which shows that both sides drew the same
+// picture.
 #include "peers.h"
 
 #include "cli/bench/measure.h"
@@ -16,7 +17,7 @@
 
 enum { MOST_RUNS = 100, FEW_LIGHTS = 64 };
 
-// A row ends early after so many ms, so that the slowest do not take all the time.
+// A row ends after so many ms, so that the slowest rows do not take all the time.
 static const double ROW_MS = 2000;
 
 static double now(const Options* o)
@@ -45,7 +46,7 @@ static double timeVpl(const Options* o, Room* room, const Row* row)
     const double start = now(o);
     row->vpl(room, row);
     const double ms = now(o) - start;
-    // The workers wait for more to do for a while, in OpenGL's time if they were let.
+    // Idle workers spin for a while. The pause keeps that out of OpenGL's time.
     const struct timespec pause = {0, 10000000};
     if (o->threads > 1) {
         nanosleep(&pause, NULL);
@@ -78,13 +79,13 @@ static const float* resultOf(const Room* room, Product product)
     return room->map->texels;
 }
 
-// Where nothing is, OpenGL's cube map has 1 and libvpl's infinity.
+// Maps empty texels to one value: OpenGL's cube map has 1 there, libvpl's infinity.
 static float clipped(float x)
 {
     return x < 1e30f ? x : 1;
 }
 
-// rmse / mean of libvpl's.
+// Returns the RMSE relative to the mean of libvpl's result.
 static double compareResults(Gl* gl, const Room* room, const Row* row)
 {
     const size_t count = sizeOf(room, row->product);
@@ -104,9 +105,9 @@ static double compareResults(Gl* gl, const Room* room, const Row* row)
 
 // ---- rows
 
-// Which ways of OpenGL are worth measuring: all if the row is small, else the one that was fastest with few
-// lights, by processor time, which others on the machine disturb least. Shaders are compiled and memory is
-// touched on the way.
+// Chooses the OpenGL ways to measure: all if the row is small, else the one that was fastest with few lights.
+// It compares processor time, which other programs on the machine disturb least. The call also compiles
+// shaders and touches memory.
 static int chooseWays(Gl* gl, Room* room, const Row* row, int* countOut)
 {
     Row few = *row;
@@ -206,8 +207,8 @@ static Options readOptions(int argc, char** argv)
 int main(int argc, char** argv)
 {
     const Options o = readOptions(argc, argv);
-    // Both sides allocate large blocks in every run. glibc maps and unmaps them until it has seen some freed, and
-    // the page faults nearly double OpenGL's time of the small triangles, if theirs is the first row.
+    // Both sides allocate large blocks in every run. By default glibc maps and unmaps each until it has seen
+    // some freed; the page faults nearly double OpenGL's time of the small triangles if that row runs first.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     Room room = {0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The benchmark room drawn by OpenGL and by libvpl: what both sides share.
+// The benchmark room drawn by OpenGL and by libvpl: declarations that both sides share.
 #ifndef VPL_BENCH_PEERS_H
 #define VPL_BENCH_PEERS_H
 
@@ -23,12 +23,12 @@ enum {
 
 typedef struct Options {
     const char* scene;
-    const char* only; // rows whose names contain this; NULL: all
+    const char* only; // runs only rows whose names contain this; NULL: all
     int width, height, threads, runs;
     bool markdown;
 } Options;
 
-// What both sides draw.
+// The scene data that both sides draw, and libvpl's results.
 typedef struct Room {
     vplContext* context;
     vplScene* scene;
@@ -36,15 +36,15 @@ typedef struct Room {
     vplView view;
     const vplEmitterDef* emitter;
     vplShadeLight *documented, *physical; // MOST_LIGHTS of each
-    vplMesh grid;                         // small triangles all over the picture
+    vplMesh grid;                         // small triangles that cover the picture
     vplVec3* gridPositions;               // clip space, w = 1
     // libvpl's results
     vplImage* image;
     vplCubeMap* map;
     vplShadow shadow;
-    float* depth;    // of fills: one per pixel
-    float* colour;   // of fills: ADD_PLANES planes, one after another
-    int64_t draws;   // calls of the last way
+    float* depth;    // of the fill rows: one per pixel
+    float* colour;   // of the fill rows: ADD_PLANES planes, one after another
+    int64_t draws;   // draw calls of the last way
     int64_t covered; // pixels that show the room
 } Room;
 
@@ -55,10 +55,10 @@ typedef struct Row Row;
 typedef void GlWayFcn(Gl* gl, const Row* row);
 typedef void VplWayFcn(Room* room, const Row* row);
 
-// What a row leaves behind, for comparing.
+// The result of a row that main.c compares.
 typedef enum Product { PRODUCT_PICTURE, PRODUCT_DEPTH, PRODUCT_LAYERS, PRODUCT_CUBE } Product;
 
-// What its rate counts.
+// The unit of work that a row's rate counts.
 typedef enum Unit { UNIT_NONE, UNIT_LIGHTS, UNIT_DEPTH, UNIT_ADD, UNIT_TRIANGLES } Unit;
 
 typedef struct GlWay {
@@ -70,12 +70,12 @@ struct Row {
     const char* name;
     int lights;
     vplLighting lighting;
-    const GlWay* gl; // up to GL_WAYS and an end without name; the fastest counts
-    VplWayFcn* vpl;  // NULL: libvpl has none
+    const GlWay* gl; // at most GL_WAYS and a terminator without name; the fastest counts
+    VplWayFcn* vpl;  // NULL: libvpl has no such way
     vplAccumulation accumulation;
     Unit unit;
     Product product;
-    const char* goal[2]; // of the issue for one and for two threads, with its figure for Mesa 25
+    const char* goal[2]; // goals of the issue for one and for two threads, with its figure for Mesa 25
 };
 
 // The medians of one row.
@@ -88,12 +88,12 @@ typedef struct Figure {
 extern const Row ROWS[];
 extern const int ROW_COUNT;
 
-// Units of work in one run of a row.
+// Returns the units of work in one run of a row.
 double workOf(const Room* room, const Row* row);
 
 void printTable(const Options* o, const Room* room, const Gl* gl, const Figure* figures);
 
-// Ends the program with a message unless ok.
+// Ends the program with a message unless `ok`.
 void demand(bool ok, const char* message);
 
 // ---- libvpl
@@ -114,7 +114,7 @@ void resetDrawsOfGl(Gl* gl);
 const char* rendererOfGl(const Gl* gl);
 const char* versionOfGl(const Gl* gl);
 
-// Floats of a product, rows top-down.
+// Reads a product's floats back, rows top-down.
 void readGl(Gl* gl, Product product, float* out);
 
 GlWayFcn glMultipass, glInstances, glForward, glDeferred, glCubeDepth, glCubeColour, glDirectForward,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The benchmark room, its camera, lights and shadow map, through libvpl's public calls. OpenGL draws what this
-// makes.
+// Makes the benchmark room, its camera, lights and shadow map through libvpl's public API. OpenGL draws the
+// same data.
 #include "peers.h"
 
 #include <stdio.h>
@@ -22,7 +22,8 @@ static void say(void* user, vplLogLevel level, const char* message)
     }
 }
 
-// Enough particles for MOST_LIGHTS lights, of which the first are taken; a short list starts over.
+// Traces enough particles for MOST_LIGHTS lights and takes the first ones; a list that is too short is
+// repeated.
 static vplShadeLight* makeLights(const Room* room, vplLighting lighting)
 {
     vplParticleDef def = vplDefaultParticleDef();
@@ -49,7 +50,7 @@ static float gridDepth(int i)
     return 0.25f + 0.5f * (float)((uint32_t)i * 2654435761u >> 8) / 16777216;
 }
 
-// Right triangles with legs of two pixels, in rows.
+// Makes rows of right triangles with legs of two pixels.
 static void makeGrid(Room* room)
 {
     const int columns = room->view.width / GRID_STEP, rows = room->view.height / GRID_STEP;
@@ -74,11 +75,11 @@ static void makeGrid(Room* room)
     room->grid = (vplMesh){indices, vertexCount, triangleCount};
 }
 
-// Pixels that show a surface: what is multiplied by lights in rates.
+// Counts pixels that show a surface; rates multiply this by the number of lights.
 static int64_t countCovered(Room* room)
 {
     vplShadeDef def = {.accumulation = VPL_ACCUMULATE_DEFERRED, .output = VPL_OUTPUT_DEPTH};
-    demand(vplShadeView(room->geometry, &room->view, &def, NULL, NULL, room->image, NULL) == VPL_SUCCESS,
+    demand(vplShadeView(room->geometry, &room->view, &def, room->image, NULL) == VPL_SUCCESS,
            "the room cannot be drawn");
     int64_t covered = 0;
     for (int i = 0; i < room->view.width * room->view.height; i++) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is measured, and what the issue asks of it ("Fast"): figures in brackets are its own, of Mesa 25. Single
-// stages have goals for one thread, whole frames for two.
+// The measured rows, and the goals of the issue ("Fast") for them: figures in brackets are the issue's own
+// measurements of Mesa 25. Single stages have goals for one thread, whole frames for two.
 #include "peers.h"
 
 static const GlWay PASSES[] = {{"pass per light", glMultipass}, {"instances", glInstances}, {NULL, NULL}};
@@ -17,7 +17,7 @@ static const GlWay ADD_FILL[] = {{"EQUAL", glAddFill}, {NULL, NULL}};
 static const GlWay TRIANGLES[] = {{"LESS", glTriangles}, {NULL, NULL}};
 static const GlWay INTERLEAVED[] = {{"16 parts", glInterleaved}, {NULL, NULL}};
 
-// Of all rows of one kind, or of one row.
+// Entries shared by all rows of one kind.
 #define MULTIPASS                                                                                            \
     PASSES, vplLightsWay, VPL_ACCUMULATE_MULTIPASS, UNIT_LIGHTS, PRODUCT_PICTURE,                            \
     {                                                                                                        \
@@ -46,7 +46,7 @@ static const GlWay INTERLEAVED[] = {{"16 parts", glInterleaved}, {NULL, NULL}};
 #define BY_DOCUMENT VPL_LIGHTING_DOCUMENTED
 #define BY_PHYSICS  VPL_LIGHTING_PHYSICAL
 
-// Name, number of lights, lighting, and the rest.
+// Each row gives name, number of lights, lighting, and the rest.
 const Row ROWS[] = {
     {"multipass, 18 lights", 18, BY_DOCUMENT, MULTIPASS},
     {"multipass, 198 lights", 198, BY_DOCUMENT, MULTIPASS},

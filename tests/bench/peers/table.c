@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table, as text or as Markdown.
+// Prints the table as text or as Markdown.
 #include "peers.h"
 
 #include <stdio.h>
@@ -22,7 +22,7 @@ static void readProcessor(char name[128])
     }
 }
 
-// "1.23 G/s" of what the row counts, or "".
+// Writes the row's rate, for example "1.23 G/s", or "" if the row has none.
 static void formatRate(char text[16], const Row* row, double work, double ms)
 {
     text[0] = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rows of the table as libvpl draws them, through its public calls.
+// Draws the rows of the table with libvpl, through its public API.
 #include "peers.h"
 
 #include <string.h>
@@ -16,7 +16,7 @@ static void shade(Room* room, const Row* row, bool direct)
     def.lights = row->lighting == VPL_LIGHTING_DOCUMENTED ? room->documented : room->physical;
     def.lightCount = row->lights;
     vplShadeStats stats;
-    demand(vplShadeView(room->geometry, &room->view, &def, NULL, NULL, room->image, &stats) == VPL_SUCCESS,
+    demand(vplShadeView(room->geometry, &room->view, &def, room->image, &stats) == VPL_SUCCESS,
            "libvpl cannot draw the room");
     room->draws += stats.raster.drawCalls;
 }
@@ -26,10 +26,11 @@ void vplLightsWay(Room* room, const Row* row)
     shade(room, row, false);
 }
 
-// The map's bounds belong to the map, and are built once for all pictures: outside this row, inside the frames.
+// Measures direct light. The cube map's bounds are built once per map: this row leaves that out, the rows of
+// whole frames include it.
 void vplDirectWay(Room* room, const Row* row)
 {
-    if (room->map->bounds == NULL) { // drawn again by another row
+    if (room->map->bounds == NULL) { // another row has drawn the map again
         demand(vplCubeMap_FindBounds(room->map) == VPL_SUCCESS, "no bounds");
     }
     shade(room, row, true);
@@ -44,13 +45,13 @@ void vplCubeWay(Room* room, const Row* row)
     if (room->map == NULL) {
         demand(vplCubeMap_Create(room->geometry, &def, NULL, NULL, &room->map) == VPL_SUCCESS,
                "no shadow map");
-    } else { // as OpenGL, which draws into the same texture again
+    } else { // draws into the same map again, as OpenGL does
         demand(vplCubeMap_Redraw(room->map, room->geometry, &def, NULL, NULL) == VPL_SUCCESS,
                "no shadow map");
     }
     room->draws += room->map->stats.drawCalls;
     vplShadowDef shadowDef = vplDefaultShadowDef();
-    shadowDef.biasRule = VPL_BIAS_PAIR; // the document's, as vplRender does for documented lighting
+    shadowDef.biasRule = VPL_BIAS_PAIR; // the bias of the document, as vplRender uses for documented lighting
     shadowDef.pcfSamples = PCF_SAMPLES;
     demand(vplShadow_Create(room->map, &shadowDef, &room->shadow) == VPL_SUCCESS, "no shadow");
 }
@@ -64,7 +65,7 @@ void vplFrameWay(Room* room, const Row* row)
 
 // ---- the rasterizer alone
 
-// Three vertices per layer: a triangle over the whole picture. layers 0: one in the middle of depth.
+// Writes three vertices per layer: a triangle over the whole picture. layers 0: one triangle at medium depth.
 static void layerVertices(const void* uniforms, int first, int count, const vplVertices* out)
 {
     const int layers = *(const int*)uniforms;
@@ -127,7 +128,7 @@ static void endRaster(Room* room, vplRaster* raster)
     vplRaster_Destroy(raster);
 }
 
-// Indices of separate triangles.
+// Returns the indices 0, 1, 2 ... of separate triangles.
 static const uint32_t* countingIndices(void)
 {
     static uint32_t indices[3 * DEPTH_LAYERS];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The hot loops, what each item costs by its source (to be counted again where a kernel changes), and variants that
-// tell what bounds those far from their roof.
+// The hot loops, the cost of each item counted from its source (count again when a kernel changes), and
+// variants that show what limits loops far from their roof.
 #include "work.h"
 
 #define DOCUMENTED_COSTS                                                                                     \
@@ -11,28 +11,29 @@
     {                                                                                                        \
         .mul = 15, .add = 12, .other = 5, .divide = 1                                                        \
     }
-// Per light, not per pixel: bounds of two sums of three products.
+// Per light, not per pixel: bounds of two dot products.
 #define CULL_COSTS                                                                                           \
     {                                                                                                        \
         .mul = 18, .add = 10, .other = 15, .read = 24, .written = 4                                          \
     }
-// Blocks inside the triangle: depth stepped in double, clamped, compared, chosen; fragments counted.
+// Blocks inside the triangle: depth is stepped in double, clamped, compared and selected; fragments are
+// counted.
 #define FILL_COSTS                                                                                           \
     {                                                                                                        \
         .other = 5, .doubles = 1, .toFloat = 1, .read = 16, .written = 8                                     \
     }
-// Passes over kept blocks: the shader writes four planes, each is added and chosen.
+// Passes over stored blocks: the shader writes four planes, and each is added under a mask.
 #define ADD_COSTS                                                                                            \
     {                                                                                                        \
         .add = 4, .other = 4, .read = 36, .written = 32                                                      \
     }
-// w from three planes in double, the texel's direction, the distance along it; compared, chosen, counted.
+// w from three planes in double, the texel's direction, the distance along it; then compare, select, count.
 #define TEXEL_COSTS                                                                                          \
     {                                                                                                        \
         .mul = 6, .add = 8, .other = 7, .doubles = 3, .toFloat = 3, .toInt = 2, .divide = 1, .root = 1,      \
         .read = 40, .written = 16                                                                            \
     }
-// The sample's direction, the texel it meets (most of it choices between axes), one comparison there.
+// The sample's direction, the texel that it hits (mostly selects between axes), and one comparison there.
 #define LOOK_UP_COSTS                                                                                        \
     {                                                                                                        \
         .mul = 11, .add = 9, .other = 35, .divide = 2, .toInt = 2, .gather = 1                               \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a machine can do at most, measured by loops that do nothing else. Compiled once per instruction set, by the
-// rules of the library's kernels.
+// Loops that measure a machine's peak rates and do nothing else. The file is compiled once per instruction
+// set, with the flags of the library's kernels.
 #include "roofline.h"
 
 #include "base/isa.h"
@@ -34,7 +34,8 @@ typedef double Doubles __attribute__((vector_size(BYTES)));
 
 enum { FLOATS = sizeof(Floats) / sizeof(float), REPEATS = 20000, PASSES = 200 };
 
-// Twelve chains: two operations of three to four cycles, up to two of each begun per cycle.
+// Twelve independent chains keep two units busy: each operation takes three to four cycles, and up to two
+// begin per cycle.
 #define TWELVE(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11)
 #define BEGIN(k)  x##k = (a - a) + (float)(k + 1);
 #define SUM(k)    sum += x##k;
@@ -66,7 +67,7 @@ CHAINS(mulOnly, Floats, TWELVE(MUL), 1)
 CHAINS(addOnly, Floats, TWELVE(ADD), 1)
 CHAINS(doubleMulAdd, Doubles, TWELVE(BOTH), 2)
 
-// Written out, because contraction is off as in the library.
+// FMA is written with intrinsics, because contraction is off, as in the library.
 #if defined(__AVX512F__) && !IS_SCALAR_ISA
 #define FUSE(k) x##k = (Floats)_mm512_fmadd_ps((__m512)x##k, (__m512)a, (__m512)a);
 CHAINS(fused, Floats, TWELVE(FUSE), 2)
@@ -81,7 +82,7 @@ static double fused(Arena* arena)
 }
 #endif
 
-// Keeps a pass over arrays from being merged with the next.
+// Keeps the compiler from merging a pass over arrays with the next one.
 #define NEXT_PASS() __asm__ volatile("" ::: "memory")
 
 #define PASS(name, From, To, expression)                                                                     \
@@ -168,7 +169,8 @@ static double writeBytes(Arena* arena, size_t bytes)
     return (double)bytes * passes;
 }
 
-// Times one, which costs nothing, or the compiler would call memcpy with its own ways of writing.
+// Multiplies by one, which costs nothing; for a plain copy the compiler would call memcpy, which stores
+// differently.
 static double copyBytes(Arena* arena, size_t bytes)
 {
     const size_t count = bytes / 2 / sizeof(Floats);
@@ -196,7 +198,7 @@ static double clockCycles(Arena* arena)
     return 2.0 * REPEATS;
 }
 
-// Bandwidths in the order of the enum: read, write, copy of L1, L2, memory.
+// Returns bandwidths in the order of the enum: read, write, copy of L1, L2, memory.
 static double moveBytes(Arena* arena, int kind)
 {
     static const size_t bytes[] = {L1_BYTES, L2_BYTES, MEMORY_BYTES};

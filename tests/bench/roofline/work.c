@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hot loops at work on one thread, and variants of them with one thing changed.
+// Runs the hot loops on one thread, and variants of them with one change each.
 #include "work.h"
 
 #include "cli/bench/cover.h"
@@ -49,7 +49,8 @@ double addLights(void* work, int which)
     return 16.0 * LIGHTS * VPL_LANES;
 }
 
-// One light per call, as with shadows: shows what reading and writing the block around each light costs.
+// Adds one light per call, as shading with shadows does: shows the cost of reading and writing the block for
+// each light.
 double addLightsOneByOne(void* work, int which)
 {
     Work* w = work;
@@ -62,7 +63,7 @@ double addLightsOneByOne(void* work, int which)
     return (double)LIGHTS * VPL_LANES;
 }
 
-// Which lights can reach a square metre of the floor: all of them can.
+// Culls lights that cannot reach a square metre of the floor. All of them can.
 double cullLights(void* work, int which)
 {
     Work* w = work;
@@ -103,7 +104,7 @@ static void makeLights(Work* w)
 
 // ---- fill: triangles over all of the picture
 
-// What the planes then hold is what the block held before.
+// Writes nothing: the planes keep the block's previous values.
 static void noFragments(const void* uniforms, vplFragments* f)
 {
     (void)uniforms;
@@ -164,7 +165,7 @@ double lookUp(void* work, int which)
     float factor[VPL_LANES];
     for (int i = 0; i < 256; i++) {
         vplSurface surface = w->surface[i % 4];
-        for (int l = 0; l < VPL_LANES; l++) { // all over the floor
+        for (int l = 0; l < VPL_LANES; l++) { // spread over the floor
             surface.px[l] += 0.06f * (float)(i / 4 % 16);
             surface.pz[l] -= 0.25f * (float)(i / 64);
         }
@@ -183,7 +184,7 @@ static void makeChain(vplBvh* bvh, int count)
     for (int n = 0; bvh->nodes != NULL && n < count; n++) {
         bvh->nodes[n].count = VPL_BVH_WIDTH;
         for (int i = 0; i < VPL_BVH_WIDTH; i++) {
-            const bool way = i == n % VPL_BVH_WIDTH && n + 1 < count; // the last is missed in all its boxes
+            const bool way = i == n % VPL_BVH_WIDTH && n + 1 < count; // rays miss all boxes of the last node
             for (int k = 0; k < 6; k++) {
                 bvh->nodes[n].planes[k][i] = way ? (k < 3 ? -1.0f : 1.0f) : (k < 3 ? 50.0f : 51.0f);
             }
@@ -198,7 +199,7 @@ static void makeBlocks(vplBvh* bvh)
     bvh->blockCount = BLOCKS;
     for (int b = 0; bvh->blocks != NULL && b < BLOCKS; b++) {
         for (int i = 0; i < VPL_BVH_WIDTH; i++) {
-            for (int k = 0; k < 9; k++) { // beside the rays
+            for (int k = 0; k < 9; k++) { // beside the rays, so that they miss
                 bvh->blocks[b].p[k / 3][k % 3][i] = 5 + 0.1f * (float)(k == 4 || k == 8) + 0.01f * (float)i;
             }
             bvh->blocks[b].id[i] = b * VPL_BVH_WIDTH + i;
