@@ -59,14 +59,23 @@ static inline float vplEdgeDistance(const vplShading* s, int triangle, const vpl
     return vplMinf(vplMaxf(w, vplMaxf(least, (float)s->view->near)), most); // NaN becomes the least
 }
 
+static inline bool vplSameReflector(const vplReflector* a, const vplReflector* b)
+{
+    bool same = true;
+    for (int c = 0; c < 3; c++) {
+        same &= a->factor[c] == b->factor[c] && a->emission[c] == b->emission[c];
+    }
+    return same;
+}
+
 static inline bool vplIsOneSurface(const vplShading* s, const vplCachedFacet* a, const vplCachedFacet* b,
                                    float distance, vplVec3 sight)
 {
     const float width = 2 / (float)(s->view->height * s->view->scaleY) * distance;
     const float apart = distance * vplDot(a->normal, sight) - a->offset;
     const float least = a->smooth && b->smooth ? EDGE_SMOOTH_COSINE : EDGE_COSINE;
-    return memcmp(&a->reflector, &b->reflector, sizeof a->reflector) == 0 &&
-           vplDot(a->normal, b->normal) >= least && fabsf(apart) <= EDGE_PIXELS * width;
+    return vplSameReflector(&a->reflector, &b->reflector) && vplDot(a->normal, b->normal) >= least &&
+           fabsf(apart) <= EDGE_PIXELS * width;
 }
 
 // The sample of a set that is nearest to the mean of them.
