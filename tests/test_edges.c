@@ -12,7 +12,8 @@ enum { WIDTH = 160, HEIGHT = 90 };
 // ---- pictures
 
 // Renders with options from a list of names and values that ends in NULL.
-static vplImage* renderWith(const vplScene* scene, const char* const* words, const char* name, const char* value)
+static vplImage* renderWith(const vplScene* scene, const char* const* words, const char* name,
+                            const char* value)
 {
     vplRenderOptions o = vplDefaultRenderOptions();
     o.output.width = WIDTH;
@@ -29,7 +30,7 @@ static double rmseOf(const vplImage* a, const vplImage* b)
 {
     enum { TOP = 24 };
     vplComparison c;
-    vplImage *below[2];
+    vplImage* below[2];
     assert_int_equal(vplImage_Crop(a, 0, TOP, WIDTH, HEIGHT - TOP, &below[0]), VPL_SUCCESS);
     assert_int_equal(vplImage_Crop(b, 0, TOP, WIDTH, HEIGHT - TOP, &below[1]), VPL_SUCCESS);
     assert_int_equal(vplImage_Compare(below[0], below[1], &c), VPL_SUCCESS);
@@ -51,7 +52,8 @@ static vplScene* glowingScene(vplContext* context, uint64_t seed)
                  vplVec((float)(8 * uniformAt(seed, at) - 4), (float)(5 * uniformAt(seed, at + 1) - 2.5),
                         (float)(4 * uniformAt(seed, at + 2) - 2)),
                  6 * uniformAt(seed, at + 3), 6 * uniformAt(seed, at + 4),
-                 vplVec((float)(0.2 + uniformAt(seed, at + 5)), (float)(thin * (0.2 + uniformAt(seed, at + 6))),
+                 vplVec((float)(0.2 + uniformAt(seed, at + 5)),
+                        (float)(thin * (0.2 + uniformAt(seed, at + 6))),
                         (float)(0.2 + uniformAt(seed, at + 7))));
     }
     return scene;
@@ -139,8 +141,8 @@ TEST(MoreEdgesThanATileKeepsAreLitAsWell, 2)
     aim(scene, vplVec(0, 2, 0), vplVec(0.01f, 0, 0));
     addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.3f, 1.5f, 0.2f), vplVec(0, -1, 0), 3);
     for (int i = 0; i < 240; i++) {
-        addThing(scene, VPL_OBJECT_QUAD, i % 2 ? 0 : bright, vplVec(0.02f * (float)(i - 120), 0, 0), -VPL_PI / 2, 0,
-                 vplVec(0.02f, 4, 1));
+        addThing(scene, VPL_OBJECT_QUAD, i % 2 ? 0 : bright, vplVec(0.02f * (float)(i - 120), 0, 0),
+                 -VPL_PI / 2, 0, vplVec(0.02f, 4, 1));
     }
     const char* const deferred[] = {"particles", "64", NULL};
     const char* const shared[] = {"particles", "64", "pipeline", "interleaved", NULL};
