@@ -51,15 +51,16 @@ typedef struct Writer {
     vplTriangleRef* next;
     int* counts; // by tile
     int tilesX, tilesY, width, height;
+    bool sampled;
     int clipped, extras;
 } Writer;
 
-// Keeps one projected triangle; false for zero area or where no pixel centre can lie.
+// Keeps one projected triangle; false for zero area or where no pixel centre or sample can lie.
 static inline bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
 {
     const int64_t area =
         (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
-    const vplPixelBox box = vplTriangle_PixelBox(v);
+    const vplPixelBox box = vplTriangle_PixelBox(v, w->sampled);
     if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || (box.x1 | box.y1) < 0 || box.x0 >= w->width ||
         box.y0 >= w->height) {
         return false;
@@ -129,6 +130,7 @@ void vplAssembleChunk(void* data, int chunkIndex, int worker)
                 .tilesY = r->tilesY,
                 .width = r->framebuffer.width,
                 .height = r->framebuffer.height,
+                .sampled = r->framebuffer.samples > 0,
                 .clipped = chunk->firstClipped,
                 .extras = chunk->firstClipped / VPL_MAX_PIECES * VPL_MAX_CLIPPED};
     const int end = chunk->first + chunk->count;

@@ -7,8 +7,9 @@
 
 // ---- the G-buffer
 
-void vplPrepareGbuffer(vplFramebuffer* framebuffer)
+void vplPrepareGbuffer(const vplShadeDef* def, vplFramebuffer* framebuffer)
 {
+    framebuffer->samples = def->output == VPL_OUTPUT_RADIANCE && def->samples > 1 ? def->samples : 0;
     framebuffer->planeCount = VPL_PLANE_POSITION + 3;
     framebuffer->scratchBytes = offsetof(vplTileSums, irradiance);
     for (int k = 0; k < 3; k++) { // the plane of triangles says where something was written
@@ -34,8 +35,7 @@ vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster, vplTileFcn* t
 
 static vplResult openShow(vplShading* shading, vplFramebuffer* framebuffer)
 {
-    (void)shading;
-    vplPrepareGbuffer(framebuffer);
+    vplPrepareGbuffer(shading->def, framebuffer);
     return VPL_SUCCESS;
 }
 
@@ -46,7 +46,7 @@ static vplResult recordShow(vplShading* shading, vplRaster* raster)
 
 static vplResult openDeferred(vplShading* shading, vplFramebuffer* framebuffer)
 {
-    vplPrepareGbuffer(framebuffer);
+    vplPrepareGbuffer(shading->def, framebuffer);
     return vplMakeColumns(shading);
 }
 

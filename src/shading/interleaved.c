@@ -110,7 +110,15 @@ static vplResult openInterleaved(vplShading* shading, vplFramebuffer* framebuffe
     for (int i = 0; i < workers; i++) {
         vplFacetCache_Clear(&scratch[i].facets);
     }
-    vplPrepareGbuffer(framebuffer);
+    vplPrepareGbuffer(shading->def, framebuffer);
+    if (framebuffer->samples > 0) {
+        w->rasterTilesX = (width + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
+        const size_t tiles = (size_t)w->rasterTilesX * (size_t)((height + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE);
+        w->centres = vplArena_Alloc(shading->arena, pixels, sizeof *w->centres);
+        w->edges = vplArena_Alloc(shading->arena, tiles, VPL_TILE_EDGES * sizeof *w->edges);
+        w->edgeCounts = vplArena_Alloc(shading->arena, tiles, sizeof *w->edgeCounts);
+        TRY(vplArena_Check(shading->arena));
+    }
     for (int k = 0; k < 3; k++) {
         framebuffer->planes[VPL_PLANE_INDIRECT + k].pixels = vplFilterPlane(w, VPL_FILTER_INDIRECT + k);
     }

@@ -16,7 +16,7 @@ static vplResult openLightcuts(vplShading* shading, vplFramebuffer* framebuffer)
     vplLightcuts* lightcuts = vplArena_AllocZero(shading->arena, 1, sizeof *lightcuts);
     vplCutWorker* workers = vplArena_Alloc(shading->arena, (size_t)context->workerCount, sizeof *workers);
     TRY(vplArena_Check(shading->arena));
-    vplPrepareGbuffer(framebuffer);
+    vplPrepareGbuffer(shading->def, framebuffer);
     shading->state = lightcuts;
     lightcuts->workers = workers;
     for (int i = 0; i < context->workerCount; i++) {

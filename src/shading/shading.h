@@ -103,7 +103,7 @@ static inline bool vplShowsLight(vplShadeOutput output)
 }
 
 // Planes of a G-buffer, and the scratch memory of its tiles.
-void vplPrepareGbuffer(vplFramebuffer* framebuffer);
+void vplPrepareGbuffer(const vplShadeDef* def, vplFramebuffer* framebuffer);
 
 // Records one pass that writes the G-buffer, and a task for each finished tile of it.
 vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster, vplTileFcn* task);
@@ -135,6 +135,13 @@ typedef struct vplObjectUniforms {
     const vplVec3* normals; // NULL: flat
     int object;
 } vplObjectUniforms;
+
+// A surface that samples of a pixel show.
+typedef struct vplEdgeSurface {
+    int triangle;
+    int sample; // one that shows it, near the middle of those that do
+    float share;
+} vplEdgeSurface;
 
 // Varyings of a camera pass: world position, and the normal of smooth objects. The surface shader leaves a
 // vplSurface, and where some object is smooth another one for vplPoints.plane.
