@@ -118,8 +118,8 @@ const vplRayKernels* vplGetRayKernels(vplIsa isa);
 
 // ---- queries; without a ray tree they test every triangle
 
-// Finds the closest hit nearer than tMax, in units of the direction. Adds to *tests, which may be NULL, the number
-// of objects where all are tested, otherwise the number of blocks that were tested.
+// Finds the closest hit nearer than tMax, in units of the direction. Adds to *tests, which may be NULL, the
+// number of objects where all are tested, otherwise the number of blocks that were tested.
 bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, float tMax, int* tests, vplHit* hitOut);
 
 // vplGeometry_IsOccluded by testing every triangle, also where there is a tree.

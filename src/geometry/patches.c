@@ -41,7 +41,8 @@ static vplResult checkDef(const vplGeometry* geometry, const vplPatchDef* def)
 
 // ---- counting
 
-// The number of patches that a triangle, or a part of one, becomes in `rounds` rounds. Stops counting at `enough`.
+// The number of patches that a triangle, or a part of one, becomes in `rounds` rounds. Stops counting at
+// `enough`.
 static int countPart(const vplTriangleCorners* part, vplVec3 normal, double square, int rounds, int enough)
 {
     const vplTriangleCorners rotated = vplPatch_Rotate(part);

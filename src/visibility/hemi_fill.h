@@ -13,7 +13,8 @@
 
 // ---- one triangle
 
-// The coefficients of e.d = a + b u + c v in one quadrant, where p has the sign of `right` and q that of `up`.
+// The coefficients of e.d = a + b u + c v in one quadrant, where p has the sign of `right` and q that of
+// `up`.
 static inline Coefficients linearOf(vplVec3 e, float right, float up)
 {
     const float p = e.x - right * e.z, q = e.y - up * e.z;

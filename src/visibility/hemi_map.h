@@ -42,7 +42,8 @@ static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVe
     return above;
 }
 
-// The number of triangles that the map of a place draws: those in blocks of the tree that reach above its plane.
+// The number of triangles that the map of a place draws: those in blocks of the tree that reach above its
+// plane.
 int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place);
 
 // Blockers that are nearer to the light than a fragment and its plane by less than this fraction of the

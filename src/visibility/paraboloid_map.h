@@ -25,9 +25,9 @@ static inline size_t vplParaboloidMap_Place(int size, int column, int row)
     return (size_t)(row + 1) * (size_t)vplParaboloidMap_Stride(size) + (size_t)(column + 1);
 }
 
-// Texels up to this distance from the middle hold surfaces. With a back hemisphere that is beyond the rim of the
-// disk by more than a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the rim are
-// valid.
+// Texels up to this distance from the middle hold surfaces. With a back hemisphere that is beyond the rim of
+// the disk by more than a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the
+// rim are valid.
 static inline float vplParaboloidMap_Rim(int size, int hemispheres)
 {
     return hemispheres == 2 ? 1 + 3 / (float)size : 1;

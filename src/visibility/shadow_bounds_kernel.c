@@ -140,7 +140,8 @@ static void findCones(const vplShadow* shadow, const vplShadowPoints* p, const S
     }
 }
 
-// Tests whether the receiver's plane at each point lies before all points of the region, as seen from the light.
+// Tests whether the receiver's plane at each point lies before all points of the region, as seen from the
+// light.
 static void testPlanes(const vplShadowPoints* p, const Cones* c, const vplSurface* axes,
                        const vplCubeRegion* region, int32_t lit[restrict VPL_LANES])
 {

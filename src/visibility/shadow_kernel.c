@@ -122,8 +122,8 @@ static inline int32_t countBehind(const float* restrict texels, const int32_t pl
     return behind;
 }
 
-// Counts the samples of one point in shadow, 16 at a time. `inFace`: all samples lie in the point's face, which
-// then need not be found for each (bench/shadow: 1.2x). Callers pass a constant.
+// Counts the samples of one point in shadow, 16 at a time. `inFace`: all samples lie in the point's face,
+// which then need not be found for each (bench/shadow: 1.2x). Callers pass a constant.
 static inline __attribute__((always_inline)) float countPoint(const vplShadow* shadow,
                                                               const vplShadowPoints* restrict p, int lane,
                                                               const float axis[6][VPL_LANES],
