@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where clusters start: at lights far from each other. Starting from every n/C-th light ends with 1.00 to
+// Clusters start at lights far from each other. Starting from every n/C-th light ends with 1.00 to
 // 1.36 times the sum of distances from lights to clusters (bench/clusters), because samples of a reflective
 // map are sorted by a coordinate of the map.
 // Based on: Gonzalez, Clustering to Minimize the Maximum Intercluster Distance, Theoretical Computer Science
@@ -71,19 +71,14 @@ static void spreadOut(vplClusterSearch* s, int placed)
     }
 }
 
-static vplClusterPoint pointOf(const vplLightCluster* c)
-{
-    return (vplClusterPoint){{(double)c->position.x, (double)c->position.y, (double)c->position.z},
-                             {(double)c->normal.x, (double)c->normal.y, (double)c->normal.z}};
-}
-
 void vplClusterSearch_Place(vplClusterSearch* s, const vplClusterDef* def)
 {
     const vplLightClusters* last = def->last;
     int placed = 0;
     for (int j = 0; last != NULL && j < last->count && placed < s->count; j++) {
-        if (last->clusters[j].lightCount > 0) {
-            s->centres[placed++] = pointOf(&last->clusters[j]);
+        const vplLightCluster* c = &last->clusters[j];
+        if (c->lightCount > 0) {
+            s->centres[placed++] = vplClusterPoint_Make(c->position, c->normal);
         }
     }
     if (last == NULL && (def->seeds != NULL || s->count == s->lightCount)) { // as many clusters as lights

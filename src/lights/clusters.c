@@ -155,15 +155,6 @@ static void summarize(vplClusterSearch* s, const vplLightSet* set, vplLightClust
 
 // ---- the clusters
 
-static void copyPoints(vplClusterSearch* s, const vplLightSet* set)
-{
-    for (int i = 0; i < s->lightCount; i++) {
-        const vplVec3 p = set->lights[i].position, n = set->lights[i].normal;
-        s->points[i] = (vplClusterPoint){{(double)p.x, (double)p.y, (double)p.z},
-                                         {(double)n.x, (double)n.y, (double)n.z}};
-    }
-}
-
 // Scratch memory of the search; `of` belongs to the clusters.
 static vplResult prepare(vplClusterSearch* s, vplArena* scratch)
 {
@@ -203,7 +194,9 @@ static vplResult find(const vplLightSet* lights, const vplClusterDef* def, vplAr
                                        .lightCount = s.lightCount,
                                        .context = context,
                                        .arena = arena};
-        copyPoints(&s, lights);
+        for (int i = 0; i < s.lightCount; i++) {
+            s.points[i] = vplClusterPoint_Make(lights->lights[i].position, lights->lights[i].normal);
+        }
         vplClusterSearch_Place(&s, def);
         vplClusterSearch_Run(&s, clusters);
         summarize(&s, lights, summaries);

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
-// K-means over virtual lights: what start and search share.
+// K-means over virtual lights: shared by the choice of the first clusters and the search.
 #ifndef VPL_LIGHTS_CLUSTERS_H
 #define VPL_LIGHTS_CLUSTERS_H
 
 #include <vpl/lights.h>
 
-// A light, or what it is compared with, in double.
+// A light, or a place that it is compared with, in double.
 typedef struct vplClusterPoint {
     double p[3]; // metres
     double n[3]; // unit
 } vplClusterPoint;
+
+static inline vplClusterPoint vplClusterPoint_Make(vplVec3 position, vplVec3 normal)
+{
+    return (vplClusterPoint){{(double)position.x, (double)position.y, (double)position.z},
+                             {(double)normal.x, (double)normal.y, (double)normal.z}};
+}
 
 typedef struct vplClusterDistance {
     vplClusterMetric metric;

@@ -8,7 +8,6 @@
 
 #include "lights/kernels.h"
 #include "lights/light_set.h"
-#include "visibility/hemi_map.h"
 
 #include <float.h>
 
@@ -30,13 +29,11 @@ typedef struct Measuring {
 static void castShadows(const Measuring* m, const vplViewBlock* b, const vplShadeLight* light,
                         float reflected[VPL_LANES], int* rays)
 {
-    const vplVec3 n = {light->nx, light->ny, light->nz}, at = {light->px, light->py, light->pz};
     vplRayPacket packet = b->rays;
     packet.active = 0;
     for (int l = 0; l < VPL_LANES; l++) {
         const vplVec3 origin = {packet.origin[0][l], packet.origin[1][l], packet.origin[2][l]};
-        const vplVec3 way = vplWayToLight(at, n, origin),
-                      plane = {b->plane[0][l], b->plane[1][l], b->plane[2][l]};
+        const vplVec3 way = vplWayTo(light, origin), plane = {b->plane[0][l], b->plane[1][l], b->plane[2][l]};
         packet.direction[0][l] = way.x;
         packet.direction[1][l] = way.y;
         packet.direction[2][l] = way.z;

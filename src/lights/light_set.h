@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Making sets of virtual lights, and preparing their lights for kernels.
+// Making sets of virtual lights, and preparing lights and points for kernels.
 #ifndef VPL_LIGHTS_LIGHT_SET_H
 #define VPL_LIGHTS_LIGHT_SET_H
 
 #include <vpl/lights.h>
 
 #include "math/vec.h"
+#include "visibility/hemi_map.h"
+
+#include <stddef.h>
+#include <string.h>
 
 // The arrays of a set, to be written until the set is given away.
 typedef struct vplLightArrays {
@@ -34,5 +38,33 @@ static inline vplShadeLight vplPrepareLight(const vplVirtualLight* v, int partic
     return (vplShadeLight){v->position.x, v->position.y, v->position.z, v->normal.x, v->normal.y,
                            v->normal.z,   shown.r,       shown.g,       shown.b};
 }
+
+// Writes one point of sixteen.
+static inline void vplSurface_Put(vplSurface* surface, int lane, vplVec3 position, vplVec3 normal)
+{
+    surface->px[lane] = position.x;
+    surface->py[lane] = position.y;
+    surface->pz[lane] = position.z;
+    surface->nx[lane] = normal.x;
+    surface->ny[lane] = normal.y;
+    surface->nz[lane] = normal.z;
+}
+
+// The direction to one virtual light from a point, as vplWayToLight gives it.
+static inline vplVec3 vplWayTo(const vplShadeLight* light, vplVec3 from)
+{
+    return vplWayToLight(vplVec(light->px, light->py, light->pz), vplVec(light->nx, light->ny, light->nz),
+                         from);
+}
+
+// Column k of six that a light has for kernels: its position, then its normal.
+static inline float vplShadeLight_Column(const vplShadeLight* light, int k)
+{
+    float value;
+    memcpy(&value, (const char*)light + (size_t)k * sizeof value, sizeof value);
+    return value;
+}
+
+_Static_assert(offsetof(vplShadeLight, nz) == 5 * sizeof(float), "a light begins with its six columns");
 
 #endif

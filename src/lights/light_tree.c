@@ -8,7 +8,7 @@
 #include "base/context.h"
 #include "base/hash.h"
 #include "base/rng.h"
-#include "math/vec.h"
+#include "lights/light_set.h"
 
 #include <string.h>
 
@@ -38,16 +38,6 @@ typedef struct Build {
     int rangeCount;
 } Build;
 
-// Column k of six: position, then normal.
-static inline float columnOf(const vplTreeLight* light, int k)
-{
-    float value;
-    memcpy(&value, (const char*)&light->light + (size_t)k * sizeof value, sizeof value);
-    return value;
-}
-
-_Static_assert(offsetof(vplShadeLight, nz) == 5 * sizeof(float), "a light begins with its six columns");
-
 // The cone around the mean normal. Cosines of rounded unit vectors err by up to 4e-7.
 static void findCone(const vplTreeLight* lights, int count, const double sum[3], vplLightNode* node)
 {
@@ -72,11 +62,11 @@ static int measure(const Build* b, vplCluster c, vplLightNode* node, float* atOu
     float low[6], high[6];
     double sum[3] = {0};
     for (int k = 0; k < 6; k++) {
-        low[k] = high[k] = columnOf(&lights[0], k);
+        low[k] = high[k] = vplShadeLight_Column(&lights[0].light, k);
     }
     for (int i = 0; i < c.count; i++) {
         for (int k = 0; k < 6; k++) {
-            const float v = columnOf(&lights[i], k);
+            const float v = vplShadeLight_Column(&lights[i].light, k);
             low[k] = v < low[k] ? v : low[k];
             high[k] = v > high[k] ? v : high[k];
         }
@@ -103,10 +93,10 @@ static int partition(vplTreeLight* lights, int count, int column, float at)
 {
     int i = 0, j = count - 1;
     while (true) {
-        while (i <= j && columnOf(&lights[i], column) < at) {
+        while (i <= j && vplShadeLight_Column(&lights[i].light, column) < at) {
             i++;
         }
-        while (i <= j && !(columnOf(&lights[j], column) < at)) {
+        while (i <= j && !(vplShadeLight_Column(&lights[j].light, column) < at)) {
             j--;
         }
         if (i >= j) {

@@ -9,7 +9,6 @@
 // Over the map, a plane's depth is linear in parallel views, and its inverse is linear in others. `near` is
 // either: negated depth or 1 / depth, larger nearer to the emitter.
 #include "lights/kernels.h"
-#include "lights/rsm.h"
 #include "math/scalar.h"
 #include "visibility/map_gather.h"
 

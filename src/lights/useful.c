@@ -11,8 +11,6 @@
 #include "geometry/bvh.h"
 #include "lights/light_set.h"
 #include "math/sampling.h"
-#include "math/vec.h"
-#include "visibility/hemi_map.h"
 
 enum {
     CHUNK = 32,              // lights per task

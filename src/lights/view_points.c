@@ -4,6 +4,7 @@
 #include "lights/placement.h"
 
 #include "geometry/triangle.h"
+#include "lights/light_set.h"
 #include "math/scalar.h"
 #include "math/sobol.h"
 #include "math/vec.h"
@@ -51,12 +52,7 @@ static void putPoint(const ViewSampling* s, const vplHit* hit, vplVec3 from, vpl
     const float shown = s->def->lighting == VPL_LIGHTING_DOCUMENTED ? 1.0f : side;
     const vplRgb rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
     const vplRay leave = vplGeometry_Leave(g, hit, vplScale(shown, hit->normal));
-    b->surface.px[l] = hit->position.x;
-    b->surface.py[l] = hit->position.y;
-    b->surface.pz[l] = hit->position.z;
-    b->surface.nx[l] = shown * shading.x;
-    b->surface.ny[l] = shown * shading.y;
-    b->surface.nz[l] = shown * shading.z;
+    vplSurface_Put(&b->surface, l, hit->position, vplScale(shown, shading));
     b->plane[0][l] = shown * hit->normal.x;
     b->plane[1][l] = shown * hit->normal.y;
     b->plane[2][l] = shown * hit->normal.z;

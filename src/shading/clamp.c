@@ -94,7 +94,8 @@ static void addBlock(const vplShading* s, int first, int count, vplClampLoss* su
         if (l < count && vplFindVisiblePoint(g, s->view, (double)vplHalton(i + 1, 0) * s->view->width,
                                              (double)vplHalton(i + 1, 1) * s->view->height, &at[l])) {
             points.triangle[l] = at[l].hit.triangle;
-            vplLitPoint_Store(&at[l], l, &surface, &plane);
+            vplSurface_Put(&surface, l, at[l].hit.position, at[l].shading);
+            vplSurface_Put(&plane, l, at[l].hit.position, at[l].plane);
         }
     }
     vplAddCompensation(s, &points, pixels, lost, &rays);

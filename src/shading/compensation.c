@@ -106,8 +106,10 @@ static void toPoints(const Walk* w, vplSurface* surface, vplSurface* plane, vplP
     }
     for (uint32_t left = w->active; left != 0; left &= left - 1) {
         const int l = __builtin_ctz(left);
-        points->triangle[l] = w->at[l].hit.triangle;
-        vplLitPoint_Store(&w->at[l], l, surface, plane);
+        const vplLitPoint* p = &w->at[l];
+        points->triangle[l] = p->hit.triangle;
+        vplSurface_Put(surface, l, p->hit.position, p->shading);
+        vplSurface_Put(plane, l, p->hit.position, p->plane);
     }
 }
 

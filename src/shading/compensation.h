@@ -3,6 +3,7 @@
 #ifndef VPL_SHADING_COMPENSATION_H
 #define VPL_SHADING_COMPENSATION_H
 
+#include "lights/light_set.h"
 #include "math/sobol.h"
 #include "shading/shading.h"
 
@@ -25,21 +26,7 @@ typedef struct vplLitPoint {
 // Turns both normals of the point's hit towards where `direction` came from.
 void vplLitPoint_Face(vplLitPoint* point, const vplGeometry* g, vplVec3 direction);
 
-// Writes the point into a lane of both surfaces.
-static inline void vplLitPoint_Store(const vplLitPoint* p, int lane, vplSurface* surface, vplSurface* plane)
-{
-    surface->px[lane] = plane->px[lane] = p->hit.position.x;
-    surface->py[lane] = plane->py[lane] = p->hit.position.y;
-    surface->pz[lane] = plane->pz[lane] = p->hit.position.z;
-    surface->nx[lane] = p->shading.x;
-    surface->ny[lane] = p->shading.y;
-    surface->nz[lane] = p->shading.z;
-    plane->nx[lane] = p->plane.x;
-    plane->ny[lane] = p->plane.y;
-    plane->nz[lane] = p->plane.z;
-}
-
-// The point shown at pixel coordinates (x, y); false where there is none.
+// Finds the point shown at pixel coordinates (x, y); false where there is none.
 bool vplFindVisiblePoint(const vplGeometry* g, const vplView* view, double x, double y, vplLitPoint* point);
 
 // A list of virtual lights of which a point draws some.

@@ -7,8 +7,10 @@
 
 // ---- the G-buffer
 
-void vplPrepareGbuffer(const vplShadeDef* def, vplFramebuffer* framebuffer)
+void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn* tileTask)
 {
+    const vplShadeDef* def = shading->def;
+    shading->tileTask = tileTask;
     framebuffer->samples = def->output == VPL_OUTPUT_RADIANCE && def->samples > 1 ? def->samples : 0;
     framebuffer->planeCount = VPL_PLANE_POSITION + 3;
     framebuffer->scratchBytes = offsetof(vplTileSums, irradiance);
@@ -18,42 +20,33 @@ void vplPrepareGbuffer(const vplShadeDef* def, vplFramebuffer* framebuffer)
     }
 }
 
-vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster, vplTileFcn* task)
+vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster)
 {
     for (int i = 0; i < shading->geometry->objectCount; i++) {
-        vplPipeline pipeline = vplCameraPipeline(shading, i);
+        vplPipeline pipeline = vplDefaultPipeline();
+        vplSetCamera(shading, i, &pipeline);
         pipeline.surface = NULL; // normals are finished for visible pixels only, when they are lit
         pipeline.fragment = shading->kernels.gbuffer;
         pipeline.fragmentUniforms = &shading->objects[i];
         pipeline.planeMask = 15u << VPL_PLANE_TRIANGLE | (shading->smooth ? 7u << VPL_PLANE_NORMAL : 0);
         TRY(vplRaster_Draw(raster, &shading->meshes[i], &pipeline));
     }
-    return vplRaster_TileTask(raster, task, shading);
+    return vplRaster_TileTask(raster, shading->tileTask, shading);
 }
 
 // ---- strategies
 
 static vplResult openShow(vplShading* shading, vplFramebuffer* framebuffer)
 {
-    vplPrepareGbuffer(shading->def, framebuffer);
+    vplOpenGbuffer(shading, framebuffer, shading->kernels.show);
     return VPL_SUCCESS;
-}
-
-static vplResult recordShow(vplShading* shading, vplRaster* raster)
-{
-    return vplRecordGbuffer(shading, raster, shading->kernels.show);
 }
 
 static vplResult openDeferred(vplShading* shading, vplFramebuffer* framebuffer)
 {
-    vplPrepareGbuffer(shading->def, framebuffer);
+    vplOpenGbuffer(shading, framebuffer, shading->kernels.deferred);
     return vplMakeColumns(shading);
 }
 
-static vplResult recordDeferred(vplShading* shading, vplRaster* raster)
-{
-    return vplRecordGbuffer(shading, raster, shading->kernels.deferred);
-}
-
-const vplStrategy vplShowStrategy = {.open = openShow, .tile = recordShow};
-const vplStrategy vplDeferredStrategy = {.open = openDeferred, .tile = recordDeferred};
+const vplStrategy vplShowStrategy = {.open = openShow, .record = vplRecordGbuffer};
+const vplStrategy vplDeferredStrategy = {.open = openDeferred, .record = vplRecordGbuffer};

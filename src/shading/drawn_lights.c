@@ -2,9 +2,7 @@
 // The light of some randomly drawn virtual lights at a point that a ray has hit: sixteen lights at once.
 #include "base/rng.h"
 #include "geometry/bvh.h"
-#include "math/vec.h"
 #include "shading/compensation.h"
-#include "visibility/hemi_map.h"
 
 enum { DRAW_STREAM = 0x636f6d70 }; // of random numbers
 
@@ -37,10 +35,8 @@ static void loadLights(const vplShadeLight* lights, const int indices[VPL_LANES]
                        vplLightLanes* lanes)
 {
     for (int l = 0; l < VPL_LANES; l++) {
-        const vplShadeLight* light = &lights[indices[l < count ? l : 0]];
-        const float values[6] = {light->px, light->py, light->pz, light->nx, light->ny, light->nz};
         for (int k = 0; k < 6; k++) {
-            lanes->at[k][l] = values[k];
+            lanes->at[k][l] = vplShadeLight_Column(&lights[indices[l < count ? l : 0]], k);
         }
     }
 }
@@ -55,10 +51,7 @@ static void castRays(const vplGeometry* g, const vplLitPoint* p, const vplShadeL
         if (!(amount[l] > 0)) {
             continue;
         }
-        const vplShadeLight* light = &lights[indices[l]];
-        const vplVec3 position = {light->px, light->py, light->pz},
-                      normal = {light->nx, light->ny, light->nz};
-        const vplVec3 way = vplWayToLight(position, normal, p->hit.position);
+        const vplVec3 way = vplWayTo(&lights[indices[l]], p->hit.position);
         if (!(vplDot(way, p->plane) > 0)) {
             amount[l] = 0;
             continue;

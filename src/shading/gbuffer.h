@@ -66,7 +66,7 @@ static inline void vplReadFacets(const vplShading* s, const int triangles[VPL_LA
         const int triangle = triangles[l];
         if (triangle != last) {
             last = triangle;
-            const vplCachedFacet* facet = triangle < 0 ? NULL : vplFacetCache_Get(s, triangle, cache);
+            const vplFacet* facet = triangle < 0 ? NULL : vplFacetCache_Get(s, triangle, cache);
             n = facet ? facet->normal : vplVec(0, 0, 0);
             isSmooth = facet && facet->smooth ? -1 : 0;
         }
@@ -106,7 +106,7 @@ static inline bool vplReadBlock(const vplShading* s, const vplTile* tile, int el
     int32_t smooth[VPL_LANES];
     vplSurface* flat = s->smooth ? &b->plane : &b->surface;
     if (b->same) {
-        const vplCachedFacet* facet = vplFacetCache_Get(s, b->points.triangle[0], cache);
+        const vplFacet* facet = vplFacetCache_Get(s, b->points.triangle[0], cache);
         vplSetNormals(facet->normal, flat);
         b->reflector = facet->reflector;
         memset(smooth, facet->smooth ? 0xff : 0, sizeof smooth);

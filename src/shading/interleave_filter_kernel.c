@@ -129,7 +129,7 @@ static void reflect(const vplShading* s, const int32_t triangles[VPL_LANES], vpl
     float factor[3][VPL_LANES];
     for (int l = 0; l < VPL_LANES;) {
         const int32_t triangle = triangles[l];
-        const vplCachedFacet* facet = triangle == 0 ? NULL : vplFacetCache_Get(s, triangle - 1, cache);
+        const vplFacet* facet = triangle == 0 ? NULL : vplFacetCache_Get(s, triangle - 1, cache);
         const float r = facet ? (float)facet->reflector.factor[0] : 0,
                     g = facet ? (float)facet->reflector.factor[1] : 0,
                     b = facet ? (float)facet->reflector.factor[2] : 0;

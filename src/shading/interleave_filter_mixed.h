@@ -57,8 +57,7 @@ static inline void findPlanes(const vplShading* s, int row, int columns, vplFilt
     float *nx = scratch->normal[0][row], *ny = scratch->normal[1][row], *nz = scratch->normal[2][row];
     for (int i = 0; i < columns;) {
         const int32_t triangle = triangles[i];
-        const vplCachedFacet* facet =
-            triangle == 0 ? NULL : vplFacetCache_Get(s, triangle - 1, &scratch->facets);
+        const vplFacet* facet = triangle == 0 ? NULL : vplFacetCache_Get(s, triangle - 1, &scratch->facets);
         const vplVec3 n = facet ? facet->normal : (vplVec3){0, 0, 0};
         const float offset = facet ? facet->offset : 0;
         for (; i < columns && triangles[i] == triangle; i++) {

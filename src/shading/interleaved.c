@@ -97,20 +97,19 @@ static vplResult openInterleaved(vplShading* shading, vplFramebuffer* framebuffe
     const int workers = shading->geometry->context->workerCount;
     const size_t pixels = (size_t)width * (size_t)height;
     vplInterleave* w = vplArena_AllocZero(shading->arena, 1, sizeof *w);
-    float* planes = vplArena_Alloc(shading->arena, pixels, VPL_FILTER_PLANES * sizeof *planes);
-    vplFilterScratch* scratch = vplArena_Alloc(shading->arena, (size_t)workers, sizeof *scratch);
+    TRY(vplArena_Check(shading->arena));
+    w->planes = vplArena_Alloc(shading->arena, pixels, VPL_FILTER_PLANES * sizeof *w->planes);
+    w->scratch = vplArena_Alloc(shading->arena, (size_t)workers, sizeof *w->scratch);
     TRY(vplArena_Check(shading->arena));
     shading->state = w;
     w->side = shading->def->interleave;
     w->pixelCount = pixels;
     w->tilesX = (width + VPL_FILTER_WIDTH - 1) / VPL_FILTER_WIDTH;
     w->tilesY = (height + VPL_FILTER_HEIGHT - 1) / VPL_FILTER_HEIGHT;
-    w->planes = planes;
-    w->scratch = scratch;
     for (int i = 0; i < workers; i++) {
-        vplFacetCache_Clear(&scratch[i].facets);
+        vplFacetCache_Clear(&w->scratch[i].facets);
     }
-    vplPrepareGbuffer(shading->def, framebuffer);
+    vplOpenGbuffer(shading, framebuffer, shading->kernels.interleaved);
     if (framebuffer->samples > 0) {
         w->rasterTilesX = (width + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
         const size_t tiles = (size_t)w->rasterTilesX * (size_t)((height + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE);
@@ -125,11 +124,6 @@ static vplResult openInterleaved(vplShading* shading, vplFramebuffer* framebuffe
     framebuffer->planes[VPL_PLANE_TRIANGLE].pixels = vplFilterPlane(w, VPL_FILTER_TRIANGLE);
     TRY(sortLights(shading, w));
     return vplMakeColumns(shading);
-}
-
-static vplResult recordInterleaved(vplShading* shading, vplRaster* raster)
-{
-    return vplRecordGbuffer(shading, raster, shading->kernels.interleaved);
 }
 
 // Copies a part of the unfiltered irradiance to the picture.
@@ -160,4 +154,4 @@ static vplResult filterInterleaved(vplShading* shading, vplShadeStats* stats)
 }
 
 const vplStrategy vplInterleavedStrategy = {
-    .open = openInterleaved, .tile = recordInterleaved, .finish = filterInterleaved};
+    .open = openInterleaved, .record = vplRecordGbuffer, .finish = filterInterleaved};

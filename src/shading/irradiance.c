@@ -4,9 +4,7 @@
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
-#include "math/vec.h"
 #include "shading/shading.h"
-#include "visibility/hemi_map.h"
 
 #include <string.h>
 
@@ -95,11 +93,10 @@ void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, cons
 
 static void castLightRays(const vplReceiver* r, const vplShadeLight* light, float visible[VPL_LANES])
 {
-    const vplVec3 position = {light->px, light->py, light->pz}, normal = {light->nx, light->ny, light->nz};
     vplVec3 way[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
         const bool needed = visible[l] > 0 && r->points->triangle[l] >= 0;
-        way[l] = needed ? vplWayToLight(position, normal, r->starts->hit[l].position) : vplVec(0, 0, 0);
+        way[l] = needed ? vplWayTo(light, r->starts->hit[l].position) : vplVec(0, 0, 0);
     }
     castShadowRays(r, way, false, visible);
 }

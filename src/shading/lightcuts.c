@@ -16,7 +16,7 @@ static vplResult openLightcuts(vplShading* shading, vplFramebuffer* framebuffer)
     vplLightcuts* lightcuts = vplArena_AllocZero(shading->arena, 1, sizeof *lightcuts);
     vplCutWorker* workers = vplArena_Alloc(shading->arena, (size_t)context->workerCount, sizeof *workers);
     TRY(vplArena_Check(shading->arena));
-    vplPrepareGbuffer(shading->def, framebuffer);
+    vplOpenGbuffer(shading, framebuffer, shading->kernels.lightcuts);
     shading->state = lightcuts;
     lightcuts->workers = workers;
     for (int i = 0; i < context->workerCount; i++) {
@@ -25,13 +25,10 @@ static vplResult openLightcuts(vplShading* shading, vplFramebuffer* framebuffer)
             workers[i].cut.indices[k] = k;
         }
     }
-    return vplLightTree_Create(context, shading->lights.lights, shading->lights.count,
-                               shading->def->progress ? askOnly : NULL, shading, &lightcuts->tree);
-}
-
-static vplResult recordLightcuts(vplShading* shading, vplRaster* raster)
-{
-    return vplRecordGbuffer(shading, raster, shading->kernels.lightcuts);
+    TRY(vplLightTree_Create(context, shading->lights.lights, shading->lights.count,
+                            shading->def->progress ? askOnly : NULL, shading, &lightcuts->tree));
+    vplArena_Absorb(shading->arena, lightcuts->tree->arena);
+    return VPL_SUCCESS;
 }
 
 static vplResult countLightcuts(vplShading* shading, vplShadeStats* stats)
@@ -46,12 +43,5 @@ static vplResult countLightcuts(vplShading* shading, vplShadeStats* stats)
     return VPL_SUCCESS;
 }
 
-static void closeLightcuts(vplShading* shading)
-{
-    const vplLightcuts* lightcuts = shading->state;
-    if (lightcuts != NULL) {
-        vplLightTree_Destroy(lightcuts->tree);
-    }
-}
-
-const vplStrategy vplLightcutsStrategy = {openLightcuts, recordLightcuts, countLightcuts, closeLightcuts};
+const vplStrategy vplLightcutsStrategy = {
+    .open = openLightcuts, .record = vplRecordGbuffer, .finish = countLightcuts};

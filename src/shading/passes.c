@@ -21,12 +21,7 @@ static vplResult recordPass(const vplShading* s, vplRaster* raster, vplPipeline 
 {
     for (int i = 0; i < s->geometry->objectCount; i++) {
         uniforms[i] = (vplPassUniforms){s, i, first, count};
-        const vplPipeline own = vplCameraPipeline(s, i); // smooth objects have more varyings than flat ones
-        state.vertex = own.vertex;
-        state.vertexUniforms = own.vertexUniforms;
-        state.varyingCount = own.varyingCount;
-        state.surface = own.surface;
-        state.surfaceCount = own.surfaceCount;
+        vplSetCamera(s, i, &state);
         state.fragmentUniforms = &uniforms[i];
         TRY(vplRaster_Draw(raster, &s->meshes[i], &state));
     }
@@ -63,4 +58,4 @@ static vplResult recordPasses(vplShading* shading, vplRaster* raster)
     return vplRaster_TileTask(raster, shading->kernels.resolve, shading);
 }
 
-const vplStrategy vplPassesStrategy = {.open = openPasses, .tile = recordPasses};
+const vplStrategy vplPassesStrategy = {.open = openPasses, .record = recordPasses};

@@ -3,8 +3,6 @@
 #include "base/isa.h"
 #include "shading/gbuffer.h"
 
-enum { BLOCKS = VPL_TILE_BLOCKS * VPL_TILE_BLOCKS };
-
 static inline int triangleOf(const vplPassUniforms* u, const vplFragments* f)
 {
     return u->shading->geometry->objects[u->object].firstTriangle + f->primitive;
@@ -113,19 +111,16 @@ void VPL_KERNEL(vplResolveTile)(void* data, vplTile* tile, int worker)
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
     vplFacetCache cache;
     vplFacetCache_Clear(&cache);
-    for (int block = 0; block < BLOCKS; block++) {
-        int triangles[VPL_LANES];
-        double sums[3][VPL_LANES];
-        vplReadTriangles(tile, block * VPL_LANES, triangles);
+    for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
+        vplBlock b;
+        const bool any = vplReadTriangles(tile, block * VPL_LANES, b.points.triangle);
+        b.same = vplSameTriangle(b.points.triangle);
+        if (any && b.same) {
+            b.reflector = vplFacetCache_Get(s, b.points.triangle[0], &cache)->reflector;
+        }
         for (int c = 0; c < 3; c++) {
-            memcpy(sums[c], tileSums->irradiance[c] + block * VPL_LANES, sizeof sums[c]);
+            memcpy(b.sums[c], tileSums->irradiance[c] + block * VPL_LANES, sizeof b.sums[c]);
         }
-        float radiance[3][VPL_LANES];
-        if (triangles[0] >= 0 && vplSameTriangle(triangles)) {
-            vplResolveSame(&vplFacetCache_Get(s, triangles[0], &cache)->reflector, sums, radiance);
-        } else {
-            vplResolveMixed(s, triangles, sums, &cache, radiance);
-        }
-        vplWriteBlock(s, tile, block, radiance);
+        vplWriteLit(s, tile, block, &cache, &b);
     }
 }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light at points of surfaces that no camera shows: direct light of radiosity's patches.
-#include "math/vec.h"
-#include "shading/shading.h"
-
-#include <string.h>
+#include "lights/light_set.h"
+#include "shading/accumulate.h"
 
 typedef struct PointsTask {
     vplShading shading;
@@ -15,55 +13,25 @@ typedef struct PointsTask {
 
 enum { TASK_POINTS = 16 * VPL_LANES }; // per task: 64 rays to an area light from each take a millisecond
 
-static void loadBlock(const PointsTask* t, int first, int count, vplSurface* surface, int triangle[VPL_LANES])
-{
-    memset(surface, 0, sizeof *surface);
-    for (int l = 0; l < VPL_LANES; l++) {
-        triangle[l] = -1;
-    }
-    for (int l = 0; l < count; l++) {
-        const vplSurfacePoint* p = &t->points[first + l];
-        surface->px[l] = p->position.x;
-        surface->py[l] = p->position.y;
-        surface->pz[l] = p->position.z;
-        surface->nx[l] = p->normal.x;
-        surface->ny[l] = p->normal.y;
-        surface->nz[l] = p->normal.z;
-        triangle[l] = p->triangle;
-    }
-}
-
-// Sums groups in double, as vplTileSums does.
-static void addLights(const vplShading* s, const vplPoints* points, double sums[3][VPL_LANES], int64_t* rays)
-{
-    for (int first = 0; first < s->lights.count; first += VPL_LIGHT_GROUP) {
-        const int left = s->lights.count - first;
-        float part[3][VPL_LANES] = {{0}};
-        vplIndirectIrradiance(s, points, first, left < VPL_LIGHT_GROUP ? left : VPL_LIGHT_GROUP, part, rays);
-        for (int c = 0; c < 3; c++) {
-            for (int l = 0; l < VPL_LANES; l++) {
-                sums[c][l] += (double)part[c][l];
-            }
-        }
-    }
-}
-
 static void lightBlock(PointsTask* t, int first, int count, int64_t* rays)
 {
-    vplSurface surface;
-    vplPoints points = {.surface = &surface, .plane = &surface};
+    static const int lit = 0;
+    vplBlock b;
+    const vplLitBlocks to = {.blocks = &b, .lit = &lit, .count = 1};
     float direct[3][VPL_LANES];
-    double sums[3][VPL_LANES];
-    loadBlock(t, first, count, &surface, points.triangle);
-    vplDirectIrradiance(&t->shading, &t->shading.direct, &points, direct, rays);
-    for (int c = 0; c < 3; c++) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            sums[c][l] = (double)direct[c][l];
-        }
+    memset(&b.surface, 0, sizeof b.surface);
+    b.points.surface = b.points.plane = &b.surface;
+    for (int l = 0; l < VPL_LANES; l++) {
+        b.points.triangle[l] = l < count ? t->points[first + l].triangle : -1;
     }
-    addLights(&t->shading, &points, sums, rays);
     for (int l = 0; l < count; l++) {
-        t->irradiance[first + l] = (vplRgb){(float)sums[0][l], (float)sums[1][l], (float)sums[2][l]};
+        vplSurface_Put(&b.surface, l, t->points[first + l].position, t->points[first + l].normal);
+    }
+    vplDirectIrradiance(&t->shading, &t->shading.direct, &b.points, direct, rays);
+    vplStartSums(&b, direct);
+    vplAddLights(&t->shading, &to, 0, t->shading.lights.count, rays);
+    for (int l = 0; l < count; l++) {
+        t->irradiance[first + l] = (vplRgb){(float)b.sums[0][l], (float)b.sums[1][l], (float)b.sums[2][l]};
     }
 }
 

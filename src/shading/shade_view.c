@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One render of one view: chooses the strategy that accumulates its light, and runs it.
+#include "lights/light_set.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "shading/shading.h"
@@ -92,10 +93,8 @@ vplResult vplMakeColumns(vplShading* s)
         list->columns[k] = storage + (size_t)k * padded;
     }
     for (int i = 0; i < list->count; i++) {
-        const vplShadeLight* light = &list->lights[i];
-        const float values[6] = {light->px, light->py, light->pz, light->nx, light->ny, light->nz};
         for (int k = 0; k < 6; k++) {
-            list->columns[k][i] = values[k];
+            list->columns[k][i] = vplShadeLight_Column(&list->lights[i], k);
         }
     }
     return VPL_SUCCESS;
@@ -125,7 +124,7 @@ static vplResult draw(vplShading* s, const vplStrategy* strategy, const vplFrame
 {
     vplRaster* raster = NULL;
     TRY(vplRaster_Create(s->geometry->context, framebuffer, &raster));
-    vplResult result = strategy->tile(s, raster);
+    vplResult result = strategy->record(s, raster);
     if (result == VPL_SUCCESS) {
         result = vplRaster_Run(raster, s->def->progress, s->def->progressUser, stats);
     }
@@ -153,11 +152,7 @@ vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const v
     shading.image = image;
     shading.shadowRays = &stats.shadowRays;
     shading.arena = vplArena_Create(geometry->context);
-    const vplStrategy* strategy = chooseStrategy(def);
-    const vplResult result = shade(&shading, strategy, &stats);
-    if (strategy->close != NULL) {
-        strategy->close(&shading);
-    }
+    const vplResult result = shade(&shading, chooseStrategy(def), &stats);
     vplArena_Destroy(shading.arena);
     if (result == VPL_SUCCESS && statsOut != NULL) {
         *statsOut = stats;

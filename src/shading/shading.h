@@ -74,6 +74,7 @@ typedef struct vplShading {
     struct vplObjectUniforms* objects;   // one per object
     struct vplCompensator* compensation; // NULL: light taken by the clamp is lost
     void* state;                         // of the strategy
+    vplTileFcn* tileTask;                // of the strategy: reads the G-buffer
     int64_t* shadowRays;                 // counted atomically: sums of integers do not depend on the order
 } vplShading;
 
@@ -84,29 +85,28 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
 vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, const vplShadeDef* def,
                             const vplImage* image);
 
-// How virtual lights reach the pixels. Each function may be NULL.
+// The ways in which virtual lights reach the pixels.
 typedef struct vplStrategy {
     vplResult (*open)(vplShading* shading, vplFramebuffer* framebuffer); // makes shading->state and planes
-    vplResult (*tile)(vplShading* shading, vplRaster* raster);           // records all draws and tile tasks
-    vplResult (*finish)(vplShading* shading, vplShadeStats* stats);      // after all tiles
-    void (*close)(vplShading* shading);                                  // frees what the arena does not own
+    vplResult (*record)(vplShading* shading, vplRaster* raster);         // records all draws and tile tasks
+    vplResult (*finish)(vplShading* shading, vplShadeStats* stats);      // after all tiles; may be NULL
 } vplStrategy;
 
 // multipass and batched; deferred, also for pictures without virtual lights; stages of the G-buffer
 extern const vplStrategy vplPassesStrategy, vplDeferredStrategy, vplShowStrategy;
 extern const vplStrategy vplInterleavedStrategy, vplLightcutsStrategy;
 
-// Whether a picture shows light, not a stage on the way to it.
+// Returns true for pictures that show light, false for stages on the way to it.
 static inline bool vplShowsLight(vplShadeOutput output)
 {
     return output == VPL_OUTPUT_RADIANCE || output == VPL_OUTPUT_GATHER || output == VPL_OUTPUT_DENOISED;
 }
 
-// Planes of a G-buffer, and the scratch memory of its tiles.
-void vplPrepareGbuffer(const vplShadeDef* def, vplFramebuffer* framebuffer);
+// Adds the planes of a G-buffer and the scratch memory of its tiles. `tileTask` will read them.
+void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn* tileTask);
 
-// Records one pass that writes the G-buffer, and a task for each finished tile of it.
-vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster, vplTileFcn* task);
+// Records one pass that writes the G-buffer, and shading->tileTask for each finished tile of it.
+vplResult vplRecordGbuffer(vplShading* shading, vplRaster* raster);
 
 // Makes the columns of the lights, which culling reads, unless each light has a shadow of its own.
 vplResult vplMakeColumns(vplShading* shading);
@@ -149,8 +149,8 @@ enum { VPL_CAMERA_VARYINGS = 3, VPL_SURFACE_VARYINGS = 6 };
 
 void vplCameraVertices(const void* uniforms, int first, int count, const vplVertices* out);
 
-// A pipeline set up for the camera, without fragment shader.
-vplPipeline vplCameraPipeline(const vplShading* shading, int object);
+// Sets the vertex and surface shader of a pipeline, with their uniforms and varyings, for one object.
+void vplSetCamera(const vplShading* shading, int object, vplPipeline* pipeline);
 
 // Uniforms of the fragment shaders in passes.
 typedef struct vplPassUniforms {
@@ -159,11 +159,18 @@ typedef struct vplPassUniforms {
     int first, count; // virtual lights of this pass
 } vplPassUniforms;
 
+// A triangle reflects irradiance E: radiance = emission + factor E.
+typedef struct vplReflector {
+    double factor[3]; // rho / pi
+    float emission[3];
+} vplReflector;
+
 // A triangle as it is shaded, besides positions.
 typedef struct vplFacet {
     vplVec3 normal; // as shaded: towards the eye for physical lighting, as declared for documented
     float offset;   // of its plane from the eye: normal . (point - eye), metres
-    vplRgb rho, emission;
+    vplReflector reflector;
+    bool smooth; // its object has shading normals
 } vplFacet;
 
 // `triangle` is an index in geometry->normals.
@@ -179,7 +186,7 @@ typedef struct vplPoints {
     int triangle[VPL_LANES]; // index in geometry->normals, -1 where nothing is
 } vplPoints;
 
-// Where rays leave the points of a block, the same for all its lights.
+// Rays to all lights leave the points of a block from these places.
 typedef struct vplRayStarts {
     vplHit hit[VPL_LANES]; // of lanes that show a triangle
 } vplRayStarts;

@@ -5,6 +5,8 @@
 #include "math/vec.h"
 #include "shading/shading.h"
 
+#include <string.h>
+
 vplView vplView_Create(const vplCameraDef* camera, int width, int height)
 {
     vplView view;
@@ -92,15 +94,13 @@ void vplCameraVertices(const void* uniforms, int first, int count, const vplVert
     }
 }
 
-vplPipeline vplCameraPipeline(const vplShading* shading, int object)
+void vplSetCamera(const vplShading* shading, int object, vplPipeline* pipeline)
 {
-    vplPipeline pipeline = vplDefaultPipeline();
-    pipeline.vertex = vplCameraVertices;
-    pipeline.vertexUniforms = &shading->objects[object];
-    pipeline.varyingCount = VPL_CAMERA_VARYINGS + (shading->objects[object].normals ? 3 : 0);
-    pipeline.surface = shading->kernels.surface;
-    pipeline.surfaceCount = VPL_SURFACE_VARYINGS * (shading->smooth ? 2 : 1);
-    return pipeline;
+    pipeline->vertex = vplCameraVertices;
+    pipeline->vertexUniforms = &shading->objects[object];
+    pipeline->varyingCount = VPL_CAMERA_VARYINGS + (shading->objects[object].normals ? 3 : 0);
+    pipeline->surface = shading->kernels.surface;
+    pipeline->surfaceCount = VPL_SURFACE_VARYINGS * (shading->smooth ? 2 : 1);
 }
 
 vplFacet vplGetFacet(const vplShading* shading, int triangle)
@@ -108,16 +108,19 @@ vplFacet vplGetFacet(const vplShading* shading, int triangle)
     const vplGeometry* g = shading->geometry;
     const vplMaterialDef* material = &g->materials[g->triangleMaterials[triangle]];
     const vplVec3 corner = vplGeometry_Corners(g, triangle).corner[0];
-    vplFacet facet = {
-        .normal = g->normals[triangle], .rho = material->diffuse, .emission = material->emission};
+    const vplRgb rho = material->diffuse, emission = material->emission;
+    const double scale = 1 / VPL_PI;
+    vplFacet facet = {.normal = g->normals[triangle],
+                      .reflector = {.factor = {rho.r * scale, rho.g * scale, rho.b * scale}},
+                      .smooth = g->objects[g->owners[triangle]].smooth};
     facet.offset = vplDot(facet.normal, vplSub(corner, shading->view->eye));
     const bool fromBehind = facet.offset > 0;
-    if (fromBehind) {
-        facet.emission = (vplRgb){0, 0, 0};
-        if (shading->def->lighting == VPL_LIGHTING_PHYSICAL) {
-            facet.normal = vplNegate(facet.normal);
-            facet.offset = -facet.offset;
-        }
+    if (fromBehind && shading->def->lighting == VPL_LIGHTING_PHYSICAL) {
+        facet.normal = vplNegate(facet.normal);
+        facet.offset = -facet.offset;
+    }
+    if (!fromBehind && shading->def->emission) {
+        memcpy(facet.reflector.emission, &emission, sizeof emission);
     }
     return facet;
 }

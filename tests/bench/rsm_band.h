@@ -4,7 +4,7 @@
 #ifndef VPL_RSM_BAND_H
 #define VPL_RSM_BAND_H
 
-#include "lights/rsm.h"
+#include "lights/kernels.h"
 #include "math/vec.h"
 
 // Returns a ray of the map's emitter that passes the ray through `point` at an offset of `across` and `down`

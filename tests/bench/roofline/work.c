@@ -40,10 +40,10 @@ static void check(vplResult result)
 double addLights(void* work, int which)
 {
     Work* w = work;
+    const vplLightFormula formula = {which ? VPL_LIGHTING_PHYSICAL : VPL_LIGHTING_DOCUMENTED, 0.2f};
     float irradiance[3][VPL_LANES] = {{0}};
     for (int i = 0; i < 16; i++) {
-        vplAccumulateLights(w->context, which ? VPL_LIGHTING_PHYSICAL : VPL_LIGHTING_DOCUMENTED, 0.2f,
-                            &w->surface[i % 4], w->lights, LIGHTS, irradiance);
+        vplAccumulateLights(w->context, formula, &w->surface[i % 4], w->lights, LIGHTS, irradiance);
     }
     w->planes[0] = irradiance[0][0];
     return 16.0 * LIGHTS * VPL_LANES;
@@ -54,10 +54,10 @@ double addLights(void* work, int which)
 double addLightsOneByOne(void* work, int which)
 {
     Work* w = work;
+    const vplLightFormula formula = {which ? VPL_LIGHTING_PHYSICAL : VPL_LIGHTING_DOCUMENTED, 0.2f};
     float irradiance[3][VPL_LANES] = {{0}};
     for (int i = 0; i < LIGHTS; i++) {
-        vplAccumulateLights(w->context, which ? VPL_LIGHTING_PHYSICAL : VPL_LIGHTING_DOCUMENTED, 0.2f,
-                            &w->surface[i % 4], &w->lights[i], 1, irradiance);
+        vplAccumulateLights(w->context, formula, &w->surface[i % 4], &w->lights[i], 1, irradiance);
     }
     w->planes[0] = irradiance[0][0];
     return (double)LIGHTS * VPL_LANES;
