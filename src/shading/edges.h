@@ -6,6 +6,7 @@
 #define VPL_SHADING_EDGES_H
 
 #include "geometry/triangle.h"
+#include "math/scalar.h"
 #include "shading/gbuffer.h"
 
 // Two triangles are one surface if they reflect and emit the same, their normals are as near as this, and they lie
@@ -45,8 +46,7 @@ static inline vplVec3 vplSightOf(const vplView* v, int x, int y, vplSubPixel at)
 }
 
 // Where a line of sight meets a triangle's plane: distance along the view axis, in the range of the corners'.
-static inline float vplEdgeDistance(const vplShading* s, int triangle, const vplCachedFacet* facet,
-                                    vplVec3 sight)
+static inline float vplEdgeDistance(const vplShading* s, int triangle, const vplFacet* facet, vplVec3 sight)
 {
     const vplTriangleCorners t = vplGeometry_Corners(s->geometry, triangle);
     float least = INFINITY, most = 0;
@@ -68,8 +68,8 @@ static inline bool vplSameReflector(const vplReflector* a, const vplReflector* b
     return same;
 }
 
-static inline bool vplIsOneSurface(const vplShading* s, const vplCachedFacet* a, const vplCachedFacet* b,
-                                   float distance, vplVec3 sight)
+static inline bool vplIsOneSurface(const vplShading* s, const vplFacet* a, const vplFacet* b, float distance,
+                                   vplVec3 sight)
 {
     const float width = 2 / (float)(s->view->height * s->view->scaleY) * distance;
     const float apart = distance * vplDot(a->normal, sight) - a->offset;
@@ -103,7 +103,7 @@ static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int el
                                 int centre, vplFacetCache* cache, vplEdgePixel* out)
 {
     vplCoverage found[VPL_MAX_SAMPLES_PER_PIXEL];
-    vplCachedFacet facets[VPL_MAX_SAMPLES_PER_PIXEL + 1]; // the last one is the centre's
+    vplFacet facets[VPL_MAX_SAMPLES_PER_PIXEL + 1]; // the last one is the centre's
     uint32_t sets[VPL_MAX_SAMPLES_PER_PIXEL + 1] = {0};
     const int count = vplTile_GetCoverage(tile, element, found), own = VPL_MAX_SAMPLES_PER_PIXEL;
     if (centre >= 0) {
@@ -116,7 +116,7 @@ static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int el
             sets[own] |= triangle == centre ? found[i].samples : 0;
             continue;
         }
-        const vplCachedFacet facet = *vplFacetCache_Get(s, triangle, cache);
+        const vplFacet facet = *vplFacetCache_Get(s, triangle, cache);
         const vplSubPixel at = vplSubPixel_OfSample(__builtin_ctz(found[i].samples), tile->sampleCount);
         const vplVec3 sight = vplSightOf(s->view, x, y, at);
         const float distance = vplEdgeDistance(s, triangle, &facet, sight);
@@ -149,7 +149,7 @@ static inline void vplPushEdge(const vplShading* s, const vplEdgeSurface* surfac
                                vplFacetCache* cache, vplEdgeBlock* e)
 {
     const vplGeometry* g = s->geometry;
-    const vplCachedFacet* facet = vplFacetCache_Get(s, surface->triangle, cache);
+    const vplFacet* facet = vplFacetCache_Get(s, surface->triangle, cache);
     const vplVec3 sight = vplSightOf(s->view, x, y, vplSubPixel_OfSample(surface->sample, s->def->samples));
     const float distance = vplEdgeDistance(s, surface->triangle, facet, sight);
     const vplVec3 p =

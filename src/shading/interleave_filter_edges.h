@@ -35,7 +35,7 @@ static inline bool meanAroundEdge(const vplShading* s, vplFilterScratch* scratch
     const vplInterleave* w = s->state;
     const vplView* v = s->view;
     const int side = w->side, x = e->x - part->x, y = e->y - part->y;
-    const vplCachedFacet facet = *vplFacetCache_Get(s, e->surface.triangle, &scratch->facets);
+    const vplFacet facet = *vplFacetCache_Get(s, e->surface.triangle, &scratch->facets);
     const vplVec3 n = facet.normal,
                   sight = vplSightOf(v, e->x, e->y, vplSubPixel_OfSample(e->surface.sample, s->def->samples));
     const float slack = MAX_DISTANCE * vplEdgeDistance(s, e->surface.triangle, &facet, sight);
