@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: MIT
-// Coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges change, and bits
-// depend on nothing.
+// SPDX-License-Identifier: MIT Coverage antialiasing: pictures are near those of whole renders per sample,
+// only pixels at edges change, and bits depend on nothing.
 #include "scenes.h"
 
 #include "math/vec.h"

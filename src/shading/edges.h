@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: MIT
-// Coverage antialiasing, for kernels: a pixel whose samples show other surfaces than its centre is the mean of all of
-// them, by the shares of its samples. The centre's surface is shaded as ever; each other one is shaded once, at one of
-// its samples. All other pixels cost a comparison of their samples.
+// SPDX-License-Identifier: MIT Coverage antialiasing, for kernels: a pixel whose samples show other surfaces
+// than its centre is the mean of all of them, by the shares of its samples. The centre's surface is shaded as
+// ever; each other one is shaded once, at one of its samples. All other pixels cost a comparison of their
+// samples.
 #ifndef VPL_SHADING_EDGES_H
 #define VPL_SHADING_EDGES_H
 
@@ -9,16 +9,16 @@
 #include "math/scalar.h"
 #include "shading/gbuffer.h"
 
-// Two triangles are one surface if they reflect and emit the same, their normals are as near as this, and they lie
-// within EDGE_PIXELS of each other's plane.
+// Two triangles are one surface if they reflect and emit the same, their normals are as near as this, and
+// they lie within EDGE_PIXELS of each other's plane.
 #define EDGE_COSINE        0.9995f
 #define EDGE_SMOOTH_COSINE 0.8f // of two smooth triangles
 #define EDGE_PIXELS        2.0f // widths of a pixel at that distance
 
-// What a pixel shows besides the surface in its centre.
+// The surfaces of a pixel.
 typedef struct vplEdgePixel {
-    float centre; // share of the surface in the centre
-    vplEdgeSurface others[VPL_MAX_SAMPLES_PER_PIXEL];
+    float centre;                                     // share of the surface in the centre
+    vplEdgeSurface others[VPL_MAX_SAMPLES_PER_PIXEL]; // besides the one in the centre
     int count;
 } vplEdgePixel;
 
@@ -45,7 +45,8 @@ static inline vplVec3 vplSightOf(const vplView* v, int x, int y, vplSubPixel at)
     return vplAdd(v->forward, vplAdd(vplScale(right, v->right), vplScale(up, v->up)));
 }
 
-// Where a line of sight meets a triangle's plane: distance along the view axis, in the range of the corners'.
+// Distance along the view axis at which a line of sight meets a triangle's plane, clamped to the range of its
+// corners.
 static inline float vplEdgeDistance(const vplShading* s, int triangle, const vplFacet* facet, vplVec3 sight)
 {
     const vplTriangleCorners t = vplGeometry_Corners(s->geometry, triangle);
@@ -98,7 +99,8 @@ static inline int vplMiddleSample(uint32_t samples, int count)
     return best;
 }
 
-// Sorts the samples of a pixel (x, y) of the picture by surfaces; `centre` is the triangle in its centre, -1: none.
+// Sorts the samples of a pixel (x, y) of the picture by surfaces; `centre` is the triangle in its centre, -1:
+// none.
 static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int element, int x, int y,
                                 int centre, vplFacetCache* cache, vplEdgePixel* out)
 {

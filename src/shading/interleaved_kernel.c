@@ -238,8 +238,8 @@ static void lightClass(Class* class, int x, int y)
 
 // ---- edges
 
-// Surfaces at the edges of one tile: direct light is found now. Indirect light of the first VPL_TILE_EDGES is left to
-// the filter, that of others is found now, too.
+// Surfaces at the edges of one tile: direct light is found now. Indirect light of the first VPL_TILE_EDGES is
+// left to the filter, that of others is found now, too.
 typedef struct TileEdges {
     vplKeptEdge* kept;
     int* keptCount;

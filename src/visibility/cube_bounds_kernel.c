@@ -61,7 +61,7 @@ static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, co
     const int size = map->size;
     const float far = map->far;
     const float* texels = map->texels + ((size_t)face * (size_t)size + (size_t)d->row) * (size_t)size;
-    // Of x, y, z and the stored distance.
+    // Bounds of x, y, z and the stored distance.
     _Alignas(64) float least[4][VPL_LANES], most[4][VPL_LANES];
     vplCubeRegion region;
     for (int k = 0; k < 4; k++) {
