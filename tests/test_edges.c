@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Coverage antialiasing: pictures are near those of whole renders per sample,
+// SPDX-License-Identifier: MIT
+// Coverage antialiasing: pictures are near those of whole renders per sample,
 // only pixels at edges change, and bits depend on nothing.
 #include "scenes.h"
 

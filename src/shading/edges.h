@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: MIT Coverage antialiasing, for kernels: a pixel whose samples show other surfaces
+// SPDX-License-Identifier: MIT
+// Coverage antialiasing, for kernels: a pixel whose samples show other surfaces
 // than its centre is the mean of all of them, by the shares of its samples. The centre's surface is shaded as
 // ever; each other one is shaded once, at one of its samples. All other pixels cost a comparison of their
 // samples.
