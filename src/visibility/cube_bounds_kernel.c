@@ -8,6 +8,9 @@
 // Regions side by side whose directions are found at once, for all six faces.
 enum { GROUP = 4, GROUP_TEXELS = GROUP * VPL_REGION_SIDE };
 
+// Rows of texels that are added together: the bounds are loaded and stored once.
+enum { ROWS = 4 };
+
 // Directions of a group's texels: (s, u, 1) and the depth per distance. Texels outside of the face repeat the
 // last ones.
 typedef struct Directions {
@@ -56,6 +59,18 @@ static void roundDown(vplCubeRegion* region)
     }
 }
 
+// The point of a texel, and its stored distance.
+typedef struct Texel {
+    float value[4];
+} Texel;
+
+static inline Texel texelOf(float stored, float far, float z, float s, float u)
+{
+    const float distance = stored * far;
+    const float depth = distance < INFINITY ? distance * z : NAN; // NaN leaves minima and maxima as they are
+    return (Texel){{s * depth, u * depth, depth, stored}};
+}
+
 static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, const Directions* d)
 {
     const int size = map->size;
@@ -70,20 +85,28 @@ static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, co
             most[k][l] = -INFINITY;
         }
     }
-    for (int j = 0; j < d->rows; j++) {
-        const float* restrict rowZ = d->z[j] + offset;
-        const float u = d->u[j];
-        float stored[VPL_LANES];
-        loadTexels(texels + (size_t)j * (size_t)size, size, d->column + offset, stored);
+    const float* restrict s = d->s + offset;
+    for (int j = 0; j < d->rows; j += ROWS) {
+        const int last = d->rows - 1; // it may count several times
+        const int j1 = vplMini(j + 1, last), j2 = vplMini(j + 2, last), j3 = vplMini(j + 3, last);
+        const float* restrict z0 = d->z[j] + offset, * restrict z1 = d->z[j1] + offset;
+        const float* restrict z2 = d->z[j2] + offset, * restrict z3 = d->z[j3] + offset;
+        const float u0 = d->u[j], u1 = d->u[j1], u2 = d->u[j2], u3 = d->u[j3];
+        float stored[ROWS][VPL_LANES];
+        loadTexels(texels + (size_t)j * (size_t)size, size, d->column + offset, stored[0]);
+        loadTexels(texels + (size_t)j1 * (size_t)size, size, d->column + offset, stored[1]);
+        loadTexels(texels + (size_t)j2 * (size_t)size, size, d->column + offset, stored[2]);
+        loadTexels(texels + (size_t)j3 * (size_t)size, size, d->column + offset, stored[3]);
         for (int l = 0; l < VPL_LANES; l++) {
-            const float distance = stored[l] * far;
-            // NaN leaves minima and maxima as they are.
-            const float z = distance < INFINITY ? distance * rowZ[l] : NAN, x = d->s[offset + l] * z,
-                        y = u * z;
-            const float value[4] = {x, y, z, stored[l]};
+            const Texel t0 = texelOf(stored[0][l], far, z0[l], s[l], u0);
+            const Texel t1 = texelOf(stored[1][l], far, z1[l], s[l], u1);
+            const Texel t2 = texelOf(stored[2][l], far, z2[l], s[l], u2);
+            const Texel t3 = texelOf(stored[3][l], far, z3[l], s[l], u3);
             for (int k = 0; k < 4; k++) {
-                least[k][l] = vplMinf(value[k], least[k][l]);
-                most[k][l] = vplMaxf(value[k], most[k][l]);
+                const float low = vplMinf(t1.value[k], vplMinf(t0.value[k], least[k][l]));
+                const float high = vplMaxf(t1.value[k], vplMaxf(t0.value[k], most[k][l]));
+                least[k][l] = vplMinf(t3.value[k], vplMinf(t2.value[k], low));
+                most[k][l] = vplMaxf(t3.value[k], vplMaxf(t2.value[k], high));
             }
         }
     }
