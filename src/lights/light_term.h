@@ -6,8 +6,9 @@
 #ifndef VPL_LIGHTS_LIGHT_TERM_H
 #define VPL_LIGHTS_LIGHT_TERM_H
 
+#include "math/vec.h"
+
 #include <float.h>
-#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -51,38 +52,28 @@ static inline float vplSmallerOf(float a, float b)
 }
 #endif
 
-// Cosines at both ends times the distance, and 1 / distance^2. x, y, z: from the point to the light.
+// Cosines at both ends times the distance, and 1 / distance^2.
 typedef struct vplLightTerm {
     float here, there, inverse;
 } vplLightTerm;
 
-static inline vplLightTerm vplLightTermOf(float x, float y, float z, float nx, float ny, float nz, float mx,
-                                          float my, float mz)
+// `way` leads from the point to the light; n is the point's normal, m the light's.
+static inline vplLightTerm vplLightTermOf(vplVec3 way, vplVec3 n, vplVec3 m)
 {
-    float d2 = x * x + y * y + z * z;
-    float here = nx * x + ny * y + nz * z;     // d times the cosine here,
-    float there = -(mx * x + my * y + mz * z); // and at the light
-    here = vplLargerOf(here, 0);
-    there = vplLargerOf(there, 0);
-    d2 = vplLargerOf(d2, FLT_MIN);
-    return (vplLightTerm){here, there, 1 / d2};
+    const float d2 = vplDot(way, way), here = vplDot(n, way), there = -vplDot(m, way);
+    return (vplLightTerm){vplLargerOf(here, 0), vplLargerOf(there, 0), 1 / vplLargerOf(d2, FLT_MIN)};
 }
 
-// cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is 0, not infinity / infinity.
-static inline float vplClampedGeometry(vplLightTerm t, float inverseClamp)
+// The factor of the light's colour. Physical: cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is
+// 0, not infinity / infinity. Documented: the cosine, without falloff; 0 instead of 0/0.
+static inline float vplLightFactor(bool physical, vplVec3 way, vplVec3 n, vplVec3 m, float inverseClamp)
 {
+    if (!physical) {
+        return vplLargerOf(vplDot(n, way), 0) / sqrtf(vplLargerOf(vplDot(way, way), FLT_MIN));
+    }
+    const vplLightTerm t = vplLightTermOf(way, n, m);
     const float bounded = vplSmallerOf(t.inverse, inverseClamp);
     return (t.here * t.inverse) * (t.there * bounded);
-}
-
-// The cosine of documented lighting, which has no falloff; 0 instead of 0/0.
-static inline float vplDocumentedCosine(float x, float y, float z, float nx, float ny, float nz)
-{
-    float d2 = x * x + y * y + z * z;
-    float cosine = nx * x + ny * y + nz * z; // times the distance
-    cosine = vplLargerOf(cosine, 0);
-    d2 = vplLargerOf(d2, FLT_MIN);
-    return cosine / sqrtf(d2);
 }
 
 #endif

@@ -175,7 +175,7 @@ static vplResult pushRange(Build* b, vplCluster cluster, int depth)
     return VPL_SUCCESS;
 }
 
-// Which clusters are split here depends on counts alone, not on workers.
+// Splits the clusters near the root. The choice depends on counts alone, not on workers.
 static vplResult buildTop(Build* b)
 {
     const int share = b->tree->lightCount / SUBTREES, grain = share > MIN_SUBTREE ? share : MIN_SUBTREE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many particles reach each step. The user types a decimal such as 0.29 and means it: 0.29 * 100 is 29,
+// Counts of the particles that reach each step. The user types a decimal such as 0.29 and means it: 0.29 * 100 is 29,
 // though in binary both 0.29 and the product lie below. Repeated multiplication in double has a relative
 // error below (k + 1) 2^-51, so a product that near to an integer counts as that integer. Decimals of few
 // digits cannot come that near to an integer otherwise; beyond k = 64 the band could hold one, and plain

@@ -94,43 +94,25 @@ static inline float leastOf(float facing)
     return fabsf(facing) > 1e-30f ? facing : 1e-30f;
 }
 
-static inline void projectCone(const vplReflectiveMap* map, const FacePoints* restrict s, Slope* restrict out)
-{
-    const float sideX = (float)(2 * map->extent[0] / map->size),
-                sideY = (float)(2 * map->extent[1] / map->size);
-    const float inverseX = 1 / sideX, inverseY = 1 / sideY, middle = 0.5f * (float)(map->size - 1);
-    for (int l = 0; l < VPL_LANES; l++) {
-        const float x = s->x[l], y = s->y[l], z = s->z[l], nx = s->nx[l], ny = s->ny[l], nz = s->nz[l];
-        const float near = 1 / vplMaxf(z, 1e-30f);
-        const float rate = 1 / leastOf(x * nx + y * ny + z * nz);
-        out->column[l] = middle + x * near * inverseX;
-        out->row[l] = middle - y * near * inverseY;
-        out->near[l] = near;
-        const float across = nx * rate * sideX, down = -ny * rate * sideY;
-        out->across[l] = across;
-        out->down[l] = down;
-        out->slack[l] = slackOf(across, down, s->rounding[l] * rate * near);
-        out->covered[l] = z > 0;
-    }
-}
-
-static inline void projectParallel(const vplReflectiveMap* map, const FacePoints* restrict s,
-                                   Slope* restrict out)
+static inline __attribute__((always_inline)) void
+project(const vplReflectiveMap* map, const FacePoints* restrict s, bool parallel, Slope* restrict out)
 {
     const float sideX = (float)(2 * map->extent[0] / map->size),
                 sideY = (float)(2 * map->extent[1] / map->size);
     const float inverseX = 1 / sideX, inverseY = 1 / sideY, middle = 0.5f * (float)(map->size - 1);
     const float inverse = 1 / map->unit;
     for (int l = 0; l < VPL_LANES; l++) {
-        const float rate = inverse / leastOf(s->nz[l]);
-        out->column[l] = middle + s->x[l] * inverseX;
-        out->row[l] = middle - s->y[l] * inverseY;
-        out->near[l] = -s->z[l] * inverse;
-        const float across = s->nx[l] * rate * sideX, down = -s->ny[l] * rate * sideY;
+        const float x = s->x[l], y = s->y[l], z = s->z[l], nx = s->nx[l], ny = s->ny[l], nz = s->nz[l];
+        const float scale = parallel ? 1 : 1 / vplMaxf(z, 1e-30f); // from metres to the plane at distance 1
+        const float rate = parallel ? inverse / leastOf(nz) : 1 / leastOf(x * nx + y * ny + z * nz);
+        out->column[l] = middle + x * scale * inverseX;
+        out->row[l] = middle - y * scale * inverseY;
+        out->near[l] = parallel ? -z * inverse : scale;
+        const float across = nx * rate * sideX, down = -ny * rate * sideY;
         out->across[l] = across;
         out->down[l] = down;
-        out->slack[l] = slackOf(across, down, s->rounding[l] * rate);
-        out->covered[l] = -1;
+        out->slack[l] = slackOf(across, down, s->rounding[l] * rate * scale);
+        out->covered[l] = parallel ? -1 : z > 0;
     }
 }
 
@@ -198,9 +180,9 @@ void VPL_KERNEL(vplReflectiveFactor)(const vplReflectiveMap* map, const vplSurfa
         turnToFace(map, surface, &points);
     }
     if (map->emitter.type == VPL_EMITTER_DIRECTIONAL) {
-        projectParallel(map, &points, &slope);
+        project(map, &points, true, &slope);
     } else {
-        projectCone(map, &points, &slope);
+        project(map, &points, false, &slope);
     }
     findPair(slope.column, map->size, slope.covered, &columns);
     findPair(slope.row, map->size, slope.covered, &rows);

@@ -44,7 +44,7 @@ static vplRay rayOf(const vplVirtualLight* light, int i, int count)
     return (vplRay){vplAdd(light->position, lifted), vplSampleCosineAround(light->normal, u, v), {0, 0}};
 }
 
-// How many of a light's rays meet something.
+// Counts the rays of a light that meet something.
 static int countHits(const Measuring* m, const vplVirtualLight* light)
 {
     int hits = 0;

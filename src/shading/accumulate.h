@@ -65,7 +65,7 @@ static inline void vplCullLights(const vplShading* s, const vplBounds* bounds, i
     }
 }
 
-// Whether any lane receives light.
+// Tests whether any lane receives light.
 static inline bool vplAnyLit(float part[3][VPL_LANES])
 {
     // Nothing is negative, so light is a set bit. 64 bits at a time are reduced in fewer steps than

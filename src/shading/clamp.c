@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How much light the clamp takes: the distance at which it takes a given share, and the share of a given
+// Measures how much light the clamp takes: the distance at which it takes a given share, and the share of a given
 // picture.
 #include "math/sampling.h"
 #include "math/vec.h"

@@ -25,44 +25,40 @@ static inline EmitterTerm termOf(const vplSurface* surface, int l, const vplEmit
     return (EmitterTerm){x, y, z, d2, d, (c > 0 ? c : 0) / d};
 }
 
-static inline bool anyPositive(const float cosine[VPL_LANES])
+static inline __attribute__((always_inline)) void fillCosines(const vplSurface* restrict surface,
+                                                              const vplEmitterRay e, bool parallel, bool spot,
+                                                              float cosine[restrict VPL_LANES])
 {
+    for (int l = 0; l < VPL_LANES; l++) {
+        const EmitterTerm t = termOf(surface, l, &e, parallel);
+        cosine[l] = !parallel && e.falloff ? t.cosine / t.d2 : t.cosine;
+        if (spot) {
+            const float axis = -(e.direction.x * t.x + e.direction.y * t.y + e.direction.z * t.z) / t.d;
+            float step = (axis - e.cosOuter) * e.inverseRing;
+            step = step > 0 ? step : 0;
+            step = step < 1 ? step : 1;
+            cosine[l] *= step * step * (3 - 2 * step);
+        }
+    }
+}
+
+// Finds irradiance per unit of intensity, without shadow; false where no lane is lit. Directional: n.l. Point:
+// n.l / d^2. Spot: that times the smooth step of its cone (see vplSpot_Falloff).
+static bool emitterCosine(const vplSurface* restrict surface, const vplEmitterRay* emitter,
+                          float cosine[restrict VPL_LANES])
+{
+    if (emitter->parallel) {
+        fillCosines(surface, *emitter, true, false, cosine);
+    } else if (emitter->spot) {
+        fillCosines(surface, *emitter, false, true, cosine);
+    } else {
+        fillCosines(surface, *emitter, false, false, cosine);
+    }
     int any = 0;
     for (int l = 0; l < VPL_LANES; l++) {
         any |= cosine[l] > 0;
     }
     return any;
-}
-
-// Irradiance per unit of intensity, without shadow; false where no lane is lit. Directional: n.l. Point: n.l
-// / d^2. Spot: that times the smooth step of its cone (see vplSpot_Falloff).
-static bool emitterCosine(const vplSurface* restrict surface, const vplEmitterRay* emitter,
-                          float cosine[restrict VPL_LANES])
-{
-    const vplEmitterRay e = *emitter;
-    if (e.parallel) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            cosine[l] = termOf(surface, l, &e, true).cosine;
-        }
-        return anyPositive(cosine);
-    }
-    if (!e.spot) {
-        for (int l = 0; l < VPL_LANES; l++) {
-            const EmitterTerm t = termOf(surface, l, &e, false);
-            cosine[l] = e.falloff ? t.cosine / t.d2 : t.cosine;
-        }
-        return anyPositive(cosine);
-    }
-    for (int l = 0; l < VPL_LANES; l++) {
-        const EmitterTerm t = termOf(surface, l, &e, false);
-        const float c = e.falloff ? t.cosine / t.d2 : t.cosine;
-        const float axis = -(e.direction.x * t.x + e.direction.y * t.y + e.direction.z * t.z) / t.d;
-        float step = (axis - e.cosOuter) * e.inverseRing;
-        step = step > 0 ? step : 0;
-        step = step < 1 ? step : 1;
-        cosine[l] = c * (step * step * (3 - 2 * step));
-    }
-    return anyPositive(cosine);
 }
 
 // ---- light

@@ -28,8 +28,8 @@ typedef struct vplFilterScratch {
     int32_t triangle[VPL_FILTER_ROWS][VPL_FILTER_COLUMNS]; // 1 + index in geometry->normals, 0: nothing
     int32_t uniform[VPL_FILTER_ROWS][VPL_FILTER_RUNS]; // the one triangle in a run and its windows, else 0
     vplFacetCache facets;                              // of both steps, from tile to tile
-    // Where some window shows several triangles only: normals and planes (n.x = offset) of the triangles, and
-    // the distances of these planes along the view axis, all from the eye; 0 where nothing is.
+    // These are set only where some window shows several triangles: normals and planes (n.x = offset) of the
+    // triangles, and the distances of these planes along the view axis, all from the eye; 0 where nothing is.
     float offset[VPL_FILTER_ROWS][VPL_FILTER_COLUMNS];
     float distance[VPL_FILTER_ROWS][VPL_FILTER_COLUMNS];
     float normal[3][VPL_FILTER_ROWS][VPL_FILTER_COLUMNS];

@@ -63,19 +63,25 @@ static void findUniform(int side, vplFilterScratch* scratch, Part* part)
     }
 }
 
+// Sums the weighted values of 16 windows side by side, whose pixels are `stride` values apart.
+static inline __attribute__((always_inline)) void sumTaps(const float* from, int stride, int side,
+                                                          float out[VPL_LANES])
+{
+    float sum[VPL_LANES] = {0};
+    for (int k = 0; k < tapsOf(side); k++, from += stride) {
+        const float weight = weightOf(side, k);
+        for (int l = 0; l < VPL_LANES; l++) {
+            sum[l] += weight * from[l];
+        }
+    }
+    memcpy(out, sum, sizeof sum);
+}
+
 // Row sums of 16 windows that show one triangle.
 static void sumRow(int side, vplFilterScratch* scratch, int row, int x)
 {
     for (int c = 0; c < 3; c++) {
-        const float* from = scratch->indirect[c][row] + x;
-        float sum[VPL_LANES] = {0};
-        for (int k = 0; k < tapsOf(side); k++) {
-            const float weight = weightOf(side, k);
-            for (int l = 0; l < VPL_LANES; l++) {
-                sum[l] += weight * from[k + l];
-            }
-        }
-        memcpy(scratch->rowSums[c][row] + x, sum, sizeof sum);
+        sumTaps(scratch->indirect[c][row] + x, 1, side, scratch->rowSums[c][row] + x);
     }
     for (int l = 0; l < VPL_LANES; l++) {
         scratch->rowCounts[row][x + l] = (float)(side * side);
@@ -108,14 +114,8 @@ static void meanOfUniform(const vplFilterScratch* scratch, int side, int row, in
 {
     const float inverse = 1 / (float)(side * side * side * side);
     for (int c = 0; c < 3; c++) {
-        float sum[VPL_LANES] = {0};
-        for (int i = 0; i < tapsOf(side); i++) {
-            const float weight = weightOf(side, i);
-            const float* from = scratch->rowSums[c][row + i] + x;
-            for (int l = 0; l < VPL_LANES; l++) {
-                sum[l] += weight * from[l];
-            }
-        }
+        float sum[VPL_LANES];
+        sumTaps(scratch->rowSums[c][row] + x, VPL_FILTER_WIDTH, side, sum);
         for (int l = 0; l < VPL_LANES; l++) {
             mean[c][l] = sum[l] * inverse;
         }

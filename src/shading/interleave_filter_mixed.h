@@ -106,27 +106,34 @@ static inline void findCentres(const vplView* v, const vplFilterScratch* scratch
     }
 }
 
-// Neighbours of 16 centres: pixels, or sums of rows.
+// Neighbours of 16 centres in a row: pixels, or sums of rows.
 typedef struct Neighbours {
-    const float *nx, *ny, *nz, *distance;
+    int row, x;
     const float *count, *red, *green, *blue;
+    float weight;
 } Neighbours;
 
 typedef struct Sums {
     _Alignas(64) float count[VPL_LANES], red[VPL_LANES], green[VPL_LANES], blue[VPL_LANES];
 } Sums;
 
-// Adds the neighbours that belong to the surfaces of the centres. A neighbour's position is its distance
-// times its line of sight, whose component along the centre's normal is `ahead`.
-static inline void addNeighbours(const Centres* restrict m, const float ahead[restrict VPL_LANES],
-                                 const Neighbours* t, float weight, Sums* restrict sums)
+// Adds the neighbours that belong to the surfaces of the centres. A neighbour's position is its distance times its line of sight, whose
+// component along the centre's normal is `ahead`.
+static inline void addNeighbours(const Centres* restrict m, const vplFilterScratch* scratch,
+                                 const Neighbours* t, Sums* restrict sums)
 {
-    const float* restrict nx = t->nx, * restrict ny = t->ny, * restrict nz = t->nz, * restrict w = t->distance;
+    const float* restrict right = scratch->right + t->x;
+    const float* restrict nx = scratch->normal[0][t->row] + t->x;
+    const float* restrict ny = scratch->normal[1][t->row] + t->x;
+    const float* restrict nz = scratch->normal[2][t->row] + t->x;
+    const float* restrict w = scratch->distance[t->row] + t->x;
     const float* restrict n = t->count, * restrict r = t->red, * restrict g = t->green, * restrict b = t->blue;
+    const float up = scratch->up[t->row], weight = t->weight;
     for (int l = 0; l < VPL_LANES; l++) {
+        const float ahead = m->forward[l] + up * m->up[l] + right[l] * m->right[l];
         const float cosine =
             m->nx[l] * nx[l] + m->ny[l] * ny[l] + m->nz[l] * nz[l]; // normals of nothing are 0
-        const float above = fabsf(w[l] * ahead[l] - m->offset[l]);
+        const float above = fabsf(w[l] * ahead - m->offset[l]);
         const float apart = cosine >= MIN_NORMALS ? above : INFINITY;
         const float taken = apart <= m->slack[l] ? weight : 0;
         sums->count[l] += taken * n[l];
@@ -144,24 +151,17 @@ static inline void sumMixedRow(const vplView* view, vplFilterScratch* scratch, i
     static const float one[VPL_LANES] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     Centres m;
     findCentres(view, scratch, row, x + side - 1, &m);
-    const float up = scratch->up[row];
     Sums sums = {{0}, {0}, {0}, {0}};
     for (int i = 0; i < tapsOf(side); i++) {
-        const float* right = scratch->right + x + i;
-        float ahead[VPL_LANES];
-        for (int l = 0; l < VPL_LANES; l++) {
-            ahead[l] = m.forward[l] + up * m.up[l] + right[l] * m.right[l];
-        }
         const int at = x + i;
-        const Neighbours neighbours = {scratch->normal[0][row] + at,
-                                       scratch->normal[1][row] + at,
-                                       scratch->normal[2][row] + at,
-                                       scratch->distance[row] + at,
+        const Neighbours neighbours = {row,
+                                       at,
                                        one,
                                        scratch->indirect[0][row] + at,
                                        scratch->indirect[1][row] + at,
-                                       scratch->indirect[2][row] + at};
-        addNeighbours(&m, ahead, &neighbours, weightOf(side, i), &sums);
+                                       scratch->indirect[2][row] + at,
+                                       weightOf(side, i)};
+        addNeighbours(&m, scratch, &neighbours, &sums);
     }
     memcpy(scratch->rowCounts[row] + x, sums.count, sizeof sums.count);
     memcpy(scratch->rowSums[0][row] + x, sums.red, sizeof sums.red);
@@ -176,19 +176,16 @@ static inline void meanOfMixed(const vplView* view, const vplFilterScratch* scra
     const int reach = side - 1, x0 = x + reach;
     Centres m;
     findCentres(view, scratch, row + reach, x0, &m);
-    const float* right = scratch->right + x0;
     Sums sums = {{0}, {0}, {0}, {0}};
     for (int i = row; i < row + tapsOf(side); i++) {
-        const float up = scratch->up[i];
-        float ahead[VPL_LANES];
-        for (int l = 0; l < VPL_LANES; l++) {
-            ahead[l] = m.forward[l] + up * m.up[l] + right[l] * m.right[l];
-        }
-        const Neighbours neighbours = {scratch->normal[0][i] + x0, scratch->normal[1][i] + x0,
-                                       scratch->normal[2][i] + x0, scratch->distance[i] + x0,
-                                       scratch->rowCounts[i] + x,  scratch->rowSums[0][i] + x,
-                                       scratch->rowSums[1][i] + x, scratch->rowSums[2][i] + x};
-        addNeighbours(&m, ahead, &neighbours, weightOf(side, i - row), &sums);
+        const Neighbours neighbours = {i,
+                                       x0,
+                                       scratch->rowCounts[i] + x,
+                                       scratch->rowSums[0][i] + x,
+                                       scratch->rowSums[1][i] + x,
+                                       scratch->rowSums[2][i] + x,
+                                       weightOf(side, i - row)};
+        addNeighbours(&m, scratch, &neighbours, &sums);
     }
     const float* values[3] = {sums.red, sums.green, sums.blue};
     for (int c = 0; c < 3; c++) {

@@ -120,7 +120,7 @@ typedef struct Class {
     int elements[(MAX_CHUNKS + 1) * VPL_LANES], count;
 } Class;
 
-// Whether shadows or compensation read the points' triangles and planes.
+// Tests whether shadows or compensation read the points' triangles and planes.
 static bool needsPoints(const vplShading* s)
 {
     const vplLightList* list = &s->lights;

@@ -9,23 +9,26 @@
 
 #include <string.h>
 
-void VPL_KERNEL(vplAddLightsDocumented)(const vplSurface* restrict surface,
-                                        const vplShadeLight* restrict lights, int count, float inverseClamp,
-                                        float irradiance[restrict 3][VPL_LANES])
+static inline __attribute__((always_inline)) void addLights(const vplSurface* restrict surface,
+                                                            const vplShadeLight* restrict lights, int count,
+                                                            float inverseClamp, bool physical,
+                                                            float irradiance[restrict 3][VPL_LANES])
 {
-    (void)inverseClamp;
     float r[VPL_LANES], g[VPL_LANES], b[VPL_LANES];
     memcpy(r, irradiance[0], sizeof r);
     memcpy(g, irradiance[1], sizeof g);
     memcpy(b, irradiance[2], sizeof b);
     for (int i = 0; i < count; i++) {
         const vplShadeLight light = lights[i];
+        const vplVec3 m = {light.nx, light.ny, light.nz};
         for (int l = 0; l < VPL_LANES; l++) {
-            float x = light.px - surface->px[l], y = light.py - surface->py[l], z = light.pz - surface->pz[l];
-            float cosine = vplDocumentedCosine(x, y, z, surface->nx[l], surface->ny[l], surface->nz[l]);
-            r[l] += light.r * cosine;
-            g[l] += light.g * cosine;
-            b[l] += light.b * cosine;
+            const vplVec3 way = {light.px - surface->px[l], light.py - surface->py[l],
+                                 light.pz - surface->pz[l]};
+            const vplVec3 n = {surface->nx[l], surface->ny[l], surface->nz[l]};
+            const float factor = vplLightFactor(physical, way, n, m, inverseClamp);
+            r[l] += light.r * factor;
+            g[l] += light.g * factor;
+            b[l] += light.b * factor;
         }
     }
     memcpy(irradiance[0], r, sizeof r);
@@ -33,29 +36,18 @@ void VPL_KERNEL(vplAddLightsDocumented)(const vplSurface* restrict surface,
     memcpy(irradiance[2], b, sizeof b);
 }
 
+void VPL_KERNEL(vplAddLightsDocumented)(const vplSurface* restrict surface,
+                                        const vplShadeLight* restrict lights, int count, float inverseClamp,
+                                        float irradiance[restrict 3][VPL_LANES])
+{
+    addLights(surface, lights, count, inverseClamp, false, irradiance);
+}
+
 void VPL_KERNEL(vplAddLightsPhysical)(const vplSurface* restrict surface,
                                       const vplShadeLight* restrict lights, int count, float inverseClamp,
                                       float irradiance[restrict 3][VPL_LANES])
 {
-    float r[VPL_LANES], g[VPL_LANES], b[VPL_LANES];
-    memcpy(r, irradiance[0], sizeof r);
-    memcpy(g, irradiance[1], sizeof g);
-    memcpy(b, irradiance[2], sizeof b);
-    for (int i = 0; i < count; i++) {
-        const vplShadeLight light = lights[i];
-        for (int l = 0; l < VPL_LANES; l++) {
-            float x = light.px - surface->px[l], y = light.py - surface->py[l], z = light.pz - surface->pz[l];
-            float geometry = vplClampedGeometry(vplLightTermOf(x, y, z, surface->nx[l], surface->ny[l],
-                                                               surface->nz[l], light.nx, light.ny, light.nz),
-                                                inverseClamp);
-            r[l] += light.r * geometry;
-            g[l] += light.g * geometry;
-            b[l] += light.b * geometry;
-        }
-    }
-    memcpy(irradiance[0], r, sizeof r);
-    memcpy(irradiance[1], g, sizeof g);
-    memcpy(irradiance[2], b, sizeof b);
+    addLights(surface, lights, count, inverseClamp, true, irradiance);
 }
 
 // Sixteen lights for one point: points that rays hit are too few to fill vectors.
@@ -67,11 +59,11 @@ void VPL_KERNEL(vplLightsOfPoint)(const vplLightLanes* restrict lights, const fl
     float clamps[VPL_LANES];
     memcpy(&lanes, lights, sizeof lanes);
     memcpy(clamps, inverseClamp, sizeof clamps);
+    const vplVec3 n = {point[3], point[4], point[5]};
     for (int l = 0; l < VPL_LANES; l++) {
-        const float x = lanes.at[0][l] - point[0], y = lanes.at[1][l] - point[1],
-                    z = lanes.at[2][l] - point[2];
-        const vplLightTerm t = vplLightTermOf(x, y, z, point[3], point[4], point[5], lanes.at[3][l],
-                                              lanes.at[4][l], lanes.at[5][l]);
+        const vplVec3 way = {lanes.at[0][l] - point[0], lanes.at[1][l] - point[1], lanes.at[2][l] - point[2]};
+        const vplVec3 m = {lanes.at[3][l], lanes.at[4][l], lanes.at[5][l]};
+        const vplLightTerm t = vplLightTermOf(way, n, m);
         const float left = vplSmallerOf(t.inverse, clamps[l]) - subtracted;
         geometry[l] = (t.here * t.inverse) * (t.there * vplLargerOf(left, 0));
     }
