@@ -161,7 +161,7 @@ bool isSureAt(const ShadowMap* m, vplVec3 p, vplVec3 n, bool dark)
     if (m->kind == MAP_CUBE) {
         const vplVec3 way = wayToMap(m, p);
         const float r = vplLength(way), f = r * m->shadow.texelTangent;
-        const float band = vplShadowBand(r, f, fminf(fabsf(vplDot(way, n)) / r, 1));
+        const float band = bandAt(r, f, fminf(fabsf(vplDot(way, n)) / r, 1));
         return isSureWithin(m->geometry, m->position, p, n, f, band, dark);
     }
     return m->kind == MAP_SOFT_CUBE ? false

@@ -5,7 +5,8 @@
 
 #include "math/vec.h"
 #include "visibility/cube_bounds.h"
-#include "visibility/shadow.h"
+#include "base/context.h"
+#include "visibility/kernels.h"
 
 #include <stdlib.h>
 
@@ -154,7 +155,8 @@ static void compareShadows(const vplShadow* shadow, const vplSurface* surface, i
     bare.bounds = NULL;
     without.map = &bare;
     vplShadow_FactorBlock(&without, surface, wanted);
-    const int count = vplShadow_FactorBlockCounted(shadow, surface, factor);
+    const vplVisibilityKernels* kernels = vplVisibilityKernels_Get(bare.context->isa);
+    const int count = kernels->shadowFactor(shadow, surface, factor);
     assert_memory_equal(factor, wanted, sizeof factor);
     if (count == VPL_LANES) {
         for (int l = 0; l < VPL_LANES; l++) {

@@ -340,8 +340,8 @@ TEST(OutlinesAreAtEdgesOfPatches, 1)
         if (cut) { // the line from lower left to the centre is no edge
             uint8_t* edges = (uint8_t*)m->edges;
             for (int i = 0; i < 3 * m->triangleCount; i++) {
-                const vplVec3 a = vplPatchMesh_Corner(m, i / 3, i % 3),
-                              b = vplPatchMesh_Corner(m, i / 3, (i + 1) % 3);
+                const vplVec3 a = m->positions[m->indices[i]],
+                              b = m->positions[m->indices[i / 3 * 3 + (i + 1) % 3]];
                 if (a.x == a.y && a.x <= 0 && b.x == b.y && b.x <= 0) {
                     edges[i / 3] &= (uint8_t) ~(1u << i % 3);
                 }

@@ -94,7 +94,7 @@ TEST(LightsOnWallsEdgesAndCornersSeeTheWholeRoom, 1)
                 // Two coordinates near 1 mean that the point lies at an edge, within the map's band. A light
                 // in the plane of the point does not light it.
                 float band, footprint;
-                band = vplHemiMap_Band(&maps->maps[0], p.position, p.normal, &footprint);
+                band = hemiMapBand(&maps->maps[0], p.position, p.normal, &footprint);
                 const int close =
                     (fabsf(local.x) > 1 - band) + (fabsf(local.y) > 1 - band) + (fabsf(local.z) > 1 - band);
                 if (vplDot(way, p.normal) > 1e-3f && vplDot(way, n) < -1e-3f) {

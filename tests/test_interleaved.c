@@ -218,7 +218,7 @@ TEST_ALONE(ThreadsAndInstructionSetsChangeNoBit)
         vplRenderOptions o = optionsOf(sides[i % 3]);
         o.lights.shadows = (vplLightShadows)(i < 3 ? 0 : i - 2);
         o.particles.count = i < 3 ? 150 : 20;
-        o.output.antialias = i == 0 ? 2 : 1;
+        o.output.supersample = i == 0 ? 2 : 1;
         o.lighting = i == 1 ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
         const uint64_t wanted = hashOf(openTestContext(1), &o);
         for (int k = 0; k < 3; k++) {

@@ -202,7 +202,7 @@ TEST(CountedRaysTestEveryObjectOfSmallScenes, 1)
             int tests = 0;
             vplHit hit;
             const vplRay ray = {{0, 0, 0}, {1, 2, 3}, {0, 0}};
-            assert_true(vplClosestHit(g, &ray, &hit, &tests));
+            assert_true(vplClosestHit(g, &ray, INFINITY, &tests, &hit));
             const bool everyObject = forRaster || g->rayTree->blockCount <= VPL_COUNTED_BLOCKS;
             assert_true(everyObject == (forRaster || level == 0));
             assert_true(everyObject ? tests == g->objectCount : tests < g->rayTree->blockCount);

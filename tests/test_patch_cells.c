@@ -2,11 +2,32 @@
 // Tests of the cells of patch sides, and of the open ones in the report's box.
 #include "sides_cases.h"
 
+#include "geometry/triangle.h"
+
 // ---- cells
 
 static vplPatchSide sideOf(vplVec3 a, vplVec3 b, vplVec3 c)
 {
     return (vplPatchSide){.open = 0xffff, .corners = {a, b, c}};
+}
+
+// Returns the part that barycentrics lie in and turns them into those of the part.
+static int toPart(double w[3])
+{
+    const int part = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
+    for (int k = 0; k < 3; k++) {
+        w[k] = part == 3 ? 1 - 2 * w[k] : 2 * w[k] - (k == part);
+    }
+    return part;
+}
+
+// The cell that a point of a triangle lies in, or nearly.
+static int findCell(const vplVec3 corners[3], vplVec3 point)
+{
+    double w[3];
+    vplTriangle_Barycentrics(corners, point, w);
+    const int part = toPart(w);
+    return 4 * part + toPart(w);
 }
 
 // Sixteen triangles tile the patch: points of a cell are found in that cell, their mean is the cell's centre,
@@ -20,7 +41,7 @@ TEST_ALONE(CellsTileThePatch)
         for (int i = 0; i < 32 * 32; i++) {
             const float u = ((float)(i % 32) + 0.5f) / 32, v = ((float)(i / 32) + 0.5f) / 32;
             const vplVec3 p = vplPatchSide_SampleCell(&s, k, u, v);
-            assert_int_equal(vplCell_Find(s.corners, p), k);
+            assert_int_equal(findCell(s.corners, p), k);
             for (int axis = 0; axis < 3; axis++) {
                 mean[axis] += (double)vplComponent(p, axis) / 1024;
             }

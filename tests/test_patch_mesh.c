@@ -10,7 +10,7 @@
 
 static vplVec3 cornerOf(const vplPatchMesh* m, int triangle, int corner)
 {
-    return vplPatchMesh_Corner(m, triangle, corner % 3);
+    return m->positions[m->indices[3 * triangle + corner % 3]];
 }
 
 static bool same(vplVec3 a, vplVec3 b)

@@ -2,6 +2,8 @@
 // Tests of finding the sides of patches that light reaches, and their open cells (X101).
 #include "sides_cases.h"
 
+#include "base/context.h"
+
 // ---- unlit sides
 
 // A crate stands on a floor: triangles 0 and 1 are the floor's, 2 to 13 the crate's. Its inside and the floor
@@ -342,6 +344,7 @@ TEST_ALONE(ARefusedProgressCancels)
     emitter.position = vplVec(0, 2, 0);
     def.emitters = &emitter;
     def.emitterCount = 1;
+    c.context->workerCount = 1; // of two workers one may do all tasks, and only the caller's asks
     def.progress = refuseThird;
     def.progressUser = &asked;
     expectFailure(c.patches, def, VPL_CANCELLED, "");

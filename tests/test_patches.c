@@ -29,10 +29,9 @@ static bool startsWith(const Table* t, int row, const char* text)
     return strncmp(cell(t, row, "rule"), text, strlen(text)) == 0;
 }
 
-// Squared lengths in the lab's unit are exact in float, so a threshold T that is the next float above or
-// below a length is on the right side of it. Edges of length T exactly (82.5, 138.75, 165 ...) are not
-// bisected (X097). Thresholds from below are tested without the seventh round, because the table lacks that
-// round's lengths (98.1, half of 196.2).
+// Squared lengths in the lab's unit are exact in float, so the next floats above and below a length are on the
+// right side of it. Edges of length T exactly are not bisected (X097). From below the seventh round is left
+// out: the table lacks its lengths (98.1).
 TEST(EveryThresholdGivesTheTablesCountsFromBothSides, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);
@@ -52,8 +51,7 @@ TEST(EveryThresholdGivesTheTablesCountsFromBothSides, 1)
     vplGeometry_Destroy(g);
 }
 
-// T = 0.5 in the lab's own float coordinates equals half the length of walls: 464 patches, slightly below it
-// 784 (X097).
+// T = 0.5 in the lab's own coordinates is half the length of walls: 464 patches, slightly below it 784 (X097).
 TEST(ScaledThresholdsInFloatGiveTheTablesCounts, 1)
 {
     vplGeometry* g = testModel(context, MODEL_SCALED, 0.5f);
@@ -73,8 +71,7 @@ TEST(ScaledThresholdsInFloatGiveTheTablesCounts, 1)
     vplGeometry_Destroy(g);
 }
 
-// Triangles with permuted corners: another of several equal longest edges comes first, but counts are the
-// same (X099).
+// With permuted corners another of several equal longest edges comes first, but counts are the same (X099).
 TEST(CountsDoNotDependOnWhichOfEqualEdgesIsFirst, 1)
 {
     Table model = loadTable("cornell_testmodel.csv"), t = loadTable("subdivision_counts.csv");
@@ -398,9 +395,8 @@ static vplPatches* byCount(const vplGeometry* g, int count)
     return p;
 }
 
-// A count is met once all edges of the same length are bisected: bisecting one length less gives too few
-// patches, and the patches are those of a threshold. In metres, edges have equal lengths only up to rounding,
-// but still go together.
+// A count is met once all edges of the same length, up to rounding, are bisected: bisecting one length less
+// gives too few patches, and the patches are those of a threshold.
 TEST(ACountBisectsTheLongestFirstAllOfALengthTogether, 1)
 {
     vplGeometry* lab = testModel(context, MODEL_LAB, 0.5f);
@@ -459,8 +455,7 @@ TEST(RefiningBisectsTheLargestPrioritiesAndTheFirstOfEqualOnes, 1)
     vplGeometry_Destroy(g);
 }
 
-// Refining all patches equals one round of a threshold. Refined patches stay valid after those that they were
-// made from are destroyed.
+// Refining all patches equals one round of a threshold. Refined patches outlive those they were made from.
 TEST(RefiningEverythingIsARound, 1)
 {
     vplGeometry* g = testModel(context, MODEL_LAB, 0.5f);

@@ -479,7 +479,7 @@ TEST(AntialiasingIsTheBoxFilter, 2)
     const int samples[3] = {1, 16, 256};
     for (int k = 0; k < 3; k++) {
         vplImage* image;
-        o.output.antialias = samples[k];
+        o.output.supersample = samples[k];
         assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_SUCCESS);
         worst[k] = 0;
         for (int i = 0; i < 64; i++) {
@@ -491,7 +491,7 @@ TEST(AntialiasingIsTheBoxFilter, 2)
     assert_true(worst[0] > 0.4); // the centre alone is either in or out
     assert_true(worst[1] < 0.1);
     assert_true(worst[2] < 0.012);
-    o.output.antialias = 0;
+    o.output.supersample = 0;
     assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);
 }

@@ -108,7 +108,7 @@ bool vplReflectiveMap_GetTexel(const vplReflectiveMap* map, const vplGeometry* g
 // The shadowed share, [0, 1], of the emitter's light at 16 points: the bilinear weight of those of the four
 // nearest texels that show a surface nearer than both the point and its plane, by more than half a texel's
 // side. So no plane shadows itself, and an object within that distance of a surface casts no shadow on it.
-// Where all rays within a texel's side agree, the factor agrees with them. 0 outside the map's view.
+// If all rays within a texel's side agree, the factor agrees with them. 0 outside the map's view.
 void vplReflectiveMap_FactorBlock(const vplReflectiveMap* map, const vplSurface* surface,
                                   float factorOut[VPL_LANES]);
 

@@ -20,7 +20,8 @@ enum {
     VPL_TILE_SIDE = 64,    // pixels
     VPL_TILE_BLOCKS = 16,  // blocks along a tile's side
     VPL_MAX_VARYINGS = 12, // floats per vertex, besides the position
-    VPL_MAX_PLANES = 8     // colour planes of a framebuffer
+    VPL_MAX_PLANES = 8,    // colour planes of a framebuffer
+    VPL_MAX_SAMPLES_PER_PIXEL = 16
 };
 
 // Output of a vertex shader: element i - first of each array belongs to vertex i.
@@ -131,6 +132,11 @@ typedef struct vplFramebuffer {
     // Out, one per pixel: the triangle that wrote depth last, numbered through the meshes in the order in
     // which they are first drawn; -1: none. Not with ownerTest. NULL (default): not wanted.
     int32_t* triangles;
+    // Multisampling: the triangle that each of this many sub-pixel samples shows is found besides that of the
+    // pixel's centre, [0, VPL_MAX_SAMPLES_PER_PIXEL]; see vplTile_GetCoverage. Default 0. Samples see the
+    // draws before the first tile task that write depth; these must compare LESS, and neither write depth nor
+    // store distances by themselves.
+    int samples;
     size_t scratchBytes; // private memory of a tile, zeroed at its start, for tile tasks; default 0
     uint32_t cookie;     // set by vplDefaultFramebuffer
 } vplFramebuffer;
@@ -144,8 +150,31 @@ typedef struct vplTile {
     int width, height; // pixels inside the picture, up to VPL_TILE_SIDE
     const float* depth;
     float* planes[VPL_MAX_PLANES];
+    // The triangle that sample i of each pixel shows, numbered as in vplFramebuffer.triangles; -1: none.
+    int32_t* samples[VPL_MAX_SAMPLES_PER_PIXEL];
+    int sampleCount;
     void* scratch;
 } vplTile;
+
+// A point of a pixel.
+typedef struct vplSubPixel {
+    int x, y; // 1/256 pixel from the centre, y down
+} vplSubPixel;
+
+// Sample i of `count` in every pixel, at a point of the Hammersley sequence: an edge along an axis is cut at
+// as many places as there are samples.
+vplSubPixel vplSubPixel_OfSample(int i, int count);
+
+// A triangle that a pixel shows.
+typedef struct vplCoverage {
+    int32_t triangle; // as in vplFramebuffer.triangles; -1: nothing
+    uint32_t samples; // bit i: sample i shows it
+} vplCoverage;
+
+// Resolves a pixel, an element of the tile: lists the triangles that its samples show, in the order of the
+// first sample of each. Returns their number. Every sample of a pixel shows one triangle or nothing; of two
+// triangles with a common edge one covers a sample on that edge.
+int vplTile_GetCoverage(const vplTile* tile, int element, vplCoverage out[VPL_MAX_SAMPLES_PER_PIXEL]);
 
 // A tile task: works on a whole tile between draws. Called from any worker.
 typedef void vplTileFcn(void* data, vplTile* tile, int worker);

@@ -5,6 +5,8 @@
 #ifndef VPL_GEOMETRY_BVH_H
 #define VPL_GEOMETRY_BVH_H
 
+#include "math/vec.h"
+
 #include <vpl/geometry.h>
 
 #include "base/isa.h"
@@ -43,7 +45,7 @@ typedef struct vplBvh {
 vplResult vplBvh_Create(const vplGeometry* geometry, int bruteBlocks, vplBvh** bvhOut);
 void vplBvh_Destroy(vplBvh* bvh);
 
-// Whether a triangle has an area; rays never hit one that has none.
+// True for a triangle with an area; rays never hit one that has none.
 static inline bool vplCanBeHit(const vplGeometry* g, int triangle)
 {
     const vplVec3 n = g->normals[triangle];
@@ -67,12 +69,10 @@ typedef struct vplRayPacket {
 
 static inline void vplRayPacket_Set(vplRayPacket* packet, int lane, const vplRay* ray)
 {
-    packet->origin[0][lane] = ray->origin.x;
-    packet->origin[1][lane] = ray->origin.y;
-    packet->origin[2][lane] = ray->origin.z;
-    packet->direction[0][lane] = ray->direction.x;
-    packet->direction[1][lane] = ray->direction.y;
-    packet->direction[2][lane] = ray->direction.z;
+    for (int axis = 0; axis < 3; axis++) {
+        packet->origin[axis][lane] = vplComponent(ray->origin, axis);
+        packet->direction[axis][lane] = vplComponent(ray->direction, axis);
+    }
     packet->skipFirst[lane] = ray->skip.first;
     packet->skipCount[lane] = ray->skip.count;
     packet->active |= 1u << lane;
@@ -98,7 +98,7 @@ typedef struct vplRawHit {
 // The closest hit with t in (0, tMax); among equal t the lowest triangle.
 typedef void vplTraceClosestFcn(const vplBvh* bvh, const vplRay* ray, float tMax, vplRawHit* hitOut);
 
-// Whether there is any hit with t in (0, tMax).
+// True if there is any hit with t in (0, tMax).
 typedef bool vplTraceAnyFcn(const vplBvh* bvh, const vplRay* ray, float tMax);
 
 // The same for a packet: bit i of the result is ray i.
@@ -118,11 +118,9 @@ const vplRayKernels* vplGetRayKernels(vplIsa isa);
 
 // ---- queries; without a ray tree they test every triangle
 
-// vplGeometry_ClosestHit, adding to *tests the number of objects if all are tested, else of blocks tested.
-bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests);
-
-// The closest hit nearer than tMax, in units of the direction.
-bool vplClosestHitWithin(const vplGeometry* geometry, const vplRay* ray, float tMax, vplHit* hitOut);
+// Finds the closest hit nearer than tMax, in units of the direction. Adds to *tests, which may be NULL, the
+// number of objects where all are tested, otherwise the number of blocks that were tested.
+bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, float tMax, int* tests, vplHit* hitOut);
 
 // vplGeometry_IsOccluded by testing every triangle, also where there is a tree.
 bool vplAnyOfTriangles(const vplGeometry* geometry, const vplRay* ray, float tMax);

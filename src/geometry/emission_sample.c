@@ -33,14 +33,10 @@ vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, flo
 
 static vplVec3 directionAround(vplVec3 axis, double cosine, float v)
 {
-    vplVec3 tangent, bitangent;
     double sine2 = 1 - cosine * cosine, along, across;
     float radius = (float)sqrt(sine2 > 0 ? sine2 : 0);
-    vplTangentFrame(axis, &tangent, &bitangent);
     vplSinCosQuarters(4.0 * v, &across, &along);
-    vplVec3 side =
-        vplAdd(vplScale(radius * (float)along, tangent), vplScale(radius * (float)across, bitangent));
-    return vplNormalize(vplAdd(side, vplScale((float)cosine, axis)));
+    return vplTurnTo(axis, vplVec(radius * (float)along, radius * (float)across, (float)cosine));
 }
 
 // A point on a disc just outside the sphere around the geometry.

@@ -4,6 +4,7 @@
 // Departs: t must be above 0, and a ray from inside a box hits its exit; otherwise a particle would hit the
 // surface it just left.
 #include "geometry/triangle.h"
+#include "math/double3.h"
 #include "math/matrix.h"
 #include "math/vec.h"
 #include "scene/scene.h"
@@ -51,16 +52,15 @@ static LocalRay toLocal(const vplRay* ray, const vplPlacement* p)
 // False where t overflows a float: a hit that far away counts as a miss.
 static bool fillHit(const vplPlacement* p, const double at[3], double t, int face, vplHit* hit)
 {
-    float world[3];
+    double world[3];
     for (int i = 0; i < 3; i++) {
-        const double* m = p->toWorld[i];
-        world[i] = (float)(m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3]);
+        world[i] = vplDot3(p->toWorld[i], at) + p->toWorld[i][3];
     }
     *hit = (vplHit){.t = (float)t,
                     .object = -1,
                     .face = face,
                     .triangle = -1,
-                    .position = vplVec(world[0], world[1], world[2]),
+                    .position = vplRound3(world),
                     .normal = vplVec(p->normal[face][0], p->normal[face][1], p->normal[face][2])};
     return hit->t > 0 && isfinite(hit->t);
 }

@@ -43,15 +43,14 @@ vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def)
 
 static vplVec3 toWorld(const vplAffine* world, vplVec3 p)
 {
-    float at[3];
+    double at[3];
     for (int row = 0; row < 3; row++) {
-        double sum = world->m[row][3];
+        at[row] = world->m[row][3];
         for (int axis = 0; axis < 3; axis++) {
-            sum += world->m[row][axis] * vplComponent(p, axis);
+            at[row] += world->m[row][axis] * vplComponent(p, axis);
         }
-        at[row] = (float)sum;
     }
-    return vplVec(at[0], at[1], at[2]);
+    return vplRound3(at);
 }
 
 static vplVec3 unit(const double v[3])
@@ -76,7 +75,7 @@ static vplVec3 normalToWorld(const vplPlacement* placement, vplVec3 n)
     return unit(v);
 }
 
-// Whether a placement turns counter-clockwise triangles into clockwise ones.
+// True for a placement that turns counter-clockwise triangles into clockwise ones.
 static bool mirrors(const vplPlacement* p)
 {
     double cross[3];

@@ -149,13 +149,9 @@ static uint32_t testTriangle(const Packet* p, const vplTriangleBlock* block, int
     if (inside == 0) {
         return 0;
     }
-    vplFour corner[3];
     float in[LANES], out[LANES];
     int32_t flags[LANES];
-    for (int i = 0; i < 3; i++) {
-        corner[i] = (vplFour){block->p[i][0][lane], block->p[i][1][lane], block->p[i][2][lane], 0};
-    }
-    const vplBox box = vplBoundTriangle(corner);
+    const vplBox box = boundLane(block, lane);
     const float low[3] = {box.low[0], box.low[1], box.low[2]};
     const float high[3] = {box.high[0], box.high[1], box.high[2]};
     crossBox(p, low, high, in, out);

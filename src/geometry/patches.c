@@ -41,30 +41,20 @@ static vplResult checkDef(const vplGeometry* geometry, const vplPatchDef* def)
 
 // ---- counting
 
-typedef struct Part {
-    vplTriangleCorners at;
-    int round;
-} Part;
-
-// The number of patches that a triangle becomes. Stops counting at `enough`.
-static int countTriangle(const vplGeometry* g, int triangle, double square, int rounds, int enough)
+// The number of patches that a triangle, or a part of one, becomes in `rounds` rounds. Stops counting at
+// `enough`.
+static int countPart(const vplTriangleCorners* part, vplVec3 normal, double square, int rounds, int enough)
 {
-    Part stack[VPL_MAX_PATCH_ROUNDS + 1];
-    int depth = 1, count = 0;
-    const vplTriangleCorners corners = vplGeometry_Corners(g, triangle);
-    stack[0] = (Part){vplPatch_Rotate(&corners), 0};
-    while (depth > 0 && count < enough) {
-        const Part part = stack[--depth];
-        vplVec3 middle;
-        if (part.round < rounds && vplPatch_SquaredEdge(&part.at) > square &&
-            vplPatch_Middle(&part.at, g->normals[triangle], &middle)) {
-            const vplTriangleCorners first = vplPatch_Half(&part.at, middle, 0),
-                                     second = vplPatch_Half(&part.at, middle, 1);
-            stack[depth++] = (Part){vplPatch_Rotate(&first), part.round + 1};
-            stack[depth++] = (Part){vplPatch_Rotate(&second), part.round + 1};
-        } else {
-            count++;
-        }
+    const vplTriangleCorners rotated = vplPatch_Rotate(part);
+    vplVec3 middle;
+    if (rounds == 0 || !(vplPatch_SquaredEdge(&rotated) > square) ||
+        !vplPatch_Middle(&rotated, normal, &middle)) {
+        return 1;
+    }
+    int count = 0;
+    for (int half = 0; half < 2 && count < enough; half++) {
+        const vplTriangleCorners corners = vplPatch_Half(&rotated, middle, half);
+        count += countPart(&corners, normal, square, rounds - 1, enough - count);
     }
     return count;
 }
@@ -74,7 +64,10 @@ static int countAll(const vplGeometry* g, double square, int rounds, int enough)
 {
     int count = 0;
     for (int t = 0; t < g->triangleCount && count < enough; t++) {
-        count += vplCanBeHit(g, t) ? countTriangle(g, t, square, rounds, enough - count) : 0;
+        if (vplCanBeHit(g, t)) {
+            const vplTriangleCorners corners = vplGeometry_Corners(g, t);
+            count += countPart(&corners, g->normals[t], square, rounds, enough - count);
+        }
     }
     return count;
 }

@@ -190,15 +190,20 @@ static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, floa
     return collectBits(met);
 }
 
-// Clamps a hit distance to the triangle's bounds; +infinity where the ray misses them.
-static __attribute__((noinline)) float clampToBox(const Prepared* r, const vplTriangleBlock* block, int lane,
-                                                  float t)
+static inline vplBox boundLane(const vplTriangleBlock* block, int lane)
 {
     vplFour corner[3];
     for (int i = 0; i < 3; i++) {
         corner[i] = (vplFour){block->p[i][0][lane], block->p[i][1][lane], block->p[i][2][lane], 0};
     }
-    const vplBox box = vplBoundTriangle(corner);
+    return vplBoundTriangle(corner);
+}
+
+// Clamps a hit distance to the triangle's bounds; +infinity where the ray misses them.
+static __attribute__((noinline)) float clampToBox(const Prepared* r, const vplTriangleBlock* block, int lane,
+                                                  float t)
+{
+    const vplBox box = boundLane(block, lane);
     const vplFour a = (box.low - r->origin) * r->inverse, b = (box.high - r->origin) * r->inverse;
     const vplFour in = vplFour_Min(a, b), out = vplFour_Max(a, b);
     const float entry = slabEntry(in[0], in[1], in[2]), exit = slabExit(out[0], out[1], out[2]);
@@ -219,7 +224,7 @@ static inline bool hasHitBelow(const Prepared* r, const vplTriangleBlock* block,
     return false;
 }
 
-// Whether the subtree of `child` has a hit. Visits children in their order: sorting by distance costs more
+// True if the subtree of `child` has a hit. Visits children in their order: sorting by distance costs more
 // than it saves.
 static inline bool hasHitInTree(const Prepared* r, const vplBvh* bvh, int32_t child, float limit)
 {
@@ -231,7 +236,7 @@ static inline bool hasHitInTree(const Prepared* r, const vplBvh* bvh, int32_t ch
             float entry[WIDTH];
             uint32_t hits = testBoxes(r, node, limit, entry);
             if (hits != 0) {
-                for (; (hits & (hits - 1)) != 0;) {
+                while ((hits & (hits - 1)) != 0) {
                     const int last = 31 - __builtin_clz(hits);
                     hits ^= 1u << last;
                     stack[height++] = node->child[last];

@@ -3,6 +3,7 @@
 #include "base/context.h"
 #include "geometry/bvh.h"
 #include "geometry/triangle.h"
+#include "math/double3.h"
 #include "math/vec.h"
 
 #include <math.h>
@@ -53,13 +54,13 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
 {
     const vplTriangleCorners t = vplGeometry_Corners(g, raw->triangle);
     const double w1 = raw->b1, w2 = raw->b2;
-    float at[3];
+    double at[3];
     for (int axis = 0; axis < 3; axis++) {
-        double a = vplComponent(t.corner[0], axis), b = vplComponent(t.corner[1], axis),
-               c = vplComponent(t.corner[2], axis);
-        at[axis] = (float)(a + w1 * (b - a) + w2 * (c - a));
+        const double a = vplComponent(t.corner[0], axis), b = vplComponent(t.corner[1], axis),
+                     c = vplComponent(t.corner[2], axis);
+        at[axis] = a + w1 * (b - a) + w2 * (c - a);
     }
-    hit->position = vplVec(at[0], at[1], at[2]);
+    hit->position = vplRound3(at);
     hit->normal = g->normals[raw->triangle];
     hit->t = raw->t;
 }
@@ -83,8 +84,7 @@ static vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vp
     return hit;
 }
 
-// Casts a ray up to tMax. Adds to *tests, which may be NULL, as vplClosestHit says.
-static bool castRay(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
+bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
 {
     vplRawHit raw;
     bool everyObject = true;
@@ -107,19 +107,9 @@ static bool castRay(const vplGeometry* g, const vplRay* ray, float tMax, int* te
     return raw.triangle >= 0;
 }
 
-bool vplClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut, int* tests)
-{
-    return castRay(geometry, ray, INFINITY, tests, hitOut);
-}
-
-bool vplClosestHitWithin(const vplGeometry* geometry, const vplRay* ray, float tMax, vplHit* hitOut)
-{
-    return castRay(geometry, ray, tMax, NULL, hitOut);
-}
-
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)
 {
-    return castRay(geometry, ray, INFINITY, NULL, hitOut);
+    return vplClosestHit(geometry, ray, INFINITY, NULL, hitOut);
 }
 
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)
@@ -156,9 +146,8 @@ vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3
         ray.skip = (vplSkip){object->firstTriangle + 2 * hit->face, 2};
     } else {
         // Rounding moves the point off the triangle, and its neighbours are not coplanar: clear them all.
-        vplVec3 p = hit->position;
-        float largest = fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
-        ray.origin = vplAdd(p, vplScale((outward ? 1 : -1) * largest * 0x1p-20f, hit->normal));
+        const float distance = (outward ? 1 : -1) * vplLargestOf(hit->position) * 0x1p-20f;
+        ray.origin = vplAdd(hit->position, vplScale(distance, hit->normal));
     }
     return ray;
 }

@@ -13,8 +13,8 @@ typedef struct Edges {
 static Edges edgesOf(const vplVec3 corners[3])
 {
     Edges e;
+    vplToDouble3(corners[0], e.origin);
     for (int k = 0; k < 3; k++) {
-        e.origin[k] = vplComponent(corners[0], k);
         e.u[k] = vplComponent(corners[1], k) - e.origin[k];
         e.v[k] = vplComponent(corners[2], k) - e.origin[k];
     }
@@ -89,11 +89,11 @@ vplVec3 vplGeometry_InsideAt(const vplGeometry* g, int triangle, vplVec3 point, 
         const double sum = w[1] + w[2] + w[0];
         w[1] /= sum;
         w[2] /= sum;
-        float at[3];
+        double at[3];
         for (int k = 0; k < 3; k++) {
-            at[k] = (float)(e.origin[k] + w[1] * e.u[k] + w[2] * e.v[k]);
+            at[k] = e.origin[k] + w[1] * e.u[k] + w[2] * e.v[k];
         }
-        point = vplVec(at[0], at[1], at[2]);
+        point = vplRound3(at);
     }
     *uOut = (float)w[1];
     *vOut = (float)w[2];

@@ -47,7 +47,7 @@ static vplVec3 reflect(vplVec3 d, vplVec3 n)
 static bool trace(Simulation* s, int particle, const vplRay* ray, vplHit* hit)
 {
     if (s->def.geometry == VPL_PARTICLE_GEOMETRY_EXACT) {
-        return vplClosestHit(s->geometry, ray, hit, &s->testsOf[particle]);
+        return vplClosestHit(s->geometry, ray, INFINITY, &s->testsOf[particle], hit);
     }
     const vplHit from = *hit;
     s->testsOf[particle] += s->geometry->objectCount;

@@ -59,12 +59,11 @@ static double cofactors(const double c[3][3], double rows[3][3])
 static void unitColumns(const vplAffine* a, double columns[3][3], double lengths[3])
 {
     for (int j = 0; j < 3; j++) {
-        double x = a->m[0][j], y = a->m[1][j], z = a->m[2][j];
-        lengths[j] = sqrt(x * x + y * y + z * z);
-        double scale = lengths[j] > 0 ? 1 / lengths[j] : 0;
-        columns[j][0] = x * scale;
-        columns[j][1] = y * scale;
-        columns[j][2] = z * scale;
+        const double c[3] = {a->m[0][j], a->m[1][j], a->m[2][j]};
+        lengths[j] = sqrt(vplDot3(c, c));
+        for (int i = 0; i < 3; i++) {
+            columns[j][i] = c[i] * (lengths[j] > 0 ? 1 / lengths[j] : 0);
+        }
     }
 }
 
@@ -155,9 +154,7 @@ vplMat4 vplMat4_Perspective(double fovY, double aspect, double near, double far)
 
 vplVec3 vplMat4_TransformPoint(const vplMat4* m, vplVec3 p)
 {
-    return vplVec(m->m[0] * p.x + m->m[4] * p.y + m->m[8] * p.z + m->m[12],
-                  m->m[1] * p.x + m->m[5] * p.y + m->m[9] * p.z + m->m[13],
-                  m->m[2] * p.x + m->m[6] * p.y + m->m[10] * p.z + m->m[14]);
+    return vplAdd(vplMat4_TransformDirection(m, p), vplVec(m->m[12], m->m[13], m->m[14]));
 }
 
 vplVec3 vplMat4_TransformDirection(const vplMat4* m, vplVec3 d)

@@ -78,7 +78,12 @@ vplVec3 vplSampleCosine(float u, float v)
 
 vplVec3 vplSampleCosineAround(vplVec3 n, float u, float v)
 {
-    vplVec3 d = vplSampleCosine(u, v), tangent, bitangent;
+    return vplTurnTo(n, vplSampleCosine(u, v));
+}
+
+vplVec3 vplTurnTo(vplVec3 n, vplVec3 d)
+{
+    vplVec3 tangent, bitangent;
     vplTangentFrame(n, &tangent, &bitangent);
     vplVec3 side = vplAdd(vplScale(d.x, tangent), vplScale(d.y, bitangent));
     return vplNormalize(vplAdd(side, vplScale(d.z, n)));

@@ -38,7 +38,10 @@ vplVec3 vplSampleSphere(float u, float v);
 // On the hemisphere around +z with density cos / pi: Malley's method with the polar disc.
 vplVec3 vplSampleCosine(float u, float v);
 
-// The same for the hemisphere around the unit vector n.
+// Turns a direction that is given around +z to lie around the unit vector n. The result is unit.
+vplVec3 vplTurnTo(vplVec3 n, vplVec3 d);
+
+// The same as vplSampleCosine for the hemisphere around the unit vector n.
 vplVec3 vplSampleCosineAround(vplVec3 n, float u, float v);
 
 #endif

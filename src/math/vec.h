@@ -47,11 +47,17 @@ static inline float vplLength(vplVec3 a)
     return sqrtf(vplDot(a, a));
 }
 
+// The largest magnitude of a component.
+static inline float vplLargestOf(vplVec3 a)
+{
+    return fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
+}
+
 // The unit vector along a; 0 for the zero vector. Scales the largest component to 1 first, so that the
 // squares of tiny and huge vectors neither underflow nor overflow.
 static inline vplVec3 vplNormalize(vplVec3 a)
 {
-    float largest = fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
+    float largest = vplLargestOf(a);
     if (!(largest > 0) || largest > 3.4e38f) {
         return vplVec(0, 0, 0);
     }

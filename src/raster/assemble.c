@@ -45,31 +45,30 @@ void vplCountCuts(void* data, int chunkIndex, int worker)
     }
 }
 
-// Where a chunk writes.
+// The places that a chunk writes to.
 typedef struct Writer {
     const vplRaster* raster;
     vplTriangleRef* next;
     int* counts; // by tile
     int tilesX, tilesY, width, height;
+    bool sampled;
     int clipped, extras;
 } Writer;
 
-// Keeps one projected triangle; false for zero area or where no pixel centre can lie.
+// Keeps one projected triangle; false for zero area or where no pixel centre or sample can lie.
 static inline bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
 {
     const int64_t area =
         (int64_t)(v[1].x - v[0].x) * (v[2].y - v[0].y) - (int64_t)(v[2].x - v[0].x) * (v[1].y - v[0].y);
-    const vplPixelBox box = vplTriangle_PixelBox(v);
+    const vplPixelBox box = vplTriangle_PixelBox(v, w->sampled);
     if (area == 0 || box.x1 < box.x0 || box.y1 < box.y0 || (box.x1 | box.y1) < 0 || box.x0 >= w->width ||
         box.y0 >= w->height) {
         return false;
     }
     const int shift = 6;
     _Static_assert(VPL_TILE_SIDE == 1 << 6, "the shift is for 64-pixel tiles");
-    const int x0 = box.x0 > 0 ? box.x0 >> shift : 0, y0 = box.y0 > 0 ? box.y0 >> shift : 0;
-    int x1 = box.x1 >> shift, y1 = box.y1 >> shift;
-    x1 = x1 >= w->tilesX ? w->tilesX - 1 : x1;
-    y1 = y1 >= w->tilesY ? w->tilesY - 1 : y1;
+    const int x0 = vplMaxi(box.x0 >> shift, 0), y0 = vplMaxi(box.y0 >> shift, 0);
+    const int x1 = vplMini(box.x1 >> shift, w->tilesX - 1), y1 = vplMini(box.y1 >> shift, w->tilesY - 1);
     *w->next++ = (vplTriangleRef){source, (uint8_t)x0, (uint8_t)y0, (uint8_t)x1, (uint8_t)y1};
     for (int y = y0; y <= y1; y++) {
         for (int x = x0; x <= x1; x++) {
@@ -79,41 +78,42 @@ static inline bool emit(Writer* w, const vplScreenVertex v[3], uint32_t source)
     return true;
 }
 
-static void emitClipped(Writer* w, const vplShaded* s, const uint32_t* index, int primitive, int planes)
+static void emitClipped(Writer* writer, const vplShaded* s, const uint32_t* index, int primitive, int planes)
 {
-    const vplRaster* r = w->raster;
+    const vplRaster* r = writer->raster;
     vplClipVertex in[3], out[VPL_MAX_CLIPPED];
     for (int i = 0; i < 3; i++) {
         const uint32_t v = index[i];
-        in[i] = (vplClipVertex){s->clip.x[v], s->clip.y[v], s->clip.z[v], s->clip.w[v], {0}};
+        in[i] = (vplClipVertex){{s->clip.x[v], s->clip.y[v], s->clip.z[v], s->clip.w[v]}, {0}};
         for (int k = 0; k < s->varyingCount; k++) {
             in[i].varying[k] = s->clip.varying[k][v];
         }
     }
     const int count = vplClipTriangle(r, planes, s->varyingCount, in, out);
-    vplScreenVertex* screen = r->extraScreen + w->extras;
+    vplScreenVertex* screen = r->extraScreen + writer->extras;
     for (int i = 0; i < count; i++) {
-        if (!(out[i].w >= VPL_SMALLEST_W)) {
+        const double x = out[i].at[0], y = out[i].at[1], w = out[i].at[3];
+        if (!(w >= VPL_SMALLEST_W)) {
             return; // only a point in the eye is left
         }
         // The cuts round.
-        const double z = out[i].z < 0 ? 0 : out[i].z > out[i].w ? out[i].w : out[i].z;
-        screen[i] = vplProject(r, out[i].x, out[i].y, z, out[i].w);
-        float* to = r->extras + (size_t)(w->extras + i) * (size_t)r->extraStride;
-        to[0] = (float)out[i].x;
-        to[1] = (float)out[i].y;
-        to[2] = (float)out[i].w;
+        const double z = out[i].at[2] < 0 ? 0 : out[i].at[2] > w ? w : out[i].at[2];
+        screen[i] = vplProject(r, x, y, z, w);
+        float* to = r->extras + (size_t)(writer->extras + i) * (size_t)r->extraStride;
+        to[0] = (float)x;
+        to[1] = (float)y;
+        to[2] = (float)w;
         memcpy(to + 3, out[i].varying, (size_t)s->varyingCount * sizeof(float));
     }
-    const uint32_t base = (uint32_t)(s->mesh.vertexCount + w->extras);
+    const uint32_t base = (uint32_t)(s->mesh.vertexCount + writer->extras);
     for (int i = 1; i + 1 < count; i++) { // a fan
         const vplScreenVertex v[3] = {screen[0], screen[i], screen[i + 1]};
-        if (emit(w, v, (uint32_t)VPL_CLIPPED | (uint32_t)w->clipped)) {
-            r->clipped[w->clipped++] =
+        if (emit(writer, v, (uint32_t)VPL_CLIPPED | (uint32_t)writer->clipped)) {
+            r->clipped[writer->clipped++] =
                 (vplClippedTriangle){{base, base + (uint32_t)i, base + (uint32_t)i + 1}, primitive};
         }
     }
-    w->extras += count;
+    writer->extras += count;
 }
 
 void vplAssembleChunk(void* data, int chunkIndex, int worker)
@@ -130,6 +130,7 @@ void vplAssembleChunk(void* data, int chunkIndex, int worker)
                 .tilesY = r->tilesY,
                 .width = r->framebuffer.width,
                 .height = r->framebuffer.height,
+                .sampled = r->framebuffer.samples > 0,
                 .clipped = chunk->firstClipped,
                 .extras = chunk->firstClipped / VPL_MAX_PIECES * VPL_MAX_CLIPPED};
     const int end = chunk->first + chunk->count;

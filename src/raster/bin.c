@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sorts triangles into tiles: a counting sort over chunks of triangles. Counts come first, then places, so
 // that every tile lists its triangles in drawing order whatever the threads did.
-#include "math/scalar.h"
 #include "raster/raster.h"
 
 static void binChunk(void* data, int chunkIndex, int worker)

@@ -23,6 +23,7 @@ typedef struct Draw {
     bool keep;      // stores blocks for the passes
     bool depthOnly; // nothing but depth is written, where it is less
     bool distances; // depth is a distance
+    bool names;     // owners are numbers among all meshes' triangles, not refs
     bool rejects;   // hidden blocks are skipped,
     bool tightens;  // and bounds of depths lowered
 } Draw;

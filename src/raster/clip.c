@@ -7,15 +7,17 @@
 
 #include <string.h>
 
+// Bounds one coordinate by `limit` times w: from below where sign is 1, from above where it is -1.
 typedef struct Plane {
-    double x, y, z, w; // inside when the dot product is >= 0
-    int axis;          // the coordinate it bounds, as `limit` times w
-    double limit;
+    int bit; // of the outcode
+    int axis;
+    double sign, limit;
 } Plane;
 
+// Not negative inside.
 static double distance(const Plane* p, const vplClipVertex* v)
 {
-    return p->x * v->x + p->y * v->y + p->z * v->z + p->w * v->w;
+    return p->sign * (v->at[p->axis] - p->limit * v->at[3]);
 }
 
 static vplClipVertex cut(const Plane* plane, const vplClipVertex* inside, const vplClipVertex* outside,
@@ -24,13 +26,12 @@ static vplClipVertex cut(const Plane* plane, const vplClipVertex* inside, const 
     double a = distance(plane, inside), b = distance(plane, outside);
     double t = a / (a - b);
     vplClipVertex v;
-    v.x = inside->x + t * (outside->x - inside->x);
-    v.y = inside->y + t * (outside->y - inside->y);
-    v.z = inside->z + t * (outside->z - inside->z);
-    v.w = inside->w + t * (outside->w - inside->w);
+    for (int k = 0; k < 4; k++) {
+        v.at[k] = inside->at[k] + t * (outside->at[k] - inside->at[k]);
+    }
     // Puts the point exactly on the plane: with corners 1e15 apart the sums above would miss it by more than
     // a picture.
-    *(plane->axis == 0 ? &v.x : plane->axis == 1 ? &v.y : &v.z) = plane->limit * v.w;
+    v.at[plane->axis] = plane->limit * v.at[3];
     for (int k = 0; k < varyings; k++) {
         v.varying[k] = (float)(inside->varying[k] + t * ((double)outside->varying[k] - inside->varying[k]));
     }
@@ -61,15 +62,13 @@ int vplClipTriangle(const vplRaster* raster, int planes, int varyingCount, const
     // 32000 of 32768 pixels: the rest is room for rounding.
     double gx = 2 * 32000.0 / raster->framebuffer.width - 1,
            gy = 2 * 32000.0 / raster->framebuffer.height - 1;
-    const Plane all[6] = {{0, 0, 1, 0, 2, 0},    {0, 0, -1, 1, 2, 1},   {1, 0, 0, gx, 0, -gx},
-                          {-1, 0, 0, gx, 0, gx}, {0, 1, 0, gy, 1, -gy}, {0, -1, 0, gy, 1, gy}};
-    const int bits[6] = {VPL_OUT_NEAR,  VPL_OUT_FAR,   VPL_OUT_GUARD,
-                         VPL_OUT_GUARD, VPL_OUT_GUARD, VPL_OUT_GUARD};
+    const Plane all[6] = {{VPL_OUT_NEAR, 2, 1, 0},    {VPL_OUT_FAR, 2, -1, 1},    {VPL_OUT_GUARD, 0, 1, -gx},
+                          {VPL_OUT_GUARD, 0, -1, gx}, {VPL_OUT_GUARD, 1, 1, -gy}, {VPL_OUT_GUARD, 1, -1, gy}};
     vplClipVertex buffers[2][VPL_MAX_CLIPPED];
     memcpy(buffers[0], in, 3 * sizeof *in);
     int count = 3, from = 0;
     for (int p = 0; p < 6 && count > 0; p++) {
-        if (planes & bits[p]) {
+        if (planes & all[p].bit) {
             count = clipAgainst(&all[p], varyingCount, buffers[from], count, buffers[1 - from]);
             from = 1 - from;
         }

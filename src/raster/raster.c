@@ -2,6 +2,7 @@
 // Records draws and runs them.
 #include "raster/raster.h"
 #include "base/clock.h"
+#include "math/sampling.h"
 
 #include <string.h>
 
@@ -18,12 +19,7 @@ vplPipeline vplDefaultPipeline(void)
 
 vplFramebuffer vplDefaultFramebuffer(int width, int height)
 {
-    vplFramebuffer framebuffer = {0};
-    framebuffer.width = width;
-    framebuffer.height = height;
-    framebuffer.depth.clear = 1;
-    framebuffer.cookie = FRAMEBUFFER_COOKIE;
-    return framebuffer;
+    return (vplFramebuffer){.width = width, .height = height, .depth.clear = 1, .cookie = FRAMEBUFFER_COOKIE};
 }
 
 vplResult vplRaster_Create(vplContext* context, const vplFramebuffer* framebuffer, vplRaster** rasterOut)
@@ -39,6 +35,10 @@ vplResult vplRaster_Create(vplContext* context, const vplFramebuffer* framebuffe
     if (framebuffer->planeCount < 0 || framebuffer->planeCount > VPL_MAX_PLANES) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplFramebuffer.planeCount is %d, must be in [0, %d]",
                        framebuffer->planeCount, VPL_MAX_PLANES);
+    }
+    if (framebuffer->samples < 0 || framebuffer->samples > VPL_MAX_SAMPLES_PER_PIXEL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplFramebuffer.samples is %d, must be in [0, %d]",
+                       framebuffer->samples, VPL_MAX_SAMPLES_PER_PIXEL);
     }
     vplRaster* raster = vplAllocZero(context, 1, sizeof *raster);
     if (raster == NULL) {
@@ -169,6 +169,13 @@ vplResult vplRaster_Draw(vplRaster* raster, const vplMesh* mesh, const vplPipeli
         return vplFail(raster->context, VPL_INVALID_ARGUMENT,
                        "vplPipeline.ownerTest is set, must not be with vplFramebuffer.triangles");
     }
+    if (raster->framebuffer.samples > 0 && pipeline->depthWrite &&
+        (pipeline->depthCompare != VPL_DEPTH_LESS || pipeline->writesDepth || pipeline->ownerTest ||
+         pipeline->distanceScale != 0)) {
+        return vplFail(raster->context, VPL_INVALID_ARGUMENT,
+                       "vplPipeline writes depth by other means than the test LESS, must not with "
+                       "vplFramebuffer.samples");
+    }
     TRY(shareVertices(raster, mesh, pipeline, &command.shaded));
     TRY(sharePipeline(raster, pipeline, &command.pipeline));
     TRY(addCommand(raster, command));
@@ -187,9 +194,7 @@ static vplResult prepare(vplRaster* raster)
     raster->run = vplArena_Create(raster->context);
     TRY(vplFindPasses(raster));
     const double start = vplClockMs();
-    raster->stats.trianglesIn = 0;
-    raster->stats.trianglesBinned = 0;
-    raster->stats.fragments = 0;
+    raster->stats = (vplRasterStats){.drawCalls = raster->stats.drawCalls};
     for (int i = 0; i < raster->shadedCount; i++) {
         TRY(vplShadeVertices(raster, &raster->shaded[i]));
         raster->stats.trianglesIn += raster->shaded[i].mesh.triangleCount;
@@ -239,4 +244,30 @@ void vplRasterStats_Add(vplRasterStats* sum, const vplRasterStats* stats)
     sum->trianglesBinned += stats->trianglesBinned;
     sum->vertexMs += stats->vertexMs;
     sum->tilesMs += stats->tilesMs;
+}
+
+// ---- samples of pixels
+
+vplSubPixel vplSubPixel_OfSample(int i, int count)
+{
+    double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
+    y = y < 1 ? y : y - 1;
+    return (vplSubPixel){(int)(256 * (i + 0.5) / count) - 128, (int)(256 * y) - 128};
+}
+
+int vplTile_GetCoverage(const vplTile* tile, int element, vplCoverage out[VPL_MAX_SAMPLES_PER_PIXEL])
+{
+    int found = 0;
+    for (int i = 0; i < tile->sampleCount; i++) {
+        const int32_t triangle = tile->samples[i][element];
+        int at = 0;
+        while (at < found && out[at].triangle != triangle) {
+            at++;
+        }
+        if (at == found) {
+            out[found++] = (vplCoverage){triangle, 0};
+        }
+        out[at].samples |= 1u << i;
+    }
+    return found;
 }

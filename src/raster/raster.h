@@ -6,6 +6,7 @@
 #include <vpl/raster.h>
 
 #include "base/arena.h"
+#include "math/scalar.h"
 
 enum {
     VPL_SUBPIXEL_BITS = 8,
@@ -35,22 +36,27 @@ typedef struct vplClippedTriangle {
     int32_t primitive;
 } vplClippedTriangle;
 
-// Pixels whose centres may lie in a triangle: columns x0 to x1, rows y0 to y1; empty if x1 < x0 or y1 < y0.
-// The centre of pixel i lies at 256 i + 128.
+// Pixels whose centres, or with `sampled` any of whose points, may lie in a triangle: columns x0 to x1, rows
+// y0 to y1; empty if x1 < x0 or y1 < y0. The centre of pixel i lies at 256 i + 128.
 typedef struct vplPixelBox {
     int x0, x1, y0, y1;
 } vplPixelBox;
 
-static inline vplPixelBox vplTriangle_PixelBox(const vplScreenVertex v[3])
+static inline vplPixelBox vplTriangle_PixelBox(const vplScreenVertex v[3], bool sampled)
 {
-    int32_t minX = v[0].x, maxX = v[0].x, minY = v[0].y, maxY = v[0].y;
-    for (int i = 1; i < 3; i++) {
-        minX = v[i].x < minX ? v[i].x : minX;
-        maxX = v[i].x > maxX ? v[i].x : maxX;
-        minY = v[i].y < minY ? v[i].y : minY;
-        maxY = v[i].y > maxY ? v[i].y : maxY;
-    }
-    return (vplPixelBox){(minX + 127) >> 8, (maxX - 128) >> 8, (minY + 127) >> 8, (maxY - 128) >> 8};
+    const int32_t minX = vplMini(vplMini(v[0].x, v[1].x), v[2].x);
+    const int32_t maxX = vplMaxi(vplMaxi(v[0].x, v[1].x), v[2].x);
+    const int32_t minY = vplMini(vplMini(v[0].y, v[1].y), v[2].y);
+    const int32_t maxY = vplMaxi(vplMaxi(v[0].y, v[1].y), v[2].y);
+    const int32_t before = sampled ? 0 : 127, after = sampled ? 0 : 128;
+    return (vplPixelBox){(minX + before) >> 8, (maxX - after) >> 8, (minY + before) >> 8,
+                         (maxY - after) >> 8};
+}
+
+// The element of a tile's storage, blocks of 4 x 4, that holds pixel (x, y) of the tile.
+static inline int32_t vplTile_Element(int32_t x, int32_t y)
+{
+    return ((y >> 2) * VPL_TILE_BLOCKS + (x >> 2)) * VPL_LANES + (y & 3) * VPL_BLOCK_SIDE + (x & 3);
 }
 
 // The result of the vertex stage for one mesh, vertex shader and uniforms.
@@ -129,7 +135,7 @@ enum {
 #define VPL_SMALLEST_W 1e-30
 
 typedef struct vplClipVertex {
-    double x, y, z, w;
+    double at[4]; // x, y, z, w
     float varying[VPL_MAX_VARYINGS];
 } vplClipVertex;
 
@@ -186,6 +192,10 @@ typedef struct vplTileState {
     vplTile tile;
     float* depth;    // the tile's
     float* farthest; // one per block, square by square: not less than any depth in it
+    // Draws one sample of every pixel: depth, and the triangle's number in `owner`. False: the centres.
+    bool sampling;
+    vplSubPixel sample;
+    float *sampleDepth, *sampleFarthest; // in place of depth and farthest while samples are drawn
     // The triangle that wrote depth last: index of its ref, or where the framebuffer wants triangles, its
     // number among all meshes'. -1: none. NULL where nobody asks.
     int32_t* owner;

@@ -19,7 +19,7 @@ typedef struct Batch {
     // Corners, 24.8 fixed point; oriented by setUpBatch.
     _Alignas(64) int32_t x[3][BATCH], y[3][BATCH];
     _Alignas(64) float z[3][BATCH];
-    // Edge functions at the centre of the tile's first pixel, with the bias of setUpBatch, and their growth
+    // Edge functions at the point of the tile's first pixel, with the bias of setUpBatch, and their growth
     // per sub-pixel in x and y.
     _Alignas(64) double e[3][BATCH], a[3][BATCH], b[3][BATCH];
     // Depth at the same place, and its growth per pixel.
@@ -59,31 +59,19 @@ static inline void fetchTriangle(const vplRaster* r, const vplShaded* s, int ref
     }
 }
 
-static inline int32_t least3i(int32_t a, int32_t b, int32_t c)
-{
-    const int32_t ab = a < b ? a : b;
-    return ab < c ? ab : c;
-}
-
-static inline int32_t most3i(int32_t a, int32_t b, int32_t c)
-{
-    const int32_t ab = a > b ? a : b;
-    return ab > c ? ab : c;
-}
-
 // Finds the triangles' pixel boxes within the tile; see vplTriangle_PixelBox.
-static inline void boundBatch(const vplTile* tile, Batch* t)
+static inline void boundBatch(const vplTile* tile, vplSubPixel at, Batch* t)
 {
     const int32_t left = tile->x, top = tile->y, right = tile->width - 1, bottom = tile->height - 1;
     for (int k = 0; k < BATCH; k++) {
-        const int32_t x0 = ((least3i(t->x[0][k], t->x[1][k], t->x[2][k]) + 127) >> 8) - left;
-        const int32_t y0 = ((least3i(t->y[0][k], t->y[1][k], t->y[2][k]) + 127) >> 8) - top;
-        const int32_t x1 = ((most3i(t->x[0][k], t->x[1][k], t->x[2][k]) - 128) >> 8) - left;
-        const int32_t y1 = ((most3i(t->y[0][k], t->y[1][k], t->y[2][k]) - 128) >> 8) - top;
-        t->left[k] = x0 > 0 ? x0 : 0;
-        t->top[k] = y0 > 0 ? y0 : 0;
-        t->right[k] = x1 < right ? x1 : right;
-        t->bottom[k] = y1 < bottom ? y1 : bottom;
+        const int32_t x0 = ((vplMini(vplMini(t->x[0][k], t->x[1][k]), t->x[2][k]) + 127 - at.x) >> 8) - left;
+        const int32_t y0 = ((vplMini(vplMini(t->y[0][k], t->y[1][k]), t->y[2][k]) + 127 - at.y) >> 8) - top;
+        const int32_t x1 = ((vplMaxi(vplMaxi(t->x[0][k], t->x[1][k]), t->x[2][k]) - 128 - at.x) >> 8) - left;
+        const int32_t y1 = ((vplMaxi(vplMaxi(t->y[0][k], t->y[1][k]), t->y[2][k]) - 128 - at.y) >> 8) - top;
+        t->left[k] = vplMaxi(x0, 0);
+        t->top[k] = vplMaxi(y0, 0);
+        t->right[k] = vplMini(x1, right);
+        t->bottom[k] = vplMini(y1, bottom);
     }
 }
 
@@ -132,10 +120,11 @@ static inline void findFirstEdges(Batch* t)
     }
 }
 
-static inline void setUpBatch(const vplTile* tile, Batch* t)
+// `at`: the points of the pixels that are tested.
+static inline void setUpBatch(const vplTile* tile, vplSubPixel at, Batch* t)
 {
-    const double px = 256.0 * tile->x + 128, py = 256.0 * tile->y + 128;
-    boundBatch(tile, t);
+    const double px = 256.0 * tile->x + 128 + at.x, py = 256.0 * tile->y + 128 + at.y;
+    boundBatch(tile, at, t);
     orientBatch(t);
     for (int i = 0; i < 3; i++) {
         const int p = (i + 1) % 3, q = (i + 2) % 3;
@@ -154,8 +143,8 @@ static inline void setUpBatch(const vplTile* tile, Batch* t)
         t->zy[k] = 256 * inverse * (z1 * t->b[1][k] + z2 * t->b[2][k]);
         t->planeZ[k] = t->z[0][k] + inverse * (z1 * t->e[1][k] + z2 * t->e[2][k]);
     }
-    for (int i = 0; i < 3;
-         i++) { // centres on left and top edges are inside, on others they are the neighbour's
+    // Pixel centres on left and top edges are inside; on other edges they belong to the neighbour.
+    for (int i = 0; i < 3; i++) {
         for (int k = 0; k < BATCH; k++) {
             const double a = t->a[i][k], b = t->b[i][k];
             const double owned = a > 0 ? 0 : 1, ownedTop = b > 0 ? 0 : 1;

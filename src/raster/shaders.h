@@ -69,7 +69,7 @@ static inline void runPassShader(const vplPipeline* p, const void* const* unifor
     }
 }
 
-// How many varyings a kept block has.
+// The number of varyings of a kept block.
 static inline int keptVaryings(const vplTileState* state)
 {
     return (int)((state->keptStride - sizeof(vplKeptBlock)) / sizeof(float)) / VPL_LANES - 2;

@@ -22,19 +22,13 @@ static void fill(float* storage, float value)
     }
 }
 
-// Element of the tile storage that holds pixel (x, y) of the tile.
-static int swizzle(int x, int y)
-{
-    return ((y >> 2) * VPL_TILE_BLOCKS + (x >> 2)) * VPL_LANES + (y & 3) * VPL_BLOCK_SIDE + (x & 3);
-}
-
 static void loadPlane(const vplRaster* r, const vplTile* tile, const vplPlane* plane, float* storage)
 {
     fill(storage, plane->clear);
     for (int y = 0; plane->load && plane->pixels && y < tile->height; y++) {
         const float* row = plane->pixels + (size_t)(tile->y + y) * (size_t)r->framebuffer.width + tile->x;
         for (int x = 0; x < tile->width; x++) {
-            storage[swizzle(x, y)] = row[x];
+            storage[vplTile_Element(x, y)] = row[x];
         }
     }
 }
@@ -45,10 +39,10 @@ static void storePlane(const vplRaster* r, const vplTile* tile, const vplPlane* 
         float* row = plane->pixels + (size_t)(tile->y + y) * (size_t)r->framebuffer.width + tile->x;
         int x = 0;
         for (; x + VPL_BLOCK_SIDE <= tile->width; x += VPL_BLOCK_SIDE) {
-            memcpy(row + x, storage + swizzle(x, y), VPL_BLOCK_SIDE * sizeof(float));
+            memcpy(row + x, storage + vplTile_Element(x, y), VPL_BLOCK_SIDE * sizeof(float));
         }
         for (; x < tile->width; x++) {
-            row[x] = storage[swizzle(x, y)];
+            row[x] = storage[vplTile_Element(x, y)];
         }
     }
 }
@@ -85,9 +79,38 @@ static void runPasses(const vplRaster* r, vplTileState* state, int first, const 
     }
 }
 
+// Draws one sample after another of all pixels, by the draws before the first tile task that write depth.
+static void drawSamples(const vplRaster* r, vplTileState* state, const int* bin)
+{
+    vplTileState sampler = *state;
+    sampler.sampling = true;
+    sampler.depth = state->sampleDepth;
+    sampler.farthest = state->sampleFarthest;
+    for (int k = 0; k < r->framebuffer.samples; k++) {
+        sampler.sample = vplSubPixel_OfSample(k, r->framebuffer.samples);
+        sampler.owner = state->tile.samples[k];
+        fill(sampler.depth, 1);
+        for (int i = 0; i < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; i++) {
+            sampler.farthest[i] = 1;
+        }
+        memset(sampler.owner, 0xff, VPL_TILE_PIXELS * sizeof(int32_t));
+        for (int i = 0; i < r->commandCount && r->commands[i].shaded >= 0; i++) {
+            const vplCommand* c = &r->commands[i];
+            const int start = state->meshStart[c->shaded], end = state->meshStart[c->shaded + 1];
+            if (start < end && r->pipelines[c->pipeline].depthWrite) {
+                vplRasterKernels_Get(r->context->isa)
+                    ->drawTile(&sampler, r, c, bin + start, end - start, false);
+            }
+        }
+    }
+}
+
 static void runCommands(const vplRaster* r, vplTileState* state, const int* bin, int worker)
 {
     int epoch = -1;
+    if (r->framebuffer.samples > 0 && r->hasTasks) {
+        drawSamples(r, state, bin);
+    }
     for (int i = 0; i < r->commandCount;) {
         const vplCommand* c = &r->commands[i];
         if (c->isPass) {
@@ -161,8 +184,8 @@ static void runTile(void* data, int number, int worker)
     vplTile* tile = &state->tile;
     tile->x = index % r->tilesX * VPL_TILE_SIDE;
     tile->y = index / r->tilesX * VPL_TILE_SIDE;
-    tile->width = f->width - tile->x < VPL_TILE_SIDE ? f->width - tile->x : VPL_TILE_SIDE;
-    tile->height = f->height - tile->y < VPL_TILE_SIDE ? f->height - tile->y : VPL_TILE_SIDE;
+    tile->width = vplMini(f->width - tile->x, VPL_TILE_SIDE);
+    tile->height = vplMini(f->height - tile->y, VPL_TILE_SIDE);
     const int* bin = r->bins + r->binStart[index];
     const int count = r->binStart[index + 1] - r->binStart[index];
     if (count == 0 && !r->hasTasks) {
@@ -170,6 +193,7 @@ static void runTile(void* data, int number, int worker)
         return;
     }
     state->owner = r->keepsOwners ? state->owner : NULL;
+    tile->sampleCount = f->samples;
     loadPlanes(r, state);
     findMeshes(r, bin, count, state->meshStart);
     memset(state->keptEpoch, 0xff, (size_t)r->shadedCount * sizeof(int));
@@ -189,7 +213,7 @@ static void runTile(void* data, int number, int worker)
 
 // Sizes of a worker's memory: the largest that any raster needs.
 typedef struct Sizes {
-    size_t planes, scratch, meshes, kept, keptStride;
+    size_t planes, samples, scratch, meshes, kept, keptStride;
     bool owners;
 } Sizes;
 
@@ -209,6 +233,7 @@ static Sizes findSizes(const Run* run)
     for (int i = 0; i < run->rasterCount; i++) {
         const vplRaster* r = run->rasters[i];
         n.planes = mostOf(n.planes, (size_t)r->framebuffer.planeCount);
+        n.samples = mostOf(n.samples, (size_t)r->framebuffer.samples);
         n.scratch = mostOf(n.scratch, roundUp(r->framebuffer.scratchBytes));
         n.meshes = mostOf(n.meshes, (size_t)r->shadedCount);
         n.owners |= r->keepsOwners;
@@ -240,6 +265,12 @@ static size_t layOut(const Sizes* n, vplTileState* state, char* memory)
     }
     state->owner = take(memory, &at, n->owners ? plane : 0);
     state->farthest = take(memory, &at, VPL_TILE_BLOCKS * VPL_TILE_BLOCKS * sizeof(float));
+    for (size_t k = 0; k < n->samples; k++) {
+        state->tile.samples[k] = take(memory, &at, plane);
+    }
+    state->sampleDepth = take(memory, &at, n->samples > 0 ? plane : 0);
+    state->sampleFarthest =
+        take(memory, &at, n->samples > 0 ? VPL_TILE_BLOCKS * VPL_TILE_BLOCKS * sizeof(float) : 0);
     state->tile.scratch = take(memory, &at, n->scratch);
     state->meshStart = take(memory, &at, perMesh);
     state->keptStart = take(memory, &at, perMesh);

@@ -77,7 +77,7 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
     }
 }
 
-// Whether all depths in blocks x0 to x1, y0 to y1 are nearer than the triangle.
+// True if all depths in blocks x0 to x1, y0 to y1 are nearer than the triangle.
 static bool isHidden(const Draw* d, int x0, int y0, int x1, int y1)
 {
     const Batch* t = d->batch;
@@ -148,10 +148,11 @@ static Draw startDraw(vplTileState* state, const vplRaster* raster, const vplCom
                   .pipeline = p,
                   .shaded = &raster->shaded[command->shaded],
                   .distances = p->distanceScale != 0,
+                  .names = state->sampling || raster->framebuffer.triangles != NULL,
                   .texel = 2.0f / (float)raster->framebuffer.width,
                   .rejects = byPlane,
                   .tightens = byPlane && p->depthWrite && !p->ownerTest,
-                  .depthOnly = p->fragment == NULL && p->distanceScale == 0 &&
+                  .depthOnly = (p->fragment == NULL || state->sampling) && p->distanceScale == 0 &&
                                p->depthCompare == VPL_DEPTH_LESS && p->depthWrite && !p->ownerTest};
 }
 
@@ -160,18 +161,17 @@ static void drawBatch(Draw* d, Batch* batch, const int* list, int count)
 {
     vplTileState* state = d->state;
     const vplCull cull = d->pipeline->cull;
-    const bool names = d->raster->framebuffer.triangles != NULL;
     Tiny tiny;
     for (int k = 0; k < count; k++) {
         fetchTriangle(d->raster, d->shaded, list[k], batch, k);
     }
-    setUpBatch(&state->tile, batch);
+    setUpBatch(&state->tile, state->sample, batch);
     const bool anyTiny = d->depthOnly && cull == VPL_CULL_NONE && hasTiny(batch, count);
     if (anyTiny) {
         testTiny(batch, &tiny);
     }
     for (int k = 0; k < count; k++) {
-        d->owner = names ? d->shaded->firstTriangle + batch->primitive[k] : list[k];
+        d->owner = d->names ? d->shaded->firstTriangle + batch->primitive[k] : list[k];
         d->place = k;
         d->hasBarycentrics = false;
         state->block.primitive = batch->primitive[k];

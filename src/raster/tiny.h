@@ -19,7 +19,7 @@ static inline bool isTiny(const Batch* t, int k)
     return t->right[k] - t->left[k] < TINY_SIDE && t->bottom[k] - t->top[k] < TINY_SIDE;
 }
 
-// Whether any of the first `count` triangles is tiny.
+// True if any of the first `count` triangles is tiny.
 static inline bool hasTiny(const Batch* t, int count)
 {
     bool any = false;
@@ -51,8 +51,7 @@ static inline void testTinyPixel(const Batch* t, int column, int row, float* res
         // The same bits as in a block: depth of its first pixel, then the growth to the lane.
         const double z = t->planeZ[k] + (t->zx[k] * (px & ~3) + t->zy[k] * (py & ~3));
         depth[k] = clampDepth(z + (t->zx[k] * (px & 3) + t->zy[k] * (py & 3)));
-        element[k] =
-            ((py >> 2) * VPL_TILE_BLOCKS + (px >> 2)) * VPL_LANES + (py & 3) * VPL_BLOCK_SIDE + (px & 3);
+        element[k] = vplTile_Element(px, py);
     }
 }
 

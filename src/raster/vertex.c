@@ -66,7 +66,7 @@ static void shadeChunk(void* data, int index, int worker)
     Job* job = data;
     vplShaded* s = job->shaded;
     int first = index * CHUNK;
-    int count = s->mesh.vertexCount - first < CHUNK ? s->mesh.vertexCount - first : CHUNK;
+    int count = vplMini(s->mesh.vertexCount - first, CHUNK);
     vplVertices part = {s->clip.x + first, s->clip.y + first, s->clip.z + first, s->clip.w + first, {NULL}};
     for (int k = 0; k < s->varyingCount; k++) {
         part.varying[k] = s->clip.varying[k] + first;

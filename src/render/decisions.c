@@ -48,6 +48,23 @@ static void choosePipeline(vplPlan* p)
     }
 }
 
+// Pictures have smooth edges; stages are shown as they are.
+static void chooseSamples(vplPlan* p)
+{
+    vplRenderOptions* o = &p->options;
+    const vplShow show = o->output.show;
+    const bool light = show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT || show == VPL_SHOW_INDIRECT;
+    const bool passes = p->showsVirtual && (o->pipeline.kind == VPL_ACCUMULATE_MULTIPASS ||
+                                            o->pipeline.kind == VPL_ACCUMULATE_BATCHED);
+    if (o->output.antialias > 1 && (o->output.supersample > 1 || passes || !light)) {
+        o->output.antialias = 1;
+        decide(p, "antialias",
+               o->output.supersample > 1 ? "every sample is a whole picture"
+               : passes                  ? "passes over the scene light the pixels' centres"
+                                         : "stages are shown as they are");
+    }
+}
+
 static void chooseParticles(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -164,6 +181,7 @@ void vplDecideByOptions(const vplScene* scene, vplPlan* p)
 {
     choosePicture(scene, p);
     choosePipeline(p);
+    chooseSamples(p);
     chooseParticles(p);
     chooseShadows(p);
     chooseCompensation(p);

@@ -7,6 +7,8 @@
 #include "scene/scene.h"
 #include "visibility/paraboloid_map.h"
 
+#include <math.h>
+
 typedef struct Scale {
     const vplPlan* plan;
     double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
@@ -41,8 +43,7 @@ static double rsmFaces(const vplPlan* p)
 static Bytes paraboloids(const Scale* s, double lights, double values)
 {
     const int size = s->plan->options.ssvp.paraboloidSize;
-    const double texels = 2 * (double)vplParaboloidMap_Texels(size),
-                 drawn = (double)vplParaboloidMap_Drawn(size);
+    const double texels = 2 * (double)vplParaboloidMap_Texels(size), drawn = (double)vplHemiMap_Texels(size);
     const double count = lights < s->plan->options.ssvp.clusters ? lights : s->plan->options.ssvp.clusters;
     return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
 }
@@ -84,11 +85,24 @@ static double pipelineScratch(const Scale* s)
     }
 }
 
+// Samples of a tile per worker; for the filter of interleaved shading a share and half an edge per pixel; and one more
+// picture of patches.
+static double sampleScratch(const Scale* s)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
+    const double tile = (o->output.antialias + 1) * 16384.0 + 1024;
+    const double tiles = ceil(o->output.width / 64.0) * ceil(o->output.height / 64.0);
+    return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + 32768 * tiles : 0) +
+                                         (s->plan->showsPatches ? 12 * s->pixels : 0)
+                                   : 0;
+}
+
 static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    double scratch = pipelineScratch(s) + RASTER_VIEW * s->triangles;
-    scratch += o->output.antialias > 1 ? 24 * s->pixels : 0;
+    double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
+    scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
         const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
         const double most = o->lights.mapMemory * 1048576.0;
@@ -158,13 +172,13 @@ static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
 static void countDraws(const Scale* s, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
-    const int64_t objects = (int64_t)s->objects, antialias = o->output.antialias;
+    const int64_t objects = (int64_t)s->objects, supersample = o->output.supersample;
     if (o->method == VPL_METHOD_PATH) {
         p->paths = (int64_t)s->pixels * o->path.samples;
         return;
     }
     if (o->method == VPL_METHOD_SSVP) {
-        p->drawCalls = objects * ((int64_t)rsmFaces(p) + antialias);
+        p->drawCalls = objects * ((int64_t)rsmFaces(p) + supersample);
         return;
     }
     const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
@@ -172,7 +186,8 @@ static void countDraws(const Scale* s, vplPlan* p)
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
-    p->drawCalls = objects * (6 * maps + (1 + passes) * antialias) + patchDraws * antialias;
+    p->drawCalls =
+        objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample * o->output.antialias;
 }
 
 enum {

@@ -180,8 +180,12 @@ static bool needsVertexLight(const vplPlan* p, char* why)
 static bool needsPicture(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
-    return because(why, true, "%dx%d pixels, %d sample%s each", o->width, o->height, o->antialias,
-                   o->antialias > 1 ? "s" : "");
+    if (o->antialias > 1) {
+        return because(why, true, "%dx%d pixels; at edges the mean of %d samples", o->width, o->height,
+                       o->antialias);
+    }
+    return because(why, true, "%dx%d pixels, %d sample%s each", o->width, o->height, o->supersample,
+                   o->supersample > 1 ? "s" : "");
 }
 
 static bool needsPaths(const vplPlan* p, char* why)
@@ -207,7 +211,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "clamp distance", 0.03, IN(GEOMETRY), "VIEW",
         needsNearDistance, vplMakeNearDistance, NULL, .report = NULL},
     [VPL_STAGE_EMITTER_MAPS] = {
-        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size antialias",
+        "shadow map", 0.15, IN(GEOMETRY), "EMITTERS method lighting shadow-map bias bias-slope pcf pcf-offset size supersample",
         needsEmitterMaps, vplMakeEmitterMaps, vplDestroyEmitterMaps, .report = NULL},
     [VPL_STAGE_AREA_LIGHTS] = {
         "area lights", 0.15, IN(GEOMETRY), "area-light-samples",

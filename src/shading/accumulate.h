@@ -154,4 +154,15 @@ static inline void vplAddLights(const vplShading* s, const vplLitBlocks* to, int
     }
 }
 
+// Adds all virtual lights to one block.
+static inline void vplAddAllLights(const vplShading* s, vplBlock* b, int64_t* rays)
+{
+    static const int first = 0;
+    vplLitBlocks to = {.blocks = b, .lit = &first, .count = 1, .culls = s->lights.columns[0] != NULL};
+    if (to.culls) {
+        to.bounds = vplFindBounds(b, &first, 1);
+    }
+    vplAddLights(s, &to, 0, s->lights.count, rays);
+}
+
 #endif

@@ -67,7 +67,7 @@ static void castShortRays(const vplShading* s, Walk* w, int64_t* rays)
         const vplRay ray = vplRayPacket_Get(&packet, l);
         vplLitPoint* p = &w->at[l];
         vplHit hit;
-        if (!vplClosestHitWithin(g, &ray, compensator->distance, &hit)) {
+        if (!vplClosestHit(g, &ray, compensator->distance, NULL, &hit)) {
             continue;
         }
         p->hit = hit;

@@ -9,7 +9,9 @@
 
 void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn* tileTask)
 {
+    const vplShadeDef* def = shading->def;
     shading->tileTask = tileTask;
+    framebuffer->samples = def->output == VPL_OUTPUT_RADIANCE && def->samples > 1 ? def->samples : 0;
     framebuffer->planeCount = VPL_PLANE_POSITION + 3;
     framebuffer->scratchBytes = offsetof(vplTileSums, irradiance);
     for (int k = 0; k < 3; k++) { // the plane of triangles says where something was written

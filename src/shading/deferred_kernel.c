@@ -3,6 +3,7 @@
 // added in squares of 4 x 4 blocks, whose points, sums and lights stay in the first-level cache.
 #include "base/isa.h"
 #include "shading/accumulate.h"
+#include "shading/edges.h"
 
 enum { SQUARE = 4, SQUARES = VPL_TILE_BLOCKS / SQUARE, SQUARE_BLOCKS = SQUARE * SQUARE };
 
@@ -44,6 +45,14 @@ static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplF
     vplAddLights(s, &to, 0, s->lights.count, &tileSums->shadowRays);
 }
 
+// All light of surfaces at edges.
+static void lightEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
+{
+    (void)user;
+    vplStartEdges(s, e, rays);
+    vplAddAllLights(s, &e->block, rays);
+}
+
 void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
 {
     (void)worker;
@@ -62,6 +71,7 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
             }
         }
     }
+    vplSmoothTile(s, tile, &cache, lightEdges, NULL);
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }
 

@@ -18,6 +18,15 @@ enum {
 // Planes of the whole picture.
 enum { VPL_FILTER_INDIRECT = 0, VPL_FILTER_TRIANGLE = 3, VPL_FILTER_PLANES };
 
+// Surfaces at edges that one tile keeps for the filter; the light of more is found without neighbours.
+enum { VPL_TILE_EDGES = 2048 };
+
+// A surface at an edge whose indirect light the filter finds.
+typedef struct vplKeptEdge {
+    uint16_t x, y; // pixel of the picture
+    vplEdgeSurface surface;
+} vplKeptEdge;
+
 // A worker's copy of a part of the picture; 0 outside the picture.
 typedef struct vplFilterScratch {
     _Alignas(64) float indirect[3][VPL_FILTER_ROWS][VPL_FILTER_COLUMNS];
@@ -45,7 +54,12 @@ typedef struct vplInterleave {
     float* planes; // VPL_FILTER_PLANES of pixelCount values
     size_t pixelCount;
     vplFilterScratch* scratch; // one per worker
-    int tilesX, tilesY;        // tasks of the filter
+    // Coverage antialiasing only; else NULL.
+    float* centres;     // share of each pixel's surface in its centre
+    vplKeptEdge* edges; // VPL_TILE_EDGES per tile
+    int* edgeCounts;    // per tile
+    int rasterTilesX;   // tiles per row
+    int tilesX, tilesY; // tasks of the filter
 } vplInterleave;
 
 static inline float* vplFilterPlane(const vplInterleave* w, int plane)

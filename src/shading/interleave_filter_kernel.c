@@ -4,7 +4,7 @@
 // of 16 pixels and all their windows show one triangle, no surface is tested; the bits are those of tests
 // that all pass.
 #include "base/isa.h"
-#include "shading/interleave_filter_mixed.h"
+#include "shading/interleave_filter_edges.h"
 
 // Rows are short and a picture's width apart, which hardware does not prefetch: they are fetched this many
 // rows early.
@@ -192,6 +192,11 @@ static void filterRun(const vplShading* s, vplFilterScratch* scratch, const Part
         reflect(s, triangles, &scratch->facets, mean);
     }
     const size_t pixel = (size_t)(part->y + row) * (size_t)s->image->width + (size_t)(part->x + x);
+    for (int l = 0; w->centres != NULL && l < vplMini(part->width - x, VPL_LANES); l++) {
+        for (int c = 0; c < 3; c++) {
+            mean[c][l] *= w->centres[pixel + (size_t)l];
+        }
+    }
     addToPixels(mean, s->image->pixels + 3 * pixel, part->width - x);
 }
 
@@ -209,9 +214,11 @@ void VPL_KERNEL(vplFilterTask)(void* data, int task, int worker)
     part.rows = part.height + tapsOf(side) - 1;
     loadPlane(image, vplFilterPlane(w, VPL_FILTER_TRIANGLE), &part, reach, (float*)scratch->triangle[0]);
     findUniform(side, scratch, &part);
-    if (!part.any) {
+    const KeptEdges kept = edgesOf(w, &part);
+    if (!part.any && kept.count == 0) {
         return;
     }
+    part.mixed |= kept.count > 0;
     for (int c = 0; c < 3; c++) {
         loadPlane(image, vplFilterPlane(w, VPL_FILTER_INDIRECT + c), &part, reach, scratch->indirect[c][0]);
     }
@@ -231,4 +238,5 @@ void VPL_KERNEL(vplFilterTask)(void* data, int task, int worker)
             filterRun(s, scratch, &part, row, x);
         }
     }
+    filterEdges(s, scratch, &part, kept);
 }

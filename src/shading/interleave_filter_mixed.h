@@ -117,8 +117,8 @@ typedef struct Sums {
     _Alignas(64) float count[VPL_LANES], red[VPL_LANES], green[VPL_LANES], blue[VPL_LANES];
 } Sums;
 
-// Adds the neighbours that belong to the surfaces of the centres. A neighbour's position is its distance times its line of sight, whose
-// component along the centre's normal is `ahead`.
+// Adds the neighbours that belong to the surfaces of the centres. A neighbour's position is its distance times
+// its line of sight, whose component along the centre's normal is `ahead`.
 static inline void addNeighbours(const Centres* restrict m, const vplFilterScratch* scratch,
                                  const Neighbours* t, Sums* restrict sums)
 {

@@ -110,6 +110,14 @@ static vplResult openInterleaved(vplShading* shading, vplFramebuffer* framebuffe
         vplFacetCache_Clear(&w->scratch[i].facets);
     }
     vplOpenGbuffer(shading, framebuffer, shading->kernels.interleaved);
+    if (framebuffer->samples > 0) {
+        w->rasterTilesX = (width + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE;
+        const size_t tiles = (size_t)w->rasterTilesX * (size_t)((height + VPL_TILE_SIDE - 1) / VPL_TILE_SIDE);
+        w->centres = vplArena_Alloc(shading->arena, pixels, sizeof *w->centres);
+        w->edges = vplArena_Alloc(shading->arena, tiles, VPL_TILE_EDGES * sizeof *w->edges);
+        w->edgeCounts = vplArena_Alloc(shading->arena, tiles, sizeof *w->edgeCounts);
+        TRY(vplArena_Check(shading->arena));
+    }
     for (int k = 0; k < 3; k++) {
         framebuffer->planes[VPL_PLANE_INDIRECT + k].pixels = vplFilterPlane(w, VPL_FILTER_INDIRECT + k);
     }

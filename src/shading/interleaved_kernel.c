@@ -3,6 +3,7 @@
 // the lights of that class, 16 pixels at a time.
 #include "base/isa.h"
 #include "shading/accumulate.h"
+#include "shading/edges.h"
 #include "shading/interleave_filter.h"
 
 enum {
@@ -235,6 +236,78 @@ static void lightClass(Class* class, int x, int y)
     }
 }
 
+// ---- edges
+
+// Surfaces at the edges of one tile: direct light is found now. Indirect light of the first VPL_TILE_EDGES is
+// left to the filter, that of others is found now, too.
+typedef struct TileEdges {
+    vplKeptEdge* kept;
+    int* keptCount;
+    vplFacetCache* cache;
+    vplEdgeBlock direct, all; // waiting
+    int64_t* rays;
+} TileEdges;
+
+static void lightEdgesDirectly(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
+{
+    (void)user;
+    _Alignas(64) float part[3][VPL_LANES] = {{0}};
+    vplDirectIrradiance(s, &s->direct, &e->block.points, part, rays);
+    vplStartSums(&e->block, part);
+}
+
+static void lightEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
+{
+    (void)user;
+    vplStartEdges(s, e, rays);
+    vplAddAllLights(s, &e->block, rays);
+}
+
+static void lightEdgePixel(const vplShading* s, void* user, int x, int y, const vplEdgePixel* p)
+{
+    const vplInterleave* w = s->state;
+    TileEdges* t = user;
+    const size_t at = (size_t)y * (size_t)s->image->width + (size_t)x;
+    w->centres[at] = p->centre;
+    for (int c = 0; c < 3; c++) {
+        s->image->pixels[3 * at + (size_t)c] *= p->centre;
+    }
+    for (int i = 0; i < p->count; i++) {
+        const bool keep = *t->keptCount < VPL_TILE_EDGES;
+        vplEdgeBlock* waiting = keep ? &t->direct : &t->all;
+        if (keep) {
+            t->kept[(*t->keptCount)++] = (vplKeptEdge){(uint16_t)x, (uint16_t)y, p->others[i]};
+        }
+        vplPushEdge(s, &p->others[i], x, y, t->cache, waiting);
+        if (waiting->count == VPL_LANES) {
+            vplFlushEdges(s, keep ? lightEdgesDirectly : lightEdges, NULL, t->cache, waiting, t->rays);
+        }
+    }
+}
+
+static void lightTileEdges(const vplShading* s, vplTile* tile, vplFacetCache* cache)
+{
+    const vplInterleave* w = s->state;
+    vplTileSums* tileSums = tile->scratch;
+    const int number = tile->y / VPL_TILE_SIDE * w->rasterTilesX + tile->x / VPL_TILE_SIDE;
+    TileEdges edges;
+    edges.kept = w->edges + (size_t)number * VPL_TILE_EDGES;
+    edges.keptCount = &w->edgeCounts[number];
+    edges.cache = cache;
+    edges.direct.count = edges.all.count = 0;
+    edges.direct.emits = edges.all.emits = true;
+    edges.rays = &tileSums->shadowRays;
+    *edges.keptCount = 0;
+    for (int y = tile->y; y < tile->y + tile->height; y++) {
+        for (int x = tile->x; x < tile->x + tile->width; x++) {
+            w->centres[(size_t)y * (size_t)s->image->width + (size_t)x] = 1;
+        }
+    }
+    vplVisitEdges(s, tile, cache, lightEdgePixel, &edges);
+    vplFlushEdges(s, lightEdgesDirectly, NULL, cache, &edges.direct, edges.rays);
+    vplFlushEdges(s, lightEdges, NULL, cache, &edges.all, edges.rays);
+}
+
 void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
 {
     const vplShading* s = data;
@@ -256,6 +329,9 @@ void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)
                 lightClass(&class, x + k % w->side, y + k / w->side);
             }
         }
+    }
+    if (tile->sampleCount > 0) {
+        lightTileEdges(s, tile, &w->scratch[worker].facets);
     }
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }

@@ -4,7 +4,7 @@
 // Illumination, SIGGRAPH 2005, section 4. Departs: one cut for the 16 points of a block, whose rays form one
 // packet; a cluster is split if its error is too large at any of them.
 #include "base/isa.h"
-#include "shading/gbuffer.h"
+#include "shading/edges.h"
 #include "shading/lightcuts.h"
 
 // Largest error of a cluster, as a share of the error that is allowed for a pixel. The errors of clusters
@@ -272,6 +272,13 @@ static void addCut(const vplShading* s, vplCutWorker* worker, vplBlock* b, int64
     }
 }
 
+// All light of surfaces at edges.
+static void lightEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
+{
+    vplStartEdges(s, e, rays);
+    addCut(s, user, &e->block, rays);
+}
+
 void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
 {
     const vplShading* s = data;
@@ -291,5 +298,6 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
         }
         vplWriteLit(s, tile, block, &cache, &b);
     }
+    vplSmoothTile(s, tile, &cache, lightEdges, &lightcuts->workers[worker]);
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }

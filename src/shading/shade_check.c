@@ -63,6 +63,10 @@ vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, cons
                        image->width, image->height, view->width, view->height);
     }
     TRY(checkDistance(context, "minDistance", def->minDistance));
+    if (def->samples < 0 || def->samples > VPL_MAX_SAMPLES_PER_PIXEL) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplShadeDef.samples is %d, must be in [0, %d]",
+                       def->samples, VPL_MAX_SAMPLES_PER_PIXEL);
+    }
     TRY(checkDistance(context, "areaLightMinDistance", def->areaLightMinDistance));
     const vplCompensationDef* c = def->compensation;
     if (c != NULL && (c->rayCount < 1 || c->rayCount > VPL_MAX_NEAR_RAYS || c->hitLights < 1)) {

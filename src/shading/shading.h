@@ -136,6 +136,13 @@ typedef struct vplObjectUniforms {
     int object;
 } vplObjectUniforms;
 
+// A surface that samples of a pixel show.
+typedef struct vplEdgeSurface {
+    int triangle;
+    int sample; // one that shows it, near the middle of those that do
+    float share;
+} vplEdgeSurface;
+
 // Varyings of a camera pass: world position, and the normal of smooth objects. The surface shader leaves a
 // vplSurface, and where some object is smooth another one for vplPoints.plane.
 enum { VPL_CAMERA_VARYINGS = 3, VPL_SURFACE_VARYINGS = 6 };

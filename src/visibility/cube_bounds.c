@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Builds the bounds of a cube map: the regions of level 0 from texels, each further level from the one below.
 #include "visibility/cube_bounds.h"
-#include "base/context.h"
+#include "base/arena.h"
 #include "visibility/kernels.h"
 
 #include <string.h>
 
-static vplCubeBounds* allocateBounds(vplContext* context, int size)
+static vplCubeBounds* allocateBounds(vplArena* arena, int size)
 {
     vplCubeBounds layout = {.levelCount = 0};
     int count = 0, side = (size + VPL_REGION_SIDE - 1) / VPL_REGION_SIDE;
@@ -16,7 +16,7 @@ static vplCubeBounds* allocateBounds(vplContext* context, int size)
         layout.first[layout.levelCount++] = count;
         count += 6 * side * side;
     }
-    vplCubeBounds* bounds = vplAlloc(context, sizeof layout + (size_t)count * sizeof(vplCubeRegion), 1);
+    vplCubeBounds* bounds = vplArena_Alloc(arena, sizeof layout + (size_t)count * sizeof(vplCubeRegion), 1);
     if (bounds != NULL) {
         memcpy(bounds, &layout, sizeof layout);
     }
@@ -58,7 +58,7 @@ static void mergeRegions(void* data, int task, int worker)
 
 vplResult vplCubeMap_FindBounds(vplCubeMap* map)
 {
-    vplCubeBounds* bounds = allocateBounds(map->context, map->size);
+    vplCubeBounds* bounds = allocateBounds(map->arena, map->size);
     if (bounds == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
@@ -67,7 +67,7 @@ vplResult vplCubeMap_FindBounds(vplCubeMap* map)
     for (level.level = 1; level.level < bounds->levelCount; level.level++) {
         vplParallelFor(map->context, 6 * bounds->side[level.level], mergeRegions, &level);
     }
-    vplFree(map->context, map->bounds);
+    vplArena_Free(map->arena, map->bounds);
     map->bounds = bounds;
     return VPL_SUCCESS;
 }

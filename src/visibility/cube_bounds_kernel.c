@@ -61,11 +61,13 @@ static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, co
     const int size = map->size;
     const float far = map->far;
     const float* texels = map->texels + ((size_t)face * (size_t)size + (size_t)d->row) * (size_t)size;
-    _Alignas(64) float least[VPL_REGION_VALUES][VPL_LANES];
+    // Bounds of x, y, z and the stored distance.
+    _Alignas(64) float least[4][VPL_LANES], most[4][VPL_LANES];
     vplCubeRegion region;
-    for (int k = 0; k < VPL_REGION_VALUES; k++) {
+    for (int k = 0; k < 4; k++) {
         for (int l = 0; l < VPL_LANES; l++) {
             least[k][l] = INFINITY;
+            most[k][l] = -INFINITY;
         }
     }
     for (int j = 0; j < d->rows; j++) {
@@ -75,17 +77,22 @@ static vplCubeRegion boundRegion(const vplCubeMap* map, int face, int offset, co
         loadTexels(texels + (size_t)j * (size_t)size, size, d->column + offset, stored);
         for (int l = 0; l < VPL_LANES; l++) {
             const float distance = stored[l] * far;
-            // NaN leaves a minimum as it is.
+            // NaN leaves minima and maxima as they are.
             const float z = distance < INFINITY ? distance * rowZ[l] : NAN, x = d->s[offset + l] * z,
                         y = u * z;
-            const float value[VPL_REGION_VALUES] = {x, y, z, -x, -y, -z, stored[l], -stored[l]};
-            for (int k = 0; k < VPL_REGION_VALUES; k++) {
+            const float value[4] = {x, y, z, stored[l]};
+            for (int k = 0; k < 4; k++) {
                 least[k][l] = vplMinf(value[k], least[k][l]);
+                most[k][l] = vplMaxf(value[k], most[k][l]);
             }
         }
     }
-    for (int k = 0; k < VPL_REGION_VALUES; k++) {
-        region.least[k] = vplLeastLane(least[k]);
+    for (int k = 0; k < 4; k++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            most[k][l] = -most[k][l];
+        }
+        region.least[k < 3 ? VPL_LEAST_POINT + k : VPL_LEAST_DISTANCE] = vplLeastLane(least[k]);
+        region.least[k < 3 ? VPL_LEAST_NEGATED + k : VPL_LEAST_NEGATED_DISTANCE] = vplLeastLane(most[k]);
     }
     roundDown(&region);
     return region;

@@ -2,11 +2,12 @@
 // Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube Shadow Map": six views with 90
 // degrees each, depth = world distance / far. Departs: the view depth w is turned into a distance by the
 // texel's own direction instead of interpolating world positions; distances are not clamped at far.
+#include <vpl/visibility.h>
+
 #include "base/arena.h"
 #include "math/vec.h"
 #include "visibility/cube_texel.h"
 #include "visibility/drawing.h"
-#include "visibility/shadow.h"
 
 #include <string.h>
 
@@ -38,34 +39,29 @@ bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut)
     return true;
 }
 
-typedef struct Face {
-    vplVec3 light;
-    vplCubeFrame frame;
-    float near;
-} Face;
-
 // Uniforms of the vertex shader, for one object on one face.
 typedef struct ObjectUniforms {
-    const Face* face;
+    vplCubeFrame frame;
+    vplVec3 light;
+    float near;
     const vplVec3* positions;
 } ObjectUniforms;
 
 static void faceVertices(const void* uniforms, int first, int count, const vplVertices* out)
 {
     const ObjectUniforms* u = uniforms;
-    const vplCubeFrame* frame = &u->face->frame;
+    const vplCubeFrame* frame = &u->frame;
     for (int i = 0; i < count; i++) {
-        vplVec3 p = vplSub(u->positions[first + i], u->face->light);
+        vplVec3 p = vplSub(u->positions[first + i], u->light);
         out->x[i] = vplDot(frame->right, p); // 90 degrees and aspect 1: the scale is exactly 1
         out->y[i] = vplDot(frame->up, p);
         out->w[i] = vplDot(frame->forward, p);
-        out->z[i] = out->w[i] - u->face->near; // no far plane: every caster counts
+        out->z[i] = out->w[i] - u->near; // no far plane: every caster counts
     }
 }
 
 // The six faces, drawn side by side.
 typedef struct Faces {
-    Face faces[6];
     vplRaster* rasters[6];
     vplMesh* meshes;         // one per object
     ObjectUniforms* objects; // one per object and face
@@ -76,11 +72,11 @@ static vplResult recordFace(Faces* f, const vplGeometry* g, const vplCubeMap* ma
     vplFramebuffer framebuffer = vplDefaultFramebuffer(map->size, map->size);
     framebuffer.depth.clear = INFINITY;
     framebuffer.depth.pixels = map->texels + (size_t)face * (size_t)map->size * (size_t)map->size;
-    f->faces[face] = (Face){map->position, vplCube_GetFrame(face), map->near};
     TRY(vplRaster_Create(g->context, &framebuffer, &f->rasters[face]));
     for (int i = 0; i < g->objectCount; i++) {
         ObjectUniforms* object = &f->objects[face * g->objectCount + i];
-        *object = (ObjectUniforms){&f->faces[face], g->positions + g->objects[i].firstVertex};
+        *object = (ObjectUniforms){vplCube_GetFrame(face), map->position, map->near,
+                                   g->positions + g->objects[i].firstVertex};
         vplPipeline pipeline = vplDefaultPipeline();
         pipeline.vertex = faceVertices;
         pipeline.vertexUniforms = object;
@@ -166,12 +162,6 @@ vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* de
     return vplArena_Deliver(arena, result, map, mapOut);
 }
 
-static void freeBounds(vplCubeMap* map)
-{
-    vplFree(map->context, map->bounds);
-    map->bounds = NULL;
-}
-
 vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMapDef* def,
                             vplProgressFcn* progress, void* user)
 {
@@ -180,17 +170,15 @@ vplResult vplCubeMap_Redraw(vplCubeMap* map, const vplGeometry* geometry, const 
         return vplFail(map->context, VPL_INVALID_ARGUMENT, "vplCubeMapDef.size is %d, must be the map's %d",
                        def->size, map->size);
     }
-    freeBounds(map);
+    vplArena_Free(map->arena, map->bounds);
+    map->bounds = NULL;
     place(map, geometry, def);
     return drawFaces(geometry, map, progress, user);
 }
 
 void vplCubeMap_Destroy(vplCubeMap* map)
 {
-    if (map != NULL) {
-        freeBounds(map);
-        vplArena_Destroy(map->arena);
-    }
+    vplArena_Destroy(map != NULL ? map->arena : NULL);
 }
 
 float vplCubeMap_Distance(const vplCubeMap* map, vplVec3 direction)

@@ -7,21 +7,18 @@
 #ifndef VPL_VISIBILITY_HEMI_FILL_H
 #define VPL_VISIBILITY_HEMI_FILL_H
 
+#include "math/double3.h"
 #include "visibility/hemi_map.h"
 #include "visibility/map_fill.h"
 
 // ---- one triangle
 
-// A function c + u cu + v cv of the texels of one quadrant.
-typedef struct Linear {
-    float c, cu, cv;
-} Linear;
-
-// e.d where p has the sign of `right` and q that of `up`.
-static inline Linear linearOf(vplVec3 e, float right, float up)
+// The coefficients of e.d = a + b u + c v in one quadrant, where p has the sign of `right` and q that of
+// `up`.
+static inline Coefficients linearOf(vplVec3 e, float right, float up)
 {
     const float p = e.x - right * e.z, q = e.y - up * e.z;
-    return (Linear){e.z, 0.5f * (p + q), 0.5f * (p - q)};
+    return (Coefficients){e.z, 0.5f * (p + q), 0.5f * (p - q)};
 }
 
 // Twice a x b.
@@ -30,12 +27,12 @@ static inline vplVec3 edgeOf(vplVec3 a, vplVec3 b)
     return vplCross(vplSub(a, b), vplAdd(a, b));
 }
 
-typedef struct Filling {
-    Linear edge[3], near; // near: 1/t
-    float right, up;      // signs of the quadrant
-} Filling;
+// The signs of a quadrant, or 0 for triangles that lie within theirs, whose texels need no test.
+typedef struct Quadrant {
+    float right, up;
+} Quadrant;
 
-// Returns whether it may be seen: from its edge a triangle hides nothing.
+// Returns whether the triangle may be seen: seen along its own plane it hides nothing.
 static inline int32_t setUp(vplVec3 p0, vplVec3 p1, vplVec3 p2, float right, float up, Filling* f)
 {
     Planes planes;
@@ -44,25 +41,24 @@ static inline int32_t setUp(vplVec3 p0, vplVec3 p1, vplVec3 p2, float right, flo
     for (int e = 0; e < 3; e++) {
         f->edge[e] = linearOf(planes.edge[e], right, up);
     }
-    f->right = right;
-    f->up = up;
     return seen;
 }
 
-// One row of blocks. `whole`: the triangle may reach into other quadrants, whose texels are not meant.
-static inline void fillRow(const Filling* restrict f, BlockRow blocks, bool whole, float* restrict texels)
+// Fills the texels of one row of blocks that lie in the quadrant.
+static inline void fillRow(const Filling* restrict f, BlockRow blocks, Quadrant quadrant,
+                           float* restrict texels)
 {
     const int32_t row = blocks.row;
     const float scale = blocks.scale;
-    const float u0 = f->edge[0].cu, u1 = f->edge[1].cu, u2 = f->edge[2].cu, nearU = f->near.cu;
-    const float right = whole ? f->right : 0, up = whole ? f->up : 0;
+    const float u0 = f->edge[0].b, u1 = f->edge[1].b, u2 = f->edge[2].b, nearU = f->near.b;
+    const float right = quadrant.right, up = quadrant.up;
     float v[VPL_LANES], e0[VPL_LANES], e1[VPL_LANES], e2[VPL_LANES], near[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
         v[l] = (float)(2 * (SIDE * row + l / SIDE) + 1) * scale - 1;
-        e0[l] = f->edge[0].c + f->edge[0].cv * v[l];
-        e1[l] = f->edge[1].c + f->edge[1].cv * v[l];
-        e2[l] = f->edge[2].c + f->edge[2].cv * v[l];
-        near[l] = f->near.c + f->near.cv * v[l];
+        e0[l] = f->edge[0].a + f->edge[0].c * v[l];
+        e1[l] = f->edge[1].a + f->edge[1].c * v[l];
+        e2[l] = f->edge[2].a + f->edge[2].c * v[l];
+        near[l] = f->near.a + f->near.c * v[l];
     }
     for (int32_t i = blocks.first; i <= blocks.last; i++) {
         float old[VPL_LANES], now[VPL_LANES];
@@ -81,12 +77,12 @@ static inline void fillRow(const Filling* restrict f, BlockRow blocks, bool whol
     }
 }
 
-static inline void fill(const vplHemiMap* map, const Filling* f, Texels box, bool whole, float* texels)
+static inline void fill(const vplHemiMap* map, const Filling* f, Texels box, Quadrant quadrant, float* texels)
 {
     const float scale = 1 / (float)map->size;
     const size_t stride = (size_t)vplHemiMap_Blocks(map->size) * VPL_LANES;
     for (int32_t row = box.j0 / SIDE; row <= box.j1 / SIDE; row++) {
-        fillRow(f, (BlockRow){row, box.i0 / SIDE, box.i1 / SIDE, scale}, whole,
+        fillRow(f, (BlockRow){row, box.i0 / SIDE, box.i1 / SIDE, scale}, quadrant,
                 texels + (size_t)row * stride);
     }
 }
@@ -103,8 +99,7 @@ static int cut(double (*restrict points)[3], int count, const double side[3])
     memcpy(from, points, (size_t)count * sizeof *from);
     for (int i = 0; i < count; i++) {
         const double *a = from[i], *b = from[(i + 1) % count];
-        const double da = side[0] * a[0] + side[1] * a[1] + side[2] * a[2];
-        const double db = side[0] * b[0] + side[1] * b[1] + side[2] * b[2];
+        const double da = vplDot3(side, a), db = vplDot3(side, b);
         if (da >= 0) {
             memcpy(points[kept++], a, sizeof from[0]);
         }
@@ -153,9 +148,7 @@ static void fillCut(const vplHemiMap* map, const vplVec3 corner[3], float* texel
         }
         double points[MAX_CUT][3];
         for (int i = 0; i < 3; i++) {
-            points[i][0] = (double)corner[i].x;
-            points[i][1] = (double)corner[i].y;
-            points[i][2] = (double)corner[i].z;
+            vplToDouble3(corner[i], points[i]);
         }
         int count = cut(points, 3, (const double[]){0, 0, 1});
         count = count > 0 ? cut(points, count, (const double[]){(double)right, 0, 0}) : 0;
@@ -164,7 +157,7 @@ static void fillCut(const vplHemiMap* map, const vplVec3 corner[3], float* texel
         const Texels box = boundsOf(points, count, map->size);
         if (count > 0 && box.i0 <= box.i1 && box.j0 <= box.j1 &&
             setUp(corner[0], corner[1], corner[2], right, up, &f)) {
-            fill(map, &f, box, true, texels);
+            fill(map, &f, box, (Quadrant){right, up}, texels);
         }
     }
 }

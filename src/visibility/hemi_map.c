@@ -7,15 +7,9 @@
 
 #include <string.h>
 
-static size_t texelsOf(int size)
-{
-    const size_t blocks = (size_t)vplHemiMap_Blocks(size);
-    return blocks * blocks * VPL_LANES;
-}
-
 size_t vplHemiMaps_BytesPerMap(int size)
 {
-    return texelsOf(size) * sizeof(float) + sizeof(vplHemiMap);
+    return vplHemiMap_Texels(size) * sizeof(float) + sizeof(vplHemiMap);
 }
 
 vplResult vplHemiMaps_Create(vplContext* context, int size, int capacity, vplHemiMaps** mapsOut)
@@ -28,7 +22,7 @@ vplResult vplHemiMaps_Create(vplContext* context, int size, int capacity, vplHem
     vplArena* arena = vplArena_Create(context);
     vplHemiMaps* maps = vplArena_Alloc(arena, 1, sizeof *maps);
     vplHemiMap* list = vplArena_AllocZero(arena, (size_t)capacity, sizeof *list);
-    float* texels = vplArena_Alloc(arena, (size_t)capacity, texelsOf(size) * sizeof *texels);
+    float* texels = vplArena_Alloc(arena, (size_t)capacity, vplHemiMap_Texels(size) * sizeof *texels);
     const vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
         *maps = (vplHemiMaps){.maps = list, .capacity = capacity, .size = size, .texels = texels};
@@ -53,8 +47,8 @@ static void drawMap(void* data, int index, int worker)
     (void)worker;
     const Drawing* d = data;
     const vplHemiMap* map = &d->maps->maps[index];
-    float* texels = d->maps->texels + (size_t)index * texelsOf(map->size);
-    memset(texels, 0, texelsOf(map->size) * sizeof *texels);
+    float* texels = d->maps->texels + (size_t)index * vplHemiMap_Texels(map->size);
+    memset(texels, 0, vplHemiMap_Texels(map->size) * sizeof *texels);
     vplVisibilityKernels_Get(d->maps->context->isa)->drawHemiMap(d->bvh, map, texels);
 }
 
@@ -78,7 +72,7 @@ vplResult vplHemiMaps_Draw(vplHemiMaps* maps, const vplGeometry* geometry, const
         map->forward = places[i].normal;
         vplTangentFrame(map->forward, &map->right, &map->up);
         map->size = maps->size;
-        map->texels = maps->texels + (size_t)i * texelsOf(maps->size);
+        map->texels = maps->texels + (size_t)i * vplHemiMap_Texels(maps->size);
         map->context = maps->context;
     }
     return vplParallelForProgress(maps->context, count, drawMap, &drawing,

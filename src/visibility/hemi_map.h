@@ -16,6 +16,13 @@ static inline int32_t vplHemiMap_Blocks(int32_t size)
     return (size + VPL_BLOCK_SIDE - 1) / VPL_BLOCK_SIDE;
 }
 
+// Texels of all blocks.
+static inline size_t vplHemiMap_Texels(int32_t size)
+{
+    const size_t blocks = (size_t)vplHemiMap_Blocks(size);
+    return blocks * blocks * VPL_LANES;
+}
+
 // The index of a texel.
 static inline int32_t vplHemiMap_Place(int32_t blocks, int32_t column, int32_t row)
 {
@@ -35,7 +42,8 @@ static inline uint32_t vplChildrenAbove(const vplBvhNode* node, vplVec3 o, vplVe
     return above;
 }
 
-// How many triangles a place's map draws: those in blocks of the tree that reach above its plane.
+// The number of triangles that the map of a place draws: those in blocks of the tree that reach above its
+// plane.
 int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapPlace* place);
 
 // Blockers that are nearer to the light than a fragment and its plane by less than this fraction of the
@@ -44,32 +52,6 @@ int64_t vplHemiMap_TrianglesAbove(const vplGeometry* geometry, const vplHemiMapP
 static inline float vplHemiMap_Tolerance(int size)
 {
     return 1.5f * 1.41421356f / (float)size + 0x1p-16f; // and rounding
-}
-
-// 2.5 f + b, metres: the largest distance between blocker and point at which map and ray may disagree. r is
-// the point's distance, f its footprint, cosT the cosine of its plane to the light.
-static inline float vplShadowBand(float r, float f, float cosT)
-{
-    const float sinT = sqrtf(1 - cosT * cosT);
-    const float cosA = r / sqrtf(r * r + f * f), sinA = f / r * cosA;
-    const float turned = sinT * cosA <= cosT * sinA ? 1 : cosT * cosA + sinT * sinA;
-    return 2.5f * f + r * (1 - cosT / turned) + r * 0x1p-16f;
-}
-
-// The band of vplHemiMap_FactorBlock, metres, and the footprint f.
-static inline float vplHemiMap_Band(const vplHemiMap* map, vplVec3 point, vplVec3 normal, float* footprintOut)
-{
-    const vplVec3 way = vplSub(point, map->position);
-    const float x = fabsf(vplDot(way, map->right)), y = fabsf(vplDot(way, map->up));
-    const float r = fmaxf(vplLength(way), 1e-30f),
-                f = 1.41421356f * (x + y + fabsf(vplDot(way, map->forward))) / (float)map->size;
-    *footprintOut = f;
-    return vplShadowBand(r, f, fminf(fabsf(vplDot(way, normal)) / r, 1));
-}
-
-static inline float vplLargestOf(vplVec3 p)
-{
-    return fmaxf(fabsf(p.x), fmaxf(fabsf(p.y), fabsf(p.z)));
 }
 
 // 64 units in the last place of a coordinate: more than the rounding of surfaces.

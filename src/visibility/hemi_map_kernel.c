@@ -8,8 +8,7 @@
 // ---- sixteen triangles
 
 // Which texels' centres may lie in each triangle, and how it lies.
-static void bound(const vplHemiMap* map, const Sixteen* restrict s, int32_t box[restrict 4][VPL_LANES],
-                  int32_t kind[restrict VPL_LANES])
+static void bound(const vplHemiMap* map, const Sixteen* restrict s, Fillings* restrict all)
 {
     const float half = 0.5f * (float)map->size, least = 0.5f - MARGIN, most = 0.5f + MARGIN;
     for (int l = 0; l < VPL_LANES; l++) {
@@ -35,35 +34,23 @@ static void bound(const vplHemiMap* map, const Sixteen* restrict s, int32_t box[
         const int32_t sameX = ((x0 >= 0) == (x1 >= 0)) & ((x1 >= 0) == (x2 >= 0));
         const int32_t sameY = ((y0 >= 0) == (y1 >= 0)) & ((y1 >= 0) == (y2 >= 0));
         const int32_t one = whole & sameX & sameY, some = (i0 <= i1) & (j0 <= j1);
-        box[0][l] = i0;
-        box[1][l] = i1;
-        box[2][l] = j0;
-        box[3][l] = j1;
-        kind[l] = (above & (s->id[l] >= 0)) ? (one ? some : CROSSING) : UNSEEN;
+        all->box[0][l] = i0;
+        all->box[1][l] = i1;
+        all->box[2][l] = j0;
+        all->box[3][l] = j1;
+        all->kind[l] = (above & (s->id[l] >= 0)) ? (one ? some : CROSSING) : UNSEEN;
     }
 }
 
-// The numbers of a Filling, side by side.
-typedef struct Fillings {
-    float edge[3][3][VPL_LANES], near[3][VPL_LANES];
-} Fillings;
-
-static void setUpAll(const Sixteen* restrict s, int32_t kind[restrict VPL_LANES], Fillings* restrict all)
+static void setUpAll(const Sixteen* restrict s, Fillings* restrict all)
 {
     for (int l = 0; l < VPL_LANES; l++) {
         Filling f;
         const vplVec3 p0 = cornerOf(s, 0, l), p1 = cornerOf(s, 1, l), p2 = cornerOf(s, 2, l);
-        const int32_t was = kind[l];
+        const int32_t was = all->kind[l];
         const int32_t seen = setUp(p0, p1, p2, p0.x >= 0 ? 1.0f : -1.0f, p0.y >= 0 ? 1.0f : -1.0f, &f);
-        for (int e = 0; e < 3; e++) {
-            all->edge[e][0][l] = f.edge[e].c;
-            all->edge[e][1][l] = f.edge[e].cu;
-            all->edge[e][2][l] = f.edge[e].cv;
-        }
-        all->near[0][l] = f.near.c;
-        all->near[1][l] = f.near.cu;
-        all->near[2][l] = f.near.cv;
-        kind[l] = ((was == INSIDE) & !seen) ? UNSEEN : was;
+        storeFilling(&f, l, all);
+        all->kind[l] = ((was == INSIDE) & !seen) ? UNSEEN : was;
     }
 }
 
@@ -76,21 +63,18 @@ static void draw(const void* data, Sixteen* s)
 {
     const vplHemiMap* map = ((const Canvas*)data)->map;
     float* texels = ((const Canvas*)data)->texels;
-    int32_t box[4][VPL_LANES], kind[VPL_LANES];
     Fillings all;
     turn((Eye){map->position, map->right, map->up, map->forward}, s);
-    bound(map, s, box, kind);
-    setUpAll(s, kind, &all);
+    bound(map, s, &all);
+    setUpAll(s, &all);
     for (int l = 0; l < VPL_LANES; l++) {
-        if (kind[l] == CROSSING) {
+        if (all.kind[l] == CROSSING) {
             const vplVec3 corner[3] = {cornerOf(s, 0, l), cornerOf(s, 1, l), cornerOf(s, 2, l)};
             fillCut(map, corner, texels);
-        } else if (kind[l] == INSIDE) {
-            Filling f = {.near = {all.near[0][l], all.near[1][l], all.near[2][l]}};
-            for (int e = 0; e < 3; e++) {
-                f.edge[e] = (Linear){all.edge[e][0][l], all.edge[e][1][l], all.edge[e][2][l]};
-            }
-            fill(map, &f, (Texels){box[0][l], box[1][l], box[2][l], box[3][l]}, false, texels);
+        } else if (all.kind[l] == INSIDE) {
+            const Filling f = loadFilling(&all, l);
+            fill(map, &f, (Texels){all.box[0][l], all.box[1][l], all.box[2][l], all.box[3][l]},
+                 (Quadrant){0, 0}, texels);
         }
     }
 }

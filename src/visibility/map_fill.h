@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the rasterizers of small maps share: half spaces and paraboloids. They walk down the ray tree as far
+// Shared by the rasterizers of hemi-octahedral and paraboloid maps. They walk down the ray tree as far
 // as it reaches above a plane, take sixteen triangles side by side, turn them to the eye, and find planes
 // through it.
 // Based on: Marc Olano and Trey Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates, Graphics
@@ -33,7 +33,7 @@ typedef struct BlockRow {
 // Bounds are wider by this much of a texel, which covers the rounding of projected corners.
 static const float MARGIN = 0x1p-9f;
 
-// Where a map is drawn from; right, up and forward are unit.
+// The place and frame that a map is drawn from; right, up and forward are unit.
 typedef struct Eye {
     vplVec3 position, right, up, forward;
 } Eye;
@@ -62,13 +62,29 @@ static inline __attribute__((always_inline)) int32_t planesOf(vplVec3 p0, vplVec
     return (fabsf(k) > 0x1p-20f * (fabsf(x) + fabsf(y) + fabsf(z))) & (fabsf(inverse) < INFINITY);
 }
 
+// The same planes as functions of a texel's column and row. The maps choose the functions; each has three
+// coefficients.
+typedef struct Coefficients {
+    float a, b, c;
+} Coefficients;
+
+typedef struct Filling {
+    Coefficients edge[3], near;
+} Filling;
+
 // ---- sixteen triangles
 
 typedef struct Sixteen {
     float x[3][VPL_LANES], y[3][VPL_LANES],
-        z[3][VPL_LANES]; // corners: in the world, then as the eye sees them
+        z[3][VPL_LANES]; // corners, first in the world, then in the eye's frame
     int32_t id[VPL_LANES];
 } Sixteen;
+
+// Sixteen Fillings, lane by lane, with the texels that each may cover and its kind, UNSEEN to CROSSING.
+typedef struct Fillings {
+    float edge[3][3][VPL_LANES], near[3][VPL_LANES];
+    int32_t box[4][VPL_LANES], kind[VPL_LANES];
+} Fillings;
 
 enum { UNSEEN = 0, INSIDE, CROSSING };
 
@@ -91,17 +107,37 @@ static inline vplVec3 cornerOf(const Sixteen* s, int k, int l)
     return vplVec(s->x[k][l], s->y[k][l], s->z[k][l]);
 }
 
+static inline void storeFilling(const Filling* f, int l, Fillings* restrict all)
+{
+    for (int e = 0; e < 3; e++) {
+        all->edge[e][0][l] = f->edge[e].a;
+        all->edge[e][1][l] = f->edge[e].b;
+        all->edge[e][2][l] = f->edge[e].c;
+    }
+    all->near[0][l] = f->near.a;
+    all->near[1][l] = f->near.b;
+    all->near[2][l] = f->near.c;
+}
+
+static inline Filling loadFilling(const Fillings* all, int l)
+{
+    Filling f = {.near = {all->near[0][l], all->near[1][l], all->near[2][l]}};
+    for (int e = 0; e < 3; e++) {
+        f.edge[e] = (Coefficients){all->edge[e][0][l], all->edge[e][1][l], all->edge[e][2][l]};
+    }
+    return f;
+}
+
 // Two blocks of eight become sixteen; `second` may be NULL.
 static inline void pair(const vplTriangleBlock* first, const vplTriangleBlock* second, Sixteen* s)
 {
     const vplTriangleBlock* other = second != NULL ? second : first;
     for (int k = 0; k < 3; k++) {
-        memcpy(s->x[k], first->p[k][0], sizeof first->p[k][0]);
-        memcpy(s->y[k], first->p[k][1], sizeof first->p[k][1]);
-        memcpy(s->z[k], first->p[k][2], sizeof first->p[k][2]);
-        memcpy(s->x[k] + VPL_BVH_WIDTH, other->p[k][0], sizeof other->p[k][0]);
-        memcpy(s->y[k] + VPL_BVH_WIDTH, other->p[k][1], sizeof other->p[k][1]);
-        memcpy(s->z[k] + VPL_BVH_WIDTH, other->p[k][2], sizeof other->p[k][2]);
+        float* to[3] = {s->x[k], s->y[k], s->z[k]};
+        for (int axis = 0; axis < 3; axis++) {
+            memcpy(to[axis], first->p[k][axis], sizeof first->p[k][axis]);
+            memcpy(to[axis] + VPL_BVH_WIDTH, other->p[k][axis], sizeof other->p[k][axis]);
+        }
     }
     memcpy(s->id, first->id, sizeof first->id);
     memcpy(s->id + VPL_BVH_WIDTH, other->id, sizeof other->id);

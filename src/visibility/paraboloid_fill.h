@@ -22,20 +22,11 @@ static inline vplVec3 edgeOf(vplVec3 p, vplVec3 q)
     return vplCross(nearer, vplSub(q, p));
 }
 
-// The function a (1 - x^2 - y^2) + b x + c y.
-typedef struct Quadric {
-    float a, b, c;
-} Quadric;
-
-static inline Quadric quadricOf(vplVec3 e)
+// The coefficients of e.d = a (1 - x^2 - y^2) + b x + c y.
+static inline Coefficients quadricOf(vplVec3 e)
 {
-    return (Quadric){e.z, 2 * e.x, 2 * e.y};
+    return (Coefficients){e.z, 2 * e.x, 2 * e.y};
 }
-
-typedef struct Filling {
-    Quadric edge[3], near; // near: 1/t
-    int32_t triangle;
-} Filling;
 
 // A hemisphere that is drawn.
 typedef struct Canvas {
@@ -47,15 +38,14 @@ typedef struct Canvas {
     float slack; // directions count down to -slack |d| below the plane: 0 or what `rim` asks for
 } Canvas;
 
-// One row of blocks.
+// Fills one row of blocks. `ids`, a constant: stores triangles, too.
 static inline __attribute__((always_inline)) void fillRow(const Filling* restrict f, BlockRow blocks,
-                                                          bool ids, float* restrict texels,
+                                                          bool ids, int32_t triangle, float* restrict texels,
                                                           int32_t* restrict triangles)
 {
     const int32_t row = blocks.row;
     const float scale = blocks.scale;
-    const Quadric q0 = f->edge[0], q1 = f->edge[1], q2 = f->edge[2], qn = f->near;
-    const int32_t triangle = f->triangle;
+    const Coefficients q0 = f->edge[0], q1 = f->edge[1], q2 = f->edge[2], qn = f->near;
     float e0[VPL_LANES], e1[VPL_LANES], e2[VPL_LANES], near[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
         const float y = (float)(2 * (SIDE * row + l / SIDE) + 1) * scale - 1, above = 1 - y * y;
@@ -91,7 +81,7 @@ static inline __attribute__((always_inline)) void fillRow(const Filling* restric
     }
 }
 
-static inline void fill(const Canvas* c, const Filling* f, Texels box)
+static inline void fill(const Canvas* c, const Filling* f, int32_t triangle, Texels box)
 {
     const float scale = 1 / (float)c->size;
     const size_t stride = (size_t)vplHemiMap_Blocks(c->size) * VPL_LANES;
@@ -99,9 +89,9 @@ static inline void fill(const Canvas* c, const Filling* f, Texels box)
         const size_t at = (size_t)row * stride;
         const BlockRow blocks = {row, box.i0 / SIDE, box.i1 / SIDE, scale};
         if (c->triangles != NULL) {
-            fillRow(f, blocks, true, c->texels + at, c->triangles + at);
+            fillRow(f, blocks, true, triangle, c->texels + at, c->triangles + at);
         } else {
-            fillRow(f, blocks, false, c->texels + at, NULL);
+            fillRow(f, blocks, false, triangle, c->texels + at, NULL);
         }
     }
 }
@@ -164,9 +154,7 @@ static Texels boundsOf(const vplVec3 corner[3], int32_t size)
     Box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
     double p[3][3], e[3][3], n[3];
     for (int k = 0; k < 3; k++) {
-        p[k][0] = (double)corner[k].x;
-        p[k][1] = (double)corner[k].y;
-        p[k][2] = (double)corner[k].z;
+        vplToDouble3(corner[k], p[k]);
         const double across = p[k][0] * p[k][0] + p[k][1] * p[k][1], z = p[k][2];
         const double length = sqrt(across + z * z);
         if (!(across > 0) && !(z > 0)) { // the eye itself, or straight behind it

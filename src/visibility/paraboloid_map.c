@@ -58,7 +58,7 @@ vplResult vplParaboloidMaps_Create(vplContext* context, int size, int capacity, 
         made.triangles = vplArena_Alloc(arena, (size_t)capacity, texels * sizeof *made.triangles);
     }
     made.scratch = vplArena_Alloc(arena, (triangles ? 2 : 1) * (size_t)context->workerCount,
-                                  vplParaboloidMap_Drawn(size) * sizeof *made.scratch);
+                                  vplHemiMap_Texels(size) * sizeof *made.scratch);
     const vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
         *maps = made;
@@ -87,7 +87,7 @@ static void drawHemisphere(void* data, int index, int worker)
         return;
     }
     const size_t first = (2 * (size_t)which + (size_t)hemisphere) * vplParaboloidMap_Texels(map->size);
-    const size_t drawn = vplParaboloidMap_Drawn(map->size);
+    const size_t drawn = vplHemiMap_Texels(map->size);
     const bool ids = maps->triangles != NULL;
     float* scratch = maps->scratch + (ids ? 2 : 1) * (size_t)worker * drawn;
     vplVisibilityKernels_Get(map->context->isa)

@@ -6,13 +6,6 @@
 
 #include "visibility/hemi_map.h"
 
-// Texels of a hemisphere while it is drawn.
-static inline size_t vplParaboloidMap_Drawn(int size)
-{
-    const size_t blocks = (size_t)vplHemiMap_Blocks(size);
-    return blocks * blocks * VPL_LANES;
-}
-
 // Texels from one row to the next. Rows and columns at the sides are stored twice, so that a point always has
 // two.
 static inline int32_t vplParaboloidMap_Stride(int size)
@@ -32,9 +25,9 @@ static inline size_t vplParaboloidMap_Place(int size, int column, int row)
     return (size_t)(row + 1) * (size_t)vplParaboloidMap_Stride(size) + (size_t)(column + 1);
 }
 
-// How far from the middle texels hold surfaces. With a back hemisphere they do so beyond the rim of the disk,
-// by more than a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the rim are
-// valid.
+// Texels up to this distance from the middle hold surfaces. With a back hemisphere that is beyond the rim of
+// the disk by more than a texel's diagonal, 2 sqrt(2) / size, so that all four texels around a point near the
+// rim are valid.
 static inline float vplParaboloidMap_Rim(int size, int hemispheres)
 {
     return hemispheres == 2 ? 1 + 3 / (float)size : 1;
@@ -46,18 +39,6 @@ static inline float vplParaboloidMap_Rim(int size, int hemispheres)
 static inline float vplParaboloidMap_Tolerance(int size)
 {
     return 2 * 1.41421356f / (float)size;
-}
-
-// The band of vplParaboloidMap_FactorBlock, 2.5 f + b, metres, and the footprint f, a texel's diagonal: the
-// four centres around a point are no further from it.
-static inline float vplParaboloidMap_Band(const vplParaboloidMap* map, vplVec3 point, vplVec3 normal,
-                                          float* footprintOut)
-{
-    const vplVec3 way = vplSub(point, map->position);
-    const float r = fmaxf(vplLength(way), 1e-30f);
-    const float f = 1.41421356f * 2 * (r + fabsf(vplDot(way, map->forward))) / (float)map->size;
-    *footprintOut = f;
-    return vplShadowBand(r, f, fminf(fabsf(vplDot(way, normal)) / r, 1));
 }
 
 #endif

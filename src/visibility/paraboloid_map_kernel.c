@@ -5,12 +5,6 @@
 #include "visibility/kernels.h"
 #include "visibility/paraboloid_fill.h"
 
-// The numbers of sixteen Fillings, side by side, and which texels each may cover.
-typedef struct Fillings {
-    float edge[3][3][VPL_LANES], near[3][VPL_LANES];
-    int32_t box[4][VPL_LANES], kind[VPL_LANES];
-} Fillings;
-
 static inline float pick(bool second, bool third, float a, float b, float c)
 {
     const float other = third ? c : a;
@@ -43,16 +37,9 @@ static void setUpAll(const Sixteen* restrict s, Fillings* restrict all)
         vplVec3 corner[3] = {cornerOf(s, 0, l), cornerOf(s, 1, l), cornerOf(s, 2, l)};
         nearestFirst(corner);
         const int32_t seen = planesOf(corner[0], corner[1], corner[2], edgeOf, &p);
-        for (int e = 0; e < 3; e++) {
-            const Quadric q = quadricOf(p.edge[e]);
-            all->edge[e][0][l] = q.a;
-            all->edge[e][1][l] = q.b;
-            all->edge[e][2][l] = q.c;
-        }
-        const Quadric near = quadricOf(p.near);
-        all->near[0][l] = near.a;
-        all->near[1][l] = near.b;
-        all->near[2][l] = near.c;
+        const Filling f = {{quadricOf(p.edge[0]), quadricOf(p.edge[1]), quadricOf(p.edge[2])},
+                           quadricOf(p.near)};
+        storeFilling(&f, l, all);
         all->kind[l] = seen ? was : UNSEEN;
     }
 }
@@ -114,11 +101,8 @@ static void drawOne(const Canvas* c, const Sixteen* s, const Fillings* all, int 
             return;
         }
     }
-    Filling f = {.near = {all->near[0][l], all->near[1][l], all->near[2][l]}, .triangle = s->id[l]};
-    for (int e = 0; e < 3; e++) {
-        f.edge[e] = (Quadric){all->edge[e][0][l], all->edge[e][1][l], all->edge[e][2][l]};
-    }
-    fill(c, &f, box);
+    const Filling f = loadFilling(all, l);
+    fill(c, &f, s->id[l], box);
 }
 
 static void draw(const void* data, Sixteen* s)
@@ -233,7 +217,7 @@ void VPL_KERNEL(vplDrawParaboloid)(const vplBvh* bvh, const vplParaboloidMap* ma
         scratch.triangles,
         {map->position, map->right, map->up, hemisphere == 0 ? map->forward : vplNegate(map->forward)},
         (rim * rim - 1) / (rim * rim + 1)};
-    memset(scratch.texels, 0, vplParaboloidMap_Drawn(map->size) * sizeof *scratch.texels);
+    memset(scratch.texels, 0, vplHemiMap_Texels(map->size) * sizeof *scratch.texels);
     walk(bvh, chooseReaching, draw, &canvas);
     finish(&canvas, out);
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "visibility/shadow.h"
 #include "base/context.h"
 #include "math/sampling.h"
 #include "visibility/kernels.h"
@@ -84,15 +83,9 @@ float vplShadow_Bias(const vplShadow* shadow, float distance, float cosine)
     return bias[0];
 }
 
-int vplShadow_FactorBlockCounted(const vplShadow* shadow, const vplSurface* surface,
-                                 float factorOut[VPL_LANES])
-{
-    return vplVisibilityKernels_Get(shadow->map->context->isa)->shadowFactor(shadow, surface, factorOut);
-}
-
 void vplShadow_FactorBlock(const vplShadow* shadow, const vplSurface* surface, float factorOut[VPL_LANES])
 {
-    vplShadow_FactorBlockCounted(shadow, surface, factorOut);
+    vplVisibilityKernels_Get(shadow->map->context->isa)->shadowFactor(shadow, surface, factorOut);
 }
 
 float vplShadow_Factor(const vplShadow* shadow, vplVec3 position, vplVec3 normal)

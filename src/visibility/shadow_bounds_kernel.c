@@ -109,7 +109,7 @@ static bool findRegion(const vplCubeMap* map, const vplShadowPoints* p, const Sq
     return true;
 }
 
-// What planes are compared with, by lane: see the top of the file.
+// The directions and angles that planes are compared with, by lane; the top of the file derives them.
 typedef struct Cones {
     float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES]; // unit direction of the point, in the axes of its face
     float cosine[VPL_LANES], sine[VPL_LANES];       // of a, times `length`
@@ -140,7 +140,8 @@ static void findCones(const vplShadow* shadow, const vplShadowPoints* p, const S
     }
 }
 
-// Whether the receiver's plane at each point lies before all points of the region, as seen from the light.
+// Tests whether the receiver's plane at each point lies before all points of the region, as seen from the
+// light.
 static void testPlanes(const vplShadowPoints* p, const Cones* c, const vplSurface* axes,
                        const vplCubeRegion* region, int32_t lit[restrict VPL_LANES])
 {

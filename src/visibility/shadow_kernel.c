@@ -57,14 +57,22 @@ static void discFrame(const float* restrict lx, const float* restrict ly, const 
     }
 }
 
+// The index of a texel in the map.
+static inline int32_t placeOf(vplCubeTexel t, int32_t size)
+{
+    const int32_t column = vplTexelIndex(t.s, (float)size, size - 1);
+    const int32_t row = vplTexelIndex(t.t, (float)size, size - 1);
+    return (t.face * size + row) * size + column;
+}
+
 // Counts the samples in shadow, all lanes side by side.
 static void countShadowed(const vplShadow* shadow, const vplShadowPoints* restrict p,
                           const float axis[6][VPL_LANES], float* restrict shadowed)
 {
     const vplCubeMap* map = shadow->map;
     const float* restrict texels = map->texels;
-    const int32_t size = map->size, last = size - 1;
-    const float sizeF = (float)size, off = shadow->def.pcfOffset, far = map->far;
+    const int32_t size = map->size;
+    const float off = shadow->def.pcfOffset, far = map->far;
     for (int l = 0; l < VPL_LANES; l++) {
         shadowed[l] = 0;
     }
@@ -75,9 +83,7 @@ static void countShadowed(const vplShadow* shadow, const vplShadowPoints* restri
             float dx = p->x[l] + (u * axis[0][l] + v * axis[3][l]);
             float dy = p->y[l] + (u * axis[1][l] + v * axis[4][l]);
             float dz = p->z[l] + (u * axis[2][l] + v * axis[5][l]);
-            vplCubeTexel t = vplCubeTexelOf(dx, dy, dz);
-            int32_t column = vplTexelIndex(t.s, sizeF, last), row = vplTexelIndex(t.t, sizeF, last);
-            place[l] = (t.face * size + row) * size + column;
+            place[l] = placeOf(vplCubeTexelOf(dx, dy, dz), size);
         }
         float stored[VPL_LANES];
         vplGather(texels, place, stored);
@@ -116,58 +122,40 @@ static inline int32_t countBehind(const float* restrict texels, const int32_t pl
     return behind;
 }
 
-// Counts the samples of one point in shadow, 16 at a time.
-static float countPoint(const vplShadow* shadow, const vplShadowPoints* restrict p, int lane,
-                        const float axis[6][VPL_LANES], const Disc* restrict disc)
+// Counts the samples of one point in shadow, 16 at a time. `inFace`: all samples lie in the point's face,
+// which then need not be found for each (bench/shadow: 1.2x). Callers pass a constant.
+static inline __attribute__((always_inline)) float countPoint(const vplShadow* shadow,
+                                                              const vplShadowPoints* restrict p, int lane,
+                                                              const float axis[6][VPL_LANES],
+                                                              const Disc* restrict disc, bool inFace)
 {
     const vplCubeMap* map = shadow->map;
-    const float* restrict texels = map->texels;
-    const int32_t size = map->size, last = size - 1, samples = shadow->def.pcfSamples;
-    const float sizeF = (float)size, far = map->far;
-    const float x = p->x[lane], y = p->y[lane], z = p->z[lane], limit = p->limit[lane];
-    const float ux = axis[0][lane], uy = axis[1][lane], uz = axis[2][lane];
-    const float vx = axis[3][lane], vy = axis[4][lane], vz = axis[5][lane];
-    int32_t count = 0;
-    for (int32_t first = 0; first < samples; first += VPL_LANES) {
-        const float* restrict u = disc->u + first;
-        const float* restrict v = disc->v + first;
-        int32_t place[VPL_LANES];
-        for (int l = 0; l < VPL_LANES; l++) {
-            vplCubeTexel t = vplCubeTexelOf(x + (u[l] * ux + v[l] * vx), y + (u[l] * uy + v[l] * vy),
-                                            z + (u[l] * uz + v[l] * vz));
-            int32_t column = vplTexelIndex(t.s, sizeF, last), row = vplTexelIndex(t.t, sizeF, last);
-            place[l] = (t.face * size + row) * size + column;
-        }
-        count += countBehind(texels, place, far, limit, samples - first);
+    const int32_t size = map->size, samples = shadow->def.pcfSamples, face = p->face[lane];
+    const float far = map->far, limit = p->limit[lane];
+    // In the axes of the face where that is known.
+    vplInFace at = {p->x[lane], p->y[lane], p->z[lane]};
+    vplInFace alongU = {axis[0][lane], axis[1][lane], axis[2][lane]};
+    vplInFace alongV = {axis[3][lane], axis[4][lane], axis[5][lane]};
+    if (inFace) {
+        at = vplTurnToFace(face, at.right, at.up, at.major);
+        alongU = vplTurnToFace(face, alongU.right, alongU.up, alongU.major);
+        alongV = vplTurnToFace(face, alongV.right, alongV.up, alongV.major);
     }
-    return (float)count;
-}
-
-// The same where all samples lie in one face, which then need not be found for each (bench/shadow: 1.2x).
-static float countPointInFace(const vplShadow* shadow, const vplShadowPoints* restrict p, int lane,
-                              const float axis[6][VPL_LANES], const Disc* restrict disc)
-{
-    const vplCubeMap* map = shadow->map;
-    const int32_t size = map->size, last = size - 1, samples = shadow->def.pcfSamples, face = p->face[lane];
-    const float* restrict texels = map->texels + (size_t)face * (size_t)size * (size_t)size;
-    const float sizeF = (float)size, far = map->far, limit = p->limit[lane];
-    const vplInFace at = vplTurnToFace(face, p->x[lane], p->y[lane], p->z[lane]);
-    const vplInFace alongU = vplTurnToFace(face, axis[0][lane], axis[1][lane], axis[2][lane]);
-    const vplInFace alongV = vplTurnToFace(face, axis[3][lane], axis[4][lane], axis[5][lane]);
     int32_t count = 0;
     for (int32_t first = 0; first < samples; first += VPL_LANES) {
         const float* restrict u = disc->u + first;
         const float* restrict v = disc->v + first;
         int32_t place[VPL_LANES];
         for (int l = 0; l < VPL_LANES; l++) {
-            float right = at.right + (u[l] * alongU.right + v[l] * alongV.right);
-            float up = at.up + (u[l] * alongU.up + v[l] * alongV.up);
-            float major = at.major + (u[l] * alongU.major + v[l] * alongV.major);
-            int32_t column = vplTexelIndex((right / major + 1) * 0.5f, sizeF, last);
-            int32_t row = vplTexelIndex((1 - up / major) * 0.5f, sizeF, last);
-            place[l] = row * size + column;
+            const float right = at.right + (u[l] * alongU.right + v[l] * alongV.right);
+            const float up = at.up + (u[l] * alongU.up + v[l] * alongV.up);
+            const float major = at.major + (u[l] * alongU.major + v[l] * alongV.major);
+            place[l] =
+                placeOf(inFace ? (vplCubeTexel){face, (right / major + 1) * 0.5f, (1 - up / major) * 0.5f}
+                               : vplCubeTexelOf(right, up, major),
+                        size);
         }
-        count += countBehind(texels, place, far, limit, samples - first);
+        count += countBehind(map->texels, place, far, limit, samples - first);
     }
     return (float)count;
 }
@@ -180,8 +168,8 @@ static void countUnknown(const vplShadow* shadow, const vplShadowPoints* p, cons
     scaleDisc(shadow, &disc);
     for (int l = 0; l < VPL_LANES; l++) {
         if (!known[l]) {
-            shadowed[l] = p->face[l] >= 0 ? countPointInFace(shadow, p, l, axis, &disc)
-                                          : countPoint(shadow, p, l, axis, &disc);
+            shadowed[l] = p->face[l] >= 0 ? countPoint(shadow, p, l, axis, &disc, true)
+                                          : countPoint(shadow, p, l, axis, &disc, false);
         }
     }
 }

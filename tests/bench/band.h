@@ -10,6 +10,39 @@
 
 #include <vpl/lights.h>
 
+// 2.5 f + b, metres: the largest distance between blocker and point at which map and ray may disagree. r is
+// the point's distance, f its footprint, cosT the cosine of its plane to the light.
+static inline float bandAt(float r, float f, float cosT)
+{
+    const float sinT = sqrtf(1 - cosT * cosT);
+    const float cosA = r / sqrtf(r * r + f * f), sinA = f / r * cosA;
+    const float turned = sinT * cosA <= cosT * sinA ? 1 : cosT * cosA + sinT * sinA;
+    return 2.5f * f + r * (1 - cosT / turned) + r * 0x1p-16f;
+}
+
+// The band of vplHemiMap_FactorBlock, metres, and the footprint f.
+static inline float hemiMapBand(const vplHemiMap* map, vplVec3 point, vplVec3 normal, float* footprintOut)
+{
+    const vplVec3 way = vplSub(point, map->position);
+    const float x = fabsf(vplDot(way, map->right)), y = fabsf(vplDot(way, map->up));
+    const float r = fmaxf(vplLength(way), 1e-30f),
+                f = 1.41421356f * (x + y + fabsf(vplDot(way, map->forward))) / (float)map->size;
+    *footprintOut = f;
+    return bandAt(r, f, fminf(fabsf(vplDot(way, normal)) / r, 1));
+}
+
+// The band of vplParaboloidMap_FactorBlock, 2.5 f + b, metres, and the footprint f, a texel's diagonal: the
+// four centres around a point are no further from it.
+static inline float paraboloidMapBand(const vplParaboloidMap* map, vplVec3 point, vplVec3 normal,
+                                      float* footprintOut)
+{
+    const vplVec3 way = vplSub(point, map->position);
+    const float r = fmaxf(vplLength(way), 1e-30f);
+    const float f = 1.41421356f * 2 * (r + fabsf(vplDot(way, map->forward))) / (float)map->size;
+    *footprintOut = f;
+    return bandAt(r, f, fminf(fabsf(vplDot(way, normal)) / r, 1));
+}
+
 // Returns whether the shadow ray that shading casts finds the light hidden.
 static inline bool isDark(const vplGeometry* g, const vplHit* hit, const vplShadeLight* l)
 {
@@ -55,7 +88,7 @@ static inline bool isSure(const vplGeometry* g, const vplHemiMap* map, vplVec3 p
                           bool dark)
 {
     float footprint;
-    const float band = vplHemiMap_Band(map, point, normal, &footprint);
+    const float band = hemiMapBand(map, point, normal, &footprint);
     return isSureWithin(g, map->position, point, normal, footprint, band, dark);
 }
 
@@ -63,7 +96,7 @@ static inline bool isSureParaboloid(const vplGeometry* g, const vplParaboloidMap
                                     vplVec3 normal, bool dark)
 {
     float footprint;
-    const float band = vplParaboloidMap_Band(map, point, normal, &footprint);
+    const float band = paraboloidMapBand(map, point, normal, &footprint);
     return isSureWithin(g, map->position, point, normal, footprint, band, dark);
 }
 

@@ -49,9 +49,9 @@ echo '| picture | error | seconds | options |'
 echo '| --- | ---: | ---: | --- |'
 shared="--light-shadows ray"
 particles="--particles 4000 --reflectivity auto --pipeline interleaved --interleave 16"
-shot best-direct 3 "--antialias 4" --method direct $shared
-shot best-instant-radiosity 3 "--antialias 4" $particles --sampler halton $shared
-shot best-keller 3 "--antialias 4" --method keller $particles $shared
-shot best-radiosity 3 "--antialias 4" --method radiosity --patches 4000 $shared
-shot best-ssvp 3 "--antialias 4" --method ssvp --clusters 32
+shot best-direct 3 "--antialias 8" --method direct $shared
+shot best-instant-radiosity 3 "--antialias 8" $particles --sampler halton $shared
+shot best-keller 3 "--antialias 8" --method keller $particles $shared
+shot best-radiosity 3 "--antialias 8" --method radiosity --patches 4000 $shared
+shot best-ssvp 3 "--antialias 8" --method ssvp --clusters 32
 shot best-path 1 "--pixel area" --method path --spp 256 --pixel centre

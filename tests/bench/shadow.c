@@ -6,7 +6,7 @@
 #include "bench.h"
 
 #include "visibility/cube_bounds.h"
-#include "visibility/shadow.h"
+#include "visibility/kernels.h"
 
 #include <vpl/vpl.h>
 
@@ -66,7 +66,8 @@ static void count(const vplShadow* shadow, const vplSurface* blocks, int blockCo
 {
     for (int i = 0; i < blockCount; i++) {
         float factor[VPL_LANES];
-        int told = vplShadow_FactorBlockCounted(shadow, &blocks[i], factor), same = 0;
+        const vplVisibilityKernels* kernels = vplVisibilityKernels_Get(shadow->map->context->isa);
+        int told = kernels->shadowFactor(shadow, &blocks[i], factor), same = 0;
         for (int l = 0; l < VPL_LANES; l++) {
             same += factor[l] == 0 || factor[l] == 1;
         }

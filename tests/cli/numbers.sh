@@ -42,7 +42,7 @@ check ImageHashHas16Digits grep -qE '"image_hash": "[0-9a-f]{16}"' "$s"
 
 # info foretells what --stats reports afterwards.
 for pipeline in multipass "batched --batch 7" deferred interleaved lightcuts; do
-    for method in instant-radiosity direct path "instant-radiosity --antialias 3" \
+    for method in instant-radiosity direct path "instant-radiosity --antialias 3" "instant-radiosity --supersample 3" \
         "instant-radiosity --light-shadows map --light-map 8" "instant-radiosity --light-shadows ray" keller \
         "keller --light-shadows ray"; do
         words="$counted --shadow-map 16 --pipeline $pipeline --method $method --quiet" # some have no effect

@@ -95,9 +95,9 @@ static void outline(const vplPatchFace* u, vplFragments* f)
             const double x = f->x + l % VPL_BLOCK_SIDE + 0.5, y = f->y + l / VPL_BLOCK_SIDE + 0.5;
             const double distance = fabs(line[0] * x + line[1] * y + line[2]);
             const float shade = distance < 1 ? (float)distance : 1;
-            f->plane[0][l] *= shade;
-            f->plane[1][l] *= shade;
-            f->plane[2][l] *= shade;
+            for (int c = 0; c < 3; c++) {
+                f->plane[c][l] *= shade;
+            }
         }
     }
 }

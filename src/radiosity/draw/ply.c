@@ -29,6 +29,7 @@ typedef struct Entry {
 
 typedef struct Baker {
     vplContext* context;
+    vplArena* arena; // owns the arrays
     const vplPatchMesh* mesh;
     const vplRgb* irradiance;
     float scale;
@@ -41,11 +42,6 @@ typedef struct Baker {
 } Baker;
 
 // ---- vertices
-
-static bool sameRgb(vplRgb a, vplRgb b)
-{
-    return a.r == b.r && a.g == b.g && a.b == b.b;
-}
 
 static PlyVertex makeVertex(const Baker* b, uint32_t vertex, int face, vplRgb reflectance)
 {
@@ -64,7 +60,8 @@ static PlyVertex makeVertex(const Baker* b, uint32_t vertex, int face, vplRgb re
 static vplResult findVertex(Baker* b, uint32_t vertex, int face, vplRgb reflectance, int32_t* indexOut)
 {
     for (int at = b->heads[vertex]; at >= 0; at = b->entries[at].next) {
-        if (sameRgb(b->entries[at].reflectance, reflectance)) {
+        const vplRgb known = b->entries[at].reflectance;
+        if (known.r == reflectance.r && known.g == reflectance.g && known.b == reflectance.b) {
             *indexOut = at;
             return VPL_SUCCESS;
         }
@@ -73,8 +70,8 @@ static vplResult findVertex(Baker* b, uint32_t vertex, int face, vplRgb reflecta
         return vplFail(b->context, VPL_LIMIT, "a PLY file has at most %d vertices", INT32_MAX);
     }
     const size_t count = b->vertexCount + 1;
-    TRY(vplReserve(b->context, &b->vertices, &b->vertexCapacity, count, sizeof *b->vertices));
-    TRY(vplReserve(b->context, &b->entries, &b->entryCapacity, count, sizeof *b->entries));
+    TRY(vplArena_Reserve(b->arena, &b->vertices, &b->vertexCapacity, count, sizeof *b->vertices));
+    TRY(vplArena_Reserve(b->arena, &b->entries, &b->entryCapacity, count, sizeof *b->entries));
     const int index = (int)b->vertexCount++;
     b->vertices[index] = makeVertex(b, vertex, face, reflectance);
     b->entries[index] = (Entry){reflectance, b->heads[vertex]};
@@ -101,17 +98,15 @@ static vplResult addTriangle(Baker* b, int triangle, int face)
         TRY(findVertex(b, m->indices[3 * (size_t)triangle + (size_t)corner], face, reflectance, &index));
         out.vertices[k] = index;
     }
-    TRY(vplReserve(b->context, &b->faces, &b->faceCapacity, b->faceCount + 1, sizeof *b->faces));
+    TRY(vplArena_Reserve(b->arena, &b->faces, &b->faceCapacity, b->faceCount + 1, sizeof *b->faces));
     b->faces[b->faceCount++] = out;
     return VPL_SUCCESS;
 }
 
 static vplResult addFaces(Baker* b)
 {
-    b->heads = vplAlloc(b->context, (size_t)b->mesh->vertexCount, sizeof *b->heads);
-    if (b->heads == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    b->heads = vplArena_Alloc(b->arena, (size_t)b->mesh->vertexCount, sizeof *b->heads);
+    TRY(vplArena_Check(b->arena));
     for (int face = 0; face < 2; face++) {
         for (int v = 0; v < b->mesh->vertexCount; v++) {
             b->heads[v] = -1;
@@ -144,18 +139,14 @@ static vplResult writeFile(const Baker* b, const char* path)
     const size_t vertexBytes = b->vertexCount * sizeof *b->vertices,
                  faceBytes = b->faceCount * sizeof *b->faces;
     const size_t size = (size_t)length + vertexBytes + faceBytes;
-    char* bytes = vplAlloc(b->context, size, 1);
-    if (bytes == NULL) {
-        return VPL_OUT_OF_MEMORY;
-    }
+    char* bytes = vplArena_Alloc(b->arena, size, 1);
+    TRY(vplArena_Check(b->arena));
     memcpy(bytes, head, (size_t)length);
     if (vertexBytes > 0) {
         memcpy(bytes + length, b->vertices, vertexBytes);
         memcpy(bytes + length + vertexBytes, b->faces, faceBytes);
     }
-    const vplResult result = vplWriteFile(b->context, path, bytes, size);
-    vplFree(b->context, bytes);
-    return result;
+    return vplWriteFile(b->context, path, bytes, size);
 }
 
 vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIrradiance, float scale,
@@ -168,13 +159,11 @@ vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIr
                        (double)scale);
     }
     TRY(vplCheckRgb(mesh->context, "vertexIrradiance", vertexIrradiance, 2 * (size_t)mesh->vertexCount));
+    baker.arena = vplArena_Create(mesh->context);
     vplResult result = addFaces(&baker);
     if (result == VPL_SUCCESS) {
         result = writeFile(&baker, path);
     }
-    vplFree(mesh->context, baker.heads);
-    vplFree(mesh->context, baker.vertices);
-    vplFree(mesh->context, baker.entries);
-    vplFree(mesh->context, baker.faces);
+    vplArena_Destroy(baker.arena);
     return result;
 }

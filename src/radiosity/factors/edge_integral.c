@@ -51,18 +51,33 @@ static double twiceIntegrated(double u, double h)
     return 0.25 * (u * u - h * h) * vplLn(square) - 0.75 * u * u + (h > 0 ? h * u * vplAtan2(u, h) : 0);
 }
 
+// The squared length of way - at along.
+static double squareBeside(const double way[3], double at, const double along[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        const double off = way[k] - at * along[k];
+        square += off * off;
+    }
+    return square;
+}
+
 // The position of `point` along the line of `edge`, and its distance from that line.
 static double project(const vplEdge* edge, const double point[3], double* heightOut)
 {
-    double way[3], square = 0;
+    double way[3];
     vplSub3(point, edge->from, way);
     const double at = vplDot3(way, edge->along);
-    for (int k = 0; k < 3; k++) {
-        const double off = way[k] - at * edge->along[k];
-        square += off * off;
-    }
-    *heightOut = sqrt(square);
+    *heightOut = sqrt(squareBeside(way, at, edge->along));
     return at;
+}
+
+// The point of an edge at `at` metres from its start.
+static void pointAt(const vplEdge* edge, double at, double point[3])
+{
+    for (int k = 0; k < 3; k++) {
+        point[k] = edge->from[k] + at * edge->along[k];
+    }
 }
 
 static double parallelIntegral(const vplEdge* outer, const vplEdge* inner, double cosine)
@@ -79,9 +94,7 @@ static double parallelIntegral(const vplEdge* outer, const vplEdge* inner, doubl
 static double innerIntegral(const Inner* inner, double s)
 {
     double point[3], h;
-    for (int k = 0; k < 3; k++) {
-        point[k] = inner->outer->from[k] + s * inner->outer->along[k];
-    }
+    pointAt(inner->outer, s, point);
     const double at = project(inner->edge, point, &h);
     return onceIntegrated(inner->edge->length - at, h) - onceIntegrated(-at, h);
 }
@@ -94,9 +107,7 @@ static void findSingularities(Inner* inner, double cosine, double sine2)
     double way[3];
     for (int i = 0; i < 2; i++) {
         double end[3], h;
-        for (int k = 0; k < 3; k++) {
-            end[k] = b->from[k] + (i == 0 ? 0 : b->length * b->along[k]);
-        }
+        pointAt(b, i == 0 ? 0 : b->length, end);
         inner->singular[i].re = project(a, end, &h);
         inner->singular[i].im2 = h * h;
     }
@@ -105,12 +116,10 @@ static void findSingularities(Inner* inner, double cosine, double sine2)
     const double d = vplDot3(a->along, way), e = vplDot3(b->along, way);
     const double s = (cosine * e - d) / sine2, t = (e - cosine * d) / sine2;
     if (t > 0 && t < b->length) {
-        double square = 0;
         for (int k = 0; k < 3; k++) {
-            const double off = way[k] + s * a->along[k] - t * b->along[k];
-            square += off * off;
+            way[k] += s * a->along[k];
         }
-        inner->singular[inner->singularCount++] = (Singularity){s, square / sine2};
+        inner->singular[inner->singularCount++] = (Singularity){s, squareBeside(way, t, b->along) / sine2};
     }
 }
 
@@ -135,39 +144,22 @@ static double gauss(const Inner* inner, const vplGaussRule* rule, double middle,
     return half * sum;
 }
 
-// Integrates by bisection towards singularities. Only one half of a part is divided again, so the stack is as
-// deep as there are bisections.
-static double gradedIntegral(const Inner* inner, double from, double to, double least,
-                             const vplEdgeRule* rule)
+// Adds the integral from `from` to `to` by bisection towards singularities.
+static void addIntegral(const Inner* inner, double from, double to, const vplEdgeRule* rule, double* sum)
 {
-    enum { DEEPEST = 64 };
-    double stack[DEEPEST][2], sum = 0;
-    int count = 0;
-    stack[count][0] = from;
-    stack[count++][1] = to;
-    while (count > 0) {
-        count--;
-        const double low = stack[count][0], high = stack[count][1];
-        const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
-        if (half <= least || count + 2 > DEEPEST || isSmooth(inner, middle, half, rule->apart)) {
-            sum += gauss(inner, rule->gauss, middle, half);
-        } else {
-            stack[count][0] = middle;
-            stack[count++][1] = high;
-            stack[count][0] = low;
-            stack[count++][1] = middle;
-        }
+    const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+    if (half <= rule->least * inner->outer->length || isSmooth(inner, middle, half, rule->apart)) {
+        *sum += gauss(inner, rule->gauss, middle, half);
+    } else {
+        addIntegral(inner, from, middle, rule, sum);
+        addIntegral(inner, middle, to, rule, sum);
     }
-    return sum;
 }
 
 double vplEdgeIntegral(const vplEdge* outer, const vplEdge* edge, const vplEdgeRule* rule)
 {
-    double cosine = vplDot3(outer->along, edge->along), sine2 = 0;
-    for (int k = 0; k < 3; k++) {
-        const double off = edge->along[k] - cosine * outer->along[k];
-        sine2 += off * off;
-    }
+    const double cosine = vplDot3(outer->along, edge->along),
+                 sine2 = squareBeside(edge->along, cosine, outer->along);
     if (sine2 < PARALLEL) {
         return parallelIntegral(outer, edge, cosine);
     }
@@ -192,7 +184,7 @@ double vplEdgeIntegral(const vplEdge* outer, const vplEdge* edge, const vplEdgeR
     double sum = 0;
     for (int i = 0; i < count; i++) {
         if (cuts[i + 1] > cuts[i]) {
-            sum += gradedIntegral(&inner, cuts[i], cuts[i + 1], rule->least * outer->length, rule);
+            addIntegral(&inner, cuts[i], cuts[i + 1], rule, &sum);
         }
     }
     return cosine * sum;

@@ -9,44 +9,22 @@
 // The first stream of random numbers; each chunk of sixteen samples takes the next.
 enum { SAMPLE_STREAM = 0x46460000 };
 
-enum { ALL_CELLS = (1 << VPL_PATCH_CELLS) - 1 };
-
-static int listOpen(const vplPatchSide* side, int cells[VPL_PATCH_CELLS])
-{
-    int count = 0;
-    for (int k = 0; k < VPL_PATCH_CELLS; k++) {
-        if (side->open >> k & 1) {
-            cells[count++] = k;
-        }
-    }
-    return count;
-}
-
-// A ray that leaves the side at a point: its origin, and the triangles that it must not hit.
-static vplRay leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 from)
-{
-    const vplHit start = vplPatchSide_HitAt(sides, side, from);
-    return vplGeometry_Leave(sides->patches->geometry, &start, side->normal);
-}
-
 // ---- samples
 
 // Sixteen strata of equal area: the cells of a side whose cells are all open.
 static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorSamples* samples)
 {
     const vplPatchSide* side = &work->sides->sides[index];
-    const int lane = index % VPL_SIDE_LANES;
-    int cells[VPL_PATCH_CELLS];
-    const int open = listOpen(side, cells);
+    const int lane = index % VPL_SIDE_LANES, open = __builtin_popcount(side->open);
     for (int p = 0; p < VPL_FACTOR_SAMPLES; p++) {
         const vplRandom4 r = vplRandomAt(work->def.seed, SAMPLE_STREAM + (uint32_t)chunk,
                                          (uint64_t)index * VPL_FACTOR_SAMPLES + (uint64_t)p);
         const int stratum = p % 4 * 4 + p / 4;
         const float place = ((float)stratum + vplUnitFloat(r.v[0])) * (float)open / VPL_FACTOR_SAMPLES;
-        const int cell = cells[vplMini((int)place, open - 1)];
+        const int cell = vplPatchSide_OpenCell(side, vplMini((int)place, open - 1));
         const vplVec3 at = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
         vplSetLane(samples->at[p], lane, at);
-        vplSetLane(samples->origin[p], lane, leave(work->sides, side, at).origin);
+        vplSetLane(samples->origin[p], lane, vplPatchSide_Leave(work->sides, side, at, side->normal).origin);
     }
 }
 
@@ -77,14 +55,13 @@ static void fillWhole(const vplPatchSide* side, int lane, vplFactorBlock* block)
 // belongs to two thirds counts in both, by its fractions.
 static void fillPart(const vplPatchSide* side, int lane, vplFactorBlock* block)
 {
-    int cells[VPL_PATCH_CELLS];
-    const int open = listOpen(side, cells);
+    const int open = __builtin_popcount(side->open);
     for (int q = 0; q < VPL_QUADRATURE_POINTS; q++) {
         vplVec3 sum = {0, 0, 0};
         for (int c = 0; c < open; c++) {
             const int low = vplMaxi(3 * c, q * open), high = vplMini(3 * c + 3, (q + 1) * open);
             if (high > low) {
-                const vplVec3 at = vplPatchSide_CellCentre(side, cells[c]);
+                const vplVec3 at = vplPatchSide_CellCentre(side, vplPatchSide_OpenCell(side, c));
                 sum = vplAdd(sum, vplScale((float)(high - low) / (float)open, at));
             }
         }
@@ -109,7 +86,7 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
         const vplVec3 way = vplSub(side->corners[c], centre);
         block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
     }
-    const vplRay ray = leave(work->sides, side, side->incentre);
+    const vplRay ray = vplPatchSide_Leave(work->sides, side, side->incentre, side->normal);
     block->skipFirst[lane] = ray.skip.first;
     block->skipCount[lane] = ray.skip.count;
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
@@ -119,7 +96,7 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
             vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
         block->area[lane] = 0.5f * vplLength(cross);
     } else {
-        (side->open == ALL_CELLS ? fillWhole : fillPart)(side, lane, block);
+        (side->open == VPL_ALL_CELLS ? fillWhole : fillPart)(side, lane, block);
         block->area[lane] = side->area;
     }
 }

@@ -14,10 +14,10 @@
 
 #include <string.h>
 
-enum { LANES = VPL_SIDE_LANES };
-
-// The stream of random numbers that choose pairs of points.
-enum { PAIR_STREAM = 0x4a4f0000 };
+enum {
+    LANES = VPL_SIDE_LANES,
+    PAIR_STREAM = 0x4a4f0000 // of the random numbers that choose pairs of points
+};
 
 // Quadrature with three points per side serves sides whose centres are at least this many times the larger
 // radius apart. Twice this distance lowers the error by a tenth and takes 1.6 times as long
@@ -39,8 +39,7 @@ typedef struct Tile {
     const PairWork* shared;
     int row, column; // blocks
     const vplFactorBlock *a, *b;
-    bool clear; // nothing blocks rays between the two
-    vplBlockers blockers;
+    vplBlockers blockers;        // of rays between the two
     uint32_t pairs[LANES];       // bit l of i: side i of a and side l of b exchange light
     float exact[LANES][LANES];   // unoccluded mean of cos cos / (pi r^2), 1/m^2; analytic only
     float sum[LANES][LANES];     // over pairs of points
@@ -74,9 +73,8 @@ static double openFraction(const vplPatchSide* a, const vplPatchSide* b)
 // The mean of cos cos / (pi r^2) over the open cells of two sides, by the contour integral.
 static float exactMean(const vplPatchSide* a, const vplPatchSide* b)
 {
-    const uint16_t all = (uint16_t)((1 << VPL_PATCH_CELLS) - 1);
     const double exchange = vplTriangleExchange(a->corners, b->corners, &vplEdgesQuick);
-    const double fraction = a->open == all && b->open == all ? 1 : openFraction(a, b);
+    const double fraction = (a->open & b->open) == VPL_ALL_CELLS ? 1 : openFraction(a, b);
     return (float)(exchange * fraction / (double)a->area / (double)b->area);
 }
 
@@ -145,7 +143,7 @@ static void joinPoints(Tile* tile, int i, uint32_t asked, const vplFactorSamples
         return;
     }
     uint32_t blocked = 0;
-    if (!tile->clear) {
+    if (tile->blockers.count != 0) {
         tile->rays += __builtin_popcount(packet.active);
         blocked = findBlocked(tile, &packet);
     }
@@ -222,11 +220,14 @@ static void computeTile(Tile* tile, int worker)
         estimateRow(tile, i);
         any |= tile->pairs[i];
     }
-    if (any != 0 && !shared->work->def.bruteForce) {
-        vplBlockers_Find(shared->geometry, tile->a, tile->b, shared->tolerance, &tile->blockers);
-        tile->clear = tile->blockers.count == 0;
+    if (any == 0) {
+        return;
     }
-    if (any != 0 && !(tile->clear && shared->work->def.analytic)) {
+    tile->blockers.count = -1;
+    if (!shared->work->def.bruteForce) {
+        vplBlockers_Find(shared->geometry, tile->a, tile->b, shared->tolerance, &tile->blockers);
+    }
+    if (tile->blockers.count != 0 || !shared->work->def.analytic) {
         joinAll(tile, worker);
     }
 }
@@ -242,7 +243,7 @@ static float meanOf(const Tile* tile, int i, int l)
     if (!def->analytic) {
         return visible / (float)def->samples;
     }
-    return tile->clear ? tile->exact[i][l] : sum > 0 ? tile->exact[i][l] * (visible / sum) : 0;
+    return tile->blockers.count == 0 ? tile->exact[i][l] : sum > 0 ? tile->exact[i][l] * (visible / sum) : 0;
 }
 
 // Writes F_ij and F_ji, neither above 1 unless they are from incentres.
@@ -308,8 +309,8 @@ vplResult vplFactorWork_FillRows(vplFactorWork* work)
     TRY(vplParallelForProgress(work->context, work->blockCount, fillRow, &shared,
                                (vplProgressRange){work->def.progress, work->def.progressUser, 0, 1}));
     for (int i = 0; i < work->blockCount; i++) {
-        work->rays += shared.rays[i];
-        work->analyticPairs += shared.analyticPairs[i];
+        work->factors->rays += shared.rays[i];
+        work->factors->analyticPairs += shared.analyticPairs[i];
     }
     return VPL_SUCCESS;
 }

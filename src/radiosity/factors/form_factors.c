@@ -39,20 +39,16 @@ static vplResult checkDef(const vplPatchSides* sides, const vplFormFactorDef* de
     return VPL_SUCCESS;
 }
 
-static vplResult compute(vplFactorWork* work, vplFormFactors* factors)
+static vplResult compute(vplFactorWork* work)
 {
     const size_t count = (size_t)work->count;
-    work->rows = vplArena_AllocZero(factors->arena, count * count, sizeof *work->rows);
-    work->rowSums = vplArena_Alloc(factors->arena, count, sizeof *work->rowSums);
-    TRY(vplArena_Check(factors->arena));
+    vplFormFactors* f = work->factors;
+    f->rows = work->rows = vplArena_AllocZero(f->arena, count * count, sizeof *work->rows);
+    f->rowSums = work->rowSums = vplArena_Alloc(f->arena, count, sizeof *work->rowSums);
+    TRY(vplArena_Check(f->arena));
     TRY(vplFactorWork_MakeBlocks(work));
     TRY(vplFactorWork_FillRows(work));
-    TRY(vplFactorWork_CorrectRows(work));
-    factors->rows = work->rows;
-    factors->rowSums = work->rowSums;
-    factors->rays = work->rays;
-    factors->analyticPairs = work->analyticPairs;
-    return VPL_SUCCESS;
+    return vplFactorWork_CorrectRows(work);
 }
 
 vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorDef* def,
@@ -60,25 +56,25 @@ vplResult vplFormFactors_Create(const vplPatchSides* sides, const vplFormFactorD
 {
     TRY(checkDef(sides, def));
     vplContext* context = sides->context;
+    vplArena* arena = vplArena_Create(context);
     vplFactorWork work = {.sides = sides,
                           .def = *def,
                           .kernels = vplGetRadiosityKernels(context->isa),
                           .context = context,
                           .scratch = vplArena_Create(context),
-                          .count = sides->count};
+                          .count = sides->count,
+                          .factors = vplArena_AllocZero(arena, 1, sizeof *work.factors)};
     if (def->kind == VPL_FORM_FACTORS_INCENTRE) { // one point per side, and factors as they are
         work.def.samples = 1;
         work.def.analytic = false;
     }
-    vplArena* arena = vplArena_Create(context);
-    vplFormFactors* factors = vplArena_AllocZero(arena, 1, sizeof *factors);
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
-        *factors = (vplFormFactors){.count = sides->count, .arena = arena, .context = context};
-        result = compute(&work, factors);
+        *work.factors = (vplFormFactors){.count = sides->count, .arena = arena, .context = context};
+        result = compute(&work);
     }
     vplArena_Destroy(work.scratch);
-    return vplArena_Deliver(arena, result, factors, factorsOut);
+    return vplArena_Deliver(arena, result, work.factors, factorsOut);
 }
 
 void vplFormFactors_Destroy(vplFormFactors* factors)

@@ -15,9 +15,9 @@ typedef struct vplFactorWork {
     vplArena* scratch;      // freed at the end
     vplFactorBlock* blocks; // of all sides
     int blockCount;
-    int count;             // of sides
-    float *rows, *rowSums; // as in vplFormFactors
-    int64_t rays, analyticPairs;
+    int count;               // of sides
+    float *rows, *rowSums;   // those of `factors`, to write
+    vplFormFactors* factors; // the result
 } vplFactorWork;
 
 // Fills `blocks`.
@@ -26,7 +26,7 @@ vplResult vplFactorWork_MakeBlocks(vplFactorWork* work);
 // The samples of a block for pairs of points 16 * chunk to 16 * chunk + 15.
 void vplFactorSamples_Fill(const vplFactorWork* work, int block, int chunk, vplFactorSamples* samples);
 
-// Fills rows, rays and analyticPairs.
+// Fills rows and counts rays and analyticPairs.
 vplResult vplFactorWork_FillRows(vplFactorWork* work);
 
 // Fills rowSums and corrects the rows as def.rowSums says.

@@ -140,20 +140,14 @@ static bool addBlockers(const Shaft* shaft, const vplTriangleBlock* block)
     return true;
 }
 
-static bool searchAll(const Shaft* shaft, const vplBvh* bvh)
-{
-    for (int i = 0; i < bvh->blockCount; i++) {
-        if (!addBlockers(shaft, &bvh->blocks[i])) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static bool searchTree(const Shaft* shaft, const vplBvh* bvh)
+// Searches the tree or, where it has no nodes, its few blocks. False if there are too many blockers.
+static bool search(const Shaft* shaft, const vplBvh* bvh)
 {
     int32_t stack[VPL_BVH_DEPTH * (VPL_BVH_WIDTH - 1) + 1] = {0};
-    int count = 1;
+    int count = bvh->nodes != NULL ? 1 : bvh->blockCount;
+    for (int i = 0; i < count && bvh->nodes == NULL; i++) {
+        stack[i] = ~i;
+    }
     while (count > 0) {
         const int32_t next = stack[--count];
         if (next < 0) {
@@ -181,7 +175,7 @@ void vplBlockers_Find(const vplGeometry* g, const vplFactorBlock* a, const vplFa
     Shaft shaft = {.geometry = g, .a = a, .b = b, .tolerance = tolerance, .out = out};
     addPlanes(&shaft);
     out->count = 0;
-    if (bvh == NULL || !(bvh->nodes ? searchTree : searchAll)(&shaft, bvh)) {
+    if (bvh == NULL || !search(&shaft, bvh)) {
         out->count = -1;
         return;
     }

@@ -8,7 +8,6 @@
 #include "radiosity/links/links.h"
 
 #include <math.h>
-#include <string.h>
 
 // Groups whose normals are farther from their mean than this cosine, 26 degrees, are divided unless the link
 // is tiny, since all their sides would receive the same.
@@ -41,30 +40,16 @@ static double sentArea(const vplLinkNode* node)
     return (double)node->area * (double)node->brightness;
 }
 
+// The only side of a node, or the first of a group.
+static const vplPatchSide* firstSide(const Pair* pair, const vplLinkNode* node)
+{
+    return &pair->work->sides->sides[pair->work->tree->order[node->first]];
+}
+
 static double triangleArea(const vplPatchSide* side)
 {
     const vplVec3* c = side->corners;
     return 0.5 * (double)vplLength(vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0])));
-}
-
-// The points of a node that judge all its pairs.
-static void readPoints(const vplNodePoints* from, vplLinkPoints* to)
-{
-    to->count = VPL_JUDGE_POINTS;
-    memcpy(to->at, from->at, sizeof from->at);
-    memcpy(to->side, from->side, sizeof from->side);
-}
-
-// Draws points for this pair alone, which measure: a link is kept if the judging points miss peaks, so these
-// would underestimate it.
-static void drawPoints(const Pair* pair, vplLinkPoints* p, vplLinkPoints* q)
-{
-    int count = VPL_JUDGE_POINTS;
-    while (count * count < pair->work->def->samples) {
-        count++;
-    }
-    vplSampleNode(pair->work, pair->ids->p, pair->ids->q, count, p);
-    vplSampleNode(pair->work, pair->ids->q, pair->ids->p, count, q);
 }
 
 // ---- bounds
@@ -103,26 +88,24 @@ static double squareGap(const vplLinkNode* p, const vplLinkNode* q)
     return square;
 }
 
-// Whether a node lies behind the plane of a flat one, or in it, up to rounding.
+// Tests whether a node lies behind the plane of a flat one, or in it, up to rounding.
 static bool isBehind(const Pair* pair, const vplLinkNode* node, const vplLinkNode* plane)
 {
     if (!plane->flat) {
         return false;
     }
-    const vplPatchSide* side = &pair->work->sides->sides[pair->work->tree->order[plane->first]];
-    const vplVec3 n = side->normal, from = side->corners[0];
-    float most;
+    const vplVec3 n = firstSide(pair, plane)->normal, from = firstSide(pair, plane)->corners[0];
+    float most = -INFINITY;
     if (node->count == 1) {
-        const vplPatchSide* other = &pair->work->sides->sides[pair->work->tree->order[node->first]];
-        most = fmaxf(
-            vplDot(n, vplSub(other->corners[0], from)),
-            fmaxf(vplDot(n, vplSub(other->corners[1], from)), vplDot(n, vplSub(other->corners[2], from))));
+        for (int k = 0; k < 3; k++) {
+            most = fmaxf(most, vplDot(n, vplSub(firstSide(pair, node)->corners[k], from)));
+        }
     } else {
         const vplVec3 corner = {n.x > 0 ? node->high.x : node->low.x, n.y > 0 ? node->high.y : node->low.y,
                                 n.z > 0 ? node->high.z : node->low.z};
         most = vplDot(n, vplSub(corner, from));
     }
-    const float largest = fmaxf(fabsf(from.x), fmaxf(fabsf(from.y), fabsf(from.z)));
+    const float largest = vplLargestOf(from);
     return most <= 0x1p-20f * (largest + node->radius + plane->radius);
 }
 
@@ -164,34 +147,17 @@ static Spread spreadOf(const vplLinkTerms* terms)
     return s;
 }
 
-// Errors of irradiance, as fractions of the mean radiosity, caused by the extent of either group: irradiance
-// varies over a receiving group, and radiosity may vary over a sending one.
-typedef struct Errors {
-    double ofP, ofQ, all;
-} Errors;
-
-static Errors errorsOf(const Pair* pair, const Spread* s)
-{
-    const double p = pair->p->count > 1 ? pair->sent * s->p : 0;
-    const double q = pair->q->count > 1 ? pair->sent * s->q : 0;
-    return (Errors){.ofP = p, .ofQ = q, .all = p + q};
-}
-
 // ---- division
 
 static vplLinkVerdict divideLarger(const Pair* pair)
 {
-    const bool p = pair->p->count > 1, q = pair->q->count > 1;
-    return !p && !q                                          ? VPL_LINK_NONE
-           : !q || (p && pair->p->radius >= pair->q->radius) ? VPL_LINK_DIVIDE_P
-                                                             : VPL_LINK_DIVIDE_Q;
+    const bool p = pair->p->count > 1, q = pair->q->count > 1; // not both are single sides
+    return !q || (p && pair->p->radius >= pair->q->radius) ? VPL_LINK_DIVIDE_P : VPL_LINK_DIVIDE_Q;
 }
 
-static vplLinkVerdict divideWorse(const Pair* pair, const Errors* errors)
+static vplLinkVerdict divideWorse(const Pair* pair, double errorP, double errorQ)
 {
-    return errors->ofP > errors->ofQ   ? VPL_LINK_DIVIDE_P
-           : errors->ofQ > errors->ofP ? VPL_LINK_DIVIDE_Q
-                                       : divideLarger(pair);
+    return errorP > errorQ ? VPL_LINK_DIVIDE_P : errorQ > errorP ? VPL_LINK_DIVIDE_Q : divideLarger(pair);
 }
 
 static vplLinkVerdict divideTurned(const Pair* pair)
@@ -213,10 +179,8 @@ static bool isNear(const Pair* pair)
 // The unoccluded mean of cos cos / (pi r^2) over two sides, by the contour integral.
 static double exactMean(const Pair* pair)
 {
-    const vplPatchSide* a = &pair->work->sides->sides[pair->work->tree->order[pair->p->first]];
-    const vplPatchSide* b = &pair->work->sides->sides[pair->work->tree->order[pair->q->first]];
-    const double areaA = triangleArea(a), areaB = triangleArea(b);
-    return vplTriangleExchange(a->corners, b->corners, &vplEdgesQuick) / (areaA * areaB);
+    const vplPatchSide *a = firstSide(pair, pair->p), *b = firstSide(pair, pair->q);
+    return vplTriangleExchange(a->corners, b->corners, &vplEdgesQuick) / (triangleArea(a) * triangleArea(b));
 }
 
 static void keep(const Pair* pair, double mean)
@@ -226,15 +190,21 @@ static void keep(const Pair* pair, double mean)
     pair->answer->mean = (float)(mean * area < 1 ? mean : 1 / area); // no form factor is above 1
 }
 
-// The unoccluded mean of cos cos / (pi r^2) over the pair's own points. *visibleOut: the fraction of it that
+// The unoccluded mean of cos cos / (pi r^2) over points that are drawn for this pair alone: a link is kept if
+// the judging points miss peaks, so those would underestimate it. *visibleOut: the fraction of the mean that
 // rays find visible.
 static double measureMean(const Pair* pair, double* visibleOut)
 {
     vplLinkTerms terms;
-    vplLinkPoints p, q;
-    drawPoints(pair, &p, &q);
-    vplFindLinkTerms(pair->work, &p, &q, &terms);
-    *visibleOut = vplVisibleFraction(pair->work, &p, &q, &terms, &pair->answer->rays);
+    vplLinkPoint p[VPL_LINK_POINTS], q[VPL_LINK_POINTS];
+    terms.count = VPL_JUDGE_POINTS;
+    while (terms.count * terms.count < pair->work->def->samples) {
+        terms.count++;
+    }
+    vplSampleNode(pair->work, pair->ids->p, pair->ids->q, terms.count, p);
+    vplSampleNode(pair->work, pair->ids->q, pair->ids->p, terms.count, q);
+    vplFindLinkTerms(pair->work, p, q, &terms);
+    *visibleOut = vplVisibleFraction(pair->work, p, q, &terms, &pair->answer->rays);
     return spreadOf(&terms).mean;
 }
 
@@ -252,20 +222,22 @@ static void measureGroups(const Pair* pair, double bound)
 {
     vplLinkAnswer* answer = pair->answer;
     const double allowed = pair->work->def->error;
+    const vplLinkPoint *p = pair->work->points[pair->ids->p], *q = pair->work->points[pair->ids->q];
     vplLinkTerms terms;
-    vplLinkPoints p, q;
-    readPoints(&pair->work->points[pair->ids->p], &p);
-    readPoints(&pair->work->points[pair->ids->q], &q);
-    vplFindLinkTerms(pair->work, &p, &q, &terms);
+    terms.count = VPL_JUDGE_POINTS;
+    vplFindLinkTerms(pair->work, p, q, &terms);
     const Spread open = spreadOf(&terms);
-    const Errors errors = errorsOf(pair, &open);
-    const bool rough = errors.all > allowed || PEAK * (bound - pair->sent * open.mean) > allowed;
+    // Errors of irradiance, as fractions of the mean radiosity, caused by the extent of either group:
+    // irradiance varies over a receiving group, and radiosity may vary over a sending one.
+    const double errorP = pair->p->count > 1 ? pair->sent * open.p : 0,
+                 errorQ = pair->q->count > 1 ? pair->sent * open.q : 0;
+    const bool rough = errorP + errorQ > allowed || PEAK * (bound - pair->sent * open.mean) > allowed;
     if (!(open.mean > 0)) {
         answer->verdict = bound <= allowed ? VPL_LINK_NONE : divideLarger(pair);
         return;
     }
     if (answer->visible && rough) {
-        answer->verdict = divideWorse(pair, &errors);
+        answer->verdict = divideWorse(pair, errorP, errorQ);
         return;
     }
     double visible;
@@ -274,7 +246,7 @@ static void measureGroups(const Pair* pair, double bound)
     if (!answer->visible && pair->sent * open.mean <= HIDDEN * allowed) {
         answer->verdict = VPL_LINK_NONE;
     } else if (rough || pair->sent * mean * sqrt(visible * (1 - visible)) > allowed) {
-        answer->verdict = divideWorse(pair, &errors);
+        answer->verdict = divideWorse(pair, errorP, errorQ);
     } else {
         keep(pair, mean * visible);
     }

@@ -26,13 +26,12 @@ static int findSide(const struct vplLinkTree* tree, const vplLinkNode* node, dou
     return low;
 }
 
-void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoints* out)
+void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoint* out)
 {
     const struct vplLinkTree* tree = work->tree;
     const vplLinkNode* n = &tree->nodes[node];
     const double from = tree->areaUpTo[n->first], to = tree->areaUpTo[n->first + n->count];
     const uint64_t index = (uint64_t)(uint32_t)node << 32 | (uint32_t)other;
-    out->count = count;
     for (int k = 0; k < count; k++) {
         const vplRandom4 random = vplRandomAt(work->def->seed, STREAM + (uint32_t)k, index);
         const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / count);
@@ -41,8 +40,8 @@ void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplL
         const double into = (target - tree->areaUpTo[place]) / (double)side->area;
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
-        out->side[k] = tree->order[place];
-        out->at[k] =
+        out[k].side = tree->order[place];
+        out[k].at =
             vplPatchSide_SampleCell(side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
                                     vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
     }
@@ -50,22 +49,21 @@ void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplL
 
 // ---- pairs
 
-void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoints* p, const vplLinkPoints* q,
+void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
                       vplLinkTerms* out)
 {
     const vplPatchSide* sides = work->sides->sides;
     const vplRadiosityKernels* kernels = vplGetRadiosityKernels(work->sides->context->isa);
-    const int n = p->count;
-    out->count = n;
+    const int n = out->count;
     for (int first = 0; first < n * n; first += VPL_SIDE_LANES) {
         vplPointPairs pairs;
         float terms[VPL_SIDE_LANES];
         for (int l = 0; l < VPL_SIDE_LANES; l++) {
             const int at = first + l < n * n ? first + l : n * n - 1, i = at / n, k = at % n;
-            vplSetLane(pairs.x, l, p->at[i]);
-            vplSetLane(pairs.nx, l, sides[p->side[i]].normal);
-            vplSetLane(pairs.y, l, q->at[k]);
-            vplSetLane(pairs.ny, l, sides[q->side[k]].normal);
+            vplSetLane(pairs.x, l, p[i].at);
+            vplSetLane(pairs.nx, l, sides[p[i].side].normal);
+            vplSetLane(pairs.y, l, q[k].at);
+            vplSetLane(pairs.ny, l, sides[q[k].side].normal);
         }
         kernels->pairTerms(&pairs, terms);
         for (int l = 0; l < VPL_SIDE_LANES && first + l < n * n; l++) {
@@ -76,11 +74,10 @@ void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoints* p, const vpl
 
 // ---- rays
 
-double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoints* p, const vplLinkPoints* q,
+double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
                           const vplLinkTerms* terms, int* rays)
 {
     const vplPatchSides* sides = work->sides;
-    const vplGeometry* g = sides->patches->geometry;
     const int n = terms->count, samples = work->def->samples;
     double open = 0, visible = 0;
     for (int first = 0; first < samples; first += VPL_RAY_PACKET) {
@@ -92,13 +89,12 @@ double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoints* p, const
             amount[l] = first + l < samples ? terms->of[i][k] : 0;
             open += (double)amount[l];
             if (amount[l] > 0) {
-                const vplHit start = vplPatchSide_HitAt(sides, &sides->sides[p->side[i]], p->at[i]);
-                const vplRay ray = vplGeometry_Leave(
-                    g, &start, vplWayToLight(q->at[k], sides->sides[q->side[k]].normal, p->at[i]));
+                const vplVec3 way = vplWayToLight(q[k].at, sides->sides[q[k].side].normal, p[i].at);
+                const vplRay ray = vplPatchSide_Leave(sides, &sides->sides[p[i].side], p[i].at, way);
                 vplRayPacket_Set(&packet, l, &ray);
             }
         }
-        *rays += vplGeometry_Darken(g, &packet, 1, amount);
+        *rays += vplGeometry_Darken(sides->patches->geometry, &packet, 1, amount);
         for (int l = 0; l < VPL_RAY_PACKET; l++) {
             visible += (double)amount[l];
         }

@@ -21,12 +21,6 @@ typedef struct Refinement {
     size_t first, count; // of the batch, in `pairs`
 } Refinement;
 
-// A node and itself: decided without rays.
-static vplLinkAnswer judgeSelf(const struct vplLinkTree* tree, int node)
-{
-    return (vplLinkAnswer){.verdict = tree->nodes[node].flat ? VPL_LINK_NONE : VPL_LINK_DIVIDE_P};
-}
-
 static void judgeTask(void* data, int task, int worker)
 {
     (void)worker;
@@ -34,7 +28,12 @@ static void judgeTask(void* data, int task, int worker)
     const size_t from = (size_t)task * TASK, to = from + TASK < r->count ? from + TASK : r->count;
     for (size_t i = from; i < to; i++) {
         const vplLinkPair* pair = &r->pairs[r->first + i];
-        r->answers[i] = pair->p == pair->q ? judgeSelf(r->work.tree, pair->p) : vplJudgePair(&r->work, pair);
+        if (pair->p != pair->q) {
+            r->answers[i] = vplJudgePair(&r->work, pair);
+        } else { // a node and itself
+            const bool flat = r->work.tree->nodes[pair->p].flat;
+            r->answers[i] = (vplLinkAnswer){.verdict = flat ? VPL_LINK_NONE : VPL_LINK_DIVIDE_P};
+        }
     }
 }
 
@@ -91,11 +90,7 @@ static void drawPointsTask(void* data, int task, int worker)
     (void)worker;
     const vplLinkWork* work = &((const Refinement*)data)->work;
     for (int node = task * TASK; node < vplMini((task + 1) * TASK, work->tree->nodeCount); node++) {
-        vplLinkPoints points;
-        vplNodePoints* to = &work->points[node];
-        vplSampleNode(work, node, node, VPL_JUDGE_POINTS, &points);
-        memcpy(to->at, points.at, sizeof to->at);
-        memcpy(to->side, points.side, sizeof to->side);
+        vplSampleNode(work, node, node, VPL_JUDGE_POINTS, work->points[node]);
     }
 }
 

@@ -7,7 +7,6 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/links/links.h"
-#include "radiosity/sides/planes.h"
 #include "radiosity/sides/side.h"
 
 enum {
@@ -30,13 +29,6 @@ typedef struct EnclosedTest {
     int* rays; // per side
 } EnclosedTest;
 
-static bool hitsSide(const vplPatchSides* sides, const vplRay* ray)
-{
-    vplHit hit;
-    return vplGeometry_ClosestHit(sides->patches->geometry, ray, &hit) &&
-           vplPatchSides_Find(sides, &hit, ray->direction) >= 0;
-}
-
 // Directions are stratified on a grid of 4 x 8 cells over the hemisphere, so that none misses a large
 // opening.
 static bool isEnclosed(const EnclosedTest* t, int i)
@@ -49,11 +41,10 @@ static bool isEnclosed(const EnclosedTest* t, int i)
         const int cell =
             vplPatchSide_OpenCell(side, (int)(r.v[2] % (uint32_t)__builtin_popcount(side->open)));
         const vplVec3 from = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[2]), vplUnitFloat(r.v[3]));
-        const vplHit start = vplPatchSide_HitAt(t->sides, side, from);
         const vplRay ray =
-            vplGeometry_Leave(t->sides->patches->geometry, &start, vplSampleCosineAround(side->normal, u, v));
+            vplPatchSide_Leave(t->sides, side, from, vplSampleCosineAround(side->normal, u, v));
         t->rays[i]++;
-        if (!hitsSide(t->sides, &ray)) {
+        if (vplPatchSides_Hit(t->sides, &ray) < 0) {
             return false;
         }
     }

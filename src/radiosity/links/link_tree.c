@@ -8,11 +8,10 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
-enum {
-    HALVES_DEPTH = 48, // deeper groups are halved by count, which limits the depth to 48 + log2(n)
-    STACK = 128
-};
+// Deeper groups are halved by count, which limits the depth to 48 + log2(n).
+enum { HALVES_DEPTH = 48 };
 
 // Groups whose normals differ by more than this in one component are halved by that component. 0.3 is 17
 // degrees.
@@ -28,7 +27,8 @@ static const double FLAT = 1e-5;
 typedef struct Build {
     const vplPatchSide* sides;
     struct vplLinkTree* tree;
-    double mean; // expected radiosity, W/m^2; 0: nothing emits
+    double mean;  // expected radiosity, W/m^2; 0: nothing emits
+    int* scratch; // one per side
 } Build;
 
 // The keys that groups can be divided by: centre, normal and emission of a side.
@@ -121,7 +121,7 @@ static void measureNode(const Build* b, vplLinkNode* node)
 // ---- halving
 
 // Partitions a node's sides, stably: those with a key below `middle` first. Returns how many these are.
-static int divideAt(const Build* b, const vplLinkNode* node, int key, float middle, int* scratch)
+static int divideAt(const Build* b, const vplLinkNode* node, int key, float middle)
 {
     int* order = b->tree->order + node->first;
     int before = 0, after = 0;
@@ -129,12 +129,10 @@ static int divideAt(const Build* b, const vplLinkNode* node, int key, float midd
         if (keyOf(&b->sides[order[i]], key) < middle) {
             order[before++] = order[i];
         } else {
-            scratch[after++] = order[i];
+            b->scratch[after++] = order[i];
         }
     }
-    for (int i = 0; i < after; i++) {
-        order[before + i] = scratch[i];
-    }
+    memcpy(order + before, b->scratch, (size_t)after * sizeof *order);
     return before;
 }
 
@@ -148,8 +146,8 @@ static int longestOf(const Range* range, int first)
     return best;
 }
 
-// How many of the node's sides the first child gets.
-static int halve(const Build* b, const vplLinkNode* node, int depth, int* scratch)
+// Returns how many of the node's sides the first child gets.
+static int halve(const Build* b, const vplLinkNode* node, int depth)
 {
     const Range range = rangeOf(b, node);
     const bool uneven =
@@ -157,41 +155,28 @@ static int halve(const Build* b, const vplLinkNode* node, int depth, int* scratc
     const int turn = longestOf(&range, NORMAL), length = longestOf(&range, 0);
     const int key = uneven ? EMISSION : range.high[turn] - range.low[turn] > TURNED ? turn : length;
     const float middle = 0.5f * range.low[key] + 0.5f * range.high[key];
-    const int before = depth < HALVES_DEPTH ? divideAt(b, node, key, middle, scratch) : 0;
+    const int before = depth < HALVES_DEPTH ? divideAt(b, node, key, middle) : 0;
     return before > 0 && before < node->count ? before : node->count / 2;
 }
 
-static void divideAll(const Build* b, int count, int* scratch)
+// Builds the tree below a node whose sides are known.
+static void buildNode(const Build* b, int index, int depth)
 {
     struct vplLinkTree* tree = b->tree;
-    struct {
-        int node, depth;
-    } stack[STACK], top;
-    int height = 0;
-    tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = count};
-    tree->nodeCount = 1;
-    stack[height].node = 0;
-    stack[height++].depth = 0;
-    while (height > 0) {
-        top = stack[--height];
-        vplLinkNode* node = &tree->nodes[top.node];
-        sumNode(b, node);
-        measureNode(b, node);
-        if (node->count == 1) {
-            continue;
-        }
-        const int before = halve(b, node, top.depth, scratch);
-        node->children = tree->nodeCount;
-        vplLinkNode* child = &tree->nodes[tree->nodeCount];
-        child[0] = (vplLinkNode){.children = -1, .first = node->first, .count = before};
-        child[1] =
-            (vplLinkNode){.children = -1, .first = node->first + before, .count = node->count - before};
-        tree->nodeCount += 2;
-        for (int k = 1; k >= 0; k--) {
-            stack[height].node = node->children + k;
-            stack[height++].depth = top.depth + 1;
-        }
+    vplLinkNode* node = &tree->nodes[index];
+    sumNode(b, node);
+    measureNode(b, node);
+    if (node->count == 1) {
+        return;
     }
+    const int before = halve(b, node, depth), child = tree->nodeCount;
+    node->children = child;
+    tree->nodeCount += 2;
+    tree->nodes[child] = (vplLinkNode){.children = -1, .first = node->first, .count = before};
+    tree->nodes[child + 1] =
+        (vplLinkNode){.children = -1, .first = node->first + before, .count = node->count - before};
+    buildNode(b, child, depth + 1);
+    buildNode(b, child + 1, depth + 1);
 }
 
 // The radiosity of a closed room in which reflectance and light are even.
@@ -225,7 +210,9 @@ vplResult vplLinkTree_Build(vplArena* arena, const vplPatchSides* sides, struct 
         tree->order[i] = i;
     }
     if (sides->count > 0) {
-        divideAll(&(Build){sides->sides, tree, expectedRadiosity(sides)}, sides->count, scratch);
+        tree->nodes[0] = (vplLinkNode){.children = -1, .first = 0, .count = sides->count};
+        tree->nodeCount = 1;
+        buildNode(&(Build){sides->sides, tree, expectedRadiosity(sides), scratch}, 0, 0);
     }
     tree->areaUpTo[0] = 0;
     for (int i = 0; i < sides->count; i++) {

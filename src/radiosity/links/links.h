@@ -25,7 +25,7 @@ struct vplLinkTree {
     vplLinkNode* nodes; // the root first, parents before children
     int nodeCount;
     int* order;       // sides, sorted so that those of each node are consecutive
-    double* areaUpTo; // the area of all sides before each in `order`; one more than sides
+    double* areaUpTo; // the summed area of the sides before each in `order`; one more than sides
     // Links sorted by receiver: a node's irradiance is the sum of factor times the sender's radiosity over
     // the links firstOf[node] .. firstOf[node + 1] - 1.
     int64_t* firstOf;
@@ -59,34 +59,28 @@ vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tre
 
 // ---- points on nodes (link_points.c)
 
-// The points of each node by which pairs are judged: 16 pairs, one block of lanes. Drawing them again for
-// each pair took 0.35 of the whole time.
+// Each node has four points by which all its pairs are judged: 16 pairs of points, one block of lanes. Drawing
+// points again for each pair took 0.35 of the whole time.
 enum { VPL_JUDGE_POINTS = 4 };
 
-typedef struct vplNodePoints {
-    vplVec3 at[VPL_JUDGE_POINTS];
-    int side[VPL_JUDGE_POINTS];
-} vplNodePoints;
+typedef struct vplLinkPoint {
+    vplVec3 at;
+    int side;
+} vplLinkPoint;
 
 // The input of refinement.
 typedef struct vplLinkWork {
     const vplPatchSides* sides;
     const struct vplLinkTree* tree;
     const vplLinkDef* def;
-    vplNodePoints* points; // of each node
+    vplLinkPoint (*points)[VPL_JUDGE_POINTS]; // of each node
 } vplLinkWork;
 
 enum { VPL_LINK_POINTS = 32 }; // the most on either of two nodes
 
-typedef struct vplLinkPoints {
-    int count;
-    vplVec3 at[VPL_LINK_POINTS];
-    int side[VPL_LINK_POINTS];
-} vplLinkPoints;
-
 // `count` points on the open cells of a node, stratified by area. The random numbers are those of the pair of
 // `node` and `other`; those of a node with itself give vplLinkWork.points.
-void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoints* pointsOut);
+void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplLinkPoint* pointsOut);
 
 // The unoccluded terms cos cos / (pi r^2), 1/m^2, between point i of one node and point k of another.
 typedef struct vplLinkTerms {
@@ -94,22 +88,23 @@ typedef struct vplLinkTerms {
     float of[VPL_LINK_POINTS][VPL_LINK_POINTS];
 } vplLinkTerms;
 
-void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoints* p, const vplLinkPoints* q,
+// Fills termsOut->of for termsOut->count points on either node.
+void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
                       vplLinkTerms* termsOut);
 
 // The visible fraction of the terms, by rays between def->samples pairs of points: (0, 0), (1, 1), ..., then
 // (0, 1), (1, 2), .... Adds how many rays it cast to *rays.
-double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoints* p, const vplLinkPoints* q,
+double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
                           const vplLinkTerms* terms, int* rays);
 
 // ---- one pair of nodes (link_pair.c)
 
 typedef struct vplLinkPair {
     int32_t p, q;
-    // Some ray between their parents was not blocked. A pair that is divided for its shape alone then casts
-    // no rays.
+    // Some ray between their parents was not blocked. If form factors vary too much over such a pair, it is
+    // divided without further rays.
     bool visible;
-    float weight; // the fraction of all work, halved by each division
+    float weight; // the fraction of all work, for the progress; halved by each division
 } vplLinkPair;
 
 typedef enum vplLinkVerdict {

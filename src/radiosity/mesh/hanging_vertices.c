@@ -13,6 +13,7 @@ enum { MOST_PIECES = VPL_MAX_TRIANGLES / 3 }; // corners are counted in int, too
 
 typedef struct Cutter {
     const vplPatches* patches;
+    vplArena* arena; // owns the pieces
     vplPieces* out;
     int* table; // a hash table of indices of positions, -1: empty
     size_t tableMask;
@@ -99,12 +100,13 @@ static int edgeToCut(const Cutter* c, const vplPiece* piece, int* middleOut)
     return best;
 }
 
-static vplResult append(vplPieces* out, const vplPiece* piece)
+static vplResult append(const Cutter* c, const vplPiece* piece)
 {
+    vplPieces* out = c->out;
     if (out->count == MOST_PIECES) {
-        return vplFail(out->context, VPL_LIMIT, "patches have more than %d pieces", MOST_PIECES);
+        return vplFail(c->patches->context, VPL_LIMIT, "patches have more than %d pieces", MOST_PIECES);
     }
-    TRY(vplReserve(out->context, &out->pieces, &out->capacity, out->count + 1, sizeof *piece));
+    TRY(vplArena_Reserve(c->arena, &out->pieces, &out->capacity, out->count + 1, sizeof *piece));
     out->pieces[out->count++] = *piece;
     return VPL_SUCCESS;
 }
@@ -117,7 +119,7 @@ static vplResult cut(Cutter* c, const vplPiece* piece)
     int middle = -1;
     const int k = edgeToCut(c, piece, &middle);
     if (k < 0) {
-        return append(c->out, piece);
+        return append(c, piece);
     }
     c->out->hanging += !c->hangs[middle];
     c->hangs[middle] = 1;
@@ -129,18 +131,19 @@ static vplResult cut(Cutter* c, const vplPiece* piece)
     return cut(c, &second);
 }
 
-vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces* pieces)
+vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces* out)
 {
+    *out = (vplPieces){.count = 0};
     const size_t positions = (size_t)patches->positionCount;
-    Cutter c = {.patches = patches, .out = pieces, .tableMask = 1};
+    Cutter c = {.patches = patches, .arena = scratch, .out = out, .tableMask = 1};
     while (c.tableMask < 2 * positions) {
         c.tableMask = 2 * c.tableMask + 1;
     }
     c.table = vplArena_Alloc(scratch, c.tableMask + 1, sizeof *c.table);
     c.hangs = vplArena_AllocZero(scratch, positions, 1);
     TRY(vplArena_Check(scratch));
-    TRY(vplReserve(pieces->context, &pieces->pieces, &pieces->capacity, (size_t)patches->patchCount,
-                   sizeof *pieces->pieces));
+    TRY(vplArena_Reserve(scratch, &out->pieces, &out->capacity, (size_t)patches->patchCount,
+                         sizeof *out->pieces));
     fillTable(&c);
     for (int i = 0; i < patches->patchCount; i++) {
         vplPiece whole = {.patch = i, .edges = 7};

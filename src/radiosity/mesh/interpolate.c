@@ -112,18 +112,13 @@ static void findMissing(const Sharpening* s, const vplRgb* vertexValues)
     }
     for (int i = 0; i < sides->count; i++) {
         const double* sum = s->sums[i];
-        const bool known = sum[3] > 0 && sides->sides[i].open == 0xffff;
+        const bool known = sum[3] > 0 && sides->sides[i].open == VPL_ALL_CELLS;
         const vplRgb v = s->values[i];
         s->missing[i] =
             known ? (vplRgb){(float)((double)v.r - sum[0] / sum[3]), (float)((double)v.g - sum[1] / sum[3]),
                              (float)((double)v.b - sum[2] / sum[3])}
                   : (vplRgb){0, 0, 0};
     }
-}
-
-static float addClamped(float value, float change)
-{
-    return vplMaxf(value + change, 0);
 }
 
 static vplResult sharpen(vplArena* scratch, Sharpening* s, vplVertexWeight weight, int rounds,
@@ -139,8 +134,9 @@ static vplResult sharpen(vplArena* scratch, Sharpening* s, vplVertexWeight weigh
         TRY(vplPatchMesh_Interpolate(s->mesh, weight, s->missing, s->change));
         for (size_t i = 0; i < vertices; i++) {
             vplRgb* v = &vertexValues[i];
-            *v = (vplRgb){addClamped(v->r, s->change[i].r), addClamped(v->g, s->change[i].g),
-                          addClamped(v->b, s->change[i].b)};
+            v->r = vplMaxf(v->r + s->change[i].r, 0);
+            v->g = vplMaxf(v->g + s->change[i].g, 0);
+            v->b = vplMaxf(v->b + s->change[i].b, 0);
         }
     }
     return VPL_SUCCESS;

@@ -117,13 +117,14 @@ static vplResult reserve(Builder* b)
     return vplArena_Check(arena);
 }
 
-static vplResult build(vplArena* scratch, vplPieces* pieces, vplPatchMesh* mesh)
+static vplResult build(vplArena* scratch, vplPatchMesh* mesh)
 {
     const vplPatches* patches = mesh->sides->patches;
+    vplPieces pieces;
     vplMeshCorners corners;
     Builder builder = {.corners = &corners, .mesh = mesh};
-    TRY(vplCutPatches(scratch, patches, pieces));
-    TRY(vplMeshCorners_Find(scratch, patches, pieces, &corners));
+    TRY(vplCutPatches(scratch, patches, &pieces));
+    TRY(vplMeshCorners_Find(scratch, patches, &pieces, &corners));
     TRY(reserve(&builder));
     addVertices(&builder);
     addTriangles(&builder);
@@ -137,10 +138,8 @@ vplResult vplPatchMesh_Create(const vplPatchSides* sides, vplPatchMesh** meshOut
     vplPatchMesh* mesh = vplArena_AllocZero(arena, 1, sizeof *mesh);
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
-        vplPieces pieces = {.context = context};
         *mesh = (vplPatchMesh){.sides = sides, .arena = arena, .context = context};
-        result = build(scratch, &pieces, mesh);
-        vplFree(context, pieces.pieces);
+        result = build(scratch, mesh);
     }
     vplArena_Destroy(scratch);
     return vplArena_Deliver(arena, result, mesh, meshOut);

@@ -17,15 +17,13 @@ typedef struct vplPiece {
 } vplPiece;
 
 typedef struct vplPieces {
-    vplContext* context;
     vplPiece* pieces; // in the order of patches
     size_t count, capacity;
     int hanging; // positions at which edges were cut
 } vplPieces;
 
 // Cuts patches wherever a vertex lies on one of their edges, so that neighbouring pieces share whole edges.
-// Start with {context}; the caller frees `pieces`, on failure as well.
-vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces* pieces);
+vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces* piecesOut);
 
 // ---- corners (mesh_corners.c)
 
@@ -65,12 +63,6 @@ struct vplPatchesAround {
     size_t* first; // one more than vertices
     vplPatchAround* list;
 };
-
-// The position of corner `corner` of triangle `triangle`.
-static inline vplVec3 vplPatchMesh_Corner(const vplPatchMesh* mesh, int triangle, int corner)
-{
-    return mesh->positions[mesh->indices[3 * (size_t)triangle + (size_t)corner]];
-}
 
 // One face of a triangle of the mesh, for sums of vertex values over sides.
 typedef struct vplMeshFace {

@@ -14,16 +14,10 @@ vplPatchPriorityDef vplDefaultPatchPriorityDef(void)
     return (vplPatchPriorityDef){.cookie = PRIORITY_COOKIE};
 }
 
-// Weights of squared relative errors. BEND: the difference between the mean of the interpolated corners and
-// the patch's own irradiance, which bisection removes. GRADIENT: the range over the corners, which also shows
-// at edges of light that bend little. Weights from 0.05 to 0.2 change the squared error by less than a tenth
+// The weight of the squared range over the corners, which also shows at edges of light that bend little, where
+// the squared bend counts 1. Weights from 0.05 to 0.2 change the squared error by less than a tenth
 // (bench/radiosity_error).
-static const double GRADIENT = 0.1, BEND = 1;
-
-// The weight of the variance of direct light. Direct light is drawn per pixel, so its variance over a patch
-// causes errors only in what the patch reflects. 1 instead of 0.3 lowers the squared error of cornell-area by
-// a third (bench/radiosity_error).
-static const double SHADOW = 1;
+static const double GRADIENT = 0.1;
 
 // Errors are relative to irradiance plus this fraction of the mean irradiance. From 0.05 to 0.3 the error is
 // the same.
@@ -66,7 +60,10 @@ static double directVariance(const vplPatchPriorityDef* def, int index, const Ve
     return fmax(linear, 0) + spread * spread;
 }
 
-// The estimated squared relative error of a side, summed over the channels.
+// The estimated squared relative error of a side, summed over the channels. `bend`: the difference between the
+// mean of the interpolated corners and the side's own irradiance, which bisection removes. Direct light is
+// drawn per pixel, so its variance causes errors only in what the side reflects; its weight of 1 instead of 0.3
+// lowers the squared error of cornell-area by a third (bench/radiosity_error).
 static double errorOf(const vplPatchPriorityDef* def, const vplPatchSide* side, int index,
                       const VertexSums* c, double floor)
 {
@@ -77,10 +74,10 @@ static double errorOf(const vplPatchPriorityDef* def, const vplPatchSide* side, 
         const double range = c->high[channel] - c->low[channel],
                      bend = c->sum[channel] / c->area - values[channel];
         const double scale = values[channel] + floor;
-        error += (GRADIENT * range * range + BEND * bend * bend) / (scale * scale);
+        error += (GRADIENT * range * range + bend * bend) / (scale * scale);
     }
     const double reflectance = vplRgbMean(side->reflectance), scale = vplRgbMean(e) + floor;
-    error += SHADOW * reflectance * reflectance * directVariance(def, index, c) / (scale * scale);
+    error += reflectance * reflectance * directVariance(def, index, c) / (scale * scale);
     return error;
 }
 

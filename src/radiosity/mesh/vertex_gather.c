@@ -55,8 +55,6 @@ static const vplPatchSide* findStart(const vplPatchMesh* mesh, int vertex, int f
 static vplRgb gatherAt(const Gathering* g, const vplPatchSide* side, vplVec3 from, uint64_t index)
 {
     const vplPatchSides* sides = g->mesh->sides;
-    const vplGeometry* geometry = sides->patches->geometry;
-    const vplHit start = vplPatchSide_HitAt(sides, side, from);
     const vplRandom4 r = vplRandomAt(g->def->seed, GATHER_STREAM, index);
     const int rays = g->def->rays;
     double sum[3] = {0, 0, 0};
@@ -64,10 +62,8 @@ static vplRgb gatherAt(const Gathering* g, const vplPatchSide* side, vplVec3 fro
         const float u = ((float)i + 0.5f) / (float)rays + vplUnitFloat(r.v[0]),
                     v = vplVanDerCorput((uint32_t)i) + vplUnitFloat(r.v[1]);
         const vplVec3 way = vplSampleCosineAround(side->normal, u < 1 ? u : u - 1, v < 1 ? v : v - 1);
-        const vplRay ray = vplGeometry_Leave(geometry, &start, way);
-        vplHit hit;
-        const int met =
-            vplGeometry_ClosestHit(geometry, &ray, &hit) ? vplPatchSides_Find(sides, &hit, way) : -1;
+        const vplRay ray = vplPatchSide_Leave(sides, side, from, way);
+        const int met = vplPatchSides_Hit(sides, &ray);
         if (met >= 0) {
             vplAddRgb(sum, 1, g->def->radiosity[met]);
         }

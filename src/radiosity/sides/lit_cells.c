@@ -14,8 +14,8 @@ enum {
 
 _Static_assert((int)VPL_PATCH_CELLS == (int)VPL_RAY_PACKET, "one ray for each cell");
 
-// Whether the lit point is visible from all cells and nothing covers them. Two packets of rays decide that
-// for most sides.
+// Tests whether the lit point is visible from all cells and nothing covers them. Two packets of rays decide
+// that for most sides.
 static bool isWhole(const vplLitSearch* s, int side, int64_t* rays)
 {
     vplRayPacket down = {.active = 0}, across = {.active = 0};
@@ -53,7 +53,7 @@ static bool seesLitPoint(const CellSearch* c, vplVec3 point)
     return false;
 }
 
-// `gather`: also cast rays where none of the lit points is visible.
+// Tests whether light reaches a sample. `gather`: also cast rays where none of the lit points is visible.
 static bool isReached(CellSearch* c, int cell, int index, bool gather)
 {
     vplLitSample sample = {.side = c->side, .cell = cell, .index = index};
@@ -73,8 +73,8 @@ static bool isReached(CellSearch* c, int cell, int index, bool gather)
     return true;
 }
 
-// Tests those of samples first .. first + FEW - 1 of a cell that are not in `reached`, and adds those that
-// are reached.
+// Tests samples first .. first + FEW - 1 of a cell, except those in the bit set `reached`. Returns that set with
+// the samples added that light reaches.
 static unsigned testSamples(CellSearch* c, int cell, int first, bool gather, unsigned reached)
 {
     for (int index = first; index < first + FEW; index++) {
@@ -85,8 +85,8 @@ static unsigned testSamples(CellSearch* c, int cell, int first, bool gather, uns
     return reached;
 }
 
-// The cells of which light reaches at least half or, if there are none, those that it reaches at all: a
-// covered point of an open cell gets no light in the equations and would darken the patch. Four samples
+// Returns the cells of which light reaches at least half or, if there are none, those that it reaches at all:
+// a covered point of an open cell gets no light in the equations and would darken the patch. Four samples
 // decide, eight where these disagree; samples that missed are tested again once the side has further lit
 // points.
 static unsigned findOpenCells(CellSearch* c)
@@ -130,7 +130,8 @@ vplResult vplLitSearch_FindCells(vplLitSearch* s)
 {
     int added;
     TRY(vplLitSearch_ForAllSides(s, findCells, (const double[2]){0.7, 1}, &added));
-    uint16_t* cells = s->nextOpen; // a pass keeps a side of which no cell is left, so take its own results
+    // The pass does not close a side of which no cell is left, so its own results replace `open`.
+    uint16_t* cells = s->nextOpen;
     s->nextOpen = s->open;
     s->open = cells;
     return VPL_SUCCESS;

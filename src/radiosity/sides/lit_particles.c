@@ -15,13 +15,12 @@ enum {
     BATCH = 1024, // particles
     TASK = BATCH / VPL_LIT_PARTICLE_TASKS,
     BOUNCES = 8,
-    VERTICES = BOUNCES + 1, // of a path; the first is the start, if that is on a surface
+    VERTICES = BOUNCES + 1, // of a path; the first is its start
     STREAM = 0x5ead0001     // of random numbers
 };
 
 typedef struct Batch {
     vplLitSearch* search;
-    const vplEmission* emission;
     vplLitHit* vertices; // [particle][VERTICES]
     int64_t first;       // particle
 } Batch;
@@ -39,10 +38,9 @@ static double chooseSource(const vplEmission* e, int64_t particle, float u)
 
 // The first vertex of a path; it is on a side if a surface emits the particle. False if something covers that
 // surface.
-static bool start(const vplLitSearch* s, const vplEmission* e, const vplParticle* p, int64_t* rays,
-                  vplLitHit* vertex)
+static bool start(const vplLitSearch* s, const vplParticle* p, int64_t* rays, vplLitHit* vertex)
 {
-    const int triangle = e->sources[p->source].triangle;
+    const int triangle = s->emission->sources[p->source].triangle;
     *vertex = (vplLitHit){p->ray.origin, p->normal, -1};
     if (triangle < 0) {
         return true;
@@ -72,9 +70,9 @@ static int tracePath(const Batch* b, uint64_t particle, vplVec3 direction, vplLi
     return count;
 }
 
-// Drops the vertices that are no news or not certain. A hit near an edge may round to the wrong side of a
-// wall, which makes the rest of the path wrong, so each segment up to a new side is tested again between
-// offset points.
+// Drops vertices on sides that are lit already, and vertices that may be wrong: a hit near an edge may round
+// to the wrong side of a wall, which makes the rest of the path wrong, so each segment up to a new side is
+// tested again between offset points.
 static void confirm(const vplLitSearch* s, vplLitHit* path, int count, int64_t* rays)
 {
     for (int i = 0, sure = 0; i < count; i++) {
@@ -105,11 +103,11 @@ static void shoot(const Batch* b, int index, int64_t* rays)
                      more = vplRandomAt(seed, STREAM + 1, particle);
     const float u[4] = {vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]),
                         vplUnitFloat(r.v[3])};
-    const double choice = chooseSource(b->emission, (int64_t)particle, vplUnitFloat(more.v[0]));
+    const double choice = chooseSource(b->search->emission, (int64_t)particle, vplUnitFloat(more.v[0]));
     vplParticle p;
     int count = 0;
-    if (vplEmission_SampleParticle(b->emission, choice, u, &p) &&
-        start(b->search, b->emission, &p, rays, &path[0])) {
+    if (vplEmission_SampleParticle(b->search->emission, choice, u, &p) &&
+        start(b->search, &p, rays, &path[0])) {
         count = tracePath(b, particle, p.ray.direction, path, rays);
     }
     confirm(b->search, path, count, rays);
@@ -135,7 +133,7 @@ static int markLit(const Batch* b)
         const vplLitHit* hit = &b->vertices[i];
         if (hit->side >= 0 && s->open[hit->side] == 0) {
             s->litPoint[hit->side] = hit->point;
-            s->open[hit->side] = 0xffff;
+            s->open[hit->side] = VPL_ALL_CELLS;
             added++;
         }
     }
@@ -148,7 +146,7 @@ static int markLit(const Batch* b)
 static vplResult shootBatches(Batch* b)
 {
     vplLitSearch* s = b->search;
-    const int turns = 1 + 2 * vplMini(b->emission->sourceCount, 1 << 18) / BATCH;
+    const int turns = 1 + 2 * vplMini(s->emission->sourceCount, 1 << 18) / BATCH;
     const int most = vplMaxi(turns, 1 + 2 * s->patches->patchCount / BATCH);
     for (int i = 0, added = BATCH; i < most && (i < turns || added >= BATCH); i++) {
         b->first = (int64_t)i * BATCH;
@@ -165,7 +163,7 @@ static vplResult shootBatches(Batch* b)
 // twice as many.
 vplResult vplLitSearch_ShootParticles(vplLitSearch* s)
 {
-    Batch b = {.search = s, .emission = s->emission};
+    Batch b = {.search = s};
     b.vertices = vplAlloc(s->context, (size_t)BATCH * VERTICES, sizeof *b.vertices);
     const vplResult result = b.vertices != NULL ? shootBatches(&b) : VPL_OUT_OF_MEMORY;
     vplFree(s->context, b.vertices);

@@ -51,7 +51,7 @@ static int firstBelow(const vplLitSearch* s, vplVec3 offset, vplVec3 down, int t
     const vplRay ray = {offset, down, {triangle, s->geometry->triangleCount - triangle}};
     vplHit hit;
     ++*rays;
-    const bool found = vplClosestHitWithin(s->geometry, &ray, 1 + VPL_COPLANAR, &hit);
+    const bool found = vplClosestHit(s->geometry, &ray, 1 + VPL_COPLANAR, NULL, &hit);
     return found && hit.t > 1 - VPL_COPLANAR ? hit.triangle : triangle;
 }
 
@@ -63,7 +63,7 @@ bool vplLitSearch_Offset(const vplLitSearch* s, int side, vplVec3 point, int64_t
     vplHit hit;
     *offsetOut = ray.origin;
     ++*rays;
-    if (!vplClosestHitWithin(s->geometry, &ray, 1 + VPL_COPLANAR, &hit)) {
+    if (!vplClosestHit(s->geometry, &ray, 1 + VPL_COPLANAR, NULL, &hit)) {
         return true;
     }
     return hit.t > 1 - VPL_COPLANAR && hit.triangle > triangle &&
@@ -99,7 +99,7 @@ void vplLitSearch_ResolveOverlap(const vplLitSearch* s, vplLitHit* hit, int64_t*
 
 // ---- samples
 
-// The uses of a sample's random numbers: 0 is its position, then one per ray, and the light source.
+// A sample's random numbers are numbered by their use: its position, up to six rays, and the light source.
 enum { POSITION = 0, FIRST_RAY = 1, LIGHT_SOURCE = 7 };
 
 static vplRandom4 randomOf(const vplLitSearch* s, const vplLitSample* sample, int use)
@@ -127,8 +127,8 @@ bool vplLitSample_Offset(const vplLitSearch* s, vplLitSample* sample, int64_t* r
     return vplLitSearch_Offset(s, sample->side, vplLitSample_OnSide(s, sample), rays, &sample->point);
 }
 
-// Whether random ray `ray` hits a lit side. Also tests the segment from the hit to the side's lit point;
-// otherwise floor under a box inherits light from the floor beside it.
+// Tests whether random ray `ray` hits a lit side, and whether the hit sees that side's lit point; otherwise
+// floor under a box inherits light from the floor beside it.
 static bool seesLitSide(const vplLitSearch* s, const vplLitSample* sample, int ray, int64_t* rays,
                         vplVec3* from)
 {
@@ -144,7 +144,7 @@ static bool seesLitSide(const vplLitSearch* s, const vplLitSample* sample, int r
            vplLitSearch_IsVisible(s, hit.point, s->litPoint[hit.side], rays);
 }
 
-// A random point of a light source that can send light to `point`. False if it cannot.
+// Chooses a random point of a light source. Returns whether it can send light to `point`.
 static bool sampleLightSource(const vplLitSearch* s, const vplRandom4* r, vplVec3 point, vplVec3* from)
 {
     const vplEmission* e = s->emission;

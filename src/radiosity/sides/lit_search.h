@@ -19,9 +19,9 @@ typedef struct vplLitSearch {
     const vplPatchSidesDef* def;
     const vplEmission* emission;
     float* heights;     // of offset points, per patch, metres
-    uint16_t* open;     // per side: 0: not lit so far; else lit, and in the end its open cells
-    uint16_t* nextOpen; // as found in the current pass
+    uint16_t* open;     // per side: 0 if it is not lit yet, else all cells or, at the end, its open cells
     vplVec3* litPoint;  // per side: an offset point that is lit; undefined where `open` is 0
+    uint16_t* nextOpen; // the results of the current pass
     vplVec3* nextLitPoint;
     int64_t* taskRays;
     double meanArea; // of patches
@@ -71,7 +71,7 @@ vplVec3 vplLitSearch_MoveTowards(const vplLitSearch* search, int patch, vplVec3 
 
 bool vplLitSearch_IsVisible(const vplLitSearch* search, vplVec3 a, vplVec3 b, int64_t* rays);
 
-// Where a ray hit a side.
+// The point at which a ray hit a side.
 typedef struct vplLitHit {
     vplVec3 point;  // the offset point there
     vplVec3 normal; // of the side
@@ -101,8 +101,8 @@ vplVec3 vplLitSample_OnSide(const vplLitSearch* search, const vplLitSample* samp
 // Fills sample->point. False as in vplLitSearch_Offset.
 bool vplLitSample_Offset(const vplLitSearch* search, vplLitSample* sample, int64_t* rays);
 
-// Whether light comes to the sample: tests one random point of one light source and `gathers` rays to other
-// sides. *fromOut: where the light comes from.
+// Tests whether light reaches the sample, from one random point of one light source or along one of `gathers`
+// rays from other sides. *fromOut: the point that sends the light.
 bool vplLitSample_IsLit(const vplLitSearch* search, const vplLitSample* sample, int gathers, int64_t* rays,
                         vplVec3* fromOut);
 

@@ -10,18 +10,18 @@ enum {
     QUARTERS = 4, // of a side: one sample in each
     GATHERS = 4,  // rays from each sample
     LEAST_PASSES = 4,
-    MOST_PASSES = 16 // one more room behind rooms is found in each
+    MOST_PASSES = 16 // each pass finds one more room behind rooms
 };
 
 // ---- one side
 
 static void markLit(const vplLitSearch* s, const vplLitSample* sample, vplVec3 from)
 {
-    s->nextOpen[sample->side] = 0xffff;
+    s->nextOpen[sample->side] = VPL_ALL_CELLS;
     s->nextLitPoint[sample->side] = vplLitSearch_MoveTowards(s, sample->side / 2, sample->point, from);
 }
 
-// Whether a viewpoint sees a side that is not lit so far.
+// Tests whether a viewpoint sees a side that is not lit yet.
 static void testViewpoints(const vplLitSearch* s, int side, int64_t* rays)
 {
     const vplVec3 n = vplLitSearch_Normal(s, side);
@@ -40,7 +40,7 @@ static void testViewpoints(const vplLitSearch* s, int side, int64_t* rays)
     }
 }
 
-// Whether all geometry lies behind a side, as for the outsides of most walls, half of all sides.
+// Tests whether all geometry lies behind a side, as for the outsides of most walls, half of all sides.
 static bool facesOutside(const vplLitSearch* s, int side)
 {
     const vplGeometry* g = s->geometry;
@@ -52,7 +52,7 @@ static bool facesOutside(const vplLitSearch* s, int side)
     return vplDot(vplSub(farthest, corners[0]), n) < s->heights[side / 2];
 }
 
-// Whether light comes to a side that is not lit so far. Each pass takes other samples.
+// Tests whether light reaches a side that is not lit yet. Each pass takes other samples.
 static void testLight(const vplLitSearch* s, int side, int64_t* rays)
 {
     for (int i = 0; i < QUARTERS && s->open[side] == 0 && s->nextOpen[side] == 0; i++) {

@@ -88,7 +88,7 @@ static void openWholeTriangles(vplLitSearch* s)
             lit[1] = lit[1] || s->open[2 * end + 1] != 0;
         }
         for (int i = 2 * first; i < 2 * end; i++) {
-            s->open[i] = lit[i & 1] ? 0xffff : 0;
+            s->open[i] = lit[i & 1] ? VPL_ALL_CELLS : 0;
         }
     }
 }

@@ -48,27 +48,9 @@ vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k)
     return vplCell_Point(side->corners, k, u, u);
 }
 
-// Returns the part that barycentrics lie in and turns them into those of the part.
-static int toPart(double w[3])
-{
-    const int part = w[0] >= 0.5 ? 0 : w[1] >= 0.5 ? 1 : w[2] >= 0.5 ? 2 : 3;
-    for (int k = 0; k < 3; k++) {
-        w[k] = part == 3 ? 1 - 2 * w[k] : 2 * w[k] - (k == part);
-    }
-    return part;
-}
-
-int vplCell_Find(const vplVec3 corners[3], vplVec3 point)
-{
-    double w[3];
-    vplTriangle_Barycentrics(corners, point, w);
-    const int part = toPart(w);
-    return 4 * part + toPart(w);
-}
-
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 {
-    if (side->open == (1 << VPL_PATCH_CELLS) - 1) { // most sides
+    if (side->open == VPL_ALL_CELLS) { // most sides
         return k;
     }
     unsigned open = side->open;
@@ -80,22 +62,27 @@ int vplPatchSide_OpenCell(const vplPatchSide* side, int k)
 
 // ---- rays
 
-vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at)
+vplRay vplPatchSide_Leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at, vplVec3 direction)
 {
     const vplPatches* patches = sides->patches;
     const vplGeometry* g = patches->geometry;
     const int triangle = vplPatches_TriangleOf(patches, side->patch);
-    return (vplHit){.object = g->owners[triangle],
-                    .face = vplGeometry_FaceOf(g, triangle),
-                    .triangle = triangle,
-                    .position = at,
-                    .normal = g->normals[triangle]};
+    const vplHit start = {.object = g->owners[triangle],
+                          .face = vplGeometry_FaceOf(g, triangle),
+                          .triangle = triangle,
+                          .position = at,
+                          .normal = g->normals[triangle]};
+    return vplGeometry_Leave(g, &start, direction);
 }
 
-int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction)
+int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray)
 {
-    const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
-    return patch < 0 ? -1 : vplSideOf(sides, patch, vplDot(direction, hit->normal) > 0);
+    vplHit hit;
+    if (!vplGeometry_ClosestHit(sides->patches->geometry, ray, &hit)) {
+        return -1;
+    }
+    const int patch = vplPatches_Find(sides->patches, hit.triangle, hit.position);
+    return patch < 0 ? -1 : vplSideOf(sides, patch, vplDot(ray->direction, hit.normal) > 0);
 }
 
 // ---- values
@@ -124,4 +111,34 @@ vplResult vplCheckRgb(const vplContext* context, const char* name, const vplRgb*
         }
     }
     return VPL_SUCCESS;
+}
+
+// ---- values of sides, channel by channel
+
+size_t vplPaddedSides(int count)
+{
+    return ((size_t)count + VPL_SIDE_LANES - 1) / VPL_SIDE_LANES * VPL_SIDE_LANES;
+}
+
+vplPlanes vplPlanes_Alloc(vplArena* arena, int count)
+{
+    const size_t stride = vplPaddedSides(count);
+    float* values = vplArena_AllocZero(arena, 3 * stride, sizeof *values);
+    return values != NULL ? (vplPlanes){{values, values + stride, values + 2 * stride}} : (vplPlanes){{NULL}};
+}
+
+void vplPlanes_Read(vplPlanes* planes, const vplRgb* values, int count)
+{
+    for (int i = 0; i < count; i++) {
+        planes->c[0][i] = values[i].r;
+        planes->c[1][i] = values[i].g;
+        planes->c[2][i] = values[i].b;
+    }
+}
+
+void vplPlanes_Write(const vplPlanes* planes, int count, vplRgb* valuesOut)
+{
+    for (int i = 0; i < count; i++) {
+        valuesOut[i] = (vplRgb){planes->c[0][i], planes->c[1][i], planes->c[2][i]};
+    }
 }

@@ -6,7 +6,11 @@
 #ifndef VPL_RADIOSITY_SIDE_H
 #define VPL_RADIOSITY_SIDE_H
 
-#include <vpl/radiosity.h>
+#include "base/arena.h"
+#include "radiosity/radiosity_kernels.h"
+
+// vplPatchSide.open where all cells are open.
+enum { VPL_ALL_CELLS = (1 << VPL_PATCH_CELLS) - 1 };
 
 // Index in sides->sides of a patch's front (0) or back (1); -1: light does not reach it.
 static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
@@ -23,17 +27,15 @@ vplVec3 vplCell_Point(const vplVec3 corners[3], int cell, float u, float v);
 // The midpoint of cell k.
 vplVec3 vplPatchSide_CellCentre(const vplPatchSide* side, int k);
 
-// The cell that a point of a triangle lies in, or nearly.
-int vplCell_Find(const vplVec3 corners[3], vplVec3 point);
-
 // The k-th open cell.
 int vplPatchSide_OpenCell(const vplPatchSide* side, int k);
 
-// The point `at` of a side as a hit, from which rays leave.
-vplHit vplPatchSide_HitAt(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at);
+// The ray that leaves a side at its point `at`.
+vplRay vplPatchSide_Leave(const vplPatchSides* sides, const vplPatchSide* side, vplVec3 at,
+                          vplVec3 direction);
 
-// The side that a ray in `direction` hits; -1: one that light does not reach.
-int vplPatchSides_Find(const vplPatchSides* sides, const vplHit* hit, vplVec3 direction);
+// The side that a ray hits; -1: the ray hits nothing, or a side that light does not reach.
+int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray);
 
 // The reflectance of a patch. `side`: the patch's side, or -1.
 vplRgb vplReflectanceOf(const vplPatchSides* sides, int patch, int side);
@@ -56,5 +58,16 @@ float vplClampToFloat(double x);
 
 // VPL_INVALID_ARGUMENT unless all values are finite. The message begins with "<name>[<index>] is".
 vplResult vplCheckRgb(const vplContext* context, const char* name, const vplRgb* values, size_t count);
+
+// ---- values of sides, channel by channel
+
+// `count`, rounded up to a multiple of VPL_SIDE_LANES.
+size_t vplPaddedSides(int count);
+
+// All 0, in one allocation. NULL planes when out of memory; vplArena_Check reports it.
+vplPlanes vplPlanes_Alloc(vplArena* arena, int count);
+
+void vplPlanes_Read(vplPlanes* planes, const vplRgb* values, int count);
+void vplPlanes_Write(const vplPlanes* planes, int count, vplRgb* valuesOut);
 
 #endif

@@ -55,17 +55,9 @@ static vplResult checkDef(const vplTransport* t, const vplSolveDef* def)
 
 // ---- sweeps
 
-// A solution in progress.
-typedef struct Solution {
-    vplSolve solve;
-    vplPlanes scratch;
-    vplSolveStats stats;
-    bool hasSpectrum; // the stats have their spectral radius and sums of rows
-} Solution;
-
-static vplResult failDiverging(const Solution* s)
+static vplResult failDiverging(const vplSolve* s)
 {
-    vplContext* context = s->solve.exchange.context;
+    vplContext* context = s->exchange.context;
     if (s->stats.spectralRadius <= DIVERGES) {
         return vplFail(context, VPL_LIMIT,
                        "after %d sweeps a radiosity is beyond the range of float; dim what emits",
@@ -76,21 +68,20 @@ static vplResult failDiverging(const Solution* s)
         "radiosity diverges: after %d sweeps the largest is %g W/m^2, and grows; the spectral radius "
         "of reflectance times form factors is %.4g, must be below 1; clamp the sums of rows "
         "(--row-sums clamp) or take better form factors (--form-factors monte-carlo)",
-        s->stats.iterations, s->solve.largest, s->stats.spectralRadius);
+        s->stats.iterations, s->largest, s->stats.spectralRadius);
 }
 
-static void findSpectrum(Solution* s)
+static void findSpectrum(vplSolve* s)
 {
     if (!s->hasSpectrum) {
-        vplFindSpectrum(&s->solve.exchange, &s->scratch, &s->stats);
+        vplFindSpectrum(&s->exchange, &s->scratch, &s->stats);
         s->hasSpectrum = true;
     }
 }
 
-static vplResult sweepAll(Solution* s)
+static vplResult sweepAll(vplSolve* s)
 {
-    vplSolve* solve = &s->solve;
-    const vplSolveDef* def = solve->def;
+    const vplSolveDef* def = s->def;
     double last = INFINITY;
     int growing = 0;
     bool done = false;
@@ -98,16 +89,16 @@ static vplResult sweepAll(Solution* s)
         if (def->progress != NULL && !def->progress(def->progressUser, (double)i / def->iterations)) {
             return VPL_CANCELLED;
         }
-        vplSolve_Sweep(solve);
+        vplSolve_Sweep(s);
         s->stats.iterations = i + 1;
-        s->stats.residual = solve->largest > 0 ? solve->change / solve->largest : 0;
-        done = solve->change <= def->residual * solve->largest;
-        growing = solve->change > last ? growing + 1 : 0;
-        last = solve->change;
-        if (!solve->finite || growing == GROWING) {
+        s->stats.residual = s->largest > 0 ? s->change / s->largest : 0;
+        done = s->change <= def->residual * s->largest;
+        growing = s->change > last ? growing + 1 : 0;
+        last = s->change;
+        if (!s->finite || growing == GROWING) {
             findSpectrum(s);
         }
-        if (!solve->finite || (growing >= GROWING && s->stats.spectralRadius > DIVERGES)) {
+        if (!s->finite || (growing >= GROWING && s->stats.spectralRadius > DIVERGES)) {
             return failDiverging(s);
         }
     }
@@ -118,7 +109,7 @@ static vplResult sweepAll(Solution* s)
         return failDiverging(s);
     }
     if (!done && !def->continues && def->iterations > 0 && def->residual > 0) {
-        vplLog(solve->exchange.context, VPL_LOG_WARNING,
+        vplLog(s->exchange.context, VPL_LOG_WARNING,
                "radiosity ended after %d sweeps with a residual of %.3g, not below %g", s->stats.iterations,
                s->stats.residual, def->residual);
     }
@@ -127,34 +118,33 @@ static vplResult sweepAll(Solution* s)
 
 // ---- the whole solution
 
-static vplResult reserve(vplArena* arena, Solution* s)
+static vplResult reserve(vplArena* arena, vplSolve* s)
 {
-    const int count = s->solve.exchange.count;
-    s->solve.source = vplPlanes_Alloc(arena, count);
-    s->solve.radiosity = vplPlanes_Alloc(arena, count);
+    const int count = s->exchange.count;
+    s->source = vplPlanes_Alloc(arena, count);
+    s->radiosity = vplPlanes_Alloc(arena, count);
     s->scratch = vplPlanes_Alloc(arena, count);
-    if (s->solve.solver == VPL_SOLVER_SHOOTING) {
-        s->solve.shot = vplPlanes_Alloc(arena, count);
-        s->solve.unshot = vplPlanes_Alloc(arena, count);
-        s->solve.gain = vplPlanes_Alloc(arena, count);
-        s->solve.area = vplArena_AllocZero(arena, vplPaddedSides(count), sizeof *s->solve.area);
+    if (s->stats.solver == VPL_SOLVER_SHOOTING) {
+        s->shot = vplPlanes_Alloc(arena, count);
+        s->unshot = vplPlanes_Alloc(arena, count);
+        s->gain = vplPlanes_Alloc(arena, count);
+        s->area = vplArena_AllocZero(arena, vplPaddedSides(count), sizeof *s->area);
     }
     return vplArena_Check(arena);
 }
 
-static vplResult solveWith(vplArena* arena, const vplTransport* transport, Solution* s, const vplRgb* source,
+static vplResult solveWith(vplArena* arena, const vplTransport* transport, vplSolve* s, const vplRgb* source,
                            vplRgb* radiosity)
 {
-    vplSolve* solve = &s->solve;
-    TRY(vplExchange_Open(arena, transport, &solve->exchange));
+    TRY(vplExchange_Open(arena, transport, &s->exchange));
     TRY(reserve(arena, s));
-    vplPlanes_Read(&solve->source, source, solve->exchange.count);
-    vplPlanes_Read(&solve->radiosity, radiosity, solve->exchange.count);
-    if (solve->solver == VPL_SOLVER_SHOOTING) {
-        vplSolve_BeginShooting(solve);
+    vplPlanes_Read(&s->source, source, s->exchange.count);
+    vplPlanes_Read(&s->radiosity, radiosity, s->exchange.count);
+    if (s->stats.solver == VPL_SOLVER_SHOOTING) {
+        vplSolve_BeginShooting(s);
     }
     TRY(sweepAll(s));
-    vplPlanes_Write(&solve->radiosity, solve->exchange.count, radiosity);
+    vplPlanes_Write(&s->radiosity, s->exchange.count, radiosity);
     return VPL_SUCCESS;
 }
 
@@ -165,7 +155,7 @@ vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* de
     TRY(checkValues(transport, source, "source"));
     TRY(checkValues(transport, radiosity, "radiosity"));
     const vplSolver solver = transport->factors != NULL ? def->solver : VPL_SOLVER_JACOBI;
-    Solution s = {.solve = {.def = def, .solver = solver}, .stats = {.solver = solver}};
+    vplSolve s = {.def = def, .stats = {.solver = solver}};
     vplArena* arena = vplArena_Create(transport->sides->context);
     const vplResult result = solveWith(arena, transport, &s, source, radiosity);
     vplArena_Destroy(arena);
@@ -177,50 +167,50 @@ vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* de
 
 // ---- F B alone
 
-// Opens an exchange and gathers: its sums are F times radiosity.
-static vplResult gather(vplArena* scratch, const vplTransport* transport, const vplRgb* radiosity,
-                        vplExchange* exchange)
+// Writes the irradiance of each side, or its residual where there is a source.
+static vplResult gather(vplArena* scratch, const vplTransport* transport, const vplRgb* source,
+                        const vplRgb* radiosity, vplRgb* out)
 {
-    TRY(vplExchange_Open(scratch, transport, exchange));
-    vplPlanes planes = vplPlanes_Alloc(scratch, exchange->count);
+    vplExchange e;
+    TRY(vplExchange_Open(scratch, transport, &e));
+    vplPlanes planes = vplPlanes_Alloc(scratch, e.count);
     TRY(vplArena_Check(scratch));
-    vplPlanes_Read(&planes, radiosity, exchange->count);
-    vplExchange_Gather(exchange, &planes);
+    vplPlanes_Read(&planes, radiosity, e.count);
+    vplExchange_Gather(&e, &planes);
+    for (int i = 0; i < e.count; i++) {
+        double* v = e.sums[i];
+        if (source != NULL) {
+            const vplRgb s = source[i], b = radiosity[i];
+            v[0] = (double)s.r + (double)e.reflectance.c[0][i] * v[0] - (double)b.r;
+            v[1] = (double)s.g + (double)e.reflectance.c[1][i] * v[1] - (double)b.g;
+            v[2] = (double)s.b + (double)e.reflectance.c[2][i] * v[2] - (double)b.b;
+        }
+        out[i] = (vplRgb){vplClampToFloat(v[0]), vplClampToFloat(v[1]), vplClampToFloat(v[2])};
+    }
     return VPL_SUCCESS;
+}
+
+static vplResult checkAndGather(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
+                                vplRgb* out)
+{
+    TRY(vplTransport_Check(transport));
+    if (source != NULL) {
+        TRY(checkValues(transport, source, "source"));
+    }
+    TRY(checkValues(transport, radiosity, "radiosity"));
+    vplArena* scratch = vplArena_Create(transport->sides->context);
+    const vplResult result = gather(scratch, transport, source, radiosity, out);
+    vplArena_Destroy(scratch);
+    return result;
 }
 
 vplResult vplGatherRadiosity(const vplTransport* transport, const vplRgb* radiosity, vplRgb* irradianceOut)
 {
-    TRY(vplTransport_Check(transport));
-    TRY(checkValues(transport, radiosity, "radiosity"));
-    vplExchange e = {.count = 0};
-    vplArena* scratch = vplArena_Create(transport->sides->context);
-    const vplResult result = gather(scratch, transport, radiosity, &e);
-    for (int i = 0; i < e.count && result == VPL_SUCCESS; i++) {
-        irradianceOut[i] = (vplRgb){vplClampToFloat(e.sums[i][0]), vplClampToFloat(e.sums[i][1]),
-                                    vplClampToFloat(e.sums[i][2])};
-    }
-    vplArena_Destroy(scratch);
-    return result;
+    return checkAndGather(transport, NULL, radiosity, irradianceOut);
 }
 
 vplResult vplRadiosityResidual(const vplTransport* transport, const vplRgb* source, const vplRgb* radiosity,
                                vplRgb* residualOut)
 {
-    TRY(vplTransport_Check(transport));
-    TRY(checkValues(transport, source, "source"));
-    TRY(checkValues(transport, radiosity, "radiosity"));
-    vplExchange e = {.count = 0};
-    vplArena* scratch = vplArena_Create(transport->sides->context);
-    const vplResult result = gather(scratch, transport, radiosity, &e);
-    for (int i = 0; i < e.count && result == VPL_SUCCESS; i++) {
-        const double r = (double)e.reflectance.c[0][i] * e.sums[i][0];
-        const double g = (double)e.reflectance.c[1][i] * e.sums[i][1];
-        const double b = (double)e.reflectance.c[2][i] * e.sums[i][2];
-        residualOut[i] = (vplRgb){vplClampToFloat((double)source[i].r + r - (double)radiosity[i].r),
-                                  vplClampToFloat((double)source[i].g + g - (double)radiosity[i].g),
-                                  vplClampToFloat((double)source[i].b + b - (double)radiosity[i].b)};
-    }
-    vplArena_Destroy(scratch);
-    return result;
+    return checkAndGather(transport, source, radiosity, residualOut);
 }

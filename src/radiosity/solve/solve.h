@@ -4,7 +4,7 @@
 #define VPL_RADIOSITY_SOLVE_H
 
 #include "radiosity/links/links.h"
-#include "radiosity/sides/planes.h"
+#include "radiosity/sides/side.h"
 
 // ---- the exchange (exchange.c)
 
@@ -33,11 +33,13 @@ void vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats);
 
 // ---- solvers (sweep.c)
 
+// A solution in progress.
 typedef struct vplSolve {
     vplExchange exchange;
     const vplSolveDef* def;
-    vplSolver solver;
-    vplPlanes source, radiosity;
+    vplSolveStats stats;
+    bool hasSpectrum; // the stats have their spectral radius and sums of rows
+    vplPlanes source, radiosity, scratch;
     vplPlanes shot, unshot, gain; // shooting: shot + unshot is the radiosity
     float* area;                  // shooting
     int next;                     // shooting: the side that shoots next; -1: none

@@ -76,24 +76,6 @@ static void sweepGaussSeidel(vplSolve* s)
 
 // ---- shooting
 
-// The side with the most unshot power.
-static int mostPower(const vplSolve* s)
-{
-    int next = -1;
-    float most = 0;
-    for (int i = 0; i < s->exchange.count; i++) {
-        float power = 0;
-        for (int c = 0; c < 3; c++) {
-            power += s->area[i] * fabsf(s->unshot.c[c][i]);
-        }
-        if (power > most) {
-            most = power;
-            next = i;
-        }
-    }
-    return next;
-}
-
 // If the start value is the source, nothing is shot yet. Any other start value counts as shot, and one sweep
 // of Jacobi finds its residual.
 void vplSolve_BeginShooting(vplSolve* s)
@@ -114,11 +96,16 @@ void vplSolve_BeginShooting(vplSolve* s)
     }
     for (int i = 0; i < count; i++) {
         s->area[i] = s->exchange.transport->sides->sides[i].area;
+    }
+    // The gains are still 0: this shot sends nothing, it only finds the side with the most unshot power.
+    const vplShot none = {
+        .row = s->exchange.transport->factors->rows, .gain = s->gain, .unshot = s->unshot, .area = s->area};
+    s->next = s->exchange.kernels->shoot(&none, count);
+    for (int i = 0; i < count; i++) {
         for (int c = 0; c < 3; c++) {
             s->gain.c[c][i] = s->area[i] > 0 ? s->exchange.reflectance.c[c][i] / s->area[i] : 0;
         }
     }
-    s->next = mostPower(s);
 }
 
 // Side j receives F_ji = F_ij A_i / A_j of side i's radiosity, so one row of F serves a shot.
@@ -150,7 +137,7 @@ void vplSolve_Sweep(vplSolve* solve)
 {
     solve->change = solve->largest = 0;
     solve->finite = true;
-    switch (solve->solver) {
+    switch (solve->stats.solver) {
     case VPL_SOLVER_JACOBI:
         sweepJacobi(solve);
         break;

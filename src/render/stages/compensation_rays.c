@@ -95,7 +95,7 @@ enum { POINT_SHARE = 40000, MIN_POINTS = 32, MAX_POINTS = 1024, POINT_RAYS = 4 }
 static int pointsToAsk(const vplPlan* plan, const vplVirtualLights* lights)
 {
     const vplOutputOptions* o = &plan->options.output;
-    const double work = (double)o->width * o->height * o->antialias * workOf(plan, lights);
+    const double work = (double)o->width * o->height * o->supersample * workOf(plan, lights);
     return (int)fmin(fmax(work / POINT_SHARE, MIN_POINTS), MAX_POINTS);
 }
 

@@ -14,7 +14,7 @@ static vplResult boundMap(const vplRun* run, vplCubeMap* map)
 {
     const vplRenderOptions* o = &run->plan->options;
     const double samples = o->shadow.pcfSamples;
-    const double lookups = (double)o->output.width * o->output.height * o->output.antialias * samples;
+    const double lookups = (double)o->output.width * o->output.height * o->output.supersample * samples;
     const bool pays = samples >= VPL_MIN_BOUND_SAMPLES && lookups > 3.0 * map->size * map->size;
     return pays ? vplCubeMap_FindBounds(map) : VPL_SUCCESS;
 }

@@ -93,7 +93,7 @@ vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights*
 {
     const vplRenderOptions* o = &plan->options;
     const int side = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED ? o->pipeline.interleave : 1;
-    const double pixels = (double)o->output.width * o->output.height * o->output.antialias / side / side;
+    const double pixels = (double)o->output.width * o->output.height * o->output.supersample / side / side;
     const vplShadowLoad load = vplMeasureShadowLoad(run->results[VPL_STAGE_GEOMETRY], &plan->view, pixels,
                                                     lights->lights, lights->count, o->lights.mapSize);
     const vplShadowCosts costs = vplEstimateShadows(&load);

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+// Coverage antialiasing, for kernels: a pixel whose samples show other surfaces
+// than its centre is the mean of all of them, by the shares of its samples. The centre's surface is shaded as
+// ever; each other one is shaded once, at one of its samples. All other pixels cost a comparison of their
+// samples.
+#ifndef VPL_SHADING_EDGES_H
+#define VPL_SHADING_EDGES_H
+
+#include "geometry/triangle.h"
+#include "math/scalar.h"
+#include "shading/gbuffer.h"
+
+// Two triangles are one surface if they reflect and emit the same, their normals are as near as this, and
+// they lie within EDGE_PIXELS of each other's plane.
+#define EDGE_COSINE        0.9995f
+#define EDGE_SMOOTH_COSINE 0.8f // of two smooth triangles
+#define EDGE_PIXELS        2.0f // widths of a pixel at that distance
+
+// The surfaces of a pixel.
+typedef struct vplEdgePixel {
+    float centre;                                     // share of the surface in the centre
+    vplEdgeSurface others[VPL_MAX_SAMPLES_PER_PIXEL]; // besides the one in the centre
+    int count;
+} vplEdgePixel;
+
+// Surfaces that wait until all lanes are taken.
+typedef struct vplEdgeBlock {
+    vplBlock block;
+    int x[VPL_LANES], y[VPL_LANES]; // pixel of the picture
+    float share[VPL_LANES];
+    int count;
+    bool emits; // emission is added, too
+} vplEdgeBlock;
+
+// Adds light to the sums of a block.
+typedef void vplLightEdgesFcn(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays);
+
+// ---- which surfaces
+
+// Direction from the eye through a point of a pixel, of length 1 along the view axis.
+static inline vplVec3 vplSightOf(const vplView* v, int x, int y, vplSubPixel at)
+{
+    const double column = (2 * x + 1 + at.x / 128.0) / v->width - 1 - v->offsetX;
+    const double row = 1 - (2 * y + 1 + at.y / 128.0) / v->height - v->offsetY;
+    const float right = (float)(column / v->scaleX), up = (float)(row / v->scaleY);
+    return vplAdd(v->forward, vplAdd(vplScale(right, v->right), vplScale(up, v->up)));
+}
+
+// Distance along the view axis at which a line of sight meets a triangle's plane, clamped to the range of its
+// corners.
+static inline float vplEdgeDistance(const vplShading* s, int triangle, const vplFacet* facet, vplVec3 sight)
+{
+    const vplTriangleCorners t = vplGeometry_Corners(s->geometry, triangle);
+    float least = INFINITY, most = 0;
+    for (int i = 0; i < 3; i++) {
+        const float w = vplDot(s->view->forward, vplSub(t.corner[i], s->view->eye));
+        least = vplMinf(least, w);
+        most = vplMaxf(most, w);
+    }
+    const float w = facet->offset / vplDot(facet->normal, sight);
+    return vplMinf(vplMaxf(w, vplMaxf(least, (float)s->view->near)), most); // NaN becomes the least
+}
+
+static inline bool vplSameReflector(const vplReflector* a, const vplReflector* b)
+{
+    bool same = true;
+    for (int c = 0; c < 3; c++) {
+        same &= a->factor[c] == b->factor[c] && a->emission[c] == b->emission[c];
+    }
+    return same;
+}
+
+static inline bool vplIsOneSurface(const vplShading* s, const vplFacet* a, const vplFacet* b, float distance,
+                                   vplVec3 sight)
+{
+    const float width = 2 / (float)(s->view->height * s->view->scaleY) * distance;
+    const float apart = distance * vplDot(a->normal, sight) - a->offset;
+    const float least = a->smooth && b->smooth ? EDGE_SMOOTH_COSINE : EDGE_COSINE;
+    return vplSameReflector(&a->reflector, &b->reflector) && vplDot(a->normal, b->normal) >= least &&
+           fabsf(apart) <= EDGE_PIXELS * width;
+}
+
+// The sample of a set that is nearest to the mean of them.
+static inline int vplMiddleSample(uint32_t samples, int count)
+{
+    int x = 0, y = 0, n = 0;
+    for (uint32_t left = samples; left != 0; left &= left - 1, n++) {
+        const vplSubPixel at = vplSubPixel_OfSample(__builtin_ctz(left), count);
+        x += at.x;
+        y += at.y;
+    }
+    int best = 0, nearest = INT32_MAX;
+    for (uint32_t left = samples; left != 0; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        const vplSubPixel at = vplSubPixel_OfSample(i, count);
+        const int dx = n * at.x - x, dy = n * at.y - y, d2 = dx * dx + dy * dy; // at most 2^25
+        best = d2 < nearest ? i : best;
+        nearest = d2 < nearest ? d2 : nearest;
+    }
+    return best;
+}
+
+// Sorts the samples of a pixel (x, y) of the picture by surfaces; `centre` is the triangle in its centre, -1:
+// none.
+static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int element, int x, int y,
+                                int centre, vplFacetCache* cache, vplEdgePixel* out)
+{
+    vplCoverage found[VPL_MAX_SAMPLES_PER_PIXEL];
+    vplFacet facets[VPL_MAX_SAMPLES_PER_PIXEL + 1]; // the last one is the centre's
+    uint32_t sets[VPL_MAX_SAMPLES_PER_PIXEL + 1] = {0};
+    const int count = vplTile_GetCoverage(tile, element, found), own = VPL_MAX_SAMPLES_PER_PIXEL;
+    if (centre >= 0) {
+        facets[own] = *vplFacetCache_Get(s, centre, cache);
+    }
+    out->count = 0;
+    for (int i = 0; i < count; i++) {
+        const int triangle = found[i].triangle;
+        if (triangle == centre || triangle < 0) {
+            sets[own] |= triangle == centre ? found[i].samples : 0;
+            continue;
+        }
+        const vplFacet facet = *vplFacetCache_Get(s, triangle, cache);
+        const vplSubPixel at = vplSubPixel_OfSample(__builtin_ctz(found[i].samples), tile->sampleCount);
+        const vplVec3 sight = vplSightOf(s->view, x, y, at);
+        const float distance = vplEdgeDistance(s, triangle, &facet, sight);
+        int same = centre >= 0 && vplIsOneSurface(s, &facets[own], &facet, distance, sight) ? own : 0;
+        while (same < out->count && !vplIsOneSurface(s, &facets[same], &facet, distance, sight)) {
+            same++;
+        }
+        if (same == out->count) {
+            facets[same] = facet;
+            out->others[out->count++].triangle = triangle;
+        }
+        sets[same] |= found[i].samples;
+    }
+    const float part = 1 / (float)tile->sampleCount;
+    out->centre = part * (float)__builtin_popcount(sets[own]);
+    for (int i = 0; i < out->count; i++) {
+        vplEdgeSurface* e = &out->others[i];
+        e->share = part * (float)__builtin_popcount(sets[i]);
+        e->sample = vplMiddleSample(sets[i], tile->sampleCount);
+        for (int k = 0; k < count; k++) {
+            e->triangle = found[k].samples >> e->sample & 1 ? found[k].triangle : e->triangle;
+        }
+    }
+}
+
+// ---- their light
+
+// Puts a surface of pixel (x, y) into a free lane.
+static inline void vplPushEdge(const vplShading* s, const vplEdgeSurface* surface, int x, int y,
+                               vplFacetCache* cache, vplEdgeBlock* e)
+{
+    const vplGeometry* g = s->geometry;
+    const vplFacet* facet = vplFacetCache_Get(s, surface->triangle, cache);
+    const vplVec3 sight = vplSightOf(s->view, x, y, vplSubPixel_OfSample(surface->sample, s->def->samples));
+    const float distance = vplEdgeDistance(s, surface->triangle, facet, sight);
+    const vplVec3 p =
+        vplGeometry_Inside(g, surface->triangle, vplAdd(s->view->eye, vplScale(distance, sight)));
+    vplVec3 n = facet->normal;
+    if (facet->smooth) {
+        const vplTriangleCorners t = vplGeometry_Corners(g, surface->triangle);
+        double b[3];
+        vplTriangle_Barycentrics(t.corner, p, b);
+        const vplHit hit = {.object = g->owners[surface->triangle],
+                            .triangle = surface->triangle,
+                            .normal = facet->normal,
+                            .face = VPL_FACE_NONE,
+                            .u = (float)b[1],
+                            .v = (float)b[2]};
+        n = vplGeometry_ShadingNormal(g, &hit);
+        n = vplDot(n, facet->normal) < 0 ? vplNegate(n) : n;
+    }
+    const int l = e->count++;
+    e->x[l] = x;
+    e->y[l] = y;
+    e->share[l] = surface->share;
+    e->block.points.triangle[l] = surface->triangle;
+    vplSurface *at = &e->block.surface, *plane = &e->block.plane;
+    at->px[l] = plane->px[l] = p.x;
+    at->py[l] = plane->py[l] = p.y;
+    at->pz[l] = plane->pz[l] = p.z;
+    at->nx[l] = n.x;
+    at->ny[l] = n.y;
+    at->nz[l] = n.z;
+    plane->nx[l] = facet->normal.x;
+    plane->ny[l] = facet->normal.y;
+    plane->nz[l] = facet->normal.z;
+}
+
+// Lanes that are not taken repeat the first one's point, and show nothing.
+static inline void vplFillEdges(vplEdgeBlock* e)
+{
+    vplBlock* b = &e->block;
+    for (int l = e->count; l < VPL_LANES; l++) {
+        for (int k = 0; k < 6; k++) {
+            b->columns[k][l] = b->columns[k][0];
+        }
+        b->plane.px[l] = b->plane.px[0], b->plane.py[l] = b->plane.py[0], b->plane.pz[l] = b->plane.pz[0];
+        b->plane.nx[l] = b->plane.nx[0], b->plane.ny[l] = b->plane.ny[0], b->plane.nz[l] = b->plane.nz[0];
+        b->points.triangle[l] = -1;
+    }
+    b->points.surface = &b->surface;
+    b->points.plane = &b->plane;
+    b->cluster = VPL_NO_CLUSTER;
+    memset(b->sums, 0, sizeof b->sums);
+}
+
+// Lights the surfaces that wait and adds them to their pixels.
+static inline void vplFlushEdges(const vplShading* s, vplLightEdgesFcn* light, void* user,
+                                 vplFacetCache* cache, vplEdgeBlock* e, int64_t* rays)
+{
+    if (e->count == 0) {
+        return;
+    }
+    vplFillEdges(e);
+    light(s, user, e, rays);
+    for (int l = 0; l < e->count; l++) {
+        const vplReflector* r = &vplFacetCache_Get(s, e->block.points.triangle[l], cache)->reflector;
+        float* pixel = s->image->pixels + 3 * ((size_t)e->y[l] * (size_t)s->image->width + (size_t)e->x[l]);
+        for (int c = 0; c < 3; c++) {
+            const double emission = e->emits ? r->emission[c] : 0;
+            pixel[c] += e->share[l] * (float)(emission + r->factor[c] * e->block.sums[c][l]);
+        }
+    }
+    e->count = 0;
+}
+
+// Adds compensation of all lanes, if the render has one.
+static inline void vplCompensateEdges(const vplShading* s, const vplEdgeBlock* e,
+                                      float irradiance[3][VPL_LANES], int64_t* rays)
+{
+    uint32_t pixels[VPL_LANES] = {0};
+    if (s->compensation != NULL) {
+        for (int l = 0; l < e->count; l++) {
+            pixels[l] = (uint32_t)e->y[l] << 16 | (uint32_t)e->x[l];
+        }
+        vplAddCompensation(s, &e->block.points, pixels, irradiance, rays);
+    }
+}
+
+// Direct light and compensation of all lanes, for vplLightEdgesFcn.
+static inline void vplStartEdges(const vplShading* s, vplEdgeBlock* e, int64_t* rays)
+{
+    _Alignas(64) float part[3][VPL_LANES] = {{0}};
+    vplDirectIrradiance(s, &s->direct, &e->block.points, part, rays);
+    vplCompensateEdges(s, e, part, rays);
+    vplStartSums(&e->block, part);
+}
+
+// Bit l: some sample of lane l shows another triangle than its centre.
+static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int centre[VPL_LANES])
+{
+    int32_t different[VPL_LANES] = {0};
+    for (int i = 0; i < tile->sampleCount; i++) {
+        const int32_t* shown = tile->samples[i] + element;
+        for (int l = 0; l < VPL_LANES; l++) {
+            different[l] |= shown[l] ^ centre[l];
+        }
+    }
+    uint32_t lanes = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        lanes |= (uint32_t)(different[l] != 0) << l;
+    }
+    return lanes;
+}
+
+// Visits the pixels of a finished tile at edges: called with their surfaces.
+typedef void vplEdgePixelFcn(const vplShading* s, void* user, int x, int y, const vplEdgePixel* pixel);
+
+static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+                                 vplEdgePixelFcn* visit, void* user)
+{
+    for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
+        const int x0 = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
+                  y0 = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
+        if (x0 >= tile->width || y0 >= tile->height) {
+            continue;
+        }
+        int centre[VPL_LANES];
+        vplReadTriangles(tile, block * VPL_LANES, centre);
+        for (uint32_t lanes = vplEdgeLanes(tile, block * VPL_LANES, centre); lanes != 0; lanes &= lanes - 1) {
+            const int l = __builtin_ctz(lanes), x = x0 + l % VPL_BLOCK_SIDE, y = y0 + l / VPL_BLOCK_SIDE;
+            if (x < tile->width && y < tile->height) {
+                vplEdgePixel pixel;
+                vplFindEdges(s, tile, block * VPL_LANES + l, tile->x + x, tile->y + y, centre[l], cache,
+                             &pixel);
+                visit(s, user, tile->x + x, tile->y + y, &pixel);
+            }
+        }
+    }
+}
+
+// ---- tiles without a filter
+
+typedef struct vplEdgeWork {
+    vplLightEdgesFcn* light;
+    void* user;
+    vplFacetCache* cache;
+    vplEdgeBlock* waiting;
+    int64_t* rays;
+} vplEdgeWork;
+
+static inline void vplShadeEdgePixel(const vplShading* s, void* user, int x, int y, const vplEdgePixel* p)
+{
+    const vplEdgeWork* w = user;
+    float* pixel = s->image->pixels + 3 * ((size_t)y * (size_t)s->image->width + (size_t)x);
+    for (int c = 0; c < 3; c++) {
+        pixel[c] *= p->centre;
+    }
+    for (int i = 0; i < p->count; i++) {
+        vplPushEdge(s, &p->others[i], x, y, w->cache, w->waiting);
+        if (w->waiting->count == VPL_LANES) {
+            vplFlushEdges(s, w->light, w->user, w->cache, w->waiting, w->rays);
+        }
+    }
+}
+
+// Smooths the edges in a tile whose pixels are written. `light` adds all light to a block.
+static inline void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+                                 vplLightEdgesFcn* light, void* user)
+{
+    vplTileSums* tileSums = tile->scratch;
+    vplEdgeBlock waiting;
+    waiting.count = 0;
+    waiting.emits = true;
+    vplEdgeWork work = {light, user, cache, &waiting, &tileSums->shadowRays};
+    if (tile->sampleCount > 0) {
+        vplVisitEdges(s, tile, cache, vplShadeEdgePixel, &work);
+        vplFlushEdges(s, light, user, cache, &waiting, &tileSums->shadowRays);
+    }
+}
+
+#endif

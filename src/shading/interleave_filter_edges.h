@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// The filter for surfaces at edges that are not in the centres of their pixels:
+// the mean over the pixels around that show such a surface, with the weights of the filter. Where none does,
+// all lights are added.
+#ifndef VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
+#define VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
+
+#include "shading/accumulate.h"
+#include "shading/edges.h"
+#include "shading/interleave_filter_mixed.h"
+
+// Surfaces kept by the tile of a part.
+typedef struct KeptEdges {
+    const vplKeptEdge* edges;
+    int count;
+} KeptEdges;
+
+static inline KeptEdges edgesOf(const vplInterleave* w, const Part* part)
+{
+    if (w->edges == NULL) {
+        return (KeptEdges){NULL, 0};
+    }
+    const int tile = part->y / VPL_TILE_SIDE * w->rasterTilesX + part->x / VPL_TILE_SIDE;
+    return (KeptEdges){w->edges + (size_t)tile * VPL_TILE_EDGES, w->edgeCounts[tile]};
+}
+
+static inline bool isInPart(const Part* part, const vplKeptEdge* e)
+{
+    return e->y >= part->y && e->y < part->y + part->height;
+}
+
+// The mean indirect irradiance around an edge. Returns false where no pixel shows its surface.
+static inline bool meanAroundEdge(const vplShading* s, vplFilterScratch* scratch, const Part* part,
+                                  const vplKeptEdge* e, float mean[3])
+{
+    const vplInterleave* w = s->state;
+    const vplView* v = s->view;
+    const int side = w->side, x = e->x - part->x, y = e->y - part->y;
+    const vplFacet facet = *vplFacetCache_Get(s, e->surface.triangle, &scratch->facets);
+    const vplVec3 n = facet.normal,
+                  sight = vplSightOf(v, e->x, e->y, vplSubPixel_OfSample(e->surface.sample, s->def->samples));
+    const float slack = MAX_DISTANCE * vplEdgeDistance(s, e->surface.triangle, &facet, sight);
+    const float forward = vplDot(n, v->forward), up = vplDot(n, v->up), right = vplDot(n, v->right);
+    float sum[3] = {0, 0, 0}, weights = 0;
+    for (int i = 0; i < tapsOf(side); i++) {
+        const int row = y + i;
+        for (int k = 0; k < tapsOf(side); k++) {
+            const int at = x + k;
+            const float cosine = n.x * scratch->normal[0][row][at] + n.y * scratch->normal[1][row][at] +
+                                 n.z * scratch->normal[2][row][at];
+            const float ahead = forward + scratch->up[row] * up + scratch->right[at] * right;
+            const float above = fabsf(scratch->distance[row][at] * ahead - facet.offset);
+            const float weight =
+                cosine >= MIN_NORMALS && above <= slack ? weightOf(side, i) * weightOf(side, k) : 0;
+            weights += weight;
+            for (int c = 0; c < 3; c++) {
+                sum[c] += weight * scratch->indirect[c][row][at];
+            }
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        mean[c] = weights > 0 ? sum[c] / weights : 0;
+    }
+    return weights > 0;
+}
+
+// Indirect light of all virtual lights.
+static inline void lightLoneEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
+{
+    (void)user;
+    _Alignas(64) float part[3][VPL_LANES] = {{0}};
+    vplCompensateEdges(s, e, part, rays);
+    vplStartSums(&e->block, part);
+    vplAddAllLights(s, &e->block, rays);
+}
+
+static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, const Part* part,
+                               KeptEdges kept)
+{
+    vplEdgeBlock lone;
+    int64_t rays = 0;
+    lone.count = 0;
+    lone.emits = false;
+    for (int i = 0; i < kept.count; i++) {
+        const vplKeptEdge* e = &kept.edges[i];
+        float mean[3];
+        if (!isInPart(part, e)) {
+            continue;
+        }
+        if (!meanAroundEdge(s, scratch, part, e, mean)) {
+            vplPushEdge(s, &e->surface, e->x, e->y, &scratch->facets, &lone);
+            if (lone.count == VPL_LANES) {
+                vplFlushEdges(s, lightLoneEdges, NULL, &scratch->facets, &lone, &rays);
+            }
+            continue;
+        }
+        const vplReflector* r = &vplFacetCache_Get(s, e->surface.triangle, &scratch->facets)->reflector;
+        float* pixel = s->image->pixels + 3 * ((size_t)e->y * (size_t)s->image->width + e->x);
+        for (int c = 0; c < 3; c++) {
+            pixel[c] += e->surface.share * (float)r->factor[c] * mean[c];
+        }
+    }
+    vplFlushEdges(s, lightLoneEdges, NULL, &scratch->facets, &lone, &rays);
+    __atomic_fetch_add(s->shadowRays, rays, __ATOMIC_RELAXED);
+}
+
+#endif

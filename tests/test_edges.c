@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// Coverage antialiasing: pictures are near those of whole renders per sample,
+// only pixels at edges change, and bits depend on nothing.
+#include "scenes.h"
+
+#include "math/vec.h"
+
+#include <stdlib.h>
+
+enum { WIDTH = 160, HEIGHT = 90 };
+
+// ---- pictures
+
+// Renders with options from a list of names and values that ends in NULL.
+static vplImage* renderWith(const vplScene* scene, const char* const* words, const char* name,
+                            const char* value)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.output.width = WIDTH;
+    o.output.height = HEIGHT;
+    for (; *words != NULL; words += 2) {
+        assert_int_equal(vplRenderOptions_Set(&o, words[0], words[1]), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderOptions_Set(&o, name, value), VPL_SUCCESS);
+    return renderScene(scene, &o, NULL);
+}
+
+// Leaves out the bright spot above the lamp, which changes within a pixel without an edge.
+static double rmseOf(const vplImage* a, const vplImage* b)
+{
+    enum { TOP = 24 };
+    vplComparison c;
+    vplImage* below[2];
+    assert_int_equal(vplImage_Crop(a, 0, TOP, WIDTH, HEIGHT - TOP, &below[0]), VPL_SUCCESS);
+    assert_int_equal(vplImage_Crop(b, 0, TOP, WIDTH, HEIGHT - TOP, &below[1]), VPL_SUCCESS);
+    assert_int_equal(vplImage_Compare(below[0], below[1], &c), VPL_SUCCESS);
+    vplImage_Destroy(below[0]);
+    vplImage_Destroy(below[1]);
+    return c.relativeRmse;
+}
+
+// Boxes and quads that do not reflect but emit, so that no surface is shaded: only coverage counts.
+static vplScene* glowingScene(vplContext* context, uint64_t seed)
+{
+    vplScene* scene = sceneOf(context, 0);
+    aim(scene, vplVec(0, 0, 6), vplVec(0, 0, 0));
+    for (int i = 0; i < 40; i++) {
+        const uint64_t at = 16 * (uint64_t)i;
+        const int glow = addMaterial(scene, (vplRgb){0, 0, 0}, (float)(1 + i % 7));
+        const double thin = i % 3 == 0 ? 0.01 : 1;
+        addThing(scene, i % 2 ? VPL_OBJECT_BOX : VPL_OBJECT_QUAD, glow,
+                 vplVec((float)(8 * uniformAt(seed, at) - 4), (float)(5 * uniformAt(seed, at + 1) - 2.5),
+                        (float)(4 * uniformAt(seed, at + 2) - 2)),
+                 6 * uniformAt(seed, at + 3), 6 * uniformAt(seed, at + 4),
+                 vplVec((float)(0.2 + uniformAt(seed, at + 5)),
+                        (float)(thin * (0.2 + uniformAt(seed, at + 6))),
+                        (float)(0.2 + uniformAt(seed, at + 7))));
+    }
+    return scene;
+}
+
+// Both see the same points of pixels; only corners are snapped to 1/256 pixel at other places.
+TEST(CoverageIsThatOfWholePictures, 2)
+{
+    const char* const words[] = {"method", "direct", NULL};
+    for (uint64_t seed = 0; seed < 3; seed++) {
+        vplScene* scene = glowingScene(context, seed);
+        vplImage* smooth = renderWith(scene, words, "antialias", "8");
+        vplImage* whole = renderWith(scene, words, "supersample", "8");
+        vplImage* hard = renderWith(scene, words, "antialias", "1");
+        int apart = 0, edges = 0;
+        for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+            const double difference = fabs((double)smooth->pixels[i] - (double)whole->pixels[i]);
+            apart += difference > 1e-4;
+            edges += hard->pixels[i] != whole->pixels[i];
+        }
+        print_message("# %d values at edges, %d apart\n", edges, apart);
+        assert_true(edges > 1000);
+        assert_true(apart < edges / 100);
+        vplImage_Destroy(smooth);
+        vplImage_Destroy(whole);
+        vplImage_Destroy(hard);
+        vplScene_Destroy(scene);
+    }
+}
+
+// ---- all methods
+
+static const char* const WAYS[][9] = {
+    {"method", "direct"},
+    {"method", "instant-radiosity", "particles", "40"},
+    {"method", "instant-radiosity", "particles", "64", "pipeline", "interleaved"},
+    {"method", "keller", "particles", "24", "compensation", "none"},
+    {"method", "instant-radiosity", "particles", "64", "pipeline", "lightcuts"},
+    {"method", "ssvp", "first-bounce", "64", "second-bounce", "64"},
+    {"method", "radiosity", "patches", "200"},
+};
+enum { WAY_COUNT = sizeof WAYS / sizeof *WAYS };
+
+// The error of pictures at edges falls by more than the noise of lights lets remain.
+TEST(EdgesComeNearTheTruth, 2, SLOW)
+{
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    for (int way = 0; way < WAY_COUNT; way++) {
+        vplImage* truth = renderWith(scene, WAYS[way], "supersample", "64");
+        vplImage* hard = renderWith(scene, WAYS[way], "antialias", "1");
+        vplImage* smooth = renderWith(scene, WAYS[way], "antialias", "8");
+        const double before = rmseOf(hard, truth), after = rmseOf(smooth, truth);
+        print_message("# way %d: relative rmse %.4f, with 8 samples %.4f\n", way, before, after);
+        assert_true(after < before / 2.5);
+        vplImage_Destroy(truth);
+        vplImage_Destroy(hard);
+        vplImage_Destroy(smooth);
+    }
+    vplScene_Destroy(scene);
+}
+
+// A picture of one plane has no edges: not a bit changes.
+TEST(WithoutEdgesNoBitChanges, 2)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    aim(scene, vplVec(0, 1, 0), vplVec(0.01f, 0, 0));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.3f, 2, 0.2f), vplVec(0, -1, 0), 3);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(100, 100, 1));
+    for (int way = 0; way < WAY_COUNT - 1; way++) { // the patches of the last one are triangles of their own
+        vplImage* hard = renderWith(scene, WAYS[way], "antialias", "1");
+        vplImage* smooth = renderWith(scene, WAYS[way], "antialias", "16");
+        assert_true(hard->pixels[0] > 0);
+        assert_true(vplImage_Hash(hard) == vplImage_Hash(smooth));
+        vplImage_Destroy(hard);
+        vplImage_Destroy(smooth);
+    }
+    vplScene_Destroy(scene);
+}
+
+// Stripes of two reflectances finer than a pixel, more than tiles keep for the filter of interleaved shading.
+TEST(MoreEdgesThanATileKeepsAreLitAsWell, 2)
+{
+    vplScene* scene = sceneOf(context, 0.2f);
+    const int bright = addMaterial(scene, (vplRgb){0.9f, 0.5f, 0.1f}, 0);
+    aim(scene, vplVec(0, 2, 0), vplVec(0.01f, 0, 0));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.3f, 1.5f, 0.2f), vplVec(0, -1, 0), 3);
+    for (int i = 0; i < 240; i++) {
+        addThing(scene, VPL_OBJECT_QUAD, i % 2 ? 0 : bright, vplVec(0.02f * (float)(i - 120), 0, 0),
+                 -VPL_PI / 2, 0, vplVec(0.02f, 4, 1));
+    }
+    const char* const deferred[] = {"particles", "64", NULL};
+    const char* const shared[] = {"particles", "64", "pipeline", "interleaved", NULL};
+    vplImage* wanted = renderWith(scene, deferred, "antialias", "8");
+    vplImage* found = renderWith(scene, shared, "antialias", "8");
+    assert_true(rmseOf(found, wanted) < 0.02);
+    vplImage_Destroy(wanted);
+    vplImage_Destroy(found);
+    vplScene_Destroy(scene);
+}
+
+static uint64_t hashAll(vplContext* context)
+{
+    uint64_t hash = 0;
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    for (int way = 1; way < WAY_COUNT; way++) {
+        vplImage* image = renderWith(scene, WAYS[way], "antialias", "5");
+        hash = hash * 31 + vplImage_Hash(image);
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return hash;
+}
+
+TEST_ALONE(SmoothEdgesAreTheSameEverywhere, SLOW)
+{
+    assertSameEverywhere(hashAll);
+}
+
+// ---- the plan
+
+TEST(StagesAndPassesAreNotSmoothed, 1)
+{
+    const char* const without[][2] = {
+        {"show", "normals"}, {"pipeline", "multipass"}, {"pipeline", "batched"}, {"supersample", "2"}};
+    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    for (int i = 0; i < 4; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        vplPlan* plan;
+        assert_int_equal(vplRenderOptions_Set(&o, "antialias", "8"), VPL_SUCCESS);
+        assert_int_equal(vplRenderOptions_Set(&o, without[i][0], without[i][1]), VPL_SUCCESS);
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.output.antialias, 1);
+        vplPlan_Destroy(plan);
+    }
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.output.antialias = VPL_MAX_SAMPLES_PER_PIXEL + 1;
+    assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
+    vplScene_Destroy(scene);
+}
