@@ -60,9 +60,8 @@ typedef struct vplLightTerm {
 // `way` leads from the point to the light; n is the point's normal, m the light's.
 static inline vplLightTerm vplLightTermOf(vplVec3 way, vplVec3 n, vplVec3 m)
 {
-    const float here = vplLargerOf(vplDot(n, way), 0), there = vplLargerOf(-vplDot(m, way), 0);
-    const float d2 = vplLargerOf(vplDot(way, way), FLT_MIN);
-    return (vplLightTerm){here, there, 1 / d2};
+    const float d2 = vplDot(way, way), here = vplDot(n, way), there = -vplDot(m, way);
+    return (vplLightTerm){vplLargerOf(here, 0), vplLargerOf(there, 0), 1 / vplLargerOf(d2, FLT_MIN)};
 }
 
 // The factor of the light's colour. Physical: cos cos / max(d^2, c), each factor finite: 1e20 m away inverse is
@@ -73,7 +72,8 @@ static inline float vplLightFactor(bool physical, vplVec3 way, vplVec3 n, vplVec
         return vplLargerOf(vplDot(n, way), 0) / sqrtf(vplLargerOf(vplDot(way, way), FLT_MIN));
     }
     const vplLightTerm t = vplLightTermOf(way, n, m);
-    return (t.here * t.inverse) * (t.there * vplSmallerOf(t.inverse, inverseClamp));
+    const float bounded = vplSmallerOf(t.inverse, inverseClamp);
+    return (t.here * t.inverse) * (t.there * bounded);
 }
 
 #endif

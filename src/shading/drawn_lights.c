@@ -35,8 +35,9 @@ static void loadLights(const vplShadeLight* lights, const int indices[VPL_LANES]
                        vplLightLanes* lanes)
 {
     for (int l = 0; l < VPL_LANES; l++) {
+        const vplShadeLight* light = &lights[indices[l < count ? l : 0]];
         for (int k = 0; k < 6; k++) {
-            lanes->at[k][l] = vplShadeLight_Column(&lights[indices[l < count ? l : 0]], k);
+            lanes->at[k][l] = vplShadeLight_Column(light, k);
         }
     }
 }
