@@ -18,8 +18,10 @@
 
 // The surfaces of a pixel.
 typedef struct vplEdgePixel {
-    float centre;                                     // share of the surface in the centre
-    vplEdgeSurface others[VPL_MAX_SAMPLES_PER_PIXEL]; // besides the one in the centre
+    int x, y;     // of the picture
+    int triangle; // in the centre; -1: none
+    float share;  // of the surface in the centre
+    vplEdgeSurface others[VPL_MAX_SAMPLES_PER_PIXEL];
     int count;
 } vplEdgePixel;
 
@@ -100,48 +102,50 @@ static inline int vplMiddleSample(uint32_t samples, int count)
     return best;
 }
 
-// Sorts the samples of a pixel (x, y) of the picture by surfaces; `centre` is the triangle in its centre, -1:
-// none.
-static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int element, int x, int y,
-                                int centre, vplFacetCache* cache, vplEdgePixel* out)
+// Names the surface whose samples are `samples`: one of them, and the triangle that it shows.
+static inline vplEdgeSurface vplNameSurface(const vplTile* tile, int element, uint32_t samples)
 {
+    const int sample = vplMiddleSample(samples, tile->sampleCount);
+    return (vplEdgeSurface){.triangle = tile->samples[sample][element],
+                            .sample = sample,
+                            .share = (float)__builtin_popcount(samples) / (float)tile->sampleCount};
+}
+
+// Sorts the samples of a pixel, whose place and centre `p` holds, by surfaces.
+static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int element, vplFacetCache* cache,
+                                vplEdgePixel* p)
+{
+    enum { OWN = VPL_MAX_SAMPLES_PER_PIXEL }; // the surface in the centre
     vplCoverage found[VPL_MAX_SAMPLES_PER_PIXEL];
-    vplFacet facets[VPL_MAX_SAMPLES_PER_PIXEL + 1]; // the last one is the centre's
+    vplFacet facets[VPL_MAX_SAMPLES_PER_PIXEL + 1];
     uint32_t sets[VPL_MAX_SAMPLES_PER_PIXEL + 1] = {0};
-    const int count = vplTile_GetCoverage(tile, element, found), own = VPL_MAX_SAMPLES_PER_PIXEL;
-    if (centre >= 0) {
-        facets[own] = *vplFacetCache_Get(s, centre, cache);
+    const int count = vplTile_GetCoverage(tile, element, found);
+    if (p->triangle >= 0) {
+        facets[OWN] = *vplFacetCache_Get(s, p->triangle, cache);
     }
-    out->count = 0;
+    p->count = 0;
     for (int i = 0; i < count; i++) {
         const int triangle = found[i].triangle;
-        if (triangle == centre || triangle < 0) {
-            sets[own] |= triangle == centre ? found[i].samples : 0;
+        if (triangle == p->triangle || triangle < 0) {
+            sets[OWN] |= triangle == p->triangle ? found[i].samples : 0;
             continue;
         }
         const vplFacet facet = *vplFacetCache_Get(s, triangle, cache);
         const vplSubPixel at = vplSubPixel_OfSample(__builtin_ctz(found[i].samples), tile->sampleCount);
-        const vplVec3 sight = vplSightOf(s->view, x, y, at);
+        const vplVec3 sight = vplSightOf(s->view, p->x, p->y, at);
         const float distance = vplEdgeDistance(s, triangle, &facet, sight);
-        int same = centre >= 0 && vplIsOneSurface(s, &facets[own], &facet, distance, sight) ? own : 0;
-        while (same < out->count && !vplIsOneSurface(s, &facets[same], &facet, distance, sight)) {
+        int same = p->triangle >= 0 && vplIsOneSurface(s, &facets[OWN], &facet, distance, sight) ? OWN : 0;
+        while (same < p->count && !vplIsOneSurface(s, &facets[same], &facet, distance, sight)) {
             same++;
         }
-        if (same == out->count) {
-            facets[same] = facet;
-            out->others[out->count++].triangle = triangle;
+        if (same == p->count) {
+            facets[p->count++] = facet;
         }
         sets[same] |= found[i].samples;
     }
-    const float part = 1 / (float)tile->sampleCount;
-    out->centre = part * (float)__builtin_popcount(sets[own]);
-    for (int i = 0; i < out->count; i++) {
-        vplEdgeSurface* e = &out->others[i];
-        e->share = part * (float)__builtin_popcount(sets[i]);
-        e->sample = vplMiddleSample(sets[i], tile->sampleCount);
-        for (int k = 0; k < count; k++) {
-            e->triangle = found[k].samples >> e->sample & 1 ? found[k].triangle : e->triangle;
-        }
+    p->share = (float)__builtin_popcount(sets[OWN]) / (float)tile->sampleCount;
+    for (int i = 0; i < p->count; i++) {
+        p->others[i] = vplNameSurface(tile, element, sets[i]);
     }
 }
 
@@ -266,7 +270,7 @@ static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int 
 }
 
 // Visits the pixels of a finished tile at edges: called with their surfaces.
-typedef void vplEdgePixelFcn(const vplShading* s, void* user, int x, int y, const vplEdgePixel* pixel);
+typedef void vplEdgePixelFcn(const vplShading* s, void* user, const vplEdgePixel* pixel);
 
 static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
                                  vplEdgePixelFcn* visit, void* user)
@@ -282,10 +286,9 @@ static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFa
         for (uint32_t lanes = vplEdgeLanes(tile, block * VPL_LANES, centre); lanes != 0; lanes &= lanes - 1) {
             const int l = __builtin_ctz(lanes), x = x0 + l % VPL_BLOCK_SIDE, y = y0 + l / VPL_BLOCK_SIDE;
             if (x < tile->width && y < tile->height) {
-                vplEdgePixel pixel;
-                vplFindEdges(s, tile, block * VPL_LANES + l, tile->x + x, tile->y + y, centre[l], cache,
-                             &pixel);
-                visit(s, user, tile->x + x, tile->y + y, &pixel);
+                vplEdgePixel pixel = {.x = tile->x + x, .y = tile->y + y, .triangle = centre[l]};
+                vplFindEdges(s, tile, block * VPL_LANES + l, cache, &pixel);
+                visit(s, user, &pixel);
             }
         }
     }
@@ -301,15 +304,15 @@ typedef struct vplEdgeWork {
     int64_t* rays;
 } vplEdgeWork;
 
-static inline void vplShadeEdgePixel(const vplShading* s, void* user, int x, int y, const vplEdgePixel* p)
+static inline void vplShadeEdgePixel(const vplShading* s, void* user, const vplEdgePixel* p)
 {
     const vplEdgeWork* w = user;
-    float* pixel = s->image->pixels + 3 * ((size_t)y * (size_t)s->image->width + (size_t)x);
+    float* pixel = s->image->pixels + 3 * ((size_t)p->y * (size_t)s->image->width + (size_t)p->x);
     for (int c = 0; c < 3; c++) {
-        pixel[c] *= p->centre;
+        pixel[c] *= p->share;
     }
     for (int i = 0; i < p->count; i++) {
-        vplPushEdge(s, &p->others[i], x, y, w->cache, w->waiting);
+        vplPushEdge(s, &p->others[i], p->x, p->y, w->cache, w->waiting);
         if (w->waiting->count == VPL_LANES) {
             vplFlushEdges(s, w->light, w->user, w->cache, w->waiting, w->rays);
         }

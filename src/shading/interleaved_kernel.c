@@ -263,22 +263,22 @@ static void lightEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t
     vplAddAllLights(s, &e->block, rays);
 }
 
-static void lightEdgePixel(const vplShading* s, void* user, int x, int y, const vplEdgePixel* p)
+static void lightEdgePixel(const vplShading* s, void* user, const vplEdgePixel* p)
 {
     const vplInterleave* w = s->state;
     TileEdges* t = user;
-    const size_t at = (size_t)y * (size_t)s->image->width + (size_t)x;
-    w->centres[at] = p->centre;
+    const size_t at = (size_t)p->y * (size_t)s->image->width + (size_t)p->x;
+    w->centres[at] = p->share;
     for (int c = 0; c < 3; c++) {
-        s->image->pixels[3 * at + (size_t)c] *= p->centre;
+        s->image->pixels[3 * at + (size_t)c] *= p->share;
     }
     for (int i = 0; i < p->count; i++) {
         const bool keep = *t->keptCount < VPL_TILE_EDGES;
         vplEdgeBlock* waiting = keep ? &t->direct : &t->all;
         if (keep) {
-            t->kept[(*t->keptCount)++] = (vplKeptEdge){(uint16_t)x, (uint16_t)y, p->others[i]};
+            t->kept[(*t->keptCount)++] = (vplKeptEdge){(uint16_t)p->x, (uint16_t)p->y, p->others[i]};
         }
-        vplPushEdge(s, &p->others[i], x, y, t->cache, waiting);
+        vplPushEdge(s, &p->others[i], p->x, p->y, t->cache, waiting);
         if (waiting->count == VPL_LANES) {
             vplFlushEdges(s, keep ? lightEdgesDirectly : lightEdges, NULL, t->cache, waiting, t->rays);
         }
