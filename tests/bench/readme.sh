@@ -4,7 +4,7 @@
 # Error: root-mean-square difference of linear radiance from a path-traced truth by the truth's mean, one sample per pixel,
 # through its centre on both sides, so that edges do not count. The truth is two independent halves of SPP (256) paths per
 # pixel, kept in BUILD; their own noise is taken off. Seconds: processor time of all threads, median of three runs.
-# The pictures themselves have four samples per pixel.
+# The pictures themselves have smooth edges.
 set -e
 build=$1
 out=${2:-golden/gallery}
