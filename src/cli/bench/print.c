@@ -26,7 +26,7 @@ static const char* shorten(double count, char text[16])
     return text;
 }
 
-// "2.35 Gpixel-lights/s".
+// Formats a rate, such as "2.35 Gpixel-lights/s".
 static void printRate(const Outcome* o, double ms)
 {
     if (o->unit == NULL || !(ms > 0)) {

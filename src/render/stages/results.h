@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The results of stages that are no type of the library's own.
+// Results of stages whose types are not public.
 #ifndef VPL_RENDER_STAGES_RESULTS_H
 #define VPL_RENDER_STAGES_RESULTS_H
 
@@ -93,7 +93,7 @@ typedef struct vplSolution {
 
 // ---- what stages share
 
-// Floats of a picture.
+// The number of floats in a picture.
 static inline size_t vplValueCount(const vplImage* image)
 {
     return 3 * (size_t)image->width * (size_t)image->height;
