@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Coverage antialiasing: pictures are near those of whole renders per sample,
-// only pixels at edges change, and bits depend on nothing.
+// Tests of coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges
+// change, and bits are the same everywhere.
 #include "scenes.h"
 
 #include "math/vec.h"
