@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The plan of a picture: every decision that was left to the library, every
-// stage that will run, and every stage that is left out, each with its reason. Rendering follows the plan and
-// decides nothing itself; vpl info,
-// --explain, --dry-run and refusals print it.
+// The plan of a picture: every decision that was left to the library, every stage that will run, and every
+// stage that is left out, each with its reason. Rendering follows the plan and decides nothing itself; vpl
+// info, --explain, --dry-run and refusals print it.
 #ifndef VPL_PLAN_H
 #define VPL_PLAN_H
 

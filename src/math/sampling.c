@@ -11,6 +11,13 @@ float vplVanDerCorput(uint32_t k)
     return (float)(vplReverseBits(k) >> 8) * 0x1p-24f;
 }
 
+void vplPixelPoint(int i, int count, double* x, double* y)
+{
+    const double shifted = vplVanDerCorput((uint32_t)i) + 0.5 / count;
+    *x = (i + 0.5) / count;
+    *y = shifted - floor(shifted);
+}
+
 float vplHalton(uint64_t k, int dimension)
 {
     static const uint16_t primes[VPL_PRIME_COUNT] = {

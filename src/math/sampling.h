@@ -20,6 +20,10 @@ static inline uint32_t vplReverseBits(uint32_t x)
 // Radical inverse of k in base 2 (van der Corput), truncated to 24 bits so that it stays below 1.
 float vplVanDerCorput(uint32_t k);
 
+// Point i of `count` in a pixel, [0, 1)^2, by Hammersley's sequence: an edge along an axis is cut at as many places
+// as there are points.
+void vplPixelPoint(int i, int count, double* x, double* y);
+
 // Radical inverse of k in prime number `dimension`, in [0, VPL_PRIME_COUNT): that dimension of Halton's
 // sequence.
 enum { VPL_PRIME_COUNT = 64 };

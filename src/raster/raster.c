@@ -250,9 +250,9 @@ void vplRasterStats_Add(vplRasterStats* sum, const vplRasterStats* stats)
 
 vplSubPixel vplSubPixel_OfSample(int i, int count)
 {
-    double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
-    y = y < 1 ? y : y - 1;
-    return (vplSubPixel){(int)(256 * (i + 0.5) / count) - 128, (int)(256 * y) - 128};
+    double x, y;
+    vplPixelPoint(i, count, &x, &y);
+    return (vplSubPixel){(int)(256 * x) - 128, (int)(256 * y) - 128};
 }
 
 int vplTile_GetCoverage(const vplTile* tile, int element, vplCoverage out[VPL_MAX_SAMPLES_PER_PIXEL])

@@ -154,9 +154,10 @@ static inline void vplAddLights(const vplShading* s, const vplLitBlocks* to, int
     }
 }
 
-// Adds all virtual lights to one block.
-static inline void vplAddAllLights(const vplShading* s, vplBlock* b, int64_t* rays)
+// Adds all virtual lights to one block; a vplAddToBlockFcn.
+static inline void vplAddAllLights(const vplShading* s, void* user, vplBlock* b, int64_t* rays)
 {
+    (void)user;
     static const int first = 0;
     vplLitBlocks to = {.blocks = b, .lit = &first, .count = 1, .culls = s->lights.columns[0] != NULL};
     if (to.culls) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Measures how much light the clamp takes: the distance at which it takes a
-// given share, and the share of a given picture.
+// Measures how much light the clamp takes: the distance at which it takes a given share, and the share of a
+// given picture.
 #include "math/sampling.h"
 #include "math/vec.h"
 #include "shading/compensation.h"

@@ -45,14 +45,6 @@ static void lightSquare(const vplShading* s, vplTile* tile, int firstBlock, vplF
     vplAddLights(s, &to, 0, s->lights.count, &tileSums->shadowRays);
 }
 
-// All light of surfaces at edges.
-static void lightEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
-{
-    (void)user;
-    vplStartEdges(s, e, rays);
-    vplAddAllLights(s, &e->block, rays);
-}
-
 void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
 {
     (void)worker;
@@ -71,7 +63,7 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
             }
         }
     }
-    vplSmoothTile(s, tile, &cache, lightEdges, NULL);
+    vplSmoothTile(s, tile, &cache, vplAddAllLights, NULL);
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }
 

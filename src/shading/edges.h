@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Coverage antialiasing, for kernels: a pixel whose samples show other surfaces
-// than its centre is the mean of all of them, by the shares of its samples. The centre's surface is shaded as
-// ever; each other one is shaded once, at one of its samples. All other pixels cost a comparison of their
-// samples.
+// Coverage antialiasing, for kernels: a pixel whose samples show other surfaces than its centre is the mean of
+// all of them, by the shares of its samples. The centre's surface is shaded as ever; each other one is shaded
+// once, at one of its samples. All other pixels cost a comparison of their samples.
 #ifndef VPL_SHADING_EDGES_H
 #define VPL_SHADING_EDGES_H
 
 #include "geometry/triangle.h"
+#include "lights/light_set.h"
 #include "math/scalar.h"
 #include "shading/gbuffer.h"
 
@@ -24,18 +24,6 @@ typedef struct vplEdgePixel {
     vplEdgeSurface others[VPL_MAX_SAMPLES_PER_PIXEL];
     int count;
 } vplEdgePixel;
-
-// Surfaces that wait until all lanes are taken.
-typedef struct vplEdgeBlock {
-    vplBlock block;
-    int x[VPL_LANES], y[VPL_LANES]; // pixel of the picture
-    float share[VPL_LANES];
-    int count;
-    bool emits; // emission is added, too
-} vplEdgeBlock;
-
-// Adds light to the sums of a block.
-typedef void vplLightEdgesFcn(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays);
 
 // ---- which surfaces
 
@@ -151,106 +139,100 @@ static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int el
 
 // ---- their light
 
-// Puts a surface of pixel (x, y) into a free lane.
-static inline void vplPushEdge(const vplShading* s, const vplEdgeSurface* surface, int x, int y,
-                               vplFacetCache* cache, vplEdgeBlock* e)
-{
-    const vplGeometry* g = s->geometry;
-    const vplFacet* facet = vplFacetCache_Get(s, surface->triangle, cache);
-    const vplVec3 sight = vplSightOf(s->view, x, y, vplSubPixel_OfSample(surface->sample, s->def->samples));
-    const float distance = vplEdgeDistance(s, surface->triangle, facet, sight);
-    const vplVec3 p =
-        vplGeometry_Inside(g, surface->triangle, vplAdd(s->view->eye, vplScale(distance, sight)));
-    vplVec3 n = facet->normal;
-    if (facet->smooth) {
-        const vplTriangleCorners t = vplGeometry_Corners(g, surface->triangle);
-        double b[3];
-        vplTriangle_Barycentrics(t.corner, p, b);
-        const vplHit hit = {.object = g->owners[surface->triangle],
-                            .triangle = surface->triangle,
-                            .normal = facet->normal,
-                            .face = VPL_FACE_NONE,
-                            .u = (float)b[1],
-                            .v = (float)b[2]};
-        n = vplGeometry_ShadingNormal(g, &hit);
-        n = vplDot(n, facet->normal) < 0 ? vplNegate(n) : n;
-    }
-    const int l = e->count++;
-    e->x[l] = x;
-    e->y[l] = y;
-    e->share[l] = surface->share;
-    e->block.points.triangle[l] = surface->triangle;
-    vplSurface *at = &e->block.surface, *plane = &e->block.plane;
-    at->px[l] = plane->px[l] = p.x;
-    at->py[l] = plane->py[l] = p.y;
-    at->pz[l] = plane->pz[l] = p.z;
-    at->nx[l] = n.x;
-    at->ny[l] = n.y;
-    at->nz[l] = n.z;
-    plane->nx[l] = facet->normal.x;
-    plane->ny[l] = facet->normal.y;
-    plane->nz[l] = facet->normal.z;
-}
+// Adds all virtual lights to the sums of a block.
+typedef void vplAddToBlockFcn(const vplShading* s, void* user, vplBlock* b, int64_t* rays);
 
-// Lanes that are not taken repeat the first one's point, and show nothing.
-static inline void vplFillEdges(vplEdgeBlock* e)
-{
-    vplBlock* b = &e->block;
-    for (int l = e->count; l < VPL_LANES; l++) {
-        for (int k = 0; k < 6; k++) {
-            b->columns[k][l] = b->columns[k][0];
-        }
-        b->plane.px[l] = b->plane.px[0], b->plane.py[l] = b->plane.py[0], b->plane.pz[l] = b->plane.pz[0];
-        b->plane.nx[l] = b->plane.nx[0], b->plane.ny[l] = b->plane.ny[0], b->plane.nz[l] = b->plane.nz[0];
-        b->points.triangle[l] = -1;
-    }
-    b->points.surface = &b->surface;
-    b->points.plane = &b->plane;
-    b->cluster = VPL_NO_CLUSTER;
-    memset(b->sums, 0, sizeof b->sums);
-}
+// Lights surfaces of pixels, sixteen at a time, and adds them to the picture by their shares.
+typedef struct vplEdgeQueue {
+    const vplShading* shading;
+    vplFacetCache* cache;
+    vplAddToBlockFcn* addLights;
+    void* user;                     // passed to addLights
+    int64_t* rays;                  // counter of rays
+    bool direct;                    // emission and direct light are added
+    bool indirect;                  // compensation and virtual lights are added
+    int count;                      // surfaces that wait, in the first lanes
+    vplBlock block;                 // their points
+    int x[VPL_LANES], y[VPL_LANES]; // their pixels of the picture
+    float share[VPL_LANES];
+} vplEdgeQueue;
 
-// Lights the surfaces that wait and adds them to their pixels.
-static inline void vplFlushEdges(const vplShading* s, vplLightEdgesFcn* light, void* user,
-                                 vplFacetCache* cache, vplEdgeBlock* e, int64_t* rays)
+// Lights the surfaces that wait.
+static inline void vplEdgeQueue_Flush(vplEdgeQueue* q)
 {
-    if (e->count == 0) {
+    const vplShading* s = q->shading;
+    vplBlock* b = &q->block;
+    _Alignas(64) float part[3][VPL_LANES] = {{0}};
+    if (q->count == 0) {
         return;
     }
-    vplFillEdges(e);
-    light(s, user, e, rays);
-    for (int l = 0; l < e->count; l++) {
-        const vplReflector* r = &vplFacetCache_Get(s, e->block.points.triangle[l], cache)->reflector;
-        float* pixel = s->image->pixels + 3 * ((size_t)e->y[l] * (size_t)s->image->width + (size_t)e->x[l]);
+    if (q->direct) {
+        vplDirectIrradiance(s, &s->direct, &b->points, part, q->rays);
+    }
+    if (q->indirect && s->compensation != NULL) {
+        uint32_t pixels[VPL_LANES] = {0};
+        for (int l = 0; l < q->count; l++) {
+            pixels[l] = (uint32_t)q->y[l] << 16 | (uint32_t)q->x[l];
+        }
+        vplAddCompensation(s, &b->points, pixels, part, q->rays);
+    }
+    vplStartSums(b, part);
+    if (q->indirect) {
+        q->addLights(s, q->user, b, q->rays);
+    }
+    for (int l = 0; l < q->count; l++) {
+        const vplReflector* r = &vplFacetCache_Get(s, b->points.triangle[l], q->cache)->reflector;
+        float* pixel = s->image->pixels + 3 * ((size_t)q->y[l] * (size_t)s->image->width + (size_t)q->x[l]);
         for (int c = 0; c < 3; c++) {
-            const double emission = e->emits ? r->emission[c] : 0;
-            pixel[c] += e->share[l] * (float)(emission + r->factor[c] * e->block.sums[c][l]);
+            const double emission = q->direct ? r->emission[c] : 0;
+            pixel[c] += q->share[l] * (float)(emission + r->factor[c] * b->sums[c][l]);
         }
     }
-    e->count = 0;
+    q->count = 0;
 }
 
-// Adds compensation of all lanes, if the render has one.
-static inline void vplCompensateEdges(const vplShading* s, const vplEdgeBlock* e,
-                                      float irradiance[3][VPL_LANES], int64_t* rays)
+// Puts a point into the next lane. The first one is in all lanes, of which those behind the last show nothing.
+static inline void vplEdgeQueue_Put(vplEdgeQueue* q, vplVec3 position, vplVec3 normal, vplVec3 plane)
 {
-    uint32_t pixels[VPL_LANES] = {0};
-    if (s->compensation != NULL) {
-        for (int l = 0; l < e->count; l++) {
-            pixels[l] = (uint32_t)e->y[l] << 16 | (uint32_t)e->x[l];
-        }
-        vplAddCompensation(s, &e->block.points, pixels, irradiance, rays);
+    vplBlock* b = &q->block;
+    if (q->count == 0) {
+        b->points.surface = &b->surface;
+        b->points.plane = &b->plane;
+        b->cluster = VPL_NO_CLUSTER;
+        memset(b->points.triangle, 0xff, sizeof b->points.triangle);
+    }
+    for (int l = q->count; l < (q->count == 0 ? VPL_LANES : q->count + 1); l++) {
+        vplSurface_Put(&b->surface, l, position, normal);
+        vplSurface_Put(&b->plane, l, position, plane);
     }
 }
 
-// Direct light and compensation of all lanes, for vplLightEdgesFcn.
-static inline void vplStartEdges(const vplShading* s, vplEdgeBlock* e, int64_t* rays)
+// Adds a surface of pixel (x, y).
+static inline void vplEdgeQueue_Push(vplEdgeQueue* q, const vplEdgeSurface* surface, int x, int y)
 {
-    _Alignas(64) float part[3][VPL_LANES] = {{0}};
-    vplDirectIrradiance(s, &s->direct, &e->block.points, part, rays);
-    vplCompensateEdges(s, e, part, rays);
-    vplStartSums(&e->block, part);
+    const vplShading* s = q->shading;
+    const vplFacet* facet = vplFacetCache_Get(s, surface->triangle, q->cache);
+    const vplVec3 sight = vplSightOf(s->view, x, y, vplSubPixel_OfSample(surface->sample, s->def->samples));
+    const float distance = vplEdgeDistance(s, surface->triangle, facet, sight);
+    vplHit hit = {.object = s->geometry->owners[surface->triangle],
+                  .face = VPL_FACE_NONE,
+                  .triangle = surface->triangle,
+                  .normal = facet->normal};
+    hit.position = vplGeometry_InsideAt(s->geometry, surface->triangle,
+                                        vplAdd(s->view->eye, vplScale(distance, sight)), &hit.u, &hit.v);
+    vplVec3 n = facet->smooth ? vplGeometry_ShadingNormal(s->geometry, &hit) : facet->normal;
+    n = vplDot(n, facet->normal) < 0 ? vplNegate(n) : n;
+    vplEdgeQueue_Put(q, hit.position, n, facet->normal);
+    q->block.points.triangle[q->count] = surface->triangle;
+    q->x[q->count] = x;
+    q->y[q->count] = y;
+    q->share[q->count] = surface->share;
+    if (++q->count == VPL_LANES) {
+        vplEdgeQueue_Flush(q);
+    }
 }
+
+// ---- tiles
 
 // Bit l: some sample of lane l shows another triangle than its centre.
 static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int centre[VPL_LANES])
@@ -269,9 +251,10 @@ static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int 
     return lanes;
 }
 
-// Visits the pixels of a finished tile at edges: called with their surfaces.
 typedef void vplEdgePixelFcn(const vplShading* s, void* user, const vplEdgePixel* pixel);
 
+// Visits the pixels at edges of a tile whose pixels are written, and scales them by the share of the surface in
+// their centres.
 static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
                                  vplEdgePixelFcn* visit, void* user)
 {
@@ -288,49 +271,34 @@ static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFa
             if (x < tile->width && y < tile->height) {
                 vplEdgePixel pixel = {.x = tile->x + x, .y = tile->y + y, .triangle = centre[l]};
                 vplFindEdges(s, tile, block * VPL_LANES + l, cache, &pixel);
+                float* shown =
+                    s->image->pixels + 3 * ((size_t)pixel.y * (size_t)s->image->width + (size_t)pixel.x);
+                for (int c = 0; c < 3; c++) {
+                    shown[c] *= pixel.share;
+                }
                 visit(s, user, &pixel);
             }
         }
     }
 }
 
-// ---- tiles without a filter
-
-typedef struct vplEdgeWork {
-    vplLightEdgesFcn* light;
-    void* user;
-    vplFacetCache* cache;
-    vplEdgeBlock* waiting;
-    int64_t* rays;
-} vplEdgeWork;
-
-static inline void vplShadeEdgePixel(const vplShading* s, void* user, const vplEdgePixel* p)
+static inline void vplPushEdges(const vplShading* s, void* user, const vplEdgePixel* p)
 {
-    const vplEdgeWork* w = user;
-    float* pixel = s->image->pixels + 3 * ((size_t)p->y * (size_t)s->image->width + (size_t)p->x);
-    for (int c = 0; c < 3; c++) {
-        pixel[c] *= p->share;
-    }
+    (void)s;
     for (int i = 0; i < p->count; i++) {
-        vplPushEdge(s, &p->others[i], p->x, p->y, w->cache, w->waiting);
-        if (w->waiting->count == VPL_LANES) {
-            vplFlushEdges(s, w->light, w->user, w->cache, w->waiting, w->rays);
-        }
+        vplEdgeQueue_Push(user, &p->others[i], p->x, p->y);
     }
 }
 
-// Smooths the edges in a tile whose pixels are written. `light` adds all light to a block.
+// Smooths the edges in a tile whose pixels are written, by all light.
 static inline void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
-                                 vplLightEdgesFcn* light, void* user)
+                                 vplAddToBlockFcn* addLights, void* user)
 {
     vplTileSums* tileSums = tile->scratch;
-    vplEdgeBlock waiting;
-    waiting.count = 0;
-    waiting.emits = true;
-    vplEdgeWork work = {light, user, cache, &waiting, &tileSums->shadowRays};
     if (tile->sampleCount > 0) {
-        vplVisitEdges(s, tile, cache, vplShadeEdgePixel, &work);
-        vplFlushEdges(s, light, user, cache, &waiting, &tileSums->shadowRays);
+        vplEdgeQueue q = {s, cache, addLights, user, &tileSums->shadowRays, .direct = true, .indirect = true};
+        vplVisitEdges(s, tile, cache, vplPushEdges, &q);
+        vplEdgeQueue_Flush(&q);
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The filter for surfaces at edges that are not in the centres of their pixels:
-// the mean over the pixels around that show such a surface, with the weights of the filter. Where none does,
-// all lights are added.
+// The filter for surfaces at edges that are not in the centres of their pixels: the mean over the pixels around
+// that show such a surface, with the weights of the filter. Where none does, all lights are added.
 #ifndef VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 #define VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 
@@ -64,23 +63,11 @@ static inline bool meanAroundEdge(const vplShading* s, vplFilterScratch* scratch
     return weights > 0;
 }
 
-// Indirect light of all virtual lights.
-static inline void lightLoneEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
-{
-    (void)user;
-    _Alignas(64) float part[3][VPL_LANES] = {{0}};
-    vplCompensateEdges(s, e, part, rays);
-    vplStartSums(&e->block, part);
-    vplAddAllLights(s, &e->block, rays);
-}
-
 static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, const Part* part,
                                KeptEdges kept)
 {
-    vplEdgeBlock lone;
     int64_t rays = 0;
-    lone.count = 0;
-    lone.emits = false;
+    vplEdgeQueue lone = {s, &scratch->facets, vplAddAllLights, NULL, &rays, .indirect = true};
     for (int i = 0; i < kept.count; i++) {
         const vplKeptEdge* e = &kept.edges[i];
         float mean[3];
@@ -88,10 +75,7 @@ static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, c
             continue;
         }
         if (!meanAroundEdge(s, scratch, part, e, mean)) {
-            vplPushEdge(s, &e->surface, e->x, e->y, &scratch->facets, &lone);
-            if (lone.count == VPL_LANES) {
-                vplFlushEdges(s, lightLoneEdges, NULL, &scratch->facets, &lone, &rays);
-            }
+            vplEdgeQueue_Push(&lone, &e->surface, e->x, e->y);
             continue;
         }
         const vplReflector* r = &vplFacetCache_Get(s, e->surface.triangle, &scratch->facets)->reflector;
@@ -100,7 +84,7 @@ static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, c
             pixel[c] += e->surface.share * (float)r->factor[c] * mean[c];
         }
     }
-    vplFlushEdges(s, lightLoneEdges, NULL, &scratch->facets, &lone, &rays);
+    vplEdgeQueue_Flush(&lone);
     __atomic_fetch_add(s->shadowRays, rays, __ATOMIC_RELAXED);
 }
 

@@ -238,5 +238,7 @@ void VPL_KERNEL(vplFilterTask)(void* data, int task, int worker)
             filterRun(s, scratch, &part, row, x);
         }
     }
-    filterEdges(s, scratch, &part, kept);
+    if (kept.count > 0) {
+        filterEdges(s, scratch, &part, kept);
+    }
 }

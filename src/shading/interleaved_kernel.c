@@ -238,50 +238,25 @@ static void lightClass(Class* class, int x, int y)
 
 // ---- edges
 
-// Surfaces at the edges of one tile: direct light is found now. Indirect light of the first VPL_TILE_EDGES is
-// left to the filter, that of others is found now, too.
+// The edges of one tile. The filter finds the indirect light of the first VPL_TILE_EDGES surfaces; all light of
+// the others is found now.
 typedef struct TileEdges {
     vplKeptEdge* kept;
     int* keptCount;
-    vplFacetCache* cache;
-    vplEdgeBlock direct, all; // waiting
-    int64_t* rays;
+    vplEdgeQueue direct, all;
 } TileEdges;
-
-static void lightEdgesDirectly(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
-{
-    (void)user;
-    _Alignas(64) float part[3][VPL_LANES] = {{0}};
-    vplDirectIrradiance(s, &s->direct, &e->block.points, part, rays);
-    vplStartSums(&e->block, part);
-}
-
-static void lightEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
-{
-    (void)user;
-    vplStartEdges(s, e, rays);
-    vplAddAllLights(s, &e->block, rays);
-}
 
 static void lightEdgePixel(const vplShading* s, void* user, const vplEdgePixel* p)
 {
     const vplInterleave* w = s->state;
     TileEdges* t = user;
-    const size_t at = (size_t)p->y * (size_t)s->image->width + (size_t)p->x;
-    w->centres[at] = p->share;
-    for (int c = 0; c < 3; c++) {
-        s->image->pixels[3 * at + (size_t)c] *= p->share;
-    }
+    w->centres[(size_t)p->y * (size_t)s->image->width + (size_t)p->x] = p->share;
     for (int i = 0; i < p->count; i++) {
         const bool keep = *t->keptCount < VPL_TILE_EDGES;
-        vplEdgeBlock* waiting = keep ? &t->direct : &t->all;
         if (keep) {
             t->kept[(*t->keptCount)++] = (vplKeptEdge){(uint16_t)p->x, (uint16_t)p->y, p->others[i]};
         }
-        vplPushEdge(s, &p->others[i], p->x, p->y, t->cache, waiting);
-        if (waiting->count == VPL_LANES) {
-            vplFlushEdges(s, keep ? lightEdgesDirectly : lightEdges, NULL, t->cache, waiting, t->rays);
-        }
+        vplEdgeQueue_Push(keep ? &t->direct : &t->all, &p->others[i], p->x, p->y);
     }
 }
 
@@ -290,13 +265,11 @@ static void lightTileEdges(const vplShading* s, vplTile* tile, vplFacetCache* ca
     const vplInterleave* w = s->state;
     vplTileSums* tileSums = tile->scratch;
     const int number = tile->y / VPL_TILE_SIDE * w->rasterTilesX + tile->x / VPL_TILE_SIDE;
-    TileEdges edges;
-    edges.kept = w->edges + (size_t)number * VPL_TILE_EDGES;
-    edges.keptCount = &w->edgeCounts[number];
-    edges.cache = cache;
-    edges.direct.count = edges.all.count = 0;
-    edges.direct.emits = edges.all.emits = true;
-    edges.rays = &tileSums->shadowRays;
+    TileEdges edges = {
+        .kept = w->edges + (size_t)number * VPL_TILE_EDGES,
+        .keptCount = &w->edgeCounts[number],
+        .direct = {s, cache, NULL, NULL, &tileSums->shadowRays, .direct = true},
+        .all = {s, cache, vplAddAllLights, NULL, &tileSums->shadowRays, .direct = true, .indirect = true}};
     *edges.keptCount = 0;
     for (int y = tile->y; y < tile->y + tile->height; y++) {
         for (int x = tile->x; x < tile->x + tile->width; x++) {
@@ -304,8 +277,8 @@ static void lightTileEdges(const vplShading* s, vplTile* tile, vplFacetCache* ca
         }
     }
     vplVisitEdges(s, tile, cache, lightEdgePixel, &edges);
-    vplFlushEdges(s, lightEdgesDirectly, NULL, cache, &edges.direct, edges.rays);
-    vplFlushEdges(s, lightEdges, NULL, cache, &edges.all, edges.rays);
+    vplEdgeQueue_Flush(&edges.direct);
+    vplEdgeQueue_Flush(&edges.all);
 }
 
 void VPL_KERNEL(vplInterleaveTile)(void* data, vplTile* tile, int worker)

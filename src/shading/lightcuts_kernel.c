@@ -243,8 +243,9 @@ static void refineFromRoot(Work* w)
 
 // Adds the light of all clusters to a block whose sums hold its other light, to which errors are relative,
 // too.
-static void addCut(const vplShading* s, vplCutWorker* worker, vplBlock* b, int64_t* rays)
+static void addCut(const vplShading* s, void* user, vplBlock* b, int64_t* rays)
 {
+    vplCutWorker* worker = user;
     const vplPoints* points = &b->points;
     const vplLightcuts* lightcuts = s->state;
     vplRayStarts starts;
@@ -272,13 +273,6 @@ static void addCut(const vplShading* s, vplCutWorker* worker, vplBlock* b, int64
     }
 }
 
-// All light of surfaces at edges.
-static void lightEdges(const vplShading* s, void* user, vplEdgeBlock* e, int64_t* rays)
-{
-    vplStartEdges(s, e, rays);
-    addCut(s, user, &e->block, rays);
-}
-
 void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
 {
     const vplShading* s = data;
@@ -298,6 +292,6 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
         }
         vplWriteLit(s, tile, block, &cache, &b);
     }
-    vplSmoothTile(s, tile, &cache, lightEdges, &lightcuts->workers[worker]);
+    vplSmoothTile(s, tile, &cache, addCut, &lightcuts->workers[worker]);
     __atomic_fetch_add(s->shadowRays, tileSums->shadowRays, __ATOMIC_RELAXED);
 }

@@ -6,7 +6,6 @@
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
-#include <math.h>
 #include <string.h>
 
 // ---- one view
@@ -51,8 +50,7 @@ static vplResult shadeView(const vplRun* run, const vplView* view, const vplShad
     return patches ? drawPatches(run, view, image) : VPL_SUCCESS;
 }
 
-// Sample i of `count` of every pixel: Hammersley points, so that edges along the axes, too, are cut at as
-// many places as there are samples.
+// Sample i of `count` of every pixel.
 static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i, int count, vplImage* image)
 {
     vplShadeDef def = *plain;
@@ -62,8 +60,9 @@ static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i,
         compensation.firstRay = (uint32_t)(run->pass * count + i) * (uint32_t)compensation.rayCount;
         def.compensation = &compensation;
     }
-    const double y = vplVanDerCorput((uint32_t)i) + 0.5 / count;
-    const vplView view = vplView_At(&run->plan->view, (i + 0.5) / count, y - floor(y));
+    double x, y;
+    vplPixelPoint(i, count, &x, &y);
+    const vplView view = vplView_At(&run->plan->view, x, y);
     return shadeView(run, &view, &def, image);
 }
 
