@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges
-// change, and bits are the same everywhere.
+// Tests of coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges and
+// at rims of shadows change, and bits are the same everywhere.
 #include "scenes.h"
 
 #include "math/vec.h"
@@ -66,7 +66,7 @@ TEST(CoverageIsThatOfWholePictures, 2)
     for (uint64_t seed = 0; seed < 3; seed++) {
         vplScene* scene = glowingScene(context, seed);
         vplImage* smooth = renderWith(scene, words, "antialias", "8");
-        vplImage* whole = renderWith(scene, words, "supersample", "8");
+        vplImage* whole = renderWith(scene, words, "supersample", "9"); // 8 samples and the centre
         vplImage* hard = renderWith(scene, words, "antialias", "1");
         int apart = 0, edges = 0;
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
@@ -154,10 +154,71 @@ TEST(MoreEdgesThanATileKeepsAreLitAsWell, 2)
     vplScene_Destroy(scene);
 }
 
+// ---- rims of shadows
+
+// A plane under an emitter, and things above the picture that throw shadows on it: a large one at an angle, and
+// bars whose shadows are thinner than a pixel, along an axis and at an angle.
+static vplScene* shadowScene(vplContext* context, vplEmitterType type)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    aim(scene, vplVec(0, 3, 0), vplVec(0.01f, 0, 0));
+    addEmitter(scene, type, vplVec(0, 8, 0), vplVec(0, -1, 0), type == VPL_EMITTER_DIRECTIONAL ? 2 : 100);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -VPL_PI / 2, 0, vplVec(100, 100, 1));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(-0.6f, 6, 0.2f), 0, 0.7, vplVec(0.4f, 0.02f, 0.3f));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.4f, 6, 0.331f), 0, 0, vplVec(0.9f, 0.02f, 0.004f));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.5f, 6, -0.4f), 0, 0.3, vplVec(0.7f, 0.02f, 0.003f));
+    return scene;
+}
+
+static const char* const HARD[] = {"method", "direct", "light-shadows", "ray", NULL};
+
+TEST(RimsOfShadowsComeNearTheTruth, 2)
+{
+    const vplEmitterType types[] = {VPL_EMITTER_POINT, VPL_EMITTER_DIRECTIONAL};
+    for (int i = 0; i < 2; i++) {
+        vplScene* scene = shadowScene(context, types[i]);
+        vplImage* truth = renderWith(scene, HARD, "supersample", "256");
+        vplImage* hard = renderWith(scene, HARD, "antialias", "1");
+        vplImage* smooth = renderWith(scene, HARD, "antialias", "8");
+        vplImage* whole = renderWith(scene, HARD, "supersample", "9");
+        const double before = rmseOf(hard, truth), after = rmseOf(smooth, truth),
+                     least = rmseOf(whole, truth);
+        print_message("# relative rmse %.4f, smooth %.4f, 9 pictures %.4f\n", before, after, least);
+        assert_true(least < before / 3);
+        assert_true(after < 1.3 * least);
+        vplImage_Destroy(truth);
+        vplImage_Destroy(hard);
+        vplImage_Destroy(smooth);
+        vplImage_Destroy(whole);
+        vplScene_Destroy(scene);
+    }
+}
+
+// Both see the same points of pixels, and the plane is one surface.
+TEST(SmoothRimsAreThoseOfWholePictures, 2)
+{
+    vplScene* scene = shadowScene(context, VPL_EMITTER_POINT);
+    vplImage* smooth = renderWith(scene, HARD, "antialias", "8");
+    vplImage* whole = renderWith(scene, HARD, "supersample", "9");
+    int apart = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        apart += fabs((double)smooth->pixels[3 * i] / (double)whole->pixels[3 * i] - 1) > 1e-3;
+    }
+    print_message("# %d pixels apart\n", apart);
+    assert_int_equal(apart, 0);
+    vplImage_Destroy(smooth);
+    vplImage_Destroy(whole);
+    vplScene_Destroy(scene);
+}
+
 static uint64_t hashAll(vplContext* context)
 {
-    uint64_t hash = 0;
-    vplScene* scene = openScene(context, "examples/scenes/room.json");
+    vplScene* scene = shadowScene(context, VPL_EMITTER_DIRECTIONAL);
+    vplImage* rims = renderWith(scene, HARD, "antialias", "8");
+    uint64_t hash = vplImage_Hash(rims);
+    vplImage_Destroy(rims);
+    vplScene_Destroy(scene);
+    scene = openScene(context, "examples/scenes/room.json");
     for (int way = 1; way < WAY_COUNT; way++) {
         vplImage* image = renderWith(scene, WAYS[way], "antialias", "5");
         hash = hash * 31 + vplImage_Hash(image);

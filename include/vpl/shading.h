@@ -132,8 +132,9 @@ typedef struct vplShadeDef {
     float areaLightMinDistance; // their clamp distance, as minDistance
     int particleCount;          // N, by which documented direct light is divided (0 counts as 1)
 
-    // Coverage antialiasing: samples per pixel, [0, VPL_MAX_SAMPLES_PER_PIXEL]; 0 and 1: pixels show what is
-    // in their centres. Radiance only; multipass and batched ignore it.
+    // Coverage antialiasing: samples per pixel besides its centre, [0, VPL_MAX_SAMPLES_PER_PIXEL], rounded
+    // down to an even number; 0: pixels show what is in their centres. Radiance only; multipass and batched
+    // ignore it.
     int samples;
 
     // Virtual lights.

@@ -186,8 +186,8 @@ static void countDraws(const Scale* s, vplPlan* p)
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
-    p->drawCalls =
-        objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample * o->output.antialias;
+    p->drawCalls = objects * (6 * maps + (1 + passes) * supersample) +
+                   patchDraws * supersample * (1 + (o->output.antialias & ~1));
 }
 
 enum {

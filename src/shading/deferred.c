@@ -11,9 +11,11 @@ void vplOpenGbuffer(vplShading* shading, vplFramebuffer* framebuffer, vplTileFcn
 {
     const vplShadeDef* def = shading->def;
     shading->tileTask = tileTask;
-    framebuffer->samples = def->output == VPL_OUTPUT_RADIANCE && def->samples > 1 ? def->samples : 0;
+    framebuffer->samples = def->output == VPL_OUTPUT_RADIANCE ? shading->samples : 0;
     framebuffer->planeCount = VPL_PLANE_POSITION + 3;
-    framebuffer->scratchBytes = offsetof(vplTileSums, irradiance);
+    shading->smoothsRims = framebuffer->samples > 0 && shading->direct.emitterCount > 0;
+    framebuffer->scratchBytes =
+        offsetof(vplTileSums, emitted) + (shading->smoothsRims ? sizeof((vplTileSums*)0)->emitted : 0);
     for (int k = 0; k < 3; k++) { // the plane of triangles says where something was written
         framebuffer->planes[VPL_PLANE_NORMAL + k].scratch = true;
         framebuffer->planes[VPL_PLANE_POSITION + k].scratch = true;

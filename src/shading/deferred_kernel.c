@@ -3,7 +3,7 @@
 // added in squares of 4 x 4 blocks, whose points, sums and lights stay in the first-level cache.
 #include "base/isa.h"
 #include "shading/accumulate.h"
-#include "shading/edges.h"
+#include "shading/smooth.h"
 
 enum { SQUARE = 4, SQUARES = VPL_TILE_BLOCKS / SQUARE, SQUARE_BLOCKS = SQUARE * SQUARE };
 

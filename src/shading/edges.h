@@ -21,6 +21,7 @@ typedef struct vplEdgePixel {
     int x, y;     // of the picture
     int triangle; // in the centre; -1: none
     float share;  // of the surface in the centre
+    uint32_t own; // the samples that show it, besides the centre
     vplEdgeSurface others[VPL_MAX_SAMPLES_PER_PIXEL];
     int count;
 } vplEdgePixel;
@@ -96,7 +97,7 @@ static inline vplEdgeSurface vplNameSurface(const vplTile* tile, int element, ui
     const int sample = vplMiddleSample(samples, tile->sampleCount);
     return (vplEdgeSurface){.triangle = tile->samples[sample][element],
                             .sample = sample,
-                            .share = (float)__builtin_popcount(samples) / (float)tile->sampleCount};
+                            .share = (float)__builtin_popcount(samples) / (float)(tile->sampleCount + 1)};
 }
 
 // Sorts the samples of a pixel, whose place and centre `p` holds, by surfaces.
@@ -131,13 +132,19 @@ static inline void vplFindEdges(const vplShading* s, const vplTile* tile, int el
         }
         sets[same] |= found[i].samples;
     }
-    p->share = (float)__builtin_popcount(sets[OWN]) / (float)tile->sampleCount;
+    p->own = sets[OWN];
+    p->share = (float)(__builtin_popcount(sets[OWN]) + 1) / (float)(tile->sampleCount + 1);
     for (int i = 0; i < p->count; i++) {
         p->others[i] = vplNameSurface(tile, element, sets[i]);
     }
 }
 
 // ---- their light
+
+static inline float* vplPixelOf(const vplShading* s, int x, int y)
+{
+    return s->image->pixels + 3 * ((size_t)y * (size_t)s->image->width + (size_t)x);
+}
 
 // Adds all virtual lights to the sums of a block.
 typedef void vplAddToBlockFcn(const vplShading* s, void* user, vplBlock* b, int64_t* rays);
@@ -182,7 +189,7 @@ static inline void vplEdgeQueue_Flush(vplEdgeQueue* q)
     }
     for (int l = 0; l < q->count; l++) {
         const vplReflector* r = &vplFacetCache_Get(s, b->points.triangle[l], q->cache)->reflector;
-        float* pixel = s->image->pixels + 3 * ((size_t)q->y[l] * (size_t)s->image->width + (size_t)q->x[l]);
+        float* pixel = vplPixelOf(s, q->x[l], q->y[l]);
         for (int c = 0; c < 3; c++) {
             const double emission = q->direct ? r->emission[c] : 0;
             pixel[c] += q->share[l] * (float)(emission + r->factor[c] * b->sums[c][l]);
@@ -207,98 +214,35 @@ static inline void vplEdgeQueue_Put(vplEdgeQueue* q, vplVec3 position, vplVec3 n
     }
 }
 
-// Adds a surface of pixel (x, y).
-static inline void vplEdgeQueue_Push(vplEdgeQueue* q, const vplEdgeSurface* surface, int x, int y)
+// Puts the point of a triangle that is seen through a point of pixel (x, y) into the next lane.
+static inline void vplEdgeQueue_PutSeen(vplEdgeQueue* q, int triangle, int x, int y, vplSubPixel at)
 {
     const vplShading* s = q->shading;
-    const vplFacet* facet = vplFacetCache_Get(s, surface->triangle, q->cache);
-    const vplVec3 sight = vplSightOf(s->view, x, y, vplSubPixel_OfSample(surface->sample, s->def->samples));
-    const float distance = vplEdgeDistance(s, surface->triangle, facet, sight);
-    vplHit hit = {.object = s->geometry->owners[surface->triangle],
+    const vplFacet* facet = vplFacetCache_Get(s, triangle, q->cache);
+    const vplVec3 sight = vplSightOf(s->view, x, y, at);
+    const float distance = vplEdgeDistance(s, triangle, facet, sight);
+    vplHit hit = {.object = s->geometry->owners[triangle],
                   .face = VPL_FACE_NONE,
-                  .triangle = surface->triangle,
+                  .triangle = triangle,
                   .normal = facet->normal};
-    hit.position = vplGeometry_InsideAt(s->geometry, surface->triangle,
+    hit.position = vplGeometry_InsideAt(s->geometry, triangle,
                                         vplAdd(s->view->eye, vplScale(distance, sight)), &hit.u, &hit.v);
     vplVec3 n = facet->smooth ? vplGeometry_ShadingNormal(s->geometry, &hit) : facet->normal;
     n = vplDot(n, facet->normal) < 0 ? vplNegate(n) : n;
     vplEdgeQueue_Put(q, hit.position, n, facet->normal);
-    q->block.points.triangle[q->count] = surface->triangle;
+    q->block.points.triangle[q->count] = triangle;
+}
+
+// Adds a surface of pixel (x, y).
+static inline void vplEdgeQueue_Push(vplEdgeQueue* q, const vplEdgeSurface* surface, int x, int y)
+{
+    const vplSubPixel at = vplSubPixel_OfSample(surface->sample, q->shading->samples);
+    vplEdgeQueue_PutSeen(q, surface->triangle, x, y, at);
     q->x[q->count] = x;
     q->y[q->count] = y;
     q->share[q->count] = surface->share;
     if (++q->count == VPL_LANES) {
         vplEdgeQueue_Flush(q);
-    }
-}
-
-// ---- tiles
-
-// Bit l: some sample of lane l shows another triangle than its centre.
-static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int centre[VPL_LANES])
-{
-    int32_t different[VPL_LANES] = {0};
-    for (int i = 0; i < tile->sampleCount; i++) {
-        const int32_t* shown = tile->samples[i] + element;
-        for (int l = 0; l < VPL_LANES; l++) {
-            different[l] |= shown[l] ^ centre[l];
-        }
-    }
-    uint32_t lanes = 0;
-    for (int l = 0; l < VPL_LANES; l++) {
-        lanes |= (uint32_t)(different[l] != 0) << l;
-    }
-    return lanes;
-}
-
-typedef void vplEdgePixelFcn(const vplShading* s, void* user, const vplEdgePixel* pixel);
-
-// Visits the pixels at edges of a tile whose pixels are written, and scales them by the share of the surface in
-// their centres.
-static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
-                                 vplEdgePixelFcn* visit, void* user)
-{
-    for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
-        const int x0 = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
-                  y0 = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
-        if (x0 >= tile->width || y0 >= tile->height) {
-            continue;
-        }
-        int centre[VPL_LANES];
-        vplReadTriangles(tile, block * VPL_LANES, centre);
-        for (uint32_t lanes = vplEdgeLanes(tile, block * VPL_LANES, centre); lanes != 0; lanes &= lanes - 1) {
-            const int l = __builtin_ctz(lanes), x = x0 + l % VPL_BLOCK_SIDE, y = y0 + l / VPL_BLOCK_SIDE;
-            if (x < tile->width && y < tile->height) {
-                vplEdgePixel pixel = {.x = tile->x + x, .y = tile->y + y, .triangle = centre[l]};
-                vplFindEdges(s, tile, block * VPL_LANES + l, cache, &pixel);
-                float* shown =
-                    s->image->pixels + 3 * ((size_t)pixel.y * (size_t)s->image->width + (size_t)pixel.x);
-                for (int c = 0; c < 3; c++) {
-                    shown[c] *= pixel.share;
-                }
-                visit(s, user, &pixel);
-            }
-        }
-    }
-}
-
-static inline void vplPushEdges(const vplShading* s, void* user, const vplEdgePixel* p)
-{
-    (void)s;
-    for (int i = 0; i < p->count; i++) {
-        vplEdgeQueue_Push(user, &p->others[i], p->x, p->y);
-    }
-}
-
-// Smooths the edges in a tile whose pixels are written, by all light.
-static inline void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
-                                 vplAddToBlockFcn* addLights, void* user)
-{
-    vplTileSums* tileSums = tile->scratch;
-    if (tile->sampleCount > 0) {
-        vplEdgeQueue q = {s, cache, addLights, user, &tileSums->shadowRays, .direct = true, .indirect = true};
-        vplVisitEdges(s, tile, cache, vplPushEdges, &q);
-        vplEdgeQueue_Flush(&q);
     }
 }
 

@@ -26,6 +26,14 @@ enum { VPL_NO_CLUSTER = -2 };
 
 _Static_assert(sizeof(vplSurface) == 6 * VPL_LANES * sizeof(float), "a surface is six columns");
 
+// Element of the tile's planes that holds pixel (x, y).
+static inline int vplElementOf(int x, int y)
+{
+    const unsigned u = (unsigned)x, v = (unsigned)y; // division is a shift
+    const unsigned block = v / VPL_BLOCK_SIDE * VPL_TILE_BLOCKS + u / VPL_BLOCK_SIDE;
+    return (int)(block * VPL_LANES + v % VPL_BLOCK_SIDE * VPL_BLOCK_SIDE + u % VPL_BLOCK_SIDE);
+}
+
 // ---- normals
 
 static inline void vplSetNormals(vplVec3 n, vplSurface* surface)
@@ -169,13 +177,25 @@ static inline void vplStartSums(vplBlock* b, float part[3][VPL_LANES])
 
 // ---- sums
 
+// Finds the direct light of a block. The tile keeps what comes from emitters, where rims of shadows are smooth.
+static inline void vplStartDirect(const vplShading* s, const vplTile* tile, int element,
+                                  const vplPoints* points, float part[3][VPL_LANES])
+{
+    vplTileSums* sums = tile->scratch;
+    s->kernels.addEmitters(s, &s->direct, points, part, &sums->shadowRays);
+    for (int c = 0; c < 3 && s->smoothsRims; c++) {
+        memcpy(sums->emitted[c] + element, part[c], sizeof part[c]);
+    }
+    vplAddAreaLights(s, &s->direct, points, part, &sums->shadowRays);
+}
+
 // Starts a block's sums with direct light and compensation, which are found once per pixel.
 static inline void vplStartLight(const vplShading* s, const vplTile* tile, int block, vplBlock* b)
 {
     vplTileSums* tileSums = tile->scratch;
     _Alignas(64) float part[3][VPL_LANES] = {{0}};
     if (!s->irradiance) {
-        vplDirectIrradiance(s, &s->direct, &b->points, part, &tileSums->shadowRays);
+        vplStartDirect(s, tile, block * VPL_LANES, &b->points, part);
     }
     vplAddCompensationOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
                               tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part,

@@ -37,7 +37,7 @@ static inline bool meanAroundEdge(const vplShading* s, vplFilterScratch* scratch
     const int side = w->side, x = e->x - part->x, y = e->y - part->y;
     const vplFacet facet = *vplFacetCache_Get(s, e->surface.triangle, &scratch->facets);
     const vplVec3 n = facet.normal,
-                  sight = vplSightOf(v, e->x, e->y, vplSubPixel_OfSample(e->surface.sample, s->def->samples));
+                  sight = vplSightOf(v, e->x, e->y, vplSubPixel_OfSample(e->surface.sample, s->samples));
     const float slack = MAX_DISTANCE * vplEdgeDistance(s, e->surface.triangle, &facet, sight);
     const float forward = vplDot(n, v->forward), up = vplDot(n, v->up), right = vplDot(n, v->right);
     float sum[3] = {0, 0, 0}, weights = 0;

@@ -3,8 +3,8 @@
 // the lights of that class, 16 pixels at a time.
 #include "base/isa.h"
 #include "shading/accumulate.h"
-#include "shading/edges.h"
 #include "shading/interleave_filter.h"
+#include "shading/smooth.h"
 
 enum {
     SQUARE = 4,     // blocks along a side that are read and lit directly together
@@ -30,8 +30,7 @@ static inline void storeLanes(vplTile* tile, int plane, int element, const float
 }
 
 // Writes direct light to the picture, and finished positions and normals to the planes.
-static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplFacetCache* cache, vplBlock* b,
-                         int64_t* rays)
+static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplFacetCache* cache, vplBlock* b)
 {
     const int element = block * VPL_LANES;
     const float nothing[VPL_LANES] = {0};
@@ -42,7 +41,7 @@ static void prepareBlock(const vplShading* s, vplTile* tile, int block, vplFacet
     } else {
         _Alignas(64) float part[3][VPL_LANES] = {{0}};
         if (!s->irradiance) {
-            vplDirectIrradiance(s, &s->direct, &b->points, part, rays);
+            vplStartDirect(s, tile, element, &b->points, part);
         }
         vplStartSums(b, part);
         for (int k = 0; k < 3; k++) {
@@ -66,7 +65,6 @@ static void addBounds(const vplBounds* more, Region* r)
 // Prepares all blocks of a region, square by square.
 static void prepareRegion(const vplShading* s, vplTile* tile, Region* r, vplFacetCache* cache)
 {
-    vplTileSums* tileSums = tile->scratch;
     vplBlock blocks[SQUARE * SQUARE];
     const int side = SQUARE * VPL_BLOCK_SIDE, across = (r->width + side - 1) / side;
     for (int square = 0; square < across * ((r->height + side - 1) / side); square++) {
@@ -75,8 +73,7 @@ static void prepareRegion(const vplShading* s, vplTile* tile, Region* r, vplFace
         int lit[SQUARE * SQUARE], litCount = 0;
         for (int i = 0; i < SQUARE * SQUARE; i++) {
             vplBlock* b = &blocks[i];
-            prepareBlock(s, tile, (y + i / SQUARE) * VPL_TILE_BLOCKS + x + i % SQUARE, cache, b,
-                         &tileSums->shadowRays);
+            prepareBlock(s, tile, (y + i / SQUARE) * VPL_TILE_BLOCKS + x + i % SQUARE, cache, b);
             if (!b->same || b->points.triangle[0] >= 0) {
                 lit[litCount++] = i;
             }
@@ -88,14 +85,6 @@ static void prepareRegion(const vplShading* s, vplTile* tile, Region* r, vplFace
     }
 }
 
-// Element of the tile's planes that holds pixel (x, y).
-static inline int elementOf(int x, int y)
-{
-    const unsigned u = (unsigned)x, v = (unsigned)y; // division is a shift
-    const unsigned block = v / VPL_BLOCK_SIDE * VPL_TILE_BLOCKS + u / VPL_BLOCK_SIDE;
-    return (int)(block * VPL_LANES + v % VPL_BLOCK_SIDE * VPL_BLOCK_SIDE + u % VPL_BLOCK_SIDE);
-}
-
 // Lists elements that show something among every K-th pixel from (x0, y0) on. Returns their number, at most
 // 16 MAX_CHUNKS.
 static int listPixels(const vplTile* tile, const Region* r, int x0, int y0, int step, int* elements)
@@ -104,7 +93,7 @@ static int listPixels(const vplTile* tile, const Region* r, int x0, int y0, int 
     int count = 0;
     for (int y = y0; y < r->y + r->height; y += step) {
         for (int x = x0; x < r->x + r->width; x += step) {
-            const int element = elementOf(x, y);
+            const int element = vplElementOf(x, y);
             elements[count] = element;
             count += triangles[element] != 0;
         }

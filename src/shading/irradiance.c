@@ -158,11 +158,9 @@ static void addShadowed(const vplShading* s, const vplPoints* points, const Shad
     }
 }
 
-void vplDirectIrradiance(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
-                         float irradiance[3][VPL_LANES], int64_t* rays)
+void vplAddAreaLights(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
+                      float irradiance[3][VPL_LANES], int64_t* rays)
 {
-    memset(irradiance, 0, 3 * sizeof irradiance[0]);
-    shading->kernels.addEmitters(shading, direct, points, irradiance, rays);
     for (int first = 0; first < direct->areaLightCount; first += VPL_LIGHT_GROUP) {
         const int left = direct->areaLightCount - first;
         const ShadowedLights group = {direct->areaLights + first, NULL,
@@ -176,6 +174,14 @@ void vplDirectIrradiance(const vplShading* shading, const vplDirectLight* direct
             }
         }
     }
+}
+
+void vplDirectIrradiance(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
+                         float irradiance[3][VPL_LANES], int64_t* rays)
+{
+    memset(irradiance, 0, 3 * sizeof irradiance[0]);
+    shading->kernels.addEmitters(shading, direct, points, irradiance, rays);
+    vplAddAreaLights(shading, direct, points, irradiance, rays);
 }
 
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,

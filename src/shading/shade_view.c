@@ -35,6 +35,7 @@ vplShading vplShading_Make(const vplGeometry* geometry, const vplView* view, con
                    .clusters = def->lightClusters,
                    .castsRays = def->lightShadows == NULL && def->lightRays,
                    .inverseClamp = vplInverseSquare(def->minDistance)},
+        .samples = def->samples & ~1,
         .smooth = geometry->shadingNormals != NULL,
         .irradiance = def->output == VPL_OUTPUT_GATHER || def->output == VPL_OUTPUT_DENOISED};
 }

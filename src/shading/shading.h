@@ -69,6 +69,8 @@ typedef struct vplShading {
     vplLightList lights;
     bool smooth;                         // some object has shading normals
     bool irradiance;                     // the picture is irradiance of virtual lights, not radiance
+    int samples;                         // of coverage, besides centres; even
+    bool smoothsRims;                    // tiles keep the irradiance of emitters
     vplImage* image;                     // the picture
     vplMesh* meshes;                     // one per object
     struct vplObjectUniforms* objects;   // one per object
@@ -122,10 +124,13 @@ enum {
     VPL_PLANE_INDIRECT = 4 // 3 planes, interleaved: irradiance replaces positions that are no longer needed
 };
 
-// Scratch of a tile. Deferred shading needs the first number only.
+// Scratch of a tile. A G-buffer needs the first number only, unless rims of shadows are smooth.
 typedef struct vplTileSums {
     int64_t shadowRays;
-    _Alignas(64) double irradiance[3][VPL_TILE_SIDE * VPL_TILE_SIDE]; // sums of whole groups
+    union {
+        _Alignas(64) double irradiance[3][VPL_TILE_SIDE * VPL_TILE_SIDE]; // passes: sums of whole groups
+        _Alignas(64) float emitted[3][VPL_TILE_SIDE * VPL_TILE_SIDE];     // irradiance of emitters
+    };
 } vplTileSums;
 
 // Uniforms of the vertex shader of all camera passes.
@@ -221,6 +226,10 @@ void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, cons
 // Irradiance of all emitters and area lights, with shadows. Adds to `rays`.
 void vplDirectIrradiance(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
                          float irradiance[3][VPL_LANES], int64_t* rays);
+
+// Adds the irradiance of area lights, with shadows.
+void vplAddAreaLights(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,
+                      float irradiance[3][VPL_LANES], int64_t* rays);
 
 // Adds virtual lights first .. first + count - 1, each with its own shadow if it has one.
 void vplIndirectIrradiance(const vplShading* shading, const vplPoints* points, int first, int count,

@@ -13,19 +13,19 @@
 // Adds the light of patches: at every sample where edges are smooth, because interpolating it costs little.
 static vplResult drawPatches(const vplRun* run, const vplView* view, vplImage* image)
 {
-    const int count = run->plan->options.output.antialias;
+    const int count = run->plan->options.output.antialias & ~1; // besides the centre
     vplImage* sum = NULL;
-    if (count == 1) {
+    if (count == 0) {
         return vplDrawPatchView(run, view, image);
     }
     vplResult result = vplImage_Create(run->context, image->width, image->height, &sum);
-    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        const vplSubPixel at = vplSubPixel_OfSample(i, count);
+    for (int i = 0; i <= count && result == VPL_SUCCESS; i++) {
+        const vplSubPixel at = i < count ? vplSubPixel_OfSample(i, count) : (vplSubPixel){0, 0};
         const vplView sample = vplView_At(view, 0.5 + at.x / 256.0, 0.5 + at.y / 256.0);
         result = vplDrawPatchView(run, &sample, sum);
     }
     for (size_t k = 0; k < vplValueCount(image) && result == VPL_SUCCESS; k++) {
-        image->pixels[k] += sum->pixels[k] / (float)count;
+        image->pixels[k] += sum->pixels[k] / (float)(count + 1);
     }
     vplImage_Destroy(sum);
     return result;

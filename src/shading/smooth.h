@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// Tiles with smooth edges, for kernels, once their pixels are written: surfaces that centres of pixels do not
+// show are added, and rims of shadows are smoothed.
+#ifndef VPL_SHADING_SMOOTH_H
+#define VPL_SHADING_SMOOTH_H
+
+#include "shading/rims.h"
+
+// Bit l: some sample of lane l shows another triangle than its centre.
+static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int centre[VPL_LANES])
+{
+    int32_t different[VPL_LANES] = {0};
+    for (int i = 0; i < tile->sampleCount; i++) {
+        const int32_t* shown = tile->samples[i] + element;
+        for (int l = 0; l < VPL_LANES; l++) {
+            different[l] |= shown[l] ^ centre[l];
+        }
+    }
+    uint32_t lanes = 0;
+    for (int l = 0; l < VPL_LANES; l++) {
+        lanes |= (uint32_t)(different[l] != 0) << l;
+    }
+    return lanes;
+}
+
+typedef void vplEdgePixelFcn(const vplShading* s, void* user, const vplEdgePixel* pixel);
+
+// Visits the pixels at edges of a tile whose pixels are written, and scales them by the share of the surface in
+// their centres. Smooths rims of shadows.
+static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+                                 vplEdgePixelFcn* visit, void* user)
+{
+    uint16_t own[VPL_TILE_SIDE * VPL_TILE_SIDE];
+    for (int i = 0; i < VPL_TILE_SIDE * VPL_TILE_SIDE; i++) {
+        own[i] = (uint16_t)((1u << tile->sampleCount) - 1);
+    }
+    for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
+        const int x0 = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
+                  y0 = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
+        if (x0 >= tile->width || y0 >= tile->height) {
+            continue;
+        }
+        int centre[VPL_LANES];
+        vplReadTriangles(tile, block * VPL_LANES, centre);
+        for (uint32_t lanes = vplEdgeLanes(tile, block * VPL_LANES, centre); lanes != 0; lanes &= lanes - 1) {
+            const int l = __builtin_ctz(lanes), x = x0 + l % VPL_BLOCK_SIDE, y = y0 + l / VPL_BLOCK_SIDE;
+            if (x < tile->width && y < tile->height) {
+                vplEdgePixel pixel = {.x = tile->x + x, .y = tile->y + y, .triangle = centre[l]};
+                vplFindEdges(s, tile, block * VPL_LANES + l, cache, &pixel);
+                own[block * VPL_LANES + l] = (uint16_t)pixel.own;
+                for (int c = 0; c < 3; c++) {
+                    vplPixelOf(s, pixel.x, pixel.y)[c] *= pixel.share;
+                }
+                visit(s, user, &pixel);
+            }
+        }
+    }
+    if (s->smoothsRims) {
+        vplSmoothRims(s, tile, cache, own);
+    }
+}
+
+static inline void vplPushEdges(const vplShading* s, void* user, const vplEdgePixel* p)
+{
+    (void)s;
+    for (int i = 0; i < p->count; i++) {
+        vplEdgeQueue_Push(user, &p->others[i], p->x, p->y);
+    }
+}
+
+// Smooths the edges in a tile whose pixels are written, by all light.
+static inline void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+                                 vplAddToBlockFcn* addLights, void* user)
+{
+    vplTileSums* tileSums = tile->scratch;
+    if (tile->sampleCount > 0) {
+        vplEdgeQueue q = {s, cache, addLights, user, &tileSums->shadowRays, .direct = true, .indirect = true};
+        vplVisitEdges(s, tile, cache, vplPushEdges, &q);
+        vplEdgeQueue_Flush(&q);
+    }
+}
+
+#endif
