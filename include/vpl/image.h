@@ -104,15 +104,15 @@ vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def);
 vplResult vplImage_AutoExposure(const vplImage* image, float* stopsOut);
 
 // Maps a picture as the reference rendering of ACES does for a screen, by a fit with curves in a wide gamut:
-// bright saturated colours turn pale instead of clipping. Black stays black, middle grey 0.18 becomes 0.213,
-// and 9.9 and more white. NaN becomes black. Values are divided by 0.6 before the fit, as in three.js and
+// bright saturated colours turn pale instead of clipping. Greys up to 0.0019 become black, middle grey 0.18
+// becomes 0.213, and 15.4 and more white. NaN becomes black. Values are divided by 0.6 before the fit, as in three.js and
 // Khronos' glTF viewer, because the fit itself makes middle grey 0.106.
 // Source: Stephen Hill, ACES.hlsl in Matt Pettineo and David Neubelt's BakingLab, 2016. Krzysztof Narkowicz'
 // curve (ACES Filmic Tone Mapping Curve, 2015) maps the channels one by one, which clips saturated lights.
 void vplToneMap_Aces(vplImage* image);
 
 // Maps a picture by AgX with its base look: 16.5 stops, from 10 below middle grey to 6.5 above, to [0, 1]; the
-// brighter a colour the paler, without a change of hue. Black stays black, middle grey 0.18 becomes 0.214, and
+// brighter a colour the paler, its hue hardly changes. Black stays black, middle grey 0.18 becomes 0.214, and
 // 16.3 and more white. NaN becomes black. Results are linear: encoded as sRGB they are AgX's codes.
 // Source: Troy Sobotka, AgX, 2022 (its curve AgX_Default_Contrast, in closed form), with the matrices of
 // Benjamin Wrensch, Minimal AgX Implementation, 2023.
