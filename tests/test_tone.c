@@ -104,7 +104,7 @@ TEST(ToneMapsKeepMiddleGrey, 1)
 // X110, X111
 TEST(ToneMapsGiveValuesOfAScreenForAnyInput, 1)
 {
-    const float odd[] = {0,     -0.0f,    -1,        1e30f,   FLT_MAX, -FLT_MAX,
+    const float odd[] = {0,      -0.0f,   -1,       1e30f,     FLT_MAX, -FLT_MAX,
                          1e-45f, FLT_MIN, INFINITY, -INFINITY, NAN,     1};
     enum { ODD = sizeof odd / sizeof *odd };
     for (int map = 0; map < 2; map++) {
