@@ -173,10 +173,8 @@ static const Option OWN[] = {
      "0 "
      "for --tonemap reinhard, which has its own key, and for stages that are not light",
      NULL},
-    {"exposure", "EV", NULL, TRADEOFF, readNumber, AT(exposure), -64, 64,
-     "stops, pictures of the report: pixels times 2^EV; default: whole stops by the reference", NULL},
-    {"exposure", "EV", NULL, BAKE, readNumber, AT(exposure), -64, 64,
-     "stops, 8-bit colours only: radiance times 2^EV; default 0", NULL},
+    {"exposure", "EV", NULL, TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
+     "stops, 8-bit colours only: radiance times 2^EV; default 0, tradeoff: by the reference", NULL},
     {"tonemap", "usual|none|reinhard|aces|agx", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
      "PNG only: how bright light fits into the screen's range. none: clipped; aces: strong contrast; agx: "
      "bright "
