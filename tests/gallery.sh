@@ -7,14 +7,15 @@ out=golden/gallery
 room=examples/scenes/room.json
 closed=examples/scenes/closed-room.json
 mkdir -p $out
+# shot NAME SCENE OPTIONS...: linear radiance as it is, unless the options say otherwise.
 shot() {
     name=$1
     shift
-    "$vpl" render "$@" -o "$out/$name.png" --quiet
+    "$vpl" render --exposure 0 --tonemap none "$@" -o "$out/$name.png" --quiet
 }
 shot documented $closed --size 360x315 --lighting documented --exposure 0.5 --pcf 64 --pcf-offset 0.12
 # The clamp distance of 0.5 m removes bright specks where walls meet.
-shot physical $closed --size 360x315 --particles 4000 --sampler halton --reflectivity auto --light-shadows ray --min-distance 0.5 --pipeline interleaved --interleave 16 --antialias 8 --tonemap reinhard --exposure 1
+shot physical $closed --size 360x315 --particles 4000 --sampler halton --reflectivity auto --light-shadows ray --min-distance 0.5 --pipeline interleaved --interleave 16 --antialias 8 --tonemap reinhard
 shot direct $closed --size 240x210 --lighting documented --show direct --exposure 1
 shot light-0 $closed --size 240x210 --lighting documented --show light:0 --exposure 3
 shot light-6 $closed --size 240x210 --lighting documented --show light:6 --exposure 3

@@ -385,12 +385,14 @@ static vplResult compareAndMap(Attempt* a)
     return vplImage_Write(a->heatmap, a->path, NULL);
 }
 
+// Variants: Reinhard, and AgX with an automatic exposure.
 static vplResult encodePng(Attempt* a)
 {
     uint8_t* bytes = NULL;
     size_t size;
     vplWriteOptions write = vplDefaultWriteOptions();
-    write.tonemap = VPL_TONEMAP_REINHARD;
+    write.tonemap = a->variant ? VPL_TONEMAP_AGX : VPL_TONEMAP_REINHARD;
+    write.exposure = VPL_EXPOSURE_AUTO;
     TRY(vplImage_Create(a->context, 60, 40, &a->image));
     const vplResult result = vplImage_EncodePng(a->image, &write, &bytes, &size);
     vplPng_Free(a->context, bytes);
@@ -431,7 +433,7 @@ EVERY_FAILED_ALLOCATION(PatchSides, findSides, "png", 2)
 EVERY_FAILED_ALLOCATION(FormFactors, findFactors, "png", 2)
 EVERY_FAILED_ALLOCATION(PatchMeshes, meshAndWrite, "ply", 2)
 EVERY_FAILED_ALLOCATION(AComparison, compareAndMap, "png", 3)
-EVERY_FAILED_ALLOCATION(AnEncodedPng, encodePng, "png", 1)
+EVERY_FAILED_ALLOCATION(AnEncodedPng, encodePng, "png", 2)
 // clang-format on
 
 // ---- jansson's own allocations

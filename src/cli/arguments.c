@@ -86,7 +86,7 @@ static Arguments defaultArguments(const char* command)
     a.render = vplDefaultRenderOptions();
     a.context = vplDefaultContextDef();
     for (const Option* o = getOptions(); o->name != NULL; o++) {
-        if (o->default_ != NULL) {
+        if (o->default_ != NULL && (o->commands & a.command->bit) != 0) {
             o->read(o, o->default_, &a);
         }
     }

@@ -65,8 +65,8 @@ struct Arguments {
     int heatmapOf;       // a vplHeat
     double heatScale;    // 0: automatic
     double ppd;          // pixels per degree of vision
-    double exposure;     // stops
-    int tonemap;         // 0: as usual with the method; else 1 + a vplTonemap
+    double exposure;     // stops, or VPL_EXPOSURE_AUTO
+    int tonemap;         // 0: as usual with what is shown; else 1 + a vplToneMap
     int frames[2];       // first and last; [1] < 0: one picture without a number
     int region[4];       // x, y, width, height; width 0: all of the picture
     int regions[2];      // columns and rows; 0: none

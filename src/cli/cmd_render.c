@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 static bool isEmpty(const float* pixel)
 {
@@ -37,25 +38,90 @@ static void prepareForEyes(vplImage* image, vplShow show)
 static bool endsWithPng(const char* path)
 {
     size_t n = strlen(path);
-    return n >= 4 && (strcmp(path + n - 4, ".png") == 0 || strcmp(path + n - 4, ".PNG") == 0);
+    return n >= 4 && strcasecmp(path + n - 4, ".png") == 0;
 }
 
-static int writePicture(const Arguments* a, vplImage* image, const char* path)
+// ---- exposure and tone map
+
+static bool isMetres(vplShow show)
 {
-    vplShow show = a->render.output.show;
-    bool metres = show == VPL_SHOW_DEPTH || show == VPL_SHOW_SHADOW_MAP;
-    const vplToneMap usual = a->render.method == VPL_METHOD_SSVP ? VPL_TONEMAP_REINHARD : VPL_TONEMAP_NONE;
-    vplWriteOptions options = vplDefaultWriteOptions();
-    options.exposure = (float)a->exposure;
-    options.tonemap = a->tonemap > 0 ? (vplToneMap)(a->tonemap - 1) : usual;
-    if (endsWithPng(path) && (metres || show == VPL_SHOW_NORMALS)) {
+    return show == VPL_SHOW_DEPTH || show == VPL_SHOW_SHADOW_MAP;
+}
+
+// Exposure and tone map are not for these.
+static bool isNoLight(vplShow show)
+{
+    return isMetres(show) || show == VPL_SHOW_NORMALS || show == VPL_SHOW_SHADOW_FACTOR;
+}
+
+// Pictures of light alone, without marks or outlines. They are exposed and tone mapped by default.
+static bool isLight(vplShow show)
+{
+    return show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT || show == VPL_SHOW_INDIRECT ||
+           show == VPL_SHOW_LIGHT || show == VPL_SHOW_BOUNCE || show == VPL_SHOW_GATHER ||
+           show == VPL_SHOW_DENOISED || show == VPL_SHOW_PATCH_RADIOSITY;
+}
+
+static vplWriteOptions chooseDisplay(const Arguments* a)
+{
+    const vplShow show = a->render.output.show;
+    vplWriteOptions display = vplDefaultWriteOptions();
+    if (isNoLight(show)) {
+        return display;
+    }
+    if (a->tonemap > 0) {
+        display.tonemap = (vplToneMap)(a->tonemap - 1);
+    } else if (isLight(show)) {
+        display.tonemap = VPL_TONEMAP_AGX;
+    }
+    if (isLight(show) || isGiven(a, "exposure")) {
+        display.exposure = (float)a->exposure;
+    }
+    if (display.exposure == VPL_EXPOSURE_AUTO && display.tonemap == VPL_TONEMAP_REINHARD) {
+        display.exposure = 0;
+    }
+    return display;
+}
+
+static void warnOfDisplay(const Arguments* a)
+{
+    static const char* const NAMES[] = {"exposure", "tonemap"};
+    for (int i = 0; i < 2 && !a->quiet; i++) {
+        if (!isGiven(a, NAMES[i])) {
+            continue;
+        }
+        if (!endsWithPng(a->output)) {
+            complain("warning: --%s has no effect on %s, which holds linear values", NAMES[i], a->output);
+        } else if (isNoLight(a->render.output.show)) {
+            complain("warning: --%s has no effect with a --show that is not light", NAMES[i]);
+        } else if (i == 0 && a->tonemap == 1 + VPL_TONEMAP_REINHARD) {
+            complain("warning: --exposure has no effect with --tonemap reinhard, which has its own key");
+        }
+    }
+}
+
+// Writes a picture. An automatic exposure is replaced by that of this picture, for those that follow.
+static int writePicture(const Arguments* a, vplImage* image, const char* path, vplWriteOptions* display)
+{
+    const vplShow show = a->render.output.show;
+    const bool png = endsWithPng(path);
+    if (png && (isMetres(show) || show == VPL_SHOW_NORMALS)) {
         prepareForEyes(image, show);
     }
-    if (metres || show == VPL_SHOW_NORMALS || show == VPL_SHOW_SHADOW_FACTOR) {
-        options = vplDefaultWriteOptions(); // exposure and tone map are for light
+    if (png && display->exposure == VPL_EXPOSURE_AUTO) {
+        const int code = exitCode(vplImage_AutoExposure(image, &display->exposure), false);
+        if (code != EXIT_DONE) {
+            return code;
+        }
     }
-    return exitCode(vplImage_Write(image, path, &options), false);
+    if (png && a->verbose && !isNoLight(show)) {
+        const bool automatic = chooseDisplay(a).exposure == VPL_EXPOSURE_AUTO;
+        complain("exposure %+.2f stops%s", (double)display->exposure, automatic ? " (auto)" : "");
+    }
+    return exitCode(vplImage_Write(image, path, display), false);
 }
+
+// ---- frames
 
 static void sayMore(const vplRenderStats* stats)
 {
@@ -84,10 +150,11 @@ static bool nameFiles(const Arguments* a, int frame, Files* files)
            (a->stats == NULL || numberName(a->stats, frame, last, files->stats, PATH_MAX));
 }
 
-// The progress bar covers all frames.
+// The progress bar and the exposure are those of all frames.
 typedef struct Sequence {
     Progress progress;
     int done, count;
+    vplWriteOptions display;
 } Sequence;
 
 static bool showSequence(void* user, double fraction)
@@ -116,7 +183,7 @@ static int renderFrame(const Arguments* a, const vplScene* scene, const vplRende
     if (a->verbose) {
         sayMore(&stats);
     }
-    code = writePicture(a, image, files.output);
+    code = writePicture(a, image, files.output, &sequence->display);
     if (code == EXIT_DONE && a->stats != NULL) {
         code = writeStats(vplScene_GetContext(scene), files.stats, &stats);
     }
@@ -127,7 +194,7 @@ static int renderFrame(const Arguments* a, const vplScene* scene, const vplRende
 static int renderScene(const Arguments* a, const vplScene* scene)
 {
     catchInterrupts();
-    Sequence sequence = {beginProgress(a->quiet), 0, 1};
+    Sequence sequence = {beginProgress(a->quiet), 0, 1, chooseDisplay(a)};
     vplRenderOptions options = a->render;
     options.progress = showSequence;
     options.progressUser = &sequence;
@@ -172,5 +239,6 @@ int runRender(const Arguments* a)
     if (!named || !checkOutput(files.output) || (a->stats != NULL && !checkOutput(files.stats))) {
         return EXIT_COULD_NOT;
     }
+    warnOfDisplay(a);
     return runOnScene(a, renderScene);
 }

@@ -2,6 +2,7 @@
 #include "cli/options.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +65,18 @@ static bool readNumber(const Option* o, const char* value, Arguments* a)
     const bool good = *value != ' ' && end != value && *end == 0 && number >= o->low && number <= o->high;
     return good ? store(o, a, &number, sizeof number)
                 : refuse(o, value, "a number in [%g, %g]", o->low, o->high);
+}
+
+static bool readExposure(const Option* o, const char* value, Arguments* a)
+{
+    if (strcmp(value, "auto") == 0) {
+        a->exposure = (double)VPL_EXPOSURE_AUTO;
+        return true;
+    }
+    char* end;
+    a->exposure = strtod(value, &end);
+    const bool good = *value != ' ' && end != value && *end == 0 && fabs(a->exposure) <= o->high;
+    return good || refuse(o, value, "a number in [%g, %g] or auto", o->low, o->high);
 }
 
 static bool readFlag(const Option* o, const char* value, Arguments* a)
@@ -153,10 +166,20 @@ static const Option OWN[] = {
     {"o", "FILE", NULL, BAKE, readText, AT(output), 0, 0, "mesh to write: .ply; required", NULL},
     {"o", "DIR", NULL, TRADEOFF, readText, AT(output), 0, 0,
      "folder for report.html, tradeoff.svg, tradeoff.csv and the reference, made if missing; required", NULL},
-    {"exposure", "EV", NULL, RENDER | TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
-     "stops, PNG and the colours of PLY only: pixels times 2^EV; default 0", NULL},
-    {"tonemap", "usual|none|reinhard", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
-     "PNG only; usual: reinhard for ssvp, else none", NULL},
+    {"exposure", "EV|auto", "auto", RENDER, readExposure, 0, -64, 64,
+     "stops, PNG only: pixels times 2^EV. auto: the geometric mean of the luminance becomes middle grey, "
+     "without "
+     "black pixels, the darkest 10 % and the brightest 5 %; with --frames that of the first picture for all; "
+     "0 "
+     "for --tonemap reinhard, which has its own key, and for stages that are not light",
+     NULL},
+    {"exposure", "EV", NULL, TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
+     "stops, 8-bit colours only: radiance times 2^EV; default 0, tradeoff: by the reference", NULL},
+    {"tonemap", "usual|none|reinhard|aces|agx", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
+     "PNG only: how bright light fits into the screen's range. none: clipped; aces: strong contrast; agx: "
+     "bright "
+     "colours turn pale, shadows keep their value; usual: agx, and none for stages that are not light",
+     NULL},
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",

@@ -103,9 +103,14 @@ static vplResult encode(const Format* format, const vplImage* image, const char*
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "vplWriteOptions was not made by vplDefaultWriteOptions");
     }
-    if (!(fabsf(settings.exposure) <= 64)) {
+    if (!(fabsf(settings.exposure) <= 64 || settings.exposure == VPL_EXPOSURE_AUTO)) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
-                       "vplWriteOptions.exposure is %g, must be in [-64, 64]", (double)settings.exposure);
+                       "vplWriteOptions.exposure is %g, must be in [-64, 64] or VPL_EXPOSURE_AUTO",
+                       (double)settings.exposure);
+    }
+    if (settings.tonemap < VPL_TONEMAP_NONE || settings.tonemap > VPL_TONEMAP_AGX) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT, "vplWriteOptions.tonemap is %d, no vplToneMap",
+                       (int)settings.tonemap);
     }
     TRY(vplImage_RequireFinite(image, what));
     TRY(format->encode(image, &settings, buffer));

@@ -41,16 +41,28 @@ static void append(void* buffer, void* bytes, int size)
 static vplResult applyDisplay(const vplImage* image, const vplWriteOptions* options, vplImage* display)
 {
     const size_t count = 3 * (size_t)image->width * (size_t)image->height;
-    const float gain = (float)vplExp(options->exposure * 0.69314718055994530942);
-    for (size_t i = 0; i < count; i++) {
-        display->pixels[i] = options->exposure == 0 ? image->pixels[i] : gain * image->pixels[i];
+    float exposure = options->exposure;
+    if (exposure == VPL_EXPOSURE_AUTO) {
+        exposure = 0;
+        if (options->tonemap != VPL_TONEMAP_REINHARD) {
+            TRY(vplImage_AutoExposure(image, &exposure));
+        }
     }
-    if (options->tonemap != VPL_TONEMAP_REINHARD) {
-        return VPL_SUCCESS;
+    const float gain = (float)vplExp(exposure * 0.69314718055994530942);
+    for (size_t i = 0; i < count; i++) {
+        display->pixels[i] = exposure == 0 ? image->pixels[i] : gain * image->pixels[i];
     }
     vplReinhardDef def = vplDefaultReinhardDef();
     def.skipBlack = true;
-    return vplToneMap_Reinhard(display, &def);
+    if (options->tonemap == VPL_TONEMAP_REINHARD) {
+        return vplToneMap_Reinhard(display, &def);
+    }
+    if (options->tonemap == VPL_TONEMAP_ACES) {
+        vplToneMap_Aces(display);
+    } else if (options->tonemap == VPL_TONEMAP_AGX) {
+        vplToneMap_Agx(display);
+    }
+    return VPL_SUCCESS;
 }
 
 static vplResult encodeCodes(const vplImage* display, vplByteBuffer* buffer)

@@ -5,6 +5,7 @@
 // because otherwise a uniform picture would not map to the key.
 #include "base/arena.h"
 #include "image/image_file.h"
+#include "image/tone.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 
@@ -35,11 +36,6 @@ static vplResult checkReinhard(const vplContext* context, const vplReinhardDef* 
     return VPL_SUCCESS;
 }
 
-static double luminance(const float* pixel)
-{
-    return 0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2];
-}
-
 // Rows per parallel section. Sums over pixels are taken after it, in the order of the pixels.
 enum { BAND = 64 };
 
@@ -66,7 +62,7 @@ static void findLogs(void* data, int row, int worker)
     double* logs = r->logs + (size_t)row * (size_t)width;
     Row found = {0, 0};
     for (int x = 0; x < width; x++) {
-        const double y = luminance(pixels + 3 * (size_t)x);
+        const double y = vplLuminance(pixels + 3 * (size_t)x);
         const bool counts = isfinite(y) && y + (r->skipBlack ? 0 : r->delta) > 0;
         logs[x] = counts ? vplLn(y + r->delta) : 0;
         found.counted += counts;
@@ -82,7 +78,7 @@ static void mapRow(void* data, int row, int worker)
     const int width = r->image->width;
     for (int x = 0; x < width; x++) {
         float* pixel = r->image->pixels + 3 * ((size_t)row * (size_t)width + (size_t)x);
-        const double y = luminance(pixel);
+        const double y = vplLuminance(pixel);
         if (!(y > 0 && isfinite(y))) {
             pixel[0] = pixel[1] = pixel[2] = 0;
             continue;

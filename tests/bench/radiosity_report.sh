@@ -9,9 +9,10 @@ spp=${3:-512}
 size=${4:-240x240}
 scene=examples/scenes/testmodel.json
 mkdir -p "$out"
-render="$build/vpl render $scene --size $size --quiet --exposure 1.65"
+render="$build/vpl render $scene --size $size --quiet"
+eyes="--exposure 1.65 --tonemap none"
 $render -o "$out/truth.pfm" --method path --pixel centre --spp "$spp" --show indirect
-$render -o "$out/truth.png" --method path --spp "$spp"
+$render -o "$out/truth.png" $eyes --method path --spp "$spp"
 echo "patches estimator    light       relative_rmse  relmse   energy  row_max  radius"
 for rounds in 2 3 4 5 6; do
     for estimator in incentre monte-carlo; do
@@ -23,7 +24,7 @@ for rounds in 2 3 4 5 6; do
             $render -o "$out/indirect.pfm" $words --show indirect --stats "$out/stats.json"
             patches=$(sed -n 's/.*"patches": \([0-9]*\).*/\1/p' "$out/stats.json")
             # shellcheck disable=SC2086
-            $render -o "$out/$estimator-$patches-$light.png" $words
+            $render -o "$out/$estimator-$patches-$light.png" $eyes $words
             "$build/vpl" compare "$out/indirect.pfm" "$out/truth.pfm" >"$out/compare.txt"
             figure() { sed -n "s/^$1 *\([0-9.e-]*\).*/\1/p" "$out/compare.txt"; }
             statistic() { sed -n "s/.*\"$1\": \([0-9.e-]*\).*/\1/p" "$out/stats.json"; }

@@ -11,7 +11,7 @@ for scene; do
     name=$(basename "$scene" .json)
     for bounces in 1 2; do
         "$build/vpl" render "$scene" -o "$out/ssvp-$name-$bounces.png" --method ssvp --max-bounces $bounces --size 240x135 \
-            --antialias 8 --quiet
+            --antialias 8 --tonemap reinhard --quiet
     done
     "$build/vpl" render "$scene" -o "$out/ssvp-$name-truth.png" --method path --spp 256 --tonemap reinhard --size 240x135 --quiet
 done

@@ -23,6 +23,11 @@ equals WithoutFramesItIsTheFirst "$(field "$out/frames/y" image_hash)" "$(field 
 equals FramesOfKellerAreThose "$(field "$out/frames/k-0004" image_hash)" "$(one_hash --method keller --frames 4:4)"
 succeeds LongNumbersAreNotCut "$vpl" render "$room" --size 4x4 --method direct --shadow-map 8 -o "$out/frames/z.png" --frames 99999:100000
 check LongNumbersAreAsWideAsTheLast test -s "$out/frames/z-099999.png" -a -s "$out/frames/z-100000.png"
+"$vpl" render "$moving" $few -o "$out/frames/e.png" --frames 8:20 -v 2>"$scratch/stderr"
+equals FramesShareAnAutomaticExposure "13 1" \
+    "$(grep -c '^vpl: exposure' "$scratch/stderr") $(grep '^vpl: exposure' "$scratch/stderr" | sort -u | wc -l)"
+"$vpl" render "$moving" $few -o "$out/frames/f.png" --frames 20:20 -v 2>"$scratch/alone"
+check ThatOfTheLastAloneIsAnother test "$(grep '^vpl: exposure' "$scratch/alone")" != "$(grep -m 1 '^vpl: exposure' "$scratch/stderr")"
 succeeds DotsOfFoldersAreNoExtensions "$vpl" render "$room" --size 4x4 --method direct --shadow-map 8 -o "$out/frames/z.pfm" --stats "$out/frames/../stats" --frames 1:1
 check TheStatisticsAreThere test -s "$out/stats-0001"
 rm -r "$out/frames" "$out/stats-0001"

@@ -62,6 +62,33 @@ for show in picture depth normals shadow-map shadow-factor direct indirect light
 done
 check NothingShownTwice test "$(cksum "$out"/*.png | cut -d' ' -f1 | sort -u | wc -l)" -eq 9
 
+# Exposure and tone map: by default automatic and AgX for light, nothing for other stages; linear files ignore them.
+# displayed NAME WORDS...: a checksum of the PNG file.
+displayed() {
+    "$vpl" render "$room" $base -o "$out/e.png" "$@" 2>"$scratch/stderr"
+    cksum "$out/e.png"
+}
+for show in picture direct indirect light:3; do
+    equals "LightIsExposed_$show" "$(displayed --show $show --exposure auto --tonemap agx)" "$(displayed --show $show)"
+done
+for show in depth normals shadow-map shadow-factor overlay; do
+    equals "OtherStagesAreNot_$show" "$(displayed --show $show --exposure 0 --tonemap none)" "$(displayed --show $show)"
+done
+for map in none reinhard aces agx; do
+    displayed --tonemap $map
+done | sort -u >"$scratch/maps"
+equals ToneMapsDiffer 4 "$(wc -l <"$scratch/maps")"
+check ExposureShows test "$(displayed --exposure 1)" != "$(displayed --exposure 2)"
+displayed -v >"$scratch/stdout"
+check AutomaticExposureIsSaid grep -qE '^vpl: exposure [+-][0-9]+\.[0-9][0-9] stops \(auto\)$' "$scratch/stderr"
+displayed -v --exposure -1.5 >"$scratch/stdout"
+check ExposureIsSaid grep -qx 'vpl: exposure -1.50 stops' "$scratch/stderr"
+displayed --exposure 1 --tonemap reinhard >"$scratch/stdout"
+check ReinhardHasItsOwnKey grep -q 'warning: --exposure has no effect with --tonemap reinhard' "$scratch/stderr"
+displayed --tonemap agx --show depth >"$scratch/stdout"
+check DepthHasNoToneMap grep -q 'warning: --tonemap has no effect with a --show that is not light' "$scratch/stderr"
+rm "$out/e.png"
+
 for type in png hdr pfm; do
     succeeds "Write_$type" "$vpl" render "$room" $base -o "$out/a.$type" --seed 1
     succeeds "CompareWithItself_$type" "$vpl" compare "$out/a.$type" "$out/a.$type"

@@ -62,7 +62,7 @@ wrong "--lighting is \"physica\"" render "$room" -o "$png" --lighting physica
 wrong "--bounce is" lights "$room" --bounce refract
 wrong "--pipeline is" render "$room" -o "$png" --pipeline forward
 wrong "--isa is \"mmx\"" render "$room" -o "$png" --isa mmx
-wrong "--tonemap is" render "$room" -o "$png" --tonemap aces
+wrong "--tonemap is \"filmic\", must be one of usual|none|reinhard|aces|agx" render "$room" -o "$png" --tonemap filmic
 wrong "--batch is \"0\"" render "$room" -o "$png" --batch 0
 wrong "--interleave is \"17\"" render "$room" -o "$png" --interleave 17
 wrong "--shadow-map is \"0\"" render "$room" -o "$png" --shadow-map 0
@@ -75,6 +75,8 @@ wrong "--bias-slope is \"inf\"" render "$room" -o "$png" --bias-slope inf
 wrong "--min-distance is \"-2\"" render "$room" -o "$png" --min-distance -2
 wrong "--exposure is \"65\"" render "$room" -o "$png" --exposure 65
 wrong "--exposure is \"1e400\"" render "$room" -o "$png" --exposure 1e400
+wrong "--exposure is \"nan\", must be a number in [-64, 64] or auto" render "$room" -o "$png" --exposure nan
+wrong "--exposure is \"auto\", must be a number in [-64, 64]" bake "$room" -o "$out/never.ply" --exposure auto
 wrong "camera is 1, must be in [0, 0]" render "$room" -o "$png" --camera 1
 wrong "--camera is \"-1\"" render "$room" -o "$png" --camera -1
 for size in 0x10 10x0 16385x1 1x16385 10 10x 10y10 10x10x10 x -4x4 1e3x2 99999999999999999999x1; do
@@ -147,6 +149,8 @@ unused "--clusters has no effect with --method instant-radiosity" render "$room"
 unused "--particles has no effect with --method direct" render "$room" $tiny --particles=3 --method direct
 unused "--batch has no effect with --pipeline deferred" render "$room" $tiny --batch 3
 unused "--interleave has no effect with --pipeline lightcuts" render "$room" $tiny --pipeline lightcuts --interleave 3 --interleave 4
+unused "--exposure has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --exposure auto
+unused "--tonemap has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --tonemap=usual
 succeeds NoEffectIsQuiet "$vpl" render "$room" $tiny --clusters 8 --quiet -o "$out/u.pfm"
 succeeds EffectOfTheUsualPipeline "$vpl" render "$room" --size 8x8 --method ssvp --interleave 2 --rsm-size 32 -o "$out/u.pfm"
 succeeds DefaultsDoNotWarn "$vpl" render "$room" $tiny -o "$out/u.pfm"

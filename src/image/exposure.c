@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Based on: Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for Digital Images, SIGGRAPH
+// 2002 (the geometric mean of the luminance becomes middle grey).
+// Departs: the mean leaves out black pixels, the darkest and the brightest, as histograms of games do: Krzysztof
+// Narkowicz, Automatic Exposure, 2016.
+#include "base/arena.h"
+#include "image/tone.h"
+#include "math/scalar.h"
+
+#include <float.h>
+#include <string.h>
+
+// A bin has the floats with the same upper 16 bits: 128 bins per octave. Counts are whole numbers, so their
+// sums have no rounding.
+enum { BIN_SHIFT = 16, BINS = 255 << (23 - BIN_SHIFT) };
+
+static const double MIDDLE_GREY = 0.18, DARKEST = 0.10, BRIGHTEST = 0.05;
+
+static size_t countLuminances(const vplImage* image, uint32_t* bins)
+{
+    size_t lit = 0;
+    const size_t count = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < count; i++) {
+        const double y = vplLuminance(image->pixels + 3 * i);
+        if (y > 0 && y <= (double)FLT_MAX) {
+            const float rounded = (float)y;
+            uint32_t bits;
+            memcpy(&bits, &rounded, sizeof bits);
+            bins[bits >> BIN_SHIFT]++;
+            lit++;
+        }
+    }
+    return lit;
+}
+
+// The logarithm of a bin's middle.
+static double logOfBin(int bin)
+{
+    const uint32_t bits = ((uint32_t)bin << BIN_SHIFT) + (1u << (BIN_SHIFT - 1));
+    float middle;
+    memcpy(&middle, &bits, sizeof middle);
+    return vplLn((double)middle);
+}
+
+// The mean logarithm of the pixels that are neither among the darkest nor among the brightest. A bin across one
+// of the two limits counts in part.
+static double meanLog(const uint32_t* bins, double lit)
+{
+    const double low = DARKEST * lit, high = lit - BRIGHTEST * lit;
+    double sum = 0, below = 0;
+    for (int bin = 0; bin < BINS && below < high; bin++) {
+        const double above = below + bins[bin];
+        const double from = below > low ? below : low, to = above < high ? above : high;
+        sum += to > from ? (to - from) * logOfBin(bin) : 0;
+        below = above;
+    }
+    return sum / (high - low);
+}
+
+vplResult vplImage_AutoExposure(const vplImage* image, float* stopsOut)
+{
+    uint32_t* bins = vplAllocZero(image->context, BINS, sizeof *bins);
+    if (bins == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    const size_t lit = countLuminances(image, bins);
+    const double stops = lit > 0 ? (vplLn(MIDDLE_GREY) - meanLog(bins, (double)lit)) / vplLn(2) : 0;
+    *stopsOut = vplClampf((float)stops, -64, 64);
+    vplFree(image->context, bins);
+    return VPL_SUCCESS;
+}
