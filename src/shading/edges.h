@@ -96,7 +96,8 @@ static inline vplEdgeSurface vplNameSurface(const vplTile* tile, int element, ui
 {
     const int sample = vplMiddleSample(samples, tile->sampleCount);
     return (vplEdgeSurface){.triangle = tile->samples[sample][element],
-                            .sample = sample,
+                            .sample = (int16_t)sample,
+                            .glows = true,
                             .share = (float)__builtin_popcount(samples) / (float)(tile->sampleCount + 1)};
 }
 
@@ -161,6 +162,7 @@ typedef struct vplEdgeQueue {
     int count;                      // surfaces that wait, in the first lanes
     vplBlock block;                 // their points
     int x[VPL_LANES], y[VPL_LANES]; // their pixels of the picture
+    bool glows[VPL_LANES];
     float share[VPL_LANES];
 } vplEdgeQueue;
 
@@ -191,7 +193,7 @@ static inline void vplEdgeQueue_Flush(vplEdgeQueue* q)
         const vplReflector* r = &vplFacetCache_Get(s, b->points.triangle[l], q->cache)->reflector;
         float* pixel = vplPixelOf(s, q->x[l], q->y[l]);
         for (int c = 0; c < 3; c++) {
-            const double emission = q->direct ? r->emission[c] : 0;
+            const double emission = q->direct && q->glows[l] ? r->emission[c] : 0;
             pixel[c] += q->share[l] * (float)(emission + r->factor[c] * b->sums[c][l]);
         }
     }
@@ -240,6 +242,7 @@ static inline void vplEdgeQueue_Push(vplEdgeQueue* q, const vplEdgeSurface* surf
     vplEdgeQueue_PutSeen(q, surface->triangle, x, y, at);
     q->x[q->count] = x;
     q->y[q->count] = y;
+    q->glows[q->count] = surface->glows;
     q->share[q->count] = surface->share;
     if (++q->count == VPL_LANES) {
         vplEdgeQueue_Flush(q);

@@ -26,8 +26,8 @@ typedef enum vplRimPoint {
 typedef struct vplRims {
     const vplShading* shading;
     const vplTile* tile;
-    const uint16_t* own;     // samples of each element that show the surface in its centre
-    float light[RIM_CELLS];  // from emitters in centres of pixels; NAN where nothing is seen
+    const uint16_t* own;    // samples of each element that show the surface in its centre
+    float light[RIM_CELLS]; // from emitters in centres of pixels; NAN where nothing is seen
     uint8_t listed[RIM_CELLS];
     uint16_t list[VPL_TILE_SIDE * VPL_TILE_SIDE]; // cells of pixels to smooth
     int listCount;
@@ -168,8 +168,7 @@ static inline void vplRims_ReadTile(vplRims* r)
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
         const int x = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, y = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
         int triangles[VPL_LANES];
-        if (x >= tile->width || y >= tile->height ||
-            !vplReadTriangles(tile, block * VPL_LANES, triangles)) {
+        if (x >= tile->width || y >= tile->height || !vplReadTriangles(tile, block * VPL_LANES, triangles)) {
             continue;
         }
         for (int l = 0; l < VPL_LANES; l++) {

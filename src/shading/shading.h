@@ -144,7 +144,8 @@ typedef struct vplObjectUniforms {
 // A surface that samples of a pixel show.
 typedef struct vplEdgeSurface {
     int triangle;
-    int sample; // one that shows it, near the middle of those that do
+    int16_t sample; // one that shows it, near the middle of those that do
+    bool glows;     // its emission counts
     float share;
 } vplEdgeSurface;
 

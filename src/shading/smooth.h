@@ -4,6 +4,7 @@
 #ifndef VPL_SHADING_SMOOTH_H
 #define VPL_SHADING_SMOOTH_H
 
+#include "math/sampling.h"
 #include "shading/rims.h"
 
 // Bit l: some sample of lane l shows another triangle than its centre.
@@ -25,11 +26,76 @@ static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int 
 
 typedef void vplEdgePixelFcn(const vplShading* s, void* user, const vplEdgePixel* pixel);
 
+// ---- edges of lamps
+
+// Camera rays through a pixel at the edge of a lamp, which is so bright that few samples leave steps.
+enum { VPL_LAMP_RAYS = 256 };
+
+// Tests whether the surfaces of a pixel emit different light.
+static inline bool vplIsLampEdge(const vplShading* s, vplFacetCache* cache, const vplEdgePixel* p)
+{
+    vplReflector own = {{0}, {0}};
+    bool differs = false;
+    if (p->triangle >= 0) {
+        own = vplFacetCache_Get(s, p->triangle, cache)->reflector;
+    }
+    for (int i = 0; i < p->count; i++) {
+        const vplReflector* r = &vplFacetCache_Get(s, p->others[i].triangle, cache)->reflector;
+        differs |= memcmp(r->emission, own.emission, sizeof own.emission) != 0;
+    }
+    return differs;
+}
+
+// Finds the mean emission in a pixel, whose surfaces then count without it, by rays.
+static inline void vplFindEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p,
+                                   float emission[3])
+{
+    const vplView* v = s->view;
+    for (int i = 0; i < VPL_LAMP_RAYS; i++) {
+        double x, y;
+        vplHit hit;
+        vplPixelPoint(i, VPL_LAMP_RAYS, &x, &y);
+        const vplSubPixel at = {(int)(256 * x) - 128, (int)(256 * y) - 128};
+        const vplVec3 sight = vplSightOf(v, p->x, p->y, at);
+        const vplRay ray = {vplAdd(v->eye, vplScale((float)v->near, sight)), sight, {0, 0}};
+        if (vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
+            const vplReflector* r = &vplFacetCache_Get(s, hit.triangle, cache)->reflector;
+            for (int c = 0; c < 3; c++) {
+                emission[c] += r->emission[c] / VPL_LAMP_RAYS;
+            }
+        }
+    }
+    for (int i = 0; i < p->count; i++) {
+        p->others[i].glows = false;
+    }
+}
+
+// Scales what a pixel shows by the share of the surface in its centre.
+static inline void vplScaleCentre(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p, int64_t* rays)
+{
+    float* pixel = vplPixelOf(s, p->x, p->y);
+    float emission[3] = {0, 0, 0}, own[3] = {0, 0, 0};
+    if (vplIsLampEdge(s, cache, p)) {
+        if (p->triangle >= 0) {
+            memcpy(own, vplFacetCache_Get(s, p->triangle, cache)->reflector.emission, sizeof own);
+        }
+        vplFindEmission(s, cache, p, emission);
+        *rays += VPL_LAMP_RAYS;
+    }
+    for (int c = 0; c < 3; c++) {
+        const float reflected = pixel[c] - own[c];
+        pixel[c] = p->share * (reflected > 0 ? reflected : 0) + emission[c];
+    }
+}
+
+// ---- tiles
+
 // Visits the pixels at edges of a tile whose pixels are written, and scales them by the share of the surface in
 // their centres. Smooths rims of shadows.
 static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
                                  vplEdgePixelFcn* visit, void* user)
 {
+    vplTileSums* sums = tile->scratch;
     uint16_t own[VPL_TILE_SIDE * VPL_TILE_SIDE];
     for (int i = 0; i < VPL_TILE_SIDE * VPL_TILE_SIDE; i++) {
         own[i] = (uint16_t)((1u << tile->sampleCount) - 1);
@@ -48,9 +114,7 @@ static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFa
                 vplEdgePixel pixel = {.x = tile->x + x, .y = tile->y + y, .triangle = centre[l]};
                 vplFindEdges(s, tile, block * VPL_LANES + l, cache, &pixel);
                 own[block * VPL_LANES + l] = (uint16_t)pixel.own;
-                for (int c = 0; c < 3; c++) {
-                    vplPixelOf(s, pixel.x, pixel.y)[c] *= pixel.share;
-                }
+                vplScaleCentre(s, cache, &pixel, &sums->shadowRays);
                 visit(s, user, &pixel);
             }
         }
