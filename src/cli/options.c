@@ -157,6 +157,8 @@ static const Option OWN[] = {
      "stops, PNG and the colours of PLY only: pixels times 2^EV; default 0", NULL},
     {"tonemap", "usual|none|reinhard", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
      "PNG only; usual: reinhard for ssvp, else none", NULL},
+    {"no-ground", NULL, NULL, ON_SCENES, readFlag, AT(noGround), 0, 0,
+     "no ground under a SCENE that is a mesh (.obj)", NULL},
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",
