@@ -20,8 +20,16 @@
 static const double VIEW[3] = {-0.42, -0.38, -0.9}; // of any length
 static const double FIELD = 26 * VPL_PI / 180;
 static const double MARGIN = 0.05;
-static const double LAMP[3] = {-0.30, 0.80, 0.52}; // of any length
 static const double LAMP_FAR = 0.6, LAMP_SIDE = 0.5;
+
+// The key lamp, and a fill lamp whose weak light keeps the shadow side from being black.
+typedef struct Lamp {
+    const char* name;
+    double to[3]; // from the centre, of any length
+    double share; // of the irradiance pi
+} Lamp;
+
+static const Lamp KEY = {"key lamp", {-0.40, 0.75, 0.60}, 1}, FILL = {"fill lamp", {0.72, 0.65, 0.3}, 0.08};
 
 enum { OBJ_SCENE_COOKIE = 0x56504f53 };
 
@@ -246,30 +254,43 @@ static vplResult addPoint(const Adder* a, const double position[3], double dista
     return vplScene_AddEmitter(a->scene, &def, NULL);
 }
 
-static vplResult addLamp(const Adder* a, bool areaLight)
+static vplResult addSquare(const Adder* a, const Lamp* lamp, const double position[3], double side)
 {
-    const Look* l = a->look;
-    const double distance = fmax(LAMP_FAR * sqrt(vplDot3(l->eye, l->eye)), 2 * l->radius);
-    double to[3], x[3], y[3], position[3];
-    normalize3(LAMP, to);
-    normalize3((double[3]){-to[2], 0, to[0]}, x); // horizontal; x cross y is -to
-    vplCross3(x, to, y);
+    double x[3], y[3];
+    normalize3((double[3]){-lamp->to[2], 0, lamp->to[0]}, x); // x cross y points to the centre
+    vplCross3(x, lamp->to, y);
+    normalize3(y, y);
     for (int k = 0; k < 3; k++) {
-        position[k] = l->centre[k] + distance * to[k];
-        x[k] *= 0.5 * LAMP_SIDE * distance;
-        y[k] *= 0.5 * LAMP_SIDE * distance;
+        x[k] *= 0.5 * side;
+        y[k] *= 0.5 * side;
     }
-    if (!areaLight) {
-        return addPoint(a, position, distance);
-    }
-    const float radiance = (float)(VPL_PI / (LAMP_SIDE * LAMP_SIDE));
+    const float radiance = (float)(lamp->share * VPL_PI / (LAMP_SIDE * LAMP_SIDE));
     vplMaterialDef material = vplDefaultMaterialDef();
     material.diffuse = (vplRgb){0, 0, 0};
     material.emission = (vplRgb){radiance, radiance, radiance};
+    return addQuad(a, lamp->name, position, x, y, material);
+}
+
+static vplResult addLight(const Adder* a, bool areaLight)
+{
+    const Look* l = a->look;
+    const double distance = fmax(LAMP_FAR * sqrt(vplDot3(l->eye, l->eye)), 2 * l->radius);
+    double key[3], fill[3];
+    normalize3(KEY.to, key);
+    normalize3(FILL.to, fill);
+    for (int k = 0; k < 3; k++) {
+        key[k] = l->centre[k] + distance * key[k];
+        fill[k] = l->centre[k] + distance * fill[k];
+    }
+    if (!areaLight) {
+        return addPoint(a, key, distance);
+    }
+    TRY(addSquare(a, &KEY, key, LAMP_SIDE * distance));
     vplLog(a->scene->context, VPL_LOG_WARNING,
-           "%s: nothing emits light; a square lamp with sides of %g m stands at (%g, %g, %g)", a->path,
-           LAMP_SIDE * distance, position[0], position[1], position[2]);
-    return addQuad(a, "lamp", position, x, y, material);
+           "%s: nothing emits light; a square lamp with sides of %g m is at (%g, %g, %g), a weaker one at "
+           "(%g, %g, %g)",
+           a->path, LAMP_SIDE * distance, key[0], key[1], key[2], fill[0], fill[1], fill[2]);
+    return addSquare(a, &FILL, fill, LAMP_SIDE * distance);
 }
 
 static bool emits(const vplScene* scene)
@@ -298,7 +319,7 @@ static vplResult fill(vplScene* scene, const char* path, const vplObjSceneDef* d
     const Adder adder = {scene, path, &look};
     TRY(addCamera(&adder, def->ground ? &ground : NULL));
     TRY(def->ground ? addGround(&adder, &ground) : VPL_SUCCESS);
-    return light ? addLamp(&adder, def->areaLight) : VPL_SUCCESS;
+    return light ? addLight(&adder, def->areaLight) : VPL_SUCCESS;
 }
 
 vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
