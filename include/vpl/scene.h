@@ -119,7 +119,7 @@ void vplScene_Destroy(vplScene* scene);
 typedef struct vplObjSceneDef {
     double aspect;   // of the picture that the vertices fill: width / height, [1e-6, 1e6]; default 16 / 9
     bool ground;     // true (default): a grey ground under the lowest vertex, y being up
-    bool areaLight;  // light, if nothing emits; true (default): a square lamp; false: a point in its place
+    bool areaLight;  // light, if nothing emits; true (default): two square lamps; false: a point light
     uint32_t cookie; // set by vplDefaultObjSceneDef
 } vplObjSceneDef;
 

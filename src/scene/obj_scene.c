@@ -7,11 +7,11 @@
 // edge. The view falls more steeply than half the field, so the horizon is above the picture: the camera is
 // above all vertices, and a ground of finite size under them covers all of the picture behind the mesh.
 //
-// Let c be the centre of the bounds, r half their diagonal and d the larger of LAMP_FAR times the distance from
-// c to the eye and 2 r. The lamp is a square of side LAMP_SIDE d around c + d LAMP, above the camera's shoulder,
-// and faces c. It is outside the picture, above its upper edge. Its radiance pi / LAMP_SIDE^2 gives a surface at
-// c that faces it the irradiance pi (less by the angle that the lamp fills), so that white there has the
-// radiance 1.
+// Let c be the centre of the bounds. Two square lamps with sides of LAMP_SIDE d at the distance d from c face
+// it: the key lamp above the camera's left shoulder and the weak fill lamp to the right. d is LAMP_FAR times the
+// distance from c to the eye, or more where a lamp would otherwise be in the picture. The key lamp's radiance pi /
+// LAMP_SIDE^2 gives a surface at c that faces it the irradiance pi (less by the angle that the lamp fills), so
+// that white there has the radiance 1.
 #include "base/file.h"
 #include "math/double3.h"
 #include "math/scalar.h"
@@ -21,15 +21,16 @@ static const double VIEW[3] = {-0.42, -0.38, -0.9}; // of any length
 static const double FIELD = 26 * VPL_PI / 180;
 static const double MARGIN = 0.05;
 static const double LAMP_FAR = 0.6, LAMP_SIDE = 0.5;
+static const vplRgb GROUND = {0.3f, 0.3f, 0.3f}; // darker than materials that are not known
 
-// The key lamp, and a fill lamp whose weak light keeps the shadow side from being black.
 typedef struct Lamp {
     const char* name;
     double to[3]; // from the centre, of any length
     double share; // of the irradiance pi
 } Lamp;
 
-static const Lamp KEY = {"key lamp", {-0.40, 0.75, 0.60}, 1}, FILL = {"fill lamp", {0.72, 0.65, 0.3}, 0.08};
+static const Lamp LAMPS[2] = {{"key lamp", {-0.40, 0.75, 0.60}, 1},
+                              {"fill lamp", {0.60, 0.80, 0.30}, 0.08}}; // or shadows would be black
 
 enum { OBJ_SCENE_COOKIE = 0x56504f53 };
 
@@ -134,6 +135,10 @@ static Look lookAt(const vplMeshDef* mesh, const Field* field)
     normalize3((double[3]){-VIEW[2], 0, VIEW[0]}, l.right);
     vplCross3(l.right, l.ahead, l.up);
     fit(&l, mesh, field->inner);
+    // Bounds too small for the transform of a lamp are taken as a point, which no camera can look at.
+    for (int k = 0; k < 3 && l.radius < 2e-15; k++) {
+        l.eye[k] = 0;
+    }
     return l;
 }
 
@@ -238,11 +243,18 @@ static vplResult addGround(const Adder* a, const Ground* g)
     }
     vplLog(a->scene->context, VPL_LOG_WARNING, "%s: it stands on a grey ground of %g by %g m at y = %g",
            a->path, 2 * g->halfWidth, 2 * g->halfLength, g->centre[1]);
-    return addQuad(a, "ground", g->centre, x, y, vplDefaultMaterialDef());
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = GROUND;
+    return addQuad(a, "ground", g->centre, x, y, material);
 }
 
-static vplResult addPoint(const Adder* a, const double position[3], double distance)
+static vplResult addPoint(const Adder* a, double distance)
 {
+    double position[3];
+    normalize3(LAMPS[0].to, position);
+    for (int k = 0; k < 3; k++) {
+        position[k] = a->look->centre[k] + distance * position[k];
+    }
     const float intensity = (float)fmin(VPL_PI * distance * distance, (double)VPL_MAX_MAGNITUDE);
     vplEmitterDef def = vplDefaultEmitterDef();
     def.position = vplRound3(position);
@@ -254,43 +266,65 @@ static vplResult addPoint(const Adder* a, const double position[3], double dista
     return vplScene_AddEmitter(a->scene, &def, NULL);
 }
 
-static vplResult addSquare(const Adder* a, const Lamp* lamp, const double position[3], double side)
+// Unit vectors of a lamp: to it, and along its sides; x cross y points to the centre.
+typedef struct Axes {
+    double to[3], x[3], y[3];
+} Axes;
+
+static Axes axesOf(const Lamp* lamp)
 {
-    double x[3], y[3];
-    normalize3((double[3]){-lamp->to[2], 0, lamp->to[0]}, x); // x cross y points to the centre
-    vplCross3(x, lamp->to, y);
-    normalize3(y, y);
+    Axes a;
+    normalize3(lamp->to, a.to);
+    normalize3((double[3]){-a.to[2], 0, a.to[0]}, a.x);
+    vplCross3(a.x, a.to, a.y);
+    return a;
+}
+
+// The least distance of the lamps at which all their corners are above the upper edge of the picture. That
+// edge is a plane through the eye, and a corner's height above it grows with the lamp's distance.
+static double leastDistance(const Look* l, double slope)
+{
+    double normal[3], least = 0;
     for (int k = 0; k < 3; k++) {
-        x[k] *= 0.5 * side;
-        y[k] *= 0.5 * side;
+        normal[k] = l->up[k] - slope * l->ahead[k];
     }
+    for (int i = 0; i < 2; i++) {
+        const Axes a = axesOf(&LAMPS[i]);
+        const double corner = 0.5 * LAMP_SIDE * (fabs(vplDot3(a.x, normal)) + fabs(vplDot3(a.y, normal)));
+        const double growth = vplDot3(a.to, normal) - corner;
+        least = fmax(least, (l->eye[1] - slope * l->eye[2]) / growth);
+    }
+    return least;
+}
+
+static vplResult addLamp(const Adder* a, const Lamp* lamp, double distance)
+{
+    Axes axes = axesOf(lamp);
     const float radiance = (float)(lamp->share * VPL_PI / (LAMP_SIDE * LAMP_SIDE));
     vplMaterialDef material = vplDefaultMaterialDef();
     material.diffuse = (vplRgb){0, 0, 0};
     material.emission = (vplRgb){radiance, radiance, radiance};
-    return addQuad(a, lamp->name, position, x, y, material);
+    for (int k = 0; k < 3; k++) {
+        axes.to[k] = a->look->centre[k] + distance * axes.to[k];
+        axes.x[k] *= 0.5 * LAMP_SIDE * distance;
+        axes.y[k] *= 0.5 * LAMP_SIDE * distance;
+    }
+    vplLog(a->scene->context, VPL_LOG_WARNING,
+           "%s: nothing emits light; a square %s of %g by %g m is at (%g, %g, %g)", a->path, lamp->name,
+           LAMP_SIDE * distance, LAMP_SIDE * distance, axes.to[0], axes.to[1], axes.to[2]);
+    return addQuad(a, lamp->name, axes.to, axes.x, axes.y, material);
 }
 
-static vplResult addLight(const Adder* a, bool areaLight)
+static vplResult addLight(const Adder* a, double slope, bool areaLight)
 {
     const Look* l = a->look;
-    const double distance = fmax(LAMP_FAR * sqrt(vplDot3(l->eye, l->eye)), 2 * l->radius);
-    double key[3], fill[3];
-    normalize3(KEY.to, key);
-    normalize3(FILL.to, fill);
-    for (int k = 0; k < 3; k++) {
-        key[k] = l->centre[k] + distance * key[k];
-        fill[k] = l->centre[k] + distance * fill[k];
-    }
+    const double distance =
+        fmax(fmax(LAMP_FAR * sqrt(vplDot3(l->eye, l->eye)), 2 * l->radius), 1.01 * leastDistance(l, slope));
     if (!areaLight) {
-        return addPoint(a, key, distance);
+        return addPoint(a, distance);
     }
-    TRY(addSquare(a, &KEY, key, LAMP_SIDE * distance));
-    vplLog(a->scene->context, VPL_LOG_WARNING,
-           "%s: nothing emits light; a square lamp with sides of %g m is at (%g, %g, %g), a weaker one at "
-           "(%g, %g, %g)",
-           a->path, LAMP_SIDE * distance, key[0], key[1], key[2], fill[0], fill[1], fill[2]);
-    return addSquare(a, &FILL, fill, LAMP_SIDE * distance);
+    TRY(addLamp(a, &LAMPS[0], distance));
+    return addLamp(a, &LAMPS[1], distance);
 }
 
 static bool emits(const vplScene* scene)
@@ -319,7 +353,7 @@ static vplResult fill(vplScene* scene, const char* path, const vplObjSceneDef* d
     const Adder adder = {scene, path, &look};
     TRY(addCamera(&adder, def->ground ? &ground : NULL));
     TRY(def->ground ? addGround(&adder, &ground) : VPL_SUCCESS);
-    return light ? addLight(&adder, def->areaLight) : VPL_SUCCESS;
+    return light ? addLight(&adder, field.slopes[1], def->areaLight) : VPL_SUCCESS;
 }
 
 vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
