@@ -11,12 +11,12 @@ typedef struct Model {
     double tolerance; // of places in the picture, where floats are coarse
 } Model;
 
-#define CUBE(low, high)                                                                                      \
-    "v " low " " low " " low "\nv " high " " low " " low "\nv " high " " high " " low "\nv " low " " high    \
-    " " low "\nv " low " " low " " high "\nv " high " " low " " high "\nv " high " " high " " high "\nv " low \
-    " " high " " high "\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n"
-
 // clang-format off
+#define CUBE(a, b)                                                                                           \
+    "v " a " " a " " a "\nv " b " " a " " a "\nv " b " " b " " a "\nv " a " " b " " a "\n"                   \
+    "v " a " " a " " b "\nv " b " " a " " b "\nv " b " " b " " b "\nv " a " " b " " b "\n"                   \
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n"
+
 static const Model MODELS[] = {
     {"v -5 0 0\nv 5 0 0\nv 5 0.2 0.3\nv -5 0.2 0.3\nf 1 2 3 4\n", 1e-4}, // long and thin
     {"v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n", 1e-4},       // flat, lies on the ground
