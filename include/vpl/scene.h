@@ -115,10 +115,27 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut);
 // NULL is allowed.
 void vplScene_Destroy(vplScene* scene);
 
+// What an OBJ file gets that is a scene by itself. It always gets a camera that fits its vertices.
+typedef struct vplObjSceneDef {
+    double aspect;   // of the picture that the vertices fill: width / height, [1e-6, 1e6]; default 16 / 9
+    bool ground;     // true (default): a grey ground under the lowest vertex, y being up
+    bool areaLight;  // light, if nothing emits; true (default): two square lamps; false: a point light
+    uint32_t cookie; // set by vplDefaultObjSceneDef
+} vplObjSceneDef;
+
+vplObjSceneDef vplDefaultObjSceneDef(void);
+
+// True for a path that ends in .obj, in either case.
+bool vplIsObjPath(const char* path);
+
 // Reads a scene file; examples/scenes/README.md describes the format. A path that ends in .obj is read as one
-// mesh, with a camera that fits it and, if nothing emits, a point light; both are logged. VPL_FILE_ERROR,
-// VPL_OUT_OF_MEMORY, or VPL_PARSE_ERROR, whose message is "file:line:column:", what was found and what was
-// expected.
+// mesh, and what the def adds to it is logged; for other files the def has no effect. VPL_FILE_ERROR,
+// VPL_OUT_OF_MEMORY, VPL_INVALID_ARGUMENT (the def), or VPL_PARSE_ERROR, whose message is
+// "file:line:column:", what was found and what was expected.
+vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplObjSceneDef* def,
+                           vplScene** sceneOut);
+
+// The same with the default def.
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut);
 
 // Each checks a def, copies it and returns its index in *indexOut (may be NULL). VPL_INVALID_ARGUMENT for a

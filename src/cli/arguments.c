@@ -158,6 +158,9 @@ bool parseArguments(int count, const char* const* words, Arguments* arguments)
         }
     }
     warnOfUnused(&a);
+    if (a.noGround && !a.quiet && a.positionalCount > 0 && !vplIsObjPath(a.positionals[0])) {
+        complain("warning: --no-ground has no effect with %s, only with a mesh (.obj)", a.positionals[0]);
+    }
     *arguments = a;
     return true;
 }

@@ -74,7 +74,7 @@ struct Arguments {
     int runs, seeds, referenceSpp;
     double seconds; // --time
     const char *stage, *reference, *sweeps;
-    bool all, scaling, json, explain, dryRun, quiet, verbose, help;
+    bool all, scaling, json, explain, dryRun, noGround, quiet, verbose, help;
 };
 
 // Fills `arguments`, or prints one sentence to stderr and returns false.
@@ -101,6 +101,9 @@ vplLogFcn logToStderr;
 
 // Makes a context that logs to stderr; NULL after complaining.
 vplContext* openContext(const Arguments* arguments);
+
+// Loads the scene that the arguments name; a mesh by itself is fitted to the picture.
+vplResult loadScene(const Arguments* arguments, vplContext* context, vplScene** sceneOut);
 
 // Returns the exit code for a result. A file error is bad input (2) if `reading`, else a failure to write
 // (1).

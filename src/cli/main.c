@@ -38,6 +38,15 @@ vplContext* openContext(const Arguments* arguments)
     return context;
 }
 
+vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut)
+{
+    vplObjSceneDef def = vplDefaultObjSceneDef();
+    def.aspect = (double)a->render.output.width / a->render.output.height;
+    def.ground = !a->noGround;
+    def.areaLight = a->render.lighting != VPL_LIGHTING_DOCUMENTED; // which has no area lights
+    return vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
+}
+
 int exitCode(vplResult result, bool reading)
 {
     switch (result) {
@@ -94,7 +103,7 @@ int runOnScene(const Arguments* a, SceneWork* work)
         return EXIT_USAGE;
     }
     vplScene* scene = NULL;
-    int code = exitCode(vplScene_Load(context, a->positionals[0], &scene), true);
+    int code = exitCode(loadScene(a, context, &scene), true);
     if (code == EXIT_DONE && (a->explain || a->dryRun)) {
         code = explain(a, scene);
     }

@@ -168,18 +168,17 @@ static const Option OWN[] = {
      "folder for report.html, tradeoff.svg, tradeoff.csv and the reference, made if missing; required", NULL},
     {"exposure", "EV|auto", "auto", RENDER, readExposure, 0, -64, 64,
      "stops, PNG only: pixels times 2^EV. auto: the geometric mean of the luminance becomes middle grey, "
-     "without "
-     "black pixels, the darkest 10 % and the brightest 5 %; with --frames that of the first picture for all; "
-     "0 "
-     "for --tonemap reinhard, which has its own key, and for stages that are not light",
+     "without black pixels, the darkest 10 % and the brightest 5 %; with --frames that of the first picture "
+     "for all; 0 for --tonemap reinhard, which has its own key, and for stages that are not light",
      NULL},
     {"exposure", "EV", NULL, TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
      "stops, 8-bit colours only: radiance times 2^EV; default 0, tradeoff: by the reference", NULL},
     {"tonemap", "usual|none|reinhard|aces|agx", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
      "PNG only: how bright light fits into the screen's range. none: clipped; aces: strong contrast; agx: "
-     "bright "
-     "colours turn pale, shadows keep their value; usual: agx, and none for stages that are not light",
+     "bright colours turn pale, shadows keep their value; usual: agx, and none for stages that are not light",
      NULL},
+    {"no-ground", NULL, NULL, ON_SCENES, readFlag, AT(noGround), 0, 0,
+     "no ground under a SCENE that is a mesh (.obj)", NULL},
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",

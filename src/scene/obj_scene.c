@@ -1,20 +1,75 @@
 // SPDX-License-Identifier: MIT
-// Reads an OBJ file as a whole scene. It has no camera and seldom a light: we add both and log them.
+// Reads an OBJ file as a whole scene. It has no camera, no ground and seldom a light: we add them and log
+// each.
 //
-// Let c be the centre of the bounds and r half their diagonal. The camera is at c + 3.2 r along (0.3, 0.25,
-// 1) and looks at c with a field of view of 40 degrees. From there the bounding sphere is 36 degrees wide and
-// fits the picture. The light is at c + 2 r along (1, 2, 2), above the camera's shoulder. Its intensity gives
-// a surface at c the irradiance pi, so a white surface there has the radiance 1.
+// The camera looks down along VIEW, a three-quarter view, with a vertical field of view of FIELD. It stands as
+// near as it can with all vertices inside the picture and MARGIN of the picture's shorter side free at each
+// edge. The view falls more steeply than half the field, so the horizon is above the picture: the camera is
+// above all vertices, and a ground of finite size under them covers all of the picture behind the mesh.
+//
+// Let c be the centre of the bounds. Two square lamps with sides of LAMP_SIDE d at the distance d from c face
+// it: the key lamp above the camera's left shoulder and the weak fill lamp to the right. d is LAMP_FAR times the
+// distance from c to the eye, or more where a lamp would otherwise be in the picture. The key lamp's radiance pi /
+// LAMP_SIDE^2 gives a surface at c that faces it the irradiance pi (less by the angle that the lamp fills), so
+// that white there has the radiance 1.
 #include "base/file.h"
-#include "math/vec.h"
+#include "math/double3.h"
+#include "math/scalar.h"
 #include "scene/scene.h"
 
-typedef struct Bounds {
-    vplVec3 centre;
-    float radius;
-} Bounds;
+static const double VIEW[3] = {-0.42, -0.38, -0.9}; // of any length
+static const double FIELD = 26 * VPL_PI / 180;
+static const double MARGIN = 0.05;
+static const double LAMP_FAR = 0.6, LAMP_SIDE = 0.5;
+static const vplRgb GROUND = {0.3f, 0.3f, 0.3f}; // darker than materials that are not known
 
-static Bounds boundsOf(const vplMeshDef* mesh)
+typedef struct Lamp {
+    const char* name;
+    double to[3]; // from the centre, of any length
+    double share; // of the irradiance pi
+} Lamp;
+
+static const Lamp LAMPS[2] = {{"key lamp", {-0.40, 0.75, 0.60}, 1},
+                              {"fill lamp", {0.60, 0.80, 0.30}, 0.08}}; // or shadows would be black
+
+enum { OBJ_SCENE_COOKIE = 0x56504f53 };
+
+vplObjSceneDef vplDefaultObjSceneDef(void)
+{
+    return (vplObjSceneDef){16.0 / 9, true, true, OBJ_SCENE_COOKIE};
+}
+
+// Half a field of view: its slopes at the edges of the picture, and without the margin.
+typedef struct Field {
+    double slopes[2], inner[2]; // to the right and upwards
+} Field;
+
+// How the mesh is looked at. Right is horizontal; right, up and ahead are unit vectors at right angles.
+typedef struct Look {
+    double centre[3], radius; // of the bounds of the vertices
+    double lowest;            // y of the lowest vertex
+    double right[3], up[3], ahead[3];
+    double eye[3];        // along right, up and ahead from the centre
+    double nearest, most; // least and greatest depth of a vertex from the centre
+} Look;
+
+static void normalize3(const double a[3], double out[3])
+{
+    const double length = sqrt(vplDot3(a, a));
+    for (int k = 0; k < 3; k++) {
+        out[k] = a[k] / length;
+    }
+}
+
+// out = centre + x right + y up + z ahead
+static void place(const Look* l, const double at[3], double out[3])
+{
+    for (int k = 0; k < 3; k++) {
+        out[k] = l->centre[k] + (at[0] * l->right[k] + at[1] * l->up[k] + at[2] * l->ahead[k]);
+    }
+}
+
+static void measure(Look* l, const vplMeshDef* mesh)
 {
     vplVec3 low = mesh->positions[0], high = low;
     for (int i = 1; i < mesh->vertexCount; i++) {
@@ -22,7 +77,254 @@ static Bounds boundsOf(const vplMeshDef* mesh)
         low = vplVec(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
         high = vplVec(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
     }
-    return (Bounds){vplScale(0.5f, vplAdd(low, high)), 0.5f * vplLength(vplSub(high, low))};
+    double a[3], b[3], half[3];
+    vplToDouble3(low, a);
+    vplToDouble3(high, b);
+    for (int k = 0; k < 3; k++) {
+        l->centre[k] = 0.5 * (a[k] + b[k]);
+        half[k] = 0.5 * (b[k] - a[k]);
+    }
+    l->radius = sqrt(vplDot3(half, half));
+    l->lowest = a[1];
+}
+
+static Field fieldOf(double aspect)
+{
+    double sine, cosine;
+    vplSinCos(FIELD / 2, &sine, &cosine);
+    const double upwards = sine / cosine, margin = 2 * MARGIN * upwards * fmin(aspect, 1);
+    return (Field){{aspect * upwards, upwards}, {aspect * upwards - margin, upwards - margin}};
+}
+
+// Finds the eye. A vertex at (x, z), z its depth, is left of the right edge of a picture of slope s, seen from
+// (a, e), if x - a <= s (z - e), and right of the left edge if a - x <= s (z - e). Let A be the greatest x - s z
+// of all vertices and B the greatest -x - s z. Then A <= a - s e and B <= -a - s e: their sum bounds e, and a =
+// (A - B) / 2 serves every such e. The same holds upwards. The nearest eye has the greatest e within both
+// bounds. A third one keeps it away from a needle that points at it.
+static void fit(Look* l, const vplMeshDef* mesh, const double inner[2])
+{
+    double most[2][2] = {{-INFINITY, -INFINITY}, {-INFINITY, -INFINITY}};
+    l->nearest = INFINITY;
+    l->most = -INFINITY;
+    for (int i = 0; i < mesh->vertexCount; i++) {
+        double p[3];
+        vplToDouble3(mesh->positions[i], p);
+        for (int k = 0; k < 3; k++) {
+            p[k] -= l->centre[k];
+        }
+        const double depth = vplDot3(p, l->ahead), across[2] = {vplDot3(p, l->right), vplDot3(p, l->up)};
+        for (int k = 0; k < 2; k++) {
+            most[k][0] = fmax(most[k][0], across[k] - inner[k] * depth);
+            most[k][1] = fmax(most[k][1], -across[k] - inner[k] * depth);
+        }
+        l->nearest = fmin(l->nearest, depth);
+        l->most = fmax(l->most, depth);
+    }
+    l->eye[2] = l->nearest - 0.125 * l->radius;
+    for (int k = 0; k < 2; k++) {
+        l->eye[k] = 0.5 * (most[k][0] - most[k][1]);
+        l->eye[2] = fmin(l->eye[2], -(most[k][0] + most[k][1]) / (2 * inner[k]));
+    }
+}
+
+static Look lookAt(const vplMeshDef* mesh, const Field* field)
+{
+    Look l;
+    measure(&l, mesh);
+    normalize3(VIEW, l.ahead);
+    normalize3((double[3]){-VIEW[2], 0, VIEW[0]}, l.right);
+    vplCross3(l.right, l.ahead, l.up);
+    fit(&l, mesh, field->inner);
+    // Bounds too small for the transform of a lamp are taken as a point, which no camera can look at.
+    for (int k = 0; k < 3 && l.radius < 2e-15; k++) {
+        l.eye[k] = 0;
+    }
+    return l;
+}
+
+// A rectangle under the mesh that holds the mesh and all of the ground that the picture shows.
+typedef struct Ground {
+    double centre[3], ahead[3]; // ahead is horizontal
+    double halfWidth, halfLength;
+    double nearest, most; // depths from the eye at the lower and upper edge of the picture
+} Ground;
+
+static Ground groundUnder(const Look* l, const Field* field)
+{
+    Ground g;
+    double eye[3];
+    place(l, l->eye, eye);
+    normalize3((double[3]){l->ahead[0], 0, l->ahead[2]}, g.ahead);
+    // The mesh may have a face at its bottom: the ground is lower by a little, also where floats are coarse.
+    g.centre[1] = l->lowest - fmax(1e-3 * l->radius, fabs(l->lowest) * 0x1p-22);
+    const double fall = -l->ahead[1], level = l->up[1], slope = field->slopes[1];
+    g.nearest = (eye[1] - g.centre[1]) / (fall + slope * level);
+    g.most = (eye[1] - g.centre[1]) / (fall - slope * level);
+    const double start = l->eye[1] * fall + l->eye[2] * level; // of the eye, along g.ahead from the centre
+    const double first = fmin(start + g.nearest * (level - slope * fall), -l->radius);
+    const double last = fmax(start + g.most * (level + slope * fall), l->radius);
+    g.halfLength = 0.5 * 1.05 * (last - first);
+    g.halfWidth = 1.05 * fmax(g.most * field->slopes[0], fabs(l->eye[0]) + l->radius);
+    for (int k = 0; k < 3; k += 2) {
+        g.centre[k] = l->centre[k] + l->eye[0] * l->right[k] + 0.5 * (first + last) * g.ahead[k];
+    }
+    return g;
+}
+
+// ---- what is added
+
+typedef struct Adder {
+    vplScene* scene;
+    const char* path;
+    const Look* look;
+} Adder;
+
+// Fails if there is a fault in what was to be added: "a camera can look at: its".
+static vplResult requireFit(const Adder* a, const char* purpose, vplFault fault)
+{
+    const double* c = a->look->centre;
+    return fault.field == NULL
+               ? VPL_SUCCESS
+               : vplFail(a->scene->context, VPL_PARSE_ERROR,
+                         "%s:1:1: found bounds around (%g, %g, %g) with radius %g, expected some that %s %s "
+                         "%s",
+                         a->path, c[0], c[1], c[2], a->look->radius, purpose, fault.field, fault.text);
+}
+
+static vplResult addCamera(const Adder* a, const Ground* ground)
+{
+    const Look* l = a->look;
+    double eye[3], target[3], nearest = l->nearest - l->eye[2], most = l->most - l->eye[2];
+    place(l, l->eye, eye);
+    place(l, (double[3]){l->eye[0], l->eye[1], 0}, target);
+    if (ground != NULL) {
+        nearest = fmin(nearest, ground->nearest);
+        most = fmax(most, ground->most);
+    }
+    vplCameraDef def = vplDefaultCameraDef();
+    def.eye = vplRound3(eye);
+    def.target = vplRound3(target);
+    def.fovY = FIELD;
+    def.near = 0.5 * nearest;
+    def.far = 1.1 * most;
+    TRY(requireFit(a, "a camera can look at: its", vplCheckCamera(&def)));
+    vplLog(a->scene->context, VPL_LOG_WARNING,
+           "%s: an OBJ file has no camera; it looks from (%g, %g, %g) at (%g, %g, %g)", a->path, eye[0],
+           eye[1], eye[2], target[0], target[1], target[2]);
+    return vplScene_AddCamera(a->scene, &def, NULL);
+}
+
+// Adds a quad around `centre` that spans [-x, x] and [-y, y] and faces x cross y.
+static vplResult addQuad(const Adder* a, const char* name, const double centre[3], const double x[3],
+                         const double y[3], vplMaterialDef material)
+{
+    vplObjectDef object = vplDefaultObjectDef();
+    double front[3];
+    vplCross3(x, y, front);
+    normalize3(front, front);
+    for (int k = 0; k < 3; k++) {
+        object.transform.m[k] = (float)(2 * x[k]);
+        object.transform.m[4 + k] = (float)(2 * y[k]);
+        object.transform.m[8 + k] = (float)front[k];
+        object.transform.m[12 + k] = (float)centre[k];
+    }
+    TRY(requireFit(a, "a ground and a lamp fit: their", vplCheckTransform(&object.transform)));
+    object.name = material.name = name;
+    TRY(vplScene_AddMaterial(a->scene, &material, &object.material));
+    return vplScene_AddObject(a->scene, &object, NULL);
+}
+
+static vplResult addGround(const Adder* a, const Ground* g)
+{
+    double x[3], y[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] = g->halfWidth * a->look->right[k];
+        y[k] = g->halfLength * g->ahead[k];
+    }
+    vplLog(a->scene->context, VPL_LOG_WARNING, "%s: it stands on a grey ground of %g by %g m at y = %g",
+           a->path, 2 * g->halfWidth, 2 * g->halfLength, g->centre[1]);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = GROUND;
+    return addQuad(a, "ground", g->centre, x, y, material);
+}
+
+static vplResult addPoint(const Adder* a, double distance)
+{
+    double position[3];
+    normalize3(LAMPS[0].to, position);
+    for (int k = 0; k < 3; k++) {
+        position[k] = a->look->centre[k] + distance * position[k];
+    }
+    const float intensity = (float)fmin(VPL_PI * distance * distance, (double)VPL_MAX_MAGNITUDE);
+    vplEmitterDef def = vplDefaultEmitterDef();
+    def.position = vplRound3(position);
+    def.intensity = (vplRgb){intensity, intensity, intensity};
+    TRY(requireFit(a, "a point light fits: its", vplCheckEmitter(&def)));
+    vplLog(a->scene->context, VPL_LOG_WARNING,
+           "%s: nothing emits light; a point light of %g W/sr stands at (%g, %g, %g)", a->path,
+           (double)intensity, position[0], position[1], position[2]);
+    return vplScene_AddEmitter(a->scene, &def, NULL);
+}
+
+// Unit vectors of a lamp: to it, and along its sides; x cross y points to the centre.
+typedef struct Axes {
+    double to[3], x[3], y[3];
+} Axes;
+
+static Axes axesOf(const Lamp* lamp)
+{
+    Axes a;
+    normalize3(lamp->to, a.to);
+    normalize3((double[3]){-a.to[2], 0, a.to[0]}, a.x);
+    vplCross3(a.x, a.to, a.y);
+    return a;
+}
+
+// The least distance of the lamps at which all their corners are above the upper edge of the picture. That
+// edge is a plane through the eye, and a corner's height above it grows with the lamp's distance.
+static double leastDistance(const Look* l, double slope)
+{
+    double normal[3], least = 0;
+    for (int k = 0; k < 3; k++) {
+        normal[k] = l->up[k] - slope * l->ahead[k];
+    }
+    for (int i = 0; i < 2; i++) {
+        const Axes a = axesOf(&LAMPS[i]);
+        const double corner = 0.5 * LAMP_SIDE * (fabs(vplDot3(a.x, normal)) + fabs(vplDot3(a.y, normal)));
+        const double growth = vplDot3(a.to, normal) - corner;
+        least = fmax(least, (l->eye[1] - slope * l->eye[2]) / growth);
+    }
+    return least;
+}
+
+static vplResult addLamp(const Adder* a, const Lamp* lamp, double distance)
+{
+    Axes axes = axesOf(lamp);
+    const float radiance = (float)(lamp->share * VPL_PI / (LAMP_SIDE * LAMP_SIDE));
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.diffuse = (vplRgb){0, 0, 0};
+    material.emission = (vplRgb){radiance, radiance, radiance};
+    for (int k = 0; k < 3; k++) {
+        axes.to[k] = a->look->centre[k] + distance * axes.to[k];
+        axes.x[k] *= 0.5 * LAMP_SIDE * distance;
+        axes.y[k] *= 0.5 * LAMP_SIDE * distance;
+    }
+    vplLog(a->scene->context, VPL_LOG_WARNING,
+           "%s: nothing emits light; a square %s of %g by %g m is at (%g, %g, %g)", a->path, lamp->name,
+           LAMP_SIDE * distance, LAMP_SIDE * distance, axes.to[0], axes.to[1], axes.to[2]);
+    return addQuad(a, lamp->name, axes.to, axes.x, axes.y, material);
+}
+
+static vplResult addLight(const Adder* a, double slope, bool areaLight)
+{
+    const Look* l = a->look;
+    const double distance =
+        fmax(fmax(LAMP_FAR * sqrt(vplDot3(l->eye, l->eye)), 2 * l->radius), 1.01 * leastDistance(l, slope));
+    if (!areaLight) {
+        return addPoint(a, distance);
+    }
+    TRY(addLamp(a, &LAMPS[0], distance));
+    return addLamp(a, &LAMPS[1], distance);
 }
 
 static bool emits(const vplScene* scene)
@@ -36,47 +338,7 @@ static bool emits(const vplScene* scene)
     return false;
 }
 
-static vplVec3 pointAround(const Bounds* b, float distance, vplVec3 direction)
-{
-    return vplAdd(b->centre, vplScale(distance * b->radius, vplNormalize(direction)));
-}
-
-static vplResult addCamera(vplScene* scene, const char* path, const Bounds* b)
-{
-    vplCameraDef def = vplDefaultCameraDef();
-    def.eye = pointAround(b, 3.2f, vplVec(0.3f, 0.25f, 1));
-    def.target = b->centre;
-    def.near = 1.1 * (double)b->radius; // half way to the sphere
-    def.far = 4.4 * (double)b->radius;
-    vplFault fault = vplCheckCamera(&def);
-    if (fault.field != NULL) {
-        return vplFail(scene->context, VPL_PARSE_ERROR,
-                       "%s:1:1: found bounds around (%g, %g, %g) with radius %g, expected some that a camera "
-                       "can look at: its %s %s",
-                       path, (double)b->centre.x, (double)b->centre.y, (double)b->centre.z, (double)b->radius,
-                       fault.field, fault.text);
-    }
-    vplLog(scene->context, VPL_LOG_WARNING,
-           "%s: an OBJ file has no camera; it looks from (%g, %g, %g) at (%g, %g, %g)", path,
-           (double)def.eye.x, (double)def.eye.y, (double)def.eye.z, (double)def.target.x,
-           (double)def.target.y, (double)def.target.z);
-    return vplScene_AddCamera(scene, &def, NULL);
-}
-
-static vplResult addLight(vplScene* scene, const char* path, const Bounds* b)
-{
-    float distance = 2 * b->radius;
-    float intensity = fminf((float)VPL_PI * distance * distance, VPL_MAX_MAGNITUDE);
-    vplEmitterDef def = vplDefaultEmitterDef();
-    def.position = pointAround(b, 2, vplVec(1, 2, 2));
-    def.intensity = (vplRgb){intensity, intensity, intensity};
-    vplLog(scene->context, VPL_LOG_WARNING,
-           "%s: nothing emits light; a point light of %g W/sr stands at (%g, %g, %g)", path,
-           (double)intensity, (double)def.position.x, (double)def.position.y, (double)def.position.z);
-    return vplScene_AddEmitter(scene, &def, NULL);
-}
-
-static vplResult fill(vplScene* scene, const char* path)
+static vplResult fill(vplScene* scene, const char* path, const vplObjSceneDef* def)
 {
     vplObjectDef object = vplDefaultObjectDef();
     TRY(vplScene_LoadObj(scene, path, &object.mesh));
@@ -84,14 +346,27 @@ static vplResult fill(vplScene* scene, const char* path)
     object.type = VPL_OBJECT_MESH;
     object.material = -1;
     TRY(vplScene_AddObject(scene, &object, NULL));
-    const Bounds bounds = boundsOf(&scene->meshes[object.mesh]);
-    TRY(addCamera(scene, path, &bounds));
-    return emits(scene) ? VPL_SUCCESS : addLight(scene, path, &bounds);
+    const bool light = !emits(scene);
+    const Field field = fieldOf(def->aspect);
+    const Look look = lookAt(&scene->meshes[object.mesh], &field);
+    const Ground ground = groundUnder(&look, &field);
+    const Adder adder = {scene, path, &look};
+    TRY(addCamera(&adder, def->ground ? &ground : NULL));
+    TRY(def->ground ? addGround(&adder, &ground) : VPL_SUCCESS);
+    return light ? addLight(&adder, field.slopes[1], def->areaLight) : VPL_SUCCESS;
 }
 
-vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, vplScene** sceneOut)
+vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
+                                vplScene** sceneOut)
 {
+    if (def->cookie != OBJ_SCENE_COOKIE) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplObjSceneDef was not made by its default function");
+    }
+    if (!(def->aspect >= 1e-6 && def->aspect <= 1e6)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplObjSceneDef.aspect is %g, must be in [1e-6, 1e6]",
+                       def->aspect);
+    }
     vplScene* scene;
     TRY(vplScene_Create(context, &scene));
-    return vplArena_Deliver(scene->arena, fill(scene, path), scene, sceneOut);
+    return vplArena_Deliver(scene->arena, fill(scene, path, def), scene, sceneOut);
 }

@@ -43,8 +43,9 @@ vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* 
 // Adds a material without checking it or copying its name.
 vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut);
 
-// Reads an OBJ file as a whole scene, with a camera and a light of our own.
-vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, vplScene** sceneOut);
+// Reads an OBJ file as a whole scene, with a camera, a ground and a light of our own.
+vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
+                                vplScene** sceneOut);
 
 // The first thing that is wrong with a def: its field, and the rest of the sentence after "<field> ".
 typedef struct vplFault {

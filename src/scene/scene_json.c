@@ -206,9 +206,21 @@ static vplResult loadJson(vplContext* context, const char* path, vplScene** scen
     return vplArena_Deliver(scene->arena, result, scene, sceneOut);
 }
 
-vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)
+bool vplIsObjPath(const char* path)
 {
     const size_t length = strlen(path);
-    const bool obj = length >= 4 && strcasecmp(path + length - 4, ".obj") == 0;
-    return (obj ? vplScene_LoadObjAlone : loadJson)(context, path, sceneOut);
+    return length >= 4 && strcasecmp(path + length - 4, ".obj") == 0;
+}
+
+vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplObjSceneDef* def,
+                           vplScene** sceneOut)
+{
+    return vplIsObjPath(path) ? vplScene_LoadObjAlone(context, path, def, sceneOut)
+                              : loadJson(context, path, sceneOut);
+}
+
+vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut)
+{
+    const vplObjSceneDef def = vplDefaultObjSceneDef();
+    return vplScene_LoadFor(context, path, &def, sceneOut);
 }

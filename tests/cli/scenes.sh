@@ -56,9 +56,19 @@ succeeds ASceneOfMeshesIsRendered "$vpl" render tests/data/obj/meshes.json -o "$
 "$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 32x24 --method direct 2>"$scratch/said"
 equals ObjAloneIsRendered 0 $?
 check ObjAloneSaysItsCamera grep -q 'square.obj: an OBJ file has no camera; it looks from' "$scratch/said"
-check ObjAloneSaysItsLight grep -q 'square.obj: nothing emits light; a point light of' "$scratch/said"
-equals ObjAloneSaysNoMore 2 "$(wc -l <"$scratch/said")"
+check ObjAloneSaysItsLight grep -q 'square.obj: nothing emits light; a square key lamp of' "$scratch/said"
+check ObjAloneSaysItsGround grep -q 'square.obj: it stands on a grey ground of' "$scratch/said"
+equals ObjAloneSaysNoMore 4 "$(wc -l <"$scratch/said")"
 cp "$out/square.pfm" "$scratch/square.pfm"
 succeeds ObjAloneIsSilentWhenQuiet "$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 32x24 --method direct --quiet
 check ObjAloneHasTheSameBits cmp "$out/square.pfm" "$scratch/square.pfm"
+"$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 24x32 --method direct --no-ground 2>"$scratch/narrow"
+equals ObjAloneNeedsNoGround 0 $?
+equals NoGroundSaysNone 0 "$(grep -c ground "$scratch/narrow")"
+equals ObjAloneIsFittedToTheSize 2 "$(grep -h 'looks from' "$scratch/said" "$scratch/narrow" | sort -u | wc -l)"
+"$vpl" render tests/data/obj/square.obj -o "$out/square.pfm" --size 32x24 --method direct --lighting documented 2>"$scratch/said"
+equals ObjAloneHasDocumentedLight 0 $?
+check DocumentedLightIsAPoint grep -q 'square.obj: nothing emits light; a point light of' "$scratch/said"
+"$vpl" info "$room" --no-ground >/dev/null 2>"$scratch/said"
+check NoGroundHasNoEffectOnSceneFiles grep -q 'warning: --no-ground has no effect with' "$scratch/said"
 rm -f "$out/meshes.pfm" "$out/square.pfm"

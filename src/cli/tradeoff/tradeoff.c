@@ -111,11 +111,10 @@ static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOu
 
 static int readScene(Tradeoff* t)
 {
-    const char* path = t->arguments->positionals[0];
-    int code = exitCode(vplScene_Load(t->context, path, &t->scene), true);
+    int code = exitCode(loadScene(t->arguments, t->context, &t->scene), true);
     if (code == EXIT_DONE && t->arguments->reference == NULL) {
         t->silent = true; // warnings about the scene have been printed
-        code = exitCode(vplScene_Load(t->tracing, path, &t->traced), true);
+        code = exitCode(loadScene(t->arguments, t->tracing, &t->traced), true);
         t->silent = false;
     }
     if (code != EXIT_DONE) {
