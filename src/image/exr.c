@@ -175,6 +175,17 @@ static void describeChannel(exr_coding_channel_info_t* channel, int width)
     channel->user_line_stride = 3 * 4 * width;
 }
 
+// Writes a chunk; the pipeline's user data is the file. Readers take a chunk for stored raw when its size is that
+// of the raw bytes, and OpenEXRCore up to 3.4.7 stores it compressed also when compression gains not a byte.
+// Source: "Scan Line Blocks" in The OpenEXR File Layout; OpenEXR issue 2306.
+static exr_result_t writeChunk(exr_encode_pipeline_t* p)
+{
+    const bool gains = p->compressed_bytes < p->packed_bytes;
+    return exr_write_scanline_chunk(p->encoding_user_data, p->part_index, p->chunk.start_y,
+                                    gains ? p->compressed_buffer : p->packed_buffer,
+                                    gains ? p->compressed_bytes : p->packed_bytes);
+}
+
 static exr_result_t writeRows(exr_context_t exr, const vplImage* image, exr_encode_pipeline_t* pipeline)
 {
     int32_t step = 1;
@@ -191,6 +202,8 @@ static exr_result_t writeRows(exr_context_t exr, const vplImage* image, exr_enco
         }
         if (y == 0) {
             TRY_EXR(exr_encoding_choose_default_routines(exr, 0, pipeline));
+            pipeline->encoding_user_data = exr;
+            pipeline->write_fn = writeChunk;
         }
         TRY_EXR(exr_encoding_run(exr, 0, pipeline));
     }
