@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 static bool isEmpty(const float* pixel)
 {
@@ -34,10 +35,10 @@ static void prepareForEyes(vplImage* image, vplShow show)
     }
 }
 
-static bool endsWithPng(const char* path)
+static bool endsWith(const char* path, const char* extension)
 {
-    size_t n = strlen(path);
-    return n >= 4 && (strcmp(path + n - 4, ".png") == 0 || strcmp(path + n - 4, ".PNG") == 0);
+    const size_t n = strlen(path), m = strlen(extension);
+    return n >= m && strcasecmp(path + n - m, extension) == 0;
 }
 
 static int writePicture(const Arguments* a, vplImage* image, const char* path)
@@ -48,13 +49,18 @@ static int writePicture(const Arguments* a, vplImage* image, const char* path)
     vplWriteOptions options = vplDefaultWriteOptions();
     options.exposure = (float)a->exposure;
     options.tonemap = a->tonemap > 0 ? (vplToneMap)(a->tonemap - 1) : usual;
-    if (endsWithPng(path) && (metres || show == VPL_SHOW_NORMALS)) {
+    if (endsWith(path, ".png") && (metres || show == VPL_SHOW_NORMALS)) {
         prepareForEyes(image, show);
     }
     if (metres || show == VPL_SHOW_NORMALS || show == VPL_SHOW_SHADOW_FACTOR) {
         options = vplDefaultWriteOptions(); // exposure and tone map are for light
     }
     return exitCode(vplImage_Write(image, path, &options), false);
+}
+
+static int writeLayers(const vplLayers* layers, const char* path)
+{
+    return exitCode(vplImage_WriteLayers(layers->layers, layers->count, path), false);
 }
 
 static void sayMore(const vplRenderStats* stats)
@@ -99,11 +105,13 @@ static bool showSequence(void* user, double fraction)
 static int renderFrame(const Arguments* a, const vplScene* scene, const vplRenderOptions* options)
 {
     vplImage* image = NULL;
+    vplLayers* layers = NULL;
     vplRenderStats stats;
     Files files;
     nameFiles(a, (int)options->sequence.frame, &files); // runRender has checked their lengths
     Sequence* sequence = options->progressUser;
-    vplResult result = vplRender(scene, options, &image, &stats);
+    const vplResult result = options->output.aovs != 0 ? vplRenderLayers(scene, options, &layers, &stats)
+                                                       : vplRender(scene, options, &image, &stats);
     endProgress(&sequence->progress);
     if (result == VPL_CANCELLED && sequence->done > 0) {
         complain("cancelled, %d of %d frames were written", sequence->done, sequence->count);
@@ -116,11 +124,12 @@ static int renderFrame(const Arguments* a, const vplScene* scene, const vplRende
     if (a->verbose) {
         sayMore(&stats);
     }
-    code = writePicture(a, image, files.output);
+    code = layers != NULL ? writeLayers(layers, files.output) : writePicture(a, image, files.output);
     if (code == EXIT_DONE && a->stats != NULL) {
         code = writeStats(vplScene_GetContext(scene), files.stats, &stats);
     }
     vplImage_Destroy(image);
+    vplLayers_Destroy(layers);
     return code;
 }
 
@@ -158,6 +167,10 @@ int runRender(const Arguments* a)
     }
     if (!vplImage_CanWrite(a->output)) {
         complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
+        return EXIT_USAGE;
+    }
+    if (a->render.output.aovs != 0 && !endsWith(a->output, ".exr")) {
+        complain("%s: --aov writes layers into .exr files only", a->output);
         return EXIT_USAGE;
     }
     if (a->stats != NULL && strcmp(a->output, a->stats) == 0) {
