@@ -178,8 +178,11 @@ static void describeChannel(exr_coding_channel_info_t* channel, int width)
 
 // ---- writing
 
-static exr_result_t addChannels(exr_context_t exr, int part, const vplLayer* layer)
+// Adds the channels of layer i. OpenEXRCore must not see one twice: it would wait for itself for ever when the file is
+// closed.
+static exr_result_t addChannels(exr_context_t exr, int part, const vplLayer* layers, int i)
 {
+    const vplLayer* layer = &layers[i];
     static const char* const letters[] = {"RGB", "XYZ"};
     const bool whole = layer->kind == VPL_LAYER_INDEX, single = whole || layer->kind == VPL_LAYER_NUMBER;
     const exr_perceptual_treatment_t treatment =
@@ -188,6 +191,11 @@ static exr_result_t addChannels(exr_context_t exr, int part, const vplLayer* lay
         char name[64];
         snprintf(name, sizeof name, single ? "%s" : "%s%s%c", layer->name, layer->name[0] != 0 ? "." : "",
                  single ? 0 : letters[layer->kind][c]);
+        for (int k = 0; k < i; k++) {
+            if (channelIndex(layers[k].name, name) >= 0) {
+                return EXR_ERR_INVALID_ARGUMENT;
+            }
+        }
         TRY_EXR(exr_add_channel(exr, part, name, whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT, treatment, 1, 1));
     }
     return EXR_ERR_SUCCESS;
@@ -208,7 +216,7 @@ static exr_result_t writeHeader(exr_context_t exr, const vplLayer* layers, int c
     TRY_EXR(exr_add_part(exr, "picture", EXR_STORAGE_SCANLINE, &part));
     TRY_EXR(exr_initialize_required_attr_simple(exr, part, image->width, image->height, EXR_COMPRESSION_ZIP));
     for (int i = 0; i < count; i++) {
-        TRY_EXR(addChannels(exr, part, &layers[i]));
+        TRY_EXR(addChannels(exr, part, layers, i));
         TRY_EXR(addNames(exr, part, &layers[i]));
     }
     return exr_write_header(exr);

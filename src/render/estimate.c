@@ -99,10 +99,19 @@ static double sampleScratch(const Scale* s)
                                    : 0;
 }
 
+// True if the picture stage draws direct light a second time, for layers.
+static bool drawsDirect(const vplPlan* p)
+{
+    const bool keller = p->options.method == VPL_METHOD_KELLER;
+    return p->splitsLight && p->options.method != VPL_METHOD_PATH &&
+           (!p->progressive || (keller && p->hasAreaLights));
+}
+
 static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
     double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
+    scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
         const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
@@ -165,12 +174,11 @@ static Bytes layers(const Scale* s)
 {
     const vplPlan* p = s->plan;
     const int aovs = p->options.output.aovs, light = aovs & (VPL_AOV_DIRECT | VPL_AOV_INDIRECT);
-    const bool path = p->options.method == VPL_METHOD_PATH, keller = p->options.method == VPL_METHOD_KELLER;
+    const bool path = p->options.method == VPL_METHOD_PATH;
     if (aovs == 0) {
         return (Bytes){0, 0};
     }
-    const bool drawn = p->splitsLight && !path && (!p->progressive || (keller && p->hasAreaLights));
-    const int pictures = !path && !p->progressive, direct = drawn + (light == VPL_AOV_INDIRECT);
+    const int pictures = !path && !p->progressive, direct = drawsDirect(p) + (light == VPL_AOV_INDIRECT);
     const double scratch = RASTER_VIEW * s->triangles + 1.4e5 * s->workers;
     return (Bytes){12 * s->pixels * (__builtin_popcount((unsigned)aovs) + pictures + direct),
                    light == aovs ? 0 : scratch + (vplCountLayerSamples(p) > 1 ? 12 * s->pixels : 0)};

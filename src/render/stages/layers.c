@@ -69,7 +69,7 @@ static vplResult addLight(const vplRun* run, vplImage** images)
 int vplCountLayerSamples(const vplPlan* plan)
 {
     const vplRenderOptions* o = &plan->options;
-    return o->method != VPL_METHOD_PATH        ? o->output.antialias * o->output.supersample // one of them is 1
+    return o->method != VPL_METHOD_PATH      ? o->output.antialias * o->output.supersample // one of them is 1
            : o->path.pixel == VPL_PIXEL_AREA ? VPL_MAX_SAMPLES_PER_PIXEL
                                              : 1;
 }
@@ -115,11 +115,12 @@ static vplResult drawSurfaces(const vplRun* run, int layer, vplImage** imageOut)
     const vplShadeDef def = {.lighting = plan->shading, .output = LAYERS[layer].output, .emission = true};
     const int count = LAYERS[layer].mean ? vplCountLayerSamples(plan) : 1;
     if (layer == OBJECT && g->objectCount > VPL_MAX_LAYER_INDEX) {
-        return vplFail(run->context, VPL_LIMIT, "the scene has %d objects, a layer can number %d", g->objectCount,
-                       VPL_MAX_LAYER_INDEX);
+        return vplFail(run->context, VPL_LIMIT, "the scene has %d objects, a layer can number %d",
+                       g->objectCount, VPL_MAX_LAYER_INDEX);
     }
     TRY(vplImage_Create(run->context, plan->options.output.width, plan->options.output.height, imageOut));
-    TRY(count > 1 ? drawMean(run, &def, count, *imageOut) : vplShadeView(g, &plan->view, &def, *imageOut, NULL));
+    TRY(count > 1 ? drawMean(run, &def, count, *imageOut)
+                  : vplShadeView(g, &plan->view, &def, *imageOut, NULL));
     for (size_t k = 0; k < vplValueCount(*imageOut) && layer == DEPTH; k++) {
         float* depth = &(*imageOut)->pixels[k];
         *depth = *depth > 0 ? *depth : VPL_NO_DEPTH;
