@@ -64,7 +64,8 @@ static const Words LIGHTS[] = {
     {{"method", "keller", "particles", "200", "pipeline", "deferred", "antialias", "4"}},
     {{"method", "keller", "particles", "200", "pipeline", "interleaved", "antialias", "1"}},
     {{"method", "keller", "particles", "200", "pipeline", "interleaved", "antialias", "4"}},
-    {{"method", "keller", "particles", "60", "pipeline", "deferred", "light-shadows", "map", "light-map", "32"}},
+    {{"method", "keller", "particles", "60", "pipeline", "deferred", "light-shadows", "map", "light-map",
+      "32"}},
     {{"method", "keller", "particles", "60", "pipeline", "deferred", "passes", "3"}},
     {{"method", "keller", "particles", "200", "pipeline", "lightcuts"}},
     {{"method", "ssvp", "supersample", "2"}},
@@ -83,7 +84,8 @@ static void assertDirect(const vplScene* scene, const Words* w, const vplLayers*
     vplImage* shown = renderScene(scene, &o, NULL);
     assert_int_equal(vplImage_Compare(layer(layers, "direct"), shown, &c), VPL_SUCCESS);
     if (!(c.relativeRmse <= (exact ? 1e-6 : 0.05))) {
-        fail_msg("%s %s: direct light differs from --show direct by %g", w->words[1], w->words[3], c.relativeRmse);
+        fail_msg("%s %s: direct light differs from --show direct by %g", w->words[1], w->words[3],
+                 c.relativeRmse);
     }
     vplImage_Destroy(shown);
 }
@@ -177,7 +179,8 @@ static bool hitOf(const vplGeometry* g, const vplView* v, int x, int y, vplHit* 
 {
     const double right = ((2 * x + 1) / (double)v->width - 1) / v->scaleX,
                  up = (1 - (2 * y + 1) / (double)v->height) / v->scaleY;
-    const vplVec3 d = vplAdd(v->forward, vplAdd(vplScale((float)right, v->right), vplScale((float)up, v->up)));
+    const vplVec3 d =
+        vplAdd(v->forward, vplAdd(vplScale((float)right, v->right), vplScale((float)up, v->up)));
     const vplRay ray = {.origin = v->eye, .direction = d};
     return vplGeometry_ClosestHit(g, &ray, hit);
 }
@@ -301,7 +304,8 @@ TEST(OnlyAlbedoAndNormalsAreMeansOverAPixel, 2)
                     mixed += length < 0.95;
                     continue;
                 }
-                assertNear((double)albedo[i], (double)layer(plain, "albedo")->pixels[i], 1e-6, "albedo", i / 3);
+                assertNear((double)albedo[i], (double)layer(plain, "albedo")->pixels[i], 1e-6, "albedo",
+                           i / 3);
                 assert_true(length == 0 || length > 0.5); // edges of boxes
             }
         }
@@ -354,14 +358,15 @@ TEST(LayersAreReadBackWithEveryBit, 1)
     for (int i = 0; i < 5; i++) {
         images[i] = randomImage(context, (uint64_t)i, i == 4);
     }
-    const vplLayer layers[] = {{.name = "Z", .kind = VPL_LAYER_NUMBER, .image = images[3]},
-                               {.name = "direct", .kind = VPL_LAYER_COLOUR, .image = images[1]},
-                               {.name = "", .kind = VPL_LAYER_COLOUR, .image = images[0]},
-                               {.name = "a.normal", .kind = VPL_LAYER_VECTOR, .image = images[2]},
-                               {.name = "object.id", .kind = VPL_LAYER_INDEX, .image = images[4], .names = names,
-                                .nameCount = 3}};
+    const vplLayer layers[] = {
+        {.name = "Z", .kind = VPL_LAYER_NUMBER, .image = images[3]},
+        {.name = "direct", .kind = VPL_LAYER_COLOUR, .image = images[1]},
+        {.name = "", .kind = VPL_LAYER_COLOUR, .image = images[0]},
+        {.name = "a.normal", .kind = VPL_LAYER_VECTOR, .image = images[2]},
+        {.name = "object.id", .kind = VPL_LAYER_INDEX, .image = images[4], .names = names, .nameCount = 3}};
     const bool exr = vplImage_CanWrite("a.exr");
-    assert_int_equal(vplImage_WriteLayers(layers, 5, temporaryName()), exr ? VPL_SUCCESS : VPL_INVALID_ARGUMENT);
+    assert_int_equal(vplImage_WriteLayers(layers, 5, temporaryName()),
+                     exr ? VPL_SUCCESS : VPL_INVALID_ARGUMENT);
     for (int i = 0; i < 5 && exr; i++) {
         vplImage* back;
         assert_int_equal(vplImage_ReadLayer(context, temporaryName(), layers[i].name, &back), VPL_SUCCESS);
@@ -373,8 +378,10 @@ TEST(LayersAreReadBackWithEveryBit, 1)
     }
     if (exr) {
         // Channels in alphabetical order, each with its type (0 UINT, 2 FLOAT), and the names of indices.
-        static const char first[] = "B\0\2\0\0\0", second[] = "a.normal.X\0\2\0\0\0", last[] = "object.id\0\0\0\0\0";
-        static const char attribute[] = "object.id.names\0stringvector\0\24\0\0\0\3\0\0\0one\0\0\0\0\5\0\0\0three";
+        static const char first[] = "B\0\2\0\0\0", second[] = "a.normal.X\0\2\0\0\0",
+                          last[] = "object.id\0\0\0\0\0";
+        static const char attribute[] =
+            "object.id.names\0stringvector\0\24\0\0\0\3\0\0\0one\0\0\0\0\5\0\0\0three";
         vplImage* back = NULL;
         assert_true(hasBytes(temporaryName(), first, sizeof first - 1));
         assert_true(hasBytes(temporaryName(), second, sizeof second - 1));
@@ -399,13 +406,14 @@ TEST(LayersThatNoFileCanHoldAreRefused, 1)
     const struct {
         vplLayer layer;
         const char *path, *message;
-    } cases[] = {{{"b", VPL_LAYER_COLOUR, a, NULL, 0}, "/tmp/a.png", "only .exr files have layers"},
-                 {{"b", VPL_LAYER_COLOUR, small, NULL, 0}, NULL, "layer \"b\" is 19x34, must be 19x35 as \"\""},
-                 {{"b", VPL_LAYER_COLOUR, nan, NULL, 0}, NULL, "b: pixel (1, 0) channel 2 is nan"},
-                 {{"b", VPL_LAYER_INDEX, a, NULL, 0}, NULL, "must have whole numbers in [0, 16777216]"},
-                 {{"b", VPL_LAYER_INDEX, whole, NULL, 0}, NULL, "must have whole numbers in [0, 16777216]"},
-                 {{"a name of twenty-six bytes", VPL_LAYER_COLOUR, a, NULL, 0}, NULL, "26 bytes, may have 24"},
-                 {{"", VPL_LAYER_COLOUR, a, NULL, 0}, NULL, "EXR picture"}}; // the channels of the first
+    } cases[] = {
+        {{"b", VPL_LAYER_COLOUR, a, NULL, 0}, "/tmp/a.png", "only .exr files have layers"},
+        {{"b", VPL_LAYER_COLOUR, small, NULL, 0}, NULL, "layer \"b\" is 19x34, must be 19x35 as \"\""},
+        {{"b", VPL_LAYER_COLOUR, nan, NULL, 0}, NULL, "b: pixel (1, 0) channel 2 is nan"},
+        {{"b", VPL_LAYER_INDEX, a, NULL, 0}, NULL, "must have whole numbers in [0, 16777216]"},
+        {{"b", VPL_LAYER_INDEX, whole, NULL, 0}, NULL, "must have whole numbers in [0, 16777216]"},
+        {{"a name of twenty-six bytes", VPL_LAYER_COLOUR, a, NULL, 0}, NULL, "26 bytes, may have 24"},
+        {{"", VPL_LAYER_COLOUR, a, NULL, 0}, NULL, "EXR picture"}}; // the channels of the first
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const vplLayer layers[] = {{.name = "", .image = a}, cases[i].layer};
         const char* path = cases[i].path != NULL ? cases[i].path : temporaryName();
