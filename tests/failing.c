@@ -64,6 +64,7 @@ static void discard(Attempt* a)
     vplLightClusters_Destroy(a->nextClusters);
     vplLightClusters_Destroy(a->clusters);
     vplLightSet_Destroy(a->lights);
+    vplLayers_Destroy(a->layers);
     vplImage_Destroy(a->image);
     vplImage_Destroy(a->other);
     vplImage_Destroy(a->heatmap);

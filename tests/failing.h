@@ -17,6 +17,7 @@ typedef struct Attempt {
     vplScene* scene;
     vplGeometry* geometry;
     vplImage *image, *other, *heatmap;
+    vplLayers* layers;
     vplLightSet* lights;
     vplLightClusters *clusters, *nextClusters;
     vplHistory* history;

@@ -4,6 +4,8 @@
 // on our own writer.
 #include "test.h"
 
+#include "image/image_file.h"
+
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -175,6 +177,40 @@ TEST(ExrKeepsEveryBit, 1)
         vplImage_Destroy(image);
         vplImage_Destroy(back);
     }
+}
+
+// Sizes up to 7 x 7 and values with few digits, so that many a chunk has as many bytes compressed as raw.
+static void assertRandomPicturesComeBack(vplContext* context, int first, int count)
+{
+    for (int n = first; hasExr() && n < first + count; n++) {
+        const int width = 1 + (int)(7 * uniformAt(1, (uint64_t)n)),
+                  height = 1 + (int)(7 * uniformAt(2, (uint64_t)n));
+        const double levels = ldexp(1, (int)(25 * uniformAt(3, (uint64_t)n)));
+        vplByteBuffer buffer = {.context = context};
+        vplImage *image, *back;
+        assert_int_equal(vplImage_Create(context, width, height, &image), VPL_SUCCESS);
+        for (int k = 0; k < 3 * width * height; k++) {
+            image->pixels[k] = (float)(floor(levels * uniformAt(4 + (uint64_t)n, (uint64_t)k)) / levels);
+        }
+        assert_int_equal(vplEncodeExr(image, NULL, &buffer), VPL_SUCCESS);
+        assert_int_equal(vplDecodeExr(context, "memory", buffer.bytes, buffer.size, &back), VPL_SUCCESS);
+        if (vplImage_Hash(image) != vplImage_Hash(back)) {
+            fail_msg("random picture %d of %dx%d pixels is not what was written", n, width, height);
+        }
+        vplFree(context, buffer.bytes);
+        vplImage_Destroy(image);
+        vplImage_Destroy(back);
+    }
+}
+
+TEST(RandomPicturesComeBackWithEveryBit, 1)
+{
+    assertRandomPicturesComeBack(context, 0, 5000);
+}
+
+TEST(ManyRandomPicturesComeBackWithEveryBit, 1, SLOW)
+{
+    assertRandomPicturesComeBack(context, 5000, 95000);
 }
 
 static void assertPixels(const vplImage* image, float r, float g, float b)

@@ -94,6 +94,21 @@ static vplResult tracePaths(Attempt* a)
     return vplImage_Write(a->image, a->path, NULL);
 }
 
+// Variants: an area light in one pass and in two, and the path tracer.
+static vplResult renderLayers(Attempt* a)
+{
+    vplRenderOptions options = optionsOf(a->variant == 2 ? VPL_METHOD_PATH : VPL_METHOD_KELLER, 6, 2);
+    options.output.aovs = VPL_AOV_ALL;
+    options.output.antialias = options.path.samples = 2;
+    options.stop.passes = a->variant == 1 ? 2 : 0;
+    options.pipeline.kind = VPL_ACCUMULATE_DEFERRED;
+    TRY(vplScene_Load(a->context, "examples/scenes/room-area.json", &a->scene));
+    TRY(vplRenderLayers(a->scene, &options, &a->layers, NULL));
+    return strstr(a->path, ".exr") != NULL
+               ? vplImage_WriteLayers(a->layers->layers, a->layers->count, a->path)
+               : VPL_SUCCESS;
+}
+
 // Variants: deferred and interleaved.
 static vplResult compensate(Attempt* a)
 {
@@ -414,6 +429,7 @@ EVERY_FAILED_ALLOCATION(AGeometry, buildBall, "png", 1)
 EVERY_FAILED_ALLOCATION(ARenderToPng, renderAndWrite, "png", 4)
 EVERY_FAILED_ALLOCATION(ARenderToHdr, renderAndWrite, "hdr", 1)
 EVERY_FAILED_ALLOCATION(ARenderToExr, renderAndWrite, vplImage_CanWrite("a.exr") ? "exr" : "pfm", 1)
+EVERY_FAILED_ALLOCATION(Layers, renderLayers, vplImage_CanWrite("a.exr") ? "exr" : "pfm", 3)
 EVERY_FAILED_ALLOCATION(ThePathTracer, tracePaths, "pfm", 2)
 EVERY_FAILED_ALLOCATION(Compensation, compensate, "png", 2)
 EVERY_FAILED_ALLOCATION(MeshesAreaLightsAndLightShadows, renderBall, "png", 3)

@@ -48,6 +48,21 @@ typedef enum vplShow {
     VPL_SHOW_RESIDUAL // error of each patch's radiosity after the last sweep, absolute, / pi, W/(m^2 sr)
 } vplShow;
 
+// Layers of a render besides its picture: bits of vplOutputOptions.aovs, in the order of the words of --aov.
+typedef enum vplAov {
+    VPL_AOV_DIRECT = 1, // "direct", RGB: emission and light that was not reflected before, as VPL_SHOW_DIRECT
+    VPL_AOV_INDIRECT = 2, // "indirect", RGB: the rest of the picture
+    // "albedo", RGB: diffuse reflectance plus emitted radiance, at most 1; 0 where nothing is.
+    VPL_AOV_ALBEDO = 4,
+    VPL_AOV_NORMAL = 8,  // "normal", XYZ: normals as shaded, in world space; 0 where nothing is
+    VPL_AOV_DEPTH = 16,  // "Z": metres along the view axis; VPL_NO_DEPTH where nothing is
+    VPL_AOV_OBJECT = 32, // "object.id": 1 + the scene's index of the object; 0 where nothing is
+    VPL_AOV_ALL = 63
+} vplAov;
+
+// The depth of pixels that show nothing: behind everything, and finite.
+#define VPL_NO_DEPTH 1e10f
+
 // Upper limits of paths per pixel and of bounces per path.
 enum { VPL_MAX_SAMPLES = 1 << 24, VPL_MAX_BOUNCES = 1 << 16 };
 
@@ -256,6 +271,7 @@ typedef enum vplOptionKind {
     VPL_OPTION_SIZE,
     VPL_OPTION_SHOW,
     VPL_OPTION_BIAS,
+    VPL_OPTION_SET,
     VPL_OPTION_PART
 } vplOptionKind;
 

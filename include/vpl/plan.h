@@ -55,9 +55,11 @@ typedef struct vplPlan {
     bool showsDirect;     // the picture shows emission, and light from emitters and area lights
     bool showsVirtual;    // the picture shows light from virtual lights
     bool showsPatches;    // the picture shows patches
-    bool compensates;     // short rays add the light that the clamp takes away
-    bool estimatesLoss;   // statistics say how much light the clamp takes away
-    vplView view;         // the camera, posed
+    bool
+        splitsLight; // direct light is rendered a second time, alone, for layers of direct and indirect light
+    bool compensates;   // short rays add the light that the clamp takes away
+    bool estimatesLoss; // statistics say how much light the clamp takes away
+    vplView view;       // the camera, posed
     vplCameraDef camera;
     const vplEmitterDef* emitters; // those of the scene, posed
     int emitterCount;
@@ -78,7 +80,7 @@ typedef struct vplPlan {
     double longestEdge;      // longest edge of a patch, metres
     bool linked;             // patches exchange light by links between groups
     int64_t formFactorBytes; // form factors of all pairs
-    int64_t shadowMapBytes, lightBytes, pictureBytes;
+    int64_t shadowMapBytes, lightBytes, pictureBytes, layerBytes;
     int64_t peakBytes; // most memory that rendering holds at a time, within 15 %
     // Estimated costs of shadow maps and rays, by which the shadows of virtual lights were chosen, ms on one
     // core of the machine of bench/crossover; 0 where there was no choice.

@@ -70,9 +70,29 @@ typedef struct vplRenderStats {
 } vplRenderStats;
 
 // Renders. The picture is radiance in W/(m^2 sr) unless `show` says otherwise; destroy it with
-// vplImage_Destroy. statsOut may be NULL.
+// vplImage_Destroy. It has no layers, whatever options.output.aovs says. statsOut may be NULL.
 vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
                     vplRenderStats* statsOut);
+
+enum { VPL_MAX_LAYERS = 7 };
+
+// The picture of a render and its layers, in the order of vplAov, for vplImage_WriteLayers. Names of objects are
+// the scene's, which must outlive them.
+typedef struct vplLayers {
+    vplLayer layers[VPL_MAX_LAYERS]; // the first is the picture
+    int count;
+    vplImage* images[VPL_MAX_LAYERS]; // owned; those of the layers and others
+    const char** objectNames;         // owned; NULL where no object has a name
+    vplContext* context;
+} vplLayers;
+
+// Renders the picture of vplRender, with the same bits, and the layers of options.output.aovs. Destroy them with
+// vplLayers_Destroy. statsOut may be NULL; its imageHash is that of the picture.
+vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options, vplLayers** layersOut,
+                          vplRenderStats* statsOut);
+
+// NULL is allowed.
+void vplLayers_Destroy(vplLayers* layers);
 
 // Radiosity's patches as a mesh with colours at its vertices: the light that options.method
 // VPL_METHOD_RADIOSITY finds, direct and indirect, for tools that draw. Written by vplPatchMesh_WritePly; its
@@ -93,6 +113,9 @@ vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
 
 // Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
 vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRenderStats* statsOut);
+
+// Gets the picture so far and its layers, likewise; destroy them with vplLayers_Destroy.
+vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vplRenderStats* statsOut);
 
 // NULL is allowed. The scene must outlive the renderer.
 void vplRenderer_Destroy(vplRenderer* renderer);

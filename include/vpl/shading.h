@@ -74,8 +74,10 @@ typedef enum vplAccumulation {
 // The content of the picture.
 typedef enum vplShadeOutput {
     VPL_OUTPUT_RADIANCE = 0,
-    VPL_OUTPUT_DEPTH,         // distance along the view axis, metres; 0 where nothing is
-    VPL_OUTPUT_NORMALS,       // unit normals as shaded; 0 where nothing is
+    VPL_OUTPUT_DEPTH,   // distance along the view axis, metres; 0 where nothing is
+    VPL_OUTPUT_NORMALS, // unit normals as shaded; 0 where nothing is
+    VPL_OUTPUT_ALBEDO,  // diffuse reflectance, plus emission if def->emission, at most 1; 0 where nothing is
+    VPL_OUTPUT_OBJECT,  // 1 + index of the object; 0 where nothing is
     VPL_OUTPUT_SHADOW_FACTOR, // s of the first emitter, [0, 1]
     // Irradiance of virtual lights only, W/m^2; interleaved: of the lights of the pixel's class, K^2 times as
     // bright.

@@ -35,10 +35,10 @@ static void prepareForEyes(vplImage* image, vplShow show)
     }
 }
 
-static bool endsWithPng(const char* path)
+static bool endsWith(const char* path, const char* extension)
 {
-    size_t n = strlen(path);
-    return n >= 4 && strcasecmp(path + n - 4, ".png") == 0;
+    const size_t n = strlen(path), m = strlen(extension);
+    return n >= m && strcasecmp(path + n - m, extension) == 0;
 }
 
 // ---- exposure and tone map
@@ -90,7 +90,7 @@ static void warnOfDisplay(const Arguments* a)
         if (!isGiven(a, NAMES[i])) {
             continue;
         }
-        if (!endsWithPng(a->output)) {
+        if (!endsWith(a->output, ".png")) {
             complain("warning: --%s has no effect on %s, which holds linear values", NAMES[i], a->output);
         } else if (isNoLight(a->render.output.show)) {
             complain("warning: --%s has no effect with a --show that is not light", NAMES[i]);
@@ -104,7 +104,7 @@ static void warnOfDisplay(const Arguments* a)
 static int writePicture(const Arguments* a, vplImage* image, const char* path, vplWriteOptions* display)
 {
     const vplShow show = a->render.output.show;
-    const bool png = endsWithPng(path);
+    const bool png = endsWith(path, ".png");
     if (png && (isMetres(show) || show == VPL_SHOW_NORMALS)) {
         prepareForEyes(image, show);
     }
@@ -119,6 +119,11 @@ static int writePicture(const Arguments* a, vplImage* image, const char* path, v
         complain("exposure %+.2f stops%s", (double)display->exposure, automatic ? " (auto)" : "");
     }
     return exitCode(vplImage_Write(image, path, display), false);
+}
+
+static int writeLayers(const vplLayers* layers, const char* path)
+{
+    return exitCode(vplImage_WriteLayers(layers->layers, layers->count, path), false);
 }
 
 // ---- frames
@@ -166,11 +171,13 @@ static bool showSequence(void* user, double fraction)
 static int renderFrame(const Arguments* a, const vplScene* scene, const vplRenderOptions* options)
 {
     vplImage* image = NULL;
+    vplLayers* layers = NULL;
     vplRenderStats stats;
     Files files;
     nameFiles(a, (int)options->sequence.frame, &files); // runRender has checked their lengths
     Sequence* sequence = options->progressUser;
-    vplResult result = vplRender(scene, options, &image, &stats);
+    const vplResult result = options->output.aovs != 0 ? vplRenderLayers(scene, options, &layers, &stats)
+                                                       : vplRender(scene, options, &image, &stats);
     endProgress(&sequence->progress);
     if (result == VPL_CANCELLED && sequence->done > 0) {
         complain("cancelled, %d of %d frames were written", sequence->done, sequence->count);
@@ -183,11 +190,13 @@ static int renderFrame(const Arguments* a, const vplScene* scene, const vplRende
     if (a->verbose) {
         sayMore(&stats);
     }
-    code = writePicture(a, image, files.output, &sequence->display);
+    code = layers != NULL ? writeLayers(layers, files.output)
+                          : writePicture(a, image, files.output, &sequence->display);
     if (code == EXIT_DONE && a->stats != NULL) {
         code = writeStats(vplScene_GetContext(scene), files.stats, &stats);
     }
     vplImage_Destroy(image);
+    vplLayers_Destroy(layers);
     return code;
 }
 
@@ -225,6 +234,10 @@ int runRender(const Arguments* a)
     }
     if (!vplImage_CanWrite(a->output)) {
         complain("%s: unknown picture format; the name must end in %s", a->output, vplImage_GetExtensions());
+        return EXIT_USAGE;
+    }
+    if (a->render.output.aovs != 0 && !endsWith(a->output, ".exr")) {
+        complain("%s: --aov writes layers into .exr files only", a->output);
         return EXIT_USAGE;
     }
     if (a->stats != NULL && strcmp(a->output, a->stats) == 0) {

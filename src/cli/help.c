@@ -11,9 +11,9 @@
 enum { WIDTH = 110, INDENT = 6, TEXT = 2048 };
 
 // Options that vpl help render explains first; most pictures need no others.
-static const char* const ESSENTIALS[] = {"method", "size",      "camera",        "particles",
-                                         "spp",    "patches",   "light-shadows", "pipeline",
-                                         "budget", "max-error", "seed",          "show"};
+static const char* const ESSENTIALS[] = {"method",  "size",          "camera",   "particles", "spp",
+                                         "patches", "light-shadows", "pipeline", "budget",    "max-error",
+                                         "seed",    "show",          "aov"};
 
 const Command COMMANDS[] = {
     {"render", RENDER, 1, runRender, "vpl render SCENE -o FILE [options]", "renders a picture",
@@ -27,12 +27,12 @@ const Command COMMANDS[] = {
      "Finds the light of SCENE by --method radiosity and writes its patches as a binary PLY mesh with "
      "colours at the vertices: 8-bit sRGB of radiance (after --exposure), and linear radiosity in W/m^2 as "
      "properties r, g, b.",
-     " size antialias supersample show interpolation "},
+     " size antialias supersample show aov interpolation "},
     {"lights", LIGHTS, 1, runLights, "vpl lights SCENE [options]", "lists the virtual lights",
      "Prints the virtual lights as CSV: index,step,px,py,pz,nx,ny,nz,r,g,b,weight. The index is the K of "
      "--show light:K. r,g,b is what the particle carries after attenuation (documented lighting) or the flux "
      "in watts that the surface sends out (physical); weight is N/floor(rho^k N). Pictures also divide by N.",
-     " antialias supersample show pipeline batch interleave cut-error passes budget max-error "},
+     " antialias supersample show aov pipeline batch interleave cut-error passes budget max-error "},
     {"compare", COMPARE, 2, runCompare, "vpl compare A B [options]",
      "measures how far picture A is from reference B",
      "Prints rmse, relative_rmse (rmse / mean of B), relmse (mean of (a-b)^2/(b+0.01)^2), trimmed_relmse "

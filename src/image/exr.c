@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// OpenEXR pictures by OpenEXRCore. Writes float RGB scanlines with ZIP compression; reads half or float, RGB
-// or grey (Y) scanlines with any compression that OpenEXRCore knows. Pixels and the encoded file are in
-// context memory. OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks take no
+// OpenEXR pictures by OpenEXRCore. Writes layers of float or UINT scanlines with ZIP compression; reads the RGB
+// or grey (Y) scanlines of one layer with any compression that OpenEXRCore knows. Pixels and the encoded file
+// are in context memory. OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks take no
 // user data. It never touches files itself, because vplWriteFile writes them whole or not at all.
 #include "base/arena.h"
 #include "image/image_file.h"
@@ -13,17 +13,18 @@ bool vplHasExr(void)
     return false;
 }
 
-vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
+vplResult vplEncodeExrLayers(const vplLayer* layers, int count, vplByteBuffer* buffer)
 {
-    (void)options;
+    (void)count;
     (void)buffer;
-    return vplFail(image->context, VPL_INVALID_ARGUMENT,
+    return vplFail(layers[0].image->context, VPL_INVALID_ARGUMENT,
                    "this build has no OpenEXR and writes no EXR picture");
 }
 
-vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut)
+vplResult vplDecodeExrLayer(vplContext* context, const char* path, const char* name, const uint8_t* bytes,
+                            size_t size, vplImage** imageOut)
 {
+    (void)name;
     (void)bytes;
     (void)size;
     (void)imageOut;
@@ -35,6 +36,7 @@ vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* byt
 
 #include <OpenEXR/openexr.h>
 
+#include <stdio.h>
 #include <string.h>
 
 // Returns from the calling function with the result of `expression` unless it succeeded.
@@ -145,38 +147,104 @@ static exr_context_initializer_t describeStream(Stream* s)
     return init;
 }
 
-// ---- writing
+// ---- channels
 
-static exr_result_t writeHeader(exr_context_t exr, const vplImage* image)
+// Index in our pixels of a channel of the layer `name`, or -1. Grey and single channels are stored in red first.
+// Source: layers and the names of channels are those of "Channel Names" and "Layers" in OpenEXR's Technical
+// Introduction.
+static int channelIndex(const char* name, const char* channel)
 {
-    static const char* const names[] = {"B", "G", "R"}; // the format wants alphabetical order
-    int part;
-    TRY_EXR(exr_add_part(exr, "picture", EXR_STORAGE_SCANLINE, &part));
-    TRY_EXR(exr_initialize_required_attr_simple(exr, part, image->width, image->height, EXR_COMPRESSION_ZIP));
-    for (int i = 0; i < 3; i++) {
-        TRY_EXR(exr_add_channel(exr, part, names[i], EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    static const char letters[] =
+        "RGBXYZ"; // X, Y and Z only behind a name, where they are no grey and no depth
+    const size_t length = strlen(name);
+    if (strcmp(channel, length > 0 ? name : "Y") == 0) {
+        return 0;
     }
-    return exr_write_header(exr);
-}
-
-// Offset of a channel in our pixels, or -1. Grey is stored in red first.
-static int channelIndex(const char* name)
-{
-    static const char order[] = "RGB";
-    const char* at = name[0] != 0 && name[1] == 0 ? strchr(order, name[0]) : NULL;
-    return at ? (int)(at - order) : strcmp(name, "Y") == 0 ? 0 : -1;
+    if (length > 0 && (strncmp(channel, name, length) != 0 || channel[length] != '.')) {
+        return -1;
+    }
+    const char* last = channel + length + (length > 0);
+    const char* at = last[0] != 0 && last[1] == 0 ? strchr(letters, last[0]) : NULL;
+    return at != NULL && (length > 0 || at < letters + 3) ? (int)(at - letters) % 3 : -1;
 }
 
 static void describeChannel(exr_coding_channel_info_t* channel, int width)
 {
     channel->user_bytes_per_element = 4;
-    channel->user_data_type = EXR_PIXEL_FLOAT;
+    channel->user_data_type = EXR_PIXEL_FLOAT; // OpenEXRCore converts indices
     channel->user_pixel_stride = 3 * 4;
     channel->user_line_stride = 3 * 4 * width;
 }
 
-static exr_result_t writeRows(exr_context_t exr, const vplImage* image, exr_encode_pipeline_t* pipeline)
+// ---- writing
+
+// Adds the channels of layer i. OpenEXRCore must not see one twice: it would wait for itself for ever when the file is
+// closed.
+static exr_result_t addChannels(exr_context_t exr, int part, const vplLayer* layers, int i)
 {
+    const vplLayer* layer = &layers[i];
+    static const char* const letters[] = {"RGB", "XYZ"};
+    const bool whole = layer->kind == VPL_LAYER_INDEX, single = whole || layer->kind == VPL_LAYER_NUMBER;
+    const exr_perceptual_treatment_t treatment =
+        layer->kind == VPL_LAYER_COLOUR ? EXR_PERCEPTUALLY_LOGARITHMIC : EXR_PERCEPTUALLY_LINEAR;
+    for (int c = 0; c < (single ? 1 : 3); c++) {
+        char name[64];
+        snprintf(name, sizeof name, single ? "%s" : "%s%s%c", layer->name, layer->name[0] != 0 ? "." : "",
+                 single ? 0 : letters[layer->kind][c]);
+        for (int k = 0; k < i; k++) {
+            if (channelIndex(layers[k].name, name) >= 0) {
+                return EXR_ERR_INVALID_ARGUMENT;
+            }
+        }
+        TRY_EXR(exr_add_channel(exr, part, name, whole ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT, treatment, 1, 1));
+    }
+    return EXR_ERR_SUCCESS;
+}
+
+static exr_result_t addNames(exr_context_t exr, int part, const vplLayer* layer)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s.names", layer->name);
+    return layer->nameCount > 0 ? exr_attr_set_string_vector(exr, part, name, layer->nameCount, layer->names)
+                                : EXR_ERR_SUCCESS;
+}
+
+static exr_result_t writeHeader(exr_context_t exr, const vplLayer* layers, int count)
+{
+    const vplImage* image = layers[0].image;
+    int part;
+    TRY_EXR(exr_add_part(exr, "picture", EXR_STORAGE_SCANLINE, &part));
+    TRY_EXR(exr_initialize_required_attr_simple(exr, part, image->width, image->height, EXR_COMPRESSION_ZIP));
+    for (int i = 0; i < count; i++) {
+        TRY_EXR(addChannels(exr, part, layers, i));
+        TRY_EXR(addNames(exr, part, &layers[i]));
+    }
+    return exr_write_header(exr);
+}
+
+// Writes a chunk; the pipeline's user data is the file. Readers take a chunk for stored raw when its size is that
+// of the raw bytes, and OpenEXRCore up to 3.4.7 stores it compressed also when compression gains not a byte.
+// Source: "Scan Line Blocks" in The OpenEXR File Layout; OpenEXR issue 2306.
+static exr_result_t writeChunk(exr_encode_pipeline_t* p)
+{
+    const bool gains = p->compressed_bytes < p->packed_bytes;
+    return exr_write_scanline_chunk(p->encoding_user_data, p->part_index, p->chunk.start_y,
+                                    gains ? p->compressed_buffer : p->packed_buffer,
+                                    gains ? p->compressed_bytes : p->packed_bytes);
+}
+
+// The first value of a channel.
+static const float* findPixels(const vplLayer* layers, const char* channel)
+{
+    while (channelIndex(layers->name, channel) < 0) {
+        layers++;
+    }
+    return layers->image->pixels + channelIndex(layers->name, channel);
+}
+
+static exr_result_t writeRows(exr_context_t exr, const vplLayer* layers, exr_encode_pipeline_t* pipeline)
+{
+    const vplImage* image = layers[0].image;
     int32_t step = 1;
     TRY_EXR(exr_get_scanlines_per_chunk(exr, 0, &step));
     for (int y = 0; y < image->height; y += step) {
@@ -186,33 +254,35 @@ static exr_result_t writeRows(exr_context_t exr, const vplImage* image, exr_enco
         for (int c = 0; c < pipeline->channel_count; c++) {
             exr_coding_channel_info_t* channel = &pipeline->channels[c];
             describeChannel(channel, image->width);
-            channel->encode_from_ptr = (const uint8_t*)(image->pixels + 3 * (size_t)y * (size_t)image->width +
-                                                        channelIndex(channel->channel_name));
+            channel->encode_from_ptr = (const uint8_t*)(findPixels(layers, channel->channel_name) +
+                                                        3 * (size_t)y * (size_t)image->width);
         }
         if (y == 0) {
             TRY_EXR(exr_encoding_choose_default_routines(exr, 0, pipeline));
+            pipeline->encoding_user_data = exr;
+            pipeline->write_fn = writeChunk;
         }
         TRY_EXR(exr_encoding_run(exr, 0, pipeline));
     }
     return EXR_ERR_SUCCESS;
 }
 
-static exr_result_t encode(exr_context_t* exr, const vplImage* image, exr_encode_pipeline_t* pipeline,
-                           const exr_context_initializer_t* init)
+static exr_result_t encode(exr_context_t* exr, const vplLayer* layers, int count,
+                           exr_encode_pipeline_t* pipeline, const exr_context_initializer_t* init)
 {
     TRY_EXR(exr_start_write(exr, "picture.exr", EXR_WRITE_FILE_DIRECTLY, init));
-    TRY_EXR(writeHeader(*exr, image));
-    return writeRows(*exr, image, pipeline);
+    TRY_EXR(writeHeader(*exr, layers, count));
+    return writeRows(*exr, layers, pipeline);
 }
 
-vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
+vplResult vplEncodeExrLayers(const vplLayer* layers, int count, vplByteBuffer* buffer)
 {
-    (void)options;
+    vplContext* context = layers[0].image->context;
     Stream stream = {.buffer = buffer};
     const exr_context_initializer_t init = describeStream(&stream);
     exr_context_t exr = NULL;
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
-    exr_result_t r = encode(&exr, image, &pipeline, &init);
+    exr_result_t r = encode(&exr, layers, count, &pipeline, &init);
     exr_encoding_destroy(exr, &pipeline);
     const exr_result_t finished = exr_finish(&exr);
     r = r == EXR_ERR_SUCCESS ? finished : r;
@@ -220,21 +290,22 @@ vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vp
         return VPL_SUCCESS; // the caller checks the buffer
     }
     if (r == EXR_ERR_OUT_OF_MEMORY) {
-        return vplFail(image->context, VPL_OUT_OF_MEMORY, "out of memory while encoding an EXR picture");
+        return vplFail(context, VPL_OUT_OF_MEMORY, "out of memory while encoding an EXR picture");
     }
-    return vplFail(image->context, VPL_LIMIT, "cannot encode an EXR picture: %s",
+    return vplFail(context, VPL_INVALID_ARGUMENT, "cannot encode an EXR picture: %s",
                    stream.reason[0] ? stream.reason : exr_get_default_error_message(r));
 }
 
 // ---- reading
 
 typedef struct Layout {
+    const char* name; // of the layer
     int width, height, firstRow;
-    bool grey;
+    bool grey; // one channel
 } Layout;
 
 // Describes the picture; returns why it cannot be read, or NULL.
-static const char* findLayout(exr_const_context_t exr, Layout* layout)
+static const char* findLayout(exr_const_context_t exr, const char* name, Layout* layout)
 {
     int parts = 0;
     exr_storage_t storage;
@@ -255,20 +326,23 @@ static const char* findLayout(exr_const_context_t exr, Layout* layout)
     if (width < 1 || width > VPL_MAX_IMAGE_SIZE || height < 1 || height > VPL_MAX_IMAGE_SIZE) {
         return "its data window is empty or too large, each side must be in [1, 16384]";
     }
-    *layout = (Layout){(int)width, (int)height, window.min.y, false};
-    int found = 0; // bits: R, G, B, Y
+    *layout = (Layout){name, (int)width, (int)height, window.min.y, false};
+    int found = 0; // bits: R, G, B, a single channel
     for (int i = 0; i < list->num_channels; i++) {
         const exr_attr_chlist_entry_t* c = &list->entries[i];
-        if (channelIndex(c->name.str) < 0) {
+        const bool single = strcmp(c->name.str, name[0] != 0 ? name : "Y") == 0;
+        if (channelIndex(name, c->name.str) < 0) {
             continue; // alpha, depth and the like
         }
-        if (c->pixel_type == EXR_PIXEL_UINT || c->x_sampling != 1 || c->y_sampling != 1) {
+        if ((c->pixel_type == EXR_PIXEL_UINT && name[0] == 0) || c->x_sampling != 1 || c->y_sampling != 1) {
             return "its channels are integers or subsampled, must be half or float in every pixel";
         }
-        found |= strcmp(c->name.str, "Y") == 0 ? 8 : 1 << channelIndex(c->name.str);
+        found |= single ? 8 : 1 << channelIndex(name, c->name.str);
     }
     layout->grey = found == 8;
-    return layout->grey || found == 7 ? NULL : "its channels must be R, G and B, or Y";
+    return layout->grey || found == 7 ? NULL
+           : name[0] != 0             ? "it has no layer of that name"
+                                      : "its channels must be R, G and B, or Y";
 }
 
 static exr_result_t readRows(exr_context_t exr, const Layout* layout, vplImage* image,
@@ -287,7 +361,7 @@ static exr_result_t readRows(exr_context_t exr, const Layout* layout, vplImage* 
         TRY_EXR((y == 0 ? exr_decoding_initialize : exr_decoding_update)(exr, 0, &chunk, pipeline));
         for (int c = 0; c < pipeline->channel_count; c++) {
             exr_coding_channel_info_t* channel = &pipeline->channels[c];
-            const int index = channelIndex(channel->channel_name);
+            const int index = channelIndex(layout->name, channel->channel_name);
             float* to = image->pixels + 3 * (size_t)y * (size_t)image->width + (index > 0 ? index : 0);
             describeChannel(channel, image->width);
             channel->decode_to_ptr = index < 0 ? NULL : (uint8_t*)to;
@@ -312,11 +386,11 @@ static vplResult failReading(vplContext* context, const char* path, const Stream
                    stream->reason[0] ? stream->reason : exr_get_default_error_message(r));
 }
 
-static vplResult decode(vplContext* context, exr_context_t exr, const char* path, const Stream* stream,
-                        vplImage** imageOut)
+static vplResult decode(vplContext* context, exr_context_t exr, const char* path, const char* name,
+                        const Stream* stream, vplImage** imageOut)
 {
     Layout layout;
-    const char* wrong = findLayout(exr, &layout);
+    const char* wrong = findLayout(exr, name, &layout);
     if (wrong != NULL) {
         return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read this kind of EXR picture: %s", path, wrong);
     }
@@ -333,8 +407,8 @@ static vplResult decode(vplContext* context, exr_context_t exr, const char* path
     return VPL_SUCCESS;
 }
 
-vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
-                       vplImage** imageOut)
+vplResult vplDecodeExrLayer(vplContext* context, const char* path, const char* name, const uint8_t* bytes,
+                            size_t size, vplImage** imageOut)
 {
     Stream stream = {.bytes = bytes, .size = size};
     const exr_context_initializer_t init = describeStream(&stream);
@@ -343,9 +417,21 @@ vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* byt
     if (r != EXR_ERR_SUCCESS) {
         return failReading(context, path, &stream, r);
     }
-    const vplResult result = decode(context, exr, path, &stream, imageOut);
+    const vplResult result = decode(context, exr, path, name, &stream, imageOut);
     exr_finish(&exr);
     return result;
 }
 
 #endif
+
+vplResult vplEncodeExr(const vplImage* image, const vplWriteOptions* options, vplByteBuffer* buffer)
+{
+    (void)options;
+    return vplEncodeExrLayers(&(vplLayer){.name = "", .image = image}, 1, buffer);
+}
+
+vplResult vplDecodeExr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
+                       vplImage** imageOut)
+{
+    return vplDecodeExrLayer(context, path, "", bytes, size, imageOut);
+}

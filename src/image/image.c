@@ -152,6 +152,67 @@ void vplPng_Free(vplContext* context, uint8_t* bytes)
     vplFree(context, bytes);
 }
 
+// ---- layers
+
+static vplResult checkLayer(const vplLayer* layer, const vplLayer* first)
+{
+    const vplImage* image = layer->image;
+    const size_t count = 3 * (size_t)image->width * (size_t)image->height;
+    if (image->width != first->image->width || image->height != first->image->height) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT, "layer \"%s\" is %dx%d, must be %dx%d as \"%s\"",
+                       layer->name, image->width, image->height, first->image->width, first->image->height,
+                       first->name);
+    }
+    if (strlen(layer->name) > VPL_MAX_LAYER_NAME) {
+        return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                       "layer \"%.60s\" has a name of %zu bytes, may have %d", layer->name,
+                       strlen(layer->name), VPL_MAX_LAYER_NAME);
+    }
+    for (size_t i = 0; layer->kind == VPL_LAYER_INDEX && i < count; i += 3) {
+        const float index = image->pixels[i];
+        if (!(index >= 0 && index <= VPL_MAX_LAYER_INDEX && index == floorf(index))) {
+            return vplFail(image->context, VPL_INVALID_ARGUMENT,
+                           "layer \"%s\" has %g, must have whole numbers in [0, %d]", layer->name,
+                           (double)index, VPL_MAX_LAYER_INDEX);
+        }
+    }
+    return vplImage_RequireFinite(image, layer->name);
+}
+
+vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path)
+{
+    vplContext* context = layers[0].image->context;
+    const Format* format = findFormat(path);
+    if (format == NULL || format->encode != vplEncodeExr) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "%s: only .exr files have layers", path);
+    }
+    for (int i = 0; i < count; i++) {
+        TRY(checkLayer(&layers[i], &layers[0]));
+    }
+    vplByteBuffer buffer = {.context = context};
+    vplResult result = vplEncodeExrLayers(layers, count, &buffer);
+    result = result == VPL_SUCCESS && buffer.failed ? VPL_OUT_OF_MEMORY : result;
+    if (result == VPL_SUCCESS) {
+        result = vplWriteFile(context, path, buffer.bytes, buffer.size);
+    }
+    vplFree(context, buffer.bytes);
+    return result;
+}
+
+vplResult vplImage_ReadLayer(vplContext* context, const char* path, const char* name, vplImage** imageOut)
+{
+    const Format* format = findFormat(path);
+    char* bytes;
+    size_t size;
+    if (format == NULL || format->decode != vplDecodeExr) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "%s: only .exr files have layers", path);
+    }
+    TRY(vplReadFile(context, path, &bytes, &size));
+    const vplResult result = vplDecodeExrLayer(context, path, name, (const uint8_t*)bytes, size, imageOut);
+    vplFree(context, bytes);
+    return result;
+}
+
 vplResult vplImage_Read(vplContext* context, const char* path, vplImage** imageOut)
 {
     const Format* format = findFormat(path);

@@ -19,7 +19,12 @@ typedef vplResult vplDecodeFcn(vplContext* context, const char* path, const uint
                                vplImage** imageOut);
 vplDecodeFcn vplDecodeLdr, vplDecodeHdr, vplDecodePfm, vplDecodeExr;
 
-// True if OpenEXR is built in. If not, vplEncodeExr and vplDecodeExr fail with a message.
+// The same for layers.
+vplResult vplEncodeExrLayers(const vplLayer* layers, int count, vplByteBuffer* buffer);
+vplResult vplDecodeExrLayer(vplContext* context, const char* path, const char* name, const uint8_t* bytes,
+                            size_t size, vplImage** imageOut);
+
+// True if OpenEXR is built in. If not, the functions for EXR fail with a message.
 bool vplHasExr(void);
 
 // Fails if a pixel is NaN or infinite, with a message that names `what` and the first such pixel.

@@ -159,6 +159,8 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsDirect = row->direct && o->method != VPL_METHOD_PATH;
     p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
+    p->splitsLight = (o->output.aovs & (VPL_AOV_DIRECT | VPL_AOV_INDIRECT)) != 0 &&
+                     (p->showsVirtual || p->showsPatches || o->method == VPL_METHOD_PATH);
     p->progressive = row->passes && p->showsVirtual &&
                      (o->stop.passes > 1 || o->stop.budgetMs > 0 || o->stop.maxError > 0);
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {

@@ -2,6 +2,7 @@
 // Counts and bytes of a plan. A stage that ran while decisions were made is known exactly; for the others
 // sizes follow from what they allocate. tests/test_plan.c compares the sum with what rendering holds.
 #include "render/plan.h"
+#include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 #include "visibility/hemi_map.h"
 #include "scene/scene.h"
@@ -98,10 +99,19 @@ static double sampleScratch(const Scale* s)
                                    : 0;
 }
 
+// True if the picture stage draws direct light a second time, for layers.
+static bool drawsDirect(const vplPlan* p)
+{
+    const bool keller = p->options.method == VPL_METHOD_KELLER;
+    return p->splitsLight && p->options.method != VPL_METHOD_PATH &&
+           (!p->progressive || (keller && p->hasAreaLights));
+}
+
 static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
     double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
+    scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
         const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
@@ -153,10 +163,25 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_PICTURE:
         return picture(s);
     case VPL_STAGE_PATHS: // sums of two halves, and the picture that they resolve to
-        return (Bytes){60 * s->pixels, 0};
+        return (Bytes){(p->splitsLight ? 108 : 60) * s->pixels, 0};
     default: // little
         return (Bytes){0, 0};
     }
+}
+
+// Layers when the last of them is drawn, besides what the render holds: pictures, and their scratch memory.
+static Bytes layers(const Scale* s)
+{
+    const vplPlan* p = s->plan;
+    const int aovs = p->options.output.aovs, light = aovs & (VPL_AOV_DIRECT | VPL_AOV_INDIRECT);
+    const bool path = p->options.method == VPL_METHOD_PATH;
+    if (aovs == 0) {
+        return (Bytes){0, 0};
+    }
+    const int pictures = !path && !p->progressive, direct = drawsDirect(p) + (light == VPL_AOV_INDIRECT);
+    const double scratch = RASTER_VIEW * s->triangles + 1.4e5 * s->workers;
+    return (Bytes){12 * s->pixels * (__builtin_popcount((unsigned)aovs) + pictures + direct),
+                   light == aovs ? 0 : scratch + (vplCountLayerSamples(p) > 1 ? 12 * s->pixels : 0)};
 }
 
 // ---- the plan
@@ -230,6 +255,10 @@ void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
         p->shadowMapBytes += (1 << stage->id & SHADOW_MAPS) != 0 ? stage->bytes : 0;
         p->lightBytes += (1 << stage->id & LIGHTS) != 0 ? stage->bytes : 0;
     }
+    const Bytes more = layers(&s);
+    live += (int64_t)(more.held + more.scratch);
+    p->peakBytes = live > p->peakBytes ? live : p->peakBytes;
+    p->layerBytes = (int64_t)(12 * s.pixels) * __builtin_popcount((unsigned)p->options.output.aovs);
     p->pictureBytes = (int64_t)(12 * s.pixels);
     countDraws(&s, p);
 }

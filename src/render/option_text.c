@@ -149,6 +149,29 @@ static vplResult setChoice(const Setting* s)
     return VPL_SUCCESS;
 }
 
+// Words of the choices with commas between. The first stands for no bits, the last for all.
+static vplResult setBits(const Setting* s)
+{
+    const int all = (int)s->option->high;
+    int stored = 0;
+    for (const char* at = s->value;; at++) {
+        char word[32];
+        const char* index;
+        const size_t length = strcspn(at, ",");
+        snprintf(word, sizeof word, "%.*s", (int)length, at);
+        const int choice = findChoice(s->option->value, word, &index);
+        if (choice < 0) {
+            return refuse(s, "one or more of %s with commas between", s->option->value);
+        }
+        stored |= choice == 0 ? 0 : 1 << (choice - 1) > all ? all : 1 << (choice - 1);
+        at += length;
+        if (*at == 0) {
+            store(s, &stored, sizeof stored);
+            return VPL_SUCCESS;
+        }
+    }
+}
+
 vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, const char* value)
 {
     const Setting s = {options, vplFindOption(name), value};
@@ -167,6 +190,8 @@ vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, cons
     case VPL_OPTION_CHOICE:
     case VPL_OPTION_SHOW:
         return setChoice(&s);
+    case VPL_OPTION_SET:
+        return setBits(&s);
     default:
         return setReal(&s);
     }
@@ -195,6 +220,23 @@ static void writeChoice(const vplOption* option, const vplRenderOptions* o, char
     snprintf(text, 64, at[length] == ':' ? "%.*s:%d" : "%.*s", length, at, o->output.showIndex);
 }
 
+static void writeBits(const vplOption* option, int bits, char text[64])
+{
+    const char* at = option->value;
+    text[0] = 0;
+    if (bits == 0 || bits == (int)option->high) {
+        strcpy(text, bits == 0 ? "none" : "all");
+        return;
+    }
+    for (int bit = 1; bit <= bits; bit <<= 1) {
+        at = strchr(at, '|') + 1;
+        if ((bits & bit) != 0) {
+            const size_t length = strlen(text);
+            snprintf(text + length, 64 - length, "%s%.*s", length > 0 ? "," : "", (int)strcspn(at, "|"), at);
+        }
+    }
+}
+
 vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char* textOut, size_t size)
 {
     const vplOption* option = vplFindOption(name);
@@ -216,6 +258,9 @@ vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char
     case VPL_OPTION_CHOICE:
     case VPL_OPTION_SHOW:
         writeChoice(option, o, text);
+        break;
+    case VPL_OPTION_SET:
+        writeBits(option, (int)value, text);
         break;
     case VPL_OPTION_FLOAT:
     case VPL_OPTION_DOUBLE:

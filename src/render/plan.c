@@ -39,6 +39,9 @@ static const char* refuseOptions(const vplPlan* p)
         return "adaptive patches are counted, not measured: set vplRenderOptions.radiosity.patches and leave "
                "patchSize at 0";
     }
+    if (o->output.aovs != 0 && show != VPL_SHOW_PICTURE) {
+        return "--aov adds layers to the picture, not to what --show shows instead of it";
+    }
     const bool map = p->emitterCount > 0 && p->emitters[0].type != VPL_EMITTER_DIRECTIONAL &&
                      !p->emitterRays && o->method != VPL_METHOD_SSVP;
     if ((show == VPL_SHOW_SHADOW_MAP || show == VPL_SHOW_SHADOW_FACTOR) && !map) {

@@ -116,6 +116,12 @@ size_t vplPlan_Describe(const vplPlan* p, char* text, size_t size)
     }
     putCounts(&t, p);
     putSize(&t, "picture", "", p->pictureBytes);
+    if (p->layerBytes > 0) {
+        char layers[64] = "";
+        vplRenderOptions_Get(&p->options, "aov", layers, sizeof layers);
+        putSize(&t, "layers", "", p->layerBytes);
+        put(&t, ": %s", layers);
+    }
     putSize(&t, "most memory", "about ", p->peakBytes);
     putDecisions(&t, "decisions", p->decisions, p->decisionCount);
     putStages(&t, p);

@@ -48,8 +48,11 @@ static void closeHistory(vplHistory* history)
 struct vplRenderer {
     vplRunner runner;
     vplPlan* plan;
-    vplImage* base;         // all of the picture; direct light alone where passes add the rest
-    double* sums[2];        // of the pictures of passes with even and odd numbers; NULL without passes
+    vplImage* base;  // all of the picture; direct light alone where passes add the rest
+    double* sums[2]; // of the pictures of passes with even and odd numbers; NULL without passes
+    // Layers: direct light alone, or where passes add up, the sum of what their lights on area lights send, which
+    // `base` lacks; NULL: there is none.
+    vplImage* direct;
     int done;               // passes
     double start, cpuStart; // ms
     double passMs;          // of all passes
@@ -117,6 +120,25 @@ static vplResult openSums(vplRenderer* r)
     return VPL_SUCCESS;
 }
 
+// Renders direct light alone for layers: once if there is one pass, else what each pass adds to it.
+static vplResult addDirect(vplRenderer* r)
+{
+    const vplPlan* p = r->plan;
+    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && p->hasAreaLights;
+    if (!p->splitsLight || (p->progressive && !onSurfaces)) {
+        return VPL_SUCCESS;
+    }
+    r->runner.run.parts = VPL_PART_EMITTER_LIGHTS | (p->progressive ? 0 : VPL_PART_DIRECT);
+    TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
+    vplImage *image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE), *before = r->direct;
+    for (size_t k = 0; k < vplValueCount(image) && p->progressive && before != NULL; k++) {
+        image->pixels[k] += before->pixels[k];
+    }
+    vplImage_Destroy(before);
+    r->direct = image;
+    return VPL_SUCCESS;
+}
+
 // The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums.
 static vplResult addPass(vplRenderer* r)
 {
@@ -136,7 +158,7 @@ static vplResult addPass(vplRenderer* r)
         r->sums[r->done % 2][k] += (double)image->pixels[k];
     }
     vplImage_Destroy(image);
-    return VPL_SUCCESS;
+    return addDirect(r);
 }
 
 static vplResult runPass(vplRenderer* r)
@@ -152,7 +174,8 @@ static vplResult runPass(vplRenderer* r)
         const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
         vplImage_Destroy(r->base);
         r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        return show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS;
+        TRY(show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS);
+        return addDirect(r);
     }
     return VPL_SUCCESS;
 }
@@ -193,6 +216,25 @@ static vplResult resolve(vplRenderer* r, vplImage** imageOut)
         estimateError(r, *imageOut);
     }
     return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
+}
+
+// Direct light alone of all passes so far; NULL where light is not split.
+static vplResult resolveDirect(vplRenderer* r, vplImage** imageOut)
+{
+    const vplOutputOptions* o = &r->plan->options.output;
+    if (!r->plan->splitsLight) {
+        return VPL_SUCCESS;
+    }
+    TRY(vplImage_Create(r->runner.run.context, o->width, o->height, imageOut));
+    if (r->plan->options.method == VPL_METHOD_PATH) {
+        vplResolveDirectPaths(&r->runner.run, *imageOut);
+        return VPL_SUCCESS;
+    }
+    for (size_t k = 0; k < vplValueCount(*imageOut); k++) {
+        const float added = r->direct != NULL ? r->direct->pixels[k] : 0;
+        (*imageOut)->pixels[k] = r->plan->progressive ? r->base->pixels[k] + added / (float)r->done : added;
+    }
+    return VPL_SUCCESS;
 }
 
 // Tests whether the options' count of passes, error or time is reached.
@@ -257,11 +299,30 @@ vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderSta
     return VPL_SUCCESS;
 }
 
+vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRenderStats* statsOut)
+{
+    vplImage *picture = NULL, *direct = NULL;
+    vplLayers* layers;
+    TRY(vplRenderer_GetImage(r, &picture, NULL));
+    const vplResult result = resolveDirect(r, &direct);
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(picture);
+        return result;
+    }
+    TRY(vplMakeLayers(&r->runner.run, picture, direct, &layers));
+    if (statsOut != NULL) {
+        finishStats(r, picture, statsOut);
+    }
+    *layersOut = layers;
+    return VPL_SUCCESS;
+}
+
 void vplRenderer_Destroy(vplRenderer* r)
 {
     if (r != NULL) {
         vplContext* context = r->runner.run.context;
         vplImage_Destroy(r->base);
+        vplImage_Destroy(r->direct);
         vplFree(context, r->sums[0]);
         vplFree(context, r->sums[1]);
         vplPlan_Destroy(r->plan);
@@ -286,8 +347,9 @@ static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* 
     return VPL_SUCCESS;
 }
 
-vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
-                    vplRenderStats* statsOut)
+// Renders the picture, or where layersOut is not NULL layers.
+static vplResult render(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
+                        vplLayers** layersOut, vplRenderStats* statsOut)
 {
     vplRenderer* r;
     TRY(vplRenderer_Create(scene, options, &r));
@@ -296,7 +358,8 @@ vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplI
         result = vplRenderer_Step(r, &done);
     }
     if (result == VPL_SUCCESS) {
-        result = takeImage(r, imageOut, statsOut);
+        result = layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut)
+                                   : takeImage(r, imageOut, statsOut);
     }
     const vplRenderStats* stats = &r->runner.stats;
     if (result == VPL_SUCCESS && stats->errorEstimate >= 0) {
@@ -306,6 +369,20 @@ vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplI
     }
     vplRenderer_Destroy(r);
     return result;
+}
+
+vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
+                    vplRenderStats* statsOut)
+{
+    vplRenderOptions o = *options;
+    o.output.aovs = 0;
+    return render(scene, &o, imageOut, NULL, statsOut);
+}
+
+vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options, vplLayers** layersOut,
+                          vplRenderStats* statsOut)
+{
+    return render(scene, options, NULL, layersOut, statsOut);
 }
 
 // ---- other results of the same stages
@@ -320,6 +397,7 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
         o.method = VPL_METHOD_INSTANT_RADIOSITY;
     }
     o.output.show = VPL_SHOW_PICTURE;
+    o.output.aovs = 0;
     TRY(vplRenderer_Create(scene, &o, &r));
     const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, stage);
     if (result == VPL_SUCCESS && ssvp) {
@@ -341,6 +419,7 @@ vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float 
     vplRenderer* r;
     o.method = VPL_METHOD_RADIOSITY;
     o.output.show = VPL_SHOW_PICTURE;
+    o.output.aovs = 0;
     TRY(vplRenderer_Create(scene, &o, &r));
     vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_SOLUTION);
     if (result == VPL_SUCCESS) {

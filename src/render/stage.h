@@ -38,8 +38,9 @@ typedef enum vplStageId {
 
 // The parts of a picture that the picture stage adds up.
 typedef enum vplPart {
-    VPL_PART_DIRECT = 1,  // emission, and light from emitters, area lights and patches
-    VPL_PART_INDIRECT = 2 // light of virtual lights
+    VPL_PART_DIRECT = 1,        // emission, and light from emitters and area lights
+    VPL_PART_INDIRECT = 2,      // light of virtual lights and patches
+    VPL_PART_EMITTER_LIGHTS = 4 // of the virtual lights only those that lie on area lights: direct light, too
 } vplPart;
 
 // The inputs of a stage. Results are indexed by vplStageId and NULL where a stage did not run.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tiles of the G-buffer: writing them, lighting them, and showing depth, normals or a shadow factor. Light is
+// Tiles of the G-buffer: writing them, lighting them, and showing what they hold or a shadow factor. Light is
 // added in squares of 4 x 4 blocks, whose points, sums and lights stay in the first-level cache.
 #include "base/isa.h"
 #include "shading/accumulate.h"
@@ -69,12 +69,43 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
 
 // ---- stages
 
+// The albedo of a surface that emits includes its emission: to a denoiser it is what has this colour whatever the
+// light.
+static vplRgb showAlbedo(const vplGeometry* g, int triangle, const float emission[3])
+{
+    const vplRgb rho = g->materials[g->triangleMaterials[triangle]].diffuse;
+    return (vplRgb){vplMinf(rho.r + emission[0], 1), vplMinf(rho.g + emission[1], 1),
+                    vplMinf(rho.b + emission[2], 1)};
+}
+
+// The shown values of lane l, which shows something.
+static vplRgb showPoint(const vplShading* s, const vplBlock* b, int l, float factor, vplFacetCache* cache)
+{
+    const int triangle = b->points.triangle[l];
+    float grey = factor;
+    switch (s->def->output) {
+    case VPL_OUTPUT_NORMALS:
+        return (vplRgb){b->surface.nx[l], b->surface.ny[l], b->surface.nz[l]};
+    case VPL_OUTPUT_ALBEDO:
+        return showAlbedo(s->geometry, triangle, vplFacetCache_Get(s, triangle, cache)->reflector.emission);
+    case VPL_OUTPUT_OBJECT:
+        grey = (float)(s->geometry->owners[triangle] + 1);
+        break;
+    case VPL_OUTPUT_DEPTH: {
+        const vplVec3 p = vplVec(b->surface.px[l], b->surface.py[l], b->surface.pz[l]);
+        grey = vplDot(s->view->forward, vplSub(p, s->view->eye));
+        break;
+    }
+    default:
+        break;
+    }
+    return (vplRgb){grey, grey, grey};
+}
+
 void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
 {
     (void)worker;
     const vplShading* s = data;
-    const vplView* view = s->view;
-    const bool depth = s->def->output == VPL_OUTPUT_DEPTH, normals = s->def->output == VPL_OUTPUT_NORMALS;
     vplFacetCache cache;
     vplFacetCache_Clear(&cache);
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
@@ -93,14 +124,12 @@ void VPL_KERNEL(vplShowTile)(void* data, vplTile* tile, int worker)
             }
         }
         for (int l = 0; l < VPL_LANES; l++) {
-            if (b.points.triangle[l] < 0) {
-                continue;
+            if (b.points.triangle[l] >= 0) {
+                const vplRgb shown = showPoint(s, &b, l, factor[l], &cache);
+                values[0][l] = shown.r;
+                values[1][l] = shown.g;
+                values[2][l] = shown.b;
             }
-            const vplVec3 p = vplVec(b.surface.px[l], b.surface.py[l], b.surface.pz[l]);
-            const float grey = depth ? vplDot(view->forward, vplSub(p, view->eye)) : factor[l];
-            values[0][l] = normals ? b.surface.nx[l] : grey;
-            values[1][l] = normals ? b.surface.ny[l] : grey;
-            values[2][l] = normals ? b.surface.nz[l] : grey;
         }
         vplWriteBlock(s, tile, block, values);
     }

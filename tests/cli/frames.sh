@@ -30,6 +30,15 @@ equals FramesShareAnAutomaticExposure "13 1" \
 check ThatOfTheLastAloneIsAnother test "$(grep '^vpl: exposure' "$scratch/alone")" != "$(grep -m 1 '^vpl: exposure' "$scratch/stderr")"
 succeeds DotsOfFoldersAreNoExtensions "$vpl" render "$room" --size 4x4 --method direct --shadow-map 8 -o "$out/frames/z.pfm" --stats "$out/frames/../stats" --frames 1:1
 check TheStatisticsAreThere test -s "$out/stats-0001"
+# Each frame's file has its layers, where OpenEXR is built in.
+if "$vpl" render "$moving" $few -o "$out/frames/l.exr" --frames 8:9 --aov all --stats "$out/frames/l" 2>"$scratch/stderr"; then
+    for i in 8 9; do
+        check "FrameHasItsLayers_$i" grep -aq object.id.names "$out/frames/l-000$i.exr"
+        equals "LayersChangeNoFrame_$i" "$(field "$out/frames/s-000$i" image_hash)" "$(field "$out/frames/l-000$i" image_hash)"
+    done
+else
+    check LayersNeedOpenExr grep -q "no OpenEXR" "$scratch/stderr"
+fi
 rm -r "$out/frames" "$out/stats-0001"
 
 for bad in "" 5 3:2 1:2:3 a:b 1: :2 -1:2 "1: 2" 1:2x 0:100000 0:9999999999 1.5:2; do

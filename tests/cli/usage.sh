@@ -24,6 +24,9 @@ wrong "one word too many: \"x\"" bench x
 wrong "render needs -o FILE" render "$room"
 wrong "must end in .png, .hdr" render "$room" -o "$out/never.txt"
 wrong "must end in .png, .hdr" render "$room" -o "$out/never"
+wrong "--aov writes layers into .exr files only" render "$room" -o "$png" --aov all
+wrong "--aov is \"depht\", must be one or more of none|direct|indirect|albedo|normal|depth|object|all" render "$room" -o "$png" --aov depht
+wrong "--aov is \"depth,\"" render "$room" -o "$png" --aov depth,
 wrong "both the picture and the statistics" render "$room" -o "$png" --stats "$png"
 
 wrong "unknown option --particels, did you mean --particles?" render "$room" -o "$png" --particels 5

@@ -11,7 +11,13 @@ int vplCountPathPasses(const vplPlan* plan)
     return (plan->options.path.samples + PASS_SAMPLES - 1) / PASS_SAMPLES;
 }
 
-static vplPathDef describe(const vplPlan* plan)
+// The result of the stage.
+typedef struct Paths {
+    vplPathTracer* picture;
+    vplPathTracer* direct; // the same paths up to their first hit; NULL: no layer needs it
+} Paths;
+
+static vplPathDef describe(const vplPlan* plan, vplShow show)
 {
     const vplRenderOptions* o = &plan->options;
     vplPathDef def = vplDefaultPathDef();
@@ -21,47 +27,74 @@ static vplPathDef describe(const vplPlan* plan)
     def.width = o->output.width;
     def.height = o->output.height;
     def.seed = o->seed;
-    def.emission = o->output.show == VPL_SHOW_PICTURE || o->output.show == VPL_SHOW_DIRECT;
+    def.emission = show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT;
     def.pixelCentres = o->path.pixel == VPL_PIXEL_CENTRE;
     def.lastBounce = o->maxBounces >= 0 ? o->maxBounces : VPL_MAX_BOUNCES;
-    if (o->output.show == VPL_SHOW_DIRECT) {
+    if (show == VPL_SHOW_DIRECT) {
         def.lastBounce = 0;
-    } else if (o->output.show == VPL_SHOW_INDIRECT) {
+    } else if (show == VPL_SHOW_INDIRECT) {
         def.firstBounce = 1;
-    } else if (o->output.show == VPL_SHOW_BOUNCE) {
+    } else if (show == VPL_SHOW_BOUNCE) {
         def.firstBounce = o->output.showIndex;
         def.lastBounce = def.lastBounce < def.firstBounce ? def.lastBounce : def.firstBounce;
     }
     return def;
 }
 
-// Pass 0 creates a tracer; later passes add paths to it.
+static vplResult createPaths(const vplRun* run, Paths* paths)
+{
+    const vplPlan* plan = run->plan;
+    const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
+    const vplPathDef picture = describe(plan, plan->options.output.show),
+                     direct = describe(plan, VPL_SHOW_DIRECT);
+    TRY(vplPathTracer_Create(g, &picture, &paths->picture));
+    return plan->splitsLight ? vplPathTracer_Create(g, &direct, &paths->direct) : VPL_SUCCESS;
+}
+
+// Pass 0 creates tracers; later passes add paths to them.
 vplResult vplMakePaths(const vplRun* run, void** resultOut)
 {
-    vplPathTracer* tracer = run->pass > 0 ? run->before : NULL;
-    if (tracer == NULL) {
-        const vplPathDef def = describe(run->plan);
-        TRY(vplPathTracer_Create(run->results[VPL_STAGE_GEOMETRY], &def, &tracer));
+    Paths* paths = run->pass > 0 ? run->before : NULL;
+    if (paths == NULL) {
+        paths = vplArena_AllocZero(run->arena, 1, sizeof *paths);
+        TRY(vplArena_Check(run->arena));
+        *resultOut = paths;
+        TRY(createPaths(run, paths));
     }
     const int left = run->plan->options.path.samples - run->pass * PASS_SAMPLES;
     const int samples = left > 0 && left < PASS_SAMPLES ? left : PASS_SAMPLES;
-    *resultOut = tracer;
-    return vplPathTracer_Pass(tracer, samples, run->progress, run->runner, 0, 1);
+    const double share = paths->direct != NULL ? 0.3 : 0; // of the time, about
+    *resultOut = paths;
+    if (paths->direct != NULL) {
+        TRY(vplPathTracer_Pass(paths->direct, samples, run->progress, run->runner, 0, share));
+    }
+    return vplPathTracer_Pass(paths->picture, samples, run->progress, run->runner, share, 1);
 }
 
 void vplDestroyPaths(void* result)
 {
-    vplPathTracer_Destroy(result);
+    Paths* paths = result;
+    vplPathTracer_Destroy(paths->picture);
+    vplPathTracer_Destroy(paths->direct);
 }
 
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut)
 {
+    const Paths* paths = run->results[VPL_STAGE_PATHS];
     const vplOutputOptions* o = &run->plan->options.output;
     vplPathStats stats;
     TRY(vplImage_Create(run->context, o->width, o->height, imageOut));
-    vplPathTracer_Resolve(run->results[VPL_STAGE_PATHS], *imageOut, &stats);
+    vplPathTracer_Resolve(paths->picture, *imageOut, &stats);
     run->stats->rays = stats.rays;
     run->stats->errorEstimate = stats.errorEstimate;
     run->stats->relativeErrorEstimate = stats.relativeErrorEstimate;
     return VPL_SUCCESS;
+}
+
+void vplResolveDirectPaths(const vplRun* run, vplImage* image)
+{
+    const Paths* paths = run->results[VPL_STAGE_PATHS];
+    vplPathStats stats;
+    vplPathTracer_Resolve(paths->direct, image, &stats);
+    run->stats->rays += stats.rays;
 }

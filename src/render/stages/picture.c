@@ -33,7 +33,7 @@ static vplResult drawPatches(const vplRun* run, const vplView* view, vplImage* i
 
 static vplResult shadeView(const vplRun* run, const vplView* view, const vplShadeDef* def, vplImage* image)
 {
-    const bool patches = run->plan->showsPatches && (run->parts & VPL_PART_DIRECT) != 0;
+    const bool patches = run->plan->showsPatches && (run->parts & VPL_PART_INDIRECT) != 0;
     vplShadeStats stats = {0};
     if (vplShowsPatchesAlone(run->plan->options.output.show)) {
         memset(image->pixels, 0, vplValueCount(image) * sizeof *image->pixels);
@@ -159,16 +159,18 @@ static vplResult shade(const vplRun* run, const Shading* s, int parts, int first
         addVirtual(run, v, s->lightMaps, first, count, &def);
     }
     // Compensation is computed once, for all batches together.
+    const bool whole = (run->parts & VPL_PART_INDIRECT) != 0;
     const bool near = first == 0 && count > 0 && def.output == VPL_OUTPUT_RADIANCE && def.minDistance > 0;
     if (near && (plan->compensates || plan->estimatesLoss)) {
         compensation = vplMakeCompensation(run, v, s->shadows);
+        compensation.seesReflection = compensation.seesReflection && whole;
         def.compensation = plan->compensates ? &compensation : NULL;
     }
     if (s->sums != NULL) {
         memset(s->sums, 0, vplValueCount(image) * sizeof *s->sums);
     }
     TRY(shadeSamples(run, &def, s->sums, image));
-    return near && plan->estimatesLoss ? vplEstimateLoss(run, v, &def, compensation) : VPL_SUCCESS;
+    return near && whole && plan->estimatesLoss ? vplEstimateLoss(run, v, &def, compensation) : VPL_SUCCESS;
 }
 
 // ---- virtual lights with maps
@@ -212,13 +214,21 @@ static vplResult shadeBatches(const vplRun* run, Shading* s, int total, vplImage
 
 // ---- the stage
 
+static int countLights(const vplRun* run)
+{
+    const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
+    return v == NULL                                     ? 0
+           : (run->parts & VPL_PART_INDIRECT) != 0       ? v->count - v->first
+           : (run->parts & VPL_PART_EMITTER_LIGHTS) != 0 ? v->emitterLightCount - v->first
+                                                         : 0;
+}
+
 static vplResult shadePicture(const vplRun* run, Shading* s, vplImage* image)
 {
     const vplPlan* plan = run->plan;
-    const vplVirtualLights* v = run->results[VPL_STAGE_VIRTUAL_LIGHTS];
     const vplEmitterMaps* maps = run->results[VPL_STAGE_EMITTER_MAPS];
     const bool many = plan->options.output.supersample > 1;
-    const int lights = v != NULL && (run->parts & VPL_PART_INDIRECT) != 0 ? v->count - v->first : 0;
+    const int lights = countLights(run);
     s->shadows = maps != NULL
                      ? maps->shadows
                      : vplArena_AllocZero(run->scratch, (size_t)plan->emitterCount, sizeof(vplShadow));
