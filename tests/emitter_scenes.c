@@ -86,7 +86,7 @@ vplScene* zoo(vplContext* context, float factor)
 
 vplRenderOptions zooOptions(int shadows)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = 35;
     o.output.height = 25;
     o.particles.count = 36; // makes about 70 lights, more than one group

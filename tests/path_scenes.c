@@ -110,7 +110,7 @@ void addCamera(vplScene* scene, vplVec3 eye, vplVec3 target, double fovY)
 
 vplRenderOptions pathOptions(int size, int samples)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_PATH;
     o.output.width = o.output.height = size;
     o.path.samples = samples;

@@ -17,7 +17,7 @@ vplScene* boxRoom(vplContext* context, float rho, bool areaLight)
 
 vplRenderOptions radiosityOptions(int patches)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_RADIOSITY;
     o.output.width = 40;
     o.output.height = 30;

@@ -84,7 +84,7 @@ TEST_ALONE(TheRuleAgreesWithTheMeasuredTable)
 
 static vplRenderOptions autoOptions(void)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.particles.count = 20;
     o.lights.mapSize = 64;
     o.lights.shadows = VPL_LIGHT_SHADOWS_AUTO;

@@ -136,7 +136,7 @@ static vplScene* furnace(vplContext* context, float rho, vplVec3 eye, vplVec3 ta
 
 static vplRenderOptions kellerOptions(int size, int particles, float distance)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_KELLER;
     o.output.width = o.output.height = size;
     o.particles.count = particles;
@@ -278,7 +278,7 @@ TEST(PartsAddUpOnAverage, 2)
 
 static double pathMean(const vplScene* scene)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_PATH;
     o.path.pixel = VPL_PIXEL_CENTRE;
     o.output.width = o.output.height = 32;

@@ -15,7 +15,7 @@ enum { WIDTH = 160, HEIGHT = 90 };
 static vplImage* renderWith(const vplScene* scene, const char* const* words, const char* name,
                             const char* value)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = WIDTH;
     o.output.height = HEIGHT;
     for (; *words != NULL; words += 2) {
@@ -264,7 +264,7 @@ TEST(StagesAndPassesAreNotSmoothed, 1)
         {"show", "normals"}, {"pipeline", "multipass"}, {"pipeline", "batched"}, {"supersample", "2"}};
     vplScene* scene = openScene(context, "examples/scenes/room.json");
     for (int i = 0; i < 4; i++) {
-        vplRenderOptions o = vplDefaultRenderOptions();
+        vplRenderOptions o = plainOptions();
         vplPlan* plan;
         assert_int_equal(vplRenderOptions_Set(&o, "antialias", "8"), VPL_SUCCESS);
         assert_int_equal(vplRenderOptions_Set(&o, without[i][0], without[i][1]), VPL_SUCCESS);
@@ -272,7 +272,7 @@ TEST(StagesAndPassesAreNotSmoothed, 1)
         assert_int_equal(plan->options.output.antialias, 1);
         vplPlan_Destroy(plan);
     }
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.antialias = VPL_MAX_SAMPLES_PER_PIXEL + 1;
     assert_int_equal(vplRender(scene, &o, &(vplImage*){NULL}, NULL), VPL_INVALID_ARGUMENT);
     vplScene_Destroy(scene);

@@ -253,7 +253,7 @@ TEST(EnergyIsThatOfPathTracing, 2, SLOW)
     for (int i = 0; i < 2; i++) {
         vplScene* scene;
         assert_int_equal(vplScene_Load(context, scenes[i], &scene), VPL_SUCCESS);
-        vplRenderOptions o = vplDefaultRenderOptions();
+        vplRenderOptions o = plainOptions();
         o.output.width = o.output.height = 16;
         o.path.pixel = VPL_PIXEL_CENTRE;
         o.method = VPL_METHOD_PATH;

@@ -12,7 +12,7 @@ TEST(SpotAndSunAreAnalytic, 1)
         lookDown(scene, 4, 0.3);
         const vplVec3 d = {0.1f, -1, 0.05f}, p = {0.3f, 2, -0.25f};
         addColoured(scene, sun ? VPL_EMITTER_DIRECTIONAL : VPL_EMITTER_SPOT, p, d, 3);
-        vplRenderOptions o = vplDefaultRenderOptions();
+        vplRenderOptions o = plainOptions();
         o.method = VPL_METHOD_DIRECT;
         o.output.width = o.output.height = SIZE;
         o.shadow.mapSize = 64;
@@ -65,7 +65,7 @@ TEST(AreaLightsConvergeToTheFormFactor, 1)
     addLevel(scene, vplVec(0, 1, 0), 1, true, addGlow(scene, (vplRgb){4, 4, 4}, 0));
     lookDown(scene, 0.5f, 1.2);
     for (int n = 0; n < 4; n++) {
-        vplRenderOptions o = vplDefaultRenderOptions();
+        vplRenderOptions o = plainOptions();
         o.method = VPL_METHOD_DIRECT;
         o.output.width = o.output.height = SIZE;
         o.lights.areaLightSamples = cases[n].count;
@@ -91,7 +91,7 @@ TEST(AreaLightsConvergeToTheFormFactor, 1)
 TEST(RayAndMapShadowsAgree, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = 64;
     o.output.height = 48;
     o.particles.count = 8;
@@ -192,7 +192,7 @@ static vplImage* shadeBy(int kind, vplContext* context, const Shape* shape, bool
     } else {
         addColoured(scene, (vplEmitterType)kind, place, d, 2);
     }
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_DIRECT;
     o.output.width = o.output.height = VIEW;
     o.shadow.mapSize = 256;
@@ -298,7 +298,7 @@ TEST(SmoothMeshesShadeWithoutSeams, 1)
         assert_int_equal(vplScene_AddObject(scene, &object, NULL), VPL_SUCCESS);
         lookDown(scene, 3, 0.1);
         addColoured(scene, VPL_EMITTER_POINT, vplVec(1, 2, 0), vplVec(0, -1, 0), 10);
-        vplRenderOptions o = vplDefaultRenderOptions();
+        vplRenderOptions o = plainOptions();
         o.method = VPL_METHOD_DIRECT;
         o.output.width = o.output.height = VIEW;
         o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;

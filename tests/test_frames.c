@@ -139,7 +139,7 @@ TEST(PosesThatDegenerateAreRefused, 1)
     vplCameraKey keys[] = {cameraKey(scene, 0, 0, 0.5), cameraKey(scene, 2, 0, 0.5)};
     keys[1].eye.z = -keys[0].eye.z; // the camera passes through the target
     assert_int_equal(vplScene_SetCameraPath(scene, 0, keys, 2), VPL_SUCCESS);
-    vplRenderOptions options = vplDefaultRenderOptions();
+    vplRenderOptions options = plainOptions();
     options.output.width = options.output.height = 8;
     options.shadow.mapSize = 8;
     options.sequence.frame = 1;
@@ -208,7 +208,7 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static vplRenderOptions optionsOf(const Kind* kind)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = kind->method;
     o.pipeline.kind = kind->accumulation;
     o.lights.shadows = kind->shadows;

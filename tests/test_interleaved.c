@@ -166,7 +166,7 @@ TEST(NoLightLeaksOverAnEdge, 2)
 
 static vplRenderOptions optionsOf(int side)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = 131;
     o.output.height = 75;
     o.particles.count = 150;
@@ -263,7 +263,7 @@ TEST(IndirectLightKeepsItsEnergy, 2)
 TEST(SizesOfBlocksOutOfRangeAreRefused, 1)
 {
     vplScene* scene = loadScene(context, "room.json");
-    static const int wrong[] = {-1, 0, 17};
+    static const int wrong[] = {-2, 0, 17};
     vplImage* image = NULL;
     for (int i = 0; i < 3; i++) {
         vplRenderOptions o = optionsOf(4);

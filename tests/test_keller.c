@@ -298,7 +298,7 @@ TEST(PassesAddUpToOneWalk, 2)
 
 static vplRenderOptions smallOptions(void)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_KELLER;
     o.output.width = 37;
     o.output.height = 29;

@@ -18,7 +18,7 @@ typedef struct Words {
 
 static vplRenderOptions optionsOf(const Words* w, const char* aov)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = WIDTH;
     o.output.height = HEIGHT;
     o.shadow.mapSize = 128;

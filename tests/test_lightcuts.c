@@ -108,7 +108,7 @@ static const char* const SCENES[] = {"examples/scenes/room.json", "examples/scen
 
 static vplRenderOptions optionsOf(int particles, vplLightShadows shadows)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = 68;
     o.output.height = 51;
     o.particles.count = particles;
@@ -372,7 +372,7 @@ TEST(CutsCanBeCancelledAndWrongErrorsAreRefused, 1)
 TEST(CompensatedCutsKeepTheLight, 2)
 {
     vplScene* scene = loadScene(context, "room.json");
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_KELLER;
     o.output.width = 48;
     o.output.height = 36;

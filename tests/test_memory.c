@@ -53,7 +53,7 @@ static vplResult buildBall(Attempt* a)
 
 static vplRenderOptions optionsOf(vplMethod method, int size, int particles)
 {
-    vplRenderOptions options = vplDefaultRenderOptions();
+    vplRenderOptions options = plainOptions();
     options.method = method;
     options.output.width = options.output.height = size;
     options.particles.count = particles;

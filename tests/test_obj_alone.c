@@ -292,7 +292,7 @@ TEST_ALONE(EveryMethodLightsAnObjAlone)
         Desk d;
         vplImage* image = NULL;
         vplScene* scene = load(&d, MODELS[2].text, 1, true);
-        vplRenderOptions options = vplDefaultRenderOptions();
+        vplRenderOptions options = plainOptions();
         options.method = method;
         options.output.width = options.output.height = 16;
         options.radiosity.patches = 100;

@@ -33,6 +33,9 @@ static bool sampleOf(const vplOption* option, int i, char text[64])
     case VPL_OPTION_DOUBLE:
         snprintf(text, 64, "%s", wide[i % 4]);
         return i < 4;
+    case VPL_OPTION_INT_AUTO:
+        snprintf(text, 64, i < 2 ? "%.0f" : "auto", i ? option->high : option->low);
+        return i < 3;
     case VPL_OPTION_FLOAT_AUTO:
     case VPL_OPTION_BELOW_AUTO:
         snprintf(text, 64, "%s", wide[i % 5]);
@@ -57,8 +60,8 @@ static bool sampleOf(const vplOption* option, int i, char text[64])
 
 static bool isAutomatic(const vplOption* option)
 {
-    return option->kind == VPL_OPTION_FLOAT_AUTO || option->kind == VPL_OPTION_BELOW_AUTO ||
-           option->kind == VPL_OPTION_BIAS;
+    return option->kind == VPL_OPTION_INT_AUTO || option->kind == VPL_OPTION_FLOAT_AUTO ||
+           option->kind == VPL_OPTION_BELOW_AUTO || option->kind == VPL_OPTION_BIAS;
 }
 
 TEST_ALONE(EveryDefaultIsInItsRange)
@@ -70,7 +73,7 @@ TEST_ALONE(EveryDefaultIsInItsRange)
     for (int i = 0; i < count; i++) {
         const double value = vplOption_GetNumber(&table[i], &options);
         if (!(value >= (double)(float)table[i].low && value <= table[i].high) &&
-            !(isAutomatic(&table[i]) && value == -1)) {
+            !(isAutomatic(&table[i]) && value == (table[i].kind == VPL_OPTION_BELOW_AUTO ? -2 : -1))) {
             fail_msg("%s: %g is not in [%g, %g]", table[i].name, value, table[i].low, table[i].high);
         }
     }
@@ -131,7 +134,7 @@ static bool isOther(const Options* options, size_t offset, size_t size)
     return memcmp((const char*)options + offset, (const char*)&usual + offset, size) != 0;
 }
 
-// The first test value of each option changes the field that the row names, and no other.
+// The first test values of each option change the field that the row names, and no other, but for presets.
 TEST_ALONE(EveryOptionSetsItsOwnField)
 {
 #define VPL_OPTION_ROW(group, prefix, kind, type, member, default_, low, high, option, ...)                  \
@@ -153,7 +156,8 @@ TEST_ALONE(EveryOptionSetsItsOwnField)
             for (size_t j = 0; j < sizeof rows / sizeof *rows; j++) {
                 const bool part =
                     rows[j].offset == offsetof(Options, output.height) && option->kind == VPL_OPTION_SIZE;
-                if (j != i && !part && isOther(&options, rows[j].offset, rows[j].size)) {
+                if (j != i && !part && option->kind != VPL_OPTION_PRESET &&
+                    isOther(&options, rows[j].offset, rows[j].size)) {
                     fail_msg("%s %s changes %s", option->name, text, rows[j].field);
                 }
             }
@@ -298,7 +302,7 @@ TEST_ALONE(OptionsThatThereAreNotAreNamed)
 
 TEST_ALONE(TextThatDoesNotFitIsRefused)
 {
-    const Options options = vplDefaultRenderOptions();
+    const Options options = plainOptions();
     char text[8];
     assert_int_equal(vplRenderOptions_Get(&options, "method", text, sizeof text), VPL_INVALID_ARGUMENT);
     assert_int_equal(vplRenderOptions_Get(&options, "size", text, sizeof text), VPL_INVALID_ARGUMENT);
@@ -325,6 +329,8 @@ TEST(FieldsOutOfTheirRangeAreNamedByTheCheck, 1)
         }
         if (table[i].kind == VPL_OPTION_DOUBLE || table[i].kind == VPL_OPTION_BELOW_AUTO) {
             memcpy(field, &wide, sizeof wide);
+        } else if (table[i].kind == VPL_OPTION_INT_AUTO) {
+            memcpy(field, &(int){-2}, sizeof(int));
         } else if (isAutomatic(&table[i]) || table[i].kind == VPL_OPTION_FLOAT) {
             memcpy(field, &single, sizeof single);
         } else {
@@ -352,6 +358,69 @@ TEST(FieldsOutOfTheirRangeAreNamedByTheCheck, 1)
     assert_int_equal(vplRender(scene, &other, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "output.width is 0, must be in [1, 16384]"));
     assert_null(image);
+    vplScene_Destroy(scene);
+}
+
+// ---- presets
+
+// Each preset names a document's method, and all that it sets can be changed afterwards.
+TEST_ALONE(PresetsAreTheDocumentsSettings)
+{
+    static const struct {
+        const char* name;
+        vplMethod method;
+        vplAccumulation pipeline;
+    } rows[] = {{"franchi-ferrante", VPL_METHOD_INSTANT_RADIOSITY, VPL_ACCUMULATE_MULTIPASS},
+                {"keller-1997", VPL_METHOD_KELLER, VPL_ACCUMULATE_MULTIPASS},
+                {"hemgren", VPL_METHOD_RADIOSITY, VPL_ACCUMULATE_USUAL},
+                {"ssvp-2020", VPL_METHOD_SSVP, VPL_ACCUMULATE_INTERLEAVED}};
+    for (int i = 0; i < 4; i++) {
+        Options o = vplDefaultRenderOptions();
+        char text[32];
+        assert_int_equal(vplRenderOptions_Set(&o, "preset", rows[i].name), VPL_SUCCESS);
+        assert_true(o.method == rows[i].method && o.pipeline.kind == rows[i].pipeline);
+        assert_int_equal(o.output.antialias, 1);
+        assert_int_equal(vplRenderOptions_Get(&o, "preset", text, sizeof text), VPL_SUCCESS);
+        assert_string_equal(text, rows[i].name);
+    }
+    Options o = vplDefaultRenderOptions(), before = o;
+    assert_int_equal(vplRenderOptions_Set(&o, "preset", "none"), VPL_SUCCESS);
+    assert_memory_equal(&o, &before, OPTIONS_SIZE);
+    assert_int_equal(vplRenderOptions_SetAll(&o, "--preset hemgren --patches 30 --seed x"),
+                     VPL_INVALID_ARGUMENT);
+    assert_true(o.radiosity.patches == 30 && o.radiosity.iterations == 100 &&
+                strstr(o.problem, "seed is") != NULL);
+}
+
+// ---- the default
+
+TEST(TheDefaultIsKellerSharedAndSmooth, 1)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    static const struct {
+        int width, particles, interleave;
+    } rows[] = {{1280, -1, 16}, {256, -1, 8}, {1280, 1000, 8}, {1280, 2000, 16}};
+    for (int i = 0; i < 4; i++) {
+        Options o = vplDefaultRenderOptions();
+        o.output.width = rows[i].width;
+        o.output.height = rows[i].width * 9 / 16;
+        o.particles.count = rows[i].particles;
+        vplPlan* plan;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        const Options* p = &plan->options;
+        assert_true(p->method == VPL_METHOD_KELLER && p->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED);
+        assert_int_equal(p->particles.count, rows[i].particles < 0 ? 4000 : rows[i].particles);
+        assert_int_equal(p->pipeline.interleave, rows[i].interleave);
+        assert_int_equal(p->output.antialias, 8);
+        assert_true(p->lights.compensation == VPL_COMPENSATION_RAYS && p->particles.reflectivity > 0.3);
+        vplPlan_Destroy(plan);
+    }
+    Options documented = vplDefaultRenderOptions();
+    documented.method = VPL_METHOD_INSTANT_RADIOSITY;
+    vplPlan* plan;
+    assert_int_equal(vplPlan_Create(scene, &documented, NULL, &plan), VPL_SUCCESS);
+    assert_true(plan->options.particles.count == 10 && plan->options.particles.reflectivity == 0.5);
+    vplPlan_Destroy(plan);
     vplScene_Destroy(scene);
 }
 
@@ -405,7 +474,7 @@ TEST_ALONE(PipelinesUseTheseOptions)
                                             VPL_ACCUMULATE_LIGHTCUTS};
     for (int i = 0; i < 3; i++) {
         for (int kind = 0; kind <= VPL_ACCUMULATE_USUAL; kind++) {
-            Options options = vplDefaultRenderOptions();
+            Options options = plainOptions();
             char reason[64] = "";
             options.pipeline.kind = (vplAccumulation)kind;
             const bool used = vplRenderOptions_IsUsed(&options, names[i], reason, sizeof reason);
@@ -413,8 +482,12 @@ TEST_ALONE(PipelinesUseTheseOptions)
             assert_true(used || strncmp(reason, "--pipeline ", 11) == 0);
         }
     }
-    Options ssvp = vplDefaultRenderOptions();
-    ssvp.method = VPL_METHOD_SSVP; // its default pipeline is interleaved
-    assert_true(vplRenderOptions_IsUsed(&ssvp, "interleave", NULL, 0));
-    assert_false(vplRenderOptions_IsUsed(&ssvp, "batch", NULL, 0));
+    for (int i = 0; i < 3;
+         i++) { // the usual pipeline is interleaved for ssvp, and for keller with many lights
+        Options usual = vplDefaultRenderOptions();
+        usual.method = i == 0 ? VPL_METHOD_SSVP : VPL_METHOD_KELLER;
+        usual.particles.count = i == 2 ? 999 : -1;
+        assert_true(vplRenderOptions_IsUsed(&usual, "interleave", NULL, 0) == (i < 2));
+        assert_false(vplRenderOptions_IsUsed(&usual, "batch", NULL, 0));
+    }
 }

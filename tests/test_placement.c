@@ -208,7 +208,7 @@ TEST(AllAreKeptWhereAllAreWanted, 1)
 
 static vplRenderOptions viewOptions(int particles)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = o.output.height = 16;
     o.particles.count = particles;
     o.particles.placement = VPL_PLACEMENT_VIEW;

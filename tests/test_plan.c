@@ -10,7 +10,7 @@ enum { METHOD_COUNT = 6 };
 // Makes options from pairs of words: "size", "32x24", ..., NULL.
 static vplRenderOptions optionsOf(const char* const* words)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     for (; words[0] != NULL; words += 2) {
         if (vplRenderOptions_Set(&o, words[0], words[1]) != VPL_SUCCESS) {
             fail_msg("%s", o.problem);
@@ -289,9 +289,9 @@ TEST(WhatCannotBeRenderedHasAPlanThatSaysWhy, 1)
         }
         vplPlan_Destroy(plan);
     }
-    vplRenderOptions bad = vplDefaultRenderOptions();
+    vplRenderOptions bad = plainOptions();
     vplPlan* none = NULL;
-    bad.particles.count = -1;
+    bad.particles.count = -2;
     assert_int_equal(vplPlan_Create(scene, &bad, NULL, &none), VPL_INVALID_ARGUMENT);
     assert_null(none);
     vplScene_Destroy(scene);

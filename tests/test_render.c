@@ -6,7 +6,7 @@
 
 static vplRenderOptions smallOptions(void)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = 83;
     o.output.height = 61;
     o.shadow.mapSize = 128;
@@ -472,7 +472,7 @@ TEST(AntialiasingIsTheBoxFilter, 2)
     object.transform.m[12] = 0.16f;
     object.transform.m[13] = -0.05f;
     vplScene_AddObject(scene, &object, NULL);
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.output.width = o.output.height = 8;
     o.method = VPL_METHOD_DIRECT;
     double worst[3];

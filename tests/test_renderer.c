@@ -4,7 +4,7 @@
 
 static vplRenderOptions progressiveOptions(void)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_KELLER;
     o.output.width = 41;
     o.output.height = 31;

@@ -40,7 +40,7 @@ static vplScene* corner(vplContext* context, vplEmitterType type)
 
 static vplRenderOptions ssvpOptions(int size)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_SSVP;
     o.output.width = o.output.height = size;
     o.shadow.rsmSize = 256;
@@ -134,7 +134,7 @@ TEST(EachBounceHasTheLightOfPaths, 2, SLOW)
             o.output.show = VPL_SHOW_INDIRECT;
             o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
             const double found = meanOfRender(scene, &o);
-            o = vplDefaultRenderOptions();
+            o = plainOptions();
             o.output.width = o.output.height = 32;
             o.method = VPL_METHOD_PATH;
             o.path.pixel = VPL_PIXEL_CENTRE;
@@ -390,7 +390,7 @@ TEST(SsvpReflectsAreaLights, 2, SLOW)
     o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
     o.lights.minDistance = 0.05f;
     const double found = meanOfRender(scene, &o);
-    o = vplDefaultRenderOptions();
+    o = plainOptions();
     o.output.width = o.output.height = 32;
     o.method = VPL_METHOD_PATH;
     o.path.pixel = VPL_PIXEL_CENTRE;
@@ -414,14 +414,14 @@ TEST(WhatIsNotPossibleIsASentence, 1)
     o.pipeline.kind = VPL_ACCUMULATE_MULTIPASS;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_true(strlen(takeMessage()) > 0);
-    o = vplDefaultRenderOptions();
+    o = plainOptions();
     o.output.width = o.output.height = 16;
     o.lights.shadows = VPL_LIGHT_SHADOWS_CLUSTER;
     assert_int_equal(vplRender(scene, &o, &image, NULL), VPL_INVALID_ARGUMENT);
     assert_non_null(strstr(takeMessage(), "clusters"));
     const vplMethod others[3] = {VPL_METHOD_INSTANT_RADIOSITY, VPL_METHOD_DIRECT, VPL_METHOD_PATH};
     for (int i = 0; i < 3; i++) {
-        o = vplDefaultRenderOptions();
+        o = plainOptions();
         o.method = others[i];
         o.output.width = o.output.height = 16;
         for (int show = VPL_SHOW_RSM; show <= VPL_SHOW_SECOND_BOUNCE; show++) {

@@ -233,7 +233,11 @@ vplRenderOptions vplDefaultRenderOptions(void);
 // is changed but options->problem, one sentence.
 vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, const char* value);
 
-// The inverse: writes the value of an option as vplRenderOptions_Set reads it. VPL_INVALID_ARGUMENT if there
+// Sets options from words as on the command line: "--particles 200 --seed 7". What precedes a value that is refused
+// stays set.
+vplResult vplRenderOptions_SetAll(vplRenderOptions* options, const char* words);
+
+// The inverse of vplRenderOptions_Set: writes the value of an option as vplRenderOptions_Set reads it. VPL_INVALID_ARGUMENT if there
 // is no such option or `size` bytes are too few.
 vplResult vplRenderOptions_Get(const vplRenderOptions* options, const char* name, char* textOut, size_t size);
 
@@ -262,6 +266,7 @@ enum {
 
 typedef enum vplOptionKind {
     VPL_OPTION_INT,
+    VPL_OPTION_INT_AUTO,
     VPL_OPTION_FLOAT,
     VPL_OPTION_DOUBLE,
     VPL_OPTION_FLOAT_AUTO,
@@ -272,6 +277,7 @@ typedef enum vplOptionKind {
     VPL_OPTION_SHOW,
     VPL_OPTION_BIAS,
     VPL_OPTION_SET,
+    VPL_OPTION_PRESET,
     VPL_OPTION_PART
 } vplOptionKind;
 

@@ -97,8 +97,9 @@ static Arguments defaultArguments(const char* command)
     return a;
 }
 
-// Reads the option at word *i, and its value if that is the next word.
-static bool readOption(Arguments* a, int* i)
+// Reads the option at word *i, and its value if that is the next word. Presets are read before all others, so that
+// options beside one change it wherever they stand.
+static bool readOption(Arguments* a, int* i, bool presets)
 {
     const char* word = a->words[*i];
     const Option* o = findOption(a->command, word);
@@ -110,15 +111,16 @@ static bool readOption(Arguments* a, int* i)
         complain("--%s takes no value", o->name);
         return false;
     }
+    const bool now = (strcmp(o->name, "preset") == 0) == presets;
     if (o->value == NULL || equals != NULL) {
-        return o->read(o, equals != NULL ? equals + 1 : NULL, a);
+        return !now || o->read(o, equals != NULL ? equals + 1 : NULL, a);
     }
     if (*i + 1 >= a->wordCount || strncmp(a->words[*i + 1], "--", 2) == 0) { // a file so named: --name=--file
         complain("%s%s needs a value: %s", dashesOf(o), o->name, o->value);
         return false;
     }
     *i += 1;
-    return o->read(o, a->words[*i], a);
+    return !now || o->read(o, a->words[*i], a);
 }
 
 static void warnOfUnused(const Arguments* a)
@@ -146,8 +148,13 @@ bool parseArguments(int count, const char* const* words, Arguments* arguments)
     a.words = words;
     a.wordCount = count;
     for (int i = 2; i < count; i++) {
+        if (words[i][0] == '-' && words[i][1] != 0 && !readOption(&a, &i, true)) {
+            return false;
+        }
+    }
+    for (int i = 2; i < count; i++) {
         if (words[i][0] == '-' && words[i][1] != 0) {
-            if (!readOption(&a, &i)) {
+            if (!readOption(&a, &i, false)) {
                 return false;
             }
         } else if (a.positionalCount == a.command->positionals) {
@@ -167,13 +174,9 @@ bool parseArguments(int count, const char* const* words, Arguments* arguments)
 
 bool setOptions(vplRenderOptions* options, const char* words)
 {
-    char name[64], value[64];
-    int length;
-    for (; sscanf(words, " --%63s %63s%n", name, value, &length) == 2; words += length) {
-        if (vplRenderOptions_Set(options, name, value) != VPL_SUCCESS) {
-            complain("--%s", options->problem);
-            return false;
-        }
+    if (vplRenderOptions_SetAll(options, words) != VPL_SUCCESS) {
+        complain("--%s", options->problem);
+        return false;
     }
     return true;
 }

@@ -3,6 +3,7 @@
 // those that need the scene's geometry.
 #include "render/plan.h"
 
+#include "render/options.h"
 #include "render/show.h"
 #include "render/stages/results.h"
 
@@ -27,16 +28,36 @@ __attribute__((format(printf, 3, 4))) static void decide(vplPlan* plan, const ch
 
 // ---- decisions that options and method alone make
 
+// The square of pixels that share lights. Each pixel keeps eight lights or more; of 4000 particles 16 take half the time
+// of 8 in the room (1280x720), but blur light near corners where pictures are small (256x256: error 2.8 and 2.3 %).
+static int squareOf(const vplRenderOptions* o)
+{
+    const bool large = (int64_t)o->output.width * o->output.height >= 300000;
+    if (o->method != VPL_METHOD_KELLER || o->particles.count < 500) {
+        return 4;
+    }
+    return large && o->particles.count >= 2000 ? 16 : 8;
+}
+
 static void choosePipeline(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
     const bool ssvp = o->method == VPL_METHOD_SSVP;
     if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
-        o->pipeline.kind = ssvp ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+        o->pipeline.kind = vplUsualPipeline(o);
+        const bool shared = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
         if (p->showsVirtual) {
             decide(p, "pipeline",
-                   ssvp ? "neighbours share lights, as the document has it"
-                        : "one G-buffer, then all lights per tile");
+                   ssvp     ? "neighbours share lights, as the document has it"
+                   : shared ? "neighbours share so many lights"
+                            : "one G-buffer, then all lights per tile");
+        }
+    }
+    if (o->pipeline.interleave < 0) {
+        o->pipeline.interleave = squareOf(o);
+        if (p->showsVirtual && o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED) {
+            decide(p, "interleave",
+                   ssvp ? "as the document has it" : "by the number of lights and of pixels");
         }
     }
     if (o->shadow.rsmSize == 0) {
@@ -62,6 +83,26 @@ static void chooseSamples(vplPlan* p)
                o->output.supersample > 1 ? "every sample is a whole picture"
                : passes                  ? "passes over the scene light the pixels' centres"
                                          : "stages are shown as they are");
+    }
+}
+
+static void chooseParticleCount(vplPlan* p)
+{
+    vplRenderOptions* o = &p->options;
+    const bool keller = o->method == VPL_METHOD_KELLER, shown = (VPL_USE_PARTICLES & 1 << o->method) != 0;
+    if (o->particles.count < 0) {
+        o->particles.count = keller ? 4000 : 10;
+        if (shown) {
+            decide(p, "particles",
+                   keller ? "2.3 %% error in the room; 2000 leave 2.5 %%, 8000 leave 1.9 %%"
+                          : "as in the document");
+        }
+    }
+    if (o->particles.reflectivity < -1) {
+        o->particles.reflectivity = keller ? -1 : 0.5;
+        if (shown && !keller) {
+            decide(p, "reflectivity", "as in the document");
+        }
     }
 }
 
@@ -182,6 +223,7 @@ static void chooseRays(vplPlan* p)
 void vplDecideByOptions(const vplScene* scene, vplPlan* p)
 {
     choosePicture(scene, p);
+    chooseParticleCount(p);
     choosePipeline(p);
     chooseSamples(p);
     chooseParticles(p);

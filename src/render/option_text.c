@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Options as text: vplRenderOptions_Set and its inverse.
+#include "base/arena.h"
 #include "render/options.h"
 
 #include <errno.h>
@@ -42,15 +43,20 @@ static bool isPast(const char* value, const char* end)
 
 static vplResult setInt(const Setting* s)
 {
+    const bool automatic = s->option->kind == VPL_OPTION_INT_AUTO;
     char* end;
     errno = 0;
     const long long number = strtoll(s->value, &end, 10);
-    const int stored = (int)number;
-    if (isPast(s->value, end) || errno == ERANGE || (double)number < s->option->low ||
-        (double)number > s->option->high) {
-        return refuse(s, "a whole number in [%.0f, %.0f]", s->option->low, s->option->high);
+    const bool outside = (double)number < s->option->low || (double)number > s->option->high;
+    if (automatic && strcmp(s->value, "auto") == 0) {
+        store(s, &(int){-1}, sizeof(int));
+        return VPL_SUCCESS;
     }
-    store(s, &stored, sizeof stored);
+    if (isPast(s->value, end) || errno == ERANGE || outside) {
+        return refuse(s, "a whole number in [%.0f, %.0f]%s", s->option->low, s->option->high,
+                      automatic ? " or auto" : "");
+    }
+    store(s, &(int){(int)number}, sizeof(int));
     return VPL_SUCCESS;
 }
 
@@ -76,11 +82,14 @@ static vplResult setReal(const Setting* s)
     double number = strtod(s->value, &end);
     if (automatic && strcmp(s->value, "auto") == 0) {
         number = -1;
+    } else if (below && strcmp(s->value, "usual") == 0) {
+        number = -2;
     } else if (bias && strcmp(s->value, "exact") == 0) {
         number = (double)VPL_BIAS_OPTION_EXACT;
     } else if (isPast(s->value, end) || !(number >= o->low && number <= o->high)) {
         return refuse(s, "a number in [%g, %g%s%s", o->low, o->high, below ? ")" : "]",
                       bias        ? ", auto or exact"
+                      : below     ? ", auto or usual"
                       : automatic ? " or auto"
                                   : "");
     } else if (below && number >= o->high) {
@@ -172,6 +181,50 @@ static vplResult setBits(const Setting* s)
     }
 }
 
+// ---- presets
+
+// The numbers that the documents print. Of Keller's only the rules are given; the number of particles is that of the
+// simulation which Franchi and Ferrante show. Bias, PCF and the numbers of SSVP's lights are not printed: they stay as
+// they are.
+static const char* const PRESETS[] = {
+    "", // none
+    "--method instant-radiosity --lighting documented --particles 10 --reflectivity 0.5 --sampler random "
+    "--bounce "
+    "reflect --placement particles --pipeline multipass --light-shadows none --min-distance 0 --antialias 1",
+    "--method keller --lighting documented --particles 10 --reflectivity auto --sampler halton --bounce "
+    "diffuse "
+    "--placement particles --pipeline multipass --light-shadows map --compensation none --min-distance 0 "
+    "--antialias 1",
+    "--method radiosity --patches 784 --form-factors incentre --row-sums keep --hierarchy off --patch-light "
+    "1 "
+    "--solver gauss-seidel --iterations 100 --residual 0 --interpolation gouraud --vertex-weight equal "
+    "--sharpen 0 "
+    "--antialias 1",
+    "--method ssvp --clusters 8 --oversampling 1 --w1 0.6 --w2 0.4 --cluster-metric printed --cluster-place "
+    "mean "
+    "--second-weight printed --pipeline interleaved --interleave 4 --light-shadows cluster --antialias 1"};
+
+static vplResult setPreset(const Setting* s)
+{
+    const char* index;
+    const int preset = findChoice(s->option->value, s->value, &index);
+    if (preset < 0) {
+        return refuse(s, "one of %s", s->option->value);
+    }
+    store(s, &preset, sizeof preset);
+    return vplRenderOptions_SetAll(s->options, PRESETS[preset]);
+}
+
+vplResult vplRenderOptions_SetAll(vplRenderOptions* options, const char* words)
+{
+    char name[64], value[64];
+    int length;
+    for (; sscanf(words, " --%63s %63s%n", name, value, &length) == 2; words += length) {
+        TRY(vplRenderOptions_Set(options, name, value));
+    }
+    return VPL_SUCCESS;
+}
+
 vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, const char* value)
 {
     const Setting s = {options, vplFindOption(name), value};
@@ -182,7 +235,10 @@ vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, cons
     }
     switch (s.option->kind) {
     case VPL_OPTION_INT:
+    case VPL_OPTION_INT_AUTO:
         return setInt(&s);
+    case VPL_OPTION_PRESET:
+        return setPreset(&s);
     case VPL_OPTION_SEED:
         return setSeed(&s);
     case VPL_OPTION_SIZE:
@@ -247,7 +303,9 @@ vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char
     const double value = vplOption_GetNumber(option, o);
     switch (option->kind) {
     case VPL_OPTION_INT:
-        snprintf(text, sizeof text, "%d", (int)value);
+    case VPL_OPTION_INT_AUTO:
+        snprintf(text, sizeof text, option->kind == VPL_OPTION_INT_AUTO && value < 0 ? "auto" : "%d",
+                 (int)value);
         break;
     case VPL_OPTION_SEED:
         snprintf(text, sizeof text, "%llu", (unsigned long long)o->seed);
@@ -256,6 +314,7 @@ vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char
         snprintf(text, sizeof text, "%dx%d", o->output.width, o->output.height);
         break;
     case VPL_OPTION_CHOICE:
+    case VPL_OPTION_PRESET:
     case VPL_OPTION_SHOW:
         writeChoice(option, o, text);
         break;
@@ -271,7 +330,8 @@ vplResult vplRenderOptions_Get(const vplRenderOptions* o, const char* name, char
             writeNumber(value, option->kind != VPL_OPTION_BELOW_AUTO, text);
         } else {
             const bool exact = option->kind == VPL_OPTION_BIAS && value == (double)VPL_BIAS_OPTION_EXACT;
-            strcpy(text, exact ? "exact" : "auto");
+            const bool usual = option->kind == VPL_OPTION_BELOW_AUTO && value == -2;
+            strcpy(text, exact ? "exact" : usual ? "usual" : "auto");
         }
     }
     return snprintf(textOut, size, "%s", text) < (int)size ? VPL_SUCCESS : VPL_INVALID_ARGUMENT;
@@ -283,9 +343,8 @@ bool vplRenderOptions_IsUsed(const vplRenderOptions* o, const char* name, char* 
 {
     const vplOption* option = vplFindOption(name);
     const int pipelines = option != NULL ? option->users & ~VPL_USE_ALL : 0;
-    const vplAccumulation usual =
-        o->method == VPL_METHOD_SSVP ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
-    const vplAccumulation kind = o->pipeline.kind == VPL_ACCUMULATE_USUAL ? usual : o->pipeline.kind;
+    const vplAccumulation kind =
+        o->pipeline.kind == VPL_ACCUMULATE_USUAL ? vplUsualPipeline(o) : o->pipeline.kind;
     const char* against = NULL;
     vplRenderOptions resolved = *o;
     resolved.pipeline.kind = kind;

@@ -46,6 +46,13 @@ const vplOption* vplFindOption(const char* name)
     return NULL;
 }
 
+vplAccumulation vplUsualPipeline(const vplRenderOptions* o)
+{
+    const bool shared =
+        o->method == VPL_METHOD_KELLER && (o->particles.count < 0 || o->particles.count >= 1000);
+    return shared || o->method == VPL_METHOD_SSVP ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_DEFERRED;
+}
+
 // ---- checks
 
 double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* o)
@@ -75,17 +82,20 @@ double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* o)
 static vplResult checkOption(const vplContext* context, const vplRenderOptions* o, const vplOption* option)
 {
     const double value = vplOption_GetNumber(option, o);
-    const bool automatic = option->kind == VPL_OPTION_FLOAT_AUTO || option->kind == VPL_OPTION_BELOW_AUTO ||
-                           option->kind == VPL_OPTION_BIAS;
+    const bool automatic = option->kind == VPL_OPTION_INT_AUTO || option->kind == VPL_OPTION_FLOAT_AUTO ||
+                           option->kind == VPL_OPTION_BELOW_AUTO || option->kind == VPL_OPTION_BIAS;
     const bool below = option->kind == VPL_OPTION_BELOW_AUTO;
-    const bool low = value >= (double)(float)option->low || (automatic && isfinite(value));
+    const bool chosen = automatic && (option->kind == VPL_OPTION_INT_AUTO ? value == -1 : isfinite(value));
+    const bool low = value >= (double)(float)option->low || chosen;
     const bool high = below ? value < option->high : value <= option->high;
     if (low && high) {
         return VPL_SUCCESS;
     }
     return vplFail(context, VPL_INVALID_ARGUMENT, "vplRenderOptions.%s is %.9g, must be in [%.9g, %.9g%s%s",
                    option->field, value, option->low, option->high, below ? ")" : "]",
-                   automatic ? " or negative for automatic" : "");
+                   option->kind == VPL_OPTION_INT_AUTO ? " or -1 for automatic"
+                   : automatic                         ? " or negative for automatic"
+                                                       : "");
 }
 
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)

@@ -8,6 +8,9 @@
 // The value of a number or choice; 0 for a seed.
 double vplOption_GetNumber(const vplOption* option, const vplRenderOptions* options);
 
+// The pipeline that "usual" stands for.
+vplAccumulation vplUsualPipeline(const vplRenderOptions* options);
+
 // Checks that every option is in its range and the camera is one of the scene's.
 vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* options);
 

@@ -30,6 +30,18 @@ static inline void say(void* user, vplLogLevel level, const char* message)
     }
 }
 
+// Options of 10 particles, deferred, with a sample per pixel.
+static inline vplRenderOptions plainOptions(void)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.method = VPL_METHOD_INSTANT_RADIOSITY;
+    o.output.antialias = 1;
+    o.particles.count = 10;
+    o.particles.reflectivity = 0.5;
+    o.pipeline.interleave = 4;
+    return o;
+}
+
 // Opens a context and a scene. 0 workers: one per processor.
 static inline void openScene(const char* path, int workers, vplIsa isa, vplContext** contextOut,
                              vplScene** sceneOut)

@@ -67,7 +67,7 @@ static void measureScene(const char* path)
     vplScene* scene;
     vplLightSet* set;
     openScene(path, 1, VPL_ISA_AUTO, &context, &scene);
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.particles.placement = VPL_PLACEMENT_RSM;
     o.particles.sampler = VPL_SAMPLER_HAMMERSLEY;
     o.particles.count = LIGHTS;

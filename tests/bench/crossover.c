@@ -79,8 +79,7 @@ typedef struct Cell {
 static void measureMaps(const Bench* b, const vplView* view, vplImage* image, int lights, int size,
                         double* drawMs, double* lookMs)
 {
-    const int room = (int)(((size_t)vplDefaultRenderOptions().lights.mapMemory << 20) /
-                           vplHemiMaps_BytesPerMap(size)),
+    const int room = (int)(((size_t)plainOptions().lights.mapMemory << 20) / vplHemiMaps_BytesPerMap(size)),
               batch = room < lights ? room : lights;
     vplHemiMaps* maps;
     check(vplHemiMaps_Create(b->context, size, batch, &maps));

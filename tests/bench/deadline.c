@@ -54,7 +54,7 @@ static Truth findTruth(const vplScene* scene, const char* path, const char* fold
         if (stat(file, &there) == 0) {
             check(vplImage_Read(vplScene_GetContext(scene), file, &truth.halves[i]));
         } else {
-            vplRenderOptions o = vplDefaultRenderOptions();
+            vplRenderOptions o = plainOptions();
             o.method = VPL_METHOD_PATH;
             o.path.pixel = VPL_PIXEL_CENTRE;
             o.output.width = o.output.height = size;
@@ -110,7 +110,7 @@ static void regionErrors(const vplImage* x, const Truth* t, double* rms, double*
 
 static void measure(const vplScene* scene, const Truth* truth, const Line* line, int size)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = line->method;
     o.output.width = o.output.height = size;
     o.path.pixel = VPL_PIXEL_CENTRE;

@@ -248,7 +248,7 @@ int main(int count, char** words)
         return 2;
     }
     openScene(words[1], 0, VPL_ISA_AUTO, &b.context, &b.scene);
-    b.options = vplDefaultRenderOptions();
+    b.options = plainOptions();
     b.options.method = count > 2 ? readMethod(words[2]) : VPL_METHOD_INSTANT_RADIOSITY;
     b.options.particles.count = 256;
     b.options.output.width = count > 5 ? atoi(words[4]) : 320;

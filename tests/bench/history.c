@@ -53,7 +53,7 @@ int main(int count, char** words)
         return 2;
     }
     const char* method = count > 2 ? words[2] : "direct";
-    vplRenderOptions options = vplDefaultRenderOptions();
+    vplRenderOptions options = plainOptions();
     options.method = strcmp(method, "direct") == 0 ? VPL_METHOD_DIRECT
                      : strcmp(method, "ssvp") == 0 ? VPL_METHOD_SSVP
                                                    : VPL_METHOD_INSTANT_RADIOSITY;

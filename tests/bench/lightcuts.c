@@ -95,7 +95,7 @@ int main(int count, char** words)
     vplContext* context;
     vplScene* scene;
     openScene(path, 0, VPL_ISA_AUTO, &context, &scene);
-    Bench b = {.scene = scene, .options = vplDefaultRenderOptions()};
+    Bench b = {.scene = scene, .options = plainOptions()};
     b.options.method =
         count > 2 && strcmp(words[2], "keller") == 0 ? VPL_METHOD_KELLER : VPL_METHOD_INSTANT_RADIOSITY;
     b.options.particles.sampler = VPL_SAMPLER_HALTON;

@@ -17,7 +17,7 @@
 
 static vplImage* show(const vplScene* scene, const vplImage* like, vplShow what)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     vplImage* image;
     o.method = VPL_METHOD_DIRECT;
     o.output.width = like->width;
@@ -90,7 +90,7 @@ static double relmseOf(const vplImage* image, vplImage* const truth[2], const bo
 static void measure(const vplScene* scene, vplImage* const truth[2], const bool* smooth, const char* letters,
                     vplPatchPlacement placement, int patches)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_RADIOSITY;
     o.output.show = VPL_SHOW_INDIRECT;
     o.output.width = truth[0]->width;

@@ -42,7 +42,7 @@ static double stage(const vplRenderStats* s, const char* name)
 static vplImage* renderFrame(vplHistory* history, int frame, int patches, bool indirect, vplSolver solver,
                              vplRenderStats* stats)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     vplImage* image;
     o.method = VPL_METHOD_RADIOSITY;
     o.output.show = indirect ? VPL_SHOW_INDIRECT : VPL_SHOW_PICTURE;

@@ -53,7 +53,7 @@ static double simulate(const Bench* b, vplReflectiveMap** maps)
 // Renders indirect light without shadows; size 0: with rays instead of a map.
 static vplImage* picture(const Bench* b, int size, uint64_t seed)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     vplImage* image;
     o.output.width = o.output.height = SIDE;
     o.particles.count = SHOWN;

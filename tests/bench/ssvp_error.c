@@ -10,7 +10,7 @@
 
 static vplImage* renderClusters(const vplScene* scene, int width, int height, int clusters, int bounces)
 {
-    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderOptions o = plainOptions();
     o.method = VPL_METHOD_SSVP;
     o.output.width = width;
     o.output.height = height;

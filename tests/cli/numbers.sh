@@ -3,7 +3,7 @@
 # lights, 18 B = 144 ray-object tests, (7 + 18) B = 200 draw calls by multipass, (7 + 18 / m) B batched.
 
 s=$out/s.json
-counted="--particles 10 --reflectivity 0.5"
+counted="--particles 10 --reflectivity 0.5 --method instant-radiosity"
 small="--size 16x12 --shadow-map 16"
 
 succeeds LightsOfTheClosedRoom "$vpl" lights "$closed" $counted
@@ -61,13 +61,13 @@ for method in ssvp "ssvp --light-shadows ray" "ssvp --max-bounces 0"; do # how m
     done
 done
 # Passes end by a count, an error or a time.
-stats PassesAreCounted "$closed" $counted --method keller --size 16x12 --passes 3
+stats PassesAreCounted "$closed" --particles 10 --reflectivity 0.5 --method keller --size 16x12 --passes 3
 equals ThreePasses 3 "$(field "$s" passes)"
-stats PassesEndByTheirError "$closed" $counted --method keller --size 16x12 --max-error 0.2
+stats PassesEndByTheirError "$closed" --particles 10 --reflectivity 0.5 --method keller --size 16x12 --max-error 0.2
 check ErrorIsReached awk "BEGIN { exit !($(field "$s" relative_error_estimate) <= 0.2) }"
-stats PassesEndByTheClock "$closed" $counted --method keller --size 16x12 --budget 0.001
+stats PassesEndByTheClock "$closed" --particles 10 --reflectivity 0.5 --method keller --size 16x12 --budget 0.001
 equals TheFirstPassIsAlwaysDone 1 "$(field "$s" passes)"
-succeeds InfoText "$vpl" info "$room" --size 1920x1080 --shadow-map 512
+succeeds InfoText "$vpl" info "$room" --method instant-radiosity --size 1920x1080 --shadow-map 512
 check InfoCountsObjects grep -qE '^ +objects +7 \(5 quads, 2 boxes, 0 meshes\)$' "$scratch/stdout"
 check InfoCountsTriangles grep -qE '^ +triangles +34$' "$scratch/stdout"
 check InfoHasBounds grep -qE '^ +bounds +\(-2.5, 0, -2.5\) to \(2.5, 5, 2.5\) m$' "$scratch/stdout"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Pictures: the same bits whatever the pipeline, threads and instruction set; every --show; compare.
 
-base="--size 75x50 --particles 100 --shadow-map 64"
+base="--method instant-radiosity --size 75x50 --particles 100 --shadow-map 64 --antialias 1"
 
 # hash_of WORDS...: the image hash of a render, or what went wrong.
 hash_of() {

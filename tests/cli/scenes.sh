@@ -33,7 +33,7 @@ refuses SceneWithoutLights 2 "no emitter" "$vpl" render "$scratch/dark.json" -o 
 refuses LightsOfASceneWithoutLights 2 "no emitter" "$vpl" lights "$scratch/dark.json"
 refuses ShadowMapWithoutLights 2 "no light" \
     "$vpl" render "$scratch/dark.json" -o "$never" --size 8x8 --method direct --show shadow-map
-succeeds InfoOfASceneThatCannotBeRendered "$vpl" info "$scratch/spot.json" --lighting documented
+succeeds InfoOfASceneThatCannotBeRendered "$vpl" info "$scratch/spot.json" --method instant-radiosity --lighting documented
 check InfoSaysWhyNot grep -q 'not possible:' "$scratch/stdout"
 succeeds ASceneOfNothingIsBlack "$vpl" render "$scratch/dark.json" -o "$out/dark.pfm" --size 8x8 --method direct
 rm -f "$out/dark.pfm"

@@ -49,7 +49,7 @@ wrong "--particles is \"ten\"" lights "$room" --particles ten
 wrong "--particles is \"10.5\"" lights "$room" --particles 10.5
 wrong "--particles is \"\"" lights "$room" --particles=
 wrong "--reflectivity is \"1\", must be less than 1" lights "$room" --reflectivity 1
-wrong "--reflectivity is \"-0.1\", must be a number in [0, 1) or auto" lights "$room" --reflectivity -0.1
+wrong "--reflectivity is \"-0.1\", must be a number in [0, 1), auto or usual" lights "$room" --reflectivity -0.1
 wrong "--reflectivity is \"nan\"" lights "$room" --reflectivity nan
 wrong "--reflectivity is \"often\"" lights "$room" --reflectivity often
 wrong "needs more than" lights "$room" --particles 10 --reflectivity 0.99999999
@@ -90,7 +90,7 @@ wrong "--show is \"light:\"" render "$room" -o "$png" --show light:
 wrong "--show is \"light:K\"" render "$room" -o "$png" --show light:K
 wrong "--show is \"light:-1\"" render "$room" -o "$png" --show light:-1
 wrong "virtual light 18 does not exist, there are 18 (from 0)" \
-    render "$closed" -o "$png" --size 8x8 --shadow-map 16 --show light:18
+    render "$closed" -o "$png" --size 8x8 --shadow-map 16 --method instant-radiosity --show light:18
 for option in particles seed reflectivity size bias min-distance w1 budget sampler; do # " 10" is no number
     wrong "--$option is \" 10\", must be" render "$room" -o "$png" --$option=" 10"
 done
@@ -128,7 +128,7 @@ check HelpHasManyOptions test "$(wc -l <"$scratch/table")" -ge 60
 tr -s " \n" " " <"$scratch/stdout" >"$scratch/flat"
 check HelpNamesDefaults grep -q "paths per pixel; default 64" "$scratch/stdout"
 check HelpNamesMethods grep -q "paths per pixel; default 64 \[path\]" "$scratch/stdout"
-check HelpNamesPipelines grep -q "default 4 \[instant-radiosity, keller, ssvp\] \[--pipeline interleaved\]" "$scratch/flat"
+check HelpNamesPipelines grep -q "default auto \[instant-radiosity, keller, ssvp\] \[--pipeline interleaved\]" "$scratch/flat"
 equals HelpHasSubjects "$(grep -c '^// ---- ' include/vpl/options.def)" "$(grep -c '^[A-Z]' "$scratch/stdout")"
 succeeds HelpOfASubject "$vpl" help options ssvp
 equals HelpOfASubjectHasItsOptions "SSVP --clusters" "$(sed -n '2p; 3s/^  \(--[a-z]*\).*/\1/p' "$scratch/stdout" | tr '\n' ' ' | sed 's/ $//')"
@@ -148,9 +148,10 @@ unused() {
     equals "NoEffect: $text" "0 vpl: warning: $text" "$? $(cat "$scratch/stderr")"
 }
 tiny="--size 8x8 --shadow-map 8"
-unused "--clusters has no effect with --method instant-radiosity" render "$room" $tiny --clusters 8
+unused "--clusters has no effect with --method keller" render "$room" $tiny --clusters 8
 unused "--particles has no effect with --method direct" render "$room" $tiny --particles=3 --method direct
-unused "--batch has no effect with --pipeline deferred" render "$room" $tiny --batch 3
+unused "--batch has no effect with --pipeline interleaved" render "$room" $tiny --batch 3
+unused "--interleave has no effect with --pipeline deferred" render "$room" $tiny --particles 10 --interleave 3
 unused "--interleave has no effect with --pipeline lightcuts" render "$room" $tiny --pipeline lightcuts --interleave 3 --interleave 4
 unused "--exposure has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --exposure auto
 unused "--tonemap has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --tonemap=usual
@@ -158,7 +159,7 @@ succeeds NoEffectIsQuiet "$vpl" render "$room" $tiny --clusters 8 --quiet -o "$o
 succeeds EffectOfTheUsualPipeline "$vpl" render "$room" --size 8x8 --method ssvp --interleave 2 --rsm-size 32 -o "$out/u.pfm"
 succeeds DefaultsDoNotWarn "$vpl" render "$room" $tiny -o "$out/u.pfm"
 "$vpl" info "$room" --spp 3 >"$scratch/stdout" 2>"$scratch/stderr"
-equals NoEffectInInfo "vpl: warning: --spp has no effect with --method instant-radiosity" "$(cat "$scratch/stderr")"
+equals NoEffectInInfo "vpl: warning: --spp has no effect with --method keller" "$(cat "$scratch/stderr")"
 rm "$out/u.pfm"
 succeeds HelpListsCommands "$vpl" help
 check HelpNamesExitCodes grep -q '^Exit codes: 0' "$scratch/stdout"

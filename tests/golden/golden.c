@@ -126,6 +126,7 @@ static void lightcuts(vplRenderOptions* o)
 static void kellerDocumented(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_KELLER;
+    o->particles.reflectivity = 0.5;
     o->lighting = VPL_LIGHTING_DOCUMENTED;
     o->particles.count = 60;
 }
@@ -137,6 +138,7 @@ static void kellerPasses(vplRenderOptions* o)
     o->particles.count = 300;
     o->stop.passes = 3;
     o->pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
+    o->pipeline.interleave = 4;
 }
 
 static void indirect(vplRenderOptions* o)
@@ -188,6 +190,7 @@ static void secondBounce(vplRenderOptions* o)
 static void compensated(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_KELLER;
+    o->particles.reflectivity = 0.5;
     o->particles.count = 100;
     o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
 }
@@ -334,6 +337,8 @@ static vplImage* renderCase(vplContext* context, const Case* c)
     vplScene* scene = NULL;
     vplImage* image = NULL;
     vplRenderOptions options = vplDefaultRenderOptions();
+    options.method = VPL_METHOD_INSTANT_RADIOSITY;
+    options.output.antialias = 1;
     options.output.width = options.output.height = SIZE;
     c->adjust(&options);
     snprintf(path, sizeof path, "examples/scenes/%s.json", c->scene);

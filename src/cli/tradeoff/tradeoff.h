@@ -13,7 +13,10 @@
 // light. The seed is not 0, because the first Halton point of seed 0 is the origin in all dimensions. Its
 // particle survives to the last steps, where lights weigh most (cornell-area, 100 particles: 145 % error
 // instead of 18 %).
-#define TRADEOFF_BASE "--size 320x180 --particles 100 --sampler halton --seed 1 --shadow-map 256 --pcf 1"
+#define TRADEOFF_BASE                                                                                        \
+    "--method instant-radiosity --antialias 1 --size 320x180 --particles 100 --reflectivity 0.5 --sampler "  \
+    "halton "                                                                                                \
+    "--seed 1 --shadow-map 256 --pcf 1"
 
 enum { MAX_SETTINGS = 512, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
 
