@@ -190,20 +190,36 @@ TEST(AutomaticExposureFollowsTheLight, 1)
     vplImage_Destroy(image);
 }
 
-// The grey room is 90 % of what is lit; a black background, lamps, corners without light and bad pixels are not
-// to change its exposure.
+// A black or very dark background, a small lamp, corners without light and bad pixels do not change the exposure.
 TEST(AutomaticExposureLeavesOutBackgroundLampsAndCorners, 1)
 {
-    static const float others[] = {0, -1, NAN, INFINITY, 1e30f, 1e-30f};
-    for (int i = 0; i < 6; i++) {
+    static const float others[] = {0, -1, NAN, INFINITY, 1e-6f, 1e30f, 1e-30f};
+    for (int i = 0; i < 7; i++) {
         vplImage* image = makeImage(context, 100, 10, 0.02f);
-        const int rows = i < 4 ? 9 : 0, columns = i < 4 ? 0 : 4; // 90 % of the picture, or 4 %
+        const int rows = i < 5 ? 9 : 0, columns = i < 5 ? 0 : i == 5 ? 1 : 4; // 90 % of the picture, 1 %, 4 %
         for (int p = 0; p < 1000; p++) {
             for (int c = 0; c < 3 && (p / 100 < rows || p % 100 < columns); c++) {
                 image->pixels[3 * p + c] = others[i];
             }
         }
         assertNear((double)autoExposure(image), log2(0.18 / 0.02), 1.0 / 128, "stops", i);
+        vplImage_Destroy(image);
+    }
+}
+
+// 4 % of the picture are sunlit: they become 8, if two stops are enough for it.
+TEST(AutomaticExposureSparesLargeHighlights, 1)
+{
+    static const float suns[] = {0.1f, 1, 2, 1e30f};
+    static const double less[] = {0, 0.169925, 1.169925, 2}; // 0.18 / 0.02 = 9 times sun is 0.9, 9, 18
+    for (int i = 0; i < 4; i++) {
+        vplImage* image = makeImage(context, 100, 10, 0.02f);
+        for (int p = 0; p < 1000; p++) {
+            for (int c = 0; c < 3 && p % 100 < 4; c++) {
+                image->pixels[3 * p + c] = suns[i];
+            }
+        }
+        assertNear((double)autoExposure(image), log2(0.18 / 0.02) - less[i], 1.0 / 64, "stops", i);
         vplImage_Destroy(image);
     }
 }

@@ -129,9 +129,10 @@ vplReinhardDef vplDefaultReinhardDef(void);
 vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def);
 
 // Finds the exposure, in stops in [-64, 64], that makes the geometric mean of the luminance middle grey, 0.18.
-// The mean leaves out black pixels and those that are not finite, then the darkest 10 % and the brightest 5 % of
-// the rest, so that neither a black background nor a lamp in the picture decides. Luminances are counted in
-// bins of 1/128 octave. 0 for a black picture. VPL_OUT_OF_MEMORY.
+// The mean leaves out black pixels and those that are not finite, the brightest 5 % of the rest, those 1024 times
+// darker than these, and then the darkest 10 %, so that neither a dark background nor a lamp in the picture
+// decides. It is up to two stops less if more than 2 % would exceed 8, half of the white of AgX, as a sunlit floor
+// in a dark hall. Luminances are counted in bins of 1/128 octave. 0 for a black picture. VPL_OUT_OF_MEMORY.
 // Source: Reinhard and others, as above, equations 1 and 2, for the mean; Krzysztof Narkowicz, Automatic
 // Exposure, 2016, for the histogram without its ends.
 vplResult vplImage_AutoExposure(const vplImage* image, float* stopsOut);

@@ -12,9 +12,13 @@
 
 // A bin has the floats with the same upper 16 bits: 128 bins per octave. Counts are whole numbers, so their
 // sums have no rounding.
-enum { BIN_SHIFT = 16, BINS = 255 << (23 - BIN_SHIFT) };
+enum { BIN_SHIFT = 16, BINS_PER_OCTAVE = 1 << (23 - BIN_SHIFT), BINS = 255 * BINS_PER_OCTAVE };
 
-static const double MIDDLE_GREY = 0.18, DARKEST = 0.10, BRIGHTEST = 0.05;
+// Pixels 2^-DARK_OCTAVES as bright as the brightest but BRIGHTEST are black whatever the exposure. All but the
+// HIGHLIGHTS stay below MOST_BRIGHT, one stop below the white of AgX, if GUARD stops less are enough.
+enum { DARK_OCTAVES = 10 };
+static const double MIDDLE_GREY = 0.18, DARKEST = 0.10, BRIGHTEST = 0.05, HIGHLIGHTS = 0.02, MOST_BRIGHT = 8,
+                    GUARD = 2;
 
 static size_t countLuminances(const vplImage* image, uint32_t* bins)
 {
@@ -42,13 +46,28 @@ static double logOfBin(int bin)
     return vplLn((double)middle);
 }
 
-// The mean logarithm of the pixels that are neither among the darkest nor among the brightest. A bin across one
-// of the two limits counts in part.
-static double meanLog(const uint32_t* bins, double lit)
+// The bin below which `count` pixels are.
+static int binOf(const uint32_t* bins, double count)
 {
-    const double low = DARKEST * lit, high = lit - BRIGHTEST * lit;
-    double sum = 0, below = 0;
-    for (int bin = 0; bin < BINS && below < high; bin++) {
+    int bin = 0;
+    for (double below = bins[0]; below < count && bin < BINS - 1; bin++) {
+        below += bins[bin + 1];
+    }
+    return bin;
+}
+
+// The mean logarithm from a bin on, of the pixels that are neither among the darkest nor among the brightest. A bin
+// across one of the two limits counts in part.
+static double meanLog(const uint32_t* bins, int first, double lit)
+{
+    const double high = lit - BRIGHTEST * lit;
+    double dark = 0, sum = 0;
+    for (int bin = 0; bin < first; bin++) {
+        dark += bins[bin];
+    }
+    const double low = dark + DARKEST * (lit - dark);
+    double below = dark;
+    for (int bin = first; bin < BINS && below < high; bin++) {
         const double above = below + bins[bin];
         const double from = below > low ? below : low, to = above < high ? above : high;
         sum += to > from ? (to - from) * logOfBin(bin) : 0;
@@ -63,8 +82,15 @@ vplResult vplImage_AutoExposure(const vplImage* image, float* stopsOut)
     if (bins == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    const size_t lit = countLuminances(image, bins);
-    const double stops = lit > 0 ? (vplLn(MIDDLE_GREY) - meanLog(bins, (double)lit)) / vplLn(2) : 0;
+    const double lit = (double)countLuminances(image, bins);
+    double stops = 0;
+    if (lit > 0) {
+        const int bright = binOf(bins, lit - BRIGHTEST * lit),
+                  first = bright - DARK_OCTAVES * BINS_PER_OCTAVE;
+        const double grey = (vplLn(MIDDLE_GREY) - meanLog(bins, first > 0 ? first : 0, lit)) / vplLn(2);
+        const double most = (vplLn(MOST_BRIGHT) - logOfBin(binOf(bins, lit - HIGHLIGHTS * lit))) / vplLn(2);
+        stops = grey < most ? grey : most > grey - GUARD ? most : grey - GUARD;
+    }
     *stopsOut = vplClampf((float)stops, -64, 64);
     vplFree(image->context, bins);
     return VPL_SUCCESS;

@@ -12,7 +12,7 @@
 
 // Two triangles are one surface if they reflect and emit the same, their normals are as near as this, and
 // they lie within EDGE_PIXELS of each other's plane.
-#define EDGE_COSINE        0.9995f
+#define EDGE_COSINE        0.95f
 #define EDGE_SMOOTH_COSINE 0.8f // of two smooth triangles
 #define EDGE_PIXELS        2.0f // widths of a pixel at that distance
 
