@@ -82,8 +82,7 @@ programs: $(BUILD)/libvpl.a $(BUILD)/vpl
 ## make demo        installs what is missing, builds, renders a living room to build/demo.png
 demo: deps
 	@$(MAKE) --no-print-directory $(JOBS) programs
-	$(BUILD)/vpl render examples/scenes/loft.json -o $(BUILD)/demo.png --method keller --particles 4000 \
-	  --reflectivity auto --pipeline interleaved --interleave 16 --light-shadows ray --size 960x540 --antialias 8
+	$(BUILD)/vpl render examples/scenes/loft.json -o $(BUILD)/demo.png
 	@echo "Done: open $(BUILD)/demo.png"
 
 ## make test        installs what is missing, runs every test; ends with "N passed, N failed"

@@ -11,7 +11,7 @@ mkdir -p $out
 shot() {
     name=$1
     shift
-    "$vpl" render --exposure 0 --tonemap none "$@" -o "$out/$name.png" --quiet
+    "$vpl" render --method instant-radiosity --antialias 1 --exposure 0 --tonemap none "$@" -o "$out/$name.png" --quiet
 }
 shot documented $closed --size 360x315 --lighting documented --exposure 0.5 --pcf 64 --pcf-offset 0.12
 # The clamp distance of 0.5 m removes bright specks where walls meet.

@@ -21,7 +21,7 @@ measure() {
     count=$2
     shift 2
     for seed in $(seq 1 "${SEEDS:-4}"); do
-        "$build/vpl" render "$scene" -o "$scratch/picture.pfm" --method keller --light-shadows ray --reflectivity auto \
+        "$build/vpl" render "$scene" -o "$scratch/picture.pfm" --method keller --antialias 1 --light-shadows ray --reflectivity auto \
             --particles "$count" --size 96x96 --seed "$seed" --quiet --stats "$scratch/stats.json" "$@" || exit 1
         "$build/vpl" compare "$scratch/picture.pfm" "$reference" | awk -v ms="$(number cpu_ms)" \
             -v loss="$(number clamp_loss)" -v bound="$(number min_distance)" '

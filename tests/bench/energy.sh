@@ -15,7 +15,7 @@ for scene; do
         "$build/vpl" render "$scene" -o "$scratch/path$seed.pfm" --method path --spp 1024 --seed $seed \
             --pixel centre --size 256x256 --quiet --stats "$scratch/stats$seed.json" || exit 1
     done
-    "$build/vpl" render "$scene" -o "$scratch/ir.pfm" --particles 4096 --light-shadows ray --size 256x256 --quiet || exit 1
+    "$build/vpl" render "$scene" -o "$scratch/ir.pfm" --method instant-radiosity --antialias 1 --particles 4096 --light-shadows ray --size 256x256 --quiet || exit 1
     "$build/vpl" compare "$scratch/path1.pfm" "$scratch/path2.pfm" >"$scratch/compare"
     measured=$(value rmse)
     predicted=$(sed -n 's/.*"error_estimate": \([0-9.e-]*\).*/\1/p' "$scratch/stats1.json")

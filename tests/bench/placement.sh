@@ -19,7 +19,7 @@ value() {
 measure() {
     : >"$scratch/rows"
     for seed in $(seq "$SEEDS"); do
-        "$build/vpl" render "$1" -o "$scratch/a.pfm" --placement "$2" --particles "$3" --light-shadows ray \
+        "$build/vpl" render "$1" -o "$scratch/a.pfm" --method instant-radiosity --antialias 1 --placement "$2" --particles "$3" --light-shadows ray \
             --size "$SIZE" --seed "$seed" --quiet --stats "$scratch/stats.json" || exit 1
         echo "$(value relative_rmse "$scratch/a.pfm" "$truth-1.pfm") $(value relative_rmse "$scratch/a.pfm" "$truth-2.pfm") \
             $(sed -n 's/.*"cpu_ms": \([0-9.e+]*\).*/\1/p' "$scratch/stats.json")" >>"$scratch/rows"

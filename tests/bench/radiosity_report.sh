@@ -9,7 +9,7 @@ spp=${3:-512}
 size=${4:-240x240}
 scene=examples/scenes/testmodel.json
 mkdir -p "$out"
-render="$build/vpl render $scene --size $size --quiet"
+render="$build/vpl render $scene --antialias 1 --size $size --quiet"
 eyes="--exposure 1.65 --tonemap none"
 $render -o "$out/truth.pfm" --method path --pixel centre --spp "$spp" --show indirect
 $render -o "$out/truth.png" $eyes --method path --spp "$spp"

@@ -31,10 +31,10 @@ shot() {
     runs=$2
     smooth=$3
     shift 3
-    "$build/vpl" render $scene -o "$out/$name.png" "$@" $smooth --size "$size" --tonemap none --exposure 1 --quiet
+    "$build/vpl" render $scene -o "$out/$name.png" --antialias 1 "$@" $smooth --size "$size" --tonemap none --exposure 1 --quiet
     : >"$scratch/times"
     for run in $(seq "$runs"); do
-        "$build/vpl" render $scene -o "$scratch/picture.pfm" "$@" --size "$size" --quiet --stats "$scratch/stats.json"
+        "$build/vpl" render $scene -o "$scratch/picture.pfm" --antialias 1 "$@" --size "$size" --quiet --stats "$scratch/stats.json"
         sed -n 's/.*"cpu_ms": \([0-9.e+]*\).*/\1/p' "$scratch/stats.json" >>"$scratch/times"
     done
     ms=$(sort -g "$scratch/times" | awk '{ t[NR] = $1 } END { print t[int((NR + 1) / 2)] }')
@@ -50,7 +50,7 @@ echo '| --- | ---: | ---: | --- |'
 shared="--light-shadows ray"
 particles="--particles 4000 --reflectivity auto --pipeline interleaved --interleave 16"
 shot best-direct 3 "--antialias 8" --method direct $shared
-shot best-instant-radiosity 3 "--antialias 8" $particles --sampler halton $shared
+shot best-instant-radiosity 3 "--antialias 8" --method instant-radiosity $particles --sampler halton $shared
 shot best-keller 3 "--antialias 8" --method keller $particles $shared
 shot best-radiosity 3 "--antialias 8" --method radiosity --patches 4000 $shared
 shot best-ssvp 3 "--antialias 8" --method ssvp --clusters 32

@@ -69,24 +69,10 @@ static vplResult addLight(const vplRun* run, vplImage** images)
 int vplCountLayerSamples(const vplPlan* plan)
 {
     const vplRenderOptions* o = &plan->options;
-    return o->method != VPL_METHOD_PATH      ? o->output.antialias * o->output.supersample // one of them is 1
-           : o->path.pixel == VPL_PIXEL_AREA ? VPL_MAX_SAMPLES_PER_PIXEL
-                                             : 1;
-}
-
-static vplView viewOfSample(const vplPlan* plan, int i, int count)
-{
-    const vplOutputOptions* o = &plan->options.output;
-    const bool whole = o->supersample > 1 && plan->options.method != VPL_METHOD_PATH;
-    double x, y;
-    if (whole) {
-        vplPixelPoint(i, count, &x, &y);
-    } else {
-        const vplSubPixel at = vplSubPixel_OfSample(i, count);
-        x = 0.5 + at.x / 256.0;
-        y = 0.5 + at.y / 256.0;
-    }
-    return count > 1 ? vplView_At(&plan->view, x, y) : plan->view;
+    const int most = o->method != VPL_METHOD_PATH      ? o->output.antialias
+                     : o->path.pixel == VPL_PIXEL_AREA ? VPL_MAX_SAMPLES_PER_PIXEL
+                                                       : 1;
+    return o->method != VPL_METHOD_PATH && o->output.supersample > 1 ? o->output.supersample : (most & ~1) + 1;
 }
 
 static vplResult drawMean(const vplRun* run, const vplShadeDef* def, int count, vplImage* image)
@@ -95,7 +81,9 @@ static vplResult drawMean(const vplRun* run, const vplShadeDef* def, int count, 
     vplImage* sample = NULL;
     vplResult result = vplImage_Create(run->context, image->width, image->height, &sample);
     for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
-        const vplView view = viewOfSample(run->plan, i, count);
+        double x, y;
+        vplPixelPoint(i, count, &x, &y);
+        const vplView view = vplView_At(&run->plan->view, x, y);
         result = vplShadeView(g, &view, def, sample, NULL);
         for (size_t k = 0; k < vplValueCount(image) && result == VPL_SUCCESS; k++) {
             image->pixels[k] += sample->pixels[k];

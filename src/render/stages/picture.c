@@ -13,19 +13,20 @@
 // Adds the light of patches: at every sample where edges are smooth, because interpolating it costs little.
 static vplResult drawPatches(const vplRun* run, const vplView* view, vplImage* image)
 {
-    const int count = run->plan->options.output.antialias & ~1; // besides the centre
+    const int count = (run->plan->options.output.antialias & ~1) + 1; // with the centre
     vplImage* sum = NULL;
-    if (count == 0) {
+    if (count == 1) {
         return vplDrawPatchView(run, view, image);
     }
     vplResult result = vplImage_Create(run->context, image->width, image->height, &sum);
-    for (int i = 0; i <= count && result == VPL_SUCCESS; i++) {
-        const vplSubPixel at = i < count ? vplSubPixel_OfSample(i, count) : (vplSubPixel){0, 0};
-        const vplView sample = vplView_At(view, 0.5 + at.x / 256.0, 0.5 + at.y / 256.0);
+    for (int i = 0; i < count && result == VPL_SUCCESS; i++) {
+        double x, y;
+        vplPixelPoint(i, count, &x, &y);
+        const vplView sample = vplView_At(view, x, y);
         result = vplDrawPatchView(run, &sample, sum);
     }
     for (size_t k = 0; k < vplValueCount(image) && result == VPL_SUCCESS; k++) {
-        image->pixels[k] += sum->pixels[k] / (float)(count + 1);
+        image->pixels[k] += sum->pixels[k] / (float)count;
     }
     vplImage_Destroy(sum);
     return result;
