@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges and
-// at rims of shadows change, and bits are the same everywhere.
+// Tests of coverage antialiasing: pictures are near those of whole renders per sample, only pixels at edges
+// and at rims of shadows change, and bits are the same everywhere.
 #include "scenes.h"
 
 #include "math/vec.h"
@@ -39,7 +39,8 @@ static double rmseOf(const vplImage* a, const vplImage* b)
     return c.relativeRmse;
 }
 
-// Boxes and quads that emit, or reflect the light of an emitter in the camera, whose shadows the camera does not see.
+// Boxes and quads that emit, or reflect the light of an emitter in the camera, whose shadows the camera does
+// not see.
 static vplScene* cloudScene(vplContext* context, uint64_t seed, bool emits)
 {
     vplScene* scene = sceneOf(context, 0);
@@ -178,8 +179,8 @@ TEST(MoreEdgesThanATileKeepsAreLitAsWell, 2)
 
 // ---- rims of shadows
 
-// A plane under an emitter, and things above the picture that throw shadows on it: a large one at an angle, and
-// bars whose shadows are thinner than a pixel, along an axis and at an angle.
+// A plane under an emitter, and things above the picture that throw shadows on it: a large one at an angle,
+// and bars whose shadows are thinner than a pixel, along an axis and at an angle.
 static vplScene* shadowScene(vplContext* context, vplEmitterType type)
 {
     vplScene* scene = sceneOf(context, 0.5f);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of layers: light adds up to the picture, surfaces are those of materials, rays and --show, and what is
-// written into an .exr file comes back under the names that other programs know.
+// Tests of layers: light adds up to the picture, surfaces are those of materials, rays and --show, and what
+// is written into an .exr file comes back under the names that other programs know.
 #include "test.h"
 
 #include "math/vec.h"
@@ -263,7 +263,7 @@ TEST(DepthIsThatOfShowDepth, 2)
     vplScene_Destroy(scene);
 }
 
-// Where a pixel and its neighbours show one object, its samples show one surface, if the object is flat.
+// A pixel whose neighbours show the same object shows one surface, if the object is flat.
 static bool isInside(const vplImage* object, int x, int y)
 {
     for (int dy = -1; dy <= 1; dy++) {
@@ -277,8 +277,8 @@ static bool isInside(const vplImage* object, int x, int y)
     return true;
 }
 
-// Albedo and normals are means over samples: unit and of one material inside of surfaces, between them at edges.
-// Depth and objects are never mixed.
+// Albedo and normals are means over samples: unit and of one material inside of surfaces, between them at
+// edges. Depth and objects are never mixed.
 TEST(OnlyAlbedoAndNormalsAreMeansOverAPixel, 2)
 {
     static const Words ways[] = {{{"method", "direct", "antialias", "8"}},

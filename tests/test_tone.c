@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of exposure and tone maps, but for Reinhard's, which are in test_image.c. Covers extremes X109 to X111.
+// Tests of exposure and tone maps, but for Reinhard's, which are in test_image.c. Covers extremes X109 to
+// X111.
 #include "test.h"
 
 #include <float.h>
@@ -190,7 +191,8 @@ TEST(AutomaticExposureFollowsTheLight, 1)
     vplImage_Destroy(image);
 }
 
-// A black or very dark background, a small lamp, corners without light and bad pixels do not change the exposure.
+// A black or very dark background, a small lamp, corners without light and bad pixels do not change the
+// exposure.
 TEST(AutomaticExposureLeavesOutBackgroundLampsAndCorners, 1)
 {
     static const float others[] = {0, -1, NAN, INFINITY, 1e-6f, 1e30f, 1e-30f};

@@ -37,8 +37,8 @@ typedef enum vplToneMap {
 
 typedef struct vplWriteOptions {
     // PNG only: stops; pixels are multiplied by 2^exposure before the tone map; [-64, 64] or
-    // VPL_EXPOSURE_AUTO; default 0. VPL_TONEMAP_REINHARD scales by its own key, so the exposure cancels there,
-    // and VPL_EXPOSURE_AUTO is 0.
+    // VPL_EXPOSURE_AUTO; default 0. VPL_TONEMAP_REINHARD scales by its own key, so the exposure cancels
+    // there, and VPL_EXPOSURE_AUTO is 0.
     float exposure;
     // PNG only; default VPL_TONEMAP_NONE.
     vplToneMap tonemap;
@@ -100,9 +100,9 @@ enum { VPL_MAX_LAYER_INDEX = 1 << 24, VPL_MAX_LAYER_NAME = 24 };
 // VPL_OUT_OF_MEMORY.
 vplResult vplImage_WriteLayers(const vplLayer* layers, int count, const char* path);
 
-// Reads one layer of an .exr file: the channels R, G and B or X, Y and Z behind NAME and a dot, or the channel
-// NAME alone, which all three values of the picture receive. Errors as vplImage_Read, and VPL_PARSE_ERROR if
-// the file has no such layer.
+// Reads one layer of an .exr file: the channels R, G and B or X, Y and Z behind NAME and a dot, or the
+// channel NAME alone, which all three values of the picture receive. Errors as vplImage_Read, and
+// VPL_PARSE_ERROR if the file has no such layer.
 vplResult vplImage_ReadLayer(vplContext* context, const char* path, const char* name, vplImage** imageOut);
 
 typedef struct vplReinhardDef {
@@ -128,26 +128,27 @@ vplReinhardDef vplDefaultReinhardDef(void);
 // 2002, equations 1, 2 and 4.
 vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def);
 
-// Finds the exposure, in stops in [-64, 64], that makes the geometric mean of the luminance middle grey, 0.18.
-// The mean leaves out black pixels and those that are not finite, the brightest 5 % of the rest, those 1024 times
-// darker than these, and then the darkest 10 %, so that neither a dark background nor a lamp in the picture
-// decides. It is up to two stops less if more than 2 % would exceed 8, half of the white of AgX, as a sunlit floor
-// in a dark hall. Luminances are counted in bins of 1/128 octave. 0 for a black picture. VPL_OUT_OF_MEMORY.
+// Finds the exposure, in stops in [-64, 64], that makes the geometric mean of the luminance middle grey,
+// 0.18. The mean leaves out black pixels and those that are not finite, the brightest 5 % of the rest, those
+// 1024 times darker than these, and then the darkest 10 %, so that neither a dark background nor a lamp in
+// the picture decides. It is up to two stops less if more than 2 % would exceed 8, half of the white of AgX,
+// as a sunlit floor in a dark hall. Luminances are counted in bins of 1/128 octave. 0 for a black picture.
+// VPL_OUT_OF_MEMORY.
 // Source: Reinhard and others, as above, equations 1 and 2, for the mean; Krzysztof Narkowicz, Automatic
 // Exposure, 2016, for the histogram without its ends.
 vplResult vplImage_AutoExposure(const vplImage* image, float* stopsOut);
 
 // Maps a picture as the reference rendering of ACES does for a screen, by a fit with curves in a wide gamut:
 // bright saturated colours turn pale instead of clipping. Greys up to 0.0019 become black, middle grey 0.18
-// becomes 0.213, and 15.4 and more white. NaN becomes black. Values are divided by 0.6 before the fit, as in three.js and
-// Khronos' glTF viewer, because the fit itself makes middle grey 0.106.
+// becomes 0.213, and 15.4 and more white. NaN becomes black. Values are divided by 0.6 before the fit, as in
+// three.js and Khronos' glTF viewer, because the fit itself makes middle grey 0.106.
 // Source: Stephen Hill, ACES.hlsl in Matt Pettineo and David Neubelt's BakingLab, 2016. Krzysztof Narkowicz'
 // curve (ACES Filmic Tone Mapping Curve, 2015) maps the channels one by one, which clips saturated lights.
 void vplToneMap_Aces(vplImage* image);
 
-// Maps a picture by AgX with its base look: 16.5 stops, from 10 below middle grey to 6.5 above, to [0, 1]; the
-// brighter a colour the paler, its hue hardly changes. Black stays black, middle grey 0.18 becomes 0.214, and
-// 16.3 and more white. NaN becomes black. Results are linear: encoded as sRGB they are AgX's codes.
+// Maps a picture by AgX with its base look: 16.5 stops, from 10 below middle grey to 6.5 above, to [0, 1];
+// the brighter a colour the paler, its hue hardly changes. Black stays black, middle grey 0.18 becomes 0.214,
+// and 16.3 and more white. NaN becomes black. Results are linear: encoded as sRGB they are AgX's codes.
 // Source: Troy Sobotka, AgX, 2022 (its curve AgX_Default_Contrast, in closed form), with the matrices of
 // Benjamin Wrensch, Minimal AgX Implementation, 2023.
 void vplToneMap_Agx(vplImage* image);

@@ -233,12 +233,12 @@ vplRenderOptions vplDefaultRenderOptions(void);
 // is changed but options->problem, one sentence.
 vplResult vplRenderOptions_Set(vplRenderOptions* options, const char* name, const char* value);
 
-// Sets options from words as on the command line: "--particles 200 --seed 7". What precedes a value that is refused
-// stays set.
+// Sets options from words as on the command line: "--particles 200 --seed 7". What precedes a value that is
+// refused stays set.
 vplResult vplRenderOptions_SetAll(vplRenderOptions* options, const char* words);
 
-// The inverse of vplRenderOptions_Set: writes the value of an option as vplRenderOptions_Set reads it. VPL_INVALID_ARGUMENT if there
-// is no such option or `size` bytes are too few.
+// The inverse of vplRenderOptions_Set: writes the value of an option as vplRenderOptions_Set reads it.
+// VPL_INVALID_ARGUMENT if there is no such option or `size` bytes are too few.
 vplResult vplRenderOptions_Get(const vplRenderOptions* options, const char* name, char* textOut, size_t size);
 
 // Tells whether the method and pipeline of `options` use an option. If not, and reasonOut is not NULL, it

@@ -161,8 +161,8 @@ typedef struct vplSubPixel {
     int x, y; // 1/256 pixel from the centre, y down
 } vplSubPixel;
 
-// Sample i of `count` in every pixel. No two samples have the same x or the same y. The samples of an even count
-// and the centre, which every pixel shows anyway, are count + 1 points of one lattice.
+// Sample i of `count` in every pixel. No two samples have the same x or the same y. The samples of an even
+// count and the centre, which every pixel shows anyway, are count + 1 points of one lattice.
 vplSubPixel vplSubPixel_OfSample(int i, int count);
 
 // A triangle that a pixel shows.

@@ -76,8 +76,8 @@ vplResult vplRender(const vplScene* scene, const vplRenderOptions* options, vplI
 
 enum { VPL_MAX_LAYERS = 7 };
 
-// The picture of a render and its layers, in the order of vplAov, for vplImage_WriteLayers. Names of objects are
-// the scene's, which must outlive them.
+// The picture of a render and its layers, in the order of vplAov, for vplImage_WriteLayers. Names of objects
+// are the scene's, which must outlive them.
 typedef struct vplLayers {
     vplLayer layers[VPL_MAX_LAYERS]; // the first is the picture
     int count;
@@ -86,8 +86,8 @@ typedef struct vplLayers {
     vplContext* context;
 } vplLayers;
 
-// Renders the picture of vplRender, with the same bits, and the layers of options.output.aovs. Destroy them with
-// vplLayers_Destroy. statsOut may be NULL; its imageHash is that of the picture.
+// Renders the picture of vplRender, with the same bits, and the layers of options.output.aovs. Destroy them
+// with vplLayers_Destroy. statsOut may be NULL; its imageHash is that of the picture.
 vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options, vplLayers** layersOut,
                           vplRenderStats* statsOut);
 

@@ -115,7 +115,7 @@ vplResult vplScene_Create(vplContext* context, vplScene** sceneOut);
 // NULL is allowed.
 void vplScene_Destroy(vplScene* scene);
 
-// What an OBJ file gets that is a scene by itself. It always gets a camera that fits its vertices.
+// Additions to an OBJ file that is a scene by itself. It always gets a camera that fits its vertices.
 typedef struct vplObjSceneDef {
     double aspect;   // of the picture that the vertices fill: width / height, [1e-6, 1e6]; default 16 / 9
     bool ground;     // true (default): a grey ground under the lowest vertex, y being up

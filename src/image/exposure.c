@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Based on: Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for Digital Images, SIGGRAPH
-// 2002 (the geometric mean of the luminance becomes middle grey).
-// Departs: the mean leaves out black pixels, the darkest and the brightest, as histograms of games do: Krzysztof
-// Narkowicz, Automatic Exposure, 2016.
+// Based on: Reinhard, Stark, Shirley and Ferwerda, Photographic Tone Reproduction for Digital Images,
+// SIGGRAPH 2002 (the geometric mean of the luminance becomes middle grey).
+// Departs: the mean leaves out black pixels, the darkest and the brightest, as histograms of games do:
+// Krzysztof Narkowicz, Automatic Exposure, 2016.
 #include "base/arena.h"
 #include "image/tone.h"
 #include "math/scalar.h"
@@ -14,8 +14,8 @@
 // sums have no rounding.
 enum { BIN_SHIFT = 16, BINS_PER_OCTAVE = 1 << (23 - BIN_SHIFT), BINS = 255 * BINS_PER_OCTAVE };
 
-// Pixels 2^-DARK_OCTAVES as bright as the brightest but BRIGHTEST are black whatever the exposure. All but the
-// HIGHLIGHTS stay below MOST_BRIGHT, one stop below the white of AgX, if GUARD stops less are enough.
+// Pixels 2^-DARK_OCTAVES as bright as the brightest but BRIGHTEST are black whatever the exposure. All but
+// the HIGHLIGHTS stay below MOST_BRIGHT, one stop below the white of AgX, if GUARD stops less are enough.
 enum { DARK_OCTAVES = 10 };
 static const double MIDDLE_GREY = 0.18, DARKEST = 0.10, BRIGHTEST = 0.05, HIGHLIGHTS = 0.02, MOST_BRIGHT = 8,
                     GUARD = 2;
@@ -56,8 +56,8 @@ static int binOf(const uint32_t* bins, double count)
     return bin;
 }
 
-// The mean logarithm from a bin on, of the pixels that are neither among the darkest nor among the brightest. A bin
-// across one of the two limits counts in part.
+// The mean logarithm from a bin on, of the pixels that are neither among the darkest nor among the brightest.
+// A bin across one of the two limits counts in part.
 static double meanLog(const uint32_t* bins, int first, double lit)
 {
     const double high = lit - BRIGHTEST * lit;

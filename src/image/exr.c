@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// OpenEXR pictures by OpenEXRCore. Writes layers of float or UINT scanlines with ZIP compression; reads the RGB
-// or grey (Y) scanlines of one layer with any compression that OpenEXRCore knows. Pixels and the encoded file
-// are in context memory. OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks take no
-// user data. It never touches files itself, because vplWriteFile writes them whole or not at all.
+// OpenEXR pictures by OpenEXRCore. Writes layers of float or UINT scanlines with ZIP compression; reads the
+// RGB or grey (Y) scanlines of one layer with any compression that OpenEXRCore knows. Pixels and the encoded
+// file are in context memory. OpenEXRCore's own scratch memory, a few scanlines, is not: its allocation hooks
+// take no user data. It never touches files itself, because vplWriteFile writes them whole or not at all.
 #include "base/arena.h"
 #include "image/image_file.h"
 
@@ -149,7 +149,8 @@ static exr_context_initializer_t describeStream(Stream* s)
 
 // ---- channels
 
-// Index in our pixels of a channel of the layer `name`, or -1. Grey and single channels are stored in red first.
+// Index in our pixels of a channel of the layer `name`, or -1. Grey and single channels are stored in red
+// first.
 // Source: layers and the names of channels are those of "Channel Names" and "Layers" in OpenEXR's Technical
 // Introduction.
 static int channelIndex(const char* name, const char* channel)
@@ -178,8 +179,8 @@ static void describeChannel(exr_coding_channel_info_t* channel, int width)
 
 // ---- writing
 
-// Adds the channels of layer i. OpenEXRCore must not see one twice: it would wait for itself for ever when the file is
-// closed.
+// Adds the channels of layer i. OpenEXRCore must not see one twice: it would wait for itself for ever when
+// the file is closed.
 static exr_result_t addChannels(exr_context_t exr, int part, const vplLayer* layers, int i)
 {
     const vplLayer* layer = &layers[i];
@@ -222,8 +223,9 @@ static exr_result_t writeHeader(exr_context_t exr, const vplLayer* layers, int c
     return exr_write_header(exr);
 }
 
-// Writes a chunk; the pipeline's user data is the file. Readers take a chunk for stored raw when its size is that
-// of the raw bytes, and OpenEXRCore up to 3.4.7 stores it compressed also when compression gains not a byte.
+// Writes a chunk; the pipeline's user data is the file. Readers take a chunk for stored raw when its size is
+// that of the raw bytes, and OpenEXRCore up to 3.4.7 stores it compressed also when compression gains not a
+// byte.
 // Source: "Scan Line Blocks" in The OpenEXR File Layout; OpenEXR issue 2306.
 static exr_result_t writeChunk(exr_encode_pipeline_t* p)
 {

@@ -68,8 +68,8 @@ static const double AGX_OUT[3][3] = {{1.19687900512017, -0.0980208811401368, -0.
                                      {-0.0528968517574562, 1.15190312990417, -0.0989611768448433},
                                      {-0.0529716355144438, -0.0980434501171241, 1.15107367264116}};
 
-// The table of AgX's curve has 128 points per octave, the floats with the same upper 16 bits between two. That
-// of the decoding has points at equal distances. Both are within 1e-5 of the functions.
+// The table of AgX's curve has 128 points per octave, the floats with the same upper 16 bits between two.
+// That of the decoding has points at equal distances. Both are within 1e-5 of the functions.
 enum {
     SLOT_SHIFT = 16,
     FIRST_SLOT = (127 - 13) << (23 - SLOT_SHIFT), // 2^-13
@@ -82,8 +82,8 @@ typedef struct Agx {
     float curve[SLOTS + 1], decoded[DECODED + 1];
 } Agx;
 
-// AgX's contrast curve between (0, 0) and (1, 1): a sigmoid on each side of the pivot, where middle grey becomes
-// 0.5 with slope 2.
+// AgX's contrast curve between (0, 0) and (1, 1): a sigmoid on each side of the pivot, where middle grey
+// becomes 0.5 with slope 2.
 static double contrast(double x)
 {
     const double pivot = 10 / 16.5;

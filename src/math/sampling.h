@@ -20,10 +20,10 @@ static inline uint32_t vplReverseBits(uint32_t x)
 // Radical inverse of k in base 2 (van der Corput), truncated to 24 bits so that it stays below 1.
 float vplVanDerCorput(uint32_t k);
 
-// Point i of `count` in a pixel, [0, 1)^2. An edge along an axis is cut at as many places as there are points. Odd
-// counts up to 17 are rank-1 lattices whose point in the middle of the list is the pixel's centre; other counts
-// are Hammersley's sequence. Of edges in random directions 9 points find the covered share with an rmse of 0.050,
-// Hammersley's 8 points 0.066, the centre alone 0.248.
+// Point i of `count` in a pixel, [0, 1)^2. An edge along an axis is cut at as many places as there are
+// points. Odd counts up to 17 are rank-1 lattices whose point in the middle of the list is the pixel's
+// centre; other counts are Hammersley's sequence. Of edges in random directions 9 points find the covered
+// share with an rmse of 0.050, Hammersley's 8 points 0.066, the centre alone 0.248.
 void vplPixelPoint(int i, int count, double* x, double* y);
 
 // Radical inverse of k in prime number `dimension`, in [0, VPL_PRIME_COUNT): that dimension of Halton's

@@ -86,8 +86,8 @@ static double pipelineScratch(const Scale* s)
     }
 }
 
-// Samples of a tile per worker; for the filter of interleaved shading a share and half an edge per pixel; and one more
-// picture of patches.
+// Samples of a tile per worker; for the filter of interleaved shading a share and half an edge per pixel; and
+// one more picture of patches.
 static double sampleScratch(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;

@@ -183,9 +183,9 @@ static vplResult setBits(const Setting* s)
 
 // ---- presets
 
-// The numbers that the documents print. Of Keller's only the rules are given; the number of particles is that of the
-// simulation which Franchi and Ferrante show. Bias, PCF and the numbers of SSVP's lights are not printed: they stay as
-// they are.
+// The numbers that the documents print. Of Keller's only the rules are given; the number of particles is that
+// of the simulation which Franchi and Ferrante show. Bias, PCF and the numbers of SSVP's lights are not
+// printed: they stay as they are.
 static const char* const PRESETS[] = {
     "", // none
     "--method instant-radiosity --lighting documented --particles 10 --reflectivity 0.5 --sampler random "

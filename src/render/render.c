@@ -50,8 +50,8 @@ struct vplRenderer {
     vplPlan* plan;
     vplImage* base;  // all of the picture; direct light alone where passes add the rest
     double* sums[2]; // of the pictures of passes with even and odd numbers; NULL without passes
-    // Layers: direct light alone, or where passes add up, the sum of what their lights on area lights send, which
-    // `base` lacks; NULL: there is none.
+    // Layers: direct light alone, or where passes add up, the sum of what their lights on area lights send,
+    // which `base` lacks; NULL: there is none.
     vplImage* direct;
     int done;               // passes
     double start, cpuStart; // ms

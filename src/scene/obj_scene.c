@@ -2,16 +2,16 @@
 // Reads an OBJ file as a whole scene. It has no camera, no ground and seldom a light: we add them and log
 // each.
 //
-// The camera looks down along VIEW, a three-quarter view, with a vertical field of view of FIELD. It stands as
-// near as it can with all vertices inside the picture and MARGIN of the picture's shorter side free at each
-// edge. The view falls more steeply than half the field, so the horizon is above the picture: the camera is
-// above all vertices, and a ground of finite size under them covers all of the picture behind the mesh.
+// The camera looks down along VIEW, a three-quarter view, with a vertical field of view of FIELD. It stands
+// as near as it can with all vertices inside the picture and MARGIN of the picture's shorter side free at
+// each edge. The view falls more steeply than half the field, so the horizon is above the picture: the camera
+// is above all vertices, and a ground of finite size under them covers all of the picture behind the mesh.
 //
 // Let c be the centre of the bounds. Two square lamps with sides of LAMP_SIDE d at the distance d from c face
-// it: the key lamp above the camera's left shoulder and the weak fill lamp to the right. d is LAMP_FAR times the
-// distance from c to the eye, or more where a lamp would otherwise be in the picture. The key lamp's radiance pi /
-// LAMP_SIDE^2 gives a surface at c that faces it the irradiance pi (less by the angle that the lamp fills), so
-// that white there has the radiance 1.
+// it: the key lamp above the camera's left shoulder and the weak fill lamp to the right. d is LAMP_FAR times
+// the distance from c to the eye, or more where a lamp would otherwise be in the picture. The key lamp's
+// radiance pi / LAMP_SIDE^2 gives a surface at c that faces it the irradiance pi (less by the angle that the
+// lamp fills), so that white there has the radiance 1.
 #include "base/file.h"
 #include "math/double3.h"
 #include "math/scalar.h"
@@ -44,7 +44,7 @@ typedef struct Field {
     double slopes[2], inner[2]; // to the right and upwards
 } Field;
 
-// How the mesh is looked at. Right is horizontal; right, up and ahead are unit vectors at right angles.
+// The view of the mesh. Right is horizontal; right, up and ahead are unit vectors at right angles.
 typedef struct Look {
     double centre[3], radius; // of the bounds of the vertices
     double lowest;            // y of the lowest vertex
@@ -96,11 +96,11 @@ static Field fieldOf(double aspect)
     return (Field){{aspect * upwards, upwards}, {aspect * upwards - margin, upwards - margin}};
 }
 
-// Finds the eye. A vertex at (x, z), z its depth, is left of the right edge of a picture of slope s, seen from
-// (a, e), if x - a <= s (z - e), and right of the left edge if a - x <= s (z - e). Let A be the greatest x - s z
-// of all vertices and B the greatest -x - s z. Then A <= a - s e and B <= -a - s e: their sum bounds e, and a =
-// (A - B) / 2 serves every such e. The same holds upwards. The nearest eye has the greatest e within both
-// bounds. A third one keeps it away from a needle that points at it.
+// Finds the eye. A vertex at (x, z), z its depth, is left of the right edge of a picture of slope s, seen
+// from (a, e), if x - a <= s (z - e), and right of the left edge if a - x <= s (z - e). Let A be the greatest
+// x - s z of all vertices and B the greatest -x - s z. Then A <= a - s e and B <= -a - s e: their sum bounds
+// e, and a = (A - B) / 2 serves every such e. The same holds upwards. The nearest eye has the greatest e
+// within both bounds. A third one keeps it away from a needle that points at it.
 static void fit(Look* l, const vplMeshDef* mesh, const double inner[2])
 {
     double most[2][2] = {{-INFINITY, -INFINITY}, {-INFINITY, -INFINITY}};

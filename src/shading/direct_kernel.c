@@ -69,7 +69,7 @@ static void shadowEmitter(const vplShading* s, const vplDirectLight* direct, con
 {
     const vplEmitterRay* emitter = &direct->rays[index];
     const vplReflectiveMap* map = vplDirectLight_Map(direct, index);
-    if (map == NULL && (emitter->parallel || direct->shadows[index].map == NULL)) {
+    if (vplDirectLight_CastsRays(direct, index)) {
         vplCastEmitterRays(s, points, emitter, amount, rays);
         return;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Coverage antialiasing, for kernels: a pixel whose samples show other surfaces than its centre is the mean of
-// all of them, by the shares of its samples. The centre's surface is shaded as ever; each other one is shaded
-// once, at one of its samples. All other pixels cost a comparison of their samples.
+// Coverage antialiasing, for kernels: a pixel whose samples show other surfaces than its centre is the mean
+// of all of them, by the shares of its samples. The centre's surface is shaded as ever; each other one is
+// shaded once, at one of its samples. All other pixels cost a comparison of their samples.
 #ifndef VPL_SHADING_EDGES_H
 #define VPL_SHADING_EDGES_H
 
@@ -200,7 +200,8 @@ static inline void vplEdgeQueue_Flush(vplEdgeQueue* q)
     q->count = 0;
 }
 
-// Puts a point into the next lane. The first one is in all lanes, of which those behind the last show nothing.
+// Puts a point into the next lane. The first one is in all lanes, of which those behind the last show
+// nothing.
 static inline void vplEdgeQueue_Put(vplEdgeQueue* q, vplVec3 position, vplVec3 normal, vplVec3 plane)
 {
     vplBlock* b = &q->block;

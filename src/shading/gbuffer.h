@@ -177,7 +177,8 @@ static inline void vplStartSums(vplBlock* b, float part[3][VPL_LANES])
 
 // ---- sums
 
-// Finds the direct light of a block. The tile keeps what comes from emitters, where rims of shadows are smooth.
+// Finds the direct light of a block. The tile keeps what comes from emitters, where rims of shadows are
+// smooth.
 static inline void vplStartDirect(const vplShading* s, const vplTile* tile, int element,
                                   const vplPoints* points, float part[3][VPL_LANES])
 {

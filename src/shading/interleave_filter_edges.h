@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The filter for surfaces at edges that are not in the centres of their pixels: the mean over the pixels around
-// that show such a surface, with the weights of the filter. Where none does, all lights are added.
+// The filter for surfaces at edges that are not in the centres of their pixels: the mean over the pixels
+// around that show such a surface, with the weights of the filter. Where none does, all lights are added.
 #ifndef VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 #define VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 

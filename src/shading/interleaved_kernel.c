@@ -227,8 +227,8 @@ static void lightClass(Class* class, int x, int y)
 
 // ---- edges
 
-// The edges of one tile. The filter finds the indirect light of the first VPL_TILE_EDGES surfaces; all light of
-// the others is found now.
+// The edges of one tile. The filter finds the indirect light of the first VPL_TILE_EDGES surfaces; all light
+// of the others is found now.
 typedef struct TileEdges {
     vplKeptEdge* kept;
     int* keptCount;

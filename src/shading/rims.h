@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Rims of shadows, for kernels: where emitters send different light to neighbours on one surface, the mean over
-// the samples of a pixel replaces the light in its centre. The search begins at neighbours that differ, and at
-// points on the corners of pixels that differ from the centre, which find shadows thinner than a pixel; it goes
-// on with the neighbours of every pixel whose samples differ.
+// Rims of shadows, for kernels: where emitters send different light to neighbours on one surface, the mean
+// over the samples of a pixel replaces the light in its centre. The search begins at neighbours that differ,
+// and at points on the corners of pixels that differ from the centre, which find shadows thinner than a
+// pixel; it goes on with the neighbours of every pixel whose samples differ.
 #ifndef VPL_SHADING_RIMS_H
 #define VPL_SHADING_RIMS_H
 
@@ -159,29 +159,38 @@ static inline void vplRims_Push(vplRims* r, int cell, int triangle, const int at
 
 // ---- where to begin
 
-// Reads the light in the tile's pixels, and lists corners to try: each row and column of a block has one.
 static inline void vplRims_ReadTile(vplRims* r)
 {
     const vplTile* tile = r->tile;
     const vplTileSums* sums = tile->scratch;
-    static const int columns[VPL_BLOCK_SIDE] = {1, 3, 0, 2};
     for (int block = 0; block < VPL_TILE_BLOCKS * VPL_TILE_BLOCKS; block++) {
         const int x = block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, y = block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE;
         int triangles[VPL_LANES];
-        if (x >= tile->width || y >= tile->height || !vplReadTriangles(tile, block * VPL_LANES, triangles)) {
-            continue;
+        if (x < tile->width && y < tile->height && vplReadTriangles(tile, block * VPL_LANES, triangles)) {
+            for (int l = 0; l < VPL_LANES; l++) {
+                const int at = block * VPL_LANES + l;
+                const float light = sums->emitted[0][at] + sums->emitted[1][at] + sums->emitted[2][at];
+                r->light[vplRimCell(x + l % VPL_BLOCK_SIDE, y + l / VPL_BLOCK_SIDE)] =
+                    triangles[l] < 0 ? NAN : light;
+            }
         }
-        for (int l = 0; l < VPL_LANES; l++) {
-            const int at = block * VPL_LANES + l;
-            const float light = sums->emitted[0][at] + sums->emitted[1][at] + sums->emitted[2][at];
-            r->light[vplRimCell(x + l % VPL_BLOCK_SIDE, y + l / VPL_BLOCK_SIDE)] =
-                triangles[l] < 0 ? NAN : light;
-        }
-        for (int row = 0; row < VPL_BLOCK_SIDE; row++) {
-            const int at[2] = {x + columns[row], y + row};
-            const int triangle = triangles[row * VPL_BLOCK_SIDE + columns[row]];
-            if (triangle >= 0 && at[0] < tile->width && at[1] < tile->height) {
-                vplRims_Push(r, vplRimCell(at[0], at[1]), triangle, at, (vplSubPixel){127, 127});
+    }
+}
+
+// Tries corners of pixels if some shadow is hard: each row and column of a block has one.
+static inline void vplRims_TryCorners(vplRims* r)
+{
+    static const int columns[VPL_BLOCK_SIDE] = {1, 3, 0, 2};
+    const vplDirectLight* direct = &r->shading->direct;
+    bool hard = false;
+    for (int i = 0; i < direct->emitterCount; i++) {
+        hard |= vplDirectLight_CastsRays(direct, i);
+    }
+    for (int y = 0; hard && y < r->tile->height; y++) {
+        for (int x = columns[y % VPL_BLOCK_SIDE]; x < r->tile->width; x += VPL_BLOCK_SIDE) {
+            const int cell = vplRimCell(x, y), triangle = vplRims_Triangle(r, cell);
+            if (triangle >= 0) {
+                vplRims_Push(r, cell, triangle, (int[2]){x, y}, (vplSubPixel){127, 127});
             }
         }
     }
@@ -267,9 +276,10 @@ static inline void vplSmoothRims(const vplShading* s, const vplTile* tile, vplFa
     }
     r.kind = VPL_RIM_BORDER;
     vplRims_ReadBorder(&r);
-    r.kind = VPL_RIM_CORNER;
     vplRims_ReadTile(&r);
     vplRims_Compare(&r);
+    r.kind = VPL_RIM_CORNER;
+    vplRims_TryCorners(&r);
     r.kind = VPL_RIM_SAMPLE;
     for (int next = 0; next < r.listCount; next++) {
         vplRims_SmoothPixel(&r, r.list[next]);

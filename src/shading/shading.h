@@ -50,6 +50,13 @@ static inline const vplReflectiveMap* vplDirectLight_Map(const vplDirectLight* d
     return direct->maps != NULL ? direct->maps[emitter] : NULL;
 }
 
+// Tests whether an emitter's shadow is found by rays, and so has a hard rim.
+static inline bool vplDirectLight_CastsRays(const vplDirectLight* direct, int emitter)
+{
+    return vplDirectLight_Map(direct, emitter) == NULL &&
+           (direct->rays[emitter].parallel || direct->shadows[emitter].map == NULL);
+}
+
 // 1 / distance^2, infinity for 0: a clamp distance as kernels read it.
 float vplInverseSquare(float distance);
 

@@ -90,8 +90,8 @@ static inline void vplScaleCentre(const vplShading* s, vplFacetCache* cache, vpl
 
 // ---- tiles
 
-// Visits the pixels at edges of a tile whose pixels are written, and scales them by the share of the surface in
-// their centres. Smooths rims of shadows.
+// Visits the pixels at edges of a tile whose pixels are written, and scales them by the share of the surface
+// in their centres. Smooths rims of shadows.
 static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
                                  vplEdgePixelFcn* visit, void* user)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Layers of a render: its picture, the two parts of its light, and what denoisers and compositors want to know of
-// the surfaces that it shows. Surfaces are drawn once for each layer and sample of the pixels, which costs little
-// beside light.
+// Layers of a render: its picture, the two parts of its light, and what denoisers and compositors want to
+// know of the surfaces that it shows. Surfaces are drawn once for each layer and sample of the pixels, which
+// costs little beside light.
 #include "base/clock.h"
 #include "math/sampling.h"
 #include "math/scalar.h"
@@ -12,10 +12,10 @@
 
 enum { PICTURE, DIRECT, INDIRECT, FIRST_GUIDE, DEPTH = 5, OBJECT = 6 }; // places in the table below
 
-// Denoisers want albedo and normals that are filtered as the picture is, the first in [0, 1], the second of any
-// length. Depths and indices have no mean.
-// Source: Open Image Denoise, documentation, "Albedo" and "Normal". Z is the name of depth in OpenEXR's Technical
-// Introduction.
+// Denoisers want albedo and normals that are filtered as the picture is, the first in [0, 1], the second of
+// any length. Depths and indices have no mean.
+// Source: Open Image Denoise, documentation, "Albedo" and "Normal". Z is the name of depth in OpenEXR's
+// Technical Introduction.
 static const struct {
     const char* name;
     vplLayerKind kind;
@@ -38,8 +38,8 @@ static bool isWanted(const vplRun* run, int layer)
 
 // ---- light
 
-// Splits the picture into direct light, which is at most all of it, and the rest. Where light is not split, all
-// is direct.
+// Splits the picture into direct light, which is at most all of it, and the rest. Where light is not split,
+// all is direct.
 static vplResult addLight(const vplRun* run, vplImage** images)
 {
     const vplImage* picture = images[PICTURE];
@@ -69,10 +69,9 @@ static vplResult addLight(const vplRun* run, vplImage** images)
 int vplCountLayerSamples(const vplPlan* plan)
 {
     const vplRenderOptions* o = &plan->options;
-    const int most = o->method != VPL_METHOD_PATH      ? o->output.antialias
-                     : o->path.pixel == VPL_PIXEL_AREA ? VPL_MAX_SAMPLES_PER_PIXEL
-                                                       : 1;
-    return o->method != VPL_METHOD_PATH && o->output.supersample > 1 ? o->output.supersample : (most & ~1) + 1;
+    const bool paths = o->method == VPL_METHOD_PATH, area = o->path.pixel == VPL_PIXEL_AREA;
+    const int most = !paths ? o->output.antialias : area ? VPL_MAX_SAMPLES_PER_PIXEL : 1;
+    return !paths && o->output.supersample > 1 ? o->output.supersample : (most & ~1) + 1;
 }
 
 static vplResult drawMean(const vplRun* run, const vplShadeDef* def, int count, vplImage* image)

@@ -32,8 +32,8 @@ vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
 // The mean of their direct light, if the plan splits light. The image is black.
 void vplResolveDirectPaths(const vplRun* run, vplImage* image);
 
-// Makes all layers that the options ask for; the first is the picture. Takes both pictures over, also where it
-// fails. `direct` is NULL if the plan does not split light.
+// Makes all layers that the options ask for; the first is the picture. Takes both pictures over, also where
+// it fails. `direct` is NULL if the plan does not split light.
 int vplCountLayerSamples(const vplPlan* plan); // of the layers that are means over a pixel
 vplResult vplMakeLayers(const vplRun* run, vplImage* picture, vplImage* direct, vplLayers** layersOut);
 
