@@ -1,12 +1,42 @@
 // SPDX-License-Identifier: MIT
 // The filter for surfaces at edges that are not in the centres of their pixels: the mean over the pixels
-// around that show such a surface, with the weights of the filter. Where none does, all lights are added.
+// around that show such a surface, with the weights of the filter. Where none does, lights of some classes are added.
 #ifndef VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 #define VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 
 #include "shading/accumulate.h"
 #include "shading/edges.h"
 #include "shading/interleave_filter_mixed.h"
+
+// A surface without neighbours is lit by so many lights or more, of some of the classes.
+enum { LONE_LIGHTS = 64 };
+
+// Adds the lights of some classes to a block, for all; a vplAddToBlockFcn. `user` counts the classes in turn.
+static inline void vplAddSomeClasses(const vplShading* s, void* user, vplBlock* b, int64_t* rays)
+{
+    static const int lit = 0;
+    const vplInterleave* w = s->state;
+    const int classes = w->side * w->side;
+    int *turn = user, lights = 0, used = 0;
+    double before[3][VPL_LANES];
+    vplLitBlocks to = {.blocks = b, .lit = &lit, .count = 1, .culls = s->lights.columns[0] != NULL};
+    if (to.culls) {
+        to.bounds = vplFindBounds(b, &lit, 1);
+    }
+    memcpy(before, b->sums, sizeof before);
+    memset(b->sums, 0, sizeof b->sums);
+    for (; used < classes && lights < LONE_LIGHTS; used++) {
+        const int class = *turn % classes, first = w->classStart[class];
+        *turn = class + 1;
+        vplAddLights(s, &to, first, w->classStart[class + 1] - first, rays);
+        lights += w->classStart[class + 1] - first;
+    }
+    for (int c = 0; c < 3; c++) {
+        for (int l = 0; l < VPL_LANES; l++) {
+            b->sums[c][l] = before[c][l] + b->sums[c][l] * classes / used;
+        }
+    }
+}
 
 // Surfaces kept by the tile of a part.
 typedef struct KeptEdges {
@@ -67,7 +97,8 @@ static inline void filterEdges(const vplShading* s, vplFilterScratch* scratch, c
                                KeptEdges kept)
 {
     int64_t rays = 0;
-    vplEdgeQueue lone = {s, &scratch->facets, vplAddAllLights, NULL, &rays, .indirect = true};
+    int turn = part->y; // of the classes
+    vplEdgeQueue lone = {s, &scratch->facets, vplAddSomeClasses, &turn, &rays, .indirect = true};
     for (int i = 0; i < kept.count; i++) {
         const vplKeptEdge* e = &kept.edges[i];
         float mean[3];

@@ -3,7 +3,7 @@
 // the lights of that class, 16 pixels at a time.
 #include "base/isa.h"
 #include "shading/accumulate.h"
-#include "shading/interleave_filter.h"
+#include "shading/interleave_filter_edges.h"
 #include "shading/smooth.h"
 
 enum {
@@ -254,11 +254,12 @@ static void lightTileEdges(const vplShading* s, vplTile* tile, vplFacetCache* ca
     const vplInterleave* w = s->state;
     vplTileSums* tileSums = tile->scratch;
     const int number = tile->y / VPL_TILE_SIDE * w->rasterTilesX + tile->x / VPL_TILE_SIDE;
+    int turn = number; // of the classes
     TileEdges edges = {
         .kept = w->edges + (size_t)number * VPL_TILE_EDGES,
         .keptCount = &w->edgeCounts[number],
         .direct = {s, cache, NULL, NULL, &tileSums->shadowRays, .direct = true},
-        .all = {s, cache, vplAddAllLights, NULL, &tileSums->shadowRays, .direct = true, .indirect = true}};
+        .all = {s, cache, vplAddSomeClasses, &turn, &tileSums->shadowRays, .direct = true, .indirect = true}};
     *edges.keptCount = 0;
     for (int y = tile->y; y < tile->y + tile->height; y++) {
         for (int x = tile->x; x < tile->x + tile->width; x++) {
