@@ -2,8 +2,9 @@
 // Tiles of the G-buffer: writing them, lighting them, and showing what they hold or a shadow factor. Light is
 // added in squares of 4 x 4 blocks, whose points, sums and lights stay in the first-level cache.
 #include "base/isa.h"
+#include "math/scalar.h"
 #include "shading/accumulate.h"
-#include "shading/smooth.h"
+#include "shading/edges.h"
 
 enum { SQUARE = 4, SQUARES = VPL_TILE_BLOCKS / SQUARE, SQUARE_BLOCKS = SQUARE * SQUARE };
 

@@ -4,6 +4,7 @@
 // of 16 pixels and all their windows show one triangle, no surface is tested; the bits are those of tests
 // that all pass.
 #include "base/isa.h"
+#include "math/scalar.h"
 #include "shading/interleave_filter_edges.h"
 
 // Rows are short and a picture's width apart, which hardware does not prefetch: they are fetched this many

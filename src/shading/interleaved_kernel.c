@@ -4,7 +4,7 @@
 #include "base/isa.h"
 #include "shading/accumulate.h"
 #include "shading/interleave_filter_edges.h"
-#include "shading/smooth.h"
+#include "shading/edges.h"
 
 enum {
     SQUARE = 4,     // blocks along a side that are read and lit directly together

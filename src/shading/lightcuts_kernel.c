@@ -4,7 +4,7 @@
 // Illumination, SIGGRAPH 2005, section 4. Departs: one cut for the 16 points of a block, whose rays form one
 // packet; a cluster is split if its error is too large at any of them.
 #include "base/isa.h"
-#include "shading/smooth.h"
+#include "shading/edges.h"
 #include "shading/lightcuts.h"
 
 // Largest error of a cluster, as a share of the error that is allowed for a pixel. The errors of clusters

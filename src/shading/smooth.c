@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Tiles with smooth edges, for kernels, once their pixels are written: surfaces that centres of pixels do not
-// show are added, and rims of shadows are smoothed.
-#ifndef VPL_SHADING_SMOOTH_H
-#define VPL_SHADING_SMOOTH_H
-
+// Tiles with smooth edges, once their pixels are written: surfaces that centres of pixels do not show are
+// added, emission at the edges of lamps is found by rays, and rims of shadows are smoothed.
 #include "math/sampling.h"
-#include "shading/rims.h"
+#include "shading/edges.h"
 
 // Bit l: some sample of lane l shows another triangle than its centre.
-static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int centre[VPL_LANES])
+static uint32_t edgeLanes(const vplTile* tile, int element, const int centre[VPL_LANES])
 {
     int32_t different[VPL_LANES] = {0};
     for (int i = 0; i < tile->sampleCount; i++) {
@@ -24,15 +21,13 @@ static inline uint32_t vplEdgeLanes(const vplTile* tile, int element, const int 
     return lanes;
 }
 
-typedef void vplEdgePixelFcn(const vplShading* s, void* user, const vplEdgePixel* pixel);
-
 // ---- edges of lamps
 
 // Camera rays through a pixel at the edge of a lamp, which is so bright that few samples leave steps.
-enum { VPL_LAMP_RAYS = 256 };
+enum { LAMP_RAYS = 256 };
 
 // Tests whether the surfaces of a pixel emit different light.
-static inline bool vplIsLampEdge(const vplShading* s, vplFacetCache* cache, const vplEdgePixel* p)
+static bool isLampEdge(const vplShading* s, vplFacetCache* cache, const vplEdgePixel* p)
 {
     vplReflector own = {{0}, {0}};
     bool differs = false;
@@ -47,21 +42,21 @@ static inline bool vplIsLampEdge(const vplShading* s, vplFacetCache* cache, cons
 }
 
 // Finds the mean emission in a pixel, whose surfaces then count without it, by rays.
-static inline void vplFindEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p,
+static void findEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p,
                                    float emission[3])
 {
     const vplView* v = s->view;
-    for (int i = 0; i < VPL_LAMP_RAYS; i++) {
+    for (int i = 0; i < LAMP_RAYS; i++) {
         double x, y;
         vplHit hit;
-        vplPixelPoint(i, VPL_LAMP_RAYS, &x, &y);
+        vplPixelPoint(i, LAMP_RAYS, &x, &y);
         const vplSubPixel at = {(int)(256 * x) - 128, (int)(256 * y) - 128};
         const vplVec3 sight = vplSightOf(v, p->x, p->y, at);
         const vplRay ray = {vplAdd(v->eye, vplScale((float)v->near, sight)), sight, {0, 0}};
         if (vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
             const vplReflector* r = &vplFacetCache_Get(s, hit.triangle, cache)->reflector;
             for (int c = 0; c < 3; c++) {
-                emission[c] += r->emission[c] / VPL_LAMP_RAYS;
+                emission[c] += r->emission[c] / LAMP_RAYS;
             }
         }
     }
@@ -71,16 +66,16 @@ static inline void vplFindEmission(const vplShading* s, vplFacetCache* cache, vp
 }
 
 // Scales what a pixel shows by the share of the surface in its centre.
-static inline void vplScaleCentre(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p, int64_t* rays)
+static void scaleCentre(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p, int64_t* rays)
 {
     float* pixel = vplPixelOf(s, p->x, p->y);
     float emission[3] = {0, 0, 0}, own[3] = {0, 0, 0};
-    if (vplIsLampEdge(s, cache, p)) {
+    if (isLampEdge(s, cache, p)) {
         if (p->triangle >= 0) {
             memcpy(own, vplFacetCache_Get(s, p->triangle, cache)->reflector.emission, sizeof own);
         }
-        vplFindEmission(s, cache, p, emission);
-        *rays += VPL_LAMP_RAYS;
+        findEmission(s, cache, p, emission);
+        *rays += LAMP_RAYS;
     }
     for (int c = 0; c < 3; c++) {
         const float reflected = pixel[c] - own[c];
@@ -90,9 +85,7 @@ static inline void vplScaleCentre(const vplShading* s, vplFacetCache* cache, vpl
 
 // ---- tiles
 
-// Visits the pixels at edges of a tile whose pixels are written, and scales them by the share of the surface
-// in their centres. Smooths rims of shadows.
-static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
                                  vplEdgePixelFcn* visit, void* user)
 {
     vplTileSums* sums = tile->scratch;
@@ -108,13 +101,13 @@ static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFa
         }
         int centre[VPL_LANES];
         vplReadTriangles(tile, block * VPL_LANES, centre);
-        for (uint32_t lanes = vplEdgeLanes(tile, block * VPL_LANES, centre); lanes != 0; lanes &= lanes - 1) {
+        for (uint32_t lanes = edgeLanes(tile, block * VPL_LANES, centre); lanes != 0; lanes &= lanes - 1) {
             const int l = __builtin_ctz(lanes), x = x0 + l % VPL_BLOCK_SIDE, y = y0 + l / VPL_BLOCK_SIDE;
             if (x < tile->width && y < tile->height) {
                 vplEdgePixel pixel = {.x = tile->x + x, .y = tile->y + y, .triangle = centre[l]};
                 vplFindEdges(s, tile, block * VPL_LANES + l, cache, &pixel);
                 own[block * VPL_LANES + l] = (uint16_t)pixel.own;
-                vplScaleCentre(s, cache, &pixel, &sums->shadowRays);
+                scaleCentre(s, cache, &pixel, &sums->shadowRays);
                 visit(s, user, &pixel);
             }
         }
@@ -124,7 +117,7 @@ static inline void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFa
     }
 }
 
-static inline void vplPushEdges(const vplShading* s, void* user, const vplEdgePixel* p)
+static void pushEdges(const vplShading* s, void* user, const vplEdgePixel* p)
 {
     (void)s;
     for (int i = 0; i < p->count; i++) {
@@ -132,16 +125,13 @@ static inline void vplPushEdges(const vplShading* s, void* user, const vplEdgePi
     }
 }
 
-// Smooths the edges in a tile whose pixels are written, by all light.
-static inline void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
+void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
                                  vplAddToBlockFcn* addLights, void* user)
 {
     vplTileSums* tileSums = tile->scratch;
     if (tile->sampleCount > 0) {
         vplEdgeQueue q = {s, cache, addLights, user, &tileSums->shadowRays, .direct = true, .indirect = true};
-        vplVisitEdges(s, tile, cache, vplPushEdges, &q);
+        vplVisitEdges(s, tile, cache, pushEdges, &q);
         vplEdgeQueue_Flush(&q);
     }
 }
-
-#endif
