@@ -92,6 +92,15 @@ typedef enum vplCompensation {
     VPL_COMPENSATION_RAYS       // short rays from each pixel add it again
 } vplCompensation;
 
+// Settings of a document as printed; see src/render/option_text.c.
+typedef enum vplPreset {
+    VPL_PRESET_NONE = 0,
+    VPL_PRESET_FRANCHI_FERRANTE,
+    VPL_PRESET_KELLER_1997,
+    VPL_PRESET_HEMGREN,
+    VPL_PRESET_SSVP_2020
+} vplPreset;
+
 // Positions in a pixel at which the path tracer starts its paths.
 typedef enum vplPixel {
     VPL_PIXEL_AREA = 0, // all over the pixel, which is the mean over its square: edges are smooth

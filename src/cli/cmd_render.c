@@ -72,7 +72,8 @@ static vplWriteOptions chooseDisplay(const Arguments* a)
     if (a->tonemap > 0) {
         display.tonemap = (vplToneMap)(a->tonemap - 1);
     } else if (isLight(show)) {
-        display.tonemap = VPL_TONEMAP_AGX;
+        const bool reinhard = a->render.preset == VPL_PRESET_SSVP_2020; // as its document has it
+        display.tonemap = reinhard ? VPL_TONEMAP_REINHARD : VPL_TONEMAP_AGX;
     }
     if (isLight(show) || isGiven(a, "exposure")) {
         display.exposure = (float)a->exposure;

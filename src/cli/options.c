@@ -175,7 +175,8 @@ static const Option OWN[] = {
      "stops, 8-bit colours only: radiance times 2^EV; default 0, tradeoff: by the reference", NULL},
     {"tonemap", "usual|none|reinhard|aces|agx", "usual", RENDER, readChoice, AT(tonemap), 0, 0,
      "PNG only: how bright light fits into the screen's range. none: clipped; aces: strong contrast; agx: "
-     "bright colours turn pale, shadows keep their value; usual: agx, and none for stages that are not light",
+     "bright colours turn pale, shadows keep their value; usual: agx, reinhard for --preset ssvp-2020, and "
+     "none for stages that are not light",
      NULL},
     {"no-ground", NULL, NULL, ON_SCENES, readFlag, AT(noGround), 0, 0,
      "no ground under a SCENE that is a mesh (.obj)", NULL},

@@ -36,8 +36,7 @@ static bool sameReflector(const vplReflector* a, const vplReflector* b)
     return same;
 }
 
-bool vplIsOneSurface(const vplShading* s, const vplFacet* a, const vplFacet* b, float distance,
-                                   vplVec3 sight)
+bool vplIsOneSurface(const vplShading* s, const vplFacet* a, const vplFacet* b, float distance, vplVec3 sight)
 {
     const float width = 2 / (float)(s->view->height * s->view->scaleY) * distance;
     const float apart = distance * vplDot(a->normal, sight) - a->offset;
@@ -77,7 +76,7 @@ static vplEdgeSurface nameSurface(const vplTile* tile, int element, uint32_t sam
 }
 
 void vplFindEdges(const vplShading* s, const vplTile* tile, int element, vplFacetCache* cache,
-                                vplEdgePixel* p)
+                  vplEdgePixel* p)
 {
     enum { OWN = VPL_MAX_SAMPLES_PER_PIXEL }; // the surface in the centre
     vplCoverage found[VPL_MAX_SAMPLES_PER_PIXEL];

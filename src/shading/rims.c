@@ -16,8 +16,8 @@ enum {
 // A point whose light is wanted, and who asks.
 typedef enum PointKind {
     BORDER, // the centre of a pixel outside the tile
-    CORNER,     // a corner of a pixel
-    SAMPLE      // a sample of a pixel
+    CORNER, // a corner of a pixel
+    SAMPLE  // a sample of a pixel
 } PointKind;
 
 typedef struct Rims {
@@ -83,8 +83,7 @@ static bool showOneSurface(const Rims* r, int a, int b)
     }
     const vplFacet first = *vplFacetCache_Get(s, from, r->queue.cache);
     const vplFacet second = *vplFacetCache_Get(s, to, r->queue.cache);
-    const vplVec3 sight =
-        vplSightOf(s->view, r->tile->x + xOf(b), r->tile->y + yOf(b), (vplSubPixel){0, 0});
+    const vplVec3 sight = vplSightOf(s->view, r->tile->x + xOf(b), r->tile->y + yOf(b), (vplSubPixel){0, 0});
     return vplIsOneSurface(s, &first, &second, vplEdgeDistance(s, to, &second, sight), sight);
 }
 
@@ -257,7 +256,7 @@ static void smoothPixel(Rims* r, int cell)
 }
 
 void vplSmoothRims(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
-                                 const uint16_t own[VPL_TILE_SIDE * VPL_TILE_SIDE])
+                   const uint16_t own[VPL_TILE_SIDE * VPL_TILE_SIDE])
 {
     vplTileSums* sums = tile->scratch;
     Rims r;

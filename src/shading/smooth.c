@@ -42,8 +42,7 @@ static bool isLampEdge(const vplShading* s, vplFacetCache* cache, const vplEdgeP
 }
 
 // Finds the mean emission in a pixel, whose surfaces then count without it, by rays.
-static void findEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p,
-                                   float emission[3])
+static void findEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p, float emission[3])
 {
     const vplView* v = s->view;
     for (int i = 0; i < LAMP_RAYS; i++) {
@@ -85,8 +84,8 @@ static void scaleCentre(const vplShading* s, vplFacetCache* cache, vplEdgePixel*
 
 // ---- tiles
 
-void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
-                                 vplEdgePixelFcn* visit, void* user)
+void vplVisitEdges(const vplShading* s, const vplTile* tile, vplFacetCache* cache, vplEdgePixelFcn* visit,
+                   void* user)
 {
     vplTileSums* sums = tile->scratch;
     uint16_t own[VPL_TILE_SIDE * VPL_TILE_SIDE];
@@ -126,7 +125,7 @@ static void pushEdges(const vplShading* s, void* user, const vplEdgePixel* p)
 }
 
 void vplSmoothTile(const vplShading* s, const vplTile* tile, vplFacetCache* cache,
-                                 vplAddToBlockFcn* addLights, void* user)
+                   vplAddToBlockFcn* addLights, void* user)
 {
     vplTileSums* tileSums = tile->scratch;
     if (tile->sampleCount > 0) {
