@@ -75,7 +75,7 @@ typedef struct vplPlan {
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights; // upper limit per pass
     int64_t drawCalls;     // per pass
-    int64_t paths;         // path tracing: paths of all pixels
+    int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
     int patches, patchSides;
     double longestEdge;      // longest edge of a patch, metres
     bool linked;             // patches exchange light by links between groups

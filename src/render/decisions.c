@@ -107,6 +107,19 @@ static void chooseParticleCount(vplPlan* p)
     }
 }
 
+static void choosePaths(vplPlan* p)
+{
+    vplRenderOptions* o = &p->options;
+    const bool open = o->stop.budgetMs > 0 || o->stop.maxError > 0;
+    if (o->path.samples < 0) {
+        o->path.samples = open ? VPL_MAX_SAMPLES : 64;
+        if (o->method == VPL_METHOD_PATH) {
+            decide(p, "spp",
+                   open ? "the time or the error that is asked for ends it before" : "a first look");
+        }
+    }
+}
+
 static void chooseParticles(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
@@ -228,6 +241,7 @@ void vplDecideByOptions(const vplScene* scene, vplPlan* p)
     choosePipeline(p);
     chooseSamples(p);
     chooseParticles(p);
+    choosePaths(p);
     chooseShadows(p);
     chooseCompensation(p);
     chooseRays(p);

@@ -199,7 +199,7 @@ static void countDraws(const Scale* s, vplPlan* p)
     const vplRenderOptions* o = &p->options;
     const int64_t objects = (int64_t)s->objects, supersample = o->output.supersample;
     if (o->method == VPL_METHOD_PATH) {
-        p->paths = (int64_t)s->pixels * o->path.samples;
+        p->paths = o->path.samples < VPL_MAX_SAMPLES ? (int64_t)s->pixels * o->path.samples : 0;
         return;
     }
     if (o->method == VPL_METHOD_SSVP) {

@@ -43,7 +43,7 @@ static void putCounts(Text* t, const vplPlan* p)
 {
     if (p->options.method == VPL_METHOD_PATH) {
         putRow(t, "paths");
-        put(t, "%lld", (long long)p->paths);
+        put(t, p->paths > 0 ? "%lld" : "as many as asked for", (long long)p->paths);
         return;
     }
     if (p->showsPatches) {

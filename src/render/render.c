@@ -93,7 +93,8 @@ static double shareOf(const vplRenderer* r, int passes)
 {
     const vplStopOptions* o = &r->plan->options.stop;
     const bool paths = r->plan->options.method == VPL_METHOD_PATH;
-    const int count = paths ? vplCountPathPasses(r->plan) : o->passes;
+    const bool open = paths && r->plan->options.path.samples == VPL_MAX_SAMPLES;
+    const int count = open ? 0 : paths ? vplCountPathPasses(r->plan) : o->passes;
     double share = 0;
     if (count > 0) {
         share = (double)passes / count;
@@ -362,7 +363,14 @@ static vplResult render(const vplScene* scene, const vplRenderOptions* options, 
                                    : takeImage(r, imageOut, statsOut);
     }
     const vplRenderStats* stats = &r->runner.stats;
-    if (result == VPL_SUCCESS && stats->errorEstimate >= 0) {
+    const double asked = options->stop.maxError;
+    if (result == VPL_SUCCESS && asked > 0 && stats->relativeErrorEstimate > asked) {
+        vplLog(r->runner.run.context, VPL_LOG_WARNING,
+               "the error is about %.3g %%, not the %.3g %% asked for: --budget, --passes or --spp ended the "
+               "render "
+               "after %d passes",
+               100 * stats->relativeErrorEstimate, 100 * asked, r->done);
+    } else if (result == VPL_SUCCESS && stats->errorEstimate >= 0) {
         vplLog(r->runner.run.context, VPL_LOG_INFO,
                "remaining error about %.3g W/(m^2 sr), %.3g %% of the mean", stats->errorEstimate,
                100 * stats->relativeErrorEstimate);

@@ -126,8 +126,8 @@ sed -n 's/^  --\([a-z0-9-]*\).*/\1/p' "$scratch/stdout" | sort >"$scratch/helped
 check HelpHasEveryOptionOnce cmp "$scratch/table" "$scratch/helped"
 check HelpHasManyOptions test "$(wc -l <"$scratch/table")" -ge 60
 tr -s " \n" " " <"$scratch/stdout" >"$scratch/flat"
-check HelpNamesDefaults grep -q "paths per pixel; default 64" "$scratch/stdout"
-check HelpNamesMethods grep -q "paths per pixel; default 64 \[path\]" "$scratch/stdout"
+check HelpNamesDefaults grep -q "cube shadow map; default 1024" "$scratch/flat"
+check HelpNamesMethods grep -q "ask for; default auto \[path\]" "$scratch/flat"
 check HelpNamesPipelines grep -q "default auto \[instant-radiosity, keller, ssvp\] \[--pipeline interleaved\]" "$scratch/flat"
 equals HelpHasSubjects "$(grep -c '^// ---- ' include/vpl/options.def)" "$(grep -c '^[A-Z]' "$scratch/stdout")"
 succeeds HelpOfASubject "$vpl" help options ssvp
