@@ -34,6 +34,8 @@ static void renderEveryWay(const vplScene* scene)
     vplResult first = VPL_SUCCESS;
     for (int way = VPL_ACCUMULATE_MULTIPASS; way <= VPL_ACCUMULATE_INTERLEAVED; way++) {
         vplRenderOptions options = vplDefaultRenderOptions();
+        options.method = VPL_METHOD_INSTANT_RADIOSITY;
+        options.output.antialias = way == VPL_ACCUMULATE_INTERLEAVED ? 8 : 1; // passes are not smoothed
         options.output.width = 12;
         options.output.height = 8;
         options.particles.count = 4;
