@@ -168,8 +168,10 @@ static const Option OWN[] = {
      "folder for report.html, tradeoff.svg, tradeoff.csv and the reference, made if missing; required", NULL},
     {"exposure", "EV|auto", "auto", RENDER, readExposure, 0, -64, 64,
      "stops, PNG only: pixels times 2^EV. auto: the geometric mean of the luminance becomes middle grey, "
-     "without black pixels, the darkest 10 % and the brightest 5 %; with --frames that of the first picture "
-     "for all; 0 for --tonemap reinhard, which has its own key, and for stages that are not light",
+     "without dark surroundings, the darkest 10 % and the brightest 5 %, up to two stops less where "
+     "highlights "
+     "are large; with --frames that of the first picture for all; 0 for --tonemap reinhard, which has its "
+     "own key, and for stages that are not light",
      NULL},
     {"exposure", "EV", NULL, TRADEOFF | BAKE, readNumber, AT(exposure), -64, 64,
      "stops, 8-bit colours only: radiance times 2^EV; default 0, tradeoff: by the reference", NULL},
