@@ -175,9 +175,11 @@ static void assertGrounded(const vplScene* scene, const Frame* f, double toleran
     const vplObjectDef* ground = find(scene, "ground");
     const vplCameraDef* camera = vplScene_GetCamera(scene, 0);
     double lowest = INFINITY, size = 0, centre[3], front[3];
-    for (int i = 0; i < mesh->vertexCount; i++) {
-        lowest = fmin(lowest, (double)mesh->positions[i].y);
-        size = fmax(size, (double)vplLength(vplSub(mesh->positions[i], mesh->positions[0])));
+    for (int i = 0; i < mesh->vertexCount; i++) { // gcc 12 for aarch64 fails to compile fmin and fmax here
+        const double y = (double)mesh->positions[i].y;
+        const double far = (double)vplLength(vplSub(mesh->positions[i], mesh->positions[0]));
+        lowest = y < lowest ? y : lowest;
+        size = far > size ? far : size;
     }
     column(ground, 2, front);
     column(ground, 3, centre);
