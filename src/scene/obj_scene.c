@@ -69,13 +69,24 @@ static void place(const Look* l, const double at[3], double out[3])
     }
 }
 
+// gcc 12 for aarch64 fails to compile fmin and fmax in the loops below.
+static double smaller(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 static void measure(Look* l, const vplMeshDef* mesh)
 {
     vplVec3 low = mesh->positions[0], high = low;
     for (int i = 1; i < mesh->vertexCount; i++) {
         vplVec3 p = mesh->positions[i];
-        low = vplVec(fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z));
-        high = vplVec(fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z));
+        low = vplVec(vplMinf(low.x, p.x), vplMinf(low.y, p.y), vplMinf(low.z, p.z));
+        high = vplVec(vplMaxf(high.x, p.x), vplMaxf(high.y, p.y), vplMaxf(high.z, p.z));
     }
     double a[3], b[3], half[3];
     vplToDouble3(low, a);
@@ -114,16 +125,16 @@ static void fit(Look* l, const vplMeshDef* mesh, const double inner[2])
         }
         const double depth = vplDot3(p, l->ahead), across[2] = {vplDot3(p, l->right), vplDot3(p, l->up)};
         for (int k = 0; k < 2; k++) {
-            most[k][0] = fmax(most[k][0], across[k] - inner[k] * depth);
-            most[k][1] = fmax(most[k][1], -across[k] - inner[k] * depth);
+            most[k][0] = larger(most[k][0], across[k] - inner[k] * depth);
+            most[k][1] = larger(most[k][1], -across[k] - inner[k] * depth);
         }
-        l->nearest = fmin(l->nearest, depth);
-        l->most = fmax(l->most, depth);
+        l->nearest = smaller(l->nearest, depth);
+        l->most = larger(l->most, depth);
     }
     l->eye[2] = l->nearest - 0.125 * l->radius;
     for (int k = 0; k < 2; k++) {
         l->eye[k] = 0.5 * (most[k][0] - most[k][1]);
-        l->eye[2] = fmin(l->eye[2], -(most[k][0] + most[k][1]) / (2 * inner[k]));
+        l->eye[2] = smaller(l->eye[2], -(most[k][0] + most[k][1]) / (2 * inner[k]));
     }
 }
 
