@@ -7,7 +7,7 @@ RUNNER=
 # What one thread can say of arithmetic; of all else golden pictures do.
 ARITHMETIC="bench clusters cluster_results draw_patches emission exr gather geometry hemi_maps hits image lights
     math metrics regions obj obj_parts obj_scene packets paraboloids patch_mesh patch_priority ply raster
-    raster_truth rays rsm scene scene_checks shadow_maps second_bounce tone triangle_factors point_factors visibility
+    raster_truth rays rsm samples scene scene_checks shadow_maps second_bounce tone triangle_factors point_factors visibility
     -Threads -Everywhere -ChoicesDoNotDepend -AHostsOwnScheduler"
 export OMP_WAIT_POLICY=passive # configurations are tested side by side: threads that wait must not spin
 
