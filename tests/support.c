@@ -47,17 +47,6 @@ static void* work(void* data)
     return NULL;
 }
 
-vplRenderOptions plainOptions(void)
-{
-    vplRenderOptions o = vplDefaultRenderOptions();
-    o.method = VPL_METHOD_INSTANT_RADIOSITY;
-    o.output.antialias = 1;
-    o.particles.count = 10;
-    o.particles.reflectivity = 0.5;
-    o.pipeline.interleave = 4;
-    return o;
-}
-
 void threadedFor(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data)
 {
     enum { MOST = 16 };

@@ -11,6 +11,8 @@
 
 #include <vpl/vpl.h>
 
+#include "plain_options.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -54,10 +56,6 @@ vplContext* openTestContext(int workers);
 
 // Does the same with a chosen instruction set; NULL if this machine lacks it.
 vplContext* openIsaContext(int workers, vplIsa isa);
-
-// Options of the smallest pictures that have everything: 10 particles and their lights without shadows
-// (Franchi and Ferrante, physical lighting), a sample per pixel.
-vplRenderOptions plainOptions(void);
 
 // A vplParallelForFcn that runs on threads, as a host program's might.
 void threadedFor(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data);

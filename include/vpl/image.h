@@ -128,12 +128,12 @@ vplReinhardDef vplDefaultReinhardDef(void);
 // 2002, equations 1, 2 and 4.
 vplResult vplToneMap_Reinhard(vplImage* image, const vplReinhardDef* def);
 
-// Finds the exposure, in stops in [-64, 64], that makes the geometric mean of the luminance middle grey,
-// 0.18. The mean leaves out black pixels and those that are not finite, the brightest 5 % of the rest, those
-// 1024 times darker than these, and then the darkest 10 %, so that neither a dark background nor a lamp in
-// the picture decides. It is up to two stops less if more than 2 % would exceed 8, half of the white of AgX,
-// as a sunlit floor in a dark hall. Luminances are counted in bins of 1/128 octave. 0 for a black picture.
-// VPL_OUT_OF_MEMORY.
+// Finds the exposure, in stops in [-64, 64], at which the geometric mean of the luminance becomes middle
+// grey, 0.18. Not all pixels count: those that are black or not finite are left out first; then the brightest
+// 5 %, as lamps; then all that are 1024 times darker than the darkest of these, as a dark background; then
+// the darkest 10 % of the rest. If more than 2 % of the picture would still exceed 8, half of the white of
+// AgX, the exposure is lowered by up to two stops, so that a sunlit floor keeps its detail. Luminances are
+// counted in bins of 1/128 octave. A black picture gives 0. VPL_OUT_OF_MEMORY.
 // Source: Reinhard and others, as above, equations 1 and 2, for the mean; Krzysztof Narkowicz, Automatic
 // Exposure, 2016, for the histogram without its ends.
 vplResult vplImage_AutoExposure(const vplImage* image, float* stopsOut);

@@ -14,8 +14,9 @@
 // sums have no rounding.
 enum { BIN_SHIFT = 16, BINS_PER_OCTAVE = 1 << (23 - BIN_SHIFT), BINS = 255 * BINS_PER_OCTAVE };
 
-// Pixels 2^-DARK_OCTAVES as bright as the brightest but BRIGHTEST are black whatever the exposure. All but
-// the HIGHLIGHTS stay below MOST_BRIGHT, one stop below the white of AgX, if GUARD stops less are enough.
+// Shares of the lit pixels: DARKEST and BRIGHTEST are left out of the mean. Pixels darker than the brightest
+// that are kept by DARK_OCTAVES or more stay black at any exposure, and do not count. The exposure is lowered
+// by up to GUARD stops until no more than HIGHLIGHTS exceed MOST_BRIGHT, one stop below the white of AgX.
 enum { DARK_OCTAVES = 10 };
 static const double MIDDLE_GREY = 0.18, DARKEST = 0.10, BRIGHTEST = 0.05, HIGHLIGHTS = 0.02, MOST_BRIGHT = 8,
                     GUARD = 2;

@@ -223,9 +223,9 @@ static exr_result_t writeHeader(exr_context_t exr, const vplLayer* layers, int c
     return exr_write_header(exr);
 }
 
-// Writes a chunk; the pipeline's user data is the file. Readers take a chunk for stored raw when its size is
-// that of the raw bytes, and OpenEXRCore up to 3.4.7 stores it compressed also when compression gains not a
-// byte.
+// Writes a chunk to the file, which is the pipeline's user data. A reader takes a chunk of as many bytes as
+// its raw pixels for uncompressed. OpenEXRCore up to 3.4.7 writes the compressed bytes even then, so that the
+// pixels would be read wrong; this function writes the raw ones.
 // Source: "Scan Line Blocks" in The OpenEXR File Layout; OpenEXR issue 2306.
 static exr_result_t writeChunk(exr_encode_pipeline_t* p)
 {

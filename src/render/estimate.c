@@ -86,8 +86,8 @@ static double pipelineScratch(const Scale* s)
     }
 }
 
-// Samples of a tile per worker; for the filter of interleaved shading a share and half an edge per pixel; and
-// one more picture of patches.
+// Memory of smooth edges: each worker holds the samples of a tile; interleaved shading a share per pixel and
+// the edges of every tile; radiosity one more picture.
 static double sampleScratch(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
@@ -199,7 +199,7 @@ static void countDraws(const Scale* s, vplPlan* p)
     const vplRenderOptions* o = &p->options;
     const int64_t objects = (int64_t)s->objects, supersample = o->output.supersample;
     if (o->method == VPL_METHOD_PATH) {
-        p->paths = o->path.samples < VPL_MAX_SAMPLES ? (int64_t)s->pixels * o->path.samples : 0;
+        p->paths = vplPathsAreOpen(p) ? 0 : (int64_t)s->pixels * o->path.samples;
         return;
     }
     if (o->method == VPL_METHOD_SSVP) {
@@ -211,8 +211,8 @@ static void countDraws(const Scale* s, vplPlan* p)
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
     const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
-    p->drawCalls = objects * (6 * maps + (1 + passes) * supersample) +
-                   patchDraws * supersample * (1 + (o->output.antialias & ~1));
+    p->drawCalls =
+        objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample * vplCountPoints(p);
 }
 
 enum {

@@ -188,31 +188,23 @@ static vplResult setBits(const Setting* s)
 // printed: they stay as they are.
 static const char* const PRESETS[] = {
     "", // none
-    "--method instant-radiosity --lighting documented --particles 10 --reflectivity 0.5 --sampler random "
-    "--bounce "
-    "reflect --placement particles --pipeline multipass --light-shadows none --min-distance 0 --antialias 1",
-    "--method keller --lighting documented --particles 10 --reflectivity auto --sampler halton --bounce "
-    "diffuse "
-    "--placement particles --pipeline multipass --light-shadows map --compensation none --min-distance 0 "
-    "--antialias 1",
-    "--method radiosity --patches 784 --form-factors incentre --row-sums keep --hierarchy off --patch-light "
-    "1 "
-    "--solver gauss-seidel --iterations 100 --residual 0 --interpolation gouraud --vertex-weight equal "
-    "--sharpen 0 "
-    "--antialias 1",
-    "--method ssvp --clusters 8 --oversampling 1 --w1 0.6 --w2 0.4 --cluster-metric printed --cluster-place "
-    "mean "
-    "--second-weight printed --pipeline interleaved --interleave 4 --light-shadows cluster --antialias 1"};
+    "--method instant-radiosity --lighting documented --particles 10 --reflectivity 0.5 --sampler random"
+    " --bounce reflect --placement particles --pipeline multipass --light-shadows none --min-distance 0"
+    " --antialias 1",
+    "--method keller --lighting documented --particles 10 --reflectivity auto --sampler halton"
+    " --bounce diffuse --placement particles --pipeline multipass --light-shadows map --compensation none"
+    " --min-distance 0 --antialias 1",
+    "--method radiosity --patches 784 --form-factors incentre --row-sums keep --hierarchy off --patch-light 1"
+    " --solver gauss-seidel --iterations 100 --residual 0 --interpolation gouraud --vertex-weight equal"
+    " --sharpen 0 --antialias 1",
+    "--method ssvp --clusters 8 --oversampling 1 --w1 0.6 --w2 0.4 --cluster-metric printed"
+    " --cluster-place mean --second-weight printed --pipeline interleaved --interleave 4"
+    " --light-shadows cluster --antialias 1"};
 
 static vplResult setPreset(const Setting* s)
 {
-    const char* index;
-    const int preset = findChoice(s->option->value, s->value, &index);
-    if (preset < 0) {
-        return refuse(s, "one of %s", s->option->value);
-    }
-    store(s, &preset, sizeof preset);
-    return vplRenderOptions_SetAll(s->options, PRESETS[preset]);
+    TRY(setChoice(s));
+    return vplRenderOptions_SetAll(s->options, PRESETS[s->options->preset]);
 }
 
 vplResult vplRenderOptions_SetAll(vplRenderOptions* options, const char* words)

@@ -93,8 +93,7 @@ static double shareOf(const vplRenderer* r, int passes)
 {
     const vplStopOptions* o = &r->plan->options.stop;
     const bool paths = r->plan->options.method == VPL_METHOD_PATH;
-    const bool open = paths && r->plan->options.path.samples == VPL_MAX_SAMPLES;
-    const int count = open ? 0 : paths ? vplCountPathPasses(r->plan) : o->passes;
+    const int count = vplPathsAreOpen(r->plan) ? 0 : paths ? vplCountPathPasses(r->plan) : o->passes;
     double share = 0;
     if (count > 0) {
         share = (double)passes / count;

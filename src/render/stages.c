@@ -191,11 +191,10 @@ static bool needsPicture(const vplPlan* p, char* why)
 static bool needsPaths(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
-    return p->options.path.samples == VPL_MAX_SAMPLES
-               ? because(why, true, "as many paths as asked for, for each of %dx%d pixels", o->width,
-                         o->height)
-               : because(why, true, "%d paths for each of %dx%d pixels", p->options.path.samples, o->width,
-                         o->height);
+    return vplPathsAreOpen(p) ? because(why, true, "as many paths as asked for, for each of %dx%d pixels",
+                                        o->width, o->height)
+                              : because(why, true, "%d paths for each of %dx%d pixels",
+                                        p->options.path.samples, o->width, o->height);
 }
 
 // ---- the table

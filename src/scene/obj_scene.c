@@ -111,7 +111,7 @@ static Field fieldOf(double aspect)
 // from (a, e), if x - a <= s (z - e), and right of the left edge if a - x <= s (z - e). Let A be the greatest
 // x - s z of all vertices and B the greatest -x - s z. Then A <= a - s e and B <= -a - s e: their sum bounds
 // e, and a = (A - B) / 2 serves every such e. The same holds upwards. The nearest eye has the greatest e
-// within both bounds. A third one keeps it away from a needle that points at it.
+// within both bounds. A third bound keeps the eye away from a needle that points at it.
 static void fit(Look* l, const vplMeshDef* mesh, const double inner[2])
 {
     double most[2][2] = {{-INFINITY, -INFINITY}, {-INFINITY, -INFINITY}};

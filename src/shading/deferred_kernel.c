@@ -70,8 +70,8 @@ void VPL_KERNEL(vplLightTile)(void* data, vplTile* tile, int worker)
 
 // ---- stages
 
-// The albedo of a surface that emits includes its emission: to a denoiser it is what has this colour whatever
-// the light.
+// The albedo of a surface includes its emission, because a denoiser reads albedo as the part of a pixel's
+// colour that does not depend on the light around.
 static vplRgb showAlbedo(const vplGeometry* g, int triangle, const float emission[3])
 {
     const vplRgb rho = g->materials[g->triangleMaterials[triangle]].diffuse;

@@ -42,8 +42,8 @@ static inline __attribute__((always_inline)) void fillCosines(const vplSurface* 
     }
 }
 
-// Finds irradiance per unit of intensity, without shadow; false where no lane is lit. Directional: n.l. Point:
-// n.l / d^2. Spot: that times the smooth step of its cone (see vplSpot_Falloff).
+// Finds irradiance per unit of intensity, without shadow; false where no lane is lit. Directional: n.l.
+// Point: n.l / d^2. Spot: that times the smooth step of its cone (see vplSpot_Falloff).
 static bool emitterCosine(const vplSurface* restrict surface, const vplEmitterRay* emitter,
                           float cosine[restrict VPL_LANES])
 {

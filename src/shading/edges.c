@@ -148,8 +148,8 @@ void vplEdgeQueue_Flush(vplEdgeQueue* q)
     q->count = 0;
 }
 
-// Puts a point into the next lane. The first one is in all lanes, of which those behind the last show
-// nothing.
+// Puts a point into the next lane. The first point fills all lanes, so that unused ones hold valid numbers;
+// they show no triangle.
 static void putPoint(vplEdgeQueue* q, vplVec3 position, vplVec3 normal, vplVec3 plane)
 {
     vplBlock* b = &q->block;

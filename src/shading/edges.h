@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Coverage antialiasing: a pixel whose samples show other surfaces than its centre is the mean of all of them,
-// by the shares of its samples. The centre's surface is shaded as ever; each other one is shaded once, at one
-// of its samples. All other pixels cost a comparison of their samples. The light itself is added by kernels.
+// Coverage antialiasing: a pixel whose samples show other surfaces than its centre is the mean of all of
+// them, by the shares of its samples. The centre's surface is shaded as ever; each other one is shaded once,
+// at one of its samples. All other pixels cost a comparison of their samples. The light itself is added by
+// kernels.
 #ifndef VPL_SHADING_EDGES_H
 #define VPL_SHADING_EDGES_H
 

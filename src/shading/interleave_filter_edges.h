@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The filter for surfaces at edges that are not in the centres of their pixels: the mean over the pixels
-// around that show such a surface, with the weights of the filter. Where none does, lights of some classes are added.
+// The filter for surfaces at edges that are not in the centres of their pixels. Their indirect light is the
+// mean over the pixels around that show the same surface, with the weights of the filter. Where no pixel
+// shows it, the lights of some classes are added.
 #ifndef VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 #define VPL_SHADING_INTERLEAVE_FILTER_EDGES_H
 
@@ -8,10 +9,11 @@
 #include "shading/edges.h"
 #include "shading/interleave_filter_mixed.h"
 
-// A surface without neighbours is lit by so many lights or more, of some of the classes.
+// The least number of lights that light a surface which no pixel around shows.
 enum { LONE_LIGHTS = 64 };
 
-// Adds the lights of some classes to a block, for all; a vplAddToBlockFcn. `user` counts the classes in turn.
+// Adds the lights of some classes to a block, weighted as if they were all; a vplAddToBlockFcn. `user` points
+// to the number of the class that is next.
 static inline void vplAddSomeClasses(const vplShading* s, void* user, vplBlock* b, int64_t* rays)
 {
     static const int lit = 0;

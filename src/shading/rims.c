@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Rims of shadows: where emitters send different light to neighbours on one surface, the mean
-// over the samples of a pixel replaces the light in its centre. The search begins at neighbours that differ,
-// and at points on the corners of pixels that differ from the centre, which find shadows thinner than a
-// pixel; it goes on with the neighbours of every pixel whose samples differ.
+// Rims of shadows. Where two neighbours on one surface receive different light from emitters, the light in
+// the centre of each is replaced by the mean over the samples of the pixel. The search starts at such
+// neighbours, and at some corners of pixels whose light differs from that in the centre, which finds shadows
+// thinner than a pixel. It spreads to the neighbours of every pixel whose samples differ.
 #include "shading/edges.h"
 
 // Light differs if the smaller is less than this share of the larger.
@@ -13,7 +13,7 @@ enum {
     RIM_CELLS = RIM_PITCH * RIM_PITCH
 };
 
-// A point whose light is wanted, and who asks.
+// The place of a point whose light is to be found.
 typedef enum PointKind {
     BORDER, // the centre of a pixel outside the tile
     CORNER, // a corner of a pixel
@@ -173,7 +173,8 @@ static void readTile(Rims* r)
     }
 }
 
-// Tries corners of pixels if some shadow is hard: each row and column of a block has one.
+// Compares corners of pixels with their centres if some shadow is hard: one corner in each row and column of
+// a block.
 static void tryCorners(Rims* r)
 {
     static const int columns[VPL_BLOCK_SIDE] = {1, 3, 0, 2};

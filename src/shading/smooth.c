@@ -26,22 +26,28 @@ static uint32_t edgeLanes(const vplTile* tile, int element, const int centre[VPL
 // Camera rays through a pixel at the edge of a lamp, which is so bright that few samples leave steps.
 enum { LAMP_RAYS = 256 };
 
-// Tests whether the surfaces of a pixel emit different light.
-static bool isLampEdge(const vplShading* s, vplFacetCache* cache, const vplEdgePixel* p)
+// The light that a triangle emits towards the camera; 0 where there is none.
+static void emissionOf(const vplShading* s, vplFacetCache* cache, int triangle, float out[3])
 {
-    vplReflector own = {{0}, {0}};
-    bool differs = false;
-    if (p->triangle >= 0) {
-        own = vplFacetCache_Get(s, p->triangle, cache)->reflector;
+    memset(out, 0, 3 * sizeof *out);
+    if (triangle >= 0) {
+        memcpy(out, vplFacetCache_Get(s, triangle, cache)->reflector.emission, 3 * sizeof *out);
     }
+}
+
+// Tests whether another surface of a pixel emits other light than that in its centre.
+static bool isLampEdge(const vplShading* s, vplFacetCache* cache, const vplEdgePixel* p, const float own[3])
+{
+    bool differs = false;
     for (int i = 0; i < p->count; i++) {
-        const vplReflector* r = &vplFacetCache_Get(s, p->others[i].triangle, cache)->reflector;
-        differs |= memcmp(r->emission, own.emission, sizeof own.emission) != 0;
+        float other[3];
+        emissionOf(s, cache, p->others[i].triangle, other);
+        differs |= memcmp(other, own, sizeof other) != 0;
     }
     return differs;
 }
 
-// Finds the mean emission in a pixel, whose surfaces then count without it, by rays.
+// Finds the mean emission in a pixel by rays. Its surfaces then count without their own.
 static void findEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p, float emission[3])
 {
     const vplView* v = s->view;
@@ -52,11 +58,10 @@ static void findEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel
         const vplSubPixel at = {(int)(256 * x) - 128, (int)(256 * y) - 128};
         const vplVec3 sight = vplSightOf(v, p->x, p->y, at);
         const vplRay ray = {vplAdd(v->eye, vplScale((float)v->near, sight)), sight, {0, 0}};
-        if (vplGeometry_ClosestHit(s->geometry, &ray, &hit)) {
-            const vplReflector* r = &vplFacetCache_Get(s, hit.triangle, cache)->reflector;
-            for (int c = 0; c < 3; c++) {
-                emission[c] += r->emission[c] / LAMP_RAYS;
-            }
+        float one[3];
+        emissionOf(s, cache, vplGeometry_ClosestHit(s->geometry, &ray, &hit) ? hit.triangle : -1, one);
+        for (int c = 0; c < 3; c++) {
+            emission[c] += one[c] / LAMP_RAYS;
         }
     }
     for (int i = 0; i < p->count; i++) {
@@ -67,17 +72,15 @@ static void findEmission(const vplShading* s, vplFacetCache* cache, vplEdgePixel
 // Scales what a pixel shows by the share of the surface in its centre.
 static void scaleCentre(const vplShading* s, vplFacetCache* cache, vplEdgePixel* p, int64_t* rays)
 {
-    float* pixel = vplPixelOf(s, p->x, p->y);
-    float emission[3] = {0, 0, 0}, own[3] = {0, 0, 0};
-    if (isLampEdge(s, cache, p)) {
-        if (p->triangle >= 0) {
-            memcpy(own, vplFacetCache_Get(s, p->triangle, cache)->reflector.emission, sizeof own);
-        }
+    float *pixel = vplPixelOf(s, p->x, p->y), own[3], emission[3] = {0, 0, 0};
+    emissionOf(s, cache, p->triangle, own);
+    const bool lamp = isLampEdge(s, cache, p, own);
+    if (lamp) {
         findEmission(s, cache, p, emission);
         *rays += LAMP_RAYS;
     }
     for (int c = 0; c < 3; c++) {
-        const float reflected = pixel[c] - own[c];
+        const float reflected = lamp ? pixel[c] - own[c] : pixel[c];
         pixel[c] = p->share * (reflected > 0 ? reflected : 0) + emission[c];
     }
 }

@@ -9,6 +9,8 @@
 #include "geometry/bvh.h"
 #include "math/vec.h"
 
+#include "../plain_options.h"
+
 #include <vpl/vpl.h>
 
 #include <stdio.h>
@@ -28,18 +30,6 @@ static inline void say(void* user, vplLogLevel level, const char* message)
     if (level == VPL_LOG_ERROR) {
         fprintf(stderr, "%s\n", message);
     }
-}
-
-// Options of 10 particles, deferred, with a sample per pixel.
-static inline vplRenderOptions plainOptions(void)
-{
-    vplRenderOptions o = vplDefaultRenderOptions();
-    o.method = VPL_METHOD_INSTANT_RADIOSITY;
-    o.output.antialias = 1;
-    o.particles.count = 10;
-    o.particles.reflectivity = 0.5;
-    o.pipeline.interleave = 4;
-    return o;
 }
 
 // Opens a context and a scene. 0 workers: one per processor.

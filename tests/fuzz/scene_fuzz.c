@@ -4,6 +4,8 @@
 #define _GNU_SOURCE
 #include "fuzz.h"
 
+#include "../plain_options.h"
+
 #include <math.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -33,8 +35,7 @@ static void renderEveryWay(const vplScene* scene)
     uint64_t hash = 0;
     vplResult first = VPL_SUCCESS;
     for (int way = VPL_ACCUMULATE_MULTIPASS; way <= VPL_ACCUMULATE_INTERLEAVED; way++) {
-        vplRenderOptions options = vplDefaultRenderOptions();
-        options.method = VPL_METHOD_INSTANT_RADIOSITY;
+        vplRenderOptions options = plainOptions();
         options.output.antialias = way == VPL_ACCUMULATE_INTERLEAVED ? 8 : 1; // passes are not smoothed
         options.output.width = 12;
         options.output.height = 8;

@@ -3,7 +3,7 @@
 // `vpl-golden write golden` rewrites them. hashes.txt decides; the PNGs are for people to look at. On a
 // mismatch the program shows the picture, eight times its difference from the golden PNG, and the first
 // differing pixel.
-#include <vpl/vpl.h>
+#include "../plain_options.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -126,7 +126,6 @@ static void lightcuts(vplRenderOptions* o)
 static void kellerDocumented(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_KELLER;
-    o->particles.reflectivity = 0.5;
     o->lighting = VPL_LIGHTING_DOCUMENTED;
     o->particles.count = 60;
 }
@@ -138,7 +137,6 @@ static void kellerPasses(vplRenderOptions* o)
     o->particles.count = 300;
     o->stop.passes = 3;
     o->pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
-    o->pipeline.interleave = 4;
 }
 
 static void indirect(vplRenderOptions* o)
@@ -190,7 +188,6 @@ static void secondBounce(vplRenderOptions* o)
 static void compensated(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_KELLER;
-    o->particles.reflectivity = 0.5;
     o->particles.count = 100;
     o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
 }
@@ -336,9 +333,7 @@ static vplImage* renderCase(vplContext* context, const Case* c)
     char path[256];
     vplScene* scene = NULL;
     vplImage* image = NULL;
-    vplRenderOptions options = vplDefaultRenderOptions();
-    options.method = VPL_METHOD_INSTANT_RADIOSITY;
-    options.output.antialias = 1;
+    vplRenderOptions options = plainOptions();
     options.output.width = options.output.height = SIZE;
     c->adjust(&options);
     snprintf(path, sizeof path, "examples/scenes/%s.json", c->scene);

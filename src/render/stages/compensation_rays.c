@@ -34,9 +34,9 @@ static int hitLightsOf(const vplRun* run, const vplVirtualLights* lights)
 // One ray for every 48 lights that a pixel evaluates, so that the squared errors of both fall alike: relative
 // error squared times time is 1.4 with a ray for 16 lights, 1.0 with one for 48 (cornell-area, 2048
 // particles). Where a hit evaluates more lights, the clamp distance is smaller and hits are rarer by the same
-// factor; the number of rays falls with the square root of that factor. One is enough where 64 neighbours
-// share their light: with 2,000 to 8,000 particles it takes 0.65 to 0.77 of the time and the error grows by a
-// twentieth (room, 1280x720, K = 16).
+// factor; the number of rays falls with the square root of that factor. The minimum is two rays, and one
+// where interleaving averages over 64 pixels or more: in the room (1280x720, K = 16, 2,000 to 8,000
+// particles) one ray takes 0.65 to 0.77 of the time of two and raises the error by a twentieth.
 enum { LIGHTS_PER_RAY = 48, MIN_RAYS = 2, MAX_RAYS = 4096 };
 
 static int raysOf(const vplRun* run, const vplVirtualLights* lights)

@@ -12,8 +12,8 @@
 
 enum { PICTURE, DIRECT, INDIRECT, FIRST_GUIDE, DEPTH = 5, OBJECT = 6 }; // places in the table below
 
-// Denoisers want albedo and normals that are filtered as the picture is, the first in [0, 1], the second of
-// any length. Depths and indices have no mean.
+// Denoisers expect albedo and normals to be antialiased like the picture: albedo in [0, 1], normals of any
+// length. Depths and indices have no mean.
 // Source: Open Image Denoise, documentation, "Albedo" and "Normal". Z is the name of depth in OpenEXR's
 // Technical Introduction.
 static const struct {
@@ -69,9 +69,10 @@ static vplResult addLight(const vplRun* run, vplImage** images)
 int vplCountLayerSamples(const vplPlan* plan)
 {
     const vplRenderOptions* o = &plan->options;
-    const bool paths = o->method == VPL_METHOD_PATH, area = o->path.pixel == VPL_PIXEL_AREA;
-    const int most = !paths ? o->output.antialias : area ? VPL_MAX_SAMPLES_PER_PIXEL : 1;
-    return !paths && o->output.supersample > 1 ? o->output.supersample : (most & ~1) + 1;
+    if (o->method == VPL_METHOD_PATH) {
+        return o->path.pixel == VPL_PIXEL_AREA ? VPL_MAX_SAMPLES_PER_PIXEL + 1 : 1;
+    }
+    return o->output.supersample > 1 ? o->output.supersample : vplCountPoints(plan);
 }
 
 static vplResult drawMean(const vplRun* run, const vplShadeDef* def, int count, vplImage* image)

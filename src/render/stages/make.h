@@ -25,6 +25,18 @@ vplReportFcn vplReportGeometry, vplReportParticles, vplReportClusteredLights, vp
 // Adds a set of lights to the statistics.
 void vplReportLights(const vplLightSet* set, vplRenderStats* stats);
 
+// Points of a pixel at which surfaces are sampled: its centre and the samples beside it.
+static inline int vplCountPoints(const vplPlan* plan)
+{
+    return (plan->options.output.antialias & ~1) + 1;
+}
+
+// Path tracing ends by its time or error only.
+static inline bool vplPathsAreOpen(const vplPlan* plan)
+{
+    return plan->options.method == VPL_METHOD_PATH && plan->options.path.samples == VPL_MAX_SAMPLES;
+}
+
 // Passes of a path-traced picture, and the mean of those so far.
 int vplCountPathPasses(const vplPlan* plan);
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
@@ -32,9 +44,11 @@ vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
 // The mean of their direct light, if the plan splits light. The image is black.
 void vplResolveDirectPaths(const vplRun* run, vplImage* image);
 
+// Points of a pixel whose mean albedo and normals are.
+int vplCountLayerSamples(const vplPlan* plan);
+
 // Makes all layers that the options ask for; the first is the picture. Takes both pictures over, also where
 // it fails. `direct` is NULL if the plan does not split light.
-int vplCountLayerSamples(const vplPlan* plan); // of the layers that are means over a pixel
 vplResult vplMakeLayers(const vplRun* run, vplImage* picture, vplImage* direct, vplLayers** layersOut);
 
 // Writes patches with all their light as a mesh; `scale` turns radiosity into what is shown.

@@ -13,7 +13,7 @@
 // Adds the light of patches: at every sample where edges are smooth, because interpolating it costs little.
 static vplResult drawPatches(const vplRun* run, const vplView* view, vplImage* image)
 {
-    const int count = (run->plan->options.output.antialias & ~1) + 1; // with the centre
+    const int count = vplCountPoints(run->plan);
     vplImage* sum = NULL;
     if (count == 1) {
         return vplDrawPatchView(run, view, image);
