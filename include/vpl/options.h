@@ -17,9 +17,18 @@ typedef enum vplMethod {
     VPL_METHOD_DIRECT,                // the scene's own lights only
     VPL_METHOD_PATH,                  // path tracing: the truth that the others are judged against
     VPL_METHOD_KELLER,                // Keller, Instant Radiosity
-    VPL_METHOD_SSVP,     // Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation
-    VPL_METHOD_RADIOSITY // Hemgren, Radiosity in Realtime Rendering
+    VPL_METHOD_SSVP,      // Aranha, Macedo and Apolinario, Screen-Space Virtual Point Light Propagation
+    VPL_METHOD_RADIOSITY, // Hemgren, Radiosity in Realtime Rendering
+    VPL_METHOD_AUTO       // the planner chooses one of them and its options
 } vplMethod;
+
+// How exact a picture shall be, and how long it may take.
+typedef enum vplQuality {
+    VPL_QUALITY_NONE = 0, // as --budget and --max-error say; without them, what 5 % error should need
+    VPL_QUALITY_DRAFT,    // --max-error 0.2 --budget 1000
+    VPL_QUALITY_GOOD,     // --max-error 0.05 --budget 10000
+    VPL_QUALITY_BEST      // --max-error 0.02 --budget 120000
+} vplQuality;
 
 // The content of the picture.
 typedef enum vplShow {

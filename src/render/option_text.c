@@ -2,6 +2,7 @@
 // Options as text: vplRenderOptions_Set and its inverse.
 #include "base/arena.h"
 #include "render/options.h"
+#include "render/planner/planner.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -335,12 +336,13 @@ bool vplRenderOptions_IsUsed(const vplRenderOptions* o, const char* name, char* 
 {
     const vplOption* option = vplFindOption(name);
     const int pipelines = option != NULL ? option->users & ~VPL_USE_ALL : 0;
-    const vplAccumulation kind =
-        o->pipeline.kind == VPL_ACCUMULATE_USUAL ? vplUsualPipeline(o) : o->pipeline.kind;
     const char* against = NULL;
     vplRenderOptions resolved = *o;
+    resolved.method = o->method == VPL_METHOD_AUTO ? vplFirstMethodFor(o) : o->method;
+    const vplAccumulation kind =
+        o->pipeline.kind == VPL_ACCUMULATE_USUAL ? vplUsualPipeline(&resolved) : o->pipeline.kind;
     resolved.pipeline.kind = kind;
-    if (option != NULL && (option->users & 1 << o->method) == 0) {
+    if (option != NULL && (option->users & 1 << resolved.method) == 0) {
         against = "method";
     } else if (pipelines != 0 && (pipelines & 256 << kind) == 0) {
         against = "pipeline";

@@ -3,6 +3,7 @@
 #include "render/plan.h"
 
 #include "render/options.h"
+#include "render/planner/planner.h"
 #include "render/show.h"
 
 #include <stdio.h>
@@ -130,6 +131,9 @@ static vplResult decideAll(vplRunner* r, vplPlan* p)
 {
     p->refusal = VPL_INVALID_ARGUMENT;
     TRY(pose(r->run.scene, p));
+    if (p->options.method == VPL_METHOD_AUTO) {
+        TRY(vplChooseMethod(r, p));
+    }
     vplDecideByOptions(r->run.scene, p);
     refuse(p);
     if (p->problem[0] != 0) { // before anything is built

@@ -1,337 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The public calls: a plan, then its stages pass by pass until a count, a time or an error estimate ends
-// them.
-#include "base/clock.h"
+// The public calls: a picture, layers, virtual lights or patches in one call.
 #include "math/scalar.h"
-#include "render/plan.h"
-#include "render/show.h"
+#include "render/planner/planner.h"
+#include "render/renderer.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
-#include "scene/scene.h"
 
-#include <math.h>
-
-// ---- histories
-
-// Opens the history that the options name, or a new one where there is none or another renderer uses it.
-static vplResult openHistory(const vplScene* scene, vplHistory* shared, vplHistory** historyOut)
-{
-    if (shared != NULL && shared->context != scene->context) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplRenderOptions.sequence.history was made with another context than the scene's");
-    }
-    if (shared != NULL && shared->sceneStamp != 0 && shared->sceneStamp != scene->stamp) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplRenderOptions.sequence.history is of another scene, or something was added to the "
-                       "scene since");
-    }
-    if (shared == NULL || shared->busy) {
-        return vplHistory_Create(scene->context, historyOut);
-    }
-    shared->busy = true;
-    shared->sceneStamp = scene->stamp;
-    *historyOut = shared;
-    return VPL_SUCCESS;
-}
-
-static void closeHistory(vplHistory* history)
-{
-    if (history->busy) { // it is the caller's
-        history->busy = false;
-    } else {
-        vplHistory_Destroy(history);
-    }
-}
-
-// ---- a render as a loop of steps
-
-struct vplRenderer {
-    vplRunner runner;
-    vplPlan* plan;
-    vplImage* base;  // all of the picture; direct light alone where passes add the rest
-    double* sums[2]; // of the pictures of passes with even and odd numbers; NULL without passes
-    // Layers: direct light alone, or where passes add up, the sum of what their lights on area lights send,
-    // which `base` lacks; NULL: there is none.
-    vplImage* direct;
-    int done;               // passes
-    double start, cpuStart; // ms
-    double passMs;          // of all passes
-};
-
-vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
-                             vplRenderer** rendererOut)
-{
-    vplContext* context = vplScene_GetContext(scene);
-    const double start = vplClockMs(), cpuStart = vplCpuMs();
-    vplHistory* history;
-    TRY(openHistory(scene, options->sequence.history, &history));
-    vplRenderer* r = vplAllocZero(context, 1, sizeof *r);
-    if (r == NULL) {
-        closeHistory(history);
-        return VPL_OUT_OF_MEMORY;
-    }
-    r->start = start;
-    r->cpuStart = cpuStart;
-    r->runner = vplRunner_Begin(scene, history);
-    r->runner.progress = options->progress;
-    r->runner.progressUser = options->progressUser;
-    r->runner.stats.clampLoss = r->runner.stats.errorEstimate = r->runner.stats.relativeErrorEstimate = -1;
-    vplResult result = vplMakePlan(&r->runner, options, NULL, &r->plan);
-    if (result == VPL_SUCCESS && r->plan->problem[0] != 0) {
-        result = vplFail(context, r->plan->refusal, "%s", r->plan->problem);
-    }
-    if (result != VPL_SUCCESS) {
-        vplRenderer_Destroy(r);
-        return result;
-    }
-    *rendererOut = r;
-    return VPL_SUCCESS;
-}
-
-// Estimates the share of the whole render that `passes` are, for progress.
-static double shareOf(const vplRenderer* r, int passes)
-{
-    const vplStopOptions* o = &r->plan->options.stop;
-    const bool paths = r->plan->options.method == VPL_METHOD_PATH;
-    const int count = vplPathsAreOpen(r->plan) ? 0 : paths ? vplCountPathPasses(r->plan) : o->passes;
-    double share = 0;
-    if (count > 0) {
-        share = (double)passes / count;
-    } else if (o->maxError > 0) {
-        share = passes / (passes + 4.0);
-    } else if (o->budgetMs <= 0) {
-        share = passes;
-    }
-    if (o->budgetMs > 0) {
-        const double spent = (vplClockMs() - r->start) / o->budgetMs;
-        share = spent > share ? spent : share;
-    }
-    return share < 1 ? share : 1;
-}
-
-static vplResult openSums(vplRenderer* r)
-{
-    for (int half = 0; half < 2; half++) {
-        r->sums[half] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[half]);
-        if (r->sums[half] == NULL) {
-            return VPL_OUT_OF_MEMORY;
-        }
-    }
-    return VPL_SUCCESS;
-}
-
-// Renders direct light alone for layers: once if there is one pass, else what each pass adds to it.
-static vplResult addDirect(vplRenderer* r)
-{
-    const vplPlan* p = r->plan;
-    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && p->hasAreaLights;
-    if (!p->splitsLight || (p->progressive && !onSurfaces)) {
-        return VPL_SUCCESS;
-    }
-    r->runner.run.parts = VPL_PART_EMITTER_LIGHTS | (p->progressive ? 0 : VPL_PART_DIRECT);
-    TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
-    vplImage *image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE), *before = r->direct;
-    for (size_t k = 0; k < vplValueCount(image) && p->progressive && before != NULL; k++) {
-        image->pixels[k] += before->pixels[k];
-    }
-    vplImage_Destroy(before);
-    r->direct = image;
-    return VPL_SUCCESS;
-}
-
-// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums.
-static vplResult addPass(vplRenderer* r)
-{
-    if (r->done == 0) {
-        r->runner.run.parts = VPL_PART_DIRECT;
-        TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
-        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(openSums(r));
-        r->runner.run.parts = VPL_PART_INDIRECT;
-        TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
-    } else {
-        r->runner.run.parts = VPL_PART_INDIRECT;
-        TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
-    }
-    vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-    for (size_t k = 0; k < vplValueCount(image); k++) {
-        r->sums[r->done % 2][k] += (double)image->pixels[k];
-    }
-    vplImage_Destroy(image);
-    return addDirect(r);
-}
-
-static vplResult runPass(vplRenderer* r)
-{
-    vplRun* run = &r->runner.run;
-    run->pass = r->done;
-    if (r->plan->progressive) {
-        return addPass(r);
-    }
-    run->parts = VPL_PART_DIRECT | VPL_PART_INDIRECT;
-    TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_COUNT));
-    if (r->plan->options.method != VPL_METHOD_PATH) {
-        const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-        vplImage_Destroy(r->base);
-        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS);
-        return addDirect(r);
-    }
-    return VPL_SUCCESS;
-}
-
-// The means of the even and the odd passes differ by their errors: half of the difference is the error to
-// expect in the mean of both. Errors that both share (of direct light, and light that the accumulation loses
-// or moves) are not in it.
-static void estimateError(vplRenderer* r, const vplImage* image)
-{
-    const size_t values = vplValueCount(image);
-    const int odd = r->done / 2, even = r->done - odd;
-    vplRenderStats* stats = &r->runner.stats;
-    double squares = 0, sum = 0;
-    for (size_t k = 0; k < values && odd > 0; k++) {
-        const double half = 0.5 * (r->sums[0][k] / even - r->sums[1][k] / odd);
-        squares += half * half;
-        sum += (double)image->pixels[k];
-    }
-    if (odd > 0) {
-        stats->errorEstimate = sqrt(squares / (double)values);
-        stats->relativeErrorEstimate = sum > 0 ? stats->errorEstimate * (double)values / sum : 0;
-    }
-}
-
-static vplResult resolve(vplRenderer* r, vplImage** imageOut)
-{
-    vplRun* run = &r->runner.run;
-    const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-    if (r->plan->options.method == VPL_METHOD_PATH) {
-        return vplResolvePaths(run, imageOut);
-    }
-    TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
-    for (size_t k = 0; k < vplValueCount(r->base); k++) {
-        const double mean = r->plan->progressive ? (r->sums[0][k] + r->sums[1][k]) / r->done : 0;
-        (*imageOut)->pixels[k] = (float)((double)r->base->pixels[k] + mean);
-    }
-    if (r->plan->progressive) {
-        estimateError(r, *imageOut);
-    }
-    return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
-}
-
-// Direct light alone of all passes so far; NULL where light is not split.
-static vplResult resolveDirect(vplRenderer* r, vplImage** imageOut)
-{
-    const vplOutputOptions* o = &r->plan->options.output;
-    if (!r->plan->splitsLight) {
-        return VPL_SUCCESS;
-    }
-    TRY(vplImage_Create(r->runner.run.context, o->width, o->height, imageOut));
-    if (r->plan->options.method == VPL_METHOD_PATH) {
-        vplResolveDirectPaths(&r->runner.run, *imageOut);
-        return VPL_SUCCESS;
-    }
-    for (size_t k = 0; k < vplValueCount(*imageOut); k++) {
-        const float added = r->direct != NULL ? r->direct->pixels[k] : 0;
-        (*imageOut)->pixels[k] = r->plan->progressive ? r->base->pixels[k] + added / (float)r->done : added;
-    }
-    return VPL_SUCCESS;
-}
-
-// Tests whether the options' count of passes, error or time is reached.
-static vplResult isDone(vplRenderer* r, bool* doneOut)
-{
-    const vplRenderOptions* o = &r->plan->options;
-    const bool paths = o->method == VPL_METHOD_PATH;
-    bool done = paths                  ? r->done >= vplCountPathPasses(r->plan)
-                : r->plan->progressive ? o->stop.passes > 0 && r->done >= o->stop.passes
-                                       : true;
-    if (!done && o->stop.maxError > 0) {
-        vplImage* image = NULL;
-        const vplResult result = resolve(r, &image);
-        vplImage_Destroy(image);
-        TRY(result);
-        const double error = r->runner.stats.relativeErrorEstimate;
-        done = error >= 0 && error <= o->stop.maxError;
-    }
-    const double budget = o->stop.budgetMs;
-    *doneOut = done || (budget > 0 && vplClockMs() - r->start + r->passMs / r->done > budget);
-    return VPL_SUCCESS;
-}
-
-vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
-{
-    const double begin = vplClockMs();
-    r->runner.stepFrom = shareOf(r, r->done);
-    r->runner.stepTo = shareOf(r, r->done + 1);
-    TRY(runPass(r));
-    r->passMs += vplClockMs() - begin;
-    r->done++;
-    return isDone(r, doneOut);
-}
-
-static void finishStats(vplRenderer* r, const vplImage* image, vplRenderStats* statsOut)
-{
-    vplRenderStats* stats = &r->runner.stats;
-    stats->passes = r->done;
-    stats->totalMs = vplClockMs() - r->start;
-    stats->cpuMs = vplCpuMs() - r->cpuStart;
-    stats->peakBytes = vplRunner_PeakBytes(&r->runner);
-    stats->imageHash = image != NULL ? vplImage_Hash(image) : 0;
-    *statsOut = *stats;
-}
-
-vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
-{
-    vplImage* image = NULL;
-    if (r->done == 0) {
-        return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
-                       "a renderer has no picture before its first step");
-    }
-    const vplResult result = resolve(r, &image);
-    if (result != VPL_SUCCESS) {
-        vplImage_Destroy(image);
-        return result;
-    }
-    if (statsOut != NULL) {
-        finishStats(r, image, statsOut);
-    }
-    *imageOut = image;
-    return VPL_SUCCESS;
-}
-
-vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRenderStats* statsOut)
-{
-    vplImage *picture = NULL, *direct = NULL;
-    vplLayers* layers;
-    TRY(vplRenderer_GetImage(r, &picture, NULL));
-    const vplResult result = resolveDirect(r, &direct);
-    if (result != VPL_SUCCESS) {
-        vplImage_Destroy(picture);
-        return result;
-    }
-    TRY(vplMakeLayers(&r->runner.run, picture, direct, &layers));
-    if (statsOut != NULL) {
-        finishStats(r, picture, statsOut);
-    }
-    *layersOut = layers;
-    return VPL_SUCCESS;
-}
-
-void vplRenderer_Destroy(vplRenderer* r)
-{
-    if (r != NULL) {
-        vplContext* context = r->runner.run.context;
-        vplImage_Destroy(r->base);
-        vplImage_Destroy(r->direct);
-        vplFree(context, r->sums[0]);
-        vplFree(context, r->sums[1]);
-        vplPlan_Destroy(r->plan);
-        closeHistory(r->runner.history);
-        vplFree(context, r);
-    }
-}
-
-// ---- in one call
+// ---- pictures
 
 // Takes the last picture. Where no pass follows it is given away without a copy.
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
@@ -342,7 +17,7 @@ static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* 
     *imageOut = r->base;
     r->base = NULL;
     if (statsOut != NULL) {
-        finishStats(r, *imageOut, statsOut);
+        vplRenderer_FinishStats(r, *imageOut, statsOut);
     }
     return VPL_SUCCESS;
 }
@@ -397,6 +72,7 @@ vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options
 vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)
 {
     vplRenderOptions o = *options;
+    o.method = o.method == VPL_METHOD_AUTO ? vplFirstMethodFor(&o) : o.method;
     const bool ssvp = o.method == VPL_METHOD_SSVP;
     const vplStageId stage = ssvp ? VPL_STAGE_CLUSTERED_LIGHTS : VPL_STAGE_PARTICLES;
     vplRenderer* r;
@@ -435,7 +111,7 @@ vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float 
         vplArena_Destroy(scratch);
     }
     if (result == VPL_SUCCESS && statsOut != NULL) {
-        finishStats(r, NULL, statsOut);
+        vplRenderer_FinishStats(r, NULL, statsOut);
     }
     vplRenderer_Destroy(r);
     return result;

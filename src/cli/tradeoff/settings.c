@@ -127,6 +127,7 @@ static uint64_t chooseSweeps(const char* list)
 static Family familyOf(const vplRenderOptions* o)
 {
     switch (o->method) {
+    case VPL_METHOD_AUTO: // not measured as such
     case VPL_METHOD_DIRECT:
         return FAMILY_DIRECT;
     case VPL_METHOD_PATH:

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// The planner: what --method auto stands for.
+#ifndef VPL_RENDER_PLANNER_PLANNER_H
+#define VPL_RENDER_PLANNER_PLANNER_H
+
+#include "render/plan.h"
+
+// VPL_USE_... of the methods that use every option that is not as in vplDefaultRenderOptions, and that can show
+// what the options show.
+int vplMethodsFor(const vplRenderOptions* options);
+
+// The method that comes first among those, without a look at the scene; Keller's where there is none.
+vplMethod vplFirstMethodFor(const vplRenderOptions* options);
+
+// Replaces --method auto by a method and its options.
+vplResult vplChooseMethod(vplRunner* runner, vplPlan* plan);
+
+#endif
