@@ -35,6 +35,22 @@ typedef struct vplDecision {
     char why[VPL_PLAN_TEXT];
 } vplDecision;
 
+// What the planner saw of the scene, from some hundred rays and virtual lights; see vplPlan.look.
+typedef struct vplLook {
+    int points;        // places in the picture that were looked at; 0: no look was taken, and the rest is 0
+    double background; // share of them where nothing is seen
+    double open;       // share of the directions from visible surfaces in which there is nothing
+    double
+        nearShare; // share of these directions in which something is nearer than a 32nd of the scene's diagonal
+    int lights;    // virtual lights that were made
+    double reaching; // share of them whose light reaches a visible surface
+    // Virtual lights of equal contribution that would be as good as one of those that were made, in (0, 1]: small where
+    // few of the lights light the picture, as behind a door ajar.
+    double worth;
+    double lightLeaving; // share of the particles that left the scene
+    int64_t rays;        // cast for the look
+} vplLook;
+
 // Read only. Two plans of the same scene, options and machine are equal.
 typedef struct vplPlan {
     // Resolved: no value is "usual", "auto" or negative. Three exceptions have their meaning in later stages:
@@ -85,6 +101,7 @@ typedef struct vplPlan {
     // Estimated costs of shadow maps and rays, by which the shadows of virtual lights were chosen, ms on one
     // core of the machine of bench/crossover; 0 where there was no choice.
     double shadowMapEstimateMs, shadowRayEstimateMs;
+    vplLook look;                // of --method auto
     char problem[VPL_PLAN_TEXT]; // why the picture cannot be rendered; empty: it can
     vplResult refusal;           // the result of rendering it all the same: VPL_INVALID_ARGUMENT or VPL_LIMIT
     struct vplArena* arena;      // owns the emitters

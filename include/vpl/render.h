@@ -62,9 +62,16 @@ typedef struct vplRenderStats {
     vplSolveStats solve;     // radiosity: the solver of the last frame
 
     int passes; // the picture is their mean; path tracing: up to 32 paths per pixel each
-    // Estimated rmse of the picture, from two independent halves of the samples or passes, and the same
-    // divided by the picture's mean; negative: not estimated.
+    // Estimated rmse of the picture against the true one, and the same divided by the picture's mean; negative: not
+    // estimated.
     double errorEstimate, relativeErrorEstimate;
+    // Its two parts, relative; the error is the root of the sum of their squares. Noise differs from pass to pass
+    // (path tracing: from path to path) and is found by comparing them. Bias is common to all passes: jagged edges, light
+    // that is blurred, clamped or left out. It is found by comparing the picture with some hundred path-traced pixels,
+    // where --max-error asks for it or --method auto has the time; until then the error is its noise alone. Negative: not
+    // estimated.
+    double relativeNoise, relativeBias;
+    int truthPaths;     // paths of each of these pixels; 0: none were traced
     size_t peakBytes;   // most memory that the context held at a time during the call
     uint64_t imageHash; // vplImage_Hash
 } vplRenderStats;
@@ -113,6 +120,9 @@ vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
 
 // Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
 vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRenderStats* statsOut);
+
+// The plan of the picture so far, which the renderer owns. Budgets and errors may replace it in the next step.
+const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer);
 
 // Gets the picture so far and its layers, likewise; destroy them with vplLayers_Destroy.
 vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vplRenderStats* statsOut);

@@ -11,9 +11,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-// Adds a decision to the plan: the value of the option as it is now, and why.
-__attribute__((format(printf, 3, 4))) static void decide(vplPlan* plan, const char* option,
-                                                         const char* format, ...)
+void vplDecide(vplPlan* plan, const char* option, const char* format, ...)
 {
     if (plan->decisionCount < VPL_MAX_DECISIONS) {
         vplDecision* d = &plan->decisions[plan->decisionCount++];
@@ -48,24 +46,25 @@ static void choosePipeline(vplPlan* p)
         o->pipeline.kind = vplUsualPipeline(o);
         const bool shared = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
         if (p->showsVirtual) {
-            decide(p, "pipeline",
-                   ssvp     ? "neighbours share lights, as the document has it"
-                   : shared ? "neighbours share so many lights"
-                            : "one G-buffer, then all lights per tile");
+            vplDecide(p, "pipeline",
+                      ssvp     ? "neighbours share lights, as the document has it"
+                      : shared ? "neighbours share so many lights"
+                               : "one G-buffer, then all lights per tile");
         }
     }
     if (o->pipeline.interleave < 0) {
         o->pipeline.interleave = squareOf(o);
         if (p->showsVirtual && o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED) {
-            decide(p, "interleave",
-                   ssvp ? "as the document has it" : "by the number of lights and of pixels");
+            vplDecide(p, "interleave",
+                      ssvp ? "as the document has it" : "by the number of lights and of pixels");
         }
     }
     if (o->shadow.rsmSize == 0) {
         o->shadow.rsmSize = ssvp ? 1024 : 256;
         if (ssvp || o->particles.placement == VPL_PLACEMENT_RSM) {
-            decide(p, "rsm-size",
-                   ssvp ? "direct light takes its shadows from it, too" : "first hits need no more texels");
+            vplDecide(p, "rsm-size",
+                      ssvp ? "direct light takes its shadows from it, too"
+                           : "first hits need no more texels");
         }
     }
 }
@@ -80,10 +79,10 @@ static void chooseSamples(vplPlan* p)
                                             o->pipeline.kind == VPL_ACCUMULATE_BATCHED);
     if (o->output.antialias > 1 && (o->output.supersample > 1 || passes || !light)) {
         o->output.antialias = 1;
-        decide(p, "antialias",
-               o->output.supersample > 1 ? "every sample is a whole picture"
-               : passes                  ? "passes over the scene light the pixels' centres"
-                                         : "stages are shown as they are");
+        vplDecide(p, "antialias",
+                  o->output.supersample > 1 ? "every sample is a whole picture"
+                  : passes                  ? "passes over the scene light the pixels' centres"
+                                            : "stages are shown as they are");
     }
 }
 
@@ -94,15 +93,15 @@ static void chooseParticleCount(vplPlan* p)
     if (o->particles.count < 0) {
         o->particles.count = keller ? 4000 : 10;
         if (shown) {
-            decide(p, "particles",
-                   keller ? "2.3 %% error in the room; 2000 leave 2.5 %%, 8000 leave 1.9 %%"
-                          : "as in the document");
+            vplDecide(p, "particles",
+                      keller ? "2.3 %% error in the room; 2000 leave 2.5 %%, 8000 leave 1.9 %%"
+                             : "as in the document");
         }
     }
     if (o->particles.reflectivity < -1) {
         o->particles.reflectivity = keller ? -1 : 0.5;
         if (shown && !keller) {
-            decide(p, "reflectivity", "as in the document");
+            vplDecide(p, "reflectivity", "as in the document");
         }
     }
 }
@@ -114,9 +113,22 @@ static void choosePaths(vplPlan* p)
     if (o->path.samples < 0) {
         o->path.samples = open ? VPL_MAX_SAMPLES : 64;
         if (o->method == VPL_METHOD_PATH) {
-            decide(p, "spp",
-                   open ? "the time or the error that is asked for ends it before" : "a first look");
+            vplDecide(p, "spp",
+                      open ? "the time or the error that is asked for ends it before" : "a first look");
         }
+    }
+}
+
+// Pictures that are to be there in time, or to stop when they are good enough, begin with small passes.
+static void choosePasses(vplPlan* p)
+{
+    vplRenderOptions* o = &p->options;
+    const bool ends = o->stop.budgetMs > 0 || o->stop.maxError > 0;
+    const bool particles = (VPL_USE_PARTICLES & 1 << o->method) != 0;
+    if (p->progressive && ends && particles && o->stop.growFrom == 0 && o->stop.passes == 0 &&
+        o->particles.count >= 32) {
+        o->stop.growFrom = o->particles.count / 32;
+        vplDecide(p, "grow-from", "a coarse picture comes first");
     }
 }
 
@@ -129,17 +141,18 @@ static void chooseParticles(vplPlan* p)
     if (o->particles.sampler == VPL_SAMPLER_AUTO) { // by view: error 0.64 in sponza-sun, 0.91 in room
         o->particles.sampler = keller || byView ? VPL_SAMPLER_HALTON : VPL_SAMPLER_RANDOM;
         if (shown) {
-            decide(p, "sampler",
-                   keller   ? "as Keller's document has it"
-                   : byView ? "less noise among so many candidates"
-                            : "the document's particles start at random");
+            vplDecide(p, "sampler",
+                      keller   ? "as Keller's document has it"
+                      : byView ? "less noise among so many candidates"
+                               : "the document's particles start at random");
         }
     }
     if (o->particles.bounce == VPL_BOUNCE_AUTO) {
         o->particles.bounce = mirror ? VPL_BOUNCE_REFLECT : VPL_BOUNCE_DIFFUSE;
         if (shown) {
-            decide(p, "bounce",
-                   mirror ? "particles reflect like mirrors in documented lighting" : "surfaces are diffuse");
+            vplDecide(p, "bounce",
+                      mirror ? "particles reflect like mirrors in documented lighting"
+                             : "surfaces are diffuse");
         }
     }
 }
@@ -157,9 +170,9 @@ static void chooseShadows(vplPlan* p)
                             : o->method == VPL_METHOD_SSVP ? VPL_LIGHT_SHADOWS_CLUSTER
                                                            : VPL_LIGHT_SHADOWS_NONE;
         if (p->showsVirtual && o->lights.shadows != VPL_LIGHT_SHADOWS_AUTO) {
-            decide(p, "light-shadows",
-                   o->method == VPL_METHOD_SSVP ? "lights of a cluster share its paraboloid map"
-                                                : "the document draws virtual lights without shadows");
+            vplDecide(p, "light-shadows",
+                      o->method == VPL_METHOD_SSVP ? "lights of a cluster share its paraboloid map"
+                                                   : "the document draws virtual lights without shadows");
         }
     }
 }
@@ -173,10 +186,10 @@ static void chooseCompensation(vplPlan* p)
     if (o->lights.compensation == VPL_COMPENSATION_USUAL) {
         o->lights.compensation = pays ? VPL_COMPENSATION_RAYS : VPL_COMPENSATION_NONE;
         if (p->showsVirtual) {
-            decide(p, "compensation",
-                   pays     ? "short rays find the light that the clamp takes away"
-                   : keller ? "it needs physical lighting and shadows"
-                            : "only keller's lights stand for all light near by");
+            vplDecide(p, "compensation",
+                      pays     ? "short rays find the light that the clamp takes away"
+                      : keller ? "it needs physical lighting and shadows"
+                               : "only keller's lights stand for all light near by");
         }
     }
     const vplShow show = o->output.show;
@@ -194,11 +207,12 @@ static void chooseRadiosity(vplPlan* p)
     const bool incentre = o->formFactors == VPL_FORM_FACTORS_INCENTRE;
     if (o->rowSums == VPL_ROW_SUMS_USUAL && o->hierarchy == VPL_HIERARCHY_OFF) {
         o->rowSums = incentre ? VPL_ROW_SUMS_KEEP : VPL_ROW_SUMS_CLAMP;
-        decide(p, "row-sums", incentre ? "as the document has it" : "no patch sends more light than it has");
+        vplDecide(p, "row-sums",
+                  incentre ? "as the document has it" : "no patch sends more light than it has");
     }
     if (o->lightSamples == 0) {
         o->lightSamples = incentre ? 1 : VPL_PATCH_CELLS;
-        decide(p, "patch-light", incentre ? "as the document has it" : "the mean over the patch");
+        vplDecide(p, "patch-light", incentre ? "as the document has it" : "the mean over the patch");
     }
 }
 
@@ -216,8 +230,9 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
     p->splitsLight = (o->output.aovs & (VPL_AOV_DIRECT | VPL_AOV_INDIRECT)) != 0 &&
                      (p->showsVirtual || p->showsPatches || o->method == VPL_METHOD_PATH);
-    p->progressive = row->passes && p->showsVirtual &&
-                     (o->stop.passes > 1 || o->stop.budgetMs > 0 || o->stop.maxError > 0);
+    p->progressive =
+        row->passes && p->showsVirtual &&
+        (o->stop.passes > 1 || o->stop.growFrom > 0 || o->stop.budgetMs > 0 || o->stop.maxError > 0);
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
         const vplRgb e = vplScene_GetMaterial(scene, i)->emission;
         p->hasAreaLights = p->hasAreaLights || e.r > 0 || e.g > 0 || e.b > 0;
@@ -238,6 +253,7 @@ void vplDecideByOptions(const vplScene* scene, vplPlan* p)
 {
     choosePicture(scene, p);
     chooseParticleCount(p);
+    choosePasses(p);
     choosePipeline(p);
     chooseSamples(p);
     chooseParticles(p);
@@ -273,10 +289,10 @@ static vplResult countLights(vplRunner* r, vplPlan* p)
     }
     if (o->method == VPL_METHOD_KELLER && o->output.show == VPL_SHOW_DIRECT) {
         o->particles.reflectivity = 0;
-        decide(p, "reflectivity", "lights on the emitters are all that direct light needs");
+        vplDecide(p, "reflectivity", "lights on the emitters are all that direct light needs");
     } else if (o->particles.reflectivity < 0) {
         o->particles.reflectivity = vplGeometry_MeanReflectance(r->run.results[VPL_STAGE_GEOMETRY]);
-        decide(p, "reflectivity", "the mean reflectance over the area of the scene");
+        vplDecide(p, "reflectivity", "the mean reflectance over the area of the scene");
     }
     const vplParticlePass pass = {0, o->particles.count, o->particles.reflectivity};
     vplStepTotals totals;
@@ -304,11 +320,11 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
     if (p->clampArea > 0) {
         const double passes = p->options.stop.passes > 1 ? p->options.stop.passes : 1;
         p->options.lights.minDistance = vplClampDistance(&r->run, (double)p->virtualLights);
-        decide(p, "min-distance", "%s%s",
-               p->nearDistance > 0 && p->options.lights.minDistance <= p->nearDistance
-                   ? "within it surfaces see a fifth of what they see; nearer light is found by short rays"
-                   : "the radius of a disc with one light's share of the area of the scene",
-               passes > 1 ? "; less in later passes" : "");
+        vplDecide(p, "min-distance", "%s%s",
+                  p->nearDistance > 0 && p->options.lights.minDistance <= p->nearDistance
+                      ? "within it surfaces see a fifth of what they see; nearer light is found by short rays"
+                      : "the radius of a disc with one light's share of the area of the scene",
+                  passes > 1 ? "; less in later passes" : "");
     }
 }
 
@@ -334,8 +350,9 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
     p->formFactorBytes = (int64_t)p->patchSides * p->patchSides * (int64_t)sizeof(float);
     if (o->hierarchy == VPL_HIERARCHY_AUTO) {
         o->hierarchy = p->linked ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
-        decide(p, "hierarchy", "%d sides; form factors of all pairs are exact and fit into memory up to %d",
-               p->patchSides, VPL_ALL_PAIRS);
+        vplDecide(p, "hierarchy",
+                  "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
+                  VPL_ALL_PAIRS);
     }
     if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
         p->refusal = VPL_LIMIT;
@@ -369,16 +386,16 @@ vplResult vplDecideLightShadows(vplRunner* r, vplPlan* p)
     if (!p->showsVirtual || p->virtualLights == 0 || p->options.pipeline.kind == VPL_ACCUMULATE_LIGHTCUTS) {
         *shadows = VPL_LIGHT_SHADOWS_RAY;
         if (p->showsVirtual) {
-            decide(p, "light-shadows",
-                   p->virtualLights == 0
-                       ? "there are no lights to draw maps for"
-                       : "each pixel evaluates few of the lights, which maps cannot know before");
+            vplDecide(p, "light-shadows",
+                      p->virtualLights == 0
+                          ? "there are no lights to draw maps for"
+                          : "each pixel evaluates few of the lights, which maps cannot know before");
         }
         return VPL_SUCCESS;
     }
     TRY(vplRunner_RunPlan(r, p, VPL_STAGE_VIRTUAL_LIGHTS));
     const vplVirtualLights* lights = r->run.results[VPL_STAGE_VIRTUAL_LIGHTS];
     *shadows = vplChooseLightShadows(&r->run, lights, p, why);
-    decide(p, "light-shadows", "%s", why);
+    vplDecide(p, "light-shadows", "%s", why);
     return VPL_SUCCESS;
 }

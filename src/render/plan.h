@@ -10,6 +10,10 @@
 vplResult vplMakePlan(vplRunner* runner, const vplRenderOptions* options, const vplMachine* machine,
                       vplPlan** planOut);
 
+// Adds a decision to the plan: the value of the option as it is now, and why.
+__attribute__((format(printf, 3, 4))) void vplDecide(vplPlan* plan, const char* option, const char* format,
+                                                     ...);
+
 // Decisions that need only the options and the declared scene.
 void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 

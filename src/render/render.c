@@ -11,7 +11,7 @@
 // Takes the last picture. Where no pass follows it is given away without a copy.
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
-    if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH) {
+    if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH || r->kept.image != NULL) {
         return vplRenderer_GetImage(r, imageOut, statsOut);
     }
     *imageOut = r->base;
@@ -20,6 +20,24 @@ static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* 
         vplRenderer_FinishStats(r, *imageOut, statsOut);
     }
     return VPL_SUCCESS;
+}
+
+// Says how exact the picture is, and warns where it is not as exact as was asked for.
+static void sayError(const vplRenderer* r, double asked)
+{
+    const vplErrorParts* e = &r->error;
+    const double reached = e->total >= 0 ? e->total : e->noise;
+    vplContext* context = r->runner.run.context;
+    if (asked > 0 && reached >= 0 && !(e->bound >= 0 && e->bound <= asked)) {
+        vplLog(context, VPL_LOG_WARNING,
+               "the error is about %.3g %%, not surely below the %.3g %% asked for: %s", 100 * reached,
+               100 * asked,
+               r->ended[0] != 0                    ? r->ended
+               : r->late || r->deadline < INFINITY ? "--budget ended the render"
+                                                   : "--passes or --spp ended the render");
+    } else if (reached >= 0) {
+        vplLog(context, VPL_LOG_INFO, "the error is about %.3g %%", 100 * reached);
+    }
 }
 
 // Renders the picture, or where layersOut is not NULL layers.
@@ -36,18 +54,8 @@ static vplResult render(const vplScene* scene, const vplRenderOptions* options, 
         result = layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut)
                                    : takeImage(r, imageOut, statsOut);
     }
-    const vplRenderStats* stats = &r->runner.stats;
-    const double asked = options->stop.maxError;
-    if (result == VPL_SUCCESS && asked > 0 && stats->relativeErrorEstimate > asked) {
-        vplLog(r->runner.run.context, VPL_LOG_WARNING,
-               "the error is about %.3g %%, not the %.3g %% asked for: --budget, --passes or --spp ended the "
-               "render "
-               "after %d passes",
-               100 * stats->relativeErrorEstimate, 100 * asked, r->done);
-    } else if (result == VPL_SUCCESS && stats->errorEstimate >= 0) {
-        vplLog(r->runner.run.context, VPL_LOG_INFO,
-               "remaining error about %.3g W/(m^2 sr), %.3g %% of the mean", stats->errorEstimate,
-               100 * stats->relativeErrorEstimate);
+    if (result == VPL_SUCCESS) {
+        sayError(r, options->stop.maxError);
     }
     vplRenderer_Destroy(r);
     return result;
@@ -81,6 +89,8 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
     }
     o.output.show = VPL_SHOW_PICTURE;
     o.output.aovs = 0;
+    o.stop.budgetMs = o.stop.maxError = 0;
+    o.stop.quality = VPL_QUALITY_NONE;
     TRY(vplRenderer_Create(scene, &o, &r));
     const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, stage);
     if (result == VPL_SUCCESS && ssvp) {
@@ -103,6 +113,8 @@ vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float 
     o.method = VPL_METHOD_RADIOSITY;
     o.output.show = VPL_SHOW_PICTURE;
     o.output.aovs = 0;
+    o.stop.budgetMs = o.stop.maxError = 0;
+    o.stop.quality = VPL_QUALITY_NONE;
     TRY(vplRenderer_Create(scene, &o, &r));
     vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_SOLUTION);
     if (result == VPL_SUCCESS) {

@@ -11,6 +11,7 @@
 #include "scene/scene.h"
 
 #include <math.h>
+#include <string.h>
 
 // ---- histories
 
@@ -44,7 +45,47 @@ static void closeHistory(vplHistory* history)
     }
 }
 
-// ---- a render as a loop of steps
+// ---- plans
+
+// Forgets the picture of the plan under way, but not the results of its stages.
+static void forget(vplRenderer* r)
+{
+    vplContext* context = r->runner.run.context;
+    vplImage_Destroy(r->base);
+    vplImage_Destroy(r->direct);
+    vplFree(context, r->sums[0]);
+    vplFree(context, r->sums[1]);
+    vplPlan_Destroy(r->plan);
+    r->base = r->direct = NULL;
+    r->sums[0] = r->sums[1] = NULL;
+    r->plan = NULL;
+    r->done = r->paths = 0;
+    r->weight = r->passMs = r->lastMs = 0;
+    r->error = (vplErrorParts){-1, -1, -1};
+    r->judgedNoise = 0;
+}
+
+vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool coarse)
+{
+    forget(r);
+    r->coarse = coarse;
+    r->planStart = vplClockMs();
+    r->planRays = (double)r->runner.stats.rays;
+    TRY(vplMakePlan(&r->runner, options, NULL, &r->plan));
+    return r->plan->problem[0] != 0 ? vplFail(r->runner.run.context, r->plan->refusal, "%s", r->plan->problem)
+                                    : VPL_SUCCESS;
+}
+
+// Progress of the render; false where the caller cancels it, or where the time is up and there is a picture.
+static bool watch(void* user, double fraction)
+{
+    vplRenderer* r = user;
+    if (vplClockMs() > r->deadline + 0.04 * r->asked.stop.budgetMs && vplRenderer_HasPicture(r)) {
+        r->late = true;
+        return false;
+    }
+    return r->asked.progress == NULL || r->asked.progress(r->asked.progressUser, fraction);
+}
 
 vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* options,
                              vplRenderer** rendererOut)
@@ -58,16 +99,18 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
         closeHistory(history);
         return VPL_OUT_OF_MEMORY;
     }
+    r->asked = *options;
+    vplResolveQuality(&r->asked);
     r->start = start;
     r->cpuStart = cpuStart;
+    r->deadline = r->asked.stop.budgetMs > 0 ? start + r->asked.stop.budgetMs : INFINITY;
     r->runner = vplRunner_Begin(scene, history);
-    r->runner.progress = options->progress;
-    r->runner.progressUser = options->progressUser;
-    r->runner.stats.clampLoss = r->runner.stats.errorEstimate = r->runner.stats.relativeErrorEstimate = -1;
-    vplResult result = vplMakePlan(&r->runner, options, NULL, &r->plan);
-    if (result == VPL_SUCCESS && r->plan->problem[0] != 0) {
-        result = vplFail(context, r->plan->refusal, "%s", r->plan->problem);
-    }
+    r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
+    r->runner.progressUser = r;
+    r->runner.stats.clampLoss = -1;
+    vplRenderOptions first;
+    const bool coarse = vplFirstOptions(r, &first);
+    const vplResult result = vplRenderer_Plan(r, &first, coarse);
     if (result != VPL_SUCCESS) {
         vplRenderer_Destroy(r);
         return result;
@@ -76,15 +119,36 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     return VPL_SUCCESS;
 }
 
+void vplRenderer_Destroy(vplRenderer* r)
+{
+    if (r != NULL) {
+        forget(r);
+        vplTruth_Destroy(r->truth);
+        vplImage_Destroy(r->kept.image);
+        vplPlan_Destroy(r->kept.plan);
+        closeHistory(r->runner.history);
+        vplFree(r->runner.run.context, r);
+    }
+}
+
+bool vplRenderer_HasPicture(const vplRenderer* r)
+{
+    return r->done > 0 || r->kept.image != NULL;
+}
+
+// ---- passes
+
 // Estimates the share of the whole render that `passes` are, for progress.
 static double shareOf(const vplRenderer* r, int passes)
 {
     const vplStopOptions* o = &r->plan->options.stop;
     const bool paths = r->plan->options.method == VPL_METHOD_PATH;
-    const int count = vplPathsAreOpen(r->plan) ? 0 : paths ? vplCountPathPasses(r->plan) : o->passes;
+    const int most = r->plan->options.path.samples;
     double share = 0;
-    if (count > 0) {
-        share = (double)passes / count;
+    if (paths && !vplPathsAreOpen(r->plan)) {
+        share = (double)(r->paths + (passes > r->done ? vplNextPaths(r) : 0)) / most;
+    } else if (!paths && o->passes > 0) {
+        share = (double)passes / o->passes;
     } else if (o->maxError > 0) {
         share = passes / (passes + 4.0);
     } else if (o->budgetMs <= 0) {
@@ -99,9 +163,9 @@ static double shareOf(const vplRenderer* r, int passes)
 
 static vplResult openSums(vplRenderer* r)
 {
-    for (int half = 0; half < 2; half++) {
-        r->sums[half] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[half]);
-        if (r->sums[half] == NULL) {
+    for (int i = 0; i < 2; i++) {
+        r->sums[i] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[i]);
+        if (r->sums[i] == NULL) {
             return VPL_OUT_OF_MEMORY;
         }
     }
@@ -119,18 +183,20 @@ static vplResult addDirect(vplRenderer* r)
     r->runner.run.parts = VPL_PART_EMITTER_LIGHTS | (p->progressive ? 0 : VPL_PART_DIRECT);
     TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
     vplImage *image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE), *before = r->direct;
-    for (size_t k = 0; k < vplValueCount(image) && p->progressive && before != NULL; k++) {
-        image->pixels[k] += before->pixels[k];
+    const float share = (float)vplShareOfPass(p, r->done);
+    for (size_t k = 0; k < vplValueCount(image) && p->progressive; k++) {
+        image->pixels[k] = share * image->pixels[k] + (before != NULL ? before->pixels[k] : 0);
     }
     vplImage_Destroy(before);
     r->direct = image;
     return VPL_SUCCESS;
 }
 
-// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums.
+// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums; a pass that is
+// cancelled adds nothing.
 static vplResult addPass(vplRenderer* r)
 {
-    if (r->done == 0) {
+    if (r->base == NULL) {
         r->runner.run.parts = VPL_PART_DIRECT;
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
         r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
@@ -142,68 +208,100 @@ static vplResult addPass(vplRenderer* r)
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
     }
     vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-    for (size_t k = 0; k < vplValueCount(image); k++) {
-        r->sums[r->done % 2][k] += (double)image->pixels[k];
+    const double share = vplShareOfPass(r->plan, r->done);
+    const vplResult result = addDirect(r);
+    for (size_t k = 0; k < vplValueCount(image) && result == VPL_SUCCESS; k++) {
+        const double x = (double)image->pixels[k];
+        r->sums[0][k] += share * x;
+        r->sums[1][k] += share * x * x;
     }
+    r->weight += result == VPL_SUCCESS ? share : 0;
     vplImage_Destroy(image);
-    return addDirect(r);
+    return result;
 }
 
 static vplResult runPass(vplRenderer* r)
 {
     vplRun* run = &r->runner.run;
     run->pass = r->done;
+    run->samples = vplNextPaths(r);
     if (r->plan->progressive) {
         return addPass(r);
     }
     run->parts = VPL_PART_DIRECT | VPL_PART_INDIRECT;
     TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_COUNT));
-    if (r->plan->options.method != VPL_METHOD_PATH) {
-        const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-        vplImage_Destroy(r->base);
-        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS);
-        return addDirect(r);
+    if (r->plan->options.method == VPL_METHOD_PATH) {
+        r->paths += run->samples;
+        return VPL_SUCCESS;
     }
-    return VPL_SUCCESS;
+    const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
+    vplImage_Destroy(r->base);
+    r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+    TRY(show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS);
+    return addDirect(r);
 }
 
-// The means of the even and the odd passes differ by their errors: half of the difference is the error to
-// expect in the mean of both. Errors that both share (of direct light, and light that the accumulation loses
-// or moves) are not in it.
-static void estimateError(vplRenderer* r, const vplImage* image)
+vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
+{
+    const double begin = vplClockMs();
+    r->runner.stepFrom = shareOf(r, r->done);
+    r->runner.stepTo = shareOf(r, r->done + 1);
+    const vplResult result = runPass(r);
+    if (result == VPL_CANCELLED && r->late) {
+        *doneOut = true;
+        return VPL_SUCCESS;
+    }
+    TRY(result);
+    r->lastMs = vplClockMs() - begin;
+    r->passMs += r->lastMs;
+    r->done++;
+    const vplResult reviewed = vplReview(r, doneOut);
+    if (reviewed == VPL_CANCELLED && r->late) {
+        *doneOut = true;
+        return VPL_SUCCESS;
+    }
+    return reviewed;
+}
+
+// ---- the picture
+
+// The noise of the mean of passes whose variance is that of a whole pass over their share of it. Errors that all passes
+// have alike (of direct light, and light that the accumulation loses or moves) are not in it.
+static void estimateNoise(vplRenderer* r, const vplImage* image)
 {
     const size_t values = vplValueCount(image);
-    const int odd = r->done / 2, even = r->done - odd;
-    vplRenderStats* stats = &r->runner.stats;
-    double squares = 0, sum = 0;
-    for (size_t k = 0; k < values && odd > 0; k++) {
-        const double half = 0.5 * (r->sums[0][k] / even - r->sums[1][k] / odd);
-        squares += half * half;
+    double variance = 0, sum = 0;
+    for (size_t k = 0; k < values && r->done > 1; k++) {
+        variance += fmax(0, r->sums[1][k] - r->sums[0][k] * r->sums[0][k] / r->weight);
         sum += (double)image->pixels[k];
     }
-    if (odd > 0) {
-        stats->errorEstimate = sqrt(squares / (double)values);
-        stats->relativeErrorEstimate = sum > 0 ? stats->errorEstimate * (double)values / sum : 0;
+    if (r->done > 1) {
+        const double noise = sqrt(variance / (double)values / (r->done - 1) / r->weight);
+        r->error.noise = sum > 0 ? noise * (double)values / sum : 0;
     }
 }
 
-static vplResult resolve(vplRenderer* r, vplImage** imageOut)
+vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
 {
     vplRun* run = &r->runner.run;
     const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
     if (r->plan->options.method == VPL_METHOD_PATH) {
-        return vplResolvePaths(run, imageOut);
+        TRY(vplResolvePaths(run, imageOut));
+        r->error.noise = r->error.total = run->stats->relativeErrorEstimate;
+        r->error.bound = 1.03 * r->error.noise;
+        return VPL_SUCCESS;
     }
     TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
     for (size_t k = 0; k < vplValueCount(r->base); k++) {
-        const double mean = r->plan->progressive ? (r->sums[0][k] + r->sums[1][k]) / r->done : 0;
+        const double mean = r->plan->progressive ? r->sums[0][k] / r->weight : 0;
         (*imageOut)->pixels[k] = (float)((double)r->base->pixels[k] + mean);
     }
     if (r->plan->progressive) {
-        estimateError(r, *imageOut);
+        estimateNoise(r, *imageOut);
     }
-    return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
+    const bool marks =
+        r->plan->progressive && show->drawOver != NULL && run->results[VPL_STAGE_VIRTUAL_LIGHTS] != NULL;
+    return marks ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
 }
 
 // Direct light alone of all passes so far; NULL where light is not split.
@@ -220,47 +318,28 @@ static vplResult resolveDirect(vplRenderer* r, vplImage** imageOut)
     }
     for (size_t k = 0; k < vplValueCount(*imageOut); k++) {
         const float added = r->direct != NULL ? r->direct->pixels[k] : 0;
-        (*imageOut)->pixels[k] = r->plan->progressive ? r->base->pixels[k] + added / (float)r->done : added;
+        (*imageOut)->pixels[k] = r->plan->progressive ? r->base->pixels[k] + added / (float)r->weight : added;
     }
     return VPL_SUCCESS;
-}
-
-// Tests whether the options' count of passes, error or time is reached.
-static vplResult isDone(vplRenderer* r, bool* doneOut)
-{
-    const vplRenderOptions* o = &r->plan->options;
-    const bool paths = o->method == VPL_METHOD_PATH;
-    bool done = paths                  ? r->done >= vplCountPathPasses(r->plan)
-                : r->plan->progressive ? o->stop.passes > 0 && r->done >= o->stop.passes
-                                       : true;
-    if (!done && o->stop.maxError > 0) {
-        vplImage* image = NULL;
-        const vplResult result = resolve(r, &image);
-        vplImage_Destroy(image);
-        TRY(result);
-        const double error = r->runner.stats.relativeErrorEstimate;
-        done = error >= 0 && error <= o->stop.maxError;
-    }
-    const double budget = o->stop.budgetMs;
-    *doneOut = done || (budget > 0 && vplClockMs() - r->start + r->passMs / r->done > budget);
-    return VPL_SUCCESS;
-}
-
-vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
-{
-    const double begin = vplClockMs();
-    r->runner.stepFrom = shareOf(r, r->done);
-    r->runner.stepTo = shareOf(r, r->done + 1);
-    TRY(runPass(r));
-    r->passMs += vplClockMs() - begin;
-    r->done++;
-    return isDone(r, doneOut);
 }
 
 void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderStats* statsOut)
 {
     vplRenderStats* stats = &r->runner.stats;
-    stats->passes = r->done;
+    const vplErrorParts* e = &r->error;
+    double sum = 0;
+    for (size_t k = 0; image != NULL && k < vplValueCount(image); k++) {
+        sum += (double)image->pixels[k] / (double)vplValueCount(image);
+    }
+    stats->passes = r->done > 0 ? r->done : r->kept.passes;
+    stats->relativeErrorEstimate = e->total >= 0 ? e->total : e->noise;
+    stats->errorEstimate = stats->relativeErrorEstimate >= 0 ? stats->relativeErrorEstimate * sum : -1;
+    stats->relativeNoise = e->noise;
+    stats->relativeBias = vplRenderer_GetPlan(r)->options.method == VPL_METHOD_PATH ? 0
+                          : e->total >= 0 && e->noise >= 0
+                              ? sqrt(fmax(0, e->total * e->total - e->noise * e->noise))
+                              : e->total;
+    stats->truthPaths = r->truth != NULL ? vplTruth_Paths(r->truth) : 0;
     stats->totalMs = vplClockMs() - r->start;
     stats->cpuMs = vplCpuMs() - r->cpuStart;
     stats->peakBytes = vplRunner_PeakBytes(&r->runner);
@@ -268,14 +347,36 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
     *statsOut = *stats;
 }
 
+// The picture of the plan under way, or one that was kept, where the plan has none or a worse one.
+static vplResult takePicture(vplRenderer* r, vplImage** imageOut)
+{
+    const vplKeptPicture* kept = &r->kept;
+    if (r->done > 0) {
+        TRY(vplRenderer_Resolve(r, imageOut));
+        if (r->truth != NULL && r->plan->options.method != VPL_METHOD_PATH) {
+            vplJudgePicture(r, *imageOut);
+        }
+        if (kept->image == NULL || kept->error < 0 || r->error.total < 0 || r->error.total <= kept->error) {
+            return VPL_SUCCESS;
+        }
+        vplImage_Destroy(*imageOut);
+        *imageOut = NULL;
+    }
+    TRY(vplImage_Create(r->runner.run.context, kept->image->width, kept->image->height, imageOut));
+    memcpy((*imageOut)->pixels, kept->image->pixels,
+           vplValueCount(kept->image) * sizeof *kept->image->pixels);
+    r->error = (vplErrorParts){-1, kept->error, kept->error};
+    return VPL_SUCCESS;
+}
+
 vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
     vplImage* image = NULL;
-    if (r->done == 0) {
+    if (!vplRenderer_HasPicture(r)) {
         return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
                        "a renderer has no picture before its first step");
     }
-    const vplResult result = resolve(r, &image);
+    const vplResult result = takePicture(r, &image);
     if (result != VPL_SUCCESS) {
         vplImage_Destroy(image);
         return result;
@@ -285,6 +386,11 @@ vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderSta
     }
     *imageOut = image;
     return VPL_SUCCESS;
+}
+
+const vplPlan* vplRenderer_GetPlan(const vplRenderer* r)
+{
+    return r->plan == NULL || (r->done == 0 && r->kept.plan != NULL) ? r->kept.plan : r->plan;
 }
 
 vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRenderStats* statsOut)
@@ -303,18 +409,4 @@ vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRender
     }
     *layersOut = layers;
     return VPL_SUCCESS;
-}
-
-void vplRenderer_Destroy(vplRenderer* r)
-{
-    if (r != NULL) {
-        vplContext* context = r->runner.run.context;
-        vplImage_Destroy(r->base);
-        vplImage_Destroy(r->direct);
-        vplFree(context, r->sums[0]);
-        vplFree(context, r->sums[1]);
-        vplPlan_Destroy(r->plan);
-        closeHistory(r->runner.history);
-        vplFree(context, r);
-    }
 }

@@ -4,19 +4,88 @@
 #define VPL_RENDER_RENDERER_H
 
 #include "render/plan.h"
+#include "render/planner/truth.h"
+
+// The time of a ray of a path, with all that is computed for it, over that of a ray in a packet, of which passes with
+// virtual lights cast most (room, Sponza: 7 and 9). It is a number and not measured, so that the same plans are chosen on
+// every machine.
+#define VPL_PATH_RAY 8.0
+
+// A picture of an earlier plan, which is shown as long as the plan under way has none that is better.
+typedef struct vplKeptPicture {
+    vplImage* image; // NULL: there is none
+    vplPlan* plan;
+    int passes, paths;
+    double error; // relative, noise and bias; negative: unknown
+} vplKeptPicture;
+
+// Relative errors of the picture; negative where they are unknown.
+typedef struct vplErrorParts {
+    double noise; // differs from pass to pass, and falls as they add up
+    double total;
+    double bound; // the true error is below it in nineteen of twenty pictures
+} vplErrorParts;
 
 struct vplRenderer {
     vplRunner runner;
-    vplPlan* plan;
-    vplImage* base;  // all of the picture; direct light alone where passes add the rest
-    double* sums[2]; // of the pictures of passes with even and odd numbers; NULL without passes
+    vplRenderOptions asked; // by the caller
+    vplPlan* plan;          // under way
+    bool coarse;            // its picture only serves until a better plan has one
+    vplImage* base;         // all of the picture; direct light alone where passes add the rest
+    // The sums over passes of w x and of w x^2, where x is a pass's picture and w its share of --particles; NULL without
+    // passes.
+    double* sums[2];
+    double weight; // sum of w
     // Layers: direct light alone, or where passes add up, the sum of what their lights on area lights send,
     // which `base` lacks; NULL: there is none.
     vplImage* direct;
     int done;               // passes
+    int paths;              // path tracing: per pixel so far
     double start, cpuStart; // ms
-    double passMs;          // of all passes
+    double planStart;       // ms, of the plan under way
+    double planRays;        // of all plans before it
+    double passMs;          // of all its passes
+    double lastMs;          // of its last pass
+    double deadline;        // ms; infinite: none
+    bool late;              // the deadline has ended a step
+    vplKeptPicture kept;
+    vplTruth* truth;           // NULL: not asked yet
+    vplJudgement judged;       // of the last picture that the truth was asked about
+    vplErrorParts error;       // of the picture of all passes so far
+    double judgedNoise;        // noise when the truth was asked last
+    char ended[VPL_PLAN_TEXT]; // why the error that was asked for was not reached; empty: it was, or none was
 };
+
+// Replaces the plan under way by one for other options; its picture begins anew. `coarse` as above.
+vplResult vplRenderer_Plan(vplRenderer* renderer, const vplRenderOptions* options, bool coarse);
+
+// Makes the picture of all passes so far of the plan under way.
+vplResult vplRenderer_Resolve(vplRenderer* renderer, vplImage** imageOut);
+
+// True if there is a picture that can be shown.
+bool vplRenderer_HasPicture(const vplRenderer* renderer);
+
+// Replaces the words of --quality by an error and a time.
+void vplResolveQuality(vplRenderOptions* options);
+
+// Compares the picture with the truth, which must be there, and fills in the renderer's error.
+void vplJudgePicture(vplRenderer* renderer, const vplImage* picture);
+
+// Keeps the picture of the plan under way, with its error (negative: unknown), until another plan has one.
+vplResult vplRenderer_Keep(vplRenderer* renderer, double error);
+
+// After the truth was asked: goes on with another plan where that promises less error in the time that is left (asked is
+// 0), or the error in less time, and ends a render that more passes do not improve.
+vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut);
+
+// After a pass: decides whether the render is done, goes on, or goes on with another plan.
+vplResult vplReview(vplRenderer* renderer, bool* doneOut);
+
+// The options of the first plan. Returns true if they are coarse.
+bool vplFirstOptions(const vplRenderer* renderer, vplRenderOptions* options);
+
+// Paths per pixel of the next pass of path tracing.
+int vplNextPaths(const vplRenderer* renderer);
 
 // Fills in the statistics of the whole render so far. `image` may be NULL.
 void vplRenderer_FinishStats(vplRenderer* renderer, const vplImage* image, vplRenderStats* statsOut);

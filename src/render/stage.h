@@ -54,6 +54,7 @@ typedef struct vplRun {
     void* before;
     uint32_t builds[VPL_STAGE_COUNT]; // counts how often each result was made, which tells two results apart
     int pass;
+    int samples;              // paths per pixel in this pass
     int parts;                // vplPart: what the picture stage adds up
     bool draft;               // it is a round of adaptive patches before the last
     vplArena* arena;          // memory of the result

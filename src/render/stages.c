@@ -224,7 +224,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsReflectiveMaps, vplMakeReflectiveMaps, vplDestroyReflectiveMaps, .report = NULL},
     [VPL_STAGE_PARTICLES] = {
         "particles", 0.1, IN(GEOMETRY) | IN(REFLECTIVE_MAPS) | IN(NEAR_DISTANCE),
-        "method lighting particles reflectivity sampler bounce particle-geometry seed EMITTERS PASS PLACEMENT",
+        "method lighting particles grow-from reflectivity sampler bounce particle-geometry seed EMITTERS PASS PLACEMENT",
         needsParticles, vplMakeParticles, vplDestroyLightSet, .report = vplReportParticles},
     [VPL_STAGE_FIRST_BOUNCE] = {
         "first bounce", 0.06, IN(GEOMETRY) | IN(REFLECTIVE_MAPS), "first-bounce oversampling coherence EMITTERS SHIFT",
@@ -250,7 +250,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsClusteredLights, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
     [VPL_STAGE_VIRTUAL_LIGHTS] = {
         "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),
-        "method lighting show show-index compensation min-distance PASS",
+        "method lighting show show-index compensation min-distance particles grow-from PASS",
         needsVirtualLights, vplMakeVirtualLights, NULL, .report = vplReportVirtualLights},
     [VPL_STAGE_PATCHES] = {
         "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement ADAPTIVE",

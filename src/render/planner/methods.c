@@ -45,10 +45,3 @@ vplMethod vplFirstMethodFor(const vplRenderOptions* o)
     }
     return VPL_METHOD_KELLER;
 }
-
-vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
-{
-    (void)r;
-    p->options.method = vplFirstMethodFor(&p->options);
-    return VPL_SUCCESS;
-}

@@ -3,6 +3,7 @@
 #ifndef VPL_RENDER_STAGES_MAKE_H
 #define VPL_RENDER_STAGES_MAKE_H
 
+#include "reference/path_scene.h"
 #include "render/stage.h"
 
 typedef vplResult vplMakeFcn(const vplRun* run, void** resultOut);
@@ -31,14 +32,42 @@ static inline int vplCountPoints(const vplPlan* plan)
     return (plan->options.output.antialias & ~1) + 1;
 }
 
+// Particles of a pass: --grow-from in the first, twice as many in each that follows, up to --particles.
+static inline int vplParticlesOfPass(const vplPlan* plan, int pass)
+{
+    const int most = plan->options.particles.count, first = plan->options.stop.growFrom;
+    const int doublings = pass < 30 ? pass : 30;
+    return first <= 0 || first > most >> doublings ? most : first << doublings;
+}
+
+// Particles of all passes before it.
+static inline int64_t vplParticlesBefore(const vplPlan* plan, int pass)
+{
+    int64_t sum = 0;
+    int k = 0;
+    for (; k < pass && vplParticlesOfPass(plan, k) < plan->options.particles.count; k++) {
+        sum += vplParticlesOfPass(plan, k);
+    }
+    return sum + (int64_t)(pass - k) * plan->options.particles.count;
+}
+
+// The weight of a pass in the mean of all: 1 for --particles.
+static inline double vplShareOfPass(const vplPlan* plan, int pass)
+{
+    const int most = plan->options.particles.count;
+    return most > 0 && plan->options.stop.growFrom > 0 ? (double)vplParticlesOfPass(plan, pass) / most : 1;
+}
+
 // Path tracing ends by its time or error only.
 static inline bool vplPathsAreOpen(const vplPlan* plan)
 {
     return plan->options.method == VPL_METHOD_PATH && plan->options.path.samples == VPL_MAX_SAMPLES;
 }
 
-// Passes of a path-traced picture, and the mean of those so far.
-int vplCountPathPasses(const vplPlan* plan);
+// What the path tracer traces for a picture.
+vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show);
+
+// The mean of all paths so far.
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
 
 // The mean of their direct light, if the plan splits light. The image is black.

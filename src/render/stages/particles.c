@@ -10,9 +10,9 @@ static vplParticleDef describeParticles(const vplRun* run)
     vplParticleDef def = vplDefaultParticleDef();
     def.lighting = o->lighting;
     def.start = o->method == VPL_METHOD_KELLER ? VPL_START_EMITTER : VPL_START_FIRST_HIT;
-    def.particleCount = o->particles.count;
+    def.particleCount = vplParticlesOfPass(plan, run->pass);
     def.pass = plan->progressive;
-    def.firstParticle = (int64_t)run->pass * o->particles.count;
+    def.firstParticle = vplParticlesBefore(plan, run->pass);
     def.reflectivity = o->particles.reflectivity;
     def.sampler = o->particles.sampler;
     def.bounce = o->particles.bounce;

@@ -3,21 +3,13 @@
 #include "reference/path_trace.h"
 #include "render/stages/make.h"
 
-// Paths per pixel in a pass, large enough that threads seldom wait for each other.
-enum { PASS_SAMPLES = 32 };
-
-int vplCountPathPasses(const vplPlan* plan)
-{
-    return (plan->options.path.samples + PASS_SAMPLES - 1) / PASS_SAMPLES;
-}
-
 // The result of the stage.
 typedef struct Paths {
     vplPathTracer* picture;
     vplPathTracer* direct; // the same paths up to their first hit; NULL: no layer needs it
 } Paths;
 
-static vplPathDef describe(const vplPlan* plan, vplShow show)
+vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show)
 {
     const vplRenderOptions* o = &plan->options;
     vplPathDef def = vplDefaultPathDef();
@@ -45,8 +37,8 @@ static vplResult createPaths(const vplRun* run, Paths* paths)
 {
     const vplPlan* plan = run->plan;
     const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
-    const vplPathDef picture = describe(plan, plan->options.output.show),
-                     direct = describe(plan, VPL_SHOW_DIRECT);
+    const vplPathDef picture = vplDescribePaths(plan, plan->options.output.show),
+                     direct = vplDescribePaths(plan, VPL_SHOW_DIRECT);
     TRY(vplPathTracer_Create(g, &picture, &paths->picture));
     return plan->splitsLight ? vplPathTracer_Create(g, &direct, &paths->direct) : VPL_SUCCESS;
 }
@@ -61,8 +53,7 @@ vplResult vplMakePaths(const vplRun* run, void** resultOut)
         *resultOut = paths;
         TRY(createPaths(run, paths));
     }
-    const int left = run->plan->options.path.samples - run->pass * PASS_SAMPLES;
-    const int samples = left > 0 && left < PASS_SAMPLES ? left : PASS_SAMPLES;
+    const int samples = run->samples;
     const double share = paths->direct != NULL ? 0.3 : 0; // of the time, about
     *resultOut = paths;
     if (paths->direct != NULL) {

@@ -133,7 +133,8 @@ static vplShadeDef describe(const vplRun* run)
                          .cutError = o->pipeline.cutError,
                          .samples = o->output.antialias,
                          .minDistance = v != NULL ? v->minDistance : 0,
-                         .particleCount = o->method == VPL_METHOD_DIRECT ? 1 : o->particles.count,
+                         .particleCount =
+                             o->method == VPL_METHOD_DIRECT ? 1 : vplParticlesOfPass(run->plan, run->pass),
                          .emitterMaps = mapped ? (const vplReflectiveMap* const*)maps->maps : NULL,
                          .progress = run->progress,
                          .progressUser = run->runner};

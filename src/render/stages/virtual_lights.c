@@ -25,7 +25,9 @@ float vplClampDistance(const vplRun* run, double lights)
     if (plan->clampArea <= 0) {
         return plan->options.lights.minDistance;
     }
-    lights *= run->pass + 1;
+    const double before = (double)vplParticlesBefore(plan, run->pass),
+                 now = vplParticlesOfPass(plan, run->pass);
+    lights *= now > 0 ? (before + now) / now : run->pass + 1;
     const double share = lights > 0 ? sqrt(plan->clampArea / lights / VPL_PI) : 0;
     return (float)(lights > 0 && plan->compensates ? fmax(share, (double)plan->nearDistance) : share);
 }

@@ -31,7 +31,7 @@ camera() {
 
 # The wall between hall and room stands at x = 0; the door, 0.9 m wide, is open by 12 degrees.
 {
-    echo "{"; camera "-3.6, 1.6, 1.9" "0, 1.1, -0.8" 60 50; echo "$materials" '"objects": ['
+    echo "{"; camera "-0.5, 1.6, 2.2" "-2.6, 0.9, -1.4" 60 50; echo "$materials" '"objects": ['
     room 8 2.7 5
     echo ',{"name": "wall a", "type": "box", "material": "white", "translate": [0, 1.35, -1.75], "scale": [0.12, 2.7, 1.5]},
 {"name": "wall b", "type": "box", "material": "white", "translate": [0, 1.35, 1.2], "scale": [0.12, 2.7, 2.6]},
@@ -60,7 +60,7 @@ camera() {
 
 # The lamp shines out of a slit of 6 cm in a box of 0.5 m.
 {
-    echo "{"; camera "-2.4, 1.6, 2.6" "0.3, 1.1, -0.6" 60 50; echo "$materials" '"objects": ['
+    echo "{"; camera "2.2, 1.6, -2.7" "-0.6, 0.9, 0.4" 60 50; echo "$materials" '"objects": ['
     room 6 2.7 6
     echo ',{"name": "base", "type": "box", "material": "white", "translate": [0, 1, -1], "scale": [0.5, 0.02, 0.5]},
 {"name": "top", "type": "box", "material": "white", "translate": [0, 1.5, -1], "scale": [0.5, 0.02, 0.5]},

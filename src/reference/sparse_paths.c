@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "reference/sparse_paths.h"
+
+#include "base/arena.h"
+
+enum { CHUNK = 8 }; // pixels per task
+
+vplResult vplSparsePaths_Init(vplSparsePaths* paths, const vplGeometry* geometry, const vplPathDef* def,
+                              vplSparsePixel* pixels, int count)
+{
+    *paths = (vplSparsePaths){.pixels = pixels, .count = count};
+    return vplPathScene_Init(&paths->scene, geometry, def);
+}
+
+void vplSparsePaths_Free(vplSparsePaths* paths)
+{
+    vplEmission_Destroy(paths->scene.emission);
+    paths->scene.emission = NULL;
+}
+
+// The same paths as those of a path-traced picture.
+static void tracePixel(const vplSparsePaths* s, vplSparsePixel* p)
+{
+    const uint64_t pixel = (uint64_t)p->y * (uint64_t)s->scene.def.width + (uint64_t)p->x;
+    for (int i = 2 * s->done; i < 2 * (s->done + s->now); i++) {
+        const uint64_t half = i & 1;
+        vplPathState path = {&s->scene, 2 * pixel + half, (uint32_t)i / 2, 0};
+        vplRadiance light = {0, 0, 0};
+        vplPath_Follow(&path, p->x, p->y, &light);
+        vplRadiance_Add(&p->sums[half], light);
+        p->squares += (light.r * light.r + light.g * light.g + light.b * light.b) / 3;
+        p->rays += path.rays;
+    }
+}
+
+static void traceChunk(void* data, int chunk, int worker)
+{
+    (void)worker;
+    const vplSparsePaths* s = data;
+    for (int i = chunk * CHUNK; i < (chunk + 1) * CHUNK && i < s->count; i++) {
+        tracePixel(s, &s->pixels[i]);
+    }
+}
+
+vplResult vplSparsePaths_Trace(vplSparsePaths* paths, int each, vplProgressRange progress)
+{
+    paths->now = each;
+    TRY(vplParallelForProgress(paths->scene.geometry->context, (paths->count + CHUNK - 1) / CHUNK, traceChunk,
+                               paths, progress));
+    paths->done += each;
+    return VPL_SUCCESS;
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// What --method auto stands for: a method, and those of its options that are as in vplDefaultRenderOptions.
+#include "geometry/bvh.h"
+#include "render/planner/look.h"
+#include "render/planner/planner.h"
+
+// The error that a render without goals is made for.
+static const double USUAL_ERROR = 0.05;
+
+// Light that is reflected at least once over all light, about: from a mean surface of the scene it goes on to others, but
+// not into the open.
+static double reflectedShare(const vplRunner* r, const vplLook* look)
+{
+    return vplGeometry_MeanReflectance(r->run.results[VPL_STAGE_GEOMETRY]) * (1 - look->open);
+}
+
+// Direct light alone where all other light is well below the error, and in black scenes.
+static bool chooseDirect(const vplRunner* r, vplPlan* p, double error)
+{
+    vplRenderOptions* o = &p->options;
+    const double share = reflectedShare(r, &p->look);
+    const bool can = (vplMethodsFor(o) & VPL_USE_DIRECT) != 0 && o->output.show == VPL_SHOW_PICTURE;
+    if (can && p->look.points > 0 && (share <= 0 || 1.5 * share < error)) {
+        o->method = VPL_METHOD_DIRECT;
+        vplDecide(p, "method",
+                  "reflected light is about %.2g %% of all, %.2g %% of the directions lead into the open",
+                  100 * share, 100 * p->look.open);
+        return true;
+    }
+    return false;
+}
+
+// Shadows by rays are exact, and for the lights of one picture faster than drawing maps.
+static void chooseShadows(vplPlan* p)
+{
+    vplRenderOptions* o = &p->options;
+    if (o->lights.shadows == VPL_LIGHT_SHADOWS_USUAL && p->options.lighting == VPL_LIGHTING_PHYSICAL) {
+        o->lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+        vplDecide(p, "light-shadows", "rays are exact, and one per light and surface costs less than a map");
+    }
+}
+
+// In the pictures of tests/bench/planner 1000 to 4000 particles a pass make about the same error in the same time; small
+// passes end sooner. Neighbours that share lights blur: in the room a square of 4 leaves 1.6 %, of 8 2.3 %.
+static void chooseLights(vplPlan* p, double error)
+{
+    vplRenderOptions* o = &p->options;
+    const bool large = (double)o->output.width * o->output.height >= 300000;
+    const bool goes = o->stop.budgetMs > 0 || o->stop.maxError > 0,
+               fine = o->stop.maxError > 0 && error < 0.04;
+    if (o->particles.count < 0 && goes) {
+        o->particles.count = large ? 2000 : 1000;
+        vplDecide(p, "particles", "in each pass; passes go on until the time or the error is reached");
+    }
+    if (o->pipeline.interleave < 0 && fine) {
+        o->pipeline.interleave = 4;
+        vplDecide(p, "interleave", "so small an error allows little blur");
+    }
+    if (o->output.antialias == 8 && error < 0.1 && goes) {
+        o->output.antialias = 16;
+        vplDecide(p, "antialias", "edges are a part of so small an error");
+    }
+    if (o->particles.placement == VPL_PLACEMENT_PARTICLES && p->look.lights > 0 && p->look.reaching < 0.3 &&
+        large) {
+        o->particles.placement = VPL_PLACEMENT_VIEW;
+        vplDecide(p, "placement", "%.2g %% of the lights reach what the camera sees", 100 * p->look.reaching);
+    }
+}
+
+vplResult vplChooseMethod(vplRunner* r, vplPlan* p)
+{
+    vplRenderOptions* o = &p->options;
+    const double error = o->stop.maxError > 0 ? o->stop.maxError : USUAL_ERROR;
+    o->method = vplFirstMethodFor(o);
+    if (o->method != VPL_METHOD_KELLER) {
+        vplDecide(p, "method", "other options are for it");
+        return VPL_SUCCESS;
+    }
+    p->castsRays = true;
+    TRY(vplRunner_RunStage(r, VPL_STAGE_GEOMETRY));
+    TRY(vplTakeLook(r, p, &p->look));
+    if (!chooseDirect(r, p, error)) {
+        vplDecide(p, "method", "virtual lights with shadows leave the least error in short times");
+        chooseLights(p, error);
+    }
+    chooseShadows(p);
+    return VPL_SUCCESS;
+}

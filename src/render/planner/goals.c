@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+// When a render ends, and which plan comes next: budgets, errors, and the planner's second thoughts.
+#include "base/clock.h"
+#include "render/planner/planner.h"
+#include "render/renderer.h"
+#include "render/stages/make.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum {
+    PASS_PATHS = 32, // per pixel in a pass, so many that threads seldom wait for each other
+    MAX_TRUTH_PATHS = 2048
+};
+
+// ---- what was asked for
+
+void vplResolveQuality(vplRenderOptions* o)
+{
+    static const struct {
+        double error, ms;
+    } WORDS[] = {{0, 0}, {0.2, 1000}, {0.05, 10000}, {0.02, 120000}};
+    if (o->stop.quality != VPL_QUALITY_NONE) {
+        o->stop.maxError = o->stop.maxError > 0 ? o->stop.maxError : WORDS[o->stop.quality].error;
+        o->stop.budgetMs = o->stop.budgetMs > 0 ? o->stop.budgetMs : WORDS[o->stop.quality].ms;
+        o->stop.quality = VPL_QUALITY_NONE;
+    }
+}
+
+// Pictures of light have errors, and coarse forms that are better than nothing.
+static bool isLight(vplShow show)
+{
+    return show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT || show == VPL_SHOW_INDIRECT;
+}
+
+static double leftOf(const vplRenderer* r)
+{
+    return r->deadline - vplClockMs();
+}
+
+// ---- coarse plans
+
+// Fewer lights and patches by a factor, no smooth edges and small shadow maps.
+static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
+{
+    *o = r->asked;
+    o->stop.budgetMs = o->stop.maxError = 0;
+    o->stop.passes = 0;
+    o->output.antialias = share < 0.2 ? 1 : o->output.antialias;
+    o->output.supersample = 1;
+    o->shadow.mapSize = o->shadow.mapSize < 256 ? o->shadow.mapSize : 256;
+    o->shadow.rsmSize = o->shadow.rsmSize > 0 && o->shadow.rsmSize < 256 ? o->shadow.rsmSize : 256;
+    o->particles.count = o->particles.count >= 0 && o->particles.count < 30 ? o->particles.count : 30;
+    o->ssvp.firstBounce = (int)ceil(share * o->ssvp.firstBounce);
+    o->ssvp.secondBounce = (int)ceil(share * o->ssvp.secondBounce);
+    o->ssvp.clusters = (int)ceil(share * o->ssvp.clusters);
+    o->radiosity.patches = (int)ceil(share * o->radiosity.patches);
+    o->radiosity.iterations = o->radiosity.iterations < 20 ? o->radiosity.iterations : 20;
+}
+
+bool vplFirstOptions(const vplRenderer* r, vplRenderOptions* o)
+{
+    const vplMethod method = r->asked.method;
+    const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH || !isLight(r->asked.output.show) ||
+                      r->asked.output.aovs != 0;
+    if (fits) {
+        *o = r->asked;
+    } else {
+        coarsen(r, method == VPL_METHOD_RADIOSITY ? 0.02 : 0.0625, o);
+    }
+    return !fits;
+}
+
+vplResult vplRenderer_Keep(vplRenderer* r, double error)
+{
+    vplImage* image = NULL;
+    const vplResult result = vplRenderer_Resolve(r, &image);
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(image);
+        return result;
+    }
+    vplImage_Destroy(r->kept.image);
+    vplPlan_Destroy(r->kept.plan);
+    r->kept = (vplKeptPicture){image, r->plan, r->done, r->paths, error};
+    r->plan = NULL;
+    return VPL_SUCCESS;
+}
+
+// After a coarse picture of radiosity the next has as many patches as half of the time is enough for, where the time
+// grows with the square of their number.
+static vplResult refine(vplRenderer* r)
+{
+    vplRenderOptions o = r->asked;
+    bool coarse = false;
+    if (r->plan->options.method == VPL_METHOD_RADIOSITY) {
+        const double spent = vplClockMs() - r->planStart, before = r->plan->options.radiosity.patches;
+        const double patches = before * sqrt(fmax(1, 0.4 * leftOf(r) / fmax(spent, 1)));
+        coarse = patches < 0.75 * o.radiosity.patches;
+        if (coarse) {
+            coarsen(r, patches / o.radiosity.patches, &o);
+            o.output.antialias = r->asked.output.antialias;
+        }
+    }
+    TRY(vplRenderer_Keep(r, -1));
+    return vplRenderer_Plan(r, &o, coarse);
+}
+
+// ---- paths
+
+int vplNextPaths(const vplRenderer* r)
+{
+    const int most = r->plan->options.path.samples - r->paths;
+    int paths = PASS_PATHS;
+    if (r->plan->options.method != VPL_METHOD_PATH) {
+        return 0;
+    }
+    if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // twice as many in each pass, from two on
+        paths = r->paths < 2 ? 2 : r->paths < PASS_PATHS ? r->paths : PASS_PATHS;
+    }
+    if (isfinite(r->deadline) && r->paths > 0) {
+        const double each = r->passMs / r->paths;
+        const int fit = (int)fmin(PASS_PATHS, (leftOf(r) + 0.02 * r->asked.stop.budgetMs) / each);
+        paths = fit < paths ? fit > 1 ? fit : 1 : paths;
+    }
+    return paths < most || most <= 0 ? paths : most;
+}
+
+// ---- errors
+
+// Of 512 pixels few have most of the error, so its estimate is uncertain to the upper side.
+static const double BOUND = 1.3; // standard errors
+
+void vplJudgePicture(vplRenderer* r, const vplImage* picture)
+{
+    double sum = 0;
+    const size_t values = 3 * (size_t)picture->width * (size_t)picture->height;
+    r->judged = vplTruth_Judge(r->truth, picture);
+    for (size_t k = 0; k < values; k++) {
+        sum += (double)picture->pixels[k];
+    }
+    const double mean = sum / (double)values, noise = fmax(0, r->error.noise) * mean;
+    const double square = fmax(r->judged.square, noise * noise);
+    if (mean > 0) {
+        r->error.total = sqrt(square) / mean;
+        r->error.bound = sqrt(square + BOUND * r->judged.spread) / mean;
+    } else {
+        r->error.total = r->error.bound = r->judged.mean > 0 ? INFINITY : 0;
+    }
+}
+
+// True where more paths would not change what follows from the error, or would cost more than they tell.
+static bool isClear(const vplRenderer* r, double asked)
+{
+    const double goal = asked * r->judged.mean, spread = r->judged.spread;
+    const double spent = (double)r->runner.stats.rays - r->planRays;
+    return r->error.bound <= asked || r->judged.square - 2 * spread > goal * goal ||
+           spread < 0.15 * r->judged.square || vplTruth_Paths(r->truth) >= MAX_TRUTH_PATHS ||
+           (double)r->judged.rays * VPL_PATH_RAY > 0.3 * spent;
+}
+
+// Compares the picture with the truth; traces more of it until the error is clear, or a third of `ms` is over.
+static vplResult judge(vplRenderer* r, double asked, double ms)
+{
+    vplImage* image = NULL;
+    vplRun* run = &r->runner.run;
+    vplResult result = vplRenderer_Resolve(r, &image);
+    const double start = vplClockMs();
+    if (result == VPL_SUCCESS && r->truth == NULL) {
+        result = vplTruth_Create(run, image, &r->truth);
+    }
+    while (result == VPL_SUCCESS) {
+        vplJudgePicture(r, image);
+        if (isClear(r, asked) || vplClockMs() - start > ms / 3) {
+            break;
+        }
+        result = vplTruth_Refine(run, r->truth);
+    }
+    r->judgedNoise = r->error.noise;
+    vplImage_Destroy(image);
+    vplRun_AddTime(run, "truth", start);
+    return result;
+}
+
+static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
+{
+    vplImage* image = NULL;
+    const vplResult result = vplRenderer_Resolve(r, &image);
+    vplImage_Destroy(image);
+    TRY(result);
+    if (r->plan->options.method == VPL_METHOD_PATH) {
+        *doneOut = *doneOut || (r->error.bound >= 0 && r->error.bound <= asked);
+        return VPL_SUCCESS;
+    }
+    const bool again = r->judgedNoise <= 0 || r->error.noise < 0.8 * r->judgedNoise;
+    const bool ready =
+        !r->plan->progressive || (r->done >= 2 && (r->error.noise <= 0.9 * asked || r->done == 6));
+    if (ready && again) {
+        TRY(judge(r, asked, INFINITY));
+        if (r->error.bound <= asked) {
+            *doneOut = true;
+        } else {
+            return vplReconsider(r, asked, doneOut);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+// A render that has a time and not an error looks at its error once, when a sixth of the time is over, and takes no more
+// than a thirtieth of the time for it.
+static vplResult reviewTime(vplRenderer* r, bool* doneOut)
+{
+    const double budget = r->asked.stop.budgetMs;
+    const bool asks = r->asked.method == VPL_METHOD_AUTO && r->plan->progressive && budget >= 300;
+    if (asks && r->truth == NULL && r->done >= 4 && leftOf(r) < 0.84 * budget && leftOf(r) > 0.3 * budget) {
+        TRY(judge(r, 0, budget / 30));
+        return vplReconsider(r, 0, doneOut);
+    }
+    return VPL_SUCCESS;
+}
+
+// ---- after a pass
+
+// Tests whether the options' count of passes or paths is reached.
+static bool isComplete(const vplRenderer* r)
+{
+    const vplRenderOptions* o = &r->plan->options;
+    return o->method == VPL_METHOD_PATH ? r->paths >= o->path.samples
+           : r->plan->progressive       ? o->stop.passes > 0 && r->done >= o->stop.passes
+                                        : true;
+}
+
+// True where another pass would end too late by more than half of what is allowed.
+static bool isTooLate(const vplRenderer* r)
+{
+    const double grown = vplShareOfPass(r->plan, r->done) / vplShareOfPass(r->plan, r->done - 1);
+    const double next =
+        r->plan->options.method == VPL_METHOD_PATH ? r->passMs / r->paths : r->lastMs * fmin(grown, 2);
+    return isfinite(r->deadline) && leftOf(r) + 0.05 * r->asked.stop.budgetMs < next;
+}
+
+vplResult vplReview(vplRenderer* r, bool* doneOut)
+{
+    const double asked = r->asked.stop.maxError;
+    *doneOut = false;
+    if (r->coarse) {
+        return refine(r);
+    }
+    const bool complete = isComplete(r);
+    *doneOut = complete;
+    if (asked > 0 && isLight(r->asked.output.show)) {
+        TRY(reviewError(r, asked, doneOut));
+    } else if (isLight(r->asked.output.show)) {
+        TRY(reviewTime(r, doneOut));
+    }
+    *doneOut = *doneOut || isTooLate(r);
+    return VPL_SUCCESS;
+}

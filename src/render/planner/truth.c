@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// With a value x of the picture and the means a and b of two independent halves of its paths, the mean of (x - a)(x - b)
+// is (x - truth)^2: the paths' noise cancels. A pixel that was chosen with probability p counts 1/p times.
+#include "render/planner/truth.h"
+
+#include "base/rng.h"
+#include "reference/sparse_paths.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+
+#include <math.h>
+
+enum {
+    MAX_PIXELS = 512,
+    FIRST_PATHS = 4,            // of each half
+    TRUTH_STREAM = 0x80000009u, // of random numbers
+    SEED = 0x7472757468         // differs from that of pictures
+};
+
+struct vplTruth {
+    vplSparsePaths paths;
+    vplSparsePixel* pixels;
+    double* weights; // 1 / (probability x pixels of the picture)
+    int pixelCount;  // of the picture
+    vplArena* arena; // owns all
+};
+
+// ---- which pixels
+
+// The largest difference of a value from those of the right and the lower neighbour, squared and summed.
+static double contrastOf(const vplImage* image, int x, int y)
+{
+    const size_t width = (size_t)image->width, at = 3 * ((size_t)y * width + (size_t)x);
+    const size_t right = x + 1 < image->width ? at + 3 : at,
+                 below = y + 1 < image->height ? at + 3 * width : at;
+    double sum = 0;
+    for (size_t c = 0; c < 3; c++) {
+        const double value = (double)image->pixels[at + c];
+        const double dx = (double)image->pixels[right + c] - value,
+                     dy = (double)image->pixels[below + c] - value;
+        sum += dx * dx + dy * dy;
+    }
+    return sum;
+}
+
+// A third of the pixels is chosen evenly, a third by contrast, a third by its square, because errors at edges are about
+// proportional to it and few pixels have most of it.
+typedef struct Shares {
+    double even, linear, square;
+} Shares;
+
+static Shares sharesOf(const vplImage* image)
+{
+    double linear = 0, square = 0;
+    for (int y = 0; y < image->height; y++) {
+        for (int x = 0; x < image->width; x++) {
+            const double contrast = contrastOf(image, x, y);
+            linear += sqrt(contrast);
+            square += contrast;
+        }
+    }
+    const double pixels = (double)image->width * image->height;
+    const bool flat = !(square > 0 && isfinite(square));
+    return flat ? (Shares){1 / pixels, 0, 0} : (Shares){1 / (3 * pixels), 1 / (3 * linear), 1 / (3 * square)};
+}
+
+// Systematic sampling: takes a pixel where the sum of expected counts passes a whole number plus `offset`.
+static int choosePixels(vplTruth* t, const vplImage* image, int wanted, double offset)
+{
+    const Shares shares = sharesOf(image);
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < image->height; y++) {
+        for (int x = 0; x < image->width; x++) {
+            const double contrast = contrastOf(image, x, y);
+            const double expected =
+                fmin(1, wanted * (shares.even + shares.linear * sqrt(contrast) + shares.square * contrast));
+            const double before = floor(sum - offset);
+            sum += expected;
+            if (floor(sum - offset) > before && count < wanted) {
+                t->pixels[count] = (vplSparsePixel){.x = x, .y = y};
+                t->weights[count++] = 1 / (expected * t->pixelCount);
+            }
+        }
+    }
+    return count;
+}
+
+// ---- their paths
+
+static vplResult create(const vplRun* run, const vplImage* picture, vplTruth* t)
+{
+    const int wanted = t->pixelCount < MAX_PIXELS ? t->pixelCount : MAX_PIXELS;
+    t->pixels = vplArena_AllocZero(t->arena, (size_t)wanted, sizeof *t->pixels);
+    t->weights = vplArena_Alloc(t->arena, (size_t)wanted, sizeof *t->weights);
+    TRY(vplArena_Check(t->arena));
+    vplPathDef def = vplDescribePaths(run->plan, run->plan->options.output.show);
+    def.seed ^= SEED;
+    def.lastBounce = VPL_MAX_BOUNCES;
+    const vplRandom4 r = vplRandomAt(def.seed, TRUTH_STREAM, 0);
+    const int count = choosePixels(t, picture, wanted, (double)vplUnitFloat(r.v[0]));
+    TRY(vplSparsePaths_Init(&t->paths, run->results[VPL_STAGE_GEOMETRY], &def, t->pixels, count));
+    return vplSparsePaths_Trace(&t->paths, FIRST_PATHS, (vplProgressRange){run->progress, run->runner, 1, 1});
+}
+
+vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth** truthOut)
+{
+    vplArena* arena = vplArena_Create(run->context);
+    vplTruth* t = vplArena_AllocZero(arena, 1, sizeof *t);
+    TRY(vplArena_Check(arena) == VPL_SUCCESS ? VPL_SUCCESS
+                                             : vplArena_Deliver(arena, VPL_OUT_OF_MEMORY, t, truthOut));
+    t->arena = arena;
+    t->pixelCount = picture->width * picture->height;
+    const vplResult result = create(run, picture, t);
+    if (result != VPL_SUCCESS) {
+        vplTruth_Destroy(t);
+        return result;
+    }
+    *truthOut = t;
+    return VPL_SUCCESS;
+}
+
+void vplTruth_Destroy(vplTruth* truth)
+{
+    if (truth != NULL) {
+        vplSparsePaths_Free(&truth->paths);
+        vplArena_Destroy(truth->arena);
+    }
+}
+
+vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth)
+{
+    return vplSparsePaths_Trace(&truth->paths, truth->paths.done,
+                                (vplProgressRange){run->progress, run->runner, 1, 1});
+}
+
+int vplTruth_Paths(const vplTruth* truth)
+{
+    return 2 * truth->paths.done;
+}
+
+// ---- the error
+
+// The mean square error of one pixel's values, and the mean of its true values.
+static double errorOf(const vplSparsePixel* p, const float* values, double each, double* meanOut)
+{
+    const double halves[2][3] = {{p->sums[0].r, p->sums[0].g, p->sums[0].b},
+                                 {p->sums[1].r, p->sums[1].g, p->sums[1].b}};
+    double error = 0;
+    *meanOut = 0;
+    for (int c = 0; c < 3; c++) {
+        const double a = halves[0][c] / each, b = halves[1][c] / each, x = (double)values[c];
+        error += (x - a) * (x - b) / 3;
+        *meanOut += (a + b) / 6;
+    }
+    return error;
+}
+
+vplJudgement vplTruth_Judge(const vplTruth* t, const vplImage* picture)
+{
+    vplJudgement j = {0};
+    const double each = t->paths.done, count = t->paths.count;
+    double squares = 0;
+    for (int i = 0; i < t->paths.count; i++) {
+        const vplSparsePixel* p = &t->pixels[i];
+        const float* values = picture->pixels + 3 * ((size_t)p->y * (size_t)picture->width + (size_t)p->x);
+        double mean;
+        const double error = t->weights[i] * errorOf(p, values, each, &mean);
+        const double square =
+            (p->sums[0].r * p->sums[1].r + p->sums[0].g * p->sums[1].g + p->sums[0].b * p->sums[1].b) / 3;
+        j.square += error;
+        squares += error * error;
+        j.mean += t->weights[i] * mean;
+        j.pathVariance += t->weights[i] * (p->squares / (2 * each) - square / (each * each));
+        j.rays += p->rays;
+    }
+    j.spread =
+        count > 1 ? sqrt(fmax(0, squares - j.square * j.square / count) * count / (count - 1)) : INFINITY;
+    j.pathRays = count > 0 ? (double)j.rays / (2 * each * count) : 0;
+    return j;
+}

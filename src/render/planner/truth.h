@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// A picture's error against the truth, from a few hundred path-traced pixels of it.
+#ifndef VPL_RENDER_PLANNER_TRUTH_H
+#define VPL_RENDER_PLANNER_TRUTH_H
+
+#include "render/stage.h"
+
+typedef struct vplTruth vplTruth;
+
+// An estimate of the mean square error of a picture, over its red, green and blue values.
+typedef struct vplJudgement {
+    double square;       // without bias; may be negative where the error is small
+    double spread;       // standard error of `square`
+    double mean;         // of the true picture
+    double pathVariance; // of a picture with one path per pixel: divide by their number
+    double pathRays;     // rays of a path
+    int64_t rays;        // cast for the truth, so far
+} vplJudgement;
+
+// Chooses pixels of the picture and traces the first paths. Where neighbours differ much, as at edges, more
+// pixels are chosen, and each counts for less. The run's geometry and plan must outlive it.
+vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth** truthOut);
+
+// NULL is allowed.
+void vplTruth_Destroy(vplTruth* truth);
+
+// Traces as many paths again as there are.
+vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth);
+
+// Paths per chosen pixel so far.
+int vplTruth_Paths(const vplTruth* truth);
+
+// The error of a picture of the same size.
+vplJudgement vplTruth_Judge(const vplTruth* truth, const vplImage* picture);
+
+#endif
