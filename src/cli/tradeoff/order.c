@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// The order of measuring: two cheap points of each curve first, then what is foreseen on or near the front, with a
+// quarter of the time for the knobs, and last what is foreseen to be worse.
+#include "cli/tradeoff/tradeoff.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// A setting is near the front if its error is at most this many times the least of a faster one.
+static const double NEAR = 1.2;
+
+// Share of the time for knobs while there are settings near the front.
+static const double KNOB_SHARE = 0.25;
+
+// Rows of SWEEPS without a meaning are points of the plot.
+bool isKnob(const Setting* s)
+{
+    bool knob = false, point = false;
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        knob = knob || (s->sweeps[i] && SWEEPS[i].meaning != NULL);
+        point = point || (s->sweeps[i] && SWEEPS[i].meaning == NULL);
+    }
+    return knob && !point;
+}
+
+static bool isOpen(const Setting* s, int done)
+{
+    return s->runCount == done && s->problem[0] == 0 && s->leftOut != LEFT_LONG;
+}
+
+// Values of measured settings of one curve, by ascending amount.
+typedef struct Curve {
+    double amount[MAX_SETTINGS], work[MAX_SETTINGS];
+    double wallMs[MAX_SETTINGS], cpuMs[MAX_SETTINGS], error[MAX_SETTINGS];
+    int count;
+} Curve;
+
+static void addToCurve(Curve* c, const Setting* s)
+{
+    int i = c->count++;
+    for (; i > 0 && c->work[i - 1] > s->work; i--) {
+        c->amount[i] = c->amount[i - 1];
+        c->work[i] = c->work[i - 1];
+        c->wallMs[i] = c->wallMs[i - 1];
+        c->cpuMs[i] = c->cpuMs[i - 1];
+        c->error[i] = c->error[i - 1];
+    }
+    c->amount[i] = fmax(s->amount, 1);
+    c->work[i] = s->work;
+    c->wallMs[i] = s->wallMs;
+    c->cpuMs[i] = s->cpuMs;
+    c->error[i] = fmax(s->error, 1e-9);
+}
+
+// Finds what has been measured of the setting's own curve, or else the curve of the measured setting of the
+// same family and pipeline whose work is nearest.
+static void findCurve(const Tradeoff* t, const Setting* s, Curve* c)
+{
+    const Setting* nearest = s;
+    double least = INFINITY;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* other = &t->settings[i];
+        double far = strcmp(other->curve, s->curve) == 0 ? -1 : fabs(log(other->work / s->work));
+        if (isMeasured(other) && other->family == s->family &&
+            other->options.pipeline.kind == s->options.pipeline.kind && far < least) {
+            nearest = other;
+            least = far;
+        }
+    }
+    c->count = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        if (isMeasured(&t->settings[i]) && strcmp(t->settings[i].curve, nearest->curve) == 0) {
+            addToCurve(c, &t->settings[i]);
+        }
+    }
+}
+
+// A guess of the time, which only orders the kinds.
+static double guessMs(const Setting* s)
+{
+    static const double guess[FAMILY_COUNT] = {1e-4, 1e-7, 1e-5, 1e-5, 1e-5, 1e-6, 1e-7, 1e-3, 1e-3};
+    const vplRenderOptions* o = &s->options;
+    const double pixels = (double)o->output.width * o->output.height;
+    return guess[s->family] * pixels * s->work * (o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 1 : 10);
+}
+
+// Returns the time that a setting may take after a cheaper one was cancelled, or 0: one of the same curve, or where
+// nothing has been measured of the family one of the family.
+static double foreseeCancelled(const Tradeoff* t, const Setting* s, bool known)
+{
+    double most = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* other = &t->settings[i];
+        const bool same = strcmp(other->curve, s->curve) == 0 || (!known && other->family == s->family);
+        if (other->leftOut == LEFT_LONG && same) {
+            most = fmax(most, 4 * other->cancelledMs * fmax(s->work / other->work, 1));
+        }
+    }
+    return most;
+}
+
+static Forecast foresee(const Tradeoff* t, const Setting* s, Curve* c)
+{
+    Forecast f = {.wallMs = guessMs(s)};
+    if (isMeasured(s)) {
+        return (Forecast){s->wallMs, s->cpuMs, s->error, true};
+    }
+    findCurve(t, s, c);
+    if (c->count > 0) {
+        const double amount = fmax(s->amount, 1);
+        f = (Forecast){alongLine(c->work, c->wallMs, c->count, s->work),
+                       alongLine(c->work, c->cpuMs, c->count, s->work),
+                       alongPower(c->amount, c->error, c->count, amount), true};
+    }
+    if (s->options.stop.budgetMs > 0) { // as was asked
+        f.wallMs = s->options.stop.budgetMs;
+        f.known = true;
+    }
+    const double cancelled = foreseeCancelled(t, s, f.known);
+    f.known = f.known || cancelled > 0;
+    f.wallMs = fmax(f.wallMs, cancelled);
+    f.cpuMs = fmax(f.cpuMs, cancelled);
+    return f;
+}
+
+// Only the two cheapest settings of a curve are coarse.
+static bool isCoarse(const Tradeoff* t, const Setting* s)
+{
+    int cheaper = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* other = &t->settings[i];
+        cheaper += other->work < s->work && strcmp(other->curve, s->curve) == 0;
+    }
+    return cheaper < 2 && !isKnob(s);
+}
+
+// The kinds of settings, the most promising first.
+typedef enum Rank { RANK_BASE = 0, RANK_COARSE, RANK_NEAR, RANK_KNOB, RANK_WORSE, RANK_COUNT } Rank;
+
+typedef struct Ranking {
+    double cost[MAX_SETTINGS], error[MAX_SETTINGS]; // of all but the planner, measured or foreseen; NAN: none
+    Curve curve;
+} Ranking;
+
+static void foreseeAll(Tradeoff* t, Ranking* r)
+{
+    for (int i = 0; i < t->settingCount; i++) {
+        Setting* s = &t->settings[i];
+        s->forecast = foresee(t, s, &r->curve);
+        const bool counts = s->forecast.known && s->forecast.error > 0 && s->family != FAMILY_AUTO &&
+                            s->problem[0] == 0 && s->leftOut != LEFT_LONG;
+        r->cost[i] = counts ? s->forecast.cpuMs : NAN;
+        r->error[i] = counts ? s->forecast.error : NAN;
+    }
+}
+
+static bool isNear(const Tradeoff* t, const Ranking* r, const Setting* s)
+{
+    const Forecast* f = &s->forecast;
+    return f->error > 0 && f->error <= NEAR * leastWithin(r->cost, r->error, t->settingCount, f->cpuMs);
+}
+
+// Marks of the planner are points like any other while they take little of the time.
+static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s, double left)
+{
+    const bool trial = s->forecast.wallMs <= 1e3 * TRIAL_SHARE * left;
+    if (s == &t->settings[0]) {
+        return RANK_BASE;
+    }
+    if (s->family == FAMILY_AUTO) {
+        return trial ? RANK_COARSE : RANK_KNOB;
+    }
+    if (isCoarse(t, s) && trial) {
+        return RANK_COARSE;
+    }
+    if (isKnob(s)) {
+        return RANK_KNOB;
+    }
+    return s->forecast.known && isNear(t, r, s) ? RANK_NEAR : RANK_WORSE;
+}
+
+Setting* chooseNext(Tradeoff* t, int done, double end)
+{
+    static const Rank SEEDS[RANK_COUNT] = {RANK_BASE, RANK_NEAR, RANK_NEAR, RANK_NEAR, RANK_WORSE};
+    Ranking r;
+    Setting* best[RANK_COUNT] = {NULL};
+    const double left = end - 1e-3 * wallMs();
+    foreseeAll(t, &r);
+    for (int i = 0; i < t->settingCount; i++) {
+        Setting* s = &t->settings[i];
+        if (isOpen(s, done) && s->forecast.wallMs <= 1e3 * left) {
+            const Rank rank = rankOf(t, &r, s, left);
+            // Of settings with a seed already the cheap ones that are no worse than others, and knobs, go first.
+            Setting** first = &best[done > 0 ? (isNear(t, &r, s) ? RANK_NEAR : SEEDS[rank]) : rank];
+            *first = *first == NULL || s->forecast.wallMs < (*first)->forecast.wallMs ? s : *first;
+        }
+    }
+    const bool turn = t->knobs < KNOB_SHARE * t->spent && best[RANK_COARSE] == NULL;
+    if (done == 0 && turn && best[RANK_KNOB] != NULL && best[RANK_BASE] == NULL) {
+        return best[RANK_KNOB];
+    }
+    for (int rank = 0; rank < RANK_COUNT; rank++) {
+        if (best[rank] != NULL) {
+            return best[rank];
+        }
+    }
+    return NULL;
+}
+
+const char* whyLeftOut(const Setting* s, char* text, size_t size)
+{
+    const Label ms = formatTime(s->forecast.wallMs), error = formatPercent(s->forecast.error);
+    switch (s->leftOut) {
+    case LEFT_LATE:
+        snprintf(text, size, "no time left");
+        break;
+    case LEFT_DEAR:
+        snprintf(text, size, "foreseen to take %s", ms.text);
+        break;
+    case LEFT_WORSE:
+        snprintf(text, size, "no time left; foreseen to take %s for %s error, worse than others", ms.text,
+                 error.text);
+        break;
+    case LEFT_LONG:
+        snprintf(text, size, "cancelled after %s", formatTime(s->cancelledMs).text);
+        break;
+    }
+    return s->problem[0] != 0 ? s->problem : text;
+}
+
+void explainLeftOut(Tradeoff* t)
+{
+    Ranking r;
+    foreseeAll(t, &r);
+    for (int i = 0; i < t->settingCount; i++) {
+        Setting* s = &t->settings[i];
+        if (isOpen(s, 0)) {
+            const bool worse = s->forecast.error > 0 && s->family != FAMILY_AUTO && !isNear(t, &r, s);
+            const bool dear = s->forecast.known && s->forecast.wallMs > 1e3 * (t->deadline - t->start);
+            s->leftOut = dear ? LEFT_DEAR : worse ? LEFT_WORSE : LEFT_LATE;
+        }
+    }
+}
