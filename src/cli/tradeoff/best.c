@@ -26,7 +26,8 @@ void addBest(const Tradeoff* t, Text* html)
 {
     double longest = 0;
     addText(html,
-            "<h3>Best within a time, at %dx%d pixels</h3>\n<div class=\"scroll\"><table><tr><th>processor time at "
+            "<h3>Best within a time, at %dx%d pixels</h3>\n<div class=\"scroll\"><table><tr><th>processor "
+            "time at "
             "most</th><th class=\"n\">least error</th><th class=\"n\">measured time</th><th>setting, to "
             "copy</th></tr>\n",
             t->arguments->render.output.width, t->arguments->render.output.height);
@@ -46,9 +47,11 @@ void addBest(const Tradeoff* t, Text* html)
         addCommand(t, s, html);
         addText(html, "</td></tr>\n");
     }
-    addText(html, "</table></div>\n<p class=\"small\">The dearest setting measured took %s; within longer times the "
-                  "best is that of the least error above.</p>\n",
-            formatTime(longest).text);
+    addText(
+        html,
+        "</table></div>\n<p class=\"small\">The dearest setting measured took %s; within longer times the "
+        "best is that of the least error above.</p>\n",
+        formatTime(longest).text);
 }
 
 static void addOver(const Tradeoff* t, const Setting* s, Text* html)
@@ -57,7 +60,7 @@ static void addOver(const Tradeoff* t, const Setting* s, Text* html)
     if (isnan(over)) {
         addText(html, "<td class=\"n\">no other was so good</td>");
     } else {
-        addText(html, "<td class=\"n\">%.2g times</td>", over);
+        addText(html, "<td class=\"n\">%.*f times</td>", over < 10 ? 1 : 0, over);
     }
 }
 
@@ -91,16 +94,21 @@ void addPlanner(const Tradeoff* t, Text* html)
     if (!any) {
         return;
     }
-    addText(html,
-            "<h2>The planner: what was asked, and what it reached</h2>\n<p><code>--method auto</code> chooses the "
-            "method and its options by <code>--max-error</code> or <code>--budget</code>. Here it is free to, but for "
-            "the size, the seed and <code>--antialias</code>. A budget is wall-clock time, here of %d thread%s; the "
-            "picture of a budget has other bits on a faster or slower machine. The last column is the processor time "
-            "over that of the cheapest other setting with no more error: 1 is as good as the front.</p>\n"
-            "<div class=\"scroll\"><table><tr><th>setting</th><th class=\"n\">asked</th><th class=\"n\">reached "
-            "error</th><th class=\"n\">used time</th><th class=\"n\">processor time</th><th class=\"n\">over the "
-            "front</th></tr>\n",
-            vplContext_GetWorkerCount(t->context), vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
+    addText(
+        html,
+        "<h2>The planner: what was asked, and what it reached</h2>\n<p><code>--method auto</code> chooses "
+        "the "
+        "method and its options by <code>--max-error</code> or <code>--budget</code>. Here it is free to, "
+        "but for "
+        "the size, the seed and <code>--antialias</code>. A budget is wall-clock time, here of %d thread%s; "
+        "the "
+        "picture of a budget has other bits on a faster or slower machine. The last column is the processor "
+        "time "
+        "over that of the cheapest other setting with no more error: 1 is as good as the front.</p>\n"
+        "<div class=\"scroll\"><table><tr><th>setting</th><th class=\"n\">asked</th><th class=\"n\">reached "
+        "error</th><th class=\"n\">used time</th><th class=\"n\">processor time</th><th class=\"n\">over the "
+        "front</th></tr>\n",
+        vplContext_GetWorkerCount(t->context), vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
     for (int i = 0; i < t->settingCount; i++) {
         if (t->settings[i].family == FAMILY_AUTO) {
             addMark(t, &t->settings[i], html);

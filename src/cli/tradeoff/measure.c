@@ -73,18 +73,20 @@ static vplResult compare(Tradeoff* t, const vplImage* image, Run* run)
     return time ? comparePerceptually(t, image, run) : VPL_SUCCESS;
 }
 
-// Cancels a render that takes far longer than foreseen, which would cost others their time.
-static void limitTime(Tradeoff* t, const Setting* s, double end)
+// Cancels a render that takes far longer than foreseen, which would cost others their time. A budget is foreseen
+// even where the planner cannot keep it.
+static void limitTime(Tradeoff* t, const Setting* s)
 {
-    const double now = 1e-3 * wallMs();
-    t->limit = now + fmax(s->forecast.known ? 4e-3 * s->forecast.wallMs : 0, TRIAL_SHARE * (end - now));
+    const double now = 1e-3 * wallMs(), foreseen = s->forecast.known ? 1e-3 * s->forecast.wallMs : 0;
+    const double factor = s->family == FAMILY_AUTO ? 8 : 4;
+    t->limit = now + fmax(factor * foreseen, factor / 4 * TRIAL_SHARE * (t->deadline - now));
 }
 
-// Measures one more seed of a setting, in a round that should end at `end`.
-static void measureSeed(Tradeoff* t, Setting* s, double end)
+// Measures one more seed of a setting.
+static void measureSeed(Tradeoff* t, Setting* s)
 {
     const double begin = wallMs();
-    limitTime(t, s, end);
+    limitTime(t, s);
     Run* run = &s->runs[s->runCount];
     vplRenderOptions options = s->options;
     run->seed = options.seed += (uint64_t)s->runCount;
@@ -98,7 +100,7 @@ static void measureSeed(Tradeoff* t, Setting* s, double end)
     }
     if (result != VPL_SUCCESS) {
         const bool cancelled = result == VPL_CANCELLED;
-        s->leftOut = cancelled && !t->interrupted ? LEFT_LONG : LEFT_LATE;
+        s->leftOut = cancelled && !t->interrupted && 1e-3 * wallMs() < t->deadline ? LEFT_LONG : LEFT_LATE;
         s->cancelledMs = wallMs() - begin;
         snprintf(s->problem, sizeof s->problem, "%s", cancelled ? "" : t->message);
     } else if (s->runCount++ == 0) {
@@ -107,7 +109,7 @@ static void measureSeed(Tradeoff* t, Setting* s, double end)
     }
     vplImage_Destroy(image);
     t->limit = INFINITY;
-    t->spent += 1e-3 * (wallMs() - begin);
+    t->spent += t->coarse ? 0 : 1e-3 * (wallMs() - begin);
     t->knobs += isKnob(s) ? 1e-3 * (wallMs() - begin) : 0;
 }
 
@@ -139,7 +141,7 @@ static void measureRound(Tradeoff* t, int round, double end)
 {
     Setting* s;
     while (!t->interrupted && (s = chooseNext(t, round, end)) != NULL) {
-        measureSeed(t, s, end);
+        measureSeed(t, s);
         summarise(t);
         dropPictures(t);
         if (t->arguments->verbose && round == 0) {
@@ -191,7 +193,7 @@ int measureSettings(Tradeoff* t)
         // than none, and the seeds of expensive settings differ least.
         double now = 1e-3 * wallMs(), left = t->deadline - now;
         int rounds = seeds - round;
-        measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.7 : 1.0 / rounds));
+        measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.8 : 1.0 / rounds));
     }
     measureRound(t, 0, t->deadline); // expensive ones, in the time that other seeds left
     explainLeftOut(t);

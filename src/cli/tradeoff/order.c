@@ -100,6 +100,24 @@ static double foreseeCancelled(const Tradeoff* t, const Setting* s, bool known)
     return most;
 }
 
+// A budget is foreseen to be kept; an error to take as long as a larger one asked before, if that one was reached with
+// room to spare, or else the longer the noisier that one was.
+static void foreseePlanner(const Tradeoff* t, const Setting* s, Forecast* f)
+{
+    const vplStopOptions* stop = &s->options.stop;
+    if (stop->budgetMs > 0) {
+        f->wallMs = stop->budgetMs;
+        f->known = true;
+    }
+    for (int i = 0; i < t->settingCount && stop->maxError > 0; i++) {
+        const Setting* other = &t->settings[i];
+        if (isMeasuredOf(other, FAMILY_AUTO) && other->options.stop.maxError > stop->maxError) {
+            const double room = other->error / stop->maxError;
+            f->wallMs = other->wallMs * fmax(room * room, 1);
+        }
+    }
+}
+
 static Forecast foresee(const Tradeoff* t, const Setting* s, Curve* c)
 {
     Forecast f = {.wallMs = guessMs(s)};
@@ -113,11 +131,10 @@ static Forecast foresee(const Tradeoff* t, const Setting* s, Curve* c)
                        alongLine(c->work, c->cpuMs, c->count, s->work),
                        alongPower(c->amount, c->error, c->count, amount), true};
     }
-    if (s->options.stop.budgetMs > 0) { // as was asked
-        f.wallMs = s->options.stop.budgetMs;
-        f.known = true;
+    if (s->family == FAMILY_AUTO) {
+        foreseePlanner(t, s, &f);
     }
-    const double cancelled = foreseeCancelled(t, s, f.known);
+    const double cancelled = s->options.stop.budgetMs > 0 ? 0 : foreseeCancelled(t, s, f.known);
     f.known = f.known || cancelled > 0;
     f.wallMs = fmax(f.wallMs, cancelled);
     f.cpuMs = fmax(f.cpuMs, cancelled);
@@ -162,9 +179,9 @@ static bool isNear(const Tradeoff* t, const Ranking* r, const Setting* s)
 }
 
 // Marks of the planner are points like any other while they take little of the time.
-static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s, double left)
+static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s)
 {
-    const bool trial = s->forecast.wallMs <= 1e3 * TRIAL_SHARE * left;
+    const bool trial = s->forecast.wallMs <= 1e3 * TRIAL_SHARE * (t->deadline - 1e-3 * wallMs());
     if (s == &t->settings[0]) {
         return RANK_BASE;
     }
@@ -180,24 +197,44 @@ static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s, double
     return s->forecast.known && isNear(t, r, s) ? RANK_NEAR : RANK_WORSE;
 }
 
+// The time for each factor of e by which the error falls below that of the measured settings that are as fast: of
+// equal rank the least goes first. Where little is gained, the cheapest.
+static double priceOf(const Tradeoff* t, const Setting* s, Rank rank)
+{
+    double least = INFINITY;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* other = &t->settings[i];
+        const bool faster = isMeasuredOf(other, FAMILY_COUNT) && other->cpuMs <= s->forecast.cpuMs;
+        least = faster && other->error < least ? other->error : least;
+    }
+    return rank == RANK_NEAR && !isMeasured(s)
+               ? s->forecast.wallMs / fmin(fmax(log(least / s->forecast.error), 0.05), 1)
+               : s->forecast.wallMs;
+}
+
 Setting* chooseNext(Tradeoff* t, int done, double end)
 {
     static const Rank SEEDS[RANK_COUNT] = {RANK_BASE, RANK_NEAR, RANK_NEAR, RANK_NEAR, RANK_WORSE};
     Ranking r;
     Setting* best[RANK_COUNT] = {NULL};
+    double prices[RANK_COUNT];
     const double left = end - 1e-3 * wallMs();
     foreseeAll(t, &r);
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
         if (isOpen(s, done) && s->forecast.wallMs <= 1e3 * left) {
-            const Rank rank = rankOf(t, &r, s, left);
             // Of settings with a seed already the cheap ones that are no worse than others, and knobs, go first.
-            Setting** first = &best[done > 0 ? (isNear(t, &r, s) ? RANK_NEAR : SEEDS[rank]) : rank];
-            *first = *first == NULL || s->forecast.wallMs < (*first)->forecast.wallMs ? s : *first;
+            Rank rank = rankOf(t, &r, s);
+            rank = done > 0 ? (isNear(t, &r, s) ? RANK_NEAR : SEEDS[rank]) : rank;
+            const double price = priceOf(t, s, rank);
+            if (best[rank] == NULL || price < prices[rank]) {
+                best[rank] = s;
+                prices[rank] = price;
+            }
         }
     }
-    const bool turn = t->knobs < KNOB_SHARE * t->spent && best[RANK_COARSE] == NULL;
-    if (done == 0 && turn && best[RANK_KNOB] != NULL && best[RANK_BASE] == NULL) {
+    t->coarse = done == 0 && (best[RANK_BASE] != NULL || best[RANK_COARSE] != NULL);
+    if (done == 0 && !t->coarse && t->knobs < KNOB_SHARE * t->spent && best[RANK_KNOB] != NULL) {
         return best[RANK_KNOB];
     }
     for (int rank = 0; rank < RANK_COUNT; rank++) {

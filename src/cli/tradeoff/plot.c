@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
-// Pixels: the plot area, its border below, and room above for a line of words.
-enum { AREA = 440, BELOW = 54, WORDS = 26, MAX_TICKS = 40 };
+// Pixels: the plot area, its border below, and room above for two lines of words.
+enum { AREA = 440, BELOW = 54, WORDS = 42, MAX_TICKS = 40 };
 
 typedef struct Plot {
     Axis x, y;       // ms, error
@@ -47,8 +47,15 @@ static void addKey(const Plot* p, const bool present[FAMILY_COUNT])
     addLegend(p->svg, present);
     addText(p->svg,
             "<text class=\"soft\" x=\"%d\" y=\"%d\">filled and numbered: no other setting is both faster and "
-            "better; hollow: another one is. Crosses span the seeds.%s</text>\n",
-            PLOT_LEFT, p->top - 12, present[FAMILY_AUTO] ? " Stars: what was asked is beside them." : "");
+            "better; hollow: another one is. Crosses span the seeds.</text>\n",
+            PLOT_LEFT, p->top - 28);
+    if (present[FAMILY_AUTO]) {
+        addText(
+            p->svg,
+            "<text class=\"soft\" x=\"%d\" y=\"%d\">the planner: the error asked for is below its star, the "
+            "time asked for above.</text>\n",
+            PLOT_LEFT, p->top - 12);
+    }
 }
 
 static void addPoint(const Plot* p, const Setting* s)
@@ -64,14 +71,15 @@ static void addPoint(const Plot* p, const Setting* s)
     addText(p->svg, "</g>\n");
 }
 
-// Writes beside the planner's marks what was asked of it.
+// Writes beside the planner's marks what was asked of it: errors below, times above.
 static void addAsked(const Plot* p, const Setting* s)
 {
     if (s->family == FAMILY_AUTO && isMeasured(s)) {
         const vplStopOptions* stop = &s->options.stop;
+        const bool error = stop->maxError > 0;
         addText(p->svg, "<text class=\"asked\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-                pixelOf(&p->x, s->cpuMs) + 10, pixelOf(&p->y, s->error) - 5,
-                stop->maxError > 0 ? formatPercent(stop->maxError).text : formatTime(stop->budgetMs).text);
+                pixelOf(&p->x, s->cpuMs) + 8, pixelOf(&p->y, s->error) + (error ? 14 : -6),
+                error ? formatPercent(stop->maxError).text : formatTime(stop->budgetMs).text);
     }
 }
 

@@ -209,7 +209,10 @@ static void writeDifference(const vplRenderOptions* plain, const vplRenderOption
 void writeCommand(const vplRenderOptions* o, char* words, size_t size)
 {
     const vplRenderOptions plain = vplDefaultRenderOptions();
-    writeDifference(&plain, o, words, size);
+    const char* method =
+        o->method == VPL_METHOD_AUTO ? "--method auto " : ""; // said although it is the default
+    const int length = snprintf(words, size, "%s", method);
+    writeDifference(&plain, o, words + length, size - (size_t)length);
 }
 
 // Sets options that the method does not use to their defaults, so that equal settings compare equal.
@@ -301,6 +304,9 @@ static bool addSetting(Tradeoff* t, const char* words, const bool sweeps[MAX_SWE
         return false;
     }
     writeDifference(&t->arguments->render, &s.options, s.change, sizeof s.change);
+    if (s.options.method == VPL_METHOD_AUTO) { // as it was asked, without the base's options that it forgot
+        snprintf(s.change, sizeof s.change, "%s", words);
+    }
     s.family = familyOf(&s.options);
     s.work = workOf(&s.options);
     findCurve(&s);

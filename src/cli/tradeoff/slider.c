@@ -61,8 +61,9 @@ static const char SCRIPT[] =
 
 void addSlider(Text* html)
 {
-    addText(html, "<div class=\"slider\" id=\"slider\" hidden><h2>Two pictures compared</h2>\n<p>Drag the divider, "
-                  "or move it with the arrow keys.</p></div>\n");
+    addText(html,
+            "<div class=\"slider\" id=\"slider\" hidden><h2>Two pictures compared</h2>\n<p>Drag the divider, "
+            "or move it with the arrow keys.</p></div>\n");
 }
 
 void addScript(Text* html)

@@ -124,7 +124,8 @@ typedef struct Tradeoff {
     Progress progress;
     double start, deadline; // seconds; INFINITY: none
     double limit;           // seconds: the render that runs now is cancelled then
-    double spent, knobs;    // seconds of all measuring, and on knobs
+    bool coarse;            // what is measured now is the base or a coarse point
+    double spent, knobs;    // seconds on all others, and on the knobs among them
     double perceptual;      // seconds of computing ssim and flip
     bool interrupted;
     char message[SENTENCE]; // the last error of the library
