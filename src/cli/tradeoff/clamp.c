@@ -153,5 +153,7 @@ void addClamp(const Tradeoff* t, Text* html)
                   "large one loses light, in corners first. All else as in the base, <code>");
     addWords(html, t->settings[0].command);
     addText(html, "</code>.</p>\n");
+    addText(html, "<div class=\"scroll\">\n");
     drawClamp(&clamp);
+    addText(html, "</div>\n");
 }

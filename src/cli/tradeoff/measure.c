@@ -79,7 +79,8 @@ static void limitTime(Tradeoff* t, const Setting* s)
 {
     const double now = 1e-3 * wallMs(), foreseen = s->forecast.known ? 1e-3 * s->forecast.wallMs : 0;
     const double factor = s->family == FAMILY_AUTO ? 8 : 4;
-    t->limit = now + fmax(factor * foreseen, factor / 4 * TRIAL_SHARE * (t->deadline - now));
+    const double trial = TRIAL_SHARE * 0.5 * (t->deadline - now + t->deadline - t->start);
+    t->limit = now + fmax(factor * foreseen, factor / 4 * trial);
 }
 
 // Measures one more seed of a setting.

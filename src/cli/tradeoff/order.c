@@ -13,6 +13,13 @@ static const double NEAR = 1.2;
 // Share of the time for knobs while there are settings near the front.
 static const double KNOB_SHARE = 0.25;
 
+// A curve is followed step by step: what is foreseen for more than this many times the largest amount measured
+// beats nothing, and is not measured next.
+static const double FAR = 10.1;
+
+// Share of all the time that one mark of the planner may take before other settings had their turn.
+static const double MARK_SHARE = 0.05;
+
 // Rows of SWEEPS without a meaning are points of the plot.
 bool isKnob(const Setting* s)
 {
@@ -94,7 +101,9 @@ static double foreseeCancelled(const Tradeoff* t, const Setting* s, bool known)
         const Setting* other = &t->settings[i];
         const bool same = strcmp(other->curve, s->curve) == 0 || (!known && other->family == s->family);
         if (other->leftOut == LEFT_LONG && same) {
-            most = fmax(most, 4 * other->cancelledMs * fmax(s->work / other->work, 1));
+            const double factor =
+                strcmp(other->curve, s->curve) == 0 ? 4 * fmax(s->work / other->work, 1) : 1;
+            most = fmax(most, factor * other->cancelledMs);
         }
     }
     return most;
@@ -122,14 +131,14 @@ static Forecast foresee(const Tradeoff* t, const Setting* s, Curve* c)
 {
     Forecast f = {.wallMs = guessMs(s)};
     if (isMeasured(s)) {
-        return (Forecast){s->wallMs, s->cpuMs, s->error, true};
+        return (Forecast){s->wallMs, s->cpuMs, s->error, true, false};
     }
     findCurve(t, s, c);
     if (c->count > 0) {
         const double amount = fmax(s->amount, 1);
-        f = (Forecast){alongLine(c->work, c->wallMs, c->count, s->work),
-                       alongLine(c->work, c->cpuMs, c->count, s->work),
-                       alongPower(c->amount, c->error, c->count, amount), true};
+        f = (Forecast){
+            alongLine(c->work, c->wallMs, c->count, s->work), alongLine(c->work, c->cpuMs, c->count, s->work),
+            alongPower(c->amount, c->error, c->count, amount), true, amount > FAR * c->amount[c->count - 1]};
     }
     if (s->family == FAMILY_AUTO) {
         foreseePlanner(t, s, &f);
@@ -165,8 +174,8 @@ static void foreseeAll(Tradeoff* t, Ranking* r)
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
         s->forecast = foresee(t, s, &r->curve);
-        const bool counts = s->forecast.known && s->forecast.error > 0 && s->family != FAMILY_AUTO &&
-                            s->problem[0] == 0 && s->leftOut != LEFT_LONG;
+        const bool counts = s->forecast.known && !s->forecast.far && s->forecast.error > 0 &&
+                            s->family != FAMILY_AUTO && s->problem[0] == 0 && s->leftOut != LEFT_LONG;
         r->cost[i] = counts ? s->forecast.cpuMs : NAN;
         r->error[i] = counts ? s->forecast.error : NAN;
     }
@@ -178,7 +187,7 @@ static bool isNear(const Tradeoff* t, const Ranking* r, const Setting* s)
     return f->error > 0 && f->error <= NEAR * leastWithin(r->cost, r->error, t->settingCount, f->cpuMs);
 }
 
-// Marks of the planner are points like any other while they take little of the time.
+// Marks of the planner go with the coarse points if they take little of all the time.
 static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s)
 {
     const bool trial = s->forecast.wallMs <= 1e3 * TRIAL_SHARE * (t->deadline - 1e-3 * wallMs());
@@ -186,7 +195,8 @@ static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s)
         return RANK_BASE;
     }
     if (s->family == FAMILY_AUTO) {
-        return trial ? RANK_COARSE : RANK_KNOB;
+        const bool cheap = s->forecast.wallMs <= 1e3 * MARK_SHARE * (t->deadline - t->start);
+        return cheap ? RANK_COARSE : RANK_KNOB;
     }
     if (isCoarse(t, s) && trial) {
         return RANK_COARSE;
@@ -194,7 +204,7 @@ static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s)
     if (isKnob(s)) {
         return RANK_KNOB;
     }
-    return s->forecast.known && isNear(t, r, s) ? RANK_NEAR : RANK_WORSE;
+    return s->forecast.known && !s->forecast.far && isNear(t, r, s) ? RANK_NEAR : RANK_WORSE;
 }
 
 // The time for each factor of e by which the error falls below that of the measured settings that are as fast: of

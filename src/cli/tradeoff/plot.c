@@ -71,15 +71,32 @@ static void addPoint(const Plot* p, const Setting* s)
     addText(p->svg, "</g>\n");
 }
 
-// Writes beside the planner's marks what was asked of it: errors below, times above.
-static void addAsked(const Plot* p, const Setting* s)
+// Writes beside a mark of the planner what was asked of it, errors below and times above, away from those that have
+// been written.
+static void addAsked(const Plot* p, const Setting* s, int count, double* xs, double* ys)
 {
-    if (s->family == FAMILY_AUTO && isMeasured(s)) {
-        const vplStopOptions* stop = &s->options.stop;
-        const bool error = stop->maxError > 0;
-        addText(p->svg, "<text class=\"asked\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-                pixelOf(&p->x, s->cpuMs) + 8, pixelOf(&p->y, s->error) + (error ? 14 : -6),
-                error ? formatPercent(stop->maxError).text : formatTime(stop->budgetMs).text);
+    const vplStopOptions* stop = &s->options.stop;
+    const bool error = stop->maxError > 0;
+    xs[count] = pixelOf(&p->x, s->cpuMs) + 8;
+    ys[count] = pixelOf(&p->y, s->error) + (error ? 14 : -6);
+    for (int i = 0; i < count; i++) {
+        if (fabs(xs[i] - xs[count]) < 52 && fabs(ys[i] - ys[count]) < 12) {
+            ys[count] += error ? 12 : -12;
+            i = -1; // it may lie on an earlier one now
+        }
+    }
+    addText(p->svg, "<text class=\"asked\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", xs[count], ys[count],
+            error ? formatPercent(stop->maxError).text : formatTime(stop->budgetMs).text);
+}
+
+static void addAllAsked(const Tradeoff* t, const Plot* p)
+{
+    double xs[MAX_SETTINGS], ys[MAX_SETTINGS];
+    int count = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        if (isMeasuredOf(&t->settings[i], FAMILY_AUTO) && t->settings[i].error > 0) {
+            addAsked(p, &t->settings[i], count++, xs, ys);
+        }
     }
 }
 
@@ -167,8 +184,6 @@ void writePlot(const Tradeoff* t, Text* svg)
     addFront(&p);
     addPoints(t, &p, true);
     addNumbers(&p);
-    for (int i = 0; i < t->settingCount; i++) {
-        addAsked(&p, &t->settings[i]);
-    }
+    addAllAsked(t, &p);
     addText(svg, "</svg>\n");
 }

@@ -30,6 +30,8 @@ static const char CSS[] =
     ".slider{max-width:960px} .slider input{width:100%;margin:.5rem 0;display:block} .slider "
     "label{display:inline-block;"
     "margin:0 1rem .5rem 0} .slider select{font:inherit;max-width:100%}\n"
+    "@media (max-width:720px){table{display:block;overflow-x:auto} td code.copy{min-width:17rem}}\n"
+    ".scroll svg.vpl{min-width:700px} "
     "@media print{.slider{display:none}main{max-width:none} h2{break-after:avoid} "
     "figure,tr,svg{break-inside:avoid}}\n";
 
@@ -233,7 +235,9 @@ void writeReport(const Tradeoff* t, Text* html)
     addHead(t, html);
     addAnswers(t, html);
     addText(html, "<h2>All settings: error against processor time</h2>\n");
+    addText(html, "<div class=\"scroll\">\n");
     writePlot(t, html);
+    addText(html, "</div>\n");
     addPlanner(t, html);
     addSlider(html);
     addPictures(t, html);

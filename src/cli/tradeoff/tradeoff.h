@@ -18,7 +18,7 @@
     "halton "                                                                                                \
     "--seed 1 --shadow-map 256 --pcf 1"
 
-// A render whose time is not known yet is tried for at most this share of the time that is left.
+// A render whose time is not known yet is tried for about this share of the time.
 #define TRIAL_SHARE 0.1
 
 enum { MAX_SETTINGS = 512, MAX_SWEEPS = 128, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
@@ -67,6 +67,7 @@ typedef struct Run {
 typedef struct Forecast {
     double wallMs, cpuMs, error;
     bool known; // not a guess from the number of pixels
+    bool far;   // far beyond what has been measured of the curve
 } Forecast;
 
 // Reasons for which a setting that could be measured was not.
