@@ -78,7 +78,7 @@ static vplResult compare(Tradeoff* t, const vplImage* image, Run* run)
 static void limitTime(Tradeoff* t, const Setting* s)
 {
     const double now = 1e-3 * wallMs(), foreseen = s->forecast.known ? 1e-3 * s->forecast.wallMs : 0;
-    const double factor = s->family == FAMILY_AUTO ? 8 : 4;
+    const double factor = s->options.stop.budgetMs > 0 ? 8 : 4;
     const double trial = TRIAL_SHARE * 0.5 * (t->deadline - now + t->deadline - t->start);
     t->limit = now + fmax(factor * foreseen, factor / 4 * trial);
 }

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 // A setting is near the front if its error is at most this many times the least of a faster one.
 static const double NEAR = 1.2;
@@ -68,7 +67,7 @@ static void findCurve(const Tradeoff* t, const Setting* s, Curve* c)
     double least = INFINITY;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* other = &t->settings[i];
-        double far = strcmp(other->curve, s->curve) == 0 ? -1 : fabs(log(other->work / s->work));
+        double far = other->curve == s->curve ? -1 : fabs(log(other->work / s->work));
         if (isMeasured(other) && other->family == s->family &&
             other->options.pipeline.kind == s->options.pipeline.kind && far < least) {
             nearest = other;
@@ -77,7 +76,7 @@ static void findCurve(const Tradeoff* t, const Setting* s, Curve* c)
     }
     c->count = 0;
     for (int i = 0; i < t->settingCount; i++) {
-        if (isMeasured(&t->settings[i]) && strcmp(t->settings[i].curve, nearest->curve) == 0) {
+        if (isMeasured(&t->settings[i]) && t->settings[i].curve == nearest->curve) {
             addToCurve(c, &t->settings[i]);
         }
     }
@@ -99,10 +98,9 @@ static double foreseeCancelled(const Tradeoff* t, const Setting* s, bool known)
     double most = 0;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* other = &t->settings[i];
-        const bool same = strcmp(other->curve, s->curve) == 0 || (!known && other->family == s->family);
+        const bool same = other->curve == s->curve || (!known && other->family == s->family);
         if (other->leftOut == LEFT_LONG && same) {
-            const double factor =
-                strcmp(other->curve, s->curve) == 0 ? 4 * fmax(s->work / other->work, 1) : 1;
+            const double factor = other->curve == s->curve ? 4 * fmax(s->work / other->work, 1) : 1;
             most = fmax(most, factor * other->cancelledMs);
         }
     }
@@ -156,7 +154,7 @@ static bool isCoarse(const Tradeoff* t, const Setting* s)
     int cheaper = 0;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* other = &t->settings[i];
-        cheaper += other->work < s->work && strcmp(other->curve, s->curve) == 0;
+        cheaper += other->work < s->work && other->curve == s->curve;
     }
     return cheaper < 2 && !isKnob(s);
 }
@@ -177,14 +175,18 @@ static void foreseeAll(Tradeoff* t, Ranking* r)
         const bool counts = s->forecast.known && !s->forecast.far && s->forecast.error > 0 &&
                             s->family != FAMILY_AUTO && s->problem[0] == 0 && s->leftOut != LEFT_LONG;
         r->cost[i] = counts ? s->forecast.cpuMs : NAN;
-        r->error[i] = counts ? s->forecast.error : NAN;
+        r->error[i] =
+            counts ? fmax(s->forecast.error, isMeasured(s) ? 0 : 1.001 * t->reference.resolution) : NAN;
     }
 }
 
+// Where a faster setting cannot be told from the truth, nothing is near the front any more.
 static bool isNear(const Tradeoff* t, const Ranking* r, const Setting* s)
 {
     const Forecast* f = &s->forecast;
-    return f->error > 0 && f->error <= NEAR * leastWithin(r->cost, r->error, t->settingCount, f->cpuMs);
+    const double faster = leastWithin(r->cost, r->error, t->settingCount, 0.99 * f->cpuMs);
+    return f->error > 0 && faster > t->reference.resolution &&
+           f->error <= NEAR * leastWithin(r->cost, r->error, t->settingCount, f->cpuMs);
 }
 
 // Marks of the planner go with the coarse points if they take little of all the time.

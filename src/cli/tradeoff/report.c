@@ -30,7 +30,8 @@ static const char CSS[] =
     ".slider{max-width:960px} .slider input{width:100%;margin:.5rem 0;display:block} .slider "
     "label{display:inline-block;"
     "margin:0 1rem .5rem 0} .slider select{font:inherit;max-width:100%}\n"
-    "@media (max-width:720px){table{display:block;overflow-x:auto} td code.copy{min-width:17rem}}\n"
+    "@media (max-width:720px){table{display:block;overflow-x:auto} td code.copy{min-width:17rem} "
+    "td:first-child{min-width:9rem}}\n"
     ".scroll svg.vpl{min-width:700px} "
     "@media print{.slider{display:none}main{max-width:none} h2{break-after:avoid} "
     "figure,tr,svg{break-inside:avoid}}\n";

@@ -247,8 +247,8 @@ static void forgetChoices(vplRenderOptions* o)
     }
 }
 
-// Writes the command of the first point of the setting's curve, on which only the amount varies.
-static void findCurve(Setting* s)
+// Finds the curve of a setting behind the others, on which only the amount varies.
+static void findCurve(const Tradeoff* t, Setting* s)
 {
     vplRenderOptions o = s->options;
     int* amount = amountOf(&o);
@@ -260,7 +260,12 @@ static void findCurve(Setting* s)
         o.stop.maxError = o.stop.maxError > 0;
         o.stop.budgetMs = o.stop.budgetMs > 0;
     }
-    writeCommand(&o, s->curve, sizeof s->curve);
+    writeCommand(&o, s->first, sizeof s->first);
+    for (s->curve = 0; s->curve < t->settingCount; s->curve++) {
+        if (strcmp(t->settings[s->curve].first, s->first) == 0) {
+            break;
+        }
+    }
 }
 
 // Sets all options of a setting.
@@ -309,7 +314,7 @@ static bool addSetting(Tradeoff* t, const char* words, const bool sweeps[MAX_SWE
     }
     s.family = familyOf(&s.options);
     s.work = workOf(&s.options);
-    findCurve(&s);
+    findCurve(t, &s);
     t->settings[t->settingCount++] = s;
     return true;
 }

@@ -84,8 +84,9 @@ typedef struct Setting {
     vplRenderOptions options; // the base with the change
     bool sweeps[MAX_SWEEPS];  // i: belongs to SWEEPS[i]
     Family family;
-    double work;          // foreseen, in units that only compare settings of one family and pipeline
-    char curve[SENTENCE]; // equal for settings of which only the amount differs
+    double work; // foreseen, in units that only compare settings of one family and pipeline
+    int curve;   // index of the first setting from which only the amount differs; its own if there is none
+    char first[SENTENCE]; // the command with amount 1
     double amount;        // lights, patches, paths or clusters; 0: the method has no such number
     Forecast forecast;    // from what has been measured
     Run* runs;            // of Tradeoff.runs
