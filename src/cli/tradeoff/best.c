@@ -6,8 +6,8 @@
 
 static const double SECONDS[] = {0.1, 0.5, 1, 5, 20};
 
-// Returns the setting without planner of the least error within a time, NULL if none is so fast. Sets *longest
-// to the time of the dearest one.
+// Returns the setting without planner of the least error within a time, NULL if none is so fast. Sets
+// *longest to the time of the dearest one.
 static const Setting* findBest(const Tradeoff* t, double ms, double* longest)
 {
     const Setting* best = NULL;

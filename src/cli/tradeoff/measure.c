@@ -62,8 +62,8 @@ static vplResult comparePerceptually(Tradeoff* t, const vplImage* image, Run* ru
     return VPL_SUCCESS;
 }
 
-// SSIM and FLIP can take longer than a fast picture. They get a tenth of the time: pictures of the front, which
-// are completed at the end, and any others while it lasts.
+// SSIM and FLIP can take longer than a fast picture. They get a tenth of the time: pictures of the front,
+// which are completed at the end, and any others while it lasts.
 static vplResult compare(Tradeoff* t, const vplImage* image, Run* run)
 {
     TRY(vplImage_Compare(image, t->reference.image, &run->comparison));
@@ -73,8 +73,8 @@ static vplResult compare(Tradeoff* t, const vplImage* image, Run* run)
     return time ? comparePerceptually(t, image, run) : VPL_SUCCESS;
 }
 
-// Cancels a render that takes far longer than foreseen, which would cost others their time. A budget is foreseen
-// even where the planner cannot keep it.
+// Cancels a render that takes far longer than foreseen, which would cost others their time. A budget is
+// foreseen even where the planner cannot keep it.
 static void limitTime(Tradeoff* t, const Setting* s)
 {
     const double now = 1e-3 * wallMs(), foreseen = s->forecast.known ? 1e-3 * s->forecast.wallMs : 0;

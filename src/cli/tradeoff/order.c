@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The order of measuring: two cheap points of each curve first, then what is foreseen on or near the front, with a
-// quarter of the time for the knobs, and last what is foreseen to be worse.
+// The order of measuring: two cheap points of each curve first, then what is foreseen on or near the front,
+// with a quarter of the time for the knobs, and last what is foreseen to be worse.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
@@ -12,8 +12,8 @@ static const double NEAR = 1.2;
 // Share of the time for knobs while there are settings near the front.
 static const double KNOB_SHARE = 0.25;
 
-// A curve is followed step by step: what is foreseen for more than this many times the largest amount measured
-// beats nothing, and is not measured next.
+// A curve is followed step by step: what is foreseen for more than this many times the largest amount
+// measured beats nothing, and is not measured next.
 static const double FAR = 10.1;
 
 // Share of all the time that one mark of the planner may take before other settings had their turn.
@@ -91,8 +91,8 @@ static double guessMs(const Setting* s)
     return guess[s->family] * pixels * s->work * (o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 1 : 10);
 }
 
-// Returns the time that a setting may take after a cheaper one was cancelled, or 0: one of the same curve, or where
-// nothing has been measured of the family one of the family.
+// Returns the time that a setting may take after a cheaper one was cancelled, or 0: one of the same curve, or
+// where nothing has been measured of the family one of the family.
 static double foreseeCancelled(const Tradeoff* t, const Setting* s, bool known)
 {
     double most = 0;
@@ -107,8 +107,8 @@ static double foreseeCancelled(const Tradeoff* t, const Setting* s, bool known)
     return most;
 }
 
-// A budget is foreseen to be kept; an error to take as long as a larger one asked before, if that one was reached with
-// room to spare, or else the longer the noisier that one was.
+// A budget is foreseen to be kept; an error to take as long as a larger one asked before, if that one was
+// reached with room to spare, or else the longer the noisier that one was.
 static void foreseePlanner(const Tradeoff* t, const Setting* s, Forecast* f)
 {
     const vplStopOptions* stop = &s->options.stop;
@@ -209,8 +209,8 @@ static Rank rankOf(const Tradeoff* t, const Ranking* r, const Setting* s)
     return s->forecast.known && !s->forecast.far && isNear(t, r, s) ? RANK_NEAR : RANK_WORSE;
 }
 
-// The time for each factor of e by which the error falls below that of the measured settings that are as fast: of
-// equal rank the least goes first. Where little is gained, the cheapest.
+// The time for each factor of e by which the error falls below that of the measured settings that are as
+// fast: of equal rank the least goes first. Where little is gained, the cheapest.
 static double priceOf(const Tradeoff* t, const Setting* s, Rank rank)
 {
     double least = INFINITY;
@@ -235,7 +235,8 @@ Setting* chooseNext(Tradeoff* t, int done, double end)
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
         if (isOpen(s, done) && s->forecast.wallMs <= 1e3 * left) {
-            // Of settings with a seed already the cheap ones that are no worse than others, and knobs, go first.
+            // Of settings with a seed already the cheap ones that are no worse than others, and knobs, go
+            // first.
             Rank rank = rankOf(t, &r, s);
             rank = done > 0 ? (isNear(t, &r, s) ? RANK_NEAR : SEEDS[rank]) : rank;
             const double price = priceOf(t, s, rank);

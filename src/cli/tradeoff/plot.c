@@ -71,8 +71,8 @@ static void addPoint(const Plot* p, const Setting* s)
     addText(p->svg, "</g>\n");
 }
 
-// Writes beside a mark of the planner what was asked of it, errors below and times above, away from those that have
-// been written.
+// Writes beside a mark of the planner what was asked of it, errors below and times above, away from those
+// that have been written.
 static void addAsked(const Plot* p, const Setting* s, int count, double* xs, double* ys)
 {
     const vplStopOptions* stop = &s->options.stop;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// report.html: one file that needs no other and no network. Its one script, which compares two pictures, is not
-// needed to read it.
+// report.html: one file that needs no other and no network. Its one script, which compares two pictures, is
+// not needed to read it.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>

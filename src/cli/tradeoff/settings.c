@@ -286,8 +286,8 @@ static bool setWords(const Tradeoff* t, Setting* s, const char* words)
     return true;
 }
 
-// Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too. The base itself
-// belongs to every chosen knob.
+// Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too. The base
+// itself belongs to every chosen knob.
 static bool addSetting(Tradeoff* t, const char* words, const bool sweeps[MAX_SWEEPS])
 {
     Setting s = {0};

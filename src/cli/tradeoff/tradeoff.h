@@ -183,7 +183,8 @@ void writeStyle(Text* css); // colours of both the plots and the report
 void writePlot(const Tradeoff* t, Text* svg);
 void writeReport(const Tradeoff* t, Text* html);
 
-// Returns the index of a family's (FAMILY_COUNT: any but the planner) cheapest setting with a median error <= limit, or -1.
+// Returns the index of a family's (FAMILY_COUNT: any but the planner) cheapest setting with a median error <=
+// limit, or -1.
 int findCheapest(const Tradeoff* t, Family family, double limit);
 
 // Lists the settings on the front, the cheapest first, and returns their number.
