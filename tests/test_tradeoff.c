@@ -52,6 +52,37 @@ TEST_ALONE(FrontFollowsItsDefinition)
     }
 }
 
+TEST_ALONE(TimesAreForeseenAlongALine)
+{
+    const double work[] = {1, 2, 10}, ms[] = {7, 9, 25};
+    assertNear(alongLine(work, ms, 1, 3), 21, 1e-12, "one point: in proportion", 0);
+    assertNear(alongLine(work, ms, 3, 6), 17, 1e-12, "between", 0);
+    assertNear(alongLine(work, ms, 3, 20), 45, 1e-12, "beyond", 0);
+    assertNear(alongLine(work, ms, 3, 2), 9, 1e-12, "at a point", 0);
+    assert_true(alongLine(work, ms, 3, 0.5) <= 7);
+    const double flat[] = {7, 7, 7}; // noise may hide the growth, but more work is never free
+    assert_true(alongLine(work, flat, 3, 1000) > 7 * 10);
+}
+
+TEST_ALONE(ErrorsAreForeseenAlongAPower)
+{
+    const double amount[] = {1, 4, 16}, noise[] = {8, 4, 2}, level[] = {8, 6, 6.5}, steep[] = {900, 30, 1};
+    assertNear(alongPower(amount, noise, 3, 64), 1, 1e-12, "beyond", 0);
+    assertNear(alongPower(amount, noise, 3, 2), 8 / sqrt(2), 1e-12, "between", 0);
+    assertNear(alongPower(amount, noise, 1, 4), 4, 1e-12, "one point: as noise", 0);
+    assertNear(alongPower(amount + 1, noise + 1, 2, 64), 1, 1e-12, "a short span: as noise", 0);
+    assert_true(alongPower(amount, level, 3, 64) > 5);
+    assertNear(alongPower(amount, steep, 3, 160), pow(10, -0.7), 1e-12, "no faster than that", 0);
+}
+
+TEST_ALONE(LeastErrorWithinACost)
+{
+    const double cost[] = {1, 2, 3, NAN}, error[] = {5, 7, 4, 1};
+    assertNear(leastWithin(cost, error, 4, 2), 5, 0, "two", 0);
+    assertNear(leastWithin(cost, error, 4, 3), 4, 0, "three", 0);
+    assert_true(isinf(leastWithin(cost, error, 4, 0.5)));
+}
+
 TEST_ALONE(ThinFrontLeavesOutSmallGains)
 {
     const double cost[] = {1, 2, 3, 4}, error[] = {10, 9.8, 9.6, 5};

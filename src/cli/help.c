@@ -48,7 +48,9 @@ const Command COMMANDS[] = {
     {"tradeoff", TRADEOFF, 1, runTradeoff, "vpl tradeoff SCENE -o DIR [options]",
      "measures error against time",
      "Renders SCENE with many settings and several seeds, compares each picture with a reference, and writes "
-     "to DIR: report.html (which settings for 5 % error, and what do they cost?), tradeoff.svg (the plot), "
+     "to DIR: report.html (which settings for 5 % error, and what do they cost? What is best within a "
+     "second, and "
+     "how good is the planner?), tradeoff.svg (the plot), "
      "tradeoff.csv (every figure), and the reference as reference-a.pfm and reference-b.pfm. Render options "
      "given here change the base that the sweeps start from: " TRADEOFF_BASE
      ". Physical lighting only: the documented formulas have no truth to compare with.",

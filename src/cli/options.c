@@ -199,7 +199,7 @@ static const Option OWN[] = {
      "paths per pixel of the reference; default: as many as a third of the time allows", NULL},
     {"seeds", "K", "3", TRADEOFF, readInt, AT(seeds), 1, 64, "seeds per setting", NULL},
     {"time", "S", "300", TRADEOFF, readNumber, AT(seconds), 0, 1e9,
-     "seconds of measuring, the cheapest settings first", NULL},
+     "seconds of measuring, the most promising settings first", NULL},
     {"sweeps", "LIST", NULL, TRADEOFF, readText, AT(sweeps), 0, 0,
      "only these sweeps, as in frontier,sampler; default: all", NULL},
     {"heatmap", "FILE", NULL, COMPARE, readText, AT(heatmap), 0, 0, "write a picture of the differences",

@@ -30,6 +30,7 @@ failed=0
 . "$folder/frames.sh"
 . "$folder/radiosity.sh"
 . "$folder/tradeoff.sh"
+. "$folder/browser.sh"
 . "$folder/bench.sh"
 
 echo "$passed passed, $failed failed"

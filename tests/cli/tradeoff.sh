@@ -44,7 +44,7 @@ csv=$report/tradeoff.csv
 check TradeoffRowsAreWhole awk -F, 'NR == 1 { n = NF } NF != n || /,,command|nan|inf,/ { exit 1 }' "$csv"
 for name in setting family sweeps on_front seed method particles reflectivity sampler min_distance light_shadows \
     shadow_map pcf pipeline spp size camera virtual_lights image_hash error relative_rmse rmse relmse trimmed_relmse \
-    ssim flip psnr energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading command; do
+    ssim flip psnr over_front energy_ratio max_difference cpu_ms total_ms peak_bytes ms_shading command; do
     check "TradeoffHas_$name" test -n "$(column "$csv" $name)"
 done
 equals TradeoffSeeds "1 2" "$(column "$csv" seed | sort -u | tr '\n' ' ' | sed 's/ $//')"
@@ -70,13 +70,62 @@ for limit in 20 10 5 2 1; do
 done
 check ReportHasPictures grep -q 'src="data:image/png;base64,iVBORw0KGgo' "$html"
 check ReportNeedsNoOtherFile test -z "$(grep -oE '(src|href)="[^"]*' "$html" | grep -v '^src="data:image/png;base64,')"
-check ReportNeedsNoNetwork test -z "$(grep -oE '<script|<link|@import|url\(|https?://[^"]*' "$html" | grep -v 'http://www.w3.org/2000/svg')"
+check ReportNeedsNoNetwork test -z "$(grep -oE '<script [^>]*|<link|@import|url\(|fetch\(|XMLHttp|https?://[^"]*' "$html" | grep -v 'http://www.w3.org/2000/svg')"
 check ReportHasNoNans test -z "$(sed 's/base64,[^"]*//g' "$html" | grep -owE 'nan|inf|-nan')"
 if command -v xmllint >/dev/null 2>&1; then
     check PlotIsXml xmllint --noout "$report/tradeoff.svg"
 else
     check PlotIsSvg grep -q '</svg>' "$report/tradeoff.svg"
 fi
+
+# Legends: every point of the plot lies below the last row of the legend, and within the axes.
+check LegendIsBesideThePlot awk '
+    match($0, /class="axis" d="M72 [0-9.]+/) { top = substr($0, RSTART + 20, RLENGTH - 20) + 0 }
+    /^<path class="f[0-9]" transform/ { # rows of the legend begin with a marker
+        n = split($0, rows, "translate\\([0-9.]+ ")
+        for (i = 2; i <= n; i++) if (rows[i] + 0 > legend) legend = rows[i] + 0
+    }
+    /^<g><title>/ { split($0, parts, "translate\\([0-9.]+ "); points++; if (least == 0 || parts[2] + 0 < least) least = parts[2] + 0 }
+    END { exit !(top > 0 && points > 3 && legend > 0 && legend + 12 < top && least >= top) }' "$report/tradeoff.svg"
+
+# The planner: what was asked is in the command, and judged by the others; it is not judged by itself. The times are
+# over those of the cheapest setting with as little error.
+succeeds TradeoffOfThePlanner "$vpl" tradeoff "$closed" -o "$out/a" --size 32x18 --seeds 1 --time 40 --quiet \
+    --sweeps auto,direct,path --reference-spp 64
+auto=$out/a/tradeoff.csv
+for asked in "--max-error 0.2" "--max-error 0.05" "--budget 200" "--budget 1000"; do
+    check "PlannerWasAsked_${asked#--}" grep -q -- ",--method auto .*$asked\$" "$auto"
+done
+check PlannerIsNotOnTheFront test -z "$(grep -E '^[0-9]+,the planner.*' "$auto" | awk -F, '$4 != 0')"
+check PlannerLeavesOutTheBase test -z "$(grep -E -- ',--method auto .*(--particles|--reflectivity|--pcf|--shadow-map)' "$auto")"
+check PlannerHasATable grep -q 'what was asked, and what it reached' "$out/a/report.html"
+check PlannerSaysThatBudgetsDiffer grep -q 'has other bits on a faster or slower machine' "$out/a/report.html"
+check PlannerIsInThePlot grep -q 'class="asked".*20.0 %' "$out/a/tradeoff.svg"
+check TheFrontIsOverItselfOnce awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "over_front") at = i; next }
+    $4 == 1 && $at != 1 { exit 1 }' "$auto"
+
+# The best within a time: never worse within a longer one.
+check BestWithinATimeImproves awk '/Best within a time/ { on = 1 } /The dearest setting/ { on = 0 }
+    on && match($0, /<tr><th>[0-9.]+ s<.th><td class="n"><strong>(&le; )?[0-9.]+ %/) {
+        split(substr($0, RSTART, RLENGTH), parts, "<strong>"); sub(/&le; /, "", parts[2]); rows++
+        if (rows > 1 && parts[2] + 0 > last) exit 1
+        last = parts[2] + 0 } END { exit rows == 0 }' "$out/a/report.html"
+
+# Placement is swept for Keller's method, among the points and as a knob.
+succeeds TradeoffOfPlacement "$vpl" tradeoff "$closed" -o "$out/l" $tiny --seeds 1 --time 60 --sweeps placement \
+    --reference-spp 16
+for place in rsm view; do
+    check "KellerIsPlacedBy_$place" grep -q -- "--method keller .*--placement $place" "$out/l/tradeoff.csv"
+done
+
+# Too little time: the base and the cheap ones are there, and what was left out adds up by its reasons.
+succeeds TradeoffInLittleTime "$vpl" tradeoff "$closed" -o "$out/s" --size 160x90 --quiet --seeds 1 --time 6
+sed -n 's/.*<li>\([0-9]*\) settings measured, \([0-9]*\) left out in the time of 6 s: \(.*\)\.<.li>.*/\1 \2 \3/p' \
+    "$out/s/report.html" >"$scratch/left"
+check LeftOutAddsUp awk -v csv="$(column "$out/s/tradeoff.csv" setting | sort -u | wc -l)" '
+    { measured = $1; all = $2; $1 = $2 = ""; n = split($0, parts, "; ")
+      for (i = 1; i <= n; i++) sum += parts[i] } END { exit !(NR == 1 && all > 0 && sum == all && measured == csv) }' "$scratch/left"
+check LittleTimeSeesManyKinds test "$(awk -F, 'NR > 1 { print $2 }' "$out/s/tradeoff.csv" | sort -u | wc -l)" -ge 5
 
 # Paths judged by other paths: sixteen a pixel (row 6, after the base, 1, 2, 4 and 8) have less than half the error
 # of one.

@@ -16,7 +16,7 @@ static bool isJudged(const Tradeoff* t, double limit)
     return limit > t->reference.resolution;
 }
 
-static void addCommand(const Tradeoff* t, const Setting* s, Text* html)
+void addCommand(const Tradeoff* t, const Setting* s, Text* html)
 {
     addText(html, "<code class=\"copy\">vpl render ");
     addEscaped(html, t->arguments->positionals[0]);
@@ -151,4 +151,5 @@ void addAnswers(const Tradeoff* t, Text* html)
                     "limit.</p>\n"
                   : "");
     addFamilies(t, html);
+    addBest(t, html);
 }

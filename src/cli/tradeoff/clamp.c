@@ -22,10 +22,9 @@ static double distanceOf(const Setting* s)
 
 static void findPoints(const Tradeoff* t, Clamp* clamp)
 {
-    const uint64_t bits = findSweeps("min-distance", strlen("min-distance"));
     for (int i = 0; i < t->settingCount && clamp->count < MAX_POINTS; i++) {
         const Setting* s = &t->settings[i];
-        if ((s->sweeps & bits) != 0 && isMeasured(s)) {
+        if (isOfSweep(s, "min-distance") && isMeasured(s)) {
             int j = clamp->count++;
             for (; j > 0 && distanceOf(clamp->points[j - 1]) > distanceOf(s); j--) {
                 clamp->points[j] = clamp->points[j - 1];
@@ -110,9 +109,7 @@ static void addDistances(const Clamp* c, int y)
 
 static void drawClamp(const Clamp* c)
 {
-    const int height = TOP + 2 * PANEL + GAP + BOTTOM;
-    Axis error = {0, 0, TOP + PANEL, TOP, false},
-         energy = {1, 1, TOP + 2 * PANEL + GAP, TOP + PANEL + GAP, false};
+    Axis error = {0}, energy = {1, 1, 0, 0, false};
     bool present[FAMILY_COUNT] = {false};
     for (int i = 0; i < c->count; i++) {
         error.high = fmax(error.high, 1.05 * c->points[i]->errorHigh);
@@ -120,10 +117,16 @@ static void drawClamp(const Clamp* c)
         energy.high = fmax(energy.high, c->points[i]->energy);
         present[c->points[i]->family] = true;
     }
+    const int top = TOP + heightOfLegend(present), height = top + 2 * PANEL + GAP + BOTTOM;
+    error.from = top + PANEL;
+    error.to = top;
+    energy.from = top + 2 * PANEL + GAP;
+    energy.to = top + PANEL + GAP;
     double room = fmax(0.05 * (energy.high - energy.low), 0.01);
     energy.low -= room;
     energy.high += room;
     beginSvg(c->svg, height, "Error and energy against the clamp", false);
+    addLegend(c->svg, present);
     addPanel(c, &error, "error", true);
     addPanel(c, &energy, "energy: all light / all light of the truth", false);
     addText(c->svg, "<path class=\"front\" d=\"M%d %.1fH%d\"/>\n", PLOT_LEFT, pixelOf(&energy, 1),
@@ -132,7 +135,6 @@ static void drawClamp(const Clamp* c)
         addLine(c, &error, (Family)f, false);
         addLine(c, &energy, (Family)f, true);
     }
-    addLegend(c->svg, present, PLOT_LEFT + 150, TOP - 8);
     addDistances(c, height - BOTTOM + 18);
     addText(c->svg, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">--min-distance D</text>\n</svg>\n",
             (PLOT_LEFT + PLOT_RIGHT) / 2, height - 12);
@@ -151,5 +153,7 @@ void addClamp(const Tradeoff* t, Text* html)
                   "large one loses light, in corners first. All else as in the base, <code>");
     addWords(html, t->settings[0].command);
     addText(html, "</code>.</p>\n");
+    addText(html, "<div class=\"scroll\">\n");
     drawClamp(&clamp);
+    addText(html, "</div>\n");
 }

@@ -74,7 +74,7 @@ static int findKnobs(const Tradeoff* t, Knob* knobs)
         Knob knob = {&SWEEPS[i], NULL, VERDICT_NOTHING, INFINITY, INFINITY, 0, false, false};
         for (int j = 1; j < t->settingCount; j++) {
             const Setting* s = &t->settings[j];
-            if ((s->sweeps >> i & 1) != 0 && isMeasured(s) && SWEEPS[i].meaning != NULL) {
+            if (s->sweeps[i] && isMeasured(s) && SWEEPS[i].meaning != NULL) {
                 judge(&knob, &t->settings[0], s);
             }
         }

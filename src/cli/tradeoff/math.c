@@ -61,6 +61,69 @@ double floorOf(const double* work, const double* error, int count)
     return before >= 0 && error[count - 1] > 0.8 * error[before] ? error[count - 1] : NAN;
 }
 
+// The number of points with x <= at.
+static int countUpTo(const double* x, int count, double at)
+{
+    int below = 0;
+    while (below < count && x[below] <= at) {
+        below++;
+    }
+    return below;
+}
+
+static double between(double x0, double y0, double x1, double y1, double at)
+{
+    return x1 > x0 ? y0 + (y1 - y0) * (at - x0) / (x1 - x0) : y0;
+}
+
+double alongLine(const double* x, const double* y, int count, double at)
+{
+    const int below = countUpTo(x, count, at), last = count - 1;
+    if (count == 1) {
+        return y[0] * at / x[0];
+    }
+    if (below == 0) {
+        return fmin(y[0], fmax(between(x[0], y[0], x[last], y[last], at), y[0] * at / x[0]));
+    }
+    if (below < count) {
+        return between(x[below - 1], y[below - 1], x[below], y[below], at);
+    }
+    int before = last - 1;
+    while (before > 0 && 3 * x[before] > x[last]) {
+        before--;
+    }
+    const double least = y[last] * (1 + 0.1 * (at / x[last] - 1));
+    return fmax(between(x[before], y[before], x[last], y[last], at), least);
+}
+
+double alongPower(const double* x, const double* y, int count, double at)
+{
+    const int below = countUpTo(x, count, at), last = count - 1;
+    if (below > 0 && below < count) {
+        const double share = log(at / x[below - 1]) / log(x[below] / x[below - 1]);
+        return y[below - 1] * pow(y[below] / y[below - 1], share);
+    }
+    if (below == 0) {
+        return y[0] * sqrt(x[0] / at);
+    }
+    int before = last;
+    while (before >= 0 && 8 * x[before] > x[last]) {
+        before--;
+    }
+    double power = before >= 0 ? log(y[last] / y[before]) / log(x[last] / x[before]) : -0.5;
+    power = fmin(fmax(power, -0.7), 0);
+    return y[last] * pow(at / x[last], power);
+}
+
+double leastWithin(const double* cost, const double* error, int count, double most)
+{
+    double least = INFINITY;
+    for (int i = 0; i < count; i++) {
+        least = cost[i] <= most && error[i] < least ? error[i] : least;
+    }
+    return least;
+}
+
 bool logRange(const double* values, int count, double* low, double* high)
 {
     double least = INFINITY, most = 0;

@@ -23,6 +23,18 @@ double costPerHalving(double cost0, double error0, double cost1, double error1);
 // eightfold work lowered the error by less than a fifth; noise, which falls as 1/sqrt(work), loses 65 %.
 double floorOf(const double* work, const double* error, int count);
 
+// Foresees y at `at` from count > 0 points by ascending x: between points along the straight line, beyond
+// them along the last one, which rises by a tenth of y in proportion to x at least; from one point in
+// proportion.
+double alongLine(const double* x, const double* y, int count, double at);
+
+// The same for an error: along powers of x, between -0.7 and 0 beyond the points. Where they span less than a
+// factor of 8 the power is -0.5, that of noise.
+double alongPower(const double* x, const double* y, int count, double at);
+
+// The least error of the points with cost <= most; INFINITY if there is none.
+double leastWithin(const double* cost, const double* error, int count, double most);
+
 // Chooses the ends of a logarithmic axis: a tenth of a decade beyond the positive values on each side, and at
 // least one decade apart. Returns false if no value is positive and finite.
 bool logRange(const double* values, int count, double* low, double* high);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renders the settings, cheapest first, until all are done or the time is up.
+// Renders the settings, the most promising first, until all are done or the time is up.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ static bool watch(void* user, double fraction)
     if (!showProgress(&t->progress, used < 0.999 ? used : 0.999)) {
         t->interrupted = true;
     }
-    return !t->interrupted && now < t->deadline;
+    return !t->interrupted && now < t->deadline && now < t->limit;
 }
 
 vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptions* options,
@@ -33,29 +33,6 @@ vplResult renderQuietly(Tradeoff* t, const vplScene* scene, const vplRenderOptio
         snprintf(t->message, sizeof t->message, "%s", vplResult_GetName(result));
     }
     return result;
-}
-
-// Estimates the wall-clock time of a picture, ms: that of the nearest measured setting of the same kind,
-// scaled by the work; or, where there is none yet, a guess per pixel, which only orders the kinds.
-static double foresee(const Tradeoff* t, const Setting* s)
-{
-    static const double guess[FAMILY_COUNT] = {1e-4, 1e-7, 1e-5, 1e-5, 1e-5, 1e-6, 1e-7, 1e-3};
-    const vplRenderOptions* o = &s->options;
-    const Setting* nearest = NULL;
-    double least = INFINITY;
-    for (int i = 0; i < t->settingCount; i++) {
-        const Setting* other = &t->settings[i];
-        double far = fabs(log(other->work / s->work));
-        if (isMeasured(other) && other->family == s->family &&
-            other->options.pipeline.kind == o->pipeline.kind && far < least) {
-            nearest = other;
-            least = far;
-        }
-    }
-    double pixels = (double)o->output.width * o->output.height;
-    double pipeline = o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 1 : 10;
-    return nearest ? nearest->wallMs * s->work / nearest->work
-                   : guess[s->family] * pixels * s->work * pipeline;
 }
 
 // Short renders are repeated and the least time counts, because disturbances only add time.
@@ -76,18 +53,41 @@ static vplResult timeAgain(Tradeoff* t, const vplRenderOptions* options, vplRend
     return result;
 }
 
-static vplResult compare(const Tradeoff* t, const vplImage* image, Run* run)
+static vplResult comparePerceptually(Tradeoff* t, const vplImage* image, Run* run)
 {
-    const vplImage* truth = t->reference.image;
-    TRY(vplImage_Compare(image, truth, &run->comparison));
+    const double begin = wallMs();
+    TRY(vplImage_Ssim(image, t->reference.image, &run->ssim, NULL));
+    TRY(vplImage_Flip(image, t->reference.image, VPL_DEFAULT_PPD, &run->flip, NULL));
+    t->perceptual += 1e-3 * (wallMs() - begin);
+    return VPL_SUCCESS;
+}
+
+// SSIM and FLIP can take longer than a fast picture. They get a tenth of the time: pictures of the front,
+// which are completed at the end, and any others while it lasts.
+static vplResult compare(Tradeoff* t, const vplImage* image, Run* run)
+{
+    TRY(vplImage_Compare(image, t->reference.image, &run->comparison));
     run->error = errorOf(&t->reference, image, &run->comparison);
-    TRY(vplImage_Ssim(image, truth, &run->ssim, NULL));
-    return vplImage_Flip(image, truth, VPL_DEFAULT_PPD, &run->flip, NULL);
+    run->ssim = run->flip = NAN;
+    const bool time = t->perceptual <= 0.1 * (1e-3 * wallMs() - t->start);
+    return time ? comparePerceptually(t, image, run) : VPL_SUCCESS;
+}
+
+// Cancels a render that takes far longer than foreseen, which would cost others their time. A budget is
+// foreseen even where the planner cannot keep it.
+static void limitTime(Tradeoff* t, const Setting* s)
+{
+    const double now = 1e-3 * wallMs(), foreseen = s->forecast.known ? 1e-3 * s->forecast.wallMs : 0;
+    const double factor = s->options.stop.budgetMs > 0 ? 8 : 4;
+    const double trial = TRIAL_SHARE * 0.5 * (t->deadline - now + t->deadline - t->start);
+    t->limit = now + fmax(factor * foreseen, factor / 4 * trial);
 }
 
 // Measures one more seed of a setting.
 static void measureSeed(Tradeoff* t, Setting* s)
 {
+    const double begin = wallMs();
+    limitTime(t, s);
     Run* run = &s->runs[s->runCount];
     vplRenderOptions options = s->options;
     run->seed = options.seed += (uint64_t)s->runCount;
@@ -100,14 +100,18 @@ static void measureSeed(Tradeoff* t, Setting* s)
         result = timeAgain(t, &options, &run->stats);
     }
     if (result != VPL_SUCCESS) {
-        s->exhausted = result == VPL_CANCELLED;
-        snprintf(s->problem, sizeof s->problem, "%s", s->exhausted ? "" : t->message);
+        const bool cancelled = result == VPL_CANCELLED;
+        s->leftOut = cancelled && !t->interrupted && 1e-3 * wallMs() < t->deadline ? LEFT_LONG : LEFT_LATE;
+        s->cancelledMs = wallMs() - begin;
+        snprintf(s->problem, sizeof s->problem, "%s", cancelled ? "" : t->message);
     } else if (s->runCount++ == 0) {
-        s->wallMs = run->stats.totalMs; // for foresee, until the median is known
         s->image = image;
         image = NULL;
     }
     vplImage_Destroy(image);
+    t->limit = INFINITY;
+    t->spent += t->coarse ? 0 : 1e-3 * (wallMs() - begin);
+    t->knobs += isKnob(s) ? 1e-3 * (wallMs() - begin) : 0;
 }
 
 // The report shows pictures of the front only.
@@ -121,43 +125,24 @@ static void dropPictures(Tradeoff* t)
     }
 }
 
-// Returns the setting with `done` seeds whose next picture should take the least time; NULL if none is left.
-static Setting* findNext(Tradeoff* t, int done, double* ms)
-{
-    Setting* next = NULL;
-    for (int i = 0; i < t->settingCount; i++) {
-        Setting* s = &t->settings[i];
-        bool open = s->runCount == done && s->problem[0] == 0 && !s->exhausted;
-        double cost = open ? foresee(t, s) : INFINITY;
-        if (open && (next == NULL || cost < *ms)) {
-            next = s;
-            *ms = cost;
-        }
-    }
-    return next;
-}
-
 static void say(const Setting* s)
 {
     const char* change = s->change[0] ? s->change : "(base)";
-    if (s->problem[0] != 0 || s->exhausted) {
-        complain("%s: %s", change, s->exhausted ? "no time left" : s->problem);
+    if (!isMeasured(s)) {
+        char reason[SENTENCE];
+        complain("%s: %s", change, whyLeftOut(s, reason, sizeof reason));
     } else {
         complain("%-10s %-10s %s", formatTime(s->cpuMs).text, formatPercent(s->error).text, change);
     }
 }
 
-// Measures one seed of every setting, the cheapest first, until `end`. Each seed is a round over all
+// Measures one seed of the settings, the most promising first, until `end`. Each seed is a round over all
 // settings, so a disturbance of the machine hits one seed of many settings instead of all seeds of a few.
 static void measureRound(Tradeoff* t, int round, double end)
 {
-    double ms = 0;
-    for (Setting* s = findNext(t, round, &ms); s != NULL && !t->interrupted; s = findNext(t, round, &ms)) {
-        if (1e-3 * wallMs() + 1e-3 * ms < end) {
-            measureSeed(t, s);
-        } else {
-            s->exhausted = true; // and so will be the rest, which is dearer
-        }
+    Setting* s;
+    while (!t->interrupted && (s = chooseNext(t, round, end)) != NULL) {
+        measureSeed(t, s);
         summarise(t);
         dropPictures(t);
         if (t->arguments->verbose && round == 0) {
@@ -166,15 +151,19 @@ static void measureRound(Tradeoff* t, int round, double end)
     }
 }
 
-// Renders again the pictures of settings that came to the front after their picture was dropped.
+// Renders again the pictures of settings that came to the front after their picture was dropped, and compares
+// those of the front in every way.
 static void restorePictures(Tradeoff* t)
 {
-    t->deadline = INFINITY;
+    t->deadline = t->limit = INFINITY;
     for (int i = 0; i < t->settingCount; i++) {
         Setting* s = &t->settings[i];
         if (s->number > 0 && s->image == NULL) {
             vplRenderStats stats;
             renderQuietly(t, t->scene, &s->options, &s->image, &stats);
+        }
+        if (s->number > 0 && s->image != NULL && isnan(s->runs[0].flip)) {
+            comparePerceptually(t, s->image, &s->runs[0]);
         }
     }
 }
@@ -198,14 +187,17 @@ int measureSettings(Tradeoff* t)
     for (int i = 0; i < t->settingCount; i++) {
         t->settings[i].runs = t->runs + (size_t)i * (size_t)seeds;
     }
+    t->limit = INFINITY;
     warmUp(t);
     for (int round = 0; round < seeds; round++) {
         // The first seed gets more than its share of the time: one seed of an expensive setting is better
         // than none, and the seeds of expensive settings differ least.
         double now = 1e-3 * wallMs(), left = t->deadline - now;
         int rounds = seeds - round;
-        measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.6 : 1.0 / rounds));
+        measureRound(t, round, now + left * (rounds == 1 ? 1 : round == 0 ? 0.8 : 1.0 / rounds));
     }
+    measureRound(t, 0, t->deadline); // expensive ones, in the time that other seeds left
+    explainLeftOut(t);
     restorePictures(t);
     int measured = 0;
     for (int i = 0; i < t->settingCount; i++) {

@@ -30,9 +30,15 @@ static float chooseExposure(const Tradeoff* t)
     return exposure;
 }
 
-static void addFigure(Text* html, const vplImage* image, const vplWriteOptions* options, const char* caption)
+// A picture with a name can be chosen for the slider.
+static void addFigure(Text* html, const vplImage* image, const vplWriteOptions* options, const char* caption,
+                      const char* name)
 {
-    addText(html, "<figure><img alt=\"%s\" src=\"", caption);
+    addText(html, "<figure><img alt=\"%s\"", caption);
+    if (name != NULL) {
+        addText(html, " data-name=\"%s\"", name);
+    }
+    addText(html, " width=\"%d\" height=\"%d\" src=\"", image->width, image->height);
     addPicture(html, image, options);
     addText(html, "\"><figcaption>%s</figcaption></figure>\n", caption);
 }
@@ -45,20 +51,23 @@ static double heatScale(const Tradeoff* t)
     return strtod(text, NULL);
 }
 
-static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions* options, Text* html)
+static void addPoint(const Tradeoff* t, const Setting* s, const vplWriteOptions* options, bool first,
+                     Text* html)
 {
-    char caption[128];
+    char caption[128], name[128];
+    snprintf(name, sizeof name, "%d: %s, %s, %s error", s->number, FAMILY_NAMES[s->family],
+             formatTime(s->cpuMs).text, formatPercent(s->runs[0].error).text);
     addText(html, "<h3>%d &middot; %s &middot; %s error</h3>\n<p><code>", s->number,
             formatTime(s->cpuMs).text, formatPercent(s->runs[0].error).text);
     addWords(html, s->command);
     addText(html, "</code></p>\n<div class=\"row\">");
-    addFigure(html, s->image, options, FAMILY_NAMES[s->family]);
-    addFigure(html, t->reference.image, options, "the truth");
+    addFigure(html, s->image, options, FAMILY_NAMES[s->family], name);
+    addFigure(html, t->reference.image, options, "the truth", first ? "the truth" : NULL);
     vplImage* map = NULL;
     if (vplImage_Heatmap(s->image, t->reference.image, (float)heatScale(t), &map) == VPL_SUCCESS) {
         snprintf(caption, sizeof caption,
                  "difference; white is %g W/(m&sup2; sr), about half the truth's mean", heatScale(t));
-        addFigure(html, map, NULL, caption);
+        addFigure(html, map, NULL, caption, NULL);
     } else {
         html->failed = true;
     }
@@ -94,6 +103,6 @@ void addPictures(const Tradeoff* t, Text* html)
             "first seed; exposure %+g stops.</p>\n",
             (double)options.exposure);
     for (int i = 0; i < count; i++) {
-        addPoint(t, chosen[i], &options, html);
+        addPoint(t, chosen[i], &options, i == 0, html);
     }
 }

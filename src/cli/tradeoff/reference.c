@@ -71,7 +71,8 @@ static vplResult traceHalf(Tradeoff* t, int samples, int half, vplImage** imageO
     vplRenderOptions o = vplDefaultRenderOptions();
     const vplRenderOptions* base = &t->arguments->render;
     o.method = VPL_METHOD_PATH;
-    o.path.pixel = VPL_PIXEL_CENTRE; // other methods sample there, too: jagged edges are no error
+    // Pictures without antialiasing sample there, too: jagged edges are no error of theirs.
+    o.path.pixel = base->output.antialias > 1 ? VPL_PIXEL_AREA : VPL_PIXEL_CENTRE;
     o.output.width = base->output.width;
     o.output.height = base->output.height;
     o.output.camera = base->output.camera;

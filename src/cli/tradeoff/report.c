@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// report.html: one file that needs no other, no network and no scripts.
+// report.html: one file that needs no other and no network. Its one script, which compares two pictures, is
+// not needed to read it.
 #include "cli/tradeoff/tradeoff.h"
 
 #include <math.h>
@@ -21,7 +22,19 @@ static const char CSS[] =
     "figure{margin:0;flex:1 1 280px} img{width:100%;display:block;border:1px solid var(--line)}\n"
     ".dot{display:inline-block;width:.7em;height:.7em;border-radius:50%;margin-right:.5em}\n"
     ".scroll{overflow-x:auto} details{margin-top:1rem}\n"
-    "@media print{main{max-width:none} h2{break-after:avoid} figure,tr,svg{break-inside:avoid}}\n";
+    ".stage{position:relative;touch-action:none;cursor:ew-resize;user-select:none} .stage "
+    "img{width:100%;display:block}\n"
+    ".stage .over{position:absolute;inset:0} .stage "
+    ".cut{position:absolute;top:0;bottom:0;width:2px;margin-left:-1px;"
+    "background:#fff;box-shadow:0 0 0 1px #000;pointer-events:none}\n"
+    ".slider{max-width:960px} .slider input{width:100%;margin:.5rem 0;display:block} .slider "
+    "label{display:inline-block;"
+    "margin:0 1rem .5rem 0} .slider select{font:inherit;max-width:100%}\n"
+    "@media (max-width:720px){table{display:block;overflow-x:auto} td code.copy{min-width:17rem} "
+    "td:first-child{min-width:9rem}}\n"
+    ".scroll svg.vpl{min-width:700px} "
+    "@media print{.slider{display:none}main{max-width:none} h2{break-after:avoid} "
+    "figure,tr,svg{break-inside:avoid}}\n";
 
 static void addHead(const Tradeoff* t, Text* html)
 {
@@ -53,11 +66,15 @@ static void addReference(const Tradeoff* t, Text* html)
     const Reference* r = &t->reference;
     addText(html, "<li>The truth: ");
     if (r->spp > 0) {
-        addText(html,
-                "path traced in two independent halves with %d paths per pixel in all (%s of processor "
-                "time), through the centres of pixels as all methods draw: jagged edges do not count as "
-                "error. <code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
-                r->spp, formatTime(r->ms).text);
+        addText(
+            html,
+            "path traced in two independent halves with %d paths per pixel in all (%s of processor "
+            "time), %s. <code>--reference reference-a.pfm,reference-b.pfm</code> uses it again.",
+            r->spp, formatTime(r->ms).text,
+            t->arguments->render.output.antialias > 1
+                ? "all over the pixels: jagged edges count as error"
+                : "through the centres of pixels, as methods draw without <code>--antialias</code>: jagged "
+                  "edges do not count as error");
     } else {
         addText(html, "<code>");
         addEscaped(html, t->arguments->reference);
@@ -112,18 +129,43 @@ static void addMachine(const Tradeoff* t, Text* html)
             vplGetVersion(), date);
 }
 
-static void addLeftOut(const Tradeoff* t, Text* html)
+// Adds the settings that the time was too short for, by their reasons, and returns their number.
+static int addLate(const Tradeoff* t, Text* html)
 {
-    int late = 0, failed = 0;
+    static const char* const reasons[] = {
+        "for lack of time", "because one picture was foreseen to take longer than all the time given",
+        "for lack of time, foreseen to be slower or worse than others",
+        "because they were cancelled, far slower than foreseen"};
+    int counts[4] = {0}, all = 0;
     for (int i = 0; i < t->settingCount; i++) {
         const Setting* s = &t->settings[i];
-        late += !isMeasured(s) && s->problem[0] == 0;
+        const bool late = !isMeasured(s) && s->problem[0] == 0;
+        counts[s->leftOut] += late;
+        all += late;
+    }
+    if (all > 0) {
+        addText(html, ", %d left out in the time of %g s: ", all, t->arguments->seconds);
+    }
+    const char* before = "";
+    for (int i = 0; i < 4; i++) {
+        if (counts[i] > 0) {
+            addText(html, "%s%d %s", before, counts[i], reasons[i]);
+            before = "; ";
+        }
+    }
+    return all;
+}
+
+static void addLeftOut(const Tradeoff* t, Text* html)
+{
+    int failed = 0, measured = 0;
+    for (int i = 0; i < t->settingCount; i++) {
+        const Setting* s = &t->settings[i];
+        measured += isMeasured(s);
         failed += !isMeasured(s) && s->problem[0] != 0;
     }
-    addText(html, "<li>%d settings measured", t->settingCount - late - failed);
-    if (late > 0) {
-        addText(html, ", %d left out when the time of %g s was up", late, t->arguments->seconds);
-    }
+    addText(html, "<li>%d settings measured", measured);
+    addLate(t, html);
     if (failed == 0) {
         addText(html, ".</li>\n");
         return;
@@ -150,8 +192,9 @@ static void addAllSettings(const Tradeoff* t, Text* html)
         const Setting* s = &t->settings[i];
         addText(html, "<tr><td><code>%s</code>", s->change[0] ? s->change : "the base");
         if (!isMeasured(s)) {
+            char reason[SENTENCE];
             addText(html, "</td><td colspan=\"5\">not measured: ");
-            addEscaped(html, s->problem[0] ? s->problem : "no time left");
+            addEscaped(html, whyLeftOut(s, reason, sizeof reason));
             addText(html, "</td></tr>\n");
             continue;
         }
@@ -168,15 +211,18 @@ static void addMethod(const Tradeoff* t, Text* html)
 {
     addText(html, "<h2>How it was measured</h2>\n<ul>\n");
     addReference(t, html);
-    addText(html,
-            "<li>Every setting was rendered with up to %d seed%s from %llu; figures are medians, bands run "
-            "from the least to the most. Settings ran from the cheapest to the dearest.</li>\n"
-            "<li>Processor time is the time of all threads together for the whole of <code>vpl render</code> "
-            "without reading the scene and writing the picture, here measured on %d thread%s. Several "
-            "threads share it, so one waits less. Of short renders the fastest of three counts.</li>\n",
-            t->arguments->seeds, t->arguments->seeds == 1 ? "" : "s",
-            (unsigned long long)t->arguments->render.seed, vplContext_GetWorkerCount(t->context),
-            vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
+    addText(
+        html,
+        "<li>Every setting was rendered with up to %d seed%s from %llu; figures are medians, bands run "
+        "from the least to the most. Two cheap settings of every kind ran first, then those foreseen to be "
+        "on or near the front, a quarter of the time the knobs, and last what was foreseen to be "
+        "worse.</li>\n"
+        "<li>Processor time is the time of all threads together for the whole of <code>vpl render</code> "
+        "without reading the scene and writing the picture, here measured on %d thread%s. Several "
+        "threads share it, so one waits less. Of short renders the fastest of three counts.</li>\n",
+        t->arguments->seeds, t->arguments->seeds == 1 ? "" : "s",
+        (unsigned long long)t->arguments->render.seed, vplContext_GetWorkerCount(t->context),
+        vplContext_GetWorkerCount(t->context) == 1 ? "" : "s");
     addMachine(t, html);
     addText(html, "<li>Physical lighting only: the documented formulas have no falloff with distance, so "
                   "there is no truth to compare them with.</li>\n");
@@ -190,10 +236,16 @@ void writeReport(const Tradeoff* t, Text* html)
     addHead(t, html);
     addAnswers(t, html);
     addText(html, "<h2>All settings: error against processor time</h2>\n");
+    addText(html, "<div class=\"scroll\">\n");
     writePlot(t, html);
+    addText(html, "</div>\n");
+    addPlanner(t, html);
+    addSlider(html);
     addPictures(t, html);
     addClamp(t, html);
     addKnobs(t, html);
     addMethod(t, html);
-    addText(html, "</main></body></html>\n");
+    addText(html, "</main>\n");
+    addScript(html);
+    addText(html, "</body></html>\n");
 }

@@ -9,6 +9,8 @@
 
 static const char PARTICLES[] = "3 10 30 100 300 1000 3000 10000 30000 65536";
 
+static const char PLACED[] = "10 100 1000 10000";
+
 static const char PATCHES[] = "100 300 1000 3000 10000 30000";
 
 static const char DISTANCES[] = "0 auto @0.003 @0.01 @0.03 @0.06 @0.1 @0.2 @0.4";
@@ -23,6 +25,8 @@ const Sweep SWEEPS[] = {
     {"frontier", "--method keller --particles", PARTICLES, NULL},
     {"frontier", "--method keller --pipeline interleaved --particles", PARTICLES, NULL},
     {"frontier", "--method keller --pipeline interleaved --interleave 16 --particles", PARTICLES, NULL},
+    {"frontier", "--method keller --placement rsm --particles", PLACED, NULL},
+    {"frontier", "--method keller --placement view --particles", PLACED, NULL},
     {"frontier", "--method ssvp --clusters", "4 8 16 32 64", NULL},
     {"frontier", "--method ssvp --clusters 32 --first-bounce 1024 --second-bounce", "1024 4096", NULL},
     {"frontier", "--method radiosity --patches", PATCHES, NULL},
@@ -31,7 +35,9 @@ const Sweep SWEEPS[] = {
     {"frontier", "--light-shadows map --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows ray --min-distance @0.03 --particles", PARTICLES, NULL},
     {"frontier", "--light-shadows ray --shadow-map 2048 --particles", PARTICLES, NULL},
-    {"path", "--pixel centre --method path --spp", "1 2 4 8 16 32 64 128 256 512 1024", NULL},
+    {"auto", "--method auto --max-error", "0.2 0.1 0.05 0.02", NULL},
+    {"auto", "--method auto --budget", "200 1000 5000", NULL},
+    {"path", "--method path --spp", "1 2 4 8 16 32 64 128 256 512 1024", NULL},
     {"direct", "--method", "direct", NULL},
     {"particles", "--particles", PARTICLES, "Particles"},
     {"light-shadows", "--light-shadows", "none map ray auto", "Shadows of virtual lights"},
@@ -45,6 +51,7 @@ const Sweep SWEEPS[] = {
     {"passes", "--method keller --pipeline interleaved --interleave 16 --passes", "1 2 4 8", "Passes"},
     {"sampler", "--sampler", CHOICES, "Where particles go"},
     {"placement", "--light-shadows ray --placement", CHOICES, "Where lights go"},
+    {"placement", "--method keller --placement", CHOICES, "Where Keller's lights go"},
     {"clusters", "--method ssvp --clusters", "4 8 16 32 64 256", "SSVP: clusters of lights"},
     {"bounces", "--method ssvp --max-bounces", "0 1 2", "SSVP: bounces"},
     {"first-bounce", "--method ssvp --first-bounce", "64 256 1024", "SSVP: first-bounce lights"},
@@ -87,7 +94,7 @@ const Sweep SWEEPS[] = {
 
 const int SWEEP_COUNT = sizeof SWEEPS / sizeof *SWEEPS;
 
-_Static_assert(sizeof SWEEPS / sizeof *SWEEPS <= MAX_SWEEPS, "a sweep is a bit of Setting.sweeps");
+_Static_assert(sizeof SWEEPS / sizeof *SWEEPS <= MAX_SWEEPS, "a sweep is an element of Setting.sweeps");
 
 const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
                                                 "virtual lights without shadows",
@@ -96,38 +103,45 @@ const char* const FAMILY_NAMES[FAMILY_COUNT] = {"direct light only",
                                                 "Keller's method",
                                                 "SSVP",
                                                 "radiosity",
-                                                "path tracing"};
+                                                "path tracing",
+                                                "the planner (--method auto)"};
 
-uint64_t findSweeps(const char* name, size_t length)
+bool isOfSweep(const Setting* s, const char* name)
 {
-    uint64_t bits = 0;
+    bool found = false;
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        const bool equal = strlen(SWEEPS[i].name) == length && strncmp(name, SWEEPS[i].name, length) == 0;
-        bits |= equal ? UINT64_C(1) << i : 0;
+        found = found || (s->sweeps[i] && strcmp(SWEEPS[i].name, name) == 0);
     }
-    return bits;
+    return found;
 }
 
-// Returns the bits of the sweeps that "a,b,c" names; NULL names all. 0 after complaining of an unknown name.
-static uint64_t chooseSweeps(const char* list)
+// Marks the sweeps that "a,b,c" names; NULL names all. Returns false after complaining of an unknown name.
+static bool chooseSweeps(const char* list, bool chosen[MAX_SWEEPS])
 {
-    uint64_t chosen = list == NULL ? UINT64_MAX : 0;
-    for (const char* at = list; at != NULL && *at != 0; at += strcspn(at, ","), at += *at == ',') {
-        const size_t length = strcspn(at, ",");
-        const uint64_t named = findSweeps(at, length);
-        if (named == 0) {
-            complain("--sweeps names \"%.*s\"; vpl help tradeoff lists the sweeps", (int)length, at);
-            return 0;
-        }
-        chosen |= named;
+    bool good = list == NULL || *list != 0;
+    for (int i = 0; i < SWEEP_COUNT; i++) {
+        chosen[i] = list == NULL;
     }
-    return chosen;
+    for (const char* at = list; at != NULL && *at != 0 && good; at += strcspn(at, ","), at += *at == ',') {
+        const size_t length = strcspn(at, ",");
+        good = false;
+        for (int i = 0; i < SWEEP_COUNT; i++) {
+            if (strlen(SWEEPS[i].name) == length && strncmp(at, SWEEPS[i].name, length) == 0) {
+                chosen[i] = good = true;
+            }
+        }
+        if (!good) {
+            complain("--sweeps names \"%.*s\"; vpl help tradeoff lists the sweeps", (int)length, at);
+        }
+    }
+    return good;
 }
 
 static Family familyOf(const vplRenderOptions* o)
 {
     switch (o->method) {
-    case VPL_METHOD_AUTO: // not measured as such
+    case VPL_METHOD_AUTO:
+        return FAMILY_AUTO;
     case VPL_METHOD_DIRECT:
         return FAMILY_DIRECT;
     case VPL_METHOD_PATH:
@@ -146,9 +160,23 @@ static Family familyOf(const vplRenderOptions* o)
                                                         : FAMILY_UNSHADOWED;
 }
 
-// Lights, patches or paths, plus a constant for the cost of any picture.
+// The field that runs along a curve: the number of lights, patches, paths or clusters; NULL of other methods.
+static int* amountOf(vplRenderOptions* o)
+{
+    return o->method == VPL_METHOD_PATH        ? &o->path.samples
+           : o->method == VPL_METHOD_RADIOSITY ? &o->radiosity.patches
+           : o->method == VPL_METHOD_SSVP      ? &o->ssvp.clusters
+           : o->method == VPL_METHOD_KELLER || o->method == VPL_METHOD_INSTANT_RADIOSITY ? &o->particles.count
+                                                                                         : NULL;
+}
+
+// Lights, patches or paths, plus a constant for the cost of any picture. The planner's noise falls as the
+// root of its time.
 static double workOf(const vplRenderOptions* o)
 {
+    if (o->method == VPL_METHOD_AUTO) {
+        return o->stop.maxError > 0 ? 1 / (o->stop.maxError * o->stop.maxError) : fmax(o->stop.budgetMs, 1);
+    }
     double reflectivity = o->particles.reflectivity >= 0 ? o->particles.reflectivity : 0.7;
     return o->method == VPL_METHOD_PATH        ? o->path.samples
            : o->method == VPL_METHOD_DIRECT    ? 1
@@ -181,7 +209,10 @@ static void writeDifference(const vplRenderOptions* plain, const vplRenderOption
 void writeCommand(const vplRenderOptions* o, char* words, size_t size)
 {
     const vplRenderOptions plain = vplDefaultRenderOptions();
-    writeDifference(&plain, o, words, size);
+    const char* method =
+        o->method == VPL_METHOD_AUTO ? "--method auto " : ""; // said although it is the default
+    const int length = snprintf(words, size, "%s", method);
+    writeDifference(&plain, o, words + length, size - (size_t)length);
 }
 
 // Sets options that the method does not use to their defaults, so that equal settings compare equal.
@@ -199,18 +230,77 @@ static void forgetUnused(vplRenderOptions* o)
     }
 }
 
-// Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too.
-static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
+// Leaves to the planner what it can choose: sets options that some method does not use to their defaults. The
+// pixels stay those of the other settings, because one truth judges all.
+static void forgetChoices(vplRenderOptions* o)
 {
-    Setting s = {.options = t->arguments->render, .sweeps = sweep};
-    if (!setOptions(&s.options, words)) {
+    const vplRenderOptions plain = vplDefaultRenderOptions();
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        char usual[64];
+        const bool general = (options[i].users & VPL_USE_ALL) == VPL_USE_ALL;
+        if (!general && strcmp(options[i].name, "antialias") != 0 &&
+            vplRenderOptions_Get(&plain, options[i].name, usual, sizeof usual) == VPL_SUCCESS) {
+            vplRenderOptions_Set(o, options[i].name, usual);
+        }
+    }
+}
+
+// Finds the curve of a setting behind the others, on which only the amount varies.
+static void findCurve(const Tradeoff* t, Setting* s)
+{
+    vplRenderOptions o = s->options;
+    int* amount = amountOf(&o);
+    s->amount = amount != NULL ? *amount : 0;
+    if (amount != NULL) {
+        *amount = 1;
+    }
+    if (o.method == VPL_METHOD_AUTO) {
+        o.stop.maxError = o.stop.maxError > 0;
+        o.stop.budgetMs = o.stop.budgetMs > 0;
+    }
+    writeCommand(&o, s->first, sizeof s->first);
+    for (s->curve = 0; s->curve < t->settingCount; s->curve++) {
+        if (strcmp(t->settings[s->curve].first, s->first) == 0) {
+            break;
+        }
+    }
+}
+
+// Sets all options of a setting.
+static bool setWords(const Tradeoff* t, Setting* s, const char* words)
+{
+    s->options = t->arguments->render;
+    if (!setOptions(&s->options, words)) {
         return false;
     }
-    forgetUnused(&s.options);
+    if (s->options.method == VPL_METHOD_AUTO) {
+        forgetChoices(&s->options);
+    }
+    if (s->options.method == VPL_METHOD_PATH &&
+        s->options.output.antialias == 1) { // paths start where the other methods sample
+        s->options.path.pixel = VPL_PIXEL_CENTRE;
+    }
+    forgetUnused(&s->options);
+    return true;
+}
+
+// Adds the base changed by `words`, or notes that an equal setting belongs to this sweep, too. The base
+// itself belongs to every chosen knob.
+static bool addSetting(Tradeoff* t, const char* words, const bool sweeps[MAX_SWEEPS])
+{
+    Setting s = {0};
+    if (!setWords(t, &s, words)) {
+        return false;
+    }
+    memcpy(s.sweeps, sweeps, sizeof s.sweeps);
     writeCommand(&s.options, s.command, sizeof s.command);
     for (int i = 0; i < t->settingCount; i++) {
         if (strcmp(t->settings[i].command, s.command) == 0) {
-            t->settings[i].sweeps |= sweep;
+            for (int k = 0; k < SWEEP_COUNT; k++) {
+                t->settings[i].sweeps[k] |= sweeps[k];
+            }
             return true;
         }
     }
@@ -219,8 +309,12 @@ static bool addSetting(Tradeoff* t, const char* words, uint64_t sweep)
         return false;
     }
     writeDifference(&t->arguments->render, &s.options, s.change, sizeof s.change);
+    if (s.options.method == VPL_METHOD_AUTO) { // as it was asked, without the base's options that it forgot
+        snprintf(s.change, sizeof s.change, "%s", words);
+    }
     s.family = familyOf(&s.options);
     s.work = workOf(&s.options);
+    findCurve(t, &s);
     t->settings[t->settingCount++] = s;
     return true;
 }
@@ -255,11 +349,13 @@ static bool addSweep(Tradeoff* t, int index)
     const Sweep* sweep = &SWEEPS[index];
     const char* at = sweep->values != CHOICES ? sweep->values : vplFindOption(optionOf(sweep) + 2)->value;
     char value[32], pattern[128], words[128];
+    bool only[MAX_SWEEPS] = {false};
+    only[index] = true;
     for (; sscanf(at, "%31[^ |]", value) == 1; at += strlen(value), at += *at != 0) {
         const bool left = strcmp(value, "auto") == 0 || strcmp(value, "usual") == 0;
         snprintf(pattern, sizeof pattern, "%s %s", sweep->words, value);
         expandLengths(t, pattern, words, sizeof words);
-        if ((sweep->values != CHOICES || !left) && !addSetting(t, words, UINT64_C(1) << index)) {
+        if ((sweep->values != CHOICES || !left) && !addSetting(t, words, only)) {
             return false;
         }
     }
@@ -268,14 +364,14 @@ static bool addSweep(Tradeoff* t, int index)
 
 bool listSettings(Tradeoff* t)
 {
-    const uint64_t chosen = chooseSweeps(t->arguments->sweeps);
-    uint64_t knobs = 0;
+    bool chosen[MAX_SWEEPS] = {false}, knobs[MAX_SWEEPS] = {false};
+    bool good = chooseSweeps(t->arguments->sweeps, chosen);
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        knobs |= SWEEPS[i].meaning != NULL ? chosen & UINT64_C(1) << i : 0;
+        knobs[i] = chosen[i] && SWEEPS[i].meaning != NULL;
     }
-    bool good = chosen != 0 && addSetting(t, "", knobs);
+    good = good && addSetting(t, "", knobs);
     for (int i = 0; i < SWEEP_COUNT && good; i++) {
-        good = (chosen >> i & 1) == 0 || addSweep(t, i);
+        good = !chosen[i] || addSweep(t, i);
     }
     return good;
 }

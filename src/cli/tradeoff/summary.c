@@ -33,7 +33,7 @@ void summarise(Tradeoff* t)
         s->cpuMs = band(s, offsetof(Run, stats.cpuMs), &s->cpuLow, &s->cpuHigh);
         s->wallMs = band(s, offsetof(Run, stats.totalMs), &low, &high);
         s->energy = band(s, offsetof(Run, comparison.energyRatio), &low, &high);
-        cost[i] = s->cpuMs;
+        cost[i] = isMeasuredOf(s, FAMILY_COUNT) ? s->cpuMs : NAN;
         error[i] = s->error;
     }
     numberFront(cost, error, t->settingCount, FRONT_GAIN, numbers);
@@ -51,6 +51,12 @@ int findCheapest(const Tradeoff* t, Family family, double limit)
         error[i] = isMeasuredOf(s, family) ? s->error : NAN;
     }
     return cheapestWithin(cost, error, t->settingCount, limit);
+}
+
+double overFront(const Tradeoff* t, const Setting* s)
+{
+    const int found = findCheapest(t, FAMILY_COUNT, s->error);
+    return found >= 0 ? s->cpuMs / t->settings[found].cpuMs : NAN;
 }
 
 int listFront(const Tradeoff* t, const Setting* front[MAX_SETTINGS])
@@ -73,7 +79,7 @@ double findFloor(const Tradeoff* t, Family family)
         const Setting* s = &t->settings[i];
         // The first rows of SWEEPS vary the particles without shadows, with maps, with rays and of Keller's
         // method: they are in the order of the families.
-        if (isMeasured(s) && s->family == family && (s->sweeps >> (family - FAMILY_UNSHADOWED) & 1) != 0) {
+        if (isMeasured(s) && s->family == family && s->sweeps[family - FAMILY_UNSHADOWED]) {
             work[count] = s->work;
             error[count++] = s->error;
         }

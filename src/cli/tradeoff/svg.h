@@ -27,7 +27,9 @@ void addFrame(Text* svg, double top, double bottom);
 
 void addMarker(Text* svg, Family family, bool solid, double x, double y);
 
-// Markers and names of families, in rows from (x, y) on.
-void addLegend(Text* svg, const bool present[FAMILY_COUNT], int x, int y);
+// Markers and names of families, in rows at the top. Returns the height that they take, as heightOfLegend.
+int addLegend(Text* svg, const bool present[FAMILY_COUNT]);
+
+int heightOfLegend(const bool present[FAMILY_COUNT]);
 
 #endif

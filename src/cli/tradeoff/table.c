@@ -2,6 +2,7 @@
 // tradeoff.csv: one row per setting and seed, with every option and every figure (RFC 4180).
 #include "cli/tradeoff/tradeoff.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -50,9 +51,11 @@ static void addHeader(const Stages* stages, Text* csv)
             addHeading("", options[i].name, csv);
         }
     }
-    addText(csv, "virtual_lights,min_distance_used,reflectivity_used,image_hash,error,relative_rmse,rmse,"
-                 "relmse,trimmed_relmse,ssim,flip,psnr,"
-                 "energy_ratio,max_difference,draw_calls,rays,peak_bytes,cpu_ms,total_ms,");
+    addText(
+        csv,
+        "over_front,virtual_lights,min_distance_used,reflectivity_used,image_hash,error,relative_rmse,rmse,"
+        "relmse,trimmed_relmse,ssim,flip,psnr,"
+        "energy_ratio,max_difference,draw_calls,rays,peak_bytes,cpu_ms,total_ms,");
     for (int i = 0; i < stages->count; i++) {
         addHeading("ms_", stages->names[i], csv);
     }
@@ -63,12 +66,18 @@ static void addSweeps(const Setting* s, Text* csv)
 {
     const char* before = "";
     for (int i = 0; i < SWEEP_COUNT; i++) {
-        if ((s->sweeps >> i & 1) != 0 && strcmp(before, SWEEPS[i].name) != 0) {
+        if (s->sweeps[i] && strcmp(before, SWEEPS[i].name) != 0) {
             addText(csv, "%s%s", *before ? " " : "", SWEEPS[i].name);
             before = SWEEPS[i].name;
         }
     }
     addText(csv, ",");
+}
+
+// A number that is not known is an empty cell.
+static void addKnown(double value, Text* csv)
+{
+    addText(csv, isnan(value) ? "," : "%.9g,", value);
 }
 
 static void addFigures(const Run* run, const Stages* stages, Text* csv)
@@ -77,8 +86,10 @@ static void addFigures(const Run* run, const Stages* stages, Text* csv)
     const vplComparison* c = &run->comparison;
     addText(csv, "%d,%.9g,%.9g,%016llx,", s->virtualLights, (double)s->minDistance, s->reflectivity,
             (unsigned long long)s->imageHash);
-    addText(csv, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,", run->error, c->relativeRmse, c->rmse, c->relmse,
-            c->trimmedRelmse, run->ssim, run->flip);
+    addText(csv, "%.9g,%.9g,%.9g,%.9g,%.9g,", run->error, c->relativeRmse, c->rmse, c->relmse,
+            c->trimmedRelmse);
+    addKnown(run->ssim, csv);
+    addKnown(run->flip, csv);
     addText(csv, "%.9g,%.9g,%.9g,", c->psnr, c->energyRatio, c->maxDifference);
     addText(csv, "%lld,%lld,%zu,%.3f,%.3f,", (long long)s->drawCalls, (long long)s->rays, s->peakBytes,
             s->cpuMs, s->totalMs);
@@ -106,6 +117,7 @@ static void addRow(const Tradeoff* t, int index, const Run* run, const Stages* s
             addCell(csv, value);
         }
     }
+    addKnown(overFront(t, s), csv);
     addFigures(run, stages, csv);
     char command[SENTENCE];
     vplRenderOptions seeded = s->options;

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,6 +92,7 @@ static int measure(Tradeoff* t)
 {
     t->start = 1e-3 * wallMs();
     t->deadline = t->start + t->arguments->seconds;
+    t->limit = INFINITY;
     t->progress = beginProgress(t->arguments->quiet);
     int code = makeReference(t);
     if (code == EXIT_DONE) {

@@ -18,7 +18,10 @@
     "halton "                                                                                                \
     "--seed 1 --shadow-map 256 --pcf 1"
 
-enum { MAX_SETTINGS = 512, MAX_SWEEPS = 64, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
+// A render whose time is not known yet is tried for about this share of the time.
+#define TRIAL_SHARE 0.1
+
+enum { MAX_SETTINGS = 512, MAX_SWEEPS = 128, MAX_STAGE_NAMES = 32, SENTENCE = 512 };
 
 // Kinds of settings, each with a colour in the plots: they converge differently.
 typedef enum Family {
@@ -30,6 +33,7 @@ typedef enum Family {
     FAMILY_SSVP,
     FAMILY_RADIOSITY,
     FAMILY_PATH,
+    FAMILY_AUTO, // --method auto: judged by the others, and so neither on the front nor among the answers
     FAMILY_COUNT
 } Family;
 
@@ -55,24 +59,44 @@ typedef struct Run {
     uint64_t seed;
     vplRenderStats stats;
     vplComparison comparison;
-    double error; // as errorOf
-    double ssim, flip;
+    double error;      // as errorOf
+    double ssim, flip; // NAN: not computed, see compare
 } Run;
+
+// A setting's picture as it is foreseen; error 0 where nothing is known.
+typedef struct Forecast {
+    double wallMs, cpuMs, error;
+    bool known; // not a guess from the number of pixels
+    bool far;   // far beyond what has been measured of the curve
+} Forecast;
+
+// Reasons for which a setting that could be measured was not.
+typedef enum LeftOut {
+    LEFT_LATE = 0, // time was up
+    LEFT_DEAR,     // it was foreseen to take longer than all the time given
+    LEFT_WORSE,    // time was up, and another setting was foreseen to be both faster and better
+    LEFT_LONG      // it was cancelled, because it took far longer than foreseen
+} LeftOut;
 
 typedef struct Setting {
     char command[SENTENCE];   // the words after `vpl render` that make its picture, without the output
     char change[128];         // words that differ from the base; empty for the base itself
     vplRenderOptions options; // the base with the change
-    uint64_t sweeps;          // bit i: belongs to SWEEPS[i]
+    bool sweeps[MAX_SWEEPS];  // i: belongs to SWEEPS[i]
     Family family;
     double work; // foreseen, in units that only compare settings of one family and pipeline
-    Run* runs;   // of Tradeoff.runs
+    int curve;   // index of the first setting from which only the amount differs; its own if there is none
+    char first[SENTENCE]; // the command with amount 1
+    double amount;        // lights, patches, paths or clusters; 0: the method has no such number
+    Forecast forecast;    // from what has been measured
+    Run* runs;            // of Tradeoff.runs
     int runCount;
     double error, errorLow, errorHigh; // as errorOf: median, least and most of the seeds
     double cpuMs, cpuLow, cpuHigh, wallMs;
     double energy;          // median of the ratio to the truth's
     char problem[SENTENCE]; // why it was not measured; empty: it was, or time ran out before
-    bool exhausted;         // left out for lack of time
+    LeftOut leftOut;        // why else
+    double cancelledMs;     // of LEFT_LONG: after so much time
     int number;             // on the front, where 1 is the cheapest; 0: not on the front
     vplImage* image;        // of the first seed, kept while the setting is on the front
 } Setting;
@@ -101,6 +125,10 @@ typedef struct Tradeoff {
     Run* runs; // of all settings
     Progress progress;
     double start, deadline; // seconds; INFINITY: none
+    double limit;           // seconds: the render that runs now is cancelled then
+    bool coarse;            // what is measured now is the base or a coarse point
+    double spent, knobs;    // seconds on all others, and on the knobs among them
+    double perceptual;      // seconds of computing ssim and flip
     bool interrupted;
     char message[SENTENCE]; // the last error of the library
     bool silent;            // errors are kept, not printed
@@ -108,8 +136,8 @@ typedef struct Tradeoff {
 
 // ---- settings
 
-// Returns the bits of the rows of SWEEPS that have a name.
-uint64_t findSweeps(const char* name, size_t length);
+// True if the setting belongs to a sweep of this name.
+bool isOfSweep(const Setting* s, const char* name);
 
 // Fills in the base and all settings of the chosen sweeps; complains and returns false if a name is unknown.
 bool listSettings(Tradeoff* t);
@@ -125,6 +153,18 @@ int makeReference(Tradeoff* t);
 // The error of a picture: root mean square difference from the reference / mean of the reference. With two
 // halves it is free of the reference's own noise. It is at least the reference's resolution.
 double errorOf(const Reference* r, const vplImage* image, const vplComparison* comparison);
+
+// Returns the setting with `done` seeds to measure next, so that it should end before `end`; NULL: none.
+Setting* chooseNext(Tradeoff* t, int done, double end);
+
+// True of a setting that belongs to knobs only, and is no point of the plot's curves.
+bool isKnob(const Setting* s);
+
+// Writes why a setting was not measured, and returns the sentence.
+const char* whyLeftOut(const Setting* s, char* text, size_t size);
+
+// Notes for every setting that was not measured why it was left out.
+void explainLeftOut(Tradeoff* t);
 
 // Renders all settings that fit into the time. EXIT_DONE also if interrupted; then t->interrupted says so.
 int measureSettings(Tradeoff* t);
@@ -143,7 +183,8 @@ void writeStyle(Text* css); // colours of both the plots and the report
 void writePlot(const Tradeoff* t, Text* svg);
 void writeReport(const Tradeoff* t, Text* html);
 
-// Returns the index of a family's (FAMILY_COUNT: any) cheapest setting with a median error <= limit, or -1.
+// Returns the index of a family's (FAMILY_COUNT: any but the planner) cheapest setting with a median error <=
+// limit, or -1.
 int findCheapest(const Tradeoff* t, Family family, double limit);
 
 // Lists the settings on the front, the cheapest first, and returns their number.
@@ -153,9 +194,18 @@ int listFront(const Tradeoff* t, const Setting* front[MAX_SETTINGS]);
 // does not.
 double findFloor(const Tradeoff* t, Family family);
 
+// The processor time over that of the cheapest setting without planner of at most this error; NAN: there is
+// none.
+double overFront(const Tradeoff* t, const Setting* s);
+
 // Parts of report.html.
-void addAnswers(const Tradeoff* t, Text* html);  // words and table: the settings for 5 % error
+void addAnswers(const Tradeoff* t, Text* html); // words and table: the settings for 5 % error
+void addCommand(const Tradeoff* t, const Setting* s, Text* html);
+void addBest(const Tradeoff* t, Text* html);     // the least error within some times
+void addPlanner(const Tradeoff* t, Text* html);  // asked against reached
 void addPictures(const Tradeoff* t, Text* html); // the front beside the truth
+void addSlider(Text* html);                      // compares two of the pictures, by the script
+void addScript(Text* html);                      // behind all pictures
 void addClamp(const Tradeoff* t, Text* html);    // error and energy against --min-distance
 void addKnobs(const Tradeoff* t, Text* html);    // each option against the base
 
@@ -164,10 +214,10 @@ static inline bool isMeasured(const Setting* s)
     return s->runCount > 0;
 }
 
-// FAMILY_COUNT: of any family.
+// FAMILY_COUNT: of any family but the planner.
 static inline bool isMeasuredOf(const Setting* s, Family family)
 {
-    return isMeasured(s) && (family == FAMILY_COUNT || s->family == family);
+    return isMeasured(s) && (family == FAMILY_COUNT ? s->family != FAMILY_AUTO : s->family == family);
 }
 
 #endif
