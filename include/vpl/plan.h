@@ -15,7 +15,9 @@ enum {
     VPL_MAX_PLAN_STAGES = 24,
     VPL_MAX_DECISIONS = 24,
     VPL_MAX_STEPS_REPORTED = 64,
-    VPL_PLAN_TEXT = 200 // bytes of a reason
+    VPL_PLAN_TEXT = 200, // bytes of a reason
+    // Paths per pixel in a pass of path tracing, large enough that threads seldom wait for each other.
+    VPL_PATHS_PER_PASS = 32
 };
 
 // A stage that will run.

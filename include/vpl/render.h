@@ -108,7 +108,9 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
                              vplRenderer** rendererOut);
 
 // Renders one pass. *doneOut says whether all that the options ask for is done; further steps are allowed and
-// improve pictures that are means of passes. After a failure the renderer can only be destroyed.
+// improve pictures that are means of passes. A step that vplRenderOptions.progress cancels (VPL_CANCELLED) leaves the
+// renderer as it was before the step: pictures of the passes before can be read, and the next step does the cancelled
+// pass anew, so that the same bits follow. After any other failure the renderer can only be destroyed.
 vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
 
 // Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.

@@ -97,9 +97,10 @@ static double shareOf(const vplRenderer* r, int passes)
     return share < 1 ? share : 1;
 }
 
-static vplResult openSums(vplRenderer* r)
+vplResult vplRenderer_OpenSums(vplRenderer* r)
 {
     for (int half = 0; half < 2; half++) {
+        vplFree(r->runner.run.context, r->sums[half]); // of a first pass that was cancelled
         r->sums[half] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[half]);
         if (r->sums[half] == NULL) {
             return VPL_OUT_OF_MEMORY;
@@ -127,14 +128,16 @@ static vplResult addDirect(vplRenderer* r)
     return VPL_SUCCESS;
 }
 
-// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums.
+// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums, after all that can
+// be cancelled.
 static vplResult addPass(vplRenderer* r)
 {
     if (r->done == 0) {
         r->runner.run.parts = VPL_PART_DIRECT;
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
+        vplImage_Destroy(r->base);
         r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(openSums(r));
+        TRY(vplRenderer_OpenSums(r));
         r->runner.run.parts = VPL_PART_INDIRECT;
         TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
     } else {
@@ -142,11 +145,12 @@ static vplResult addPass(vplRenderer* r)
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
     }
     vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-    for (size_t k = 0; k < vplValueCount(image); k++) {
+    const vplResult result = addDirect(r);
+    for (size_t k = 0; k < vplValueCount(image) && result == VPL_SUCCESS; k++) {
         r->sums[r->done % 2][k] += (double)image->pixels[k];
     }
     vplImage_Destroy(image);
-    return addDirect(r);
+    return result;
 }
 
 static vplResult runPass(vplRenderer* r)
@@ -160,10 +164,12 @@ static vplResult runPass(vplRenderer* r)
     TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_COUNT));
     if (r->plan->options.method != VPL_METHOD_PATH) {
         const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-        vplImage_Destroy(r->base);
-        r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS);
-        return addDirect(r);
+        vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+        vplResult result = show->drawOver != NULL ? show->drawOver(run, image) : VPL_SUCCESS;
+        result = result == VPL_SUCCESS ? addDirect(r) : result;
+        vplImage_Destroy(result == VPL_SUCCESS ? r->base : image);
+        r->base = result == VPL_SUCCESS ? image : r->base;
+        return result;
     }
     return VPL_SUCCESS;
 }
@@ -188,6 +194,23 @@ static void estimateError(vplRenderer* r, const vplImage* image)
     }
 }
 
+// Makes the virtual lights of the last pass again, for marks on the picture, where a pass was cancelled or the render
+// was loaded since.
+static vplResult refreshLights(vplRenderer* r)
+{
+    const vplRunner before = r->runner;
+    if (!r->stale || VPL_SHOWS[r->plan->options.output.show].drawOver == NULL) {
+        return VPL_SUCCESS;
+    }
+    r->runner.progress = NULL; // it is short, and not part of a pass
+    r->runner.run.pass = r->done - 1;
+    const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_VIRTUAL_LIGHTS);
+    r->runner.progress = before.progress;
+    r->runner.stats = before.stats;
+    r->stale = result != VPL_SUCCESS;
+    return result;
+}
+
 static vplResult resolve(vplRenderer* r, vplImage** imageOut)
 {
     vplRun* run = &r->runner.run;
@@ -195,6 +218,7 @@ static vplResult resolve(vplRenderer* r, vplImage** imageOut)
     if (r->plan->options.method == VPL_METHOD_PATH) {
         return vplResolvePaths(run, imageOut);
     }
+    TRY(r->plan->progressive ? refreshLights(r) : VPL_SUCCESS);
     TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
     for (size_t k = 0; k < vplValueCount(r->base); k++) {
         const double mean = r->plan->progressive ? (r->sums[0][k] + r->sums[1][k]) / r->done : 0;
@@ -225,12 +249,11 @@ static vplResult resolveDirect(vplRenderer* r, vplImage** imageOut)
     return VPL_SUCCESS;
 }
 
-// Tests whether the options' count of passes, error or time is reached.
-static vplResult isDone(vplRenderer* r, bool* doneOut)
+vplResult vplRenderer_IsDone(vplRenderer* r, bool* doneOut)
 {
     const vplRenderOptions* o = &r->plan->options;
     const bool paths = o->method == VPL_METHOD_PATH;
-    bool done = paths                  ? r->done >= vplCountPathPasses(r->plan)
+    bool done = paths                  ? vplPathsAreDone(&r->runner.run)
                 : r->plan->progressive ? o->stop.passes > 0 && r->done >= o->stop.passes
                                        : true;
     if (!done && o->stop.maxError > 0) {
@@ -251,10 +274,18 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
     const double begin = vplClockMs();
     r->runner.stepFrom = shareOf(r, r->done);
     r->runner.stepTo = shareOf(r, r->done + 1);
-    TRY(runPass(r));
+    const vplRunner before = r->runner;
+    const vplResult result = runPass(r);
+    if (result == VPL_CANCELLED) { // nothing of the pass counts
+        r->runner.stats = before.stats;
+        r->runner.loss = before.loss;
+        r->stale = r->done > 0;
+    }
+    TRY(result);
+    r->stale = false;
     r->passMs += vplClockMs() - begin;
     r->done++;
-    return isDone(r, doneOut);
+    return vplRenderer_IsDone(r, doneOut);
 }
 
 void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderStats* statsOut)

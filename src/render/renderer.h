@@ -14,9 +14,16 @@ struct vplRenderer {
     // which `base` lacks; NULL: there is none.
     vplImage* direct;
     int done;               // passes
+    bool stale;             // results of stages are not those of the last pass
     double start, cpuStart; // ms
     double passMs;          // of all passes
 };
+
+// Makes sums of passes, all 0.
+vplResult vplRenderer_OpenSums(vplRenderer* renderer);
+
+// Tests whether the options' count of passes, error or time is reached; at least one pass is done.
+vplResult vplRenderer_IsDone(vplRenderer* renderer, bool* doneOut);
 
 // Fills in the statistics of the whole render so far. `image` may be NULL.
 void vplRenderer_FinishStats(vplRenderer* renderer, const vplImage* image, vplRenderStats* statsOut);

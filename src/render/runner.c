@@ -257,8 +257,11 @@ static vplResult make(vplRunner* r, vplStageId id)
         slot->result = result;
         slot->arena = r->run.arena;
     }
+    const bool whole = made == VPL_CANCELLED && stage->undoes && result != NULL && result == r->run.before;
     if (made != VPL_SUCCESS) { // a result that is incomplete is of no use
-        empty(r->history, id);
+        if (!whole) {
+            empty(r->history, id);
+        }
         return made;
     }
     slot->bytes = (int64_t)vplContext_GetBytes(context) - held;

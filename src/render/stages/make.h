@@ -41,6 +41,12 @@ static inline bool vplPathsAreOpen(const vplPlan* plan)
 int vplCountPathPasses(const vplPlan* plan);
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
 
+// True if as many paths were traced as the options ask for.
+bool vplPathsAreDone(const vplRun* run);
+
+// The tracer of the picture, or of its direct light, which is NULL if the plan does not split light.
+struct vplPathTracer* vplGetPathTracer(const vplRun* run, bool direct);
+
 // The mean of their direct light, if the plan splits light. The image is black.
 void vplResolveDirectPaths(const vplRun* run, vplImage* image);
 

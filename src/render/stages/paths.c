@@ -3,12 +3,9 @@
 #include "reference/path_trace.h"
 #include "render/stages/make.h"
 
-// Paths per pixel in a pass, large enough that threads seldom wait for each other.
-enum { PASS_SAMPLES = 32 };
-
 int vplCountPathPasses(const vplPlan* plan)
 {
-    return (plan->options.path.samples + PASS_SAMPLES - 1) / PASS_SAMPLES;
+    return (plan->options.path.samples + VPL_PATHS_PER_PASS - 1) / VPL_PATHS_PER_PASS;
 }
 
 // The result of the stage.
@@ -51,7 +48,16 @@ static vplResult createPaths(const vplRun* run, Paths* paths)
     return plan->splitsLight ? vplPathTracer_Create(g, &direct, &paths->direct) : VPL_SUCCESS;
 }
 
-// Pass 0 creates tracers; later passes add paths to them.
+// Counts the paths per pixel of the next pass. Passes end at multiples of VPL_PATHS_PER_PASS or at the count that is
+// asked for, also where an earlier pass ended at a smaller one.
+static int countNext(const vplPlan* plan, int done)
+{
+    const int end = (done / VPL_PATHS_PER_PASS + 1) * VPL_PATHS_PER_PASS, asked = plan->options.path.samples;
+    return (asked > done && asked < end ? asked : end) - done;
+}
+
+// Pass 0 creates tracers; later passes add paths to them. Both tracers have the same paths after a pass that is
+// cancelled, too.
 vplResult vplMakePaths(const vplRun* run, void** resultOut)
 {
     Paths* paths = run->pass > 0 ? run->before : NULL;
@@ -61,14 +67,19 @@ vplResult vplMakePaths(const vplRun* run, void** resultOut)
         *resultOut = paths;
         TRY(createPaths(run, paths));
     }
-    const int left = run->plan->options.path.samples - run->pass * PASS_SAMPLES;
-    const int samples = left > 0 && left < PASS_SAMPLES ? left : PASS_SAMPLES;
-    const double share = paths->direct != NULL ? 0.3 : 0; // of the time, about
     *resultOut = paths;
-    if (paths->direct != NULL) {
+    const int samples = run->opens ? 0 : countNext(run->plan, vplPathTracer_GetSums(paths->picture).samples);
+    const double share = paths->direct != NULL ? 0.3 : 0; // of the time, about
+    if (samples > 0 && paths->direct != NULL) {
         TRY(vplPathTracer_Pass(paths->direct, samples, run->progress, run->runner, 0, share));
     }
-    return vplPathTracer_Pass(paths->picture, samples, run->progress, run->runner, share, 1);
+    const vplResult result =
+        samples > 0 ? vplPathTracer_Pass(paths->picture, samples, run->progress, run->runner, share, 1)
+                    : VPL_SUCCESS;
+    if (result == VPL_CANCELLED && paths->direct != NULL) {
+        vplPathTracer_Undo(paths->direct);
+    }
+    return result;
 }
 
 void vplDestroyPaths(void* result)
@@ -97,4 +108,15 @@ void vplResolveDirectPaths(const vplRun* run, vplImage* image)
     vplPathStats stats;
     vplPathTracer_Resolve(paths->direct, image, &stats);
     run->stats->rays += stats.rays;
+}
+
+vplPathTracer* vplGetPathTracer(const vplRun* run, bool direct)
+{
+    const Paths* paths = run->results[VPL_STAGE_PATHS];
+    return direct ? paths->direct : paths->picture;
+}
+
+bool vplPathsAreDone(const vplRun* run)
+{
+    return vplPathTracer_GetSums(vplGetPathTracer(run, false)).samples >= run->plan->options.path.samples;
 }
