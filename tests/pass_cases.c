@@ -8,7 +8,8 @@ vplRenderOptions passCase(vplContext* context, int i, vplScene** sceneOut)
         "--method path --spp 103 --aov direct,indirect",
         "--method keller --particles 12 --passes 4",
         "--method keller --particles 9 --passes 4 --aov direct,albedo --antialias 2 --pipeline interleaved",
-        "--method ssvp --passes 4 --clusters 2 --first-bounce 8 --second-bounce 8 --paraboloid 8 --rsm-size 16",
+        "--method ssvp --passes 4 --clusters 2 --first-bounce 8 --second-bounce 8 --paraboloid 8 --rsm-size "
+        "16",
         "--method instant-radiosity --particles 7 --placement view --show overlay --passes 4",
     };
     vplRenderOptions o = plainOptions();
@@ -16,7 +17,8 @@ vplRenderOptions passCase(vplContext* context, int i, vplScene** sceneOut)
     o.output.width = 25;
     o.output.height = 18;
     o.shadow.mapSize = 16;
-    *sceneOut = openScene(context, i == 1 || i == 3 ? "examples/scenes/room-area.json" : "tests/data/room.json");
+    *sceneOut =
+        openScene(context, i == 1 || i == 3 ? "examples/scenes/room-area.json" : "tests/data/room.json");
     return o;
 }
 

@@ -16,7 +16,8 @@ static bool stopOnce(void* user, double fraction)
 }
 
 // Renders with a stop at call `at`. Returns false if there were fewer calls.
-static bool stopAt(const vplScene* scene, vplRenderOptions o, int at, const Seen* passes, const vplRenderStats* whole)
+static bool stopAt(const vplScene* scene, vplRenderOptions o, int at, const Seen* passes,
+                   const vplRenderStats* whole)
 {
     Stop stop = {0, 0};
     vplRenderer* r;
@@ -40,7 +41,8 @@ static bool stopAt(const vplScene* scene, vplRenderOptions o, int at, const Seen
     const Seen seen = look(r, &stats);
     assertSeenSame(&seen, &passes[MOST_PASSES]);
     assert_int_equal(stats.virtualLights, whole->virtualLights);
-    assert_true(stats.rays <= whole->rays && stats.drawCalls <= whole->drawCalls); // work of cancelled passes is left out
+    assert_true(stats.rays <= whole->rays &&
+                stats.drawCalls <= whole->drawCalls); // work of cancelled passes is left out
     assert_true(stats.clampLoss == whole->clampLoss && stats.errorEstimate == whole->errorEstimate);
     vplRenderer_Destroy(r);
     return stops > 0;

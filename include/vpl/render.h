@@ -119,6 +119,15 @@ vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRe
 // Gets the picture so far and its layers, likewise; destroy them with vplLayers_Destroy.
 vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vplRenderStats* statsOut);
 
+// Ends a render: gets the picture as vplRenderer_GetImage does or, if layersOut is not NULL, the layers as
+// vplRenderer_GetLayers does, and logs the error that remains. Needs no second picture in memory where the picture is no
+// mean of passes. The renderer can only be destroyed after it.
+vplResult vplRenderer_Finish(vplRenderer* renderer, vplImage** imageOut, vplLayers** layersOut,
+                             vplRenderStats* statsOut);
+
+// The plan that the renderer follows; it lives as long as the renderer.
+const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer);
+
 // NULL is allowed. The scene must outlive the renderer.
 void vplRenderer_Destroy(vplRenderer* renderer);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/cli.h"
+#include "cli/steps.h"
 
 #include <limits.h>
 #include <math.h>
@@ -169,16 +169,25 @@ static bool showSequence(void* user, double fraction)
     return showProgress(&s->progress, (s->done + fraction) / s->count);
 }
 
+static int writeFrame(const Arguments* a, const vplScene* scene, const Picture* picture, const Files* files,
+                      vplWriteOptions* display)
+{
+    int code = picture->layers != NULL ? writeLayers(picture->layers, files->output)
+                                       : writePicture(a, picture->image, files->output, display);
+    if (code == EXIT_DONE && a->stats != NULL) {
+        code = writeStats(vplScene_GetContext(scene), files->stats, &picture->stats);
+    }
+    return code;
+}
+
 static int renderFrame(const Arguments* a, const vplScene* scene, const vplRenderOptions* options)
 {
-    vplImage* image = NULL;
-    vplLayers* layers = NULL;
-    vplRenderStats stats;
+    Picture picture = {.image = NULL};
     Files files;
+    char before[64] = "";
     nameFiles(a, (int)options->sequence.frame, &files); // runRender has checked their lengths
     Sequence* sequence = options->progressUser;
-    const vplResult result = options->output.aovs != 0 ? vplRenderLayers(scene, options, &layers, &stats)
-                                                       : vplRender(scene, options, &image, &stats);
+    const vplResult result = renderPicture(a, scene, options, &picture);
     endProgress(&sequence->progress);
     if (result == VPL_CANCELLED && sequence->done > 0) {
         complain("cancelled, %d of %d frames were written", sequence->done, sequence->count);
@@ -189,15 +198,17 @@ static int renderFrame(const Arguments* a, const vplScene* scene, const vplRende
         return code;
     }
     if (a->verbose) {
-        sayMore(&stats);
+        sayMore(&picture.stats);
     }
-    code = layers != NULL ? writeLayers(layers, files.output)
-                          : writePicture(a, image, files.output, &sequence->display);
-    if (code == EXIT_DONE && a->stats != NULL) {
-        code = writeStats(vplScene_GetContext(scene), files.stats, &stats);
+    code = writeFrame(a, scene, &picture, &files, &sequence->display);
+    if (code == EXIT_DONE && isPartial(&picture)) {
+        if (sequence->count > 1) {
+            snprintf(before, sizeof before, "%d of %d frames and ", sequence->done, sequence->count);
+        }
+        sayPartial(&picture, before, files.output);
+        code = EXIT_COULD_NOT;
     }
-    vplImage_Destroy(image);
-    vplLayers_Destroy(layers);
+    freePicture(&picture);
     return code;
 }
 

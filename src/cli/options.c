@@ -186,6 +186,11 @@ static const Option OWN[] = {
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",
      NULL},
+    {"no-partial", NULL, NULL, RENDER, readFlag, AT(noPartial), 0, 0,
+     "write no picture if the render is interrupted (Ctrl-C, SIGTERM); by default the picture of the passes "
+     "that were "
+     "done is written, and the exit code is 1",
+     NULL},
     {"stats", "FILE", NULL, RENDER | BAKE, readText, AT(stats), 0, 0, "write statistics as JSON", NULL},
     {"explain", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(explain), 0, 0,
      "print the plan on standard error first: what will be done, and why", NULL},

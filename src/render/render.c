@@ -8,16 +8,45 @@
 
 // ---- pictures
 
+const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer)
+{
+    return renderer->plan;
+}
+
 // Takes the last picture. Where no pass follows it is given away without a copy.
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
     if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH) {
         return vplRenderer_GetImage(r, imageOut, statsOut);
     }
+    if (r->base == NULL) {
+        return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
+                       "a renderer has no picture before its first step or after its last was taken");
+    }
     *imageOut = r->base;
     r->base = NULL;
     if (statsOut != NULL) {
         vplRenderer_FinishStats(r, *imageOut, statsOut);
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderer_Finish(vplRenderer* r, vplImage** imageOut, vplLayers** layersOut,
+                             vplRenderStats* statsOut)
+{
+    TRY(layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut) : takeImage(r, imageOut, statsOut));
+    const vplRenderStats* stats = &r->runner.stats;
+    const double asked = r->plan->options.stop.maxError;
+    if (asked > 0 && stats->relativeErrorEstimate > asked) {
+        vplLog(r->runner.run.context, VPL_LOG_WARNING,
+               "the error is about %.3g %%, not the %.3g %% asked for: --budget, --passes or --spp ended the "
+               "render "
+               "after %d passes",
+               100 * stats->relativeErrorEstimate, 100 * asked, r->done);
+    } else if (stats->errorEstimate >= 0) {
+        vplLog(r->runner.run.context, VPL_LOG_INFO,
+               "remaining error about %.3g W/(m^2 sr), %.3g %% of the mean", stats->errorEstimate,
+               100 * stats->relativeErrorEstimate);
     }
     return VPL_SUCCESS;
 }
@@ -32,23 +61,7 @@ static vplResult render(const vplScene* scene, const vplRenderOptions* options, 
     for (bool done = false; !done && result == VPL_SUCCESS;) {
         result = vplRenderer_Step(r, &done);
     }
-    if (result == VPL_SUCCESS) {
-        result = layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut)
-                                   : takeImage(r, imageOut, statsOut);
-    }
-    const vplRenderStats* stats = &r->runner.stats;
-    const double asked = options->stop.maxError;
-    if (result == VPL_SUCCESS && asked > 0 && stats->relativeErrorEstimate > asked) {
-        vplLog(r->runner.run.context, VPL_LOG_WARNING,
-               "the error is about %.3g %%, not the %.3g %% asked for: --budget, --passes or --spp ended the "
-               "render "
-               "after %d passes",
-               100 * stats->relativeErrorEstimate, 100 * asked, r->done);
-    } else if (result == VPL_SUCCESS && stats->errorEstimate >= 0) {
-        vplLog(r->runner.run.context, VPL_LOG_INFO,
-               "remaining error about %.3g W/(m^2 sr), %.3g %% of the mean", stats->errorEstimate,
-               100 * stats->relativeErrorEstimate);
-    }
+    result = result == VPL_SUCCESS ? vplRenderer_Finish(r, imageOut, layersOut, statsOut) : result;
     vplRenderer_Destroy(r);
     return result;
 }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Renders of one picture that can be interrupted.
+#ifndef VPL_CLI_STEPS_H
+#define VPL_CLI_STEPS_H
+
+#include "cli/cli.h"
+
+// A finished or interrupted render.
+typedef struct Picture {
+    vplImage* image;   // or
+    vplLayers* layers; // where --aov asks for them
+    vplRenderStats stats;
+    int passesAsked; // of an interrupted render, 0 where no count was asked for; negative: it was not interrupted
+} Picture;
+
+// Renders with the bits of vplRender. An interrupted render has the picture of the passes before, unless there is none
+// or --no-partial is given: then the result is VPL_CANCELLED.
+vplResult renderPicture(const Arguments* arguments, const vplScene* scene, const vplRenderOptions* options,
+                        Picture* pictureOut);
+void freePicture(Picture* picture);
+
+bool isPartial(const Picture* picture);
+
+// Says what an interrupted render wrote to `path`. `before` says how many frames were written before, or is empty.
+void sayPartial(const Picture* picture, const char* before, const char* path);
+
+#endif
