@@ -2,6 +2,8 @@
 // Renders that are stopped, saved and replayed, with each allocation failing in turn (tests/failing.h).
 #include "failing.h"
 
+#include <unistd.h>
+
 static bool goOn(void* user, double fraction)
 {
     (void)user;
@@ -24,6 +26,34 @@ static vplResult tracePasses(Attempt* a)
     options.progress = goOn;
     TRY(vplScene_Load(a->context, "tests/data/room.json", &a->scene));
     return vplRender(a->scene, &options, &a->image, NULL);
+}
+
+// Variants: path tracing and virtual lights. Removes the file: where memory runs out none may be left.
+static vplResult saveAndLoad(Attempt* a)
+{
+    vplRenderOptions options = smallPaths();
+    vplRenderer *first = NULL, *second = NULL;
+    bool done;
+    options.method = a->variant ? VPL_METHOD_KELLER : VPL_METHOD_PATH;
+    options.particles.count = 2;
+    options.stop.passes = 2;
+    options.shadow.mapSize = 4;
+    TRY(vplScene_Load(a->context, "tests/data/room.json", &a->scene));
+    vplResult result = vplRenderer_Create(a->scene, &options, &first);
+    result = result == VPL_SUCCESS ? vplRenderer_Step(first, &done) : result;
+    result = result == VPL_SUCCESS ? vplRenderer_Save(first, a->path) : result;
+    result = result == VPL_SUCCESS ? vplRenderer_Create(a->scene, &options, &second) : result;
+    result = result == VPL_SUCCESS ? vplRenderer_Load(second, a->path, &done) : result;
+    result = result == VPL_SUCCESS ? vplRenderer_GetImage(second, &a->image, NULL) : result;
+    unlink(a->path);
+    vplRenderer_Destroy(first);
+    vplRenderer_Destroy(second);
+    return result;
+}
+
+TEST_ALONE(EveryFailedAllocationOfSavedRendersIsReported)
+{
+    failEveryAllocation("SavedRenders", saveAndLoad, "state", 2);
 }
 
 TEST_ALONE(EveryFailedAllocationOfPassesThatCanBeCancelledIsReported)
