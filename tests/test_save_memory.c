@@ -56,6 +56,24 @@ TEST_ALONE(EveryFailedAllocationOfSavedRendersIsReported)
     failEveryAllocation("SavedRenders", saveAndLoad, "state", 2);
 }
 
+static vplResult writeAndReadPlan(Attempt* a)
+{
+    vplRenderOptions options = smallPaths();
+    vplPlan* plan;
+    TRY(vplScene_Load(a->context, "tests/data/room.json", &a->scene));
+    TRY(vplPlan_Create(a->scene, &options, NULL, &plan));
+    vplResult result = vplPlan_Write(plan, a->scene, a->path);
+    result = result == VPL_SUCCESS ? vplRenderOptions_Load(a->context, a->path, &options, NULL) : result;
+    unlink(a->path);
+    vplPlan_Destroy(plan);
+    return result;
+}
+
+TEST_ALONE(EveryFailedAllocationOfPlanFilesIsReported)
+{
+    failEveryAllocation("PlanFiles", writeAndReadPlan, "json", 1);
+}
+
 TEST_ALONE(EveryFailedAllocationOfPassesThatCanBeCancelledIsReported)
 {
     failEveryAllocation("PassesThatCanBeCancelled", tracePasses, "png", 1);

@@ -141,6 +141,11 @@ vplResult vplRenderer_Finish(vplRenderer* renderer, vplImage** imageOut, vplLaye
 // The plan that the renderer follows; it lives as long as the renderer.
 const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer);
 
+// Writes the plan as vplPlan_Write does, with the counts of what was rendered so far instead of a time or an error that
+// ends it: passes or spp, budget 0, max-error 0, quality none. So a render that a time ended can be replayed to the same
+// bits. The time and memory that were used are in it, too.
+vplResult vplRenderer_WritePlan(vplRenderer* renderer, const char* path);
+
 // NULL is allowed. The scene must outlive the renderer.
 void vplRenderer_Destroy(vplRenderer* renderer);
 
