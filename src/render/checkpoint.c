@@ -327,6 +327,10 @@ static vplResult checkRender(const Loading* l)
     const vplRenderer* r = l->renderer;
     const Header* h = &l->header;
     const vplContext* context = r->runner.run.context;
+    if (h->scene != vplScene_GetHash(r->runner.run.scene)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "%s: saved with another scene, or the scene was changed since", l->path);
+    }
     vplByteBuffer text = {.context = r->runner.run.context};
     listOptions(r->plan, &text);
     const char *was = (const char*)l->stream.bytes + HEADER_BYTES, *is = (const char*)text.bytes;
@@ -335,10 +339,6 @@ static vplResult checkRender(const Loading* l)
                     : checkOptions(l, (Lines){was, was + h->textBytes}, (Lines){is, is + text.size});
     vplFree(r->runner.run.context, text.bytes);
     TRY(result);
-    if (h->scene != vplScene_GetHash(r->runner.run.scene)) {
-        return vplFail(context, VPL_INVALID_ARGUMENT,
-                       "%s: saved with another scene, or the scene was changed since", l->path);
-    }
     if (h->parts != partsOf(r->plan)) {
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
@@ -346,7 +346,8 @@ static vplResult checkRender(const Loading* l)
             "--passes, --budget or --max-error",
             l->path);
     }
-    const bool counts = h->passes >= 1 && h->passes <= VPL_MAX_SAMPLES &&
+    const bool counts = h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 && h->passes >= 1 &&
+                        h->passes <= VPL_MAX_SAMPLES &&
                         ((h->parts & PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
     const bool fits = h->width == (uint32_t)r->plan->options.output.width &&
                       h->height == (uint32_t)r->plan->options.output.height && sizeOf(h) == l->size;
@@ -411,5 +412,9 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
     result = result == VPL_SUCCESS ? checkRender(&l) : result;
     result = result == VPL_SUCCESS ? loadState(&l) : result;
     vplFree(context, bytes);
+    if (result != VPL_SUCCESS) { // the first pass would add to it; it makes all else anew
+        vplImage_Destroy(r->direct);
+        r->direct = NULL;
+    }
     return result == VPL_SUCCESS ? vplRenderer_IsDone(r, doneOut) : result;
 }
