@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tests of passes that are cancelled: the picture of the passes before is still there, and what follows has the bits of
-// a render that was never stopped.
+// Tests of passes that are cancelled: the picture of the passes before is still there, and what follows has
+// the bits of a render that was never stopped.
 #include "pass_cases.h"
 
 // Cancels at one call.

@@ -165,7 +165,8 @@ static void writeState(const uint8_t* bytes, size_t size)
     fclose(file);
 }
 
-// Every length from 0, and a bit flipped in every byte; with a right checksum, too, so that checks behind it are seen.
+// Every length from 0, and a bit flipped in every byte; with a right checksum, too, so that checks behind it
+// are seen.
 TEST_ALONE(DamagedStatesAreRefused, SLOW)
 {
     for (int i = 0; i < 4; i += 2) {

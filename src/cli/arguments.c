@@ -97,8 +97,8 @@ static Arguments defaultArguments(const char* command)
     return a;
 }
 
-// Reads the option at word *i, and its value if that is the next word. Presets and plans are read before all others,
-// so that options beside one change it wherever they stand.
+// Reads the option at word *i, and its value if that is the next word. Presets and plans are read before all
+// others, so that options beside one change it wherever they stand.
 static bool readOption(Arguments* a, int* i, bool presets)
 {
     const char* word = a->words[*i];

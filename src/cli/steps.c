@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One picture, step by step, so that an interrupted render still has the picture of the passes that were done.
+// One picture, step by step, so that an interrupted render still has the picture of the passes that were
+// done.
 #include "cli/steps.h"
 
 #include "cli/bench/measure.h"
@@ -51,7 +52,8 @@ static void saveState(const Arguments* a, vplRenderer* r, Picture* picture)
 
 // ---- steps
 
-// Steps to the end, or until it is interrupted. `done` says whether there is nothing left to do, `steps` counts passes.
+// Steps to the end, or until it is interrupted. `done` says whether there is nothing left to do, `steps`
+// counts passes.
 static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, int steps, Picture* picture)
 {
     const bool layers = vplRenderer_GetPlan(r)->options.output.aovs != 0;

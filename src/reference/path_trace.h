@@ -31,8 +31,8 @@ vplResult vplPathTracer_Pass(vplPathTracer* tracer, int samples, vplProgressFcn*
 // Takes back the last pass, which had a `progress` and succeeded.
 void vplPathTracer_Undo(vplPathTracer* tracer);
 
-// The state of a tracer between passes, for saving it. A loaded state replaces all three parts: the sums in place, and
-// the counts by the functions below.
+// The state of a tracer between passes, for saving it. A loaded state replaces all three parts: the sums in
+// place, and the counts by the functions below.
 typedef struct vplPathSums {
     double* values; // sums of the radiance of each pixel's even and odd samples: r, g, b, r, g, b
     size_t count;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Saves a render between two passes and goes on with it. A file has, all words little-endian: the 8 letters VPLSTATE, a
-// header, the options as text, the sums that the picture is made from, and a checksum. Reading checks every size and
-// value, because files come from anywhere.
+// Saves a render between two passes and goes on with it. A file has, all words little-endian: the 8 letters
+// VPLSTATE, a header, the options as text, the sums that the picture is made from, and a checksum. Reading
+// checks every size and value, because files come from anywhere.
 #include "render/checkpoint.h"
 
 #include "base/file.h"

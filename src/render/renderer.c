@@ -128,8 +128,8 @@ static vplResult addDirect(vplRenderer* r)
     return VPL_SUCCESS;
 }
 
-// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums, after all that can
-// be cancelled.
+// The first pass draws direct light. Each pass adds a picture of its own virtual lights to the sums, after
+// all that can be cancelled.
 static vplResult addPass(vplRenderer* r)
 {
     if (r->done == 0) {
@@ -194,8 +194,8 @@ static void estimateError(vplRenderer* r, const vplImage* image)
     }
 }
 
-// Makes the virtual lights of the last pass again, for marks on the picture, where a pass was cancelled or the render
-// was loaded since.
+// Makes the virtual lights of the last pass again, for marks on the picture, where a pass was cancelled or
+// the render was loaded since.
 static vplResult refreshLights(vplRenderer* r)
 {
     const vplRunner before = r->runner;

@@ -5,7 +5,8 @@
 
 #include "render/plan.h"
 
-// The options of a plan, resolved but for those whose resolved value would mean something else. They make an equal plan.
+// The options of a plan, resolved but for those whose resolved value would mean something else. They make an
+// equal plan.
 vplRenderOptions vplReplayOptions(const vplPlan* plan);
 
 // Writes option `name` as text that vplRenderOptions_Set reads. Returns false for a part of another option.

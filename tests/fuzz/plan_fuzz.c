@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Passes arbitrary bytes as a plan file: the reader must either log one sentence with file, line and column, or set
-// options, all in their ranges.
+// Passes arbitrary bytes as a plan file: the reader must either log one sentence with file, line and column,
+// or set options, all in their ranges.
 #define _GNU_SOURCE
 #include "fuzz.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Passes arbitrary bytes as the state of a render, with a checksum that is made right: loading must log one sentence,
-// or give a render that goes on.
+// Passes arbitrary bytes as the state of a render, with a checksum that is made right: loading must log one
+// sentence, or give a render that goes on.
 #define _GNU_SOURCE
 #include "fuzz.h"
 

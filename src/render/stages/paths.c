@@ -48,16 +48,16 @@ static vplResult createPaths(const vplRun* run, Paths* paths)
     return plan->splitsLight ? vplPathTracer_Create(g, &direct, &paths->direct) : VPL_SUCCESS;
 }
 
-// Counts the paths per pixel of the next pass. Passes end at multiples of VPL_PATHS_PER_PASS or at the count that is
-// asked for, also where an earlier pass ended at a smaller one.
+// Counts the paths per pixel of the next pass. Passes end at multiples of VPL_PATHS_PER_PASS or at the count
+// that is asked for, also where an earlier pass ended at a smaller one.
 static int countNext(const vplPlan* plan, int done)
 {
     const int end = (done / VPL_PATHS_PER_PASS + 1) * VPL_PATHS_PER_PASS, asked = plan->options.path.samples;
     return (asked > done && asked < end ? asked : end) - done;
 }
 
-// Pass 0 creates tracers; later passes add paths to them. Both tracers have the same paths after a pass that is
-// cancelled, too.
+// Pass 0 creates tracers; later passes add paths to them. Both tracers have the same paths after a pass that
+// is cancelled, too.
 vplResult vplMakePaths(const vplRun* run, void** resultOut)
 {
     Paths* paths = run->pass > 0 ? run->before : NULL;
