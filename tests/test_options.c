@@ -452,7 +452,9 @@ TEST_ALONE(MethodsUseTheseOptions)
                 {"shadow-map", IR | DIRECT | KELLER | RADIOSITY},
                 {"max-bounces", PATH | SSVP},
                 {"passes", IR | KELLER | SSVP},
-                {"budget", IR | KELLER | SSVP | PATH}};
+                {"grow-from", IR | KELLER},
+                {"budget", ALL},
+                {"max-error", ALL}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         for (int method = 0; method <= VPL_METHOD_RADIOSITY; method++) {
             Options options = vplDefaultRenderOptions();

@@ -115,7 +115,10 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
                              vplRenderer** rendererOut);
 
 // Renders one pass. *doneOut says whether all that the options ask for is done; further steps are allowed and
-// improve pictures that are means of passes. After a failure the renderer can only be destroyed.
+// improve pictures that are means of passes. A step that vplRenderOptions.progress cancels (VPL_CANCELLED)
+// leaves the renderer as it was before the step: pictures of the passes before can be read, and the next step
+// does the cancelled pass anew, so that the same bits follow. After any other failure the renderer can only
+// be destroyed.
 vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
 
 // Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
@@ -126,6 +129,31 @@ const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer);
 
 // Gets the picture so far and its layers, likewise; destroy them with vplLayers_Destroy.
 vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vplRenderStats* statsOut);
+
+// Saves the state between two steps to a file, whole or not at all, for renders of several passes and path
+// tracing; VPL_INVALID_ARGUMENT for others and before the first step. Needs memory of the file's size: up to
+// 60 bytes per pixel, and 96 for path-traced layers of light.
+vplResult vplRenderer_Save(vplRenderer* renderer, const char* path);
+
+// Goes on with a saved render: before its first step the renderer takes over the state, and then gives the
+// bits of a render that was never stopped, on any machine. Scene and options must be those of the saved
+// render, but for options that say when it ends (passes, spp, budget, max-error, quality);
+// VPL_INVALID_ARGUMENT names what differs. VPL_PARSE_ERROR for files that are damaged, VPL_FILE_ERROR.
+// *doneOut is that of vplRenderer_Step. Times, and counts of rays, lights and draw calls of virtual lights,
+// are those since; statistics of passes and errors are of all. After a failure the renderer is as it was
+// before.
+vplResult vplRenderer_Load(vplRenderer* renderer, const char* path, bool* doneOut);
+
+// Ends a render: gets the picture as vplRenderer_GetImage does or, if layersOut is not NULL, the layers as
+// vplRenderer_GetLayers does, and logs the error that remains. Needs no second picture in memory where the
+// picture is no mean of passes. The renderer can only be destroyed after it.
+vplResult vplRenderer_Finish(vplRenderer* renderer, vplImage** imageOut, vplLayers** layersOut,
+                             vplRenderStats* statsOut);
+
+// Writes the plan as vplPlan_Write does, with the counts of what was rendered so far instead of a time or an
+// error that ends it: passes or spp, budget 0, max-error 0, quality none. So a render that a time ended can
+// be replayed to the same bits. The time and memory that were used are in it, too.
+vplResult vplRenderer_WritePlan(vplRenderer* renderer, const char* path);
 
 // NULL is allowed. The scene must outlive the renderer.
 void vplRenderer_Destroy(vplRenderer* renderer);

@@ -181,6 +181,11 @@ const vplEmitterKey* vplScene_GetEmitterPath(const vplScene* scene, int index, i
 vplResult vplScene_PoseCamera(const vplScene* scene, int index, double frame, vplCameraDef* defOut);
 vplResult vplScene_PoseEmitter(const vplScene* scene, int index, double frame, vplEmitterDef* defOut);
 
+// Hash of all that pictures depend on: cameras, materials, meshes, objects, emitters and their paths, in
+// their order, without names. The same in every process and on every machine; it takes a pass over the
+// scene's data.
+uint64_t vplScene_GetHash(const vplScene* scene);
+
 vplContext* vplScene_GetContext(const vplScene* scene);
 
 #ifdef __cplusplus

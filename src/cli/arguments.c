@@ -97,8 +97,8 @@ static Arguments defaultArguments(const char* command)
     return a;
 }
 
-// Reads the option at word *i, and its value if that is the next word. Presets are read before all others, so
-// that options beside one change it wherever they stand.
+// Reads the option at word *i, and its value if that is the next word. Presets and plans are read before all
+// others, so that options beside one change it wherever they stand.
 static bool readOption(Arguments* a, int* i, bool presets)
 {
     const char* word = a->words[*i];
@@ -111,7 +111,8 @@ static bool readOption(Arguments* a, int* i, bool presets)
         complain("--%s takes no value", o->name);
         return false;
     }
-    const bool now = (strcmp(o->name, "preset") == 0) == presets;
+    const bool sets = strcmp(o->name, "preset") == 0 || strcmp(o->name, "plan") == 0;
+    const bool now = sets == presets;
     if (o->value == NULL || equals != NULL) {
         return !now || o->read(o, equals != NULL ? equals + 1 : NULL, a);
     }

@@ -59,22 +59,26 @@ struct Arguments {
     int positionalCount;
     vplRenderOptions render;
     vplContextDef context;
-    const char* output;  // -o
-    const char* stats;   // --stats
-    const char* heatmap; // --heatmap
-    int heatmapOf;       // a vplHeat
-    double heatScale;    // 0: automatic
-    double ppd;          // pixels per degree of vision
-    double exposure;     // stops, or VPL_EXPOSURE_AUTO
-    int tonemap;         // 0: as usual with what is shown; else 1 + a vplToneMap
-    int frames[2];       // first and last; [1] < 0: one picture without a number
-    int region[4];       // x, y, width, height; width 0: all of the picture
-    int regions[2];      // columns and rows; 0: none
+    const char* output;              // -o
+    const char* stats;               // --stats
+    const char *planIn, *planOut;    // --plan, --plan-out
+    uint64_t planScene;              // hash of the scene that the plan was made for
+    const char *checkpoint, *resume; // --checkpoint, --resume
+    double checkpointEvery;          // seconds
+    const char* heatmap;             // --heatmap
+    int heatmapOf;                   // a vplHeat
+    double heatScale;                // 0: automatic
+    double ppd;                      // pixels per degree of vision
+    double exposure;                 // stops, or VPL_EXPOSURE_AUTO
+    int tonemap;                     // 0: as usual with what is shown; else 1 + a vplToneMap
+    int frames[2];                   // first and last; [1] < 0: one picture without a number
+    int region[4];                   // x, y, width, height; width 0: all of the picture
+    int regions[2];                  // columns and rows; 0: none
     int threads[MAX_THREAD_COUNTS], threadsCount;
     int runs, seeds, referenceSpp;
     double seconds; // --time
     const char *stage, *reference, *sweeps;
-    bool all, scaling, json, explain, dryRun, noGround, quiet, verbose, help;
+    bool all, scaling, json, explain, dryRun, noGround, noPartial, quiet, verbose, help;
 };
 
 // Fills `arguments`, or prints one sentence to stderr and returns false.
@@ -101,6 +105,9 @@ vplLogFcn logToStderr;
 
 // Makes a context that logs to stderr; NULL after complaining.
 vplContext* openContext(const Arguments* arguments);
+
+// Plans a render as renderPicture does it: it can be interrupted.
+vplResult planRender(const Arguments* arguments, const vplScene* scene, vplPlan** planOut);
 
 // Loads the scene that the arguments name; a mesh by itself is fitted to the picture.
 vplResult loadScene(const Arguments* arguments, vplContext* context, vplScene** sceneOut);

@@ -157,13 +157,16 @@ static vplResult examine(const Arguments* a, Info* info)
     countScene(info);
     TRY(vplGeometry_Create(info->scene, &info->geometry));
     TRY(vplEmission_Create(info->geometry, NULL, 0, &info->emission));
-    return vplPlan_Create(info->scene, &a->render, NULL, &info->plan);
+    return planRender(a, info->scene, &info->plan);
 }
 
 static int showInfo(const Arguments* a, const vplScene* scene)
 {
     Info info = {.scene = scene};
     int code = exitCode(examine(a, &info), true);
+    if (code == EXIT_DONE && a->planOut != NULL) {
+        code = exitCode(vplPlan_Write(info.plan, scene, a->planOut), false);
+    }
     if (code == EXIT_DONE && a->json) {
         code = writeJson(sceneJson(&info), 9, NULL);
     } else if (code == EXIT_DONE) {

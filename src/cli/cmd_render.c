@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/cli.h"
+#include "cli/steps.h"
 
 #include <limits.h>
 #include <math.h>
@@ -169,36 +169,55 @@ static bool showSequence(void* user, double fraction)
     return showProgress(&s->progress, (s->done + fraction) / s->count);
 }
 
+static int writeFrame(const Arguments* a, const vplScene* scene, const Picture* picture, const Files* files,
+                      vplWriteOptions* display)
+{
+    int code = picture->layers != NULL ? writeLayers(picture->layers, files->output)
+                                       : writePicture(a, picture->image, files->output, display);
+    if (code == EXIT_DONE && a->stats != NULL) {
+        code = writeStats(vplScene_GetContext(scene), files->stats, &picture->stats);
+    }
+    return code;
+}
+
 static int renderFrame(const Arguments* a, const vplScene* scene, const vplRenderOptions* options)
 {
-    vplImage* image = NULL;
-    vplLayers* layers = NULL;
-    vplRenderStats stats;
+    Picture picture = {.image = NULL};
     Files files;
+    char before[64] = "";
     nameFiles(a, (int)options->sequence.frame, &files); // runRender has checked their lengths
     Sequence* sequence = options->progressUser;
-    const vplResult result = options->output.aovs != 0 ? vplRenderLayers(scene, options, &layers, &stats)
-                                                       : vplRender(scene, options, &image, &stats);
+    vplResult result;
+    int code = renderPicture(a, scene, options, &picture, &result);
     endProgress(&sequence->progress);
+    if (code != EXIT_DONE) {
+        return code;
+    }
     if (result == VPL_CANCELLED && sequence->done > 0) {
         complain("cancelled, %d of %d frames were written", sequence->done, sequence->count);
         return EXIT_COULD_NOT;
     }
-    int code = exitCode(result, false);
+    if (result == VPL_CANCELLED && picture.saved) {
+        complain("interrupted, no picture was written; go on with --resume %s", a->checkpoint);
+        return EXIT_COULD_NOT;
+    }
+    code = exitCode(result, false);
     if (code != EXIT_DONE) {
         return code;
     }
     if (a->verbose) {
-        sayMore(&stats);
+        sayMore(&picture.stats);
     }
-    code = layers != NULL ? writeLayers(layers, files.output)
-                          : writePicture(a, image, files.output, &sequence->display);
-    if (code == EXIT_DONE && a->stats != NULL) {
-        code = writeStats(vplScene_GetContext(scene), files.stats, &stats);
+    code = writeFrame(a, scene, &picture, &files, &sequence->display);
+    if (code == EXIT_DONE && isPartial(&picture)) {
+        if (sequence->count > 1) {
+            snprintf(before, sizeof before, "%d of %d frames and ", sequence->done, sequence->count);
+        }
+        sayPartial(&picture, before, files.output, picture.saved ? a->checkpoint : NULL);
+        code = EXIT_COULD_NOT;
     }
-    vplImage_Destroy(image);
-    vplLayers_Destroy(layers);
-    return code;
+    freePicture(&picture);
+    return picture.unsaved ? EXIT_COULD_NOT : code;
 }
 
 static int renderScene(const Arguments* a, const vplScene* scene)
@@ -224,6 +243,34 @@ static int renderScene(const Arguments* a, const vplScene* scene)
     return code;
 }
 
+// Checks that every file has a name of its own, and that files of one picture are not asked for of several.
+static bool checkFiles(const Arguments* a)
+{
+    const struct {
+        const char *path, *option, *what;
+    } files[] = {{a->output, "-o", "the picture"},
+                 {a->stats, "--stats", "the statistics"},
+                 {a->planOut, "--plan-out", "the plan"},
+                 {a->checkpoint, "--checkpoint", "the state"},
+                 {a->resume, "--resume", "the state"}};
+    const int count = sizeof files / sizeof *files;
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < i && files[i].path != NULL && i < count - 1;
+             k++) { // a state may replace the one before
+            if (files[k].path != NULL && strcmp(files[k].path, files[i].path) == 0) {
+                complain("%s: both %s and %s would be written there", files[k].path, files[k].what,
+                         files[i].what);
+                return false;
+            }
+        }
+        if (i >= 2 && files[i].path != NULL && a->frames[1] >= 0) {
+            complain("%s is for one picture, not for --frames", files[i].option);
+            return false;
+        }
+    }
+    return true;
+}
+
 int runRender(const Arguments* a)
 {
     if (a->dryRun) {
@@ -241,8 +288,7 @@ int runRender(const Arguments* a)
         complain("%s: --aov writes layers into .exr files only", a->output);
         return EXIT_USAGE;
     }
-    if (a->stats != NULL && strcmp(a->output, a->stats) == 0) {
-        complain("%s: both the picture and the statistics would be written there", a->output);
+    if (!checkFiles(a)) {
         return EXIT_USAGE;
     }
     Files files; // of the first frame; the names of the others differ in digits only
@@ -250,7 +296,9 @@ int runRender(const Arguments* a)
     if (!named) {
         complain("%s: the name is too long", a->output);
     }
-    if (!named || !checkOutput(files.output) || (a->stats != NULL && !checkOutput(files.stats))) {
+    if (!named || !checkOutput(files.output) || (a->stats != NULL && !checkOutput(files.stats)) ||
+        (a->planOut != NULL && !checkOutput(a->planOut)) ||
+        (a->checkpoint != NULL && !checkOutput(a->checkpoint))) {
         return EXIT_COULD_NOT;
     }
     warnOfDisplay(a);

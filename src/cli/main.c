@@ -81,16 +81,32 @@ int printPlan(const vplPlan* plan, FILE* file)
     return EXIT_DONE;
 }
 
+static bool goOn(void* user, double fraction)
+{
+    (void)user;
+    return fraction >= 0;
+}
+
+vplResult planRender(const Arguments* a, const vplScene* scene, vplPlan** planOut)
+{
+    vplRenderOptions options = a->render;
+    options.progress = goOn;
+    return vplPlan_Create(scene, &options, NULL, planOut);
+}
+
 // --explain and --dry-run.
 static int explain(const Arguments* a, const vplScene* scene)
 {
     vplPlan* plan = NULL;
-    int code = exitCode(vplPlan_Create(scene, &a->render, NULL, &plan), true);
+    int code = exitCode(planRender(a, scene, &plan), true);
     if (code == EXIT_DONE && a->dryRun && plan->problem[0] != 0) {
         complain("%s", plan->problem);
         code = EXIT_USAGE;
     } else if (code == EXIT_DONE) {
         code = printPlan(plan, a->dryRun ? stdout : stderr);
+        if (code == EXIT_DONE && a->dryRun && a->planOut != NULL) {
+            code = exitCode(vplPlan_Write(plan, scene, a->planOut), false);
+        }
     }
     vplPlan_Destroy(plan);
     return code;
@@ -104,6 +120,10 @@ int runOnScene(const Arguments* a, SceneWork* work)
     }
     vplScene* scene = NULL;
     int code = exitCode(loadScene(a, context, &scene), true);
+    if (code == EXIT_DONE && a->planIn != NULL && !a->quiet && a->planScene != vplScene_GetHash(scene)) {
+        complain("warning: %s was made for another scene, or %s was changed since: the picture will differ",
+                 a->planIn, a->positionals[0]);
+    }
     if (code == EXIT_DONE && (a->explain || a->dryRun)) {
         code = explain(a, scene);
     }

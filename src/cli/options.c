@@ -146,6 +146,16 @@ static bool readThreads(const Option* o, const char* value, Arguments* a)
     return true;
 }
 
+// The context serves this file alone.
+static bool readPlan(const Option* o, const char* value, Arguments* a)
+{
+    vplContext* context = readText(o, value, a) ? openContext(a) : NULL;
+    const bool read =
+        context != NULL && vplRenderOptions_Load(context, value, &a->render, &a->planScene) == VPL_SUCCESS;
+    vplContext_Destroy(context);
+    return read;
+}
+
 static bool readRender(const Option* o, const char* value, Arguments* a)
 {
     if (vplRenderOptions_Set(&a->render, o->name, value) != VPL_SUCCESS) {
@@ -185,6 +195,33 @@ static const Option OWN[] = {
     {"frames", "A:B", NULL, RENDER, readFrames, 0, 0, 0,
      "frames A to B of the scene's paths, one picture each: out.png becomes out-0000.png and so on, and "
      "statistics are numbered in the same way",
+     NULL},
+    {"plan", "FILE", NULL, ON_SCENES & ~TRADEOFF, readPlan, AT(planIn), 0, 0,
+     "a plan file (see --plan-out), which sets all options of rendering; options beside it change them",
+     NULL},
+    {"plan-out", "FILE", NULL, RENDER | INFO, readText, AT(planOut), 0, 0,
+     "write the plan as JSON: all options as they were chosen, with the reasons, and with counts of passes "
+     "or spp "
+     "instead of a time or error that ended the render, so that --plan gives the same bits on every machine; "
+     "with "
+     "--dry-run, and by vpl info, as planned",
+     NULL},
+    {"checkpoint", "FILE", NULL, RENDER, readText, AT(checkpoint), 0, 0,
+     "save the state of a render of several passes, or of path tracing, now and then, at the end, and when "
+     "it is "
+     "interrupted",
+     NULL},
+    {"checkpoint-every", "S", "60", RENDER, readNumber, AT(checkpointEvery), 0, 1e9,
+     "seconds between two states of --checkpoint, and the pass under way", NULL},
+    {"resume", "FILE", NULL, RENDER, readText, AT(resume), 0, 0,
+     "go on with a state of --checkpoint, to the bits of a render that was never stopped; scene and options "
+     "must be "
+     "the same, but for those that say when it ends: passes, spp, budget, max-error, quality",
+     NULL},
+    {"no-partial", NULL, NULL, RENDER, readFlag, AT(noPartial), 0, 0,
+     "write no picture if the render is interrupted (Ctrl-C, SIGTERM); by default the picture of the passes "
+     "that were "
+     "done is written, and the exit code is 1",
      NULL},
     {"stats", "FILE", NULL, RENDER | BAKE, readText, AT(stats), 0, 0, "write statistics as JSON", NULL},
     {"explain", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(explain), 0, 0,

@@ -6,16 +6,20 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 enum { TILE = 16, HALVES = 2 };
 
 struct vplPathTracer {
     vplPathScene scene;
     vplRadiance (*sums)[HALVES]; // of each pixel
+    vplRadiance (
+        *before)[HALVES]; // the sums before the last pass that could be cancelled; NULL: none was kept
     int64_t* tileRays;
-    int columns, rows; // of tiles
-    int done, now;     // samples per pixel, before this pass and in it
-    vplArena* arena;   // owns the arrays
+    int64_t raysBefore; // of all tiles
+    int columns, rows;  // of tiles
+    int done, now;      // samples per pixel, before this pass and in it
+    vplArena* arena;    // owns the arrays
     vplContext* context;
 };
 
@@ -71,14 +75,76 @@ static void traceTile(void* data, int tile, int worker)
     }
 }
 
+// Keeps a copy of the sums, if there are any.
+static vplResult keepSums(vplPathTracer* t)
+{
+    const size_t pixels = (size_t)t->scene.def.width * (size_t)t->scene.def.height;
+    t->raysBefore = vplPathTracer_CountRays(t);
+    if (t->done == 0) {
+        return VPL_SUCCESS;
+    }
+    if (t->before == NULL) {
+        t->before = vplArena_Alloc(t->arena, pixels, sizeof *t->before);
+        TRY(vplArena_Check(t->arena));
+    }
+    memcpy(t->before, t->sums, pixels * sizeof *t->sums);
+    return VPL_SUCCESS;
+}
+
+void vplPathTracer_Undo(vplPathTracer* t)
+{
+    vplRadiance(*sums)[HALVES] = t->sums;
+    t->done -= t->now;
+    if (t->done > 0) {
+        t->sums = t->before;
+        t->before = sums;
+    } else {
+        memset(sums, 0, (size_t)t->scene.def.width * (size_t)t->scene.def.height * sizeof *sums);
+    }
+    vplPathTracer_SetRays(t, t->raysBefore);
+}
+
 vplResult vplPathTracer_Pass(vplPathTracer* tracer, int samples, vplProgressFcn* progress, void* user,
                              double from, double to)
 {
+    TRY(progress != NULL ? keepSums(tracer) : VPL_SUCCESS);
     tracer->now = samples;
-    vplResult result = vplParallelForProgress(tracer->context, tracer->columns * tracer->rows, traceTile,
-                                              tracer, (vplProgressRange){progress, user, from, to});
+    const vplResult result =
+        vplParallelForProgress(tracer->context, tracer->columns * tracer->rows, traceTile, tracer,
+                               (vplProgressRange){progress, user, from, to});
     tracer->done += samples;
+    if (result != VPL_SUCCESS) {
+        vplPathTracer_Undo(tracer);
+    }
     return result;
+}
+
+// ---- the state
+
+vplPathSums vplPathTracer_GetSums(vplPathTracer* t)
+{
+    const size_t pixels = (size_t)t->scene.def.width * (size_t)t->scene.def.height;
+    return (vplPathSums){&t->sums[0][0].r, 3 * HALVES * pixels, t->done};
+}
+
+void vplPathTracer_SetSamples(vplPathTracer* t, int samples)
+{
+    t->done = samples;
+}
+
+int64_t vplPathTracer_CountRays(const vplPathTracer* t)
+{
+    int64_t rays = 0;
+    for (int i = 0; i < t->columns * t->rows; i++) {
+        rays += t->tileRays[i];
+    }
+    return rays;
+}
+
+void vplPathTracer_SetRays(vplPathTracer* t, int64_t rays)
+{
+    memset(t->tileRays, 0, (size_t)(t->columns * t->rows) * sizeof *t->tileRays);
+    t->tileRays[0] = rays;
 }
 
 // ---- the picture
@@ -117,8 +183,5 @@ void vplPathTracer_Resolve(const vplPathTracer* tracer, vplImage* image, vplPath
         }
     }
     estimate(tracer, squares, total, statsOut);
-    statsOut->rays = 0;
-    for (int i = 0; i < tracer->columns * tracer->rows; i++) {
-        statsOut->rays += tracer->tileRays[i];
-    }
+    statsOut->rays = vplPathTracer_CountRays(tracer);
 }

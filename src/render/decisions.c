@@ -232,7 +232,7 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
                      (p->showsVirtual || p->showsPatches || o->method == VPL_METHOD_PATH);
     p->progressive =
         row->passes && p->showsVirtual &&
-        (o->stop.passes > 1 || o->stop.growFrom > 0 || o->stop.budgetMs > 0 || o->stop.maxError > 0);
+        (o->stop.passes > 0 || o->stop.growFrom > 0 || o->stop.budgetMs > 0 || o->stop.maxError > 0);
     for (int i = 0; i < vplScene_GetMaterialCount(scene); i++) {
         const vplRgb e = vplScene_GetMaterial(scene, i)->emission;
         p->hasAreaLights = p->hasAreaLights || e.r > 0 || e.g > 0 || e.b > 0;

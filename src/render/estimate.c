@@ -121,6 +121,12 @@ static Bytes picture(const Scale* s)
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
 
+// True if the path tracer keeps a copy of its sums, because a later pass may be cancelled.
+static bool isUndone(const vplPlan* p)
+{
+    return p->options.progress != NULL && vplCountPathPasses(p) > 1;
+}
+
 static Bytes estimate(const Scale* s, vplStageId id)
 {
     const vplPlan* p = s->plan;
@@ -163,7 +169,7 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_PICTURE:
         return picture(s);
     case VPL_STAGE_PATHS: // sums of two halves, and the picture that they resolve to
-        return (Bytes){(p->splitsLight ? 108 : 60) * s->pixels, 0};
+        return (Bytes){((p->splitsLight ? 2 : 1) * (isUndone(p) ? 96 : 48) + 12) * s->pixels, 0};
     default: // little
         return (Bytes){0, 0};
     }

@@ -11,8 +11,12 @@
 // Takes the last picture. Where no pass follows it is given away without a copy.
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
-    if (r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH || r->kept.image != NULL) {
+    if (r->plan == NULL || r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH || r->kept.image != NULL) {
         return vplRenderer_GetImage(r, imageOut, statsOut);
+    }
+    if (r->base == NULL) {
+        return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
+                       "a renderer has no picture before its first step or after its last was taken");
     }
     *imageOut = r->base;
     r->base = NULL;
@@ -40,6 +44,14 @@ static void sayError(const vplRenderer* r, double asked)
     }
 }
 
+vplResult vplRenderer_Finish(vplRenderer* r, vplImage** imageOut, vplLayers** layersOut,
+                             vplRenderStats* statsOut)
+{
+    TRY(layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut) : takeImage(r, imageOut, statsOut));
+    sayError(r, r->asked.stop.maxError);
+    return VPL_SUCCESS;
+}
+
 // Renders the picture, or where layersOut is not NULL layers.
 static vplResult render(const vplScene* scene, const vplRenderOptions* options, vplImage** imageOut,
                         vplLayers** layersOut, vplRenderStats* statsOut)
@@ -50,13 +62,7 @@ static vplResult render(const vplScene* scene, const vplRenderOptions* options, 
     for (bool done = false; !done && result == VPL_SUCCESS;) {
         result = vplRenderer_Step(r, &done);
     }
-    if (result == VPL_SUCCESS) {
-        result = layersOut != NULL ? vplRenderer_GetLayers(r, layersOut, statsOut)
-                                   : takeImage(r, imageOut, statsOut);
-    }
-    if (result == VPL_SUCCESS) {
-        sayError(r, options->stop.maxError);
-    }
+    result = result == VPL_SUCCESS ? vplRenderer_Finish(r, imageOut, layersOut, statsOut) : result;
     vplRenderer_Destroy(r);
     return result;
 }

@@ -60,6 +60,7 @@ static void forget(vplRenderer* r)
     r->sums[0] = r->sums[1] = NULL;
     r->plan = NULL;
     r->done = r->paths = 0;
+    r->stale = false;
     r->weight = r->passMs = r->lastMs = 0;
     r->error = (vplErrorParts){-1, -1, -1};
     r->judgedNoise = 0;
@@ -67,6 +68,9 @@ static void forget(vplRenderer* r)
 
 vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool coarse)
 {
+    if (r->plan != NULL || r->kept.image != NULL) {
+        vplRunner_Forget(&r->runner);
+    }
     forget(r);
     r->coarse = coarse;
     r->planStart = vplClockMs();
@@ -161,9 +165,10 @@ static double shareOf(const vplRenderer* r, int passes)
     return share < 1 ? share : 1;
 }
 
-static vplResult openSums(vplRenderer* r)
+vplResult vplRenderer_OpenSums(vplRenderer* r)
 {
     for (int i = 0; i < 2; i++) {
+        vplFree(r->runner.run.context, r->sums[i]); // of a first pass that was cancelled
         r->sums[i] = vplAllocZero(r->runner.run.context, vplValueCount(r->base), sizeof *r->sums[i]);
         if (r->sums[i] == NULL) {
             return VPL_OUT_OF_MEMORY;
@@ -196,11 +201,12 @@ static vplResult addDirect(vplRenderer* r)
 // cancelled adds nothing.
 static vplResult addPass(vplRenderer* r)
 {
-    if (r->base == NULL) {
+    if (r->done == 0) {
         r->runner.run.parts = VPL_PART_DIRECT;
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
+        vplImage_Destroy(r->base);
         r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-        TRY(openSums(r));
+        TRY(vplRenderer_OpenSums(r));
         r->runner.run.parts = VPL_PART_INDIRECT;
         TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
     } else {
@@ -235,10 +241,12 @@ static vplResult runPass(vplRenderer* r)
         return VPL_SUCCESS;
     }
     const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
-    vplImage_Destroy(r->base);
-    r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
-    TRY(show->drawOver != NULL ? show->drawOver(run, r->base) : VPL_SUCCESS);
-    return addDirect(r);
+    vplImage* image = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
+    vplResult result = show->drawOver != NULL ? show->drawOver(run, image) : VPL_SUCCESS;
+    result = result == VPL_SUCCESS ? addDirect(r) : result;
+    vplImage_Destroy(result == VPL_SUCCESS ? r->base : image);
+    r->base = result == VPL_SUCCESS ? image : r->base;
+    return result;
 }
 
 vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
@@ -246,12 +254,17 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
     const double begin = vplClockMs();
     r->runner.stepFrom = shareOf(r, r->done);
     r->runner.stepTo = shareOf(r, r->done + 1);
+    const vplRunner before = r->runner;
     const vplResult result = runPass(r);
-    if (result == VPL_CANCELLED && r->late) {
-        *doneOut = true;
-        return VPL_SUCCESS;
+    if (result == VPL_CANCELLED) { // nothing of the pass counts
+        r->runner.stats = before.stats;
+        r->runner.loss = before.loss;
+        r->stale = r->done > 0;
+        *doneOut = r->late;
+        return r->late ? VPL_SUCCESS : result;
     }
     TRY(result);
+    r->stale = false;
     r->lastMs = vplClockMs() - begin;
     r->passMs += r->lastMs;
     r->done++;
@@ -281,6 +294,23 @@ static void estimateNoise(vplRenderer* r, const vplImage* image)
     }
 }
 
+// Makes the virtual lights of the last pass again, for marks on the picture, where a pass was cancelled or
+// the render was loaded since.
+static vplResult refreshLights(vplRenderer* r)
+{
+    const vplRunner before = r->runner;
+    if (!r->stale || VPL_SHOWS[r->plan->options.output.show].drawOver == NULL) {
+        return VPL_SUCCESS;
+    }
+    r->runner.progress = NULL; // it is short, and not part of a pass
+    r->runner.run.pass = r->done - 1;
+    const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_VIRTUAL_LIGHTS);
+    r->runner.progress = before.progress;
+    r->runner.stats = before.stats;
+    r->stale = result != VPL_SUCCESS;
+    return result;
+}
+
 vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
 {
     vplRun* run = &r->runner.run;
@@ -291,6 +321,7 @@ vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
         r->error.bound = 1.03 * r->error.noise;
         return VPL_SUCCESS;
     }
+    TRY(r->plan->progressive ? refreshLights(r) : VPL_SUCCESS);
     TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
     for (size_t k = 0; k < vplValueCount(r->base); k++) {
         const double mean = r->plan->progressive ? r->sums[0][k] / r->weight : 0;
@@ -299,9 +330,7 @@ vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
     if (r->plan->progressive) {
         estimateNoise(r, *imageOut);
     }
-    const bool marks =
-        r->plan->progressive && show->drawOver != NULL && run->results[VPL_STAGE_VIRTUAL_LIGHTS] != NULL;
-    return marks ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
+    return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
 }
 
 // Direct light alone of all passes so far; NULL where light is not split.
@@ -331,7 +360,7 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
     for (size_t k = 0; image != NULL && k < vplValueCount(image); k++) {
         sum += (double)image->pixels[k] / (double)vplValueCount(image);
     }
-    stats->passes = r->done > 0 ? r->done : r->kept.passes;
+    stats->passes = vplRenderer_Shown(r).passes;
     stats->relativeErrorEstimate = e->total >= 0 ? e->total : e->noise;
     stats->errorEstimate = stats->relativeErrorEstimate >= 0 ? stats->relativeErrorEstimate * sum : -1;
     stats->relativeNoise = e->noise;
@@ -347,10 +376,23 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
     *statsOut = *stats;
 }
 
+vplShown vplRenderer_Shown(const vplRenderer* r)
+{
+    const vplKeptPicture* kept = &r->kept;
+    return kept->image != NULL && (r->showsKept || r->done == 0) ? (vplShown){kept->plan, kept->passes, kept->paths}
+                                                                 : (vplShown){r->plan, r->done, r->paths};
+}
+
+const vplPlan* vplRenderer_GetPlan(const vplRenderer* r)
+{
+    return vplRenderer_Shown(r).plan;
+}
+
 // The picture of the plan under way, or one that was kept, where the plan has none or a worse one.
 static vplResult takePicture(vplRenderer* r, vplImage** imageOut)
 {
     const vplKeptPicture* kept = &r->kept;
+    r->showsKept = false;
     if (r->done > 0) {
         TRY(vplRenderer_Resolve(r, imageOut));
         if (r->truth != NULL && r->plan->options.method != VPL_METHOD_PATH) {
@@ -362,6 +404,7 @@ static vplResult takePicture(vplRenderer* r, vplImage** imageOut)
         vplImage_Destroy(*imageOut);
         *imageOut = NULL;
     }
+    r->showsKept = true;
     TRY(vplImage_Create(r->runner.run.context, kept->image->width, kept->image->height, imageOut));
     memcpy((*imageOut)->pixels, kept->image->pixels,
            vplValueCount(kept->image) * sizeof *kept->image->pixels);
@@ -386,11 +429,6 @@ vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderSta
     }
     *imageOut = image;
     return VPL_SUCCESS;
-}
-
-const vplPlan* vplRenderer_GetPlan(const vplRenderer* r)
-{
-    return r->plan == NULL || (r->done == 0 && r->kept.plan != NULL) ? r->kept.plan : r->plan;
 }
 
 vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRenderStats* statsOut)

@@ -41,6 +41,7 @@ struct vplRenderer {
     vplImage* direct;
     int done;               // passes
     int paths;              // path tracing: per pixel so far
+    bool stale;             // results of stages are not those of the last pass
     double start, cpuStart; // ms
     double planStart;       // ms, of the plan under way
     double planRays;        // of all plans before it
@@ -49,6 +50,7 @@ struct vplRenderer {
     double deadline;        // ms; infinite: none
     bool late;              // the deadline has ended a step
     vplKeptPicture kept;
+    bool showsKept; // the kept picture was given to the caller, because it is better than that of the plan under way
     vplTruth* truth;           // NULL: not asked yet
     vplJudgement judged;       // of the last picture that the truth was asked about
     vplErrorParts error;       // of the picture of all passes so far
@@ -59,11 +61,22 @@ struct vplRenderer {
 // Replaces the plan under way by one for other options; its picture begins anew. `coarse` as above.
 vplResult vplRenderer_Plan(vplRenderer* renderer, const vplRenderOptions* options, bool coarse);
 
+// Makes sums of passes, all 0.
+vplResult vplRenderer_OpenSums(vplRenderer* renderer);
+
 // Makes the picture of all passes so far of the plan under way.
 vplResult vplRenderer_Resolve(vplRenderer* renderer, vplImage** imageOut);
 
 // True if there is a picture that can be shown.
 bool vplRenderer_HasPicture(const vplRenderer* renderer);
+
+// The plan of the picture that callers get, its passes and its paths per pixel.
+typedef struct vplShown {
+    const vplPlan* plan;
+    int passes, paths; // 0: there is no picture yet
+} vplShown;
+
+vplShown vplRenderer_Shown(const vplRenderer* renderer);
 
 // Replaces the words of --quality by an error and a time.
 void vplResolveQuality(vplRenderOptions* options);
@@ -77,6 +90,9 @@ vplResult vplRenderer_Keep(vplRenderer* renderer, double error);
 // After the truth was asked: goes on with another plan where that promises less error in the time that is left (asked is
 // 0), or the error in less time, and ends a render that more passes do not improve.
 vplResult vplReconsider(vplRenderer* renderer, double asked, bool* doneOut);
+
+// True if the options' count of passes or paths is reached.
+bool vplIsComplete(const vplRenderer* renderer);
 
 // After a pass: decides whether the render is done, goes on, or goes on with another plan.
 vplResult vplReview(vplRenderer* renderer, bool* doneOut);

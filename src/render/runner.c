@@ -257,8 +257,11 @@ static vplResult make(vplRunner* r, vplStageId id)
         slot->result = result;
         slot->arena = r->run.arena;
     }
+    const bool whole = made == VPL_CANCELLED && stage->undoes && result != NULL && result == r->run.before;
     if (made != VPL_SUCCESS) { // a result that is incomplete is of no use
-        empty(r->history, id);
+        if (!whole) {
+            empty(r->history, id);
+        }
         return made;
     }
     slot->bytes = (int64_t)vplContext_GetBytes(context) - held;
@@ -299,6 +302,15 @@ vplResult vplRunner_RunPlan(vplRunner* r, const vplPlan* plan, vplStageId last)
         }
     }
     return VPL_SUCCESS;
+}
+
+void vplRunner_Forget(vplRunner* r)
+{
+    for (int id = VPL_STAGE_COUNT; id-- > 0;) {
+        if (VPL_STAGES[id].continues) {
+            empty(r->history, id);
+        }
+    }
 }
 
 void* vplRunner_Take(vplRunner* r, vplStageId id)

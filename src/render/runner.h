@@ -55,6 +55,9 @@ vplResult vplRunner_RunPlan(vplRunner* runner, const vplPlan* plan, vplStageId l
 vplRunner vplRunner_Nest(const vplRun* run);
 void vplRunner_Unnest(const vplRun* run, const vplRunner* nested);
 
+// Frees results that later stages would continue from, so that what follows has the bits of a new render.
+void vplRunner_Forget(vplRunner* runner);
+
 // Takes a result out of the history; the caller destroys it.
 void* vplRunner_Take(vplRunner* runner, vplStageId id);
 

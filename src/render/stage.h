@@ -54,7 +54,7 @@ typedef struct vplRun {
     void* before;
     uint32_t builds[VPL_STAGE_COUNT]; // counts how often each result was made, which tells two results apart
     int pass;
-    int samples;              // paths per pixel in this pass
+    int samples;              // paths per pixel in this pass; 0: the tracer is made, and its sums come from a file
     int parts;                // vplPart: what the picture stage adds up
     bool draft;               // it is a round of adaptive patches before the last
     vplArena* arena;          // memory of the result
@@ -78,6 +78,7 @@ typedef struct vplStage {
     void (*destroy)(void* result);     // frees objects that its arena does not own; NULL: there are none
     void (*report)(const vplRun* run); // adds the result, kept or new, to the statistics; may be NULL
     bool continues;                    // it starts from its last result
+    bool undoes;                       // if cancelled, it leaves its last result whole
 } vplStage;
 
 // One row per vplStageId.

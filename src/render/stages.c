@@ -279,6 +279,6 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         needsPicture, vplMakePicture, vplDestroyImage, .report = NULL},
     [VPL_STAGE_PATHS] = {
         "paths", 1, IN(GEOMETRY), "ALWAYS",
-        needsPaths, vplMakePaths, vplDestroyPaths, .continues = true},
+        needsPaths, vplMakePaths, vplDestroyPaths, .continues = true, .undoes = true},
 };
 // clang-format on

@@ -96,7 +96,10 @@ static vplResult failAt(const vplJson* at, bool atKey, const char* message)
     vplJson_FormatPath(pathOf(at), path, sizeof path);
     const vplJsonPlace place = vplJson_Locate(file->text, file->size, pathOf(at), atKey);
     return vplFail(file->context, VPL_PARSE_ERROR, "%s:%d:%d: %s %s", file->name, place.line, place.column,
-                   path[0] ? path : "the scene", message);
+                   path[0]                 ? path
+                   : file->subject != NULL ? file->subject
+                                           : "the scene",
+                   message);
 }
 
 vplResult vplJson_Fail(const vplJson* at, const char* format, ...)

@@ -11,6 +11,7 @@
 typedef struct vplJsonFile {
     vplContext* context;
     const char* name;
+    const char* subject; // of sentences about the root; NULL: "the scene"
     char* text;
     size_t size;
     json_t* root;

@@ -28,6 +28,7 @@ failed=0
 . "$folder/plan.sh"
 . "$folder/pictures.sh"
 . "$folder/frames.sh"
+. "$folder/save.sh"
 . "$folder/radiosity.sh"
 . "$folder/tradeoff.sh"
 . "$folder/browser.sh"

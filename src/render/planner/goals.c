@@ -9,7 +9,6 @@
 #include <stdio.h>
 
 enum {
-    PASS_PATHS = 32, // per pixel in a pass, so many that threads seldom wait for each other
     MAX_TRUTH_PATHS = 2048
 };
 
@@ -110,16 +109,16 @@ static vplResult refine(vplRenderer* r)
 int vplNextPaths(const vplRenderer* r)
 {
     const int most = r->plan->options.path.samples - r->paths;
-    int paths = PASS_PATHS;
+    int paths = VPL_PATHS_PER_PASS;
     if (r->plan->options.method != VPL_METHOD_PATH) {
         return 0;
     }
     if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // twice as many in each pass, from two on
-        paths = r->paths < 2 ? 2 : r->paths < PASS_PATHS ? r->paths : PASS_PATHS;
+        paths = r->paths < 2 ? 2 : r->paths < VPL_PATHS_PER_PASS ? r->paths : VPL_PATHS_PER_PASS;
     }
     if (isfinite(r->deadline) && r->paths > 0) {
         const double each = r->passMs / r->paths;
-        const int fit = (int)fmin(PASS_PATHS, (leftOf(r) + 0.02 * r->asked.stop.budgetMs) / each);
+        const int fit = (int)fmin(VPL_PATHS_PER_PASS, (leftOf(r) + 0.02 * r->asked.stop.budgetMs) / each);
         paths = fit < paths ? fit > 1 ? fit : 1 : paths;
     }
     return paths < most || most <= 0 ? paths : most;
@@ -220,8 +219,7 @@ static vplResult reviewTime(vplRenderer* r, bool* doneOut)
 
 // ---- after a pass
 
-// Tests whether the options' count of passes or paths is reached.
-static bool isComplete(const vplRenderer* r)
+bool vplIsComplete(const vplRenderer* r)
 {
     const vplRenderOptions* o = &r->plan->options;
     return o->method == VPL_METHOD_PATH ? r->paths >= o->path.samples
@@ -245,7 +243,7 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     if (r->coarse) {
         return refine(r);
     }
-    const bool complete = isComplete(r);
+    const bool complete = vplIsComplete(r);
     *doneOut = complete;
     if (asked > 0 && isLight(r->asked.output.show)) {
         TRY(reviewError(r, asked, doneOut));

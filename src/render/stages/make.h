@@ -64,11 +64,17 @@ static inline bool vplPathsAreOpen(const vplPlan* plan)
     return plan->options.method == VPL_METHOD_PATH && plan->options.path.samples == VPL_MAX_SAMPLES;
 }
 
+// Passes of a path-traced picture whose number of paths is given.
+int vplCountPathPasses(const vplPlan* plan);
+
 // What the path tracer traces for a picture.
 vplPathDef vplDescribePaths(const vplPlan* plan, vplShow show);
 
 // The mean of all paths so far.
 vplResult vplResolvePaths(const vplRun* run, vplImage** imageOut);
+
+// The tracer of the picture, or of its direct light, which is NULL if the plan does not split light.
+struct vplPathTracer* vplGetPathTracer(const vplRun* run, bool direct);
 
 // The mean of their direct light, if the plan splits light. The image is black.
 void vplResolveDirectPaths(const vplRun* run, vplImage* image);

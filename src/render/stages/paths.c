@@ -3,6 +3,11 @@
 #include "reference/path_trace.h"
 #include "render/stages/make.h"
 
+int vplCountPathPasses(const vplPlan* plan)
+{
+    return (plan->options.path.samples + VPL_PATHS_PER_PASS - 1) / VPL_PATHS_PER_PASS;
+}
+
 // The result of the stage.
 typedef struct Paths {
     vplPathTracer* picture;
@@ -43,7 +48,8 @@ static vplResult createPaths(const vplRun* run, Paths* paths)
     return plan->splitsLight ? vplPathTracer_Create(g, &direct, &paths->direct) : VPL_SUCCESS;
 }
 
-// Pass 0 creates tracers; later passes add paths to them.
+// Pass 0 creates tracers; later passes add paths to them. Both tracers have the same paths after a pass that
+// is cancelled, too.
 vplResult vplMakePaths(const vplRun* run, void** resultOut)
 {
     Paths* paths = run->pass > 0 ? run->before : NULL;
@@ -53,13 +59,19 @@ vplResult vplMakePaths(const vplRun* run, void** resultOut)
         *resultOut = paths;
         TRY(createPaths(run, paths));
     }
+    *resultOut = paths;
     const int samples = run->samples;
     const double share = paths->direct != NULL ? 0.3 : 0; // of the time, about
-    *resultOut = paths;
-    if (paths->direct != NULL) {
+    if (samples > 0 && paths->direct != NULL) {
         TRY(vplPathTracer_Pass(paths->direct, samples, run->progress, run->runner, 0, share));
     }
-    return vplPathTracer_Pass(paths->picture, samples, run->progress, run->runner, share, 1);
+    const vplResult result =
+        samples > 0 ? vplPathTracer_Pass(paths->picture, samples, run->progress, run->runner, share, 1)
+                    : VPL_SUCCESS;
+    if (result == VPL_CANCELLED && paths->direct != NULL) {
+        vplPathTracer_Undo(paths->direct);
+    }
+    return result;
 }
 
 void vplDestroyPaths(void* result)
@@ -88,4 +100,10 @@ void vplResolveDirectPaths(const vplRun* run, vplImage* image)
     vplPathStats stats;
     vplPathTracer_Resolve(paths->direct, image, &stats);
     run->stats->rays += stats.rays;
+}
+
+vplPathTracer* vplGetPathTracer(const vplRun* run, bool direct)
+{
+    const Paths* paths = run->results[VPL_STAGE_PATHS];
+    return direct ? paths->direct : paths->picture;
 }

@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: MIT
+// Saves a render between two passes and goes on with it. A file has, all words little-endian: the 8 letters
+// VPLSTATE, a header, the options as text, the sums that the picture is made from, and a checksum. Reading
+// checks every size and value, because files come from anywhere.
+#include "render/checkpoint.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "reference/path_trace.h"
+#include "render/renderer.h"
+#include "render/replay.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { VERSION = 1, HEADER_BYTES = 96, CHECKSUM_BYTES = 8 };
+
+// Arrays that a file may have.
+enum { PASSES = 1, PATHS = 2, DIRECT = 4 };
+
+static const char MAGIC[8] = {'V', 'P', 'L', 'S', 'T', 'A', 'T', 'E'};
+
+typedef struct Header {
+    uint32_t version, textBytes; // of the options, a multiple of 4
+    uint64_t scene;              // vplScene_GetHash
+    uint32_t width, height, parts;
+    uint32_t passes, samples; // done; samples of path tracing
+    uint64_t rays[2];         // of path tracing: of the picture and of its direct light
+    double loss[2];           // of virtual lights by the clamp
+} Header;
+
+// ---- words
+
+// A file in memory that is written or read, front to back, by the same functions.
+typedef struct Stream {
+    uint8_t* bytes;
+    size_t at;
+    bool writes, finite; // finite: every number that was read is
+} Stream;
+
+static void streamWord(Stream* s, uint32_t* word)
+{
+    uint8_t* b = s->bytes + s->at;
+    s->at += 4;
+    if (s->writes) {
+        for (int i = 0; i < 4; i++) {
+            b[i] = (uint8_t)(*word >> 8 * i);
+        }
+    } else {
+        *word = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    }
+}
+
+static void streamLong(Stream* s, uint64_t* value)
+{
+    uint32_t low = (uint32_t)*value, high = (uint32_t)(*value >> 32);
+    streamWord(s, &low);
+    streamWord(s, &high);
+    *value = (uint64_t)high << 32 | low;
+}
+
+static void streamDoubles(Stream* s, double* values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint64_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        streamLong(s, &bits);
+        memcpy(&values[i], &bits, sizeof bits);
+        s->finite = s->finite && isfinite(values[i]);
+    }
+}
+
+static void streamFloats(Stream* s, float* values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        streamWord(s, &bits);
+        memcpy(&values[i], &bits, sizeof bits);
+        s->finite = s->finite && isfinite(values[i]);
+    }
+}
+
+static void streamHeader(Stream* s, Header* h)
+{
+    uint32_t reserved = 0;
+    s->at = sizeof MAGIC;
+    streamWord(s, &h->version);
+    streamWord(s, &h->textBytes);
+    streamLong(s, &h->scene);
+    uint32_t* const words[] = {&h->width, &h->height, &h->parts, &h->passes, &h->samples, &reserved};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        streamWord(s, words[i]);
+    }
+    streamLong(s, &h->rays[0]);
+    streamLong(s, &h->rays[1]);
+    streamDoubles(s, h->loss, 2);
+    s->at = HEADER_BYTES;
+}
+
+// Bytes of the whole file.
+static size_t sizeOf(const Header* h)
+{
+    const size_t values = 3 * (size_t)h->width * (size_t)h->height, direct = (h->parts & DIRECT) != 0;
+    size_t size = HEADER_BYTES + h->textBytes + CHECKSUM_BYTES;
+    size += (h->parts & PASSES) != 0 ? values * (2 * sizeof(double) + (1 + direct) * sizeof(float)) : 0;
+    size += (h->parts & PATHS) != 0 ? (1 + direct) * 2 * values * sizeof(double) : 0;
+    return size;
+}
+
+uint64_t vplState_Checksum(const uint8_t* bytes, size_t size)
+{
+    Stream s = {.bytes = (uint8_t*)bytes};
+    uint32_t words[1024];
+    uint64_t state = 0;
+    while (s.at < size) {
+        size_t n = 0;
+        for (; n < 1024 && s.at < size; n++) {
+            streamWord(&s, &words[n]);
+        }
+        state = vplHashWords(state, words, n);
+    }
+    return state;
+}
+
+// ---- the state of a renderer
+
+// The arrays of a plan's renderer; 0: it has no state between passes.
+static uint32_t partsOf(const vplPlan* p)
+{
+    const bool paths = p->options.method == VPL_METHOD_PATH;
+    const bool onSurfaces = p->options.method == VPL_METHOD_KELLER && p->hasAreaLights; // see addDirect
+    const uint32_t parts = paths ? PATHS : p->progressive ? PASSES : 0;
+    return parts | (parts != 0 && p->splitsLight && (paths || onSurfaces) ? DIRECT : 0);
+}
+
+static void streamState(Stream* s, vplRenderer* r, uint32_t parts)
+{
+    for (int i = 0; i < 1 + ((parts & DIRECT) != 0) && (parts & PATHS) != 0; i++) {
+        const vplPathSums sums = vplPathTracer_GetSums(vplGetPathTracer(&r->runner.run, i > 0));
+        streamDoubles(s, sums.values, sums.count);
+    }
+    if ((parts & PASSES) != 0) {
+        const size_t values = vplValueCount(r->base);
+        streamFloats(s, r->base->pixels, values);
+        streamDoubles(s, r->sums[0], values);
+        streamDoubles(s, r->sums[1], values);
+        if ((parts & DIRECT) != 0) {
+            streamFloats(s, r->direct->pixels, values);
+        }
+    }
+}
+
+// Writes all options as lines "name=value", padded with empty lines to a multiple of 4 bytes.
+static void listOptions(const vplPlan* plan, vplByteBuffer* text)
+{
+    const vplRenderOptions replay = vplReplayOptions(plan);
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        char value[64];
+        if (vplReplayText(&options[i], &replay, value)) {
+            vplByteBuffer_Append(text, options[i].name, strlen(options[i].name));
+            vplByteBuffer_Append(text, "=", 1);
+            vplByteBuffer_Append(text, value, strlen(value));
+            vplByteBuffer_Append(text, "\n", 1);
+        }
+    }
+    vplByteBuffer_Append(text, "\n\n\n", (4 - text->size % 4) % 4);
+}
+
+// ---- saving
+
+static Header describe(const vplRenderer* r, const vplByteBuffer* text)
+{
+    const vplOutputOptions* o = &r->plan->options.output;
+    const uint32_t parts = partsOf(r->plan);
+    Header h = {.version = VERSION,
+                .textBytes = (uint32_t)text->size,
+                .scene = vplScene_GetHash(r->runner.run.scene),
+                .width = (uint32_t)o->width,
+                .height = (uint32_t)o->height,
+                .parts = parts,
+                .passes = (uint32_t)r->done,
+                .loss = {r->runner.loss.lost, r->runner.loss.all}};
+    for (int i = 0; i < 1 + ((parts & DIRECT) != 0) && (parts & PATHS) != 0; i++) {
+        vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
+        h.samples = (uint32_t)vplPathTracer_GetSums(tracer).samples;
+        h.rays[i] = (uint64_t)vplPathTracer_CountRays(tracer);
+    }
+    return h;
+}
+
+static vplResult save(vplRenderer* r, const vplByteBuffer* text, const char* path)
+{
+    vplContext* context = r->runner.run.context;
+    Header h = describe(r, text);
+    const size_t size = sizeOf(&h);
+    Stream s = {.bytes = vplAllocZero(context, size, 1), .writes = true};
+    if (s.bytes == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    memcpy(s.bytes, MAGIC, sizeof MAGIC);
+    streamHeader(&s, &h);
+    memcpy(s.bytes + s.at, text->bytes, text->size);
+    s.at += text->size;
+    streamState(&s, r, h.parts);
+    uint64_t checksum = vplState_Checksum(s.bytes, s.at);
+    streamLong(&s, &checksum);
+    const vplResult result = vplWriteFile(context, path, s.bytes, size);
+    vplFree(context, s.bytes);
+    return result;
+}
+
+vplResult vplRenderer_Save(vplRenderer* r, const char* path)
+{
+    vplContext* context = r->runner.run.context;
+    if (partsOf(r->plan) == 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "a render that is drawn at once has no state to save; renders of several passes have "
+                       "one (--passes, "
+                       "--budget, --max-error), and path tracing");
+    }
+    if (r->done == 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "a renderer has no state to save before its first step");
+    }
+    vplByteBuffer text = {.context = context};
+    listOptions(r->plan, &text);
+    const vplResult result = text.failed ? VPL_OUT_OF_MEMORY : save(r, &text, path);
+    vplFree(context, text.bytes);
+    return result;
+}
+
+// ---- loading
+
+typedef struct Loading {
+    vplRenderer* renderer;
+    const char* path;
+    Stream stream;
+    size_t size; // of the file
+    Header header;
+} Loading;
+
+// Checks all that can be checked without the renderer.
+static vplResult checkFile(Loading* l)
+{
+    const vplContext* context = l->renderer->runner.run.context;
+    const size_t least = HEADER_BYTES + CHECKSUM_BYTES;
+    if (l->size < sizeof MAGIC || memcmp(l->stream.bytes, MAGIC, sizeof MAGIC) != 0) {
+        return vplFail(context, VPL_PARSE_ERROR, "%s: not the state of a render, which begins with VPLSTATE",
+                       l->path);
+    }
+    if (l->size < least || l->size % 4 != 0) {
+        return vplFail(context, VPL_PARSE_ERROR, "%s: has %zu bytes, too few: the file is not complete",
+                       l->path, l->size);
+    }
+    streamHeader(&l->stream, &l->header);
+    if (l->header.version != VERSION) {
+        return vplFail(context, VPL_PARSE_ERROR, "%s: is of version %u, must be of version %d", l->path,
+                       (unsigned)l->header.version, VERSION);
+    }
+    uint64_t checksum = 0;
+    l->stream.at = l->size - CHECKSUM_BYTES;
+    streamLong(&l->stream, &checksum);
+    if (checksum != vplState_Checksum(l->stream.bytes, l->size - CHECKSUM_BYTES) ||
+        l->header.textBytes > l->size - least || l->header.textBytes % 4 != 0) {
+        return vplFail(context, VPL_PARSE_ERROR,
+                       "%s: its checksum does not fit: the file is damaged or not complete", l->path);
+    }
+    return VPL_SUCCESS;
+}
+
+// A list of options that is read line by line.
+typedef struct Lines {
+    const char *at, *end;
+} Lines;
+
+// Copies the next line that is not empty, or as much of it as fits. Returns false at the end.
+static bool nextLine(Lines* lines, char line[128])
+{
+    size_t length = 0;
+    while (lines->at < lines->end && *lines->at == '\n') {
+        lines->at++;
+    }
+    for (; lines->at < lines->end && *lines->at != '\n'; lines->at++) {
+        line[length] = *lines->at;
+        length += length < 127;
+    }
+    line[length] = 0;
+    return length > 0;
+}
+
+// Compares two lists of options line by line.
+static vplResult checkOptions(const Loading* l, Lines was, Lines is)
+{
+    const vplContext* context = l->renderer->runner.run.context;
+    vplRenderOptions scratch = vplDefaultRenderOptions();
+    char before[128], now[128];
+    while (nextLine(&is, now)) {
+        const bool more = nextLine(&was, before);
+        const size_t named = strcspn(now, "=") + 1;
+        const bool same = more && strcmp(before, now) == 0, alike = more && strncmp(before, now, named) == 0;
+        now[named - 1] = 0;
+        if (!alike || vplRenderOptions_Set(&scratch, now, before + named) != VPL_SUCCESS) {
+            return vplFail(
+                context, VPL_PARSE_ERROR,
+                "%s: saved with other options than this version of the library has: --%s is not where it "
+                "should be",
+                l->path, now);
+        }
+        if (!same && !vplIsStop(vplFindOption(now))) {
+            return vplFail(
+                context, VPL_INVALID_ARGUMENT,
+                "%s: saved with --%s %s, but this render has %s; only passes, spp, budget, max-error and "
+                "quality may differ",
+                l->path, now, before + named, now + named);
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult checkRender(const Loading* l)
+{
+    const vplRenderer* r = l->renderer;
+    const Header* h = &l->header;
+    const vplContext* context = r->runner.run.context;
+    if (h->scene != vplScene_GetHash(r->runner.run.scene)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "%s: saved with another scene, or the scene was changed since", l->path);
+    }
+    vplByteBuffer text = {.context = r->runner.run.context};
+    listOptions(r->plan, &text);
+    const char *was = (const char*)l->stream.bytes + HEADER_BYTES, *is = (const char*)text.bytes;
+    const vplResult result =
+        text.failed ? VPL_OUT_OF_MEMORY
+                    : checkOptions(l, (Lines){was, was + h->textBytes}, (Lines){is, is + text.size});
+    vplFree(r->runner.run.context, text.bytes);
+    TRY(result);
+    if (h->parts != partsOf(r->plan)) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "%s: saved by a render of several passes, and this one is drawn at once: say when it ends, by "
+            "--passes, --budget or --max-error",
+            l->path);
+    }
+    const bool counts = h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 && h->passes >= 1 &&
+                        h->passes <= VPL_MAX_SAMPLES &&
+                        ((h->parts & PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
+    const bool fits = h->width == (uint32_t)r->plan->options.output.width &&
+                      h->height == (uint32_t)r->plan->options.output.height && sizeOf(h) == l->size;
+    return counts && fits
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_PARSE_ERROR, "%s: its counts contradict each other", l->path);
+}
+
+// Plans as the saved render had planned, where a goal or --method auto may have led it to another plan than the first.
+static vplResult replan(Loading* l)
+{
+    vplRenderer* r = l->renderer;
+    const char* text = (const char*)l->stream.bytes + HEADER_BYTES;
+    Lines lines = {text, text + l->header.textBytes};
+    vplRenderOptions o = r->asked;
+    char line[128];
+    if (r->asked.method != VPL_METHOD_AUTO && !r->coarse) {
+        return VPL_SUCCESS;
+    }
+    while (r->asked.method == VPL_METHOD_AUTO && nextLine(&lines, line)) {
+        const size_t named = strcspn(line, "=");
+        const bool valued = line[named] == '=';
+        line[named] = 0;
+        const vplOption* option = vplFindOption(line);
+        if (option != NULL && valued && option->users != VPL_USE_ALL && strcmp(line, "spp") != 0 && !vplIsStop(option)) {
+            vplRenderOptions_Set(&o, line, line + named + 1);
+        } else if (strcmp(line, "method") == 0 && valued) {
+            vplRenderOptions_Set(&o, line, line + named + 1);
+        }
+    }
+    return vplRenderer_Plan(r, &o, false);
+}
+
+// Makes what the arrays are read into.
+static vplResult openState(vplRenderer* r, uint32_t parts)
+{
+    const vplOutputOptions* o = &r->plan->options.output;
+    vplContext* context = r->runner.run.context;
+    if ((parts & PATHS) != 0) {
+        r->runner.run.pass = 0;
+        r->runner.run.samples = 0;
+        return vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PATHS);
+    }
+    vplImage_Destroy(r->base);
+    vplImage_Destroy(r->direct);
+    r->base = r->direct = NULL;
+    TRY(vplImage_Create(context, o->width, o->height, &r->base));
+    TRY((parts & DIRECT) != 0 ? vplImage_Create(context, o->width, o->height, &r->direct) : VPL_SUCCESS);
+    return vplRenderer_OpenSums(r);
+}
+
+static vplResult loadState(Loading* l)
+{
+    vplRenderer* r = l->renderer;
+    const Header* h = &l->header;
+    TRY(openState(r, h->parts));
+    l->stream.at = HEADER_BYTES + h->textBytes;
+    streamState(&l->stream, r, h->parts);
+    if (!l->stream.finite) {
+        return vplFail(r->runner.run.context, VPL_PARSE_ERROR, "%s: has sums that are no numbers", l->path);
+    }
+    for (int i = 0; i < 1 + ((h->parts & DIRECT) != 0) && (h->parts & PATHS) != 0; i++) {
+        vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
+        vplPathTracer_SetSamples(tracer, (int)h->samples);
+        vplPathTracer_SetRays(tracer, (int64_t)h->rays[i]);
+    }
+    r->runner.loss = (vplClampLoss){h->loss[0], h->loss[1]};
+    r->done = (int)h->passes;
+    r->paths = (int)h->samples;
+    for (int k = 0; k < r->done && r->weight < 1e9; k++) {
+        r->weight += vplShareOfPass(r->plan, k);
+    }
+    r->stale = true;
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
+{
+    vplContext* context = r->runner.run.context;
+    Loading l = {.renderer = r, .path = path, .stream = {.finite = true}};
+    char* bytes;
+    if (r->done > 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "a renderer can load a state before its first step only");
+    }
+    TRY(vplReadFile(context, path, &bytes, &l.size));
+    l.stream.bytes = (uint8_t*)bytes;
+    vplResult result = checkFile(&l);
+    result = result == VPL_SUCCESS ? replan(&l) : result;
+    result = result == VPL_SUCCESS ? checkRender(&l) : result;
+    result = result == VPL_SUCCESS ? loadState(&l) : result;
+    vplFree(context, bytes);
+    if (result != VPL_SUCCESS) { // the first pass would add to it; it makes all else anew
+        vplImage_Destroy(r->direct);
+        r->direct = NULL;
+    }
+    return result == VPL_SUCCESS ? vplReview(r, doneOut) : result;
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "render/replay.h"
+
+#include <string.h>
+
+vplRenderOptions vplReplayOptions(const vplPlan* p)
+{
+    vplRenderOptions o = p->options;
+    if (p->clampArea > 0) { // each pass has a distance of its own, by the number of its lights
+        o.lights.minDistance = -1;
+    }
+    if (o.lights.shadows == VPL_LIGHT_SHADOWS_RAY &&
+        !p->emitterRays) { // ray would replace maps of emitters, too
+        o.lights.shadows = VPL_LIGHT_SHADOWS_AUTO;
+    }
+    if (o.radiosity.placement == VPL_PATCHES_ADAPTIVE &&
+        p->linkAbove == VPL_ALL_PAIRS) { // each draft decides anew
+        o.radiosity.hierarchy = VPL_HIERARCHY_AUTO;
+    }
+    o.sequence.history = NULL;
+    o.progress = NULL;
+    o.progressUser = NULL;
+    return o;
+}
+
+bool vplReplayText(const vplOption* option, const vplRenderOptions* options, char text[64])
+{
+    return option->kind != VPL_OPTION_PART &&
+           vplRenderOptions_Get(options, option->name, text, 64) == VPL_SUCCESS;
+}
+
+bool vplIsStop(const vplOption* option)
+{
+    const bool grows = strcmp(option->name, "grow-from") == 0; // which light belongs to which pass
+    return (strcmp(option->group, "When to stop") == 0 && !grows) || strcmp(option->name, "spp") == 0;
+}

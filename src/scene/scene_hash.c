@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// A hash of what a scene says, for files that belong to one.
+#include "base/hash.h"
+#include "scene/scene.h"
+
+#include <string.h>
+
+static uint64_t addInts(uint64_t state, const int* values, size_t count)
+{
+    uint32_t words[1024];
+    for (size_t i = 0; i < count; i += 1024) {
+        const size_t n = count - i < 1024 ? count - i : 1024;
+        memcpy(words, values + i, n * sizeof *words);
+        state = vplHashWords(state, words, n);
+    }
+    return state;
+}
+
+static uint64_t addInt(uint64_t state, int value)
+{
+    return addInts(state, &value, 1);
+}
+
+// Low half first, on machines of either byte order.
+static uint64_t addNumber(uint64_t state, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    const uint32_t words[2] = {(uint32_t)bits, (uint32_t)(bits >> 32)};
+    return vplHashWords(state, words, 2);
+}
+
+static uint64_t addVector(uint64_t state, vplVec3 v)
+{
+    return vplHashFloats(state, (const float[3]){v.x, v.y, v.z}, 3);
+}
+
+static uint64_t addColour(uint64_t state, vplRgb c)
+{
+    return vplHashFloats(state, (const float[3]){c.r, c.g, c.b}, 3);
+}
+
+static uint64_t addCamera(uint64_t state, const vplCamera* camera)
+{
+    const vplCameraDef* d = &camera->def;
+    const vplCameraKey* keys = camera->track.keys;
+    state = addVector(addVector(addVector(state, d->eye), d->target), d->up);
+    state = addNumber(addNumber(addNumber(state, d->fovY), d->near), d->far);
+    state = addInt(state, camera->track.count);
+    for (int i = 0; i < camera->track.count; i++) {
+        state = addNumber(addNumber(state, keys[i].frame), keys[i].fovY);
+        state = addVector(addVector(addVector(state, keys[i].eye), keys[i].target), keys[i].up);
+    }
+    return state;
+}
+
+static uint64_t addEmitter(uint64_t state, const vplEmitter* emitter)
+{
+    const vplEmitterDef* d = &emitter->def;
+    const vplEmitterKey* keys = emitter->track.keys;
+    state = addInt(state, (int)d->type);
+    state = addColour(addVector(addVector(state, d->position), d->direction), d->intensity);
+    state = addNumber(addNumber(state, d->innerAngle), d->outerAngle);
+    state = addInt(state, emitter->track.count);
+    for (int i = 0; i < emitter->track.count; i++) {
+        state = addVector(addVector(addNumber(state, keys[i].frame), keys[i].position), keys[i].direction);
+        state = addColour(state, keys[i].intensity);
+    }
+    return state;
+}
+
+static uint64_t addMesh(uint64_t state, const vplMeshDef* d)
+{
+    const size_t vertices = (size_t)d->vertexCount, triangles = (size_t)d->triangleCount;
+    state = addInt(addInt(state, d->vertexCount), d->triangleCount);
+    state = addInt(state, (d->normals != NULL ? 1 : 0) | (d->materials != NULL ? 2 : 0));
+    if (vertices > 0) {
+        state = vplHashFloats(state, &d->positions[0].x, 3 * vertices);
+        state = d->normals != NULL ? vplHashFloats(state, &d->normals[0].x, 3 * vertices) : state;
+    }
+    if (triangles > 0) {
+        state = vplHashWords(state, d->indices, 3 * triangles);
+        state = d->materials != NULL ? addInts(state, d->materials, triangles) : state;
+    }
+    return state;
+}
+
+static uint64_t addObject(uint64_t state, const vplObjectDef* d)
+{
+    const int mesh = d->type == VPL_OBJECT_MESH ? d->mesh : -1;
+    state = addInt(addInt(addInt(state, (int)d->type), d->material), mesh);
+    for (int i = 0; i < 16; i++) {
+        state = addNumber(state, (double)d->transform.m[i]);
+    }
+    return state;
+}
+
+uint64_t vplScene_GetHash(const vplScene* s)
+{
+    const int counts[5] = {s->cameraCount, s->materialCount, s->meshCount, s->objectCount, s->emitterCount};
+    uint64_t state = addInts(0, counts, 5);
+    for (int i = 0; i < s->cameraCount; i++) {
+        state = addCamera(state, &s->cameras[i]);
+    }
+    for (int i = 0; i < s->materialCount; i++) {
+        state = addColour(addColour(state, s->materials[i].diffuse), s->materials[i].emission);
+    }
+    for (int i = 0; i < s->meshCount; i++) {
+        state = addMesh(state, &s->meshes[i]);
+    }
+    for (int i = 0; i < s->objectCount; i++) {
+        state = addObject(state, &s->objects[i]);
+    }
+    for (int i = 0; i < s->emitterCount; i++) {
+        state = addEmitter(state, &s->emitters[i]);
+    }
+    return state;
+}

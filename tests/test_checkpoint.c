@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// Tests of saved renders: the same bits as one that was never stopped, and files that are wrong in every way.
+#include "pass_cases.h"
+
+#include "base/file.h"
+#include "render/checkpoint.h"
+
+#include <stdlib.h>
+#include <unistd.h>
+
+static char statePath[64];
+
+// A file of its own for each process.
+static const char* stateFile(void)
+{
+    snprintf(statePath, sizeof statePath, "/tmp/vpl-state-%ld", (long)getpid());
+    return statePath;
+}
+
+// Renders `passes` passes and saves them.
+static void savePasses(const vplScene* scene, const vplRenderOptions* o, int passes)
+{
+    vplRenderer* r;
+    bool done;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    for (int i = 0; i < passes; i++) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_SUCCESS);
+    vplRenderer_Destroy(r);
+}
+
+// Goes on with another renderer, and looks at what it has at first and at the end.
+static void goOn(const vplScene* scene, const vplRenderOptions* o, Seen* first, Seen* last,
+                 vplRenderStats* stats)
+{
+    vplRenderer* r;
+    bool done;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Load(r, stateFile(), &done), VPL_SUCCESS);
+    *first = look(r, NULL);
+    while (!done) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    *last = look(r, stats);
+    vplRenderer_Destroy(r);
+}
+
+TEST_ALONE(ALoadedRenderGoesOnToTheSameBits)
+{
+    for (int i = 0; i < PASS_CASES; i++) {
+        Seen passes[MOST_PASSES + 1], first, last;
+        vplRenderStats whole, stats;
+        vplScene* scene;
+        vplContext* context = openTestContext(2);
+        const vplRenderOptions o = passCase(context, i, &scene);
+        renderPasses(scene, &o, passes, &whole);
+        for (int saved = 1; saved <= MOST_PASSES; saved++) {
+            vplScene* other;
+            vplContext* elsewhere = openIsaContext(3, VPL_ISA_SCALAR); // as on another machine
+            savePasses(scene, &o, saved);
+            passCase(elsewhere, i, &other);
+            goOn(other, &o, &first, &last, &stats);
+            assertSeenSame(&first, &passes[saved]);
+            assertSeenSame(&last, &passes[MOST_PASSES]);
+            assert_int_equal(stats.passes, MOST_PASSES);
+            assert_true(stats.errorEstimate == whole.errorEstimate);
+            assert_true(o.method != VPL_METHOD_PATH || stats.rays == whole.rays);
+            vplScene_Destroy(other);
+            closeTestContext(elsewhere);
+        }
+        unlink(stateFile());
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+}
+
+// Counts that end a render may change: a finished render goes on to more, also where its last pass was short.
+TEST(AFinishedRenderGoesOnToMore, 1)
+{
+    static const char* const MORE[PASS_CASES] = {"--spp 150",  "--spp 150",  "--passes 5",
+                                                 "--passes 5", "--passes 5", "--passes 5"};
+    for (int i = 0; i < PASS_CASES; i++) {
+        Seen first, last, ended;
+        vplRenderer* r;
+        vplRenderStats stats;
+        vplScene* scene;
+        vplRenderOptions o = passCase(context, i, &scene);
+        savePasses(scene, &o, MOST_PASSES);
+        assert_int_equal(vplRenderOptions_SetAll(&o, MORE[i]), VPL_SUCCESS);
+        goOn(scene, &o, &first, &last, &stats);
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        for (bool done = false; !done;) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        ended = look(r, NULL);
+        assertSeenSame(&last, &ended);
+        vplRenderer_Destroy(r);
+        vplScene_Destroy(scene);
+    }
+    unlink(stateFile());
+}
+
+// Loading fails with a sentence, and the renderer then renders as if nothing had been loaded.
+static void assertRefused(const vplScene* scene, const vplRenderOptions* o, vplResult wanted,
+                          const char* sentence)
+{
+    vplRenderer* r;
+    bool done = false;
+    assert_int_equal(vplRenderer_Create(scene, o, &r), VPL_SUCCESS);
+    takeMessage();
+    assert_int_equal(vplRenderer_Load(r, stateFile(), &done), wanted);
+    const char* message = takeMessage();
+    if (strstr(message, sentence) == NULL) {
+        fail_msg("\"%s\" lacks \"%s\"", message, sentence);
+    }
+    vplRenderer_Destroy(r);
+}
+
+TEST(AStateOfAnotherRenderIsRefused, 1)
+{
+    vplScene *scene, *other;
+    vplRenderOptions o = passCase(context, 2, &scene), path = passCase(context, 0, &other), changed = o;
+    vplRenderer* r;
+    bool done;
+    assertRefused(scene, &o, VPL_FILE_ERROR, "cannot open");
+    savePasses(scene, &o, 1);
+    changed.seed = 7;
+    assertRefused(scene, &changed, VPL_INVALID_ARGUMENT,
+                  "saved with --seed 0, but this render has 7; only passes");
+    changed = o;
+    changed.lights.minDistance = 0.25f; // and not auto
+    assertRefused(scene, &changed, VPL_INVALID_ARGUMENT,
+                  "saved with --min-distance auto, but this render has 0.25");
+    assertRefused(scene, &path, VPL_INVALID_ARGUMENT, "saved with --method keller, but this render has path");
+    changed = o;
+    changed.stop.passes = 0;
+    assertRefused(scene, &changed, VPL_INVALID_ARGUMENT, "say when it ends");
+    assert_int_equal(vplRenderer_Create(scene, &changed, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "has no state to save"));
+    vplRenderer_Destroy(r);
+    addMaterial(scene, (vplRgb){0.25f, 0.5f, 0.75f}, 0);
+    assertRefused(scene, &o, VPL_INVALID_ARGUMENT, "saved with another scene");
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Save(r, stateFile()), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "before its first step"));
+    assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    assert_int_equal(vplRenderer_Load(r, stateFile(), &done), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "before its first step only"));
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+    vplScene_Destroy(other);
+    unlink(stateFile());
+}
+
+// ---- damaged files
+
+static void writeState(const uint8_t* bytes, size_t size)
+{
+    FILE* file = fopen(stateFile(), "wb");
+    assert_non_null(file);
+    assert_true(fwrite(bytes, 1, size, file) == size);
+    fclose(file);
+}
+
+// Every length from 0, and a bit flipped in every byte; with a right checksum, too, so that checks behind it
+// are seen.
+TEST_ALONE(DamagedStatesAreRefused, SLOW)
+{
+    for (int i = 0; i < 4; i += 2) {
+        vplContext* context = openTestContext(1);
+        vplScene* scene;
+        vplRenderOptions o = passCase(context, i, &scene);
+        char* bytes;
+        size_t size;
+        vplRenderer* r;
+        bool done;
+        o.output.width = 3;
+        o.output.height = 2;
+        savePasses(scene, &o, 1);
+        assert_int_equal(vplReadFile(context, stateFile(), &bytes, &size), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        for (size_t k = 0; k < 2 * size + 32; k++) {
+            const bool cut = k < size;
+            const size_t at = cut ? k : k - size < 8 ? k - size : (k - size) % size;
+            uint8_t* copy = malloc(size + 1);
+            memcpy(copy, bytes, size);
+            copy[at] ^= cut ? 0 : (uint8_t)(1 << k % 8);
+            writeState(copy, cut ? at : size);
+            takeMessage();
+            assert_int_equal(vplRenderer_Load(r, stateFile(), &done), VPL_PARSE_ERROR);
+            assert_true(takeMessage()[0] != 0);
+            free(copy);
+        }
+        // With its checksum made right, a file may be right; never more than a sentence may come of it.
+        for (size_t at = 8; at < size - 8; at++) {
+            vplRenderer* fresh;
+            uint8_t* copy = malloc(size);
+            memcpy(copy, bytes, size);
+            copy[at] ^= (uint8_t)(0x80 >> at % 8);
+            const uint64_t sum = vplState_Checksum(copy, size - 8);
+            for (int b = 0; b < 8; b++) {
+                copy[size - 8 + (size_t)b] = (uint8_t)(sum >> 8 * b);
+            }
+            writeState(copy, size);
+            takeMessage();
+            assert_int_equal(vplRenderer_Create(scene, &o, &fresh), VPL_SUCCESS);
+            const vplResult result = vplRenderer_Load(fresh, stateFile(), &done);
+            assert_true((result == VPL_SUCCESS) == (takeMessage()[0] == 0));
+            if (result == VPL_SUCCESS) {
+                look(fresh, NULL);
+            }
+            vplRenderer_Destroy(fresh);
+            free(copy);
+        }
+        vplRenderer_Destroy(r);
+        vplFree(context, bytes);
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+    unlink(stateFile());
+}
+
+// ---- the hash of a scene
+
+TEST(AScenesHashIsOfItsContent, 1)
+{
+    vplScene *a = loadScene(context, "room.json"), *b = loadScene(context, "room.json");
+    assert_true(vplScene_GetHash(a) == vplScene_GetHash(b));
+    print_message("%llx\n", (unsigned long long)vplScene_GetHash(a));
+    addEmitter(b, VPL_EMITTER_POINT, (vplVec3){0, 1, 0}, (vplVec3){0, -1, 0}, 3);
+    assert_true(vplScene_GetHash(a) != vplScene_GetHash(b));
+    const vplCameraKey key = vplMakeCameraKey(vplScene_GetCamera(a, 0), 3);
+    const uint64_t still = vplScene_GetHash(a);
+    assert_int_equal(vplScene_SetCameraPath(a, 0, &key, 1), VPL_SUCCESS);
+    assert_true(vplScene_GetHash(a) != still);
+    vplScene_Destroy(a);
+    vplScene_Destroy(b);
+}
