@@ -127,7 +127,7 @@ static void choosePasses(vplPlan* p)
     const bool particles = (VPL_USE_PARTICLES & 1 << o->method) != 0;
     if (p->progressive && ends && particles && o->stop.growFrom == 0 && o->stop.passes == 0 &&
         o->particles.count >= 32) {
-        o->stop.growFrom = o->particles.count / 32;
+        o->stop.growFrom = o->particles.count / 8;
         vplDecide(p, "grow-from", "a coarse picture comes first");
     }
 }

@@ -201,12 +201,15 @@ static vplResult addDirect(vplRenderer* r)
 // cancelled adds nothing.
 static vplResult addPass(vplRenderer* r)
 {
+    const double start = vplClockMs();
+    r->baseMs = 0;
     if (r->done == 0) {
         r->runner.run.parts = VPL_PART_DIRECT;
         TRY(vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_PICTURE));
         vplImage_Destroy(r->base);
         r->base = vplRunner_Take(&r->runner, VPL_STAGE_PICTURE);
         TRY(vplRenderer_OpenSums(r));
+        r->baseMs = vplClockMs() - start;
         r->runner.run.parts = VPL_PART_INDIRECT;
         TRY(vplRunner_RunStage(&r->runner, VPL_STAGE_PICTURE));
     } else {
@@ -265,8 +268,8 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
     }
     TRY(result);
     r->stale = false;
-    r->lastMs = vplClockMs() - begin;
-    r->passMs += r->lastMs;
+    r->passMs += vplClockMs() - begin;
+    r->lastMs = vplClockMs() - begin - r->baseMs;
     r->done++;
     const vplResult reviewed = vplReview(r, doneOut);
     if (reviewed == VPL_CANCELLED && r->late) {

@@ -46,7 +46,7 @@ struct vplRenderer {
     double planStart;       // ms, of the plan under way
     double planRays;        // of all plans before it
     double passMs;          // of all its passes
-    double lastMs;          // of its last pass
+    double baseMs, lastMs;  // of its last pass: time of direct light, and the rest
     double deadline;        // ms; infinite: none
     bool late;              // the deadline has ended a step
     vplKeptPicture kept;

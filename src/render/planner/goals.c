@@ -43,13 +43,19 @@ static double leftOf(const vplRenderer* r)
 static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 {
     *o = r->asked;
-    o->stop.budgetMs = o->stop.maxError = 0;
+    o->stop.budgetMs = o->method == VPL_METHOD_RADIOSITY ? o->stop.budgetMs : 0; // which it may not be able to hold
+    o->stop.maxError = 0;
     o->stop.passes = 0;
     o->output.antialias = share < 0.2 ? 1 : o->output.antialias;
     o->output.supersample = 1;
     o->shadow.mapSize = o->shadow.mapSize < 256 ? o->shadow.mapSize : 256;
     o->shadow.rsmSize = o->shadow.rsmSize > 0 && o->shadow.rsmSize < 256 ? o->shadow.rsmSize : 256;
-    o->particles.count = o->particles.count >= 0 && o->particles.count < 30 ? o->particles.count : 30;
+    o->particles.count = o->particles.count >= 0 && o->particles.count < 250 ? o->particles.count : 250;
+    if (o->method == VPL_METHOD_AUTO || o->method == VPL_METHOD_KELLER) { // light that is missing is better than none
+        o->pipeline.kind = o->pipeline.kind == VPL_ACCUMULATE_USUAL ? VPL_ACCUMULATE_INTERLEAVED : o->pipeline.kind;
+        o->pipeline.interleave = o->pipeline.interleave < 0 ? 8 : o->pipeline.interleave;
+        o->lights.compensation = VPL_COMPENSATION_NONE;
+    }
     o->ssvp.firstBounce = (int)ceil(share * o->ssvp.firstBounce);
     o->ssvp.secondBounce = (int)ceil(share * o->ssvp.secondBounce);
     o->ssvp.clusters = (int)ceil(share * o->ssvp.clusters);
@@ -113,8 +119,8 @@ int vplNextPaths(const vplRenderer* r)
     if (r->plan->options.method != VPL_METHOD_PATH) {
         return 0;
     }
-    if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // twice as many in each pass, from two on
-        paths = r->paths < 2 ? 2 : r->paths < VPL_PATHS_PER_PASS ? r->paths : VPL_PATHS_PER_PASS;
+    if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // twice as many in each pass
+        paths = r->paths < 1 ? isfinite(r->deadline) ? 1 : 2 : r->paths < VPL_PATHS_PER_PASS ? r->paths : VPL_PATHS_PER_PASS;
     }
     if (isfinite(r->deadline) && r->paths > 0) {
         const double each = r->passMs / r->paths;
@@ -138,9 +144,10 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
         sum += (double)picture->pixels[k];
     }
     const double mean = sum / (double)values, noise = fmax(0, r->error.noise) * mean;
-    const double square = fmax(r->judged.square, noise * noise);
+    const double square = fmax(r->judged.square, noise * noise), bias = square - noise * noise;
+    const double doubt = bias > 0 ? r->judged.spread / bias : 0; // a bias that may be chance counts for less
     if (mean > 0) {
-        r->error.total = sqrt(square) / mean;
+        r->error.total = sqrt(noise * noise + bias * fmax(0, 1 - doubt * doubt)) / mean;
         r->error.bound = sqrt(square + BOUND * r->judged.spread) / mean;
     } else {
         r->error.total = r->error.bound = r->judged.mean > 0 ? INFINITY : 0;
@@ -232,7 +239,7 @@ static bool isTooLate(const vplRenderer* r)
 {
     const double grown = vplShareOfPass(r->plan, r->done) / vplShareOfPass(r->plan, r->done - 1);
     const double next =
-        r->plan->options.method == VPL_METHOD_PATH ? r->passMs / r->paths : r->lastMs * fmin(grown, 2);
+        r->plan->options.method == VPL_METHOD_PATH ? r->passMs / r->paths : r->lastMs * (0.5 + 0.5 * grown); // half of the time does not grow
     return isfinite(r->deadline) && leftOf(r) + 0.05 * r->asked.stop.budgetMs < next;
 }
 
