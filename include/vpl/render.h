@@ -124,6 +124,12 @@ vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
 // Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
 vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRenderStats* statsOut);
 
+// Gets an estimate of where the picture's error lies: an image with one value per block of 8x8 pixels, whose red, green
+// and blue are the block's rmse, its noise and its bias, in W/(m^2 sr). Noise is measured (0 where there is one pass);
+// the bias of the whole picture, where it is known, is shared out by the contrast of neighbouring pixels. Destroy it with
+// vplImage_Destroy.
+vplResult vplRenderer_GetErrorMap(vplRenderer* renderer, vplImage** mapOut);
+
 // The plan of the picture so far, which the renderer owns. Budgets and errors may replace it in the next step.
 const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer);
 

@@ -61,6 +61,7 @@ struct Arguments {
     vplContextDef context;
     const char* output;              // -o
     const char* stats;               // --stats
+    const char* errorMap;            // --error-map
     const char *planIn, *planOut;    // --plan, --plan-out
     uint64_t planScene;              // hash of the scene that the plan was made for
     const char *checkpoint, *resume; // --checkpoint, --resume

@@ -136,6 +136,11 @@ static void sayMore(const vplRenderStats* stats)
     }
     complain("%d virtual lights, %lld draw calls, hash %016llx", stats->virtualLights,
              (long long)stats->drawCalls, (unsigned long long)stats->imageHash);
+    if (stats->relativeErrorEstimate >= 0 && stats->relativeBias >= 0) {
+        complain("error about %.3g %%: noise %.3g %%, and edges, blur and light left out %.3g %%",
+                 100 * stats->relativeErrorEstimate, 100 * fmax(0, stats->relativeNoise),
+                 100 * stats->relativeBias);
+    }
     if (stats->clampLoss >= 0) {
         complain("the clamp at %g m takes about %.3g %% of the virtual lights' light away",
                  (double)stats->minDistance, 100 * stats->clampLoss);
@@ -174,6 +179,9 @@ static int writeFrame(const Arguments* a, const vplScene* scene, const Picture* 
 {
     int code = picture->layers != NULL ? writeLayers(picture->layers, files->output)
                                        : writePicture(a, picture->image, files->output, display);
+    if (code == EXIT_DONE && picture->errorMap != NULL) {
+        code = exitCode(vplImage_Write(picture->errorMap, a->errorMap, NULL), false);
+    }
     if (code == EXIT_DONE && a->stats != NULL) {
         code = writeStats(vplScene_GetContext(scene), files->stats, &picture->stats);
     }
@@ -250,6 +258,7 @@ static bool checkFiles(const Arguments* a)
         const char *path, *option, *what;
     } files[] = {{a->output, "-o", "the picture"},
                  {a->stats, "--stats", "the statistics"},
+                 {a->errorMap, "--error-map", "the map of errors"},
                  {a->planOut, "--plan-out", "the plan"},
                  {a->checkpoint, "--checkpoint", "the state"},
                  {a->resume, "--resume", "the state"}};
@@ -288,6 +297,11 @@ int runRender(const Arguments* a)
         complain("%s: --aov writes layers into .exr files only", a->output);
         return EXIT_USAGE;
     }
+    if (a->errorMap != NULL && !vplImage_CanWrite(a->errorMap)) {
+        complain("%s: unknown picture format; the name must end in %s", a->errorMap,
+                 vplImage_GetExtensions());
+        return EXIT_USAGE;
+    }
     if (!checkFiles(a)) {
         return EXIT_USAGE;
     }
@@ -298,6 +312,7 @@ int runRender(const Arguments* a)
     }
     if (!named || !checkOutput(files.output) || (a->stats != NULL && !checkOutput(files.stats)) ||
         (a->planOut != NULL && !checkOutput(a->planOut)) ||
+        (a->errorMap != NULL && !checkOutput(a->errorMap)) ||
         (a->checkpoint != NULL && !checkOutput(a->checkpoint))) {
         return EXIT_COULD_NOT;
     }

@@ -223,6 +223,11 @@ static const Option OWN[] = {
      "that were "
      "done is written, and the exit code is 1",
      NULL},
+    {"error-map", "FILE", NULL, RENDER, readText, AT(errorMap), 0, 0,
+     "write where the error of the picture lies, as a picture with one pixel for each block of 8x8: its rmse "
+     "is red, its "
+     "noise green, its bias blue, W/(m^2 sr); for renders of several passes and path tracing",
+     NULL},
     {"stats", "FILE", NULL, RENDER | BAKE, readText, AT(stats), 0, 0, "write statistics as JSON", NULL},
     {"explain", NULL, NULL, RENDER | BAKE | LIGHTS, readFlag, AT(explain), 0, 0,
      "print the plan on standard error first: what will be done, and why", NULL},

@@ -51,6 +51,15 @@ static void addSome(json_t* root, const vplRenderStats* s)
         json_object_set_new(root, "error_estimate", json_real(s->errorEstimate));
         json_object_set_new(root, "relative_error_estimate", json_real(s->relativeErrorEstimate));
     }
+    if (s->relativeNoise >= 0) {
+        json_object_set_new(root, "relative_noise", json_real(s->relativeNoise));
+    }
+    if (s->relativeBias >= 0) {
+        json_object_set_new(root, "relative_bias", json_real(s->relativeBias));
+    }
+    if (s->truthPaths > 0) {
+        json_object_set_new(root, "truth_paths_per_pixel", json_integer(s->truthPaths));
+    }
 }
 
 int writeStats(vplContext* context, const char* path, const vplRenderStats* s)

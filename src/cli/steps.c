@@ -76,6 +76,9 @@ static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, int step
         picture->passesAsked = countPasses(vplRenderer_GetPlan(r));
         result = VPL_SUCCESS;
     }
+    if (result == VPL_SUCCESS && a->errorMap != NULL) {
+        result = vplRenderer_GetErrorMap(r, &picture->errorMap);
+    }
     result = result == VPL_SUCCESS ? getPicture(r, layers, picture) : result;
     return result == VPL_SUCCESS && a->planOut != NULL ? vplRenderer_WritePlan(r, a->planOut) : result;
 }
@@ -106,6 +109,7 @@ void freePicture(Picture* picture)
 {
     vplImage_Destroy(picture->image);
     vplLayers_Destroy(picture->layers);
+    vplImage_Destroy(picture->errorMap);
 }
 
 bool isPartial(const Picture* picture)

@@ -7,12 +7,13 @@
 
 // A finished or interrupted render.
 typedef struct Picture {
-    vplImage* image;   // or
-    vplLayers* layers; // where --aov asks for them
+    vplImage* image;    // or
+    vplLayers* layers;  // where --aov asks for them
+    vplImage* errorMap; // where --error-map asks for it
     vplRenderStats stats;
     // Of an interrupted render; 0 where no count was asked for; negative: it was not interrupted.
     int passesAsked;
-    bool saved;      // the state was saved at the end
+    bool saved;   // the state was saved at the end
     bool unsaved; // some state could not be saved
 } Picture;
 

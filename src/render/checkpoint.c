@@ -372,7 +372,8 @@ static vplResult replan(Loading* l)
         const bool valued = line[named] == '=';
         line[named] = 0;
         const vplOption* option = vplFindOption(line);
-        if (option != NULL && valued && option->users != VPL_USE_ALL && strcmp(line, "spp") != 0 && !vplIsStop(option)) {
+        if (option != NULL && valued && option->users != VPL_USE_ALL && strcmp(line, "spp") != 0 &&
+            !vplIsStop(option)) {
             vplRenderOptions_Set(&o, line, line + named + 1);
         } else if (strcmp(line, "method") == 0 && valued) {
             vplRenderOptions_Set(&o, line, line + named + 1);

@@ -78,7 +78,8 @@ static void refuseTime(const vplRunner* r, vplPlan* p)
     const double sides = g->triangleCount, ms = sides <= VPL_ALL_PAIRS ? 1e-4 * sides * sides : sides;
     if (p->showsPatches && p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {
         snprintf(p->problem, sizeof p->problem,
-                 "--budget %g: radiosity makes patches of all %d triangles, which takes about %.2g s at least; use "
+                 "--budget %g: radiosity makes patches of all %d triangles, which takes about %.2g s at "
+                 "least; use "
                  "another method or more time",
                  p->options.stop.budgetMs, g->triangleCount, 1e-3 * ms);
     }
@@ -176,6 +177,7 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
     if (result == VPL_SUCCESS) {
         p->arena = arena;
         p->options = *options;
+        vplResolveQuality(&p->options);
         r->run.plan = p;
         r->plans = true;
         result = decideAll(r, p);

@@ -10,6 +10,9 @@
 vplResult vplMakePlan(vplRunner* runner, const vplRenderOptions* options, const vplMachine* machine,
                       vplPlan** planOut);
 
+// Replaces the words of --quality by an error and a time.
+void vplResolveQuality(vplRenderOptions* options);
+
 // Adds a decision to the plan: the value of the option as it is now, and why.
 __attribute__((format(printf, 3, 4))) void vplDecide(vplPlan* plan, const char* option, const char* format,
                                                      ...);

@@ -85,6 +85,25 @@ static void putDecisions(Text* t, const char* title, const vplDecision* decision
     }
 }
 
+static void putLook(Text* t, const vplPlan* p)
+{
+    const vplLook* l = &p->look;
+    if (l->points == 0) {
+        return;
+    }
+    put(t, "\na look at the scene");
+    putRow(t, "picture");
+    put(t,
+        "%.2g %% of it is background; above its surfaces %.2g %% of the directions are open, in %.2g %% "
+        "something is near",
+        100 * l->background, 100 * l->open, 100 * l->nearShare);
+    putRow(t, "light");
+    put(t,
+        "of %d virtual lights %.2g %% reach the picture, worth %.2g of as many equal ones; %.2g %% of the "
+        "particles leave",
+        l->lights, 100 * l->reaching, l->worth, 100 * l->lightLeaving);
+}
+
 static void putStages(Text* t, const vplPlan* p)
 {
     put(t, "\nstages, in this order");
@@ -123,6 +142,7 @@ size_t vplPlan_Describe(const vplPlan* p, char* text, size_t size)
         put(&t, ": %s", layers);
     }
     putSize(&t, "most memory", "about ", p->peakBytes);
+    putLook(&t, p);
     putDecisions(&t, "decisions", p->decisions, p->decisionCount);
     putStages(&t, p);
     putDecisions(&t, "left out", p->leftOut, p->leftOutCount);

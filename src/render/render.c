@@ -11,7 +11,8 @@
 // Takes the last picture. Where no pass follows it is given away without a copy.
 static vplResult takeImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
 {
-    if (r->plan == NULL || r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH || r->kept.image != NULL) {
+    if (r->plan == NULL || r->plan->progressive || r->plan->options.method == VPL_METHOD_PATH ||
+        r->kept.image != NULL) {
         return vplRenderer_GetImage(r, imageOut, statsOut);
     }
     if (r->base == NULL) {

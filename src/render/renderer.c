@@ -382,8 +382,9 @@ void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderSta
 vplShown vplRenderer_Shown(const vplRenderer* r)
 {
     const vplKeptPicture* kept = &r->kept;
-    return kept->image != NULL && (r->showsKept || r->done == 0) ? (vplShown){kept->plan, kept->passes, kept->paths}
-                                                                 : (vplShown){r->plan, r->done, r->paths};
+    return kept->image != NULL && (r->showsKept || r->done == 0)
+               ? (vplShown){kept->plan, kept->passes, kept->paths}
+               : (vplShown){r->plan, r->done, r->paths};
 }
 
 const vplPlan* vplRenderer_GetPlan(const vplRenderer* r)

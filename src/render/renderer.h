@@ -50,7 +50,8 @@ struct vplRenderer {
     double deadline;        // ms; infinite: none
     bool late;              // the deadline has ended a step
     vplKeptPicture kept;
-    bool showsKept; // the kept picture was given to the caller, because it is better than that of the plan under way
+    bool
+        showsKept; // the kept picture was given to the caller, because it is better than that of the plan under way
     vplTruth* truth;           // NULL: not asked yet
     vplJudgement judged;       // of the last picture that the truth was asked about
     vplErrorParts error;       // of the picture of all passes so far
@@ -77,9 +78,6 @@ typedef struct vplShown {
 } vplShown;
 
 vplShown vplRenderer_Shown(const vplRenderer* renderer);
-
-// Replaces the words of --quality by an error and a time.
-void vplResolveQuality(vplRenderOptions* options);
 
 // Compares the picture with the truth, which must be there, and fills in the renderer's error.
 void vplJudgePicture(vplRenderer* renderer, const vplImage* picture);

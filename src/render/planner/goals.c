@@ -8,9 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum {
-    MAX_TRUTH_PATHS = 2048
-};
+enum { MAX_TRUTH_PATHS = 2048 };
 
 // ---- what was asked for
 
@@ -43,7 +41,8 @@ static double leftOf(const vplRenderer* r)
 static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 {
     *o = r->asked;
-    o->stop.budgetMs = o->method == VPL_METHOD_RADIOSITY ? o->stop.budgetMs : 0; // which it may not be able to hold
+    o->stop.budgetMs =
+        o->method == VPL_METHOD_RADIOSITY ? o->stop.budgetMs : 0; // which it may not be able to hold
     o->stop.maxError = 0;
     o->stop.passes = 0;
     o->output.antialias = share < 0.2 ? 1 : o->output.antialias;
@@ -51,8 +50,10 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->shadow.mapSize = o->shadow.mapSize < 256 ? o->shadow.mapSize : 256;
     o->shadow.rsmSize = o->shadow.rsmSize > 0 && o->shadow.rsmSize < 256 ? o->shadow.rsmSize : 256;
     o->particles.count = o->particles.count >= 0 && o->particles.count < 250 ? o->particles.count : 250;
-    if (o->method == VPL_METHOD_AUTO || o->method == VPL_METHOD_KELLER) { // light that is missing is better than none
-        o->pipeline.kind = o->pipeline.kind == VPL_ACCUMULATE_USUAL ? VPL_ACCUMULATE_INTERLEAVED : o->pipeline.kind;
+    if (o->method == VPL_METHOD_AUTO ||
+        o->method == VPL_METHOD_KELLER) { // light that is missing is better than none
+        o->pipeline.kind =
+            o->pipeline.kind == VPL_ACCUMULATE_USUAL ? VPL_ACCUMULATE_INTERLEAVED : o->pipeline.kind;
         o->pipeline.interleave = o->pipeline.interleave < 0 ? 8 : o->pipeline.interleave;
         o->lights.compensation = VPL_COMPENSATION_NONE;
     }
@@ -120,7 +121,9 @@ int vplNextPaths(const vplRenderer* r)
         return 0;
     }
     if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // twice as many in each pass
-        paths = r->paths < 1 ? isfinite(r->deadline) ? 1 : 2 : r->paths < VPL_PATHS_PER_PASS ? r->paths : VPL_PATHS_PER_PASS;
+        paths = r->paths < 1                    ? isfinite(r->deadline) ? 1 : 2
+                : r->paths < VPL_PATHS_PER_PASS ? r->paths
+                                                : VPL_PATHS_PER_PASS;
     }
     if (isfinite(r->deadline) && r->paths > 0) {
         const double each = r->passMs / r->paths;
@@ -238,8 +241,9 @@ bool vplIsComplete(const vplRenderer* r)
 static bool isTooLate(const vplRenderer* r)
 {
     const double grown = vplShareOfPass(r->plan, r->done) / vplShareOfPass(r->plan, r->done - 1);
-    const double next =
-        r->plan->options.method == VPL_METHOD_PATH ? r->passMs / r->paths : r->lastMs * (0.5 + 0.5 * grown); // half of the time does not grow
+    const double next = r->plan->options.method == VPL_METHOD_PATH
+                            ? r->passMs / r->paths
+                            : r->lastMs * (0.5 + 0.5 * grown); // half of the time does not grow
     return isfinite(r->deadline) && leftOf(r) + 0.05 * r->asked.stop.budgetMs < next;
 }
 

@@ -67,7 +67,7 @@ static vplResult lookAround(const vplGeometry* g, const vplPlan* p, vplArena* sc
 
 // ---- pilot lights
 
-// With contributions c_i of n lights, one that is drawn in proportion to them is worth n (sum c)^2 / sum c^2 ... of those.
+// Lights of contributions c are worth (sum c)^2 / sum c^2 lights of equal contribution.
 static vplResult weigh(const vplGeometry* g, const vplPlan* p, const vplLightSet* set, vplArena* scratch,
                        vplLook* look)
 {

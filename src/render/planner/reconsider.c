@@ -55,9 +55,18 @@ static double toTrace(const State* s, double square)
 
 // ---- the next plan
 
+// Tells the log why the plan changes.
+static void tell(const vplRenderer* r, const char* next)
+{
+    vplLog(r->runner.run.context, VPL_LOG_INFO,
+           "after %d passes the noise is %.3g %% and the error about %.3g %%: goes on with %s", r->done,
+           100 * fmax(0, r->error.noise), 100 * r->error.total, next);
+}
+
 static vplResult trace(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
+    tell(r, "path tracing");
     o.method = VPL_METHOD_PATH;
     *doneOut = false;
     TRY(vplRenderer_Keep(r, r->error.total));
@@ -68,6 +77,7 @@ static vplResult refine(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
     const int finer = r->plan->options.pipeline.interleave / 2;
+    tell(r, "fewer pixels that share lights");
     o.method = r->plan->options.method;
     o.lights.shadows = r->plan->options.lights.shadows;
     o.particles = r->plan->options.particles;
@@ -84,6 +94,7 @@ static vplResult refine(vplRenderer* r, bool* doneOut)
 static vplResult addLights(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
+    tell(r, "reflected light");
     o.method = VPL_METHOD_KELLER;
     o.lights.shadows = r->plan->options.lights.shadows;
     o.particles.count = 1000;
