@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// Tests of --method auto, --max-error, --budget and --quality: what is chosen, what is kept, and what is said of errors.
+#include "scenes.h"
+
+static vplRenderOptions smallOptions(void)
+{
+    vplRenderOptions o = vplDefaultRenderOptions();
+    o.output.width = 64;
+    o.output.height = 36;
+    return o;
+}
+
+// The relative error of a picture against two path-traced ones, whose noise cancels.
+static double errorOf(const vplScene* scene, const vplRenderOptions* like, const vplImage* image)
+{
+    vplImage* halves[2];
+    double square = 0, sum = 0;
+    const size_t values = 3 * (size_t)image->width * (size_t)image->height;
+    for (int i = 0; i < 2; i++) {
+        vplRenderOptions o = vplDefaultRenderOptions();
+        o.output.width = like->output.width;
+        o.output.height = like->output.height;
+        o.method = VPL_METHOD_PATH;
+        o.path.samples = 256;
+        o.seed = 77 + (uint64_t)i;
+        halves[i] = renderScene(scene, &o, NULL);
+    }
+    for (size_t k = 0; k < values; k++) {
+        const double x = (double)image->pixels[k], a = (double)halves[0]->pixels[k], b = (double)halves[1]->pixels[k];
+        square += (x - a) * (x - b);
+        sum += 0.5 * (a + b);
+    }
+    vplImage_Destroy(halves[0]);
+    vplImage_Destroy(halves[1]);
+    return sqrt(fmax(0, square) * (double)values) / sum;
+}
+
+TEST(TheErrorThatIsAskedForIsKept, 2)
+{
+    static const char* const SCENES[] = {"room.json", "room-area.json", "cornell-area.json"};
+    for (int i = 0; i < 6; i++) {
+        vplScene* scene = loadScene(context, SCENES[i / 2]);
+        vplRenderOptions o = smallOptions();
+        o.stop.maxError = i % 2 ? 0.1 : 0.3;
+        vplRenderStats stats;
+        vplImage* image = renderScene(scene, &o, &stats);
+        assert_true(errorOf(scene, &o, image) <= o.stop.maxError);
+        assert_true(stats.relativeErrorEstimate > 0 && stats.relativeErrorEstimate <= o.stop.maxError);
+        assert_true(stats.relativeNoise > 0 && stats.relativeBias >= 0);
+        const double parts = stats.relativeNoise * stats.relativeNoise + stats.relativeBias * stats.relativeBias;
+        assert_true(fabs(sqrt(parts) - stats.relativeErrorEstimate) <= 1e-6);
+        vplImage_Destroy(image);
+        vplScene_Destroy(scene);
+    }
+}
+
+TEST(ErrorsGiveTheSameBitsWithAnyNumberOfThreads, 1)
+{
+    uint64_t hashes[3];
+    for (int i = 0; i < 3; i++) {
+        vplContext* other = openTestContext(1 + i);
+        vplScene* scene = loadScene(other, "room.json");
+        vplRenderOptions o = smallOptions();
+        vplRenderStats stats;
+        o.stop.maxError = 0.06;
+        vplImage_Destroy(renderScene(scene, &o, &stats));
+        hashes[i] = stats.imageHash;
+        vplScene_Destroy(scene);
+        closeTestContext(other);
+    }
+    assert_true(hashes[0] == hashes[1] && hashes[0] == hashes[2]);
+    assert_non_null(context);
+}
+
+TEST(EveryMethodHasAPictureInTime, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    for (int method = 0; method <= VPL_METHOD_AUTO; method++) {
+        vplRenderOptions o = smallOptions();
+        vplRenderStats stats;
+        o.method = (vplMethod)method;
+        o.stop.budgetMs = 100;
+        vplImage* image = renderScene(scene, &o, &stats);
+        assert_true(stats.passes >= 1 && stats.totalMs < 1000); // other programs may run, too
+        double sum = 0;
+        for (int k = 0; k < 3 * image->width * image->height; k++) {
+            sum += (double)image->pixels[k];
+        }
+        assert_true(sum > 0);
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+}
+
+// A pass that the deadline ends leaves the picture of those before it; replaying their number gives the same bits.
+TEST(AnInterruptedPassIsNoPartOfThePicture, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    vplRenderer* r;
+    vplImage* image = NULL;
+    vplRenderStats stats, again;
+    o.method = VPL_METHOD_KELLER;
+    o.stop.budgetMs = 120;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    for (bool done = false; !done;) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+    vplRenderOptions replay = vplRenderer_GetPlan(r)->options;
+    replay.lights.minDistance = -1; // each pass has its own
+    replay.lights.shadows = VPL_LIGHT_SHADOWS_USUAL;
+    replay.stop.budgetMs = 0;
+    replay.stop.passes = stats.passes;
+    vplImage_Destroy(image);
+    vplImage_Destroy(renderScene(scene, &replay, &again));
+    assert_true(again.imageHash == stats.imageHash);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}
+
+TEST(PassesThatGrowAreWeightedByTheirParticles, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    vplRenderStats stats;
+    double sums[2] = {0, 0};
+    o.method = VPL_METHOD_KELLER;
+    o.particles.count = 400;
+    o.pipeline.kind = VPL_ACCUMULATE_DEFERRED;
+    o.stop.passes = 6;
+    for (int i = 0; i < 2; i++) { // 50, 100, 200, 400, 400, 400 particles, or six times 400
+        o.stop.growFrom = i == 0 ? 50 : 0;
+        vplImage* image = renderScene(scene, &o, &stats);
+        assert_int_equal(stats.particlesPerStep[0], i == 0 ? 1550 : 2400);
+        for (int k = 0; k < 3 * image->width * image->height; k++) {
+            sums[i] += (double)image->pixels[k];
+        }
+        vplImage_Destroy(image);
+    }
+    assert_true(fabs(sums[0] / sums[1] - 1) < 0.02);
+    vplScene_Destroy(scene);
+}
+
+TEST(OptionsOfOneMethodChooseIt, 1)
+{
+    static const struct {
+        const char *name, *value;
+        vplMethod method;
+    } ROWS[] = {{"spp", "4", VPL_METHOD_PATH},
+                {"clusters", "4", VPL_METHOD_SSVP},
+                {"patches", "100", VPL_METHOD_RADIOSITY},
+                {"particles", "50", VPL_METHOD_KELLER},
+                {"show", "rsm", VPL_METHOD_SSVP},
+                {"show", "patches", VPL_METHOD_RADIOSITY},
+                {"max-bounces", "3", VPL_METHOD_PATH},
+                {"lighting", "documented", VPL_METHOD_KELLER}};
+    vplScene* scene = loadScene(context, "room.json");
+    for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+        vplRenderOptions o = smallOptions();
+        vplPlan* plan;
+        assert_int_equal(vplRenderOptions_Set(&o, ROWS[i].name, ROWS[i].value), VPL_SUCCESS);
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        assert_int_equal(plan->options.method, ROWS[i].method);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
+TEST(WordsOfQualityStandForErrorsAndTimes, 1)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    vplPlan* plan;
+    o.stop.quality = VPL_QUALITY_DRAFT;
+    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+    assert_true(plan->options.stop.maxError == 0.2 && plan->options.stop.budgetMs == 1000);
+    vplPlan_Destroy(plan);
+    o.stop.maxError = 0.1; // beside it
+    assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+    assert_true(plan->options.stop.maxError == 0.1 && plan->options.stop.budgetMs == 1000);
+    vplPlan_Destroy(plan);
+    vplScene_Destroy(scene);
+}
+
+// The mean square of the blocks' errors is that of the picture.
+TEST(BlocksShareTheError, 2)
+{
+    static const vplMethod METHODS[] = {VPL_METHOD_AUTO, VPL_METHOD_PATH};
+    vplScene* scene = loadScene(context, "room.json");
+    for (int i = 0; i < 2; i++) {
+        vplRenderOptions o = smallOptions();
+        vplRenderer* r;
+        vplImage *map, *image;
+        vplRenderStats stats;
+        double square = 0;
+        o.method = METHODS[i];
+        o.output.height = 40; // whole blocks
+        o.stop.maxError = 0.1;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        for (bool done = false; !done;) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        assert_int_equal(vplRenderer_GetErrorMap(r, &map), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+        assert_true(map->width == 8 && map->height == 5);
+        for (int k = 0; k < 40; k++) {
+            square += (double)map->pixels[3 * k] * (double)map->pixels[3 * k] / 40;
+        }
+        assert_true(fabs(sqrt(square) / stats.errorEstimate - 1) < 0.01);
+        vplImage_Destroy(map);
+        vplImage_Destroy(image);
+        vplRenderer_Destroy(r);
+    }
+    vplScene_Destroy(scene);
+}
