@@ -12,6 +12,7 @@ struct vplContext {
     // Bytes held now, and the most held at once. Not atomic: parallel sections do not allocate.
     size_t bytes, peakBytes;
     uint64_t stamps; // see vplNextStamp
+    struct vplSpeeds* speeds; // see vplContext_SetSpeeds; NULL: as usual
 };
 
 // Returns a different number each time. Identifies an object, or one state of it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A plan as text.
 #include "render/plan.h"
+#include "render/stages/make.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -71,6 +72,17 @@ static void putCounts(Text* t, const vplPlan* p)
     putSize(t, "lights", "", p->lightBytes);
 }
 
+static void putTime(Text* t, const vplPlan* p)
+{
+    const vplStopOptions* o = &p->options.stop;
+    const bool seconds = p->predictedMs >= 1000;
+    const bool open = p->options.method == VPL_METHOD_PATH ? vplPathsAreOpen(p) : p->progressive && o->passes <= 0;
+    putRow(t, "time");
+    put(t, "about %.2g %s%s on %s", seconds ? p->predictedMs / 1000 : p->predictedMs, seconds ? "s" : "ms",
+        !open ? "" : p->options.method == VPL_METHOD_PATH ? " for 32 paths per pixel" : " for the first pass",
+        p->usualSpeeds ? "the machine of our benchmarks" : "this machine");
+}
+
 static void putDecisions(Text* t, const char* title, const vplDecision* decisions, int count)
 {
     if (count > 0) {
@@ -123,6 +135,7 @@ size_t vplPlan_Describe(const vplPlan* p, char* text, size_t size)
         put(&t, ": %s", layers);
     }
     putSize(&t, "most memory", "about ", p->peakBytes);
+    putTime(&t, p);
     putDecisions(&t, "decisions", p->decisions, p->decisionCount);
     putStages(&t, p);
     putDecisions(&t, "left out", p->leftOut, p->leftOutCount);
