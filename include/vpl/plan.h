@@ -106,8 +106,8 @@ typedef struct vplPlan {
     // picture, and a further pass. Where only a time or an error ends the passes, predictedMs is that of the first, and
     // of 32 paths per pixel. Half of the predictions are within a fifth or so of the truth (src/render/README.md).
     double predictedMs, firstMs, passMs;
-    bool usualSpeeds; // they are those of vplUsualSpeeds, and not of this machine
-    vplLook look;     // of --method auto
+    bool usualSpeeds;            // they are those of vplUsualSpeeds, and not of this machine
+    vplLook look;                // of --method auto
     char problem[VPL_PLAN_TEXT]; // why the picture cannot be rendered; empty: it can
     vplResult refusal;           // the result of rendering it all the same: VPL_INVALID_ARGUMENT or VPL_LIMIT
     struct vplArena* arena;      // owns the emitters
@@ -123,7 +123,7 @@ typedef struct vplSpeeds {
     double shadowRay;     // a shadow ray from a pixel to a light, in a scene of few triangles
     double pathRay;       // a ray of a path with its shading, in a scene of few triangles
     double formFactor;    // a form factor of two sides of patches
-    double threads;       // how many times as fast as one thread all threads are; 0: nearly as many as there are
+    double threads; // how many times as fast as one thread all threads are; 0: nearly as many as there are
 } vplSpeeds;
 
 // Speeds of the machine of our benchmarks.

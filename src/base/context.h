@@ -11,7 +11,7 @@ struct vplContext {
     int workerCount;
     // Bytes held now, and the most held at once. Not atomic: parallel sections do not allocate.
     size_t bytes, peakBytes;
-    uint64_t stamps; // see vplNextStamp
+    uint64_t stamps;          // see vplNextStamp
     struct vplSpeeds* speeds; // see vplContext_SetSpeeds; NULL: as usual
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/cli.h"
+#include "cli/calibration.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -104,6 +104,9 @@ int runOnScene(const Arguments* a, SceneWork* work)
     }
     vplScene* scene = NULL;
     int code = exitCode(loadScene(a, context, &scene), true);
+    if (code == EXIT_DONE) {
+        findSpeeds(a, context);
+    }
     if (code == EXIT_DONE && (a->explain || a->dryRun)) {
         code = explain(a, scene);
     }

@@ -15,17 +15,19 @@ enum { BUILD, TRIANGLE, TEXEL, PIXEL, LIGHT, SHADOW_RAY, PATH_RAY, FORM_FACTOR }
 
 // A few rays into the picture, and one from each surface that they hit.
 typedef struct Probe {
-    double seen;    // share of the picture where a surface is
+    double seen;     // share of the picture where a surface is
     double enclosed; // share of the directions from surfaces in which there is something
-    double facing;  // share of pairs of a surface that is seen and one that light may come from, that face each other
+    double
+        facing; // share of pairs of a surface that is seen and one that light may come from, that face each other
 } Probe;
 
 typedef struct Scale {
     const vplPlan* plan;
     Probe probe;
-    double triangles, pixels, lights, sides, emitters, reflectance;
-    double depth; // a ray's time, in units of that in a scene of few triangles
-    double overlap; // a texel's time, likewise
+    bool lamps; // a triangle may emit
+    double triangles, area, pixels, lights, sides, emitters, reflectance;
+    double depth, pathDepth; // a shadow ray's time and a path's, in units of that in a scene of few triangles
+    double overlap;          // a texel's time, likewise
 } Scale;
 
 // ---- the scene in numbers
@@ -94,20 +96,25 @@ static double lightsPerPixel(const Scale* s)
 static void addDirect(const Scale* s, double pixels, vplWork* w)
 {
     const vplRenderOptions* o = &s->plan->options;
-    const bool area = s->plan->hasAreaLights && o->method != VPL_METHOD_KELLER;
+    const bool area = s->lamps && o->method != VPL_METHOD_KELLER;
     const double rays = (s->plan->emitterRays ? s->emitters : 0) + (area ? o->lights.areaLightSamples : 0);
     if (s->plan->showsDirect) {
-        w->counts[SHADOW_RAY] += pixels * rays * fmax(s->probe.facing, 0.5) * s->depth;
-        w->counts[LIGHT] += s->plan->emitterRays ? 0 : pixels * s->emitters * (30 + 6 * o->shadow.pcfSamples);
+        w->counts[SHADOW_RAY] += pixels * rays * 0.6 * s->probe.facing * s->depth;
+        w->counts[LIGHT] +=
+            s->plan->emitterRays ? 0 : pixels * s->emitters * (15 + 1.5 * o->shadow.pcfSamples);
     }
 }
 
-// Short rays, whose hits are lit by 16 lights; see raysOf in stages/compensation_rays.c.
+// Short rays, a fifth or so of which hit something near; see raysOf in stages/compensation_rays.c.
 static double compensationRays(const Scale* s, double lights)
 {
-    const vplPipelineOptions* o = &s->plan->options.pipeline;
-    const int least = o->kind == VPL_ACCUMULATE_INTERLEAVED && o->interleave >= 8 ? 1 : 2;
-    return s->plan->compensates ? fmax(least, ceil(lights / 48)) * 5 : 0;
+    const vplRenderOptions* o = &s->plan->options;
+    const double distance = fmax((double)o->lights.minDistance, 1e-9);
+    const double hitLights = fmax(16, fmin(s->area / (VPL_PI * distance * distance), s->lights));
+    const int least = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && o->pipeline.interleave >= 8 ? 1 : 2;
+    const double work = o->lights.shadows == VPL_LIGHT_SHADOWS_NONE ? lights / 32 : lights;
+    const double rays = fmax(least, ceil(work / 48 * sqrt(16 / hitLights)));
+    return s->plan->compensates ? rays * (1 + 0.3 * hitLights) : 0;
 }
 
 static void addPicture(const Scale* s, vplWork* w)
@@ -115,24 +122,24 @@ static void addPicture(const Scale* s, vplWork* w)
     const vplRenderOptions* o = &s->plan->options;
     const int points = vplCountPoints(s->plan), supersample = o->output.supersample;
     const double lights = lightsPerPixel(s), all = s->pixels * supersample;
-    const double edges = 1 + 0.03 * (points - 1); // samples of a pixel, most of which are found to be equal
+    // Of the samples of a pixel only those at edges differ, and edges are as long as the picture is wide.
+    const double side = sqrt(fmax(all, 1)), edges = 1 + fmin(12 / side, 0.5) * (points - 1);
     const double pixels = all * s->probe.seen * edges, pairs = pixels * lights;
     const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
-    w->counts[PIXEL] += all * (1 + 0.15 * (points - 1)) + (filtered ? 2 * all : 0);
-    w->counts[TRIANGLE] += s->triangles * supersample * (points > 1 ? 2 : 1);
+    w->counts[PIXEL] += 0.3 * all + 75 * (points - 1) * side + (filtered ? 0.8 * all : 0);
+    w->counts[TRIANGLE] += s->triangles * supersample * (points > 1 ? 7 : 1.5);
     addDirect(s, pixels, w);
     switch (o->lights.shadows) {
     case VPL_LIGHT_SHADOWS_RAY:
-        w->counts[SHADOW_RAY] +=
-            (pairs * s->probe.facing + pixels * compensationRays(s, lights)) * s->depth;
+        w->counts[SHADOW_RAY] += (pairs * s->probe.facing + pixels * compensationRays(s, lights)) * s->depth;
         w->counts[LIGHT] += pairs;
         break;
     case VPL_LIGHT_SHADOWS_MAP: {
         const double texels = (double)vplHemiMap_Texels(o->lights.mapSize);
-        w->counts[TRIANGLE] += 0.5 * s->lights * s->triangles;
+        w->counts[TRIANGLE] += 0.4 * s->lights * s->triangles;
         w->counts[TEXEL] += 0.5 * s->lights * texels * s->overlap;
         w->counts[SHADOW_RAY] += pixels * compensationRays(s, lights) * s->depth;
-        w->counts[LIGHT] += pairs * (4 + 12 * s->probe.facing);
+        w->counts[LIGHT] += pairs * (6 + 16 * s->probe.facing);
         break;
     }
     case VPL_LIGHT_SHADOWS_CLUSTER:
@@ -142,24 +149,25 @@ static void addPicture(const Scale* s, vplWork* w)
         w->counts[LIGHT] += pairs;
     }
     if (s->plan->showsPatches) {
-        w->counts[PIXEL] += 0.5 * all * points;
+        w->counts[PIXEL] += 0.15 * all * points;
         w->counts[TRIANGLE] += 2.0 * s->plan->patches * points;
     }
 }
 
 // Rays of paths: to a surface, to an emitter from there, and on. Paths end where they leave the scene; those that carry
-// less than a quarter of their light end by chance.
+// less than a quarter of their light in all colours end by chance.
 static void addPaths(const Scale* s, double paths, vplWork* w)
 {
-    const double stays = s->probe.enclosed, kept = fmin(s->reflectance, 0.98);
+    const double stays = s->probe.enclosed, kept = fmin(sqrt(s->reflectance), 0.98);
     const double whole = kept > 0 ? ceil(log(0.25) / log(fmax(kept, 1e-3))) : 0;
     double vertices = 0, arrive = 1;
-    for (int k = 0; k < 64 && k <= s->plan->options.maxBounces + (s->plan->options.maxBounces < 0 ? 65 : 0); k++) {
+    for (int k = 0; k < 64 && k <= s->plan->options.maxBounces + (s->plan->options.maxBounces < 0 ? 65 : 0);
+         k++) {
         vertices += arrive;
         arrive *= stays * (k < whole ? 1 : kept);
     }
     const double rays = paths * (1 + s->probe.seen * (2 * vertices - 1));
-    w->counts[PATH_RAY] += rays * s->depth * (s->plan->splitsLight ? 1.3 : 1);
+    w->counts[PATH_RAY] += rays * s->pathDepth * (s->plan->splitsLight ? 1.3 : 1);
 }
 
 static void addMaps(double faces, double size, const Scale* s, vplWork* w)
@@ -171,7 +179,9 @@ static void addMaps(double faces, double size, const Scale* s, vplWork* w)
 static void addParaboloids(double lights, const Scale* s, vplWork* w)
 {
     const vplSsvpOptions* o = &s->plan->options.ssvp;
-    addMaps(fmin(lights, o->clusters) * o->hemispheres, o->paraboloidSize, s, w);
+    const double maps = fmin(lights, o->clusters) * o->hemispheres, size = o->paraboloidSize;
+    w->counts[TEXEL] += 5 * maps * size * size;
+    w->counts[TRIANGLE] += maps * s->triangles;
 }
 
 static double facesOf(const vplPlan* p, bool reflective)
@@ -201,10 +211,10 @@ static vplWork workOf(const Scale* s, vplStageId id)
         addMaps(facesOf(p, true), o->shadow.rsmSize, s, &w);
         break;
     case VPL_STAGE_PARTICLES:
-        w.counts[PATH_RAY] = s->lights * s->depth;
+        w.counts[PATH_RAY] = s->lights * s->pathDepth;
         break;
     case VPL_STAGE_FIRST_BOUNCE: // rays test which light leaves the scene
-        w.counts[PATH_RAY] = (double)o->ssvp.firstBounce * o->ssvp.oversampling * s->depth;
+        w.counts[PATH_RAY] = (double)o->ssvp.firstBounce * o->ssvp.oversampling * s->pathDepth;
         break;
     case VPL_STAGE_PARABOLOIDS:
         addParaboloids(o->ssvp.firstBounce, s, &w);
@@ -213,16 +223,18 @@ static vplWork workOf(const Scale* s, vplStageId id)
         addParaboloids(o->ssvp.secondBounce, s, &w);
         break;
     case VPL_STAGE_SIDES:
-        w.counts[PATH_RAY] = 30.0 * p->patches * s->depth;
+        w.counts[PATH_RAY] = 90.0 * p->patches * s->pathDepth;
         break;
     case VPL_STAGE_FORM_FACTORS:
-        w.counts[FORM_FACTOR] = p->linked ? 4000 * s->sides : pairs * (0.3 + 0.175 * o->radiosity.formSamples) * s->depth;
+        w.counts[FORM_FACTOR] =
+            p->linked ? 4000 * s->sides
+                      : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) * s->depth;
         break;
     case VPL_STAGE_PATCH_LIGHT:
-        w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples * fmax(s->emitters, 4 * p->hasAreaLights) * s->depth;
+        w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples * fmax(s->emitters, s->lamps) * s->depth;
         break;
     case VPL_STAGE_SOLUTION: // about 20 sweeps
-        w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.25 * pairs;
+        w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.4 * pairs;
         break;
     case VPL_STAGE_PICTURE:
         addPicture(s, &w);
@@ -236,6 +248,13 @@ static vplWork workOf(const Scale* s, vplStageId id)
     return w;
 }
 
+// Keller's lights of step 0 lie on area lights; elsewhere they are the emitters themselves, which cast shadows by maps.
+static double drawnLights(const vplPlan* p, const vplGeometry* g)
+{
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !g->emits;
+    return (double)p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
+}
+
 void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PLAN_STAGES])
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
@@ -243,12 +262,15 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
                .probe = {1, 0.8, 0.4},
                .triangles = g->triangleCount,
                .pixels = (double)p->options.output.width * p->options.output.height,
-               .lights = (double)p->virtualLights,
+               .lights = drawnLights(p, g),
+               .lamps = g->emits,
+               .area = vplGeometry_Area(g),
                .sides = p->patchSides,
                .emitters = p->emitterCount,
                .reflectance = vplGeometry_MeanReflectance(g)};
     const double doublings = log2(fmax(s.triangles, 2) / 32);
     s.depth = 1 + 0.1 * fmax(doublings, 0);
+    s.pathDepth = 1 + 0.06 * fmax(doublings, 0);
     s.overlap = 1 + 0.1 * fmax(doublings, 0);
     if (p->castsRays || g->triangleCount < 1000) {
         s.probe = probe(g, &p->view);

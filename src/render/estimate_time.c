@@ -11,12 +11,12 @@
 vplSpeeds vplUsualSpeeds(void)
 {
     return (vplSpeeds){.buildTriangle = 700,
-                       .drawTriangle = 20,
+                       .drawTriangle = 60,
                        .drawTexel = 4,
                        .drawPixel = 150,
                        .pixelLight = 0.7,
                        .shadowRay = 110,
-                       .pathRay = 300,
+                       .pathRay = 340,
                        .formFactor = 60};
 }
 
@@ -77,5 +77,6 @@ void vplEstimateTime(const vplRunner* r, const vplMachine* machine, vplPlan* p)
     }
     p->passMs = each;
     p->firstMs = once + each;
-    p->predictedMs = once + each * (p->progressive && p->options.stop.passes > 1 ? p->options.stop.passes : 1);
+    p->predictedMs =
+        once + each * (p->progressive && p->options.stop.passes > 1 ? p->options.stop.passes : 1);
 }

@@ -76,10 +76,13 @@ static void putTime(Text* t, const vplPlan* p)
 {
     const vplStopOptions* o = &p->options.stop;
     const bool seconds = p->predictedMs >= 1000;
-    const bool open = p->options.method == VPL_METHOD_PATH ? vplPathsAreOpen(p) : p->progressive && o->passes <= 0;
+    const bool open =
+        p->options.method == VPL_METHOD_PATH ? vplPathsAreOpen(p) : p->progressive && o->passes <= 0;
     putRow(t, "time");
     put(t, "about %.2g %s%s on %s", seconds ? p->predictedMs / 1000 : p->predictedMs, seconds ? "s" : "ms",
-        !open ? "" : p->options.method == VPL_METHOD_PATH ? " for 32 paths per pixel" : " for the first pass",
+        !open                                  ? ""
+        : p->options.method == VPL_METHOD_PATH ? " for 32 paths per pixel"
+                                               : " for the first pass",
         p->usualSpeeds ? "the machine of our benchmarks" : "this machine");
 }
 
