@@ -81,7 +81,8 @@ static bool nameFile(const vplContext* context, bool create, char path[PATH_MAX]
     for (const char* c = words; *c != 0; c++) {
         hash = (hash ^ (unsigned char)*c) * 0x100000001b3u;
     }
-    length = snprintf(path, PATH_MAX, "%s/speeds-%s-%016llx.json", folder, vplGetVersion(), (unsigned long long)hash);
+    length = snprintf(path, PATH_MAX, "%s/speeds-%s-%016llx.json", folder, vplGetVersion(),
+                      (unsigned long long)hash);
     return length > 0 && length < PATH_MAX && (!create || access(folder, W_OK | X_OK) == 0);
 }
 
@@ -139,13 +140,15 @@ void findSpeeds(const Arguments* a, vplContext* context)
         vplContext_SetSpeeds(context, &speeds);
     } else if (needed && nameFile(context, true, path)) {
         const bool measured = vplSpeeds_Measure(context, &speeds) == VPL_SUCCESS;
-        const bool kept = measured && vplContext_SetSpeeds(context, &speeds) == VPL_SUCCESS && writeSpeeds(path, &speeds);
+        const bool kept =
+            measured && vplContext_SetSpeeds(context, &speeds) == VPL_SUCCESS && writeSpeeds(path, &speeds);
         if (a->verbose && measured) {
-            complain("measured the speeds of this machine, %s %s", kept ? "kept in" : "which could not be kept in",
-                     path);
+            complain("measured the speeds of this machine, %s %s",
+                     kept ? "kept in" : "which could not be kept in", path);
         }
     } else if (needed && a->verbose) {
-        complain("there is no cache folder to keep the speeds of this machine in; times are predicted by those of the "
+        complain("there is no cache folder to keep the speeds of this machine in; times are predicted by "
+                 "those of the "
                  "machine of our benchmarks");
     }
 }

@@ -123,7 +123,7 @@ static void addPicture(const Scale* s, vplWork* w)
     const int points = vplCountPoints(s->plan), supersample = o->output.supersample;
     const double lights = lightsPerPixel(s), all = s->pixels * supersample;
     // Of the samples of a pixel only those at edges differ, and edges are as long as the picture is wide.
-    const double side = sqrt(fmax(all, 1)), edges = 1 + fmin(12 / side, 0.5) * (points - 1);
+    const double side = sqrt(fmax(all, 1)), edges = 1 + fmin(4 / side, 0.5) * (points - 1);
     const double pixels = all * s->probe.seen * edges, pairs = pixels * lights;
     const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
     w->counts[PIXEL] += 0.3 * all + 75 * (points - 1) * side + (filtered ? 0.8 * all : 0);
@@ -180,8 +180,8 @@ static void addParaboloids(double lights, const Scale* s, vplWork* w)
 {
     const vplSsvpOptions* o = &s->plan->options.ssvp;
     const double maps = fmin(lights, o->clusters) * o->hemispheres, size = o->paraboloidSize;
-    w->counts[TEXEL] += 5 * maps * size * size;
-    w->counts[TRIANGLE] += maps * s->triangles;
+    w->counts[TEXEL] += 8 * maps * size * size;
+    w->counts[TRIANGLE] += 0.3 * maps * s->triangles;
 }
 
 static double facesOf(const vplPlan* p, bool reflective)
@@ -234,7 +234,7 @@ static vplWork workOf(const Scale* s, vplStageId id)
         w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples * fmax(s->emitters, s->lamps) * s->depth;
         break;
     case VPL_STAGE_SOLUTION: // about 20 sweeps
-        w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.4 * pairs;
+        w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.55 * pairs;
         break;
     case VPL_STAGE_PICTURE:
         addPicture(s, &w);

@@ -16,7 +16,7 @@ vplSpeeds vplUsualSpeeds(void)
                        .drawPixel = 150,
                        .pixelLight = 0.7,
                        .shadowRay = 110,
-                       .pathRay = 340,
+                       .pathRay = 300,
                        .formFactor = 60};
 }
 

@@ -3,6 +3,7 @@
 #include "render/plan.h"
 #include "render/stages/make.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -72,14 +73,28 @@ static void putCounts(Text* t, const vplPlan* p)
     putSize(t, "lights", "", p->lightBytes);
 }
 
+// Two digits without an exponent.
+static void putMs(Text* t, double ms)
+{
+    const double value = ms >= 1000 ? ms / 1000 : ms;
+    const double step = value >= 1000 ? 100 : 10;
+    if (value >= 99.5) {
+        put(t, "%.0f", step * floor(value / step + 0.5));
+    } else {
+        put(t, "%.2g", value);
+    }
+    put(t, ms >= 1000 ? " s" : " ms");
+}
+
 static void putTime(Text* t, const vplPlan* p)
 {
     const vplStopOptions* o = &p->options.stop;
-    const bool seconds = p->predictedMs >= 1000;
     const bool open =
         p->options.method == VPL_METHOD_PATH ? vplPathsAreOpen(p) : p->progressive && o->passes <= 0;
     putRow(t, "time");
-    put(t, "about %.2g %s%s on %s", seconds ? p->predictedMs / 1000 : p->predictedMs, seconds ? "s" : "ms",
+    put(t, "about ");
+    putMs(t, p->predictedMs);
+    put(t, "%s on %s",
         !open                                  ? ""
         : p->options.method == VPL_METHOD_PATH ? " for 32 paths per pixel"
                                                : " for the first pass",

@@ -83,8 +83,9 @@ static vplResult addBox(vplScene* scene, vplVec3 place, vplVec3 size)
 static vplResult fill(vplScene* scene, bool bumpy)
 {
     static const vplVec3 boxes[][2] = {
-        {{0, -0.1f, 0}, {5, 0.2f, 5}},   {{0, 5.1f, 0}, {5, 0.2f, 5}},    {{0, 2.5f, -2.6f}, {5, 5, 0.2f}},
-        {{-2.6f, 2.5f, 0}, {0.2f, 5, 5}}, {{2.6f, 2.5f, 0}, {0.2f, 5, 5}}, {{-0.9f, 1.65f, -0.8f}, {1.5f, 3.3f, 1.5f}},
+        {{0, -0.1f, 0}, {5, 0.2f, 5}},       {{0, 5.1f, 0}, {5, 0.2f, 5}},
+        {{0, 2.5f, -2.6f}, {5, 5, 0.2f}},    {{-2.6f, 2.5f, 0}, {0.2f, 5, 5}},
+        {{2.6f, 2.5f, 0}, {0.2f, 5, 5}},     {{-0.9f, 1.65f, -0.8f}, {1.5f, 3.3f, 1.5f}},
         {{0.85f, 1, 0.75f}, {1.5f, 2, 1.5f}}};
     vplMaterialDef material = vplDefaultMaterialDef();
     vplCameraDef camera = vplDefaultCameraDef();
@@ -118,10 +119,20 @@ static const Load LOADS[VPL_SPEED_COUNT] = {
     {2.44, VPL_STAGE_EMITTER_MAPS, true, {"method", "direct", "shadow-map", "32", "size", "16x16"}},
     {23.4, VPL_STAGE_EMITTER_MAPS, false, {"method", "direct", "shadow-map", "768", "size", "16x16"}},
     {9.08, VPL_STAGE_PICTURE, false, {"method", "direct", "shadow-map", "16", "pcf", "1", "size", "320x180"}},
-    {14.8, VPL_STAGE_PICTURE, false, {"particles", "600", "shadow-map", "16", "size", "160x90", "method", "instant-radiosity"}},
-    {38.5, VPL_STAGE_PICTURE, true, {"method", "keller", "particles", "40", "light-shadows", "ray", "compensation", "none", "size", "96x54"}},
+    {14.8,
+     VPL_STAGE_PICTURE,
+     false,
+     {"particles", "600", "shadow-map", "16", "size", "160x90", "method", "instant-radiosity"}},
+    {38.5,
+     VPL_STAGE_PICTURE,
+     true,
+     {"method", "keller", "particles", "40", "light-shadows", "ray", "compensation", "none", "size",
+      "96x54"}},
     {15.5, VPL_STAGE_PATHS, true, {"method", "path", "spp", "2", "size", "64x36"}},
-    {8.6, VPL_STAGE_FORM_FACTORS, false, {"method", "radiosity", "patches", "300", "shadow-map", "16", "size", "16x16"}},
+    {8.6,
+     VPL_STAGE_FORM_FACTORS,
+     false,
+     {"method", "radiosity", "patches", "300", "shadow-map", "16", "size", "16x16"}},
 };
 
 enum { ROUNDS = 5, PARALLEL = 5 }; // PARALLEL: the load that all threads render, too
@@ -129,7 +140,7 @@ enum { ROUNDS = 5, PARALLEL = 5 }; // PARALLEL: the load that all threads render
 static const double LONGEST = 1200; // ms, of measuring
 
 typedef struct Measuring {
-    vplScene *scenes[2]; // without and with the bumpy floor
+    vplScene* scenes[2]; // without and with the bumpy floor
     double end;
 } Measuring;
 
