@@ -42,26 +42,26 @@ static vplVec3 towards(const vplView* v, int i)
 }
 
 // Turns the normal of a hit to where the ray came from.
-static bool hitAt(const vplGeometry* g, vplVec3 from, vplVec3 direction, vplHit* hit)
+static bool hitAt(const vplGeometry* g, vplRay ray, vplHit* hit)
 {
-    const vplRay ray = {from, direction, {0, 0}};
     const bool found = vplGeometry_ClosestHit(g, &ray, hit);
-    if (found && vplDot(hit->normal, direction) > 0) {
+    if (found && vplDot(hit->normal, ray.direction) > 0) {
         hit->normal = vplNegate(hit->normal);
     }
     return found;
 }
 
-static Probe probe(const vplGeometry* g, const vplView* view)
+static Probe probe(const vplGeometry* g, const vplView* view, float near)
 {
     vplHit seen[POINTS], far[POINTS];
     int count = 0, farCount = 0, facing = 0, pairs = 0;
     for (int i = 0; i < POINTS; i++) {
-        if (hitAt(g, view->eye, towards(view, i), &seen[count])) {
+        if (hitAt(g, (vplRay){vplAdd(view->eye, vplScale(near, towards(view, i))), towards(view, i), {0, 0}},
+                  &seen[count])) {
             const vplHit* hit = &seen[count++];
             const float u = ((float)(i % 8) + 0.5f) / 8, v = vplVanDerCorput((uint32_t)i);
-            const vplVec3 lifted = vplAdd(hit->position, vplScale(1e-4f * hit->t, hit->normal));
-            farCount += hitAt(g, lifted, vplSampleCosineAround(hit->normal, u, v), &far[farCount]);
+            const vplVec3 direction = vplSampleCosineAround(hit->normal, u, v);
+            farCount += hitAt(g, vplGeometry_Leave(g, hit, direction), &far[farCount]);
         }
     }
     for (int i = 0; i < count; i++) {
@@ -273,7 +273,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
     s.pathDepth = 1 + 0.06 * fmax(doublings, 0);
     s.overlap = 1 + 0.1 * fmax(doublings, 0);
     if (p->castsRays || g->triangleCount < 1000) {
-        s.probe = probe(g, &p->view);
+        s.probe = probe(g, &p->view, p->camera.near);
     }
     for (int i = 0; i < p->stageCount; i++) {
         works[i] = workOf(&s, (vplStageId)p->stages[i].id);
