@@ -104,7 +104,7 @@ typedef struct vplPlan {
     double shadowMapEstimateMs, shadowRayEstimateMs;
     // Predicted wall-clock times, which no decision follows, ms: all passes that the options count, until the first
     // picture, and a further pass. Where only a time or an error ends the passes, predictedMs is that of the first, and
-    // of 32 paths per pixel. Half of the predictions are within a fifth or so of the truth (src/render/README.md).
+    // of 32 paths per pixel. Two of three were within a factor 1.5 of the truth (src/render/README.md).
     double predictedMs, firstMs, passMs;
     bool usualSpeeds;            // they are those of vplUsualSpeeds, and not of this machine
     vplLook look;                // of --method auto
