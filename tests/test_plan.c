@@ -92,8 +92,9 @@ TEST(MachinesChangeNoDecision, 1)
     for (int method = 0; method < METHOD_COUNT; method++) {
         const vplRenderOptions options = OPTIONS("method", METHODS[method], "size", "64x36");
         vplPlan *one, *many;
-        assert_int_equal(vplPlan_Create(scene, &options, &(vplMachine){1}, &one), VPL_SUCCESS);
-        assert_int_equal(vplPlan_Create(scene, &options, &(vplMachine){64}, &many), VPL_SUCCESS);
+        assert_int_equal(vplPlan_Create(scene, &options, &(vplMachine){.workerCount = 1}, &one), VPL_SUCCESS);
+        assert_int_equal(vplPlan_Create(scene, &options, &(vplMachine){.workerCount = 64}, &many),
+                         VPL_SUCCESS);
         assert_memory_equal(&one->options, &many->options, offsetof(vplRenderOptions, problem));
         assert_int_equal(one->stageCount, many->stageCount);
         for (int i = 0; i < one->stageCount; i++) {

@@ -28,6 +28,7 @@ typedef struct vplPlanStage {
     char why[VPL_PLAN_TEXT];
     int64_t bytes;   // estimated size of its result
     int64_t scratch; // estimated further memory while it runs
+    double ms;       // predicted wall-clock time, in one pass
 } vplPlanStage;
 
 // An option that was left to the library, or a stage that could run and will not.
@@ -103,17 +104,49 @@ typedef struct vplPlan {
     // Estimated costs of shadow maps and rays, by which the shadows of virtual lights were chosen, ms on one
     // core of the machine of bench/crossover; 0 where there was no choice.
     double shadowMapEstimateMs, shadowRayEstimateMs;
+    // Predicted wall-clock times, which no decision follows, ms: all passes that the options count, until the first
+    // picture, and a further pass. Where only a time or an error ends the passes, predictedMs is that of the first, and
+    // of 32 paths per pixel. Two of three were within a factor 1.5 of the truth (src/render/README.md).
+    double predictedMs, firstMs, passMs;
+    bool usualSpeeds;            // they are those of vplUsualSpeeds, and not of this machine
     vplLook look;                // of --method auto
     char problem[VPL_PLAN_TEXT]; // why the picture cannot be rendered; empty: it can
     vplResult refusal;           // the result of rendering it all the same: VPL_INVALID_ARGUMENT or VPL_LIMIT
     struct vplArena* arena;      // owns the emitters
 } vplPlan;
 
+// Times of the parts of a render, nanoseconds of one thread, > 0; by them vplPlan.predictedMs is predicted.
+typedef struct vplSpeeds {
+    double buildTriangle; // adding a triangle to the scene's ray tree
+    double drawTriangle;  // drawing a small triangle
+    double drawTexel;     // filling and drawing a texel of a shadow map, in a scene of few triangles
+    double drawPixel;     // drawing and resolving a pixel's surface, without light
+    double pixelLight;    // adding a light without shadow to a pixel
+    double shadowRay;     // a shadow ray from a pixel to a light, in a scene of few triangles
+    double pathRay;       // a ray of a path with its shading, in a scene of few triangles
+    double formFactor;    // a form factor of two sides of patches
+    double threads; // how many times as fast as one thread all threads are; 0: nearly as many as there are
+} vplSpeeds;
+
+// Speeds of the machine of our benchmarks.
+vplSpeeds vplUsualSpeeds(void);
+
+// Measures the speeds of this machine with the context's threads and instruction set, by rendering small pictures of a
+// built-in scene for about a second. What the time is not enough for is scaled like the rest. The clock is that of the
+// processor, so other programs disturb little; other threads of the process should rest. Memory is that of the context's
+// allocator. VPL_OUT_OF_MEMORY.
+vplResult vplSpeeds_Measure(vplContext* context, vplSpeeds* speedsOut);
+
 // Facts about the machine. They change estimates only, never a decision, so pictures are the same on every
 // machine.
 typedef struct vplMachine {
-    int workerCount; // threads
+    int workerCount;         // threads
+    const vplSpeeds* speeds; // NULL: as usual
 } vplMachine;
+
+// From now on the context's plans predict times by these speeds, which are copied; NULL (default): vplUsualSpeeds.
+// VPL_INVALID_ARGUMENT if a speed is not positive and finite; VPL_OUT_OF_MEMORY.
+vplResult vplContext_SetSpeeds(vplContext* context, const vplSpeeds* speeds);
 
 // Plans a render. If `machine` is NULL, the scene's context describes it. A picture that cannot be rendered
 // has a plan too, whose `problem` says why; VPL_INVALID_ARGUMENT means that an option is out of its range.

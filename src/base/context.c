@@ -105,6 +105,7 @@ vplResult vplContext_Create(const vplContextDef* def, vplContext** contextOut)
 void vplContext_Destroy(vplContext* context)
 {
     if (context != NULL) {
+        vplFree(context, context->speeds);
         context->def.alloc(context->def.allocUser, context, sizeof *context, 0);
     }
 }

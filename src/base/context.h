@@ -11,7 +11,8 @@ struct vplContext {
     int workerCount;
     // Bytes held now, and the most held at once. Not atomic: parallel sections do not allocate.
     size_t bytes, peakBytes;
-    uint64_t stamps; // see vplNextStamp
+    uint64_t stamps;          // see vplNextStamp
+    struct vplSpeeds* speeds; // see vplContext_SetSpeeds; NULL: as usual
 };
 
 // Returns a different number each time. Identifies an object, or one state of it.

@@ -113,21 +113,24 @@ static json_t* planJson(const vplPlan* p)
     json_t* stages = json_array();
     for (int i = 0; i < p->stageCount; i++) {
         const vplPlanStage* s = &p->stages[i];
-        json_array_append_new(stages, json_pack("{s:s, s:s, s:s, s:I}", "name", s->name, "inputs", s->inputs,
-                                                "why", s->why, "bytes", (json_int_t)s->bytes));
+        json_array_append_new(stages,
+                              json_pack("{s:s, s:s, s:s, s:I, s:f}", "name", s->name, "inputs", s->inputs,
+                                        "why", s->why, "bytes", (json_int_t)s->bytes, "ms", s->ms));
     }
-    return json_pack(
-        "{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:i, s:i, s:I, s:I, s:o, "
-        "s:o, s:o, s:s?}",
-        "method", method, "pipeline", pipeline, "width", o->output.width, "height", o->output.height,
-        "reflectivity", o->particles.reflectivity, "steps", p->stepCount, "lights_per_step",
-        integersJson(p->particlesPerStep, steps), "virtual_lights", (json_int_t)p->virtualLights,
-        "draw_calls", (json_int_t)p->drawCalls, "shadow_map_bytes", (json_int_t)p->shadowMapBytes,
-        "light_bytes", (json_int_t)p->lightBytes, "picture_bytes", (json_int_t)p->pictureBytes, "patches",
-        p->patches, "patch_sides", p->patchSides, "form_factor_bytes",
-        (json_int_t)(p->linked ? 0 : p->formFactorBytes), "peak_bytes", (json_int_t)p->peakBytes, "stages",
-        stages, "decisions", decisionsJson(p->decisions, p->decisionCount), "left_out",
-        decisionsJson(p->leftOut, p->leftOutCount), "problem", p->problem[0] != 0 ? p->problem : NULL);
+    return json_pack("{s:s, s:s, s:i, s:i, s:f, s:i, s:o, s:I, s:I, s:I, s:I, s:I, s:i, s:i, s:I, s:I, s:o, "
+                     "s:o, s:o, s:f, s:f, s:f, s:b, s:s?}",
+                     "method", method, "pipeline", pipeline, "width", o->output.width, "height",
+                     o->output.height, "reflectivity", o->particles.reflectivity, "steps", p->stepCount,
+                     "lights_per_step", integersJson(p->particlesPerStep, steps), "virtual_lights",
+                     (json_int_t)p->virtualLights, "draw_calls", (json_int_t)p->drawCalls, "shadow_map_bytes",
+                     (json_int_t)p->shadowMapBytes, "light_bytes", (json_int_t)p->lightBytes, "picture_bytes",
+                     (json_int_t)p->pictureBytes, "patches", p->patches, "patch_sides", p->patchSides,
+                     "form_factor_bytes", (json_int_t)(p->linked ? 0 : p->formFactorBytes), "peak_bytes",
+                     (json_int_t)p->peakBytes, "stages", stages, "decisions",
+                     decisionsJson(p->decisions, p->decisionCount), "left_out",
+                     decisionsJson(p->leftOut, p->leftOutCount), "predicted_ms", p->predictedMs, "first_ms",
+                     p->firstMs, "pass_ms", p->passMs, "usual_speeds", p->usualSpeeds, "problem",
+                     p->problem[0] != 0 ? p->problem : NULL);
 }
 
 static json_t* sceneJson(const Info* info)

@@ -43,7 +43,7 @@ const Command COMMANDS[] = {
     {"info", INFO, 1, runInfo, "vpl info SCENE [options]",
      "says what is in a scene, and what rendering it requires",
      "Prints counts, bounds, mean reflectance, and the plan of a render with the same options: decisions, "
-     "stages and memory.",
+     "stages, memory and the predicted time.",
      NULL},
     {"tradeoff", TRADEOFF, 1, runTradeoff, "vpl tradeoff SCENE -o DIR [options]",
      "measures error against time",
@@ -59,7 +59,10 @@ const Command COMMANDS[] = {
      "Times the stages on the built-in room: medians of the wall clock and of processor time, counts, "
      "hashes, and what several threads gain: stages under 85 % efficiency (1.7x on two threads) are marked. "
      "With --scaling, how time grows with lights, pixels, triangles, threads and the shadow map's size: "
-     "exponents fitted over all points and over the upper half, and the part of the time that does not grow.",
+     "exponents fitted over all points and over the upper half, and the part of the time that does not grow. "
+     "With --calibrate, the speeds by which times are predicted, which are kept in libvpl/ of "
+     "$XDG_CACHE_HOME "
+     "or ~/.cache; the first render or info with --budget measures them, too. They change no picture.",
      NULL},
 };
 

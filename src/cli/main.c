@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/cli.h"
+#include "cli/calibration.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -123,6 +123,9 @@ int runOnScene(const Arguments* a, SceneWork* work)
     if (code == EXIT_DONE && a->planIn != NULL && !a->quiet && a->planScene != vplScene_GetHash(scene)) {
         complain("warning: %s was made for another scene, or %s was changed since: the picture will differ",
                  a->planIn, a->positionals[0]);
+    }
+    if (code == EXIT_DONE) {
+        findSpeeds(a, context);
     }
     if (code == EXIT_DONE && (a->explain || a->dryRun)) {
         code = explain(a, scene);

@@ -265,6 +265,10 @@ static const Option OWN[] = {
     {"scaling", NULL, NULL, BENCH, readFlag, AT(scaling), 0, 0,
      "instead: time against lights, pixels, triangles, threads and shadow map size, with fitted exponents",
      NULL},
+    {"calibrate", NULL, NULL, BENCH, readFlag, AT(calibrate), 0, 0,
+     "instead: measure this machine for a second and keep its speeds in the cache folder; predicted times "
+     "follow them",
+     NULL},
     {"threads", "T", NULL, ~INFO, readThreads, 0, 0, 0,
      "worker threads, 0 (default, tradeoff: 1): one per processor; bench takes several: 1,2", NULL},
     {"isa", "auto|scalar|sse2|avx2|avx512", "auto", ~(INFO | COMPARE), readChoice, AT(context.isa), 0, 0,

@@ -185,6 +185,7 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
     }
     if (result == VPL_SUCCESS && r->run.results[VPL_STAGE_GEOMETRY] != NULL) {
         vplEstimatePlan(r, machine, p);
+        vplEstimateTime(r, machine, p);
     }
     return vplArena_Deliver(arena, result, p, planOut);
 }

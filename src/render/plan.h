@@ -29,4 +29,22 @@ vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.
 void vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
 
+// Fills in predicted times. A machine without speeds has the usual ones.
+void vplEstimateTime(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
+
+// Counts of the parts of a render whose times are in vplSpeeds, in its order.
+enum { VPL_SPEED_COUNT = 8 };
+typedef struct vplWork {
+    double counts[VPL_SPEED_COUNT];
+} vplWork;
+
+// The work of each stage of the plan in one pass, in the order of plan->stages.
+void vplCountWork(const vplRunner* runner, const vplPlan* plan, vplWork works[VPL_MAX_PLAN_STAGES]);
+
+// Milliseconds of one thread.
+double vplTimeOf(const vplSpeeds* speeds, const vplWork* work);
+
+// The field of vplSpeeds with an index below VPL_SPEED_COUNT.
+double* vplSpeedAt(vplSpeeds* speeds, int index);
+
 #endif

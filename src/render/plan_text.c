@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A plan as text.
 #include "render/plan.h"
+#include "render/stages/make.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -69,6 +71,34 @@ static void putCounts(Text* t, const vplPlan* p)
     put(t, "%lld", (long long)p->drawCalls);
     putSize(t, "shadow maps", "", p->shadowMapBytes);
     putSize(t, "lights", "", p->lightBytes);
+}
+
+// Two digits without an exponent.
+static void putMs(Text* t, double ms)
+{
+    const double value = ms >= 1000 ? ms / 1000 : ms;
+    const double step = value >= 1000 ? 100 : 10;
+    if (value >= 99.5) {
+        put(t, "%.0f", step * floor(value / step + 0.5));
+    } else {
+        put(t, "%.2g", value);
+    }
+    put(t, ms >= 1000 ? " s" : " ms");
+}
+
+static void putTime(Text* t, const vplPlan* p)
+{
+    const vplStopOptions* o = &p->options.stop;
+    const bool open =
+        p->options.method == VPL_METHOD_PATH ? vplPathsAreOpen(p) : p->progressive && o->passes <= 0;
+    putRow(t, "time");
+    put(t, "about ");
+    putMs(t, p->predictedMs);
+    put(t, "%s on %s",
+        !open                                  ? ""
+        : p->options.method == VPL_METHOD_PATH ? " for 32 paths per pixel"
+                                               : " for the first pass",
+        p->usualSpeeds ? "the machine of our benchmarks" : "this machine");
 }
 
 static void putDecisions(Text* t, const char* title, const vplDecision* decisions, int count)
@@ -142,6 +172,7 @@ size_t vplPlan_Describe(const vplPlan* p, char* text, size_t size)
         put(&t, ": %s", layers);
     }
     putSize(&t, "most memory", "about ", p->peakBytes);
+    putTime(&t, p);
     putLook(&t, p);
     putDecisions(&t, "decisions", p->decisions, p->decisionCount);
     putStages(&t, p);

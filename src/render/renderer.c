@@ -112,9 +112,7 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
     r->runner.progressUser = r;
     r->runner.stats.clampLoss = -1;
-    vplRenderOptions first;
-    const bool coarse = vplFirstOptions(r, &first);
-    const vplResult result = vplRenderer_Plan(r, &first, coarse);
+    const vplResult result = vplRenderer_PlanFirst(r);
     if (result != VPL_SUCCESS) {
         vplRenderer_Destroy(r);
         return result;

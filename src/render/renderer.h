@@ -95,8 +95,8 @@ bool vplIsComplete(const vplRenderer* renderer);
 // After a pass: decides whether the render is done, goes on, or goes on with another plan.
 vplResult vplReview(vplRenderer* renderer, bool* doneOut);
 
-// The options of the first plan. Returns true if they are coarse.
-bool vplFirstOptions(const vplRenderer* renderer, vplRenderOptions* options);
+// Makes the first plan, which is coarse where another would not have a picture soon enough.
+vplResult vplRenderer_PlanFirst(vplRenderer* renderer);
 
 // Paths per pixel of the next pass of path tracing.
 int vplNextPaths(const vplRenderer* renderer);

@@ -17,6 +17,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/out"
 out=$scratch/out # where pictures go; must be as it was after every failure
+export XDG_CACHE_HOME=$scratch/cache # the user's own stays as it is
 passed=0
 failed=0
 
@@ -33,6 +34,7 @@ failed=0
 . "$folder/tradeoff.sh"
 . "$folder/browser.sh"
 . "$folder/bench.sh"
+. "$folder/speeds.sh"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

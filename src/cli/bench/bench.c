@@ -2,6 +2,7 @@
 // vpl bench: every stage on the benchmark room. Speed-ups compare medians of one call; hashes show that all
 // thread counts gave the same bits.
 #include "cli/bench/bench.h"
+#include "cli/calibration.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -86,6 +87,9 @@ static int runStages(const Arguments* a, Table* t)
 
 int runBench(const Arguments* a)
 {
+    if (a->calibrate) {
+        return runCalibration(a);
+    }
     if (a->scaling) {
         return runScaling(a);
     }

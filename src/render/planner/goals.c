@@ -64,17 +64,24 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->radiosity.iterations = o->radiosity.iterations < 20 ? o->radiosity.iterations : 20;
 }
 
-bool vplFirstOptions(const vplRenderer* r, vplRenderOptions* o)
+// Share of the time that may pass until the first picture; times are foreseen within a factor of two.
+static const double FIRST_SHARE = 0.25;
+
+vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
+    const bool patches = method == VPL_METHOD_RADIOSITY; // whose plan takes long, too
     const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH || !isLight(r->asked.output.show) ||
                       r->asked.output.aovs != 0;
-    if (fits) {
-        *o = r->asked;
-    } else {
-        coarsen(r, method == VPL_METHOD_RADIOSITY ? 0.02 : 0.0625, o);
+    vplRenderOptions o;
+    if (fits || !patches) {
+        TRY(vplRenderer_Plan(r, &r->asked, false));
     }
-    return !fits;
+    if (fits || (!patches && r->plan->firstMs < FIRST_SHARE * leftOf(r))) {
+        return VPL_SUCCESS;
+    }
+    coarsen(r, patches ? 0.02 : 0.0625, &o);
+    return vplRenderer_Plan(r, &o, true);
 }
 
 vplResult vplRenderer_Keep(vplRenderer* r, double error)

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+// The work of each stage of a plan, counted in the parts that vplSpeeds has times for. Work of another kind is counted as
+// so many of the nearest part; these numbers were fitted with vplUsualSpeeds (README.md, Time).
+#include "geometry/bvh.h"
+#include "math/sampling.h"
+#include "math/vec.h"
+#include "render/plan.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+#include "visibility/hemi_map.h"
+
+#include <math.h>
+
+enum { BUILD, TRIANGLE, TEXEL, PIXEL, LIGHT, SHADOW_RAY, PATH_RAY, FORM_FACTOR };
+
+// A few rays into the picture, and one from each surface that they hit.
+typedef struct Probe {
+    double seen;     // share of the picture where a surface is
+    double enclosed; // share of the directions from surfaces in which there is something
+    double
+        facing; // share of pairs of a surface that is seen and one that light may come from, that face each other
+} Probe;
+
+typedef struct Scale {
+    const vplPlan* plan;
+    Probe probe;
+    bool lamps; // a triangle may emit
+    double triangles, area, pixels, lights, sides, emitters, reflectance;
+    double depth, pathDepth; // a shadow ray's time and a path's, in units of that in a scene of few triangles
+    double overlap;          // a texel's time, likewise
+} Scale;
+
+// ---- the scene in numbers
+
+enum { COLUMNS = 12, ROWS = 8, POINTS = COLUMNS * ROWS, SOURCES = 16 };
+
+static vplVec3 towards(const vplView* v, int i)
+{
+    const double x = 2 * (i % COLUMNS + 0.5) / COLUMNS - 1, y = 1 - 2 * (i / COLUMNS + 0.5) / ROWS;
+    const float sx = (float)(x / (double)v->scaleX), sy = (float)(y / (double)v->scaleY);
+    return vplAdd(v->forward, vplAdd(vplScale(sx, v->right), vplScale(sy, v->up)));
+}
+
+// Turns the normal of a hit to where the ray came from.
+static bool hitAt(const vplGeometry* g, vplRay ray, vplHit* hit)
+{
+    const bool found = vplGeometry_ClosestHit(g, &ray, hit);
+    if (found && vplDot(hit->normal, ray.direction) > 0) {
+        hit->normal = vplNegate(hit->normal);
+    }
+    return found;
+}
+
+static Probe probe(const vplGeometry* g, const vplView* view, float near)
+{
+    vplHit seen[POINTS], far[POINTS];
+    int count = 0, farCount = 0, facing = 0, pairs = 0;
+    for (int i = 0; i < POINTS; i++) {
+        if (hitAt(g, (vplRay){vplAdd(view->eye, vplScale(near, towards(view, i))), towards(view, i), {0, 0}},
+                  &seen[count])) {
+            const vplHit* hit = &seen[count++];
+            const float u = ((float)(i % 8) + 0.5f) / 8, v = vplVanDerCorput((uint32_t)i);
+            const vplVec3 direction = vplSampleCosineAround(hit->normal, u, v);
+            farCount += hitAt(g, vplGeometry_Leave(g, hit, direction), &far[farCount]);
+        }
+    }
+    for (int i = 0; i < count; i++) {
+        for (int k = i % 5; k < farCount; k += 5) {
+            const vplVec3 way = vplSub(far[k].position, seen[i].position);
+            facing += vplDot(way, seen[i].normal) > 0 && vplDot(way, far[k].normal) < 0;
+            pairs++;
+        }
+    }
+    return (Probe){(double)count / POINTS, count > 0 ? (double)farCount / count : 0,
+                   pairs > 0 ? (double)facing / pairs : 0};
+}
+
+// ---- stages
+
+// Lights that each pixel adds up.
+static double lightsPerPixel(const Scale* s)
+{
+    const vplPipelineOptions* o = &s->plan->options.pipeline;
+    const double all = s->plan->showsVirtual ? s->lights : 0;
+    switch (o->kind) {
+    case VPL_ACCUMULATE_INTERLEAVED:
+        return all / o->interleave / o->interleave;
+    case VPL_ACCUMULATE_LIGHTCUTS: // room, 2 % error: cuts of some hundred
+        return fmin(all, 40 * sqrt(all));
+    default:
+        return all;
+    }
+}
+
+// Light of emitters and area lights in each pixel.
+static void addDirect(const Scale* s, double pixels, vplWork* w)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const bool area = s->lamps && o->method != VPL_METHOD_KELLER;
+    const double rays = (s->plan->emitterRays ? s->emitters : 0) + (area ? o->lights.areaLightSamples : 0);
+    if (s->plan->showsDirect) {
+        w->counts[SHADOW_RAY] += pixels * rays * 0.6 * s->probe.facing * s->depth;
+        w->counts[LIGHT] +=
+            s->plan->emitterRays ? 0 : pixels * s->emitters * (15 + 1.5 * o->shadow.pcfSamples);
+    }
+}
+
+// Short rays, a fifth or so of which hit something near; see raysOf in stages/compensation_rays.c.
+static double compensationRays(const Scale* s, double lights)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const double distance = fmax((double)o->lights.minDistance, 1e-9);
+    const double hitLights = fmax(16, fmin(s->area / (VPL_PI * distance * distance), s->lights));
+    const int least = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && o->pipeline.interleave >= 8 ? 1 : 2;
+    const double work = o->lights.shadows == VPL_LIGHT_SHADOWS_NONE ? lights / 32 : lights;
+    const double rays = fmax(least, ceil(work / 48 * sqrt(16 / hitLights)));
+    return s->plan->compensates ? rays * (1 + 0.3 * hitLights) : 0;
+}
+
+static void addPicture(const Scale* s, vplWork* w)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const int points = vplCountPoints(s->plan), supersample = o->output.supersample;
+    const double lights = lightsPerPixel(s), all = s->pixels * supersample;
+    // Of the samples of a pixel only those at edges differ, and edges are as long as the picture is wide.
+    const double side = sqrt(fmax(all, 1)), edges = 1 + fmin(4 / side, 0.5) * (points - 1);
+    const double pixels = all * s->probe.seen * edges, pairs = pixels * lights;
+    const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
+    w->counts[PIXEL] += 0.3 * all + 75 * (points - 1) * side + (filtered ? 0.8 * all : 0);
+    w->counts[TRIANGLE] += s->triangles * supersample * (points > 1 ? 7 : 1.5);
+    addDirect(s, pixels, w);
+    switch (o->lights.shadows) {
+    case VPL_LIGHT_SHADOWS_RAY:
+        w->counts[SHADOW_RAY] += (pairs * s->probe.facing + pixels * compensationRays(s, lights)) * s->depth;
+        w->counts[LIGHT] += pairs;
+        break;
+    case VPL_LIGHT_SHADOWS_MAP: {
+        const double texels = (double)vplHemiMap_Texels(o->lights.mapSize);
+        w->counts[TRIANGLE] += 0.4 * s->lights * s->triangles;
+        w->counts[TEXEL] += 0.5 * s->lights * texels * s->overlap;
+        w->counts[SHADOW_RAY] += pixels * compensationRays(s, lights) * s->depth;
+        w->counts[LIGHT] += pairs * (6 + 16 * s->probe.facing);
+        break;
+    }
+    case VPL_LIGHT_SHADOWS_CLUSTER:
+        w->counts[LIGHT] += pairs * 4;
+        break;
+    default:
+        w->counts[LIGHT] += pairs;
+    }
+    if (s->plan->showsPatches) {
+        w->counts[PIXEL] += 0.15 * all * points;
+        w->counts[TRIANGLE] += 2.0 * s->plan->patches * points;
+    }
+}
+
+// Rays of paths: to a surface, to an emitter from there, and on. Paths end where they leave the scene; those that carry
+// less than a quarter of their light in all colours end by chance.
+static void addPaths(const Scale* s, double paths, vplWork* w)
+{
+    const double stays = s->probe.enclosed, kept = fmin(sqrt(s->reflectance), 0.98);
+    const double whole = kept > 0 ? ceil(log(0.25) / log(fmax(kept, 1e-3))) : 0;
+    double vertices = 0, arrive = 1;
+    for (int k = 0; k < 64 && k <= s->plan->options.maxBounces + (s->plan->options.maxBounces < 0 ? 65 : 0);
+         k++) {
+        vertices += arrive;
+        arrive *= stays * (k < whole ? 1 : kept);
+    }
+    const double rays = paths * (1 + s->probe.seen * (2 * vertices - 1));
+    w->counts[PATH_RAY] += rays * s->pathDepth * (s->plan->splitsLight ? 1.3 : 1);
+}
+
+static void addMaps(double faces, double size, const Scale* s, vplWork* w)
+{
+    w->counts[TEXEL] += faces * size * size * s->overlap;
+    w->counts[TRIANGLE] += faces * s->triangles;
+}
+
+static void addParaboloids(double lights, const Scale* s, vplWork* w)
+{
+    const vplSsvpOptions* o = &s->plan->options.ssvp;
+    const double maps = fmin(lights, o->clusters) * o->hemispheres, size = o->paraboloidSize;
+    w->counts[TEXEL] += 8 * maps * size * size;
+    w->counts[TRIANGLE] += 0.3 * maps * s->triangles;
+}
+
+static double facesOf(const vplPlan* p, bool reflective)
+{
+    double faces = 0;
+    for (int i = 0; i < p->emitterCount; i++) {
+        const vplEmitterType type = p->emitters[i].type;
+        faces += reflective ? (type == VPL_EMITTER_POINT ? 6 : 1) : (type != VPL_EMITTER_DIRECTIONAL ? 6 : 0);
+    }
+    return faces;
+}
+
+static vplWork workOf(const Scale* s, vplStageId id)
+{
+    const vplPlan* p = s->plan;
+    const vplRenderOptions* o = &p->options;
+    const double pairs = s->sides * s->sides;
+    vplWork w = {{0}};
+    switch (id) {
+    case VPL_STAGE_GEOMETRY:
+        w.counts[BUILD] = s->triangles * (p->castsRays ? 1 : 0.15);
+        break;
+    case VPL_STAGE_EMITTER_MAPS:
+        addMaps(facesOf(p, false), o->shadow.mapSize, s, &w);
+        break;
+    case VPL_STAGE_REFLECTIVE_MAPS:
+        addMaps(facesOf(p, true), o->shadow.rsmSize, s, &w);
+        break;
+    case VPL_STAGE_PARTICLES:
+        w.counts[PATH_RAY] = s->lights * s->pathDepth;
+        break;
+    case VPL_STAGE_FIRST_BOUNCE: // rays test which light leaves the scene
+        w.counts[PATH_RAY] = (double)o->ssvp.firstBounce * o->ssvp.oversampling * s->pathDepth;
+        break;
+    case VPL_STAGE_PARABOLOIDS:
+        addParaboloids(o->ssvp.firstBounce, s, &w);
+        break;
+    case VPL_STAGE_SECOND_PARABOLOIDS:
+        addParaboloids(o->ssvp.secondBounce, s, &w);
+        break;
+    case VPL_STAGE_SIDES:
+        w.counts[PATH_RAY] = 90.0 * p->patches * s->pathDepth;
+        break;
+    case VPL_STAGE_FORM_FACTORS:
+        w.counts[FORM_FACTOR] =
+            p->linked ? 4000 * s->sides
+                      : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) * s->depth;
+        break;
+    case VPL_STAGE_PATCH_LIGHT:
+        w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples * fmax(s->emitters, s->lamps) * s->depth;
+        break;
+    case VPL_STAGE_SOLUTION: // about 20 sweeps
+        w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.55 * pairs;
+        break;
+    case VPL_STAGE_PICTURE:
+        addPicture(s, &w);
+        break;
+    case VPL_STAGE_PATHS:
+        addPaths(s, s->pixels * (vplPathsAreOpen(p) ? 32 : o->path.samples), &w);
+        break;
+    default: // little
+        break;
+    }
+    return w;
+}
+
+// Keller's lights of step 0 lie on area lights; elsewhere they are the emitters themselves, which cast shadows by maps.
+static double drawnLights(const vplPlan* p, const vplGeometry* g)
+{
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !g->emits;
+    return (double)p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
+}
+
+void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PLAN_STAGES])
+{
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    Scale s = {.plan = p,
+               .probe = {1, 0.8, 0.4},
+               .triangles = g->triangleCount,
+               .pixels = (double)p->options.output.width * p->options.output.height,
+               .lights = drawnLights(p, g),
+               .lamps = g->emits,
+               .area = vplGeometry_Area(g),
+               .sides = p->patchSides,
+               .emitters = p->emitterCount,
+               .reflectance = vplGeometry_MeanReflectance(g)};
+    const double doublings = log2(fmax(s.triangles, 2) / 32);
+    s.depth = 1 + 0.1 * fmax(doublings, 0);
+    s.pathDepth = 1 + 0.06 * fmax(doublings, 0);
+    s.overlap = 1 + 0.1 * fmax(doublings, 0);
+    if (p->castsRays || g->triangleCount < 1000) {
+        s.probe = probe(g, &p->view, p->camera.near);
+    }
+    for (int i = 0; i < p->stageCount; i++) {
+        works[i] = workOf(&s, (vplStageId)p->stages[i].id);
+    }
+}
