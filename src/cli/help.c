@@ -11,9 +11,9 @@
 enum { WIDTH = 110, INDENT = 6, TEXT = 2048 };
 
 // Options that vpl help render explains first; most pictures need no others.
-static const char* const ESSENTIALS[] = {"method",    "preset",    "size",    "antialias",     "camera",
-                                         "particles", "spp",       "patches", "light-shadows", "pipeline",
-                                         "budget",    "max-error", "seed",    "show",          "aov"};
+static const char* const ESSENTIALS[] = {
+    "method",        "preset",   "size",    "antialias", "camera",    "particles", "spp",  "patches",
+    "light-shadows", "pipeline", "quality", "budget",    "max-error", "seed",      "show", "aov"};
 
 const Command COMMANDS[] = {
     {"render", RENDER, 1, runRender, "vpl render SCENE -o FILE [options]", "renders a picture",
