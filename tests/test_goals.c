@@ -185,6 +185,40 @@ TEST(WordsOfQualityStandForErrorsAndTimes, 1)
     vplScene_Destroy(scene);
 }
 
+// What was learnt of the error is saved, too: the render ends where it would have ended.
+TEST(ARenderThatWasSavedEndsAtTheSamePass, 2)
+{
+    vplScene* scene = loadScene(context, "room.json");
+    vplRenderOptions o = smallOptions();
+    const char* path = "/tmp/vpl-goals-state";
+    vplRenderStats whole;
+    o.stop.maxError = 0.05;
+    vplImage_Destroy(renderScene(scene, &o, &whole));
+    for (int saved = 1; saved <= whole.passes; saved += 2) {
+        vplRenderer* r;
+        vplRenderStats stats;
+        vplImage* image;
+        bool done = false;
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        for (int i = 0; i < saved; i++) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        assert_int_equal(vplRenderer_Save(r, path), VPL_SUCCESS);
+        vplRenderer_Destroy(r);
+        assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+        assert_int_equal(vplRenderer_Load(r, path, &done), VPL_SUCCESS);
+        while (!done) {
+            assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+        }
+        assert_int_equal(vplRenderer_GetImage(r, &image, &stats), VPL_SUCCESS);
+        assert_true(stats.passes == whole.passes && stats.imageHash == whole.imageHash);
+        vplImage_Destroy(image);
+        vplRenderer_Destroy(r);
+    }
+    remove(path);
+    vplScene_Destroy(scene);
+}
+
 // The mean square of the blocks' errors is that of the picture.
 TEST(BlocksShareTheError, 2)
 {

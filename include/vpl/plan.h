@@ -16,7 +16,7 @@ enum {
     VPL_MAX_DECISIONS = 24,
     VPL_MAX_STEPS_REPORTED = 64,
     VPL_PLAN_TEXT = 200, // bytes of a reason
-    // Paths per pixel in a pass of path tracing, large enough that threads seldom wait for each other.
+    // Most paths per pixel in a pass of path tracing, so many that threads seldom wait for each other.
     VPL_PATHS_PER_PASS = 32
 };
 
@@ -94,6 +94,7 @@ typedef struct vplPlan {
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights; // upper limit per pass
     int64_t drawCalls;     // per pass
+    int passes;            // that the options ask for; 0: a time or an error ends them
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
     int patches, patchSides;
     double longestEdge;      // longest edge of a patch, metres

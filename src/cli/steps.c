@@ -7,17 +7,6 @@
 
 #include <stdio.h>
 
-// Passes that the options ask for; 0 where a time or an error ends them.
-static int countPasses(const vplPlan* plan)
-{
-    const vplRenderOptions* o = &plan->options;
-    if (o->method != VPL_METHOD_PATH) {
-        return o->stop.passes;
-    }
-    return o->path.samples < VPL_MAX_SAMPLES ? (o->path.samples + VPL_PATHS_PER_PASS - 1) / VPL_PATHS_PER_PASS
-                                             : 0;
-}
-
 static vplResult getPicture(vplRenderer* r, bool layers, Picture* picture)
 {
     if (picture->passesAsked < 0) {
@@ -73,7 +62,7 @@ static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, int step
         saveState(a, r, picture);
     }
     if (partial && !a->noPartial) {
-        picture->passesAsked = countPasses(vplRenderer_GetPlan(r));
+        picture->passesAsked = vplRenderer_GetPlan(r)->passes;
         result = VPL_SUCCESS;
     }
     if (result == VPL_SUCCESS && a->errorMap != NULL) {

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "reference/path_trace.h"
+#include "reference/sparse_paths.h"
 #include "render/renderer.h"
 #include "render/replay.h"
 #include "render/stages/make.h"
@@ -20,6 +21,9 @@ enum { VERSION = 1, HEADER_BYTES = 96, CHECKSUM_BYTES = 8 };
 // Arrays that a file may have.
 enum { PASSES = 1, PATHS = 2, DIRECT = 4 };
 
+// Bytes of a pixel of the truth, and of what was concluded from them (streamTruth).
+enum { TRUTH_PIXEL_BYTES = 80, TRUTH_BYTES = 48 };
+
 static const char MAGIC[8] = {'V', 'P', 'L', 'S', 'T', 'A', 'T', 'E'};
 
 typedef struct Header {
@@ -27,6 +31,7 @@ typedef struct Header {
     uint64_t scene;              // vplScene_GetHash
     uint32_t width, height, parts;
     uint32_t passes, samples; // done; samples of path tracing
+    uint32_t truth;           // pixels that tell the error; 0: there are none
     uint64_t rays[2];         // of path tracing: of the picture and of its direct light
     double loss[2];           // of virtual lights by the clamp
 } Header;
@@ -85,12 +90,11 @@ static void streamFloats(Stream* s, float* values, size_t count)
 
 static void streamHeader(Stream* s, Header* h)
 {
-    uint32_t reserved = 0;
     s->at = sizeof MAGIC;
     streamWord(s, &h->version);
     streamWord(s, &h->textBytes);
     streamLong(s, &h->scene);
-    uint32_t* const words[] = {&h->width, &h->height, &h->parts, &h->passes, &h->samples, &reserved};
+    uint32_t* const words[] = {&h->width, &h->height, &h->parts, &h->passes, &h->samples, &h->truth};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         streamWord(s, words[i]);
     }
@@ -106,6 +110,7 @@ static size_t sizeOf(const Header* h)
     const size_t values = 3 * (size_t)h->width * (size_t)h->height, direct = (h->parts & DIRECT) != 0;
     size_t size = HEADER_BYTES + h->textBytes + CHECKSUM_BYTES;
     size += (h->parts & PASSES) != 0 ? values * (2 * sizeof(double) + (1 + direct) * sizeof(float)) : 0;
+    size += h->truth > 0 ? TRUTH_BYTES + (size_t)h->truth * TRUTH_PIXEL_BYTES : 0;
     size += (h->parts & PATHS) != 0 ? (1 + direct) * 2 * values * sizeof(double) : 0;
     return size;
 }
@@ -153,6 +158,54 @@ static void streamState(Stream* s, vplRenderer* r, uint32_t parts)
     }
 }
 
+// What was found of the error so far, on which it depends when the render ends.
+static void streamTruth(Stream* s, vplRenderer* r)
+{
+    const vplTruthState t = vplTruth_GetState(r->truth);
+    uint32_t each = (uint32_t)t.each, reserved = 0;
+    double spent = (double)r->runner.stats.rays - r->planRays;
+    streamWord(s, &each);
+    streamWord(s, &reserved);
+    streamDoubles(s, &r->judgedNoise, 1);
+    streamDoubles(s, &spent, 1);
+    streamDoubles(s, &r->error.noise, 1);
+    streamDoubles(s, &r->error.total, 1);
+    streamDoubles(s, &r->error.bound, 1);
+    for (int i = 0; i < t.count; i++) {
+        vplSparsePixel* p = &t.pixels[i];
+        uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y;
+        uint64_t rays = (uint64_t)p->rays;
+        streamWord(s, &x);
+        streamWord(s, &y);
+        streamDoubles(s, &p->sums[0].r, 3);
+        streamDoubles(s, &p->sums[1].r, 3);
+        streamLong(s, &rays);
+        streamDoubles(s, &t.weights[i], 1);
+        p->x = (int)x;
+        p->y = (int)y;
+        p->rays = (int64_t)rays;
+    }
+    for (int i = 0; i < t.count; i++) {
+        streamDoubles(s, &t.pixels[i].squares, 1);
+    }
+    vplTruth_SetPaths(r->truth, (int)each);
+    r->planRays = (double)r->runner.stats.rays - spent;
+}
+
+// True if what was read of the truth lies in the picture and has plausible counts.
+static bool isTruthValid(const vplRenderer* r)
+{
+    const vplTruthState t = vplTruth_GetState(r->truth);
+    const vplOutputOptions* o = &r->plan->options.output;
+    bool valid = t.each >= 1 && t.each <= VPL_MAX_SAMPLES / 2;
+    for (int i = 0; i < t.count && valid; i++) {
+        const vplSparsePixel* p = &t.pixels[i];
+        valid = p->x >= 0 && p->x < o->width && p->y >= 0 && p->y < o->height && p->rays >= 0 &&
+                p->rays < INT64_MAX / 4096;
+    }
+    return valid;
+}
+
 // Writes all options as lines "name=value", padded with empty lines to a multiple of 4 bytes.
 static void listOptions(const vplPlan* plan, vplByteBuffer* text)
 {
@@ -184,6 +237,9 @@ static Header describe(const vplRenderer* r, const vplByteBuffer* text)
                 .height = (uint32_t)o->height,
                 .parts = parts,
                 .passes = (uint32_t)r->done,
+                .truth = r->truth != NULL && r->asked.stop.maxError > 0
+                             ? (uint32_t)vplTruth_GetState(r->truth).count
+                             : 0,
                 .loss = {r->runner.loss.lost, r->runner.loss.all}};
     for (int i = 0; i < 1 + ((parts & DIRECT) != 0) && (parts & PATHS) != 0; i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
@@ -207,6 +263,9 @@ static vplResult save(vplRenderer* r, const vplByteBuffer* text, const char* pat
     memcpy(s.bytes + s.at, text->bytes, text->size);
     s.at += text->size;
     streamState(&s, r, h.parts);
+    if (h.truth > 0) {
+        streamTruth(&s, r);
+    }
     uint64_t checksum = vplState_Checksum(s.bytes, s.at);
     streamLong(&s, &checksum);
     const vplResult result = vplWriteFile(context, path, s.bytes, size);
@@ -346,8 +405,9 @@ static vplResult checkRender(const Loading* l)
             "--passes, --budget or --max-error",
             l->path);
     }
-    const bool counts = h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 && h->passes >= 1 &&
-                        h->passes <= VPL_MAX_SAMPLES &&
+    const bool truth = h->truth <= 1 << 16 && (h->truth == 0 || r->truth == NULL);
+    const bool counts = truth && h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 &&
+                        h->passes >= 1 && h->passes <= VPL_MAX_SAMPLES &&
                         ((h->parts & PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
     const bool fits = h->width == (uint32_t)r->plan->options.output.width &&
                       h->height == (uint32_t)r->plan->options.output.height && sizeOf(h) == l->size;
@@ -407,6 +467,11 @@ static vplResult loadState(Loading* l)
     TRY(openState(r, h->parts));
     l->stream.at = HEADER_BYTES + h->textBytes;
     streamState(&l->stream, r, h->parts);
+    if (h->truth > 0) {
+        TRY(vplTruth_Open(&r->runner.run, (int)h->truth, &r->truth));
+        streamTruth(&l->stream, r);
+        l->stream.finite = l->stream.finite && isTruthValid(r);
+    }
     if (!l->stream.finite) {
         return vplFail(r->runner.run.context, VPL_PARSE_ERROR, "%s: has sums that are no numbers", l->path);
     }
@@ -444,6 +509,13 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
     if (result != VPL_SUCCESS) { // the first pass would add to it; it makes all else anew
         vplImage_Destroy(r->direct);
         r->direct = NULL;
+        vplTruth_Destroy(r->truth);
+        r->truth = NULL;
+    }
+    const double asked = r->asked.stop.maxError, bound = r->error.bound;
+    if (result == VPL_SUCCESS && asked > 0 && bound >= 0 && bound <= asked) { // it had ended
+        *doneOut = true;
+        return VPL_SUCCESS;
     }
     return result == VPL_SUCCESS ? vplReview(r, doneOut) : result;
 }

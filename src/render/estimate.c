@@ -204,7 +204,9 @@ static void countDraws(const Scale* s, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
     const int64_t objects = (int64_t)s->objects, supersample = o->output.supersample;
+    p->passes = o->stop.passes;
     if (o->method == VPL_METHOD_PATH) {
+        p->passes = vplPathsAreOpen(p) ? 0 : vplCountPathPasses(p);
         p->paths = vplPathsAreOpen(p) ? 0 : (int64_t)s->pixels * o->path.samples;
         return;
     }

@@ -122,22 +122,24 @@ static vplResult refine(vplRenderer* r)
 
 int vplNextPaths(const vplRenderer* r)
 {
-    const int most = r->plan->options.path.samples - r->paths;
-    int paths = VPL_PATHS_PER_PASS;
-    if (r->plan->options.method != VPL_METHOD_PATH) {
+    const vplPlan* p = r->plan;
+    const int left = p->options.path.samples - r->paths;
+    if (p->options.method != VPL_METHOD_PATH) {
         return 0;
     }
+    const int most = vplPathsOfPass(p);
+    int paths = most;
     if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // twice as many in each pass
-        paths = r->paths < 1                    ? isfinite(r->deadline) ? 1 : 2
-                : r->paths < VPL_PATHS_PER_PASS ? r->paths
-                                                : VPL_PATHS_PER_PASS;
+        const int first = isfinite(r->deadline) ? 1 : 2;
+        paths = r->paths < first ? first : r->paths;
+        paths = paths < most ? paths : most;
     }
     if (isfinite(r->deadline) && r->paths > 0) {
         const double each = r->passMs / r->paths;
-        const int fit = (int)fmin(VPL_PATHS_PER_PASS, (leftOf(r) + 0.02 * r->asked.stop.budgetMs) / each);
+        const int fit = (int)fmin(most, (leftOf(r) + 0.02 * r->asked.stop.budgetMs) / each);
         paths = fit < paths ? fit > 1 ? fit : 1 : paths;
     }
-    return paths < most || most <= 0 ? paths : most;
+    return left <= 0 || paths < left ? paths : left;
 }
 
 // ---- errors

@@ -88,30 +88,50 @@ static int choosePixels(vplTruth* t, const vplImage* image, int wanted, double o
 
 // ---- their paths
 
-static vplResult create(const vplRun* run, const vplImage* picture, vplTruth* t)
+static vplResult open(const vplRun* run, int count, vplTruth* t)
 {
-    const int wanted = t->pixelCount < MAX_PIXELS ? t->pixelCount : MAX_PIXELS;
-    t->pixels = vplArena_AllocZero(t->arena, (size_t)wanted, sizeof *t->pixels);
-    t->weights = vplArena_Alloc(t->arena, (size_t)wanted, sizeof *t->weights);
+    const vplOutputOptions* o = &run->plan->options.output;
+    t->pixelCount = o->width * o->height;
+    t->pixels = vplArena_AllocZero(t->arena, (size_t)count, sizeof *t->pixels);
+    t->weights = vplArena_AllocZero(t->arena, (size_t)count, sizeof *t->weights);
     TRY(vplArena_Check(t->arena));
     vplPathDef def = vplDescribePaths(run->plan, run->plan->options.output.show);
     def.seed ^= SEED;
     def.lastBounce = VPL_MAX_BOUNCES;
-    const vplRandom4 r = vplRandomAt(def.seed, TRUTH_STREAM, 0);
-    const int count = choosePixels(t, picture, wanted, (double)vplUnitFloat(r.v[0]));
-    TRY(vplSparsePaths_Init(&t->paths, run->results[VPL_STAGE_GEOMETRY], &def, t->pixels, count));
-    return vplSparsePaths_Trace(&t->paths, FIRST_PATHS, (vplProgressRange){run->progress, run->runner, 1, 1});
+    return vplSparsePaths_Init(&t->paths, run->results[VPL_STAGE_GEOMETRY], &def, t->pixels, count);
+}
+
+vplResult vplTruth_Open(const vplRun* run, int count, vplTruth** truthOut)
+{
+    vplArena* arena = vplArena_Create(run->context);
+    vplTruth* t = vplArena_AllocZero(arena, 1, sizeof *t);
+    vplResult result = vplArena_Check(arena);
+    if (result == VPL_SUCCESS) {
+        t->arena = arena;
+        result = open(run, count, t);
+    }
+    return vplArena_Deliver(arena, result, t, truthOut);
+}
+
+vplTruthState vplTruth_GetState(const vplTruth* t)
+{
+    return (vplTruthState){t->pixels, t->weights, t->paths.count, t->paths.done};
+}
+
+void vplTruth_SetPaths(vplTruth* truth, int each)
+{
+    truth->paths.done = each;
 }
 
 vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth** truthOut)
 {
-    vplArena* arena = vplArena_Create(run->context);
-    vplTruth* t = vplArena_AllocZero(arena, 1, sizeof *t);
-    TRY(vplArena_Check(arena) == VPL_SUCCESS ? VPL_SUCCESS
-                                             : vplArena_Deliver(arena, VPL_OUT_OF_MEMORY, t, truthOut));
-    t->arena = arena;
-    t->pixelCount = picture->width * picture->height;
-    const vplResult result = create(run, picture, t);
+    const int pixels = picture->width * picture->height;
+    vplTruth* t;
+    TRY(vplTruth_Open(run, pixels < MAX_PIXELS ? pixels : MAX_PIXELS, &t));
+    const vplRandom4 r = vplRandomAt(t->paths.scene.def.seed, TRUTH_STREAM, 0);
+    t->paths.count = choosePixels(t, picture, t->paths.count, (double)vplUnitFloat(r.v[0]));
+    const vplResult result =
+        vplSparsePaths_Trace(&t->paths, FIRST_PATHS, (vplProgressRange){run->progress, run->runner, 1, 1});
     if (result != VPL_SUCCESS) {
         vplTruth_Destroy(t);
         return result;

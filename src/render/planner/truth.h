@@ -24,6 +24,20 @@ vplResult vplTruth_Create(const vplRun* run, const vplImage* picture, vplTruth**
 // NULL is allowed.
 void vplTruth_Destroy(vplTruth* truth);
 
+// The chosen pixels with their paths so far, for saving them. A truth that is made from them goes on to the same bits.
+typedef struct vplTruthState {
+    struct vplSparsePixel* pixels;
+    double* weights;
+    int count;
+    int each; // paths of each half of a pixel
+} vplTruthState;
+
+vplTruthState vplTruth_GetState(const vplTruth* truth);
+
+// A truth of `count` pixels for a picture of the run's plan, all 0 and to be filled in; vplTruth_SetPaths ends that.
+vplResult vplTruth_Open(const vplRun* run, int count, vplTruth** truthOut);
+void vplTruth_SetPaths(vplTruth* truth, int each);
+
 // Traces as many paths again as there are.
 vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth);
 

@@ -64,6 +64,9 @@ static inline bool vplPathsAreOpen(const vplPlan* plan)
     return plan->options.method == VPL_METHOD_PATH && plan->options.path.samples == VPL_MAX_SAMPLES;
 }
 
+// Most paths per pixel in a pass of path tracing.
+int vplPathsOfPass(const vplPlan* plan);
+
 // Passes of a path-traced picture whose number of paths is given.
 int vplCountPathPasses(const vplPlan* plan);
 

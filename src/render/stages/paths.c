@@ -3,9 +3,19 @@
 #include "reference/path_trace.h"
 #include "render/stages/make.h"
 
+// A pass of large pictures takes a few seconds, too.
+enum { PATHS_OF_PASS = 4000000 };
+
+int vplPathsOfPass(const vplPlan* plan)
+{
+    const int64_t fit = PATHS_OF_PASS / ((int64_t)plan->options.output.width * plan->options.output.height);
+    return fit < 1 ? 1 : fit < VPL_PATHS_PER_PASS ? (int)fit : VPL_PATHS_PER_PASS;
+}
+
 int vplCountPathPasses(const vplPlan* plan)
 {
-    return (plan->options.path.samples + VPL_PATHS_PER_PASS - 1) / VPL_PATHS_PER_PASS;
+    const int each = vplPathsOfPass(plan);
+    return (int)(((int64_t)plan->options.path.samples + each - 1) / each);
 }
 
 // The result of the stage.
