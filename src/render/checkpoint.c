@@ -5,13 +5,13 @@
 #include "render/checkpoint.h"
 
 #include "base/file.h"
-#include "base/hash.h"
 #include "reference/path_trace.h"
 #include "reference/sparse_paths.h"
 #include "render/renderer.h"
 #include "render/replay.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
+#include "render/state_stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,71 +36,19 @@ typedef struct Header {
     double loss[2];           // of virtual lights by the clamp
 } Header;
 
-// ---- words
-
-// A file in memory that is written or read, front to back, by the same functions.
-typedef struct Stream {
-    uint8_t* bytes;
-    size_t at;
-    bool writes, finite; // finite: every number that was read is
-} Stream;
-
-static void streamWord(Stream* s, uint32_t* word)
-{
-    uint8_t* b = s->bytes + s->at;
-    s->at += 4;
-    if (s->writes) {
-        for (int i = 0; i < 4; i++) {
-            b[i] = (uint8_t)(*word >> 8 * i);
-        }
-    } else {
-        *word = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-    }
-}
-
-static void streamLong(Stream* s, uint64_t* value)
-{
-    uint32_t low = (uint32_t)*value, high = (uint32_t)(*value >> 32);
-    streamWord(s, &low);
-    streamWord(s, &high);
-    *value = (uint64_t)high << 32 | low;
-}
-
-static void streamDoubles(Stream* s, double* values, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        uint64_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        streamLong(s, &bits);
-        memcpy(&values[i], &bits, sizeof bits);
-        s->finite = s->finite && isfinite(values[i]);
-    }
-}
-
-static void streamFloats(Stream* s, float* values, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        uint32_t bits;
-        memcpy(&bits, &values[i], sizeof bits);
-        streamWord(s, &bits);
-        memcpy(&values[i], &bits, sizeof bits);
-        s->finite = s->finite && isfinite(values[i]);
-    }
-}
-
-static void streamHeader(Stream* s, Header* h)
+static void streamHeader(vplStream* s, Header* h)
 {
     s->at = sizeof MAGIC;
-    streamWord(s, &h->version);
-    streamWord(s, &h->textBytes);
-    streamLong(s, &h->scene);
+    vplStream_Word(s, &h->version);
+    vplStream_Word(s, &h->textBytes);
+    vplStream_Long(s, &h->scene);
     uint32_t* const words[] = {&h->width, &h->height, &h->parts, &h->passes, &h->samples, &h->truth};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        streamWord(s, words[i]);
+        vplStream_Word(s, words[i]);
     }
-    streamLong(s, &h->rays[0]);
-    streamLong(s, &h->rays[1]);
-    streamDoubles(s, h->loss, 2);
+    vplStream_Long(s, &h->rays[0]);
+    vplStream_Long(s, &h->rays[1]);
+    vplStream_Doubles(s, h->loss, 2);
     s->at = HEADER_BYTES;
 }
 
@@ -115,21 +63,6 @@ static size_t sizeOf(const Header* h)
     return size;
 }
 
-uint64_t vplState_Checksum(const uint8_t* bytes, size_t size)
-{
-    Stream s = {.bytes = (uint8_t*)bytes};
-    uint32_t words[1024];
-    uint64_t state = 0;
-    while (s.at < size) {
-        size_t n = 0;
-        for (; n < 1024 && s.at < size; n++) {
-            streamWord(&s, &words[n]);
-        }
-        state = vplHashWords(state, words, n);
-    }
-    return state;
-}
-
 // ---- the state of a renderer
 
 // The arrays of a plan's renderer; 0: it has no state between passes.
@@ -141,52 +74,52 @@ static uint32_t partsOf(const vplPlan* p)
     return parts | (parts != 0 && p->splitsLight && (paths || onSurfaces) ? DIRECT : 0);
 }
 
-static void streamState(Stream* s, vplRenderer* r, uint32_t parts)
+static void streamState(vplStream* s, vplRenderer* r, uint32_t parts)
 {
     for (int i = 0; i < 1 + ((parts & DIRECT) != 0) && (parts & PATHS) != 0; i++) {
         const vplPathSums sums = vplPathTracer_GetSums(vplGetPathTracer(&r->runner.run, i > 0));
-        streamDoubles(s, sums.values, sums.count);
+        vplStream_Doubles(s, sums.values, sums.count);
     }
     if ((parts & PASSES) != 0) {
         const size_t values = vplValueCount(r->base);
-        streamFloats(s, r->base->pixels, values);
-        streamDoubles(s, r->sums[0], values);
-        streamDoubles(s, r->sums[1], values);
+        vplStream_Floats(s, r->base->pixels, values);
+        vplStream_Doubles(s, r->sums[0], values);
+        vplStream_Doubles(s, r->sums[1], values);
         if ((parts & DIRECT) != 0) {
-            streamFloats(s, r->direct->pixels, values);
+            vplStream_Floats(s, r->direct->pixels, values);
         }
     }
 }
 
 // What was found of the error so far, on which it depends when the render ends.
-static void streamTruth(Stream* s, vplRenderer* r)
+static void streamTruth(vplStream* s, vplRenderer* r)
 {
     const vplTruthState t = vplTruth_GetState(r->truth);
     uint32_t each = (uint32_t)t.each, reserved = 0;
     double spent = (double)r->runner.stats.rays - r->planRays;
-    streamWord(s, &each);
-    streamWord(s, &reserved);
-    streamDoubles(s, &r->judgedNoise, 1);
-    streamDoubles(s, &spent, 1);
-    streamDoubles(s, &r->error.noise, 1);
-    streamDoubles(s, &r->error.total, 1);
-    streamDoubles(s, &r->error.bound, 1);
+    vplStream_Word(s, &each);
+    vplStream_Word(s, &reserved);
+    vplStream_Doubles(s, &r->judgedNoise, 1);
+    vplStream_Doubles(s, &spent, 1);
+    vplStream_Doubles(s, &r->error.noise, 1);
+    vplStream_Doubles(s, &r->error.total, 1);
+    vplStream_Doubles(s, &r->error.bound, 1);
     for (int i = 0; i < t.count; i++) {
         vplSparsePixel* p = &t.pixels[i];
         uint32_t x = (uint32_t)p->x, y = (uint32_t)p->y;
         uint64_t rays = (uint64_t)p->rays;
-        streamWord(s, &x);
-        streamWord(s, &y);
-        streamDoubles(s, &p->sums[0].r, 3);
-        streamDoubles(s, &p->sums[1].r, 3);
-        streamLong(s, &rays);
-        streamDoubles(s, &t.weights[i], 1);
+        vplStream_Word(s, &x);
+        vplStream_Word(s, &y);
+        vplStream_Doubles(s, &p->sums[0].r, 3);
+        vplStream_Doubles(s, &p->sums[1].r, 3);
+        vplStream_Long(s, &rays);
+        vplStream_Doubles(s, &t.weights[i], 1);
         p->x = (int)x;
         p->y = (int)y;
         p->rays = (int64_t)rays;
     }
     for (int i = 0; i < t.count; i++) {
-        streamDoubles(s, &t.pixels[i].squares, 1);
+        vplStream_Doubles(s, &t.pixels[i].squares, 1);
     }
     vplTruth_SetPaths(r->truth, (int)each);
     r->planRays = (double)r->runner.stats.rays - spent;
@@ -254,7 +187,7 @@ static vplResult save(vplRenderer* r, const vplByteBuffer* text, const char* pat
     vplContext* context = r->runner.run.context;
     Header h = describe(r, text);
     const size_t size = sizeOf(&h);
-    Stream s = {.bytes = vplAllocZero(context, size, 1), .writes = true};
+    vplStream s = {.bytes = vplAllocZero(context, size, 1), .writes = true};
     if (s.bytes == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
@@ -267,7 +200,7 @@ static vplResult save(vplRenderer* r, const vplByteBuffer* text, const char* pat
         streamTruth(&s, r);
     }
     uint64_t checksum = vplState_Checksum(s.bytes, s.at);
-    streamLong(&s, &checksum);
+    vplStream_Long(&s, &checksum);
     const vplResult result = vplWriteFile(context, path, s.bytes, size);
     vplFree(context, s.bytes);
     return result;
@@ -298,7 +231,7 @@ vplResult vplRenderer_Save(vplRenderer* r, const char* path)
 typedef struct Loading {
     vplRenderer* renderer;
     const char* path;
-    Stream stream;
+    vplStream stream;
     size_t size; // of the file
     Header header;
 } Loading;
@@ -323,7 +256,7 @@ static vplResult checkFile(Loading* l)
     }
     uint64_t checksum = 0;
     l->stream.at = l->size - CHECKSUM_BYTES;
-    streamLong(&l->stream, &checksum);
+    vplStream_Long(&l->stream, &checksum);
     if (checksum != vplState_Checksum(l->stream.bytes, l->size - CHECKSUM_BYTES) ||
         l->header.textBytes > l->size - least || l->header.textBytes % 4 != 0) {
         return vplFail(context, VPL_PARSE_ERROR,

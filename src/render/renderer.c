@@ -8,42 +8,9 @@
 #include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
-#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>
-
-// ---- histories
-
-// Opens the history that the options name, or a new one where there is none or another renderer uses it.
-static vplResult openHistory(const vplScene* scene, vplHistory* shared, vplHistory** historyOut)
-{
-    if (shared != NULL && shared->context != scene->context) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplRenderOptions.sequence.history was made with another context than the scene's");
-    }
-    if (shared != NULL && shared->sceneStamp != 0 && shared->sceneStamp != scene->stamp) {
-        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
-                       "vplRenderOptions.sequence.history is of another scene, or something was added to the "
-                       "scene since");
-    }
-    if (shared == NULL || shared->busy) {
-        return vplHistory_Create(scene->context, historyOut);
-    }
-    shared->busy = true;
-    shared->sceneStamp = scene->stamp;
-    *historyOut = shared;
-    return VPL_SUCCESS;
-}
-
-static void closeHistory(vplHistory* history)
-{
-    if (history->busy) { // it is the caller's
-        history->busy = false;
-    } else {
-        vplHistory_Destroy(history);
-    }
-}
 
 // ---- plans
 
@@ -84,7 +51,11 @@ vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool
 static bool watch(void* user, double fraction)
 {
     vplRenderer* r = user;
-    if (vplClockMs() > r->deadline + 0.04 * r->asked.stop.budgetMs && vplRenderer_HasPicture(r)) {
+    const double now = vplClockMs(), budget = r->asked.stop.budgetMs;
+    r->gap = fmax(r->gap, fmin(now - r->watched, 0.3 * budget));
+    r->watched = now;
+    if (isfinite(r->deadline) && now + 0.7 * r->gap > r->deadline + 0.04 * budget &&
+        vplRenderer_HasPicture(r)) {
         r->late = true;
         return false;
     }
@@ -97,15 +68,16 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     vplContext* context = vplScene_GetContext(scene);
     const double start = vplClockMs(), cpuStart = vplCpuMs();
     vplHistory* history;
-    TRY(openHistory(scene, options->sequence.history, &history));
+    TRY(vplHistory_Open(scene, options->sequence.history, &history));
     vplRenderer* r = vplAllocZero(context, 1, sizeof *r);
     if (r == NULL) {
-        closeHistory(history);
+        vplHistory_Close(history);
         return VPL_OUT_OF_MEMORY;
     }
     r->asked = *options;
     vplResolveQuality(&r->asked);
     r->start = start;
+    r->watched = start;
     r->cpuStart = cpuStart;
     r->deadline = r->asked.stop.budgetMs > 0 ? start + r->asked.stop.budgetMs : INFINITY;
     r->runner = vplRunner_Begin(scene, history);
@@ -128,7 +100,7 @@ void vplRenderer_Destroy(vplRenderer* r)
         vplTruth_Destroy(r->truth);
         vplImage_Destroy(r->kept.image);
         vplPlan_Destroy(r->kept.plan);
-        closeHistory(r->runner.history);
+        vplHistory_Close(r->runner.history);
         vplFree(r->runner.run.context, r);
     }
 }
@@ -319,7 +291,7 @@ vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
     if (r->plan->options.method == VPL_METHOD_PATH) {
         TRY(vplResolvePaths(run, imageOut));
         r->error.noise = r->error.total = run->stats->relativeErrorEstimate;
-        r->error.bound = 1.03 * r->error.noise;
+        r->error.bound = 1.06 * r->error.noise;
         return VPL_SUCCESS;
     }
     TRY(r->plan->progressive ? refreshLights(r) : VPL_SUCCESS);

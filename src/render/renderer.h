@@ -49,6 +49,8 @@ struct vplRenderer {
     double baseMs, lastMs;  // of its last pass: time of direct light, and the rest
     double deadline;        // ms; infinite: none
     bool late;              // the deadline has ended a step
+    double watched;         // ms, when progress was last reported
+    double gap; // ms, longest time between two reports: so much later a pass may end that is cancelled
     vplKeptPicture kept;
     bool
         showsKept; // the kept picture was given to the caller, because it is better than that of the plan under way

@@ -43,6 +43,35 @@ void vplHistory_Destroy(vplHistory* history)
     }
 }
 
+vplResult vplHistory_Open(const vplScene* scene, vplHistory* shared, vplHistory** historyOut)
+{
+    if (shared != NULL && shared->context != scene->context) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.sequence.history was made with another context than the scene's");
+    }
+    if (shared != NULL && shared->sceneStamp != 0 && shared->sceneStamp != scene->stamp) {
+        return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                       "vplRenderOptions.sequence.history is of another scene, or something was added to the "
+                       "scene since");
+    }
+    if (shared == NULL || shared->busy) {
+        return vplHistory_Create(scene->context, historyOut);
+    }
+    shared->busy = true;
+    shared->sceneStamp = scene->stamp;
+    *historyOut = shared;
+    return VPL_SUCCESS;
+}
+
+void vplHistory_Close(vplHistory* history)
+{
+    if (history->busy) { // it is the caller's
+        history->busy = false;
+    } else {
+        vplHistory_Destroy(history);
+    }
+}
+
 // ---- progress and time
 
 vplRunner vplRunner_Begin(const vplScene* scene, vplHistory* history)

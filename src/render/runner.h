@@ -41,6 +41,10 @@ typedef struct vplRunner {
     size_t peakBytes; // most that the context held before its counter was reset
 } vplRunner;
 
+// Opens the history that the options name, or a new one where there is none or another renderer uses it.
+vplResult vplHistory_Open(const vplScene* scene, vplHistory* shared, vplHistory** historyOut);
+void vplHistory_Close(vplHistory* history);
+
 // A runner without a plan. It borrows the history.
 vplRunner vplRunner_Begin(const vplScene* scene, vplHistory* history);
 

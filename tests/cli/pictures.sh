@@ -162,6 +162,6 @@ for show in indirect bounce:0 bounce:2; do
     succeeds "PathsShow_$show" "$vpl" render "$room" $base $paths -o "$out/h.png" --show $show --quiet
 done
 "$vpl" render "$room" $base $paths -o "$out/h.png" -v 2>"$scratch/told"
-check PathsSayTheirError grep -q "remaining error about" "$scratch/told"
+check PathsSayTheirError grep -q "the error is about" "$scratch/told"
 refuses PathsAreNotDocumented 2 "physical lighting only" "$vpl" render "$room" $paths --lighting documented -o "$out/h.png"
 refuses PathsShowNoNormals 2 "bounce:K" "$vpl" render "$room" $paths --show normals -o "$out/h.png"

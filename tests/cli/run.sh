@@ -29,6 +29,7 @@ failed=0
 . "$folder/plan.sh"
 . "$folder/pictures.sh"
 . "$folder/frames.sh"
+. "$folder/goals.sh"
 . "$folder/save.sh"
 . "$folder/radiosity.sh"
 . "$folder/tradeoff.sh"

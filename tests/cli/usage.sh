@@ -158,7 +158,7 @@ unused "--tonemap has no effect on $out/u.pfm, which holds linear values" render
 succeeds NoEffectIsQuiet "$vpl" render "$room" $tiny --clusters 8 --quiet -o "$out/u.pfm"
 succeeds EffectOfTheUsualPipeline "$vpl" render "$room" --size 8x8 --method ssvp --interleave 2 --rsm-size 32 -o "$out/u.pfm"
 succeeds DefaultsDoNotWarn "$vpl" render "$room" $tiny -o "$out/u.pfm"
-"$vpl" info "$room" --spp 3 >"$scratch/stdout" 2>"$scratch/stderr"
+"$vpl" info "$room" --method keller --spp 3 >"$scratch/stdout" 2>"$scratch/stderr"
 equals NoEffectInInfo "vpl: warning: --spp has no effect with --method keller" "$(cat "$scratch/stderr")"
 rm "$out/u.pfm"
 succeeds HelpListsCommands "$vpl" help

@@ -67,6 +67,9 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 // Share of the time that may pass until the first picture; times are foreseen within a factor of two.
 static const double FIRST_SHARE = 0.25;
 
+// A plan whose first picture is foreseen to take so many times the time that is left is not begun.
+static const double HOPELESS = 0.8;
+
 vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
@@ -145,7 +148,7 @@ int vplNextPaths(const vplRenderer* r)
 // ---- errors
 
 // Of 512 pixels few have most of the error, so its estimate is uncertain to the upper side.
-static const double BOUND = 1.3; // standard errors
+static const double BOUND = 1.5; // standard errors
 
 void vplJudgePicture(vplRenderer* r, const vplImage* picture)
 {
@@ -199,6 +202,9 @@ static vplResult judge(vplRenderer* r, double asked, double ms)
     return result;
 }
 
+// Errors that a first pass may reach.
+static const double EARLY_ERROR = 0.08;
+
 static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
 {
     vplImage* image = NULL;
@@ -210,13 +216,14 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
         return VPL_SUCCESS;
     }
     const bool again = r->judgedNoise <= 0 || r->error.noise < 0.8 * r->judgedNoise;
+    const bool early = r->done == 1 && asked >= EARLY_ERROR;
     const bool ready =
-        !r->plan->progressive || (r->done >= 2 && (r->error.noise <= 0.9 * asked || r->done == 6));
+        !r->plan->progressive || early || (r->done >= 2 && (r->error.noise <= 0.9 * asked || r->done == 6));
     if (ready && again) {
         TRY(judge(r, asked, INFINITY));
         if (r->error.bound <= asked) {
             *doneOut = true;
-        } else {
+        } else if (!early || !r->plan->progressive) { // the first pass does not tell noise from bias
             return vplReconsider(r, asked, doneOut);
         }
     }
@@ -261,7 +268,9 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     const double asked = r->asked.stop.maxError;
     *doneOut = false;
     if (r->coarse) {
-        return refine(r);
+        TRY(refine(r));
+        *doneOut = !r->coarse && HOPELESS * r->plan->firstMs > leftOf(r);
+        return VPL_SUCCESS;
     }
     const bool complete = vplIsComplete(r);
     *doneOut = complete;

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "render/state_stream.h"
+
+#include "base/hash.h"
+#include "render/checkpoint.h"
+
+#include <math.h>
+#include <string.h>
+
+void vplStream_Word(vplStream* s, uint32_t* word)
+{
+    uint8_t* b = s->bytes + s->at;
+    s->at += 4;
+    if (s->writes) {
+        for (int i = 0; i < 4; i++) {
+            b[i] = (uint8_t)(*word >> 8 * i);
+        }
+    } else {
+        *word = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    }
+}
+
+void vplStream_Long(vplStream* s, uint64_t* value)
+{
+    uint32_t low = (uint32_t)*value, high = (uint32_t)(*value >> 32);
+    vplStream_Word(s, &low);
+    vplStream_Word(s, &high);
+    *value = (uint64_t)high << 32 | low;
+}
+
+void vplStream_Doubles(vplStream* s, double* values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint64_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        vplStream_Long(s, &bits);
+        memcpy(&values[i], &bits, sizeof bits);
+        s->finite = s->finite && isfinite(values[i]);
+    }
+}
+
+void vplStream_Floats(vplStream* s, float* values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, &values[i], sizeof bits);
+        vplStream_Word(s, &bits);
+        memcpy(&values[i], &bits, sizeof bits);
+        s->finite = s->finite && isfinite(values[i]);
+    }
+}
+
+uint64_t vplState_Checksum(const uint8_t* bytes, size_t size)
+{
+    vplStream s = {.bytes = (uint8_t*)bytes};
+    uint32_t words[1024];
+    uint64_t state = 0;
+    while (s.at < size) {
+        size_t n = 0;
+        for (; n < 1024 && s.at < size; n++) {
+            vplStream_Word(&s, &words[n]);
+        }
+        state = vplHashWords(state, words, n);
+    }
+    return state;
+}
