@@ -444,11 +444,9 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
         r->direct = NULL;
         vplTruth_Destroy(r->truth);
         r->truth = NULL;
+        return result;
     }
     const double asked = r->asked.stop.maxError, bound = r->error.bound;
-    if (result == VPL_SUCCESS && asked > 0 && bound >= 0 && bound <= asked) { // it had ended
-        *doneOut = true;
-        return VPL_SUCCESS;
-    }
-    return result == VPL_SUCCESS ? vplReview(r, doneOut) : result;
+    *doneOut = vplIsComplete(r) || (asked > 0 && bound >= 0 && bound <= asked);
+    return VPL_SUCCESS;
 }

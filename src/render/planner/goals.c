@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { MAX_TRUTH_PATHS = 2048 };
+enum { SURE_PATHS = 64, MAX_TRUTH_PATHS = 2048 }; // of a pixel of the truth
 
 // ---- what was asked for
 
@@ -169,14 +169,16 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
     }
 }
 
-// True where more paths would not change what follows from the error, or would cost more than they tell.
+// True where more paths would not change what follows from the error, or would cost more than they tell. With few paths
+// the spread is underestimated where rare paths carry much light, so another plan needs more of them.
 static bool isClear(const vplRenderer* r, double asked)
 {
-    const double goal = asked * r->judged.mean, spread = r->judged.spread;
+    const double goal = asked * r->judged.mean, square = r->judged.square, spread = r->judged.spread;
     const double spent = (double)r->runner.stats.rays - r->planRays;
-    return r->error.bound <= asked || r->judged.square - 2 * spread > goal * goal ||
-           spread < 0.15 * r->judged.square || vplTruth_Paths(r->truth) >= MAX_TRUTH_PATHS ||
-           (double)r->judged.rays * VPL_PATH_RAY > 0.3 * spent;
+    const bool large = square - 2 * spread > goal * goal || spread < 0.15 * square;
+    const int paths = vplTruth_Paths(r->truth);
+    return r->error.bound <= asked || (large && paths >= SURE_PATHS) || paths >= MAX_TRUTH_PATHS ||
+           (double)r->judged.rays * VPL_PATH_RAY > 0.5 * spent;
 }
 
 // Compares the picture with the truth; traces more of it until the error is clear, or a third of `ms` is over.
