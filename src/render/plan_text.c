@@ -124,12 +124,12 @@ static void putLook(Text* t, const vplPlan* p)
     put(t, "\na look at the scene");
     putRow(t, "picture");
     put(t,
-        "%.2g %% of it is background; above its surfaces %.2g %% of the directions are open, in %.2g %% "
+        "%.3g %% of it is background; above its surfaces %.3g %% of the directions are open, in %.3g %% "
         "something is near",
         100 * l->background, 100 * l->open, 100 * l->nearShare);
     putRow(t, "light");
     put(t,
-        "of %d virtual lights %.2g %% reach the picture, worth %.2g of as many equal ones; %.2g %% of the "
+        "of %d virtual lights %.3g %% reach the picture, worth %.2g of as many equal ones; %.3g %% of the "
         "particles leave",
         l->lights, 100 * l->reaching, l->worth, 100 * l->lightLeaving);
 }

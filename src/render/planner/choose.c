@@ -23,7 +23,7 @@ static bool chooseDirect(const vplRunner* r, vplPlan* p, double error)
     if (can && p->look.points > 0 && (share <= 0 || 1.5 * share < error)) {
         o->method = VPL_METHOD_DIRECT;
         vplDecide(p, "method",
-                  "reflected light is about %.2g %% of all, %.2g %% of the directions lead into the open",
+                  "reflected light is about %.3g %% of all, %.3g %% of the directions lead into the open",
                   100 * share, 100 * p->look.open);
         return true;
     }
@@ -63,7 +63,7 @@ static void chooseLights(vplPlan* p, double error)
     if (o->particles.placement == VPL_PLACEMENT_PARTICLES && p->look.lights > 0 && p->look.reaching < 0.3 &&
         large) {
         o->particles.placement = VPL_PLACEMENT_VIEW;
-        vplDecide(p, "placement", "%.2g %% of the lights reach what the camera sees", 100 * p->look.reaching);
+        vplDecide(p, "placement", "%.3g %% of the lights reach what the camera sees", 100 * p->look.reaching);
     }
 }
 
