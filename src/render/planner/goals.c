@@ -281,6 +281,7 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     } else if (isLight(r->asked.output.show)) {
         TRY(reviewTime(r, doneOut));
     }
-    *doneOut = *doneOut || isTooLate(r);
+    const bool changed = r->done == 0; // another plan, of which there is no pass yet
+    *doneOut = *doneOut || (changed ? HOPELESS * r->plan->firstMs > leftOf(r) : isTooLate(r));
     return VPL_SUCCESS;
 }
