@@ -106,4 +106,11 @@ vplScene* openScene(vplContext* context, const char* path);
 // Calls vplRender; a failure fails the test with the library's message. statsOut may be NULL.
 vplImage* renderScene(const vplScene* scene, const vplRenderOptions* options, vplRenderStats* statsOut);
 
+// Tests of times wait longer where a sanitizer watches each access to memory.
+#ifdef __SANITIZE_ADDRESS__
+#define TEST_SLOWDOWN 10
+#else
+#define TEST_SLOWDOWN 1
+#endif
+
 #endif

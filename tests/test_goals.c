@@ -83,7 +83,7 @@ TEST(EveryMethodHasAPictureInTime, 2)
         o.method = (vplMethod)method;
         o.stop.budgetMs = 100;
         vplImage* image = renderScene(scene, &o, &stats);
-        assert_true(stats.passes >= 1 && stats.totalMs < 1000); // other programs may run, too
+        assert_true(stats.passes >= 1 && stats.totalMs < 1000 * TEST_SLOWDOWN); // other programs may run, too
         double sum = 0;
         for (int k = 0; k < 3 * image->width * image->height; k++) {
             sum += (double)image->pixels[k];

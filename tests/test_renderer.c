@@ -120,7 +120,7 @@ TEST(AnErrorOrATimeEndsIt, 2)
     o.stop.budgetMs = 1e-6; // the first picture is always done
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_int_equal(stats.passes, 1);
-    o.stop.budgetMs = 300;
+    o.stop.budgetMs = 300 * TEST_SLOWDOWN;
     vplImage_Destroy(renderScene(scene, &o, &stats));
     assert_true(stats.passes > 1);
     vplScene_Destroy(scene);

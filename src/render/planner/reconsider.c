@@ -113,10 +113,7 @@ static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneO
     if (r->plan->progressive && r->done < SURE_PASSES && r->error.total < 2 * asked) {
         return VPL_SUCCESS;
     }
-    State upper = *s; // an error counts as reached only where its bound is
-    upper.bias = fmax(s->bias, r->error.bound * r->error.bound - s->noise);
-    const double finish = toFinish(&upper, square), finer = toRefine(&upper, square),
-                 paths = toTrace(s, square);
+    const double finish = toFinish(s, square), finer = toRefine(s, square), paths = toTrace(s, square);
     if (paths < finish && paths < finer) {
         return trace(r, doneOut);
     }
