@@ -3,7 +3,7 @@
 #include "pass_cases.h"
 
 #include "base/file.h"
-#include "render/checkpoint.h"
+#include "render/state_stream.h"
 
 #include <stdlib.h>
 #include <unistd.h>

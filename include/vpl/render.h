@@ -145,9 +145,9 @@ vplResult vplRenderer_Save(vplRenderer* renderer, const char* path);
 // bits of a render that was never stopped, on any machine. Scene and options must be those of the saved
 // render, but for options that say when it ends (passes, spp, budget, max-error, quality);
 // VPL_INVALID_ARGUMENT names what differs. VPL_PARSE_ERROR for files that are damaged, VPL_FILE_ERROR.
-// *doneOut is that of vplRenderer_Step. Times, and counts of rays, lights and draw calls of virtual lights,
-// are those since; statistics of passes and errors are of all. After a failure the renderer is as it was
-// before.
+// *doneOut is that of vplRenderer_Step. A state that was saved where another plan had just begun has no picture yet:
+// loading renders its first pass. Times, and counts of rays, lights and draw calls of virtual lights, are those since;
+// statistics of passes and errors are of all. After a failure the renderer is as it was before.
 vplResult vplRenderer_Load(vplRenderer* renderer, const char* path, bool* doneOut);
 
 // Ends a render: gets the picture as vplRenderer_GetImage does or, if layersOut is not NULL, the layers as

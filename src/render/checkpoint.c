@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Saves a render between two passes and goes on with it. A file has, all words little-endian: the 8 letters
-// VPLSTATE, a header, the options as text, the sums that the picture is made from, and a checksum. Reading
-// checks every size and value, because files come from anywhere.
-#include "render/checkpoint.h"
-
+// VPLSTATE, a header, the options as text, the sums that the picture is made from, and a checksum. Before the
+// first pass of a plan that replaces another there are no sums. Reading checks every size and value, because files come from anywhere.
 #include "base/file.h"
 #include "reference/path_trace.h"
 #include "reference/sparse_paths.h"
@@ -65,7 +63,7 @@ static size_t sizeOf(const Header* h)
 
 // ---- the state of a renderer
 
-// The arrays of a plan's renderer; 0: it has no state between passes.
+// The arrays of a plan's renderer after its first pass; 0: it has no state between passes.
 static uint32_t partsOf(const vplPlan* p)
 {
     const bool paths = p->options.method == VPL_METHOD_PATH;
@@ -139,30 +137,12 @@ static bool isTruthValid(const vplRenderer* r)
     return valid;
 }
 
-// Writes all options as lines "name=value", padded with empty lines to a multiple of 4 bytes.
-static void listOptions(const vplPlan* plan, vplByteBuffer* text)
-{
-    const vplRenderOptions replay = vplReplayOptions(plan);
-    int count;
-    const vplOption* options = vplGetOptions(&count);
-    for (int i = 0; i < count; i++) {
-        char value[64];
-        if (vplReplayText(&options[i], &replay, value)) {
-            vplByteBuffer_Append(text, options[i].name, strlen(options[i].name));
-            vplByteBuffer_Append(text, "=", 1);
-            vplByteBuffer_Append(text, value, strlen(value));
-            vplByteBuffer_Append(text, "\n", 1);
-        }
-    }
-    vplByteBuffer_Append(text, "\n\n\n", (4 - text->size % 4) % 4);
-}
-
 // ---- saving
 
 static Header describe(const vplRenderer* r, const vplByteBuffer* text)
 {
     const vplOutputOptions* o = &r->plan->options.output;
-    const uint32_t parts = partsOf(r->plan);
+    const uint32_t parts = r->done > 0 ? partsOf(r->plan) : 0;
     Header h = {.version = VERSION,
                 .textBytes = (uint32_t)text->size,
                 .scene = vplScene_GetHash(r->runner.run.scene),
@@ -212,15 +192,14 @@ vplResult vplRenderer_Save(vplRenderer* r, const char* path)
     if (partsOf(r->plan) == 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "a render that is drawn at once has no state to save; renders of several passes have "
-                       "one (--passes, "
-                       "--budget, --max-error), and path tracing");
+                       "one (--passes, --budget, --max-error), and path tracing");
     }
-    if (r->done == 0) {
+    if (!vplRenderer_HasPicture(r)) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "a renderer has no state to save before its first step");
     }
     vplByteBuffer text = {.context = context};
-    listOptions(r->plan, &text);
+    vplReplayList(r->plan, &text);
     const vplResult result = text.failed ? VPL_OUT_OF_MEMORY : save(r, &text, path);
     vplFree(context, text.bytes);
     return result;
@@ -324,14 +303,15 @@ static vplResult checkRender(const Loading* l)
                        "%s: saved with another scene, or the scene was changed since", l->path);
     }
     vplByteBuffer text = {.context = r->runner.run.context};
-    listOptions(r->plan, &text);
+    vplReplayList(r->plan, &text);
     const char *was = (const char*)l->stream.bytes + HEADER_BYTES, *is = (const char*)text.bytes;
     const vplResult result =
         text.failed ? VPL_OUT_OF_MEMORY
                     : checkOptions(l, (Lines){was, was + h->textBytes}, (Lines){is, is + text.size});
     vplFree(r->runner.run.context, text.bytes);
     TRY(result);
-    if (h->parts != partsOf(r->plan)) {
+    const uint32_t parts = partsOf(r->plan);
+    if (parts == 0 || h->parts != (h->passes > 0 ? parts : 0)) {
         return vplFail(
             context, VPL_INVALID_ARGUMENT,
             "%s: saved by a render of several passes, and this one is drawn at once: say when it ends, by "
@@ -340,7 +320,7 @@ static vplResult checkRender(const Loading* l)
     }
     const bool truth = h->truth <= 1 << 16 && (h->truth == 0 || r->truth == NULL);
     const bool counts = truth && h->rays[0] <= INT64_MAX / 4 && h->rays[1] <= INT64_MAX / 4 &&
-                        h->passes >= 1 && h->passes <= VPL_MAX_SAMPLES &&
+                        h->passes <= VPL_MAX_SAMPLES &&
                         ((h->parts & PATHS) == 0 || (h->samples >= 1 && h->samples <= VPL_MAX_SAMPLES));
     const bool fits = h->width == (uint32_t)r->plan->options.output.width &&
                       h->height == (uint32_t)r->plan->options.output.height && sizeOf(h) == l->size;
@@ -397,7 +377,7 @@ static vplResult loadState(Loading* l)
 {
     vplRenderer* r = l->renderer;
     const Header* h = &l->header;
-    TRY(openState(r, h->parts));
+    TRY(h->passes > 0 ? openState(r, h->parts) : VPL_SUCCESS); // else another plan had just begun
     l->stream.at = HEADER_BYTES + h->textBytes;
     streamState(&l->stream, r, h->parts);
     if (h->truth > 0) {
@@ -445,6 +425,9 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
         vplTruth_Destroy(r->truth);
         r->truth = NULL;
         return result;
+    }
+    if (r->done == 0) { // callers may ask for the picture of what was loaded
+        return vplRenderer_Step(r, doneOut);
     }
     const double asked = r->asked.stop.maxError, bound = r->error.bound;
     *doneOut = vplIsComplete(r) || (asked > 0 && bound >= 0 && bound <= asked);

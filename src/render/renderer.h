@@ -6,10 +6,10 @@
 #include "render/plan.h"
 #include "render/planner/truth.h"
 
-// The time of a ray of a path, with all that is computed for it, over that of a ray in a packet, of which passes with
-// virtual lights cast most (room, Sponza: 7 and 9). It is a number and not measured, so that the same plans are chosen on
-// every machine.
-#define VPL_PATH_RAY 8.0
+// The time of a ray of a path, with all that is computed for it, over that of a ray of a pass with virtual lights (room,
+// hall, sibenik, bunny, boxes: 1.5, 1.8, 1.7, 1.4, 1.2). It is a number and not measured, so that the same plans are
+// chosen on every machine.
+#define VPL_PATH_RAY 1.6
 
 // A picture of an earlier plan, which is shown as long as the plan under way has none that is better.
 typedef struct vplKeptPicture {

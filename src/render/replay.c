@@ -29,6 +29,23 @@ bool vplReplayText(const vplOption* option, const vplRenderOptions* options, cha
            vplRenderOptions_Get(options, option->name, text, 64) == VPL_SUCCESS;
 }
 
+void vplReplayList(const vplPlan* plan, vplByteBuffer* text)
+{
+    const vplRenderOptions replay = vplReplayOptions(plan);
+    int count;
+    const vplOption* options = vplGetOptions(&count);
+    for (int i = 0; i < count; i++) {
+        char value[64];
+        if (vplReplayText(&options[i], &replay, value)) {
+            vplByteBuffer_Append(text, options[i].name, strlen(options[i].name));
+            vplByteBuffer_Append(text, "=", 1);
+            vplByteBuffer_Append(text, value, strlen(value));
+            vplByteBuffer_Append(text, "\n", 1);
+        }
+    }
+    vplByteBuffer_Append(text, "\n\n\n", (4 - text->size % 4) % 4);
+}
+
 bool vplIsStop(const vplOption* option)
 {
     const bool grows = strcmp(option->name, "grow-from") == 0; // which light belongs to which pass

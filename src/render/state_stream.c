@@ -2,7 +2,6 @@
 #include "render/state_stream.h"
 
 #include "base/hash.h"
-#include "render/checkpoint.h"
 
 #include <math.h>
 #include <string.h>

@@ -14,10 +14,13 @@ typedef struct vplStream {
     bool writes, finite; // finite: every number that was read is
 } vplStream;
 
-// Each writes the values or replaces them by what is read, and goes on behind them.
+// These functions write the values, or replace them by the values that they read, and move `at` behind them.
 void vplStream_Word(vplStream* s, uint32_t* word);
 void vplStream_Long(vplStream* s, uint64_t* value);
 void vplStream_Doubles(vplStream* s, double* values, size_t count);
 void vplStream_Floats(vplStream* s, float* values, size_t count);
+
+// Computes the checksum of the first `size` bytes, a multiple of 4. It is the last word of a file.
+uint64_t vplState_Checksum(const uint8_t* bytes, size_t size);
 
 #endif

@@ -16,8 +16,8 @@ check PathsChoosePathTracing grep -q "render it by path" "$scratch/stdout"
 succeeds ClustersAreForSsvp "$vpl" info "$room" --clusters 4
 check ClustersChooseSsvp grep -q "render it by ssvp" "$scratch/stdout"
 
-succeeds AnErrorIsReached "$vpl" render "$room" $wee --max-error 0.15 -o "$out/g.pfm" --stats "$out/g.json" --error-map "$out/e.pfm"
-check TheErrorIsBelow test "$(figure relative_error_estimate | awk '{ print $1 <= 0.15 }')" = 1
+succeeds AnErrorIsReached "$vpl" render "$room" $wee --max-error 0.05 -o "$out/g.pfm" --stats "$out/g.json" --error-map "$out/e.pfm"
+check TheErrorIsBelow test "$(figure relative_error_estimate | awk '{ print $1 <= 0.05 }')" = 1
 check NoiseIsTold test -n "$(figure relative_noise)"
 check BiasIsTold test -n "$(figure relative_bias)"
 check TruthIsTold test -n "$(figure truth_paths_per_pixel)"
@@ -26,7 +26,7 @@ refuses AMapIsAPicture 2 "unknown picture format" "$vpl" render "$room" $wee -o 
 refuses AMapHasItsOwnName 2 "would be written there" "$vpl" render "$room" $wee -o "$out/g.pfm" --error-map "$out/g.pfm"
 
 # The same bits with other threads and instructions.
-succeeds AnErrorWithOneThread "$vpl" render "$room" $wee --max-error 0.15 -o "$out/h.pfm" --threads 1 --isa scalar
+succeeds AnErrorWithOneThread "$vpl" render "$room" $wee --max-error 0.05 -o "$out/h.pfm" --threads 1 --isa scalar
 check AnErrorGivesTheSameBits cmp -s "$out/g.pfm" "$out/h.pfm"
 
 # Without shadows no number of passes comes near the truth.

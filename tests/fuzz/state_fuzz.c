@@ -6,7 +6,7 @@
 
 #include "../plain_options.h"
 
-#include "render/checkpoint.h"
+#include "render/state_stream.h"
 
 #include <string.h>
 #include <sys/mman.h>

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { SURE_PATHS = 64, MAX_TRUTH_PATHS = 2048 }; // of a pixel of the truth
+enum { MAX_TRUTH_PATHS = 2048 }; // of a pixel
 
 // ---- what was asked for
 
@@ -67,7 +67,7 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 // Share of the time that may pass until the first picture; times are foreseen within a factor of two.
 static const double FIRST_SHARE = 0.25;
 
-// A plan whose first picture is foreseen to take so many times the time that is left is not begun.
+// A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.
 static const double HOPELESS = 0.8;
 
 vplResult vplRenderer_PlanFirst(vplRenderer* r)
@@ -162,6 +162,7 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
     const double square = fmax(r->judged.square, noise * noise), bias = square - noise * noise;
     const double doubt = bias > 0 ? r->judged.spread / bias : 0; // a bias that may be chance counts for less
     if (mean > 0) {
+        r->judged.mean = mean; // better known than that of a few pixels of the truth
         r->error.total = sqrt(noise * noise + bias * fmax(0, 1 - doubt * doubt)) / mean;
         r->error.bound = sqrt(square + BOUND * r->judged.spread) / mean;
     } else {
@@ -170,32 +171,35 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
 }
 
 // True where more paths would not change what follows from the error, or would cost more than they tell. With few paths
-// the spread is underestimated where rare paths carry much light, so another plan needs more of them.
-static bool isClear(const vplRenderer* r, double asked)
+// the spread is underestimated where rare paths carry much light, so another plan needs more of them. `before` is the
+// spread with half as many paths: where it falls no more, it is that of the choice of pixels.
+static bool isClear(const vplRenderer* r, double asked, bool plansAgain, double before)
 {
     const double goal = asked * r->judged.mean, square = r->judged.square, spread = r->judged.spread;
     const double spent = (double)r->runner.stats.rays - r->planRays;
-    const bool large = square - 2 * spread > goal * goal || spread < 0.15 * square;
-    const int paths = vplTruth_Paths(r->truth);
-    return r->error.bound <= asked || (large && paths >= SURE_PATHS) || paths >= MAX_TRUTH_PATHS ||
-           (double)r->judged.rays * VPL_PATH_RAY > 0.5 * spent;
+    const bool large = square - 2 * spread > goal * goal || spread < 0.15 * square || spread > 0.85 * before;
+    const int paths = vplTruth_Paths(r->truth), sure = plansAgain ? VPL_SURE_PATHS : 1;
+    return r->error.bound <= asked || (large && paths >= sure) || paths >= MAX_TRUTH_PATHS ||
+           (double)r->judged.rays * VPL_PATH_RAY > 0.25 * spent;
 }
 
 // Compares the picture with the truth; traces more of it until the error is clear, or a third of `ms` is over.
-static vplResult judge(vplRenderer* r, double asked, double ms)
+static vplResult judge(vplRenderer* r, double asked, bool plansAgain, double ms)
 {
     vplImage* image = NULL;
     vplRun* run = &r->runner.run;
     vplResult result = vplRenderer_Resolve(r, &image);
     const double start = vplClockMs();
+    double spread = INFINITY;
     if (result == VPL_SUCCESS && r->truth == NULL) {
         result = vplTruth_Create(run, image, &r->truth);
     }
     while (result == VPL_SUCCESS) {
         vplJudgePicture(r, image);
-        if (isClear(r, asked) || vplClockMs() - start > ms / 3) {
+        if (isClear(r, asked, plansAgain, spread) || vplClockMs() - start > ms / 3) {
             break;
         }
+        spread = r->judged.spread;
         result = vplTruth_Refine(run, r->truth);
     }
     r->judgedNoise = r->error.noise;
@@ -205,7 +209,7 @@ static vplResult judge(vplRenderer* r, double asked, double ms)
 }
 
 // Errors that a first pass may reach.
-static const double EARLY_ERROR = 0.08;
+static const double EARLY_ERROR = 0.03;
 
 static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
 {
@@ -222,7 +226,7 @@ static vplResult reviewError(vplRenderer* r, double asked, bool* doneOut)
     const bool ready =
         !r->plan->progressive || early || (r->done >= 2 && (r->error.noise <= 0.9 * asked || r->done == 6));
     if (ready && again) {
-        TRY(judge(r, asked, INFINITY));
+        TRY(judge(r, asked, !early || !r->plan->progressive, INFINITY));
         if (r->error.bound <= asked) {
             *doneOut = true;
         } else if (!early || !r->plan->progressive) { // the first pass does not tell noise from bias
@@ -239,7 +243,7 @@ static vplResult reviewTime(vplRenderer* r, bool* doneOut)
     const double budget = r->asked.stop.budgetMs;
     const bool asks = r->asked.method == VPL_METHOD_AUTO && r->plan->progressive && budget >= 300;
     if (asks && r->truth == NULL && r->done >= 4 && leftOf(r) < 0.84 * budget && leftOf(r) > 0.3 * budget) {
-        TRY(judge(r, 0, budget / 30));
+        TRY(judge(r, 0, true, budget / 30));
         return vplReconsider(r, 0, doneOut);
     }
     return VPL_SUCCESS;

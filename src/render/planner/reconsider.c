@@ -11,8 +11,12 @@
 // rays (room, cornell-area, sibenik, hall: 0.5 to 0.8, and 1.7 to 2.4).
 static const double FINER_BIAS = 0.55, FINER_COST = 2.2;
 
-// Pixels share lights, so the noise of few passes may happen to be larger than it is on average, and look like bias.
+// Passes after which the noise is known well. After fewer it is uncertain, because pixels share lights: where it is
+// estimated too low, the rest of the error looks like bias.
 enum { SURE_PASSES = 5 };
+
+// A render that goes on is judged again when its noise is 0.8 of what it was, after so many rays more.
+static const double LEAST_MORE = 0.56;
 
 // Squares of errors relative to the picture's mean, and rays.
 typedef struct State {
@@ -42,7 +46,7 @@ static State stateOf(const vplRenderer* r)
 static double toFinish(const State* s, double square)
 {
     const double left = square - s->bias;
-    return left > 0 ? s->spent * fmax(0, s->noise / left - 1) : INFINITY;
+    return left > 0 ? s->spent * fmax(LEAST_MORE, s->noise / left - 1) : INFINITY;
 }
 
 static double toRefine(const State* s, double square)
@@ -58,52 +62,45 @@ static double toTrace(const State* s, double square)
 
 // ---- the next plan
 
-// Tells the log why the plan changes.
-static void tell(const vplRenderer* r, const char* next)
+// Goes on with another plan, and tells the log why. The picture so far is kept until the new plan has one.
+static vplResult goOnWith(vplRenderer* r, const char* what, const vplRenderOptions* o, bool* doneOut)
 {
     vplLog(r->runner.run.context, VPL_LOG_INFO,
            "after %d passes the noise is %.3g %% and the error about %.3g %%: goes on with %s", r->done,
-           100 * fmax(0, r->error.noise), 100 * r->error.total, next);
+           100 * fmax(0, r->error.noise), 100 * r->error.total, what);
+    *doneOut = false;
+    TRY(vplRenderer_Keep(r, r->error.total));
+    return vplRenderer_Plan(r, o, false);
 }
 
 static vplResult trace(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
-    tell(r, "path tracing");
     o.method = VPL_METHOD_PATH;
-    *doneOut = false;
-    TRY(vplRenderer_Keep(r, r->error.total));
-    return vplRenderer_Plan(r, &o, false);
+    return goOnWith(r, "path tracing", &o, doneOut);
 }
 
 static vplResult refine(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
-    const int finer = r->plan->options.pipeline.interleave / 2;
-    tell(r, "fewer pixels that share lights");
-    o.method = r->plan->options.method;
-    o.lights.shadows = r->plan->options.lights.shadows;
-    o.particles = r->plan->options.particles;
-    o.output.antialias = r->plan->options.output.antialias < 16 && o.output.antialias == 8
-                             ? 16
-                             : r->plan->options.output.antialias;
-    o.pipeline.interleave = finer;
-    *doneOut = false;
-    TRY(vplRenderer_Keep(r, r->error.total));
-    return vplRenderer_Plan(r, &o, false);
+    const vplRenderOptions* before = &r->plan->options;
+    o.method = before->method;
+    o.lights.shadows = before->lights.shadows;
+    o.particles = before->particles;
+    o.output.antialias =
+        before->output.antialias < 16 && o.output.antialias == 8 ? 16 : before->output.antialias;
+    o.pipeline.interleave = before->pipeline.interleave / 2;
+    return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
 // All light instead of direct light alone.
 static vplResult addLights(vplRenderer* r, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
-    tell(r, "reflected light");
     o.method = VPL_METHOD_KELLER;
     o.lights.shadows = r->plan->options.lights.shadows;
     o.particles.count = 1000;
-    *doneOut = false;
-    TRY(vplRenderer_Keep(r, r->error.total));
-    return vplRenderer_Plan(r, &o, false);
+    return goOnWith(r, "reflected light", &o, doneOut);
 }
 
 // The way that needs least for the error.
@@ -113,7 +110,13 @@ static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneO
     if (r->plan->progressive && r->done < SURE_PASSES && r->error.total < 2 * asked) {
         return VPL_SUCCESS;
     }
-    const double finish = toFinish(s, square), finer = toRefine(s, square), paths = toTrace(s, square);
+    State upper = *s;
+    if (vplTruth_Paths(r->truth) >=
+        VPL_SURE_PATHS) { // the bound of the error does not become much closer to it
+        upper.bias = fmax(s->bias, r->error.bound * r->error.bound - s->noise);
+    }
+    const double finish = toFinish(&upper, square), finer = toRefine(&upper, square),
+                 paths = toTrace(s, square);
     if (paths < finish && paths < finer) {
         return trace(r, doneOut);
     }

@@ -41,7 +41,9 @@ void vplTruth_SetPaths(vplTruth* truth, int each);
 // Traces as many paths again as there are.
 vplResult vplTruth_Refine(const vplRun* run, vplTruth* truth);
 
-// Paths per chosen pixel so far.
+// Paths per chosen pixel so far. With few of them the error and its spread are uncertain where rare paths carry light.
+enum { VPL_SURE_PATHS = 64 };
+
 int vplTruth_Paths(const vplTruth* truth);
 
 // The error of a picture of the same size.
