@@ -5,12 +5,25 @@
 
 #include <vpl/base.h>
 
+#include <pthread.h>
+#include <stdatomic.h>
+
+// Who is asked whether the work under way goes on.
+typedef struct vplWatch {
+    vplProgressFcn* progress; // NULL: nobody
+    void* user;
+    double fraction;  // that was reported last
+    pthread_t thread; // that alone may ask
+} vplWatch;
+
 struct vplContext {
     vplContextDef def;
     vplIsa isa;
     int workerCount;
     // Bytes held now, and the most held at once. Not atomic: parallel sections do not allocate.
     size_t bytes, peakBytes;
+    vplWatch watch;
+    atomic_bool cancelled;    // the loop of tasks under way
     uint64_t stamps;          // see vplNextStamp
     struct vplSpeeds* speeds; // see vplContext_SetSpeeds; NULL: as usual
 };
@@ -64,9 +77,30 @@ typedef struct vplProgressRange {
     double from, to;
 } vplProgressRange;
 
-// vplParallelFor that calls range.progress on the calling thread as tasks end. Returns VPL_CANCELLED if that
-// returned false, else VPL_SUCCESS.
+// vplParallelFor that calls range.progress on the calling thread as tasks end; without one it asks the watch.
+// Returns VPL_CANCELLED if that returned false, else VPL_SUCCESS.
 vplResult vplParallelForProgress(vplContext* context, int count, vplTaskFcn* task, void* data,
                                  vplProgressRange range);
+
+// ---- cancellation
+//
+// A renderer sets the watch of the context for each of its stages. Stages need no progress of their own to be
+// cancelled: whatever takes longer than about 50 ms asks in one of these ways.
+
+// Makes the calling thread ask `progress` (NULL: nobody). Returns the watch before, which the caller puts back.
+vplWatch vplSetWatch(vplContext* context, vplProgressFcn* progress, void* user, double fraction);
+
+// Returns VPL_CANCELLED if the watch says so. Only for the calling thread, between loops of tasks.
+vplResult vplAsk(vplContext* context);
+
+// vplParallelFor that asks as tasks end.
+vplResult vplParallelForAsking(vplContext* context, int count, vplTaskFcn* task, void* data);
+
+// Asks from within a long task of vplParallelForProgress or vplParallelForAsking, on any thread. If it returns
+// false the task shall end at once; its result is not used.
+bool vplTask_GoesOn(vplContext* context);
+
+// Fills memory with zeros and asks on the way, because a fresh gigabyte takes seconds.
+vplResult vplClear(vplContext* context, void* memory, size_t bytes);
 
 #endif

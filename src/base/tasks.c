@@ -3,7 +3,7 @@
 // slots, and sums over tasks are taken afterwards, in task order.
 #include "base/context.h"
 
-#include <stdatomic.h>
+#include <string.h>
 
 #ifdef _OPENMP
 #include <omp.h>
@@ -33,43 +33,94 @@ void vplParallelFor(vplContext* context, int count, vplTaskFcn* task, void* data
 #endif
 }
 
+// ---- asking
+
+vplWatch vplSetWatch(vplContext* context, vplProgressFcn* progress, void* user, double fraction)
+{
+    const vplWatch before = context->watch;
+    context->watch = (vplWatch){progress, user, fraction, pthread_self()};
+    return before;
+}
+
+vplResult vplAsk(vplContext* context)
+{
+    const vplWatch* w = &context->watch;
+    return w->progress == NULL || w->progress(w->user, w->fraction) ? VPL_SUCCESS : VPL_CANCELLED;
+}
+
+bool vplTask_GoesOn(vplContext* context)
+{
+    const vplWatch* w = &context->watch;
+    const bool cancelled = atomic_load_explicit(&context->cancelled, memory_order_relaxed);
+    if (cancelled || w->progress == NULL || !pthread_equal(w->thread, pthread_self())) {
+        return !cancelled;
+    }
+    const bool goesOn = vplAsk(context) == VPL_SUCCESS;
+    if (!goesOn) {
+        atomic_store_explicit(&context->cancelled, true, memory_order_relaxed);
+    }
+    return goesOn;
+}
+
 typedef struct Watched {
+    vplContext* context;
     vplTaskFcn* task;
     void* data;
     vplProgressRange range;
     int count;
     atomic_int done;
-    atomic_bool cancelled;
 } Watched;
 
-// Worker 0 is the calling thread, so it alone calls `progress`.
 static void watchedTask(void* data, int index, int worker)
 {
     Watched* w = data;
-    if (atomic_load_explicit(&w->cancelled, memory_order_relaxed)) {
+    if (atomic_load_explicit(&w->context->cancelled, memory_order_relaxed)) {
         return;
     }
     w->task(w->data, index, worker);
-    int done = 1 + atomic_fetch_add_explicit(&w->done, 1, memory_order_relaxed);
-    const vplProgressRange* r = &w->range;
-    if (worker == 0 && !r->progress(r->user, r->from + (r->to - r->from) * done / w->count)) {
-        atomic_store_explicit(&w->cancelled, true, memory_order_relaxed);
+    const int done = 1 + atomic_fetch_add_explicit(&w->done, 1, memory_order_relaxed);
+    if (pthread_equal(w->context->watch.thread, pthread_self())) {
+        w->context->watch.fraction = w->range.from + (w->range.to - w->range.from) * done / w->count;
+        vplTask_GoesOn(w->context);
     }
 }
 
 vplResult vplParallelForProgress(vplContext* context, int count, vplTaskFcn* task, void* data,
                                  vplProgressRange range)
 {
-    // A host's scheduler may run worker 0 on any thread: `progress` is called before and after only.
-    bool hosted = context->def.parallelFor != NULL && context->workerCount > 1;
-    if (range.progress == NULL || hosted) {
-        if (range.progress != NULL && !range.progress(range.user, range.from)) {
+    if (range.progress == NULL) {
+        const vplWatch* w = &context->watch;
+        range = (vplProgressRange){w->progress, w->user, w->fraction, w->fraction};
+    }
+    vplWatch outer = vplSetWatch(context, range.progress, range.user, range.from);
+    Watched watched = {context, task, data, range, count, 0};
+    // A host may run all tasks on threads of its own.
+    const bool hosted = context->def.parallelFor != NULL && context->workerCount > 1;
+    bool cancelled = hosted && vplAsk(context) != VPL_SUCCESS;
+    if (!cancelled) {
+        vplParallelFor(context, count, range.progress != NULL ? watchedTask : task,
+                       range.progress != NULL ? &watched : data);
+        context->watch.fraction = hosted ? range.to : context->watch.fraction;
+        cancelled = atomic_exchange(&context->cancelled, false) || (hosted && vplAsk(context) != VPL_SUCCESS);
+    }
+    outer.fraction = outer.progress == range.progress && outer.user == range.user ? range.to : outer.fraction;
+    context->watch = outer;
+    return cancelled ? VPL_CANCELLED : VPL_SUCCESS;
+}
+
+vplResult vplParallelForAsking(vplContext* context, int count, vplTaskFcn* task, void* data)
+{
+    return vplParallelForProgress(context, count, task, data, (vplProgressRange){.progress = NULL});
+}
+
+vplResult vplClear(vplContext* context, void* memory, size_t bytes)
+{
+    enum { PIECE = 8 << 20 }; // about 5 ms
+    for (size_t at = 0; at < bytes; at += PIECE) {
+        memset((char*)memory + at, 0, bytes - at < PIECE ? bytes - at : PIECE);
+        if (vplAsk(context) != VPL_SUCCESS) {
             return VPL_CANCELLED;
         }
-        vplParallelFor(context, count, task, data);
-        return range.progress != NULL && !range.progress(range.user, range.to) ? VPL_CANCELLED : VPL_SUCCESS;
     }
-    Watched watched = {task, data, range, count, 0, false};
-    vplParallelFor(context, count, watchedTask, &watched);
-    return atomic_load(&watched.cancelled) ? VPL_CANCELLED : VPL_SUCCESS;
+    return VPL_SUCCESS;
 }

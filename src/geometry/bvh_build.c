@@ -82,7 +82,7 @@ static void splitTopNode(void* data, int index, int worker)
 }
 
 // Splits all large ranges, level by level.
-static void splitTop(TopTree* top, const vplBuildRange* all)
+static vplResult splitTop(TopTree* top, const vplBuildRange* all)
 {
     const int share = all->count / (SUBTREES / 2), large = share > LEAST_SUBTREE ? share : LEAST_SUBTREE;
     top->nodes[0] = (TopNode){.range = *all, .children = -1};
@@ -96,8 +96,9 @@ static void splitTop(TopTree* top, const vplBuildRange* all)
                 top->wave[waveCount++] = i;
             }
         }
-        vplParallelFor(top->builder->geometry->context, waveCount, splitTopNode, top);
+        TRY(vplParallelForAsking(top->builder->geometry->context, waveCount, splitTopNode, top));
     }
+    return VPL_SUCCESS;
 }
 
 // Adds the upper nodes to the binary tree, children before their parents.
@@ -126,8 +127,8 @@ static vplResult buildTree(vplBvhBuilder* b, const vplBuildRange* all, vplBvh* b
     TopTree* top = vplArena_Alloc(b->scratch, 1, sizeof *top);
     TRY(vplArena_Check(b->scratch));
     top->builder = b;
-    splitTop(top, all);
-    vplParallelFor(b->geometry->context, top->count, buildSubtree, top);
+    TRY(splitTop(top, all));
+    TRY(vplParallelForAsking(b->geometry->context, top->count, buildSubtree, top));
     finishTop(top);
     return vplCollapse(b, placeOf(top, 0), bvh);
 }

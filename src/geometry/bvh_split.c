@@ -86,7 +86,7 @@ vplResult vplCollectItems(vplBvhBuilder* b, vplBuildRange* allOut)
     b->ids = vplArena_Alloc(b->scratch, triangles, sizeof *b->ids);
     Collection c = {b, vplArena_Alloc(b->scratch, (size_t)chunks, sizeof *c.ranges)};
     TRY(vplArena_Check(b->scratch));
-    vplParallelFor(b->geometry->context, chunks, collectChunk, &c);
+    TRY(vplParallelForAsking(b->geometry->context, chunks, collectChunk, &c));
     *allOut = joinChunks(&c, chunks);
     return VPL_SUCCESS;
 }

@@ -14,10 +14,14 @@ vplResult vplImage_Create(vplContext* context, int width, int height, vplImage**
                        width, height, VPL_MAX_IMAGE_SIZE);
     }
     vplImage* image = vplAlloc(context, 1, sizeof *image);
-    float* pixels = image ? vplAllocZero(context, 3 * (size_t)width * (size_t)height, sizeof(float)) : NULL;
-    if (pixels == NULL) {
+    const size_t count = 3 * (size_t)width * (size_t)height;
+    float* pixels = image ? vplAlloc(context, count, sizeof *pixels) : NULL;
+    const vplResult result =
+        pixels != NULL ? vplClear(context, pixels, count * sizeof *pixels) : VPL_OUT_OF_MEMORY;
+    if (result != VPL_SUCCESS) {
+        vplFree(context, pixels);
         vplFree(context, image);
-        return VPL_OUT_OF_MEMORY;
+        return result;
     }
     *image = (vplImage){width, height, pixels, context};
     *imageOut = image;

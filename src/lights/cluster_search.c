@@ -5,7 +5,7 @@
 // assignment, unless its own moved away from it: the same answer in less time.
 #include "lights/clusters.h"
 
-#include "base/context.h"
+#include "base/arena.h"
 #include "base/hash.h"
 #include "math/scalar.h"
 
@@ -105,22 +105,21 @@ static void assignSome(void* data, int task, int worker)
     s->changed[task] = changed;
 }
 
-// Returns whether a light changed its cluster.
-static bool assign(vplClusterSearch* s)
+static vplResult assign(vplClusterSearch* s, bool* changedOut)
 {
     if ((double)s->lightCount * s->count < FEW_PAIRS) {
         for (int i = 0; i < s->taskCount; i++) {
             assignSome(s, i, 0);
         }
     } else {
-        vplParallelFor(s->context, s->taskCount, assignSome, s);
+        TRY(vplParallelForAsking(s->context, s->taskCount, assignSome, s));
     }
-    bool changed = false;
+    *changedOut = false;
     for (int i = 0; i < s->taskCount; i++) {
-        changed = changed || s->changed[i];
+        *changedOut = *changedOut || s->changed[i];
     }
     s->first = false;
-    return changed;
+    return VPL_SUCCESS;
 }
 
 // ---- each cluster to the mean of its lights
@@ -180,16 +179,18 @@ static bool repeatsEarlier(const vplClusterSearch* s, int iterations)
     return false;
 }
 
-void vplClusterSearch_Run(vplClusterSearch* s, vplLightClusters* clusters)
+vplResult vplClusterSearch_Run(vplClusterSearch* s, vplLightClusters* clusters)
 {
+    bool changed;
     s->first = true;
-    assign(s);
+    TRY(assign(s, &changed));
     s->hashes[0] = hashAssignment(s);
     clusters->end = VPL_CLUSTERS_STOPPED;
     while (clusters->end == VPL_CLUSTERS_STOPPED && clusters->iterations < s->maxIterations) {
         update(s);
         clusters->iterations++;
-        if (!assign(s)) {
+        TRY(assign(s, &changed));
+        if (!changed) {
             clusters->end = VPL_CLUSTERS_CONVERGED;
             continue;
         }
@@ -199,4 +200,5 @@ void vplClusterSearch_Run(vplClusterSearch* s, vplLightClusters* clusters)
         }
     }
     update(s); // the last assignment may have changed clusters
+    return VPL_SUCCESS;
 }

@@ -7,6 +7,8 @@
 // Departs: the first is the light nearest to the mean.
 #include "lights/clusters.h"
 
+#include "base/arena.h"
+
 #include <math.h>
 
 static int findMiddle(const vplClusterSearch* s, const vplClusterDistance* distance)
@@ -47,7 +49,7 @@ static int findFarthest(const vplClusterSearch* s)
     return farthest;
 }
 
-static void spreadOut(vplClusterSearch* s, int placed)
+static vplResult spreadOut(vplClusterSearch* s, int placed)
 {
     vplClusterDistance distance = s->distance;
     if (distance.metric == VPL_CLUSTER_PRINTED) { // by this metric a light is far from itself
@@ -68,10 +70,12 @@ static void spreadOut(vplClusterSearch* s, int placed)
                 vplClusterDistance_Below(&distance, &s->points[i], &s->centres[j], s->distances[i]);
             s->distances[i] = d < s->distances[i] ? d : s->distances[i];
         }
+        TRY(vplAsk(s->context));
     }
+    return VPL_SUCCESS;
 }
 
-void vplClusterSearch_Place(vplClusterSearch* s, const vplClusterDef* def)
+vplResult vplClusterSearch_Place(vplClusterSearch* s, const vplClusterDef* def)
 {
     const vplLightClusters* last = def->last;
     int placed = 0;
@@ -86,7 +90,5 @@ void vplClusterSearch_Place(vplClusterSearch* s, const vplClusterDef* def)
             s->centres[placed] = s->points[def->seeds != NULL ? def->seeds[placed] : placed];
         }
     }
-    if (placed < s->count) {
-        spreadOut(s, placed);
-    }
+    return placed < s->count ? spreadOut(s, placed) : VPL_SUCCESS;
 }

@@ -170,6 +170,21 @@ static vplResult prepare(vplClusterSearch* s, vplArena* scratch)
     return vplArena_Check(scratch);
 }
 
+static vplResult search(vplClusterSearch* s, const vplLightSet* lights, const vplClusterDef* def,
+                        vplLightClusters* clusters, vplLightCluster* summaries)
+{
+    for (int i = 0; i < s->lightCount; i++) {
+        s->points[i] = vplClusterPoint_Make(lights->lights[i].position, lights->lights[i].normal);
+    }
+    TRY(vplClusterSearch_Place(s, def));
+    TRY(vplClusterSearch_Run(s, clusters));
+    summarize(s, lights, summaries);
+    for (int j = 0; j < s->count; j++) {
+        clusters->emptyCount += s->tallies[j].lightCount == 0;
+    }
+    return VPL_SUCCESS;
+}
+
 static vplResult find(const vplLightSet* lights, const vplClusterDef* def, vplArena* scratch,
                       vplLightClusters** clustersOut)
 {
@@ -186,7 +201,7 @@ static vplResult find(const vplLightSet* lights, const vplClusterDef* def, vplAr
     vplLightClusters* clusters = vplArena_AllocZero(arena, 1, sizeof *clusters);
     vplLightCluster* summaries = vplArena_Alloc(arena, (size_t)s.count, sizeof *summaries);
     s.of = vplArena_AllocZero(arena, (size_t)s.lightCount, sizeof *s.of);
-    const vplResult result = vplArena_Check(arena);
+    vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
         *clusters = (vplLightClusters){.clusters = summaries,
                                        .count = s.count,
@@ -194,15 +209,7 @@ static vplResult find(const vplLightSet* lights, const vplClusterDef* def, vplAr
                                        .lightCount = s.lightCount,
                                        .context = context,
                                        .arena = arena};
-        for (int i = 0; i < s.lightCount; i++) {
-            s.points[i] = vplClusterPoint_Make(lights->lights[i].position, lights->lights[i].normal);
-        }
-        vplClusterSearch_Place(&s, def);
-        vplClusterSearch_Run(&s, clusters);
-        summarize(&s, lights, summaries);
-        for (int j = 0; j < s.count; j++) {
-            clusters->emptyCount += s.tallies[j].lightCount == 0;
-        }
+        result = search(&s, lights, def, clusters, summaries);
     }
     return vplArena_Deliver(arena, result, clusters, clustersOut);
 }

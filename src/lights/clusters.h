@@ -65,10 +65,10 @@ static inline double vplClusterSearch_Weight(const vplClusterSearch* search, int
 
 // Places clusters where def->last has clusters with lights, or at the lights def->seeds, then at lights that
 // are far from all those before.
-void vplClusterSearch_Place(vplClusterSearch* search, const vplClusterDef* def);
+vplResult vplClusterSearch_Place(vplClusterSearch* search, const vplClusterDef* def);
 
 // Searches from there. Writes of, centres, the sums and counts of tallies, and iterations and end of
 // `clusters`.
-void vplClusterSearch_Run(vplClusterSearch* search, vplLightClusters* clusters);
+vplResult vplClusterSearch_Run(vplClusterSearch* search, vplLightClusters* clusters);
 
 #endif

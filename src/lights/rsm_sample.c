@@ -132,11 +132,11 @@ static void takeSamples(void* data, int chunk, int worker)
 
 // ---- the set
 
-static void fillSet(Sampling* s, const vplLightArrays* arrays, vplLightSet* set)
+static vplResult fillSet(Sampling* s, const vplLightArrays* arrays, vplLightSet* set)
 {
     shareSamples(s);
     const int taken = s->first[s->mapCount];
-    vplParallelFor(set->context, (taken + CHUNK - 1) / CHUNK, takeSamples, s);
+    TRY(vplParallelForAsking(set->context, (taken + CHUNK - 1) / CHUNK, takeSamples, s));
     for (int i = 0; i < taken; i++) {
         if (s->slots[i].weight > 0) {
             s->slots[set->lightCount++] = s->slots[i];
@@ -148,6 +148,7 @@ static void fillSet(Sampling* s, const vplLightArrays* arrays, vplLightSet* set)
         arrays->stepCounts[0] = s->count;
         arrays->lightsInStep[0] = set->lightCount;
     }
+    return VPL_SUCCESS;
 }
 
 vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflectiveMap* const* maps,
@@ -169,10 +170,7 @@ vplResult vplSampleReflectiveMaps(const vplGeometry* geometry, const vplReflecti
     TRY(vplLightSet_Make(context, def->count, def->count > 0 ? 1 : 0, &arrays, &set));
     s.slots = arrays.lights;
     s.first = vplAlloc(context, (size_t)mapCount + 1, sizeof *s.first);
-    if (s.first != NULL) {
-        fillSet(&s, &arrays, set);
-    }
-    const vplResult result = s.first != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
+    const vplResult result = s.first != NULL ? fillSet(&s, &arrays, set) : VPL_OUT_OF_MEMORY;
     vplFree(context, s.first);
     return vplArena_Deliver(set->arena, result, set, setOut);
 }

@@ -76,8 +76,7 @@ vplResult vplMeasureUse(const vplGeometry* geometry, const vplLightSet* set, int
                        rayCount, VPL_MAX_USE_RAYS);
     }
     Measuring m = {geometry, set, rayCount, useOut};
-    vplParallelFor(geometry->context, (set->lightCount + CHUNK - 1) / CHUNK, measureChunk, &m);
-    return VPL_SUCCESS;
+    return vplParallelForAsking(geometry->context, (set->lightCount + CHUNK - 1) / CHUNK, measureChunk, &m);
 }
 
 // ---- choice

@@ -97,7 +97,7 @@ vplResult vplSampleView(const vplGeometry* geometry, const vplPlacementDef* def,
     divide(&s);
     s.blocks = vplArena_Alloc(arena, (size_t)s.columns * (size_t)s.rows, sizeof *s.blocks);
     TRY(vplArena_Check(arena));
-    vplParallelFor(geometry->context, s.columns * s.rows, sampleCell, &s);
+    TRY(vplParallelForAsking(geometry->context, s.columns * s.rows, sampleCell, &s));
     *blocksOut = s.blocks;
     *countOut = s.columns * s.rows;
     return VPL_SUCCESS;

@@ -120,11 +120,11 @@ static vplResult binTriangles(vplTriangleStage* stage, vplArena* scratch)
 {
     vplContext* context = stage->raster->context;
     TRY(makeChunks(stage, scratch));
-    vplParallelFor(context, stage->chunkCount, vplCountCuts, stage);
+    TRY(vplParallelForAsking(context, stage->chunkCount, vplCountCuts, stage));
     TRY(reserveRefs(stage));
-    vplParallelFor(context, stage->chunkCount, vplAssembleChunk, stage);
+    TRY(vplParallelForAsking(context, stage->chunkCount, vplAssembleChunk, stage));
     TRY(reserveBins(stage));
-    vplParallelFor(context, stage->chunkCount, binChunk, stage);
+    TRY(vplParallelForAsking(context, stage->chunkCount, binChunk, stage));
     finishRefs(stage);
     return VPL_SUCCESS;
 }

@@ -4,6 +4,9 @@
 #include "raster/kernels.h"
 #include "raster/shaders.h"
 
+// Fused passes of a block between two questions whether the task goes on: about a millisecond.
+enum { PASSES_PER_QUESTION = 1 << 16 };
+
 void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int first)
 {
     vplFragments* f = &state->block;
@@ -12,10 +15,17 @@ void VPL_KERNEL(vplRunPasses)(vplTileState* state, const vplRaster* raster, int 
     const size_t varyings = (size_t)keptVaryings(state);
     float* planes[VPL_MAX_PLANES];
     memcpy(planes, state->tile.planes, sizeof planes);
-    int64_t fragments = 0;
+    int64_t fragments = 0, unasked = 0;
     for (int i = state->keptStart[mesh]; i < state->keptEnd[mesh]; i++) {
         const vplKeptBlock* kept = (const vplKeptBlock*)(state->kept + (size_t)i * state->keptStride);
         const float* from = (const float*)(kept + 1);
+        unasked += 1 + start->fused;
+        if (unasked > PASSES_PER_QUESTION) {
+            unasked = 0;
+            if (!vplTask_GoesOn(raster->context)) {
+                return;
+            }
+        }
         f->x = kept->x;
         f->y = kept->y;
         f->element = kept->element;

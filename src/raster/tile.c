@@ -86,7 +86,7 @@ static void drawSamples(const vplRaster* r, vplTileState* state, const int* bin)
     sampler.sampling = true;
     sampler.depth = state->sampleDepth;
     sampler.farthest = state->sampleFarthest;
-    for (int k = 0; k < r->framebuffer.samples; k++) {
+    for (int k = 0; k < r->framebuffer.samples && vplTask_GoesOn(r->context); k++) {
         sampler.sample = vplSubPixel_OfSample(k, r->framebuffer.samples);
         sampler.owner = state->tile.samples[k];
         fill(sampler.depth, 1);

@@ -98,6 +98,6 @@ vplResult vplShadeVertices(vplRaster* raster, vplShaded* shaded)
     }
     shaded->outcodesTogether = 0;
     Job job = {raster, shaded};
-    vplParallelFor(raster->context, (shaded->mesh.vertexCount + CHUNK - 1) / CHUNK, shadeChunk, &job);
-    return VPL_SUCCESS;
+    return vplParallelForAsking(raster->context, (shaded->mesh.vertexCount + CHUNK - 1) / CHUNK, shadeChunk,
+                                &job);
 }

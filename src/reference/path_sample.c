@@ -4,6 +4,7 @@
 // reflection only multiplies the throughput by rho. James Arvo and David Kirk, Particle Transport and Image
 // Synthesis, SIGGRAPH 1990: Russian roulette. Nothing is clamped: without the rare bright paths the mean
 // would be biased.
+#include "base/context.h"
 #include "math/sampling.h"
 #include "math/vec.h"
 #include "reference/direct_light.h"
@@ -42,6 +43,9 @@ static vplPathVertex arrive(const vplPathScene* s, const vplPathVertex* from, co
     return v;
 }
 
+// Bounces between two questions whether the task goes on: less than a millisecond.
+enum { BOUNCES_PER_QUESTION = 512 };
+
 // Follows the bounces after the camera's first hit. The path is the same for every range of bounces, so that
 // pictures of single bounces add up exactly.
 static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLandedParticle* particle,
@@ -52,6 +56,10 @@ static void followBounces(vplPathState* path, vplPathVertex vertex, const vplLan
     for (int bounce = 0; bounce <= s->def.lastBounce; bounce++) {
         const uint32_t set = (uint32_t)(2 * bounce + FIRST_SET); // and the next, for more than four numbers
         const bool counts = bounce >= s->def.firstBounce, last = bounce == s->def.lastBounce;
+        if (bounce % BOUNCES_PER_QUESTION == BOUNCES_PER_QUESTION - 1 &&
+            !vplTask_GoesOn(s->geometry->context)) {
+            return;
+        }
         float u[4];
         vplPath_Draw(path, set, u);
         if (counts) {

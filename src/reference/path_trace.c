@@ -12,7 +12,7 @@ enum { TILE = 16, HALVES = 2 };
 
 struct vplPathTracer {
     vplPathScene scene;
-    vplRadiance (*sums)[HALVES]; // of each pixel
+    vplRadiance (*sums)[HALVES]; // of each pixel; without meaning before the first pass, which clears them
     vplRadiance (
         *before)[HALVES]; // the sums before the last pass that could be cancelled; NULL: none was kept
     int64_t* tileRays;
@@ -29,7 +29,7 @@ vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* de
     vplPathTracer* t = vplArena_AllocZero(arena, 1, sizeof *t);
     const int columns = (def->width + TILE - 1) / TILE, rows = (def->height + TILE - 1) / TILE;
     vplRadiance(*sums)[HALVES] =
-        vplArena_AllocZero(arena, (size_t)def->width * (size_t)def->height, sizeof *sums);
+        vplArena_Alloc(arena, (size_t)def->width * (size_t)def->height, sizeof *sums);
     int64_t* tileRays = vplArena_AllocZero(arena, (size_t)(columns * rows), sizeof *tileRays);
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
@@ -55,6 +55,9 @@ void vplPathTracer_Destroy(vplPathTracer* tracer)
 static void tracePixel(vplPathTracer* t, int x, int y, int64_t* rays)
 {
     size_t pixel = (size_t)y * (size_t)t->scene.def.width + (size_t)x;
+    if (t->done == 0) {
+        memset(t->sums[pixel], 0, sizeof t->sums[pixel]);
+    }
     for (int i = t->done; i < t->done + t->now; i++) {
         const uint64_t half = i & 1;
         vplPathState path = {&t->scene, HALVES * (uint64_t)pixel + half, (uint32_t)i / HALVES, 0};
@@ -69,6 +72,9 @@ static void traceTile(void* data, int tile, int worker)
     vplPathTracer* t = data;
     int left = tile % t->columns * TILE, top = tile / t->columns * TILE;
     for (int y = top; y < top + TILE && y < t->scene.def.height; y++) {
+        if (!vplTask_GoesOn(t->context)) {
+            return;
+        }
         for (int x = left; x < left + TILE && x < t->scene.def.width; x++) {
             tracePixel(t, x, y, &t->tileRays[tile]);
         }
@@ -87,7 +93,12 @@ static vplResult keepSums(vplPathTracer* t)
         t->before = vplArena_Alloc(t->arena, pixels, sizeof *t->before);
         TRY(vplArena_Check(t->arena));
     }
-    memcpy(t->before, t->sums, pixels * sizeof *t->sums);
+    enum { PIECE = 1 << 18 }; // pixels; 12 MB
+    for (size_t at = 0; at < pixels; at += PIECE) {
+        const size_t count = pixels - at < PIECE ? pixels - at : PIECE;
+        memcpy(t->before + at, t->sums + at, count * sizeof *t->sums);
+        TRY(vplAsk(t->context));
+    }
     return VPL_SUCCESS;
 }
 
@@ -98,8 +109,6 @@ void vplPathTracer_Undo(vplPathTracer* t)
     if (t->done > 0) {
         t->sums = t->before;
         t->before = sums;
-    } else {
-        memset(sums, 0, (size_t)t->scene.def.width * (size_t)t->scene.def.height * sizeof *sums);
     }
     vplPathTracer_SetRays(t, t->raysBefore);
 }

@@ -7,6 +7,7 @@
 #include "render/stages/ssvp.h"
 #include "scene/scene.h"
 
+#include <math.h>
 #include <string.h>
 
 // ---- results of stages
@@ -86,10 +87,11 @@ vplRunner vplRunner_Begin(const vplScene* scene, vplHistory* history)
 
 static bool forwardProgress(void* user, double fraction)
 {
-    const vplRunner* r = user;
+    vplRunner* r = user;
     const double part = r->partFrom + (r->partTo - r->partFrom) * fraction;
     const double stage = r->stageFrom + (r->stageTo - r->stageFrom) * part;
-    return r->progress(r->progressUser, r->stepFrom + (r->stepTo - r->stepFrom) * stage);
+    r->reported = fmax(r->reported, r->stepFrom + (r->stepTo - r->stepFrom) * stage);
+    return r->progress(r->progressUser, r->reported);
 }
 
 void vplRun_BeginPart(const vplRun* run, int i, int count)
@@ -134,6 +136,7 @@ void vplRunner_Unnest(const vplRun* run, const vplRunner* nested)
 {
     run->runner->stats = nested->stats;
     run->runner->peakBytes = nested->peakBytes;
+    run->runner->reported = nested->reported;
     run->runner->partMs += vplClockMs() - nested->startMs;
 }
 
@@ -271,12 +274,20 @@ static vplResult make(vplRunner* r, vplStageId id)
     vplContext_ResetPeakBytes(context);
     const int64_t held = (int64_t)vplContext_GetBytes(context);
     const double start = vplClockMs();
+    const vplWatch outer = vplSetWatch(context, r->run.progress, r, 0);
     void* result = NULL;
     r->run.arena = vplArena_Create(context);
     r->run.scratch = vplArena_Create(context);
     vplResult made = vplArena_Check(r->run.arena);
     made = made == VPL_SUCCESS ? vplArena_Check(r->run.scratch) : made;
     made = made == VPL_SUCCESS ? stage->make(&r->run, &result) : made;
+    r->partTo = 1;
+    const bool asks =
+        !stage->undoes && r->run.progress != NULL; // cancelled paths are taken back by the stage
+    if (made == VPL_SUCCESS && asks && !r->run.progress(r, 1)) {
+        made = VPL_CANCELLED;
+    }
+    context->watch = outer;
     vplArena_Destroy(r->run.scratch);
     addTime(&r->stats, stage->name, vplClockMs() - start - r->partMs);
     if (result != NULL && result == slot->result) { // the stage has changed its last result

@@ -34,6 +34,7 @@ typedef struct vplRunner {
     double stepFrom, stepTo;   // share of the whole that the pass under way has
     double stageFrom, stageTo; // share of the pass that the stage under way has
     double partFrom, partTo;   // share of the stage that its part under way has
+    double reported;           // share of the whole; it never shrinks
     double startMs;            // when a nested runner began
     double partMs;             // time that vplRun_AddTime took from the stage under way
     vplClampLoss loss;         // of all passes

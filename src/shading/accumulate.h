@@ -131,12 +131,19 @@ static inline void vplAddShadowed(const vplShading* s, vplBlock* b, int first, i
     vplAddGroup(b, part);
 }
 
+// Groups between two questions whether the task goes on: with rays they take about 50 ms.
+enum { VPL_GROUPS_PER_QUESTION = 64 };
+
 // Adds virtual lights first .. first + count - 1, in groups. Lights with clusters are always culled.
 static inline void vplAddLights(const vplShading* s, const vplLitBlocks* to, int first, int count,
                                 int64_t* rays)
 {
     vplFacingLights facing;
+    int groups = 0;
     for (const int end = first + count; first < end; first += VPL_LIGHT_GROUP) {
+        if (++groups % VPL_GROUPS_PER_QUESTION == 0 && !vplTask_GoesOn(s->geometry->context)) {
+            return;
+        }
         const int group = end - first < VPL_LIGHT_GROUP ? end - first : VPL_LIGHT_GROUP;
         if (to->culls) {
             vplCullLights(s, &to->bounds, first, group, &facing);

@@ -222,7 +222,7 @@ void vplAddCompensation(const vplShading* shading, const vplPoints* points, cons
     if (def->seesEmission && def->emitterLightCount > 0) {
         addAreaLights(shading, &start, irradiance, rays);
     }
-    for (int i = 0; i < def->rayCount; i++) {
+    for (int i = 0; i < def->rayCount && vplTask_GoesOn(shading->geometry->context); i++) {
         Walk w = start;
         for (int l = 0; l < VPL_LANES; l++) {
             w.at[l].ray = def->firstRay + (uint32_t)i;

@@ -285,6 +285,9 @@ void VPL_KERNEL(vplCutTile)(void* data, vplTile* tile, int worker)
         if (x >= tile->width || y >= tile->height) {
             continue;
         }
+        if (block % VPL_TILE_BLOCKS == 0 && !vplTask_GoesOn(s->geometry->context)) {
+            return;
+        }
         vplBlock b;
         if (vplReadBlock(s, tile, block * VPL_LANES, &cache, &b)) {
             vplStartLight(s, tile, block, &b);

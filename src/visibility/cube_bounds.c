@@ -63,9 +63,9 @@ vplResult vplCubeMap_FindBounds(vplCubeMap* map)
         return VPL_OUT_OF_MEMORY;
     }
     Level level = {map, bounds, 0};
-    vplParallelFor(map->context, bounds->side[0], boundTexels, &level);
+    TRY(vplParallelForAsking(map->context, bounds->side[0], boundTexels, &level));
     for (level.level = 1; level.level < bounds->levelCount; level.level++) {
-        vplParallelFor(map->context, 6 * bounds->side[level.level], mergeRegions, &level);
+        TRY(vplParallelForAsking(map->context, 6 * bounds->side[level.level], mergeRegions, &level));
     }
     vplArena_Free(map->arena, map->bounds);
     map->bounds = bounds;

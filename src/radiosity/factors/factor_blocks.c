@@ -136,6 +136,5 @@ vplResult vplFactorWork_MakeBlocks(vplFactorWork* work)
     work->blockCount = (work->count + VPL_SIDE_LANES - 1) / VPL_SIDE_LANES;
     work->blocks = vplArena_AllocZero(work->scratch, (size_t)work->blockCount, sizeof *work->blocks);
     TRY(vplArena_Check(work->scratch));
-    vplParallelFor(work->context, work->blockCount, fillBlock, work);
-    return VPL_SUCCESS;
+    return vplParallelForAsking(work->context, work->blockCount, fillBlock, work);
 }

@@ -43,9 +43,10 @@ static vplResult compute(vplFactorWork* work)
 {
     const size_t count = (size_t)work->count;
     vplFormFactors* f = work->factors;
-    f->rows = work->rows = vplArena_AllocZero(f->arena, count * count, sizeof *work->rows);
+    f->rows = work->rows = vplArena_Alloc(f->arena, count * count, sizeof *work->rows);
     f->rowSums = work->rowSums = vplArena_Alloc(f->arena, count, sizeof *work->rowSums);
     TRY(vplArena_Check(f->arena));
+    TRY(vplClear(work->context, work->rows, count * count * sizeof *work->rows));
     TRY(vplFactorWork_MakeBlocks(work));
     TRY(vplFactorWork_FillRows(work));
     return vplFactorWork_CorrectRows(work);

@@ -62,18 +62,18 @@ static void finish(Scaling* s)
     }
 }
 
-static void scaleRows(Scaling* s, bool clamp)
+static vplResult scaleRows(Scaling* s, bool clamp)
 {
     vplContext* context = s->work->context;
     for (int round = 0; round < MOST_ROUNDS; round++) {
         const double step = improve(s, clamp);
-        vplParallelFor(context, s->work->count, sumRow, s);
+        TRY(vplParallelForAsking(context, s->work->count, sumRow, s));
         if (step < ENOUGH) {
             break;
         }
     }
     finish(s);
-    vplParallelFor(context, s->work->count, scaleRow, s);
+    return vplParallelForAsking(context, s->work->count, scaleRow, s);
 }
 
 vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
@@ -88,7 +88,7 @@ vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
     for (size_t i = 0; i < count; i++) {
         s.scale[i] = 1;
     }
-    vplParallelFor(work->context, work->count, sumRow, &s);
+    TRY(vplParallelForAsking(work->context, work->count, sumRow, &s));
     for (size_t i = 0; i < count; i++) {
         work->rowSums[i] = (float)s.sum[i];
         most = s.sum[i] > most ? s.sum[i] : most;
@@ -96,7 +96,7 @@ vplResult vplFactorWork_CorrectRows(vplFactorWork* work)
     const bool clamp = def->rowSums == VPL_ROW_SUMS_CLAMP ||
                        (def->rowSums == VPL_ROW_SUMS_USUAL && def->kind == VPL_FORM_FACTORS_MONTE_CARLO);
     if (def->rowSums == VPL_ROW_SUMS_NORMALISE || (clamp && most > MARGIN)) {
-        scaleRows(&s, clamp);
+        return scaleRows(&s, clamp);
     }
     return VPL_SUCCESS;
 }

@@ -3,7 +3,7 @@
 // down.
 // Based on: Hanrahan, Salzman and Aupperle, A Rapid Hierarchical Radiosity Algorithm, SIGGRAPH 1991 (gather,
 // push, pull).
-#include "base/context.h"
+#include "base/arena.h"
 #include "math/scalar.h"
 #include "radiosity/links/links.h"
 
@@ -89,11 +89,12 @@ static void pushDown(const Gathering* g, double (*sums)[3])
     }
 }
 
-void vplLinks_Gather(const vplLinks* links, const vplPlanes* x, const vplLinkScratch* scratch,
-                     double (*sums)[3])
+vplResult vplLinks_Gather(const vplLinks* links, const vplPlanes* x, const vplLinkScratch* scratch,
+                          double (*sums)[3])
 {
     Gathering g = {links->tree, scratch};
     pullUp(&g, x);
-    vplParallelFor(links->context, (links->tree->nodeCount + TASK - 1) / TASK, receiveTask, &g);
+    TRY(vplParallelForAsking(links->context, (links->tree->nodeCount + TASK - 1) / TASK, receiveTask, &g));
     pushDown(&g, sums);
+    return vplAsk(links->context);
 }

@@ -104,7 +104,7 @@ static vplResult refine(Refinement* r, vplArena* scratch, vplLinkList* list)
     TRY(vplArena_Check(scratch));
     TRY(vplReserve(r->context, &r->pairs, &r->pairCapacity, 1, sizeof *r->pairs));
     if (nodes > 0) {
-        vplParallelFor(r->context, (nodes + TASK - 1) / TASK, drawPointsTask, r);
+        TRY(vplParallelForAsking(r->context, (nodes + TASK - 1) / TASK, drawPointsTask, r));
         r->pairs[r->pairCount++] = (vplLinkPair){.p = 0, .q = 0, .visible = false, .weight = 1};
     }
     double done = 0;

@@ -103,7 +103,7 @@ static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const bo
         links->tree->scale[i] = 1;
     }
     for (int round = 0; round <= rounds; round++) {
-        vplLinks_Gather(links, &ones, &nodes, sums);
+        TRY(vplLinks_Gather(links, &ones, &nodes, sums));
         for (int i = 0; i < count && round == 0; i++) {
             rowSums[i] = (float)sums[i][0];
         }

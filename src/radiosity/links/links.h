@@ -136,8 +136,8 @@ typedef struct vplLinkScratch {
 vplLinkScratch vplLinkScratch_Alloc(vplArena* arena, const vplLinks* links);
 
 // sums = F x.
-void vplLinks_Gather(const vplLinks* links, const vplPlanes* x, const vplLinkScratch* scratch,
-                     double (*sums)[3]);
+vplResult vplLinks_Gather(const vplLinks* links, const vplPlanes* x, const vplLinkScratch* scratch,
+                          double (*sums)[3]);
 
 // ---- sums of rows (link_rows.c)
 

@@ -73,8 +73,7 @@ vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight wei
     }
     TRY(vplCheckRgb(context, "values", values, (size_t)mesh->sides->count));
     Means means = {mesh, weight, values, vertexValuesOut};
-    vplParallelFor(context, (mesh->vertexCount + CHUNK - 1) / CHUNK, interpolateChunk, &means);
-    return VPL_SUCCESS;
+    return vplParallelForAsking(context, (mesh->vertexCount + CHUNK - 1) / CHUNK, interpolateChunk, &means);
 }
 
 // ---- sharpening

@@ -140,6 +140,6 @@ vplResult vplMeshCorners_Find(vplArena* scratch, const vplPatches* patches, cons
     b->angles = vplArena_Alloc(scratch, b->count, sizeof *b->angles);
     TRY(vplArena_Check(scratch));
     sortCorners(b);
-    vplParallelFor(patches->context, (patches->positionCount + CHUNK - 1) / CHUNK, groupChunk, b);
-    return VPL_SUCCESS;
+    return vplParallelForAsking(patches->context, (patches->positionCount + CHUNK - 1) / CHUNK, groupChunk,
+                                b);
 }

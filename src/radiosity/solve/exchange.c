@@ -68,7 +68,7 @@ static void gatherTask(void* data, int task, int worker)
     }
 }
 
-void vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first, int end)
+vplResult vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first, int end)
 {
     Rows rows = {exchange, x, first, end};
     const int tasks = (end - first + ROWS - 1) / ROWS;
@@ -78,18 +78,16 @@ void vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first
         for (int task = 0; task < tasks; task++) {
             gatherTask(&rows, task, 0);
         }
-    } else {
-        vplParallelFor(exchange->context, tasks, gatherTask, &rows);
+        return VPL_SUCCESS;
     }
+    return vplParallelForAsking(exchange->context, tasks, gatherTask, &rows);
 }
 
-void vplExchange_Gather(vplExchange* exchange, const vplPlanes* x)
+vplResult vplExchange_Gather(vplExchange* exchange, const vplPlanes* x)
 {
-    if (exchange->transport->factors != NULL) {
-        vplExchange_GatherRows(exchange, x, 0, exchange->count);
-    } else {
-        vplLinks_Gather(exchange->transport->links, x, &exchange->nodes, exchange->sums);
-    }
+    return exchange->transport->factors != NULL
+               ? vplExchange_GatherRows(exchange, x, 0, exchange->count)
+               : vplLinks_Gather(exchange->transport->links, x, &exchange->nodes, exchange->sums);
 }
 
 // ---- the spectrum
@@ -144,14 +142,14 @@ static double squaredNorm(const vplExchange* e, int channel, const float* x)
     return norm;
 }
 
-void vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats)
+vplResult vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats)
 {
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < exchange->count; i++) {
             x->c[c][i] = 1;
         }
     }
-    vplExchange_Gather(exchange, x);
+    TRY(vplExchange_Gather(exchange, x));
     measureRows(exchange, stats);
     for (int c = 0; c < 3; c++) {
         reflectAndMeasure(exchange, c, x->c[c]);
@@ -159,7 +157,7 @@ void vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats)
     double radius = 0, last = -1;
     for (int round = 0; round < MOST_ROUNDS && fabs(radius - last) > 1e-6 * radius; round++) {
         last = radius;
-        vplExchange_Gather(exchange, x);
+        TRY(vplExchange_Gather(exchange, x));
         radius = 0;
         for (int c = 0; c < 3; c++) {
             const double before = squaredNorm(exchange, c, x->c[c]);
@@ -169,4 +167,5 @@ void vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats)
         }
     }
     stats->spectralRadius = radius;
+    return VPL_SUCCESS;
 }

@@ -71,12 +71,13 @@ static vplResult failDiverging(const vplSolve* s)
         s->stats.iterations, s->largest, s->stats.spectralRadius);
 }
 
-static void findSpectrum(vplSolve* s)
+static vplResult findSpectrum(vplSolve* s)
 {
     if (!s->hasSpectrum) {
-        vplFindSpectrum(&s->exchange, &s->scratch, &s->stats);
+        TRY(vplFindSpectrum(&s->exchange, &s->scratch, &s->stats));
         s->hasSpectrum = true;
     }
+    return VPL_SUCCESS;
 }
 
 static vplResult sweepAll(vplSolve* s)
@@ -89,21 +90,21 @@ static vplResult sweepAll(vplSolve* s)
         if (def->progress != NULL && !def->progress(def->progressUser, (double)i / def->iterations)) {
             return VPL_CANCELLED;
         }
-        vplSolve_Sweep(s);
+        TRY(vplSolve_Sweep(s));
         s->stats.iterations = i + 1;
         s->stats.residual = s->largest > 0 ? s->change / s->largest : 0;
         done = s->change <= def->residual * s->largest;
         growing = s->change > last ? growing + 1 : 0;
         last = s->change;
         if (!s->finite || growing == GROWING) {
-            findSpectrum(s);
+            TRY(findSpectrum(s));
         }
         if (!s->finite || (growing >= GROWING && s->stats.spectralRadius > DIVERGES)) {
             return failDiverging(s);
         }
     }
     if (def->spectrum) {
-        findSpectrum(s);
+        TRY(findSpectrum(s));
     }
     if (growing > 0 && s->hasSpectrum && s->stats.spectralRadius > DIVERGES) {
         return failDiverging(s);
@@ -141,7 +142,7 @@ static vplResult solveWith(vplArena* arena, const vplTransport* transport, vplSo
     vplPlanes_Read(&s->source, source, s->exchange.count);
     vplPlanes_Read(&s->radiosity, radiosity, s->exchange.count);
     if (s->stats.solver == VPL_SOLVER_SHOOTING) {
-        vplSolve_BeginShooting(s);
+        TRY(vplSolve_BeginShooting(s));
     }
     TRY(sweepAll(s));
     vplPlanes_Write(&s->radiosity, s->exchange.count, radiosity);
@@ -176,7 +177,7 @@ static vplResult gather(vplArena* scratch, const vplTransport* transport, const 
     vplPlanes planes = vplPlanes_Alloc(scratch, e.count);
     TRY(vplArena_Check(scratch));
     vplPlanes_Read(&planes, radiosity, e.count);
-    vplExchange_Gather(&e, &planes);
+    TRY(vplExchange_Gather(&e, &planes));
     for (int i = 0; i < e.count; i++) {
         double* v = e.sums[i];
         if (source != NULL) {

@@ -25,11 +25,11 @@ vplResult vplTransport_Check(const vplTransport* transport);
 vplResult vplExchange_Open(vplArena* scratch, const vplTransport* transport, vplExchange* exchangeOut);
 
 // sums = F x: for all sides or, with form factors, for the sides in [first, end).
-void vplExchange_Gather(vplExchange* exchange, const vplPlanes* x);
-void vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first, int end);
+vplResult vplExchange_Gather(vplExchange* exchange, const vplPlanes* x);
+vplResult vplExchange_GatherRows(vplExchange* exchange, const vplPlanes* x, int first, int end);
 
 // Fills the spectral radius and the sums of rows. Overwrites `x`.
-void vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats);
+vplResult vplFindSpectrum(vplExchange* exchange, vplPlanes* x, vplSolveStats* stats);
 
 // ---- solvers (sweep.c)
 
@@ -48,8 +48,8 @@ typedef struct vplSolve {
 } vplSolve;
 
 // Prepares the first sweep of shooting.
-void vplSolve_BeginShooting(vplSolve* solve);
+vplResult vplSolve_BeginShooting(vplSolve* solve);
 
-void vplSolve_Sweep(vplSolve* solve);
+vplResult vplSolve_Sweep(vplSolve* solve);
 
 #endif

@@ -31,9 +31,9 @@ static double reflect(const vplSolve* s, int i, int c, double received)
     return (double)s->source.c[c][i] + (double)s->exchange.reflectance.c[c][i] * received;
 }
 
-static void sweepJacobi(vplSolve* s)
+static vplResult sweepJacobi(vplSolve* s)
 {
-    vplExchange_Gather(&s->exchange, &s->radiosity);
+    TRY(vplExchange_Gather(&s->exchange, &s->radiosity));
     for (int i = 0; i < s->exchange.count; i++) {
         for (int c = 0; c < 3; c++) {
             const float now = (float)reflect(s, i, c, s->exchange.sums[i][c]);
@@ -41,13 +41,14 @@ static void sweepJacobi(vplSolve* s)
             s->radiosity.c[c][i] = now;
         }
     }
+    return VPL_SUCCESS;
 }
 
-static void sweepBlock(vplSolve* s, int first, int end)
+static vplResult sweepBlock(vplSolve* s, int first, int end)
 {
     const vplFormFactors* f = s->exchange.transport->factors;
     double more[BLOCK][3];
-    vplExchange_GatherRows(&s->exchange, &s->radiosity, first, end);
+    TRY(vplExchange_GatherRows(&s->exchange, &s->radiosity, first, end));
     for (int i = first; i < end; i++) {
         const float* row = f->rows + (size_t)i * (size_t)f->count + first;
         double sum[3] = {s->exchange.sums[i][0], s->exchange.sums[i][1], s->exchange.sums[i][2]};
@@ -65,20 +66,22 @@ static void sweepBlock(vplSolve* s, int first, int end)
             s->radiosity.c[c][i] = now;
         }
     }
+    return vplAsk(s->exchange.context);
 }
 
-static void sweepGaussSeidel(vplSolve* s)
+static vplResult sweepGaussSeidel(vplSolve* s)
 {
     for (int first = 0; first < s->exchange.count; first += BLOCK) {
-        sweepBlock(s, first, vplMini(first + BLOCK, s->exchange.count));
+        TRY(sweepBlock(s, first, vplMini(first + BLOCK, s->exchange.count)));
     }
+    return VPL_SUCCESS;
 }
 
 // ---- shooting
 
 // If the start value is the source, nothing is shot yet. Any other start value counts as shot, and one sweep
 // of Jacobi finds its residual.
-void vplSolve_BeginShooting(vplSolve* s)
+vplResult vplSolve_BeginShooting(vplSolve* s)
 {
     const int count = s->exchange.count;
     const size_t bytes = 3 * vplPaddedSides(count) * sizeof(float);
@@ -86,7 +89,7 @@ void vplSolve_BeginShooting(vplSolve* s)
         memcpy(s->unshot.c[0], s->source.c[0], bytes);
     } else {
         memcpy(s->shot.c[0], s->radiosity.c[0], bytes);
-        vplExchange_Gather(&s->exchange, &s->radiosity);
+        TRY(vplExchange_Gather(&s->exchange, &s->radiosity));
         for (int i = 0; i < count; i++) {
             for (int c = 0; c < 3; c++) {
                 const double better = reflect(s, i, c, s->exchange.sums[i][c]);
@@ -106,10 +109,11 @@ void vplSolve_BeginShooting(vplSolve* s)
             s->gain.c[c][i] = s->area[i] > 0 ? s->exchange.reflectance.c[c][i] / s->area[i] : 0;
         }
     }
+    return VPL_SUCCESS;
 }
 
 // Side j receives F_ji = F_ij A_i / A_j of side i's radiosity, so one row of F serves a shot.
-static void sweepShooting(vplSolve* s)
+static vplResult sweepShooting(vplSolve* s)
 {
     const vplFormFactors* f = s->exchange.transport->factors;
     const int count = s->exchange.count;
@@ -123,6 +127,9 @@ static void sweepShooting(vplSolve* s)
             s->unshot.c[c][i] = 0;
         }
         s->next = s->exchange.kernels->shoot(&shot, count);
+        if (k % BLOCK == 0) {
+            TRY(vplAsk(s->exchange.context));
+        }
     }
     for (int i = 0; i < count; i++) {
         for (int c = 0; c < 3; c++) {
@@ -131,21 +138,14 @@ static void sweepShooting(vplSolve* s)
             s->radiosity.c[c][i] = now;
         }
     }
+    return VPL_SUCCESS;
 }
 
-void vplSolve_Sweep(vplSolve* solve)
+vplResult vplSolve_Sweep(vplSolve* solve)
 {
     solve->change = solve->largest = 0;
     solve->finite = true;
-    switch (solve->stats.solver) {
-    case VPL_SOLVER_JACOBI:
-        sweepJacobi(solve);
-        break;
-    case VPL_SOLVER_GAUSS_SEIDEL:
-        sweepGaussSeidel(solve);
-        break;
-    case VPL_SOLVER_SHOOTING:
-        sweepShooting(solve);
-        break;
-    }
+    return solve->stats.solver == VPL_SOLVER_JACOBI     ? sweepJacobi(solve)
+           : solve->stats.solver == VPL_SOLVER_SHOOTING ? sweepShooting(solve)
+                                                        : sweepGaussSeidel(solve);
 }

@@ -118,11 +118,15 @@ vplResult vplShowReflectiveMap(const vplReflectiveMap* map, const vplGeometry* g
 {
     const bool cross = map->faceCount == 6;
     Shown s = {.reflective = map, .geometry = geometry};
-    const vplResult result = createImage(map->context, map->size, cross ? 4 : 1, cross ? 3 : 1, &s.image);
+    vplResult result = createImage(map->context, map->size, cross ? 4 : 1, cross ? 3 : 1, &s.image);
     if (result == VPL_SUCCESS) {
-        vplParallelFor(map->context, map->faceCount * map->size, showReflectiveRow, &s);
+        result = vplParallelForAsking(map->context, map->faceCount * map->size, showReflectiveRow, &s);
+    }
+    if (result == VPL_SUCCESS) {
         scaleLast(s.image);
         *imageOut = s.image;
+    } else {
+        vplImage_Destroy(s.image);
     }
     return result;
 }
@@ -130,11 +134,15 @@ vplResult vplShowReflectiveMap(const vplReflectiveMap* map, const vplGeometry* g
 vplResult vplShowParaboloidMap(const vplParaboloidMap* map, const vplGeometry* geometry, vplImage** imageOut)
 {
     Shown s = {.paraboloid = map, .geometry = geometry};
-    const vplResult result = createImage(map->context, map->size, 1, map->hemispheres, &s.image);
+    vplResult result = createImage(map->context, map->size, 1, map->hemispheres, &s.image);
     if (result == VPL_SUCCESS) {
-        vplParallelFor(map->context, map->hemispheres * map->size, showParaboloidRow, &s);
+        result = vplParallelForAsking(map->context, map->hemispheres * map->size, showParaboloidRow, &s);
+    }
+    if (result == VPL_SUCCESS) {
         scaleLast(s.image);
         *imageOut = s.image;
+    } else {
+        vplImage_Destroy(s.image);
     }
     return result;
 }
