@@ -110,6 +110,9 @@ static void runCommands(const vplRaster* r, vplTileState* state, const int* bin,
     int epoch = -1;
     if (r->framebuffer.samples > 0 && r->hasTasks) {
         drawSamples(r, state, bin);
+        if (!vplTask_GoesOn(r->context)) {
+            return; // not all samples are drawn
+        }
     }
     for (int i = 0; i < r->commandCount;) {
         const vplCommand* c = &r->commands[i];

@@ -282,9 +282,9 @@ static vplResult make(vplRunner* r, vplStageId id)
     made = made == VPL_SUCCESS ? vplArena_Check(r->run.scratch) : made;
     made = made == VPL_SUCCESS ? stage->make(&r->run, &result) : made;
     r->partTo = 1;
-    const bool asks =
-        !stage->undoes && r->run.progress != NULL; // cancelled paths are taken back by the stage
-    if (made == VPL_SUCCESS && asks && !r->run.progress(r, 1)) {
+    const bool cancelled = atomic_exchange(&context->cancelled, false); // outside of the loops that notice
+    const bool asks = !stage->undoes && r->run.progress != NULL; // the tracer takes its own passes back
+    if (made == VPL_SUCCESS && (cancelled || (asks && !r->run.progress(r, 1)))) {
         made = VPL_CANCELLED;
     }
     context->watch = outer;
