@@ -23,7 +23,7 @@ typedef struct State {
     double noise, bias; // of the picture so far
     double spent;       // rays of its passes, which are in packets
     double paths;       // squared error of a picture by one ray's worth of paths
-    bool canRefine;
+    int halvings;       // of the square of pixels that share lights, that are possible
 } State;
 
 static State stateOf(const vplRenderer* r)
@@ -34,9 +34,12 @@ static State stateOf(const vplRenderer* r)
                .spent = fmax(1, (double)r->runner.stats.rays - r->planRays),
                .paths = mean > 0 ? r->judged.pathVariance / (mean * mean) * r->judged.pathRays *
                                        VPL_PATH_RAY * pixels
-                                 : INFINITY,
-               .canRefine = r->plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED &&
-                            r->plan->options.pipeline.interleave > 2 && r->asked.pipeline.interleave < 0};
+                                 : INFINITY};
+    const bool refines =
+        r->plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && r->asked.pipeline.interleave < 0;
+    for (int side = r->plan->options.pipeline.interleave; refines && side > 2; side /= 2) {
+        s.halvings++;
+    }
     s.bias = fmax(0, r->error.total * r->error.total - s.noise);
     return s;
 }
@@ -49,10 +52,19 @@ static double toFinish(const State* s, double square)
     return left > 0 ? s->spent * fmax(LEAST_MORE, s->noise / left - 1) : INFINITY;
 }
 
-static double toRefine(const State* s, double square)
+// *halvingsOut: of the square of pixels that share lights.
+static double toRefine(const State* s, double square, int* halvingsOut)
 {
-    const double left = square - FINER_BIAS * s->bias;
-    return s->canRefine && left > 0 ? FINER_COST * s->spent * s->noise / left : INFINITY;
+    double least = INFINITY, bias = s->bias, spent = s->spent;
+    *halvingsOut = 1;
+    for (int k = 1; k <= s->halvings; k++) {
+        bias *= FINER_BIAS;
+        spent *= FINER_COST;
+        const double rays = square > bias ? spent * s->noise / (square - bias) : INFINITY;
+        *halvingsOut = rays < least ? k : *halvingsOut;
+        least = fmin(least, rays);
+    }
+    return least;
 }
 
 static double toTrace(const State* s, double square)
@@ -80,7 +92,7 @@ static vplResult trace(vplRenderer* r, bool* doneOut)
     return goOnWith(r, "path tracing", &o, doneOut);
 }
 
-static vplResult refine(vplRenderer* r, bool* doneOut)
+static vplResult refine(vplRenderer* r, int halvings, bool* doneOut)
 {
     vplRenderOptions o = r->asked;
     const vplRenderOptions* before = &r->plan->options;
@@ -89,7 +101,7 @@ static vplResult refine(vplRenderer* r, bool* doneOut)
     o.particles = before->particles;
     o.output.antialias =
         before->output.antialias < 16 && o.output.antialias == 8 ? 16 : before->output.antialias;
-    o.pipeline.interleave = before->pipeline.interleave / 2;
+    o.pipeline.interleave = before->pipeline.interleave >> halvings;
     return goOnWith(r, "fewer pixels that share lights", &o, doneOut);
 }
 
@@ -115,12 +127,13 @@ static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneO
         VPL_SURE_PATHS) { // the bound of the error does not become much closer to it
         upper.bias = fmax(s->bias, r->error.bound * r->error.bound - s->noise);
     }
-    const double finish = toFinish(&upper, square), finer = toRefine(&upper, square),
+    int halvings;
+    const double finish = toFinish(&upper, square), finer = toRefine(&upper, square, &halvings),
                  paths = toTrace(s, square);
     if (paths < finish && paths < finer) {
         return trace(r, doneOut);
     }
-    return finer < finish ? refine(r, doneOut) : VPL_SUCCESS;
+    return finer < finish ? refine(r, halvings, doneOut) : VPL_SUCCESS;
 }
 
 // The least squared error for the rays that the time is enough for.
@@ -130,12 +143,12 @@ static vplResult spend(vplRenderer* r, const State* s, bool* doneOut)
                  rays = rate * (r->deadline - vplClockMs());
     const double finish = s->bias + s->noise * s->spent / (s->spent + rays);
     const double finer =
-        s->canRefine ? FINER_BIAS * s->bias + FINER_COST * s->noise * s->spent / rays : INFINITY;
+        s->halvings > 0 ? FINER_BIAS * s->bias + FINER_COST * s->noise * s->spent / rays : INFINITY;
     const double paths = s->paths / rays;
     if (paths < 0.8 * finish && paths < finer) {
         return trace(r, doneOut);
     }
-    return finer < 0.8 * finish ? refine(r, doneOut) : VPL_SUCCESS;
+    return finer < 0.8 * finish ? refine(r, 1, doneOut) : VPL_SUCCESS;
 }
 
 vplResult vplReconsider(vplRenderer* r, double asked, bool* doneOut)
