@@ -123,8 +123,8 @@ static vplResult reach(vplRenderer* r, const State* s, double asked, bool* doneO
         return VPL_SUCCESS;
     }
     State upper = *s;
-    if (vplTruth_Paths(r->truth) >=
-        VPL_SURE_PATHS) { // the bound of the error does not become much closer to it
+    // Where the error is low enough and its bound is not, the bound does not come much closer to it.
+    if (r->error.total <= asked && vplTruth_Paths(r->truth) >= VPL_SURE_PATHS) {
         upper.bias = fmax(s->bias, r->error.bound * r->error.bound - s->noise);
     }
     int halvings;
