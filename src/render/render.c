@@ -3,6 +3,7 @@
 #include "math/scalar.h"
 #include "render/planner/planner.h"
 #include "render/renderer.h"
+#include "render/show.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
@@ -33,13 +34,16 @@ static void sayError(const vplRenderer* r, double asked)
     const vplErrorParts* e = &r->error;
     const double reached = e->total >= 0 ? e->total : e->noise;
     vplContext* context = r->runner.run.context;
-    if (asked > 0 && reached >= 0 && !(e->bound >= 0 && e->bound <= asked)) {
+    const char* why = r->ended[0] != 0         ? r->ended
+                      : r->deadline < INFINITY ? "--budget ended the render"
+                                               : "--passes or --spp ended the render";
+    if (asked > 0 && reached < 0 && vplShowsLight(r->asked.output.show)) {
+        vplLog(context, VPL_LOG_WARNING, "the error is not known, and %.3g %% was asked for: %s", 100 * asked,
+               why);
+    } else if (asked > 0 && reached >= 0 && !(e->bound >= 0 && e->bound <= asked)) {
         vplLog(context, VPL_LOG_WARNING,
                "the error is about %.3g %%, not surely below the %.3g %% asked for: %s", 100 * reached,
-               100 * asked,
-               r->ended[0] != 0                    ? r->ended
-               : r->late || r->deadline < INFINITY ? "--budget ended the render"
-                                                   : "--passes or --spp ended the render");
+               100 * asked, why);
     } else if (reached >= 0) {
         vplLog(context, VPL_LOG_INFO, "the error is about %.3g %%", 100 * reached);
     }

@@ -32,6 +32,12 @@ extern const vplShowRow VPL_SHOWS[];
 // Returns the reason why the method cannot show it, or NULL if it can.
 const char* vplRefuseShow(const vplRenderOptions* options);
 
+// Pictures of light have errors, and coarse forms that are better than nothing.
+static inline bool vplShowsLight(vplShow show)
+{
+    return show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT || show == VPL_SHOW_INDIRECT;
+}
+
 // True if the picture shows only values of patches, and no direct light of pixels.
 static inline bool vplShowsPatchesAlone(vplShow show)
 {

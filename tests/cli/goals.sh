@@ -35,7 +35,9 @@ equals BiasIsNoFailure 0 $?
 check BiasEndsIt grep -q "which more passes do not mend" "$scratch/told"
 "$vpl" render "$room" --size 64x36 --max-error 0.001 --budget 200 -o "$out/g.pfm" 2>"$scratch/told"
 equals ABudgetIsNoFailure 0 $?
-check ABudgetThatEndsItIsSaid grep -q "budget ended the render" "$scratch/told"
+check ABudgetThatEndsItIsSaid grep -q -- "--budget ended the render" "$scratch/told"
+"$vpl" render "$room" --size 640x360 --max-error 0.001 --budget 20 -o "$out/g.pfm" 2>"$scratch/told"
+check AnUnknownErrorIsSaid grep -q "the error is not known" "$scratch/told"
 
 for word in draft good; do
     succeeds "Quality_$word" "$vpl" render "$room" $wee --quality $word -o "$out/g.pfm"

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "render/planner/planner.h"
 #include "render/renderer.h"
+#include "render/show.h"
 #include "render/stages/make.h"
 
 #include <math.h>
@@ -22,12 +23,6 @@ void vplResolveQuality(vplRenderOptions* o)
         o->stop.budgetMs = o->stop.budgetMs > 0 ? o->stop.budgetMs : WORDS[o->stop.quality].ms;
         o->stop.quality = VPL_QUALITY_NONE;
     }
-}
-
-// Pictures of light have errors, and coarse forms that are better than nothing.
-static bool isLight(vplShow show)
-{
-    return show == VPL_SHOW_PICTURE || show == VPL_SHOW_DIRECT || show == VPL_SHOW_INDIRECT;
 }
 
 static double leftOf(const vplRenderer* r)
@@ -74,7 +69,7 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
     const bool patches = method == VPL_METHOD_RADIOSITY; // whose plan takes long, too
-    const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH || !isLight(r->asked.output.show) ||
+    const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH || !vplShowsLight(r->asked.output.show) ||
                       r->asked.output.aovs != 0;
     vplRenderOptions o;
     if (fits || !patches) {
@@ -280,9 +275,9 @@ vplResult vplReview(vplRenderer* r, bool* doneOut)
     }
     const bool complete = vplIsComplete(r);
     *doneOut = complete;
-    if (asked > 0 && isLight(r->asked.output.show)) {
+    if (asked > 0 && vplShowsLight(r->asked.output.show)) {
         TRY(reviewError(r, asked, doneOut));
-    } else if (isLight(r->asked.output.show)) {
+    } else if (vplShowsLight(r->asked.output.show)) {
         TRY(reviewTime(r, doneOut));
     }
     const bool changed = r->done == 0; // another plan, of which there is no pass yet
