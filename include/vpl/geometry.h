@@ -37,11 +37,13 @@ typedef struct vplRay {
 enum { VPL_FACE_NONE = -1, VPL_FACE_QUAD = 4 };
 
 typedef struct vplHit {
-    float t;          // > 0 and finite
-    int object;       // index in the geometry
-    int face;         // 2 * axis + (0: +, 1: -); VPL_FACE_QUAD for quads; VPL_FACE_NONE for meshes
-    int triangle;     // index in the geometry's triangles; for quads and boxes one of the face
-    float u, v;       // mesh: barycentrics of corners 1 and 2
+    float t;      // > 0 and finite
+    int object;   // index in the geometry
+    int face;     // 2 * axis + (0: +, 1: -); VPL_FACE_QUAD for quads; VPL_FACE_NONE for meshes
+    int triangle; // index in the geometry's triangles; for quads and boxes one of the face
+    // Mesh: barycentrics of corners 1 and 2. Quad and box: local coordinates on the face, [-0.5, 0.5], along the
+    // two axes other than the face's, in the order x, y, z.
+    float u, v;
     vplVec3 position; // on the surface to rounding
     vplVec3 normal;   // unit, of the front side (a quad's +z, a box's outside), also when hit from behind
 } vplHit;
@@ -64,6 +66,7 @@ typedef struct vplGeometryObject {
     int material;       // -1: each triangle has its own
     vplRgb reflectance; // mean over its area
     bool smooth;        // has shading normals
+    bool byFormula;     // is among vplGeometry.formulaObjects
     vplPlacement placement;
     vplPlacement bounds; // mesh: maps the unit box onto its oriented bounding box
     int firstVertex, vertexCount;
@@ -82,6 +85,12 @@ typedef struct vplGeometry {
     const int* triangleMaterials;    // the material of each triangle
     const vplMaterialDef* materials; // without names
     int objectCount, materialCount, vertexCount, triangleCount;
+    // Quads and boxes that rays do not test as triangles but by vplRay_HitQuad and vplRay_HitBox, one by one:
+    // those whose corners move by more than 1/512 of their size when rounded to float, because they are small
+    // and far from the origin or very thin, and those whose axes almost lie in one plane. Usually there are
+    // none.
+    const int* formulaObjects;
+    int formulaCount;
     vplVec3 boundsMin, boundsMax; // of all positions; both 0 when there are none
     double area;                  // of all triangles, square metres
     double meanReflectance;       // area-weighted, mean of the channels; 0 where there is no area

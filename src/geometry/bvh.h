@@ -33,9 +33,16 @@ typedef struct vplTriangleBlock {
     int32_t id[VPL_BVH_WIDTH];    // ascending
 } vplTriangleBlock;
 
+// Lanes that rays test differently, which are few; bit i is lane i.
+typedef struct vplBlockMarks {
+    uint8_t byFormula; // not at all: the object is among vplGeometry.formulaObjects
+    uint8_t extreme;   // in double: the longest edge is above 2^18 m or below 2^-38 m
+} vplBlockMarks;
+
 typedef struct vplBvh {
     vplBvhNode* nodes; // the root first; NULL: test all blocks
     vplTriangleBlock* blocks;
+    vplBlockMarks* marks; // per block; NULL: none has any
     int nodeCount, blockCount;
     struct vplArena* arena; // owns the arrays
 } vplBvh;
@@ -52,9 +59,9 @@ static inline bool vplCanBeHit(const vplGeometry* g, int triangle)
     return n.x != 0 || n.y != 0 || n.z != 0;
 }
 
-// Fills a block with 1 to 8 triangles, ids ascending.
-void vplTriangleBlock_Fill(vplTriangleBlock* block, const vplGeometry* geometry, const int32_t* ids,
-                           int count);
+// Fills a block with 1 to 8 triangles, ids ascending. Returns its marks.
+vplBlockMarks vplTriangleBlock_Fill(vplTriangleBlock* block, const vplGeometry* geometry, const int32_t* ids,
+                                    int count);
 
 // ---- ray packets
 

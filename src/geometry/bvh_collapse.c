@@ -164,7 +164,8 @@ static void fillBlock(const Collapse* c, int index)
         }
         ids[at] = from[i];
     }
-    vplTriangleBlock_Fill(&c->bvh->blocks[index], c->builder->geometry, ids, items->count);
+    c->bvh->marks[index] =
+        vplTriangleBlock_Fill(&c->bvh->blocks[index], c->builder->geometry, ids, items->count);
 }
 
 static void fillBlocks(void* data, int task, int worker)
@@ -182,6 +183,7 @@ static vplResult allocate(Collapse* c)
     const size_t nodes = (size_t)bvh->nodeCount, blocks = (size_t)bvh->blockCount;
     bvh->nodes = nodes > 0 ? vplArena_Alloc(bvh->arena, nodes, sizeof *bvh->nodes) : NULL;
     bvh->blocks = vplArena_Alloc(bvh->arena, blocks, sizeof *bvh->blocks);
+    bvh->marks = vplArena_Alloc(bvh->arena, blocks, sizeof *bvh->marks);
     c->blockItems = vplArena_Alloc(c->builder->scratch, blocks, sizeof *c->blockItems);
     TRY(vplArena_Check(bvh->arena));
     return vplArena_Check(c->builder->scratch);
@@ -191,6 +193,11 @@ static void fillAllBlocks(Collapse* c)
 {
     vplParallelFor(c->builder->geometry->context,
                    (c->bvh->blockCount + VPL_BUILD_CHUNK - 1) / VPL_BUILD_CHUNK, fillBlocks, c);
+    bool any = false;
+    for (int i = 0; i < c->bvh->blockCount; i++) {
+        any = any || c->bvh->marks[i].extreme != 0 || c->bvh->marks[i].byFormula != 0;
+    }
+    c->bvh->marks = any ? c->bvh->marks : NULL;
 }
 
 vplResult vplCollapse(const vplBvhBuilder* builder, int root, vplBvh* bvh)

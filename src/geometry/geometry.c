@@ -2,6 +2,7 @@
 // The scene as read-only world-space arrays of triangles.
 #include "base/arena.h"
 #include "geometry/bvh.h"
+#include "geometry/formula.h"
 #include "geometry/object_build.h"
 #include "geometry/triangle.h"
 #include "math/vec.h"
@@ -36,6 +37,8 @@ static vplResult allocate(const vplScene* scene, vplGeometry* g, vplGeometryBuil
     g->objects = b->objects = vplArena_AllocZero(g->arena, (size_t)g->objectCount, sizeof *b->objects);
     g->positions = b->positions = vplArena_Alloc(g->arena, vertices, sizeof *b->positions);
     g->indices = b->indices = vplArena_Alloc(g->arena, 3 * triangles, sizeof *b->indices);
+    g->formulaObjects = b->formulaObjects =
+        vplArena_Alloc(g->arena, (size_t)g->objectCount, sizeof *b->formulaObjects);
     g->normals = b->normals = vplArena_Alloc(g->arena, triangles, sizeof *b->normals);
     g->owners = b->owners = vplArena_Alloc(g->arena, triangles, sizeof *b->owners);
     g->triangleMaterials = b->triangleMaterials =
@@ -64,6 +67,10 @@ static vplResult fill(vplGeometry* g, const vplGeometryBuilder* b)
                                       .triangleCount = shape.triangleCount};
         TRY(vplPlacement_Create(g->context, &def->transform, &object->placement));
         vplBuildObject(b, i);
+        object->byFormula = vplNeedsFormula(object, &shape, b->positions);
+        if (object->byFormula) {
+            b->formulaObjects[g->formulaCount++] = i;
+        }
         vertex += object->vertexCount;
         triangle += object->triangleCount;
     }

@@ -49,6 +49,13 @@ static LocalRay toLocal(const vplRay* ray, const vplPlacement* p)
     return local;
 }
 
+// The coordinate on a face along its first axis (`which` 0) or its second.
+static float onFace(const double at[3], int face, int which)
+{
+    const int axis = face >> 1;
+    return (float)at[which == 0 ? axis == 0 : 2 - (axis == 2)];
+}
+
 // False where t overflows a float: a hit that far away counts as a miss.
 static bool fillHit(const vplPlacement* p, const double at[3], double t, int face, vplHit* hit)
 {
@@ -60,6 +67,8 @@ static bool fillHit(const vplPlacement* p, const double at[3], double t, int fac
                     .object = -1,
                     .face = face,
                     .triangle = -1,
+                    .u = onFace(at, face, 0),
+                    .v = onFace(at, face, 1),
                     .position = vplRound3(world),
                     .normal = vplVec(p->normal[face][0], p->normal[face][1], p->normal[face][2])};
     return hit->t > 0 && isfinite(hit->t);

@@ -16,6 +16,7 @@ typedef struct vplGeometryBuilder {
     vplVec3* normals;
     int* owners;
     int* triangleMaterials;
+    int* formulaObjects;
     vplMaterialDef* materials;
 } vplGeometryBuilder;
 

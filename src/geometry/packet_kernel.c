@@ -44,7 +44,7 @@ static void prepareLanes(const vplRayPacket* rays, Packet* restrict p)
         p->kz[i] = kz;
         p->sx[i] = (kz == 0 ? y : kz == 1 ? z : x) / along;
         p->sy[i] = (kz == 0 ? z : kz == 1 ? x : y) / along;
-        p->sz[i] = 1 / along;
+        p->sz[i] = 1 / along * DEPTH_SCALE;
     }
     for (int k = 0; k < 3; k++) {
         int32_t same[LANES];
@@ -90,6 +90,8 @@ static void prepareIntervals(Packet* p)
 static Prepared takeLane(const Packet* p, int lane)
 {
     Prepared r = {.sx = p->sx[lane], .sy = p->sy[lane], .sz = p->sz[lane], .kz = p->kz[lane]};
+    r.blocks = p->bvh->blocks;
+    r.marks = p->bvh->marks;
     for (int axis = 0; axis < 3; axis++) {
         r.origin[axis] = p->origin[axis][lane];
         r.inverse[axis] = p->inverse[axis][lane];
@@ -109,7 +111,7 @@ static uint32_t testBlockLanes(const Packet* p, const vplTriangleBlock* block, u
     uint32_t hits = 0;
     for (int kz = 0; kz < 3; kz++) {
         uint32_t some = lanes & p->along[kz];
-        if (__builtin_popcount(some) > FEW_AT_BLOCK) {
+        if (__builtin_popcount(some) > FEW_AT_BLOCK && p->bvh->marks == NULL) {
             for (int i = 0; i < WIDTH && block->id[i] >= 0 && some != 0; i++) {
                 const uint32_t hit = testTriangle(p, block, i, kz) & some;
                 hits |= hit;
@@ -177,6 +179,7 @@ uint32_t VPL_KERNEL(vplTraceAnyPacket)(const vplBvh* bvh, const vplRayPacket* ra
     }
     Packet p;
     p.limit = tMax;
+    p.bvh = bvh;
     prepareLanes(rays, &p);
     if (bvh->nodes != NULL) {
         prepareIntervals(&p);

@@ -15,6 +15,7 @@ typedef struct Packet {
     int32_t kz[LANES], skipFirst[LANES], skipCount[LANES];
     uint32_t along[3]; // bit i: ray i has this kz
     float limit;
+    const vplBvh* bvh;
     // Intervals over all rays: of the origins, towards the planes by which rays enter and leave a box, and of
     // the inverse directions. They bound nothing along an axis in which the directions differ in sign.
     float enterOrigin[3], leaveOrigin[3], least[3], most[3];
@@ -158,7 +159,8 @@ static uint32_t testTriangle(const Packet* p, const vplTriangleBlock* block, int
     for (int i = 0; i < LANES; i++) {
         const float det = s.u[i] + s.v[i] + s.w[i];
         const float inverse = 1 / (det != 0 ? det : 1);
-        const float distance = (s.u[i] * s.z[0][i] + s.v[i] * s.z[1][i] + s.w[i] * s.z[2][i]) * inverse;
+        const float distance =
+            (s.u[i] * s.z[0][i] + s.v[i] * s.z[1][i] + s.w[i] * s.z[2][i]) * inverse * (1 / DEPTH_SCALE);
         float t = distance > in[i] ? distance : in[i];
         t = t < out[i] ? t : out[i];
         flags[i] = -((det != 0) & (distance > 0) & (distance < INFINITY) & (in[i] <= out[i]) & (t > 0) &

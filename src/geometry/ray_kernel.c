@@ -66,7 +66,7 @@ vplTraceClosestFcn VPL_KERNEL(vplTraceClosest);
 
 void VPL_KERNEL(vplTraceClosest)(const vplBvh* bvh, const vplRay* ray, float tMax, vplRawHit* hitOut)
 {
-    const Prepared r = prepare(ray);
+    const Prepared r = prepare(bvh, ray);
     vplRawHit best = {tMax, 0, 0, -1, 0};
     for (int i = 0; bvh->nodes == NULL && i < bvh->blockCount; i++, best.blocks++) {
         keepClosest(&r, &bvh->blocks[i], &best);
@@ -101,7 +101,7 @@ vplTraceAnyFcn VPL_KERNEL(vplTraceAny);
 
 bool VPL_KERNEL(vplTraceAny)(const vplBvh* bvh, const vplRay* ray, float tMax)
 {
-    const Prepared r = prepare(ray);
+    const Prepared r = prepare(bvh, ray);
     if (bvh->nodes != NULL) {
         return hasHitInTree(&r, bvh, 0, tMax);
     }

@@ -29,13 +29,19 @@ static inline uint32_t collectBits(const int32_t flags[WIDTH])
     return (uint32_t)bits;
 }
 
+// Depths are scaled by a power of two, which changes no digit, so that the products of depths down to the
+// smallest float with edge functions do not underflow.
+#define DEPTH_SCALE 0x1p20f
+
 // A ray prepared for both tests. The triangle test permutes the axes so that kz is the ray's longest.
 typedef struct Prepared {
     vplFour origin, inverse;   // of the direction; the fourth lane is not used
     int nearRow[3], farRow[3]; // byte offsets of rows of vplBvhNode.planes
-    float sx, sy, sz;
+    float sx, sy, sz;          // sz times DEPTH_SCALE
     int kx, ky, kz;
     int skipFirst, skipCount;
+    const vplTriangleBlock* blocks; // of the tree
+    const vplBlockMarks* marks;     // usually NULL
 } Prepared;
 
 enum { ROW = WIDTH * sizeof(float) };
@@ -56,7 +62,7 @@ static inline int longestAxis(float x, float y, float z)
     return most > fabsf(z) ? axis : 2;
 }
 
-static inline Prepared prepare(const vplRay* ray)
+static inline Prepared prepare(const vplBvh* bvh, const vplRay* ray)
 {
     static const int next[4] = {1, 2, 0, 1};
     Prepared p;
@@ -68,7 +74,7 @@ static inline Prepared prepare(const vplRay* ray)
     const vplFour shear = (vplFour){d[p.kx], d[p.ky], 1, 1} / vplFour_Of(d[p.kz]);
     p.sx = shear[0];
     p.sy = shear[1];
-    p.sz = shear[2];
+    p.sz = shear[2] * DEPTH_SCALE;
     vplFour divisor = {1, 1, 1, 1};
     for (int k = 0; k < 3; k++) {
         // Avoids 1/0, because 0 times infinity is NaN. A slab parallel to the ray becomes too wide to decide.
@@ -80,6 +86,8 @@ static inline Prepared prepare(const vplRay* ray)
     }
     p.skipFirst = ray->skip.first;
     p.skipCount = ray->skip.count;
+    p.blocks = bvh->blocks;
+    p.marks = bvh->marks;
     return p;
 }
 
@@ -92,9 +100,10 @@ static void edgesInDouble(const float a[2], const float b[2], const float c[2], 
     *w = (float)((double)b[0] * a[1] - (double)b[1] * a[0]);
 }
 
-// Tests the triangles of a block. Bit i of the result: lane i was hit. Without hits the outputs are not set.
-static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vplTriangleBlock* block,
-                                                    float* restrict t, float* restrict b1, float* restrict b2)
+// Tests the triangles of a block in float.
+static __attribute__((noinline)) uint32_t testOrdinaryBlock(const Prepared* r, const vplTriangleBlock* block,
+                                                            float* restrict t, float* restrict b1,
+                                                            float* restrict b2)
 {
     float x[3][WIDTH], y[3][WIDTH], z[3][WIDTH], u[WIDTH], v[WIDTH], w[WIDTH];
     int32_t flags[WIDTH];
@@ -136,7 +145,7 @@ static __attribute__((noinline)) uint32_t testBlock(const Prepared* r, const vpl
     for (int i = 0; i < WIDTH; i++) {
         float det = u[i] + v[i] + w[i];
         float inverse = 1 / (det != 0 ? det : 1);
-        float distance = (u[i] * z[0][i] + v[i] * z[1][i] + w[i] * z[2][i]) * inverse;
+        float distance = (u[i] * z[0][i] + v[i] * z[1][i] + w[i] * z[2][i]) * inverse * (1 / DEPTH_SCALE);
         t[i] = distance;
         b1[i] = v[i] * inverse;
         b2[i] = w[i] * inverse;
@@ -188,6 +197,47 @@ static inline uint32_t testBoxes(const Prepared* r, const vplBvhNode* node, floa
         met[i] = -((in <= out) & (in <= limit));
     }
     return collectBits(met);
+}
+
+// Tests one triangle in double, because sums of products of its sizes leave float's range.
+static __attribute__((noinline)) bool testInDouble(const Prepared* r, const vplTriangleBlock* block, int lane,
+                                                   float* t, float* b1, float* b2)
+{
+    const double ox = (double)r->origin[r->kx], oy = (double)r->origin[r->ky], oz = (double)r->origin[r->kz];
+    double x[3], y[3], z[3];
+    for (int corner = 0; corner < 3; corner++) {
+        z[corner] = (double)block->p[corner][r->kz][lane] - oz;
+        x[corner] = (double)block->p[corner][r->kx][lane] - ox - (double)r->sx * z[corner];
+        y[corner] = (double)block->p[corner][r->ky][lane] - oy - (double)r->sy * z[corner];
+    }
+    const double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0],
+                 det = u + v + w;
+    const bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+    const bool skipped = (uint32_t)(block->id[lane] - r->skipFirst) < (uint32_t)r->skipCount;
+    if (!inside || skipped || det == 0) {
+        return false;
+    }
+    const double depth = (u * z[0] + v * z[1] + w * z[2]) / det;
+    *t = (float)(depth * ((double)r->sz / (double)DEPTH_SCALE));
+    *b1 = (float)(v / det);
+    *b2 = (float)(w / det);
+    return *t > 0 && *t < INFINITY;
+}
+
+// Bit i of the result: lane i was hit. Without hits the outputs are not set.
+static inline uint32_t testBlock(const Prepared* r, const vplTriangleBlock* block, float* t, float* b1,
+                                 float* b2)
+{
+    uint32_t hits = testOrdinaryBlock(r, block, t, b1, b2);
+    if (r->marks != NULL) {
+        const vplBlockMarks marks = r->marks[block - r->blocks];
+        hits &= ~(uint32_t)(marks.byFormula | marks.extreme);
+        for (uint32_t lanes = marks.extreme & ~marks.byFormula & 0xffu; lanes != 0; lanes &= lanes - 1) {
+            const int i = __builtin_ctz(lanes);
+            hits |= (uint32_t)testInDouble(r, block, i, &t[i], &b1[i], &b2[i]) << i;
+        }
+    }
+    return hits;
 }
 
 static inline vplBox boundLane(const vplTriangleBlock* block, int lane)

@@ -2,16 +2,19 @@
 // Rays through the scene: the tree of triangles finds what is hit, the object's own shape says where.
 #include "base/context.h"
 #include "geometry/bvh.h"
+#include "geometry/formula.h"
 #include "geometry/triangle.h"
 #include "math/double3.h"
 #include "math/vec.h"
 
+#include <float.h>
 #include <math.h>
 
 // ---- without a tree
 
 // Makes a hierarchy of one block of the triangles first .. first + 7.
-static void makeBlock(const vplGeometry* g, int first, vplTriangleBlock* block, vplBvh* bvh)
+static void makeBlock(const vplGeometry* g, int first, vplTriangleBlock* block, vplBlockMarks* marks,
+                      vplBvh* bvh)
 {
     int32_t ids[VPL_BVH_WIDTH];
     int count = 0;
@@ -21,9 +24,9 @@ static void makeBlock(const vplGeometry* g, int first, vplTriangleBlock* block, 
         }
     }
     if (count > 0) {
-        vplTriangleBlock_Fill(block, g, ids, count);
+        *marks = vplTriangleBlock_Fill(block, g, ids, count);
     }
-    *bvh = (vplBvh){.blocks = block, .blockCount = count > 0};
+    *bvh = (vplBvh){.blocks = block, .marks = marks, .blockCount = count > 0};
 }
 
 // The closest hit, or with `any` some hit, by testing every triangle.
@@ -33,18 +36,60 @@ static vplRawHit testAll(const vplGeometry* g, const vplRay* ray, float tMax, bo
     vplRawHit best = {.t = tMax, .triangle = -1};
     for (int i = 0; i < g->triangleCount && !(any && best.triangle >= 0); i += VPL_BVH_WIDTH) {
         vplTriangleBlock block;
+        vplBlockMarks marks;
         vplBvh bvh;
         vplRawHit hit;
-        makeBlock(g, i, &block, &bvh);
+        makeBlock(g, i, &block, &marks, &bvh);
         kernels->closest(&bvh, ray, best.t, &hit);
         best = hit.triangle >= 0 ? hit : best; // ids ascend: among equal distances the first stays
     }
     return best;
 }
 
+// ---- directions of any length
+
+// True for directions with which triangle tests neither overflow nor underflow: of 2^-20 to 2^20 m.
+static bool isOrdinary(vplVec3 d)
+{
+    const float square = d.x * d.x + d.y * d.y + d.z * d.z;
+    return (square >= 0x1p-40f) & (square <= 0x1p40f);
+}
+
+// The length of other directions to a power of two.
+static int farExponent(vplVec3 d)
+{
+    int exponent;
+    frexpf(vplLargestOf(d), &exponent);
+    return exponent;
+}
+
+// Divides a direction by 2^exponent, which is exact, so that triangle tests neither overflow nor underflow.
+static vplRay shorten(const vplRay* ray, int exponent)
+{
+    const vplVec3 d = ray->direction;
+    return (vplRay){
+        ray->origin, {ldexpf(d.x, -exponent), ldexpf(d.y, -exponent), ldexpf(d.z, -exponent)}, ray->skip};
+}
+
+static bool isOccluded(const vplGeometry* g, const vplRay* ray, float tMax, bool everyTriangle)
+{
+    vplRay shorter;
+    if (!isOrdinary(ray->direction)) {
+        const int exponent = farExponent(ray->direction);
+        shorter = shorten(ray, exponent);
+        ray = &shorter;
+        tMax = ldexpf(fminf(tMax, FLT_MAX), exponent);
+    }
+    const bool occluded = g->rayTree == NULL || everyTriangle
+                              ? testAll(g, ray, tMax, true).triangle >= 0
+                              : vplGetRayKernels(g->context->isa)->any(g->rayTree, ray, tMax);
+    vplHit hit;
+    return occluded || (g->formulaCount > 0 && vplHitByFormula(g, ray, tMax, &hit));
+}
+
 bool vplAnyOfTriangles(const vplGeometry* g, const vplRay* ray, float tMax)
 {
-    return testAll(g, ray, tMax, true).triangle >= 0;
+    return isOccluded(g, ray, tMax, true);
 }
 
 // ---- hits
@@ -63,6 +108,8 @@ static void hitTriangle(const vplGeometry* g, const vplRawHit* raw, vplHit* hit)
     hit->position = vplRound3(at);
     hit->normal = g->normals[raw->triangle];
     hit->t = raw->t;
+    hit->u = raw->b1;
+    hit->v = raw->b2;
 }
 
 // Locates the hit on a triangle: by the formula of the quad or box that it belongs to, if any.
@@ -79,12 +126,11 @@ static vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vp
     }
     hit.face = face;
     hit.triangle = raw->triangle;
-    hit.u = raw->b1;
-    hit.v = raw->b2;
     return hit;
 }
 
-bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
+// The closest hit on what is tested as triangles.
+static vplRawHit traceTriangles(const vplGeometry* g, const vplRay* ray, float tMax, int* tests)
 {
     vplRawHit raw;
     bool everyObject = true;
@@ -99,12 +145,30 @@ bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tes
         raw = testAll(g, ray, tMax, false);
     }
     if (tests != NULL) {
-        *tests += everyObject ? g->objectCount : raw.blocks;
+        *tests += everyObject ? g->objectCount : raw.blocks + g->formulaCount;
     }
-    if (raw.triangle >= 0) {
+    return raw;
+}
+
+bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
+{
+    vplRawHit raw;
+    if (isOrdinary(ray->direction)) {
+        raw = traceTriangles(g, ray, tMax, tests);
+    } else {
+        const int exponent = farExponent(ray->direction);
+        const vplRay shorter = shorten(ray, exponent);
+        raw = traceTriangles(g, &shorter, ldexpf(fminf(tMax, FLT_MAX), exponent), tests);
+        raw.t = ldexpf(raw.t, -exponent);
+    }
+    const bool met = raw.triangle >= 0 && raw.t > 0 && raw.t < INFINITY;
+    if (g->formulaCount > 0 && vplHitByFormula(g, ray, met ? raw.t : tMax, hitOut)) {
+        return true;
+    }
+    if (met) {
         *hitOut = finishHit(g, ray, &raw);
     }
-    return raw.triangle >= 0;
+    return met;
 }
 
 bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplHit* hitOut)
@@ -114,20 +178,30 @@ bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplH
 
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax)
 {
-    return geometry->rayTree ? vplGetRayKernels(geometry->context->isa)->any(geometry->rayTree, ray, tMax)
-                             : vplAnyOfTriangles(geometry, ray, tMax);
+    return isOccluded(geometry, ray, tMax, false);
+}
+
+static bool areOrdinary(const vplRayPacket* rays)
+{
+    uint32_t odd = 0;
+    for (int i = 0; i < VPL_RAY_PACKET; i++) {
+        const float x = rays->direction[0][i], y = rays->direction[1][i], z = rays->direction[2][i],
+                    square = x * x + y * y + z * z;
+        odd |= (uint32_t) !((square >= 0x1p-40f) & (square <= 0x1p40f)) << i;
+    }
+    return (odd & rays->active) == 0;
 }
 
 uint32_t vplGeometry_AreOccluded(const vplGeometry* geometry, const vplRayPacket* rays, float tMax)
 {
-    if (geometry->rayTree != NULL) {
+    if (geometry->rayTree != NULL && geometry->formulaCount == 0 && areOrdinary(rays)) {
         return vplGetRayKernels(geometry->context->isa)->anyPacket(geometry->rayTree, rays, tMax);
     }
     uint32_t hits = 0;
     for (uint32_t active = rays->active; active != 0; active &= active - 1) {
         const int lane = __builtin_ctz(active);
         const vplRay ray = vplRayPacket_Get(rays, lane);
-        hits |= (uint32_t)vplAnyOfTriangles(geometry, &ray, tMax) << lane;
+        hits |= (uint32_t)isOccluded(geometry, &ray, tMax, false) << lane;
     }
     return hits;
 }
