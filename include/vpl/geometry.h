@@ -92,6 +92,7 @@ typedef struct vplGeometry {
     const int* formulaObjects;
     int formulaCount;
     vplVec3 boundsMin, boundsMax; // of all positions; both 0 when there are none
+    double origin[3];             // vplScene_GetOrigin: all positions are relative to it
     double area;                  // of all triangles, square metres
     double meanReflectance;       // area-weighted, mean of the channels; 0 where there is no area
     bool emits;                   // some triangle may emit

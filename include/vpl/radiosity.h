@@ -338,7 +338,8 @@ vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplPr
 // Writes the mesh as binary little-endian PLY with a colour per vertex: all fronts, and the backs that light
 // reaches, with reversed orientation. `vertexIrradiance`: W/m^2, [vertex][front, back]. Colours are linear
 // radiosity rho E as float r, g, b, and rho E times `scale`, >= 0, as 8-bit sRGB red, green, blue. A vertex
-// is written once per reflectance.
+// is written once per reflectance. Positions are the caller's: floats, or where the scene has an origin
+// (vplScene_SetOrigin) doubles.
 vplResult vplPatchMesh_WritePly(const vplPatchMesh* mesh, const vplRgb* vertexIrradiance, float scale,
                                 const char* path);
 

@@ -138,6 +138,19 @@ vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplObjSc
 // The same with the default def.
 vplResult vplScene_Load(vplContext* context, const char* path, vplScene** sceneOut);
 
+// Where the scene's own (0, 0, 0) lies in the caller's space, metres; (0, 0, 0) in a new scene. All positions
+// of the scene, of its geometry and of its lights are relative to it, in float: a scene far from (0, 0, 0),
+// such as 1e6 m, keeps its digits only if its positions are given relative to a near origin. Setting it moves
+// nothing; it is added, in double, to positions that are written: by vpl lights, vpl info and in PLY files,
+// which then hold doubles, good to 2^-24 of the distance from the origin. Each component in [-1e15, 1e15].
+//
+// vplScene_Load sets it where the middle of what a scene file places is more than 32 times as far from (0, 0,
+// 0), along some axis, as from the outermost thing; then to the middle, rounded to a multiple of a power of
+// two that is at least the scene's size. Else it stays 0, and scenes keep their bits. What it places are eyes,
+// targets and their keys, translations of objects, and positions of lights; not the vertices of meshes.
+vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3]);
+void vplScene_GetOrigin(const vplScene* scene, double originOut[3]);
+
 // Each checks a def, copies it and returns its index in *indexOut (may be NULL). VPL_INVALID_ARGUMENT for a
 // value out of range, which the message names; VPL_OUT_OF_MEMORY.
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut);

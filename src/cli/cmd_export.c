@@ -7,13 +7,17 @@
 
 // ---- virtual lights
 
-static void printLights(const vplLightSet* set)
+static void printLights(const vplScene* scene, const vplLightSet* set)
 {
+    double origin[3];
+    vplScene_GetOrigin(scene, origin);
+    const int digits = origin[0] != 0 || origin[1] != 0 || origin[2] != 0 ? 15 : 9;
     puts("index,step,px,py,pz,nx,ny,nz,r,g,b,weight");
     for (int i = 0; i < set->lightCount && !ferror(stdout); i++) {
         const vplVirtualLight* v = &set->lights[i];
-        printf("%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, v->step, (double)v->position.x,
-               (double)v->position.y, (double)v->position.z, (double)v->normal.x, (double)v->normal.y,
+        printf("%d,%d,%.*g,%.*g,%.*g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", i, v->step, digits,
+               origin[0] + (double)v->position.x, digits, origin[1] + (double)v->position.y, digits,
+               origin[2] + (double)v->position.z, (double)v->normal.x, (double)v->normal.y,
                (double)v->normal.z, (double)v->light.r, (double)v->light.g, (double)v->light.b,
                (double)v->weight);
     }
@@ -24,7 +28,7 @@ static int listLights(const Arguments* a, const vplScene* scene)
     vplLightSet* set = NULL;
     int code = exitCode(vplMakeLights(scene, &a->render, &set), true);
     if (code == EXIT_DONE) {
-        printLights(set);
+        printLights(scene, set);
     }
     if (code == EXIT_DONE && a->verbose) {
         complain("%d lights, %d particles escaped, %lld rays, %lld ray-object tests", set->lightCount,

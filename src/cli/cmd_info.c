@@ -59,6 +59,8 @@ static void printScene(const char* path, const Info* info)
     const int *objects = info->objectsOfType, *emitters = info->emittersOfType;
     const int meshes = vplScene_GetMeshCount(scene);
     const vplVec3 a = g->boundsMin, b = g->boundsMax;
+    const double* o = g->origin;
+    const int digits = o[0] != 0 || o[1] != 0 || o[2] != 0 ? 12 : 6;
     printf("%s\n", path);
     printf("  %-16s %d\n", "cameras", vplScene_GetCameraCount(scene));
     printf("  %-16s %d\n", "materials", vplScene_GetMaterialCount(scene));
@@ -78,8 +80,9 @@ static void printScene(const char* path, const Info* info)
                vplEmission_Area(info->emission));
     }
     printf("  %-16s %d\n", "triangles", g->triangleCount);
-    printf("  %-16s (%g, %g, %g) to (%g, %g, %g) m\n", "bounds", (double)a.x, (double)a.y, (double)a.z,
-           (double)b.x, (double)b.y, (double)b.z);
+    printf("  %-16s (%.*g, %.*g, %.*g) to (%.*g, %.*g, %.*g) m\n", "bounds", digits, o[0] + (double)a.x,
+           digits, o[1] + (double)a.y, digits, o[2] + (double)a.z, digits, o[0] + (double)b.x, digits,
+           o[1] + (double)b.y, digits, o[2] + (double)b.z);
     printf("  %-16s %g m\n", "diagonal", (double)vplGeometry_Diagonal(g));
     printf("  %-16s %g m^2\n", "area", vplGeometry_Area(g));
     printf("  %-16s %.4f (mean over the area)\n\n", "reflectance", vplGeometry_MeanReflectance(g));
@@ -87,9 +90,10 @@ static void printScene(const char* path, const Info* info)
 
 // ---- JSON
 
-static json_t* vector(vplVec3 v)
+static json_t* position(const vplGeometry* g, vplVec3 p)
 {
-    return json_pack("[f, f, f]", (double)v.x, (double)v.y, (double)v.z);
+    return json_pack("[f, f, f]", g->origin[0] + (double)p.x, g->origin[1] + (double)p.y,
+                     g->origin[2] + (double)p.z);
 }
 
 static json_t* decisionsJson(const vplDecision* decisions, int count)
@@ -149,8 +153,8 @@ static json_t* sceneJson(const Info* info)
                      emitters[VPL_EMITTER_DIRECTIONAL], "paths", "total", info->paths, "first_frame",
                      info->firstFrame, "last_frame", info->lastFrame, "triangles", g->triangleCount,
                      "lamp_triangles", info->emission->sourceCount, "lamp_area",
-                     vplEmission_Area(info->emission), "bounds_min", vector(g->boundsMin), "bounds_max",
-                     vector(g->boundsMax), "diagonal", (double)vplGeometry_Diagonal(g), "area",
+                     vplEmission_Area(info->emission), "bounds_min", position(g, g->boundsMin), "bounds_max",
+                     position(g, g->boundsMax), "diagonal", (double)vplGeometry_Diagonal(g), "area",
                      vplGeometry_Area(g), "mean_reflectance", vplGeometry_MeanReflectance(g), "render",
                      planJson(info->plan));
 }

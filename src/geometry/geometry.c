@@ -101,12 +101,27 @@ static void summarise(vplGeometry* g)
     g->meanReflectance = g->area > 0 ? reflecting / g->area : 0;
 }
 
+// Positions in float lose what is small beside their distance from (0, 0, 0).
+static void warnOfDistance(const vplGeometry* g)
+{
+    const float farthest = fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
+    const float size = vplGeometry_Diagonal(g);
+    if (farthest > 4096 * size && size > 0) {
+        vplLog(g->context, VPL_LOG_WARNING,
+               "the scene is %g m large and %g m from (0, 0, 0): positions are off by up to %.2g m. Nearer "
+               "vertices, or vplScene_SetOrigin, keep them exact",
+               (double)size, (double)farthest, (double)farthest * 0x1p-24);
+    }
+}
+
 static vplResult build(const vplScene* scene, vplGeometry* g)
 {
     vplGeometryBuilder builder = {.scene = scene};
+    vplScene_GetOrigin(scene, g->origin);
     TRY(allocate(scene, g, &builder));
     TRY(fill(g, &builder));
     summarise(g);
+    warnOfDistance(g);
     return VPL_SUCCESS;
 }
 

@@ -215,6 +215,21 @@ vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, 
     return VPL_SUCCESS;
 }
 
+vplResult vplJson_ReadPosition(const vplJson* object, const char* key, void* out)
+{
+    double at[3];
+    if (vplJson_Member(object, key).value == NULL) {
+        return VPL_SUCCESS;
+    }
+    TRY(vplJson_ReadDoubles(object, key, 3, at));
+    float floats[3];
+    for (int i = 0; i < 3; i++) {
+        floats[i] = (float)(at[i] - object->file->origin[i]);
+    }
+    memcpy(out, floats, sizeof floats);
+    return VPL_SUCCESS;
+}
+
 vplResult vplJson_ReadString(const vplJson* object, const char* key, const char** out)
 {
     const vplJson member = vplJson_Member(object, key);

@@ -15,6 +15,7 @@ typedef struct vplJsonFile {
     char* text;
     size_t size;
     json_t* root;
+    double origin[3]; // vplJson_ReadPosition subtracts it; 0 when the file is opened
 } vplJsonFile;
 
 // A value of a file and the way to it, linked on the caller's stack.
@@ -51,6 +52,9 @@ vplResult vplJson_CheckKeys(const vplJson* object, const char* const* keys);
 vplResult vplJson_ReadNumber(const vplJson* object, const char* key, double* out);
 vplResult vplJson_ReadDoubles(const vplJson* object, const char* key, int count, double* out);
 vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, void* out);
+
+// Reads a vplVec3 and subtracts the file's origin in double.
+vplResult vplJson_ReadPosition(const vplJson* object, const char* key, void* out);
 vplResult vplJson_ReadString(const vplJson* object, const char* key, const char** out);
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -110,6 +111,25 @@ static vplResult copyName(vplScene* scene, const char** name)
         return *name != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     }
     return VPL_SUCCESS;
+}
+
+vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3])
+{
+    for (int i = 0; i < 3; i++) {
+        if (!(fabs(origin[i]) <= (double)VPL_MAX_MAGNITUDE)) {
+            return vplFail(scene->context, VPL_INVALID_ARGUMENT,
+                           "vplScene_SetOrigin: origin[%d] is %g, must be in [%g, %g]", i, origin[i],
+                           -(double)VPL_MAX_MAGNITUDE, (double)VPL_MAX_MAGNITUDE);
+        }
+    }
+    memcpy(scene->origin, origin, sizeof scene->origin);
+    scene->stamp = vplNextStamp(scene->context);
+    return VPL_SUCCESS;
+}
+
+void vplScene_GetOrigin(const vplScene* scene, double originOut[3])
+{
+    memcpy(originOut, scene->origin, sizeof scene->origin);
 }
 
 vplResult vplScene_AddCamera(vplScene* scene, const vplCameraDef* def, int* indexOut)

@@ -27,6 +27,7 @@ struct vplScene {
     vplContext* context;
     vplArena* arena; // owns the scene and everything in it
     uint64_t stamp;  // changes with each addition
+    double origin[3];
     vplCamera* cameras;
     vplMaterialDef* materials;
     vplMeshDef* meshes;

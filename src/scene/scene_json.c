@@ -55,8 +55,8 @@ static vplResult readCamera(vplSceneLoader* l, const vplJson* camera)
     static const char* const keys[] = {"!eye", "!target", "up", "fov_y", "near", "far", "path", NULL};
     vplCameraDef def = vplDefaultCameraDef();
     TRY(vplJson_CheckKeys(camera, keys));
-    TRY(vplJson_ReadFloats(camera, "eye", 3, &def.eye));
-    TRY(vplJson_ReadFloats(camera, "target", 3, &def.target));
+    TRY(vplJson_ReadPosition(camera, "eye", &def.eye));
+    TRY(vplJson_ReadPosition(camera, "target", &def.target));
     TRY(vplJson_ReadFloats(camera, "up", 3, &def.up));
     TRY(vplJson_ReadAngle(camera, "fov_y", 0, 180, &def.fovY));
     TRY(vplJson_ReadNumber(camera, "near", &def.near));
@@ -123,7 +123,7 @@ static vplResult readEmitter(vplSceneLoader* l, const vplJson* emitter)
     def.type = (vplEmitterType)type;
     TRY(vplJson_CheckKeys(emitter, keys[type]));
     TRY(vplJson_ReadString(emitter, "name", &name));
-    TRY(vplJson_ReadFloats(emitter, "position", 3, &def.position));
+    TRY(vplJson_ReadPosition(emitter, "position", &def.position));
     TRY(vplJson_ReadFloats(emitter, "direction", 3, &def.direction));
     TRY(vplJson_ReadFloats(emitter, "intensity", 3, &def.intensity));
     TRY(vplJson_ReadFloats(emitter, "irradiance", 3, &def.intensity));
@@ -190,7 +190,9 @@ static vplResult readFile(vplSceneLoader* l, const char* path)
 {
     TRY(vplArena_Check(l->scratch));
     TRY(vplJsonFile_Open(l->scene->context, path, &l->json));
-    const vplResult result = readRoot(l);
+    vplFindOrigin(l->json.root, l->json.origin);
+    vplResult result = vplScene_SetOrigin(l->scene, l->json.origin);
+    result = result == VPL_SUCCESS ? readRoot(l) : result;
     vplJsonFile_Close(&l->json);
     return result;
 }

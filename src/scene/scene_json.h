@@ -15,6 +15,9 @@ typedef struct vplSceneLoader {
     vplNames meshFiles; // paths of the scene's meshes, in their order
 } vplSceneLoader;
 
+// Finds the origin of a scene file, as vplScene_SetOrigin describes it.
+void vplFindOrigin(json_t* root, double originOut[3]);
+
 // Logs a fault, if there is one, as "file:line:column: path sentence" of a member of `object`.
 vplResult vplJson_ReportFault(const vplJson* object, vplFault fault);
 

@@ -49,17 +49,23 @@ static vplResult readRotation(const vplJson* object, double quarters[3])
 static vplResult readTransform(const vplJson* object, vplMat4* out)
 {
     const vplJson matrix = vplJson_Member(object, "matrix");
+    const double* origin = object->file->origin;
     if (matrix.value != NULL) {
         if (json_object_get(object->value, "translate") || json_object_get(object->value, "rotate") ||
             json_object_get(object->value, "scale")) {
             return vplJson_Fail(&matrix, "excludes \"translate\", \"rotate\" and \"scale\"");
         }
-        TRY(vplJson_ReadFloats(object, "matrix", 16, out->m));
+        double m[16];
+        TRY(vplJson_ReadDoubles(object, "matrix", 16, m));
+        for (int i = 0; i < 16; i++) {
+            const bool translation = i >= 12 && i < 15;
+            out->m[i] = (float)(translation ? m[i] - origin[i - 12] : m[i]);
+        }
         return vplJson_ReportFault(object, vplCheckTransform(out));
     }
-    vplVec3 translate = {0, 0, 0}, scale = {1, 1, 1};
+    vplVec3 translate = {(float)-origin[0], (float)-origin[1], (float)-origin[2]}, scale = {1, 1, 1};
     double quarters[3] = {0, 0, 0};
-    TRY(vplJson_ReadFloats(object, "translate", 3, &translate));
+    TRY(vplJson_ReadPosition(object, "translate", &translate));
     TRY(readRotation(object, quarters));
     TRY(readScale(object, &scale));
     const vplAffine a = vplAffine_FromParts(translate, quarters, scale);

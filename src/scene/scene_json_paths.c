@@ -16,8 +16,8 @@ static vplResult readCameraKey(const vplJson* at, const void* def, double before
     *key = vplMakeCameraKey(def, 0);
     TRY(vplJson_CheckKeys(at, names));
     TRY(vplJson_ReadNumber(at, "frame", &key->frame));
-    TRY(vplJson_ReadFloats(at, "eye", 3, &key->eye));
-    TRY(vplJson_ReadFloats(at, "target", 3, &key->target));
+    TRY(vplJson_ReadPosition(at, "eye", &key->eye));
+    TRY(vplJson_ReadPosition(at, "target", &key->target));
     TRY(vplJson_ReadFloats(at, "up", 3, &key->up));
     TRY(vplJson_ReadAngle(at, "fov_y", 0, 180, &key->fovY));
     const vplCameraDef posed = vplApplyCameraKey(def, key);
@@ -35,7 +35,7 @@ static vplResult readEmitterKey(const vplJson* at, const void* def, double befor
     *key = vplMakeEmitterKey(def, 0);
     TRY(vplJson_CheckKeys(at, names[((const vplEmitterDef*)def)->type]));
     TRY(vplJson_ReadNumber(at, "frame", &key->frame));
-    TRY(vplJson_ReadFloats(at, "position", 3, &key->position));
+    TRY(vplJson_ReadPosition(at, "position", &key->position));
     TRY(vplJson_ReadFloats(at, "direction", 3, &key->direction));
     TRY(vplJson_ReadFloats(at, "intensity", 3, &key->intensity));
     TRY(vplJson_ReadFloats(at, "irradiance", 3, &key->intensity));

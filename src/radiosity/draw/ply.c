@@ -9,9 +9,10 @@
 #include <stdio.h>
 #include <string.h>
 
-// A vertex as in the file: 39 bytes without padding.
+// A vertex as in the file without its position: 27 bytes without padding. The position before it is of floats,
+// or of doubles in a scene with an origin.
 typedef struct __attribute__((packed)) PlyVertex {
-    float position[3], normal[3];
+    float normal[3];
     uint8_t code[3]; // sRGB
     float colour[3]; // linear
 } PlyVertex;
@@ -35,8 +36,9 @@ typedef struct Baker {
     float scale;
     int* heads; // per vertex of the mesh: the first entry for the face that is being written; -1: none
     PlyVertex* vertices;
+    uint32_t* positions; // of each vertex, in the mesh
     Entry* entries;
-    size_t vertexCount, vertexCapacity, entryCapacity;
+    size_t vertexCount, vertexCapacity, entryCapacity, positionCapacity;
     PlyFace* faces;
     size_t faceCount, faceCapacity;
 } Baker;
@@ -46,11 +48,9 @@ typedef struct Baker {
 static PlyVertex makeVertex(const Baker* b, uint32_t vertex, int face, vplRgb reflectance)
 {
     const vplPatchMesh* m = b->mesh;
-    const vplVec3 p = m->positions[vertex],
-                  n = face == 0 ? m->normals[vertex] : vplNegate(m->normals[vertex]);
+    const vplVec3 n = face == 0 ? m->normals[vertex] : vplNegate(m->normals[vertex]);
     const vplRgb c = vplRgbMul(reflectance, b->irradiance[2 * (size_t)vertex + (size_t)face]);
     return (PlyVertex){
-        {p.x, p.y, p.z},
         {n.x, n.y, n.z},
         {vplSrgb_Code(b->scale * c.r), vplSrgb_Code(b->scale * c.g), vplSrgb_Code(b->scale * c.b)},
         {c.r, c.g, c.b}};
@@ -71,8 +71,10 @@ static vplResult findVertex(Baker* b, uint32_t vertex, int face, vplRgb reflecta
     }
     const size_t count = b->vertexCount + 1;
     TRY(vplArena_Reserve(b->arena, &b->vertices, &b->vertexCapacity, count, sizeof *b->vertices));
+    TRY(vplArena_Reserve(b->arena, &b->positions, &b->positionCapacity, count, sizeof *b->positions));
     TRY(vplArena_Reserve(b->arena, &b->entries, &b->entryCapacity, count, sizeof *b->entries));
     const int index = (int)b->vertexCount++;
+    b->positions[index] = vertex;
     b->vertices[index] = makeVertex(b, vertex, face, reflectance);
     b->entries[index] = (Entry){reflectance, b->heads[vertex]};
     b->heads[vertex] = *indexOut = index;
@@ -120,31 +122,54 @@ static vplResult addFaces(Baker* b)
 
 // ---- the file
 
+// Writes a position in the caller's space. Returns the number of bytes.
+static size_t putPosition(const Baker* b, size_t vertex, bool far, char* to)
+{
+    const double* origin = b->mesh->sides->patches->geometry->origin;
+    const vplVec3 p = b->mesh->positions[b->positions[vertex]];
+    const double place[3] = {origin[0] + (double)p.x, origin[1] + (double)p.y, origin[2] + (double)p.z};
+    if (far) {
+        memcpy(to, place, sizeof place);
+        return sizeof place;
+    }
+    memcpy(to, &p, sizeof p);
+    return sizeof p;
+}
+
 static vplResult writeFile(const Baker* b, const char* path)
 {
+    const double* origin = b->mesh->sides->patches->geometry->origin;
+    const bool far = origin[0] != 0 || origin[1] != 0 || origin[2] != 0;
+    const char* type = far ? "double" : "float";
     char head[512];
     const int length = snprintf(head, sizeof head,
                                 "ply\n"
                                 "format binary_little_endian 1.0\n"
                                 "comment radiosity in W/m^2, linear in r g b\n"
                                 "element vertex %zu\n"
-                                "property float x\nproperty float y\nproperty float z\n"
+                                "property %s x\nproperty %s y\nproperty %s z\n"
                                 "property float nx\nproperty float ny\nproperty float nz\n"
                                 "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                                 "property float r\nproperty float g\nproperty float b\n"
                                 "element face %zu\n"
                                 "property list uchar int vertex_indices\n"
                                 "end_header\n",
-                                b->vertexCount, b->faceCount);
-    const size_t vertexBytes = b->vertexCount * sizeof *b->vertices,
+                                b->vertexCount, type, type, type, b->faceCount);
+    const size_t positionBytes = far ? sizeof(double[3]) : sizeof(float[3]);
+    const size_t vertexBytes = b->vertexCount * (positionBytes + sizeof *b->vertices),
                  faceBytes = b->faceCount * sizeof *b->faces;
     const size_t size = (size_t)length + vertexBytes + faceBytes;
     char* bytes = vplArena_Alloc(b->arena, size, 1);
     TRY(vplArena_Check(b->arena));
     memcpy(bytes, head, (size_t)length);
-    if (vertexBytes > 0) {
-        memcpy(bytes + length, b->vertices, vertexBytes);
-        memcpy(bytes + length + vertexBytes, b->faces, faceBytes);
+    char* at = bytes + length;
+    for (size_t i = 0; i < b->vertexCount; i++) {
+        at += putPosition(b, i, far, at);
+        memcpy(at, &b->vertices[i], sizeof *b->vertices);
+        at += sizeof *b->vertices;
+    }
+    if (faceBytes > 0) {
+        memcpy(at, b->faces, faceBytes);
     }
     return vplWriteFile(b->context, path, bytes, size);
 }
