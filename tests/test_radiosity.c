@@ -348,3 +348,55 @@ TEST(WhatIsNotPossibleIsASentence, 1)
     }
     vplScene_Destroy(scene);
 }
+
+// A floor, a wall, a box and a lamp, all of them `size` times as large, and a thin box `far` sizes away.
+static uint64_t sizedHash(vplContext* context, float size, float far, const vplRenderOptions* options)
+{
+    vplScene* scene = sceneOf(context, 0.7f);
+    const int lamp = addMaterial(scene, (vplRgb){0.5f, 0.5f, 0.5f}, 10);
+    const double quarter = VPL_PI / 2;
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = vplVec(0, 2 * size, 6 * size);
+    camera.target = vplVec(0, size, 0);
+    camera.near = 0.125 * (double)size;
+    camera.far = 64 * (double)size;
+    assert_int_equal(vplScene_AddCamera(scene, &camera, NULL), VPL_SUCCESS);
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 0, 0), -quarter, 0, vplVec(5 * size, 5 * size, size));
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 2.5f * size, -2.5f * size), 0, 0,
+             vplVec(5 * size, 5 * size, size));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0.5f * size, 0.5f * size, 0.25f * size), 0, 0.5,
+             vplVec(size, size, size));
+    addThing(scene, VPL_OBJECT_QUAD, lamp, vplVec(0, 4 * size, 0), quarter, 0, vplVec(size, size, size));
+    if (far > 0) {
+        addThing(scene, VPL_OBJECT_BOX, 0, vplVec(far * size, size, 0), 0, 0,
+                 vplVec(size, size, 1e-6f * size));
+    }
+    vplRenderStats stats;
+    vplImage_Destroy(renderScene(scene, options, &stats));
+    assert_true(isfinite(stats.solve.spectralRadius) && stats.solve.spectralRadius > 0.01);
+    vplScene_Destroy(scene);
+    return stats.imageHash;
+}
+
+// Light of surfaces does not depend on the unit of length: powers of two leave every bit. A thin box far away
+// takes nothing from the light here.
+TEST(RadiosityIsTheSameAtAnySize, 1)
+{
+    static const int exponents[] = {-36, -20, -10, 10, 20, 30, 36, 42};
+    for (int which = 0; which < 3; which++) {
+        vplRenderOptions options = plainOptions();
+        options.method = VPL_METHOD_RADIOSITY;
+        options.output.width = 40;
+        options.output.height = 30;
+        options.radiosity.patches = 200;
+        options.radiosity.hierarchy = which == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
+        options.radiosity.formFactors = which == 2 ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
+        const uint64_t wanted = sizedHash(context, 1, 0, &options);
+        for (int i = 0; i < 8; i++) {
+            assert_true(sizedHash(context, ldexpf(1, exponents[i]), 0, &options) == wanted);
+        }
+        for (int i = 0; i < 4; i++) {
+            sizedHash(context, 1, (float)pow(10, 4 + i), &options);
+        }
+    }
+}

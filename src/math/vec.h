@@ -53,6 +53,17 @@ static inline float vplLargestOf(vplVec3 a)
     return fmaxf(fabsf(a.x), fmaxf(fabsf(a.y), fabsf(a.z)));
 }
 
+// The length of a cross product of edges, whose square leaves float's range above 4e9 m and below 1e-9 m.
+static inline double vplCrossLength(vplVec3 a)
+{
+    const float square = vplDot(a, a);
+    if (square > 0x1p-100f && square < INFINITY) {
+        return sqrt((double)square);
+    }
+    const double x = (double)a.x, y = (double)a.y, z = (double)a.z;
+    return sqrt(x * x + y * y + z * z);
+}
+
 // The unit vector along a; 0 for the zero vector. Scales the largest component to 1 first, so that the
 // squares of tiny and huge vectors neither underflow nor overflow.
 static inline vplVec3 vplNormalize(vplVec3 a)

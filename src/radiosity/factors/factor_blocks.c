@@ -94,7 +94,7 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
         vplSetLane(block->samples.origin[0], lane, ray.origin);
         const vplVec3 cross =
             vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
-        block->area[lane] = 0.5f * vplLength(cross);
+        block->area[lane] = 0.5f * (float)vplCrossLength(cross);
     } else {
         (side->open == VPL_ALL_CELLS ? fillWhole : fillPart)(side, lane, block);
         block->area[lane] = side->area;

@@ -28,7 +28,6 @@ static const float NEAR = 1.5f;
 typedef struct PairWork {
     const vplFactorWork* work;
     const vplGeometry* geometry;
-    float tolerance;
     vplTraceAnyPacketFcn* trace;
     int64_t *rays, *analyticPairs; // one per task
     vplFactorSamples* samples;     // two per worker: of the row and of the column, after the first sixteen
@@ -38,6 +37,7 @@ typedef struct PairWork {
 typedef struct Tile {
     const PairWork* shared;
     int row, column; // blocks
+    float tolerance; // metres
     const vplFactorBlock *a, *b;
     vplBlockers blockers;        // of rays between the two
     uint32_t pairs[LANES];       // bit l of i: side i of a and side l of b exchange light
@@ -75,7 +75,19 @@ static float exactMean(const vplPatchSide* a, const vplPatchSide* b)
 {
     const double exchange = vplTriangleExchange(a->corners, b->corners, &vplEdgesQuick);
     const double fraction = (a->open & b->open) == VPL_ALL_CELLS ? 1 : openFraction(a, b);
-    return (float)(exchange * fraction / (double)a->area / (double)b->area);
+    return vplClampToFloat(exchange * fraction / (double)a->area / (double)b->area);
+}
+
+// Corners this near to a plane count as in it: eight times the rounding of the blocks' largest coordinate. Sides
+// in one plane do not exchange light.
+static float toleranceOf(const vplFactorBlock* a, const vplFactorBlock* b)
+{
+    float largest = 0;
+    for (int k = 0; k < 3; k++) {
+        largest = vplMaxf(largest, vplMaxf(fabsf(a->low[k]), fabsf(a->high[k])));
+        largest = vplMaxf(largest, vplMaxf(fabsf(b->low[k]), fabsf(b->high[k])));
+    }
+    return largest * 0x1p-21f;
 }
 
 // Finds the pairs of row i that exchange light and, if analytic, how much without occluders.
@@ -83,7 +95,7 @@ static void estimateRow(Tile* tile, int i)
 {
     const vplFactorWork* work = tile->shared->work;
     vplFactorEstimate estimate;
-    work->kernels->estimateFactors(tile->a, i, tile->b, tile->shared->tolerance, NEAR * NEAR, &estimate);
+    work->kernels->estimateFactors(tile->a, i, tile->b, tile->tolerance, NEAR * NEAR, &estimate);
     tile->pairs[i] = estimate.facing & (tile->row == tile->column ? 0xfffeu << i & 0xffffu : 0xffffu);
     if (!work->def.analytic || tile->pairs[i] == 0) {
         return;
@@ -214,6 +226,7 @@ static void computeTile(Tile* tile, int worker)
 {
     const PairWork* shared = tile->shared;
     uint32_t any = 0;
+    tile->tolerance = toleranceOf(tile->a, tile->b);
     memset(tile->sum, 0, sizeof tile->sum);
     memset(tile->visible, 0, sizeof tile->visible);
     for (int i = 0; i < LANES; i++) {
@@ -225,7 +238,7 @@ static void computeTile(Tile* tile, int worker)
     }
     tile->blockers.count = -1;
     if (!shared->work->def.bruteForce) {
-        vplBlockers_Find(shared->geometry, tile->a, tile->b, shared->tolerance, &tile->blockers);
+        vplBlockers_Find(shared->geometry, tile->a, tile->b, tile->tolerance, &tile->blockers);
     }
     if (tile->blockers.count != 0 || !shared->work->def.analytic) {
         joinAll(tile, worker);
@@ -280,18 +293,6 @@ static void fillRow(void* data, int row, int worker)
     shared->analyticPairs[row] = tile.analyticPairs;
 }
 
-// Corners this near to a plane count as in it: eight times the rounding of the largest coordinate. Sides in
-// one plane do not exchange light.
-static float toleranceOf(const vplGeometry* g)
-{
-    float largest = 0;
-    for (int k = 0; k < 3; k++) {
-        const float low = fabsf(vplComponent(g->boundsMin, k)), high = fabsf(vplComponent(g->boundsMax, k));
-        largest = vplMaxf(largest, vplMaxf(low, high));
-    }
-    return largest * 0x1p-21f;
-}
-
 vplResult vplFactorWork_FillRows(vplFactorWork* work)
 {
     const vplGeometry* g = work->sides->patches->geometry;
@@ -300,7 +301,6 @@ vplResult vplFactorWork_FillRows(vplFactorWork* work)
         work->def.samples > VPL_FACTOR_SAMPLES ? 2 * (size_t)work->context->workerCount : 0;
     PairWork shared = {.work = work,
                        .geometry = g,
-                       .tolerance = toleranceOf(g),
                        .trace = vplGetRayKernels(work->context->isa)->anyPacket,
                        .rays = vplArena_AllocZero(work->scratch, tasks, sizeof *shared.rays),
                        .analyticPairs = vplArena_AllocZero(work->scratch, tasks, sizeof(int64_t)),

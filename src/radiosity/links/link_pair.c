@@ -49,7 +49,8 @@ static const vplPatchSide* firstSide(const Pair* pair, const vplLinkNode* node)
 static double triangleArea(const vplPatchSide* side)
 {
     const vplVec3* c = side->corners;
-    return 0.5 * (double)vplLength(vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0])));
+    const float twice = (float)vplCrossLength(vplCross(vplSub(c[1], c[0]), vplSub(c[2], c[0])));
+    return 0.5 * (double)twice;
 }
 
 // ---- bounds

@@ -37,7 +37,8 @@ void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplL
         const double target = from + (to - from) * ((k + (double)vplUnitFloat(random.v[0])) / count);
         const int place = findSide(tree, n, target);
         const vplPatchSide* side = &work->sides->sides[tree->order[place]];
-        const double into = (target - tree->areaUpTo[place]) / (double)side->area;
+        // Beside a large sum, the summed areas of tiny sides may differ by more than the area, or not at all.
+        const double into = fmin((target - tree->areaUpTo[place]) / (double)side->area, 1);
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
         out[k].side = tree->order[place];

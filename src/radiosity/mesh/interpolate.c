@@ -89,7 +89,7 @@ typedef struct Sharpening {
 // Adds the values over one face, times its area, to the sum of its side.
 static void addFace(const Sharpening* s, const vplMeshFace* face, const vplRgb* vertexValues)
 {
-    const double area = sqrt((double)vplDot(face->cross, face->cross));
+    const double area = vplCrossLength(face->cross);
     double* sum = s->sums[face->side];
     for (int k = 0; k < 3; k++) {
         vplAddRgb(sum, area / 3, vertexValues[face->at[k]]);

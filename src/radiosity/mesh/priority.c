@@ -32,7 +32,8 @@ typedef struct VertexSums {
 
 static void addFace(const vplPatchPriorityDef* def, const vplMeshFace* face, VertexSums* c)
 {
-    const double area = 0.5 * (double)vplLength(face->cross);
+    const float twice = (float)vplCrossLength(face->cross);
+    const double area = 0.5 * (double)twice;
     double direct = 0, square = 0;
     for (int k = 0; k < 3; k++) {
         const vplRgb v = def->vertexIrradiance[face->at[k]];

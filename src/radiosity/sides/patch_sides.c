@@ -9,6 +9,7 @@
 #include "radiosity/sides/lit_search.h"
 #include "radiosity/sides/side.h"
 
+#include <float.h>
 enum { SIDES_COOKIE = 0x56504ca1 };
 
 vplPatchSidesDef vplDefaultPatchSidesDef(void)
@@ -138,7 +139,8 @@ static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, un
     const vplMaterialDef* material = &g->materials[g->triangleMaterials[triangle]];
     vplPatchSide side = {
         .patch = patch, .back = back, .open = (uint16_t)open, .reflectance = material->diffuse};
-    side.area = vplClampToFloat(vplPatches_Area(patches, patch) * __builtin_popcount(open) / VPL_PATCH_CELLS);
+    const double area = vplPatches_Area(patches, patch) * __builtin_popcount(open) / VPL_PATCH_CELLS;
+    side.area = fmaxf(vplClampToFloat(area), FLT_MIN); // others divide by it
     side.normal = back ? vplNegate(g->normals[triangle]) : g->normals[triangle];
     vplSide_GetCorners(patches, patch, back, side.corners);
     side.incentre = incentreOf(side.corners);
