@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Tests of the list of emission sources: powers against integrals, particles against the light that they
 // represent.
-#include "scenes.h"
+#include "shapes.h"
 
 #include "geometry/emission.h"
+#include "math/vec.h"
 
 typedef struct World {
     vplContext* context;
@@ -258,5 +259,81 @@ TEST_ALONE(AnyNumbersTakeASource)
     vplParticle p;
     assert_false(vplEmission_SampleParticle(w.emission, 0.5, (float[4]){0, 0, 0, 0}, &p));
     assertNear(vplEmission_Power(w.emission), 0, 0, "power of nothing", 0);
+    closeWorld(&w);
+}
+
+// Of any number of points, each lamp's carry its power, and their mean is its middle, so that a room with a
+// lamp in the middle is as bright on the left as on the right.
+TEST_ALONE(PointsOnAreaLightsAreCentredForEveryNumber)
+{
+    static const vplVec3 places[3] = {{1, 2, 3}, {-4, 1, 0}, {0, -2, 5}};
+    static const vplVec3 sizes[3] = {{1, 2, 1}, {3, 0.125f, -1}, {1, 1, 1}};
+    const double areas[3] = {2, 0.375, 6}; // the last is a box
+    World w = openWorld();
+    for (int i = 0; i < 3; i++) {
+        addAreaLight(&w, i == 2 ? VPL_OBJECT_BOX : VPL_OBJECT_QUAD, places[i], (double[3]){0.3 * i, 0.2, 0.1},
+                     sizes[i], (vplRgb){3, 2, 1});
+    }
+    freeze(&w, NULL, 0);
+    static vplShadeLight points[600];
+    for (int n = 24; n <= 600; n++) { // fewer may leave the smallest lamp without a point
+        assert_int_equal(vplSampleAreaLights(w.emission, n, points), n);
+        double power[3] = {0}, mean[3][3] = {{0}};
+        int counts[3] = {0};
+        for (int i = 0; i < n; i++) {
+            const vplShadeLight* p = &points[i];
+            int near = 0;
+            for (int lamp = 1; lamp < 3; lamp++) {
+                const vplVec3 at = {p->px, p->py, p->pz};
+                near =
+                    vplLength(vplSub(at, places[lamp])) < vplLength(vplSub(at, places[near])) ? lamp : near;
+            }
+            power[near] += (double)p->g / 2;
+            mean[near][0] += (double)p->px;
+            mean[near][1] += (double)p->py;
+            mean[near][2] += (double)p->pz;
+            counts[near]++;
+        }
+        for (int lamp = 0; lamp < 3; lamp++) {
+            const double far = lamp < 2 ? 1e-5 : 2.0 / sqrt(n); // the faces of a box share its points
+            assertNear(power[lamp], areas[lamp], 1e-5 * areas[lamp], "power", n);
+            assertNear(mean[lamp][0] / counts[lamp], (double)places[lamp].x, far, "x", n);
+            assertNear(mean[lamp][1] / counts[lamp], (double)places[lamp].y, far, "y", n);
+            assertNear(mean[lamp][2] / counts[lamp], (double)places[lamp].z, far, "z", n);
+        }
+    }
+    closeWorld(&w);
+}
+
+// The same for a triangle, down to one point. All points are inside, and no two coincide.
+TEST_ALONE(PointsOnATriangleAreCentredForEveryNumber)
+{
+    World w = openWorld();
+    Shape shape = {0};
+    vplMaterialDef material = vplDefaultMaterialDef();
+    material.emission = (vplRgb){1, 1, 1};
+    assert_int_equal(vplScene_AddMaterial(w.scene, &material, NULL), VPL_SUCCESS);
+    addTriangle(&shape, vplVec(0, 0, 0), vplVec(3, 0, 0), vplVec(0, 6, 0));
+    addShape(w.scene, &shape, false, NULL);
+    freeShape(&shape);
+    freeze(&w, NULL, 0);
+    static vplShadeLight points[200];
+    for (int n = 1; n <= 200; n++) {
+        assert_int_equal(vplSampleAreaLights(w.emission, n, points), n);
+        double x = 0, y = 0, power = 0;
+        for (int i = 0; i < n; i++) {
+            const vplShadeLight* p = &points[i];
+            x += (double)p->px / n;
+            y += (double)p->py / n;
+            power += (double)p->r;
+            assert_true(p->px >= 0 && p->py >= 0 && 2 * p->px + p->py <= 6 + 1e-5f && p->pz == 0);
+            for (int k = 0; k < i; k++) {
+                assert_true(points[k].px != p->px || points[k].py != p->py);
+            }
+        }
+        assertNear(x, 1, 1e-6, "x", n);
+        assertNear(y, 2, 1e-6, "y", n);
+        assertNear(power, 9, 1e-5, "power", n);
+    }
     closeWorld(&w);
 }

@@ -59,7 +59,7 @@ TEST(AreaLightsConvergeToTheFormFactor, 1)
     const struct {
         int count;
         double error;
-    } cases[] = {{1, 1.42}, {16, 0.18}, {64, 0.063}, {1024, 0.0061}};
+    } cases[] = {{1, 0.32}, {16, 0.029}, {64, 0.0062}, {1024, 0.00032}};
     vplScene* scene = sceneOf(context, 0.5f);
     addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
     addLevel(scene, vplVec(0, 1, 0), 1, true, addGlow(scene, (vplRgb){4, 4, 4}, 0));

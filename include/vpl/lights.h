@@ -383,8 +383,10 @@ typedef struct vplShadeLight {
     float r, g, b;    // documented: L * weight / N; physical: intensity on the axis, W/sr
 } vplShadeLight;
 
-// Samples of area lights, for direct light: `count` points spread over the emitting triangles by power, each
-// with its share of it. Returns how many were written: count, or 0 where no triangle emits.
+// Samples of area lights, for direct light: `count` points, shared out by power among the objects that emit,
+// whose own power they carry if every one gets a point; else each carries the same power. The points of a
+// quad, a face of a box or a triangle are a lattice whose mean is its middle. Returns how many were written:
+// count, or 0 where no triangle emits.
 // Source: Keller, Instant Radiosity, 1997, section 3.
 int vplSampleAreaLights(const vplEmission* emission, int count, vplShadeLight* out);
 
