@@ -122,6 +122,51 @@ TEST(FluxOfEachStepIsThatOfTheTable, 2)
     freeTable(&t);
 }
 
+// The three rows on Keller in estimator_factors.csv: the lightings agree on the emitter and differ by pi^j after
+// j bounces, so that a closed room of Le = 1 and rho = 0.5 has 1.5946399 instead of 2.
+TEST(BothLightingsDifferByTheFactorsOfTheTable, 2)
+{
+    Table t = loadTable("estimator_factors.csv");
+    double flux[2][64] = {{0}}, sums[2] = {0};
+    vplGeometry* cube = buildGeometry(closedCubeScene(context, 0.5f, 1));
+    for (int documented = 0; documented < 2; documented++) {
+        vplParticleDef def = kellerDef(1 << 15, 0.5);
+        def.lighting = documented ? VPL_LIGHTING_DOCUMENTED : VPL_LIGHTING_PHYSICAL;
+        vplLightSet* set = simulate(cube, def);
+        for (int i = 0; i < set->lightCount; i++) {
+            const vplVirtualLight* v = &set->lights[i];
+            flux[documented][v->step] += (double)v->light.r * (double)v->weight / def.particleCount;
+        }
+        vplLightSet_Destroy(set);
+        for (int k = 0; k < 64; k++) {
+            sums[documented] += flux[documented][k] / flux[documented][0];
+        }
+    }
+    int rows = 0;
+    for (int row = 0; row < t.rows; row++) {
+        const char *term = cell(&t, row, "term"), *factor = cell(&t, row, "physical/documented");
+        if (strncmp(term, "Keller step 0", 13) == 0) {
+            assert_string_equal(factor, "1 (supp Le = A)");
+            assertNear(flux[0][0] / flux[1][0], 1, 1e-6, term, row);
+            rows++;
+        } else if (strcmp(term, "Keller step j") == 0) {
+            assert_string_equal(factor, "pi^j");
+            for (int j = 0; j < 16; j++) {
+                assertNear(flux[0][j] / flux[1][j] / pow(VPL_PI, j), 1, 1e-5, term, row);
+            }
+            rows++;
+        } else if (strncmp(term, "Keller furnace", 14) == 0) {
+            assert_non_null(strstr(factor, "documented 1.5946399 vs 2"));
+            assertNear(1 + 0.5 * sums[1], 1.5946399, 1e-5, term, row);
+            assertNear(sums[0], 2, 1e-4, term, row); // 16 steps: 2^-15 is cut off
+            rows++;
+        }
+    }
+    assert_int_equal(rows, 3);
+    vplGeometry_Destroy(cube);
+    freeTable(&t);
+}
+
 // Makes a sphere of radius 1 that emits radiance 1 inwards.
 static vplGeometry* glowingSphere(vplContext* context, float rho)
 {

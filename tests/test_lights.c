@@ -187,6 +187,32 @@ TEST(TenParticlesAtHalfMake18Lights, 1)
     vplGeometry_Destroy(cube);
 }
 
+// The columns that sum over all steps up to k; fluxes are in units of that of the point light, 4 pi.
+static void compareSums(const Table* t, int row, const vplLightSet* set)
+{
+    const double rho = number(t, row, "rho"), count = number(t, row, "N");
+    const int k = (int)number(t, row, "k");
+    double sum = 0, weight = 0;
+    for (int i = 0; i < set->lightCount; i++) {
+        const vplVirtualLight* v = &set->lights[i];
+        sum += v->step <= k ? (double)v->light.r * (double)v->weight / count / (4 * VPL_PI) : 0;
+        weight = v->step == k ? (double)v->weight : weight;
+    }
+    const double whole = rho / (1 - rho), missing = whole - sum;
+    const struct {
+        const char* column;
+        double value, error;
+    } columns[] = {{"total_weight_1/M_k", weight / count, 1e-6 * weight / count},
+                   {"rho^k*N/M_k", pow(rho, k) * weight, 1e-6 * weight},
+                   {"series_sum_to_k", sum, 1e-5 * sum},
+                   {"series_missing_after_k", missing, 1e-5 * whole},
+                   {"relative_missing", missing / whole, 1e-5}};
+    for (int i = 0; i < 5; i++) {
+        assertNear(columns[i].value, number(t, row, columns[i].column), columns[i].error, columns[i].column,
+                   row);
+    }
+}
+
 // vpl_weights.csv: in a closed room the lights of step k carry the flux 4 pi I rho^(k+1), whatever floor()
 // cuts off the counts.
 TEST(FluxOfEachStepIsThatOfTheTable, 2)
@@ -211,9 +237,11 @@ TEST(FluxOfEachStepIsThatOfTheTable, 2)
         double wanted = 4 * VPL_PI * pow((double)(float)rho, k + 1);
         assertNear(flux, wanted, 1e-5 * wanted, "flux", row);
         assert_int_equal(set->lightsInStep[k], (int)number(&t, row, "M_k"));
+        compareSums(&t, row, set);
         vplLightSet_Destroy(set);
         vplGeometry_Destroy(cube);
     }
+    assert_int_equal(t.rows, 61);
     freeTable(&t);
 }
 

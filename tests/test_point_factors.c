@@ -2,6 +2,9 @@
 // Tests of form factors from a point to a triangle: closed forms, and properties of all pairs.
 #include "factor_cases.h"
 
+#include "base/context.h"
+#include "radiosity/radiosity_kernels.h"
+
 // ---- a point and a triangle
 
 // Returns the form factor from a point to a convex polygon, whose corners are in order, as a fan of
@@ -101,6 +104,88 @@ TEST_ALONE(DisksAreThoseOfTheClosedForm)
         compared++;
     }
     assert_int_equal(compared, 4);
+    freeTable(&t);
+}
+
+// Returns the form factor from a disk to a coaxial disk: that of points at distance x from the axis, which
+// see a polygon of the disk's area, averaged by 6-point Gauss-Legendre over parts of the radius that shrink
+// towards the other disk's edge.
+static double factorOfDisks(double r1, double r2, double h)
+{
+    static const double nodes[3] = {0.238619186083196909, 0.661209386466264514, 0.932469514203152028},
+                        weights[3] = {0.467913934572691047, 0.360761573048138608, 0.171324492379170345};
+    enum { CORNERS = 720 };
+    const double part = 3.14159265358979323846 / CORNERS, radius = r2 * sqrt(2 * part / sin(2 * part));
+    const double edge = r2 < r1 ? r2 : r1;
+    double ends[64], sum = 0;
+    int count = 0;
+    for (int k = 0; k < 20; k++) { // up to the edge, then away from it
+        ends[count++] = edge * (1 - pow(0.5, k));
+    }
+    ends[count++] = edge;
+    for (int k = 19; k >= 0 && r1 > edge; k--) {
+        ends[count++] = edge + (r1 - edge) * pow(0.5, k);
+    }
+    for (int i = 0; i + 1 < count; i++) {
+        const double half = 0.5 * (ends[i + 1] - ends[i]), middle = ends[i] + half;
+        for (int k = 0; k < 6; k++) {
+            const double x = middle + half * (k < 3 ? -nodes[k] : nodes[k - 3]), w = half * weights[k % 3];
+            const vplVec3 point = {(float)x, 0, 0}, top = {0, 0, (float)h};
+            vplVec3 last = {(float)radius, 0, (float)h};
+            double factor = 0;
+            for (int c = 1; c <= CORNERS; c++) {
+                const double angle = 2 * part * (c % CORNERS);
+                const vplVec3 next = {(float)(radius * cos(angle)), (float)(radius * sin(angle)), (float)h};
+                factor += vplPointFormFactor(point, (vplVec3){0, 0, 1}, (const vplVec3[3]){top, next, last});
+                last = next;
+            }
+            sum += w * factor * 2 * x / (r1 * r1);
+        }
+    }
+    return sum;
+}
+
+TEST_ALONE(CoaxialDisksAreThoseOfTheClosedForm)
+{
+    Table t = loadTable("ff_analytic.csv");
+    int compared = 0;
+    for (int row = 0; row < t.rows; row++) {
+        const char* parameters = cell(&t, row, "parameters");
+        double r1, r2, h;
+        if (strcmp(cell(&t, row, "config"), "coaxial_disks") == 0) {
+            assert_int_equal(sscanf(parameters, "r1=%lf r2=%lf h=%lf", &r1, &r2, &h), 3);
+            assertRelative(factorOfDisks(r1, r2, h), number(&t, row, "F12"), 1e-6, parameters, row);
+            compared++;
+        }
+    }
+    assert_int_equal(compared, 5); // with 23 rectangles, 9 corners and 4 disks, all 41 rows of the table
+    assert_int_equal(t.rows, 23 + 9 + 4 + 5);
+    freeTable(&t);
+}
+
+// cos cos / (pi r^2) between the centres of parallel unit squares.
+TEST(OneSampleBetweenCentresIsThatOfTheTable, 1)
+{
+    Table t = loadTable("ff_analytic.csv");
+    const vplRadiosityKernels* kernels = vplGetRadiosityKernels(context->isa);
+    int compared = 0;
+    for (int row = 0; row < t.rows; row++) {
+        double d;
+        if (isEmpty(&t, row, "one_sample_centre_estimate")) {
+            continue;
+        }
+        assert_int_equal(sscanf(cell(&t, row, "parameters"), "d=%lf", &d), 1);
+        vplPointPairs pairs = {0};
+        float terms[VPL_SIDE_LANES];
+        vplSetLane(pairs.nx, 0, (vplVec3){0, 0, 1});
+        vplSetLane(pairs.y, 0, (vplVec3){0, 0, (float)d});
+        vplSetLane(pairs.ny, 0, (vplVec3){0, 0, -1});
+        kernels->pairTerms(&pairs, terms);
+        const double wanted = number(&t, row, "one_sample_centre_estimate");
+        assertRelative((double)terms[0], wanted, 4e-7, cell(&t, row, "parameters"), row);
+        compared++;
+    }
+    assert_int_equal(compared, 13);
     freeTable(&t);
 }
 
