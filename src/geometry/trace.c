@@ -58,7 +58,7 @@ static bool isOrdinary(vplVec3 d)
 // The length of other directions to a power of two.
 static int farExponent(vplVec3 d)
 {
-    int exponent;
+    int exponent = 0; // stays where the direction is not finite
     frexpf(vplLargestOf(d), &exponent);
     return exponent;
 }
