@@ -191,7 +191,8 @@ TEST(ASceneAnswersAsTheFormulasOfItsQuadsAndBoxes, 1)
             byFormula += g->formulaCount;
             for (int i = 0; i < (singular ? 0 : 14); i++) {
                 vplVec3 d = vectorOf(&t, row, "d");
-                const int shift = i < 2 ? 0 : exponents[i / 2] - ilogbf(vplLargestOf(d));
+                const bool unscaled = i < 2 || vplLargestOf(d) == 0;
+                const int shift = unscaled ? 0 : exponents[i / 2] - ilogbf(vplLargestOf(d));
                 d = vplVec(ldexpf(d.x, shift), ldexpf(d.y, shift), ldexpf(d.z, shift));
                 const vplRay ray = {vectorOf(&t, row, "o"), d, {0, 0}};
                 if (i >= 10 && strstr("hand_tiny_t hand_denormal_t", cell(&t, row, "cat")) != NULL) {

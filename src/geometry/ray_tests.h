@@ -224,20 +224,25 @@ static __attribute__((noinline)) bool testInDouble(const Prepared* r, const vplT
     return *t > 0 && *t < INFINITY;
 }
 
+// Corrects the hits of a block with marks.
+static __attribute__((noinline)) uint32_t testMarked(const Prepared* r, const vplTriangleBlock* block,
+                                                     uint32_t hits, float* t, float* b1, float* b2)
+{
+    const vplBlockMarks marks = r->marks[block - r->blocks];
+    hits &= ~(uint32_t)(marks.byFormula | marks.extreme);
+    for (uint32_t lanes = marks.extreme & ~marks.byFormula & 0xffu; lanes != 0; lanes &= lanes - 1) {
+        const int i = __builtin_ctz(lanes);
+        hits |= (uint32_t)testInDouble(r, block, i, &t[i], &b1[i], &b2[i]) << i;
+    }
+    return hits;
+}
+
 // Bit i of the result: lane i was hit. Without hits the outputs are not set.
 static inline uint32_t testBlock(const Prepared* r, const vplTriangleBlock* block, float* t, float* b1,
                                  float* b2)
 {
-    uint32_t hits = testOrdinaryBlock(r, block, t, b1, b2);
-    if (r->marks != NULL) {
-        const vplBlockMarks marks = r->marks[block - r->blocks];
-        hits &= ~(uint32_t)(marks.byFormula | marks.extreme);
-        for (uint32_t lanes = marks.extreme & ~marks.byFormula & 0xffu; lanes != 0; lanes &= lanes - 1) {
-            const int i = __builtin_ctz(lanes);
-            hits |= (uint32_t)testInDouble(r, block, i, &t[i], &b1[i], &b2[i]) << i;
-        }
-    }
-    return hits;
+    const uint32_t hits = testOrdinaryBlock(r, block, t, b1, b2);
+    return __builtin_expect(r->marks != NULL, 0) ? testMarked(r, block, hits, t, b1, b2) : hits;
 }
 
 static inline vplBox boundLane(const vplTriangleBlock* block, int lane)

@@ -130,35 +130,36 @@ static vplHit finishHit(const vplGeometry* geometry, const vplRay* ray, const vp
 }
 
 // The closest hit on what is tested as triangles.
-static vplRawHit traceTriangles(const vplGeometry* g, const vplRay* ray, float tMax, int* tests)
+static inline void traceTriangles(const vplGeometry* g, const vplRay* ray, float tMax, int* tests,
+                                  vplRawHit* raw)
 {
-    vplRawHit raw;
+    if (g->rayTree != NULL && tests == NULL) { // most rays
+        vplGetRayKernels(g->context->isa)->closest(g->rayTree, ray, tMax, raw);
+        return;
+    }
     bool everyObject = true;
     if (g->rayTree != NULL) {
         vplBvh bvh = *g->rayTree;
-        if (tests != NULL && bvh.blockCount <= VPL_COUNTED_BLOCKS) {
-            bvh.nodes = NULL;
-        }
+        bvh.nodes = bvh.blockCount <= VPL_COUNTED_BLOCKS ? NULL : bvh.nodes;
         everyObject = bvh.nodes == NULL;
-        vplGetRayKernels(g->context->isa)->closest(&bvh, ray, tMax, &raw);
+        vplGetRayKernels(g->context->isa)->closest(&bvh, ray, tMax, raw);
     } else {
-        raw = testAll(g, ray, tMax, false);
+        *raw = testAll(g, ray, tMax, false);
     }
     if (tests != NULL) {
-        *tests += everyObject ? g->objectCount : raw.blocks + g->formulaCount;
+        *tests += everyObject ? g->objectCount : raw->blocks + g->formulaCount;
     }
-    return raw;
 }
 
 bool vplClosestHit(const vplGeometry* g, const vplRay* ray, float tMax, int* tests, vplHit* hitOut)
 {
     vplRawHit raw;
     if (isOrdinary(ray->direction)) {
-        raw = traceTriangles(g, ray, tMax, tests);
+        traceTriangles(g, ray, tMax, tests, &raw);
     } else {
         const int exponent = farExponent(ray->direction);
         const vplRay shorter = shorten(ray, exponent);
-        raw = traceTriangles(g, &shorter, ldexpf(fminf(tMax, FLT_MAX), exponent), tests);
+        traceTriangles(g, &shorter, ldexpf(fminf(tMax, FLT_MAX), exponent), tests, &raw);
         raw.t = ldexpf(raw.t, -exponent);
     }
     const bool met = raw.triangle >= 0 && raw.t > 0 && raw.t < INFINITY;
