@@ -4,7 +4,9 @@
 //
 // Rules: 8 bits of sub-pixel precision, vertices snapped to nearest even, top-left rule: a pixel centre on a
 // shared edge is covered exactly once. Depth is z/w in [0, 1], linear in screen space, and computed by one
-// function for all passes, so that a LESS pass and an EQUAL pass get the same bits.
+// function for all passes, so that a LESS pass and an EQUAL pass get the same bits. Where snapping covers a pixel
+// whose centre is outside of the triangle, w and varyings are those of the triangle's plane there, but at most
+// 1/64 of the triangle's extent beyond it: only triangles thinner than 1/5 pixel are left further.
 #ifndef VPL_RASTER_H
 #define VPL_RASTER_H
 
@@ -39,7 +41,7 @@ typedef struct vplFragments {
     int32_t covered[VPL_LANES];                 // -1 where the lane is a fragment, else 0
     float depth[VPL_LANES];                     // z/w; a shader with writesDepth sets it
     float w[VPL_LANES];                         // clip-space w: distance along the view axis; see needsW
-    float varying[VPL_MAX_VARYINGS][VPL_LANES]; // perspective-correct
+    float varying[VPL_MAX_VARYINGS][VPL_LANES]; // perspective-correct, see the rules above
     float plane[VPL_MAX_PLANES][VPL_LANES];     // out: colours; in, with readsPlanes: the framebuffer's
     int x, y;                                   // pixel of lane 0; x and y are multiples of 4
     int primitive;                              // index of the triangle in its mesh
@@ -92,10 +94,9 @@ typedef struct vplPipeline {
     // Not 0: depth is the distance from the eye of a view of 90 by 90 degrees, times this, instead of z/w.
     // Only for draws without fragment shader and with depthCompare LESS. Default 0.
     float distanceScale;
-    // With distanceScale, for any view: the distance is that along the view axis, and lies on the triangle's
-    // plane also where snapping covers a pixel whose centre is outside of the triangle. Default false.
-    bool distanceAlongAxis;
-    bool writesDepth; // the fragment shader replaces depth before the depth test; default false
+    bool
+        distanceAlongAxis; // with distanceScale, for any view: the distance along the view axis; default false
+    bool writesDepth;      // the fragment shader replaces depth before the depth test; default false
     bool needsW;      // shaders read w; without it w is valid only where there are varyings; default false
     bool readsPlanes; // the fragment shader reads the framebuffer and blends by itself; default false
     // Draws only where the same triangle of the same mesh wrote depth last, so that one of coplanar surfaces

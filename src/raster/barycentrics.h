@@ -15,7 +15,11 @@ typedef struct Barycentrics {
     // Weight i of a pixel is x[i] column + y[i] row + c[i]; the sum of the weights is 1/w.
     double x[3], y[3], c[3];
     _Alignas(64) double lane[3][VPL_LANES]; // growth from lane 0
-    float leastInverse, mostInverse;        // range of the corners' 1/w
+    // 1/w of a pixel is inverse[0] column + inverse[1] row + inverse[2].
+    double inverse[3];
+    _Alignas(64) double inverseLane[VPL_LANES];
+    float nearest, farthest; // bounds of w
+    float leastWeight;
     // Varyings of corner 0, and the differences of corners 1 and 2 from them.
     float v0[VPL_MAX_VARYINGS], d1[VPL_MAX_VARYINGS], d2[VPL_MAX_VARYINGS];
 } Barycentrics;
@@ -28,6 +32,20 @@ static inline void crossPlanes(const double p[3][3], Barycentrics* s)
         s->y[i] = u[2] * v[0] - u[0] * v[2];
         s->c[i] = u[0] * v[1] - u[1] * v[0];
     }
+}
+
+// Snapping covers pixels whose centres are up to 1/362 pixel outside of a triangle. There the planes hold as
+// well, and are followed as far as this part of the triangle's extent. Only a triangle thinner than 1/5 pixel
+// would be left further, by any length if it is seen edge-on.
+#define VPL_BEYOND (1.0 / 64)
+
+// Bounds w by the range of the corners' 1/w, wider by VPL_BEYOND. Where all corners are equal, so are bounds.
+static inline void boundW(double nearest, double farthest, Barycentrics* s)
+{
+    const double product = nearest * farthest, beyond = VPL_BEYOND * (farthest - nearest);
+    s->nearest = (float)(product / (farthest + beyond));
+    s->farthest = (float)(product / fmax(nearest - beyond, nearest / 2));
+    s->leastWeight = (float)(-VPL_BEYOND / farthest);
 }
 
 static inline void setUpBarycentrics(const vplRaster* r, const Batch* t, int place, const vplShaded* shaded,
@@ -44,8 +62,7 @@ static inline void setUpBarycentrics(const vplRaster* r, const Batch* t, int pla
     }
     const double nearest = fmin(p[0][2], fmin(p[1][2], p[2][2])),
                  farthest = fmax(p[0][2], fmax(p[1][2], p[2][2]));
-    s->leastInverse = (float)(1 / farthest);
-    s->mostInverse = (float)(1 / nearest);
+    boundW(nearest, farthest, s);
     crossPlanes(p, s);
     double determinant = p[0][0] * s->x[0] + p[0][1] * s->y[0] + p[0][2] * s->c[0];
     if (!(determinant > 0)) {
@@ -67,6 +84,12 @@ static inline void setUpBarycentrics(const vplRaster* r, const Batch* t, int pla
             s->lane[i][l] = s->x[i] * (l & 3) + s->y[i] * (l >> 2);
         }
     }
+    s->inverse[0] = s->x[0] + s->x[1] + s->x[2];
+    s->inverse[1] = s->y[0] + s->y[1] + s->y[2];
+    s->inverse[2] = s->c[0] + s->c[1] + s->c[2];
+    for (int l = 0; l < VPL_LANES; l++) {
+        s->inverseLane[l] = s->inverse[0] * (l & 3) + s->inverse[1] * (l >> 2);
+    }
     for (int k = 0; k < shaded->varyingCount; k++) {
         s->v0[k] = varyings[0][k];
         s->d1[k] = varyings[1][k] - varyings[0][k];
@@ -74,14 +97,28 @@ static inline void setUpBarycentrics(const vplRaster* r, const Batch* t, int pla
     }
 }
 
-// Weights of corner i in a block. The barycentrics are the weights divided by their sum. They are clamped at
-// 0, so that points of the outline stay within the triangle and lanes that are not covered finite.
+// Finds w at the pixels' centres.
+static inline void findW(const Barycentrics* s, int x, int y, float w[VPL_LANES])
+{
+    const double first = s->inverse[0] * x + (s->inverse[1] * y + s->inverse[2]);
+    const float nearest = s->nearest, farthest = s->farthest, least = 1 / farthest;
+    for (int l = 0; l < VPL_LANES; l++) {
+        float v = (float)(first + s->inverseLane[l]);
+        v = 1 / (v > least ? v : least);
+        v = v > nearest ? v : nearest;
+        w[l] = v < farthest ? v : farthest;
+    }
+}
+
+// Weights of corner i in a block. The barycentrics are the weights divided by their sum. They are bounded, so
+// that lanes that are not covered stay finite.
 static inline void cornerWeights(const Barycentrics* s, int i, int x, int y, float weight[VPL_LANES])
 {
     const double at = s->x[i] * x + (s->y[i] * y + s->c[i]);
+    const float least = s->leastWeight;
     for (int l = 0; l < VPL_LANES; l++) {
         const float v = (float)(at + s->lane[i][l]);
-        weight[l] = v > 0 ? v : 0;
+        weight[l] = v > least ? v : least;
     }
 }
 
@@ -91,9 +128,10 @@ static inline void interpolate(const Barycentrics* s, int varyingCount, int x, i
     cornerWeights(s, 0, x, y, weight0);
     cornerWeights(s, 1, x, y, weight1);
     cornerWeights(s, 2, x, y, weight2);
+    const float leastSum = 0.25f / s->farthest;
     for (int l = 0; l < VPL_LANES; l++) {
-        const float w = 1 / (weight0[l] + weight1[l] + weight2[l]);
-        f->w[l] = w;
+        const float sum = weight0[l] + weight1[l] + weight2[l];
+        const float w = 1 / (sum > leastSum ? sum : leastSum);
         b1[l] = weight1[l] * w;
         b2[l] = weight2[l] * w;
     }

@@ -98,6 +98,7 @@ static void makeSurface(Draw* d)
     vplFragments* f = &d->state->block;
     if (d->shaded->varyingCount > 0 || d->pipeline->needsW) {
         needBarycentrics(d);
+        findW(d->barycentrics, f->x, f->y, f->w);
         interpolate(d->barycentrics, d->shaded->varyingCount, f->x, f->y, f);
     }
     if (d->pipeline->surface != NULL) {
@@ -179,40 +180,23 @@ static inline void drawDepth(const Draw* d, const Setup* s, double z, int at, bo
     writeNearer(d->state, d->owner, at, drawn, filled);
 }
 
-// Draws the distance from the eye. Based on: Franchi and Ferrante, Virtual Point Lights, "Rendering the Cube
-// Shadow Map". Departs: w is turned into a distance by the texel's own direction.
+// Draws distances from the eye, or along the view axis. Based on: Franchi and Ferrante, Virtual Point Lights,
+// "Rendering the Cube Shadow Map". Departs: w is turned into a distance by the texel's own direction.
 static inline void drawDistance(const Draw* d, int x, int y, int at, bool filled)
 {
+    const bool alongAxis = d->pipeline->distanceAlongAxis;
     const float scale = d->pipeline->distanceScale, texel = d->texel;
+    float drawn[VPL_LANES];
     x += d->state->tile.x;
     y += d->state->tile.y;
-    float drawn[VPL_LANES], weight0[VPL_LANES], weight1[VPL_LANES], weight2[VPL_LANES];
-    cornerWeights(d->barycentrics, 0, x, y, weight0);
-    cornerWeights(d->barycentrics, 1, x, y, weight1);
-    cornerWeights(d->barycentrics, 2, x, y, weight2);
-    for (int l = 0; l < VPL_LANES; l++) {
+    findW(d->barycentrics, x, y, drawn);
+    for (int l = 0; l < VPL_LANES && !alongAxis; l++) {
         const float s = ((float)x + (float)(l & 3) + 0.5f) * texel - 1;
         const float t = 1 - ((float)y + (float)(l >> 2) + 0.5f) * texel;
-        const float w = 1 / (weight0[l] + weight1[l] + weight2[l]);
-        drawn[l] = w * sqrtf(1 + s * s + t * t) * scale;
+        drawn[l] *= sqrtf(1 + s * s + t * t);
     }
-    writeNearer(d->state, d->owner, at, drawn, filled);
-}
-
-// Draws w of the triangle's plane at the pixels' centres, clamped to the range of its corners.
-static inline void drawAlongAxis(const Draw* d, int x, int y, int at, bool filled)
-{
-    const Barycentrics* s = d->barycentrics;
-    const double perX = s->x[0] + s->x[1] + s->x[2], perY = s->y[0] + s->y[1] + s->y[2];
-    const double first =
-        perX * (d->state->tile.x + x) + (perY * (d->state->tile.y + y) + (s->c[0] + s->c[1] + s->c[2]));
-    const float scale = d->pipeline->distanceScale, least = s->leastInverse, most = s->mostInverse;
-    float drawn[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        float inverse = (float)(first + (perX * (l & 3) + perY * (l >> 2)));
-        inverse = inverse > least ? inverse : least;
-        inverse = inverse < most ? inverse : most;
-        drawn[l] = scale / inverse;
+        drawn[l] *= scale;
     }
     writeNearer(d->state, d->owner, at, drawn, filled);
 }
@@ -287,10 +271,6 @@ static inline __attribute__((always_inline)) void drawBlock(Draw* d, const Setup
     const bool filled = edge == NULL;
     const int block = (y / VPL_BLOCK_SIDE) * VPL_TILE_BLOCKS + x / VPL_BLOCK_SIDE;
     if (!filled && !cover(&state->tile, s, edge, x, y, f->covered)) {
-        return;
-    }
-    if (d->distances && d->pipeline->distanceAlongAxis) {
-        drawAlongAxis(d, x, y, block * VPL_LANES, filled);
         return;
     }
     if (d->distances) {
