@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tests of the outputs of indirect irradiance before and after neighbouring pixels share it.
+#include "shapes.h"
+
 #include "stage.h"
 
 #include "math/vec.h"
@@ -121,4 +123,29 @@ TEST_ALONE(WhereNobodySharesBothAreTheIrradiance)
     }
     vplImage_Destroy(picture);
     closeSetting(&s);
+}
+
+// X084: the camera's near plane, however near, and a far plane a thousand times further change no bit of what is seen.
+TEST(NearAndFarPlanesDoNotChangeWhatIsSeen, 2)
+{
+    static const double planes[][2] = {{0.1, 50}, {1e-4, 50}, {1e-7, 50}, {1e-9, 5e4}};
+    vplScene* scene = loadScene(context, "room.json");
+    vplGeometry* g = buildGeometry(scene);
+    vplImage* images[4];
+    for (int i = 0; i < 4; i++) {
+        vplCameraDef camera = vplDefaultCameraDef();
+        camera.eye = vplVec(0, 2.5f, 8.5f);
+        camera.target = vplVec(0, 2.5f, 0);
+        camera.near = planes[i][0];
+        camera.far = planes[i][1];
+        const vplView view = vplView_Create(&camera, 128, 128);
+        const vplShadeDef def = {.output = VPL_OUTPUT_OBJECT};
+        assert_int_equal(vplImage_Create(context, 128, 128, &images[i]), VPL_SUCCESS);
+        assert_int_equal(vplShadeView(g, &view, &def, images[i], NULL), VPL_SUCCESS);
+        assert_memory_equal(images[i]->pixels, images[0]->pixels, 3 * 128 * 128 * sizeof(float));
+    }
+    for (int i = 0; i < 4; i++) {
+        vplImage_Destroy(images[i]);
+    }
+    vplGeometry_Destroy(g);
 }

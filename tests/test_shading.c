@@ -382,35 +382,49 @@ TEST(LightsOfBothLightingsDifferByTheFactorsOfTheTable, 1)
     vplGeometry_Destroy(cube);
 }
 
-// depth_precision.csv: the camera's z/w, and the depth differences that rounding to float hides.
-TEST_ALONE(DepthIsThatOfTheTable)
+// Half the distance along the axis that rounding a depth to float hides. `slope`: growth of depth with it.
+static double halfStep(double depth, double slope)
+{
+    return 0.5 * ((double)nextafterf((float)depth, 2) - (double)(float)depth) / slope;
+}
+
+// depth_precision.csv: the camera's z/w is reversed, 1 at near and 0 at far, and what rounding hides then is the
+// table's. The other columns of steps are those of depths that are not used, and show why.
+TEST_ALONE(DepthIsReversedAndThatOfTheTable)
 {
     Table t = loadTable("depth_precision.csv");
     for (int row = 0; row < t.rows; row++) {
         vplCameraDef camera = vplDefaultCameraDef();
         camera.eye = vplVec(0, 0, 0);
         camera.target = vplVec(0, 0, -1);
-        camera.near = number(&t, row, "near");
-        camera.far = number(&t, row, "far");
-        double z = number(&t, row, "view_z"), wanted = number(&t, row, "z_ndc");
+        const double n = camera.near = number(&t, row, "near"), f = camera.far = number(&t, row, "far");
+        const double z = number(&t, row, "view_z"), printed = number(&t, row, "z_ndc");
+        const double wanted = n / (f - n) * (f - z) / z, slope = f / (f - n) * n / (z * z);
         vplView view = vplView_Create(&camera, 8, 8);
-        vplShading shading = {.view = &view};
         vplVec3 point = vplVec(0, 0, -(float)z);
-        vplObjectUniforms uniforms = {&shading, &point, NULL, 0};
-        float clip[4], world[3];
-        vplVertices out = {&clip[0], &clip[1], &clip[2], &clip[3], {&world[0], &world[1], &world[2]}};
-        vplCameraVertices(&uniforms, 0, 1, &out);
+        float clip[1][4];
+        vplView_ToClip(&view, &point, 1, clip);
         // The view depth is a float: half an ulp of it changes z/w by slope times that.
-        double slope = camera.far / (camera.far - camera.near) * camera.near / (z * z);
-        assertNear((double)clip[2] / (double)clip[3], wanted, 1.5e-7 * wanted + 6e-8 * z * slope + 1e-12,
-                   "z/w", row);
-        float ndc = (float)wanted;
-        double step = 0.5 * ((double)nextafterf(ndc, 2) - (double)ndc) / slope;
-        if (wanted > 0 && wanted < 1) {
-            double half = number(&t, row, "half_step_float32");
-            assertNear(step, half, 0.02 * half, "half step", row);
+        assertNear((double)clip[0][2] / (double)clip[0][3], wanted, 1.5e-7 * wanted + 6e-8 * z * slope, "z/w",
+                   row);
+        assertNear(printed, 1 - wanted, 1e-12, "z_ndc", row);
+        struct {
+            const char* column;
+            double step;
+        } steps[] = {{"half_step_float32_reversed", halfStep(wanted, slope)},
+                     {"half_step_float32", halfStep(printed, slope)},
+                     {"half_step_float32_distance_over_far", halfStep(z / f, 1 / f)},
+                     {"half_step_unorm24", 0x1p-25 / slope},
+                     {"half_step_unorm16", 0x1p-17 / slope}};
+        for (int k = 0; k < 5; k++) {
+            const double half = number(&t, row, steps[k].column);
+            if (k == 1 && printed == 1 && half < 0.75 * steps[k].step) {
+                steps[k].step /= 2; // floats have two steps at 1, and the table takes either
+            }
+            assertNear(steps[k].step, half, 1e-5 * half, steps[k].column, row);
         }
     }
+    assert_int_equal(t.rows, 42);
     freeTable(&t);
 }
 

@@ -3,7 +3,7 @@
 // next tile, so that a tile's pixels stay in cache however many passes there are.
 //
 // Rules: 8 bits of sub-pixel precision, vertices snapped to nearest even, top-left rule: a pixel centre on a
-// shared edge is covered exactly once. Depth is z/w in [0, 1], linear in screen space, and computed by one
+// shared edge is covered exactly once. Depth is z/w in [0, 1] (or reversed), linear in screen space, and computed by one
 // function for all passes, so that a LESS pass and an EQUAL pass get the same bits. Where snapping covers a pixel
 // whose centre is outside of the triangle, w and varyings are those of the triangle's plane there, but at most
 // 1/64 of the triangle's extent beyond it: only triangles thinner than 1/5 pixel are left further.
@@ -130,6 +130,10 @@ typedef struct vplFramebuffer {
     vplPlane depth;
     vplPlane planes[VPL_MAX_PLANES];
     int planeCount; // [0, VPL_MAX_PLANES]
+    // Vertex shaders put the near plane at z = w and the far plane at z = 0, and depth is -z/w in [-1, 0], so that
+    // LESS still means nearer. Floats are dense at 0: such depths tell surfaces apart that differ by 1e-6 of their
+    // distance, however near the near plane is. Default false.
+    bool reversedDepth;
     // Out, one per pixel: the triangle that wrote depth last, numbered through the meshes in the order in
     // which they are first drawn; -1: none. Not with ownerTest. NULL (default): not wanted.
     int32_t* triangles;

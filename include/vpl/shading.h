@@ -39,7 +39,8 @@ vplView vplView_At(const vplView* view, double x, double y);
 // Pixel coordinates of a point (x right, y down, (0, 0) the upper left corner). False behind the near plane.
 bool vplView_Project(const vplView* view, vplVec3 point, float* x, float* y);
 
-// Clip coordinates x, y, z, w of points, with the bits that all draws of the view have.
+// Clip coordinates x, y, z, w of points, with the bits that all draws of the view have. Depth z/w is reversed: 1 at the
+// near and 0 at the far plane (vplFramebuffer.reversedDepth).
 void vplView_ToClip(const vplView* view, const vplVec3* points, int count, float (*clipOut)[4]);
 
 // Prepares the lights of a set for kernels: fills at most out[0 .. set->lightCount) and returns how many.

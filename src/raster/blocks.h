@@ -18,6 +18,7 @@ typedef struct Draw {
     const Batch* batch;
     int place, owner;           // the triangle's place in its batch and its name in state->owner
     Barycentrics* barycentrics; // the triangle's, where hasBarycentrics
+    float leastDepth;           // 0, or -1 where depth is reversed
     float texel;                // width of a pixel of a view of 90 by 90 degrees, at distance 1
     bool hasBarycentrics;
     bool keep;      // stores blocks for the passes
@@ -175,7 +176,7 @@ static inline void drawDepth(const Draw* d, const Setup* s, double z, int at, bo
 {
     float drawn[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        drawn[l] = clampDepth(z + s->laneZ[l]);
+        drawn[l] = clampDepth(z + s->laneZ[l], d->leastDepth);
     }
     writeNearer(d->state, d->owner, at, drawn, filled);
 }
@@ -234,7 +235,7 @@ static void drawFragments(Draw* d, const Setup* s, double z)
         runFragmentShader(p, f, state->tile.planes, d->raster->framebuffer.planeCount);
     } else {
         for (int l = 0; l < VPL_LANES; l++) {
-            f->depth[l] = clampDepth(z + s->laneZ[l]);
+            f->depth[l] = clampDepth(z + s->laneZ[l], d->leastDepth);
         }
     }
     if (!testFragments(state, p, d->owner, at)) {

@@ -17,7 +17,7 @@ enum {
 // A vertex after projection.
 typedef struct vplScreenVertex {
     int32_t x, y; // 24.8 fixed point, y down
-    float z;      // z/w
+    float z;      // z/w, or -z/w
 } vplScreenVertex;
 
 // A triangle that may be visible. Each tile that it touches looks its corners up again: this writes 8 bytes

@@ -16,22 +16,22 @@ static inline double depthAt(const Setup* s, int x, int y)
 }
 
 // Blocks of a square whose depths are all nearer than the triangle. z: its depths in lane 0 of each block.
-static inline uint32_t hiddenBlocks(const Setup* s, const double z[VPL_LANES],
+static inline uint32_t hiddenBlocks(const Setup* s, const double z[VPL_LANES], float least,
                                     const float farthest[VPL_LANES])
 {
     uint32_t hidden = 0;
     for (int i = 0; i < VPL_LANES; i++) {
-        hidden |= (uint32_t)(clampDepth(z[i] + s->leastZ) > farthest[i]) << i;
+        hidden |= (uint32_t)(clampDepth(z[i] + s->leastZ, least) > farthest[i]) << i;
     }
     return hidden;
 }
 
 // Lowers the bounds of blocks that the triangle fills: no lane keeps a depth beyond the triangle's.
-static inline void tightenBlocks(const Setup* s, const double z[VPL_LANES], uint32_t filled,
+static inline void tightenBlocks(const Setup* s, const double z[VPL_LANES], float leastDepth, uint32_t filled,
                                  float farthest[VPL_LANES])
 {
     for (int i = 0; i < VPL_LANES; i++) {
-        const float most = clampDepth(z[i] + s->mostZ), kept = farthest[i];
+        const float most = clampDepth(z[i] + s->mostZ, leastDepth), kept = farthest[i];
         const float least = most < kept ? most : kept;
         farthest[i] = (filled >> i & 1) != 0 ? least : kept;
     }
@@ -48,7 +48,7 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
     }
     float* farthest = d->state->farthest + (y / SQUARE_SIDE * SQUARES + x / SQUARE_SIDE) * VPL_LANES;
     if (d->rejects) {
-        within &= ~hiddenBlocks(s, z, farthest);
+        within &= ~hiddenBlocks(s, z, d->leastDepth, farthest);
         if (within == 0) {
             return;
         }
@@ -62,7 +62,7 @@ static void drawSquare(Draw* d, const Setup* s, int x, int y, uint32_t within, b
                                     (tile->height - y) / VPL_BLOCK_SIDE - 1);
     }
     if (d->tightens) {
-        tightenBlocks(s, z, cells.touched & cells.filled, farthest);
+        tightenBlocks(s, z, d->leastDepth, cells.touched & cells.filled, farthest);
     }
     for (uint32_t blocks = cells.touched; blocks != 0; blocks &= blocks - 1) {
         const int i = __builtin_ctz(blocks);
@@ -87,7 +87,7 @@ static bool isHidden(const Draw* d, int x0, int y0, int x1, int y1)
         for (int x = x0; x <= x1; x++) {
             const double z = t->planeZ[d->place] + (zx * (x * VPL_BLOCK_SIDE) + zy * (y * VPL_BLOCK_SIDE));
             const int square = y / 4 * SQUARES + x / 4, block = y % 4 * 4 + x % 4;
-            if (!(clampDepth(z + least) > d->state->farthest[square * VPL_LANES + block])) {
+            if (!(clampDepth(z + least, d->leastDepth) > d->state->farthest[square * VPL_LANES + block])) {
                 return false;
             }
         }
@@ -149,6 +149,7 @@ static Draw startDraw(vplTileState* state, const vplRaster* raster, const vplCom
                   .shaded = &raster->shaded[command->shaded],
                   .distances = p->distanceScale != 0,
                   .names = state->sampling || raster->framebuffer.triangles != NULL,
+                  .leastDepth = raster->framebuffer.reversedDepth ? -1 : 0,
                   .texel = 2.0f / (float)raster->framebuffer.width,
                   .rejects = byPlane,
                   .tightens = byPlane && p->depthWrite && !p->ownerTest,
@@ -168,7 +169,7 @@ static void drawBatch(Draw* d, Batch* batch, const int* list, int count)
     setUpBatch(&state->tile, state->sample, batch);
     const bool anyTiny = d->depthOnly && cull == VPL_CULL_NONE && hasTiny(batch, count);
     if (anyTiny) {
-        testTiny(batch, &tiny);
+        testTiny(batch, d->leastDepth, &tiny);
     }
     for (int k = 0; k < count; k++) {
         d->owner = d->names ? d->shaded->firstTriangle + batch->primitive[k] : list[k];

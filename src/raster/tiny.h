@@ -29,14 +29,15 @@ static inline bool hasTiny(const Batch* t, int count)
     return any;
 }
 
-static inline float clampDepth(double z)
+// least: 0, or -1 where depth is reversed.
+static inline float clampDepth(double z, float least)
 {
     float v = (float)z;
-    v = v > 0 ? v : 0;
-    return v < 1 ? v : 1;
+    v = v > least ? v : least;
+    return v < least + 1 ? v : least + 1;
 }
 
-static inline void testTinyPixel(const Batch* t, int column, int row, float* restrict depth,
+static inline void testTinyPixel(const Batch* t, int column, int row, float least, float* restrict depth,
                                  int32_t* restrict inside, int32_t* restrict element)
 {
     for (int k = 0; k < BATCH; k++) {
@@ -45,20 +46,21 @@ static inline void testTinyPixel(const Batch* t, int column, int row, float* res
         const double u = t->e[0][k] + 256 * (t->a[0][k] * x + t->b[0][k] * y);
         const double v = t->e[1][k] + 256 * (t->a[1][k] * x + t->b[1][k] * y);
         const double w = t->e[2][k] + 256 * (t->a[2][k] * x + t->b[2][k] * y);
-        const double uv = u < v ? u : v, least = uv < w ? uv : w;
+        const double uv = u < v ? u : v, inner = uv < w ? uv : w;
         const int32_t within = (px <= t->right[k]) & (py <= t->bottom[k]);
-        inside[k] = (least >= 0 ? -1 : 0) & -within;
+        inside[k] = (inner >= 0 ? -1 : 0) & -within;
         // The same bits as in a block: depth of its first pixel, then the growth to the lane.
         const double z = t->planeZ[k] + (t->zx[k] * (px & ~3) + t->zy[k] * (py & ~3));
-        depth[k] = clampDepth(z + (t->zx[k] * (px & 3) + t->zy[k] * (py & 3)));
+        depth[k] = clampDepth(z + (t->zx[k] * (px & 3) + t->zy[k] * (py & 3)), least);
         element[k] = vplTile_Element(px, py);
     }
 }
 
-static inline void testTiny(const Batch* t, Tiny* tiny)
+static inline void testTiny(const Batch* t, float least, Tiny* tiny)
 {
     for (int i = 0; i < TINY_PIXELS; i++) {
-        testTinyPixel(t, i % TINY_SIDE, i / TINY_SIDE, tiny->depth[i], tiny->inside[i], tiny->element[i]);
+        testTinyPixel(t, i % TINY_SIDE, i / TINY_SIDE, least, tiny->depth[i], tiny->inside[i],
+                      tiny->element[i]);
     }
 }
 

@@ -29,9 +29,14 @@ static vplScreenVertex snap(Pixel p, double z)
     return (vplScreenVertex){nearest(p.x * scale), nearest(p.y * scale), (float)z};
 }
 
+static double depthOf(const vplRaster* raster, double z, double w)
+{
+    return raster->framebuffer.reversedDepth ? -z / w : z / w;
+}
+
 vplScreenVertex vplProject(const vplRaster* raster, double x, double y, double z, double w)
 {
-    return snap(toPixel(raster, x, y, w), z / w);
+    return snap(toPixel(raster, x, y, w), depthOf(raster, z, w));
 }
 
 // Returns the outcode of a clip-space position. Sets *screenOut where the position is within range.
@@ -51,7 +56,7 @@ static uint8_t projectVertex(const vplRaster* raster, double x, double y, double
     if (!(fabs(p.x) <= limit && fabs(p.y) <= limit)) {
         return (uint8_t)(code | VPL_OUT_GUARD);
     }
-    *screenOut = snap(p, z / w);
+    *screenOut = snap(p, depthOf(raster, z, w));
     return (uint8_t)code;
 }
 

@@ -136,6 +136,7 @@ static vplResult draw(vplShading* s, const vplStrategy* strategy, const vplFrame
 static vplResult shade(vplShading* s, const vplStrategy* strategy, vplShadeStats* stats)
 {
     vplFramebuffer framebuffer = vplDefaultFramebuffer(s->view->width, s->view->height);
+    framebuffer.reversedDepth = true;
     TRY(makeObjects(s));
     TRY(vplDirectLight_Open(&s->direct, s->arena, s->def->lighting));
     TRY(vplCompensator_Open(s));

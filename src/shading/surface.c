@@ -64,7 +64,7 @@ static void toClip(const vplView* view, vplVec3 point, float* x, float* y, float
     const ViewPoint v = toView(view, point);
     *x = (float)v.x;
     *y = (float)v.y;
-    *z = (float)((v.depth - view->near) * (view->far / (view->far - view->near)));
+    *z = (float)((view->far - v.depth) * (view->near / (view->far - view->near)));
     *w = (float)v.depth;
 }
 

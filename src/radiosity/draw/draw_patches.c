@@ -73,6 +73,7 @@ vplResult vplDrawPatches(const vplPatchDraw* draw, const float (*clip)[4], vplPr
         faces[face] = (vplPatchFace){draw, clip, face, image->width, image->height};
     }
     vplFramebuffer framebuffer = vplDefaultFramebuffer(image->width, image->height);
+    framebuffer.reversedDepth = true;
     framebuffer.planeCount = 3;
     vplRaster* raster = NULL;
     TRY(vplRaster_Create(draw->mesh->context, &framebuffer, &raster));
