@@ -69,8 +69,8 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
 {
     const vplMethod method = r->asked.method;
     const bool patches = method == VPL_METHOD_RADIOSITY; // whose plan takes long, too
-    const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH || !vplShowsLight(r->asked.output.show) ||
-                      r->asked.output.aovs != 0;
+    const bool fits = isinf(r->deadline) || method == VPL_METHOD_PATH ||
+                      !vplShowsLight(r->asked.output.show) || r->asked.output.aovs != 0;
     vplRenderOptions o;
     if (fits || !patches) {
         TRY(vplRenderer_Plan(r, &r->asked, false));
