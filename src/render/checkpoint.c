@@ -429,7 +429,14 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
     if (r->done == 0) { // callers may ask for the picture of what was loaded
         return vplRenderer_Step(r, doneOut);
     }
-    const double asked = r->asked.stop.maxError, bound = r->error.bound;
+    const double asked = r->asked.stop.maxError;
+    if (asked > 0 && r->plan->options.method == VPL_METHOD_PATH) { // its error is that of its sums
+        vplImage* image = NULL;
+        result = vplRenderer_Resolve(r, &image);
+        vplImage_Destroy(image);
+        TRY(result);
+    }
+    const double bound = r->error.bound;
     *doneOut = vplIsComplete(r) || (asked > 0 && bound >= 0 && bound <= asked);
     return VPL_SUCCESS;
 }

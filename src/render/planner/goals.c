@@ -6,6 +6,7 @@
 #include "render/show.h"
 #include "render/stages/make.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -118,6 +119,16 @@ static vplResult refine(vplRenderer* r)
 
 // ---- paths
 
+// Paths per pixel that are missing for the error that was asked for, as far as is foreseen, and a twentieth more.
+static int missingPaths(const vplRenderer* r)
+{
+    const double asked = r->asked.stop.maxError, over = r->error.bound / asked;
+    if (!(asked > 0 && over > 1)) {
+        return INT_MAX;
+    }
+    return (int)fmin(INT_MAX, ceil(r->paths * fmax(1.05 * over * over - 1, 0.125)));
+}
+
 int vplNextPaths(const vplRenderer* r)
 {
     const vplPlan* p = r->plan;
@@ -127,9 +138,10 @@ int vplNextPaths(const vplRenderer* r)
     }
     const int most = vplPathsOfPass(p);
     int paths = most;
-    if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // twice as many in each pass
+    if (isfinite(r->deadline) || r->asked.stop.maxError > 0) { // at most as many as there are
         const int first = isfinite(r->deadline) ? 1 : 2;
         paths = r->paths < first ? first : r->paths;
+        paths = paths < missingPaths(r) ? paths : missingPaths(r);
         paths = paths < most ? paths : most;
     }
     if (isfinite(r->deadline) && r->paths > 0) {
