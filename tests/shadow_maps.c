@@ -15,6 +15,7 @@ const char* nameOfKind(MapKind kind)
 {
     static const char* const names[MAP_KINDS] = {"cube",
                                                  "soft cube",
+                                                 "wide cube",
                                                  "hemi-octahedral",
                                                  "paraboloid",
                                                  "two paraboloids",
@@ -32,7 +33,7 @@ static vplResult openCube(ShadowMap* m, int size)
     def.size = size;
     shadow.biasRule = VPL_BIAS_EXACT;
     shadow.pcfSamples = m->kind == MAP_CUBE ? 1 : 16;
-    shadow.pcfOffset = m->kind == MAP_CUBE ? 0 : 0.05f;
+    shadow.pcfOffset = m->kind == MAP_WIDE_CUBE ? 0.05f : -1;
     TRY(vplCubeMap_Create(m->geometry, &def, NULL, NULL, &m->cube));
     return vplShadow_Create(m->cube, &shadow, &m->shadow);
 }
@@ -70,6 +71,7 @@ vplResult tryOpenMap(ShadowMap* m, MapKind kind, const vplGeometry* g, vplVec3 p
     switch (kind) {
     case MAP_CUBE:
     case MAP_SOFT_CUBE:
+    case MAP_WIDE_CUBE:
         return openCube(m, size);
     case MAP_HEMI:
         return openHemi(m, size);
@@ -158,14 +160,15 @@ bool isInView(const ShadowMap* m, vplVec3 point)
 
 bool isSureAt(const ShadowMap* m, vplVec3 p, vplVec3 n, bool dark)
 {
-    if (m->kind == MAP_CUBE) {
+    if (m->cube != NULL) { // off by the angle to a texel's corner and that to the disc's rim
         const vplVec3 way = wayToMap(m, p);
-        const float r = vplLength(way), f = r * m->shadow.texelTangent;
+        const float r = vplLength(way), texel = m->shadow.texelTangent,
+                    disc = m->shadow.def.pcfOffset / r + m->shadow.pcfTangent,
+                    f = r * (texel + disc) / (1 - texel * disc);
         const float band = bandAt(r, f, fminf(fabsf(vplDot(way, n)) / r, 1));
-        return isSureWithin(m->geometry, m->position, p, n, f, band, dark);
+        return texel * disc < 1 && isSureWithin(m->geometry, m->position, p, n, f, band, dark);
     }
-    return m->kind == MAP_SOFT_CUBE ? false
-           : m->hemi != NULL        ? isSure(m->geometry, &m->hemi->maps[0], p, n, dark)
+    return m->hemi != NULL          ? isSure(m->geometry, &m->hemi->maps[0], p, n, dark)
            : m->paraboloids != NULL ? isSureParaboloid(m->geometry, &m->paraboloids->maps[0], p, n, dark)
                                     : isSureReflective(m->geometry, m->reflective, p, n, dark);
 }

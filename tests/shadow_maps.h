@@ -7,7 +7,8 @@
 
 typedef enum MapKind {
     MAP_CUBE,            // one sample, exact bias
-    MAP_SOFT_CUBE,       // 16 samples
+    MAP_SOFT_CUBE,       // 16 samples within the automatic radius
+    MAP_WIDE_CUBE,       // 16 samples within 5 cm
     MAP_HEMI,            // hemi-octahedral
     MAP_PARABOLOID,      // one hemisphere
     MAP_TWO_PARABOLOIDS, // both hemispheres

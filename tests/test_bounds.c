@@ -168,10 +168,10 @@ static void compareShadows(const vplShadow* shadow, const vplSurface* surface, i
 static vplShadow makeShadow(const vplCubeMap* map, int variant)
 {
     static const int samples[] = {8, 16, 17, 64, 256, 16};
-    static const float offsets[] = {0.02f, 0.05f, 0.1f, 0.002f, 1, 0};
+    static const float offsets[] = {0.02f, 0.05f, 0.1f, 0.002f, 1, 0, -1};
     vplShadowDef def = vplDefaultShadowDef();
     def.pcfSamples = samples[variant % 6];
-    def.pcfOffset = offsets[variant / 6 % 6];
+    def.pcfOffset = offsets[variant / 6 % 7];
     def.biasRule = variant % 7 == 0 ? VPL_BIAS_PAIR : VPL_BIAS_EXACT;
     if (variant % 14 == 0) {
         def.biasStatic = def.biasDynamic = 0;

@@ -88,11 +88,13 @@ typedef enum vplBiasRule {
 
 typedef struct vplShadowDef {
     vplBiasRule biasRule; // default VPL_BIAS_AUTO
-    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): far * texel half-angle + pcfOffset, and
-    // 5.6 b_s, which is free of acne up to 80 degrees.
+    // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): far * texel half-angle + the disc's radius at
+    // far, and 5.6 b_s, which is free of acne up to 80 degrees.
     float biasStatic, biasDynamic;
-    int pcfSamples;  // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
-    float pcfOffset; // off: radius of the disc of samples, metres, >= 0; negative (default): far / 128
+    int pcfSamples; // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
+    // off: radius of the disc of samples, metres, >= 0. Negative (default): half a texel's diagonal at the
+    // surface's distance from the light, so that shadows are as sharp as the map, however far the scene reaches.
+    float pcfOffset;
     uint32_t cookie; // set by vplDefaultShadowDef
 } vplShadowDef;
 
@@ -102,9 +104,10 @@ vplShadowDef vplDefaultShadowDef(void);
 typedef struct vplShadow {
     const vplCubeMap* map;
     vplShadowDef def;
-    float reach;                           // upper bound of the offsets' lengths, metres
-    float texelTangent;                    // tangent of the largest angle between a texel's centre and corner
-    float offsets[VPL_MAX_PCF_SAMPLES][2]; // on the unit disc, in pairs o, -o; times pcfOffset
+    float pcfTangent;   // the disc's radius is def.pcfOffset + pcfTangent * distance; one of the two is 0
+    float reach;        // upper bound of the offsets' lengths
+    float texelTangent; // tangent of the largest angle between a texel's centre and corner
+    float offsets[VPL_MAX_PCF_SAMPLES][2]; // on the unit disc, in pairs o, -o
 } vplShadow;
 
 vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplShadow* shadowOut);

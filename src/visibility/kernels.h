@@ -16,6 +16,7 @@ struct vplCubeBounds;
 typedef struct vplShadowPoints {
     float x[VPL_LANES], y[VPL_LANES], z[VPL_LANES]; // from the light
     float inverse[VPL_LANES];                       // 1 / distance
+    float radius[VPL_LANES];                        // of the disc of samples, metres
     float limit[VPL_LANES];                         // distance less bias: a sample nearer than this shadows
     int32_t face[VPL_LANES];                        // all samples fall on it; negative where they may differ
 } vplShadowPoints;

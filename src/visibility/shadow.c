@@ -51,13 +51,14 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
     // Half a texel's diagonal at the middle of a face, where texels look largest.
     shadow.texelTangent = 1.41421356f / (float)map->size;
     if (shadow.def.pcfOffset < 0) {
-        shadow.def.pcfOffset = map->far / 128;
-    }
-    if (shadow.def.pcfSamples == 1) {
+        shadow.pcfTangent = shadow.texelTangent;
         shadow.def.pcfOffset = 0;
     }
+    if (shadow.def.pcfSamples == 1) {
+        shadow.def.pcfOffset = shadow.pcfTangent = 0;
+    }
     if (shadow.def.biasStatic < 0) {
-        shadow.def.biasStatic = map->far * shadow.texelTangent + shadow.def.pcfOffset;
+        shadow.def.biasStatic = map->far * (shadow.texelTangent + shadow.pcfTangent) + shadow.def.pcfOffset;
     }
     if (shadow.def.biasDynamic < 0) {
         shadow.def.biasDynamic = 5.6f * shadow.def.biasStatic;
@@ -66,7 +67,7 @@ vplResult vplShadow_Create(const vplCubeMap* map, const vplShadowDef* def, vplSh
     for (int i = 0; i < def->pcfSamples; i++) {
         const float x = shadow.offsets[i][0], y = shadow.offsets[i][1];
         // Slightly longer, for the rounding here and where a sample is placed.
-        shadow.reach = fmaxf(shadow.reach, sqrtf(x * x + y * y) * shadow.def.pcfOffset * 1.00001f);
+        shadow.reach = fmaxf(shadow.reach, sqrtf(x * x + y * y) * 1.00001f);
     }
     *shadowOut = shadow;
     return VPL_SUCCESS;

@@ -37,7 +37,7 @@ typedef struct Squares {
 
 static void findSquares(const vplShadow* shadow, vplShadowPoints* restrict p, Squares* restrict q)
 {
-    const float reach = shadow->reach, size = (float)shadow->map->size, half = 0.5f * size;
+    const float size = (float)shadow->map->size, half = 0.5f * size;
     const float slack = 0x1p-6f; // texels
     for (int l = 0; l < VPL_LANES; l++) {
         const float x = p->x[l], y = p->y[l], z = p->z[l];
@@ -48,7 +48,7 @@ static void findSquares(const vplShadow* shadow, vplShadowPoints* restrict p, Sq
         const float sign = negative ? -1.0f : 1.0f; // a product vectorises where a choice of -x or x does not
         const float right = isZ ? x * sign : isY ? x : -z * sign, up = isY ? -z * sign : y;
         const float inverse = 1 / vplMaxf(major, 1e-30f);
-        const float s = right * inverse, u = up * inverse, k = reach * inverse;
+        const float s = right * inverse, u = up * inverse, k = shadow->reach * p->radius[l] * inverse;
         // 1 / (1 - k) <= 1 + 4/3 k for k <= 1/4
         const float spread = k * (1 + 1.3334f * k);
         const float reachS = spread * (1 + 0.5f * s * s), reachU = spread * (1 + 0.5f * u * u);
@@ -119,7 +119,7 @@ typedef struct Cones {
 
 static void findCones(const vplShadow* shadow, const vplShadowPoints* p, const Squares* q, Cones* restrict c)
 {
-    const float texel = shadow->texelTangent, reach = shadow->reach;
+    const float texel = shadow->texelTangent;
     for (int l = 0; l < VPL_LANES; l++) {
         const float inverse = p->inverse[l];
         const float dx = q->x[l] * inverse, dy = q->y[l] * inverse, dz = q->z[l] * inverse;
@@ -128,7 +128,8 @@ static void findCones(const vplShadow* shadow, const vplShadowPoints* p, const S
         const float ax = fabsf(dx), ay = fabsf(dy);
         const float oblique = vplMaxf(ax, ay) + 0.4143f * vplMinf(ax, ay), moved = q->spread[l] + texel * dz;
         const float nearer = (oblique + texel) * moved + 0x1p-20f;
-        const float t = texel * dz * (1 + 1.3334f * nearer) + 0x1p-20f, k = reach * inverse;
+        const float t = texel * dz * (1 + 1.3334f * nearer) + 0x1p-20f,
+                    k = shadow->reach * p->radius[l] * inverse;
         const float more = t * t + k * k * (1 + t * t);
         c->x[l] = dx;
         c->y[l] = dy;

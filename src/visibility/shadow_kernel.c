@@ -23,10 +23,9 @@ void VPL_KERNEL(vplShadowBias)(const vplShadow* shadow, const float* restrict di
         return;
     }
     const float texel = shadow->texelTangent;
-    const float radius = d->pcfSamples > 1 ? d->pcfOffset : 0;
     for (int l = 0; l < VPL_LANES; l++) {
         float r = vplMaxf(distance[l], 1e-30f);
-        float kernel = radius / r;
+        float kernel = d->pcfOffset / r + shadow->pcfTangent;
         float rest = 1 - texel * kernel;
         float tangent = (texel + kernel) / vplMaxf(rest, 1e-6f); // of the sum of both angles
         float cosA = 1 / sqrtf(1 + tangent * tangent);
@@ -72,14 +71,14 @@ static void countShadowed(const vplShadow* shadow, const vplShadowPoints* restri
     const vplCubeMap* map = shadow->map;
     const float* restrict texels = map->texels;
     const int32_t size = map->size;
-    const float off = shadow->def.pcfOffset, far = map->far;
+    const float far = map->far;
     for (int l = 0; l < VPL_LANES; l++) {
         shadowed[l] = 0;
     }
     for (int s = 0; s < shadow->def.pcfSamples; s++) {
-        const float u = off * shadow->offsets[s][0], v = off * shadow->offsets[s][1];
         int32_t place[VPL_LANES];
         for (int l = 0; l < VPL_LANES; l++) {
+            const float u = p->radius[l] * shadow->offsets[s][0], v = p->radius[l] * shadow->offsets[s][1];
             float dx = p->x[l] + (u * axis[0][l] + v * axis[3][l]);
             float dy = p->y[l] + (u * axis[1][l] + v * axis[4][l]);
             float dz = p->z[l] + (u * axis[2][l] + v * axis[5][l]);
@@ -93,18 +92,17 @@ static void countShadowed(const vplShadow* shadow, const vplShadowPoints* restri
     }
 }
 
-// The samples' places on the disc, metres; padded to whole vectors.
+// The samples' places on the unit disc; padded to whole vectors.
 typedef struct Disc {
     float u[VPL_MAX_PCF_SAMPLES], v[VPL_MAX_PCF_SAMPLES];
 } Disc;
 
-static void scaleDisc(const vplShadow* shadow, Disc* restrict disc)
+static void fillDisc(const vplShadow* shadow, Disc* restrict disc)
 {
-    const float off = shadow->def.pcfOffset;
     for (int first = 0; first < shadow->def.pcfSamples; first += VPL_LANES) {
         for (int l = first; l < first + VPL_LANES; l++) {
-            disc->u[l] = off * shadow->offsets[l][0];
-            disc->v[l] = off * shadow->offsets[l][1];
+            disc->u[l] = shadow->offsets[l][0];
+            disc->v[l] = shadow->offsets[l][1];
         }
     }
 }
@@ -131,7 +129,7 @@ static inline __attribute__((always_inline)) float countPoint(const vplShadow* s
 {
     const vplCubeMap* map = shadow->map;
     const int32_t size = map->size, samples = shadow->def.pcfSamples, face = p->face[lane];
-    const float far = map->far, limit = p->limit[lane];
+    const float far = map->far, limit = p->limit[lane], radius = p->radius[lane];
     // In the axes of the face where that is known.
     vplInFace at = {p->x[lane], p->y[lane], p->z[lane]};
     vplInFace alongU = {axis[0][lane], axis[1][lane], axis[2][lane]};
@@ -147,9 +145,10 @@ static inline __attribute__((always_inline)) float countPoint(const vplShadow* s
         const float* restrict v = disc->v + first;
         int32_t place[VPL_LANES];
         for (int l = 0; l < VPL_LANES; l++) {
-            const float right = at.right + (u[l] * alongU.right + v[l] * alongV.right);
-            const float up = at.up + (u[l] * alongU.up + v[l] * alongV.up);
-            const float major = at.major + (u[l] * alongU.major + v[l] * alongV.major);
+            const float du = radius * u[l], dv = radius * v[l];
+            const float right = at.right + (du * alongU.right + dv * alongV.right);
+            const float up = at.up + (du * alongU.up + dv * alongV.up);
+            const float major = at.major + (du * alongU.major + dv * alongV.major);
             place[l] =
                 placeOf(inFace ? (vplCubeTexel){face, (right / major + 1) * 0.5f, (1 - up / major) * 0.5f}
                                : vplCubeTexelOf(right, up, major),
@@ -165,7 +164,7 @@ static void countUnknown(const vplShadow* shadow, const vplShadowPoints* p, cons
                          const int32_t known[VPL_LANES], float shadowed[VPL_LANES])
 {
     Disc disc;
-    scaleDisc(shadow, &disc);
+    fillDisc(shadow, &disc);
     for (int l = 0; l < VPL_LANES; l++) {
         if (!known[l]) {
             shadowed[l] = p->face[l] >= 0 ? countPoint(shadow, p, l, axis, &disc, true)
@@ -195,6 +194,7 @@ int VPL_KERNEL(vplShadowFactor)(const vplShadow* shadow, const vplSurface* surfa
         p.y[l] = y;
         p.z[l] = z;
         p.inverse[l] = inverse;
+        p.radius[l] = shadow->def.pcfOffset + shadow->pcfTangent * vplMinf(distance[l], 1e30f);
     }
     VPL_KERNEL(vplShadowBias)(shadow, distance, cosine, bias);
     for (int l = 0; l < VPL_LANES; l++) {

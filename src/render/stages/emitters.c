@@ -19,21 +19,22 @@ static vplResult boundMap(const vplRun* run, vplCubeMap* map)
     return pays ? vplCubeMap_FindBounds(map) : VPL_SUCCESS;
 }
 
-static vplShadowDef shadowDefOf(const vplPlan* plan)
+// The document's radius of PCF is a length. With its lighting an automatic one is a share of the light's reach.
+static vplShadowDef shadowDefOf(const vplPlan* plan, const vplCubeMap* map)
 {
     const vplShadowOptions* o = &plan->options.shadow;
+    const bool reaching = plan->shading == VPL_LIGHTING_DOCUMENTED && o->pcfOffset < 0;
     vplShadowDef def = vplDefaultShadowDef();
     def.biasRule = plan->biasRule;
     def.biasStatic = o->bias;
     def.biasDynamic = o->biasSlope;
     def.pcfSamples = o->pcfSamples;
-    def.pcfOffset = o->pcfOffset;
+    def.pcfOffset = reaching ? map->far / 128 : o->pcfOffset;
     return def;
 }
 
 static vplResult drawMap(const vplRun* run, int i, vplEmitterMaps* maps)
 {
-    const vplShadowDef shadow = shadowDefOf(run->plan);
     vplCubeMapDef def = vplDefaultCubeMapDef();
     def.position = run->plan->emitters[i].position;
     def.size = run->plan->options.shadow.mapSize;
@@ -42,6 +43,7 @@ static vplResult drawMap(const vplRun* run, int i, vplEmitterMaps* maps)
                           &maps->maps[i]));
     vplRun_AddRaster(run, &maps->maps[i]->stats);
     TRY(boundMap(run, maps->maps[i]));
+    const vplShadowDef shadow = shadowDefOf(run->plan, maps->maps[i]);
     return vplShadow_Create(maps->maps[i], &shadow, &maps->shadows[i]);
 }
 
