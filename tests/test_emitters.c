@@ -316,3 +316,34 @@ TEST(SmoothMeshesShadeWithoutSeams, 1)
     }
     assert_true(jump[1] < 1.05 && jump[0] > 20);
 }
+
+// X064: half of a floor below the light is dark, and a warning says why.
+TEST(WithoutBiasSurfacesShadowThemselvesAndAWarningSaysSo, 1)
+{
+    enum { SIZE = 32 };
+    vplScene* scene = sceneOf(context, 0.5f);
+    addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
+    lookDown(scene, 4, 0.3);
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(0.3f, 2, -0.25f), vplVec(0, -1, 0), 3);
+    for (int k = 0; k < 4; k++) { // 0, and what needs no warning: a length, automatic, rays
+        vplRenderOptions o = plainOptions();
+        o.method = VPL_METHOD_DIRECT;
+        o.output.width = o.output.height = SIZE;
+        o.shadow.mapSize = 64;
+        o.shadow.pcfSamples = 1;
+        o.shadow.bias = k == 1 ? 0.2f : k == 2 ? VPL_BIAS_OPTION_AUTO : 0;
+        o.shadow.biasSlope = k == 2 ? -1 : 0;
+        o.lights.shadows = k == 3 ? VPL_LIGHT_SHADOWS_RAY : VPL_LIGHT_SHADOWS_NONE;
+        takeMessage();
+        vplImage* image = renderScene(scene, &o, NULL);
+        assert_true((strstr(takeMessage(), "--bias 0: surfaces lie in their own shadow") != NULL) ==
+                    (k == 0));
+        int dark = 0;
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            dark += image->pixels[3 * i] == 0;
+        }
+        assert_true(k == 0 ? dark > SIZE * SIZE / 4 : dark == 0);
+        vplImage_Destroy(image);
+    }
+    vplScene_Destroy(scene);
+}

@@ -155,6 +155,8 @@ unused "--interleave has no effect with --pipeline deferred" render "$room" $tin
 unused "--interleave has no effect with --pipeline lightcuts" render "$room" $tiny --pipeline lightcuts --interleave 3 --interleave 4
 unused "--exposure has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --exposure auto
 unused "--tonemap has no effect on $out/u.pfm, which holds linear values" render "$room" $tiny --tonemap=usual
+"$vpl" render "$room" $tiny --method direct --bias 0 --bias-slope 0 -o "$out/u.pfm" 2>"$scratch/stderr"
+equals NoBiasWarns 1 "$(grep -c "^vpl: warning: --bias 0: surfaces lie in their own shadow" "$scratch/stderr")"
 succeeds NoEffectIsQuiet "$vpl" render "$room" $tiny --clusters 8 --quiet -o "$out/u.pfm"
 succeeds EffectOfTheUsualPipeline "$vpl" render "$room" --size 8x8 --method ssvp --interleave 2 --rsm-size 32 -o "$out/u.pfm"
 succeeds DefaultsDoNotWarn "$vpl" render "$room" $tiny -o "$out/u.pfm"

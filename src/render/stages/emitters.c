@@ -19,7 +19,8 @@ static vplResult boundMap(const vplRun* run, vplCubeMap* map)
     return pays ? vplCubeMap_FindBounds(map) : VPL_SUCCESS;
 }
 
-// The document's radius of PCF is a length. With its lighting an automatic one is a share of the light's reach.
+// The document's radius of PCF is a length: with its lighting an automatic one is a share of the light's
+// reach.
 static vplShadowDef shadowDefOf(const vplPlan* plan, const vplCubeMap* map)
 {
     const vplShadowOptions* o = &plan->options.shadow;
@@ -47,6 +48,15 @@ static vplResult drawMap(const vplRun* run, int i, vplEmitterMaps* maps)
     return vplShadow_Create(maps->maps[i], &shadow, &maps->shadows[i]);
 }
 
+static void warnOfBias(const vplRun* run)
+{
+    if (run->plan->biasRule == VPL_BIAS_PAIR && run->plan->options.shadow.bias == 0) {
+        vplLog(run->context, VPL_LOG_WARNING,
+               "--bias 0: surfaces lie in their own shadow wherever a texel's centre is nearer to the light; "
+               "with auto and exact they do not");
+    }
+}
+
 vplResult vplMakeEmitterMaps(const vplRun* run, void** resultOut)
 {
     const size_t count = (size_t)run->plan->emitterCount;
@@ -56,6 +66,7 @@ vplResult vplMakeEmitterMaps(const vplRun* run, void** resultOut)
     TRY(vplArena_Check(run->arena));
     *maps = (vplEmitterMaps){cubes, shadows, (int)count};
     *resultOut = maps;
+    warnOfBias(run);
     for (int i = 0; i < maps->count; i++) {
         if (run->plan->emitters[i].type != VPL_EMITTER_DIRECTIONAL) {
             TRY(drawMap(run, i, maps));
