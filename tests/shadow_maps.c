@@ -216,3 +216,64 @@ uint64_t hashMap(const ShadowMap* m)
     }
     return hash;
 }
+
+vplCubeMap* makeCubeMap(const vplGeometry* g, vplVec3 position, int size)
+{
+    vplCubeMapDef def = vplDefaultCubeMapDef();
+    def.position = position;
+    def.size = size;
+    vplCubeMap* map;
+    assert_int_equal(vplCubeMap_Create(g, &def, NULL, NULL, &map), VPL_SUCCESS);
+    return map;
+}
+
+void makeFlatMap(FlatMap* flat, vplContext* context, vplVec3 light, float far, float stored)
+{
+    for (int i = 0; i < 6; i++) {
+        flat->texels[i] = stored;
+    }
+    flat->map =
+        (vplCubeMap){.position = light, .size = 1, .far = far, .texels = flat->texels, .context = context};
+}
+
+vplShadow exactShadow(const vplCubeMap* map, int samples, float offset)
+{
+    vplShadowDef def = vplDefaultShadowDef();
+    def.biasRule = VPL_BIAS_EXACT;
+    def.pcfSamples = samples;
+    def.pcfOffset = offset;
+    vplShadow shadow;
+    assert_int_equal(vplShadow_Create(map, &def, &shadow), VPL_SUCCESS);
+    return shadow;
+}
+
+vplShadow pairShadow(const vplCubeMap* map, float biasStatic, float biasDynamic)
+{
+    vplShadowDef def = vplDefaultShadowDef();
+    def.biasRule = VPL_BIAS_PAIR;
+    def.biasStatic = biasStatic;
+    def.biasDynamic = biasDynamic;
+    def.pcfSamples = 1;
+    vplShadow shadow;
+    assert_int_equal(vplShadow_Create(map, &def, &shadow), VPL_SUCCESS);
+    return shadow;
+}
+
+vplGeometry* wallOnFloor(vplContext* context, float x0)
+{
+    vplScene* scene;
+    vplGeometry* g;
+    assert_int_equal(vplScene_Create(context, &scene), VPL_SUCCESS);
+    vplMaterialDef material = vplDefaultMaterialDef();
+    vplScene_AddMaterial(scene, &material, NULL);
+    vplObjectDef object = vplDefaultObjectDef();
+    object.transform =
+        vplMat4_FromParts((vplVec3){0, 0, 0}, (double[3]){-VPL_PI / 2, 0, 0}, (vplVec3){20, 20, 1});
+    vplScene_AddObject(scene, &object, NULL);
+    object.transform =
+        vplMat4_FromParts((vplVec3){x0, 0, 0}, (double[3]){0, VPL_PI / 2, 0}, (vplVec3){20, 1, 1});
+    vplScene_AddObject(scene, &object, NULL);
+    assert_int_equal(vplGeometry_Create(scene, &g), VPL_SUCCESS);
+    vplScene_Destroy(scene);
+    return g;
+}

@@ -59,4 +59,23 @@ bool holdsRay(const vplGeometry* g, const vplVec3 positionRightUp[3], vplVec3 d,
 // Returns the hash of all texels.
 uint64_t hashMap(const ShadowMap* map);
 
+vplCubeMap* makeCubeMap(const vplGeometry* g, vplVec3 position, int size);
+
+// A cube map whose six texels all store the same value, distance / far.
+typedef struct FlatMap {
+    vplCubeMap map;
+    float texels[6];
+} FlatMap;
+
+void makeFlatMap(FlatMap* flat, vplContext* context, vplVec3 light, float far, float stored);
+
+// Makes a shadow with the exact bias; samples within `offset` metres, negative: automatic.
+vplShadow exactShadow(const vplCubeMap* map, int samples, float offset);
+
+// Makes a hard shadow with static and dynamic bias, metres.
+vplShadow pairShadow(const vplCubeMap* map, float biasStatic, float biasDynamic);
+
+// Makes a floor of 20 m and a wall that stands on it at x = x0.
+vplGeometry* wallOnFloor(vplContext* context, float x0);
+
 #endif

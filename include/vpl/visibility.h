@@ -89,7 +89,7 @@ typedef enum vplBiasRule {
 typedef struct vplShadowDef {
     vplBiasRule biasRule; // default VPL_BIAS_AUTO
     // b_s and b_dmax of VPL_BIAS_PAIR, metres. Negative (default): far * texel half-angle + the disc's radius
-    // at far, and 5.6 b_s, which is free of acne up to 80 degrees.
+    // at far, and 5.6 b_s, which is free of acne up to 79.9 degrees.
     float biasStatic, biasDynamic;
     int pcfSamples; // S, [1, VPL_MAX_PCF_SAMPLES]; 1 is a hard shadow; default 16
     // off: radius of the disc of samples, metres, >= 0. Negative (default): half a texel's diagonal at the
