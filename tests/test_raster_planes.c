@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Values of fragments are those of the triangle's plane, also where snapping covers a pixel whose centre is
-// outside of the triangle.
+// outside of the triangle, so that surfaces of triangles smaller than texels do not shadow themselves.
 #include "raster_support.h"
-#include "shapes.h"
+#include "shadow_maps.h"
 
 #include "math/vec.h"
 
@@ -162,4 +162,52 @@ TEST(ASphereLitFromItsCentreHasItsDistanceAndNoShadow, 2, SLOW)
         vplCubeMap_Destroy(map);
     }
     vplGeometry_Destroy(g);
+}
+
+// Makes a wall of 2 m around `middle`, in 512^2 squares that are smaller than a texel as seen from 3 m.
+static vplGeometry* squares(vplContext* context, double turn, vplVec3 middle)
+{
+    enum { CELLS = 512 };
+    vplScene* scene = sceneOf(context, 0.5f);
+    Shape wall = {0};
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        const float x = (float)(i % CELLS), y = (float)(i / CELLS), h = CELLS / 2, z = 0;
+        const vplVec3 a = {x - h, y - h, z}, b = {x + 1 - h, y - h, z}, c = {x + 1 - h, y + 1 - h, z};
+        addTriangle(&wall, a, b, c);
+        addTriangle(&wall, a, c, vplVec(x - h, y + 1 - h, z));
+    }
+    const double rotate[3] = {0.31 * turn, 0.7 * turn, 1.3 * turn};
+    placeShape(&wall, 2.0f / CELLS, rotate, middle);
+    addShape(scene, &wall, false, NULL);
+    freeShape(&wall);
+    return buildGeometry(scene);
+}
+
+TEST(AWallOfSquaresSmallerThanTexelsDoesNotShadowItself, 2, SLOW)
+{
+    static const int sizes[] = {48, 100, 256};
+    const vplVec3 middle = {0.1f, -0.2f, 0.4f};
+    for (int turn = 0; turn < 2; turn++) {
+        vplGeometry* g = squares(context, turn, middle);
+        const vplVec3 n = g->normals[0],
+                      from = vplAdd(vplAdd(middle, vplScale(3, n)), vplVec(0.013f, 0.021f, 0));
+        for (int k = 0; k < 3; k++) {
+            const int size = sizes[k];
+            vplCubeMap* map = makeCubeMap(g, from, size);
+            const vplShadow hard = exactShadow(map, 1, 0), soft = exactShadow(map, 16, -1);
+            int hits = 0;
+            for (int i = 0; i < 6 * size * size; i++) {
+                vplHit hit;
+                const vplRay ray = {from, directionOf(i, size), {0, 0}};
+                if (vplGeometry_ClosestHit(g, &ray, &hit)) {
+                    assertNear((double)vplShadow_Factor(&hard, hit.position, n), 0, 0, "hard shadow", i);
+                    assertNear((double)vplShadow_Factor(&soft, hit.position, n), 0, 0, "soft shadow", i);
+                    hits++;
+                }
+            }
+            assert_true(hits > size * size / 12);
+            vplCubeMap_Destroy(map);
+        }
+        vplGeometry_Destroy(g);
+    }
 }
