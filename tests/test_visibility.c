@@ -148,8 +148,17 @@ TEST(DegenerateShadowsAreDefined, 1)
     shadow = exactShadow(&flat.map, 16, 5);
     double in = (double)vplShadow_Factor(&shadow, (vplVec3){0, 0, 0}, (vplVec3){0, 1, 0});
     assertNear(in, 0, 0, "in the light", 0);
-    double wide = (double)vplShadow_Factor(&shadow, (vplVec3){0.01f, 0, 0}, (vplVec3){-1, 0, 0});
-    assert_true(wide >= 0 && wide <= 1);
+    // A disc 500 times as wide as the distance: all texels are nearer than one point, and farther than another.
+    assertNear((double)vplShadow_Factor(&shadow, vplVec(0.02f, 0, 0), vplVec(-1, 0, 0)), 1, 0, "dark", 0);
+    assertNear((double)vplShadow_Factor(&shadow, vplVec(0.005f, 0, 0), vplVec(-1, 0, 0)), 0, 0, "lit", 0);
+    // The disc is perpendicular to the light, so no sample looks back: only the opposite face is dark.
+    for (int face = 0; face < 6; face++) {
+        for (int i = 0; i < 6; i++) {
+            flat.texels[i] = i == (face ^ 1) ? 0 : INFINITY;
+        }
+        const vplVec3 d = vplCube_GetFrame(face).forward;
+        assertNear((double)vplShadow_Factor(&shadow, vplScale(0.02f, d), vplNegate(d)), 0, 0, "back", face);
+    }
     assert_true(isinf(vplCubeMap_Distance(&flat.map, (vplVec3){0, 0, 0})));
 }
 
