@@ -160,10 +160,23 @@ static void logArguments(const vplContext* context, vplLogLevel level, const cha
     if (context == NULL || context->def.log == NULL) {
         return;
     }
-    char message[1024];
-    vsnprintf(message, sizeof message, format, arguments);
+    char start[1024];
+    va_list again;
+    va_copy(again, arguments);
+    const int length = vsnprintf(start, sizeof start, format, arguments);
+    const size_t size = length < 0 ? 0 : (size_t)length + 1;
+    // The reason stands behind names, which may be long. Without memory the message is cut off.
+    char* all = size > sizeof start ? context->def.alloc(context->def.allocUser, NULL, 0, size) : NULL;
+    if (all != NULL) {
+        vsnprintf(all, size, format, again);
+    }
+    va_end(again);
+    char* message = all != NULL ? all : start;
     makePrintable(message);
     context->def.log(context->def.logUser, level, message);
+    if (all != NULL) {
+        context->def.alloc(context->def.allocUser, all, size, 0);
+    }
 }
 
 void vplLog(const vplContext* context, vplLogLevel level, const char* format, ...)
