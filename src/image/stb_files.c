@@ -110,6 +110,12 @@ vplResult vplEncodeHdr(const vplImage* image, const vplWriteOptions* options, vp
 vplResult vplDecodeLdr(vplContext* context, const char* path, const uint8_t* bytes, size_t size,
                        vplImage** imageOut)
 {
+    // A BMP's height is negative where rows go down; stb takes its absolute value, which -2^31 has not.
+    static const uint8_t least[4] = {0, 0, 0, 0x80};
+    if (size >= 26 && memcmp(bytes, "BM", 2) == 0 && bytes[14] != 12 && memcmp(bytes + 22, least, 4) == 0) {
+        return vplFail(context, VPL_PARSE_ERROR, "%s: cannot read the picture: its height is -2147483648",
+                       path);
+    }
     int width = 0, height = 0, channels;
     uint8_t* codes =
         size <= INT_MAX ? stbi_load_from_memory(bytes, (int)size, &width, &height, &channels, 3) : NULL;
