@@ -261,6 +261,8 @@ TEST_ALONE(BadValuesOfEachKindAreRefused)
                                          {"size", "0x480"},
                                          {"size", "640x16385"},
                                          {"size", "640x480x2"},
+                                         {"size", "640x 480"},
+                                         {"size", "640x+480"},
                                          {"size", "-640x480"},
                                          {"size", "640X480"},
                                          {"size", "99999999999x1"},

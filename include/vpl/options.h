@@ -238,7 +238,7 @@ typedef struct vplRenderOptions {
     vplStopOptions stop;
     vplProgressFcn* progress; // called with the progress; NULL (default): never
     void* progressUser;       // passed to progress
-    char problem[256];        // why the last vplRenderOptions_Set failed; empty if it did not
+    char problem[512];        // why the last vplRenderOptions_Set failed; empty if it did not
     uint32_t cookie;          // set by vplDefaultRenderOptions
 } vplRenderOptions;
 // clang-format on

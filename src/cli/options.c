@@ -32,10 +32,18 @@ static int parseNumbers(const char* text, char separator, double low, double hig
     return 0;
 }
 
+// Reads a number without blanks before or behind it.
+static bool parseReal(const char* text, double* out)
+{
+    char* end;
+    *out = strtod(text, &end);
+    return *text > ' ' && *end == 0;
+}
+
 __attribute__((format(printf, 3, 4))) static bool refuse(const Option* o, const char* value,
                                                          const char* format, ...)
 {
-    char wanted[200];
+    char wanted[512];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(wanted, sizeof wanted, format, arguments);
@@ -60,9 +68,8 @@ static bool readInt(const Option* o, const char* value, Arguments* a)
 
 static bool readNumber(const Option* o, const char* value, Arguments* a)
 {
-    char* end;
-    const double number = strtod(value, &end);
-    const bool good = *value != ' ' && end != value && *end == 0 && number >= o->low && number <= o->high;
+    double number;
+    const bool good = parseReal(value, &number) && number >= o->low && number <= o->high;
     return good ? store(o, a, &number, sizeof number)
                 : refuse(o, value, "a number in [%g, %g]", o->low, o->high);
 }
@@ -73,9 +80,7 @@ static bool readExposure(const Option* o, const char* value, Arguments* a)
         a->exposure = (double)VPL_EXPOSURE_AUTO;
         return true;
     }
-    char* end;
-    a->exposure = strtod(value, &end);
-    const bool good = *value != ' ' && end != value && *end == 0 && fabs(a->exposure) <= o->high;
+    const bool good = parseReal(value, &a->exposure) && fabs(a->exposure) <= o->high;
     return good || refuse(o, value, "a number in [%g, %g] or auto", o->low, o->high);
 }
 

@@ -105,8 +105,7 @@ static vplResult setReal(const Setting* s)
 static vplResult setSize(const Setting* s)
 {
     int size[2], length = 0;
-    const char digit = s->value[0];
-    const bool read = digit >= '0' && digit <= '9' && strlen(s->value) < 16 &&
+    const bool read = strspn(s->value, "0123456789x") == strlen(s->value) && strlen(s->value) < 16 &&
                       sscanf(s->value, "%dx%d%n", &size[0], &size[1], &length) == 2 && s->value[length] == 0;
     for (int i = 0; i < 2; i++) {
         if (!read || size[i] < s->option->low || size[i] > s->option->high) {

@@ -82,10 +82,10 @@ wrong "--exposure is \"nan\", must be a number in [-64, 64] or auto" render "$ro
 wrong "--exposure is \"auto\", must be a number in [-64, 64]" bake "$room" -o "$out/never.ply" --exposure auto
 wrong "camera is 1, must be in [0, 0]" render "$room" -o "$png" --camera 1
 wrong "--camera is \"-1\"" render "$room" -o "$png" --camera -1
-for size in 0x10 10x0 16385x1 1x16385 10 10x 10y10 10x10x10 x -4x4 1e3x2 99999999999999999999x1; do
+for size in 0x10 10x0 10x+9 16385x1 1x16385 10 10x 10y10 10x10x10 x -4x4 1e3x2 99999999999999999999x1; do
     wrong "--size is \"$size\", must be WIDTHxHEIGHT" render "$room" -o "$png" --size $size
 done
-wrong "--show is \"everything\"" render "$room" -o "$png" --show everything
+wrong "|form-factor-sums|residual" render "$room" -o "$png" --show everything
 wrong "--show is \"light:\"" render "$room" -o "$png" --show light:
 wrong "--show is \"light:K\"" render "$room" -o "$png" --show light:K
 wrong "--show is \"light:-1\"" render "$room" -o "$png" --show light:-1
@@ -95,6 +95,8 @@ for option in particles seed reflectivity size bias min-distance w1 budget sampl
     wrong "--$option is \" 10\", must be" render "$room" -o "$png" --$option=" 10"
 done
 wrong "--exposure is \" 1\", must be a number in [-64, 64]" render "$room" -o "$png" --exposure=" 1"
+wrong "--checkpoint-every is \"	1\", must be a number" render "$room" -o "$png" --checkpoint-every="	1"
+wrong "--size is \"10x 9\", must be" render "$room" -o "$png" --size "10x 9"
 wrong "--runs is \" 1\", must be a whole number" bench --runs=" 1"
 wrong "unknown option --height" render "$room" -o "$png" --height 10 # a part of --size
 wrong "no option and no subject \"frob\"" help options frob
