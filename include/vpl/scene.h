@@ -130,8 +130,8 @@ bool vplIsObjPath(const char* path);
 
 // Reads a scene file; examples/scenes/README.md describes the format. A path that ends in .obj is read as one
 // mesh, and what the def adds to it is logged; for other files the def has no effect. VPL_FILE_ERROR,
-// VPL_OUT_OF_MEMORY, VPL_INVALID_ARGUMENT (the def), or VPL_PARSE_ERROR, whose message is
-// "file:line:column:", what was found and what was expected.
+// VPL_OUT_OF_MEMORY, VPL_INVALID_ARGUMENT (the def), VPL_LIMIT (more than 256 MiB from a device or a
+// pipe), or VPL_PARSE_ERROR, whose message is "file:line:column:", what was found and what was expected.
 vplResult vplScene_LoadFor(vplContext* context, const char* path, const vplObjSceneDef* def,
                            vplScene** sceneOut);
 

@@ -9,9 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// Reads to the end of the file: pipes and /dev/stdin have no size.
+// Reads to the end of the file: pipes and /dev/stdin have no size, and some devices no end.
 static vplResult readAll(vplContext* context, const char* path, int fd, vplByteBuffer* buffer)
 {
+    const size_t most = buffer->capacity > VPL_MAX_STREAM_BYTES ? buffer->capacity : VPL_MAX_STREAM_BYTES;
     char chunk[1 << 16];
     for (;;) {
         ssize_t got = read(fd, chunk, sizeof chunk);
@@ -20,6 +21,11 @@ static vplResult readAll(vplContext* context, const char* path, int fd, vplByteB
         }
         if (got < 0) {
             return vplFail(context, VPL_FILE_ERROR, "%s: cannot read: %s", path, strerror(errno));
+        }
+        if ((size_t)got > most - buffer->size) {
+            return vplFail(context, VPL_LIMIT,
+                           "%s: cannot read: it has no end within %d MiB, the most for a device or a pipe",
+                           path, VPL_MAX_STREAM_BYTES >> 20);
         }
         vplByteBuffer_Append(buffer, chunk, (size_t)got);
         if (buffer->failed) {
@@ -151,8 +157,12 @@ vplResult vplWriteFile(vplContext* context, const char* path, const void* bytes,
 {
     struct stat info;
     bool exists = stat(path, &info) == 0;
+    const int cause = errno;
     if (exists && S_ISDIR(info.st_mode)) {
         return vplFail(context, VPL_FILE_ERROR, "%s: cannot write: it is a directory", path);
+    }
+    if (!exists && lstat(path, &info) == 0) { // renaming would replace the link
+        return vplFail(context, VPL_FILE_ERROR, "%s: cannot write: symbolic link: %s", path, strerror(cause));
     }
     if (exists && !S_ISREG(info.st_mode)) {
         return writeDirectly(context, path, bytes, size);

@@ -26,8 +26,13 @@ bool checkOutput(const char* path)
 {
     struct stat info;
     bool exists = stat(path, &info) == 0;
+    const int cause = errno;
     if (exists && S_ISDIR(info.st_mode)) {
         complain("%s: cannot write: it is a directory", path);
+        return false;
+    }
+    if (!exists && lstat(path, &info) == 0) {
+        complain("%s: cannot write: symbolic link: %s", path, strerror(cause));
         return false;
     }
     if (exists && !S_ISREG(info.st_mode)) {

@@ -7,6 +7,7 @@ echo old >"$out/old.pfm"
 mkdir "$out/folder.png"
 ln -s /dev/full "$out/full.png"
 ln -s /dev/full "$out/full.json"
+ln -s "$scratch/nothing.png" "$out/dangling.png"
 
 refuses OutputFolderIsMissing 1 "cannot write: directory $out/none: No such file" \
     "$vpl" render "$room" -o "$out/none/a.png" $small
@@ -14,6 +15,9 @@ refuses OutputFolderIsAFile 1 "cannot write: directory $out/old.png: Not a direc
     "$vpl" render "$room" -o "$out/old.png/a.png" $small
 refuses OutputIsAFolder 1 "folder.png: cannot write: it is a directory" \
     "$vpl" render "$room" -o "$out/folder.png" $small
+refuses OutputIsADanglingLink 1 "dangling.png: cannot write: symbolic link: No such file" \
+    "$vpl" render "$room" -o "$out/dangling.png" $small
+refuses LongNameKeepsItsReason 2 "cannot open: File name too long" "$vpl" info "$(printf '%05000d' 0)"
 refuses StatsFolderIsMissing 1 "cannot write: directory $out/none: No such file" \
     "$vpl" render "$room" -o "$out/a.png" --stats "$out/none/s.json" $small
 refuses HeatmapFolderIsMissing 1 "cannot write: directory $out/none: No such file" \
@@ -38,6 +42,21 @@ if [ -c /dev/full ]; then
     "$vpl" render "$room" -o "$scratch/a.png" --stats "$out/full.json" $small 2>"$scratch/stderr"
     equals DiskIsFullForStats "1 vpl: $out/full.json: cannot write: No space left on device" \
         "$? $(cat "$scratch/stderr")"
+fi
+
+# A scene may come from a pipe, which may have no end, or nothing to say.
+if [ -c /dev/zero ]; then
+    refuses SceneHasNoEnd 2 "cannot read: it has no end within 256 MiB" "$vpl" info /dev/zero
+fi
+if command -v timeout >/dev/null 2>&1; then
+    mkfifo "$scratch/silent"
+    exec 9<>"$scratch/silent" # open for writing, so that readers wait
+    for command in info "render -o $out/a.png" "tradeoff -o $out/a" "bake -o $out/a.ply"; do
+        # shellcheck disable=SC2086 # the words of a command
+        timeout -s TERM -k 5 0.3 "$vpl" $command "$scratch/silent" 2>"$scratch/stderr"
+        equals "ASilentPipeIsInterrupted: $command" "124 " "$? $(cat "$scratch/stderr")"
+    done
+    exec 9>&-
 fi
 
 # A file beyond the size limit fails in the middle of writing, as a disk that fills up does.
@@ -74,7 +93,7 @@ check TheTargetIsAPicture "$vpl" compare "$scratch/link-target.png" "$out/link.p
 rm "$out/link.png"
 touch "$out/t.json.tmp"
 succeeds OutputReplacesAnOldFile "$vpl" render "$room" -o "$out/old.png" --stats "$out/t.json" $small
-equals NoTemporaryFilesStay "folder.png full.json full.png old.pfm old.png s.json t.json t.json.tmp " \
+equals NoTemporaryFilesStay "dangling.png folder.png full.json full.png old.pfm old.png s.json t.json t.json.tmp " \
     "$(ls -A "$out" | tr '\n' ' ')"
 rm -rf "$out"
 mkdir "$out"

@@ -140,6 +140,7 @@ static int run(Tradeoff* t)
     if (code != EXIT_DONE || !listSettings(t)) {
         return code != EXIT_DONE ? code : EXIT_USAGE;
     }
+    catchInterrupts(); // before, an interrupt ends the program: reading a scene may wait for ever
     bool made = false;
     if (t->arguments->reference != NULL) { // before the folder is made: a bad reference leaves none behind
         code = makeReference(t);
@@ -188,7 +189,6 @@ int runTradeoff(const Arguments* a)
         complain("out of memory");
         return EXIT_COULD_NOT;
     }
-    catchInterrupts();
     t->arguments = a;
     // One thread unless told otherwise: waiting threads use processor time, too, the more the busier the
     // machine is.
