@@ -117,6 +117,16 @@ static vplResult compensate(Attempt* a)
     return loadAndRender(a, "examples/scenes/room-area.json", &options);
 }
 
+// Variants: the document's pipeline with shadow maps, and interleaved; particles stop at bounding boxes.
+static vplResult renderDocumented(Attempt* a)
+{
+    vplRenderOptions options = optionsOf(VPL_METHOD_KELLER, 8, 5);
+    options.lighting = VPL_LIGHTING_DOCUMENTED;
+    options.particles.geometry = VPL_PARTICLE_GEOMETRY_OBB;
+    options.pipeline.kind = a->variant ? VPL_ACCUMULATE_INTERLEAVED : VPL_ACCUMULATE_MULTIPASS;
+    return loadAndRender(a, a->variant ? "tests/data/room.json" : "tests/data/room-closed.json", &options);
+}
+
 // Variants: virtual lights without shadows, with maps and with rays, each with a different pipeline.
 static vplResult renderBall(Attempt* a)
 {
@@ -432,6 +442,7 @@ EVERY_FAILED_ALLOCATION(ARenderToExr, renderAndWrite, vplImage_CanWrite("a.exr")
 EVERY_FAILED_ALLOCATION(Layers, renderLayers, vplImage_CanWrite("a.exr") ? "exr" : "pfm", 3)
 EVERY_FAILED_ALLOCATION(ThePathTracer, tracePaths, "pfm", 2)
 EVERY_FAILED_ALLOCATION(Compensation, compensate, "png", 2)
+EVERY_FAILED_ALLOCATION(DocumentedKeller, renderDocumented, "png", 2)
 EVERY_FAILED_ALLOCATION(MeshesAreaLightsAndLightShadows, renderBall, "png", 3)
 EVERY_FAILED_ALLOCATION(Lightcuts, renderCuts, "png", 2)
 EVERY_FAILED_ALLOCATION(AShownStage, showStage, "pfm", VPL_SHOW_OVERLAY - VPL_SHOW_DEPTH + 1)
