@@ -2,6 +2,8 @@
 // Tests of particle counts and the particle simulation. Covers extremes X029 to X048.
 #include "scenes.h"
 
+#include "lights/particles.h"
+#include "math/sampling.h"
 #include "math/vec.h"
 
 #include <stdlib.h>
@@ -359,6 +361,24 @@ TEST(EmittersShareParticlesByPower, 1)
         vplLightSet_Destroy(set);
     }
     vplGeometry_Destroy(cube);
+}
+
+// X047: a direction that grazes a surface is mirrored to the side that it comes from, whatever is rounded.
+TEST_ALONE(GrazingDirectionsAreMirroredToTheirOwnSide)
+{
+    for (uint64_t i = 0; i < 200000; i++) {
+        const vplVec3 n = vplSampleSphere((float)uniformAt(1, i), (float)uniformAt(2, i));
+        const vplVec3 any = vplSampleSphere((float)uniformAt(3, i), (float)uniformAt(4, i));
+        const double heights[4] = {0, 1e-8, 1e-7, 1}, height = heights[i % 4] * (2 * uniformAt(5, i) - 1);
+        const vplVec3 d = vplNormalize(vplAdd(vplNormalize(vplCross(any, n)), vplScale((float)height, n)));
+        const vplVec3 r = vplMirror(d, n);
+        const float side = vplDot(d, n) > 0 ? -1.0f : 1.0f;
+        const vplVec3 wanted = vplSub(d, vplScale(2 * vplDot(d, n), n));
+        const double out = (double)r.x * (double)n.x + (double)r.y * (double)n.y + (double)r.z * (double)n.z;
+        assert_true(side * vplDot(r, n) > 0 && (double)side * out > 0);
+        assertNear((double)vplLength(r), 1, 2e-7, "length", (int)i);
+        assertNear((double)vplLength(vplSub(r, wanted)), 0, 6e-7, "mirrored", (int)i);
+    }
 }
 
 // X048: after a thousand specular or diffuse bounces in a closed cube, particles still land on its walls.

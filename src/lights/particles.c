@@ -34,13 +34,14 @@ typedef struct Simulation {
     bool* escapedOf;
 } Simulation;
 
-static vplVec3 reflect(vplVec3 d, vplVec3 n)
+vplVec3 vplMirror(vplVec3 d, vplVec3 n)
 {
-    float along = vplDot(d, n);
+    const float along = vplDot(d, n);
     vplVec3 r = vplNormalize(vplSub(d, vplScale(2 * along, n)));
-    // A grazing ray may point into the surface after rounding: it slides along it.
-    float side = along > 0 ? -1.0f : 1.0f, out = side * vplDot(r, n);
-    return out >= 0 ? r : vplNormalize(vplSub(r, vplScale(side * out, n)));
+    // A grazing ray may point into the surface after rounding, by up to 1e-7: it slides along it, and what it
+    // is lifted by is more than the rounding of this.
+    const float lift = 0x1p-22f, side = along > 0 ? -1.0f : 1.0f, out = side * vplDot(r, n);
+    return out >= lift ? r : vplNormalize(vplAdd(r, vplScale(side * (lift - out), n)));
 }
 
 // Finds the particle's next surface. `hit` is the one it leaves, of object -1 in free space.
@@ -133,7 +134,8 @@ static void followParticle(Simulation* s, int particle)
                                       .object = hit->object});
         float u, v;
         vplSampleSource_Direction(&s->starts.samples, particle, step + !s->keller, &u, &v);
-        vplVec3 onward = mirror ? reflect(p.ray.direction, hit->normal) : vplSampleCosineAround(facing, u, v);
+        vplVec3 onward =
+            mirror ? vplMirror(p.ray.direction, hit->normal) : vplSampleCosineAround(facing, u, v);
         p.ray = vplGeometry_Leave(s->geometry, hit, onward);
     }
     for (; step < s->stepCount && particle < s->reach[step]; step++) {

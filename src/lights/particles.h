@@ -37,6 +37,9 @@ float vplSampleSource_Emitter(const vplSampleSource* source, int particle);
 // first few particles are spread evenly.
 void vplSampleSource_Place(const vplSampleSource* source, int particle, float* u, float* v);
 
+// Mirrors the unit vector d at a surface of unit normal n, to the side that it comes from.
+vplVec3 vplMirror(vplVec3 d, vplVec3 n);
+
 // ---- starts
 
 typedef struct vplStarts {
