@@ -49,18 +49,31 @@ static vplVec3 toWorld(const vplParaboloidMap* map, vplVec3 d)
 
 // ---- the projection
 
+// X102: directions straight back and of length 0 are refused, and those of the rim have length 1.
 TEST_ALONE(ProjectionFollowsTheTable)
 {
     Table t = loadTable("paraboloid.csv");
+    int refused = 0, onRim = 0;
     for (int row = 0; row < t.rows; row++) {
         const vplVec3 d = vectorOf(&t, row, "d");
         double x = 7, y = 7;
         const bool projects = vplParaboloid_Project(d, &x, &y);
         if (isEmpty(&t, row, "px")) {
             assert_false(projects);
+            assert_true(x == 7 && y == 7);
+            refused++;
             continue;
         }
         assert_true(projects);
+        const double square = x * x + y * y, squared = number(&t, row, "r2");
+        assertNear(square, squared, 1e-15 * (1 + squared), "r2", row);
+        assertNear(4 / ((1 + square) * (1 + square)), number(&t, row, "dw_dA"), 2e-15, "dw_dA", row);
+        assertNear((x + 1) / 2, number(&t, row, "u"), 1e-15 * (1 + fabs(x)), "u", row);
+        assertNear((y + 1) / 2, number(&t, row, "v"), 1e-15 * (1 + fabs(y)), "v", row);
+        if (d.z == 0) {
+            assert_true(square == 1 && vplParaboloid_Weight(x, y) == 0);
+            onRim++;
+        }
         assertNear(x, number(&t, row, "px"), 1e-15 * (1 + fabs(x)), "x", row);
         assertNear(y, number(&t, row, "py"), 1e-15 * (1 + fabs(y)), "y", row);
         if (!isEmpty(&t, row, "cosine_weight_W")) {
@@ -69,6 +82,7 @@ TEST_ALONE(ProjectionFollowsTheTable)
             assert_true(vplParaboloid_Weight(x, y) == 0);
         }
     }
+    assert_true(t.rows > 30 && refused == 2 && onRim == 2);
     freeTable(&t);
     double x, y;
     assert_false(vplParaboloid_Project(vplVec(INFINITY, 0, 1), &x, &y));
@@ -330,8 +344,8 @@ TEST(SharedEdgesLeaveNoHoles, 2)
     }
 }
 
-// A thin band along an edge must cover the projection of its midpoint, but not the midpoint of the chord
-// between its projected ends, which is up to 169 texels (of 512) away.
+// X103: a thin band along an edge must cover the projection of its midpoint, but not the midpoint of the
+// chord between its projected ends, which is up to 169 texels (of 512) away.
 TEST(EdgesBendAsTheyShould, 1)
 {
     Table t = loadTable("paraboloid_edge_error.csv");
@@ -339,6 +353,18 @@ TEST(EdgesBendAsTheyShould, 1)
     for (int row = 0; row < t.rows; row++) {
         enum { MAP = 512 };
         const vplVec3 a = vectorOf(&t, row, "a"), b = vectorOf(&t, row, "b");
+        const vplVec3 points[3] = {a, b, vplScale(0.5f, vplAdd(a, b))};
+        static const char* const columns[3][2] = {{"pa_x", "pa_y"}, {"pb_x", "pb_y"}, {"pmid_x", "pmid_y"}};
+        double p[3][2];
+        for (int i = 0; i < 3; i++) {
+            assert_true(vplParaboloid_Project(points[i], &p[i][0], &p[i][1]));
+            assertNear(p[i][0], number(&t, row, columns[i][0]), 1e-15, columns[i][0], row);
+            assertNear(p[i][1], number(&t, row, columns[i][1]), 1e-15, columns[i][1], row);
+        }
+        const double ux = p[1][0] - p[0][0], uy = p[1][1] - p[0][1], mx = p[2][0] - p[0][0],
+                     my = p[2][1] - p[0][1], off = fabs(ux * my - uy * mx) / hypot(ux, uy);
+        assertNear(off, number(&t, row, "offset_from_chord"), 1e-14, "offset", row);
+        assertNear(off * MAP / 2, number(&t, row, "offset_in_texels_of_512"), 1e-11, "texels", row);
         const vplVec3 across = vplScale(0.01f, vplNormalize(vplCross(a, b)));
         vplScene* scene = sceneOf(context, 0.5f);
         Shape band = {0};

@@ -6,7 +6,8 @@
 
 #include <stdlib.h>
 
-TEST(EqualTouchesExactlyWhatLessLeft, 2)
+// X082: a pass with EQUAL finds the bits that LESS left, on every instruction set.
+static void checkEqual(vplContext* context)
 {
     for (uint64_t seed = 0; seed < 100; seed++) {
         ClipVertex* v = makeSoup(seed, 120);
@@ -42,6 +43,51 @@ TEST(EqualTouchesExactlyWhatLessLeft, 2)
         freeCanvas(&c);
         free(v);
     }
+}
+
+TEST_ALONE(EqualTouchesExactlyWhatLessLeft)
+{
+    for (vplIsa isa = VPL_ISA_SCALAR; isa < VPL_ISA_COUNT; isa++) {
+        vplContext* context = openIsaContext(2, isa);
+        if (context != NULL) {
+            checkEqual(context);
+            closeTestContext(context);
+        }
+    }
+}
+
+// X083: of surfaces at equal depths, EQUAL alone lets all pass; the owner test only the first that was drawn.
+TEST(OfCoplanarSurfacesOneIsTheOwner, 1)
+{
+    static const uint32_t indices[9] = {0, 1, 2, 1, 2, 0, 0, 1, 2}; // thrice the same triangle
+    ClipVertex* v = makeSoup(7, 1);
+    for (int i = 0; i < 3; i++) { // covers the picture
+        const float x = i == 1 ? 3 : -1, y = i == 2 ? 3 : -1;
+        v[i] = (ClipVertex){.x = x, .y = y, .z = 0.4f + 0.1f * x + 0.05f * y, .w = 1};
+    }
+    for (int owned = 0; owned < 2; owned++) {
+        Canvas c = makeCanvas(90, 70, 0);
+        vplPipeline less = showPipeline(v), equal = showPipeline(v);
+        less.planeMask = 2;
+        equal.depthCompare = VPL_DEPTH_EQUAL;
+        equal.depthWrite = false;
+        equal.blend = VPL_BLEND_ADD;
+        equal.planeMask = 1;
+        equal.ownerTest = owned;
+        vplRaster* raster;
+        assert_int_equal(vplRaster_Create(context, &c.framebuffer, &raster), VPL_SUCCESS);
+        vplMesh mesh = {indices, 9, 3};
+        assert_int_equal(vplRaster_Draw(raster, &mesh, &less), VPL_SUCCESS);
+        assert_int_equal(vplRaster_Draw(raster, &mesh, &equal), VPL_SUCCESS);
+        assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);
+        for (int i = 0; i < 90 * 70; i++) {
+            assertNear((double)c.planes[0][i], owned ? 1 : 3, 0, "surfaces", i);
+            assertNear((double)c.planes[1][i], (double)c.planes[1][0], 0, "owner", i);
+        }
+        vplRaster_Destroy(raster);
+        freeCanvas(&c);
+    }
+    free(v);
 }
 
 // A grid of jittered vertices fills a rectangle: every pixel centre inside is covered by exactly one
