@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Results, messages, memory and threads: what every other header needs.
+// Results, messages, memory and threads: what every other header needs. In all headers a pointer must not be
+// NULL unless its function or field says that it may be: functions do not check that.
 #ifndef VPL_BASE_H
 #define VPL_BASE_H
 

@@ -243,7 +243,7 @@ typedef struct vplTransport {
 // diverges; radiosity[] then keeps its start value. It diverges where changes grow from sweep to sweep and
 // the spectral radius is above 1.0001, or where a radiosity leaves the range of float. VPL_INVALID_ARGUMENT
 // where a value is not finite or the transport does not fit the sides. Ending by `iterations` before
-// `residual` is a success with a warning. Shooting relies on A_i F_ij = A_j F_ji.
+// `residual` is a success with a warning. Shooting relies on A_i F_ij = A_j F_ji. statsOut may be NULL.
 vplResult vplSolveRadiosity(const vplTransport* transport, const vplSolveDef* def, const vplRgb* source,
                             vplRgb* radiosity, vplSolveStats* statsOut);
 

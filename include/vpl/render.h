@@ -133,7 +133,7 @@ vplResult vplRenderer_GetErrorMap(vplRenderer* renderer, vplImage** mapOut);
 // The plan of the picture so far, which the renderer owns. Budgets and errors may replace it in the next step.
 const vplPlan* vplRenderer_GetPlan(const vplRenderer* renderer);
 
-// Gets the picture so far and its layers, likewise; destroy them with vplLayers_Destroy.
+// Gets the picture so far and its layers, likewise; destroy them with vplLayers_Destroy. statsOut may be NULL.
 vplResult vplRenderer_GetLayers(vplRenderer* renderer, vplLayers** layersOut, vplRenderStats* statsOut);
 
 // Saves the state between two steps to a file, whole or not at all, for renders of several passes and path

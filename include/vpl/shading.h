@@ -168,7 +168,7 @@ typedef struct vplShadeStats {
     int largestCut;           // lightcuts: most virtual lights evaluated for one pixel
 } vplShadeStats;
 
-// Draws the geometry into `image`, which has the view's size.
+// Draws the geometry into `image`, which has the view's size. statsOut may be NULL.
 vplResult vplShadeView(const vplGeometry* geometry, const vplView* view, const vplShadeDef* def,
                        vplImage* image, vplShadeStats* statsOut);
 
