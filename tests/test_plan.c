@@ -346,3 +346,50 @@ TEST_ALONE(PeakBytesAreTrueWithin15Percent)
     }
     assert_int_equal(wrong, 0);
 }
+
+// Large numbers of particles, lights, links and clusters, which small scenes hold little besides.
+TEST_ALONE(PeakBytesAreTrueWithinAQuarterForLargeCounts)
+{
+    static const char* const cases[][15] = {
+        {"room-area", "method", "keller", "particles", "20000", "light-shadows", "none"},
+        {"closed-room", "method", "keller", "particles", "20000", "pipeline", "deferred", "light-shadows",
+         "none"},
+        {"room-area", "method", "keller", "particles", "20000", "pipeline", "interleaved"},
+        {"room-area", "method", "keller", "particles", "2000", "light-shadows", "map", "light-map", "4"},
+        {"room-area", "method", "keller", "particles", "10000", "pipeline", "lightcuts"},
+        {"room", "method", "instant-radiosity", "particles", "50000", "light-shadows", "none"},
+        {"room", "method", "radiosity", "hierarchy", "on", "patches", "20"},
+        {"flat", "method", "radiosity", "hierarchy", "on", "patches", "1000"},
+        {"closed-room", "method", "radiosity", "hierarchy", "on", "patches", "1000"},
+        {"room-area", "method", "radiosity", "hierarchy", "on", "patches", "300", "link-error", "1e-5"},
+        {"loft", "method", "radiosity", "hierarchy", "on", "patches", "2000", "link-error", "0.01"},
+        {"closed-room", "method", "ssvp", "first-bounce", "50000", "rsm-size", "32"},
+        {"room", "method", "ssvp", "first-bounce", "40000", "light-shadows", "none", "rsm-size", "32"},
+        {"room", "method", "ssvp", "second-bounce", "20000", "paraboloid", "16", "clusters", "100",
+         "rsm-size", "32"},
+        {"room-area", "method", "path", "size", "120x80", "spp", "1"},
+        {"room-area", "method", "direct", "size", "120x80", "supersample", "3"}};
+    int wrong = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "examples/scenes/%s.json", cases[i][0]);
+        vplContext* context = openTestContext(1);
+        vplScene* scene = openScene(context, path);
+        vplRenderOptions options = plainOptions();
+        assert_int_equal(vplRenderOptions_SetAll(&options, " --size 16x16 --shadow-map 16"), VPL_SUCCESS);
+        for (int k = 1; cases[i][k] != NULL; k += 2) {
+            assert_int_equal(vplRenderOptions_Set(&options, cases[i][k], cases[i][k + 1]), VPL_SUCCESS);
+        }
+        vplPlan* plan = planOf(scene, &options);
+        vplRenderStats stats;
+        vplImage_Destroy(renderScene(scene, &options, &stats));
+        const double ratio = (double)plan->peakBytes / (double)stats.peakBytes;
+        printf("# %s %s, case %d: %.2f MiB planned, %.2f held (%.2f)\n", cases[i][0], cases[i][2], (int)i,
+               (double)plan->peakBytes / 1048576, (double)stats.peakBytes / 1048576, ratio);
+        wrong += !(ratio > 0.8 && ratio < 1.25);
+        vplPlan_Destroy(plan);
+        vplScene_Destroy(scene);
+        closeTestContext(context);
+    }
+    assert_int_equal(wrong, 0);
+}

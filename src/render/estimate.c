@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Counts and bytes of a plan. A stage that ran while decisions were made is known exactly; for the others
 // sizes follow from what they allocate. tests/test_plan.c compares the sum with what rendering holds.
+#include "radiosity/links/links.h"
 #include "render/plan.h"
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
@@ -10,14 +11,15 @@
 
 #include <math.h>
 
-typedef struct Scale {
-    const vplPlan* plan;
-    double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
-} Scale;
-
 typedef struct Bytes {
     double held, scratch;
 } Bytes;
+
+typedef struct Scale {
+    const vplPlan* plan;
+    double workers, triangles, objects, pixels, lights, drawn, sides; // drawn: lights that shading adds up
+    Bytes links;                                                      // 0 where they are not known
+} Scale;
 
 // Bytes per triangle that the rasterizer holds while it draws a view, and the six faces of a cube map.
 static const double RASTER_VIEW = 34, RASTER_CUBE = 150;
@@ -51,7 +53,9 @@ static Bytes paraboloids(const Scale* s, double lights, double values)
 
 static Bytes formFactors(const Scale* s, double sides)
 {
-    return s->plan->linked ? (Bytes){800 * sides, 700 * sides} : (Bytes){4 * sides * sides, 515 * sides};
+    return !s->plan->linked    ? (Bytes){4 * sides * sides, 515 * sides}
+           : s->links.held > 0 ? s->links
+                               : (Bytes){800 * sides, 700 * sides};
 }
 
 static Bytes patchLight(const Scale* s, double sides)
@@ -107,17 +111,40 @@ static bool drawsDirect(const vplPlan* p)
            (!p->progressive || (keller && p->hasAreaLights));
 }
 
+// Bytes that shading holds for each light: its copy and class where lights are interleaved, and what lights
+// are culled by.
+static double bytesPerLight(const vplRenderOptions* o)
+{
+    const vplLightShadows shadows = o->lights.shadows;
+    const bool maps = shadows == VPL_LIGHT_SHADOWS_MAP, culled = !maps && shadows != VPL_LIGHT_SHADOWS_RAY;
+    const double columns = culled ? 6 * sizeof(float) : 0,
+                 copy = sizeof(vplShadeLight) + sizeof(int) + (maps ? sizeof(vplHemiMap) : 0) +
+                        (shadows == VPL_LIGHT_SHADOWS_CLUSTER ? sizeof(int) : 0);
+    return o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED ? copy + columns
+           : o->pipeline.kind == VPL_ACCUMULATE_DEFERRED  ? columns
+                                                          : 0;
+}
+
+// Lights and their maps; where the maps do not fit into their memory, of one batch, and the sum of batches.
+static double lightScratch(const Scale* s)
+{
+    const vplRenderOptions* o = &s->plan->options;
+    const double map = (double)(vplHemiMaps_BytesPerMap(o->lights.mapSize) + sizeof(vplHemiMapPlace));
+    const double room = floor(o->lights.mapMemory * 1048576.0 / map);
+    if (o->lights.shadows != VPL_LIGHT_SHADOWS_MAP) {
+        return s->drawn * bytesPerLight(o);
+    }
+    return (s->drawn < room ? s->drawn : room) * (bytesPerLight(o) + map) +
+           (s->drawn > room ? 12 * s->pixels : 0);
+}
+
 static Bytes picture(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
     double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
     scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
-    if (o->lights.shadows == VPL_LIGHT_SHADOWS_MAP && s->plan->showsVirtual) {
-        const double each = (double)vplHemiMaps_BytesPerMap(o->lights.mapSize), all = s->drawn * each;
-        const double most = o->lights.mapMemory * 1048576.0;
-        scratch += all > most ? most + 12 * s->pixels : all;
-    }
+    scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
 
@@ -143,17 +170,27 @@ static Bytes estimate(const Scale* s, vplStageId id)
         return (Bytes){o->lights.areaLightSamples * (double)sizeof(vplShadeLight), 0};
     case VPL_STAGE_REFLECTIVE_MAPS: // a distance and a triangle per texel
         return (Bytes){rsmFaces(p) * rsmTexels * 8, 1.5e5 + RASTER_VIEW * s->triangles};
-    case VPL_STAGE_PARTICLES:
-    case VPL_STAGE_FIRST_BOUNCE:
+    case VPL_STAGE_PARTICLES: // two counts and a flag per particle
+        return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4 + 9.0 * o->particles.count};
+    case VPL_STAGE_FIRST_BOUNCE: // and the samples of the map
+        return (Bytes){o->ssvp.firstBounce * (double)sizeof(vplVirtualLight), 56.0 * o->ssvp.firstBounce};
+    case VPL_STAGE_CLUSTERS:
+        return (Bytes){3.0 * o->ssvp.firstBounce, 45.0 * o->ssvp.firstBounce};
     case VPL_STAGE_SECOND_BOUNCE:
+        return (Bytes){o->ssvp.secondBounce * (double)sizeof(vplVirtualLight), 0};
+    case VPL_STAGE_SECOND_CLUSTERS:
+        return (Bytes){3.0 * o->ssvp.secondBounce, 45.0 * o->ssvp.secondBounce};
     case VPL_STAGE_CLUSTERED_LIGHTS:
-        return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4};
+        return (Bytes){s->lights * sizeof(vplVirtualLight), 0};
     case VPL_STAGE_PARABOLOIDS: // distances, and triangles where surfaces are asked for
         return paraboloids(s, o->ssvp.firstBounce, surfaces ? 2 : 1);
     case VPL_STAGE_SECOND_PARABOLOIDS:
         return paraboloids(s, o->ssvp.secondBounce, 1);
-    case VPL_STAGE_VIRTUAL_LIGHTS:
-        return (Bytes){s->lights * sizeof(vplShadeLight), 0};
+    case VPL_STAGE_VIRTUAL_LIGHTS: // twice where they are sorted by cluster
+        return (Bytes){s->lights * (o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER
+                                        ? 2 * sizeof(vplShadeLight) + sizeof(int)
+                                        : sizeof(vplShadeLight)),
+                       0};
     case VPL_STAGE_PATCHES:
         return adaptivePatches(s);
     case VPL_STAGE_PATCH_MESH:
@@ -230,18 +267,32 @@ enum {
              1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS
 };
 
-void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
+// Links depend on what sees what, so a sample of them is found; not for a render, of which that takes 3 %.
+static vplResult estimateLinks(const vplRunner* r, Scale* s)
+{
+    const vplPatchSides* sides = r->run.results[VPL_STAGE_SIDES];
+    if (!r->foretells || !s->plan->linked || sides == NULL) {
+        return VPL_SUCCESS;
+    }
+    vplLinkDef def = vplDefaultLinkDef();
+    def.error = s->plan->options.radiosity.linkError;
+    def.samples = s->plan->options.radiosity.formSamples;
+    def.seed = s->plan->options.seed;
+    return vplLinks_EstimateBytes(sides, &def, &s->links.held, &s->links.scratch);
+}
+
+vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
 {
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const Scale s = {.plan = p,
-                     .workers =
-                         machine != NULL ? machine->workerCount : vplContext_GetWorkerCount(r->run.context),
-                     .triangles = g->triangleCount,
-                     .objects = g->objectCount,
-                     .pixels = (double)p->options.output.width * p->options.output.height,
-                     .lights = (double)p->virtualLights,
-                     .drawn = (double)drawnLights(r, p),
-                     .sides = p->patchSides};
+    Scale s = {.plan = p,
+               .workers = machine != NULL ? machine->workerCount : vplContext_GetWorkerCount(r->run.context),
+               .triangles = g->triangleCount,
+               .objects = g->objectCount,
+               .pixels = (double)p->options.output.width * p->options.output.height,
+               .lights = (double)p->virtualLights,
+               .drawn = (double)drawnLights(r, p),
+               .sides = p->patchSides};
+    TRY(estimateLinks(r, &s));
     // The caller's own memory in the context does not count, but the scene's does.
     const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplArena_GetBytes(r->run.scene->arena);
     const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;
@@ -269,4 +320,5 @@ void vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan* p)
     p->layerBytes = (int64_t)(12 * s.pixels) * __builtin_popcount((unsigned)p->options.output.aovs);
     p->pictureBytes = (int64_t)(12 * s.pixels);
     countDraws(&s, p);
+    return VPL_SUCCESS;
 }

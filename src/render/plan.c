@@ -184,7 +184,9 @@ vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMa
         r->plans = false;
     }
     if (result == VPL_SUCCESS && r->run.results[VPL_STAGE_GEOMETRY] != NULL) {
-        vplEstimatePlan(r, machine, p);
+        result = vplEstimatePlan(r, machine, p);
+    }
+    if (result == VPL_SUCCESS && r->run.results[VPL_STAGE_GEOMETRY] != NULL) {
         vplEstimateTime(r, machine, p);
     }
     return vplArena_Deliver(arena, result, p, planOut);
@@ -196,6 +198,7 @@ vplResult vplPlan_Create(const vplScene* scene, const vplRenderOptions* options,
     vplHistory* history;
     TRY(vplHistory_Create(vplScene_GetContext(scene), &history));
     vplRunner runner = vplRunner_Begin(scene, history);
+    runner.foretells = true;
     const vplResult result = vplMakePlan(&runner, options, machine, planOut);
     vplHistory_Destroy(history);
     return result;

@@ -27,7 +27,7 @@ vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.
-void vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
+vplResult vplEstimatePlan(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);
 
 // Fills in predicted times. A machine without speeds has the usual ones.
 void vplEstimateTime(const vplRunner* runner, const vplMachine* machine, vplPlan* plan);

@@ -28,7 +28,8 @@ typedef struct vplRunner {
     vplRun run;
     vplHistory* history;
     vplRenderStats stats;
-    bool plans; // results serve decisions and are not reported yet
+    bool plans;     // results serve decisions and are not reported yet
+    bool foretells; // the plan is for a reader: its bytes may take some time
     vplProgressFcn* progress;
     void* progressUser;
     double stepFrom, stepTo;   // share of the whole that the pass under way has

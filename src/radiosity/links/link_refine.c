@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    BATCH = 1 << 14, // pairs judged in parallel: the top of the stack, which keeps it small
+    BATCH = VPL_LINK_BATCH, // judged in parallel: the top of the stack, which keeps it small
     TASK = 64
 };
 

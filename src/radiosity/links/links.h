@@ -50,6 +50,9 @@ typedef struct vplLinkList {
     int64_t rays;
 } vplLinkList;
 
+// Pairs that are judged at a time.
+enum { VPL_LINK_BATCH = 1 << 14 };
+
 // The fraction of all progress after which links are found.
 #define VPL_LINKS_PROGRESS 0.9
 
@@ -138,6 +141,13 @@ vplLinkScratch vplLinkScratch_Alloc(vplArena* arena, const vplLinks* links);
 // sums = F x.
 vplResult vplLinks_Gather(const vplLinks* links, const vplPlanes* x, const vplLinkScratch* scratch,
                           double (*sums)[3]);
+
+// ---- how many there will be (link_count.c)
+
+// Estimates the bytes that vplLinks_Create will hold, and needs besides while it works, by judging a few
+// hundred pairs of each level of the tree.
+vplResult vplLinks_EstimateBytes(const vplPatchSides* sides, const vplLinkDef* def, double* heldOut,
+                                 double* scratchOut);
 
 // ---- sums of rows (link_rows.c)
 
