@@ -206,7 +206,10 @@ static vplResult renderRadiosity(Attempt* a)
     options.radiosity.hierarchy = a->variant == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_AUTO;
     options.radiosity.placement = a->variant == 2 ? VPL_PATCHES_ADAPTIVE : VPL_PATCHES_UNIFORM;
     options.radiosity.patches = a->variant == 2 ? 20 : 16; // fewer patches are not refined
+    vplPlan* plan;
     TRY(vplScene_Load(a->context, "tests/data/corner-path.json", &a->scene));
+    TRY(vplPlan_Create(a->scene, &options, NULL, &plan)); // finds a sample of links
+    vplPlan_Destroy(plan);
     return renderFrames(a, options, 2);
 }
 
