@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tests of particle counts and the particle simulation. Covers extremes X029 to X048.
-#include "scenes.h"
+#include "shapes.h"
 
 #include "lights/particles.h"
 #include "math/sampling.h"
@@ -89,14 +89,20 @@ TEST(InvalidCountsAreRefused, 1)
         {0.9999999999999999, 2, VPL_LIMIT, 0, 0},
         {0.5, INT32_MAX, VPL_INVALID_ARGUMENT, 0, 0},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    Table t = loadTable("counts_invalid.csv");
+    assert_int_equal(t.rows, sizeof cases / sizeof *cases);
+    for (int i = 0; i < t.rows; i++) {
         const vplParticlePass pass = {0, cases[i].n, cases[i].rho};
+        const double rho = strtod(cell(&t, i, "rho"), NULL), n = number(&t, i, "N");
+        assert_true(rho == cases[i].rho || isnan(rho)); // X040's N is beyond an int: the largest int
+        assert_true(n == cases[i].n || (n > INT32_MAX && cases[i].n == INT32_MAX));
         vplStepTotals totals = {-1, -1};
         vplResult result = vplCountParticles(context, &pass, NULL, 0, &totals);
         assert_int_equal(result, cases[i].result);
         assert_int_equal(totals.stepCount, result == VPL_SUCCESS ? cases[i].steps : -1);
         assert_int_equal(totals.lightCount, result == VPL_SUCCESS ? cases[i].total : -1);
     }
+    freeTable(&t);
 }
 
 // Simulates one set of room_particles.csv with the set's own first directions and compares every row.
@@ -170,6 +176,40 @@ static vplLightSet* simulate(const vplGeometry* g, vplParticleDef def)
     vplLightSet* set = NULL;
     assert_int_equal(vplSimulateParticles(g, &emitter, 1, &def, &set), VPL_SUCCESS);
     return set;
+}
+
+// Rays and tests of objects, in a closed cube beside a seventh object. Draw calls are tested in test_render.c;
+// the other columns are totals by rules that are not ours.
+TEST(RaysOfTheTotalsAreThoseOfTheTable, 1)
+{
+    Table t = loadTable("counts_totals.csv");
+    vplScene* scene = closedCubeScene(context, 0.5f, 0);
+    addThing(scene, VPL_OBJECT_QUAD, 0, (vplVec3){50, 0, 0}, 0, 0, (vplVec3){1, 1, 1});
+    vplGeometry* cube = buildGeometry(scene);
+    int compared = 0;
+    for (int row = 0; row < t.rows; row++) {
+        const int total = (int)number(&t, row, "total_sum_k>=0"),
+                  rays = (int)number(&t, row, "ray_object_tests_B7");
+        if (total > 5000) {
+            continue; // counts alone: EveryTotalOfTheTable
+        }
+        for (int keller = 0; keller < 2; keller++) {
+            vplParticleDef def = vplDefaultParticleDef();
+            def.particleCount = (int)number(&t, row, "N");
+            def.reflectivity = number(&t, row, "rho");
+            def.start = keller ? VPL_START_EMITTER : VPL_START_FIRST_HIT;
+            vplLightSet* set = simulate(cube, def);
+            assert_int_equal(set->lightCount, total);
+            assert_int_equal(set->rays, keller ? (int)number(&t, row, "keller_rays_sum_k>=1") : total);
+            assert_int_equal(set->rayObjectTests, keller ? 7 * set->rays : rays);
+            assert_true((double)set->rayObjectTests <= number(&t, row, "bound_BN/(1-rho)_B7"));
+            vplLightSet_Destroy(set);
+        }
+        compared++;
+    }
+    assert_true(compared > 200);
+    vplGeometry_Destroy(cube);
+    freeTable(&t);
 }
 
 TEST(TenParticlesAtHalfMake18Lights, 1)
