@@ -355,14 +355,15 @@ TEST(EdgesBendAsTheyShould, 1)
         const vplVec3 a = vectorOf(&t, row, "a"), b = vectorOf(&t, row, "b");
         const vplVec3 points[3] = {a, b, vplScale(0.5f, vplAdd(a, b))};
         static const char* const columns[3][2] = {{"pa_x", "pa_y"}, {"pb_x", "pb_y"}, {"pmid_x", "pmid_y"}};
-        double p[3][2];
+        double image[3][2];
         for (int i = 0; i < 3; i++) {
-            assert_true(vplParaboloid_Project(points[i], &p[i][0], &p[i][1]));
-            assertNear(p[i][0], number(&t, row, columns[i][0]), 1e-15, columns[i][0], row);
-            assertNear(p[i][1], number(&t, row, columns[i][1]), 1e-15, columns[i][1], row);
+            assert_true(vplParaboloid_Project(points[i], &image[i][0], &image[i][1]));
+            assertNear(image[i][0], number(&t, row, columns[i][0]), 1e-15, columns[i][0], row);
+            assertNear(image[i][1], number(&t, row, columns[i][1]), 1e-15, columns[i][1], row);
         }
-        const double ux = p[1][0] - p[0][0], uy = p[1][1] - p[0][1], mx = p[2][0] - p[0][0],
-                     my = p[2][1] - p[0][1], off = fabs(ux * my - uy * mx) / hypot(ux, uy);
+        const double ux = image[1][0] - image[0][0], uy = image[1][1] - image[0][1],
+                     mx = image[2][0] - image[0][0], my = image[2][1] - image[0][1],
+                     off = fabs(ux * my - uy * mx) / hypot(ux, uy);
         assertNear(off, number(&t, row, "offset_from_chord"), 1e-14, "offset", row);
         assertNear(off * MAP / 2, number(&t, row, "offset_in_texels_of_512"), 1e-11, "texels", row);
         const vplVec3 across = vplScale(0.01f, vplNormalize(vplCross(a, b)));
