@@ -141,11 +141,11 @@ TEST(DegenerateShadowsAreDefined, 1)
 {
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, INFINITY);
-    vplShadow shadow = shadowBy(VPL_BIAS_EXACT, &flat.map, 16, 0.1f);
+    vplShadow shadow = exactShadow(&flat.map, 16, 0.1f);
     assertNear((double)vplShadow_Factor(&shadow, (vplVec3){1e6f, 0, 0}, (vplVec3){-1, 0, 0}), 0, 0, "nothing",
                0);
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 1e-3f);
-    shadow = shadowBy(VPL_BIAS_EXACT, &flat.map, 16, 5);
+    shadow = exactShadow(&flat.map, 16, 5);
     double in = (double)vplShadow_Factor(&shadow, (vplVec3){0, 0, 0}, (vplVec3){0, 1, 0});
     assertNear(in, 0, 0, "in the light", 0);
     assert_true(isinf(vplCubeMap_Distance(&flat.map, (vplVec3){0, 0, 0})));
@@ -163,7 +163,13 @@ TEST(AKernelWiderThanTheDistanceNeverLooksBack, 1)
                 FlatMap flat;
                 makeFlatMap(&flat, context, (vplVec3){1, 2, 3}, 10, 0.5f);
                 flat.texels[near] = 0.0005f;
-                vplShadow shadow = shadowBy(VPL_BIAS_PAIR, &flat.map, samples, 5);
+                vplShadowDef def = vplDefaultShadowDef();
+                vplShadow shadow;
+                def.biasRule = VPL_BIAS_PAIR;
+                def.biasStatic = def.biasDynamic = 0;
+                def.pcfSamples = samples;
+                def.pcfOffset = 5;
+                assert_int_equal(vplShadow_Create(&flat.map, &def, &shadow), VPL_SUCCESS);
                 const vplVec3 at = vplAdd(vplScale(0.01f, axis), flat.map.position);
                 shares[near] = (double)vplShadow_Factor(&shadow, at, vplNegate(axis));
                 sum += shares[near];
@@ -184,7 +190,7 @@ TEST(OffsetsLieOnTheDiscInPairs, 1)
     FlatMap flat;
     makeFlatMap(&flat, context, (vplVec3){0, 0, 0}, 10, 0.5f);
     for (int samples = 1; samples <= VPL_MAX_PCF_SAMPLES; samples++) {
-        vplShadow shadow = shadowBy(VPL_BIAS_EXACT, &flat.map, samples, 1);
+        vplShadow shadow = exactShadow(&flat.map, samples, 1);
         double mean[2] = {0, 0}, square = 0;
         for (int i = 0; i < samples; i++) {
             double x = (double)shadow.offsets[i][0], y = (double)shadow.offsets[i][1];

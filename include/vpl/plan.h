@@ -57,8 +57,8 @@ typedef struct vplLook {
 // Read only. Two plans of the same scene, options and machine are equal.
 typedef struct vplPlan {
     // Resolved: no value is "usual", "auto" or negative. Three exceptions have their meaning in later stages:
-    // maxBounces -1 is no limit, automatic bias and PCF radius of shadow maps follow from each map, and the
-    // row sums of links follow a rule of their own.
+    // maxBounces -1 is no limit, automatic bias and PCF lengths of shadow maps follow from each map, and the row
+    // sums of links follow a rule of their own.
     vplRenderOptions options;
     // Lighting formulas. For Keller they are physical even where particles lose light as printed.
     vplLighting shading;
