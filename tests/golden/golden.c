@@ -443,21 +443,34 @@ static int rewrite(vplContext* context, const char* folder)
     return fclose(file) != 0;
 }
 
+// Returns VPL_ISA_COUNT for unknown names.
+static vplIsa isaOf(const char* name)
+{
+    vplIsa isa = VPL_ISA_AUTO;
+    while (isa < VPL_ISA_COUNT && strcmp(vplIsa_GetName(isa), name) != 0) {
+        isa++;
+    }
+    return isa;
+}
+
 int main(int count, char** words)
 {
     vplContextDef def = vplDefaultContextDef();
+    const bool checks = (count == 4 || count == 6) && strcmp(words[1], "check") == 0;
     def.log = printMessage;
+    def.workerCount = count == 6 ? atoi(words[4]) : 0;
+    def.isa = count == 6 ? isaOf(words[5]) : VPL_ISA_AUTO;
     vplContext* context;
     if (vplContext_Create(&def, &context) != VPL_SUCCESS) {
         return 2;
     }
     int code = 2;
-    if (count == 4 && strcmp(words[1], "check") == 0) {
+    if (checks) {
         code = check(context, words[2], words[3]);
     } else if (count == 3 && strcmp(words[1], "write") == 0) {
         code = rewrite(context, words[2]);
     } else {
-        fprintf(stderr, "usage: vpl-golden check GOLDEN OUT | write GOLDEN\n");
+        fprintf(stderr, "usage: vpl-golden check GOLDEN OUT [THREADS ISA] | write GOLDEN\n");
     }
     vplContext_Destroy(context);
     return code;

@@ -167,10 +167,12 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
     }
     const double mean = sum / (double)values, noise = fmax(0, r->error.noise) * mean;
     const double square = fmax(r->judged.square, noise * noise), bias = square - noise * noise;
-    const double doubt = bias > 0 ? r->judged.spread / bias : 0; // a bias that may be chance counts for less
+    // A bias that may be chance counts for less. Where noise is unknown, no error is below what the truth can tell.
+    const double doubt = bias > 0 ? r->judged.spread / bias : 0;
     if (mean > 0) {
         r->judged.mean = mean; // better known than that of a few pixels of the truth
-        r->error.total = sqrt(noise * noise + bias * fmax(0, 1 - doubt * doubt)) / mean;
+        const double likely = noise * noise + bias * fmax(0, 1 - doubt * doubt);
+        r->error.total = sqrt(r->error.noise < 0 ? fmax(likely, r->judged.spread) : likely) / mean;
         r->error.bound = sqrt(square + BOUND * r->judged.spread) / mean;
     } else {
         r->error.total = r->error.bound = r->judged.mean > 0 ? INFINITY : 0;
