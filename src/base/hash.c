@@ -23,7 +23,7 @@ uint64_t vplHashWords(uint64_t state, const uint32_t* words, size_t count)
     size_t i = 0;
     for (; i + VPL_HASH_LANES <= count; i += VPL_HASH_LANES) {
         for (int j = 0; j < VPL_HASH_LANES; j++) {
-            lanes[j] = (lanes[j] ^ words[i + j]) * 0xD6E8FEB86659FD93u;
+            lanes[j] = (lanes[j] ^ words[i + (size_t)j]) * 0xD6E8FEB86659FD93u;
             lanes[j] ^= lanes[j] >> 32;
         }
     }

@@ -94,7 +94,7 @@ json_t* integersJson(const int* values, int count)
 
 int writeJson(json_t* root, int digits, const char* path)
 {
-    char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(digits));
+    char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
     json_decref(root);
     bool written = text != NULL;
     if (text == NULL) {

@@ -117,12 +117,12 @@ static double bytesPerLight(const vplRenderOptions* o)
 {
     const vplLightShadows shadows = o->lights.shadows;
     const bool maps = shadows == VPL_LIGHT_SHADOWS_MAP, culled = !maps && shadows != VPL_LIGHT_SHADOWS_RAY;
-    const double columns = culled ? 6 * sizeof(float) : 0,
+    const size_t columns = culled ? 6 * sizeof(float) : 0,
                  copy = sizeof(vplShadeLight) + sizeof(int) + (maps ? sizeof(vplHemiMap) : 0) +
                         (shadows == VPL_LIGHT_SHADOWS_CLUSTER ? sizeof(int) : 0);
-    return o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED ? copy + columns
-           : o->pipeline.kind == VPL_ACCUMULATE_DEFERRED  ? columns
-                                                          : 0;
+    return (double)(o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED ? copy + columns
+                    : o->pipeline.kind == VPL_ACCUMULATE_DEFERRED  ? columns
+                                                                   : 0);
 }
 
 // Lights and their maps; where the maps do not fit into their memory, of one batch, and the sum of batches.

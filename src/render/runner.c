@@ -23,7 +23,7 @@ vplResult vplHistory_Create(vplContext* context, vplHistory** historyOut)
     return VPL_SUCCESS;
 }
 
-static void empty(vplHistory* history, vplStageId id)
+static void empty(vplHistory* history, int id)
 {
     vplSlot* slot = &history->slots[id];
     if (slot->result != NULL && VPL_STAGES[id].destroy != NULL) {
@@ -249,8 +249,8 @@ static bool isFresh(const vplRunner* r, vplStageId id, uint64_t key)
 static void emptyFrom(vplHistory* history, vplStageId id)
 {
     uint32_t stale = 1u << id;
-    for (int i = id + 1; i < VPL_STAGE_COUNT; i++) {
-        stale |= (VPL_STAGES[i].inputs & stale) != 0 ? 1u << i : 0;
+    for (int i = (int)id + 1; i < VPL_STAGE_COUNT; i++) {
+        stale |= (VPL_STAGES[i].inputs & stale) != 0 ? 1u << i : 0u;
     }
     for (int i = VPL_STAGE_COUNT; i-- > (int)id;) {
         if ((stale & 1u << i) != 0 && !VPL_STAGES[i].continues) {
@@ -293,14 +293,14 @@ static vplResult make(vplRunner* r, vplStageId id)
     if (result != NULL && result == slot->result) { // the stage has changed its last result
         vplArena_Destroy(r->run.arena);
     } else {
-        empty(r->history, id);
+        empty(r->history, (int)id);
         slot->result = result;
         slot->arena = r->run.arena;
     }
     const bool whole = made == VPL_CANCELLED && stage->undoes && result != NULL && result == r->run.before;
     if (made != VPL_SUCCESS) { // a result that is incomplete is of no use
         if (!whole) {
-            empty(r->history, id);
+            empty(r->history, (int)id);
         }
         return made;
     }

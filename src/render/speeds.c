@@ -46,7 +46,7 @@ static vplResult addFloor(vplScene* scene)
     vplResult result = positions != NULL && indices != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     for (int i = 0; i < (SIDE + 1) * (SIDE + 1) && result == VPL_SUCCESS; i++) {
         const int x = i % (SIDE + 1), z = i / (SIDE + 1);
-        const float height = 0.02f * (float)((x * 5 + z * 7) % 8) + (x / 20 + z / 20) % 2 * 0.4f;
+        const float height = 0.02f * (float)((x * 5 + z * 7) % 8) + 0.4f * (float)((x / 20 + z / 20) % 2);
         positions[i] = (vplVec3){4.8f * (float)x / SIDE - 2.4f, 0.1f + height, 4.8f * (float)z / SIDE - 2.4f};
     }
     for (int i = 0; i < SIDE * SIDE && result == VPL_SUCCESS; i++) {

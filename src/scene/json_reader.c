@@ -202,7 +202,7 @@ vplResult vplJson_ReadDoubles(const vplJson* object, const char* key, int count,
 
 vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, void* out)
 {
-    double values[16];
+    double values[16] = {0};
     float floats[16];
     if (vplJson_Member(object, key).value == NULL) {
         return VPL_SUCCESS;
@@ -217,7 +217,7 @@ vplResult vplJson_ReadFloats(const vplJson* object, const char* key, int count, 
 
 vplResult vplJson_ReadPosition(const vplJson* object, const char* key, void* out)
 {
-    double at[3];
+    double at[3] = {0};
     if (vplJson_Member(object, key).value == NULL) {
         return VPL_SUCCESS;
     }

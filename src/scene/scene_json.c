@@ -117,7 +117,7 @@ static vplResult readEmitter(vplSceneLoader* l, const vplJson* emitter)
                               "outer_angle", "path", NULL},
         [VPL_EMITTER_DIRECTIONAL] = {"!type", "name", "!direction", "!irradiance", "path", NULL}};
     const char* name = NULL;
-    int type, index;
+    int type = 0, index;
     TRY(vplJson_ReadType(emitter, types, "\"point\", \"spot\" or \"directional\"", &type));
     vplEmitterDef def = vplDefaultEmitterDef();
     def.type = (vplEmitterType)type;
