@@ -49,7 +49,7 @@ killers() {
     suites=$(grep -l "\"$header\"" tests/test_*.c | sed 's/.*test_\(.*\)\.c/\1/' | tr '\n' ' ')
     [ -n "$suites" ] && echo "build/vpl-tests --quick $suites"
     echo "build/vpl-golden check golden build/golden"
-    echo "build/vpl-tests --quick"
+    echo "build/vpl-tests --quick -memory" # failing allocations: see ALL
     [ -n "$ALL" ] && echo "tests/cli/run.sh build/vpl" && echo "build/vpl-tests" && echo "tests/project.sh build"
 }
 

@@ -191,14 +191,14 @@ TEST_ALONE(AreaLightParticlesLeaveTheFrontByTheCosine)
     for (int i = 0; i < COUNT; i++) {
         vplParticle p = particleAt(&w, (uint64_t)i);
         assert_true(p.ray.direction.x >= 0 && p.ray.skip.count == 2);
-        assertNear((double)p.ray.origin.x, 5, 1e-6, "x", i);
+        assertNear((double)p.position.x, 5, 1e-6, "x", i);
         assertNear((double)p.normal.x, 1, 1e-6, "normal", i);
-        assert_true(fabsf(p.ray.origin.y) <= 2 && fabsf(p.ray.origin.z) <= 1.000001f);
+        assert_true(fabsf(p.position.y) <= 2 && fabsf(p.position.z) <= 1.000001f);
         cosines += (double)p.ray.direction.x / COUNT;
-        y += (double)p.ray.origin.y / COUNT;
-        z += (double)p.ray.origin.z / COUNT;
-        yy += (double)p.ray.origin.y * (double)p.ray.origin.y / COUNT;
-        zz += (double)p.ray.origin.z * (double)p.ray.origin.z / COUNT;
+        y += (double)p.position.y / COUNT;
+        z += (double)p.position.z / COUNT;
+        yy += (double)p.position.y * (double)p.position.y / COUNT;
+        zz += (double)p.position.z * (double)p.position.z / COUNT;
     }
     assertNear(cosines, 2.0 / 3, 0.003, "mean cosine", 0);
     assertNear(y, 0, 0.015, "y", 0);

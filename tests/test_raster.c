@@ -76,7 +76,7 @@ TEST(OfCoplanarSurfacesOneIsTheOwner, 1)
         equal.ownerTest = owned;
         vplRaster* raster;
         assert_int_equal(vplRaster_Create(context, &c.framebuffer, &raster), VPL_SUCCESS);
-        vplMesh mesh = {indices, 9, 3};
+        vplMesh mesh = {indices, .vertexCount = 3, .triangleCount = 3};
         assert_int_equal(vplRaster_Draw(raster, &mesh, &less), VPL_SUCCESS);
         assert_int_equal(vplRaster_Draw(raster, &mesh, &equal), VPL_SUCCESS);
         assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);

@@ -67,6 +67,7 @@ typedef struct vplGeometryObject {
     vplRgb reflectance; // mean over its area
     bool smooth;        // has shading normals
     bool byFormula;     // is among vplGeometry.formulaObjects
+    bool coplanar;      // may share a plane with another object
     vplPlacement placement;
     vplPlacement bounds; // mesh: maps the unit box onto its oriented bounding box
     int firstVertex, vertexCount;
@@ -127,8 +128,8 @@ bool vplGeometry_ClosestHit(const vplGeometry* geometry, const vplRay* ray, vplH
 bool vplGeometry_IsOccluded(const vplGeometry* geometry, const vplRay* ray, float tMax);
 
 // A ray that leaves a hit point in `direction` and does not hit the surface it leaves: the quad, the box
-// (towards its inside only the face), the triangle. From a mesh it starts a few units in the last place off
-// the surface, because neighbouring triangles are not coplanar.
+// (towards its inside only the face), the triangle. From a mesh, and from what shares a plane with another object,
+// it starts a few units in the last place off the surface.
 vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3 direction);
 
 // The normal for shading, unit: interpolated on smooth objects, else the hit's own.
@@ -204,10 +205,11 @@ vplHit vplGeometry_SampleTriangle(const vplGeometry* geometry, int triangle, flo
 
 // A particle that leaves a source. Its flux is that of all sources: divide by the number of particles.
 typedef struct vplParticle {
-    vplRay ray;     // unit direction; of a directional emitter from outside the geometry
-    vplVec3 normal; // unit: of the triangle, else the direction
-    vplRgb flux;    // W; its mean over the channels is vplEmission_Power, whatever the source
-    int source;     // index
+    vplRay ray; // unit direction; from a triangle as vplGeometry_Leave, directional from outside the geometry
+    vplVec3 position; // in m: of the emitter, or on its surface
+    vplVec3 normal;   // unit: of the triangle, else the direction
+    vplRgb flux;      // W; its mean over the channels is vplEmission_Power, whatever the source
+    int source;       // index
 } vplParticle;
 
 // Samples a particle from five numbers in [0, 1): `choice` chooses the source, u[0], u[1] the position

@@ -82,9 +82,11 @@ bool vplEmission_SampleParticle(const vplEmission* emission, double choice, cons
         vplHit start = vplGeometry_SampleTriangle(emission->geometry, source->triangle, u[0], u[1]);
         vplVec3 direction = vplSampleCosineAround(start.normal, u[2], u[3]);
         p.ray = vplGeometry_Leave(emission->geometry, &start, direction);
+        p.position = start.position;
         p.normal = start.normal;
     } else {
         startFromEmitter(emission, &emission->emitters[source->emitter], u, &p);
+        p.position = p.ray.origin;
     }
     *particleOut = p;
     return true;

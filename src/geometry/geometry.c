@@ -121,6 +121,7 @@ static vplResult build(const vplScene* scene, vplGeometry* g)
     TRY(allocate(scene, g, &builder));
     TRY(fill(g, &builder));
     summarise(g);
+    TRY(vplMarkCoplanar(g, builder.objects));
     warnOfDistance(g);
     return VPL_SUCCESS;
 }

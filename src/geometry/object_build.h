@@ -26,4 +26,7 @@ vplMeshDef vplShapeOf(const vplScene* scene, const vplObjectDef* def);
 // Fills the vertices and triangles of object `index`, whose placement, counts and first indices are set.
 void vplBuildObject(const vplGeometryBuilder* builder, int index);
 
+// Sets `coplanar` of the objects of a geometry whose triangles and bounds are known. VPL_OUT_OF_MEMORY.
+vplResult vplMarkCoplanar(const vplGeometry* geometry, vplGeometryObject* objects);
+
 #endif

@@ -219,8 +219,9 @@ vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3
             (vplSkip){object->firstTriangle, object->triangleCount}; // flat or convex: cannot be hit again
     } else if (object->type == VPL_OBJECT_BOX) {
         ray.skip = (vplSkip){object->firstTriangle + 2 * hit->face, 2};
-    } else {
-        // Rounding moves the point off the triangle, and its neighbours are not coplanar: clear them all.
+    }
+    if (object->coplanar) {
+        // Rounding moves the point off the triangle, and neighbours in a mesh are not coplanar: clear them all.
         const float distance = (outward ? 1 : -1) * vplLargestOf(hit->position) * 0x1p-20f;
         ray.origin = vplAdd(hit->position, vplScale(distance, hit->normal));
     }

@@ -111,7 +111,7 @@ static vplHit sourceOf(const vplStarts* s, const vplParticle* p)
 {
     const vplGeometry* g = s->geometry;
     const int triangle = s->emission->sources[p->source].triangle;
-    vplHit hit = {.object = -1, .face = VPL_FACE_NONE, .triangle = triangle};
+    vplHit hit = {.object = -1, .face = VPL_FACE_NONE, .triangle = triangle, .position = p->position};
     if (triangle >= 0) {
         hit.object = g->owners[triangle];
         hit.face = vplGeometry_FaceOf(g, triangle);
@@ -134,11 +134,12 @@ bool vplStarts_Get(const vplStarts* s, int particle, vplStart* out)
         float inverseProbability;
         const vplEmitterDef* emitter = chooseEmitter(s, particle, &inverseProbability);
         const vplVec3 direction = vplSampleSphere(u[2], u[3]);
-        *out = (vplStart){{emitter->position, direction, {0, 0}},
-                          direction,
-                          vplRgbScale(inverseProbability, emitter->intensity),
-                          {.object = -1, .face = VPL_FACE_NONE, .triangle = -1},
-                          (int)(emitter - s->emitters)};
+        *out =
+            (vplStart){{emitter->position, direction, {0, 0}},
+                       direction,
+                       vplRgbScale(inverseProbability, emitter->intensity),
+                       {.object = -1, .face = VPL_FACE_NONE, .triangle = -1, .position = emitter->position},
+                       (int)(emitter - s->emitters)};
     }
     if (s->def->directions != NULL) {
         out->ray.direction = s->def->directions[particle];

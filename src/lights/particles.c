@@ -112,7 +112,7 @@ static void followParticle(Simulation* s, int particle)
     int step = 0;
     if (started && s->keller) {
         leaveLight(s, particle, step++,
-                   &(vplVirtualLight){p.ray.origin, p.normal, p.light, .object = p.from.object});
+                   &(vplVirtualLight){p.from.position, p.normal, p.light, .object = p.from.object});
     }
     for (; started && step < s->stepCount && particle < s->reach[step]; step++) {
         const vplReflectiveMap* map = step == s->keller ? mapOf(s, &p) : NULL;

@@ -57,7 +57,7 @@ typedef struct vplStart {
     vplRay ray;
     vplVec3 normal; // of an area light; of other emitters, the direction
     vplRgb light;   // documented: the emitter's intensity; else flux in W; as if one particle carried all
-    vplHit from;    // the surface it leaves; its object is -1 in free space
+    vplHit from;    // the position, and the surface it leaves; its object is -1 in free space
     int emitter;    // index; -1: a triangle that emits
 } vplStart;
 

@@ -242,7 +242,7 @@ vplLandedParticle vplShootParticle(vplPathState* path, double choice, const floa
     vplParticle start;
     if (vplEmission_SampleParticle(s->emission, choice, u, &start)) {
         const vplEmissionSource* source = &s->emission->sources[start.source];
-        p.light = (vplLightPoint){source->emitter, source->triangle, start.ray.origin, start.normal};
+        p.light = (vplLightPoint){source->emitter, source->triangle, start.position, start.normal};
         path->rays++;
         p.landed = vplGeometry_ClosestHit(s->geometry, &start.ray, &p.hit);
     }

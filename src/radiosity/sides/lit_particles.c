@@ -41,12 +41,12 @@ static double chooseSource(const vplEmission* e, int64_t particle, float u)
 static bool start(const vplLitSearch* s, const vplParticle* p, int64_t* rays, vplLitHit* vertex)
 {
     const int triangle = s->emission->sources[p->source].triangle;
-    *vertex = (vplLitHit){p->ray.origin, p->normal, -1};
+    *vertex = (vplLitHit){p->position, p->normal, -1};
     if (triangle < 0) {
         return true;
     }
-    vertex->side = 2 * vplPatches_Find(s->patches, triangle, p->ray.origin);
-    return vplLitSearch_Offset(s, vertex->side, p->ray.origin, rays, &vertex->point);
+    vertex->side = 2 * vplPatches_Find(s->patches, triangle, p->position);
+    return vplLitSearch_Offset(s, vertex->side, p->position, rays, &vertex->point);
 }
 
 static bool isBlack(const vplLitSearch* s, int side)
