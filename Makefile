@@ -63,7 +63,7 @@ FUZZERS        := $(patsubst tests/fuzz/%_fuzz.c,%,$(wildcard tests/fuzz/*_fuzz.
 REPLAYS        := $(FUZZERS:%=$(BUILD)/fuzz/%_replay)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all libs programs test-programs help deps demo test check-all determinism bench bench-peers golden gallery install clean format fuzz
+.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install clean format fuzz
 
 # Headers that programs need, each with the Debian package that has it.
 NEEDS := jansson.h=libjansson-dev stb_image.h=libstb-dev
@@ -95,6 +95,11 @@ test-programs: programs $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REP
 ## make check-all   installs what is missing, the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
 check-all: deps
 	@tests/check_all.sh
+
+## make lint        static checks of src by cppcheck and clang-tidy (installs them)
+lint: deps
+	@.ci/install-deps cppcheck clang-tidy
+	@tests/lint.sh
 
 ## make determinism the golden pictures by every compiler, optimisation, number of threads and instruction set: a table
 determinism: deps

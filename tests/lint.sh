@@ -27,6 +27,8 @@ memleak:src/cli/tradeoff/text.c
 zerodivcond:src/math/sampling.c
 # An empty heap has no child.
 arrayIndexOutOfBoundsCond:src/shading/lightcuts_kernel.c
+# a < b orders equal priorities; it is no bound.
+arrayIndexThenCheck:src/geometry/patch_refine.c
 # An initializer after a cast.
 constStatement:src/shading/interleave_filter_edges.h
 END
