@@ -44,7 +44,7 @@ mkdir -p build
 rm -f build/check-all-failed
 # The longest first, so that the others are built meanwhile. Memory is watched, not values: tests that render the same
 # again and again are left to the others.
-TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow"
+TESTS="-SameBits -Everywhere -ChangeNoBit -AddUp -IsKept -PassesThatGrow -PeakBytes -OfLampsAre -ThatEmitIsDirect"
 run gcc-asan-ubsan CC=gcc MODE=debug CFLAGS="-g -O1" SANITIZE=address,undefined
 if command -v clang >/dev/null 2>&1; then
     # libomp is not built for the thread sanitizer, so threads come from the tests' own parallelFor.

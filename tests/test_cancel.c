@@ -59,7 +59,7 @@ TEST_ALONE(ACancelledPassLeavesThoseBefore, SLOW)
         renderPasses(scene, &o, passes, &whole);
         int at = 1, tried = 0;
         while (stopAt(scene, o, at, passes, &whole)) {
-            at += 1 + at / 20;
+            at += 1 + at / 6;
             tried++;
         }
         assert_true(tried >= 4);
@@ -81,7 +81,7 @@ TEST_ALONE(APassOfAHostsTasksIsTakenBack)
     assert_int_equal(vplContext_Create(&def, &context), VPL_SUCCESS);
     const vplRenderOptions o = passCase(context, 0, &scene);
     renderPasses(scene, &o, passes, &whole);
-    for (int at = 1; stopAt(scene, o, at, passes, &whole); at += 1 + at / 20) {
+    for (int at = 1; stopAt(scene, o, at, passes, &whole); at += 1 + at / 6) {
     }
     vplScene_Destroy(scene);
     vplContext_Destroy(context);

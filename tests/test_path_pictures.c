@@ -373,10 +373,10 @@ TEST(ObjectsInOnePlaneAreOneSurface, 2)
     for (int m = 0; m < 3; m++) {
         vplRenderOptions options = plainOptions();
         options.method = methods[m];
-        options.output.width = 80;
-        options.output.height = 60;
-        options.path.samples = 16;
-        options.particles.count = 200;
+        options.output.width = 40;
+        options.output.height = 30;
+        options.path.samples = 8;
+        options.particles.count = 60;
         vplImage *a = renderScene(once, &options, NULL), *b = renderScene(twice, &options, NULL);
         vplComparison c;
         assert_int_equal(vplImage_Compare(a, b, &c), VPL_SUCCESS);

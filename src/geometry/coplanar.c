@@ -98,14 +98,14 @@ vplResult vplMarkCoplanar(const vplGeometry* g, vplGeometryObject* objects)
     for (int i = 0; i < g->objectCount; i++) {
         flat += objects[i].type != VPL_OBJECT_MESH;
     }
-    if (flat < g->objectCount) { // a triangle of a mesh may lie in any plane
-        for (int i = 0; i < g->objectCount; i++) {
-            objects[i].coplanar = true;
-        }
+    for (int i = 0; i < g->objectCount; i++) {
+        objects[i].coplanar = flat < g->objectCount; // a triangle of a mesh may lie in any plane
+    }
+    if (flat < g->objectCount || flat == 0) {
         return VPL_SUCCESS;
     }
     Face* faces = vplAlloc(g->context, 6 * (size_t)flat, sizeof *faces);
-    if (faces == NULL && flat > 0) {
+    if (faces == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
     const int count = listFaces(g, faces);

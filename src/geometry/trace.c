@@ -222,7 +222,7 @@ vplRay vplGeometry_Leave(const vplGeometry* geometry, const vplHit* hit, vplVec3
     }
     if (object->coplanar) {
         // Rounding moves the point off the triangle, and neighbours in a mesh are not coplanar: clear them all.
-        const float distance = (outward ? 1 : -1) * vplLargestOf(hit->position) * 0x1p-20f;
+        const float distance = (outward ? 1.0f : -1.0f) * vplLargestOf(hit->position) * 0x1p-20f;
         ray.origin = vplAdd(hit->position, vplScale(distance, hit->normal));
     }
     return ray;

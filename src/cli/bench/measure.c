@@ -61,8 +61,8 @@ static vplResult runOnce(const Measurement* c, int way, double* wall, double* cp
 vplResult measureInTurn(const Measurement* c, Times* mediansOut, int* runsOut)
 {
     enum { LEAST_RUNS = 3 };
-    double(*wall)[MAX_RUNS] = malloc((size_t)c->ways * sizeof *wall);
-    double(*cpu)[MAX_RUNS] = malloc((size_t)c->ways * sizeof *cpu);
+    double(*wall)[MAX_RUNS] = calloc((size_t)c->ways, sizeof *wall);
+    double(*cpu)[MAX_RUNS] = calloc((size_t)c->ways, sizeof *cpu);
     vplResult result = wall != NULL && cpu != NULL ? VPL_SUCCESS : VPL_OUT_OF_MEMORY;
     double spent = 0;
     int runs = 0;

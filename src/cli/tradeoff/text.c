@@ -82,8 +82,8 @@ static void addBase64(Text* text, const uint8_t* bytes, size_t size)
                          (left > 2 ? (unsigned)bytes[i + 2] : 0);
         *out++ = digits[group >> 18];
         *out++ = digits[group >> 12 & 63];
-        *out++ = left > 1 ? digits[group >> 6 & 63] : '=';
-        *out++ = left > 2 ? digits[group & 63] : '=';
+        *out++ = (char)(left > 1 ? digits[group >> 6 & 63] : '=');
+        *out++ = (char)(left > 2 ? digits[group & 63] : '=');
     }
     *out = 0;
     text->size = (size_t)(out - text->bytes);
