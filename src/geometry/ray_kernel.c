@@ -91,7 +91,7 @@ void VPL_KERNEL(vplTraceClosest)(const vplBvh* bvh, const vplRay* ray, float tMa
         }
         do {
             more = height > 1;
-            top = stack[more ? --height : 1];
+            top = stack[more ? --height : 0];
         } while (more && distanceOf(top) > best.t);
     }
     *hitOut = best;

@@ -78,7 +78,7 @@ static void keepReason(exr_const_context_t exr, exr_result_t code, const char* m
     size_t length = 0;
     for (; message[length] != 0 && length + 1 < sizeof s->reason; length++) {
         bool printable = message[length] >= 0x20 && message[length] < 0x7F;
-        s->reason[length] = printable ? message[length] : '?';
+        s->reason[length] = (char)(printable ? message[length] : '?');
     }
     s->reason[length] = 0;
 }
@@ -333,13 +333,14 @@ static const char* findLayout(exr_const_context_t exr, const char* name, Layout*
     for (int i = 0; i < list->num_channels; i++) {
         const exr_attr_chlist_entry_t* c = &list->entries[i];
         const bool single = strcmp(c->name.str, name[0] != 0 ? name : "Y") == 0;
-        if (channelIndex(name, c->name.str) < 0) {
+        const int index = channelIndex(name, c->name.str);
+        if (index < 0) {
             continue; // alpha, depth and the like
         }
         if ((c->pixel_type == EXR_PIXEL_UINT && name[0] == 0) || c->x_sampling != 1 || c->y_sampling != 1) {
             return "its channels are integers or subsampled, must be half or float in every pixel";
         }
-        found |= single ? 8 : 1 << channelIndex(name, c->name.str);
+        found |= single ? 8 : 1 << index;
     }
     layout->grey = found == 8;
     return layout->grey || found == 7 ? NULL

@@ -44,7 +44,7 @@ static bool readHeader(Reader* r, int* width, int* height)
         rgbe = rgbe || strcmp(line, "FORMAT=32-bit_rle_rgbe") == 0;
     }
     int end = 0;
-    return rgbe && readLine(r, line) && sscanf(line, "-Y %d +X %d%n", height, width, &end) == 2 &&
+    return rgbe && readLine(r, line) && sscanf(line, "-Y %9d +X %9d%n", height, width, &end) == 2 &&
            line[end] == 0 && *width >= 1 && *width <= VPL_MAX_IMAGE_SIZE && *height >= 1 &&
            *height <= VPL_MAX_IMAGE_SIZE;
 }

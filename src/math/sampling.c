@@ -50,7 +50,7 @@ void vplSamplePolarDisc(float u, float v, float* x, float* y)
 {
     double sine, cosine;
     vplSinCosQuarters(4.0 * v, &sine, &cosine);
-    double r = sqrt(u);
+    double r = sqrt((double)u);
     *x = (float)(r * cosine);
     *y = (float)(r * sine);
 }

@@ -30,7 +30,7 @@ vplResult vplPathTracer_Create(const vplGeometry* geometry, const vplPathDef* de
     const int columns = (def->width + TILE - 1) / TILE, rows = (def->height + TILE - 1) / TILE;
     vplRadiance(*sums)[HALVES] =
         vplArena_Alloc(arena, (size_t)def->width * (size_t)def->height, sizeof *sums);
-    int64_t* tileRays = vplArena_AllocZero(arena, (size_t)(columns * rows), sizeof *tileRays);
+    int64_t* tileRays = vplArena_AllocZero(arena, (size_t)columns * (size_t)rows, sizeof *tileRays);
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
         *t = (vplPathTracer){.sums = sums,

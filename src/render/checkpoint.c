@@ -345,10 +345,9 @@ static vplResult replan(Loading* l)
         const bool valued = line[named] == '=';
         line[named] = 0;
         const vplOption* option = vplFindOption(line);
-        if (option != NULL && valued && option->users != VPL_USE_ALL && strcmp(line, "spp") != 0 &&
-            !vplIsStop(option)) {
-            vplRenderOptions_Set(&o, line, line + named + 1);
-        } else if (strcmp(line, "method") == 0 && valued) {
+        const bool planned =
+            option != NULL && option->users != VPL_USE_ALL && strcmp(line, "spp") != 0 && !vplIsStop(option);
+        if (valued && (planned || strcmp(line, "method") == 0)) {
             vplRenderOptions_Set(&o, line, line + named + 1);
         }
     }

@@ -187,9 +187,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_SECOND_PARABOLOIDS:
         return paraboloids(s, o->ssvp.secondBounce, 1);
     case VPL_STAGE_VIRTUAL_LIGHTS: // twice where they are sorted by cluster
-        return (Bytes){s->lights * (o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER
-                                        ? 2 * sizeof(vplShadeLight) + sizeof(int)
-                                        : sizeof(vplShadeLight)),
+        return (Bytes){s->lights * (double)(o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER
+                                                ? 2 * sizeof(vplShadeLight) + sizeof(int)
+                                                : sizeof(vplShadeLight)),
                        0};
     case VPL_STAGE_PATCHES:
         return adaptivePatches(s);

@@ -106,7 +106,8 @@ static vplResult setSize(const Setting* s)
 {
     int size[2], length = 0;
     const bool read = strspn(s->value, "0123456789x") == strlen(s->value) && strlen(s->value) < 16 &&
-                      sscanf(s->value, "%dx%d%n", &size[0], &size[1], &length) == 2 && s->value[length] == 0;
+                      sscanf(s->value, "%9dx%9d%n", &size[0], &size[1], &length) == 2 &&
+                      s->value[length] == 0;
     for (int i = 0; i < 2; i++) {
         if (!read || size[i] < s->option->low || size[i] > s->option->high) {
             return refuse(s, "WIDTHxHEIGHT, each in [1, %d]", VPL_MAX_IMAGE_SIZE);

@@ -88,7 +88,7 @@ static int choosePixels(vplTruth* t, const vplImage* image, int wanted, double o
 
 // ---- their paths
 
-static vplResult open(const vplRun* run, int count, vplTruth* t)
+static vplResult openTruth(const vplRun* run, int count, vplTruth* t)
 {
     const vplOutputOptions* o = &run->plan->options.output;
     t->pixelCount = o->width * o->height;
@@ -108,7 +108,7 @@ vplResult vplTruth_Open(const vplRun* run, int count, vplTruth** truthOut)
     vplResult result = vplArena_Check(arena);
     if (result == VPL_SUCCESS) {
         t->arena = arena;
-        result = open(run, count, t);
+        result = openTruth(run, count, t);
     }
     return vplArena_Deliver(arena, result, t, truthOut);
 }
