@@ -1,0 +1,36 @@
+#!/bin/sh
+# Share of the lines of src that the tests run: tests/coverage.sh [LEAST]. Prints it for each folder and lists the lines that
+# are not run in build/coverage/missed. Fails below LEAST percent (default 92). A line of a kernel counts if any instruction
+# set runs it.
+least=${1:-92}
+build=build/coverage
+make -j"$(nproc)" --no-print-directory BUILD=$build CC=gcc MODE=debug CFLAGS="-O1 --coverage -fprofile-update=atomic" \
+    test-programs >$build.log 2>&1 || exit 1
+find $build -name '*.gcda' -delete
+tests/run.sh $build >$build/tests.log 2>&1 || tail -n 1 $build/tests.log
+find $build/obj/src -name '*.gcda' | sort | while read -r data; do
+    gcov -t "$data" 2>/dev/null
+done | awk -F: -v missed=$build/missed '
+    $3 == "0" && $4 == "Source" { file = $5; next }
+    file !~ /^src\// { next }
+    { count = $1; gsub(/[ \t]/, "", count); line = file ":" $2 + 0 }
+    count == "-" { next }
+    !(line in run) { run[line] = 0 }
+    count !~ /^[#=]/ { run[line] = 1 }
+    END {
+        for (line in run) {
+            split(line, part, ":")
+            folder = part[1]
+            sub(/\/[^\/]*$/, "", folder)
+            all[folder]++
+            ran[folder] += run[line]
+            if (!run[line]) print line | "sort -t: -k1,1 -k2n >" missed
+        }
+        for (folder in all) {
+            printf "%6.1f %%  %6d  %s\n", 100 * ran[folder] / all[folder], all[folder], folder | "sort -k4"
+            total += all[folder]; good += ran[folder]
+        }
+        close("sort -k4")
+        printf "%6.1f %%  %6d  all\n", 100 * good / total, total
+    }' | tee $build/table
+awk -v least="$least" '$4 == "all" && $1 + 0 < least + 0 { exit 1 }' $build/table
