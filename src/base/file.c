@@ -1,13 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "base/file.h"
 
+#include "base/arena.h" // TRY
+
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+// Waits until there is something to read, or the end. A pipe may stay silent for ever.
+static vplResult awaitBytes(vplContext* context, int fd)
+{
+    struct pollfd wanted = {.fd = fd, .events = POLLIN};
+    int ready;
+    do {
+        TRY(vplAsk(context));
+        ready = poll(&wanted, 1, 50);
+    } while (ready == 0 || (ready < 0 && errno == EINTR));
+    return VPL_SUCCESS;
+}
 
 // Reads to the end of the file: pipes and /dev/stdin have no size, and some devices no end.
 static vplResult readAll(vplContext* context, const char* path, int fd, vplByteBuffer* buffer)
@@ -15,8 +30,9 @@ static vplResult readAll(vplContext* context, const char* path, int fd, vplByteB
     const size_t most = buffer->capacity > VPL_MAX_STREAM_BYTES ? buffer->capacity : VPL_MAX_STREAM_BYTES;
     char chunk[1 << 16];
     for (;;) {
+        TRY(awaitBytes(context, fd));
         ssize_t got = read(fd, chunk, sizeof chunk);
-        if (got < 0 && errno == EINTR) {
+        if (got < 0 && (errno == EINTR || errno == EAGAIN)) {
             continue;
         }
         if (got < 0) {
@@ -39,7 +55,7 @@ static vplResult readAll(vplContext* context, const char* path, int fd, vplByteB
 
 vplResult vplReadFile(vplContext* context, const char* path, char** bytesOut, size_t* sizeOut)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe may have no writer yet
     if (fd < 0) {
         return vplFail(context, VPL_FILE_ERROR, "%s: cannot open: %s", path, strerror(errno));
     }

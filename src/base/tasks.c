@@ -42,6 +42,11 @@ vplWatch vplSetWatch(vplContext* context, vplProgressFcn* progress, void* user, 
     return before;
 }
 
+void vplContext_SetProgress(vplContext* context, vplProgressFcn* progress, void* user)
+{
+    vplSetWatch(context, progress, user, 0);
+}
+
 vplResult vplAsk(vplContext* context)
 {
     const vplWatch* w = &context->watch;

@@ -120,6 +120,7 @@ static bool writeSpeeds(const char* path, const vplSpeeds* speeds)
     char* text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(6));
     vplContext* silent = NULL;
     const bool open = text != NULL && vplContext_Create(NULL, &silent) == VPL_SUCCESS;
+    catchInterrupts();
     const bool written = open && vplWriteFile(silent, path, text, strlen(text)) == VPL_SUCCESS;
     vplContext_Destroy(silent);
     free(text);

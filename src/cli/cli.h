@@ -138,8 +138,10 @@ Progress beginProgress(bool quiet);
 vplProgressFcn showProgress;
 void endProgress(Progress* progress);
 
-// From now on SIGINT and SIGTERM make showProgress return false; a second signal ends the program.
+// From now on SIGINT and SIGTERM make showProgress and askInterrupts return false; a second signal ends the program.
+// Called before a file is written, at the latest: an interrupt then leaves no temporary file.
 void catchInterrupts(void);
+vplProgressFcn askInterrupts;
 
 // Infinity and NaN become null, because JSON has no such numbers.
 json_t* numberJson(double value);

@@ -172,6 +172,7 @@ static int showInfo(const Arguments* a, const vplScene* scene)
     Info info = {.scene = scene};
     int code = exitCode(examine(a, &info), true);
     if (code == EXIT_DONE && a->planOut != NULL) {
+        catchInterrupts();
         code = exitCode(vplPlan_Write(info.plan, scene, a->planOut), false);
     }
     if (code == EXIT_DONE && a->json) {

@@ -34,7 +34,9 @@ vplContext* openContext(const Arguments* arguments)
     def.log = logToStderr;
     def.logUser = (void*)arguments;
     vplContext* context = NULL;
-    vplContext_Create(&def, &context);
+    if (vplContext_Create(&def, &context) == VPL_SUCCESS) {
+        vplContext_SetProgress(context, askInterrupts, NULL);
+    }
     return context;
 }
 
@@ -81,16 +83,10 @@ int printPlan(const vplPlan* plan, FILE* file)
     return EXIT_DONE;
 }
 
-static bool goOn(void* user, double fraction)
-{
-    (void)user;
-    return fraction >= 0;
-}
-
 vplResult planRender(const Arguments* a, const vplScene* scene, vplPlan** planOut)
 {
     vplRenderOptions options = a->render;
-    options.progress = goOn;
+    options.progress = askInterrupts;
     return vplPlan_Create(scene, &options, NULL, planOut);
 }
 
@@ -105,6 +101,7 @@ static int explain(const Arguments* a, const vplScene* scene)
     } else if (code == EXIT_DONE) {
         code = printPlan(plan, a->dryRun ? stdout : stderr);
         if (code == EXIT_DONE && a->dryRun && a->planOut != NULL) {
+            catchInterrupts();
             code = exitCode(vplPlan_Write(plan, scene, a->planOut), false);
         }
     }

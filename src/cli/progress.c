@@ -30,6 +30,13 @@ void catchInterrupts(void)
     sigaction(SIGTERM, &action, NULL);
 }
 
+bool askInterrupts(void* user, double fraction)
+{
+    (void)user;
+    (void)fraction;
+    return !interrupted;
+}
+
 Progress beginProgress(bool quiet)
 {
     return (Progress){1e-3 * wallMs(), 0, !quiet && isatty(STDERR_FILENO)};

@@ -411,9 +411,12 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "a renderer can load a state before its first step only");
     }
-    TRY(vplReadFile(context, path, &bytes, &l.size));
+    const vplWatch outer = vplSetWatch(context, r->runner.progress, r, 0); // a pipe may be silent
+    vplResult result = vplReadFile(context, path, &bytes, &l.size);
+    context->watch = outer;
+    TRY(result);
     l.stream.bytes = (uint8_t*)bytes;
-    vplResult result = checkFile(&l);
+    result = checkFile(&l);
     result = result == VPL_SUCCESS ? replan(&l) : result;
     result = result == VPL_SUCCESS ? checkRender(&l) : result;
     result = result == VPL_SUCCESS ? loadState(&l) : result;

@@ -105,6 +105,7 @@ vplResult vplObj_Count(vplObj* obj)
     const char* at = NULL;
     vplWord line;
     while (vplText_NextLine(&obj->text, &at, &line)) {
+        TRY(vplText_Ask(&obj->text, line, at));
         TRY(countLine(obj, line));
     }
     if (obj->pointCount > VPL_MAX_TRIANGLES || obj->triangleCount > VPL_MAX_TRIANGLES) {

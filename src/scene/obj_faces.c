@@ -139,6 +139,7 @@ static vplResult readLines(Sweep* s)
     const char* at = NULL;
     vplWord line;
     while (vplText_NextLine(&s->obj->text, &at, &line)) {
+        TRY(vplText_Ask(&s->obj->text, line, at));
         TRY(readLine(s, line));
     }
     vplText_WarnTally(&s->obj->text, &s->crossing,

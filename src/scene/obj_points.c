@@ -51,6 +51,7 @@ static vplResult readLines(vplObj* obj, vplHashIndex* index)
     vplVec3 v;
     size_t point = 0, normal = 0;
     while (vplText_NextLine(&obj->text, &at, &line)) {
+        TRY(vplText_Ask(&obj->text, line, at));
         if (line.start[0] != 'v') { // most lines of most files are faces
             continue;
         }

@@ -102,6 +102,12 @@ bool vplText_NextLine(const vplText* text, const char** at, vplWord* lineOut)
     return false;
 }
 
+vplResult vplText_Ask(const vplText* text, vplWord line, const char* at)
+{
+    const ptrdiff_t from = line.start - text->bytes, to = at - text->bytes;
+    return from >> 20 != to >> 20 ? vplAsk(text->context) : VPL_SUCCESS;
+}
+
 bool vplNextWord(vplWord* line, vplWord* wordOut)
 {
     *line = skipBlanks(*line);

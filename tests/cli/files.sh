@@ -56,7 +56,17 @@ if command -v timeout >/dev/null 2>&1; then
         timeout -s TERM -k 5 0.3 "$vpl" $command "$scratch/silent" 2>"$scratch/stderr"
         equals "ASilentPipeIsInterrupted: $command" "124 " "$? $(cat "$scratch/stderr")"
     done
+    mkfifo "$scratch/silent.pfm"
+    for command in "render -o $out/a.pfm --method path --resume $scratch/silent" \
+        "render -o $out/a.pfm --method path --resume $scratch/silent.pfm" \
+        "tradeoff -o $out/a --reference $scratch/silent.pfm"; do # the latter has no writer yet
+        # shellcheck disable=SC2086 # the words of a command
+        timeout -s TERM -k 5 0.5 "$vpl" $command "$room" 2>"$scratch/stderr"
+        equals "ASilentPipeIsInterruptedOnce: $command" "124 vpl: cancelled, nothing was written" "$? $(cat "$scratch/stderr")"
+    done
     exec 9>&-
+    (sleep 0.2 && cat "$room" >"$scratch/silent") &
+    succeeds ASceneMayComeLate "$vpl" info "$scratch/silent"
 fi
 
 # A file beyond the size limit fails in the middle of writing, as a disk that fills up does.

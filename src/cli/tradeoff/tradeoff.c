@@ -108,7 +108,11 @@ static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOu
     def.log = keepLog;
     def.logUser = t;
     def.workerCount = workers;
-    return vplContext_Create(&def, contextOut);
+    const vplResult result = vplContext_Create(&def, contextOut);
+    if (result == VPL_SUCCESS) {
+        vplContext_SetProgress(*contextOut, askInterrupts, NULL);
+    }
+    return result;
 }
 
 static int readScene(Tradeoff* t)

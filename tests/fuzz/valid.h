@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// Random renders that are valid but extreme, for the fuzzer `valid` and for soak.c.
+#ifndef VPL_TESTS_FUZZ_VALID_H
+#define VPL_TESTS_FUZZ_VALID_H
+
+#include "fuzz.h"
+
+// Makes a scene and options from bytes (any number of them), plans and renders a tiny picture of bounded work, and
+// requires what holds for every render: the plan foresees a refusal in the same words, a failure has one sentence, and a
+// picture is finite. Returns a hash of all that was seen, which depends on the bytes alone. `log` is the context's.
+uint64_t renderValid(vplContext* context, FuzzLog* log, const uint8_t* bytes, size_t size);
+
+#endif
