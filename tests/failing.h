@@ -39,6 +39,10 @@ typedef vplResult Scenario(Attempt* attempt);
 // fails, or all from the n-th on fail. `extension` is the extension of the file that the scenario writes.
 void failEveryAllocation(const char* name, Scenario* scenario, const char* extension, int variants);
 
+// The same for scenarios without a file and with many variants: allocations at growing distances, and each variant in one
+// of the two ways. All allocations in both ways if the environment has VPL_EVERY_ALLOCATION.
+void failSomeAllocations(const char* name, Scenario* scenario, int variants);
+
 // State of an allocator whose n-th allocation fails (-1: none) and, with stayEmpty, all after it. openFailing
 // returns NULL if the context's own allocation fails.
 typedef struct Failing {
