@@ -63,7 +63,7 @@ FUZZERS        := $(patsubst tests/fuzz/%_fuzz.c,%,$(wildcard tests/fuzz/*_fuzz.
 REPLAYS        := $(FUZZERS:%=$(BUILD)/fuzz/%_replay)
 EXAMPLES       := $(patsubst examples/%.c,$(BUILD)/examples/%,$(wildcard examples/*.c))
 
-.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install clean format fuzz
+.PHONY: all libs programs test-programs help deps demo test check-all lint determinism bench bench-peers golden gallery install clean format fuzz soak faults coverage
 
 # Headers that programs need, each with the Debian package that has it.
 NEEDS := jansson.h=libjansson-dev stb_image.h=libstb-dev
@@ -90,7 +90,7 @@ test: deps
 	@$(MAKE) --no-print-directory $(JOBS) test-programs
 	@tests/run.sh $(BUILD)
 
-test-programs: programs $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS)
+test-programs: programs $(BUILD)/vpl-tests $(BUILD)/vpl-golden $(EXAMPLES) $(REPLAYS) $(BUILD)/soak
 
 ## make check-all   installs what is missing, the tests under gcc and clang, release, debug, sanitizers, threads, aarch64
 check-all: deps
@@ -100,6 +100,10 @@ check-all: deps
 lint: deps
 	@.ci/install-deps cppcheck clang-tidy
 	@tests/lint.sh
+
+## make coverage    the share of the lines of src that the tests run, and which they leave out
+coverage: deps
+	@tests/coverage.sh
 
 ## make determinism the golden pictures by every compiler, optimisation, number of threads and instruction set: a table
 determinism: deps
@@ -152,6 +156,16 @@ gallery: all
 ## make fuzz        fuzzes the readers for FUZZ_SECONDS each (default 600)
 fuzz: deps
 	@tests/fuzz/run.sh $(FUZZERS)
+
+## make soak        N random renders in one process (default 20000): memory stays flat, bits are those of fresh processes
+soak: deps
+	@$(MAKE) --no-print-directory $(JOBS) $(BUILD)/soak
+	OMP_WAIT_POLICY=passive $(BUILD)/soak $(or $(N),20000)
+
+## make faults      every allocation of every method fails; 300 interrupts at random moments
+faults: test-programs
+	VPL_EVERY_ALLOCATION=1 $(BUILD)/vpl-tests FailedAllocationsOfEveryMethod
+	tests/signals.sh $(BUILD)/vpl 300
 
 ## make install     library, headers, program, man page and libvpl.pc under PREFIX (/usr/local)
 install: programs $(BUILD)/vpl.1
@@ -232,8 +246,17 @@ $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 
-$(BUILD)/fuzz/%_replay: $(BUILD)/obj/tests/fuzz/%_fuzz.o $(BUILD)/obj/tests/fuzz/replay.o $(BUILD)/libvpl.a
+# The program without its main, for the fuzzer of command lines.
+$(BUILD)/libcli.a: $(filter-out %/cli/main.o,$(CLI_OBJECTS))
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $^
+
+$(BUILD)/fuzz/%_replay: $(BUILD)/obj/tests/fuzz/%_fuzz.o $(BUILD)/obj/tests/fuzz/replay.o $(BUILD)/libcli.a $(BUILD)/libvpl.a
 	@mkdir -p $(@D)
+	@echo "  LD  $@"
+	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/soak: $(BUILD)/obj/tests/fuzz/soak.o $(BUILD)/obj/tests/fuzz/valid_fuzz.o $(BUILD)/libvpl.a
 	@echo "  LD  $@"
 	$(Q)$(CC) $(ALL_CFLAGS) -o $@ $^ $(LDLIBS)
 

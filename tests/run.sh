@@ -44,11 +44,13 @@ one() {
 count "unit tests" "$build/vpl-tests"
 count "golden pictures" "$build/vpl-golden" check golden "$build/golden"
 count "program" tests/cli/run.sh "$build/vpl"
+count "interrupts" tests/signals.sh "$build/vpl" 20
 count "project" tests/project.sh "$build"
 for replay in "$build"/fuzz/*_replay; do
     kind=$(basename "$replay" _replay)
     one "corpus of $kind" "$replay" "tests/fuzz/corpus/$kind"
 done
+one "random renders" "$build/soak" 300
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -315,6 +315,10 @@ TEST(WrongArgumentsAreRefusedWithASentence, 1)
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
     p.surface = NULL;
     p.varyingCount = 0;
+    p.writesDepth = true; // without a fragment shader
+    assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "writesDepth"));
+    p.writesDepth = false;
     assert_int_equal(vplRaster_Draw(raster, &mesh, &p), VPL_SUCCESS); // an empty mesh is valid
     assert_int_equal(vplRaster_Run(raster, NULL, NULL, NULL), VPL_SUCCESS);
     vplRaster_Destroy(raster);

@@ -82,6 +82,11 @@ static vplResult checkDraw(const vplContext* context, const vplMesh* mesh, const
             "vplPipeline.distanceScale is %g, must be 0 for draws that do more than write the least depth",
             (double)pipeline->distanceScale);
     }
+    if (pipeline->writesDepth && pipeline->fragment == NULL) {
+        return vplFail(
+            context, VPL_INVALID_ARGUMENT,
+            "vplPipeline.writesDepth is set, must not be without a fragment shader, which writes it");
+    }
     if (pipeline->passes != NULL && !(vplIsPass(pipeline) && pipeline->blend == VPL_BLEND_ADD)) {
         return vplFail(context, VPL_INVALID_ARGUMENT,
                        "vplPipeline.passes is set, but the draw is not an additive pass with depth EQUAL");

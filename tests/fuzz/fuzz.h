@@ -82,4 +82,35 @@ static inline bool isPrintable(const char* text)
     return true;
 }
 
+// The bytes that choices are made from. Behind their end all are 0, which chooses the usual.
+typedef struct Bytes {
+    const uint8_t* at;
+    size_t left;
+} Bytes;
+
+// A number below `count`.
+static inline unsigned pick(Bytes* b, unsigned count)
+{
+    if (b->left == 0) {
+        return 0;
+    }
+    b->left--;
+    return *b->at++ % count;
+}
+
+// A number in [0, 1].
+static inline double unit(Bytes* b)
+{
+    return (pick(b, 256) + 256.0 * pick(b, 256)) / 65535;
+}
+
+// Runs the last task first, and each on another worker than the one before.
+static inline void backwards(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data)
+{
+    (void)user;
+    for (int i = taskCount - 1; i >= 0; i--) {
+        task(data, i, i % workerCount);
+    }
+}
+
 #endif

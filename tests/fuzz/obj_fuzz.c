@@ -2,7 +2,9 @@
 // Passes arbitrary bytes as an OBJ file and, after the first byte 0x1F, as the MTL file that it may name
 // "100". The reader must either log one sentence with file, line and column and leave the scene unchanged, or
 // make a valid mesh, which a second reading reproduces.
+#ifndef _GNU_SOURCE
 #define _GNU_SOURCE
+#endif
 #include "fuzz.h"
 
 #include "base/hash.h"

@@ -8,7 +8,7 @@ seconds=${FUZZ_SECONDS:-600}
 flags="-g -O1 -fsanitize-ignorelist=tests/fuzz/ignore.txt"
 mkdir -p $build
 make --no-print-directory -j"$(nproc)" BUILD=$build CC=clang MODE=debug OPENMP=0 CFLAGS="$flags" \
-    SANITIZE=fuzzer-no-link,address,undefined,float-cast-overflow $build/libvpl.a >$build/make.log || exit 1
+    SANITIZE=fuzzer-no-link,address,undefined,float-cast-overflow $build/libvpl.a $build/libcli.a >$build/make.log || exit 1
 
 # Blocks beyond 256 MB are refused as if memory had run out: many a broken header asks for gigabytes.
 export ASAN_OPTIONS="allocator_may_return_null=1:max_allocation_size_mb=256:$ASAN_OPTIONS"
@@ -18,7 +18,7 @@ for name in "$@"; do
     [ -f "tests/fuzz/$name.dict" ] && dictionary=-dict=tests/fuzz/$name.dict
     mkdir -p "$build/$name"
     clang -std=gnu11 $flags -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all -Iinclude -Isrc \
-        -o "$build/fuzz-$name" "tests/fuzz/${name}_fuzz.c" $build/libvpl.a $(make -s --no-print-directory libs) || exit 1
+        -o "$build/fuzz-$name" "tests/fuzz/${name}_fuzz.c" $build/libcli.a $build/libvpl.a $(make -s --no-print-directory libs) || exit 1
     if "$build/fuzz-$name" -max_total_time="$seconds" -timeout=20 -malloc_limit_mb=0 -rss_limit_mb=4000 \
         -max_len=4096 -print_final_stats=1 -artifact_prefix="$build/$name-" $dictionary "$build/$name" \
         "tests/fuzz/corpus/$name" >"$build/$name.log" 2>&1; then

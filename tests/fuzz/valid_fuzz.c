@@ -8,27 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-// ---- choices
-
-// The bytes that choices are made from. Behind their end all are 0, which chooses the usual.
-typedef struct Bytes {
-    const uint8_t* at;
-    size_t left;
-} Bytes;
-
-static unsigned pick(Bytes* b, unsigned count)
-{
-    if (b->left == 0) {
-        return 0;
-    }
-    b->left--;
-    return *b->at++ % count;
-}
-
-static double unit(Bytes* b)
-{
-    return (pick(b, 256) + 256.0 * pick(b, 256)) / 65535;
-}
+// ---- numbers
 
 // A power of ten between 10^low and 10^high.
 static double power(Bytes* b, double low, double high)
@@ -369,15 +349,6 @@ uint64_t renderValid(vplContext* context, FuzzLog* log, const uint8_t* bytes, si
 }
 
 // ---- the target
-
-// Runs the last task first, and each on another worker than the one before.
-static void backwards(void* user, int taskCount, int workerCount, vplTaskFcn* task, void* data)
-{
-    (void)user;
-    for (int i = taskCount - 1; i >= 0; i--) {
-        task(data, i, i % workerCount);
-    }
-}
 
 int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size)
 {
