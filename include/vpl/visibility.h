@@ -39,7 +39,7 @@ bool vplCube_Find(vplVec3 direction, int size, vplCubePoint* pointOut);
 typedef struct vplCubeMapDef {
     vplVec3 position; // metres
     int size;         // texels along a face, [1, VPL_MAX_SHADOW_MAP]; default 1024
-    float near;       // metres, > 0: nearer surfaces cast no shadow; 0 (default): far * 2^-20
+    float near;       // metres, > 0: nearer surfaces cast no shadow; 0 (default): far * 2^-64
     float far; // metres, > near: unit of the stored distances; 0 (default): distance of the farthest vertex
     uint32_t cookie; // set by vplDefaultCubeMapDef
 } vplCubeMapDef;

@@ -42,7 +42,7 @@ static float aimPerspective(vplReflectiveMap* map, const vplGeometry* g)
         }
     }
     map->unit = 1;
-    return vplFarthestVertex(g, map->origin) * 0x1p-20f;
+    return vplFarthestVertex(g, map->origin) * 0x1p-64f;
 }
 
 // The box around all vertices in the light's frame. Slightly larger, so that its edges are within the view.

@@ -142,7 +142,7 @@ static void place(vplCubeMap* map, const vplGeometry* geometry, const vplCubeMap
 {
     map->position = def->position;
     map->far = def->far > 0 ? def->far : vplFarthestVertex(geometry, def->position);
-    map->near = def->near > 0 ? def->near : map->far * 0x1p-20f;
+    map->near = def->near > 0 ? def->near : map->far * 0x1p-64f;
 }
 
 vplResult vplCubeMap_Create(const vplGeometry* geometry, const vplCubeMapDef* def, vplProgressFcn* progress,
