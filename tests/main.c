@@ -27,6 +27,18 @@ static const char* suiteOf(const Test* test)
     return suite;
 }
 
+const Test* findTest(const char* suite, const char* name)
+{
+    const size_t length = strcspn(suite, "/");
+    for (const Test* test = first; test != NULL; test = test->next) {
+        const char* own = suiteOf(test);
+        if (strcmp(test->name, name) == 0 && strncmp(own, suite, length) == 0 && own[length] == 0) {
+            return test;
+        }
+    }
+    return NULL;
+}
+
 static bool takeOption(int* count, char** words, const char* option)
 {
     for (int i = 1; i < *count; i++) {

@@ -51,6 +51,10 @@ typedef struct Test {
 
 void registerTest(Test* test);
 
+// Finds a test by the name of its suite, which the first characters of `suite` up to a slash are, and its own
+// name; NULL if there is none.
+const Test* findTest(const char* suite, const char* name);
+
 // Opens a context with `workers` threads that records its last message. Never NULL.
 vplContext* openTestContext(int workers);
 
