@@ -79,7 +79,7 @@ struct Arguments {
     int runs, seeds, referenceSpp;
     double seconds; // --time
     const char *stage, *reference, *sweeps;
-    bool all, scaling, calibrate, json, explain, dryRun, noGround, noPartial, quiet, verbose, help;
+    bool all, scaling, extremes, calibrate, json, explain, dryRun, noGround, noPartial, quiet, verbose, help;
 };
 
 // Fills `arguments`, or prints one sentence to stderr and returns false.

@@ -265,10 +265,17 @@ static const Option OWN[] = {
     {"runs", "N", "5", BENCH, readInt, AT(runs), 1, 1000,
      "runs of which the median is printed, three at least of stages that take seconds", NULL},
     {"stage", "WORD", NULL, BENCH, readText, AT(stage), 0, 0,
-     "only the stages (with --scaling: the series) whose name contains this, slow ones too", NULL},
+     "only the stages (with --scaling: the series, with --extremes: the sweeps) whose name contains this, "
+     "slow ones too",
+     NULL},
     {"all", NULL, NULL, BENCH, readFlag, AT(all), 0, 0, "slow stages, too", NULL},
     {"scaling", NULL, NULL, BENCH, readFlag, AT(scaling), 0, 0,
      "instead: time against lights, pixels, triangles, threads and shadow map size, with fitted exponents",
+     NULL},
+    {"extremes", NULL, NULL, BENCH, readFlag, AT(extremes), 0, 0,
+     "instead: errors at the ends of what scenes and options may be, for every method; exit code 1 if one is "
+     "larger "
+     "than promised",
      NULL},
     {"calibrate", NULL, NULL, BENCH, readFlag, AT(calibrate), 0, 0,
      "instead: measure this machine for a second and keep its speeds in the cache folder; predicted times "

@@ -93,6 +93,9 @@ int runBench(const Arguments* a)
     if (a->scaling) {
         return runScaling(a);
     }
+    if (a->extremes) {
+        return runExtremes(a);
+    }
     const bool sized = isGiven(a, "size");
     Table table = {.width = sized ? a->render.output.width : 1920,
                    .height = sized ? a->render.output.height : 1080,

@@ -131,4 +131,8 @@ int printTableJson(const Table* table);
 
 int runScaling(const Arguments* a);
 
+// ---- extremes.c
+
+int runExtremes(const Arguments* a);
+
 #endif

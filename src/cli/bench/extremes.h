@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// vpl bench --extremes: the error of every method at the ends of what scenes and options may be.
+#ifndef VPL_CLI_BENCH_EXTREMES_H
+#define VPL_CLI_BENCH_EXTREMES_H
+
+#include "cli/cli.h"
+
+enum { METHODS = 8, MOST_VALUES = 12 };
+
+// A method with the settings of the table.
+typedef struct Method {
+    const char* name;
+    const char* words; // as on the command line
+} Method;
+
+extern const Method EXTREME_METHODS[METHODS];
+
+typedef struct Trial Trial;
+
+// What one sweep varies, how its error is found, and what is promised.
+typedef struct ExtremeSweep {
+    const char* name;
+    const char* truth; // what pictures are compared with
+    double values[MOST_VALUES];
+    int valueCount;
+    int methods;            // bits
+    double low, high;       // promised range of values
+    double bounds[METHODS]; // promised error; 0: as the first's
+    vplResult (*measure)(Trial* trial);
+} ExtremeSweep;
+
+extern const ExtremeSweep EXTREME_SWEEPS[];
+extern const int EXTREME_SWEEP_COUNT;
+
+// One cell of the table.
+struct Trial {
+    vplContext* context;
+    vplContextDef contextDef; // of the context
+    const ExtremeSweep* sweep;
+    double value;
+    int method;
+    vplImage** home; // pictures by method that scenes in other units are compared with; made when needed
+    double error;    // root mean square of the picture's error over that of the truth
+};
+
+// ---- extremes_scenes.c
+
+#define EXTREME_FILE "/tmp/vpl-extremes-" // start of the names of temporary files
+
+// A floor, a point light above it, and maybe a square between, seen from above. Metres, radians.
+typedef struct FloorScene {
+    double light[3], intensity;
+    double eyeHeight, fov, nearPlane;
+    double size;    // of the floor
+    double blocker; // side of a square at y = 1.5 under the light; 0: none
+    int width, height;
+} FloorScene;
+
+FloorScene plainFloor(void);
+vplResult buildFloor(vplContext* context, const FloorScene* floor, vplScene** sceneOut);
+
+// Reflected radiance at a point of the picture, in pixels, in double.
+double floorRadiance(const FloorScene* floor, double column, double row);
+
+// A closed room with a box and a point light.
+typedef struct RoomScene {
+    double scale;     // metres per metre
+    double offset[3]; // metres, after scaling
+    double farOverNear;
+    double intensity; // W/sr
+} RoomScene;
+
+RoomScene plainRoom(void);
+vplResult buildRoomAt(vplContext* context, const RoomScene* room, vplScene** sceneOut);
+
+// The same from a scene file.
+vplResult loadRoomAt(vplContext* context, const RoomScene* room, vplScene** sceneOut);
+
+// A cube whose walls reflect rho and emit 1.
+vplResult buildFurnace(vplContext* context, double rho, vplScene** sceneOut);
+
+#endif
