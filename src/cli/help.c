@@ -62,7 +62,9 @@ const Command COMMANDS[] = {
      "exponents fitted over all points and over the upper half, and the part of the time that does not grow. "
      "With --calibrate, the speeds by which times are predicted, which are kept in libvpl/ of "
      "$XDG_CACHE_HOME "
-     "or ~/.cache; the first render or info with --budget measures them, too. They change no picture.",
+     "or ~/.cache; the first render or info with --budget measures them, too. They change no picture. "
+     "With --extremes, the error of every method at the ends of what scenes and options may be, against "
+     "closed forms and against the same scene at home, with the sentences of what is refused.",
      NULL},
 };
 

@@ -33,3 +33,20 @@ succeeds BenchScaling "$vpl" bench --scaling --stage lights --runs 1 --size 32x1
 check BenchScalingHasExponents grep -q 'exponent [-0-9.]*, of the upper half [-0-9.]*; expected 1' "$scratch/stdout"
 succeeds BenchScalingJson "$vpl" bench --scaling --stage threads --runs 1 --size 32x18 --json
 check BenchScalingJsonHasPoints grep -q '"points": ' "$scratch/stdout"
+
+# The stability table: every sweep is there, no error is larger than promised, and refusals are sentences. Slow sweeps
+# are left to tests/bench/extremes.txt.
+refuses ExtremesKnowTheirSweeps 2 "no sweep of bench --extremes has \"frob\"" "$vpl" bench --extremes --stage frob
+for sweep in "scale" "scene file" "far plane" "field" "angle" "width" "samples"; do
+    succeeds "ExtremesKeepTheirPromises: $sweep" "$vpl" bench --extremes --threads 1 --stage "$sweep"
+    check "ExtremesSayWhatTheyRefuse: $sweep" awk -v angles="$([ "$sweep" = angle ] && echo 1)" \
+        '/^  [a-z]: ..../ { told++ } / [a-z] / { refused++ } END { exit !(angles || (told && refused)) }' "$scratch/stdout"
+done
+succeeds ExtremesJson "$vpl" bench --extremes --threads 1 --stage "angle" --json
+equals ExtremesHaveEveryMethodAndValue 56 "$(grep -c '"error": [0-9]' "$scratch/stdout")"
+grep '; promised: ' tests/bench/extremes.txt | sed 's/;.*//' >"$scratch/committed"
+"$vpl" help bench >"$scratch/stdout"
+check HelpNamesExtremes grep -q -- --extremes "$scratch/stdout"
+equals TheCommittedTableHasEverySweep "$(grep -c '^     *measure[A-Z][a-zA-Z]*},$' src/cli/bench/extremes_sweeps.c)" \
+    "$(wc -l <"$scratch/committed")"
+check TheCommittedTableKeepsItsPromises awk '/!/ { exit 1 }' tests/bench/extremes.txt

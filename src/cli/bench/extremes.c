@@ -21,7 +21,8 @@ typedef struct Report {
 static void hear(void* user, vplLogLevel level, const char* message)
 {
     if (level == VPL_LOG_ERROR) { // without the name of a temporary file
-        const char* colon = strncmp(message, EXTREME_FILE, strlen(EXTREME_FILE)) == 0 ? strchr(message, ':') : NULL;
+        const char* colon =
+            strncmp(message, EXTREME_FILE, strlen(EXTREME_FILE)) == 0 ? strchr(message, ':') : NULL;
         snprintf(((Report*)user)->said, SENTENCE, "%s", colon != NULL ? colon + 1 : message);
     }
 }

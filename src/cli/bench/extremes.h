@@ -5,7 +5,9 @@
 
 #include "cli/cli.h"
 
-enum { METHODS = 8, MOST_VALUES = 12 };
+enum { MOST_VALUES = 12 };
+
+enum { DIRECT_MAP, DIRECT_RAYS, BATCHED, DEFERRED, INTERLEAVED, PATH, SSVP, RADIOSITY, METHODS };
 
 // A method with the settings of the table.
 typedef struct Method {
@@ -78,5 +80,25 @@ vplResult loadRoomAt(vplContext* context, const RoomScene* room, vplScene** scen
 
 // A cube whose walls reflect rho and emit 1.
 vplResult buildFurnace(vplContext* context, double rho, vplScene** sceneOut);
+
+// ---- extremes_errors.c
+
+enum { ROOM_WIDTH = 32, ROOM_HEIGHT = 24 };
+
+// The settings of the trial's method.
+vplResult chooseOptions(const Trial* trial, int width, int height, vplRenderOptions* options);
+
+// Renders a scene, which it destroys even if making it failed.
+vplResult renderOnce(vplScene* scene, vplResult made, const vplRenderOptions* options, vplImage** imageOut);
+
+// The error of a picture whose light is `factor` times that of the truth.
+double differenceOf(const vplImage* image, const vplImage* truth, double factor);
+
+// Set trial->error.
+vplResult compareFloor(Trial* trial, const FloorScene* floor, const vplRenderOptions* options);
+vplResult compareFurnace(Trial* trial, double rho, const vplRenderOptions* options);
+
+// Compares a room with the room at home; destroys the scene.
+vplResult compareRoom(Trial* trial, const RoomScene* room, vplScene* scene, vplResult made);
 
 #endif
