@@ -52,6 +52,31 @@ TEST_ALONE(EveryRowOfTheCatalogueNamesTestsThatExist)
     freeTable(&tests);
 }
 
+// Tests are named as `suite/Test` in the table of promised ranges.
+TEST_ALONE(EveryPromisedRangeNamesTestsThatExist)
+{
+    FILE* file = fopen("src/base/README.md", "r");
+    char line[2000];
+    int rows = 0, named = 0;
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file) != NULL) {
+        const int before = named;
+        for (char* word = strtok(line, "` \n"); word != NULL; word = strtok(NULL, "` \n")) {
+            const char* slash = strchr(word, '/');
+            if (slash != NULL && slash[1] >= 'A' && slash[1] <= 'Z' &&
+                slash[1 + strspn(slash + 1, "TES")] != 0) {
+                if (!isTest(word)) {
+                    fail_msg("there is no test %s", word);
+                }
+                named++;
+            }
+        }
+        rows += named > before;
+    }
+    fclose(file);
+    assert_true(rows >= 25);
+}
+
 // ---- rays and particles
 
 // X019

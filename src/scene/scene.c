@@ -116,10 +116,10 @@ static vplResult copyName(vplScene* scene, const char** name)
 vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3])
 {
     for (int i = 0; i < 3; i++) {
-        if (!(fabs(origin[i]) <= (double)VPL_MAX_MAGNITUDE)) {
+        if (!(fabs(origin[i]) <= VPL_MOST)) {
             return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                            "vplScene_SetOrigin: origin[%d] is %g, must be in [%g, %g]", i, origin[i],
-                           -(double)VPL_MAX_MAGNITUDE, (double)VPL_MAX_MAGNITUDE);
+                           -VPL_MOST, VPL_MOST);
         }
     }
     memcpy(scene->origin, origin, sizeof scene->origin);

@@ -48,6 +48,9 @@ vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material
 vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
                                 vplScene** sceneOut);
 
+// VPL_MAX_MAGNITUDE for doubles: the float is 1.3e7 less, and 1e15 was refused for being more than 1e15.
+#define VPL_MOST 1e15
+
 // The first thing that is wrong with a def: its field, and the rest of the sentence after "<field> ".
 typedef struct vplFault {
     const char* field; // as in the def; NULL: nothing is wrong
