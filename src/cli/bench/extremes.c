@@ -51,7 +51,7 @@ static void addCell(const Arguments* a, Report* r, const Trial* t, vplResult res
 {
     const ExtremeSweep* s = t->sweep;
     const bool promised = t->value >= s->low && t->value <= s->high, done = result == VPL_SUCCESS;
-    const bool broken = promised && !(done && t->error <= boundOf(s, t->method));
+    const bool broken = promised && !(done && !(t->error > boundOf(s, t->method)));
     r->broken += broken;
     if (a->json) {
         json_array_append_new(r->json, json_pack("{s:s, s:f, s:s, s:o, s:s, s:b, s:f}", "sweep", s->name,
@@ -59,6 +59,8 @@ static void addCell(const Arguments* a, Report* r, const Trial* t, vplResult res
                                                  "error", numberJson(done ? t->error : (double)NAN),
                                                  "refused", done ? "" : r->said, "promised", promised,
                                                  "bound", boundOf(s, t->method)));
+    } else if (done && isnan(t->error)) {
+        printf("%13s", "");
     } else if (done) {
         printf(" %11.1e%c", t->error, broken ? '!' : ' ');
     } else {

@@ -42,7 +42,7 @@ struct Trial {
     double value;
     int method;
     vplImage** home; // pictures by method that scenes in other units are compared with; made when needed
-    double error;    // root mean square of the picture's error over that of the truth
+    double error;    // root mean square of the picture's error over that of the truth; NAN: left out
 };
 
 // ---- extremes_scenes.c

@@ -9,7 +9,7 @@
 enum {
     ALL = (1 << METHODS) - 1,
     MAPPED = 1 << DIRECT_MAP | 1 << DEFERRED | 1 << SSVP,
-    COUNTED = 1 << BATCHED | 1 << DEFERRED | 1 << INTERLEAVED
+    COUNTED = ALL & ~(1 << DIRECT_MAP | 1 << DIRECT_RAYS)
 };
 
 static vplResult measureRoom(Trial* t, const RoomScene* room)
@@ -253,13 +253,30 @@ static vplResult measureReflectance(Trial* t)
     return compareFurnace(t, t->value, &o);
 }
 
+// N is the number of paths per pixel, of first-bounce lights of SSVP, and of patches, up to what takes seconds.
 static vplResult measureCount(Trial* t)
 {
     vplRenderOptions o;
+    const double most = t->method == PATH        ? 1e4
+                        : t->method == SSVP      ? 1e5
+                        : t->method == RADIOSITY ? 1e3
+                                                 : INFINITY;
     TRY(chooseOptions(t, 4, 4, &o));
+    if (t->value > most && t->value <= 1e7) {
+        t->error = NAN;
+        return VPL_SUCCESS;
+    }
+    int* count = t->method == PATH        ? &o.path.samples
+                 : t->method == SSVP      ? &o.ssvp.firstBounce
+                 : t->method == RADIOSITY ? &o.radiosity.patches
+                                          : &o.particles.count;
+    *count = (int)t->value;
+    if (count != &o.particles.count) {
+        o.lights.areaLightSamples = 1024;
+        return compareFurnace(t, 0.3, &o);
+    }
     TRY(vplRenderOptions_SetAll(&o,
                                 "--light-shadows none --compensation rays --reflectivity 0.3 --batch 65536"));
-    o.particles.count = (int)t->value;
     return compareFurnace(t, 0.3, &o);
 }
 
@@ -397,7 +414,7 @@ const ExtremeSweep EXTREME_SWEEPS[] = {
      0.99,
      {[0] = 0.02, [SSVP] = 0.04, [RADIOSITY] = 0.06},
      measureReflectance},
-    {"particles",
+    {"particles, paths, lights or patches",
      "1 / (1 - rho)",
      {0, 1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 16777217},
      10,
