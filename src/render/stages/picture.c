@@ -6,7 +6,6 @@
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
-#include <string.h>
 
 // ---- one view
 
@@ -37,7 +36,7 @@ static vplResult shadeView(const vplRun* run, const vplView* view, const vplShad
     const bool patches = run->plan->showsPatches && (run->parts & VPL_PART_INDIRECT) != 0;
     vplShadeStats stats = {0};
     if (vplShowsPatchesAlone(run->plan->options.output.show)) {
-        memset(image->pixels, 0, vplValueCount(image) * sizeof *image->pixels);
+        TRY(vplClear(run->context, image->pixels, vplValueCount(image) * sizeof *image->pixels));
     } else {
         TRY(vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, def, image, &stats));
     }
@@ -67,6 +66,21 @@ static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i,
     return shadeView(run, &view, &def, image);
 }
 
+// Adds a picture to the sums, and asks on the way: memory that is touched for the first time takes long.
+static vplResult addSample(const vplRun* run, const vplImage* image, double* sums)
+{
+    enum { PIECE = 1 << 20 };
+    const size_t values = vplValueCount(image);
+    for (size_t from = 0; from < values; from += PIECE) {
+        const size_t to = values - from < PIECE ? values : from + PIECE;
+        for (size_t k = from; k < to; k++) {
+            sums[k] += (double)image->pixels[k];
+        }
+        TRY(vplAsk(run->context));
+    }
+    return VPL_SUCCESS;
+}
+
 static vplResult shadeSamples(const vplRun* run, const vplShadeDef* def, double* sums, vplImage* image)
 {
     const int count = run->plan->options.output.supersample;
@@ -77,9 +91,7 @@ static vplResult shadeSamples(const vplRun* run, const vplShadeDef* def, double*
     for (int i = 0; i < count; i++) {
         vplRun_BeginPart(run, i, count);
         TRY(shadeSample(run, def, i, count, image));
-        for (size_t k = 0; k < values; k++) {
-            sums[k] += (double)image->pixels[k];
-        }
+        TRY(addSample(run, image, sums));
     }
     for (size_t k = 0; k < values; k++) {
         image->pixels[k] = (float)(sums[k] / count);
@@ -169,7 +181,7 @@ static vplResult shade(const vplRun* run, const Shading* s, int parts, int first
         def.compensation = plan->compensates ? &compensation : NULL;
     }
     if (s->sums != NULL) {
-        memset(s->sums, 0, vplValueCount(image) * sizeof *s->sums);
+        TRY(vplClear(run->context, s->sums, vplValueCount(image) * sizeof *s->sums));
     }
     TRY(shadeSamples(run, &def, s->sums, image));
     return near && whole && plan->estimatesLoss ? vplEstimateLoss(run, v, &def, compensation) : VPL_SUCCESS;
