@@ -54,7 +54,12 @@ static const char* refuseOptions(const vplPlan* p)
 
 static void refuse(vplPlan* p)
 {
-    const char* problem = refuseLighting(p);
+    const vplStopOptions* stop = &p->options.stop;
+    const bool endless =
+        stop->growFrom > 0 && stop->passes == 0 && !(stop->budgetMs > 0) && !(stop->maxError > 0);
+    const char* problem = endless
+                              ? "grow-from needs passes, budget or max-error: nothing else ends the passes"
+                              : refuseLighting(p);
     problem = problem != NULL ? problem : refuseOptions(p);
     if (problem != NULL) {
         snprintf(p->problem, sizeof p->problem, "%s", problem);

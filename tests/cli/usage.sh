@@ -167,3 +167,5 @@ equals NoEffectInInfo "vpl: warning: --spp has no effect with --method keller" "
 rm "$out/u.pfm"
 succeeds HelpListsCommands "$vpl" help
 check HelpNamesExitCodes grep -q '^Exit codes: 0' "$scratch/stdout"
+refuses GrowingPassesNeedAnEnd 2 "grow-from needs passes, budget or max-error" \
+    "$vpl" render "$room" -o "$out/a.pfm" --method keller --grow-from 4
