@@ -34,9 +34,7 @@ vplContext* openContext(const Arguments* arguments)
     def.log = logToStderr;
     def.logUser = (void*)arguments;
     vplContext* context = NULL;
-    if (vplContext_Create(&def, &context) == VPL_SUCCESS) {
-        vplContext_SetProgress(context, askInterrupts, NULL);
-    }
+    vplContext_Create(&def, &context);
     return context;
 }
 
@@ -46,7 +44,10 @@ vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut
     def.aspect = (double)a->render.output.width / a->render.output.height;
     def.ground = !a->noGround;
     def.areaLight = a->render.lighting != VPL_LIGHTING_DOCUMENTED; // which has no area lights
-    return vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
+    vplContext_SetProgress(context, askInterrupts, NULL);          // a pipe may be silent
+    const vplResult result = vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
+    vplContext_SetProgress(context, NULL, NULL); // what writes files after an interrupt is not to end
+    return result;
 }
 
 int exitCode(vplResult result, bool reading)

@@ -101,6 +101,7 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
     o.output.show = VPL_SHOW_PICTURE;
     o.output.aovs = 0;
     o.stop.budgetMs = o.stop.maxError = 0;
+    o.stop.growFrom = o.stop.passes > 0 ? o.stop.growFrom : 0;
     o.stop.quality = VPL_QUALITY_NONE;
     TRY(vplRenderer_Create(scene, &o, &r));
     const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, stage);
@@ -125,6 +126,7 @@ vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float 
     o.output.show = VPL_SHOW_PICTURE;
     o.output.aovs = 0;
     o.stop.budgetMs = o.stop.maxError = 0;
+    o.stop.growFrom = 0;
     o.stop.quality = VPL_QUALITY_NONE;
     TRY(vplRenderer_Create(scene, &o, &r));
     vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_SOLUTION);

@@ -29,7 +29,9 @@ double errorOf(const Reference* r, const vplImage* image, const vplComparison* c
 static int readPicture(Tradeoff* t, const char* path, vplImage** imageOut)
 {
     const vplRenderOptions* o = &t->arguments->render;
+    vplContext_SetProgress(t->context, askInterrupts, NULL); // a pipe may be silent
     int code = exitCode(vplImage_Read(t->context, path, imageOut), true);
+    vplContext_SetProgress(t->context, NULL, NULL);
     if (code == EXIT_DONE &&
         ((*imageOut)->width != o->output.width || (*imageOut)->height != o->output.height)) {
         complain("%s: the reference has %dx%d pixels, must have %dx%d as the pictures (--size)", path,

@@ -108,11 +108,7 @@ static vplResult openContextFor(Tradeoff* t, int workers, vplContext** contextOu
     def.log = keepLog;
     def.logUser = t;
     def.workerCount = workers;
-    const vplResult result = vplContext_Create(&def, contextOut);
-    if (result == VPL_SUCCESS) {
-        vplContext_SetProgress(*contextOut, askInterrupts, NULL);
-    }
-    return result;
+    return vplContext_Create(&def, contextOut);
 }
 
 static int readScene(Tradeoff* t)

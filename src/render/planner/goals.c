@@ -40,7 +40,7 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->stop.budgetMs =
         o->method == VPL_METHOD_RADIOSITY ? o->stop.budgetMs : 0; // which it may not be able to hold
     o->stop.maxError = 0;
-    o->stop.passes = 0;
+    o->stop.passes = o->stop.growFrom = 0;
     o->output.antialias = share < 0.2 ? 1 : o->output.antialias;
     o->output.supersample = 1;
     o->shadow.mapSize = o->shadow.mapSize < 256 ? o->shadow.mapSize : 256;

@@ -6,7 +6,6 @@
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
-
 // ---- one view
 
 // Adds the light of patches: at every sample where edges are smooth, because interpolating it costs little.
