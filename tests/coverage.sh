@@ -4,6 +4,7 @@
 # set runs it.
 least=${1:-92}
 build=build/coverage
+mkdir -p $build
 make -j"$(nproc)" --no-print-directory BUILD=$build CC=gcc MODE=debug CFLAGS="-O1 --coverage -fprofile-update=atomic" \
     test-programs >$build.log 2>&1 || exit 1
 find $build -name '*.gcda' -delete
@@ -11,7 +12,7 @@ tests/run.sh $build >$build/tests.log 2>&1 || tail -n 1 $build/tests.log
 find $build/obj/src -name '*.gcda' | sort | while read -r data; do
     gcov -t "$data" 2>/dev/null
 done | awk -F: -v missed=$build/missed '
-    $3 == "0" && $4 == "Source" { file = $5; next }
+    $2 + 0 == 0 && $3 == "Source" { file = $4; next }
     file !~ /^src\// { next }
     { count = $1; gsub(/[ \t]/, "", count); line = file ":" $2 + 0 }
     count == "-" { next }

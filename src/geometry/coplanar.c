@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Finds quads and boxes that share a plane with another object. Rounding puts a point of one below the other, which
-// would hold back the light that leaves it, so rays leave such objects from a point above them (vplGeometry_Leave).
+// Marks quads and boxes that share a plane with another object. A point on one surface may be rounded to below the
+// other one, which would then block light that leaves the point. Rays leave such objects from above their surface
+// (vplGeometry_Leave).
 #include "base/arena.h"
 #include "geometry/object_build.h"
+#include "geometry/triangle.h"
 #include "math/vec.h"
 
 #include <math.h>
@@ -22,7 +24,7 @@ static int byDistance(const void* a, const void* b)
     return one < other ? -1 : one > other ? 1 : x->object - y->object;
 }
 
-// True if, across one of a's edges, all of b is further than all of a, or all before it.
+// True if a line along an edge of a separates the two rectangles: b is beyond a on one side of it.
 static bool isApart(const Face* a, const Face* b, float rounding)
 {
     for (int i = 0; i < 4; i++) {
@@ -41,7 +43,8 @@ static bool isApart(const Face* a, const Face* b, float rounding)
     return false;
 }
 
-// Two quads are one surface also back to back. A box covers what it stands on, but does not lie in it.
+// True if two faces lie in one plane and overlap. Quads count back to back, too. The bottom of a box and the floor below
+// it do not: light reaches neither where they touch.
 static bool meet(const vplGeometryObject* objects, const Face* a, const Face* b, float rounding)
 {
     const float cosine = vplDot(a->normal, b->normal);
@@ -53,40 +56,30 @@ static bool meet(const vplGeometryObject* objects, const Face* a, const Face* b,
            !isApart(b, a, rounding);
 }
 
-static Face faceAt(const vplGeometry* g, int object, int triangle)
+// The face that a triangle, the first of its two, belongs to.
+static Face faceOf(const vplGeometry* g, int triangle)
 {
-    const vplVec3* p = g->positions + g->objects[object].firstVertex;
-    const uint32_t* i = g->indices + 3 * (size_t)triangle; // of 0, 1, 2 and 0, 2, 3
-    const vplVec3 n = g->normals[triangle], first = p[i[0]];
+    const vplTriangleCorners one = vplGeometry_Corners(g, triangle),
+                             other = vplGeometry_Corners(g, triangle + 1);
+    const vplVec3 n = g->normals[triangle], first = one.corner[0];
     return (Face){(double)n.x * first.x + (double)n.y * first.y + (double)n.z * first.z,
                   n,
-                  {first, p[i[1]], p[i[2]], p[i[5]]},
-                  object};
+                  {first, one.corner[1], one.corner[2], other.corner[2]},
+                  g->owners[triangle]};
 }
 
-// Lists the faces of quads and boxes.
-static int listFaces(const vplGeometry* g, Face* faces)
-{
-    int count = 0;
-    for (int i = 0; i < g->objectCount; i++) {
-        for (int t = 0; t < g->objects[i].triangleCount; t += 2) {
-            faces[count++] = faceAt(g, i, g->objects[i].firstTriangle + t);
-        }
-    }
-    return count;
-}
-
-// Marks pairs among faces that are sorted by distance. Behind NEIGHBOURS planes at the same distance the next is taken to
-// meet the first, which bounds the time: rays that start a little above a surface do no harm.
+// Marks the objects of faces that meet, among faces sorted by distance. A face with more than NEIGHBOURS others at its
+// distance is taken to meet one of them, which bounds the time: a ray that starts above its surface does no harm.
 static void markPairs(vplGeometryObject* objects, const Face* faces, int count, float rounding)
 {
     enum { NEIGHBOURS = 64 };
     for (int i = 0; i < count; i++) {
-        for (int j = i + 1; j < count && fabs(faces[j].offset) - fabs(faces[i].offset) <= (double)rounding;
-             j++) {
-            if (j - i > NEIGHBOURS || meet(objects, &faces[i], &faces[j], rounding)) {
-                objects[faces[i].object].coplanar = objects[faces[j].object].coplanar = true;
-                break;
+        const double farthest = fabs(faces[i].offset) + (double)rounding;
+        bool* own = &objects[faces[i].object].coplanar;
+        for (int j = i + 1; j < count && j - i <= NEIGHBOURS + 1 && fabs(faces[j].offset) <= farthest; j++) {
+            bool* other = &objects[faces[j].object].coplanar;
+            if (!(*own && *other) && (j - i > NEIGHBOURS || meet(objects, &faces[i], &faces[j], rounding))) {
+                *own = *other = true;
             }
         }
     }
@@ -94,21 +87,24 @@ static void markPairs(vplGeometryObject* objects, const Face* faces, int count, 
 
 vplResult vplMarkCoplanar(const vplGeometry* g, vplGeometryObject* objects)
 {
-    int flat = 0;
+    bool meshes = false;
     for (int i = 0; i < g->objectCount; i++) {
-        flat += objects[i].type != VPL_OBJECT_MESH;
+        meshes = meshes || objects[i].type == VPL_OBJECT_MESH;
     }
     for (int i = 0; i < g->objectCount; i++) {
-        objects[i].coplanar = flat < g->objectCount; // a triangle of a mesh may lie in any plane
+        objects[i].coplanar = meshes; // a triangle of a mesh may lie in any plane
     }
-    if (flat < g->objectCount || flat == 0) {
+    const int count = meshes ? 0 : g->triangleCount / 2;
+    if (count == 0) {
         return VPL_SUCCESS;
     }
-    Face* faces = vplAlloc(g->context, 6 * (size_t)flat, sizeof *faces);
+    Face* faces = vplAlloc(g->context, (size_t)count, sizeof *faces);
     if (faces == NULL) {
         return VPL_OUT_OF_MEMORY;
     }
-    const int count = listFaces(g, faces);
+    for (int i = 0; i < count; i++) {
+        faces[i] = faceOf(g, 2 * i);
+    }
     qsort(faces, (size_t)count, sizeof *faces, byDistance);
     const float largest = fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
     markPairs(objects, faces, count, largest * 0x1p-20f);
