@@ -153,8 +153,8 @@ TEST(TwoFloorsInOnePlaceCatchNoLightBetweenThem, 1)
     vplGeometry_Destroy(cube);
 }
 
-// X029: a cube that is turned, so that no plane is exact in float; floor and ceiling are there twice. Of
-// the rays from them half were in the shadow of the other one.
+// X029: a cube that is rotated, so that rounding moves its planes; floor and ceiling are there twice. Half of the rays that
+// left one were blocked by its copy.
 TEST(AWallThatIsThereTwiceIsLitAsOnce, 1)
 {
     static const char* const words[] = {

@@ -229,8 +229,8 @@ static int countEntries(const char* folder)
     return count;
 }
 
-// Writes with the faults that are armed, over an old file: an error has one sentence with the reason, and leaves the old
-// file, no other file and no open descriptor.
+// Writes over an old file while faults are armed. The error must have one sentence with the reason; the old file must stay,
+// and no other file and no open descriptor.
 static void requireOldFile(Files* f, int writer, const char* reason)
 {
     char bytes[16];
@@ -360,7 +360,7 @@ static void closeReader(const Files* f, int reader)
     }
 }
 
-// Reads with the faults that are armed: a failure has one sentence, and no memory and no descriptor stays.
+// Reads while faults are armed. A failure must have one sentence and leave no memory and no open descriptor.
 static vplResult readFaulty(Files* f, int reader)
 {
     const size_t bytes = vplContext_GetBytes(f->context);

@@ -110,10 +110,10 @@ void vplContext_ResetPeakBytes(vplContext* context);
 vplIsa vplContext_GetIsa(const vplContext* context);
 int vplContext_GetWorkerCount(const vplContext* context);
 
-// From now on calls that take no progress of their own, such as those that read scenes and pictures, ask `progress`
-// whether to go on, with a fraction of 0, also while a pipe that they read is silent. If it returns false they return
-// VPL_CANCELLED. NULL (default): they do not ask. Renders ask vplRenderOptions.progress instead. Only for the thread
-// that makes these calls.
+// Sets the function by which calls without a progress argument, such as those that read scenes and pictures, can be
+// cancelled. They call it with a fraction of 0, also while a pipe that they read is silent, and return VPL_CANCELLED when
+// it returns false. NULL (default): nothing is called. Renders call vplRenderOptions.progress instead. `progress` is called
+// on the thread that made the call.
 void vplContext_SetProgress(vplContext* context, vplProgressFcn* progress, void* user);
 
 // Writes a whole file. It writes to a temporary file beside the target, checks it and renames it, so that the

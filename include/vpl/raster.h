@@ -96,8 +96,9 @@ typedef struct vplPipeline {
     float distanceScale;
     bool
         distanceAlongAxis; // with distanceScale, for any view: the distance along the view axis; default false
-    bool writesDepth;      // `fragment`, not NULL, replaces depth before the depth test; default false
-    bool needsW;      // shaders read w; without it w is valid only where there are varyings; default false
+    bool
+        writesDepth; // `fragment`, which must not be NULL, replaces depth before the depth test; default false
+    bool needsW;     // shaders read w; without it w is valid only where there are varyings; default false
     bool readsPlanes; // the fragment shader reads the framebuffer and blends by itself; default false
     // Draws only where the same triangle of the same mesh wrote depth last, so that one of coplanar surfaces
     // counts. Default false.

@@ -139,7 +139,7 @@ vplProgressFcn showProgress;
 void endProgress(Progress* progress);
 
 // From now on SIGINT and SIGTERM make showProgress and askInterrupts return false; a second signal ends the program.
-// Called before a file is written, at the latest: an interrupt then leaves no temporary file.
+// Programs call it before they write their first file, so that an interrupt leaves no temporary file.
 void catchInterrupts(void);
 vplProgressFcn askInterrupts;
 

@@ -46,7 +46,7 @@ vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut
     def.areaLight = a->render.lighting != VPL_LIGHTING_DOCUMENTED; // which has no area lights
     vplContext_SetProgress(context, askInterrupts, NULL);          // a pipe may be silent
     const vplResult result = vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
-    vplContext_SetProgress(context, NULL, NULL); // what writes files after an interrupt is not to end
+    vplContext_SetProgress(context, NULL, NULL); // an interrupted render still writes its picture
     return result;
 }
 

@@ -88,22 +88,30 @@ vplResult vplRenderLayers(const vplScene* scene, const vplRenderOptions* options
 
 // ---- other results of the same stages
 
-vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)
+// Opens a renderer of the options' picture by a method, of which only some stages will be run: no time or error ends it.
+static vplResult openForStages(const vplScene* scene, const vplRenderOptions* options, vplMethod method,
+                               vplRenderer** rendererOut)
 {
     vplRenderOptions o = *options;
-    o.method = o.method == VPL_METHOD_AUTO ? vplFirstMethodFor(&o) : o.method;
-    const bool ssvp = o.method == VPL_METHOD_SSVP;
-    const vplStageId stage = ssvp ? VPL_STAGE_CLUSTERED_LIGHTS : VPL_STAGE_PARTICLES;
-    vplRenderer* r;
-    if (!ssvp && o.method != VPL_METHOD_KELLER) {
-        o.method = VPL_METHOD_INSTANT_RADIOSITY;
-    }
+    o.method = method;
     o.output.show = VPL_SHOW_PICTURE;
     o.output.aovs = 0;
     o.stop.budgetMs = o.stop.maxError = 0;
     o.stop.growFrom = o.stop.passes > 0 ? o.stop.growFrom : 0;
     o.stop.quality = VPL_QUALITY_NONE;
-    TRY(vplRenderer_Create(scene, &o, &r));
+    return vplRenderer_Create(scene, &o, rendererOut);
+}
+
+vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, vplLightSet** setOut)
+{
+    vplMethod method = options->method == VPL_METHOD_AUTO ? vplFirstMethodFor(options) : options->method;
+    const bool ssvp = method == VPL_METHOD_SSVP;
+    const vplStageId stage = ssvp ? VPL_STAGE_CLUSTERED_LIGHTS : VPL_STAGE_PARTICLES;
+    vplRenderer* r;
+    if (!ssvp && method != VPL_METHOD_KELLER) {
+        method = VPL_METHOD_INSTANT_RADIOSITY;
+    }
+    TRY(openForStages(scene, options, method, &r));
     const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, stage);
     if (result == VPL_SUCCESS && ssvp) {
         vplClusteredLights* lights = r->runner.history->slots[stage].result;
@@ -119,16 +127,9 @@ vplResult vplMakeLights(const vplScene* scene, const vplRenderOptions* options, 
 vplResult vplBake(const vplScene* scene, const vplRenderOptions* options, float exposure, const char* path,
                   vplRenderStats* statsOut)
 {
-    vplRenderOptions o = *options;
     const float scale = (float)(vplPow(2, (double)exposure) / VPL_PI); // radiance, as pictures have it
     vplRenderer* r;
-    o.method = VPL_METHOD_RADIOSITY;
-    o.output.show = VPL_SHOW_PICTURE;
-    o.output.aovs = 0;
-    o.stop.budgetMs = o.stop.maxError = 0;
-    o.stop.growFrom = 0;
-    o.stop.quality = VPL_QUALITY_NONE;
-    TRY(vplRenderer_Create(scene, &o, &r));
+    TRY(openForStages(scene, options, VPL_METHOD_RADIOSITY, &r));
     vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_SOLUTION);
     if (result == VPL_SUCCESS) {
         vplArena* scratch = vplArena_Create(r->runner.run.context);

@@ -27,7 +27,7 @@ void vplText_Close(vplText* text);
 // Finds the next line that is not blank or a comment; *at starts at NULL. False at the end.
 bool vplText_NextLine(const vplText* text, const char** at, vplWord* lineOut);
 
-// Asks once per MiB of text whether reading goes on. `at` is that of vplText_NextLine, which found the line.
+// Asks once per MiB of text whether to go on. `line` and `at` are those of vplText_NextLine.
 vplResult vplText_Ask(const vplText* text, vplWord line, const char* at);
 
 // Cuts the next word off a line. If there is none, returns false and an empty word at the end of the line.

@@ -116,10 +116,10 @@ static vplResult copyName(vplScene* scene, const char** name)
 vplResult vplScene_SetOrigin(vplScene* scene, const double origin[3])
 {
     for (int i = 0; i < 3; i++) {
-        if (!(fabs(origin[i]) <= VPL_MOST)) {
+        if (!(fabs(origin[i]) <= VPL_MAX_MAGNITUDE_DOUBLE)) {
             return vplFail(scene->context, VPL_INVALID_ARGUMENT,
                            "vplScene_SetOrigin: origin[%d] is %g, must be in [%g, %g]", i, origin[i],
-                           -VPL_MOST, VPL_MOST);
+                           -VPL_MAX_MAGNITUDE_DOUBLE, VPL_MAX_MAGNITUDE_DOUBLE);
         }
     }
     memcpy(scene->origin, origin, sizeof scene->origin);

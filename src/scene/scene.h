@@ -48,8 +48,9 @@ vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material
 vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
                                 vplScene** sceneOut);
 
-// VPL_MAX_MAGNITUDE for doubles: the float is 1.3e7 less, and 1e15 was refused for being more than 1e15.
-#define VPL_MOST 1e15
+// VPL_MAX_MAGNITUDE for fields in double. The float nearest to 1e15 is 1.3e7 below it, so a comparison with that float
+// refuses 1e15 itself.
+#define VPL_MAX_MAGNITUDE_DOUBLE 1e15
 
 // The first thing that is wrong with a def: its field, and the rest of the sentence after "<field> ".
 typedef struct vplFault {

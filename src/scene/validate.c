@@ -73,12 +73,12 @@ vplFault vplCheckCamera(const vplCameraDef* def)
     if (!(def->fovY > 0 && def->fovY < VPL_PI)) {
         return fault("fovY", -1, "is %g, must be in (0, pi) radians", def->fovY);
     }
-    if (!(def->near > 0 && def->near <= VPL_MOST)) {
-        return fault("near", -1, "is %g, must be in (0, %g]", def->near, VPL_MOST);
+    if (!(def->near > 0 && def->near <= VPL_MAX_MAGNITUDE_DOUBLE)) {
+        return fault("near", -1, "is %g, must be in (0, %g]", def->near, VPL_MAX_MAGNITUDE_DOUBLE);
     }
-    if (!(def->far > def->near && def->far <= VPL_MOST)) {
+    if (!(def->far > def->near && def->far <= VPL_MAX_MAGNITUDE_DOUBLE)) {
         return fault("far", -1, "is %g, must be greater than near (%g) and at most %g", def->far, def->near,
-                     VPL_MOST);
+                     VPL_MAX_MAGNITUDE_DOUBLE);
     }
     return FINE;
 }

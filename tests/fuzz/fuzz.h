@@ -82,7 +82,7 @@ static inline bool isPrintable(const char* text)
     return true;
 }
 
-// The bytes that choices are made from. Behind their end all are 0, which chooses the usual.
+// The bytes that choices are made from. After the last one every choice is 0, the usual value.
 typedef struct Bytes {
     const uint8_t* at;
     size_t left;

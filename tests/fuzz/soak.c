@@ -45,7 +45,7 @@ static vplContext* openContext(FuzzLog* log)
     return context;
 }
 
-// Without what the C library keeps for later: it grows with the largest block that was ever freed.
+// Returns the resident size without blocks that the C library keeps for later use.
 static size_t residentBytes(void)
 {
 #ifdef __GLIBC__

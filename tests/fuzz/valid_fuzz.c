@@ -91,7 +91,7 @@ static double stretch(Bytes* b, double size)
     return (pick(b, 4) == 3 ? -1 : 1) * size * (0.5 + unit(b)) * extremes[pick(b, 6)];
 }
 
-// Adds what is not too thin; what is refused must have a sentence.
+// Adds an object. One that is too thin is refused, which must give a sentence.
 static void addObject(Bytes* b, FuzzLog* log, vplScene* scene, double size, vplVec3 middle)
 {
     vplObjectDef def = vplDefaultObjectDef();
@@ -213,7 +213,7 @@ static double mostOf(const vplOption* option)
     return option->high;
 }
 
-// Writes the word of number `n`, counted around, of words with '|' between, the K of "light:K" as a number.
+// Writes word n modulo their count of a list such as "none|map|ray"; the K of "light:K" becomes a number.
 static void writeWord(Bytes* b, const char* words, unsigned n, char* text, size_t size)
 {
     unsigned count = 1;
@@ -312,7 +312,7 @@ static vplResult render(const vplScene* scene, const vplRenderOptions* options, 
     return result;
 }
 
-// Is the planned work small? Sanitizers make it 20 times as slow.
+// True if the planned work is small: sanitizers make it 20 times as slow.
 static bool isSmall(const vplPlan* plan)
 {
     return plan->predictedMs < 30 && plan->peakBytes < 64 << 20;

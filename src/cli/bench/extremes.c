@@ -9,9 +9,9 @@
 
 enum { MOST_SENTENCES = 26, SENTENCE = 400 };
 
-// The table as it grows, and what the library said in the last trial.
+// The state of the table.
 typedef struct Report {
-    char said[SENTENCE];
+    char said[SENTENCE];                      // by the library, in the last trial
     char sentences[MOST_SENTENCES][SENTENCE]; // of one sweep
     int sentenceCount;
     int broken; // promises
@@ -27,7 +27,7 @@ static void hear(void* user, vplLogLevel level, const char* message)
     }
 }
 
-// Returns the letter of the last sentence.
+// Returns the letter that stands for the refusal of the last trial.
 static char letterOf(Report* r)
 {
     for (int i = 0; i < r->sentenceCount; i++) {

@@ -19,7 +19,7 @@ extern const Method EXTREME_METHODS[METHODS];
 
 typedef struct Trial Trial;
 
-// What one sweep varies, how its error is found, and what is promised.
+// A sweep: the values of one quantity, the function that measures the error at each, and the promised error.
 typedef struct ExtremeSweep {
     const char* name;
     const char* truth; // what pictures are compared with
@@ -49,7 +49,7 @@ struct Trial {
 
 #define EXTREME_FILE "/tmp/vpl-extremes-" // start of the names of temporary files
 
-// A floor, a point light above it, and maybe a square between, seen from above. Metres, radians.
+// A floor below a point light, seen from above; a square may cast its shadow on it. Metres, radians.
 typedef struct FloorScene {
     double light[3], intensity;
     double eyeHeight, fov, nearPlane;
@@ -61,7 +61,7 @@ typedef struct FloorScene {
 FloorScene plainFloor(void);
 vplResult buildFloor(vplContext* context, const FloorScene* floor, vplScene** sceneOut);
 
-// Reflected radiance at a point of the picture, in pixels, in double.
+// Returns the exact reflected radiance at a point of the picture, whose position is in pixels.
 double floorRadiance(const FloorScene* floor, double column, double row);
 
 // A closed room with a box and a point light.
@@ -75,7 +75,7 @@ typedef struct RoomScene {
 RoomScene plainRoom(void);
 vplResult buildRoomAt(vplContext* context, const RoomScene* room, vplScene** sceneOut);
 
-// The same from a scene file.
+// Builds the same room by loading a scene file.
 vplResult loadRoomAt(vplContext* context, const RoomScene* room, vplScene** sceneOut);
 
 // A cube whose walls reflect rho and emit 1.
@@ -91,7 +91,7 @@ vplResult chooseOptions(const Trial* trial, int width, int height, vplRenderOpti
 // Renders a scene, which it destroys even if making it failed.
 vplResult renderOnce(vplScene* scene, vplResult made, const vplRenderOptions* options, vplImage** imageOut);
 
-// The error of a picture whose light is `factor` times that of the truth.
+// Returns the relative rmse of a picture that was rendered with `factor` times the light of the truth.
 double differenceOf(const vplImage* image, const vplImage* truth, double factor);
 
 // Set trial->error.

@@ -106,7 +106,7 @@ vplResult compareRoom(Trial* t, const RoomScene* room, vplScene* scene, vplResul
 
 // ---- a furnace
 
-// Means are compared, because single points of lights in corners are far off.
+// Compares the mean radiance: at pixels in corners a few samples of the area lights are far off.
 vplResult compareFurnace(Trial* t, double rho, const vplRenderOptions* o)
 {
     vplScene* scene = NULL;

@@ -88,7 +88,7 @@ static vplResult measureLightHeight(Trial* t)
     return compareFloor(t, &f, &o);
 }
 
-// The light is 2 m from the middle of a picture 1 cm wide.
+// The light is 2 m from the middle of the picture, which shows 1 cm of the floor.
 static vplResult measureGrazing(Trial* t)
 {
     FloorScene f = plainFloor();
@@ -112,8 +112,8 @@ static FloorScene shadowedFloor(void)
     return f;
 }
 
-// The maps of emitters, of which direct light's and SSVP's show the shadow of the square; of virtual lights the
-// error is that against rays, in the room.
+// Direct light and SSVP are compared with the closed form of the square's shadow. Virtual lights with maps are compared
+// with virtual lights that cast shadow rays, in the room.
 static vplResult measureMaps(Trial* t)
 {
     const FloorScene f = shadowedFloor();
@@ -179,7 +179,7 @@ static vplResult measureHeight(Trial* t)
 
 // ---- memory
 
-#define FREE_BYTES 65536.0 // of a context and its threads, which plans of small pictures do not know
+#define FREE_BYTES 65536.0 // for the context and its threads, which plans do not count
 
 typedef struct Purse {
     size_t held, peak, limit; // bytes
@@ -223,7 +223,7 @@ static vplResult renderWithin(Trial* t, const FloorScene* f, const vplRenderOpti
     return made;
 }
 
-// Square pictures with an allocator that refuses what exceeds the plan by 15 % and 64 KiB, and 1 GiB.
+// Renders square pictures with an allocator whose limit is 1.15 times the planned bytes plus 64 KiB, at most 1 GiB.
 static vplResult measureMemory(Trial* t)
 {
     FloorScene f = plainFloor();
@@ -282,9 +282,8 @@ static vplResult measureCount(Trial* t)
 
 // ---- the table
 
-// Bounds by method: direct light by maps and rays; batched, deferred and interleaved virtual lights; paths;
-// SSVP; radiosity. Texels of maps, samples of a reflective map and clusters fall on the other side of a
-// boundary where rounding differs, which is all that is left of the errors of deferred lights and SSVP.
+// The bounds of deferred lights and SSVP are larger, because rounding moves texels of maps, samples of the reflective shadow
+// map and clusters across a boundary.
 #define ROUNDING 1e-6
 
 const ExtremeSweep EXTREME_SWEEPS[] = {

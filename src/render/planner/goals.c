@@ -167,7 +167,7 @@ void vplJudgePicture(vplRenderer* r, const vplImage* picture)
     }
     const double mean = sum / (double)values, noise = fmax(0, r->error.noise) * mean;
     const double square = fmax(r->judged.square, noise * noise), bias = square - noise * noise;
-    // A bias that may be chance counts for less. Where noise is unknown, no error is below what the truth can tell.
+    // A bias that may be chance counts for less. Where the noise is unknown, the error is at least the spread of the truth.
     const double doubt = bias > 0 ? r->judged.spread / bias : 0;
     if (mean > 0) {
         r->judged.mean = mean; // better known than that of a few pixels of the truth

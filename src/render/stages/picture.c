@@ -65,7 +65,7 @@ static vplResult shadeSample(const vplRun* run, const vplShadeDef* plain, int i,
     return shadeView(run, &view, &def, image);
 }
 
-// Adds a picture to the sums, and asks on the way: memory that is touched for the first time takes long.
+// Adds a picture to the sums. Asks after each piece, because pages that are touched for the first time take long.
 static vplResult addSample(const vplRun* run, const vplImage* image, double* sums)
 {
     enum { PIECE = 1 << 20 };
