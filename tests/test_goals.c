@@ -237,6 +237,77 @@ TEST(ARenderThatWasSavedEndsAtTheSamePass, 2)
     vplScene_Destroy(scene);
 }
 
+// Cancels at one call.
+typedef struct Stop {
+    int calls, at;
+} Stop;
+
+static bool stopOnce(void* user, double fraction)
+{
+    Stop* stop = user;
+    (void)fraction;
+    return ++stop->calls != stop->at;
+}
+
+// Renders with a stop at call `at`, then goes on, by a saved state if `saves`. Returns false if there were fewer calls.
+static bool stopAt(const vplScene* scene, vplRenderOptions o, int at, bool saves, vplRenderStats* stats,
+                   bool* midwayOut)
+{
+    Stop stop = {0, 0};
+    vplRenderer* r;
+    vplImage* image;
+    bool done = false;
+    int steps = 0, stops = 0;
+    o.progress = stopOnce;
+    o.progressUser = &stop;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    stop = (Stop){0, at};
+    while (!done) {
+        const vplResult result = vplRenderer_Step(r, &done);
+        assert_true(result == VPL_SUCCESS || result == VPL_CANCELLED);
+        steps += result == VPL_SUCCESS;
+        if (result == VPL_CANCELLED) {
+            stops++;
+            *midwayOut = *midwayOut || vplRenderer_GetPassCount(r) > steps;
+            if (saves && vplRenderer_GetPassCount(r) > 0) {
+                assert_int_equal(vplRenderer_Save(r, SAVED), VPL_SUCCESS);
+                vplRenderer_Destroy(r);
+                finishSaved(scene, &o, stats);
+                return true;
+            }
+        }
+    }
+    assert_int_equal(vplRenderer_GetImage(r, &image, stats), VPL_SUCCESS);
+    vplImage_Destroy(image);
+    vplRenderer_Destroy(r);
+    return stops > 0;
+}
+
+// A cancelled search for the error goes on as if it had not been: its paths counted twice, and it was left out.
+TEST(ARenderThatWasCancelledAnywhereEndsTheSame, 1)
+{
+    static const vplMethod METHODS[] = {VPL_METHOD_AUTO, VPL_METHOD_AUTO, VPL_METHOD_PATH};
+    static const double ERRORS[] = {0.05, 0.1, 0.15}; // 0.05: another plan follows the first
+    vplScene* scene = loadScene(context, "room.json");
+    for (int i = 0; i < 3; i++) {
+        vplRenderOptions o = smallOptions();
+        vplRenderStats whole, stats;
+        int tried = 0;
+        bool midway = false, more = true;
+        o.method = METHODS[i];
+        o.stop.maxError = ERRORS[i];
+        vplImage_Destroy(renderScene(scene, &o, &whole));
+        for (int at = 1; more; at += 1 + at / 6) {
+            more = stopAt(scene, o, at, tried++ % 2 != 0, &stats, &midway);
+            assert_true(stats.imageHash == whole.imageHash && stats.passes == whole.passes);
+            assert_true(stats.relativeErrorEstimate == whole.relativeErrorEstimate);
+        }
+        assert_true(midway == (i < 2));
+    }
+    remove(SAVED);
+    vplScene_Destroy(scene);
+}
+
 // The mean square of the blocks' errors is that of the picture.
 TEST(BlocksShareTheError, 2)
 {

@@ -115,11 +115,14 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
                              vplRenderer** rendererOut);
 
 // Renders one pass. *doneOut says whether all that the options ask for is done; further steps are allowed and
-// improve pictures that are means of passes. A step that vplRenderOptions.progress cancels (VPL_CANCELLED)
-// leaves the renderer as it was before the step: pictures of the passes before can be read, and the next step
-// does the cancelled pass anew, so that the same bits follow. After any other failure the renderer can only
-// be destroyed.
+// improve pictures that are means of passes. A step that vplRenderOptions.progress cancels (VPL_CANCELLED) during its pass
+// leaves the renderer as it was before the step; one that is cancelled later, while it estimates the error, keeps the
+// pass. In both cases pictures of the passes so far can be read, and the next step does what was cancelled, so that the
+// same bits follow. After any other failure the renderer can only be destroyed.
 vplResult vplRenderer_Step(vplRenderer* renderer, bool* doneOut);
+
+// Returns the number of passes of the picture that vplRenderer_GetImage gets; 0: there is no picture yet.
+int vplRenderer_GetPassCount(const vplRenderer* renderer);
 
 // Gets the picture so far, after at least one step; destroy it with vplImage_Destroy. statsOut may be NULL.
 vplResult vplRenderer_GetImage(vplRenderer* renderer, vplImage** imageOut, vplRenderStats* statsOut);

@@ -41,12 +41,12 @@ static void saveState(const Arguments* a, vplRenderer* r, Picture* picture)
 
 // ---- steps
 
-// Steps to the end, or until it is interrupted. `done` says whether there is nothing left to do, `steps`
-// counts passes.
-static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, int steps, Picture* picture)
+// Steps to the end, or until it is interrupted. `done` says whether there is nothing left to do.
+static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, Picture* picture)
 {
     const bool layers = vplRenderer_GetPlan(r)->options.output.aovs != 0;
     double lastSaved = wallMs();
+    int steps = 0, savedSteps = -1, savedPasses = -1;
     vplResult result = VPL_SUCCESS;
     while (!done && result == VPL_SUCCESS) {
         result = vplRenderer_Step(r, &done);
@@ -55,10 +55,14 @@ static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, int step
             wallMs() - lastSaved >= 1000 * a->checkpointEvery) {
             saveState(a, r, picture);
             lastSaved = wallMs();
+            savedSteps = steps;
+            savedPasses = vplRenderer_GetPassCount(r);
         }
     }
-    const bool partial = result == VPL_CANCELLED && steps > 0;
-    if (a->checkpoint != NULL && (result == VPL_SUCCESS || partial)) {
+    const int passes = vplRenderer_GetPassCount(r);
+    const bool partial = result == VPL_CANCELLED && passes > 0;
+    const bool saved = picture->saved && savedSteps == steps && savedPasses == passes;
+    if (a->checkpoint != NULL && !saved && (result == VPL_SUCCESS || partial)) {
         saveState(a, r, picture);
     }
     if (partial && !a->noPartial) {
@@ -88,7 +92,7 @@ int renderPicture(const Arguments* a, const vplScene* scene, const vplRenderOpti
     } else if (a->resume != NULL) {
         code = exitCode(vplRenderer_Load(r, a->resume, &done), true);
     }
-    *resultOut = code == EXIT_DONE ? stepAll(a, r, done, a->resume != NULL, &picture) : VPL_SUCCESS;
+    *resultOut = code == EXIT_DONE ? stepAll(a, r, done, &picture) : VPL_SUCCESS;
     vplRenderer_Destroy(r);
     *pictureOut = picture;
     return code;

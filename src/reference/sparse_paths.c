@@ -3,6 +3,8 @@
 
 #include "base/arena.h"
 
+#include <string.h>
+
 enum { CHUNK = 8 }; // pixels per task
 
 vplResult vplSparsePaths_Init(vplSparsePaths* paths, const vplGeometry* geometry, const vplPathDef* def,
@@ -44,9 +46,21 @@ static void traceChunk(void* data, int chunk, int worker)
 
 vplResult vplSparsePaths_Trace(vplSparsePaths* paths, int each, vplProgressRange progress)
 {
+    vplContext* context = paths->scene.geometry->context;
+    const size_t size = sizeof *paths->pixels;
+    vplSparsePixel* before = vplAlloc(context, (size_t)paths->count, size);
+    if (before == NULL) {
+        return VPL_OUT_OF_MEMORY;
+    }
+    memcpy(before, paths->pixels, (size_t)paths->count * size);
     paths->now = each;
-    TRY(vplParallelForProgress(paths->scene.geometry->context, (paths->count + CHUNK - 1) / CHUNK, traceChunk,
-                               paths, progress));
-    paths->done += each;
-    return VPL_SUCCESS;
+    const vplResult result =
+        vplParallelForProgress(context, (paths->count + CHUNK - 1) / CHUNK, traceChunk, paths, progress);
+    if (result == VPL_SUCCESS) {
+        paths->done += each;
+    } else {
+        memcpy(paths->pixels, before, (size_t)paths->count * size);
+    }
+    vplFree(context, before);
+    return result;
 }

@@ -29,7 +29,7 @@ vplResult vplSparsePaths_Init(vplSparsePaths* paths, const vplGeometry* geometry
 // Frees all but the pixels.
 void vplSparsePaths_Free(vplSparsePaths* paths);
 
-// Adds `each` paths to both halves of all pixels.
+// Adds `each` paths to both halves of all pixels. If it is cancelled or fails, it adds none.
 vplResult vplSparsePaths_Trace(vplSparsePaths* paths, int each, vplProgressRange progress);
 
 #endif

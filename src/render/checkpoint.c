@@ -14,13 +14,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { VERSION = 1, HEADER_BYTES = 96, CHECKSUM_BYTES = 8 };
+enum { VERSION = 2, HEADER_BYTES = 104, CHECKSUM_BYTES = 8 };
 
 // Arrays that a file may have.
 enum { PASSES = 1, PATHS = 2, DIRECT = 4 };
 
 // Bytes of a pixel of the truth, and of what was concluded from them (streamTruth).
-enum { TRUTH_PIXEL_BYTES = 80, TRUTH_BYTES = 48 };
+enum { TRUTH_PIXEL_BYTES = 80, TRUTH_BYTES = 40 };
 
 static const char MAGIC[8] = {'V', 'P', 'L', 'S', 'T', 'A', 'T', 'E'};
 
@@ -32,6 +32,9 @@ typedef struct Header {
     uint32_t truth;           // pixels that tell the error; 0: there are none
     uint64_t rays[2];         // of path tracing: of the picture and of its direct light
     double loss[2];           // of virtual lights by the clamp
+    uint32_t unreviewed;      // vplRenderer.unreviewed
+    double spread;            // spreadBefore of an unreviewed pass; negative: infinite
+    double spent;             // rays of the plan under way
 } Header;
 
 static void streamHeader(vplStream* s, Header* h)
@@ -47,7 +50,10 @@ static void streamHeader(vplStream* s, Header* h)
     vplStream_Long(s, &h->rays[0]);
     vplStream_Long(s, &h->rays[1]);
     vplStream_Doubles(s, h->loss, 2);
-    s->at = HEADER_BYTES;
+    vplStream_Word(s, &h->unreviewed);
+    s->at += 4;
+    vplStream_Doubles(s, &h->spread, 1);
+    vplStream_Doubles(s, &h->spent, 1);
 }
 
 // Bytes of the whole file.
@@ -94,11 +100,9 @@ static void streamTruth(vplStream* s, vplRenderer* r)
 {
     const vplTruthState t = vplTruth_GetState(r->truth);
     uint32_t each = (uint32_t)t.each, reserved = 0;
-    double spent = (double)r->runner.stats.rays - r->planRays;
     vplStream_Word(s, &each);
     vplStream_Word(s, &reserved);
     vplStream_Doubles(s, &r->judgedNoise, 1);
-    vplStream_Doubles(s, &spent, 1);
     vplStream_Doubles(s, &r->error.noise, 1);
     vplStream_Doubles(s, &r->error.total, 1);
     vplStream_Doubles(s, &r->error.bound, 1);
@@ -120,7 +124,6 @@ static void streamTruth(vplStream* s, vplRenderer* r)
         vplStream_Doubles(s, &t.pixels[i].squares, 1);
     }
     vplTruth_SetPaths(r->truth, (int)each);
-    r->planRays = (double)r->runner.stats.rays - spent;
 }
 
 // True if what was read of the truth lies in the picture and has plausible counts.
@@ -153,7 +156,10 @@ static Header describe(const vplRenderer* r, const vplByteBuffer* text)
                 .truth = r->truth != NULL && r->asked.stop.maxError > 0
                              ? (uint32_t)vplTruth_GetState(r->truth).count
                              : 0,
-                .loss = {r->runner.loss.lost, r->runner.loss.all}};
+                .loss = {r->runner.loss.lost, r->runner.loss.all},
+                .unreviewed = r->unreviewed,
+                .spread = r->unreviewed && isfinite(r->spreadBefore) ? r->spreadBefore : -1,
+                .spent = (double)r->runner.stats.rays - r->planRays};
     for (int i = 0; i < 1 + ((parts & DIRECT) != 0) && (parts & PATHS) != 0; i++) {
         vplPathTracer* tracer = vplGetPathTracer(&r->runner.run, i > 0);
         h.samples = (uint32_t)vplPathTracer_GetSums(tracer).samples;
@@ -399,6 +405,9 @@ static vplResult loadState(Loading* l)
         r->weight += vplShareOfPass(r->plan, k);
     }
     r->stale = true;
+    r->planRays = (double)r->runner.stats.rays - h->spent;
+    r->unreviewed = h->unreviewed != 0 && r->done > 0;
+    r->spreadBefore = r->unreviewed && h->spread >= 0 ? h->spread : INFINITY;
     return VPL_SUCCESS;
 }
 
@@ -439,6 +448,6 @@ vplResult vplRenderer_Load(vplRenderer* r, const char* path, bool* doneOut)
         TRY(result);
     }
     const double bound = r->error.bound;
-    *doneOut = vplIsComplete(r) || (asked > 0 && bound >= 0 && bound <= asked);
+    *doneOut = !r->unreviewed && (vplIsComplete(r) || (asked > 0 && bound >= 0 && bound <= asked));
     return VPL_SUCCESS;
 }

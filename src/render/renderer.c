@@ -33,18 +33,64 @@ static void forget(vplRenderer* r)
     r->judgedNoise = 0;
 }
 
-vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool coarse)
+// A plan that may follow the one under way.
+typedef struct NextPlan {
+    vplPlan* plan;
+    double start, rays; // when planning began
+} NextPlan;
+
+// Makes a plan. If that fails or is cancelled, the plan under way and its picture are as before.
+static vplResult makePlan(vplRenderer* r, const vplRenderOptions* options, NextPlan* next)
+{
+    *next = (NextPlan){NULL, vplClockMs(), (double)r->runner.stats.rays};
+    vplResult result = vplMakePlan(&r->runner, options, NULL, &next->plan);
+    if (result == VPL_SUCCESS && next->plan->problem[0] != 0) {
+        result = vplFail(r->runner.run.context, next->plan->refusal, "%s", next->plan->problem);
+        vplPlan_Destroy(next->plan);
+    }
+    if (result != VPL_SUCCESS) {
+        r->runner.run.plan = r->plan;
+        r->stale = r->done > 0;
+    }
+    return result;
+}
+
+static void beginPlan(vplRenderer* r, const NextPlan* next, bool coarse)
 {
     if (r->plan != NULL || r->kept.image != NULL) {
         vplRunner_Forget(&r->runner);
     }
     forget(r);
+    r->plan = next->plan;
+    r->planStart = next->start;
+    r->planRays = next->rays;
     r->coarse = coarse;
-    r->planStart = vplClockMs();
-    r->planRays = (double)r->runner.stats.rays;
-    TRY(vplMakePlan(&r->runner, options, NULL, &r->plan));
-    return r->plan->problem[0] != 0 ? vplFail(r->runner.run.context, r->plan->refusal, "%s", r->plan->problem)
-                                    : VPL_SUCCESS;
+}
+
+vplResult vplRenderer_Plan(vplRenderer* r, const vplRenderOptions* options, bool coarse)
+{
+    NextPlan next;
+    TRY(makePlan(r, options, &next));
+    beginPlan(r, &next, coarse);
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderer_Replace(vplRenderer* r, const vplRenderOptions* options, bool coarse, double error)
+{
+    vplImage* image = NULL;
+    NextPlan next;
+    vplResult result = vplRenderer_Resolve(r, &image);
+    result = result == VPL_SUCCESS ? makePlan(r, options, &next) : result;
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(image);
+        return result;
+    }
+    vplImage_Destroy(r->kept.image);
+    vplPlan_Destroy(r->kept.plan);
+    r->kept = (vplKeptPicture){image, r->plan, r->done, r->paths, error};
+    r->plan = NULL;
+    beginPlan(r, &next, coarse);
+    return VPL_SUCCESS;
 }
 
 // Progress of the render; false where the caller cancels it, or where the time is up and there is a picture.
@@ -79,6 +125,7 @@ vplResult vplRenderer_Create(const vplScene* scene, const vplRenderOptions* opti
     r->start = start;
     r->watched = start;
     r->cpuStart = cpuStart;
+    r->spreadBefore = INFINITY;
     r->deadline = r->asked.stop.budgetMs > 0 ? start + r->asked.stop.budgetMs : INFINITY;
     r->runner = vplRunner_Begin(scene, history);
     r->runner.progress = isfinite(r->deadline) || options->progress != NULL ? watch : NULL;
@@ -222,11 +269,29 @@ static vplResult runPass(vplRenderer* r)
     return result;
 }
 
+// Ends the last pass. Where that is cancelled, the pass stays and the next step ends it, with the same decisions.
+static vplResult review(vplRenderer* r, bool* doneOut)
+{
+    const double judgedNoise = r->judgedNoise;
+    const vplResult result = vplReview(r, doneOut);
+    r->unreviewed = result == VPL_CANCELLED && !r->late;
+    if (r->unreviewed) {
+        r->judgedNoise = judgedNoise;
+        return result;
+    }
+    r->spreadBefore = INFINITY;
+    *doneOut = *doneOut || result == VPL_CANCELLED;
+    return result == VPL_CANCELLED ? VPL_SUCCESS : result;
+}
+
 vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
 {
     const double begin = vplClockMs();
     r->runner.stepFrom = shareOf(r, r->done);
-    r->runner.stepTo = shareOf(r, r->done + 1);
+    r->runner.stepTo = shareOf(r, r->done + !r->unreviewed);
+    if (r->unreviewed) {
+        return review(r, doneOut);
+    }
     const vplRunner before = r->runner;
     const vplResult result = runPass(r);
     if (result == VPL_CANCELLED) { // nothing of the pass counts
@@ -241,12 +306,7 @@ vplResult vplRenderer_Step(vplRenderer* r, bool* doneOut)
     r->passMs += vplClockMs() - begin;
     r->lastMs = vplClockMs() - begin - r->baseMs;
     r->done++;
-    const vplResult reviewed = vplReview(r, doneOut);
-    if (reviewed == VPL_CANCELLED && r->late) {
-        *doneOut = true;
-        return VPL_SUCCESS;
-    }
-    return reviewed;
+    return review(r, doneOut);
 }
 
 // ---- the picture
@@ -355,6 +415,11 @@ vplShown vplRenderer_Shown(const vplRenderer* r)
     return kept->image != NULL && (r->showsKept || r->done == 0)
                ? (vplShown){kept->plan, kept->passes, kept->paths}
                : (vplShown){r->plan, r->done, r->paths};
+}
+
+int vplRenderer_GetPassCount(const vplRenderer* r)
+{
+    return vplRenderer_Shown(r).passes;
 }
 
 const vplPlan* vplRenderer_GetPlan(const vplRenderer* r)

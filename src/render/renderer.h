@@ -54,15 +54,22 @@ struct vplRenderer {
     vplKeptPicture kept;
     bool
         showsKept; // the kept picture was given to the caller, because it is better than that of the plan under way
-    vplTruth* truth;           // NULL: not asked yet
-    vplJudgement judged;       // of the last picture that the truth was asked about
-    vplErrorParts error;       // of the picture of all passes so far
-    double judgedNoise;        // noise when the truth was asked last
+    vplTruth* truth;     // NULL: not asked yet
+    vplJudgement judged; // of the last picture that the truth was asked about
+    vplErrorParts error; // of the picture of all passes so far
+    double judgedNoise;  // noise when the truth was asked last
+    double spreadBefore; // of the truth, before it was refined after the last pass; infinite: it was not
+    bool unreviewed;     // the last pass is part of the picture, but vplReview was cancelled after it
     char ended[VPL_PLAN_TEXT]; // why the error that was asked for was not reached; empty: it was, or none was
 };
 
-// Replaces the plan under way by one for other options; its picture begins anew. `coarse` as above.
+// Replaces the plan under way by one for other options; its picture begins anew. `coarse` as above. After a failure the
+// plan under way goes on.
 vplResult vplRenderer_Plan(vplRenderer* renderer, const vplRenderOptions* options, bool coarse);
+
+// The same, but keeps the picture so far, with its error (negative: unknown), until the new plan has one.
+vplResult vplRenderer_Replace(vplRenderer* renderer, const vplRenderOptions* options, bool coarse,
+                              double error);
 
 // Makes sums of passes, all 0.
 vplResult vplRenderer_OpenSums(vplRenderer* renderer);
@@ -83,9 +90,6 @@ vplShown vplRenderer_Shown(const vplRenderer* renderer);
 
 // Compares the picture with the truth, which must be there, and fills in the renderer's error.
 void vplJudgePicture(vplRenderer* renderer, const vplImage* picture);
-
-// Keeps the picture of the plan under way, with its error (negative: unknown), until another plan has one.
-vplResult vplRenderer_Keep(vplRenderer* renderer, double error);
 
 // After the truth was asked: goes on with another plan where that promises less error in the time that is left (asked is
 // 0), or the error in less time, and ends a render that more passes do not improve.

@@ -83,21 +83,6 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
     return vplRenderer_Plan(r, &o, true);
 }
 
-vplResult vplRenderer_Keep(vplRenderer* r, double error)
-{
-    vplImage* image = NULL;
-    const vplResult result = vplRenderer_Resolve(r, &image);
-    if (result != VPL_SUCCESS) {
-        vplImage_Destroy(image);
-        return result;
-    }
-    vplImage_Destroy(r->kept.image);
-    vplPlan_Destroy(r->kept.plan);
-    r->kept = (vplKeptPicture){image, r->plan, r->done, r->paths, error};
-    r->plan = NULL;
-    return VPL_SUCCESS;
-}
-
 // After a coarse picture of radiosity the next has as many patches as half of the time is enough for, where the time
 // grows with the square of their number.
 static vplResult refine(vplRenderer* r)
@@ -113,8 +98,7 @@ static vplResult refine(vplRenderer* r)
             o.output.antialias = r->asked.output.antialias;
         }
     }
-    TRY(vplRenderer_Keep(r, -1));
-    return vplRenderer_Plan(r, &o, coarse);
+    return vplRenderer_Replace(r, &o, coarse, -1);
 }
 
 // ---- paths
@@ -199,17 +183,17 @@ static vplResult judge(vplRenderer* r, double asked, bool plansAgain, double ms)
     vplRun* run = &r->runner.run;
     vplResult result = vplRenderer_Resolve(r, &image);
     const double start = vplClockMs();
-    double spread = INFINITY;
     if (result == VPL_SUCCESS && r->truth == NULL) {
         result = vplTruth_Create(run, image, &r->truth);
     }
     while (result == VPL_SUCCESS) {
         vplJudgePicture(r, image);
-        if (isClear(r, asked, plansAgain, spread) || vplClockMs() - start > ms / 3) {
+        if (isClear(r, asked, plansAgain, r->spreadBefore) || vplClockMs() - start > ms / 3) {
             break;
         }
-        spread = r->judged.spread;
+        const double spread = r->judged.spread;
         result = vplTruth_Refine(run, r->truth);
+        r->spreadBefore = result == VPL_SUCCESS ? spread : r->spreadBefore;
     }
     r->judgedNoise = r->error.noise;
     vplImage_Destroy(image);

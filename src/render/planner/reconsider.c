@@ -81,8 +81,7 @@ static vplResult goOnWith(vplRenderer* r, const char* what, const vplRenderOptio
            "after %d passes the noise is %.3g %% and the error about %.3g %%: goes on with %s", r->done,
            100 * fmax(0, r->error.noise), 100 * r->error.total, what);
     *doneOut = false;
-    TRY(vplRenderer_Keep(r, r->error.total));
-    return vplRenderer_Plan(r, o, false);
+    return vplRenderer_Replace(r, o, false, r->error.total);
 }
 
 static vplResult trace(vplRenderer* r, bool* doneOut)
