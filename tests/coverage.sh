@@ -5,7 +5,7 @@
 least=${1:-92}
 build=build/coverage
 mkdir -p $build
-make -j"$(nproc)" --no-print-directory BUILD=$build CC=gcc MODE=debug CFLAGS="-O1 --coverage -fprofile-update=atomic" \
+make -j"$(nproc)" --no-print-directory BUILD=$build CC=gcc MODE=debug CFLAGS="-O1 --coverage" \
     test-programs >$build.log 2>&1 || exit 1
 find $build -name '*.gcda' -delete
 tests/run.sh $build >$build/tests.log 2>&1 || tail -n 1 $build/tests.log

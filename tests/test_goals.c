@@ -297,7 +297,7 @@ TEST(ARenderThatWasCancelledAnywhereEndsTheSame, 1)
         o.method = METHODS[i];
         o.stop.maxError = ERRORS[i];
         vplImage_Destroy(renderScene(scene, &o, &whole));
-        for (int at = 1; more; at += 1 + at / 6) {
+        for (int at = 1; more; at += 1 + at / 3) {
             more = stopAt(scene, o, at, tried++ % 2 != 0, &stats, &midway);
             assert_true(stats.imageHash == whole.imageHash && stats.passes == whole.passes);
             assert_true(stats.relativeErrorEstimate == whole.relativeErrorEstimate);
