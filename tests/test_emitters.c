@@ -347,3 +347,108 @@ TEST(WithoutBiasSurfacesShadowThemselvesAndAWarningSaysSo, 1)
     }
     vplScene_Destroy(scene);
 }
+
+// ---- a sample of the emitters
+
+enum { LAMPS = 100 };
+
+// A floor below lamps of strengths 1 to LAMPS.
+static vplScene* lampScene(vplContext* context, int lamps)
+{
+    vplScene* scene = sceneOf(context, 0.5f);
+    addLevel(scene, vplVec(0, 0, 0), 10, false, 0);
+    lookDown(scene, 4, 0.3);
+    for (int i = 0; i < lamps; i++) {
+        addEmitter(scene, VPL_EMITTER_POINT,
+                   vplVec(0.3f * (float)(i % 10) - 1.5f, 2, 0.3f * (float)(i / 10 % 10) - 1.5f),
+                   (vplVec3){0, 0, 0}, (float)(i % LAMPS + 1));
+    }
+    return scene;
+}
+
+TEST(ASampleOfEmittersKeepsTheirSum, 1)
+{
+    static const int WANTED[] = {1, 7, 50, 99, 100, 1000, 0};
+    vplScene* scene = lampScene(context, LAMPS);
+    for (int w = 0; w < 7; w++) {
+        vplRenderOptions o = plainOptions();
+        vplPlan* plan;
+        o.method = VPL_METHOD_DIRECT;
+        o.lights.emitterSamples = WANTED[w];
+        o.seed = 5;
+        assert_int_equal(vplPlan_Create(scene, &o, NULL, &plan), VPL_SUCCESS);
+        const int most = WANTED[w] > 0 && WANTED[w] < LAMPS ? WANTED[w] : LAMPS;
+        const double total = LAMPS * (LAMPS + 1) / 2, step = total / most;
+        double sum = 0;
+        int strong = 0;
+        for (int i = 0; i < plan->emitterCount; i++) {
+            const double scaled = (double)plan->emitters[i].intensity.r;
+            sum += scaled;
+            strong += most < LAMPS && scaled >= step * 0.999;
+        }
+        assertNear(sum / total, 1, 1e-5, "share of the sum", WANTED[w]);
+        assert_true(plan->emitterCount <= most && (most < LAMPS || plan->emitterCount == LAMPS));
+        assert_true(most == LAMPS || strong == plan->emitterCount); // none is weaker than one choice
+        assert_int_equal(plan->sceneEmitterCount, LAMPS);
+        vplPlan_Destroy(plan);
+    }
+    vplScene_Destroy(scene);
+}
+
+TEST(SamplesOfEmittersHaveTheMeanOfAll, 1)
+{
+    enum { SEEDS = 64 };
+    vplScene* scene = lampScene(context, LAMPS);
+    vplRenderOptions o = plainOptions();
+    vplRenderStats stats;
+    o.method = VPL_METHOD_DIRECT;
+    o.lights.shadows = VPL_LIGHT_SHADOWS_RAY;
+    o.output.width = o.output.height = 8;
+    vplImage* all = renderScene(scene, &o, NULL);
+    double sums[3 * 8 * 8] = {0};
+    o.lights.emitterSamples = 8;
+    for (int seed = 0; seed < SEEDS; seed++) {
+        o.seed = (uint64_t)seed;
+        vplImage* image = renderScene(scene, &o, NULL);
+        for (int k = 0; k < 3 * 8 * 8; k++) {
+            sums[k] += (double)image->pixels[k] / SEEDS;
+        }
+        vplImage_Destroy(image);
+    }
+    for (int k = 0; k < 3 * 8 * 8; k++) { // one seed alone is up to 60 % off
+        assertNear(sums[k] / (double)all->pixels[k], 1, 0.1, "share of all", k);
+    }
+    o.method = VPL_METHOD_PATH; // chooses lights by itself
+    o.path.samples = 1;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    const uint64_t hash = stats.imageHash;
+    o.lights.emitterSamples = 0;
+    vplImage_Destroy(renderScene(scene, &o, &stats));
+    assert_true(stats.imageHash == hash);
+    vplImage_Destroy(all);
+    vplScene_Destroy(scene);
+}
+
+// A thousandth of the time that all lamps would take.
+TEST(ThousandsOfLampsHaveAPictureInTime, 2)
+{
+    vplScene* scene = lampScene(context, 20000);
+    vplRenderOptions o = vplDefaultRenderOptions();
+    vplRenderer* r;
+    vplImage* image;
+    bool done = false;
+    o.output.width = 64;
+    o.output.height = 36;
+    o.stop.budgetMs = 30;
+    assert_int_equal(vplRenderer_Create(scene, &o, &r), VPL_SUCCESS);
+    while (!done) {
+        assert_int_equal(vplRenderer_Step(r, &done), VPL_SUCCESS);
+    }
+    const int samples = vplRenderer_GetPlan(r)->options.lights.emitterSamples;
+    assert_true(samples > 0 && samples < 20000);
+    assert_int_equal(vplRenderer_GetImage(r, &image, NULL), VPL_SUCCESS);
+    assert_true(image->pixels[3 * (18 * 64 + 32)] > 0);
+    vplImage_Destroy(image);
+    vplRenderer_Destroy(r);
+    vplScene_Destroy(scene);
+}

@@ -80,8 +80,10 @@ typedef struct vplPlan {
     bool estimatesLoss; // statistics say how much light the clamp takes away
     vplView view;       // the camera, posed
     vplCameraDef camera;
-    const vplEmitterDef* emitters; // those of the scene, posed
+    const vplEmitterDef* emitters; // those of the scene, posed, or the sample of them that stands for all
     int emitterCount;
+    const vplEmitterDef* sceneEmitters; // all of them
+    int sceneEmitterCount;
 
     vplPlanStage stages[VPL_MAX_PLAN_STAGES]; // in the order in which they run
     int stageCount;

@@ -99,7 +99,8 @@ static void addDirect(const Scale* s, double pixels, vplWork* w)
     const bool area = s->lamps && o->method != VPL_METHOD_KELLER;
     const double rays = (s->plan->emitterRays ? s->emitters : 0) + (area ? o->lights.areaLightSamples : 0);
     if (s->plan->showsDirect) {
-        w->counts[SHADOW_RAY] += pixels * rays * 0.6 * s->probe.facing * s->depth;
+        // Emitters are mostly in front of what is seen, also where surfaces do not face each other.
+        w->counts[SHADOW_RAY] += pixels * rays * fmax(0.24, 0.6 * s->probe.facing) * s->depth;
         w->counts[LIGHT] +=
             s->plan->emitterRays ? 0 : pixels * s->emitters * (15 + 1.5 * o->shadow.pcfSamples);
     }
@@ -114,7 +115,7 @@ static double compensationRays(const Scale* s, double lights)
     const int least = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && o->pipeline.interleave >= 8 ? 1 : 2;
     const double work = o->lights.shadows == VPL_LIGHT_SHADOWS_NONE ? lights / 32 : lights;
     const double rays = fmax(least, ceil(work / 48 * sqrt(16 / hitLights)));
-    return s->plan->compensates ? rays * (1 + 0.3 * hitLights) : 0;
+    return s->plan->compensates ? rays * (1 + 0.3 * hitLights + 0.3 * s->emitters) : 0;
 }
 
 static void addPicture(const Scale* s, vplWork* w)

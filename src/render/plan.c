@@ -2,7 +2,9 @@
 // A plan from start to end: poses, decisions (decisions.c), what cannot be rendered, stages, and estimates.
 #include "render/plan.h"
 
+#include "base/rng.h"
 #include "geometry/bvh.h"
+#include "math/vec.h"
 #include "render/options.h"
 #include "render/planner/planner.h"
 #include "render/show.h"
@@ -133,6 +135,44 @@ static void listStages(vplPlan* p)
 
 // ---- the plan
 
+enum { EMITTER_STREAM = 0x80000011u }; // of random numbers
+
+static double strengthOf(const vplEmitterDef* e)
+{
+    return vplRgbMean(e->intensity);
+}
+
+// Chooses `wanted` of the emitters by systematic sampling. One that is chosen several times is listed once, as bright as
+// its choices together. Scales them to keep the sum of strengths.
+static vplResult sampleEmitters(vplPlan* p, int wanted)
+{
+    vplEmitterDef* chosen = vplArena_Alloc(p->arena, (size_t)wanted, sizeof *chosen);
+    TRY(vplArena_Check(p->arena));
+    double total = 0, sum = 0;
+    for (int i = 0; i < p->emitterCount; i++) {
+        total += strengthOf(&p->emitters[i]);
+    }
+    const double step = total / wanted;
+    const double offset = (double)vplUnitFloat(vplRandomAt(p->options.seed, EMITTER_STREAM, 0).v[0]) * step;
+    int count = 0;
+    for (int i = 0, taken = 0; i < p->emitterCount && taken < wanted && step > 0; i++) {
+        const int before = taken;
+        sum += strengthOf(&p->emitters[i]);
+        while (taken < wanted && sum > offset + taken * step) {
+            taken++;
+        }
+        if (taken > before) {
+            chosen[count] = p->emitters[i];
+            chosen[count].intensity = vplRgbScale(
+                (float)((taken - before) * step / strengthOf(&p->emitters[i])), chosen[count].intensity);
+            count++;
+        }
+    }
+    p->emitters = chosen;
+    p->emitterCount = count;
+    return VPL_SUCCESS;
+}
+
 static vplResult pose(const vplScene* scene, vplPlan* p)
 {
     const vplRenderOptions* o = &p->options;
@@ -144,8 +184,10 @@ static vplResult pose(const vplScene* scene, vplPlan* p)
     for (int i = 0; i < p->emitterCount; i++) {
         TRY(vplScene_PoseEmitter(scene, i, o->sequence.frame, &emitters[i]));
     }
-    p->emitters = emitters;
-    return VPL_SUCCESS;
+    p->emitters = p->sceneEmitters = emitters;
+    p->sceneEmitterCount = p->emitterCount;
+    const int wanted = o->lighting == VPL_LIGHTING_DOCUMENTED ? 0 : o->lights.emitterSamples;
+    return wanted > 0 && wanted < p->emitterCount ? sampleEmitters(p, wanted) : VPL_SUCCESS;
 }
 
 static vplResult decideAll(vplRunner* r, vplPlan* p)

@@ -63,14 +63,20 @@ static bool emitterCosine(const vplSurface* restrict surface, const vplEmitterRa
 
 // ---- light
 
-// Multiplies `amount` by the unshadowed share of the emitter.
-static void shadowEmitter(const vplShading* s, const vplDirectLight* direct, const vplPoints* points,
-                          int index, float amount[VPL_LANES], int64_t* rays)
+// Multiplies `amount` by the unshadowed share of the emitter. The first emitter that casts rays finds their starts.
+static void shadowEmitter(vplReceiver* receiver, vplRayStarts* starts, const vplDirectLight* direct,
+                          int index, float amount[VPL_LANES])
 {
+    const vplShading* s = receiver->shading;
+    const vplPoints* points = receiver->points;
     const vplEmitterRay* emitter = &direct->rays[index];
     const vplReflectiveMap* map = vplDirectLight_Map(direct, index);
     if (vplDirectLight_CastsRays(direct, index)) {
-        vplCastEmitterRays(s, points, emitter, amount, rays);
+        if (receiver->starts == NULL) {
+            vplFindRayStarts(s, points, starts);
+            receiver->starts = starts;
+        }
+        vplCastEmitterRays(receiver, emitter, amount);
         return;
     }
     float factor[VPL_LANES];
@@ -94,12 +100,14 @@ static void shadowEmitter(const vplShading* s, const vplDirectLight* direct, con
 void VPL_KERNEL(vplAddEmitters)(const vplShading* s, const vplDirectLight* direct, const vplPoints* points,
                                 float irradiance[restrict 3][VPL_LANES], int64_t* rays)
 {
+    vplRayStarts starts;
+    vplReceiver receiver = {s, points, NULL, rays};
     for (int i = 0; i < direct->emitterCount; i++) {
         float amount[VPL_LANES];
         if (!emitterCosine(points->surface, &direct->rays[i], amount)) {
             continue;
         }
-        shadowEmitter(s, direct, points, i, amount, rays);
+        shadowEmitter(&receiver, &starts, direct, i, amount);
         const vplRgb intensity = direct->emitters[i].intensity;
         const float weight = direct->weight;
         const float colour[3] = {weight * intensity.r, weight * intensity.g, weight * intensity.b};

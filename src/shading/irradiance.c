@@ -75,20 +75,16 @@ static void castShadowRays(const vplReceiver* r, const vplVec3 way[VPL_LANES], b
     *r->rays += vplGeometry_Darken(g, &packet, parallel ? INFINITY : 1, amount);
 }
 
-void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,
-                        float amount[VPL_LANES], int64_t* rays)
+void vplCastEmitterRays(const vplReceiver* receiver, const vplEmitterRay* emitter, float amount[VPL_LANES])
 {
-    vplRayStarts starts;
-    const vplReceiver receiver = {shading, points, &starts, rays};
-    vplFindRayStarts(shading, points, &starts);
     vplVec3 way[VPL_LANES];
     for (int l = 0; l < VPL_LANES; l++) {
-        const bool needed = amount[l] > 0 && points->triangle[l] >= 0;
+        const bool needed = amount[l] > 0 && receiver->points->triangle[l] >= 0;
         way[l] = emitter->parallel ? vplNegate(emitter->direction)
-                 : needed          ? vplSub(emitter->position, starts.hit[l].position)
+                 : needed          ? vplSub(emitter->position, receiver->starts->hit[l].position)
                                    : vplVec(0, 0, 0);
     }
-    castShadowRays(&receiver, way, emitter->parallel, amount);
+    castShadowRays(receiver, way, emitter->parallel, amount);
 }
 
 static void castLightRays(const vplReceiver* r, const vplShadeLight* light, float visible[VPL_LANES])

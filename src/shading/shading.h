@@ -227,9 +227,9 @@ typedef struct vplReceived {
 bool vplReceiveLight(const vplReceiver* receiver, const vplShadeLight* light, const vplHemiMap* map,
                      float inverseClamp, vplReceived* out);
 
-// Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray.
-void vplCastEmitterRays(const vplShading* shading, const vplPoints* points, const vplEmitterRay* emitter,
-                        float amount[VPL_LANES], int64_t* rays);
+// Sets amount to 0 where something is between a point and an emitter. Lanes of amount 0 cast no ray. The receiver must
+// have starts.
+void vplCastEmitterRays(const vplReceiver* receiver, const vplEmitterRay* emitter, float amount[VPL_LANES]);
 
 // Irradiance of all emitters and area lights, with shadows. Adds to `rays`.
 void vplDirectIrradiance(const vplShading* shading, const vplDirectLight* direct, const vplPoints* points,

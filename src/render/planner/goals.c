@@ -33,10 +33,27 @@ static double leftOf(const vplRenderer* r)
 
 // ---- coarse plans
 
+// Share of the time that may pass until the first picture; times are foreseen within a factor of two.
+static const double FIRST_SHARE = 0.25;
+
+// A coarse plan takes a sample of emitters only where there are more.
+enum { FEW_EMITTERS = 16 };
+
+static int countEmitters(const vplRenderer* r)
+{
+    const int asked = r->asked.lights.emitterSamples, all = vplScene_GetEmitterCount(r->runner.run.scene);
+    return asked > 0 && asked < all ? asked : all;
+}
+
 // Fewer lights and patches by a factor, no smooth edges and small shadow maps.
 static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
 {
     *o = r->asked;
+    const int emitters = countEmitters(r);
+    if (emitters > FEW_EMITTERS) {
+        const double fits = r->plan != NULL && !r->coarse ? FIRST_SHARE * leftOf(r) / r->plan->firstMs : 1;
+        o->lights.emitterSamples = (int)fmax(FEW_EMITTERS, ceil(fmin(share, fits) * emitters));
+    }
     o->stop.budgetMs =
         o->method == VPL_METHOD_RADIOSITY ? o->stop.budgetMs : 0; // which it may not be able to hold
     o->stop.maxError = 0;
@@ -60,9 +77,6 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->radiosity.iterations = o->radiosity.iterations < 20 ? o->radiosity.iterations : 20;
 }
 
-// Share of the time that may pass until the first picture; times are foreseen within a factor of two.
-static const double FIRST_SHARE = 0.25;
-
 // A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.
 static const double HOPELESS = 0.8;
 
@@ -83,6 +97,22 @@ vplResult vplRenderer_PlanFirst(vplRenderer* r)
     return vplRenderer_Plan(r, &o, true);
 }
 
+// After a coarse picture with a sample of the emitters the next has as many as 0.7 of the time is enough for. Its edges are
+// not smooth, because few bright emitters have many rims of shadows, and short rays do not compensate the clamp, because
+// all emitters are evaluated where they end: each takes several times as long.
+static void addEmitters(const vplRenderer* r, vplRenderOptions* o)
+{
+    const double spent = vplClockMs() - r->planStart, before = r->plan->options.lights.emitterSamples;
+    const double fits = before * fmax(1, 0.7 * leftOf(r) / fmax(spent, 1));
+    if (before > 0 && fits < countEmitters(r)) {
+        o->lights.emitterSamples = (int)fits;
+        o->output.antialias = 1;
+        o->lights.compensation = VPL_COMPENSATION_NONE;
+        vplLog(r->runner.run.context, VPL_LOG_INFO, "%d of the scene's %d lights stand for all in this time",
+               (int)fits, vplScene_GetEmitterCount(r->runner.run.scene));
+    }
+}
+
 // After a coarse picture of radiosity the next has as many patches as half of the time is enough for, where the time
 // grows with the square of their number.
 static vplResult refine(vplRenderer* r)
@@ -97,6 +127,8 @@ static vplResult refine(vplRenderer* r)
             coarsen(r, patches / o.radiosity.patches, &o);
             o.output.antialias = r->asked.output.antialias;
         }
+    } else {
+        addEmitters(r, &o);
     }
     return vplRenderer_Replace(r, &o, coarse, -1);
 }
