@@ -286,10 +286,10 @@ static bool stopAt(const vplScene* scene, vplRenderOptions o, int at, bool saves
 // A cancelled search for the error goes on as if it had not been: its paths counted twice, and it was left out.
 TEST(ARenderThatWasCancelledAnywhereEndsTheSame, 1)
 {
-    static const vplMethod METHODS[] = {VPL_METHOD_AUTO, VPL_METHOD_AUTO, VPL_METHOD_PATH};
-    static const double ERRORS[] = {0.05, 0.1, 0.15}; // 0.05: another plan follows the first
+    static const vplMethod METHODS[] = {VPL_METHOD_AUTO, VPL_METHOD_PATH};
+    static const double ERRORS[] = {0.05, 0.15}; // 0.05: another plan follows the first
     vplScene* scene = loadScene(context, "room.json");
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 2; i++) {
         vplRenderOptions o = smallOptions();
         vplRenderStats whole, stats;
         int tried = 0;
@@ -297,12 +297,12 @@ TEST(ARenderThatWasCancelledAnywhereEndsTheSame, 1)
         o.method = METHODS[i];
         o.stop.maxError = ERRORS[i];
         vplImage_Destroy(renderScene(scene, &o, &whole));
-        for (int at = 1; more; at += 1 + at / 3) {
+        for (int at = 1; more; at += 1 + at / 6) {
             more = stopAt(scene, o, at, tried++ % 2 != 0, &stats, &midway);
             assert_true(stats.imageHash == whole.imageHash && stats.passes == whole.passes);
             assert_true(stats.relativeErrorEstimate == whole.relativeErrorEstimate);
         }
-        assert_true(midway == (i < 2));
+        assert_true(midway == (i == 0)); // paths are their own truth
     }
     remove(SAVED);
     vplScene_Destroy(scene);
