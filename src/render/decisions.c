@@ -218,6 +218,12 @@ static void chooseRadiosity(vplPlan* p)
         vplDecide(p, "row-sums",
                   incentre ? "as the document has it" : "no patch sends more light than it has");
     }
+    if (o->cuts == VPL_PATCH_CUTS_AUTO) {
+        o->cuts = incentre ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
+        vplDecide(p, "patch-cuts",
+                  incentre ? "as the document has it"
+                           : "no patch lies on both sides of what meets its surface");
+    }
     if (o->lightSamples == 0) {
         o->lightSamples = incentre ? 1 : VPL_PATCH_CELLS;
         vplDecide(p, "patch-light", incentre ? "as the document has it" : "the mean over the patch");

@@ -14,6 +14,7 @@ static vplResult bisect(const vplRun* run, int count, vplPatches** patchesOut)
     def.size = o->patchSize;
     def.count = count;
     def.rounds = o->subdivisions;
+    def.cut = o->cuts == VPL_PATCH_CUTS_ON;
     return vplPatches_Create(run->results[VPL_STAGE_GEOMETRY], &def, patchesOut);
 }
 
