@@ -127,7 +127,8 @@ static bool split(const Cutter* c, int node, int apex, vplVec3 point, float shar
 {
     vplCutPieces* p = c->pieces;
     const vplPatchNode whole = p->nodes[node];
-    const uint32_t a = whole.corners[apex], b = whole.corners[(apex + 1) % 3], d = whole.corners[(apex + 2) % 3];
+    const uint32_t a = whole.corners[apex], b = whole.corners[(apex + 1) % 3],
+                   d = whole.corners[(apex + 2) % 3];
     const vplTriangleCorners rotated = {{p->points[a], p->points[b], p->points[d]}};
     const vplVec3 normal = c->geometry->normals[whole.triangle];
     if (!(share > 0 && share < 1) || !vplPatch_CanSplit(&rotated, point, normal) ||
@@ -241,8 +242,7 @@ static vplResult reserve(Cutter* c)
 static vplResult cut(Cutter* c, const Line* line, int node)
 {
     double way[2];
-    if (!passThrough(c, line, node, way) ||
-        fmin(way[1], line->length) - fmax(way[0], 0) <= c->tolerance) {
+    if (!passThrough(c, line, node, way) || fmin(way[1], line->length) - fmax(way[0], 0) <= c->tolerance) {
         return VPL_SUCCESS;
     }
     if (c->pieces->nodes[node].children < 0) {
@@ -266,9 +266,7 @@ typedef struct Ordered {
 static int longestFirst(const void* a, const void* b)
 {
     const Ordered *x = a, *y = b;
-    return x->line.length > y->line.length   ? -1
-           : x->line.length < y->line.length ? 1
-                                             : x->index - y->index;
+    return x->line.length > y->line.length ? -1 : x->line.length < y->line.length ? 1 : x->index - y->index;
 }
 
 static vplResult cutTriangle(Cutter* c, const vplPatchCut* segments, int count, int triangle)
@@ -299,7 +297,8 @@ vplResult vplCutPieces_Make(vplArena* scratch, const vplGeometry* g, const vplCu
     const size_t triangles = (size_t)g->triangleCount;
     *pieces = (vplCutPieces){.nodes = NULL};
     Cutter c = {g, scratch, pieces, segments->tolerance, (EXTRA + 1) * triangles + BASE, false};
-    TRY(vplArena_Reserve(scratch, &pieces->points, &pieces->pointCapacity, 3 * triangles, sizeof *pieces->points));
+    TRY(vplArena_Reserve(scratch, &pieces->points, &pieces->pointCapacity, 3 * triangles,
+                         sizeof *pieces->points));
     TRY(vplArena_Reserve(scratch, &pieces->nodes, &pieces->nodeCapacity, triangles, sizeof *pieces->nodes));
     for (uint32_t t = 0; t < triangles; t++) {
         const vplTriangleCorners at = vplGeometry_Corners(g, (int)t);

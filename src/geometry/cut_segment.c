@@ -108,10 +108,10 @@ static int addOutline(const vplTriangleCorners* triangle, const vplCutPolygon* p
 static void extend(Segment* s, int* count, const double point[3])
 {
     const double now = squareBetween(s->end[0], s->end[1]);
-    const int end = *count < 2                                    ? *count
-                    : squareBetween(s->end[0], point) > now       ? 1
-                    : squareBetween(s->end[1], point) > now       ? 0
-                                                                  : -1;
+    const int end = *count < 2                              ? *count
+                    : squareBetween(s->end[0], point) > now ? 1
+                    : squareBetween(s->end[1], point) > now ? 0
+                                                            : -1;
     for (int k = 0; k < 3 && end >= 0; k++) {
         s->end[end][k] = point[k];
     }

@@ -44,6 +44,7 @@ vplResult vplCutPieces_Make(vplArena* scratch, const vplGeometry* geometry, cons
                             vplCutPieces* piecesOut);
 
 // Makes points of cuts that rounding alone separates equal. (cut_points.c)
-vplResult vplCutPieces_Snap(vplArena* scratch, const vplGeometry* geometry, double tolerance, vplCutPieces* pieces);
+vplResult vplCutPieces_Snap(vplArena* scratch, const vplGeometry* geometry, double tolerance,
+                            vplCutPieces* pieces);
 
 #endif
