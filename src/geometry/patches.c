@@ -159,6 +159,7 @@ static void grow(vplPatchTree* tree, double square, int rounds)
 static vplResult cut(vplArena* scratch, Roots* roots)
 {
     const vplGeometry* g = roots->geometry;
+    TRY(vplArena_Check(scratch));
     TRY(vplCutSegments_Find(scratch, g, &roots->segments));
     if (roots->segments.count == 0) {
         return VPL_SUCCESS;
@@ -209,7 +210,7 @@ vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def,
 {
     TRY(checkDef(geometry, def));
     Roots roots = {.geometry = geometry, .count = geometry->triangleCount};
-    vplArena* scratch = vplArena_Create(geometry->context);
+    vplArena* scratch = def->cut ? vplArena_Create(geometry->context) : NULL;
     vplResult result = def->cut ? cut(scratch, &roots) : VPL_SUCCESS;
     if (result == VPL_SUCCESS) {
         const double length = def->size > 0 ? (double)def->size : lengthFor(&roots, def->count, def->rounds);
