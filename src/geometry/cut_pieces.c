@@ -13,7 +13,7 @@
 // A piece is halved as in bisection, not split, where the line's way through it is more than REACH times as long as
 // the segment: a chair's leg would otherwise divide a floor from wall to wall. At most EXTRA nodes per triangle and
 // BASE for all come from cuts.
-enum { REACH = 4, EXTRA = 6, BASE = 1 << 17 };
+enum { REACH = 8, EXTRA = 6, BASE = 1 << 17 };
 
 typedef struct Line {
     double start[3], along[3], across[3]; // unit vectors

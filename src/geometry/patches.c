@@ -188,10 +188,12 @@ static vplResult build(const Roots* roots, double length, const vplPatchDef* def
     }
     const size_t triangles = (size_t)g->triangleCount, vertices = (size_t)g->vertexCount,
                  points = roots->pieces.pointCount;
-    const size_t corners = points > 0 ? points : 3 * triangles < vertices ? 3 * triangles : vertices;
+    const size_t corners =
+        (3 * triangles < vertices ? 3 * triangles : vertices) + (points > 0 ? points - 3 * triangles : 0);
+    const size_t more =
+        (size_t)(points > 0 ? count - countAll(roots, INFINITY, 0, count) : count); // bisections
     vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
-    vplResult result =
-        vplPatchTree_Reserve(&tree, corners + (size_t)count, (size_t)roots->count + 2 * (size_t)count);
+    vplResult result = vplPatchTree_Reserve(&tree, corners + more, (size_t)roots->count + 2 * more);
     if (result == VPL_SUCCESS && points > 0) {
         result = vplPatchTree_CopyCuts(&tree, roots->segments.list, roots->segments.first);
     }

@@ -193,8 +193,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
                        0};
     case VPL_STAGE_PATCHES:
         return adaptivePatches(s);
-    case VPL_STAGE_PATCH_MESH:
-        return (Bytes){98.0 * p->patches, 98.0 * p->patches};
+    case VPL_STAGE_PATCH_MESH: // faces of cut patches have vertices of their own
+        return o->radiosity.cuts == VPL_PATCH_CUTS_ON ? (Bytes){200.0 * p->patches, 300.0 * p->patches}
+                                                      : (Bytes){98.0 * p->patches, 98.0 * p->patches};
     case VPL_STAGE_FORM_FACTORS:
         return formFactors(s, s->sides);
     case VPL_STAGE_PATCH_LIGHT:
