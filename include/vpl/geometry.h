@@ -233,7 +233,8 @@ typedef struct vplPatchDef {
     int count;
     int rounds; // of bisection at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
     // Cut triangles where other surfaces cross, touch or overlap them, before they are bisected, so that no patch
-    // lies on both sides of a wall, or half under a box; default false. Pieces count as triangles above.
+    // lies on both sides of a wall, or half under a box; default false. `count` is that without cuts: many pieces are
+    // slivers inside walls, which should not make the other patches coarser.
     bool cut;
     uint32_t cookie; // set by vplDefaultPatchDef
 } vplPatchDef;
@@ -275,6 +276,7 @@ typedef struct vplPatches {
     // vplPatchDef.cut is false.
     const vplPatchCut* cuts;
     const int* firstCut;
+    int cutPatches;         // how many more patches there are than without cuts
     int unresolvedCuts;     // along which some patch still spans what cuts it, because no float lies between
     struct vplArena* arena; // owns the arrays
     vplContext* context;

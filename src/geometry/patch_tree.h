@@ -19,7 +19,7 @@ typedef struct vplPatchTree {
     // As in vplPatches; owned by the arena.
     const vplPatchCut* cuts;
     const int* firstCut;
-    int unresolvedCuts;
+    int cutPatches, unresolvedCuts;
 } vplPatchTree;
 
 // Rotates the corners until corner 0 is opposite the longest edge; among equally long ones 01 goes before 12

@@ -193,6 +193,10 @@ static vplResult build(const Roots* roots, double length, const vplPatchDef* def
     const size_t more =
         (size_t)(points > 0 ? count - countAll(roots, INFINITY, 0, count) : count); // bisections
     vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
+    if (points > 0) {
+        const Roots whole = {.geometry = g, .count = g->triangleCount};
+        tree.cutPatches = count - countAll(&whole, square, def->rounds, count);
+    }
     vplResult result = vplPatchTree_Reserve(&tree, corners + more, (size_t)roots->count + 2 * more);
     if (result == VPL_SUCCESS && points > 0) {
         result = vplPatchTree_CopyCuts(&tree, roots->segments.list, roots->segments.first);
@@ -215,7 +219,8 @@ vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def,
     vplArena* scratch = def->cut ? vplArena_Create(geometry->context) : NULL;
     vplResult result = def->cut ? cut(scratch, &roots) : VPL_SUCCESS;
     if (result == VPL_SUCCESS) {
-        const double length = def->size > 0 ? (double)def->size : lengthFor(&roots, def->count, def->rounds);
+        const Roots whole = {.geometry = geometry, .count = geometry->triangleCount};
+        const double length = def->size > 0 ? (double)def->size : lengthFor(&whole, def->count, def->rounds);
         result = build(&roots, length, def, patchesOut);
     }
     vplArena_Destroy(scratch);
