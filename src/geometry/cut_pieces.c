@@ -15,11 +15,6 @@
 // BASE for all come from cuts.
 enum { REACH = 8, EXTRA = 6, BASE = 1 << 17 };
 
-typedef struct Line {
-    double start[3], along[3], across[3]; // unit vectors
-    double length;                        // of the segment
-} Line;
-
 typedef struct Cutter {
     const vplGeometry* geometry;
     vplArena* scratch;
@@ -32,63 +27,6 @@ typedef struct Cutter {
 static vplTriangleCorners cornersOf(const Cutter* c, int node)
 {
     return vplCornersOf(c->pieces->points, c->pieces->nodes[node].corners);
-}
-
-// ---- lines
-
-static bool makeLine(const vplPatchCut* segment, vplVec3 normal, Line* line)
-{
-    double end[3], n[3];
-    vplToDouble3(segment->ends[0], line->start);
-    vplToDouble3(segment->ends[1], end);
-    vplToDouble3(normal, n);
-    for (int k = 0; k < 3; k++) {
-        line->along[k] = end[k] - line->start[k];
-    }
-    line->length = sqrt(vplDot3(line->along, line->along));
-    for (int k = 0; k < 3; k++) {
-        line->along[k] /= line->length;
-    }
-    vplCross3(n, line->along, line->across);
-    return line->length > 0;
-}
-
-// The coordinates of a point along and across a line.
-static void locate(const Line* line, vplVec3 point, double* along, double* across)
-{
-    double p[3];
-    vplToDouble3(point, p);
-    for (int k = 0; k < 3; k++) {
-        p[k] -= line->start[k];
-    }
-    *along = vplDot3(p, line->along);
-    *across = vplDot3(p, line->across);
-}
-
-// The line's way through a piece: the part of it that is deeper inside than the tolerance. False if there is none.
-static bool passThrough(const Cutter* c, const Line* line, int node, double way[2])
-{
-    const vplTriangleCorners at = cornersOf(c, node);
-    double x[3], y[3];
-    for (int k = 0; k < 3; k++) {
-        locate(line, at.corner[k], &x[k], &y[k]);
-    }
-    way[0] = -INFINITY;
-    way[1] = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        const int next = (k + 1) % 3;
-        const double dx = x[next] - x[k], dy = y[next] - y[k], length = sqrt(dx * dx + dy * dy);
-        // The inside is where dx (0 - y) - dy (s - x) >= tolerance * length.
-        const double rest = dx * y[k] - dy * x[k] + c->tolerance * length;
-        if (dy > 0) {
-            way[1] = fmin(way[1], -rest / dy);
-        } else if (dy < 0) {
-            way[0] = fmax(way[0], -rest / dy);
-        } else if (rest > 0) {
-            return false;
-        }
-    }
-    return way[1] - way[0] > c->tolerance;
 }
 
 // ---- splits
@@ -162,13 +100,13 @@ typedef struct Sides {
     int side[3];
 } Sides;
 
-static Sides sidesOf(const Cutter* c, const Line* line, int node)
+static Sides sidesOf(const Cutter* c, const vplCutLine* line, int node)
 {
     const vplTriangleCorners at = cornersOf(c, node);
     Sides s;
     for (int k = 0; k < 3; k++) {
         double along;
-        locate(line, at.corner[k], &along, &s.distance[k]);
+        vplCutLine_Locate(line, at.corner[k], &along, &s.distance[k]);
         s.side[k] = s.distance[k] > c->tolerance ? 1 : s.distance[k] < -c->tolerance ? -1 : 0;
     }
     return s;
@@ -215,7 +153,7 @@ static bool splitAcross(const Cutter* c, int node, const Sides* s, int lone)
     return split(c, half, apex, byI ? onJ : onI, (float)(fromLone ? share : 1 - share));
 }
 
-static bool splitByLine(const Cutter* c, const Line* line, int node)
+static bool splitByLine(const Cutter* c, const vplCutLine* line, int node)
 {
     const Sides s = sidesOf(c, line, node);
     for (int k = 0; k < 3; k++) {
@@ -239,10 +177,12 @@ static vplResult reserve(Cutter* c)
     return vplArena_Reserve(c->scratch, &p->nodes, &p->nodeCapacity, p->nodeCount + 4, sizeof *p->nodes);
 }
 
-static vplResult cut(Cutter* c, const Line* line, int node)
+static vplResult cut(Cutter* c, const vplCutLine* line, int node)
 {
     double way[2];
-    if (!passThrough(c, line, node, way) || fmin(way[1], line->length) - fmax(way[0], 0) <= c->tolerance) {
+    const vplTriangleCorners at = cornersOf(c, node);
+    if (!vplCutLine_PassThrough(line, &at, c->tolerance, way) ||
+        fmin(way[1], line->length) - fmax(way[0], 0) <= c->tolerance) {
         return VPL_SUCCESS;
     }
     if (c->pieces->nodes[node].children < 0) {
@@ -259,7 +199,7 @@ static vplResult cut(Cutter* c, const Line* line, int node)
 }
 
 typedef struct Ordered {
-    Line line;
+    vplCutLine line;
     int index;
 } Ordered;
 
@@ -278,7 +218,7 @@ static vplResult cutTriangle(Cutter* c, const vplPatchCut* segments, int count, 
     int lines = 0;
     for (int i = 0; i < count; i++) {
         order[lines].index = i;
-        lines += makeLine(&segments[i], c->geometry->normals[triangle], &order[lines].line);
+        lines += vplCutLine_Make(&segments[i], c->geometry->normals[triangle], &order[lines].line);
     }
     qsort(order, (size_t)lines, sizeof *order, longestFirst);
     vplResult result = VPL_SUCCESS;

@@ -32,6 +32,22 @@ typedef struct vplCutPolygon {
 int vplCutSegment_Between(const vplTriangleCorners* triangle, const vplCutPolygon* polygon, double tolerance,
                           vplPatchCut segmentsOut[4]);
 
+// The line of a segment in the plane of its triangle. (cut_line.c)
+typedef struct vplCutLine {
+    double start[3], along[3], across[3]; // unit vectors
+    double length;                        // of the segment, metres
+} vplCutLine;
+
+// False for a segment without length.
+bool vplCutLine_Make(const vplPatchCut* segment, vplVec3 normal, vplCutLine* lineOut);
+
+// The coordinates of a point along and across a line.
+void vplCutLine_Locate(const vplCutLine* line, vplVec3 point, double* alongOut, double* acrossOut);
+
+// The line's way through a piece: the part of it that is deeper inside than the tolerance. False if there is none.
+bool vplCutLine_PassThrough(const vplCutLine* line, const vplTriangleCorners* piece, double tolerance,
+                            double wayOut[2]);
+
 // Trees of the pieces of triangles: node t, t < geometry->triangleCount, is triangle t. (cut_pieces.c)
 typedef struct vplCutPieces {
     vplPatchNode* nodes; // corners are indices in points
