@@ -251,11 +251,11 @@ int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position)
     double w[3];
     vplTriangle_Barycentrics(at.corner, position, w);
     while (node->children >= 0) {
-        const double share = (double)node->at, rest = 1 - share;
-        const bool second = w[2] * rest > w[1] * share;
+        const double share = (double)node->at, ratio = share == 0.5 ? 1 : share / (1 - share);
+        const bool second = w[2] > w[1] * ratio;
         const vplPatchNode* half = &patches->nodes[node->children + second];
-        const double a = w[0], b = second ? w[1] / rest : w[1] - w[2] * rest / share,
-                     c = second ? w[2] - w[1] * share / rest : w[2] / share;
+        const double a = w[0], b = second ? w[1] * (1 + ratio) : w[1] - w[2] / ratio,
+                     c = second ? w[2] - w[1] * ratio : w[2] * (1 + 1 / ratio);
         const uint32_t apex = node->corners[0]; // has weight a, and is anywhere in the half's rotated corners
         const int rotation = half->corners[0] == apex ? 0 : half->corners[2] == apex ? 1 : 2;
         w[0] = rotation == 0 ? a : rotation == 1 ? b : c;

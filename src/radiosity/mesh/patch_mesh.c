@@ -36,6 +36,18 @@ static vplPatchAround makeAround(const vplPatchSides* sides, int patch, int face
     return around;
 }
 
+// Adds a further piece of a patch, which may share another face.
+static void addPiece(vplPatchAround* around, const vplPatchAround* piece)
+{
+    around->angle += piece->angle;
+    for (int face = 0; face < 2; face++) {
+        if (piece->side[face] >= 0) {
+            around->side[face] = piece->side[face];
+            around->open[face] = piece->open[face];
+        }
+    }
+}
+
 // Adds a corner to the vertex that is being made, on its front, its back or both.
 static void addCorner(Builder* b, size_t i, int faces, double normal[3])
 {
@@ -48,10 +60,11 @@ static void addCorner(Builder* b, size_t i, int faces, double normal[3])
     normal[1] += (double)angle * (double)n.y;
     normal[2] += (double)angle * (double)n.z;
     // Pieces are in the order of patches, so those of one patch are consecutive.
+    const vplPatchAround piece = makeAround(b->mesh->sides, patch, faces, angle);
     if (*end > b->around->first[vertex] && b->around->list[*end - 1].patch == patch) {
-        b->around->list[*end - 1].angle += angle;
+        addPiece(&b->around->list[*end - 1], &piece);
     } else {
-        b->around->list[(*end)++] = makeAround(b->mesh->sides, patch, faces, angle);
+        b->around->list[(*end)++] = piece;
     }
 }
 
