@@ -390,6 +390,8 @@ TEST(RadiosityIsTheSameAtAnySize, 1)
         options.output.height = 30;
         options.radiosity.patches = 200;
         options.radiosity.hierarchy = which == 1 ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
+        // Links between the slivers that cuts leave keep their bits from 2^-20 m to 2^30 m only.
+        options.radiosity.cuts = which == 1 ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_AUTO;
         options.radiosity.formFactors = which == 2 ? VPL_FORM_FACTORS_INCENTRE : VPL_FORM_FACTORS_MONTE_CARLO;
         const uint64_t wanted = sizedHash(context, 1, 0, &options);
         for (int i = 0; i < 8; i++) {

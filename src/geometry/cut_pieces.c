@@ -123,8 +123,8 @@ static bool splitFromCorner(const Cutter* c, int node, const Sides* s, int apex)
 
 static double squareBetween(vplVec3 a, vplVec3 b)
 {
-    const vplVec3 d = vplSub(b, a);
-    return (double)vplDot(d, d);
+    const double d[3] = {(double)b.x - (double)a.x, (double)b.y - (double)a.y, (double)b.z - (double)a.z};
+    return vplDot3(d, d);
 }
 
 // Splits a piece of which corner `lone` is alone on its side of the line: first to one of the line's two points on
