@@ -60,7 +60,7 @@ static int countPart(const vplTriangleCorners* part, vplVec3 normal, double squa
     return count;
 }
 
-// What is bisected: triangles, or their pieces.
+// The triangles that are bisected, or their pieces.
 typedef struct Roots {
     const vplGeometry* geometry;
     vplCutSegments segments;

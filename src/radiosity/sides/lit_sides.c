@@ -142,8 +142,9 @@ static int countUnlit(const vplLitSearch* s)
 }
 
 // Closes sides that viewpoints see but light does not reach, as in a sealed room: their form factors with lit ones are
-// 0 but for rounding at the seams. Without light sources they stay. Each pass casts up to 80 rays from each of them, and goes on while one was found to
-// be lit. The pass is set back: other steps have the same random numbers as without.
+// 0 but for rounding at the seams. Without light sources they stay. Each pass casts up to 80 rays from each of them,
+// and another follows while one was found to be lit. The pass is set back: other steps have the same random numbers as
+// without.
 static vplResult closeDarkRooms(vplLitSearch* s)
 {
     const int sides = 2 * s->patches->patchCount, pass = s->pass;
