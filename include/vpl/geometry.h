@@ -231,22 +231,34 @@ typedef struct vplPatchDef {
     // bisected longest edge first, all of equal length together; there are never fewer patches than
     // triangles.
     int count;
-    int rounds;      // of bisection at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
+    int rounds; // of bisection at most, [0, VPL_MAX_PATCH_ROUNDS]; default VPL_MAX_PATCH_ROUNDS
+    // Cut triangles where other surfaces cross, touch or overlap them, before they are bisected, so that no patch
+    // lies on both sides of a wall, or half under a box; default false. `count` is that without cuts: many pieces are
+    // slivers inside walls, which should not make the other patches coarser.
+    bool cut;
     uint32_t cookie; // set by vplDefaultPatchDef
 } vplPatchDef;
 
 vplPatchDef vplDefaultPatchDef(void);
 
-// A triangle of the geometry or a half of another node, counter-clockwise seen from the front. Corner 0 is
+// A triangle of the geometry or a part of another node, counter-clockwise seen from the front. Corner 0 is
 // opposite the edge that is, or would be, bisected: the longest, and of equally long ones the first in the
-// order 01, 12, 20 of the parent's corners.
+// order 01, 12, 20 of the parent's corners. Where another surface cuts the node, it is any edge.
 typedef struct vplPatchNode {
     uint32_t corners[3]; // indices in vplPatches.positions
     int triangle;        // of the geometry
     int parent;          // -1: the node is that triangle
     int children;        // the first of two, which follow each other; -1: a patch, or a triangle without area
     int patch;           // index in vplPatches.patches; -1: none
+    float at; // the children meet this share of the way from corner 1 to corner 2; 0.5 where bisected
 } vplPatchNode;
+
+// A segment along which another surface crosses or touches a triangle.
+typedef struct vplPatchCut {
+    vplVec3 ends[2];
+    uint8_t
+        faces; // bit 0: the surface stands on the triangle's front; bit 1: on its back; 0: lies in its plane
+} vplPatchCut;
 
 // Triangles bisected at their longest edges. Read only. Node t, t < geometry->triangleCount, is triangle t.
 // The middle of a shared edge has the same bits for both triangles. Triangles whose area is 0 have no patch.
@@ -259,12 +271,19 @@ typedef struct vplPatches {
     int nodeCount;
     const int* patches; // nodes that are patches: triangle by triangle, each in the order of its tree
     int patchCount;
-    float longestEdge;      // of all patches, metres; rounded up, so that as T it gives the same patches
+    float longestEdge; // of all patches, metres; rounded up, so that as T it gives the same patches
+    // The cuts of triangle t are cuts[firstCut[t]] .. cuts[firstCut[t + 1] - 1]. NULL: no surface meets another, or
+    // vplPatchDef.cut is false.
+    const vplPatchCut* cuts;
+    const int* firstCut;
+    int cutPatches;         // how many more patches there are than without cuts
+    int unresolvedCuts;     // along which some patch still spans what cuts it, because no float lies between
     struct vplArena* arena; // owns the arrays
     vplContext* context;
 } vplPatches;
 
-// The geometry must outlive the patches. Errors: VPL_INVALID_ARGUMENT, VPL_LIMIT for more than
+// The geometry must outlive the patches. With `cut`, surfaces meet within 2^-19 of the scene's largest coordinate.
+// Cuts that are not resolved are counted in a warning. Errors: VPL_INVALID_ARGUMENT, VPL_LIMIT for more than
 // VPL_MAX_PATCHES patches, VPL_OUT_OF_MEMORY.
 vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def, vplPatches** patchesOut);
 

@@ -141,6 +141,13 @@ typedef enum vplPatchPlacement {
     VPL_PATCHES_ADAPTIVE     // smaller where light changes much, by solutions with fewer patches
 } vplPatchPlacement;
 
+// Cuts of patches where surfaces meet.
+typedef enum vplPatchCuts {
+    VPL_PATCH_CUTS_AUTO = 0, // on, except with VPL_FORM_FACTORS_INCENTRE: the document has no cuts
+    VPL_PATCH_CUTS_OFF,      // patches may span what cuts them
+    VPL_PATCH_CUTS_ON
+} vplPatchCuts;
+
 // Interpolation of radiosity over a patch.
 typedef enum vplInterpolation {
     VPL_INTERPOLATION_GOURAUD = 0, // linear between the patches' corners

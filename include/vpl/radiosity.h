@@ -36,7 +36,8 @@ typedef struct vplPatchSidesDef {
     // Light sources that are not part of the geometry; NULL where emitterCount is 0 (default).
     const vplEmitterDef* emitters;
     int emitterCount;
-    // Camera positions: sides that they see count as reached. NULL where viewpointCount is 0 (default).
+    // Camera positions: sides that they see are searched for light from there, too, and without light sources count as
+    // reached. NULL where viewpointCount is 0 (default).
     const vplVec3* viewpoints;
     int viewpointCount;
     // Keep all cells and patches of a triangle's side where light reaches any of it, also those under boxes,
@@ -65,7 +66,8 @@ typedef struct vplPatchSides {
 // by rays from sides that no particle hit to sides that are reached. The inside of a box, the floor under it
 // and a room without a light source are left out and do not darken what is beside them. A cell is open where
 // light reaches half of it; a patch smaller than 1/32 of the mean area has one cell. Of coplanar triangles
-// that overlap, the first receives the light. Without light sources, only what the viewpoints see, and what
+// that overlap, the first receives the light. Sides in a sealed room without a light source are left out even if a
+// viewpoint sees them, so that they are exactly black. Without light sources, only what the viewpoints see, and what
 // is visible from there, is kept. VPL_INVALID_ARGUMENT for a def with a wrong cookie, a negative count, a
 // missing array or a viewpoint that is not finite.
 vplResult vplPatchSides_Create(const vplPatches* patches, const vplPatchSidesDef* def,
@@ -265,7 +267,8 @@ typedef enum vplVertexWeight {
 
 // The triangles that are drawn: the patches, cut where vertices of others lie on their edges, so that there
 // are no cracks and light is continuous. Patches share a vertex if their planes are within 20 degrees or they
-// belong to one smooth object.
+// belong to one smooth object. Where surfaces were cut, values on a face of a vertex are means over those of these
+// patches that edges join on which nothing stands on that face: light does not pass under a wall.
 typedef struct vplPatchMesh {
     const vplPatchSides* sides;
     const vplVec3* positions; // metres
@@ -283,7 +286,8 @@ typedef struct vplPatchMesh {
 } vplPatchMesh;
 
 // Edges are cut where bisection put another patch's vertex at their midpoint. T-vertices that the scene
-// itself has stay: 46 in the conference room, 802 in Sibenik, 4 in Sponza.
+// itself has stay: 46 in the conference room, 802 in Sibenik, 4 in Sponza; with vplPatchDef.cut edges are cut at
+// them, too.
 // Source: Baum, Mann, Smith and Winget, Making Radiosity Usable, SIGGRAPH 1991.
 vplResult vplPatchMesh_Create(const vplPatchSides* sides, vplPatchMesh** meshOut);
 

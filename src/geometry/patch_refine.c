@@ -74,10 +74,12 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
     }
     memcpy(tree->nodes, patches->nodes, nodes * sizeof *tree->nodes);
     tree->nodeCount = patches->nodeCount;
+    tree->cutPatches = patches->cutPatches;
+    tree->unresolvedCuts = patches->unresolvedCuts;
     for (size_t i = 0; i < nodes; i++) {
         tree->nodes[i].patch = -1;
     }
-    return VPL_SUCCESS;
+    return vplPatchTree_CopyCuts(tree, patches->cuts, patches->firstCut);
 }
 
 static void bisectFirst(const vplPatches* patches, int count, Heap* heap, vplPatchTree* tree)

@@ -17,8 +17,7 @@ static double squareBetween(vplVec3 a, vplVec3 b)
     return x * x + y * y + z * z;
 }
 
-// The corner opposite the longest edge.
-static int firstCorner(const vplTriangleCorners* triangle)
+int vplPatch_FirstCorner(const vplTriangleCorners* triangle)
 {
     const vplVec3* c = triangle->corner;
     const double s01 = squareBetween(c[0], c[1]), s12 = squareBetween(c[1], c[2]),
@@ -29,7 +28,7 @@ static int firstCorner(const vplTriangleCorners* triangle)
 vplTriangleCorners vplPatch_Rotate(const vplTriangleCorners* triangle)
 {
     const vplVec3* c = triangle->corner;
-    const int first = firstCorner(triangle);
+    const int first = vplPatch_FirstCorner(triangle);
     return (vplTriangleCorners){{c[first], c[(first + 1) % 3], c[(first + 2) % 3]}};
 }
 
@@ -44,11 +43,18 @@ vplTriangleCorners vplPatch_Half(const vplTriangleCorners* rotated, vplVec3 midd
     return second ? (vplTriangleCorners){{middle, c[2], c[0]}} : (vplTriangleCorners){{c[1], middle, c[0]}};
 }
 
-static bool facesAlong(const vplTriangleCorners* triangle, vplVec3 normal)
+bool vplPatch_FacesAlong(const vplTriangleCorners* triangle, vplVec3 normal)
 {
     double c[3];
     vplTriangle_Cross(triangle, c);
     return c[0] * (double)normal.x + c[1] * (double)normal.y + c[2] * (double)normal.z > 0;
+}
+
+bool vplPatch_CanSplit(const vplTriangleCorners* rotated, vplVec3 point, vplVec3 normal)
+{
+    const vplTriangleCorners first = vplPatch_Half(rotated, point, 0),
+                             second = vplPatch_Half(rotated, point, 1);
+    return vplPatch_FacesAlong(&first, normal) && vplPatch_FacesAlong(&second, normal);
 }
 
 // Adds halves instead of halving the sum, which overflows for two large coordinates.
@@ -56,9 +62,7 @@ bool vplPatch_Middle(const vplTriangleCorners* rotated, vplVec3 normal, vplVec3*
 {
     const vplVec3 a = rotated->corner[1], b = rotated->corner[2];
     *middleOut = vplAdd(vplScale(0.5f, a), vplScale(0.5f, b));
-    const vplTriangleCorners first = vplPatch_Half(rotated, *middleOut, 0),
-                             second = vplPatch_Half(rotated, *middleOut, 1);
-    return facesAlong(&first, normal) && facesAlong(&second, normal);
+    return vplPatch_CanSplit(rotated, *middleOut, normal);
 }
 
 // ---- positions
@@ -113,9 +117,9 @@ static vplTriangleCorners cornersOf(const vplPatchTree* tree, int node)
 static void addNode(vplPatchTree* tree, const uint32_t corners[3], int triangle, int parent)
 {
     const vplTriangleCorners at = vplCornersOf(tree->positions, corners);
-    const int first = firstCorner(&at);
+    const int first = vplPatch_FirstCorner(&at);
     vplPatchNode* node = &tree->nodes[tree->nodeCount++];
-    *node = (vplPatchNode){.triangle = triangle, .parent = parent, .children = -1, .patch = -1};
+    *node = (vplPatchNode){.triangle = triangle, .parent = parent, .children = -1, .patch = -1, .at = 0.5f};
     for (int k = 0; k < 3; k++) {
         node->corners[k] = corners[(first + k) % 3];
     }
@@ -131,6 +135,30 @@ void vplPatchTree_AddTriangles(vplPatchTree* tree)
         }
         addNode(tree, corners, t, -1);
     }
+    tree->rootCount = tree->nodeCount;
+}
+
+void vplPatchTree_AddPieces(vplPatchTree* tree, const vplPatchNode* nodes, size_t count,
+                            const vplVec3* points)
+{
+    for (size_t i = 0; i < count; i++) {
+        tree->nodes[i] = nodes[i];
+        for (int k = 0; k < 3; k++) {
+            tree->nodes[i].corners[k] = vplPatchTree_Intern(tree, points[nodes[i].corners[k]]);
+        }
+    }
+    tree->nodeCount = tree->rootCount = (int)count;
+}
+
+vplResult vplPatchTree_CopyCuts(vplPatchTree* tree, const vplPatchCut* cuts, const int* firstCut)
+{
+    const size_t triangles = (size_t)tree->geometry->triangleCount;
+    if (firstCut == NULL) {
+        return VPL_SUCCESS;
+    }
+    tree->cuts = vplArena_Copy(tree->arena, cuts, (size_t)firstCut[triangles], sizeof *cuts);
+    tree->firstCut = vplArena_Copy(tree->arena, firstCut, triangles + 1, sizeof *firstCut);
+    return vplArena_Check(tree->arena);
 }
 
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square)
@@ -202,6 +230,10 @@ static vplResult makePatches(vplPatchTree* tree, vplPatches** patchesOut)
                             .nodes = tree->nodes,
                             .nodeCount = tree->nodeCount,
                             .patches = list,
+                            .cuts = tree->cuts,
+                            .firstCut = tree->firstCut,
+                            .cutPatches = tree->cutPatches,
+                            .unresolvedCuts = tree->unresolvedCuts,
                             .arena = tree->arena,
                             .context = tree->geometry->context};
     listPatches(tree, patches, list);

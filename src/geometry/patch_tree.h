@@ -15,11 +15,25 @@ typedef struct vplPatchTree {
     uint32_t slotMask;
     vplPatchNode* nodes;
     int positionCount, nodeCount;
+    int rootCount; // nodes before the first bisection: triangles and their pieces
+    // As in vplPatches; owned by the arena.
+    const vplPatchCut* cuts;
+    const int* firstCut;
+    int cutPatches, unresolvedCuts;
 } vplPatchTree;
 
 // Rotates the corners until corner 0 is opposite the longest edge; among equally long ones 01 goes before 12
 // and 12 before 20.
 vplTriangleCorners vplPatch_Rotate(const vplTriangleCorners* triangle);
+
+// The corner opposite the longest edge, which that becomes corner 0.
+int vplPatch_FirstCorner(const vplTriangleCorners* triangle);
+
+// True if the triangle has an area and is counter-clockwise seen from where the normal points.
+bool vplPatch_FacesAlong(const vplTriangleCorners* triangle, vplVec3 normal);
+
+// True if both parts have, after a split from corner 0 to a point on the opposite edge.
+bool vplPatch_CanSplit(const vplTriangleCorners* rotated, vplVec3 point, vplVec3 normal);
 
 // Squared length of the edge opposite corner 0, in double, so that an edge of length T does not exceed T.
 double vplPatch_SquaredEdge(const vplTriangleCorners* rotated);
@@ -40,6 +54,13 @@ uint32_t vplPatchTree_Intern(vplPatchTree* tree, vplVec3 position);
 
 // Adds node t for each triangle t.
 void vplPatchTree_AddTriangles(vplPatchTree* tree);
+
+// Adds nodes whose corners are indices in `points`.
+void vplPatchTree_AddPieces(vplPatchTree* tree, const vplPatchNode* nodes, size_t count,
+                            const vplVec3* points);
+
+// Copies cuts into the tree's arena. `firstCut` has an entry more than there are triangles; NULL: there are none.
+vplResult vplPatchTree_CopyCuts(vplPatchTree* tree, const vplPatchCut* cuts, const int* firstCut);
 
 // Gives a node two children if the square of its longest edge exceeds `square`. False where it stays a leaf.
 bool vplPatchTree_Bisect(vplPatchTree* tree, int node, double square);

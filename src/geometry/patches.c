@@ -3,6 +3,7 @@
 // longest edge is longer than T. An edge exactly as long as T stays whole.
 #include "base/context.h"
 #include "geometry/bvh.h"
+#include "geometry/patch_cuts.h"
 #include "geometry/patch_tree.h"
 #include "math/scalar.h"
 #include "math/vec.h"
@@ -59,14 +60,38 @@ static int countPart(const vplTriangleCorners* part, vplVec3 normal, double squa
     return count;
 }
 
+// The triangles that are bisected, or their pieces.
+typedef struct Roots {
+    const vplGeometry* geometry;
+    vplCutSegments segments;
+    vplCutPieces pieces; // nodes: NULL where triangles are whole
+    int count;           // of nodes
+} Roots;
+
+// False for a triangle without area, and for one that was cut.
+static bool getRoot(const Roots* roots, int i, vplTriangleCorners* cornersOut, vplVec3* normalOut)
+{
+    const vplGeometry* g = roots->geometry;
+    const vplPatchNode* node = roots->pieces.nodes != NULL ? &roots->pieces.nodes[i] : NULL;
+    const int triangle = node != NULL ? node->triangle : i;
+    if (!vplCanBeHit(g, triangle) || (node != NULL && node->children >= 0)) {
+        return false;
+    }
+    *cornersOut =
+        node != NULL ? vplCornersOf(roots->pieces.points, node->corners) : vplGeometry_Corners(g, triangle);
+    *normalOut = g->normals[triangle];
+    return true;
+}
+
 // The number of patches of all triangles, at most `enough`. Allocates nothing: too many are refused before.
-static int countAll(const vplGeometry* g, double square, int rounds, int enough)
+static int countAll(const Roots* roots, double square, int rounds, int enough)
 {
     int count = 0;
-    for (int t = 0; t < g->triangleCount && count < enough; t++) {
-        if (vplCanBeHit(g, t)) {
-            const vplTriangleCorners corners = vplGeometry_Corners(g, t);
-            count += countPart(&corners, g->normals[t], square, rounds, enough - count);
+    for (int i = 0; i < roots->count && count < enough; i++) {
+        vplTriangleCorners corners;
+        vplVec3 normal;
+        if (getRoot(roots, i, &corners, &normal)) {
+            count += countPart(&corners, normal, square, rounds, enough - count);
         }
     }
     return count;
@@ -74,12 +99,16 @@ static int countAll(const vplGeometry* g, double square, int rounds, int enough)
 
 // ---- the longest edge for a count
 
-static double longestOf(const vplGeometry* g)
+static double longestOf(const Roots* roots)
 {
     double longest = 0;
-    for (int t = 0; t < g->triangleCount; t++) {
-        const vplTriangleCorners corners = vplGeometry_Corners(g, t), rotated = vplPatch_Rotate(&corners);
-        longest = fmax(longest, vplCanBeHit(g, t) ? vplPatch_SquaredEdge(&rotated) : 0);
+    for (int i = 0; i < roots->count; i++) {
+        vplTriangleCorners corners;
+        vplVec3 normal;
+        if (getRoot(roots, i, &corners, &normal)) {
+            const vplTriangleCorners rotated = vplPatch_Rotate(&corners);
+            longest = fmax(longest, vplPatch_SquaredEdge(&rotated));
+        }
     }
     return sqrt(longest);
 }
@@ -88,20 +117,20 @@ static double longestOf(const vplGeometry* g)
 // bisecting the longest edge first ends in the same patches as such a T. The tolerance exceeds rounding, so
 // edges that are meant to be equal stay together. The search starts a little above the longest edge, to keep
 // the interval's ends off halves and quarters of it, which are lengths of patches.
-static double lengthFor(const vplGeometry* g, int count, int rounds)
+static double lengthFor(const Roots* roots, int count, int rounds)
 {
-    double high = longestOf(g) * (1 + 0x1p-15), low = high;
-    const int most = countAll(g, 0, rounds, count);
-    if (countAll(g, INFINITY, 0, count) >= count || most == 0) {
+    double high = longestOf(roots) * (1 + 0x1p-15), low = high;
+    const int most = countAll(roots, 0, rounds, count);
+    if (countAll(roots, INFINITY, 0, count) >= count || most == 0) {
         return INFINITY;
     }
-    while (countAll(g, low * low, rounds, count) < most) {
+    while (countAll(roots, low * low, rounds, count) < most) {
         high = low;
         low *= 0.5;
     }
     while (high - low > low * 0x1p-18) {
         const double middle = 0.5 * (low + high);
-        if (countAll(g, middle * middle, rounds, count) < most) {
+        if (countAll(roots, middle * middle, rounds, count) < most) {
             high = middle;
         } else {
             low = middle;
@@ -114,11 +143,11 @@ static double lengthFor(const vplGeometry* g, int count, int rounds)
 
 static void grow(vplPatchTree* tree, double square, int rounds)
 {
-    const int triangles = tree->nodeCount;
     for (int round = 0, begin = 0; round < rounds; round++) {
         const int end = tree->nodeCount;
         for (int i = begin; i < end; i++) {
-            if (i >= triangles || vplCanBeHit(tree->geometry, i)) {
+            if (i >= tree->rootCount ||
+                (tree->nodes[i].children < 0 && vplCanBeHit(tree->geometry, tree->nodes[i].triangle))) {
                 vplPatchTree_Bisect(tree, i, square);
             }
         }
@@ -126,27 +155,76 @@ static void grow(vplPatchTree* tree, double square, int rounds)
     }
 }
 
-vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def, vplPatches** patchesOut)
+// Cuts triangles where other surfaces meet them. Where none does, roots stay triangles.
+static vplResult cut(vplArena* scratch, Roots* roots)
 {
-    TRY(checkDef(geometry, def));
-    const double length = def->size > 0 ? (double)def->size : lengthFor(geometry, def->count, def->rounds);
+    const vplGeometry* g = roots->geometry;
+    TRY(vplArena_Check(scratch));
+    TRY(vplCutSegments_Find(scratch, g, &roots->segments));
+    if (roots->segments.count == 0) {
+        return VPL_SUCCESS;
+    }
+    TRY(vplCutPieces_Make(scratch, g, &roots->segments, &roots->pieces));
+    TRY(vplCutPieces_Snap(scratch, g, roots->segments.tolerance, &roots->pieces));
+    roots->count = (int)roots->pieces.nodeCount;
+    if (roots->pieces.unresolved > 0) {
+        vplLog(g->context, VPL_LOG_WARNING,
+               "%d of %zu lines where surfaces meet do not divide all patches that they cross, so light may "
+               "leak there",
+               roots->pieces.unresolved, roots->segments.count);
+    }
+    return VPL_SUCCESS;
+}
+
+static vplResult build(const Roots* roots, double length, const vplPatchDef* def, vplPatches** patchesOut)
+{
+    const vplGeometry* g = roots->geometry;
     const double square = length * length;
-    const int count = countAll(geometry, square, def->rounds, VPL_MAX_PATCHES + 1);
+    const int count = countAll(roots, square, def->rounds, VPL_MAX_PATCHES + 1);
     if (count > VPL_MAX_PATCHES) {
-        return vplFail(geometry->context, VPL_LIMIT,
+        return vplFail(g->context, VPL_LIMIT,
                        "patches with edges up to %g m are more than %d, which are allowed", length,
                        VPL_MAX_PATCHES);
     }
-    const size_t triangles = (size_t)geometry->triangleCount, vertices = (size_t)geometry->vertexCount;
-    const size_t corners = 3 * triangles < vertices ? 3 * triangles : vertices;
-    vplPatchTree tree = {.geometry = geometry};
-    const vplResult result =
-        vplPatchTree_Reserve(&tree, corners + (size_t)count, triangles + 2 * (size_t)count);
+    const size_t triangles = (size_t)g->triangleCount, vertices = (size_t)g->vertexCount,
+                 points = roots->pieces.pointCount;
+    const size_t corners =
+        (3 * triangles < vertices ? 3 * triangles : vertices) + (points > 0 ? points - 3 * triangles : 0);
+    const size_t more =
+        (size_t)(points > 0 ? count - countAll(roots, INFINITY, 0, count) : count); // bisections
+    vplPatchTree tree = {.geometry = g, .unresolvedCuts = roots->pieces.unresolved};
+    if (points > 0) {
+        const Roots whole = {.geometry = g, .count = g->triangleCount};
+        tree.cutPatches = count - countAll(&whole, square, def->rounds, count);
+    }
+    vplResult result = vplPatchTree_Reserve(&tree, corners + more, (size_t)roots->count + 2 * more);
+    if (result == VPL_SUCCESS && points > 0) {
+        result = vplPatchTree_CopyCuts(&tree, roots->segments.list, roots->segments.first);
+    }
     if (result == VPL_SUCCESS) {
-        vplPatchTree_AddTriangles(&tree);
+        if (points > 0) {
+            vplPatchTree_AddPieces(&tree, roots->pieces.nodes, (size_t)roots->count, roots->pieces.points);
+        } else {
+            vplPatchTree_AddTriangles(&tree);
+        }
         grow(&tree, square, def->rounds);
     }
     return vplPatchTree_Finish(&tree, result, patchesOut);
+}
+
+vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def, vplPatches** patchesOut)
+{
+    TRY(checkDef(geometry, def));
+    Roots roots = {.geometry = geometry, .count = geometry->triangleCount};
+    vplArena* scratch = def->cut ? vplArena_Create(geometry->context) : NULL;
+    vplResult result = def->cut ? cut(scratch, &roots) : VPL_SUCCESS;
+    if (result == VPL_SUCCESS) {
+        const Roots whole = {.geometry = geometry, .count = geometry->triangleCount};
+        const double length = def->size > 0 ? (double)def->size : lengthFor(&whole, def->count, def->rounds);
+        result = build(&roots, length, def, patchesOut);
+    }
+    vplArena_Destroy(scratch);
+    return result;
 }
 
 void vplPatches_Destroy(vplPatches* patches)
@@ -164,7 +242,8 @@ double vplPatches_Area(const vplPatches* patches, int patch)
 }
 
 // The walk updates barycentrics and reads no positions, which took two fifths of the time of testing sides at
-// 51,456 patches. In a half, the middle gets twice the weight of the corner that is left out.
+// 51,456 patches. In a half, the middle gets twice the weight of the corner that is left out; in general, that
+// weight divided by the middle's share of the way to the corner.
 int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position)
 {
     const vplPatchNode* node = &patches->nodes[triangle];
@@ -172,9 +251,11 @@ int vplPatches_Find(const vplPatches* patches, int triangle, vplVec3 position)
     double w[3];
     vplTriangle_Barycentrics(at.corner, position, w);
     while (node->children >= 0) {
-        const bool second = w[2] > w[1];
+        const double share = (double)node->at, ratio = share == 0.5 ? 1 : share / (1 - share);
+        const bool second = w[2] > w[1] * ratio;
         const vplPatchNode* half = &patches->nodes[node->children + second];
-        const double a = w[0], b = second ? 2 * w[1] : w[1] - w[2], c = second ? w[2] - w[1] : 2 * w[2];
+        const double a = w[0], b = second ? w[1] * (1 + ratio) : w[1] - w[2] / ratio,
+                     c = second ? w[2] - w[1] * ratio : w[2] * (1 + 1 / ratio);
         const uint32_t apex = node->corners[0]; // has weight a, and is anywhere in the half's rotated corners
         const int rotation = half->corners[0] == apex ? 0 : half->corners[2] == apex ? 1 : 2;
         w[0] = rotation == 0 ? a : rotation == 1 ? b : c;

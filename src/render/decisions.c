@@ -336,6 +336,18 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
     }
 }
 
+// Decides whether patches end where surfaces meet, before patches are made.
+static void chooseCuts(vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    const bool incentre = o->formFactors == VPL_FORM_FACTORS_INCENTRE;
+    if (o->cuts == VPL_PATCH_CUTS_AUTO) {
+        o->cuts = incentre ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
+        vplDecide(p, "patch-cuts",
+                  incentre ? "as the document has it" : "no patch lies on both sides of a surface");
+    }
+}
+
 // Decides whether patches exchange light in groups.
 static vplResult chooseLinks(vplRunner* r, vplPlan* p)
 {
@@ -378,6 +390,7 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
     countSsvpLights(p);
     decideClamp(r, p);
     if (p->options.method == VPL_METHOD_RADIOSITY) {
+        chooseCuts(p);
         TRY(chooseLinks(r, p));
         chooseRadiosity(p);
     }

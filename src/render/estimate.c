@@ -69,7 +69,9 @@ static Bytes adaptivePatches(const Scale* s)
 {
     const double sides = s->sides / 1.5;
     const Bytes factors = formFactors(s, sides), light = patchLight(s, sides);
-    return (Bytes){70.0 * s->plan->patches,
+    const bool cut =
+        s->plan->options.radiosity.cuts == VPL_PATCH_CUTS_ON; // nodes and positions of hidden parts
+    return (Bytes){(cut ? 150.0 : 70.0) * s->plan->patches,
                    factors.held + light.held + light.scratch + 24 * sides + 300 * sides};
 }
 
@@ -193,8 +195,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
                        0};
     case VPL_STAGE_PATCHES:
         return adaptivePatches(s);
-    case VPL_STAGE_PATCH_MESH:
-        return (Bytes){98.0 * p->patches, 98.0 * p->patches};
+    case VPL_STAGE_PATCH_MESH: // faces of cut patches have vertices of their own
+        return o->radiosity.cuts == VPL_PATCH_CUTS_ON ? (Bytes){320.0 * p->patches, 300.0 * p->patches}
+                                                      : (Bytes){98.0 * p->patches, 98.0 * p->patches};
     case VPL_STAGE_FORM_FACTORS:
         return formFactors(s, s->sides);
     case VPL_STAGE_PATCH_LIGHT:

@@ -196,6 +196,7 @@ static const char* const PRESETS[] = {
     " --bounce diffuse --placement particles --pipeline multipass --light-shadows map --compensation none"
     " --min-distance 0 --antialias 1",
     "--method radiosity --patches 784 --form-factors incentre --row-sums keep --hierarchy off --patch-light 1"
+    " --patch-cuts off"
     " --solver gauss-seidel --iterations 100 --residual 0 --interpolation gouraud --vertex-weight equal"
     " --sharpen 0 --antialias 1",
     "--method ssvp --clusters 8 --oversampling 1 --w1 0.6 --w2 0.4 --cluster-metric printed"

@@ -231,6 +231,7 @@ static void paraboloid(vplRenderOptions* o)
 static void radiosity(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_RADIOSITY;
+    o->radiosity.cuts = VPL_PATCH_CUTS_OFF;
     o->radiosity.patchSize = 0.45f; // gives 784 patches of the report's box
 }
 
@@ -246,6 +247,7 @@ static void radiosityIncentre(vplRenderOptions* o)
 static void radiosityLinks(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_RADIOSITY;
+    o->radiosity.cuts = VPL_PATCH_CUTS_OFF;
     o->radiosity.patches = 500;
     o->radiosity.hierarchy = VPL_HIERARCHY_ON;
 }
@@ -253,6 +255,7 @@ static void radiosityLinks(vplRenderOptions* o)
 static void radiosityAdaptive(vplRenderOptions* o)
 {
     o->method = VPL_METHOD_RADIOSITY;
+    o->radiosity.cuts = VPL_PATCH_CUTS_OFF;
     o->radiosity.patches = 300;
     o->radiosity.placement = VPL_PATCHES_ADAPTIVE;
 }

@@ -3,7 +3,8 @@
 // Based on: Baum, Mann, Smith and Winget, Making Radiosity Usable: Automatic Preprocessing and Meshing
 // Techniques for the Generation of Accurate Radiosity Solutions, SIGGRAPH 1991, section 4 (T-vertices).
 // Departs: they keep a tree of edges during subdivision. Here bisection puts hanging vertices at midpoints
-// only, and a midpoint has the same bits from both sides, so a hash table of positions finds them.
+// only, and a midpoint has the same bits from both sides, so a hash table of positions finds them. Where other
+// surfaces cut patches, vertices are anywhere on edges (edge_vertices.c).
 #include "math/vec.h"
 #include "radiosity/mesh/patch_mesh.h"
 
@@ -17,7 +18,8 @@ typedef struct Cutter {
     vplPieces* out;
     int* table; // a hash table of indices of positions, -1: empty
     size_t tableMask;
-    uint8_t* hangs; // per position: some edge was cut there
+    vplEdgeVertices* onEdges; // NULL: hanging vertices are at midpoints
+    uint8_t* hangs;           // per position: some edge was cut there
 } Cutter;
 
 // ---- the table of positions
@@ -82,14 +84,20 @@ static int middleOf(const Cutter* c, uint32_t a, uint32_t b)
     return middle == (int)a || middle == (int)b ? -1 : middle;
 }
 
-// The longest edge of a piece that has a vertex at its midpoint; -1: none has.
+// A vertex on an edge, near its middle; -1 if there is none.
+static int vertexOn(const Cutter* c, uint32_t a, uint32_t b)
+{
+    return c->onEdges != NULL ? vplEdgeVertices_Find(c->onEdges, a, b) : middleOf(c, a, b);
+}
+
+// The longest edge of a piece that has a vertex on it; -1: none has.
 static int edgeToCut(const Cutter* c, const vplPiece* piece, int* middleOut)
 {
     int best = -1;
     double longest = -1;
     for (int k = 0; k < 3; k++) {
         const uint32_t a = piece->corners[k], b = piece->corners[(k + 1) % 3];
-        const int middle = piece->edges >> k & 1 ? middleOf(c, a, b) : -1;
+        const int middle = piece->edges >> k & 1 ? vertexOn(c, a, b) : -1;
         const double length = lengthSquared(c, a, b);
         if (middle >= 0 && length > longest) {
             best = k;
@@ -111,7 +119,7 @@ static vplResult append(const Cutter* c, const vplPiece* piece)
     return VPL_SUCCESS;
 }
 
-// Cuts from the midpoint of an edge to the opposite corner. Each cut halves a triangle, so that no piece is
+// Cuts from a vertex on an edge to the opposite corner. Each cut divides a triangle, so that no piece is
 // without area, unlike in a fan around one corner. The recursion ends because edges get shorter; the new edge
 // belongs to no other patch and is never cut.
 static vplResult cut(Cutter* c, const vplPiece* piece)
@@ -135,6 +143,7 @@ vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces*
 {
     *out = (vplPieces){.count = 0};
     const size_t positions = (size_t)patches->positionCount;
+    vplEdgeVertices onEdges;
     Cutter c = {.patches = patches, .arena = scratch, .out = out, .tableMask = 1};
     while (c.tableMask < 2 * positions) {
         c.tableMask = 2 * c.tableMask + 1;
@@ -144,7 +153,12 @@ vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces*
     TRY(vplArena_Check(scratch));
     TRY(vplArena_Reserve(scratch, &out->pieces, &out->capacity, (size_t)patches->patchCount,
                          sizeof *out->pieces));
-    fillTable(&c);
+    if (patches->cuts != NULL) {
+        TRY(vplEdgeVertices_Create(scratch, patches, &onEdges));
+        c.onEdges = &onEdges;
+    } else {
+        fillTable(&c);
+    }
     for (int i = 0; i < patches->patchCount; i++) {
         vplPiece whole = {.patch = i, .edges = 7};
         memcpy(whole.corners, patches->nodes[patches->patches[i]].corners, sizeof whole.corners);

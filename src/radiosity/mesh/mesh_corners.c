@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sorts corners of pieces by position, and finds which of those at one position belong to one surface.
+#include "geometry/patch_cuts.h"
+#include "math/double3.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/mesh/patch_mesh.h"
@@ -88,6 +90,74 @@ static bool isOneSurface(const vplMeshCorners* b, size_t i, size_t j)
            vplDot(b->normals[i], b->normals[j]) >= SAME_SURFACE;
 }
 
+// ---- what stands on an edge
+
+// Coordinates of a point along and across a cut.
+static void locate(const vplPatchCut* cut, vplVec3 point, double* along, double* across)
+{
+    double a[3], b[3], p[3];
+    vplToDouble3(cut->ends[0], a);
+    vplToDouble3(cut->ends[1], b);
+    vplToDouble3(point, p);
+    for (int k = 0; k < 3; k++) {
+        b[k] -= a[k];
+        p[k] -= a[k];
+    }
+    const double length = sqrt(vplDot3(b, b));
+    *along = vplDot3(p, b) / length;
+    *across = sqrt(fmax(vplDot3(p, p) - *along * *along, 0));
+}
+
+// Tests whether a part of the edge pq lies on a cut.
+static bool liesOn(const vplPatchCut* cut, vplVec3 p, vplVec3 q, double tolerance)
+{
+    double x[2], y[2], end, offEnd;
+    locate(cut, p, &x[0], &y[0]);
+    locate(cut, q, &x[1], &y[1]);
+    locate(cut, cut->ends[1], &end, &offEnd);
+    const double from = fmax(fmin(x[0], x[1]), 0), to = fmin(fmax(x[0], x[1]), end);
+    return fmax(y[0], y[1]) <= 2 * tolerance && to - from > 2 * tolerance;
+}
+
+// The corner of the piece that is at the other end of an edge of corner i. edge: 0: that from it; 1: that to it.
+static uint32_t otherEnd(const vplMeshCorners* b, size_t i, int edge)
+{
+    return vplMeshCorners_Piece(b, i)->corners[(b->at[i] % 3 + (edge == 0 ? 1 : 2)) % 3];
+}
+
+static uint8_t findBlocked(const vplMeshCorners* b, size_t i)
+{
+    const vplPatches* patches = b->patches;
+    const int triangle = triangleOf(b, i);
+    const vplVec3 at = patches->positions[vplMeshCorners_Piece(b, i)->corners[b->at[i] % 3]];
+    unsigned blocked = 0;
+    for (int c = patches->firstCut[triangle]; c < patches->firstCut[triangle + 1]; c++) {
+        for (int edge = 0; edge < 2; edge++) {
+            const vplPatchCut* cut = &patches->cuts[c];
+            const vplVec3 other = patches->positions[otherEnd(b, i, edge)];
+            if (cut->faces != 0 && liesOn(cut, at, other, b->tolerance)) {
+                blocked |= (unsigned)cut->faces << 2 * edge;
+            }
+        }
+    }
+    return (uint8_t)blocked;
+}
+
+// Tests whether light on a face of corner i's piece continues to that of corner j: they share an edge on which nothing
+// stands.
+static bool continues(const vplMeshCorners* b, int face, size_t i, size_t j)
+{
+    for (int k = 0; k < 4 && b->blocked != NULL; k++) {
+        const int one = k & 1, other = k >> 1;
+        if (otherEnd(b, i, one) == otherEnd(b, j, other)) {
+            return !(b->blocked[i] >> (2 * one + face) & 1) && !(b->blocked[j] >> (2 * other + face) & 1);
+        }
+    }
+    return b->blocked == NULL;
+}
+
+// ---- groups
+
 static int rootOf(const int* group, size_t i)
 {
     while (group[i] != (int)i) {
@@ -98,19 +168,31 @@ static int rootOf(const int* group, size_t i)
 
 // Groups the corners at one position, transitively, so that the order of triangles does not matter. A group
 // is named by its first corner. Quadratic in the number of corners, of which most positions have 6.
-static void groupCorners(vplMeshCorners* b, size_t first, size_t end)
+static void groupCorners(vplMeshCorners* b, int face, size_t first, size_t end)
 {
+    int* group = b->group[face];
     for (size_t i = first; i < end; i++) {
-        b->group[i] = (int)i;
+        group[i] = (int)i;
         for (size_t j = first; j < i; j++) {
-            const int one = rootOf(b->group, i), other = rootOf(b->group, j);
-            if (one != other && isOneSurface(b, i, j)) {
-                b->group[vplMaxi(one, other)] = vplMini(one, other);
+            const int one = rootOf(group, i), other = rootOf(group, j);
+            if (one != other && isOneSurface(b, i, j) && continues(b, face, i, j)) {
+                group[vplMaxi(one, other)] = vplMini(one, other);
             }
         }
     }
     for (size_t i = first; i < end; i++) {
-        b->group[i] = rootOf(b->group, i);
+        group[i] = rootOf(group, i);
+    }
+}
+
+static void findLeaders(vplMeshCorners* b, size_t first, size_t end)
+{
+    for (size_t i = first; i < end; i++) {
+        size_t j = first;
+        while (b->group[0][j] != b->group[0][i] || b->group[1][j] != b->group[1][i]) {
+            j++;
+        }
+        b->leader[i] = (int)j;
     }
 }
 
@@ -123,19 +205,32 @@ static void groupChunk(void* data, int chunk, int worker)
         for (size_t i = b->first[p]; i < b->first[p + 1]; i++) {
             const vplPiece* piece = vplMeshCorners_Piece(b, i);
             b->angles[i] = angleAt(b->patches->positions, piece, (int)(b->at[i] % 3));
+            if (b->blocked != NULL) {
+                b->blocked[i] = findBlocked(b, i);
+            }
             b->normals[i] = normalAt(b->patches->geometry, triangleOf(b, i), b->patches->positions[p]);
         }
-        groupCorners(b, b->first[p], b->first[p + 1]);
+        for (int face = 0; face < (b->blocked != NULL ? 2 : 1); face++) {
+            groupCorners(b, face, b->first[p], b->first[p + 1]);
+        }
+        findLeaders(b, b->first[p], b->first[p + 1]);
     }
 }
 
 vplResult vplMeshCorners_Find(vplArena* scratch, const vplPatches* patches, const vplPieces* pieces,
                               vplMeshCorners* b)
 {
+    const vplGeometry* g = patches->geometry;
     *b = (vplMeshCorners){.patches = patches, .pieces = pieces, .count = 3 * pieces->count};
+    b->tolerance = (double)fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax)) * VPL_CUT_TOLERANCE;
     b->first = vplArena_AllocZero(scratch, (size_t)patches->positionCount + 1, sizeof *b->first);
     b->at = vplArena_Alloc(scratch, b->count, sizeof *b->at);
-    b->group = vplArena_Alloc(scratch, b->count, sizeof *b->group);
+    b->group[0] = b->group[1] = vplArena_Alloc(scratch, b->count, sizeof *b->leader);
+    b->leader = vplArena_Alloc(scratch, b->count, sizeof *b->leader);
+    if (patches->cuts != NULL) {
+        b->group[1] = vplArena_Alloc(scratch, b->count, sizeof *b->leader);
+        b->blocked = vplArena_Alloc(scratch, b->count, sizeof *b->blocked);
+    }
     b->normals = vplArena_Alloc(scratch, b->count, sizeof *b->normals);
     b->angles = vplArena_Alloc(scratch, b->count, sizeof *b->angles);
     TRY(vplArena_Check(scratch));

@@ -18,46 +18,70 @@ typedef struct Builder {
 
 // ---- vertices
 
-static vplPatchAround makeAround(const vplPatchSides* sides, int patch, float angle)
+// The faces on which light continues from one corner to another at the same position.
+static int sharedFaces(const vplMeshCorners* c, size_t i, size_t j)
+{
+    return (c->group[0][i] == c->group[0][j]) | (c->group[1][i] == c->group[1][j]) << 1;
+}
+
+// faces: bit 0: on the front; bit 1: on the back.
+static vplPatchAround makeAround(const vplPatchSides* sides, int patch, int faces, float angle)
 {
     vplPatchAround around = {.patch = patch, .angle = angle};
     for (int face = 0; face < 2; face++) {
-        const int side = vplSideOf(sides, patch, face);
+        const int side = faces >> face & 1 ? vplSideOf(sides, patch, face) : -1;
         around.side[face] = side;
         around.open[face] = side < 0 ? 0 : (uint8_t)__builtin_popcount(sides->sides[side].open);
     }
     return around;
 }
 
-// Adds a corner to the vertex that is being made.
-static void addCorner(Builder* b, size_t i, int vertex, double normal[3])
+// Adds a further piece of a patch, which may share another face.
+static void addPiece(vplPatchAround* around, const vplPatchAround* piece)
 {
+    around->angle += piece->angle;
+    for (int face = 0; face < 2; face++) {
+        if (piece->side[face] >= 0) {
+            around->side[face] = piece->side[face];
+            around->open[face] = piece->open[face];
+        }
+    }
+}
+
+// Adds a corner to the vertex that is being made, on its front, its back or both.
+static void addCorner(Builder* b, size_t i, int faces, double normal[3])
+{
+    const int vertex = b->mesh->vertexCount - 1;
     const vplVec3 n = b->corners->normals[i];
     const float angle = b->corners->angles[i];
     const int patch = vplMeshCorners_Piece(b->corners, i)->patch;
     size_t* end = &b->around->first[vertex + 1];
-    b->indices[b->corners->at[i]] = (uint32_t)vertex;
     normal[0] += (double)angle * (double)n.x;
     normal[1] += (double)angle * (double)n.y;
     normal[2] += (double)angle * (double)n.z;
     // Pieces are in the order of patches, so those of one patch are consecutive.
+    const vplPatchAround piece = makeAround(b->mesh->sides, patch, faces, angle);
     if (*end > b->around->first[vertex] && b->around->list[*end - 1].patch == patch) {
-        b->around->list[*end - 1].angle += angle;
+        addPiece(&b->around->list[*end - 1], &piece);
     } else {
-        b->around->list[(*end)++] = makeAround(b->mesh->sides, patch, angle);
+        b->around->list[(*end)++] = piece;
     }
 }
 
-// Adds the vertex of corner `leader`, which its group shares. The group's other corners are before `end`.
-static void addVertex(Builder* b, size_t leader, size_t end, int position)
+// Adds the vertex of corner `leader`. Corners that share one of its faces only count on that face.
+static void addVertex(Builder* b, size_t leader, int position)
 {
     const vplMeshCorners* c = b->corners;
     const int vertex = b->mesh->vertexCount++;
     double sum[3] = {0, 0, 0};
     b->around->first[vertex + 1] = b->around->first[vertex];
-    for (size_t i = leader; i < end; i++) {
-        if (c->group[i] == (int)leader) {
-            addCorner(b, i, vertex, sum);
+    for (size_t i = c->first[position]; i < c->first[position + 1]; i++) {
+        const int faces = sharedFaces(c, leader, i);
+        if (faces != 0) {
+            addCorner(b, i, faces, sum);
+        }
+        if (faces == 3) {
+            b->indices[c->at[i]] = (uint32_t)vertex;
         }
     }
     const vplVec3 normal = vplNormalize(vplVec((float)sum[0], (float)sum[1], (float)sum[2]));
@@ -71,8 +95,8 @@ static void addVertices(Builder* b)
     b->around->first[0] = 0;
     for (int p = 0; p < c->patches->positionCount; p++) {
         for (size_t i = c->first[p]; i < c->first[p + 1]; i++) {
-            if (c->group[i] == (int)i) {
-                addVertex(b, i, c->first[p + 1], p);
+            if (c->leader[i] == (int)i) {
+                addVertex(b, i, p);
             }
         }
     }
@@ -95,9 +119,23 @@ static size_t countVertices(const vplMeshCorners* corners)
 {
     size_t count = 0;
     for (size_t i = 0; i < corners->count; i++) {
-        count += corners->group[i] == (int)i;
+        count += corners->leader[i] == (int)i;
     }
     return count;
+}
+
+// Corners count once for each vertex that they share a face with.
+static size_t countAround(const vplMeshCorners* c)
+{
+    size_t count = 0;
+    for (int p = 0; p < c->patches->positionCount && c->blocked != NULL; p++) {
+        for (size_t i = c->first[p]; i < c->first[p + 1]; i++) {
+            for (size_t j = c->first[p]; c->leader[i] == (int)i && j < c->first[p + 1]; j++) {
+                count += sharedFaces(c, i, j) != 0;
+            }
+        }
+    }
+    return c->blocked != NULL ? count : c->count;
 }
 
 static vplResult reserve(Builder* b)
@@ -113,7 +151,7 @@ static vplResult reserve(Builder* b)
     mesh->around = b->around = vplArena_AllocZero(arena, 1, sizeof *b->around);
     TRY(vplArena_Check(arena));
     b->around->first = vplArena_Alloc(arena, vertices + 1, sizeof *b->around->first);
-    b->around->list = vplArena_Alloc(arena, b->corners->count, sizeof *b->around->list);
+    b->around->list = vplArena_Alloc(arena, countAround(b->corners), sizeof *b->around->list);
     return vplArena_Check(arena);
 }
 

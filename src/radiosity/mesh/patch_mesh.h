@@ -4,6 +4,7 @@
 #define VPL_RADIOSITY_PATCH_MESH_H
 
 #include "base/arena.h"
+#include "geometry/point_cells.h"
 #include "geometry/triangle.h"
 #include "radiosity/sides/side.h"
 
@@ -25,6 +26,19 @@ typedef struct vplPieces {
 // Cuts patches wherever a vertex lies on one of their edges, so that neighbouring pieces share whole edges.
 vplResult vplCutPatches(vplArena* scratch, const vplPatches* patches, vplPieces* piecesOut);
 
+// ---- vertices anywhere on edges (edge_vertices.c)
+
+typedef struct vplEdgeVertices {
+    const vplPatches* patches;
+    vplPointCells cells; // of the corners of patches
+    double tolerance;    // a vertex at most so far from an edge is on it, metres
+} vplEdgeVertices;
+
+vplResult vplEdgeVertices_Create(vplArena* scratch, const vplPatches* patches, vplEdgeVertices* verticesOut);
+
+// The vertex on an edge that is nearest to its middle, among equally near ones the first; -1: none.
+int vplEdgeVertices_Find(const vplEdgeVertices* vertices, uint32_t a, uint32_t b);
+
 // ---- corners (mesh_corners.c)
 
 // Corners of pieces, sorted by position: those at position p are first[p] .. first[p + 1] - 1.
@@ -33,10 +47,16 @@ typedef struct vplMeshCorners {
     const vplPieces* pieces;
     size_t count;
     size_t* first;
-    uint32_t* at;     // 3 * piece + corner, ascending at each position
-    int* group;       // the first corner at this position that shares its vertex
+    uint32_t* at; // 3 * piece + corner, ascending at each position
+    // [front, back]: the first corner at this position that light on that face continues to. The same array twice
+    // where no surface stands on another.
+    int* group[2];
+    int* leader; // the first corner at this position that shares its vertex: both groups are the same
+    uint8_t*
+        blocked; // bits 0, 1: something stands on the front or back of the edge from the corner; 2, 3: to it
     vplVec3* normals; // of the surface there, unit
     float* angles;    // radians
+    double tolerance; // of cuts, metres
 } vplMeshCorners;
 
 static inline const vplPiece* vplMeshCorners_Piece(const vplMeshCorners* corners, size_t i)
@@ -49,12 +69,12 @@ vplResult vplMeshCorners_Find(vplArena* scratch, const vplPatches* patches, cons
 
 // ---- vertices
 
-// A patch that has a corner at a vertex, or an edge that was cut there.
+// A patch that has a corner at a vertex, or an edge that was cut there, on the front or on the back.
 typedef struct vplPatchAround {
     int patch;
     float angle; // radians, of all its pieces
     // Copies of the patch's sides, front and back, which halve the time of interpolation.
-    int side[2];     // -1: light does not reach it
+    int side[2];     // -1: light does not reach it, or a wall stands between it and the vertex
     uint8_t open[2]; // how many of its cells are open
 } vplPatchAround;
 

@@ -129,8 +129,7 @@ bool vplLitSample_Offset(const vplLitSearch* s, vplLitSample* sample, int64_t* r
 
 // Tests whether random ray `ray` hits a lit side, and whether the hit sees that side's lit point; otherwise
 // floor under a box inherits light from the floor beside it.
-static bool seesLitSide(const vplLitSearch* s, const vplLitSample* sample, int ray, int64_t* rays,
-                        vplVec3* from)
+static bool seesLitSide(const vplLitSearch* s, vplLitSample* sample, int ray, int64_t* rays, vplVec3* from)
 {
     const vplRandom4 r = randomOf(s, sample, FIRST_RAY + ray);
     const vplVec3 direction = vplSampleCosineAround(vplLitSearch_Normal(s, sample->side),
@@ -140,6 +139,7 @@ static bool seesLitSide(const vplLitSearch* s, const vplLitSample* sample, int r
         return false;
     }
     *from = hit.point;
+    sample->fromEye = s->fromEye[hit.side] != 0;
     return s->open[hit.side] != 0 && vplLitSearch_IsVisible(s, sample->point, hit.point, rays) &&
            vplLitSearch_IsVisible(s, hit.point, s->litPoint[hit.side], rays);
 }
@@ -170,11 +170,12 @@ static bool sampleLightSource(const vplLitSearch* s, const vplRandom4* r, vplVec
            vplSpot_Falloff(emitter, (double)vplDot(away, emitter->direction)) > 0;
 }
 
-bool vplLitSample_IsLit(const vplLitSearch* s, const vplLitSample* sample, int gathers, int64_t* rays,
+bool vplLitSample_IsLit(const vplLitSearch* s, vplLitSample* sample, int gathers, int64_t* rays,
                         vplVec3* from)
 {
     if (s->emission->sourceCount > 0) {
         const vplRandom4 r = randomOf(s, sample, LIGHT_SOURCE);
+        sample->fromEye = false;
         if (sampleLightSource(s, &r, sample->point, from) &&
             vplDot(vplSub(*from, sample->point), vplLitSearch_Normal(s, sample->side)) > 0 &&
             vplLitSearch_IsVisible(s, sample->point, *from, rays)) {

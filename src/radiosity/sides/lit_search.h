@@ -23,6 +23,8 @@ typedef struct vplLitSearch {
     vplVec3* litPoint;  // per side: an offset point that is lit; undefined where `open` is 0
     uint16_t* nextOpen; // the results of the current pass
     vplVec3* nextLitPoint;
+    uint8_t *fromEye,
+        *nextFromEye; // per side: 1 if a viewpoint sees it, or a side that one sees, but light was not found
     int64_t* taskRays;
     double meanArea; // of patches
     int pass;        // selects other random numbers in each pass
@@ -93,6 +95,7 @@ enum { VPL_LIT_SAMPLES = 8 }; // per cell
 typedef struct vplLitSample {
     int side, cell, index;
     vplVec3 point; // the offset point
+    bool fromEye;  // set by vplLitSample_IsLit: the side that sends light was found from a viewpoint alone
 } vplLitSample;
 
 // The sample's point on the side: stratified, and clear of the patch's edges, where walls meet.
@@ -103,7 +106,7 @@ bool vplLitSample_Offset(const vplLitSearch* search, vplLitSample* sample, int64
 
 // Tests whether light reaches the sample, from one random point of one light source or along one of `gathers`
 // rays from other sides. *fromOut: the point that sends the light.
-bool vplLitSample_IsLit(const vplLitSearch* search, const vplLitSample* sample, int gathers, int64_t* rays,
+bool vplLitSample_IsLit(const vplLitSearch* search, vplLitSample* sample, int gathers, int64_t* rays,
                         vplVec3* fromOut);
 
 #endif

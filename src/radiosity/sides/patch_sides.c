@@ -71,6 +71,8 @@ static vplResult reserve(vplArena* scratch, vplLitSearch* s)
     s->heights = vplArena_Alloc(scratch, patches, sizeof *s->heights);
     s->open = vplArena_AllocZero(scratch, 2 * patches, sizeof *s->open);
     s->nextOpen = vplArena_AllocZero(scratch, 2 * patches, sizeof *s->nextOpen);
+    s->fromEye = vplArena_AllocZero(scratch, 2 * patches, 1);
+    s->nextFromEye = vplArena_AllocZero(scratch, 2 * patches, 1);
     s->litPoint = vplArena_Alloc(scratch, 2 * patches, sizeof *s->litPoint);
     s->nextLitPoint = vplArena_Alloc(scratch, 2 * patches, sizeof *s->nextLitPoint);
     s->taskRays = vplArena_AllocZero(scratch, tasks, sizeof *s->taskRays);

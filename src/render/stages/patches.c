@@ -14,6 +14,7 @@ static vplResult bisect(const vplRun* run, int count, vplPatches** patchesOut)
     def.size = o->patchSize;
     def.count = count;
     def.rounds = o->subdivisions;
+    def.cut = o->cuts == VPL_PATCH_CUTS_ON;
     return vplPatches_Create(run->results[VPL_STAGE_GEOMETRY], &def, patchesOut);
 }
 
@@ -103,15 +104,17 @@ static vplResult runDraft(const vplRun* run, vplPatches* patches, int count, vpl
 
 static vplResult adapt(const vplRun* run, vplPatches** patchesOut)
 {
-    const int wanted = run->plan->options.radiosity.patches;
-    double count = wanted * ADAPTIVE_START;
+    const int asked = run->plan->options.radiosity.patches;
+    double count = asked * ADAPTIVE_START;
     vplPatches* patches;
     TRY(bisect(run, count >= 1 ? (int)count : 1, &patches));
+    const int cuts = patches->cutPatches; // may be inside walls
+    const int wanted = cuts < VPL_MAX_PATCHES - asked ? asked + cuts : VPL_MAX_PATCHES;
     for (int round = 0; patches->patchCount < wanted; round++) {
         vplRun_BeginPart(run, round < ADAPTIVE_ROUNDS ? round : ADAPTIVE_ROUNDS - 1, ADAPTIVE_ROUNDS);
         const int before = patches->patchCount;
         vplPatches* finer = NULL;
-        count = before * ADAPTIVE_GROWTH + 1;
+        count = (before - cuts) * ADAPTIVE_GROWTH + 1 + cuts;
         const vplResult result = runDraft(run, patches, count < wanted ? (int)count : wanted, &finer);
         vplPatches_Destroy(patches);
         if (result != VPL_SUCCESS) {
