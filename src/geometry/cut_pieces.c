@@ -249,6 +249,7 @@ vplResult vplCutPieces_Make(vplArena* scratch, const vplGeometry* g, const vplCu
     }
     for (int t = 0; t < g->triangleCount; t++) {
         const int first = segments->first[t], count = segments->first[t + 1] - first;
+        TRY(t % 1024 == 1023 ? vplAsk(g->context) : VPL_SUCCESS);
         if (count > 0) {
             TRY(cutTriangle(&c, segments->list + first, count, t));
         }

@@ -192,6 +192,7 @@ vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* g, vplCutSeg
     Search s = {.geometry = g, .scratch = scratch, .out = out, .result = VPL_SUCCESS};
     for (int t = 0; t < g->triangleCount; t++) {
         out->first[t] = (int)out->count;
+        TRY(t % 1024 == 1023 ? vplAsk(g->context) : VPL_SUCCESS);
         if (vplCanBeHit(g, t)) {
             TRY(searchAround(&s, t));
         }
