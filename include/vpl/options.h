@@ -143,8 +143,9 @@ typedef enum vplPatchPlacement {
 
 // Cuts of patches where surfaces meet.
 typedef enum vplPatchCuts {
-    VPL_PATCH_CUTS_AUTO = 0, // on, except with VPL_FORM_FACTORS_INCENTRE: the document has no cuts
-    VPL_PATCH_CUTS_OFF,      // patches may span what cuts them
+    VPL_PATCH_CUTS_AUTO =
+        0,              // on, except with patchSize or VPL_FORM_FACTORS_INCENTRE: the document has no cuts
+    VPL_PATCH_CUTS_OFF, // patches may span what cuts them
     VPL_PATCH_CUTS_ON
 } vplPatchCuts;
 

@@ -15,6 +15,8 @@
 // BASE for all come from cuts.
 enum { REACH = 8, EXTRA = 6, BASE = 1 << 17 };
 
+static const double EQUAL = 1 + 0x1p-10;
+
 typedef struct Cutter {
     const vplGeometry* geometry;
     vplArena* scratch;
@@ -137,7 +139,8 @@ static bool splitAcross(const Cutter* c, int node, const Sides* s, int lone)
                  q = s->distance[lone] / (s->distance[lone] - s->distance[j]);
     const vplVec3 onI = pointBetween(at.corner[lone], at.corner[i], p),
                   onJ = pointBetween(at.corner[lone], at.corner[j], q);
-    const bool byI = squareBetween(onI, at.corner[j]) <= squareBetween(onJ, at.corner[i]);
+    // Of equal diagonals, but for rounding, the first, so that a scene in other units has the same pieces.
+    const bool byI = squareBetween(onI, at.corner[j]) <= EQUAL * squareBetween(onJ, at.corner[i]);
     const uint32_t corner = c->pieces->nodes[node].corners[lone];
     if (!(byI ? split(c, node, j, onI, (float)p) : split(c, node, i, onJ, (float)(1 - q)))) {
         return false;
@@ -187,7 +190,7 @@ static vplResult cut(Cutter* c, const vplCutLine* line, int node)
     }
     if (c->pieces->nodes[node].children < 0) {
         TRY(reserve(c));
-        const bool near = way[1] - way[0] <= REACH * line->length;
+        const bool near = way[1] - way[0] <= EQUAL * REACH * line->length;
         if (near || !halve(c, node)) {
             c->spanned = !splitByLine(c, line, node) || c->spanned;
             return VPL_SUCCESS;
@@ -200,13 +203,21 @@ static vplResult cut(Cutter* c, const vplCutLine* line, int node)
 
 typedef struct Ordered {
     vplCutLine line;
+    double rank; // its length, rounded, so that equal ones stay in their order
     int index;
 } Ordered;
+
+static double roundToBits(double x, int bits)
+{
+    int exponent;
+    const double mantissa = frexp(x, &exponent);
+    return ldexp(rint(ldexp(mantissa, bits)), exponent);
+}
 
 static int longestFirst(const void* a, const void* b)
 {
     const Ordered *x = a, *y = b;
-    return x->line.length > y->line.length ? -1 : x->line.length < y->line.length ? 1 : x->index - y->index;
+    return x->rank > y->rank ? -1 : x->rank < y->rank ? 1 : x->index - y->index;
 }
 
 static vplResult cutTriangle(Cutter* c, const vplPatchCut* segments, int count, int triangle)
@@ -217,8 +228,12 @@ static vplResult cutTriangle(Cutter* c, const vplPatchCut* segments, int count, 
     }
     int lines = 0;
     for (int i = 0; i < count; i++) {
-        order[lines].index = i;
-        lines += vplCutLine_Make(&segments[i], c->geometry->normals[triangle], &order[lines].line);
+        Ordered* o = &order[lines];
+        o->index = i;
+        if (vplCutLine_Make(&segments[i], c->geometry->normals[triangle], &o->line)) {
+            o->rank = roundToBits(o->line.length, 12);
+            lines++;
+        }
     }
     qsort(order, (size_t)lines, sizeof *order, longestFirst);
     vplResult result = VPL_SUCCESS;

@@ -340,11 +340,11 @@ static void decideClamp(const vplRunner* r, vplPlan* p)
 static void chooseCuts(vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
-    const bool incentre = o->formFactors == VPL_FORM_FACTORS_INCENTRE;
+    const bool documented = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
     if (o->cuts == VPL_PATCH_CUTS_AUTO) {
-        o->cuts = incentre ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
+        o->cuts = documented ? VPL_PATCH_CUTS_OFF : VPL_PATCH_CUTS_ON;
         vplDecide(p, "patch-cuts",
-                  incentre ? "as the document has it" : "no patch lies on both sides of a surface");
+                  documented ? "as the document has it" : "no patch lies on both sides of a surface");
     }
 }
 
