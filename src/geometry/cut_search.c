@@ -150,6 +150,9 @@ static int byIndex(const void* a, const void* b)
 static vplResult addSegments(Search* s)
 {
     const vplTriangleCorners corners = vplGeometry_Corners(s->geometry, s->triangle);
+    if (s->faceCount == 0) {
+        return VPL_SUCCESS;
+    }
     qsort(s->faces, s->faceCount, sizeof *s->faces, byIndex);
     for (size_t i = 0; i < s->faceCount; i++) {
         if (i > 0 && s->faces[i] == s->faces[i - 1]) {
