@@ -82,7 +82,7 @@ TEST(CancelledFramesLeaveNothingBehind, 1)
         VPL_COHERENCE_OFF; // a coherent solver could start from light of the cancelled frame
     vplImage_Destroy(renderScene(scene, &o, &alone));
     int cancelled = 0;
-    for (int last = 1, done = 0; !done; last++) {
+    for (int last = 1, done = 0; !done; last += 1 + last / 16) {
         int left = last;
         vplImage* image = NULL;
         assert_int_equal(vplHistory_Create(context, &o.sequence.history), VPL_SUCCESS);
