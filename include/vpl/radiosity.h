@@ -286,8 +286,8 @@ typedef struct vplPatchMesh {
 } vplPatchMesh;
 
 // Edges are cut where bisection put another patch's vertex at their midpoint. T-vertices that the scene
-// itself has stay: 46 in the conference room, 802 in Sibenik, 4 in Sponza; with vplPatchDef.cut edges are cut at
-// them, too.
+// itself has stay: 46 in the conference room, 802 in Sibenik, 4 in Sponza. If vplPatchDef.cut was set,
+// edges are cut there, too.
 // Source: Baum, Mann, Smith and Winget, Making Radiosity Usable, SIGGRAPH 1991.
 vplResult vplPatchMesh_Create(const vplPatchSides* sides, vplPatchMesh** meshOut);
 

@@ -46,23 +46,24 @@ static vplResult stepAll(const Arguments* a, vplRenderer* r, bool done, Picture*
 {
     const bool layers = vplRenderer_GetPlan(r)->options.output.aovs != 0;
     double lastSaved = wallMs();
-    int steps = 0, savedSteps = -1, savedPasses = -1;
+    bool saved = false; // the state after the last step that was done
+    int savedPasses = 0;
     vplResult result = VPL_SUCCESS;
     while (!done && result == VPL_SUCCESS) {
         result = vplRenderer_Step(r, &done);
-        steps += result == VPL_SUCCESS;
+        saved = saved && result != VPL_SUCCESS;
         if (a->checkpoint != NULL && !done && result == VPL_SUCCESS &&
             wallMs() - lastSaved >= 1000 * a->checkpointEvery) {
             saveState(a, r, picture);
             lastSaved = wallMs();
-            savedSteps = steps;
+            saved = picture->saved;
             savedPasses = vplRenderer_GetPassCount(r);
         }
     }
     const int passes = vplRenderer_GetPassCount(r);
     const bool partial = result == VPL_CANCELLED && passes > 0;
-    const bool saved = picture->saved && savedSteps == steps && savedPasses == passes;
-    if (a->checkpoint != NULL && !saved && (result == VPL_SUCCESS || partial)) {
+    const bool same = saved && savedPasses == passes; // a step that is cancelled may have added its pass
+    if (a->checkpoint != NULL && !same && (result == VPL_SUCCESS || partial)) {
         saveState(a, r, picture);
     }
     if (partial && !a->noPartial) {

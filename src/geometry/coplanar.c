@@ -106,8 +106,7 @@ vplResult vplMarkCoplanar(const vplGeometry* g, vplGeometryObject* objects)
         faces[i] = faceOf(g, 2 * i);
     }
     qsort(faces, (size_t)count, sizeof *faces, byDistance);
-    const float largest = fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
-    markPairs(objects, faces, count, largest * 0x1p-20f);
+    markPairs(objects, faces, count, vplGeometry_LargestCoordinate(g) * 0x1p-20f);
     vplFree(g->context, faces);
     return VPL_SUCCESS;
 }

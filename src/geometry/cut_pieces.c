@@ -53,13 +53,7 @@ static vplVec3 pointBetween(vplVec3 a, vplVec3 b, double share)
 
 static void addNode(vplCutPieces* pieces, const uint32_t corners[3], int triangle, int parent)
 {
-    const vplTriangleCorners at = vplCornersOf(pieces->points, corners);
-    const int first = vplPatch_FirstCorner(&at);
-    vplPatchNode* node = &pieces->nodes[pieces->nodeCount++];
-    *node = (vplPatchNode){.triangle = triangle, .parent = parent, .children = -1, .patch = -1, .at = 0.5f};
-    for (int k = 0; k < 3; k++) {
-        node->corners[k] = corners[(first + k) % 3];
-    }
+    pieces->nodes[pieces->nodeCount++] = vplPatchNode_Make(pieces->points, corners, triangle, parent);
 }
 
 // Splits a piece from corner `apex` to a point on the opposite edge. False if that leaves a part without area.
@@ -139,7 +133,7 @@ static bool splitAcross(const Cutter* c, int node, const Sides* s, int lone)
                  q = s->distance[lone] / (s->distance[lone] - s->distance[j]);
     const vplVec3 onI = pointBetween(at.corner[lone], at.corner[i], p),
                   onJ = pointBetween(at.corner[lone], at.corner[j], q);
-    // Of equal diagonals, but for rounding, the first, so that a scene in other units has the same pieces.
+    // Rounding does not choose between two diagonals of one length: a scene in other units has the same pieces.
     const bool byI = squareBetween(onI, at.corner[j]) <= EQUAL * squareBetween(onJ, at.corner[i]);
     const uint32_t corner = c->pieces->nodes[node].corners[lone];
     if (!(byI ? split(c, node, j, onI, (float)p) : split(c, node, i, onJ, (float)(1 - q)))) {

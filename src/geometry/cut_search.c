@@ -188,8 +188,7 @@ static vplResult searchAround(Search* s, int triangle)
 
 vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* g, vplCutSegments* out)
 {
-    const float largest = fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
-    *out = (vplCutSegments){.tolerance = (double)largest * VPL_CUT_TOLERANCE};
+    *out = (vplCutSegments){.tolerance = vplCutTolerance(g)};
     out->first = vplArena_Alloc(scratch, (size_t)g->triangleCount + 1, sizeof *out->first);
     TRY(vplArena_Check(scratch));
     Search s = {.geometry = g, .scratch = scratch, .out = out, .result = VPL_SUCCESS};

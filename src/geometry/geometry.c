@@ -104,7 +104,7 @@ static void summarise(vplGeometry* g)
 // Positions in float lose what is small beside their distance from (0, 0, 0).
 static void warnOfDistance(const vplGeometry* g)
 {
-    const float farthest = fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
+    const float farthest = vplGeometry_LargestCoordinate(g);
     const float size = vplGeometry_Diagonal(g);
     if (farthest > 4096 * size && size > 0) {
         vplLog(g->context, VPL_LOG_WARNING,

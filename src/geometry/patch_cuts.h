@@ -7,9 +7,12 @@
 #include "base/arena.h"
 #include "geometry/triangle.h"
 
-// Lengths up to this share of the largest coordinate count as 0: eight rounding units of a coordinate there, and so
-// more than a rotated corner is off.
-#define VPL_CUT_TOLERANCE 0x1p-19
+// Lengths up to this count as 0, metres: eight rounding units of the largest coordinate, and so more than a rotated corner
+// is off.
+static inline double vplCutTolerance(const vplGeometry* geometry)
+{
+    return (double)vplGeometry_LargestCoordinate(geometry) * 0x1p-19;
+}
 
 // The segments of a geometry's triangles: those of triangle t are list[first[t]] .. list[first[t + 1] - 1].
 typedef struct vplCutSegments {

@@ -114,15 +114,20 @@ static vplTriangleCorners cornersOf(const vplPatchTree* tree, int node)
     return vplCornersOf(tree->positions, tree->nodes[node].corners);
 }
 
+vplPatchNode vplPatchNode_Make(const vplVec3* positions, const uint32_t corners[3], int triangle, int parent)
+{
+    const vplTriangleCorners at = vplCornersOf(positions, corners);
+    const int first = vplPatch_FirstCorner(&at);
+    vplPatchNode node = {.triangle = triangle, .parent = parent, .children = -1, .patch = -1, .at = 0.5f};
+    for (int k = 0; k < 3; k++) {
+        node.corners[k] = corners[(first + k) % 3];
+    }
+    return node;
+}
+
 static void addNode(vplPatchTree* tree, const uint32_t corners[3], int triangle, int parent)
 {
-    const vplTriangleCorners at = vplCornersOf(tree->positions, corners);
-    const int first = vplPatch_FirstCorner(&at);
-    vplPatchNode* node = &tree->nodes[tree->nodeCount++];
-    *node = (vplPatchNode){.triangle = triangle, .parent = parent, .children = -1, .patch = -1, .at = 0.5f};
-    for (int k = 0; k < 3; k++) {
-        node->corners[k] = corners[(first + k) % 3];
-    }
+    tree->nodes[tree->nodeCount++] = vplPatchNode_Make(tree->positions, corners, triangle, parent);
 }
 
 void vplPatchTree_AddTriangles(vplPatchTree* tree)

@@ -26,13 +26,13 @@ typedef struct vplPatchTree {
 // and 12 before 20.
 vplTriangleCorners vplPatch_Rotate(const vplTriangleCorners* triangle);
 
-// The corner opposite the longest edge, which that becomes corner 0.
+// Returns the corner that vplPatch_Rotate makes corner 0.
 int vplPatch_FirstCorner(const vplTriangleCorners* triangle);
 
 // True if the triangle has an area and is counter-clockwise seen from where the normal points.
 bool vplPatch_FacesAlong(const vplTriangleCorners* triangle, vplVec3 normal);
 
-// True if both parts have, after a split from corner 0 to a point on the opposite edge.
+// True if a split from corner 0 to a point on the opposite edge leaves two parts of which this holds.
 bool vplPatch_CanSplit(const vplTriangleCorners* rotated, vplVec3 point, vplVec3 normal);
 
 // Squared length of the edge opposite corner 0, in double, so that an edge of length T does not exceed T.
@@ -45,6 +45,9 @@ bool vplPatch_Middle(const vplTriangleCorners* rotated, vplVec3 normal, vplVec3*
 // A half of a bisected triangle. Its corners begin with those on the edge that was cut: that order decides
 // which of several equally long edges is bisected next.
 vplTriangleCorners vplPatch_Half(const vplTriangleCorners* rotated, vplVec3 middle, int second);
+
+// Makes a leaf. `corners` are indices in `positions`.
+vplPatchNode vplPatchNode_Make(const vplVec3* positions, const uint32_t corners[3], int triangle, int parent);
 
 // Allocates room for positions and nodes, and makes the arenas. The tree's geometry is set.
 vplResult vplPatchTree_Reserve(vplPatchTree* tree, size_t positions, size_t nodes);

@@ -3,6 +3,8 @@
 #ifndef VPL_GEOMETRY_TRIANGLE_H
 #define VPL_GEOMETRY_TRIANGLE_H
 
+#include "math/vec.h"
+
 #include <vpl/geometry.h>
 
 typedef struct vplTriangleCorners {
@@ -12,6 +14,12 @@ typedef struct vplTriangleCorners {
 static inline vplTriangleCorners vplCornersOf(const vplVec3* positions, const uint32_t* index)
 {
     return (vplTriangleCorners){{positions[index[0]], positions[index[1]], positions[index[2]]}};
+}
+
+// The largest magnitude of a coordinate, metres.
+static inline float vplGeometry_LargestCoordinate(const vplGeometry* g)
+{
+    return fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax));
 }
 
 // The corners of a triangle in world space.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Saves a render between two passes and goes on with it. A file has, all words little-endian: the 8 letters
 // VPLSTATE, a header, the options as text, the sums that the picture is made from, and a checksum. Before the
-// first pass of a plan that replaces another there are no sums. Reading checks every size and value, because files come from anywhere.
+// first pass of a plan that replaces another there are no sums. Reading checks every size and value.
 #include "base/file.h"
 #include "reference/path_trace.h"
 #include "reference/sparse_paths.h"
@@ -32,7 +32,7 @@ typedef struct Header {
     uint32_t truth;           // pixels that tell the error; 0: there are none
     uint64_t rays[2];         // of path tracing: of the picture and of its direct light
     double loss[2];           // of virtual lights by the clamp
-    uint32_t unreviewed;      // vplRenderer.unreviewed
+    uint64_t unreviewed;      // vplRenderer.unreviewed
     double spread;            // spreadBefore of an unreviewed pass; negative: infinite
     double spent;             // rays of the plan under way
 } Header;
@@ -50,8 +50,7 @@ static void streamHeader(vplStream* s, Header* h)
     vplStream_Long(s, &h->rays[0]);
     vplStream_Long(s, &h->rays[1]);
     vplStream_Doubles(s, h->loss, 2);
-    vplStream_Word(s, &h->unreviewed);
-    s->at += 4;
+    vplStream_Long(s, &h->unreviewed);
     vplStream_Doubles(s, &h->spread, 1);
     vplStream_Doubles(s, &h->spent, 1);
 }

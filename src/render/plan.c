@@ -135,12 +135,7 @@ static void listStages(vplPlan* p)
 
 // ---- the plan
 
-enum { EMITTER_STREAM = 0x80000011u }; // of random numbers
-
-static double strengthOf(const vplEmitterDef* e)
-{
-    return vplRgbMean(e->intensity);
-}
+enum { EMITTER_SAMPLE_STREAM = 0x80000011u }; // of random numbers
 
 // Chooses `wanted` of the emitters by systematic sampling. One that is chosen several times is listed once, as bright as
 // its choices together. Scales them to keep the sum of strengths.
@@ -150,21 +145,23 @@ static vplResult sampleEmitters(vplPlan* p, int wanted)
     TRY(vplArena_Check(p->arena));
     double total = 0, sum = 0;
     for (int i = 0; i < p->emitterCount; i++) {
-        total += strengthOf(&p->emitters[i]);
+        total += vplRgbMean(p->emitters[i].intensity);
     }
     const double step = total / wanted;
-    const double offset = (double)vplUnitFloat(vplRandomAt(p->options.seed, EMITTER_STREAM, 0).v[0]) * step;
+    const double offset =
+        (double)vplUnitFloat(vplRandomAt(p->options.seed, EMITTER_SAMPLE_STREAM, 0).v[0]) * step;
     int count = 0;
     for (int i = 0, taken = 0; i < p->emitterCount && taken < wanted && step > 0; i++) {
         const int before = taken;
-        sum += strengthOf(&p->emitters[i]);
+        sum += vplRgbMean(p->emitters[i].intensity);
         while (taken < wanted && sum > offset + taken * step) {
             taken++;
         }
         if (taken > before) {
             chosen[count] = p->emitters[i];
-            chosen[count].intensity = vplRgbScale(
-                (float)((taken - before) * step / strengthOf(&p->emitters[i])), chosen[count].intensity);
+            chosen[count].intensity =
+                vplRgbScale((float)((taken - before) * step / vplRgbMean(p->emitters[i].intensity)),
+                            chosen[count].intensity);
             count++;
         }
     }

@@ -9,18 +9,13 @@
 // Cells are so many times as large as a patch of mean area.
 static const double CELL = 1.5;
 
-static double toleranceOf(const vplGeometry* g)
-{
-    return (double)fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax)) * VPL_CUT_TOLERANCE;
-}
-
 vplResult vplEdgeVertices_Create(vplArena* scratch, const vplPatches* patches, vplEdgeVertices* out)
 {
     double area = 0;
     for (int i = 0; i < patches->patchCount; i++) {
         area += vplPatches_Area(patches, i);
     }
-    *out = (vplEdgeVertices){.patches = patches, .tolerance = toleranceOf(patches->geometry)};
+    *out = (vplEdgeVertices){.patches = patches, .tolerance = vplCutTolerance(patches->geometry)};
     const double size = fmax(CELL * sqrt(area / fmax(patches->patchCount, 1)), 4 * out->tolerance);
     TRY(vplPointCells_Create(scratch, patches->positions, (size_t)patches->positionCount, size, &out->cells));
     uint8_t* used = vplArena_AllocZero(scratch, (size_t)patches->positionCount, 1);

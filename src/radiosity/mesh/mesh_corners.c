@@ -220,9 +220,8 @@ static void groupChunk(void* data, int chunk, int worker)
 vplResult vplMeshCorners_Find(vplArena* scratch, const vplPatches* patches, const vplPieces* pieces,
                               vplMeshCorners* b)
 {
-    const vplGeometry* g = patches->geometry;
     *b = (vplMeshCorners){.patches = patches, .pieces = pieces, .count = 3 * pieces->count};
-    b->tolerance = (double)fmaxf(vplLargestOf(g->boundsMin), vplLargestOf(g->boundsMax)) * VPL_CUT_TOLERANCE;
+    b->tolerance = vplCutTolerance(patches->geometry);
     b->first = vplArena_AllocZero(scratch, (size_t)patches->positionCount + 1, sizeof *b->first);
     b->at = vplArena_Alloc(scratch, b->count, sizeof *b->at);
     b->group[0] = b->group[1] = vplArena_Alloc(scratch, b->count, sizeof *b->leader);

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// The picture of the passes so far, its layers and its statistics.
+#include "base/clock.h"
+#include "render/renderer.h"
+#include "render/show.h"
+#include "render/stages/make.h"
+#include "render/stages/results.h"
+
+#include <math.h>
+#include <string.h>
+
+// The noise of the mean of passes whose variance is that of a whole pass over their share of it. Errors that all passes
+// have alike (of direct light, and light that the accumulation loses or moves) are not in it.
+static void estimateNoise(vplRenderer* r, const vplImage* image)
+{
+    const size_t values = vplValueCount(image);
+    double variance = 0, sum = 0;
+    for (size_t k = 0; k < values && r->done > 1; k++) {
+        variance += fmax(0, r->sums[1][k] - r->sums[0][k] * r->sums[0][k] / r->weight);
+        sum += (double)image->pixels[k];
+    }
+    if (r->done > 1) {
+        const double noise = sqrt(variance / (double)values / (r->done - 1) / r->weight);
+        r->error.noise = sum > 0 ? noise * (double)values / sum : 0;
+    }
+}
+
+// Makes the virtual lights of the last pass again, for marks on the picture, where a pass was cancelled or
+// the render was loaded since.
+static vplResult refreshLights(vplRenderer* r)
+{
+    const vplRunner before = r->runner;
+    if (!r->stale || VPL_SHOWS[r->plan->options.output.show].drawOver == NULL) {
+        return VPL_SUCCESS;
+    }
+    r->runner.progress = NULL; // it is short, and not part of a pass
+    r->runner.run.pass = r->done - 1;
+    const vplResult result = vplRunner_RunPlan(&r->runner, r->plan, VPL_STAGE_VIRTUAL_LIGHTS);
+    r->runner.progress = before.progress;
+    r->runner.stats = before.stats;
+    r->stale = result != VPL_SUCCESS;
+    return result;
+}
+
+vplResult vplRenderer_Resolve(vplRenderer* r, vplImage** imageOut)
+{
+    vplRun* run = &r->runner.run;
+    const vplShowRow* show = &VPL_SHOWS[r->plan->options.output.show];
+    if (r->plan->options.method == VPL_METHOD_PATH) {
+        TRY(vplResolvePaths(run, imageOut));
+        r->error.noise = r->error.total = run->stats->relativeErrorEstimate;
+        r->error.bound = 1.06 * r->error.noise;
+        return VPL_SUCCESS;
+    }
+    TRY(r->plan->progressive ? refreshLights(r) : VPL_SUCCESS);
+    TRY(vplImage_Create(run->context, r->base->width, r->base->height, imageOut));
+    for (size_t k = 0; k < vplValueCount(r->base); k++) {
+        const double mean = r->plan->progressive ? r->sums[0][k] / r->weight : 0;
+        (*imageOut)->pixels[k] = (float)((double)r->base->pixels[k] + mean);
+    }
+    if (r->plan->progressive) {
+        estimateNoise(r, *imageOut);
+    }
+    return r->plan->progressive && show->drawOver != NULL ? show->drawOver(run, *imageOut) : VPL_SUCCESS;
+}
+
+// Direct light alone of all passes so far; NULL where light is not split.
+static vplResult resolveDirect(vplRenderer* r, vplImage** imageOut)
+{
+    const vplOutputOptions* o = &r->plan->options.output;
+    if (!r->plan->splitsLight) {
+        return VPL_SUCCESS;
+    }
+    TRY(vplImage_Create(r->runner.run.context, o->width, o->height, imageOut));
+    if (r->plan->options.method == VPL_METHOD_PATH) {
+        vplResolveDirectPaths(&r->runner.run, *imageOut);
+        return VPL_SUCCESS;
+    }
+    for (size_t k = 0; k < vplValueCount(*imageOut); k++) {
+        const float added = r->direct != NULL ? r->direct->pixels[k] : 0;
+        (*imageOut)->pixels[k] = r->plan->progressive ? r->base->pixels[k] + added / (float)r->weight : added;
+    }
+    return VPL_SUCCESS;
+}
+
+void vplRenderer_FinishStats(vplRenderer* r, const vplImage* image, vplRenderStats* statsOut)
+{
+    vplRenderStats* stats = &r->runner.stats;
+    const vplErrorParts* e = &r->error;
+    double sum = 0;
+    for (size_t k = 0; image != NULL && k < vplValueCount(image); k++) {
+        sum += (double)image->pixels[k] / (double)vplValueCount(image);
+    }
+    stats->passes = vplRenderer_Shown(r).passes;
+    stats->relativeErrorEstimate = e->total >= 0 ? e->total : e->noise;
+    stats->errorEstimate = stats->relativeErrorEstimate >= 0 ? stats->relativeErrorEstimate * sum : -1;
+    stats->relativeNoise = e->noise;
+    stats->relativeBias = vplRenderer_GetPlan(r)->options.method == VPL_METHOD_PATH ? 0
+                          : e->total >= 0 && e->noise >= 0
+                              ? sqrt(fmax(0, e->total * e->total - e->noise * e->noise))
+                              : e->total;
+    stats->truthPaths = r->truth != NULL ? vplTruth_Paths(r->truth) : 0;
+    stats->totalMs = vplClockMs() - r->start;
+    stats->cpuMs = vplCpuMs() - r->cpuStart;
+    stats->peakBytes = vplRunner_PeakBytes(&r->runner);
+    stats->imageHash = image != NULL ? vplImage_Hash(image) : 0;
+    *statsOut = *stats;
+}
+
+vplShown vplRenderer_Shown(const vplRenderer* r)
+{
+    const vplKeptPicture* kept = &r->kept;
+    return kept->image != NULL && (r->showsKept || r->done == 0)
+               ? (vplShown){kept->plan, kept->passes, kept->paths}
+               : (vplShown){r->plan, r->done, r->paths};
+}
+
+int vplRenderer_GetPassCount(const vplRenderer* r)
+{
+    return vplRenderer_Shown(r).passes;
+}
+
+const vplPlan* vplRenderer_GetPlan(const vplRenderer* r)
+{
+    return vplRenderer_Shown(r).plan;
+}
+
+// The picture of the plan under way, or one that was kept, where the plan has none or a worse one.
+static vplResult takePicture(vplRenderer* r, vplImage** imageOut)
+{
+    const vplKeptPicture* kept = &r->kept;
+    r->showsKept = false;
+    if (r->done > 0) {
+        TRY(vplRenderer_Resolve(r, imageOut));
+        if (r->truth != NULL && r->plan->options.method != VPL_METHOD_PATH) {
+            vplJudgePicture(r, *imageOut);
+        }
+        if (kept->image == NULL || kept->error < 0 || r->error.total < 0 || r->error.total <= kept->error) {
+            return VPL_SUCCESS;
+        }
+        vplImage_Destroy(*imageOut);
+        *imageOut = NULL;
+    }
+    r->showsKept = true;
+    TRY(vplImage_Create(r->runner.run.context, kept->image->width, kept->image->height, imageOut));
+    memcpy((*imageOut)->pixels, kept->image->pixels,
+           vplValueCount(kept->image) * sizeof *kept->image->pixels);
+    r->error = (vplErrorParts){-1, kept->error, kept->error};
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderer_GetImage(vplRenderer* r, vplImage** imageOut, vplRenderStats* statsOut)
+{
+    vplImage* image = NULL;
+    if (!vplRenderer_HasPicture(r)) {
+        return vplFail(r->runner.run.context, VPL_INVALID_ARGUMENT,
+                       "a renderer has no picture before its first step");
+    }
+    const vplResult result = takePicture(r, &image);
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(image);
+        return result;
+    }
+    if (statsOut != NULL) {
+        vplRenderer_FinishStats(r, image, statsOut);
+    }
+    *imageOut = image;
+    return VPL_SUCCESS;
+}
+
+vplResult vplRenderer_GetLayers(vplRenderer* r, vplLayers** layersOut, vplRenderStats* statsOut)
+{
+    vplImage *picture = NULL, *direct = NULL;
+    vplLayers* layers;
+    TRY(vplRenderer_GetImage(r, &picture, NULL));
+    const vplResult result = resolveDirect(r, &direct);
+    if (result != VPL_SUCCESS) {
+        vplImage_Destroy(picture);
+        return result;
+    }
+    TRY(vplMakeLayers(&r->runner.run, picture, direct, &layers));
+    if (statsOut != NULL) {
+        vplRenderer_FinishStats(r, picture, statsOut);
+    }
+    *layersOut = layers;
+    return VPL_SUCCESS;
+}
