@@ -354,18 +354,17 @@ TEST(ManySealedRoomsAreBlack, 2, SLOW)
 
 // ---- energy
 
+// The scenes of examples/scenes, and two rooms with a doorway of 0.7 m.
 static vplScene* energyScene(vplContext* context, int which)
 {
-    if (which == 0) {
-        return openScene(context, "examples/scenes/door-ajar.json");
+    static const char* const NAMES[] = {"door-ajar", "crossing-walls", "sunken-boxes", "thin-boxes",
+                                        "six-rooms"};
+    if (which < 5) {
+        char path[64];
+        snprintf(path, sizeof path, "examples/scenes/%s.json", NAMES[which]);
+        return openScene(context, path);
     }
-    vplScene* scene = twoRooms(context, which == 1 ? 1 : 1.2f);
-    if (which == 2) { // sunk into the floor, tilted, and walls that cross
-        addThing(scene, VPL_OBJECT_BOX, 0, vplVec(-1.5f, 0.1f, 0.3f), 0.3, 0.5, vplVec(0.8f, 0.7f, 0.6f));
-        addThing(scene, VPL_OBJECT_BOX, 0, vplVec(1.2f, 0.2f, -0.5f), 0, 0.8, vplVec(0.6f, 0.9f, 0.6f));
-        addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(-1.2f, 0.5f, -1), 0, 0.2, vplVec(2, 1.4f, 1));
-        addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(-1.2f, 0.5f, -1), 0, 1.7, vplVec(1, 1.6f, 1));
-    }
+    vplScene* scene = twoRooms(context, 0.7f);
     aim(scene, vplVec(-2.8f, 1.9f, -1.2f), vplVec(0, 0.7f, 0.7f));
     return scene;
 }
@@ -384,14 +383,69 @@ static void compareEnergy(const vplScene* scene, const vplImage* truth, int patc
 
 TEST(EnergyIsThatOfPathsWhereSurfacesCross, 2, SLOW)
 {
-    for (int which = 0; which < 3; which++) {
+    for (int which = 0; which < 6; which++) {
         vplScene* scene = energyScene(context, which);
         vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 2048);
         compareEnergy(scene, truth, 2000, false, which);
         compareEnergy(scene, truth, 2000, true, which);
-        compareEnergy(scene, truth, 8000, false, which);
-        compareEnergy(scene, truth, 8000, true, which);
+        if (which == 0 || which == 5) {
+            compareEnergy(scene, truth, 8000, false, which);
+            compareEnergy(scene, truth, 8000, true, which);
+        }
         vplImage_Destroy(truth);
         vplScene_Destroy(scene);
     }
+}
+
+// ---- light from outside
+
+// A room of 4 m x 2.6 m x 4 m with an opening in its east wall, of boxes 0.1 m thick that overlap. width 0: none.
+static vplScene* roomWithWindow(vplContext* context, float width, float height)
+{
+    vplScene* scene = sceneOf(context, 0.6f);
+    const float side = 2 - 0.5f * width, below = 1.4f - 0.5f * height, above = 1.2f - 0.5f * height;
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(2, 0, 2), -VPL_PI / 2, 0, vplVec(4, 4, 1));
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(2, 2.6f, 2), VPL_PI / 2, 0, vplVec(4, 4, 1));
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(2, 1.3f, 0), 0, 0, vplVec(4, 2.6f, 1));
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(2, 1.3f, 4), 0, VPL_PI, vplVec(4, 2.6f, 1));
+    addThing(scene, VPL_OBJECT_QUAD, 0, vplVec(0, 1.3f, 2), 0, VPL_PI / 2, vplVec(4, 2.6f, 1));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(4.05f, 1.3f, 0.5f * side - 0.05f), 0, 0,
+             vplVec(0.1f, 2.8f, side + 0.1f));
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(4.05f, 1.3f, 4.05f - 0.5f * side), 0, 0,
+             vplVec(0.1f, 2.8f, side + 0.1f));
+    if (width > 0) {
+        addThing(scene, VPL_OBJECT_BOX, 0, vplVec(4.05f, 0.5f * below - 0.1f, 2), 0, 0,
+                 vplVec(0.1f, below, width + 0.02f));
+        addThing(scene, VPL_OBJECT_BOX, 0, vplVec(4.05f, 2.7f - 0.5f * above, 2), 0, 0,
+                 vplVec(0.1f, above, width + 0.02f));
+    }
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(1.5f, 0.3f, 1.2f), 0, 0.35, vplVec(0.8f, 0.7f, 0.8f));
+    aim(scene, vplVec(3.6f, 1.7f, 3.6f), vplVec(0.5f, 0.9f, 0.8f));
+    return scene;
+}
+
+TEST(LightComesInThroughAWindow, 2, SLOW)
+{
+    for (int sun = 0; sun < 2; sun++) {
+        vplScene* scene = roomWithWindow(context, 1.2f, 1);
+        addEmitter(scene, sun ? VPL_EMITTER_DIRECTIONAL : VPL_EMITTER_POINT, vplVec(6.5f, 3, 2.6f),
+                   vplVec(-1, -0.6f, -0.2f), 60);
+        vplImage* truth = pathsOf(scene, VPL_SHOW_INDIRECT, 2048);
+        compareEnergy(scene, truth, 1000, false, sun);
+        compareEnergy(scene, truth, 4000, false, sun);
+        vplImage_Destroy(truth);
+        vplScene_Destroy(scene);
+    }
+}
+
+// A lamp outside a closed room leaves it black.
+TEST(LightStaysOutsideAClosedRoom, 2)
+{
+    vplScene* scene = roomWithWindow(context, 0, 0);
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(5.5f, 1.6f, 2.2f), vplVec(-1, 0, 0), 100);
+    const vplRenderOptions o = radiosityOptions(500);
+    vplImage* image = renderScene(scene, &o, NULL);
+    assert_true(largestOf(image) == 0);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
 }
