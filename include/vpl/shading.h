@@ -115,6 +115,20 @@ typedef struct vplCompensationDef {
     bool seesReflection; // the picture is lit by the other lights
 } vplCompensationDef;
 
+// Radiosity that leaves a surface towards a ray that hit it, W/m^2: of reflected light only.
+typedef void vplRadiosityFcn(const void* user, const vplHit* hit, vplVec3 direction, float radiosityOut[3]);
+
+// Final gather: indirect light is found by rays from each pixel. With interleaving, the pixels of a square of
+// K x K take different parts of K^2 rayCount directions, and the filter takes the mean of neighbours.
+// Source: Reichert, A Two-Pass Radiosity Method Driven by Lights and Viewer Position, Cornell 1992.
+typedef struct vplGatherDef {
+    int rayCount;      // per pixel, [1, VPL_MAX_NEAR_RAYS]
+    uint32_t firstRay; // index of a pixel's first ray in its sequence
+    uint64_t seed;
+    vplRadiosityFcn* radiosity; // called by all workers at the same time
+    const void* user;
+} vplGatherDef;
+
 typedef struct vplShadeDef {
     vplLighting lighting;
     vplAccumulation accumulation;
@@ -156,6 +170,7 @@ typedef struct vplShadeDef {
     float cutError;                         // lightcuts: see vplRenderOptions
     bool emission;                          // the picture shows the emission of surfaces
     const vplCompensationDef* compensation; // physical only; NULL: light taken by the clamp is lost
+    const vplGatherDef* gather;             // deferred and interleaved, physical only; NULL: no final gather
     vplProgressFcn* progress;               // called while vplShadeView draws; default NULL
     void* progressUser;
 } vplShadeDef;

@@ -236,6 +236,7 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsDirect = row->direct && o->method != VPL_METHOD_PATH;
     p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
+    p->gathers = o->radiosity.gather > 0 && p->showsPatches && vplShowsLight(o->output.show);
     p->splitsLight = (o->output.aovs & (VPL_AOV_DIRECT | VPL_AOV_INDIRECT)) != 0 &&
                      (p->showsVirtual || p->showsPatches || o->method == VPL_METHOD_PATH);
     p->progressive =

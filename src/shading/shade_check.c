@@ -75,6 +75,10 @@ vplResult vplShadeDef_Check(const vplContext* context, const vplView* view, cons
             "vplCompensationDef.rayCount and hitLights are %d and %d, must be in [1, %d] and at least 1",
             c->rayCount, c->hitLights, VPL_MAX_NEAR_RAYS);
     }
+    if (def->gather != NULL && (def->gather->rayCount < 1 || def->gather->rayCount > VPL_MAX_NEAR_RAYS)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT, "vplGatherDef.rayCount is %d, must be in [1, %d]",
+                       def->gather->rayCount, VPL_MAX_NEAR_RAYS);
+    }
     if (def->output == VPL_OUTPUT_SHADOW_FACTOR &&
         (def->emitterCount < 1 ||
          ((def->emitterMaps == NULL || def->emitterMaps[0] == NULL) && def->shadows[0].map == NULL))) {

@@ -122,6 +122,9 @@ vplResult vplEstimateLoss(const vplRun* run, const vplVirtualLights* lights, con
 vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights* lights, vplPlan* plan,
                                       char* why);
 
+// Describes the rays of the final gather, whose light the solution knows.
+vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut);
+
 // Draws patches over a picture, as smooth indirect light or as the values that --show asks for.
 vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* image);
 
