@@ -5,6 +5,7 @@
 
 #include "render/options.h"
 #include "render/show.h"
+#include "render/stages/make.h"
 #include "render/stages/results.h"
 
 #include <math.h>
@@ -42,6 +43,9 @@ static void choosePipeline(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
     const bool ssvp = o->method == VPL_METHOD_SSVP;
+    if (p->gathers) { // passes have no pixels that rays could leave
+        o->pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
+    }
     if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
         o->pipeline.kind = vplUsualPipeline(o);
         const bool shared = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
@@ -54,9 +58,11 @@ static void choosePipeline(vplPlan* p)
     }
     if (o->pipeline.interleave < 0) {
         o->pipeline.interleave = squareOf(o);
-        if (p->showsVirtual && o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED) {
+        if (vplPixelsShareLight(p)) {
             vplDecide(p, "interleave",
-                      ssvp ? "as the document has it" : "by the number of lights and of pixels");
+                      ssvp         ? "as the document has it"
+                      : p->gathers ? "neighbours share their rays"
+                                   : "by the number of lights and of pixels");
         }
     }
     if (o->shadow.rsmSize == 0) {

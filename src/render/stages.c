@@ -173,19 +173,24 @@ static bool needsVertexLight(const vplPlan* p, char* why)
     const vplShow show = p->options.output.show;
     const bool lit = show == VPL_SHOW_PICTURE || show == VPL_SHOW_INDIRECT;
     return choose(why, lit && p->options.radiosity.interpolation == VPL_INTERPOLATION_GOURAUD,
-                  "light is interpolated between the vertices of patches",
+                  p->gathers ? "rays of pixels meet light that is interpolated between the vertices of patches"
+                             : "light is interpolated between the vertices of patches",
                   "light of patches is shown as it is");
 }
 
 static bool needsPicture(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
+    char rays[32] = "";
+    if (p->gathers) {
+        snprintf(rays, sizeof rays, ", %d rays from each", p->options.radiosity.gather);
+    }
     if (o->antialias > 1) {
-        return because(why, true, "%dx%d pixels; at edges the mean of %d samples", o->width, o->height,
+        return because(why, true, "%dx%d pixels%s; at edges the mean of %d samples", o->width, o->height, rays,
                        o->antialias);
     }
-    return because(why, true, "%dx%d pixels, %d sample%s each", o->width, o->height, o->supersample,
-                   o->supersample > 1 ? "s" : "");
+    return because(why, true, "%dx%d pixels, %d sample%s each%s", o->width, o->height, o->supersample,
+                   o->supersample > 1 ? "s" : "", rays);
 }
 
 static bool needsPaths(const vplPlan* p, char* why)
@@ -271,7 +276,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
         needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
-        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
+        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |

@@ -1,97 +1,57 @@
 // SPDX-License-Identifier: MIT
-// The radiosity that rays of the final gather meet.
-#include "geometry/triangle.h"
+// The light that rays of the final gather meet: reflected radiosity of patches. Emission is direct light.
+//
+// It is interpolated between corners, as the picture shows it without a gather. With one value per patch rays
+// near a corner of the room meet too much light: relmse 0.0042 instead of 0.0033 (room, 250 patches, 64 rays).
 #include "math/vec.h"
-#include "radiosity/sides/side.h"
+#include "radiosity/mesh/patch_mesh.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
-#include <stdlib.h>
+
 #include <string.h>
 
-typedef struct MetLight {
-    const vplPatchSides* sides;
+typedef struct PatchLight {
     const vplPatchMesh* mesh;
-    const vplRgb* reflected; // per side
-    const vplRgb* corners; // [vertex][front, back]: irradiance
-    const int* first; // mesh triangles of patches
-    const int* list;
-    int mode;
-} MetLight;
+    const vplRgb* reflected;        // radiosity of sides
+    const vplRgb* vertexIrradiance; // of all light; NULL: light is constant over a side
+    int* first;                     // of each patch's triangles in the mesh
+} PatchLight;
 
-static void radiosityOf(const void* user, const vplHit* hit, vplVec3 direction, float out[3])
+static void radiosityAt(const void* user, const vplHit* hit, vplVec3 direction, float radiosityOut[3])
 {
-    const MetLight* m = user;
-    const int patch = vplPatches_Find(m->sides->patches, hit->triangle, hit->position);
+    const PatchLight* light = user;
+    const vplPatchSides* sides = light->mesh->sides;
+    const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
     const int face = vplDot(direction, hit->normal) > 0;
-    const int side = patch < 0 ? -1 : vplSideOf(m->sides, patch, face);
-    memset(out, 0, 3 * sizeof *out);
-    if (side < 0) {
-        return;
+    const int side = patch < 0 ? -1 : vplSideOf(sides, patch, face);
+    vplRgb b = {0, 0, 0};
+    if (side >= 0 && light->vertexIrradiance == NULL) {
+        b = light->reflected[side];
+    } else if (side >= 0) {
+        const vplPatchPoint at = {patch, face, hit->position};
+        const vplRgb e = vplPatchMesh_ValueAt(light->mesh, light->first, &at, light->vertexIrradiance);
+        const vplRgb rho = sides->sides[side].reflectance;
+        b = (vplRgb){rho.r * e.r, rho.g * e.g, rho.b * e.b};
     }
-    if (m->mode == 0) {
-        const vplRgb b = m->reflected[side];
-        out[0] = b.r;
-        out[1] = b.g;
-        out[2] = b.b;
-        return;
-    }
-    double best = -1e30, w[3] = {0};
-    int which = m->first[patch];
-    for (int i = m->first[patch]; i < m->first[patch + 1]; i++) {
-        const uint32_t* at = m->mesh->indices + 3 * (size_t)m->list[i];
-        const vplTriangleCorners c = vplCornersOf(m->mesh->positions, at);
-        double v[3];
-        vplTriangle_Barycentrics(c.corner, hit->position, v);
-        double least = v[0] < v[1] ? v[0] : v[1];
-        least = least < v[2] ? least : v[2];
-        if (least > best) {
-            best = least;
-            which = i;
-            memcpy(w, v, sizeof w);
-        }
-    }
-    const uint32_t* at = m->mesh->indices + 3 * (size_t)m->list[which];
-    double sum[3] = {0, 0, 0};
-    for (int k = 0; k < 3; k++) {
-        vplAddRgb(sum, w[k] < 0 ? 0 : w[k], m->corners[2 * (size_t)at[k] + (size_t)face]);
-    }
-    const vplRgb rho = m->sides->sides[side].reflectance;
-    out[0] = rho.r * (float)sum[0];
-    out[1] = rho.g * (float)sum[1];
-    out[2] = rho.b * (float)sum[2];
+    radiosityOut[0] = b.r;
+    radiosityOut[1] = b.g;
+    radiosityOut[2] = b.b;
 }
 
 vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
 {
-    const vplRadiosityOptions* o = &run->plan->options.radiosity;
-    const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
-    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
-    const int patches = sides->patches->patchCount;
-    MetLight* m = vplArena_Alloc(run->scratch, 1, sizeof *m);
-    vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)sides->count, sizeof *reflected);
-    vplRgb* all = vplArena_Alloc(run->scratch, (size_t)sides->count, sizeof *all);
-    vplRgb* corners = vplArena_Alloc(run->scratch, 2 * (size_t)mesh->vertexCount, sizeof *corners);
-    int* first = vplArena_AllocZero(run->scratch, (size_t)patches + 2, sizeof *first);
-    int* list = vplArena_Alloc(run->scratch, (size_t)mesh->triangleCount, sizeof *list);
+    const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
+    PatchLight* light = vplArena_Alloc(run->scratch, 1, sizeof *light);
+    vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)mesh->sides->count, sizeof *reflected);
+    int* first = vplArena_Alloc(run->scratch, (size_t)mesh->sides->patches->patchCount + 1, sizeof *first);
     TRY(vplArena_Check(run->scratch));
-    vplFindReflected(sides, s->radiosity, reflected);
-    TRY(vplReceive(run, s->radiosity, all));
-    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, all, corners));
-    TRY(vplPatchMesh_Sharpen(mesh, o->vertexWeight, all, getenv("GS") ? atoi(getenv("GS")) : o->sharpen, corners));
-    for (int i = 0; i < mesh->triangleCount; i++) {
-        first[mesh->patchOf[i] + 2]++;
-    }
-    for (int i = 0; i < patches; i++) {
-        first[i + 2] += first[i + 1];
-    }
-    for (int i = 0; i < mesh->triangleCount; i++) {
-        list[first[mesh->patchOf[i] + 1]++] = i;
-    }
-    *m = (MetLight){sides, mesh, reflected, corners, first, list, getenv("GM") ? atoi(getenv("GM")) : 0};
-    *defOut = (vplGatherDef){.rayCount = o->gather,
+    vplFindReflected(mesh->sides, solution->radiosity, reflected);
+    vplPatchMesh_ListPatches(mesh, first);
+    *light = (PatchLight){mesh, reflected, run->results[VPL_STAGE_VERTEX_LIGHT], first};
+    *defOut = (vplGatherDef){.rayCount = run->plan->options.radiosity.gather,
                              .seed = run->plan->options.seed,
-                             .radiosity = radiosityOf,
-                             .user = m};
+                             .radiosity = radiosityAt,
+                             .user = light};
     return VPL_SUCCESS;
 }

@@ -224,9 +224,16 @@ vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    const bool all = run->plan->gathers; // rays meet the direct light of patches, too
     vplRgb* corners = vplArena_Alloc(run->arena, 2 * (size_t)mesh->vertexCount, sizeof *corners);
+    vplRgb* received = vplArena_Alloc(run->scratch, all ? (size_t)mesh->sides->count : 0, sizeof *received);
     TRY(vplArena_Check(run->arena));
+    TRY(vplArena_Check(run->scratch));
     *resultOut = corners;
-    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners));
-    return vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
+    if (all) {
+        TRY(vplReceive(run, s->radiosity, received));
+    }
+    const vplRgb* values = all ? received : s->irradiance;
+    TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, values, corners));
+    return vplPatchMesh_Sharpen(mesh, o->vertexWeight, values, o->sharpen, corners);
 }
