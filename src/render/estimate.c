@@ -61,7 +61,8 @@ static Bytes formFactors(const Scale* s, double sides)
 static Bytes patchLight(const Scale* s, double sides)
 {
     const double chunk = sides < 4096 ? sides : 4096;
-    return (Bytes){28 * sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
+    const double cells = s->plan->gathers ? 12.0 * VPL_PATCH_CELLS : 0;
+    return (Bytes){(28 + cells) * sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
 }
 
 // The last draft of adaptive patches has two thirds of the final sides.

@@ -1,26 +1,54 @@
 // SPDX-License-Identifier: MIT
 // The light that rays of the final gather meet: reflected radiosity of patches. Emission is direct light.
 //
-// It is interpolated between corners, as the picture shows it without a gather. With one value per patch rays
-// near a corner of the room meet too much light: relmse 0.0042 instead of 0.0033 (room, 250 patches, 64 rays).
+// Light of other patches is interpolated between corners, light of emitters is that of the patch's cell. With
+// one value per patch rays near contacts meet light that is not there: relmse 0.0042 in the room with 250
+// patches and 64 rays, 0.0033 where all light is interpolated, 0.0020 with cells.
+#include "geometry/triangle.h"
 #include "math/vec.h"
 #include "radiosity/mesh/patch_mesh.h"
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
-#include <string.h>
-
-typedef struct PatchLight {
+typedef struct MetLight {
     const vplPatchMesh* mesh;
     const vplRgb* reflected;        // radiosity of sides
-    const vplRgb* vertexIrradiance; // of all light; NULL: light is constant over a side
+    const vplRgb* vertexIrradiance; // without light of emitters; NULL: light is constant over a side
+    const vplRgb* cells;            // irradiance by emitters: [side][cell]
     int* first;                     // of each patch's triangles in the mesh
-} PatchLight;
+} MetLight;
+
+// The part of a triangle that contains a point; turns its barycentrics into those of the part.
+static int partAt(double w[3])
+{
+    const int part = w[0] > 0.5 ? 0 : w[1] > 0.5 ? 1 : w[2] > 0.5 ? 2 : 3;
+    for (int k = 0; k < 3; k++) {
+        w[k] = part == 3 ? 1 - 2 * w[k] : 2 * w[k] - (k == part);
+    }
+    return part;
+}
+
+static int cellAt(const vplPatchSide* side, vplVec3 position)
+{
+    double w[3];
+    vplTriangle_Barycentrics(side->corners, position, w);
+    const int part = partAt(w);
+    return 4 * part + partAt(w);
+}
+
+static vplRgb irradianceAt(const MetLight* light, int side, const vplPatchPoint* at)
+{
+    const vplRgb e = vplPatchMesh_ValueAt(light->mesh, light->first, at, light->vertexIrradiance);
+    const int cell = cellAt(&light->mesh->sides->sides[side], at->position);
+    const vplRgb d = light->cells[(size_t)side * VPL_PATCH_CELLS + (size_t)cell];
+    return (vplRgb){e.r + d.r, e.g + d.g, e.b + d.b};
+}
 
 static void radiosityAt(const void* user, const vplHit* hit, vplVec3 direction, float radiosityOut[3])
 {
-    const PatchLight* light = user;
+    const MetLight* light = user;
     const vplPatchSides* sides = light->mesh->sides;
+    const vplGeometry* g = sides->patches->geometry;
     const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
     const int face = vplDot(direction, hit->normal) > 0;
     const int side = patch < 0 ? -1 : vplSideOf(sides, patch, face);
@@ -29,8 +57,8 @@ static void radiosityAt(const void* user, const vplHit* hit, vplVec3 direction, 
         b = light->reflected[side];
     } else if (side >= 0) {
         const vplPatchPoint at = {patch, face, hit->position};
-        const vplRgb e = vplPatchMesh_ValueAt(light->mesh, light->first, &at, light->vertexIrradiance);
-        const vplRgb rho = sides->sides[side].reflectance;
+        const vplRgb e = irradianceAt(light, side, &at);
+        const vplRgb rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
         b = (vplRgb){rho.r * e.r, rho.g * e.g, rho.b * e.b};
     }
     radiosityOut[0] = b.r;
@@ -41,14 +69,15 @@ static void radiosityAt(const void* user, const vplHit* hit, vplVec3 direction, 
 vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
 {
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
+    const vplPatchLight* patchLight = run->results[VPL_STAGE_PATCH_LIGHT];
     const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
-    PatchLight* light = vplArena_Alloc(run->scratch, 1, sizeof *light);
+    MetLight* light = vplArena_Alloc(run->scratch, 1, sizeof *light);
     vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)mesh->sides->count, sizeof *reflected);
     int* first = vplArena_Alloc(run->scratch, (size_t)mesh->sides->patches->patchCount + 1, sizeof *first);
     TRY(vplArena_Check(run->scratch));
     vplFindReflected(mesh->sides, solution->radiosity, reflected);
     vplPatchMesh_ListPatches(mesh, first);
-    *light = (PatchLight){mesh, reflected, run->results[VPL_STAGE_VERTEX_LIGHT], first};
+    *light = (MetLight){mesh, reflected, run->results[VPL_STAGE_VERTEX_LIGHT], patchLight->cells, first};
     *defOut = (vplGatherDef){.rayCount = run->plan->options.radiosity.gather,
                              .seed = run->plan->options.seed,
                              .radiosity = radiosityAt,
