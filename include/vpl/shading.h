@@ -115,8 +115,14 @@ typedef struct vplCompensationDef {
     bool seesReflection; // the picture is lit by the other lights
 } vplCompensationDef;
 
-// Radiosity that leaves a surface towards a ray that hit it, W/m^2: of reflected light only.
-typedef void vplRadiosityFcn(const void* user, const vplHit* hit, vplVec3 direction, float radiosityOut[3]);
+// The light that a ray of a final gather meets.
+typedef struct vplMetLight {
+    vplRgb radiosity; // of reflected light, on the side that the ray hit, W/m^2
+    // Metres. Hits that are nearer are lit by rays of their own instead; 0: none are.
+    float size;
+} vplMetLight;
+
+typedef vplMetLight vplMeetFcn(const void* user, const vplHit* hit, vplVec3 direction);
 
 // Final gather: indirect light is found by rays from each pixel. With interleaving, the pixels of a square of
 // K x K take different parts of K^2 rayCount directions, and the filter takes the mean of neighbours.
@@ -125,8 +131,13 @@ typedef struct vplGatherDef {
     int rayCount;      // per pixel, [1, VPL_MAX_NEAR_RAYS]
     uint32_t firstRay; // index of a pixel's first ray in its sequence
     uint64_t seed;
-    vplRadiosityFcn* radiosity; // called by all workers at the same time
+    vplMeetFcn* meet; // called by all workers at the same time
     const void* user;
+    const vplEmitterDef* emitters; // they light near hits, with shadow rays
+    int emitterCount;
+    const vplShadeLight* areaLights; // as in vplShadeDef
+    int areaLightCount;
+    float areaLightMinDistance;
 } vplGatherDef;
 
 typedef struct vplShadeDef {

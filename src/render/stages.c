@@ -62,7 +62,7 @@ static bool needsEmitterMaps(const vplPlan* p, char* why)
 static bool needsAreaLights(const vplPlan* p, char* why)
 {
     const bool documented = p->options.lighting == VPL_LIGHTING_DOCUMENTED;
-    const char* problem = !p->showsDirect && !p->compensates ? NOT_DIRECT
+    const char* problem = !p->showsDirect && !p->compensates && !p->gathers ? NOT_DIRECT
                           : !p->hasAreaLights                ? "no material emits"
                           : documented                       ? "documented lighting has no area lights"
                           : p->options.method == VPL_METHOD_KELLER

@@ -10,13 +10,16 @@
 #include "render/stages/make.h"
 #include "render/stages/results.h"
 
-typedef struct MetLight {
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct KnownLight {
     const vplPatchMesh* mesh;
     const vplRgb* reflected;        // radiosity of sides
     const vplRgb* vertexIrradiance; // without light of emitters; NULL: light is constant over a side
     const vplRgb* cells;            // irradiance by emitters: [side][cell]
     int* first;                     // of each patch's triangles in the mesh
-} MetLight;
+} KnownLight;
 
 // The part of a triangle that contains a point; turns its barycentrics into those of the part.
 static int partAt(double w[3])
@@ -36,7 +39,7 @@ static int cellAt(const vplPatchSide* side, vplVec3 position)
     return 4 * part + partAt(w);
 }
 
-static vplRgb irradianceAt(const MetLight* light, int side, const vplPatchPoint* at)
+static vplRgb irradianceAt(const KnownLight* light, int side, const vplPatchPoint* at)
 {
     const vplRgb e = vplPatchMesh_ValueAt(light->mesh, light->first, at, light->vertexIrradiance);
     const int cell = cellAt(&light->mesh->sides->sides[side], at->position);
@@ -44,26 +47,25 @@ static vplRgb irradianceAt(const MetLight* light, int side, const vplPatchPoint*
     return (vplRgb){e.r + d.r, e.g + d.g, e.b + d.b};
 }
 
-static void radiosityAt(const void* user, const vplHit* hit, vplVec3 direction, float radiosityOut[3])
+static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direction)
 {
-    const MetLight* light = user;
+    const KnownLight* light = user;
     const vplPatchSides* sides = light->mesh->sides;
     const vplGeometry* g = sides->patches->geometry;
     const int patch = vplPatches_Find(sides->patches, hit->triangle, hit->position);
     const int face = vplDot(direction, hit->normal) > 0;
     const int side = patch < 0 ? -1 : vplSideOf(sides, patch, face);
-    vplRgb b = {0, 0, 0};
-    if (side >= 0 && light->vertexIrradiance == NULL) {
-        b = light->reflected[side];
-    } else if (side >= 0) {
-        const vplPatchPoint at = {patch, face, hit->position};
-        const vplRgb e = irradianceAt(light, side, &at);
-        const vplRgb rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
-        b = (vplRgb){rho.r * e.r, rho.g * e.g, rho.b * e.b};
+    if (side < 0) {
+        return (vplMetLight){{0, 0, 0}, 0};
     }
-    radiosityOut[0] = b.r;
-    radiosityOut[1] = b.g;
-    radiosityOut[2] = b.b;
+    const float size = (getenv("GN") ? (float)atof(getenv("GN")) : 1) * sqrtf(2 * sides->sides[side].area);
+    if (light->vertexIrradiance == NULL) {
+        return (vplMetLight){light->reflected[side], size};
+    }
+    const vplPatchPoint at = {patch, face, hit->position};
+    const vplRgb e = irradianceAt(light, side, &at);
+    const vplRgb rho = g->materials[g->triangleMaterials[hit->triangle]].diffuse;
+    return (vplMetLight){{rho.r * e.r, rho.g * e.g, rho.b * e.b}, size};
 }
 
 vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
@@ -71,16 +73,24 @@ vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut)
     const vplPatchMesh* mesh = run->results[VPL_STAGE_PATCH_MESH];
     const vplPatchLight* patchLight = run->results[VPL_STAGE_PATCH_LIGHT];
     const vplSolution* solution = run->results[VPL_STAGE_SOLUTION];
-    MetLight* light = vplArena_Alloc(run->scratch, 1, sizeof *light);
+    const vplAreaLights* area = run->results[VPL_STAGE_AREA_LIGHTS];
+    KnownLight* light = vplArena_Alloc(run->scratch, 1, sizeof *light);
     vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)mesh->sides->count, sizeof *reflected);
     int* first = vplArena_Alloc(run->scratch, (size_t)mesh->sides->patches->patchCount + 1, sizeof *first);
     TRY(vplArena_Check(run->scratch));
     vplFindReflected(mesh->sides, solution->radiosity, reflected);
     vplPatchMesh_ListPatches(mesh, first);
-    *light = (MetLight){mesh, reflected, run->results[VPL_STAGE_VERTEX_LIGHT], patchLight->cells, first};
+    *light = (KnownLight){mesh, reflected, run->results[VPL_STAGE_VERTEX_LIGHT], patchLight->cells, first};
     *defOut = (vplGatherDef){.rayCount = run->plan->options.radiosity.gather,
                              .seed = run->plan->options.seed,
-                             .radiosity = radiosityAt,
-                             .user = light};
+                             .meet = meetPatch,
+                             .user = light,
+                             .emitters = run->plan->emitters,
+                             .emitterCount = run->plan->emitterCount};
+    if (area != NULL) {
+        defOut->areaLights = area->lights;
+        defOut->areaLightCount = area->count;
+        defOut->areaLightMinDistance = area->minDistance;
+    }
     return VPL_SUCCESS;
 }

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// Tests of the final gather of radiosity: rays from pixels over the solution of the patches.
+#include "radiosity_pictures.h"
+
+static vplRenderOptions gatherOptions(int patches, int rays, int interleave)
+{
+    vplRenderOptions o = radiosityOptions(patches);
+    o.radiosity.gather = rays;
+    o.pipeline.interleave = interleave;
+    return o;
+}
+
+// Makes two pictures of indirect light by paths of independent noise.
+static void traceTruth(const vplScene* scene, vplRenderOptions o, int spp, vplImage* truth[2])
+{
+    o.method = VPL_METHOD_PATH;
+    o.path.pixel = VPL_PIXEL_CENTRE;
+    o.path.samples = spp;
+    for (int i = 0; i < 2; i++) {
+        o.seed = (uint64_t)i;
+        truth[i] = showOf(scene, o, VPL_SHOW_INDIRECT);
+    }
+}
+
+static double errorOf(const vplScene* scene, vplRenderOptions o, vplImage* const truth[2])
+{
+    vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
+    const double error = commonError(image, truth);
+    vplImage_Destroy(image);
+    return error;
+}
+
+// In a closed room whose walls all emit, radiance is Le / (1 - rho) everywhere, of which Le rho^2 / (1 - rho)
+// has been reflected at least twice. Every ray meets the same light, so that a gather has no noise.
+TEST(FurnaceIsGatheredAsItIs, 2)
+{
+    vplScene* scene = closedCubeScene(context, 0.5f, 1);
+    aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
+    for (int interleave = 1; interleave <= 4; interleave += 3) {
+        for (int flat = 0; flat < 2; flat++) {
+            vplRenderOptions o = gatherOptions(300, 8, interleave);
+            o.radiosity.rowSums = VPL_ROW_SUMS_NORMALISE;
+            o.radiosity.residual = 1e-7;
+            o.radiosity.interpolation = flat ? VPL_INTERPOLATION_NONE : VPL_INTERPOLATION_GOURAUD;
+            vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
+            for (int i = 0; i < 40 * 30; i++) {
+                assertNear((double)image->pixels[3 * i], 0.5, 2e-3, "radiance", i);
+                assertNear((double)image->pixels[3 * i + 2], 0.125, 5e-4, "blue", i);
+            }
+            vplImage_Destroy(image);
+        }
+    }
+    vplScene_Destroy(scene);
+}
+
+// Light of lamps is direct: a gather with a single patch per triangle of a black room finds none.
+TEST(EmissionIsNotGathered, 2)
+{
+    vplScene* scene = closedCubeScene(context, 0, 1);
+    aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
+    vplImage* image = showOf(scene, gatherOptions(12, 8, 1), VPL_SHOW_INDIRECT);
+    assert_true(meanOf(image) == 0);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+}
+
+TEST(MoreRaysComeNearerToPaths, 2)
+{
+    for (int areaLight = 0; areaLight < 2; areaLight++) {
+        vplScene* scene = boxRoom(context, 0.7f, areaLight);
+        vplImage* truth[2];
+        traceTruth(scene, radiosityOptions(1), 128, truth);
+        const double few = errorOf(scene, gatherOptions(400, 4, 1), truth),
+                     many = errorOf(scene, gatherOptions(400, 64, 1), truth),
+                     shared = errorOf(scene, gatherOptions(400, 4, 4), truth);
+        printf("# few %g many %g shared %g\n", few, many, shared);
+        assert_true(many < 0.2 * few && shared < 0.4 * few);
+        vplImage_Destroy(truth[0]);
+        vplImage_Destroy(truth[1]);
+        vplScene_Destroy(scene);
+    }
+}
+
+// The mean over the pixels that are darker than a quarter of the truth's mean, over that of the truth.
+static double brightnessOfShadow(const vplScene* scene, vplRenderOptions o, const vplImage* truth)
+{
+    vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
+    const double limit = 0.25 * meanOf(truth);
+    double sum = 0, wanted = 0;
+    for (int i = 0; i < 3 * image->width * image->height; i++) {
+        const bool dark = (double)truth->pixels[i] < limit;
+        sum += dark ? (double)image->pixels[i] : 0;
+        wanted += dark ? (double)truth->pixels[i] : 0;
+    }
+    vplImage_Destroy(image);
+    return sum / wanted;
+}
+
+// A flat box hangs 2 cm above the floor: under it there is hardly any light, which patches that are as large
+// as the room's walls do not know.
+TEST(ContactShadowsAreThereOverCoarsePatches, 2)
+{
+    vplScene* scene = closedCubeScene(context, 0.7f, 0);
+    addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0, -0.93f, 0), 0, 0.3, vplVec(0.3f, 0.1f, 0.3f));
+    aim(scene, vplVec(0, -0.75f, 0.7f), vplVec(0, -1, 0.1f));
+    addEmitter(scene, VPL_EMITTER_POINT, vplVec(-0.3f, 0.6f, 0.2f), vplVec(0, -1, 0), 3);
+    vplImage* truth[2];
+    traceTruth(scene, radiosityOptions(1), 256, truth);
+    const double coarse = brightnessOfShadow(scene, gatherOptions(30, 0, 1), truth[0]),
+                 gathered = brightnessOfShadow(scene, gatherOptions(30, 256, 1), truth[0]);
+    printf("# contact %g %g error %g %g\n", coarse, gathered, errorOf(scene, gatherOptions(30, 0, 1), truth), errorOf(scene, gatherOptions(30, 256, 1), truth));
+    assert_true(coarse > 2 && gathered < 1.2 && gathered > 0.8);
+    vplImage_Destroy(truth[0]);
+    vplImage_Destroy(truth[1]);
+    vplScene_Destroy(scene);
+}
+
+static uint64_t hashOf(vplContext* context)
+{
+    if (context == NULL) {
+        return 0;
+    }
+    vplScene* scene = boxRoom(context, 0.7f, true);
+    vplRenderOptions o = gatherOptions(100, 3, 3);
+    o.output.antialias = 4;
+    vplImage* image = showOf(scene, o, VPL_SHOW_PICTURE);
+    const uint64_t hash = vplImage_Hash(image);
+    vplImage_Destroy(image);
+    vplScene_Destroy(scene);
+    closeTestContext(context);
+    return hash;
+}
+
+TEST_ALONE(GatheredPicturesAreTheSameEverywhere)
+{
+    assertSameEverywhere(hashOf);
+}
+
+TEST(WithoutAGatherSharedRaysMoveNoBit, 2)
+{
+    vplScene* scene = boxRoom(context, 0.7f, false);
+    vplImage *a = showOf(scene, gatherOptions(100, 0, -1), VPL_SHOW_PICTURE),
+             *b = showOf(scene, gatherOptions(100, 0, 8), VPL_SHOW_PICTURE);
+    assert_true(vplImage_Hash(a) == vplImage_Hash(b));
+    vplImage_Destroy(a);
+    vplImage_Destroy(b);
+    vplScene_Destroy(scene);
+}
+
+// A picture is direct light and what rays find; smooth edges show both. Each pixel casts its rays once.
+TEST(AGatheredPictureIsDirectAndIndirectLight, 2)
+{
+    vplScene* scene = boxRoom(context, 0.6f, false);
+    vplRenderOptions o = gatherOptions(100, 5, 1);
+    vplRenderStats plain, stats;
+    vplRenderOptions without = gatherOptions(100, 0, 1);
+    o.output.show = without.output.show = VPL_SHOW_INDIRECT;
+    vplImage_Destroy(renderScene(scene, &without, &plain));
+    vplImage* indirect = renderScene(scene, &o, &stats);
+    vplImage *picture = showOf(scene, o, VPL_SHOW_PICTURE), *direct = showOf(scene, o, VPL_SHOW_DIRECT);
+    for (int i = 0; i < 3 * 40 * 30; i++) {
+        const double sum = (double)direct->pixels[i] + (double)indirect->pixels[i];
+        assertNear((double)picture->pixels[i], sum, 1e-6 * sum, "picture", i);
+    }
+    assert_int_equal(stats.rays - plain.rays, 5 * 40 * 30);
+    vplImage_Destroy(picture);
+    vplImage_Destroy(direct);
+    vplImage_Destroy(indirect);
+    vplScene_Destroy(scene);
+}
