@@ -2,8 +2,9 @@
 // The light that rays of the final gather meet: reflected radiosity of patches. Emission is direct light.
 //
 // Light of other patches is interpolated between corners, light of emitters is that of the patch's cell. With
-// one value per patch rays near contacts meet light that is not there: relmse 0.0042 in the room with 250
-// patches and 64 rays, 0.0033 where all light is interpolated, 0.0020 with cells.
+// one value per patch rays meet light that is not there: relmse 0.0042 in the room with 250 patches and 64
+// rays, 0.0033 where all light is interpolated, 0.0020 with cells, 0.0010 where near hits are lit for
+// themselves.
 #include "geometry/triangle.h"
 #include "math/vec.h"
 #include "radiosity/mesh/patch_mesh.h"
@@ -11,7 +12,11 @@
 #include "render/stages/results.h"
 
 #include <math.h>
-#include <stdlib.h>
+
+// Hits nearer than this share of a patch's shorter edges are lit for themselves. Room and door-ajar, 250 patches, 64
+// rays: 0 leaves relmse 0.0020 and 0.0089, 0.25 0.0010, 0.5 0.0010 and 0.0080 in 1.25 times the time, 1 0.0011 and
+// 0.0079 in 1.5 times.
+static const float NEAR_SHARE = 0.5f;
 
 typedef struct KnownLight {
     const vplPatchMesh* mesh;
@@ -58,7 +63,7 @@ static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direct
     if (side < 0) {
         return (vplMetLight){{0, 0, 0}, 0};
     }
-    const float size = (getenv("GN") ? (float)atof(getenv("GN")) : 1) * sqrtf(2 * sides->sides[side].area);
+    const float size = NEAR_SHARE * sqrtf(2 * sides->sides[side].area);
     if (light->vertexIrradiance == NULL) {
         return (vplMetLight){light->reflected[side], size};
     }
