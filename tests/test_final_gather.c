@@ -31,27 +31,33 @@ static double errorOf(const vplScene* scene, vplRenderOptions o, vplImage* const
 }
 
 // In a closed room whose walls all emit, radiance is Le / (1 - rho) everywhere, of which Le rho^2 / (1 - rho)
-// has been reflected at least twice. Every ray meets the same light, so that a gather has no noise.
+// has been reflected at least twice. Points on area lights, which light near hits, have noise, and their clamp
+// takes some of their light: measured 0.4972 with 300 patches, 0.4996 with 5000 and shared rays.
 TEST(FurnaceIsGatheredAsItIs, 2)
 {
     vplScene* scene = closedCubeScene(context, 0.5f, 1);
     aim(scene, vplVec(0, 0, 0.9f), vplVec(0, -0.1f, -1));
-    for (int interleave = 1; interleave <= 4; interleave += 3) {
-        for (int flat = 0; flat < 2; flat++) {
-            vplRenderOptions o = gatherOptions(300, 8, interleave);
-            o.radiosity.rowSums = VPL_ROW_SUMS_NORMALISE;
-            o.radiosity.residual = 1e-7;
-            o.radiosity.interpolation = flat ? VPL_INTERPOLATION_NONE : VPL_INTERPOLATION_GOURAUD;
-            vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
-            for (int i = 0; i < 40 * 30; i++) {
-                assertNear((double)image->pixels[3 * i], 0.5, 2e-3, "radiance", i);
-                assertNear((double)image->pixels[3 * i + 2], 0.125, 5e-4, "blue", i);
-            }
-            vplImage_Destroy(image);
+    for (int fine = 0; fine < 2; fine++) {
+        vplRenderOptions o = gatherOptions(fine ? 5000 : 300, 64, fine ? 4 : 1);
+        o.lights.areaLightSamples = 1024;
+        o.radiosity.rowSums = VPL_ROW_SUMS_NORMALISE;
+        o.radiosity.residual = 1e-7;
+        vplImage* image = showOf(scene, o, VPL_SHOW_INDIRECT);
+        double red = 0, blue = 0, off = 0;
+        for (int i = 0; i < 40 * 30; i++) {
+            const double value = (double)image->pixels[3 * i];
+            red += value / (40 * 30);
+            blue += (double)image->pixels[3 * i + 2] / (40 * 30);
+            off += fabs(value - 0.5) / (40 * 30);
         }
+        assertNear(red, 0.5, fine ? 0.001 : 0.005, "mean radiance", fine);
+        assertNear(blue, 0.125, fine ? 0.00025 : 0.00125, "mean in blue", fine);
+        assertNear(off, 0, fine ? 0.01 : 0.03, "mean distance from it", fine);
+        vplImage_Destroy(image);
     }
     vplScene_Destroy(scene);
 }
+
 
 // Light of lamps is direct: a gather with a single patch per triangle of a black room finds none.
 TEST(EmissionIsNotGathered, 2)
@@ -73,7 +79,6 @@ TEST(MoreRaysComeNearerToPaths, 2)
         const double few = errorOf(scene, gatherOptions(400, 4, 1), truth),
                      many = errorOf(scene, gatherOptions(400, 64, 1), truth),
                      shared = errorOf(scene, gatherOptions(400, 4, 4), truth);
-        printf("# few %g many %g shared %g\n", few, many, shared);
         assert_true(many < 0.2 * few && shared < 0.4 * few);
         vplImage_Destroy(truth[0]);
         vplImage_Destroy(truth[1]);
@@ -110,7 +115,6 @@ TEST(ContactShadowsAreThereOverCoarsePatches, 2)
                  gathered = brightnessOfShadow(scene, gatherOptions(30, 64, 1), truth[0]);
     const double before = errorOf(scene, gatherOptions(30, 0, 1), truth),
                  after = errorOf(scene, gatherOptions(30, 64, 1), truth);
-    printf("# brightness %g, %g gathered; relmse %g, %g\n", coarse, gathered, before, after);
     assert_true(coarse > 3 && gathered < 1.5 && gathered > 0.8);
     assert_true(after < 0.1 * before);
     vplImage_Destroy(truth[0]);
@@ -150,7 +154,8 @@ TEST(WithoutAGatherSharedRaysMoveNoBit, 2)
     vplScene_Destroy(scene);
 }
 
-// A picture is direct light and what rays find; smooth edges show both. Each pixel casts its rays once.
+// A picture is direct light and what rays find; smooth edges show both. Each pixel casts its rays once; near hits cast
+// some more.
 TEST(AGatheredPictureIsDirectAndIndirectLight, 2)
 {
     vplScene* scene = boxRoom(context, 0.6f, false);
@@ -165,7 +170,7 @@ TEST(AGatheredPictureIsDirectAndIndirectLight, 2)
         const double sum = (double)direct->pixels[i] + (double)indirect->pixels[i];
         assertNear((double)picture->pixels[i], sum, 1e-6 * sum, "picture", i);
     }
-    assert_int_equal(stats.rays - plain.rays, 5 * 40 * 30);
+    assert_in_range(stats.rays - plain.rays, 5 * 40 * 30, 2 * 5 * 40 * 30); // those of near hits, too
     vplImage_Destroy(picture);
     vplImage_Destroy(direct);
     vplImage_Destroy(indirect);
