@@ -58,7 +58,6 @@ TEST(FurnaceIsGatheredAsItIs, 2)
     vplScene_Destroy(scene);
 }
 
-
 // Light of lamps is direct: a gather with a single patch per triangle of a black room finds none.
 TEST(EmissionIsNotGathered, 2)
 {

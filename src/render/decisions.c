@@ -57,7 +57,8 @@ static void choosePipeline(vplPlan* p)
         }
     }
     if (o->pipeline.interleave < 0) {
-        o->pipeline.interleave = squareOf(o);
+        // Of 16 rays a side of 4 leaves relmse 0.0075, 8 leaves 0.0027 (door-ajar, 250 patches).
+        o->pipeline.interleave = p->gathers ? 8 : squareOf(o);
         if (vplPixelsShareLight(p)) {
             vplDecide(p, "interleave",
                       ssvp         ? "as the document has it"

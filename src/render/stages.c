@@ -63,8 +63,8 @@ static bool needsAreaLights(const vplPlan* p, char* why)
 {
     const bool documented = p->options.lighting == VPL_LIGHTING_DOCUMENTED;
     const char* problem = !p->showsDirect && !p->compensates && !p->gathers ? NOT_DIRECT
-                          : !p->hasAreaLights                ? "no material emits"
-                          : documented                       ? "documented lighting has no area lights"
+                          : !p->hasAreaLights                               ? "no material emits"
+                          : documented ? "documented lighting has no area lights"
                           : p->options.method == VPL_METHOD_KELLER
                               ? "virtual lights stand for area lights, too"
                               : NULL;
@@ -173,8 +173,9 @@ static bool needsVertexLight(const vplPlan* p, char* why)
     const vplShow show = p->options.output.show;
     const bool lit = show == VPL_SHOW_PICTURE || show == VPL_SHOW_INDIRECT;
     return choose(why, lit && p->options.radiosity.interpolation == VPL_INTERPOLATION_GOURAUD,
-                  p->gathers ? "rays of pixels meet light that is interpolated between the vertices of patches"
-                             : "light is interpolated between the vertices of patches",
+                  p->gathers
+                      ? "rays of pixels meet light that is interpolated between the vertices of patches"
+                      : "light is interpolated between the vertices of patches",
                   "light of patches is shown as it is");
 }
 
@@ -186,8 +187,8 @@ static bool needsPicture(const vplPlan* p, char* why)
         snprintf(rays, sizeof rays, ", %d rays from each", p->options.radiosity.gather);
     }
     if (o->antialias > 1) {
-        return because(why, true, "%dx%d pixels%s; at edges the mean of %d samples", o->width, o->height, rays,
-                       o->antialias);
+        return because(why, true, "%dx%d pixels%s; at edges the mean of %d samples", o->width, o->height,
+                       rays, o->antialias);
     }
     return because(why, true, "%dx%d pixels, %d sample%s each%s", o->width, o->height, o->supersample,
                    o->supersample > 1 ? "s" : "", rays);

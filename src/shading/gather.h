@@ -10,7 +10,7 @@ typedef struct vplGather {
     const vplGatherDef* def;
     vplSobol sobol;
     vplDirectLight direct; // lights near hits, each light as strong as all of its kind together
-    int side; // K of the squares of pixels that share directions; 1: none do
+    int side;              // K of the squares of pixels that share directions; 1: none do
 } vplGather;
 
 #endif

@@ -199,8 +199,7 @@ static inline void vplStartLight(const vplShading* s, const vplTile* tile, int b
         vplStartDirect(s, tile, block * VPL_LANES, &b->points, part);
     }
     vplAddLightOfRaysOfBlock(s, &b->points, tile->x + block % VPL_TILE_BLOCKS * VPL_BLOCK_SIDE,
-                              tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part,
-                              &tileSums->shadowRays);
+                             tile->y + block / VPL_TILE_BLOCKS * VPL_BLOCK_SIDE, part, &tileSums->shadowRays);
     vplStartSums(b, part);
 }
 

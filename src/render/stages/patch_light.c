@@ -43,7 +43,8 @@ static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint
 }
 
 // Keeps the light of each open cell; where they have no point each, the side's own.
-static void keepCells(const vplPatchSide* side, const vplRgb* irradiance, int count, vplRgb mean, vplRgb* cells)
+static void keepCells(const vplPatchSide* side, const vplRgb* irradiance, int count, vplRgb mean,
+                      vplRgb* cells)
 {
     const int open = __builtin_popcount(side->open);
     for (int k = 0; k < VPL_PATCH_CELLS; k++) {

@@ -81,7 +81,8 @@ typedef struct vplPatchLight {
     vplRgb* direct; // irradiance, W/m^2
     float* spread;  // its standard deviation over the side
     vplRgb* source; // radiosity: emission and reflected direct light, W/m^2
-    vplRgb* cells;  // irradiance of the VPL_PATCH_CELLS cells of each side, W/m^2; NULL: no rays will meet them
+    vplRgb*
+        cells; // irradiance of the VPL_PATCH_CELLS cells of each side, W/m^2; NULL: no rays will meet them
 } vplPatchLight;
 
 // VPL_STAGE_SOLUTION: one entry per side, W/m^2.
