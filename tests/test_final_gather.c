@@ -71,8 +71,12 @@ TEST(EmissionIsNotGathered, 2)
 
 TEST(MoreRaysComeNearerToPaths, 2)
 {
-    for (int areaLight = 0; areaLight < 2; areaLight++) {
-        vplScene* scene = boxRoom(context, 0.7f, areaLight);
+    for (int i = 0; i < 3; i++) {
+        vplScene* scene = boxRoom(context, 0.7f, i > 0);
+        if (i == 2) { // near hits draw one of several emitters
+            addEmitter(scene, VPL_EMITTER_POINT, vplVec(-0.3f, 0.6f, 0.2f), vplVec(0, -1, 0), 3);
+            addEmitter(scene, VPL_EMITTER_SPOT, vplVec(0.5f, 0.8f, 0.3f), vplVec(-0.2f, -1, 0), 2);
+        }
         vplImage* truth[2];
         traceTruth(scene, radiosityOptions(1), 128, truth);
         const double few = errorOf(scene, gatherOptions(400, 4, 1), truth),
