@@ -179,3 +179,41 @@ TEST(AGatheredPictureIsDirectAndIndirectLight, 2)
     vplImage_Destroy(indirect);
     vplScene_Destroy(scene);
 }
+
+static vplMetLight meetGrey(const void* user, const vplHit* hit, vplVec3 direction)
+{
+    const float* radiosity = user;
+    (void)hit;
+    (void)direction;
+    return (vplMetLight){{*radiosity, *radiosity, *radiosity}, 0};
+}
+
+// A caller of vplShadeView says what rays meet; without lights nothing else is there.
+TEST(CallersSayWhatRaysMeet, 2)
+{
+    vplGeometry* g = closedCube(context, 0.5f);
+    vplCameraDef camera = vplDefaultCameraDef();
+    camera.eye = vplVec(0, 0, 0.5f);
+    camera.target = vplVec(0, 0, -1);
+    camera.near = 0.01;
+    const vplView view = vplView_Create(&camera, 12, 8);
+    const float radiosity = 3;
+    vplGatherDef gather = {.rayCount = 4, .meet = meetGrey, .user = &radiosity};
+    vplShadeDef def = {
+        .lighting = VPL_LIGHTING_PHYSICAL, .accumulation = VPL_ACCUMULATE_DEFERRED, .gather = &gather};
+    vplImage* image;
+    assert_int_equal(vplImage_Create(context, 12, 8, &image), VPL_SUCCESS);
+    assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_SUCCESS);
+    for (int i = 0; i < 3 * 12 * 8; i++) {
+        assertNear((double)image->pixels[i], 0.5 * 3 / VPL_PI, 1e-6, "radiance", i);
+    }
+    gather.rayCount = 0;
+    assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "rayCount is 0"));
+    gather.rayCount = 4;
+    def.lighting = VPL_LIGHTING_DOCUMENTED;
+    assert_int_equal(vplShadeView(g, &view, &def, image, NULL), VPL_INVALID_ARGUMENT);
+    assert_non_null(strstr(takeMessage(), "physical lighting"));
+    vplImage_Destroy(image);
+    vplGeometry_Destroy(g);
+}
