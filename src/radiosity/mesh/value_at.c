@@ -23,8 +23,8 @@ static double leastOf(const double w[3])
     return least < w[2] ? least : w[2];
 }
 
-// Of the triangles of a patch the point is in the one whose least barycentric is largest, also where rounding
-// put it beside all of them.
+// The point is in the triangle of the patch in which its least barycentric is largest, also where rounding put it
+// beside all of them.
 vplRgb vplPatchMesh_ValueAt(const vplPatchMesh* mesh, const int* first, const vplPatchPoint* point,
                             const vplRgb* vertexValues)
 {
