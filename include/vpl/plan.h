@@ -74,6 +74,7 @@ typedef struct vplPlan {
     bool showsDirect;     // the picture shows emission, and light from emitters and area lights
     bool showsVirtual;    // the picture shows light from virtual lights
     bool showsPatches;    // the picture shows patches
+    bool gathers;         // rays from pixels find the light of patches
     bool
         splitsLight; // direct light is rendered a second time, alone, for layers of direct and indirect light
     bool compensates;   // short rays add the light that the clamp takes away

@@ -126,7 +126,7 @@ static void addPicture(const Scale* s, vplWork* w)
     // Of the samples of a pixel only those at edges differ, and edges are as long as the picture is wide.
     const double side = sqrt(fmax(all, 1)), edges = 1 + fmin(4 / side, 0.5) * (points - 1);
     const double pixels = all * s->probe.seen * edges, pairs = pixels * lights;
-    const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
+    const bool filtered = vplPixelsShareLight(s->plan);
     w->counts[PIXEL] += 0.3 * all + 75 * (points - 1) * side + (filtered ? 0.8 * all : 0);
     w->counts[TRIANGLE] += s->triangles * supersample * (points > 1 ? 7 : 1.5);
     addDirect(s, pixels, w);
@@ -149,7 +149,10 @@ static void addPicture(const Scale* s, vplWork* w)
     default:
         w->counts[LIGHT] += pairs;
     }
-    if (s->plan->showsPatches) {
+    if (s->plan->gathers) {
+        // Near hits cast a quarter more, and take sixteen points together.
+        w->counts[PATH_RAY] += 1.4 * pixels * o->radiosity.gather * s->pathDepth;
+    } else if (s->plan->showsPatches) {
         w->counts[PIXEL] += 0.15 * all * points;
         w->counts[TRIANGLE] += 2.0 * s->plan->patches * points;
     }

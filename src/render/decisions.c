@@ -5,6 +5,7 @@
 
 #include "render/options.h"
 #include "render/show.h"
+#include "render/stages/make.h"
 #include "render/stages/results.h"
 
 #include <math.h>
@@ -38,10 +39,21 @@ static int squareOf(const vplRenderOptions* o)
     return large && o->particles.count >= 2000 ? 16 : 8;
 }
 
+// Few rays leave noise, a large square blurs corners: with 16 rays a side of 4 leaves relmse 0.0075 and 0.0021, 8
+// leaves 0.0027 and 0.0017; with 64 rays it is 0.0019 and 0.0007 with 4, 0.0016 and 0.0014 with 8 (door-ajar and
+// room, 250 patches).
+static int squareOfRays(int rays)
+{
+    return rays < 64 ? 8 : 4;
+}
+
 static void choosePipeline(vplPlan* p)
 {
     vplRenderOptions* o = &p->options;
     const bool ssvp = o->method == VPL_METHOD_SSVP;
+    if (p->gathers) { // passes have no pixels that rays could leave
+        o->pipeline.kind = VPL_ACCUMULATE_INTERLEAVED;
+    }
     if (o->pipeline.kind == VPL_ACCUMULATE_USUAL) {
         o->pipeline.kind = vplUsualPipeline(o);
         const bool shared = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED;
@@ -53,10 +65,12 @@ static void choosePipeline(vplPlan* p)
         }
     }
     if (o->pipeline.interleave < 0) {
-        o->pipeline.interleave = squareOf(o);
-        if (p->showsVirtual && o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED) {
+        o->pipeline.interleave = p->gathers ? squareOfRays(o->radiosity.gather) : squareOf(o);
+        if (vplPixelsShareLight(p)) {
             vplDecide(p, "interleave",
-                      ssvp ? "as the document has it" : "by the number of lights and of pixels");
+                      ssvp         ? "as the document has it"
+                      : p->gathers ? "neighbours share their rays"
+                                   : "by the number of lights and of pixels");
         }
     }
     if (o->shadow.rsmSize == 0) {
@@ -236,6 +250,7 @@ static void choosePicture(const vplScene* scene, vplPlan* p)
     p->showsDirect = row->direct && o->method != VPL_METHOD_PATH;
     p->showsVirtual = lit && row->lights && (o->output.show != VPL_SHOW_DIRECT || keller);
     p->showsPatches = o->method == VPL_METHOD_RADIOSITY && row->patches != VPL_NO_PATCHES;
+    p->gathers = o->radiosity.gather > 0 && p->showsPatches && vplShowsLight(o->output.show);
     p->splitsLight = (o->output.aovs & (VPL_AOV_DIRECT | VPL_AOV_INDIRECT)) != 0 &&
                      (p->showsVirtual || p->showsPatches || o->method == VPL_METHOD_PATH);
     p->progressive =

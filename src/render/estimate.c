@@ -61,7 +61,8 @@ static Bytes formFactors(const Scale* s, double sides)
 static Bytes patchLight(const Scale* s, double sides)
 {
     const double chunk = sides < 4096 ? sides : 4096;
-    return (Bytes){28 * sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
+    const double cells = s->plan->gathers ? 12.0 * VPL_PATCH_CELLS : 0;
+    return (Bytes){(28 + cells) * sides, 40 * chunk * s->plan->options.radiosity.lightSamples};
 }
 
 // The last draft of adaptive patches has two thirds of the final sides.
@@ -78,7 +79,7 @@ static Bytes adaptivePatches(const Scale* s)
 static double pipelineScratch(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    const bool lit = s->plan->showsVirtual;
+    const bool lit = s->plan->showsVirtual || s->plan->gathers;
     switch (o->pipeline.kind) {
     case VPL_ACCUMULATE_MULTIPASS:
     case VPL_ACCUMULATE_BATCHED:
@@ -97,11 +98,11 @@ static double pipelineScratch(const Scale* s)
 static double sampleScratch(const Scale* s)
 {
     const vplRenderOptions* o = &s->plan->options;
-    const bool filtered = o->pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && s->plan->showsVirtual;
+    const bool filtered = vplPixelsShareLight(s->plan);
     const double tile = (o->output.antialias + 1) * 16384.0 + 1024;
     const double tiles = ceil(o->output.width / 64.0) * ceil(o->output.height / 64.0);
     return o->output.antialias > 1 ? tile * s->workers + (filtered ? 4 * s->pixels + 32768 * tiles : 0) +
-                                         (s->plan->showsPatches ? 12 * s->pixels : 0)
+                                         (s->plan->showsPatches && !s->plan->gathers ? 12 * s->pixels : 0)
                                    : 0;
 }
 
@@ -147,6 +148,7 @@ static Bytes picture(const Scale* s)
     scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
     scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
+    scratch += s->plan->gathers ? 12 * s->sides + 4.0 * s->plan->patches : 0; // what rays meet
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
 }
 
@@ -205,7 +207,7 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_SOLUTION:
         return (Bytes){24 * s->sides, (p->linked ? 152 : 72) * s->sides};
     case VPL_STAGE_VERTEX_LIGHT:
-        return (Bytes){14.0 * p->patches, 57.0 * p->patches};
+        return (Bytes){14.0 * p->patches, 57.0 * p->patches + (p->gathers ? 12 * s->sides : 0)};
     case VPL_STAGE_PICTURE:
         return picture(s);
     case VPL_STAGE_PATHS: // sums of two halves, and the picture that they resolve to
@@ -257,7 +259,8 @@ static void countDraws(const Scale* s, vplPlan* p)
     const int64_t perPass = o->pipeline.kind == VPL_ACCUMULATE_BATCHED ? o->pipeline.batch : 1;
     const int64_t passes =
         o->pipeline.kind >= VPL_ACCUMULATE_DEFERRED ? 0 : ((int64_t)s->drawn + perPass - 1) / perPass;
-    const int64_t patchDraws = o->method == VPL_METHOD_RADIOSITY ? 2 : 0; // of fronts and of backs
+    const bool drawn = o->method == VPL_METHOD_RADIOSITY && !p->gathers;
+    const int64_t patchDraws = drawn ? 2 : 0; // of fronts and of backs
     const int64_t maps = p->emitterRays ? 0 : countMaps(p, false);
     p->drawCalls =
         objects * (6 * maps + (1 + passes) * supersample) + patchDraws * supersample * vplCountPoints(p);

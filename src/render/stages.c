@@ -62,9 +62,9 @@ static bool needsEmitterMaps(const vplPlan* p, char* why)
 static bool needsAreaLights(const vplPlan* p, char* why)
 {
     const bool documented = p->options.lighting == VPL_LIGHTING_DOCUMENTED;
-    const char* problem = !p->showsDirect && !p->compensates ? NOT_DIRECT
-                          : !p->hasAreaLights                ? "no material emits"
-                          : documented                       ? "documented lighting has no area lights"
+    const char* problem = !p->showsDirect && !p->compensates && !p->gathers ? NOT_DIRECT
+                          : !p->hasAreaLights                               ? "no material emits"
+                          : documented ? "documented lighting has no area lights"
                           : p->options.method == VPL_METHOD_KELLER
                               ? "virtual lights stand for area lights, too"
                               : NULL;
@@ -173,19 +173,25 @@ static bool needsVertexLight(const vplPlan* p, char* why)
     const vplShow show = p->options.output.show;
     const bool lit = show == VPL_SHOW_PICTURE || show == VPL_SHOW_INDIRECT;
     return choose(why, lit && p->options.radiosity.interpolation == VPL_INTERPOLATION_GOURAUD,
-                  "light is interpolated between the vertices of patches",
+                  p->gathers
+                      ? "rays of pixels meet light that is interpolated between the vertices of patches"
+                      : "light is interpolated between the vertices of patches",
                   "light of patches is shown as it is");
 }
 
 static bool needsPicture(const vplPlan* p, char* why)
 {
     const vplOutputOptions* o = &p->options.output;
-    if (o->antialias > 1) {
-        return because(why, true, "%dx%d pixels; at edges the mean of %d samples", o->width, o->height,
-                       o->antialias);
+    char rays[32] = "";
+    if (p->gathers) {
+        snprintf(rays, sizeof rays, ", %d rays from each", p->options.radiosity.gather);
     }
-    return because(why, true, "%dx%d pixels, %d sample%s each", o->width, o->height, o->supersample,
-                   o->supersample > 1 ? "s" : "");
+    if (o->antialias > 1) {
+        return because(why, true, "%dx%d pixels%s; at edges the mean of %d samples", o->width, o->height,
+                       rays, o->antialias);
+    }
+    return because(why, true, "%dx%d pixels, %d sample%s each%s", o->width, o->height, o->supersample,
+                   o->supersample > 1 ? "s" : "", rays);
 }
 
 static bool needsPaths(const vplPlan* p, char* why)
@@ -265,17 +271,18 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "form factors", 0.6, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), FACTOR_KEY,
         needsFormFactors, vplMakeFormFactors, vplDestroyFormFactors, .report = vplReportFormFactors},
     [VPL_STAGE_PATCH_LIGHT] = {
-        "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed EMITTERS",
+        "patch light", 0.65, IN(GEOMETRY) | IN(PATCHES) | IN(SIDES), "patch-light seed gather EMITTERS",
         needsPatchLight, vplMakePatchLight, NULL, .report = NULL},
     [VPL_STAGE_SOLUTION] = { // sweeps of the next frame go on from it, also where no light moved
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
         needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
-        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
+        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |
-            IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(SOLUTION) | IN(VERTEX_LIGHT), "ALWAYS",
+            IN(VIRTUAL_LIGHTS) | IN(SIDES) | IN(PATCH_MESH) | IN(PATCH_LIGHT) | IN(SOLUTION) |
+            IN(VERTEX_LIGHT), "ALWAYS",
         needsPicture, vplMakePicture, vplDestroyImage, .report = NULL},
     [VPL_STAGE_PATHS] = {
         "paths", 1, IN(GEOMETRY), "ALWAYS",

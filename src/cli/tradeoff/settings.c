@@ -77,6 +77,8 @@ const Sweep SWEEPS[] = {
     {"patch-light", "--method radiosity --patch-light", "1 4 16", "Radiosity: samples of lights"},
     {"iterations", "--method radiosity --iterations", "1 2 5 10", "Radiosity: sweeps"},
     {"interpolation", "--method radiosity --interpolation", CHOICES, "Radiosity: interpolation"},
+    {"gather", "--method radiosity --patches 250 --gather", "0 4 16 64 256",
+     "Radiosity: rays of the final gather"},
     {"sharpen", "--method radiosity --sharpen", "0 1 2 4 8", "Radiosity: sharpening of corners"},
     {"vertex-weight", "--method radiosity --vertex-weight", CHOICES, "Radiosity: weights at corners"},
     {"reflectivity", "--reflectivity", "0 0.25 0.5 0.75 auto", "Particles that go on at each bounce"},

@@ -94,4 +94,19 @@ typedef struct vplMeshFace {
 // Finds the face (0: front, 1: back). False if light does not reach that side.
 bool vplPatchMesh_GetFace(const vplPatchMesh* mesh, int triangle, int face, vplMeshFace* faceOut);
 
+// ---- values at points (value_at.c)
+
+typedef struct vplPatchPoint {
+    int patch, face; // 0: front, 1: back
+    vplVec3 position;
+} vplPatchPoint;
+
+// The triangles of patch p are those from firstOut[p] to firstOut[p + 1] - 1; there is one more than patches.
+void vplPatchMesh_ListPatches(const vplPatchMesh* mesh, int* firstOut);
+
+// The value at a point of a patch, interpolated between its corners. `first` comes from the function above,
+// vertexValues are [vertex][front, back].
+vplRgb vplPatchMesh_ValueAt(const vplPatchMesh* mesh, const int* first, const vplPatchPoint* point,
+                            const vplRgb* vertexValues);
+
 #endif

@@ -75,6 +75,7 @@ static void coarsen(const vplRenderer* r, double share, vplRenderOptions* o)
     o->ssvp.clusters = (int)ceil(share * o->ssvp.clusters);
     o->radiosity.patches = (int)ceil(share * o->radiosity.patches);
     o->radiosity.iterations = o->radiosity.iterations < 20 ? o->radiosity.iterations : 20;
+    o->radiosity.gather = 0;
 }
 
 // A plan is not begun if this share of the time foreseen for its first picture is more than the time that is left.

@@ -32,6 +32,12 @@ static inline int vplCountPoints(const vplPlan* plan)
     return (plan->options.output.antialias & ~1) + 1;
 }
 
+// True if neighbouring pixels share virtual lights or rays.
+static inline bool vplPixelsShareLight(const vplPlan* plan)
+{
+    return plan->options.pipeline.kind == VPL_ACCUMULATE_INTERLEAVED && (plan->showsVirtual || plan->gathers);
+}
+
 // Particles of a pass: --grow-from in the first, twice as many in each that follows, up to --particles.
 static inline int vplParticlesOfPass(const vplPlan* plan, int pass)
 {

@@ -6,8 +6,8 @@
 #include "render/stage.h"
 
 // VPL_STAGE_NEAR_DISTANCE has a float: the metres within which surfaces see a fifth of what they see.
-// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light at the vertices of the
-// patch mesh, [vertex][front, back].
+// VPL_STAGE_VERTEX_LIGHT has an array of vplRgb: the irradiance of reflected light, for a final gather of all
+// light but that of emitters, at the vertices of the patch mesh, [vertex][front, back].
 
 // VPL_STAGE_EMITTER_MAPS: one entry per emitter.
 typedef struct vplEmitterMaps {
@@ -81,6 +81,8 @@ typedef struct vplPatchLight {
     vplRgb* direct; // irradiance, W/m^2
     float* spread;  // its standard deviation over the side
     vplRgb* source; // radiosity: emission and reflected direct light, W/m^2
+    vplRgb*
+        cells; // irradiance of the VPL_PATCH_CELLS cells of each side, W/m^2; NULL: no rays will meet them
 } vplPatchLight;
 
 // VPL_STAGE_SOLUTION: one entry per side, W/m^2.
@@ -121,6 +123,9 @@ vplResult vplEstimateLoss(const vplRun* run, const vplVirtualLights* lights, con
 // into `why`.
 vplLightShadows vplChooseLightShadows(const vplRun* run, const vplVirtualLights* lights, vplPlan* plan,
                                       char* why);
+
+// Describes the rays of the final gather, whose light the solution knows.
+vplResult vplDescribeGather(const vplRun* run, vplGatherDef* defOut);
 
 // Draws patches over a picture, as smooth indirect light or as the values that --show asks for.
 vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* image);
