@@ -360,6 +360,7 @@ typedef struct vplSecondBounceDef {
     int count;              // samples of all clusters together, [0, VPL_MAX_LIGHTS]; default 256
     vplSecondWeight weight; // default VPL_SECOND_WEIGHT_COSINE
     uint64_t shift;         // as in vplRsmSampleDef, besides a shift per cluster; default 0
+    int step;               // of the lights: 1 for the second bounce (default), k for bounce k + 1, [1, 63]
     uint32_t cookie;        // set by vplDefaultSecondBounceDef
 } vplSecondBounceDef;
 
@@ -368,8 +369,9 @@ vplSecondBounceDef vplDefaultSecondBounceDef(void);
 // Second-bounce lights: texels of each cluster's front hemisphere at points of the unit disk, evenly spread
 // (Shirley and Chiu's concentric map, as in Pharr et al.). Each carries its share of the cluster's flux,
 // times the surface's reflectance. maps->maps[i] is the map of clusters->clusters[i]; the maps must have
-// triangles. Lights are of step 1; their `particle` counts samples. The set's N is the number of samples.
-// Source: Aranha, Macedo and Apolinario, section II-B. Departs: the weight.
+// triangles. Lights are of def->step; their `particle` counts samples. The set's N is the number of samples.
+// Clusters of second-bounce lights give lights of the third bounce, and so on.
+// Source: Aranha, Macedo and Apolinario, section II-B. Departs: the weight; the document has two bounces.
 vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClusters* clusters,
                                   const vplParaboloidMaps* maps, const vplSecondBounceDef* def,
                                   vplLightSet** setOut);

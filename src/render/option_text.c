@@ -201,7 +201,7 @@ static const char* const PRESETS[] = {
     " --sharpen 0 --antialias 1",
     "--method ssvp --clusters 8 --oversampling 1 --w1 0.6 --w2 0.4 --cluster-metric printed"
     " --cluster-place mean --second-weight printed --pipeline interleaved --interleave 4"
-    " --light-shadows cluster --antialias 1"};
+    " --light-shadows cluster --max-bounces 2 --antialias 1"};
 
 static vplResult setPreset(const Setting* s)
 {

@@ -120,8 +120,17 @@ static bool needsSecondBounce(const vplPlan* p, char* why)
 static bool needsSecondClusters(const vplPlan* p, char* why)
 {
     return needsSecondBounce(p, why) &&
-           choose(why, vplSsvpSees(p), "second-bounce lights of a cluster share what it sees",
-                  "lights do not see by clusters");
+           choose(why, vplSsvpSees(p) || vplSsvpHasFurtherBounces(p),
+                  vplSsvpSees(p) ? "second-bounce lights of a cluster share what it sees"
+                                 : "the third bounce begins from clusters",
+                  "lights do not see by clusters, and there is no third bounce");
+}
+
+static bool needsFurtherBounces(const vplPlan* p, char* why)
+{
+    const bool needed = p->showsVirtual && vplSsvpHasFurtherBounces(p);
+    return needed ? because(why, true, "light that was reflected 3 to %d times", p->options.maxBounces)
+                  : because(why, false, "there is no third bounce");
 }
 
 static bool needsClusteredLights(const vplPlan* p, char* why)
@@ -244,9 +253,13 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
     [VPL_STAGE_SECOND_PARABOLOIDS] = {
         "second paraboloid", 0.19, IN(GEOMETRY) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS), MAP_KEY,
         needsSecondClusters, vplMakeSecondParaboloids, vplDestroyParaboloids, .continues = true},
+    [VPL_STAGE_FURTHER_BOUNCES] = {
+        "further bounces", 0.2, IN(GEOMETRY) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) | IN(SECOND_PARABOLOIDS),
+        SSVP_KEY " " MAP_KEY " second-weight",
+        needsFurtherBounces, vplMakeFurtherBounces, vplDestroyFurtherBounces, .continues = true},
     [VPL_STAGE_CLUSTERED_LIGHTS] = {
         "list", 0.2, IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) |
-            IN(SECOND_PARABOLOIDS), "light-shadows",
+            IN(SECOND_PARABOLOIDS) | IN(FURTHER_BOUNCES), "light-shadows",
         needsClusteredLights, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
     [VPL_STAGE_VIRTUAL_LIGHTS] = {
         "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),

@@ -62,11 +62,24 @@ typedef struct vplBounceMaps {
     uint64_t shift;
 } vplBounceMaps;
 
-// VPL_STAGE_CLUSTERED_LIGHTS: the lights of both bounces as one list.
+// One bounce: the results of its stages.
+typedef struct vplBounceParts {
+    const vplBounceLights* lights;
+    const vplBounceClusters* clusters; // NULL: not needed
+    const vplBounceMaps* maps;         // NULL: not needed
+} vplBounceParts;
+
+// VPL_STAGE_FURTHER_BOUNCES: the third bounce, and those after it.
+typedef struct vplFurtherBounces {
+    vplBounceParts* bounces;
+    int count;
+} vplFurtherBounces;
+
+// VPL_STAGE_CLUSTERED_LIGHTS: the lights of all bounces as one list.
 typedef struct vplClusteredLights {
     vplLightSet* set;
     int* clusterOf;            // of each light: index in `shadows`
-    vplParaboloidMap* shadows; // maps of both bounces
+    vplParaboloidMap* shadows; // maps of all bounces
     int shadowCount;           // 0 where lights do not see by clusters
 } vplClusteredLights;
 

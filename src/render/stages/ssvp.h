@@ -9,8 +9,25 @@
 // pass of frames that keep their patterns.
 uint64_t vplSsvpShift(const vplRun* run);
 
+// Samples that give the lights of a step from 1 on.
+int vplSsvpCountLights(const vplPlan* plan, int step);
+
 // Measures by rays which share of each light's light stays in the scene; the shares are scratch memory.
 vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** useOut);
+
+// Bounce k from 0 of those whose stages have run; without lights if there is no such bounce.
+vplBounceParts vplSsvpBounce(const vplRun* run, int k);
+
+// Samples what the clusters of a bounce see: the lights of the next one, of the given step.
+vplResult vplSampleNextBounce(const vplRun* run, const vplBounceClusters* clusters, const vplBounceMaps* maps,
+                              int step, vplBounceLights** resultOut);
+
+// Clusters of the lights of a bounce, and their maps. `last` is the result of the frame or pass before, or NULL.
+vplResult vplClusterBounce(const vplRun* run, const vplBounceLights* bounce, const vplBounceClusters* last,
+                           vplBounceClusters** resultOut);
+// Maps have triangles where later stages need surfaces besides distances.
+vplResult vplMapBounce(const vplRun* run, const vplBounceParts* bounce, const vplBounceMaps* last, bool triangles,
+                       vplBounceMaps** resultOut);
 
 // The first says that lights cast shadows by the maps of their clusters.
 static inline bool vplSsvpSees(const vplPlan* plan)
@@ -21,6 +38,12 @@ static inline bool vplSsvpSees(const vplPlan* plan)
 static inline bool vplSsvpHasSecondBounce(const vplPlan* plan)
 {
     return plan->options.maxBounces != 1 && plan->options.ssvp.secondBounce > 0;
+}
+
+// The number of bounces is resolved before the first stage that asks runs.
+static inline bool vplSsvpHasFurtherBounces(const vplPlan* plan)
+{
+    return plan->options.maxBounces > 2 && plan->options.ssvp.secondBounce > 0;
 }
 
 static inline bool vplSsvpShowsClusters(const vplPlan* plan)

@@ -182,7 +182,7 @@ static vplResult sampleFirst(const vplRun* run, vplBounceLights* b)
     return result;
 }
 
-static vplResult beginBounce(const vplRun* run, void** resultOut)
+static vplResult beginBounce(const vplRun* run, vplBounceLights** resultOut)
 {
     vplBounceLights* b = vplArena_AllocZero(run->arena, 1, sizeof *b);
     TRY(vplArena_Check(run->arena));
@@ -193,24 +193,40 @@ static vplResult beginBounce(const vplRun* run, void** resultOut)
 
 vplResult vplMakeFirstBounce(const vplRun* run, void** resultOut)
 {
-    TRY(beginBounce(run, resultOut));
+    TRY(beginBounce(run, (vplBounceLights**)resultOut));
     return sampleFirst(run, *resultOut);
 }
 
-// ---- the second
+// ---- the second, and those after it
 
-vplResult vplMakeSecondBounce(const vplRun* run, void** resultOut)
+// Bounces after the second have fewer lights, so that each carries about as much.
+int vplSsvpCountLights(const vplPlan* plan, int step)
 {
-    const vplBounceClusters* clusters = run->results[VPL_STAGE_CLUSTERS];
-    const vplBounceMaps* maps = run->results[VPL_STAGE_PARABOLOIDS];
+    double count = plan->options.ssvp.secondBounce;
+    for (int k = 1; k < step; k++) {
+        count *= plan->reflectance;
+    }
+    return (int)ceil(count);
+}
+
+vplResult vplSampleNextBounce(const vplRun* run, const vplBounceClusters* clusters, const vplBounceMaps* maps,
+                              int step, vplBounceLights** resultOut)
+{
     TRY(beginBounce(run, resultOut));
     vplBounceLights* b = *resultOut;
     vplSecondBounceDef def = vplDefaultSecondBounceDef();
-    def.count = run->plan->options.ssvp.secondBounce;
+    def.count = vplSsvpCountLights(run->plan, step);
     def.weight = run->plan->options.ssvp.secondWeight;
     def.shift = b->shift;
+    def.step = step;
     return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], clusters->clusters, maps->maps, &def,
                                    &b->lights);
+}
+
+vplResult vplMakeSecondBounce(const vplRun* run, void** resultOut)
+{
+    return vplSampleNextBounce(run, run->results[VPL_STAGE_CLUSTERS], run->results[VPL_STAGE_PARABOLOIDS], 1,
+                               (vplBounceLights**)resultOut);
 }
 
 void vplDestroyBounce(void* result)

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Bounces of SSVP after the second, and the lights of all bounces as one list.
+// Based on: Vitor Aranha, Marcio Macedo and Antonio Apolinario, Screen-Space Virtual Point Light Propagation
+// for Real-Time Global Illumination, section II-B.
+// Departs: the document stops after two bounces; its second is repeated here from the clusters of the last.
+#include "lights/light_set.h"
+#include "render/stages/make.h"
+#include "render/stages/ssvp.h"
+
+// ---- bounces
+
+vplBounceParts vplSsvpBounce(const vplRun* run, int k)
+{
+    const vplFurtherBounces* further = run->results[VPL_STAGE_FURTHER_BOUNCES];
+    const vplStageId lights = k == 0 ? VPL_STAGE_FIRST_BOUNCE : VPL_STAGE_SECOND_BOUNCE;
+    const vplStageId clusters = k == 0 ? VPL_STAGE_CLUSTERS : VPL_STAGE_SECOND_CLUSTERS;
+    const vplStageId maps = k == 0 ? VPL_STAGE_PARABOLOIDS : VPL_STAGE_SECOND_PARABOLOIDS;
+    if (k >= 2) {
+        return further != NULL && k - 2 < further->count ? further->bounces[k - 2]
+                                                         : (vplBounceParts){NULL, NULL, NULL};
+    }
+    return (vplBounceParts){run->results[lights], run->results[clusters], run->results[maps]};
+}
+
+// The last bounce needs maps only to see by.
+static vplResult makeBounce(const vplRun* run, const vplBounceParts* from, const vplBounceParts* last, int k,
+                            vplBounceParts* b)
+{
+    const bool goesOn = k + 1 < run->plan->options.maxBounces;
+    vplBounceLights* lights = NULL;
+    vplBounceClusters* clusters = NULL;
+    vplBounceMaps* maps = NULL;
+    vplResult result = vplSampleNextBounce(run, from->clusters, from->maps, k, &lights);
+    b->lights = lights;
+    if (result == VPL_SUCCESS && (goesOn || vplSsvpSees(run->plan))) {
+        result = vplClusterBounce(run, lights, last->clusters, &clusters);
+        b->clusters = clusters;
+        result = result == VPL_SUCCESS ? vplMapBounce(run, b, last->maps, goesOn, &maps) : result;
+        b->maps = maps;
+    }
+    return result;
+}
+
+vplResult vplMakeFurtherBounces(const vplRun* run, void** resultOut)
+{
+    const int most = run->plan->options.maxBounces - 2;
+    const vplFurtherBounces* before = run->before;
+    vplFurtherBounces* f = vplArena_AllocZero(run->arena, 1, sizeof *f);
+    vplBounceParts* bounces = vplArena_AllocZero(run->arena, (size_t)most, sizeof *bounces);
+    TRY(vplArena_Check(run->arena));
+    f->bounces = bounces;
+    *resultOut = f;
+    vplBounceParts from = vplSsvpBounce(run, 1);
+    for (; f->count < most && from.lights->lights->lightCount > 0; from = f->bounces[f->count - 1]) {
+        const int i = f->count++;
+        const vplBounceParts none = {NULL, NULL, NULL};
+        vplRun_BeginPart(run, i, most);
+        TRY(makeBounce(run, &from, before != NULL && i < before->count ? &before->bounces[i] : &none, i + 2,
+                       &f->bounces[i]));
+    }
+    return VPL_SUCCESS;
+}
+
+void vplDestroyFurtherBounces(void* result)
+{
+    vplFurtherBounces* f = result;
+    for (int i = 0; i < f->count; i++) {
+        const vplBounceParts* b = &f->bounces[i];
+        vplLightSet_Destroy(b->lights != NULL ? b->lights->lights : NULL);
+        vplLightClusters_Destroy(b->clusters != NULL ? b->clusters->clusters : NULL);
+        vplParaboloidMaps_Destroy(b->maps != NULL ? b->maps->maps : NULL);
+    }
+}
+
+// ---- all bounces as one list
+
+static vplResult listShadows(const vplRun* run, vplClusteredLights* l)
+{
+    int shadows = 0, at = 0;
+    for (int k = 0; vplSsvpBounce(run, k).maps != NULL; k++) {
+        shadows += vplSsvpBounce(run, k).maps->count;
+    }
+    l->clusterOf = vplArena_Alloc(run->arena, (size_t)l->set->lightCount, sizeof *l->clusterOf);
+    l->shadows = vplArena_Alloc(run->arena, (size_t)shadows, sizeof *l->shadows);
+    TRY(vplArena_Check(run->arena));
+    for (int k = 0; vplSsvpBounce(run, k).maps != NULL; k++) {
+        const vplBounceParts b = vplSsvpBounce(run, k);
+        const int first = l->shadowCount;
+        for (int i = 0; i < b.clusters->clusters->lightCount; i++) {
+            l->clusterOf[at++] = first + b.clusters->clusters->of[i];
+        }
+        for (int i = 0; i < b.maps->count; i++) {
+            l->shadows[l->shadowCount++] = b.maps->maps->maps[i];
+        }
+    }
+    return VPL_SUCCESS;
+}
+
+vplResult vplMakeClusteredLights(const vplRun* run, void** resultOut)
+{
+    const vplLightSet none = {.context = run->context, .particleCount = 1};
+    vplClusteredLights* l = vplArena_AllocZero(run->arena, 1, sizeof *l);
+    TRY(vplArena_Check(run->arena));
+    *resultOut = l;
+    TRY(vplLightSet_Join(vplSsvpBounce(run, 0).lights->lights, &none, &l->set));
+    for (int k = 1; vplSsvpBounce(run, k).lights != NULL; k++) {
+        vplLightSet* joined;
+        TRY(vplLightSet_Join(l->set, vplSsvpBounce(run, k).lights->lights, &joined));
+        vplLightSet_Destroy(l->set);
+        l->set = joined;
+    }
+    return vplSsvpSees(run->plan) ? listShadows(run, l) : VPL_SUCCESS;
+}
+
+void vplDestroyClusteredLights(void* result)
+{
+    vplClusteredLights* l = result;
+    vplLightSet_Destroy(l->set);
+}
+
+void vplReportClusteredLights(const vplRun* run)
+{
+    const vplClusteredLights* l = run->results[VPL_STAGE_CLUSTERED_LIGHTS];
+    const vplBounceClusters* first = run->results[VPL_STAGE_CLUSTERS];
+    vplReportLights(l->set, run->stats);
+    if (first != NULL) {
+        run->stats->clusters = first->clusters->count;
+        run->stats->clusterIterations = first->clusters->iterations;
+    }
+}
