@@ -351,6 +351,34 @@ vplResult vplFindClusters(const vplLightSet* lights, const vplClusterDef* def,
 // NULL is allowed.
 void vplLightClusters_Destroy(vplLightClusters* clusters);
 
+typedef struct vplClusterSplitDef {
+    // Camera, minDistance and seed. pointCount points that the camera sees, and as many that each of them sees
+    // by one and by two reflections, tell whether lights and clusters agree; default 64.
+    vplPlacementDef view;
+    int maxCount;   // clusters after splitting, [1, VPL_MAX_LIGHTS]; default 64
+    double wrong;   // no cluster is split where at most this share of the light is wrong, [0, 1]; default 0.02
+    uint32_t cookie; // set by vplDefaultClusterSplitDef
+} vplClusterSplitDef;
+
+vplClusterSplitDef vplDefaultClusterSplitDef(void);
+
+// Agreement of lights with the viewpoints of their clusters: light that reaches the camera from the points, in
+// units of radiance, summed over lights and points.
+typedef struct vplClusterAgreement {
+    double light; // that arrives
+    double wrong; // that arrives although the cluster does not see the point, or that does not though it sees
+    int64_t rays;
+} vplClusterAgreement;
+
+// Splits clusters whose viewpoint (`nearest`) does not see what their lights see. While the share of the light
+// that is wrong is more than def->wrong, and there are less than def->maxCount clusters, the one with the most
+// wrong light is split: one of its lights becomes a viewpoint, and takes those lights with it that agree
+// better with it. New clusters are appended and look along their viewpoint's normal; others are copied.
+// `agreement` is that after splitting.
+vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* lights, const vplLightClusters* clusters,
+                           const vplClusterSplitDef* def, vplLightClusters** clustersOut,
+                           vplClusterAgreement* agreementOut);
+
 typedef enum vplSecondWeight {
     VPL_SECOND_WEIGHT_COSINE = 0, // 4 (1 - p^2) / (1 + p^2)^3: a diffuse light (default)
     VPL_SECOND_WEIGHT_PRINTED     // 1: the document gives none

@@ -209,7 +209,7 @@ static bool needsPaths(const vplPlan* p, char* why)
 // ---- the table
 
 #define IN(stage) (1u << VPL_STAGE_##stage)
-#define SSVP_KEY  "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
+#define SSVP_KEY  "clusters max-clusters cluster-place size VIEW oversampling cluster-metric w1 w2 coherence SHIFT"
 #define MAP_KEY                                                                                              \
     "paraboloid hemispheres cluster-place light-shadows show max-bounces second-bounce coherence SHIFT"
 #define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"

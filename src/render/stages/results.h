@@ -51,6 +51,8 @@ typedef struct vplBounceLights {
 // VPL_STAGE_CLUSTERS and VPL_STAGE_SECOND_CLUSTERS.
 typedef struct vplBounceClusters {
     vplLightClusters* clusters;
+    vplLightClusters* whole; // before splitting, from which the next frame starts; NULL: none was to be split
+    vplClusterAgreement agreement;
     uint64_t shift; // of the sample pattern
 } vplBounceClusters;
 

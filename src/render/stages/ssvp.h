@@ -35,6 +35,13 @@ static inline bool vplSsvpSees(const vplPlan* plan)
     return plan->options.lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER;
 }
 
+// Clusters are split where they see by the map of one of their lights.
+static inline bool vplSsvpSplits(const vplPlan* plan)
+{
+    const vplSsvpOptions* o = &plan->options.ssvp;
+    return o->maxClusters > o->clusters && o->place == VPL_CLUSTER_PLACE_MEMBER;
+}
+
 static inline bool vplSsvpHasSecondBounce(const vplPlan* plan)
 {
     return plan->options.maxBounces != 1 && plan->options.ssvp.secondBounce > 0;

@@ -68,6 +68,7 @@ void vplDestroyFurtherBounces(void* result)
         const vplBounceParts* b = &f->bounces[i];
         vplLightSet_Destroy(b->lights != NULL ? b->lights->lights : NULL);
         vplLightClusters_Destroy(b->clusters != NULL ? b->clusters->clusters : NULL);
+        vplLightClusters_Destroy(b->clusters != NULL ? b->clusters->whole : NULL);
         vplParaboloidMaps_Destroy(b->maps != NULL ? b->maps->maps : NULL);
     }
 }
