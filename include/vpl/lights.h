@@ -404,6 +404,21 @@ vplResult vplSampleParaboloidMaps(const vplGeometry* geometry, const vplLightClu
                                   const vplParaboloidMaps* maps, const vplSecondBounceDef* def,
                                   vplLightSet** setOut);
 
+typedef struct vplNextBounceDef {
+    int count;       // rays, [0, VPL_MAX_LIGHTS]; default 256
+    uint64_t shift;  // 0 (default): points of the Halton sequence; else seed of a random shift, modulo 1
+    int step;        // of the lights, [1, 63]; default 1
+    uint32_t cookie; // set by vplDefaultNextBounceDef
+} vplNextBounceDef;
+
+vplNextBounceDef vplDefaultNextBounceDef(void);
+
+// Lights of the next bounce: the hits of cosine-distributed rays from the lights of a set, of which each sends
+// as many as it has of the flux. All rays carry equal light, times the reflectance of what they hit. A ray that
+// hits nothing leaves no light. Lights are of def->step; their `particle` counts rays, which are the set's N.
+vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights, const vplNextBounceDef* def,
+                             vplLightSet** setOut);
+
 // ---- lights of kernels
 
 // A virtual light as kernels read it.

@@ -17,7 +17,6 @@
 enum {
     SPLIT_COOKIE = 0x56504c6d,
     CHUNK = 16,     // lights per task
-    LEVELS = 3,     // points that the camera sees, and points by one and two reflections
     CANDIDATES = 8, // lights that are tried as the viewpoint of a new cluster
 };
 
@@ -33,8 +32,8 @@ typedef struct Splitting {
     const vplGeometry* geometry;
     const vplLightSet* set;
     const vplClusterSplitDef* def;
-    vplViewBlock* blocks;
-    int blockCount, viewCount; // the first show what the camera sees
+    const vplViewBlock* blocks;
+    int blockCount;
     vplReflectFcn* reflect;
     float inverseClamp;
     double* share; // of each point [block][lane]: 1 / its light, right or wrong; 0 where no light comes
@@ -106,26 +105,16 @@ static void lookChunk(void* data, int chunk, int worker)
 
 // ---- agreement
 
-// A light with the place of light v, from which the next bounce sends its flux.
-static vplShadeLight movedTo(const Splitting* s, const vplShadeLight* light, int v)
-{
-    const vplVirtualLight* place = &s->set->lights[v];
-    return (vplShadeLight){place->position.x, place->position.y, place->position.z,
-                           place->normal.x,   place->normal.y,   place->normal.z,
-                           light->r,          light->g,          light->b};
-}
-
 // The light of light i that is wrong if it sees by light v.
 static double wrongBy(const Splitting* s, int i, int v)
 {
     const size_t blocks = (size_t)s->blockCount;
     const uint16_t *mine = s->seen + (size_t)i * blocks, *its = s->seen + (size_t)v * blocks;
-    const vplShadeLight light = lightOf(s, i), moved = movedTo(s, &light, v);
+    const vplShadeLight light = lightOf(s, i);
     double sum = 0;
     for (int k = 0; k < s->blockCount; k++) {
-        const unsigned lost = mine[k] & ~(unsigned)its[k], found = its[k] & ~(unsigned)mine[k];
-        sum += lost != 0 ? sumOf(s, k, &light, lost) : 0;
-        sum += found != 0 ? sumOf(s, k, k < s->viewCount ? &light : &moved, found) : 0;
+        const unsigned differ = mine[k] ^ its[k];
+        sum += differ != 0 ? sumOf(s, k, &light, differ) : 0;
     }
     return sum;
 }
@@ -152,10 +141,9 @@ static void measurePoints(Splitting* s)
     for (int i = 0; i < s->set->lightCount; i++) {
         const uint16_t *mine = s->seen + (size_t)i * blocks,
                        *its = s->seen + (size_t)s->clusters[s->of[i]].nearest * blocks;
-        const vplShadeLight light = lightOf(s, i), moved = movedTo(s, &light, s->clusters[s->of[i]].nearest);
+        const vplShadeLight light = lightOf(s, i);
         for (int k = 0; k < s->blockCount; k++) {
-            addTo(s, k, &light, mine[k]);
-            addTo(s, k, k < s->viewCount ? &light : &moved, its[k] & ~(unsigned)mine[k]);
+            addTo(s, k, &light, mine[k] | its[k]);
         }
     }
     for (int p = 0; p < s->blockCount * VPL_LANES; p++) {
@@ -292,23 +280,6 @@ static void summarize(Splitting* s, const int* before, int beforeCount)
 
 // ---- setting up
 
-static vplResult samplePoints(Splitting* s, vplArena* scratch)
-{
-    const vplViewBlock* view;
-    int count;
-    TRY(vplSampleView(s->geometry, &s->def->view, scratch, &view, &count));
-    s->viewCount = count;
-    s->blockCount = LEVELS * count;
-    s->blocks = vplArena_Alloc(scratch, (size_t)s->blockCount, sizeof *s->blocks);
-    TRY(vplArena_Check(scratch));
-    memcpy(s->blocks, view, (size_t)count * sizeof *view);
-    for (int level = 1; level < LEVELS; level++) {
-        const vplViewBlock* from = s->blocks + (size_t)(level - 1) * (size_t)count;
-        TRY(vplSampleHops(s->geometry, &s->def->view, from, count, level, s->blocks + (size_t)level * (size_t)count));
-    }
-    return VPL_SUCCESS;
-}
-
 static vplResult splitAll(Splitting* s, const vplLightClusters* from, vplArena* scratch,
                           vplClusterAgreement* agreementOut)
 {
@@ -317,7 +288,7 @@ static vplResult splitAll(Splitting* s, const vplLightClusters* from, vplArena* 
     const float distance = s->def->view.minDistance;
     s->reflect = vplGetLightsKernels(s->geometry->context->isa)->reflectPhysical;
     s->inverseClamp = distance > 0 ? 1 / (distance * distance) : INFINITY;
-    TRY(samplePoints(s, scratch));
+    TRY(vplSampleView(s->geometry, &s->def->view, scratch, &s->blocks, &s->blockCount));
     s->seen = vplArena_Alloc(scratch, lights, (size_t)s->blockCount * sizeof *s->seen);
     s->share = vplArena_Alloc(scratch, (size_t)s->blockCount, VPL_LANES * sizeof *s->share);
     s->wrong = vplArena_Alloc(scratch, lights, sizeof *s->wrong);

@@ -22,9 +22,4 @@ vplResult vplPlacementDef_Check(const vplContext* context, const vplPlacementDef
 vplResult vplSampleView(const vplGeometry* geometry, const vplPlacementDef* def, vplArena* arena,
                         const vplViewBlock** blocksOut, int* countOut);
 
-// Points that the points of `from` see, in one cosine-distributed direction each; rho is the product of the
-// reflectances of both, so that the light that they reflect is that which comes to the camera by this path.
-vplResult vplSampleHops(const vplGeometry* geometry, const vplPlacementDef* def, const vplViewBlock* from,
-                        int count, int level, vplViewBlock* blocks);
-
 #endif

@@ -6,14 +6,12 @@
 #include "geometry/triangle.h"
 #include "lights/light_set.h"
 #include "math/scalar.h"
-#include "math/sampling.h"
 #include "math/sobol.h"
 #include "math/vec.h"
 
 #include <string.h>
 
-// Streams of random numbers; they differ from those of particles.
-enum { VIEW_STREAM = 0x80000002u, HOP_STREAM = 0x80000010u };
+enum { VIEW_STREAM = 0x80000002u }; // of random numbers; differs from those of particles
 
 typedef struct ViewSampling {
     const vplGeometry* geometry;
@@ -103,52 +101,4 @@ vplResult vplSampleView(const vplGeometry* geometry, const vplPlacementDef* def,
     *blocksOut = s.blocks;
     *countOut = s.columns * s.rows;
     return VPL_SUCCESS;
-}
-
-// ---- points that these points see
-
-typedef struct HopSampling {
-    ViewSampling view; // geometry and def
-    const vplViewBlock* from;
-    int level;
-    vplViewBlock* blocks;
-} HopSampling;
-
-// A task: what the points of one block see.
-static void sampleHops(void* data, int cell, int worker)
-{
-    (void)worker;
-    const HopSampling* s = data;
-    const vplViewBlock* from = &s->from[cell];
-    vplViewBlock* b = &s->blocks[cell];
-    memset(b, 0, sizeof *b);
-    for (int l = 0; l < VPL_LANES; l++) {
-        if ((from->rays.active & 1u << l) == 0) {
-            continue;
-        }
-        float u[VPL_SOBOL_DIMENSIONS];
-        vplSobol_Sample(s->view.sobol, s->view.def->seed, (uint64_t)s->view.def->index << 32 | (uint64_t)cell,
-                        HOP_STREAM + (uint32_t)s->level, (uint32_t)l, u);
-        vplRay ray = vplRayPacket_Get(&from->rays, l);
-        ray.direction = vplSampleCosineAround(
-            vplVec(from->plane[0][l], from->plane[1][l], from->plane[2][l]), u[0], u[1]);
-        vplHit hit;
-        if (vplGeometry_ClosestHit(s->view.geometry, &ray, &hit)) {
-            putPoint(&s->view, &hit, ray.direction, b, l);
-            for (int k = 0; k < 3; k++) {
-                b->rho[k][l] *= from->rho[k][l];
-            }
-        }
-    }
-}
-
-vplResult vplSampleHops(const vplGeometry* geometry, const vplPlacementDef* def, const vplViewBlock* from,
-                        int count, int level, vplViewBlock* blocks)
-{
-    const vplSobol sobol = vplSobol_Make();
-    HopSampling s = {.view = {.geometry = geometry, .def = def, .sobol = &sobol},
-                     .from = from,
-                     .level = level,
-                     .blocks = blocks};
-    return vplParallelForAsking(geometry->context, count, sampleHops, &s);
 }

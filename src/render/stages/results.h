@@ -43,7 +43,8 @@ typedef struct vplVirtualLights {
 // VPL_STAGE_FIRST_BOUNCE and VPL_STAGE_SECOND_BOUNCE.
 typedef struct vplBounceLights {
     vplLightSet* lights;
-    uint64_t shift; // of the sample pattern
+    vplLightSet* all; // that they were chosen from; NULL: no choice
+    uint64_t shift;   // of the sample pattern
     float* use; // of each sample of the reflective maps: the share of its light that stays; NULL: not asked
     int sampleCount; // of them
 } vplBounceLights;

@@ -18,9 +18,11 @@ vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** 
 // Bounce k from 0 of those whose stages have run; without lights if there is no such bounce.
 vplBounceParts vplSsvpBounce(const vplRun* run, int k);
 
-// Samples what the clusters of a bounce see: the lights of the next one, of the given step.
-vplResult vplSampleNextBounce(const vplRun* run, const vplBounceClusters* clusters, const vplBounceMaps* maps,
-                              int step, vplBounceLights** resultOut);
+// The lights of the bounce after one, of the given step.
+vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights** resultOut);
+
+// Describes what the camera sees, by which lights are chosen and clusters are split.
+vplPlacementDef vplSsvpView(const vplRun* run);
 
 // Clusters of the lights of a bounce, and their maps. `last` is the result of the frame or pass before, or NULL.
 vplResult vplClusterBounce(const vplRun* run, const vplBounceLights* bounce, const vplBounceClusters* last,
@@ -33,6 +35,18 @@ vplResult vplMapBounce(const vplRun* run, const vplBounceParts* bounce, const vp
 static inline bool vplSsvpSees(const vplPlan* plan)
 {
     return plan->options.lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER;
+}
+
+// More lights are made than are kept.
+static inline bool vplSsvpChooses(const vplPlan* plan)
+{
+    return plan->options.ssvp.nextBounce == VPL_NEXT_BOUNCE_RAYS && plan->options.ssvp.oversampling > 1;
+}
+
+// The next bounce begins from clusters.
+static inline bool vplSsvpSamplesMaps(const vplPlan* plan)
+{
+    return plan->options.ssvp.nextBounce == VPL_NEXT_BOUNCE_MAPS;
 }
 
 // Clusters are split where they see by the map of one of their lights.

@@ -26,16 +26,16 @@ vplBounceParts vplSsvpBounce(const vplRun* run, int k)
 static vplResult makeBounce(const vplRun* run, const vplBounceParts* from, const vplBounceParts* last, int k,
                             vplBounceParts* b)
 {
-    const bool goesOn = k + 1 < run->plan->options.maxBounces;
+    const bool sampled = vplSsvpSamplesMaps(run->plan) && k + 1 < run->plan->options.maxBounces;
     vplBounceLights* lights = NULL;
     vplBounceClusters* clusters = NULL;
     vplBounceMaps* maps = NULL;
-    vplResult result = vplSampleNextBounce(run, from->clusters, from->maps, k, &lights);
+    vplResult result = vplMakeNextBounce(run, from, k, &lights);
     b->lights = lights;
-    if (result == VPL_SUCCESS && (goesOn || vplSsvpSees(run->plan))) {
+    if (result == VPL_SUCCESS && (sampled || vplSsvpSees(run->plan))) {
         result = vplClusterBounce(run, lights, last->clusters, &clusters);
         b->clusters = clusters;
-        result = result == VPL_SUCCESS ? vplMapBounce(run, b, last->maps, goesOn, &maps) : result;
+        result = result == VPL_SUCCESS ? vplMapBounce(run, b, last->maps, sampled, &maps) : result;
         b->maps = maps;
     }
     return result;
@@ -51,7 +51,7 @@ vplResult vplMakeFurtherBounces(const vplRun* run, void** resultOut)
     f->bounces = bounces;
     *resultOut = f;
     vplBounceParts from = vplSsvpBounce(run, 1);
-    for (; f->count < most && from.lights->lights->lightCount > 0; from = f->bounces[f->count - 1]) {
+    for (; f->count < most; from = f->bounces[f->count - 1]) {
         const int i = f->count++;
         const vplBounceParts none = {NULL, NULL, NULL};
         vplRun_BeginPart(run, i, most);
@@ -67,6 +67,7 @@ void vplDestroyFurtherBounces(void* result)
     for (int i = 0; i < f->count; i++) {
         const vplBounceParts* b = &f->bounces[i];
         vplLightSet_Destroy(b->lights != NULL ? b->lights->lights : NULL);
+        vplLightSet_Destroy(b->lights != NULL ? b->lights->all : NULL);
         vplLightClusters_Destroy(b->clusters != NULL ? b->clusters->clusters : NULL);
         vplLightClusters_Destroy(b->clusters != NULL ? b->clusters->whole : NULL);
         vplParaboloidMaps_Destroy(b->maps != NULL ? b->maps->maps : NULL);

@@ -4,8 +4,6 @@
 #include "render/stages/make.h"
 #include "render/stages/ssvp.h"
 
-#include <math.h>
-
 // True if the frame or pass before had the same samples, so that its result is a start for this one.
 static bool follows(const vplRun* run, uint64_t shift, uint64_t lastShift)
 {
@@ -19,12 +17,8 @@ static vplResult splitClusters(const vplRun* run, const vplBounceLights* bounce,
     const vplPlan* plan = run->plan;
     vplClusterSplitDef def = vplDefaultClusterSplitDef();
     def.maxCount = plan->options.ssvp.maxClusters;
-    def.view.camera = plan->camera;
-    def.view.width = plan->options.output.width;
-    def.view.height = plan->options.output.height;
-    def.view.minDistance = (float)sqrt(vplGeometry_Area(run->results[VPL_STAGE_GEOMETRY]) / def.view.pointCount / VPL_PI);
-    def.view.seed = plan->options.seed;
-    def.view.index = run->pass;
+    def.view = vplSsvpView(run);
+    def.view.pointCount = 128;
     TRY(vplSplitClusters(run->results[VPL_STAGE_GEOMETRY], bounce->lights, c->whole, &def, &c->clusters,
                          &c->agreement));
     run->stats->rays += c->agreement.rays;
@@ -153,14 +147,15 @@ vplResult vplMakeParaboloids(const vplRun* run, void** resultOut)
 {
     const vplBounceParts first = vplSsvpBounce(run, 0);
     return vplMapBounce(run, &first, run->before,
-                        vplSsvpHasSecondBounce(run->plan) || vplSsvpShowsClusters(run->plan),
+                        (vplSsvpHasSecondBounce(run->plan) && vplSsvpSamplesMaps(run->plan)) ||
+                            vplSsvpShowsClusters(run->plan),
                         (vplBounceMaps**)resultOut);
 }
 
 vplResult vplMakeSecondParaboloids(const vplRun* run, void** resultOut)
 {
     const vplBounceParts second = vplSsvpBounce(run, 1);
-    return vplMapBounce(run, &second, run->before, vplSsvpHasFurtherBounces(run->plan),
+    return vplMapBounce(run, &second, run->before, vplSsvpHasFurtherBounces(run->plan) && vplSsvpSamplesMaps(run->plan),
                         (vplBounceMaps**)resultOut);
 }
 

@@ -75,7 +75,7 @@ static vplResult followUse(const vplRun* run, const vplLightSet* set, int count,
 // ---- the first bounce
 
 // Gives area lights the share of the first-bounce lights that they have of the power.
-static vplResult countAreaLightSamples(const vplRun* run, int* countOut)
+static vplResult countAreaLightSamples(const vplRun* run, int count, int* countOut)
 {
     vplEmission* emission;
     TRY(vplEmission_Create(run->results[VPL_STAGE_GEOMETRY], run->plan->emitters, run->plan->emitterCount,
@@ -85,7 +85,7 @@ static vplResult countAreaLightSamples(const vplRun* run, int* countOut)
         area += vplRgbMean(emission->sources[i].power);
     }
     const double all = vplEmission_Power(emission);
-    *countOut = all > 0 ? (int)rint(run->plan->options.ssvp.firstBounce * (area / all)) : 0;
+    *countOut = all > 0 ? (int)rint(count * (area / all)) : 0;
     vplEmission_Destroy(emission);
     return VPL_SUCCESS;
 }
@@ -163,23 +163,61 @@ static vplResult sampleMaps(const vplRun* run, int count, vplBounceLights* b, vp
     return result;
 }
 
-static vplResult sampleFirst(const vplRun* run, vplBounceLights* b)
+// Takes `count` samples from reflective maps, and from area lights by their share of the power.
+static vplResult sampleFirst(const vplRun* run, int count, vplBounceLights* b, vplLightSet** setOut)
 {
     int fromArea = 0;
     vplLightSet *seen = NULL, *shot = NULL;
-    TRY(countAreaLightSamples(run, &fromArea));
-    TRY(sampleMaps(run, run->plan->options.ssvp.firstBounce - fromArea, b, &seen));
+    TRY(countAreaLightSamples(run, count, &fromArea));
+    TRY(vplSsvpChooses(run->plan) ? sampleAll(run, count - fromArea, b->shift, &seen)
+                                  : sampleMaps(run, count - fromArea, b, &seen));
     if (fromArea == 0) {
-        b->lights = seen;
+        *setOut = seen;
         return VPL_SUCCESS;
     }
     vplResult result = shootFromAreaLights(run, fromArea, b->shift, &shot);
     if (result == VPL_SUCCESS) {
-        result = vplLightSet_Join(seen, shot, &b->lights);
+        result = vplLightSet_Join(seen, shot, setOut);
     }
     vplLightSet_Destroy(seen);
     vplLightSet_Destroy(shot);
     return result;
+}
+
+// ---- choice
+
+// Describes what the camera sees. Lights of different bounces are chosen independently.
+vplPlacementDef vplSsvpView(const vplRun* run)
+{
+    const vplPlan* plan = run->plan;
+    vplPlacementDef def = vplDefaultPlacementDef();
+    def.camera = plan->camera;
+    def.width = plan->options.output.width;
+    def.height = plan->options.output.height;
+    def.minDistance = vplClampDistance(run, (double)plan->virtualLights);
+    def.seed = plan->options.seed;
+    def.index = run->pass;
+    return def;
+}
+
+// Candidates for so many lights.
+static int oversampled(const vplRun* run, int count)
+{
+    const int times = run->plan->options.ssvp.oversampling;
+    return count > VPL_MAX_LIGHTS / times ? VPL_MAX_LIGHTS : count * times;
+}
+
+// Keeps about `count` of all lights of a bounce.
+static vplResult chooseLights(const vplRun* run, int count, vplBounceLights* b)
+{
+    const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
+    vplPlacementDef def = vplSsvpView(run);
+    int64_t rays;
+    float* contributions = vplArena_Alloc(run->scratch, (size_t)b->all->lightCount, sizeof *contributions);
+    TRY(vplArena_Check(run->scratch));
+    TRY(vplMeasureLights(g, b->all, &def, contributions, &rays));
+    run->stats->rays += rays;
+    return vplChooseLights(b->all, contributions, count, &def, &b->lights);
 }
 
 static vplResult beginBounce(const vplRun* run, vplBounceLights** resultOut)
@@ -193,8 +231,14 @@ static vplResult beginBounce(const vplRun* run, vplBounceLights** resultOut)
 
 vplResult vplMakeFirstBounce(const vplRun* run, void** resultOut)
 {
+    const int count = run->plan->options.ssvp.firstBounce;
     TRY(beginBounce(run, (vplBounceLights**)resultOut));
-    return sampleFirst(run, *resultOut);
+    vplBounceLights* b = *resultOut;
+    if (!vplSsvpChooses(run->plan)) {
+        return sampleFirst(run, count, b, &b->lights);
+    }
+    TRY(sampleFirst(run, oversampled(run, count), b, &b->all));
+    return chooseLights(run, count, b);
 }
 
 // ---- the second, and those after it
@@ -209,28 +253,49 @@ int vplSsvpCountLights(const vplPlan* plan, int step)
     return (int)ceil(count);
 }
 
-vplResult vplSampleNextBounce(const vplRun* run, const vplBounceClusters* clusters, const vplBounceMaps* maps,
-                              int step, vplBounceLights** resultOut)
+static vplResult sampleClusters(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights* b)
 {
-    TRY(beginBounce(run, resultOut));
-    vplBounceLights* b = *resultOut;
     vplSecondBounceDef def = vplDefaultSecondBounceDef();
     def.count = vplSsvpCountLights(run->plan, step);
     def.weight = run->plan->options.ssvp.secondWeight;
     def.shift = b->shift;
     def.step = step;
-    return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], clusters->clusters, maps->maps, &def,
-                                   &b->lights);
+    return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], from->clusters->clusters, from->maps->maps,
+                                   &def, &b->lights);
+}
+
+static vplResult shoot(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights* b)
+{
+    const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
+    const vplLightSet* lights = from->lights->all != NULL ? from->lights->all : from->lights->lights;
+    const int count = vplSsvpCountLights(run->plan, step);
+    vplNextBounceDef def = vplDefaultNextBounceDef();
+    def.shift = b->shift;
+    def.step = step;
+    def.count = oversampled(run, count);
+    if (!vplSsvpChooses(run->plan)) {
+        return vplShootNextBounce(g, lights, &def, &b->lights);
+    }
+    TRY(vplShootNextBounce(g, lights, &def, &b->all));
+    return chooseLights(run, count, b);
+}
+
+vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights** resultOut)
+{
+    TRY(beginBounce(run, resultOut));
+    return run->plan->options.ssvp.nextBounce == VPL_NEXT_BOUNCE_RAYS ? shoot(run, from, step, *resultOut)
+                                                                      : sampleClusters(run, from, step, *resultOut);
 }
 
 vplResult vplMakeSecondBounce(const vplRun* run, void** resultOut)
 {
-    return vplSampleNextBounce(run, run->results[VPL_STAGE_CLUSTERS], run->results[VPL_STAGE_PARABOLOIDS], 1,
-                               (vplBounceLights**)resultOut);
+    const vplBounceParts first = vplSsvpBounce(run, 0);
+    return vplMakeNextBounce(run, &first, 1, (vplBounceLights**)resultOut);
 }
 
 void vplDestroyBounce(void* result)
 {
     vplBounceLights* b = result;
     vplLightSet_Destroy(b->lights);
+    vplLightSet_Destroy(b->all);
 }
