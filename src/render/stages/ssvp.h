@@ -21,6 +21,9 @@ vplBounceParts vplSsvpBounce(const vplRun* run, int k);
 // The lights of the bounce after one, of the given step.
 vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights** resultOut);
 
+// The lights of all bounces after the second by rays, in one set.
+vplResult vplShootFurtherBounces(const vplRun* run, const vplBounceParts* from, vplBounceLights** resultOut);
+
 // Describes what the camera sees, by which lights are chosen and clusters are split.
 vplPlacementDef vplSsvpView(const vplRun* run);
 

@@ -22,43 +22,62 @@ vplBounceParts vplSsvpBounce(const vplRun* run, int k)
     return (vplBounceParts){run->results[lights], run->results[clusters], run->results[maps]};
 }
 
-// The last bounce needs maps only to see by.
-static vplResult makeBounce(const vplRun* run, const vplBounceParts* from, const vplBounceParts* last, int k,
-                            vplBounceParts* b)
+// Clusters of the lights of a bounce, and their maps if lights see by them or the next bounce begins from them.
+static vplResult seeByClusters(const vplRun* run, const vplBounceParts* last, bool sampled, vplBounceParts* b)
 {
-    const bool sampled = vplSsvpSamplesMaps(run->plan) && k + 1 < run->plan->options.maxBounces;
-    vplBounceLights* lights = NULL;
     vplBounceClusters* clusters = NULL;
     vplBounceMaps* maps = NULL;
-    vplResult result = vplMakeNextBounce(run, from, k, &lights);
-    b->lights = lights;
-    if (result == VPL_SUCCESS && (sampled || vplSsvpSees(run->plan))) {
-        result = vplClusterBounce(run, lights, last->clusters, &clusters);
-        b->clusters = clusters;
-        result = result == VPL_SUCCESS ? vplMapBounce(run, b, last->maps, sampled, &maps) : result;
-        b->maps = maps;
+    if (!sampled && !vplSsvpSees(run->plan)) {
+        return VPL_SUCCESS;
     }
+    vplResult result = vplClusterBounce(run, b->lights, last->clusters, &clusters);
+    b->clusters = clusters;
+    result = result == VPL_SUCCESS ? vplMapBounce(run, b, last->maps, sampled, &maps) : result;
+    b->maps = maps;
     return result;
 }
 
-vplResult vplMakeFurtherBounces(const vplRun* run, void** resultOut)
+// Bounces that begin from the clusters of the bounce before: the last needs maps only to see by.
+static vplResult repeatSecond(const vplRun* run, const vplFurtherBounces* before, vplFurtherBounces* f)
 {
     const int most = run->plan->options.maxBounces - 2;
-    const vplFurtherBounces* before = run->before;
-    vplFurtherBounces* f = vplArena_AllocZero(run->arena, 1, sizeof *f);
-    vplBounceParts* bounces = vplArena_AllocZero(run->arena, (size_t)most, sizeof *bounces);
-    TRY(vplArena_Check(run->arena));
-    f->bounces = bounces;
-    *resultOut = f;
     vplBounceParts from = vplSsvpBounce(run, 1);
     for (; f->count < most; from = f->bounces[f->count - 1]) {
         const int i = f->count++;
         const vplBounceParts none = {NULL, NULL, NULL};
+        vplBounceLights* lights = NULL;
         vplRun_BeginPart(run, i, most);
-        TRY(makeBounce(run, &from, before != NULL && i < before->count ? &before->bounces[i] : &none, i + 2,
-                       &f->bounces[i]));
+        const vplResult result = vplMakeNextBounce(run, &from, i + 2, &lights);
+        f->bounces[i].lights = lights;
+        TRY(result);
+        TRY(seeByClusters(run, before != NULL && i < before->count ? &before->bounces[i] : &none,
+                          i + 1 < most, &f->bounces[i]));
     }
     return VPL_SUCCESS;
+}
+
+// Bounces that need no clusters: their lights are chosen together, and share clusters and maps.
+static vplResult goOn(const vplRun* run, const vplFurtherBounces* before, vplFurtherBounces* f)
+{
+    const vplBounceParts from = vplSsvpBounce(run, 1), none = {NULL, NULL, NULL};
+    vplBounceLights* lights = NULL;
+    f->count = 1;
+    const vplResult result = vplShootFurtherBounces(run, &from, &lights);
+    f->bounces[0].lights = lights;
+    TRY(result);
+    return seeByClusters(run, before != NULL ? &before->bounces[0] : &none, false, &f->bounces[0]);
+}
+
+vplResult vplMakeFurtherBounces(const vplRun* run, void** resultOut)
+{
+    const bool sampled = vplSsvpSamplesMaps(run->plan);
+    vplFurtherBounces* f = vplArena_AllocZero(run->arena, 1, sizeof *f);
+    vplBounceParts* bounces =
+        vplArena_AllocZero(run->arena, sampled ? (size_t)run->plan->options.maxBounces : 1, sizeof *bounces);
+    TRY(vplArena_Check(run->arena));
+    f->bounces = bounces;
+    *resultOut = f;
+    return sampled ? repeatSecond(run, run->before, f) : goOn(run, run->before, f);
 }
 
 void vplDestroyFurtherBounces(void* result)

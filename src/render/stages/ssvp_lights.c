@@ -264,27 +264,78 @@ static vplResult sampleClusters(const vplRun* run, const vplBounceParts* from, i
                                    &def, &b->lights);
 }
 
-static vplResult shoot(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights* b)
+static const vplLightSet* sourceOf(const vplBounceParts* from)
 {
-    const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
-    const vplLightSet* lights = from->lights->all != NULL ? from->lights->all : from->lights->lights;
-    const int count = vplSsvpCountLights(run->plan, step);
+    return from->lights->all != NULL ? from->lights->all : from->lights->lights;
+}
+
+static vplResult shoot(const vplRun* run, const vplLightSet* from, int step, uint64_t shift, vplLightSet** setOut)
+{
     vplNextBounceDef def = vplDefaultNextBounceDef();
-    def.shift = b->shift;
+    def.shift = shift;
     def.step = step;
-    def.count = oversampled(run, count);
+    def.count = vplSsvpCountLights(run->plan, step);
+    def.count = vplSsvpChooses(run->plan) ? oversampled(run, def.count) : def.count;
+    run->stats->rays += def.count;
+    return vplShootNextBounce(run->results[VPL_STAGE_GEOMETRY], from, &def, setOut);
+}
+
+static vplResult shootNext(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights* b)
+{
     if (!vplSsvpChooses(run->plan)) {
-        return vplShootNextBounce(g, lights, &def, &b->lights);
+        return shoot(run, sourceOf(from), step, b->shift, &b->lights);
     }
-    TRY(vplShootNextBounce(g, lights, &def, &b->all));
-    return chooseLights(run, count, b);
+    TRY(shoot(run, sourceOf(from), step, b->shift, &b->all));
+    return chooseLights(run, vplSsvpCountLights(run->plan, step), b);
+}
+
+// Adds the lights of one more bounce to the set.
+static vplResult addBounce(vplLightSet** set, const vplLightSet* bounce)
+{
+    vplLightSet* joined;
+    TRY(vplLightSet_Join(*set, bounce, &joined));
+    vplLightSet_Destroy(*set);
+    *set = joined;
+    return VPL_SUCCESS;
+}
+
+static vplResult shootAll(const vplRun* run, const vplLightSet* from, uint64_t shift, int* countOut,
+                          vplLightSet** setOut)
+{
+    const vplLightSet none = {.context = run->context, .particleCount = 0};
+    vplLightSet* last = NULL;
+    TRY(vplLightSet_Join(&none, &none, setOut));
+    for (int step = 2; step < run->plan->options.maxBounces; step++) {
+        vplLightSet* next = NULL;
+        vplResult result = shoot(run, last != NULL ? last : from, step, shift, &next);
+        vplLightSet_Destroy(last);
+        last = next;
+        result = result == VPL_SUCCESS ? addBounce(setOut, last) : result;
+        if (result != VPL_SUCCESS) {
+            vplLightSet_Destroy(last);
+            return result;
+        }
+        *countOut += vplSsvpCountLights(run->plan, step);
+    }
+    vplLightSet_Destroy(last);
+    return VPL_SUCCESS;
+}
+
+vplResult vplShootFurtherBounces(const vplRun* run, const vplBounceParts* from, vplBounceLights** resultOut)
+{
+    int count = 0;
+    TRY(beginBounce(run, resultOut));
+    vplBounceLights* b = *resultOut;
+    const bool chooses = vplSsvpChooses(run->plan);
+    TRY(shootAll(run, sourceOf(from), b->shift, &count, chooses ? &b->all : &b->lights));
+    return chooses ? chooseLights(run, count, b) : VPL_SUCCESS;
 }
 
 vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights** resultOut)
 {
     TRY(beginBounce(run, resultOut));
-    return run->plan->options.ssvp.nextBounce == VPL_NEXT_BOUNCE_RAYS ? shoot(run, from, step, *resultOut)
-                                                                      : sampleClusters(run, from, step, *resultOut);
+    return vplSsvpSamplesMaps(run->plan) ? sampleClusters(run, from, step, *resultOut)
+                                         : shootNext(run, from, step, *resultOut);
 }
 
 vplResult vplMakeSecondBounce(const vplRun* run, void** resultOut)
