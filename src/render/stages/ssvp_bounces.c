@@ -117,6 +117,31 @@ static vplResult listShadows(const vplRun* run, vplClusteredLights* l)
     return VPL_SUCCESS;
 }
 
+// The share of the light that is wrong, over all bounces; negative if no rays tested it.
+static double disagreementOf(const vplRun* run)
+{
+    double light = 0, wrong = 0;
+    for (int k = 0; vplSsvpBounce(run, k).clusters != NULL; k++) {
+        light += vplSsvpBounce(run, k).clusters->agreement.light;
+        wrong += vplSsvpBounce(run, k).clusters->agreement.wrong;
+    }
+    return light > 0 ? wrong / light : -1;
+}
+
+// Share of wrong light from which SSVP is the wrong method.
+static const double MOST_WRONG = 0.15;
+
+static void warnOfDisagreement(const vplRun* run)
+{
+    const double wrong = disagreementOf(run);
+    if (wrong > MOST_WRONG && vplSsvpSees(run->plan)) {
+        vplLog(run->context, VPL_LOG_WARNING,
+               "--method ssvp: %.0f %% of the light at points that the camera sees is tested wrong, because lights of "
+               "one cluster see different parts of the scene; use --method keller, or more than %d --max-clusters",
+               100 * wrong, run->plan->options.ssvp.maxClusters);
+    }
+}
+
 vplResult vplMakeClusteredLights(const vplRun* run, void** resultOut)
 {
     const vplLightSet none = {.context = run->context, .particleCount = 1};
@@ -130,6 +155,7 @@ vplResult vplMakeClusteredLights(const vplRun* run, void** resultOut)
         vplLightSet_Destroy(l->set);
         l->set = joined;
     }
+    warnOfDisagreement(run);
     return vplSsvpSees(run->plan) ? listShadows(run, l) : VPL_SUCCESS;
 }
 
@@ -147,5 +173,9 @@ void vplReportClusteredLights(const vplRun* run)
     if (first != NULL) {
         run->stats->clusters = first->clusters->count;
         run->stats->clusterIterations = first->clusters->iterations;
+        for (int k = 0; vplSsvpBounce(run, k).clusters != NULL; k++) {
+            run->stats->allClusters += vplSsvpBounce(run, k).clusters->clusters->count;
+        }
     }
+    run->stats->clusterDisagreement = disagreementOf(run);
 }
