@@ -355,8 +355,8 @@ typedef struct vplClusterSplitDef {
     // Camera, minDistance and seed. pointCount points that the camera sees, and as many that each of them sees
     // by one and by two reflections, tell whether lights and clusters agree; default 64.
     vplPlacementDef view;
-    int maxCount;   // clusters after splitting, [1, VPL_MAX_LIGHTS]; default 64
-    double wrong;   // no cluster is split where at most this share of the light is wrong, [0, 1]; default 0.02
+    int maxCount; // clusters after splitting, [1, VPL_MAX_LIGHTS]; default 64
+    double wrong; // no cluster is split where at most this share of the light is wrong, [0, 1]; default 0.02
     uint32_t cookie; // set by vplDefaultClusterSplitDef
 } vplClusterSplitDef;
 
@@ -375,9 +375,9 @@ typedef struct vplClusterAgreement {
 // wrong light is split: one of its lights becomes a viewpoint, and takes those lights with it that agree
 // better with it. New clusters are appended and look along their viewpoint's normal; others are copied.
 // `agreement` is that after splitting.
-vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* lights, const vplLightClusters* clusters,
-                           const vplClusterSplitDef* def, vplLightClusters** clustersOut,
-                           vplClusterAgreement* agreementOut);
+vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* lights,
+                           const vplLightClusters* clusters, const vplClusterSplitDef* def,
+                           vplLightClusters** clustersOut, vplClusterAgreement* agreementOut);
 
 typedef enum vplSecondWeight {
     VPL_SECOND_WEIGHT_COSINE = 0, // 4 (1 - p^2) / (1 + p^2)^3: a diffuse light (default)
@@ -416,8 +416,8 @@ vplNextBounceDef vplDefaultNextBounceDef(void);
 // Lights of the next bounce: the hits of cosine-distributed rays from the lights of a set, of which each sends
 // as many as it has of the flux. All rays carry equal light, times the reflectance of what they hit. A ray that
 // hits nothing leaves no light. Lights are of def->step; their `particle` counts rays, which are the set's N.
-vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights, const vplNextBounceDef* def,
-                             vplLightSet** setOut);
+vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights,
+                             const vplNextBounceDef* def, vplLightSet** setOut);
 
 // ---- lights of kernels
 

@@ -93,7 +93,7 @@ typedef struct vplPlan {
     int leftOutCount;
 
     double reflectance; // SSVP: mean reflectance over the area of the scene, which sets the number of bounces
-    int stepCount; // steps of the particle simulation; bounces of SSVP
+    int stepCount;      // steps of the particle simulation; bounces of SSVP
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights; // upper limit per pass
     int64_t drawCalls;     // per pass

@@ -40,8 +40,8 @@ typedef struct Splitting {
     double points; // that light comes to
     // Per light.
     uint16_t* seen; // [light][block]: bit of each point that it sees
-    double* wrong;   // its light that is wrong
-    int* rays;       // per chunk
+    double* wrong;  // its light that is wrong
+    int* rays;      // per chunk
     int* of;
     // Per cluster, with room for def->maxCount.
     vplLightCluster* clusters;
@@ -71,9 +71,8 @@ static uint16_t look(const Splitting* s, const vplViewBlock* b, const vplShadeLi
         packet.active |= (uint32_t)(faces && (b->rays.active & 1u << l) != 0) << l;
     }
     *rays += __builtin_popcount(packet.active);
-    return packet.active == 0
-               ? 0
-               : (uint16_t)(packet.active & ~vplGeometry_AreOccluded(s->geometry, &packet, 1));
+    return packet.active == 0 ? 0
+                              : (uint16_t)(packet.active & ~vplGeometry_AreOccluded(s->geometry, &packet, 1));
 }
 
 // Sum of the light that a light sends to the points of a block whose bits are set.
@@ -242,39 +241,42 @@ static int findWrongest(const Splitting* s)
     return wrongest;
 }
 
-// Sums of the lights of clusters from `first` on and of those that lost lights to them. A cluster's axis is
-// its viewpoint's normal.
-static void summarize(Splitting* s, const int* before, int beforeCount)
+// Adds up the lights of a cluster that lost or got some. Its axis is its viewpoint's normal.
+static void addUp(const Splitting* s, int cluster)
 {
-    bool* changed = NULL;
-    (void)changed;
-    for (int j = 0; j < s->count; j++) {
-        vplLightCluster* c = &s->clusters[j];
-        double p[3] = {0, 0, 0}, flux[3] = {0, 0, 0};
-        int lights = 0;
-        bool same = j < beforeCount;
-        for (int i = 0; i < s->set->lightCount; i++) {
-            same = same && (s->of[i] == j) == (before[i] == j);
-            if (s->of[i] != j) {
-                continue;
-            }
-            const vplVirtualLight* v = &s->set->lights[i];
-            const double share = (double)v->weight / s->set->particleCount;
+    vplLightCluster* c = &s->clusters[cluster];
+    double p[3] = {0, 0, 0}, flux[3] = {0, 0, 0};
+    c->lightCount = 0;
+    for (int i = 0; i < s->set->lightCount; i++) {
+        const vplVirtualLight* v = &s->set->lights[i];
+        const double share = (double)v->weight / s->set->particleCount;
+        if (s->of[i] == cluster) {
             p[0] += (double)v->position.x;
             p[1] += (double)v->position.y;
             p[2] += (double)v->position.z;
             flux[0] += share * (double)v->light.r;
             flux[1] += share * (double)v->light.g;
             flux[2] += share * (double)v->light.b;
-            lights++;
+            c->lightCount++;
         }
-        if (same) {
-            continue;
+    }
+    const double n = c->lightCount;
+    c->position = vplVec((float)(p[0] / n), (float)(p[1] / n), (float)(p[2] / n));
+    c->normal = s->set->lights[c->nearest].normal;
+    c->flux = (vplRgb){(float)flux[0], (float)flux[1], (float)flux[2]};
+}
+
+// Lights only move to clusters that splitting made.
+static void summarize(const Splitting* s, const int* before, int beforeCount)
+{
+    for (int j = 0; j < s->count; j++) {
+        bool changed = j >= beforeCount;
+        for (int i = 0; i < s->set->lightCount && !changed; i++) {
+            changed = before[i] == j && s->of[i] != j;
         }
-        c->lightCount = lights;
-        c->position = vplVec((float)(p[0] / lights), (float)(p[1] / lights), (float)(p[2] / lights));
-        c->normal = s->set->lights[c->nearest].normal;
-        c->flux = (vplRgb){(float)flux[0], (float)flux[1], (float)flux[2]};
+        if (changed) {
+            addUp(s, j);
+        }
     }
 }
 
@@ -308,7 +310,8 @@ static vplResult splitAll(Splitting* s, const vplLightClusters* from, vplArena* 
     return VPL_SUCCESS;
 }
 
-static vplResult check(const vplLightSet* lights, const vplLightClusters* clusters, const vplClusterSplitDef* def)
+static vplResult check(const vplLightSet* lights, const vplLightClusters* clusters,
+                       const vplClusterSplitDef* def)
 {
     vplContext* context = lights->context;
     if (def->cookie != SPLIT_COOKIE) {
@@ -330,12 +333,13 @@ static vplResult check(const vplLightSet* lights, const vplLightClusters* cluste
     return vplPlacementDef_Check(context, &def->view);
 }
 
-static vplResult splitInto(vplArena* arena, Splitting* s, const vplLightClusters* from, vplLightClusters* made,
-                           vplClusterAgreement* agreementOut)
+static vplResult splitInto(vplArena* arena, Splitting* s, const vplLightClusters* from,
+                           vplLightClusters* made, vplClusterAgreement* agreementOut)
 {
     const int most = from->count > s->def->maxCount ? from->count : s->def->maxCount;
     vplArena* scratch = vplArena_Create(from->context);
-    const size_t room = (size_t)(most < from->count + from->lightCount ? most : from->count + from->lightCount);
+    const size_t room =
+        (size_t)(most < from->count + from->lightCount ? most : from->count + from->lightCount);
     s->clusters = vplArena_Alloc(arena, room, sizeof *s->clusters);
     s->of = vplArena_Alloc(arena, (size_t)from->lightCount, sizeof *s->of);
     s->wrongOf = vplArena_Alloc(scratch, room, sizeof *s->wrongOf);
@@ -356,9 +360,9 @@ static vplResult splitInto(vplArena* arena, Splitting* s, const vplLightClusters
     return result;
 }
 
-vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* lights, const vplLightClusters* clusters,
-                           const vplClusterSplitDef* def, vplLightClusters** clustersOut,
-                           vplClusterAgreement* agreementOut)
+vplResult vplSplitClusters(const vplGeometry* geometry, const vplLightSet* lights,
+                           const vplLightClusters* clusters, const vplClusterSplitDef* def,
+                           vplLightClusters** clustersOut, vplClusterAgreement* agreementOut)
 {
     TRY(check(lights, clusters, def));
     Splitting s = {.geometry = geometry, .set = lights, .def = def};

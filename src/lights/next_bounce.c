@@ -141,8 +141,8 @@ static vplResult check(const vplGeometry* geometry, const vplNextBounceDef* def)
     return VPL_SUCCESS;
 }
 
-vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights, const vplNextBounceDef* def,
-                             vplLightSet** setOut)
+vplResult vplShootNextBounce(const vplGeometry* geometry, const vplLightSet* lights,
+                             const vplNextBounceDef* def, vplLightSet** setOut)
 {
     Shooting s = {.geometry = geometry, .from = lights, .def = def, .shift = {0.5f, 0, 0}};
     vplLightArrays arrays;

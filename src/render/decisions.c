@@ -328,7 +328,8 @@ static void chooseBounces(const vplRunner* r, vplPlan* p)
         for (; o->maxBounces < MOST_SSVP_BOUNCES && left >= LEAST_BOUNCE_SHARE; o->maxBounces++) {
             left *= p->reflectance;
         }
-        vplDecide(p, "max-bounces", "surfaces reflect %.2g of their light on average; further bounces would add %.2g %%",
+        vplDecide(p, "max-bounces",
+                  "surfaces reflect %.2g of their light on average; further bounces would add %.2g %%",
                   p->reflectance, 100 * left);
     }
     o->maxBounces = o->maxBounces < VPL_MAX_STEPS_REPORTED ? o->maxBounces : VPL_MAX_STEPS_REPORTED;

@@ -108,7 +108,9 @@ static bool needsClusters(const vplPlan* p, char* why)
 static bool needsParaboloids(const vplPlan* p, char* why)
 {
     return needsClusters(p, why) &&
-           because(why, true, "what each of %d clusters sees", p->options.ssvp.clusters);
+           because(why, true,
+                   vplSsvpSplits(p) ? "what each of %d to %d clusters sees" : "what each of %d clusters sees",
+                   p->options.ssvp.clusters, vplSsvpMostClusters(p));
 }
 
 static bool needsSecondBounce(const vplPlan* p, char* why)
@@ -209,8 +211,9 @@ static bool needsPaths(const vplPlan* p, char* why)
 // ---- the table
 
 #define IN(stage) (1u << VPL_STAGE_##stage)
-#define CHOICE_KEY "next-bounce size VIEW seed PASS min-distance max-bounces" // lights are chosen for what is seen
-#define SSVP_KEY  "clusters max-clusters size VIEW oversampling cluster-metric w1 w2 coherence SHIFT"
+#define CHOICE_KEY                                                                                           \
+    "next-bounce size VIEW seed PASS min-distance max-bounces" // lights are chosen for what is seen
+#define SSVP_KEY "clusters max-clusters size VIEW oversampling cluster-metric w1 w2 coherence SHIFT"
 #define MAP_KEY                                                                                              \
     "paraboloid hemispheres cluster-place light-shadows show max-bounces second-bounce coherence SHIFT"
 #define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"

@@ -12,6 +12,9 @@ uint64_t vplSsvpShift(const vplRun* run);
 // Samples that give the lights of a step from 1 on.
 int vplSsvpCountLights(const vplPlan* plan, int step);
 
+// Candidates for so many lights of a bounce; as many where none are chosen.
+int vplSsvpCountCandidates(const vplPlan* plan, int count);
+
 // Measures by rays which share of each light's light stays in the scene; the shares are scratch memory.
 vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** useOut);
 
@@ -19,7 +22,8 @@ vplResult vplMeasureLightUse(const vplRun* run, const vplLightSet* set, float** 
 vplBounceParts vplSsvpBounce(const vplRun* run, int k);
 
 // The lights of the bounce after one, of the given step.
-vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights** resultOut);
+vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step,
+                            vplBounceLights** resultOut);
 
 // The lights of all bounces after the second by rays, in one set.
 vplResult vplShootFurtherBounces(const vplRun* run, const vplBounceParts* from, vplBounceLights** resultOut);
@@ -31,8 +35,8 @@ vplPlacementDef vplSsvpView(const vplRun* run);
 vplResult vplClusterBounce(const vplRun* run, const vplBounceLights* bounce, const vplBounceClusters* last,
                            vplBounceClusters** resultOut);
 // Maps have triangles where later stages need surfaces besides distances.
-vplResult vplMapBounce(const vplRun* run, const vplBounceParts* bounce, const vplBounceMaps* last, bool triangles,
-                       vplBounceMaps** resultOut);
+vplResult vplMapBounce(const vplRun* run, const vplBounceParts* bounce, const vplBounceMaps* last,
+                       bool triangles, vplBounceMaps** resultOut);
 
 // The first says that lights cast shadows by the maps of their clusters.
 static inline bool vplSsvpSees(const vplPlan* plan)
@@ -57,6 +61,12 @@ static inline bool vplSsvpSplits(const vplPlan* plan)
 {
     const vplSsvpOptions* o = &plan->options.ssvp;
     return o->maxClusters > o->clusters && o->place == VPL_CLUSTER_PLACE_MEMBER;
+}
+
+// Most clusters of a bounce.
+static inline int vplSsvpMostClusters(const vplPlan* plan)
+{
+    return vplSsvpSplits(plan) ? plan->options.ssvp.maxClusters : plan->options.ssvp.clusters;
 }
 
 static inline bool vplSsvpHasSecondBounce(const vplPlan* plan)

@@ -136,8 +136,10 @@ static void warnOfDisagreement(const vplRun* run)
     const double wrong = disagreementOf(run);
     if (wrong > MOST_WRONG && vplSsvpSees(run->plan)) {
         vplLog(run->context, VPL_LOG_WARNING,
-               "--method ssvp: %.0f %% of the light at points that the camera sees is tested wrong, because lights of "
-               "one cluster see different parts of the scene; use --method keller, or more than %d --max-clusters",
+               "--method ssvp: %.0f %% of the light at points that the camera sees is tested wrong, because "
+               "lights of "
+               "one cluster see different parts of the scene; use --method keller, or more than %d "
+               "--max-clusters",
                100 * wrong, run->plan->options.ssvp.maxClusters);
     }
 }

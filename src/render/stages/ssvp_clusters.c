@@ -117,8 +117,8 @@ static vplParaboloidPlace placeOf(const Viewing* v, int i)
                                 .onSurface = true};
 }
 
-vplResult vplMapBounce(const vplRun* run, const vplBounceParts* bounce, const vplBounceMaps* last, bool triangles,
-                       vplBounceMaps** resultOut)
+vplResult vplMapBounce(const vplRun* run, const vplBounceParts* bounce, const vplBounceMaps* last,
+                       bool triangles, vplBounceMaps** resultOut)
 {
     const vplBounceClusters* c = bounce->clusters;
     const int count = c->clusters->count;
@@ -155,7 +155,8 @@ vplResult vplMakeParaboloids(const vplRun* run, void** resultOut)
 vplResult vplMakeSecondParaboloids(const vplRun* run, void** resultOut)
 {
     const vplBounceParts second = vplSsvpBounce(run, 1);
-    return vplMapBounce(run, &second, run->before, vplSsvpHasFurtherBounces(run->plan) && vplSsvpSamplesMaps(run->plan),
+    return vplMapBounce(run, &second, run->before,
+                        vplSsvpHasFurtherBounces(run->plan) && vplSsvpSamplesMaps(run->plan),
                         (vplBounceMaps**)resultOut);
 }
 

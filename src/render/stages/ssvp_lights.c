@@ -200,16 +200,23 @@ vplPlacementDef vplSsvpView(const vplRun* run)
     return def;
 }
 
-// Candidates for so many lights.
-static int oversampled(const vplRun* run, int count)
+// Beyond these, more candidates take time and find nothing.
+enum { MAX_CANDIDATES = 16384 };
+
+int vplSsvpCountCandidates(const vplPlan* plan, int count)
 {
-    const int times = run->plan->options.ssvp.oversampling;
-    return count > VPL_MAX_LIGHTS / times ? VPL_MAX_LIGHTS : count * times;
+    const int most = count > MAX_CANDIDATES ? count : MAX_CANDIDATES, times = plan->options.ssvp.oversampling;
+    return !vplSsvpChooses(plan) ? count : count > most / times ? most : count * times;
 }
 
-// Keeps about `count` of all lights of a bounce.
+// Keeps about `count` of all lights of a bounce; all where there are no more candidates.
 static vplResult chooseLights(const vplRun* run, int count, vplBounceLights* b)
 {
+    if (b->all->particleCount <= count) {
+        b->lights = b->all;
+        b->all = NULL;
+        return VPL_SUCCESS;
+    }
     const vplGeometry* g = run->results[VPL_STAGE_GEOMETRY];
     vplPlacementDef def = vplSsvpView(run);
     int64_t rays;
@@ -237,7 +244,7 @@ vplResult vplMakeFirstBounce(const vplRun* run, void** resultOut)
     if (!vplSsvpChooses(run->plan)) {
         return sampleFirst(run, count, b, &b->lights);
     }
-    TRY(sampleFirst(run, oversampled(run, count), b, &b->all));
+    TRY(sampleFirst(run, vplSsvpCountCandidates(run->plan, count), b, &b->all));
     return chooseLights(run, count, b);
 }
 
@@ -260,22 +267,23 @@ static vplResult sampleClusters(const vplRun* run, const vplBounceParts* from, i
     def.weight = run->plan->options.ssvp.secondWeight;
     def.shift = b->shift;
     def.step = step;
-    return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], from->clusters->clusters, from->maps->maps,
-                                   &def, &b->lights);
+    return vplSampleParaboloidMaps(run->results[VPL_STAGE_GEOMETRY], from->clusters->clusters,
+                                   from->maps->maps, &def, &b->lights);
 }
 
+// The next bounce begins from all lights, also from those that the camera sees no light of.
 static const vplLightSet* sourceOf(const vplBounceParts* from)
 {
     return from->lights->all != NULL ? from->lights->all : from->lights->lights;
 }
 
-static vplResult shoot(const vplRun* run, const vplLightSet* from, int step, uint64_t shift, vplLightSet** setOut)
+static vplResult shoot(const vplRun* run, const vplLightSet* from, int step, uint64_t shift,
+                       vplLightSet** setOut)
 {
     vplNextBounceDef def = vplDefaultNextBounceDef();
     def.shift = shift;
     def.step = step;
-    def.count = vplSsvpCountLights(run->plan, step);
-    def.count = vplSsvpChooses(run->plan) ? oversampled(run, def.count) : def.count;
+    def.count = vplSsvpCountCandidates(run->plan, vplSsvpCountLights(run->plan, step));
     run->stats->rays += def.count;
     return vplShootNextBounce(run->results[VPL_STAGE_GEOMETRY], from, &def, setOut);
 }
@@ -331,7 +339,8 @@ vplResult vplShootFurtherBounces(const vplRun* run, const vplBounceParts* from, 
     return chooses ? chooseLights(run, count, b) : VPL_SUCCESS;
 }
 
-vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step, vplBounceLights** resultOut)
+vplResult vplMakeNextBounce(const vplRun* run, const vplBounceParts* from, int step,
+                            vplBounceLights** resultOut)
 {
     TRY(beginBounce(run, resultOut));
     return vplSsvpSamplesMaps(run->plan) ? sampleClusters(run, from, step, *resultOut)
