@@ -175,6 +175,7 @@ void vplReportClusteredLights(const vplRun* run)
     if (first != NULL) {
         run->stats->clusters = first->clusters->count;
         run->stats->clusterIterations = first->clusters->iterations;
+        run->stats->allClusters = 0; // those of the last pass
         for (int k = 0; vplSsvpBounce(run, k).clusters != NULL; k++) {
             run->stats->allClusters += vplSsvpBounce(run, k).clusters->clusters->count;
         }
