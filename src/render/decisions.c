@@ -447,3 +447,10 @@ vplResult vplDecideLightShadows(vplRunner* r, vplPlan* p)
     vplDecide(p, "light-shadows", "%s", why);
     return VPL_SUCCESS;
 }
+
+// The number of clusters follows from what their lights see, and most of the memory from that number.
+vplResult vplForetellClusters(vplRunner* r, const vplPlan* p)
+{
+    const bool splits = p->options.method == VPL_METHOD_SSVP && p->showsVirtual && vplSsvpSplits(p);
+    return splits ? vplRunner_RunPlan(r, p, VPL_STAGE_CLUSTERED_LIGHTS) : VPL_SUCCESS;
+}

@@ -51,11 +51,17 @@ static Bytes paraboloids(const Scale* s, double lights, double values)
     return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
 }
 
-// Lights of one bounce: those that are kept, and those that they are chosen from, with their contributions.
+// Lights of a bounce that are kept, and those that they are chosen from: so many.
+static Bytes chosen(double lights, double all)
+{
+    return (Bytes){(lights + all) * sizeof(vplVirtualLight), 60 * all};
+}
+
+// Where there are no more candidates than lights, all are kept.
 static Bytes bounce(const Scale* s, double lights)
 {
-    const double all = vplSsvpChooses(s->plan) ? vplSsvpCountCandidates(s->plan, (int)lights) : 0;
-    return (Bytes){(lights + all) * sizeof(vplVirtualLight), 44 * all};
+    const double all = vplSsvpCountCandidates(s->plan, (int)lights);
+    return chosen(lights, all > lights ? all : 0);
 }
 
 // K-means, and where clusters are split, what each light sees.
@@ -71,13 +77,14 @@ static Bytes furtherBounces(const Scale* s)
 {
     const vplPlan* p = s->plan;
     const bool sampled = vplSsvpSamplesMaps(p);
-    double lights = 0, held = 0, scratch = 0;
+    double lights = 0, all = 0, held = 0, scratch = 0;
     for (int k = 2; k < p->options.maxBounces; k++) {
         const double mine = vplSsvpCountLights(p, k);
         lights += mine;
+        all += vplSsvpChooses(p) ? vplSsvpCountCandidates(p, (int)mine) : 0;
         held += sampled ? paraboloids(s, mine, k + 1 < p->options.maxBounces ? 2 : 1).held : 0;
     }
-    const Bytes made = bounce(s, lights), grouped = clusters(s, lights);
+    const Bytes made = chosen(lights, all), grouped = clusters(s, lights);
     held += sampled || !vplSsvpSees(p) ? 0 : paraboloids(s, lights, 1).held;
     scratch = made.scratch > grouped.scratch ? made.scratch : grouped.scratch;
     return (Bytes){held + made.held + grouped.held, scratch};
