@@ -226,8 +226,8 @@ static Bytes estimate(const Scale* s, vplStageId id)
         return clusters(s, o->ssvp.secondBounce);
     case VPL_STAGE_FURTHER_BOUNCES:
         return furtherBounces(s);
-    case VPL_STAGE_CLUSTERED_LIGHTS:
-        return (Bytes){s->lights * sizeof(vplVirtualLight), 0};
+    case VPL_STAGE_CLUSTERED_LIGHTS: // bounces are joined one after the other
+        return (Bytes){s->lights * sizeof(vplVirtualLight), 2 * s->lights * sizeof(vplVirtualLight)};
     case VPL_STAGE_PARABOLOIDS: // distances, and triangles where surfaces are asked for
         return paraboloids(s, o->ssvp.firstBounce, surfaces ? 2 : 1);
     case VPL_STAGE_SECOND_PARABOLOIDS:
