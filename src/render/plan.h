@@ -24,6 +24,9 @@ void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
 // Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.
+// Resolves the number of bounces of SSVP, and counts their lights.
+void vplDecideBounces(const vplRunner* runner, vplPlan* plan);
+
 // For a reader of the plan: makes the clusters of SSVP, so that their number is known.
 vplResult vplForetellClusters(vplRunner* r, const vplPlan* p);
 
