@@ -93,7 +93,8 @@ typedef struct vplPlan {
     vplDecision leftOut[VPL_MAX_DECISIONS];
     int leftOutCount;
 
-    int stepCount; // steps of the particle simulation; bounces of SSVP
+    double reflectance; // SSVP: mean reflectance over the area of the scene, which sets the number of bounces
+    int stepCount;      // steps of the particle simulation; bounces of SSVP
     int particlesPerStep[VPL_MAX_STEPS_REPORTED];
     int64_t virtualLights; // upper limit per pass
     int64_t drawCalls;     // per pass

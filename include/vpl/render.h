@@ -55,6 +55,10 @@ typedef struct vplRenderStats {
     int64_t lightEvaluations, cutPixels;
     int largestCut;
     int clusters, clusterIterations; // SSVP: clusters of first-bounce lights; iterations of k-means
+    int allClusters;                 // SSVP: clusters of all bounces
+    // SSVP: share of the light at some points that the camera sees that is wrong because a cluster sees other
+    // points than its lights; by test rays, after clusters were split. Negative: not measured.
+    double clusterDisagreement;
 
     int patches, patchSides; // radiosity: patches, and sides of them that light reaches
     bool linked;             // radiosity: light was exchanged by links

@@ -29,6 +29,9 @@ static void addSome(json_t* root, const vplRenderStats* s)
     if (s->clusters > 0) {
         json_object_set_new(root, "clusters", json_integer(s->clusters));
         json_object_set_new(root, "cluster_iterations", json_integer(s->clusterIterations));
+        json_object_set_new(root, "all_clusters", json_integer(s->allClusters));
+        json_object_set_new(root, "cluster_disagreement",
+                            s->clusterDisagreement < 0 ? json_null() : json_real(s->clusterDisagreement));
     }
     if (s->cutPixels > 0) {
         json_object_set_new(root, "light_evaluations", json_integer(s->lightEvaluations));

@@ -6,6 +6,7 @@
 #include "math/vec.h"
 #include "render/plan.h"
 #include "render/stages/make.h"
+#include "render/stages/ssvp.h"
 #include "render/stages/results.h"
 #include "visibility/hemi_map.h"
 
@@ -183,9 +184,38 @@ static void addMaps(double faces, double size, const Scale* s, vplWork* w)
 static void addParaboloids(double lights, const Scale* s, vplWork* w)
 {
     const vplSsvpOptions* o = &s->plan->options.ssvp;
-    const double maps = fmin(lights, o->clusters) * o->hemispheres, size = o->paraboloidSize;
+    const double maps = fmin(lights, vplSsvpMostClusters(s->plan)) * o->hemispheres, size = o->paraboloidSize;
     w->counts[TEXEL] += 8 * maps * size * size;
     w->counts[TRIANGLE] += 0.3 * maps * s->triangles;
+}
+
+// Rays of lights to points that the camera sees, by which lights are chosen and clusters are split; three of
+// ten pairs face each other.
+static void addChoice(double lights, const Scale* s, vplWork* w)
+{
+    const vplPlan* p = s->plan;
+    const double candidates = vplSsvpChooses(p) ? vplSsvpCountCandidates(p, (int)lights) : 0;
+    w->counts[SHADOW_RAY] += 0.3 * (256 * candidates + (vplSsvpSplits(p) ? 128 * lights : 0)) * s->depth;
+    w->counts[PATH_RAY] += (candidates > 0 ? candidates : lights) * s->pathDepth;
+}
+
+// Without maps to sample, all bounces after the second share their clusters.
+static void addFurtherBounces(const Scale* s, vplWork* w)
+{
+    const vplPlan* p = s->plan;
+    double all = 0;
+    for (int k = 2; k < p->options.maxBounces; k++) {
+        const double lights = vplSsvpCountLights(p, k);
+        all += lights;
+        if (vplSsvpSamplesMaps(p)) {
+            addParaboloids(lights, s, w);
+        } else {
+            addChoice(lights, s, w);
+        }
+    }
+    if (!vplSsvpSamplesMaps(p) && vplSsvpSees(p)) {
+        addParaboloids(all, s, w);
+    }
 }
 
 static double facesOf(const vplPlan* p, bool reflective)
@@ -217,8 +247,15 @@ static vplWork workOf(const Scale* s, vplStageId id)
     case VPL_STAGE_PARTICLES:
         w.counts[PATH_RAY] = s->lights * s->pathDepth;
         break;
-    case VPL_STAGE_FIRST_BOUNCE: // rays test which light leaves the scene
-        w.counts[PATH_RAY] = (double)o->ssvp.firstBounce * o->ssvp.oversampling * s->pathDepth;
+    case VPL_STAGE_FIRST_BOUNCE: // rays test which light leaves the scene, or what the camera sees
+        addChoice(o->ssvp.firstBounce, s, &w);
+        w.counts[PATH_RAY] += (double)o->ssvp.firstBounce * o->ssvp.oversampling * s->pathDepth;
+        break;
+    case VPL_STAGE_SECOND_BOUNCE:
+        addChoice(vplSsvpSamplesMaps(p) ? 0 : o->ssvp.secondBounce, s, &w);
+        break;
+    case VPL_STAGE_FURTHER_BOUNCES:
+        addFurtherBounces(s, &w);
         break;
     case VPL_STAGE_PARABOLOIDS:
         addParaboloids(o->ssvp.firstBounce, s, &w);

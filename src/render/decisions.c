@@ -325,19 +325,6 @@ static vplResult countLights(vplRunner* r, vplPlan* p)
     return VPL_SUCCESS;
 }
 
-// Counts the most lights that SSVP can have.
-static void countSsvpLights(vplPlan* p)
-{
-    const vplRenderOptions* o = &p->options;
-    const int bounces = o->maxBounces < 0 || o->maxBounces > 2 ? 2 : o->maxBounces;
-    const int lights[2] = {o->ssvp.firstBounce, o->ssvp.secondBounce};
-    for (int i = 0; i < bounces && o->method == VPL_METHOD_SSVP; i++) {
-        p->stepCount += lights[i] > 0;
-        p->particlesPerStep[i] = lights[i];
-        p->virtualLights += lights[i];
-    }
-}
-
 static void decideClamp(const vplRunner* r, vplPlan* p)
 {
     if (p->clampArea > 0) {
@@ -402,7 +389,9 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
 {
     TRY(chooseClamp(r, p));
     TRY(countLights(r, p));
-    countSsvpLights(p);
+    if (p->options.method == VPL_METHOD_SSVP) {
+        vplDecideBounces(r, p);
+    }
     decideClamp(r, p);
     if (p->options.method == VPL_METHOD_RADIOSITY) {
         chooseCuts(p);

@@ -47,8 +47,47 @@ static Bytes paraboloids(const Scale* s, double lights, double values)
 {
     const int size = s->plan->options.ssvp.paraboloidSize;
     const double texels = 2 * (double)vplParaboloidMap_Texels(size), drawn = (double)vplHemiMap_Texels(size);
-    const double count = lights < s->plan->options.ssvp.clusters ? lights : s->plan->options.ssvp.clusters;
+    const double most = vplSsvpMostClusters(s->plan), count = lights < most ? lights : most;
     return (Bytes){4 * values * (count * texels + s->workers * drawn), 0};
+}
+
+// Lights of a bounce that are kept, and those that they are chosen from: so many.
+static Bytes chosen(double lights, double all)
+{
+    return (Bytes){(lights + all) * sizeof(vplVirtualLight), 60 * all};
+}
+
+// Where there are no more candidates than lights, all are kept.
+static Bytes bounce(const Scale* s, double lights)
+{
+    const double all = vplSsvpCountCandidates(s->plan, (int)lights);
+    return chosen(lights, all > lights ? all : 0);
+}
+
+// K-means, and where clusters are split, what each light sees.
+static Bytes clusters(const Scale* s, double lights)
+{
+    return vplSsvpSplits(s->plan) ? (Bytes){7 * lights + 56.0 * vplSsvpMostClusters(s->plan), 45 * lights}
+                                  : (Bytes){3 * lights, 45 * lights};
+}
+
+// All bounces after the second: each has clusters and maps where it is sampled from maps; else they share one
+// set of them.
+static Bytes furtherBounces(const Scale* s)
+{
+    const vplPlan* p = s->plan;
+    const bool sampled = vplSsvpSamplesMaps(p);
+    double lights = 0, all = 0, held = 0, scratch = 0;
+    for (int k = 2; k < p->options.maxBounces; k++) {
+        const double mine = vplSsvpCountLights(p, k);
+        lights += mine;
+        all += vplSsvpChooses(p) ? vplSsvpCountCandidates(p, (int)mine) : 0;
+        held += sampled ? paraboloids(s, mine, k + 1 < p->options.maxBounces ? 2 : 1).held : 0;
+    }
+    const Bytes made = chosen(lights, all), grouped = clusters(s, lights);
+    held += sampled || !vplSsvpSees(p) ? 0 : paraboloids(s, lights, 1).held;
+    scratch = made.scratch > grouped.scratch ? made.scratch : grouped.scratch;
+    return (Bytes){held + made.held + grouped.held, scratch};
 }
 
 static Bytes formFactors(const Scale* s, double sides)
@@ -164,7 +203,8 @@ static Bytes estimate(const Scale* s, vplStageId id)
     const vplRenderOptions* o = &p->options;
     const double shadowTexels = (double)o->shadow.mapSize * o->shadow.mapSize,
                  rsmTexels = (double)o->shadow.rsmSize * o->shadow.rsmSize;
-    const bool surfaces = vplSsvpHasSecondBounce(p) || vplSsvpShowsClusters(p);
+    const bool sampled = vplSsvpSamplesMaps(p),
+               surfaces = (vplSsvpHasSecondBounce(p) && sampled) || vplSsvpShowsClusters(p);
     switch (id) {
     case VPL_STAGE_EMITTER_MAPS:
         return (Bytes){countMaps(p, false) * 6 * shadowTexels * sizeof(float) +
@@ -177,19 +217,23 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_PARTICLES: // two counts and a flag per particle
         return (Bytes){s->lights * sizeof(vplVirtualLight), 3e4 + 9.0 * o->particles.count};
     case VPL_STAGE_FIRST_BOUNCE: // and the samples of the map
-        return (Bytes){o->ssvp.firstBounce * (double)sizeof(vplVirtualLight), 56.0 * o->ssvp.firstBounce};
+        return vplSsvpChooses(p) ? bounce(s, o->ssvp.firstBounce)
+                                 : (Bytes){o->ssvp.firstBounce * (double)sizeof(vplVirtualLight),
+                                           56.0 * o->ssvp.firstBounce};
     case VPL_STAGE_CLUSTERS:
-        return (Bytes){3.0 * o->ssvp.firstBounce, 45.0 * o->ssvp.firstBounce};
+        return clusters(s, o->ssvp.firstBounce);
     case VPL_STAGE_SECOND_BOUNCE:
-        return (Bytes){o->ssvp.secondBounce * (double)sizeof(vplVirtualLight), 0};
+        return bounce(s, o->ssvp.secondBounce);
     case VPL_STAGE_SECOND_CLUSTERS:
-        return (Bytes){3.0 * o->ssvp.secondBounce, 45.0 * o->ssvp.secondBounce};
-    case VPL_STAGE_CLUSTERED_LIGHTS:
-        return (Bytes){s->lights * sizeof(vplVirtualLight), 0};
+        return clusters(s, o->ssvp.secondBounce);
+    case VPL_STAGE_FURTHER_BOUNCES:
+        return furtherBounces(s);
+    case VPL_STAGE_CLUSTERED_LIGHTS: // bounces are joined one after the other
+        return (Bytes){s->lights * sizeof(vplVirtualLight), 2 * s->lights * sizeof(vplVirtualLight)};
     case VPL_STAGE_PARABOLOIDS: // distances, and triangles where surfaces are asked for
         return paraboloids(s, o->ssvp.firstBounce, surfaces ? 2 : 1);
     case VPL_STAGE_SECOND_PARABOLOIDS:
-        return paraboloids(s, o->ssvp.secondBounce, 1);
+        return paraboloids(s, o->ssvp.secondBounce, vplSsvpHasFurtherBounces(p) && sampled ? 2 : 1);
     case VPL_STAGE_VIRTUAL_LIGHTS: // twice where they are sorted by cluster
         return (Bytes){s->lights * (double)(o->lights.shadows == VPL_LIGHT_SHADOWS_CLUSTER
                                                 ? 2 * sizeof(vplShadeLight) + sizeof(int)
@@ -268,7 +312,7 @@ static void countDraws(const Scale* s, vplPlan* p)
 
 enum {
     SHADOW_MAPS = 1 << VPL_STAGE_EMITTER_MAPS | 1 << VPL_STAGE_REFLECTIVE_MAPS | 1 << VPL_STAGE_PARABOLOIDS |
-                  1 << VPL_STAGE_SECOND_PARABOLOIDS,
+                  1 << VPL_STAGE_SECOND_PARABOLOIDS | 1 << VPL_STAGE_FURTHER_BOUNCES,
     LIGHTS = 1 << VPL_STAGE_AREA_LIGHTS | 1 << VPL_STAGE_PARTICLES | 1 << VPL_STAGE_FIRST_BOUNCE |
              1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS
 };

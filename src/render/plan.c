@@ -208,7 +208,7 @@ static vplResult decideAll(vplRunner* r, vplPlan* p)
     listStages(p);
     TRY(vplDecideLightShadows(r, p));
     listStages(p); // shadows may have decided what clusters are for
-    return VPL_SUCCESS;
+    return r->foretells ? vplForetellClusters(r, p) : VPL_SUCCESS;
 }
 
 vplResult vplMakePlan(vplRunner* r, const vplRenderOptions* options, const vplMachine* machine,

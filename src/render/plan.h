@@ -24,6 +24,12 @@ void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
 // Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.
+// Resolves the number of bounces of SSVP, and counts their lights.
+void vplDecideBounces(const vplRunner* runner, vplPlan* plan);
+
+// For a reader of the plan: makes the clusters of SSVP, so that their number is known.
+vplResult vplForetellClusters(vplRunner* r, const vplPlan* p);
+
 vplResult vplDecideLightShadows(vplRunner* runner, vplPlan* plan);
 
 // Fills in counts and bytes: measured for stages that ran already, estimated for the others.

@@ -98,17 +98,19 @@ static bool needsFirstBounce(const vplPlan* p, char* why)
 
 static bool needsClusters(const vplPlan* p, char* why)
 {
-    const bool second = vplSsvpHasSecondBounce(p), sees = vplSsvpSees(p);
+    const bool second = vplSsvpHasSecondBounce(p) && vplSsvpSamplesMaps(p), sees = vplSsvpSees(p);
     return choose(why, p->showsVirtual && (sees || second || vplSsvpShowsClusters(p)),
                   sees ? "lights of a cluster share what it sees" : "the second bounce begins from clusters",
-                  p->showsVirtual ? "lights do not see by clusters, and there is no second bounce"
+                  p->showsVirtual ? "lights do not see by clusters, and no bounce begins from them"
                                   : "there are no virtual lights");
 }
 
 static bool needsParaboloids(const vplPlan* p, char* why)
 {
     return needsClusters(p, why) &&
-           because(why, true, "what each of %d clusters sees", p->options.ssvp.clusters);
+           because(why, true,
+                   vplSsvpSplits(p) ? "what each of %d to %d clusters sees" : "what each of %d clusters sees",
+                   p->options.ssvp.clusters, vplSsvpMostClusters(p));
 }
 
 static bool needsSecondBounce(const vplPlan* p, char* why)
@@ -120,8 +122,17 @@ static bool needsSecondBounce(const vplPlan* p, char* why)
 static bool needsSecondClusters(const vplPlan* p, char* why)
 {
     return needsSecondBounce(p, why) &&
-           choose(why, vplSsvpSees(p), "second-bounce lights of a cluster share what it sees",
-                  "lights do not see by clusters");
+           choose(why, vplSsvpSees(p) || (vplSsvpSamplesMaps(p) && vplSsvpHasFurtherBounces(p)),
+                  vplSsvpSees(p) ? "second-bounce lights of a cluster share what it sees"
+                                 : "the third bounce begins from clusters",
+                  "lights do not see by clusters, and no bounce begins from them");
+}
+
+static bool needsFurtherBounces(const vplPlan* p, char* why)
+{
+    const bool needed = p->showsVirtual && vplSsvpHasFurtherBounces(p);
+    return needed ? because(why, true, "light that was reflected 3 to %d times", p->options.maxBounces)
+                  : because(why, false, "there is no third bounce");
 }
 
 static bool needsClusteredLights(const vplPlan* p, char* why)
@@ -206,7 +217,9 @@ static bool needsPaths(const vplPlan* p, char* why)
 // ---- the table
 
 #define IN(stage) (1u << VPL_STAGE_##stage)
-#define SSVP_KEY  "clusters oversampling cluster-metric w1 w2 coherence SHIFT"
+#define CHOICE_KEY                                                                                           \
+    "next-bounce size VIEW seed PASS min-distance max-bounces" // lights are chosen for what is seen
+#define SSVP_KEY "clusters max-clusters size VIEW oversampling cluster-metric w1 w2 coherence SHIFT"
 #define MAP_KEY                                                                                              \
     "paraboloid hemispheres cluster-place light-shadows show max-bounces second-bounce coherence SHIFT"
 #define FACTOR_KEY "form-factors form-samples row-sums hierarchy link-error seed"
@@ -233,7 +246,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "method lighting particles grow-from reflectivity sampler bounce particle-geometry seed EMITTERS PASS PLACEMENT",
         needsParticles, vplMakeParticles, vplDestroyLightSet, .report = vplReportParticles},
     [VPL_STAGE_FIRST_BOUNCE] = {
-        "first bounce", 0.06, IN(GEOMETRY) | IN(REFLECTIVE_MAPS), "first-bounce oversampling coherence EMITTERS SHIFT",
+        "first bounce", 0.06, IN(GEOMETRY) | IN(REFLECTIVE_MAPS), "first-bounce oversampling coherence EMITTERS SHIFT " CHOICE_KEY,
         needsFirstBounce, vplMakeFirstBounce, vplDestroyBounce, .continues = true},
     [VPL_STAGE_CLUSTERS] = {
         "clusters", 0.07, IN(GEOMETRY) | IN(FIRST_BOUNCE), SSVP_KEY,
@@ -242,7 +255,8 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "paraboloid", 0.12, IN(GEOMETRY) | IN(FIRST_BOUNCE) | IN(CLUSTERS), MAP_KEY,
         needsParaboloids, vplMakeParaboloids, vplDestroyParaboloids, .continues = true},
     [VPL_STAGE_SECOND_BOUNCE] = {
-        "second bounce", 0.13, IN(GEOMETRY) | IN(CLUSTERS) | IN(PARABOLOIDS), "second-bounce second-weight SHIFT",
+        "second bounce", 0.13, IN(GEOMETRY) | IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS),
+        "second-bounce second-weight oversampling SHIFT " CHOICE_KEY,
         needsSecondBounce, vplMakeSecondBounce, vplDestroyBounce, .continues = true},
     [VPL_STAGE_SECOND_CLUSTERS] = {
         "second clusters", 0.14, IN(GEOMETRY) | IN(SECOND_BOUNCE), SSVP_KEY,
@@ -250,9 +264,13 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
     [VPL_STAGE_SECOND_PARABOLOIDS] = {
         "second paraboloid", 0.19, IN(GEOMETRY) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS), MAP_KEY,
         needsSecondClusters, vplMakeSecondParaboloids, vplDestroyParaboloids, .continues = true},
+    [VPL_STAGE_FURTHER_BOUNCES] = {
+        "further bounces", 0.2, IN(GEOMETRY) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) | IN(SECOND_PARABOLOIDS),
+        SSVP_KEY " " MAP_KEY " second-weight " CHOICE_KEY,
+        needsFurtherBounces, vplMakeFurtherBounces, vplDestroyFurtherBounces, .continues = true},
     [VPL_STAGE_CLUSTERED_LIGHTS] = {
         "list", 0.2, IN(FIRST_BOUNCE) | IN(CLUSTERS) | IN(PARABOLOIDS) | IN(SECOND_BOUNCE) | IN(SECOND_CLUSTERS) |
-            IN(SECOND_PARABOLOIDS), "light-shadows",
+            IN(SECOND_PARABOLOIDS) | IN(FURTHER_BOUNCES), "light-shadows",
         needsClusteredLights, vplMakeClusteredLights, vplDestroyClusteredLights, .report = vplReportClusteredLights},
     [VPL_STAGE_VIRTUAL_LIGHTS] = {
         "virtual lights", 0.2, IN(GEOMETRY) | IN(NEAR_DISTANCE) | IN(PARTICLES) | IN(CLUSTERED_LIGHTS),

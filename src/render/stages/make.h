@@ -12,13 +12,14 @@ typedef void vplReportFcn(const vplRun* run);
 
 vplMakeFcn vplMakeGeometry, vplMakeNearDistance, vplMakeEmitterMaps, vplMakeAreaLights, vplMakeReflectiveMaps,
     vplMakeParticles, vplMakeFirstBounce, vplMakeClusters, vplMakeParaboloids, vplMakeSecondBounce,
-    vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeClusteredLights, vplMakeVirtualLights,
-    vplMakePatches, vplMakeSides, vplMakePatchMesh, vplMakeFormFactors, vplMakePatchLight, vplMakeSolution,
-    vplMakeVertexLight, vplMakePicture, vplMakePaths;
+    vplMakeSecondClusters, vplMakeSecondParaboloids, vplMakeFurtherBounces, vplMakeClusteredLights,
+    vplMakeVirtualLights, vplMakePatches, vplMakeSides, vplMakePatchMesh, vplMakeFormFactors,
+    vplMakePatchLight, vplMakeSolution, vplMakeVertexLight, vplMakePicture, vplMakePaths;
 
 vplDestroyFcn vplDestroyGeometry, vplDestroyEmitterMaps, vplDestroyReflectiveMaps, vplDestroyLightSet,
-    vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyClusteredLights, vplDestroyPatches,
-    vplDestroySides, vplDestroyPatchMesh, vplDestroyFormFactors, vplDestroyImage, vplDestroyPaths;
+    vplDestroyBounce, vplDestroyClusters, vplDestroyParaboloids, vplDestroyFurtherBounces,
+    vplDestroyClusteredLights, vplDestroyPatches, vplDestroySides, vplDestroyPatchMesh, vplDestroyFormFactors,
+    vplDestroyImage, vplDestroyPaths;
 
 vplReportFcn vplReportGeometry, vplReportParticles, vplReportClusteredLights, vplReportVirtualLights,
     vplReportPatches, vplReportSides, vplReportFormFactors, vplReportSolution;

@@ -43,7 +43,8 @@ typedef struct vplVirtualLights {
 // VPL_STAGE_FIRST_BOUNCE and VPL_STAGE_SECOND_BOUNCE.
 typedef struct vplBounceLights {
     vplLightSet* lights;
-    uint64_t shift; // of the sample pattern
+    vplLightSet* all; // that they were chosen from; NULL: no choice
+    uint64_t shift;   // of the sample pattern
     float* use; // of each sample of the reflective maps: the share of its light that stays; NULL: not asked
     int sampleCount; // of them
 } vplBounceLights;
@@ -51,6 +52,8 @@ typedef struct vplBounceLights {
 // VPL_STAGE_CLUSTERS and VPL_STAGE_SECOND_CLUSTERS.
 typedef struct vplBounceClusters {
     vplLightClusters* clusters;
+    vplLightClusters* whole; // before splitting, from which the next frame starts; NULL: none was to be split
+    vplClusterAgreement agreement;
     uint64_t shift; // of the sample pattern
 } vplBounceClusters;
 
@@ -62,11 +65,24 @@ typedef struct vplBounceMaps {
     uint64_t shift;
 } vplBounceMaps;
 
-// VPL_STAGE_CLUSTERED_LIGHTS: the lights of both bounces as one list.
+// One bounce: the results of its stages.
+typedef struct vplBounceParts {
+    const vplBounceLights* lights;
+    const vplBounceClusters* clusters; // NULL: not needed
+    const vplBounceMaps* maps;         // NULL: not needed
+} vplBounceParts;
+
+// VPL_STAGE_FURTHER_BOUNCES: the third bounce, and those after it.
+typedef struct vplFurtherBounces {
+    vplBounceParts* bounces;
+    int count;
+} vplFurtherBounces;
+
+// VPL_STAGE_CLUSTERED_LIGHTS: the lights of all bounces as one list.
 typedef struct vplClusteredLights {
     vplLightSet* set;
     int* clusterOf;            // of each light: index in `shadows`
-    vplParaboloidMap* shadows; // maps of both bounces
+    vplParaboloidMap* shadows; // maps of all bounces
     int shadowCount;           // 0 where lights do not see by clusters
 } vplClusteredLights;
 
