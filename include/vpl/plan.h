@@ -99,6 +99,7 @@ typedef struct vplPlan {
     int passes;            // that the options ask for; 0: a time or an error ends them
     int64_t paths;         // path tracing: paths of all pixels; 0: as many as the time or the error asks for
     int patches, patchSides;
+    int patchGroups, groupedTriangles; // patches that are groups of triangles, and the triangles in them
     double longestEdge;      // longest edge of a patch, metres
     bool linked;             // patches exchange light by links between groups
     int64_t formFactorBytes; // form factors of all pairs

@@ -57,6 +57,7 @@ typedef struct vplRenderStats {
     int clusters, clusterIterations; // SSVP: clusters of first-bounce lights; iterations of k-means
 
     int patches, patchSides; // radiosity: patches, and sides of them that light reaches
+    int patchGroups, groupedTriangles; // radiosity: patches that are groups, and the triangles in them
     bool linked;             // radiosity: light was exchanged by links
     int64_t formFactors;     // radiosity: pairs of sides, or links
     vplSolveStats solve;     // radiosity: the solver of the last frame

@@ -3,6 +3,7 @@
 // those that need the scene's geometry.
 #include "render/plan.h"
 
+#include "geometry/triangle.h"
 #include "render/options.h"
 #include "render/show.h"
 #include "render/stages/results.h"
@@ -348,6 +349,24 @@ static void chooseCuts(vplPlan* p)
     }
 }
 
+// Decides whether small triangles share patches, before patches are made.
+static void chooseGroups(const vplRunner* r, vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const bool fixed = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0 ||
+                       o->hierarchy == VPL_HIERARCHY_OFF;
+    if (o->groups == VPL_PATCH_GROUPS_AUTO) {
+        const bool many = g->triangleCount > o->patches;
+        o->groups = many && !fixed ? VPL_PATCH_GROUPS_ON : VPL_PATCH_GROUPS_OFF;
+        vplDecide(p, "patch-groups",
+                  !many   ? "no more triangles than patches"
+                  : fixed ? "other options ask for a patch per triangle"
+                          : "%d triangles for %d patches",
+                  g->triangleCount, o->patches);
+    }
+}
+
 // Decides whether patches exchange light in groups.
 static vplResult chooseLinks(vplRunner* r, vplPlan* p)
 {
@@ -364,14 +383,17 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
         const vplPatchSides* sides = r->run.results[VPL_STAGE_SIDES];
         p->patches = patches->patchCount;
         p->longestEdge = (double)patches->longestEdge;
+        p->patchGroups = patches->groupCount;
+        p->groupedTriangles = vplPatches_CountGrouped(patches);
         p->patchSides = sides->count;
     }
-    p->linked = p->patchSides > p->linkAbove;
+    p->linked = p->patchSides > p->linkAbove || p->patchGroups > 0;
     p->formFactorBytes = (int64_t)p->patchSides * p->patchSides * (int64_t)sizeof(float);
     if (o->hierarchy == VPL_HIERARCHY_AUTO) {
         o->hierarchy = p->linked ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
         vplDecide(p, "hierarchy",
-                  "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
+                  p->patchGroups > 0 ? "%d sides, some of them of many triangles, which have no exact form factors"
+                  : "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
                   VPL_ALL_PAIRS);
     }
     if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
@@ -391,6 +413,7 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
     decideClamp(r, p);
     if (p->options.method == VPL_METHOD_RADIOSITY) {
         chooseCuts(p);
+        chooseGroups(r, p);
         TRY(chooseLinks(r, p));
         chooseRadiosity(p);
     }

@@ -2,6 +2,7 @@
 // Sides in blocks of sixteen, and the points at which they are sampled.
 #include "base/context.h"
 #include "base/rng.h"
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "radiosity/factors/form_factors.h"
 #include "radiosity/sides/side.h"
@@ -22,9 +23,10 @@ static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorS
         const int stratum = p % 4 * 4 + p / 4;
         const float place = ((float)stratum + vplUnitFloat(r.v[0])) * (float)open / VPL_FACTOR_SAMPLES;
         const int cell = vplPatchSide_OpenCell(side, vplMini((int)place, open - 1));
-        const vplVec3 at = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
-        vplSetLane(samples->at[p], lane, at);
-        vplSetLane(samples->origin[p], lane, vplPatchSide_Leave(work->sides, side, at, side->normal).origin);
+        const vplSidePoint point =
+            vplPatchSide_SampleCell(work->sides, side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
+        vplSetLane(samples->at[p], lane, point.at);
+        vplSetLane(samples->origin[p], lane, vplPatchSides_Leave(work->sides, &point, side->normal).origin);
     }
 }
 
@@ -86,7 +88,9 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
         const vplVec3 way = vplSub(side->corners[c], centre);
         block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
     }
-    const vplRay ray = vplPatchSide_Leave(work->sides, side, side->incentre, side->normal);
+    const vplSidePoint middle = {side->incentre, side->normal,
+                                 vplPatches_TriangleOf(work->sides->patches, side->patch)};
+    const vplRay ray = vplPatchSides_Leave(work->sides, &middle, side->normal);
     block->skipFirst[lane] = ray.skip.first;
     block->skipCount[lane] = ray.skip.count;
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {

@@ -28,6 +28,11 @@ static vplResult checkDef(const vplPatchSides* sides, const vplFormFactorDef* de
         return vplFail(context, VPL_INVALID_ARGUMENT, "vplFormFactorDef.rowSums is %d, must be a vplRowSums",
                        (int)def->rowSums);
     }
+    if (sides->patches->groupCount > 0) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "%d patches are groups of triangles, which exchange light by links only",
+                       sides->patches->groupCount);
+    }
     const int64_t bytes = (int64_t)sides->count * sides->count * (int64_t)sizeof(float);
     if (bytes > VPL_MAX_FORM_FACTOR_BYTES) {
         return vplFail(

@@ -40,9 +40,9 @@ static bool isEnclosed(const EnclosedTest* t, int i)
                     v = ((float)(k % 8) + vplUnitFloat(r.v[1])) / 8;
         const int cell =
             vplPatchSide_OpenCell(side, (int)(r.v[2] % (uint32_t)__builtin_popcount(side->open)));
-        const vplVec3 from = vplPatchSide_SampleCell(side, cell, vplUnitFloat(r.v[2]), vplUnitFloat(r.v[3]));
-        const vplRay ray =
-            vplPatchSide_Leave(t->sides, side, from, vplSampleCosineAround(side->normal, u, v));
+        const vplSidePoint from =
+            vplPatchSide_SampleCell(t->sides, side, cell, vplUnitFloat(r.v[2]), vplUnitFloat(r.v[3]));
+        const vplRay ray = vplPatchSides_Leave(t->sides, &from, vplSampleCosineAround(from.normal, u, v));
         t->rays[i]++;
         if (vplPatchSides_Hit(t->sides, &ray) < 0) {
             return false;

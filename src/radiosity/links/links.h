@@ -13,6 +13,7 @@ typedef struct vplLinkNode {
     int children;     // the first of two, which follow each other and come after their parent; -1: a side
     int first, count; // in vplLinkTree.order
     bool flat;        // all sides are in one plane, so none sees another
+    bool group;       // one side of a group of triangles
     float area;
     float brightness;           // expected radiosity over the expected mean of all sides; at least 1
     vplVec3 low, high, centre;  // bounds, metres, and their centre
@@ -67,7 +68,7 @@ vplResult vplFindLinks(const vplPatchSides* sides, const struct vplLinkTree* tre
 enum { VPL_JUDGE_POINTS = 4 };
 
 typedef struct vplLinkPoint {
-    vplVec3 at;
+    vplSidePoint point;
     int side;
 } vplLinkPoint;
 

@@ -27,16 +27,16 @@ static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplPatchSide* p = &sides->sides[side];
-    const int triangle = vplPatches_TriangleOf(run->results[VPL_STAGE_PATCHES], p->patch);
     const int open = __builtin_popcount(p->open), count = open < samples ? open : samples;
     for (int i = 0; i < count; i++) {
         const int k = vplPatchSide_OpenCell(p, (2 * i + 1) * open / (2 * count));
         const vplRandom4 r = vplRandomAt(run->plan->options.seed, PATCH_LIGHT_STREAM,
                                          (uint64_t)side * VPL_PATCH_CELLS + (uint64_t)k);
-        points[i] = (vplSurfacePoint){
-            vplPatchSide_SampleCell(p, k, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1])), p->normal, triangle};
+        const vplSidePoint at =
+            vplPatchSide_SampleCell(sides, p, k, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
+        points[i] = (vplSurfacePoint){at.at, at.normal, at.triangle};
     }
-    if (samples == 1 && open == VPL_PATCH_CELLS) {
+    if (samples == 1 && open == VPL_PATCH_CELLS && !vplPatches_IsGroup(sides->patches, p->patch)) {
         points[0].position = p->incentre;
     }
     return count;
@@ -219,6 +219,30 @@ void vplReportSolution(const vplRun* run)
 
 // ---- at vertices
 
+// Rays from each vertex of groups.
+enum { VERTEX_RAYS = 128 };
+
+// Gathers at the vertices of groups: their triangles differ more than a mean over them tells.
+static vplResult gatherGroups(const vplRun* run, const vplPatchMesh* mesh, vplRgb* corners)
+{
+    const vplPatchSides* sides = mesh->sides;
+    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
+    bool* only = vplArena_AllocZero(run->scratch, (size_t)mesh->vertexCount, sizeof *only);
+    vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)sides->count, sizeof *reflected);
+    TRY(vplArena_Check(run->scratch));
+    for (int i = 0; i < 3 * mesh->triangleCount; i++) {
+        only[mesh->indices[i]] |= vplPatches_IsGroup(sides->patches, mesh->patchOf[i / 3]);
+    }
+    vplFindReflected(sides, s->radiosity, reflected);
+    const vplVertexGather gather = {.radiosity = reflected,
+                                    .rays = VERTEX_RAYS,
+                                    .only = only,
+                                    .seed = run->plan->options.seed,
+                                    .progress = run->progress,
+                                    .progressUser = run->runner};
+    return vplPatchMesh_Gather(mesh, &gather, corners, &run->stats->rays);
+}
+
 vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
 {
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
@@ -228,5 +252,6 @@ vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
     TRY(vplArena_Check(run->arena));
     *resultOut = corners;
     TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners));
-    return vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners);
+    TRY(vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners));
+    return mesh->sides->patches->groupCount > 0 ? gatherGroups(run, mesh, corners) : VPL_SUCCESS;
 }
