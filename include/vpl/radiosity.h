@@ -311,7 +311,7 @@ vplResult vplPatchMesh_Interpolate(const vplPatchMesh* mesh, vplVertexWeight wei
 typedef struct vplVertexGather {
     const vplRgb* radiosity; // W/m^2, one per side
     int rays;                // from each vertex, [1, 65536]
-    const bool* only;        // per vertex: false: its values stay as they are; NULL: all are gathered
+    const bool* only;        // [vertex][front, back]: false: the value stays as it is; NULL: all are gathered
     uint64_t seed;
     vplProgressFcn* progress;
     void* progressUser;

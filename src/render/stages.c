@@ -271,7 +271,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
         needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
-        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen",
+        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen GROUPS",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |

@@ -163,7 +163,7 @@ static vplLinkVerdict divideWorse(const Pair* pair, double errorP, double errorQ
 
 static bool isTurned(const vplLinkNode* node)
 {
-    return node->count > 1 && node->cosSpread < TURNED;
+    return node->cosTurn < TURNED;
 }
 
 static vplLinkVerdict divideTurned(const Pair* pair)
@@ -177,7 +177,7 @@ static vplLinkVerdict divideTurned(const Pair* pair)
 static const float NEAR = 3;
 
 // Points on either of two near sides if one is of a group.
-enum { NEAR_POINTS = 16 };
+enum { NEAR_POINTS = 8 };
 
 static bool isNear(const Pair* pair)
 {

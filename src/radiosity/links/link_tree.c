@@ -132,9 +132,10 @@ static void sumNode(const Build* b, vplLinkNode* node)
 static void measureNode(const Build* b, vplLinkNode* node)
 {
     const vplPatchSide* firstSide = &b->sides[b->tree->order[node->first]];
-    double radius = 0, cosine = 1, height = 0, turned = 0;
+    double radius = 0, cosine = 1, turn = 1, height = 0, turned = 0;
     for (int i = 0; i < node->count; i++) {
         const vplPatchSide* s = &b->sides[b->tree->order[node->first + i]];
+        turn = fmin(turn, (double)vplDot(s->normal, node->normal));
         for (Corner c = firstCorner(b, s); c.left > 0; nextCorner(b, s, &c)) {
             const double towards = (double)vplDot(c.normal, node->normal);
             cosine = towards < cosine ? towards : cosine;
@@ -149,6 +150,7 @@ static void measureNode(const Build* b, vplLinkNode* node)
     cosine = cosine < -1 ? -1 : cosine;
     node->radius = (float)radius;
     node->cosSpread = (float)cosine;
+    node->cosTurn = (float)turn;
     node->sinSpread = (float)sqrt(1 - cosine * cosine);
     node->group = node->count == 1 && vplPatches_IsGroup(b->patches, firstSide->patch);
     node->flat = (node->count == 1 && !node->group) || (turned <= FLAT && height <= FLAT * radius);

@@ -110,7 +110,7 @@ static void gatherChunk(void* data, int chunk, int worker)
     const int end = vplMini((chunk + 1) * CHUNK, g->mesh->vertexCount);
     for (int i = 2 * chunk * CHUNK; i < 2 * end; i++) {
         Start start;
-        if (g->def->only != NULL && !g->def->only[i / 2]) {
+        if (g->def->only != NULL && !g->def->only[i]) {
             continue;
         }
         const bool lit = findStart(g->mesh, i / 2, i % 2, &start);

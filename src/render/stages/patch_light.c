@@ -219,30 +219,6 @@ void vplReportSolution(const vplRun* run)
 
 // ---- at vertices
 
-// Rays from each vertex of groups.
-enum { VERTEX_RAYS = 128 };
-
-// Gathers at the vertices of groups: their triangles differ more than a mean over them tells.
-static vplResult gatherGroups(const vplRun* run, const vplPatchMesh* mesh, vplRgb* corners)
-{
-    const vplPatchSides* sides = mesh->sides;
-    const vplSolution* s = run->results[VPL_STAGE_SOLUTION];
-    bool* only = vplArena_AllocZero(run->scratch, (size_t)mesh->vertexCount, sizeof *only);
-    vplRgb* reflected = vplArena_Alloc(run->scratch, (size_t)sides->count, sizeof *reflected);
-    TRY(vplArena_Check(run->scratch));
-    for (int i = 0; i < 3 * mesh->triangleCount; i++) {
-        only[mesh->indices[i]] |= vplPatches_IsGroup(sides->patches, mesh->patchOf[i / 3]);
-    }
-    vplFindReflected(sides, s->radiosity, reflected);
-    const vplVertexGather gather = {.radiosity = reflected,
-                                    .rays = VERTEX_RAYS,
-                                    .only = only,
-                                    .seed = run->plan->options.seed,
-                                    .progress = run->progress,
-                                    .progressUser = run->runner};
-    return vplPatchMesh_Gather(mesh, &gather, corners, &run->stats->rays);
-}
-
 vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
 {
     const vplRadiosityOptions* o = &run->plan->options.radiosity;
@@ -253,5 +229,5 @@ vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
     *resultOut = corners;
     TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, s->irradiance, corners));
     TRY(vplPatchMesh_Sharpen(mesh, o->vertexWeight, s->irradiance, o->sharpen, corners));
-    return mesh->sides->patches->groupCount > 0 ? gatherGroups(run, mesh, corners) : VPL_SUCCESS;
+    return mesh->sides->patches->groupCount > 0 ? vplGatherAtGroups(run, mesh, corners) : VPL_SUCCESS;
 }
