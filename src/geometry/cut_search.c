@@ -12,7 +12,7 @@
 // The search around one triangle.
 typedef struct Search {
     const vplGeometry* geometry;
-    const uint8_t* isGrouped; // NULL: no triangle is
+    const uint8_t* isUncut; // NULL: no triangle is
     vplArena* scratch;
     vplCutSegments* out;
     int triangle;
@@ -54,15 +54,15 @@ static bool areNeighbours(const vplGeometry* g, int triangle, int other)
     return shared >= 2;
 }
 
-static bool isGrouped(const Search* s, int triangle)
+static bool isUncut(const Search* s, int triangle)
 {
-    return s->isGrouped != NULL && s->isGrouped[triangle];
+    return s->isUncut != NULL && s->isUncut[triangle];
 }
 
 static void addCandidate(Search* s, int triangle)
 {
     const vplGeometry* g = s->geometry;
-    if (isGrouped(s, triangle)) {
+    if (isUncut(s, triangle)) {
         return;
     }
     const vplTriangleCorners c = vplGeometry_Corners(g, triangle);
@@ -195,18 +195,18 @@ static vplResult searchAround(Search* s, int triangle)
     return addSegments(s);
 }
 
-vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* g, const uint8_t* grouped,
+vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* g, const uint8_t* uncut,
                               vplCutSegments* out)
 {
     *out = (vplCutSegments){.tolerance = vplCutTolerance(g)};
     out->first = vplArena_Alloc(scratch, (size_t)g->triangleCount + 1, sizeof *out->first);
     TRY(vplArena_Check(scratch));
     Search s = {
-        .geometry = g, .isGrouped = grouped, .scratch = scratch, .out = out, .result = VPL_SUCCESS};
+        .geometry = g, .isUncut = uncut, .scratch = scratch, .out = out, .result = VPL_SUCCESS};
     for (int t = 0; t < g->triangleCount; t++) {
         out->first[t] = (int)out->count;
         TRY(t % 1024 == 1023 ? vplAsk(g->context) : VPL_SUCCESS);
-        if (vplCanBeHit(g, t) && !isGrouped(&s, t)) {
+        if (vplCanBeHit(g, t) && !isUncut(&s, t)) {
             TRY(searchAround(&s, t));
         }
     }

@@ -20,6 +20,10 @@ enum { HALVES_DEPTH = 48 };
 // the longest: a chair is no group with the floor, nor torn apart where the floor's middle is.
 static const float LARGE = 0.5f, SMALL = 0.25f;
 
+// Triangles of less area than this share of T x T are not cut. At 1.3 m a thousand slivers of the conference room, 1.3 m
+// long and 3 cm wide, would otherwise become 11,000 pieces.
+static const double UNCUT = 1 / 32.0;
+
 typedef struct Bounds {
     vplVec3 low, high;
     float edge; // the longest, metres
@@ -42,7 +46,7 @@ struct vplGroupTree {
     // The groups of the last length: group g is members[starts[g]] .. members[ends[g] - 1].
     int *members, *starts, *ends, *spare;
     int groupCount;
-    uint8_t* isGrouped;
+    uint8_t *isGrouped, *isUncut;
 };
 
 // ---- boxes
@@ -179,6 +183,7 @@ vplResult vplGroupTree_Build(vplArena* scratch, const vplGeometry* g, vplGroupTr
     t->ends = vplArena_Alloc(scratch, triangles, sizeof *t->ends);
     t->spare = vplArena_Alloc(scratch, triangles, sizeof *t->spare);
     t->isGrouped = vplArena_AllocZero(scratch, triangles, 1);
+    t->isUncut = vplArena_AllocZero(scratch, triangles, 1);
     TRY(vplArena_Check(scratch));
     for (int i = 0; i < g->triangleCount; i++) {
         if (vplCanBeHit(g, i)) {
@@ -297,6 +302,16 @@ int vplGroupTree_Group(vplGroupTree* t, double length)
 const uint8_t* vplGroupTree_IsGrouped(const vplGroupTree* t)
 {
     return t->isGrouped;
+}
+
+const uint8_t* vplGroupTree_FindUncut(vplGroupTree* t, double length)
+{
+    for (int i = 0; i < t->count; i++) {
+        const int triangle = t->order[i];
+        t->isUncut[triangle] =
+            t->isGrouped[triangle] || (double)t->bounds[triangle].area < UNCUT * length * length;
+    }
+    return t->isUncut;
 }
 
 double vplGroupTree_Diagonal(const vplGroupTree* t)

@@ -25,6 +25,9 @@ int vplGroupTree_Group(vplGroupTree* tree, double length);
 // One byte per triangle of the geometry.
 const uint8_t* vplGroupTree_IsGrouped(const vplGroupTree* tree);
 
+// The triangles that neither cut others nor are cut: those of groups, and those that are much thinner than T.
+const uint8_t* vplGroupTree_FindUncut(vplGroupTree* tree, double length);
+
 // The diagonal of the box of all triangles, metres.
 double vplGroupTree_Diagonal(const vplGroupTree* tree);
 

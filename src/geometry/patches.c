@@ -8,6 +8,7 @@
 #include "math/scalar.h"
 #include "math/vec.h"
 
+#include <limits.h>
 #include <stdlib.h>
 
 enum { PATCH_COOKIE = 0x56504ca0 };
@@ -196,14 +197,13 @@ static void grow(vplPatchTree* tree, double square, int rounds)
 }
 
 // Cuts triangles where other surfaces meet them. Where none does, roots stay triangles.
-static vplResult cut(vplArena* scratch, Roots* roots)
+static vplResult cut(vplArena* scratch, const uint8_t* uncut, Roots* roots)
 {
     const vplGeometry* g = roots->geometry;
     TRY(vplArena_Check(scratch));
     roots->pieces = (vplCutPieces){.nodes = NULL};
     roots->count = g->triangleCount;
-    TRY(vplCutSegments_Find(scratch, g, roots->tree != NULL ? vplGroupTree_IsGrouped(roots->tree) : NULL,
-                            &roots->segments));
+    TRY(vplCutSegments_Find(scratch, g, uncut, &roots->segments));
     if (roots->segments.count == 0) {
         return VPL_SUCCESS;
     }
@@ -227,30 +227,45 @@ static void warnUnresolved(const Roots* roots)
 static vplResult chooseLength(const vplPatchDef* def, vplArena* scratch, Roots* roots, double* lengthOut)
 {
     *lengthOut = def->size > 0 ? (double)def->size : lengthFor(roots, def->count, def->rounds);
-    return def->cut ? cut(scratch, roots) : VPL_SUCCESS;
+    return def->cut ? cut(scratch, NULL, roots) : VPL_SUCCESS;
+}
+
+// Groups and cuts triangles for a length. Returns how many patches there are in *countOut.
+static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* roots, double length, int* countOut)
+{
+    roots->pieces = (vplCutPieces){.nodes = NULL};
+    roots->count = roots->geometry->triangleCount;
+    roots->groupCount = vplGroupTree_Group(roots->tree, length);
+    TRY(def->cut ? cut(scratch, vplGroupTree_FindUncut(roots->tree, length), roots) : VPL_SUCCESS);
+    *countOut = countAll(roots, length * length, def->rounds, VPL_MAX_PATCHES);
+    return VPL_SUCCESS;
 }
 
 // Groups and cuts depend on each other: what is in a group is not cut, and what cuts add leaves fewer patches for the
-// rest. So a smaller number is tried where there are too many with cuts.
+// rest. So other numbers are tried until that with cuts is within 10 %, or the nearest of eight.
 static vplResult chooseGroups(const vplPatchDef* def, vplArena* scratch, Roots* roots, double* lengthOut)
 {
-    enum { ROUNDS = 5 };
+    enum { ROUNDS = 8 };
     const int count = def->count;
+    int least = 1, most = VPL_MAX_PATCHES, wanted = count, best = INT_MAX, found;
     TRY(vplGroupTree_Build(scratch, roots->geometry, &roots->tree));
-    for (int round = 0, wanted = count; round < ROUNDS; round++) {
-        roots->pieces = (vplCutPieces){.nodes = NULL};
-        roots->count = roots->geometry->triangleCount;
-        *lengthOut = def->size > 0 ? (double)def->size : groupLength(roots, wanted, def->rounds);
-        countWith(roots, *lengthOut, 0, 1);
-        TRY(def->cut ? cut(scratch, roots) : VPL_SUCCESS);
-        const int most = count < VPL_MAX_PATCHES / 8 ? 8 * count : VPL_MAX_PATCHES;
-        const int off = countAll(roots, *lengthOut * *lengthOut, def->rounds, most) - count;
-        if (def->size > 0 || abs(off) <= count / 10 || wanted == 1) {
-            break;
-        }
-        wanted = vplMaxi(wanted - off, vplMaxi(wanted / 2, 1));
+    if (def->size > 0) {
+        *lengthOut = (double)def->size;
+        return groupAndCut(def, scratch, roots, *lengthOut, &found);
     }
-    return VPL_SUCCESS;
+    for (int round = 0; round < ROUNDS && least <= most && best > count / 10; round++) {
+        const double length = groupLength(roots, wanted, def->rounds);
+        TRY(groupAndCut(def, scratch, roots, length, &found));
+        if (abs(found - count) < best) {
+            best = abs(found - count);
+            *lengthOut = length;
+        }
+        least = found < count ? wanted + 1 : least;
+        most = found > count ? wanted - 1 : most;
+        const int next = wanted - (found - count);
+        wanted = next >= least && next <= most ? next : least + (vplMini(most, 2 * wanted) - least) / 2;
+    }
+    return groupAndCut(def, scratch, roots, *lengthOut, &found);
 }
 
 // ---- growing
