@@ -151,7 +151,7 @@ static void addPicture(const Scale* s, vplWork* w)
     }
     if (s->plan->showsPatches) {
         w->counts[PIXEL] += 0.15 * all * points;
-        w->counts[TRIANGLE] += 2.0 * s->plan->patches * points;
+        w->counts[TRIANGLE] += 2.0 * vplPlan_DrawnPatches(s->plan) * points;
     }
 }
 
@@ -236,6 +236,9 @@ static vplWork workOf(const Scale* s, vplStageId id)
         break;
     case VPL_STAGE_SOLUTION: // about 20 sweeps
         w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.55 * pairs;
+        break;
+    case VPL_STAGE_VERTEX_LIGHT: // 64 rays from every tenth vertex or so, which the camera sees
+        w.counts[PATH_RAY] = 4.0 * p->groupedTriangles * s->pathDepth;
         break;
     case VPL_STAGE_PICTURE:
         addPicture(s, &w);

@@ -387,14 +387,20 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
         p->groupedTriangles = vplPatches_CountGrouped(patches);
         p->patchSides = sides->count;
     }
-    p->linked = p->patchSides > p->linkAbove || p->patchGroups > 0;
+    const bool groups = o->placement == VPL_PATCHES_UNIFORM ? p->patchGroups > 0 : o->groups == VPL_PATCH_GROUPS_ON;
+    p->linked = p->patchSides > p->linkAbove || groups;
     p->formFactorBytes = (int64_t)p->patchSides * p->patchSides * (int64_t)sizeof(float);
     if (o->hierarchy == VPL_HIERARCHY_AUTO) {
         o->hierarchy = p->linked ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
         vplDecide(p, "hierarchy",
-                  p->patchGroups > 0 ? "%d sides, some of them of many triangles, which have no exact form factors"
+                  groups ? "%d sides, some of them of many triangles, which have no exact form factors"
                   : "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
                   VPL_ALL_PAIRS);
+    }
+    if (groups && (o->hierarchy == VPL_HIERARCHY_OFF || o->formFactors == VPL_FORM_FACTORS_INCENTRE)) {
+        snprintf(p->problem, sizeof p->problem,
+                 "groups of triangles exchange light by links only, not with --hierarchy off or --form-factors "
+                 "incentre; use --patch-groups off");
     }
     if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
         p->refusal = VPL_LIMIT;

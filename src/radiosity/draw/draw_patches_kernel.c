@@ -17,7 +17,7 @@ static vplRgb factorOf(const vplPatchFace* u, int triangle, int side)
     const vplPatchDraw* d = u->draw;
     vplRgb factor = {1, 1, 1};
     if (d->reflect) {
-        factor = vplRgbScale(INVERSE_PI, vplReflectanceOf(d->mesh->sides->patches->geometry, triangle));
+        factor = vplRgbScale(INVERSE_PI, vplReflectanceOf(d->mesh->sides, triangle, side));
     }
     if (d->vertexValues != NULL) {
         return factor;

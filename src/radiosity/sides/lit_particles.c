@@ -51,7 +51,7 @@ static bool start(const vplLitSearch* s, const vplParticle* p, int64_t* rays, vp
 
 static bool isBlack(const vplLitSearch* s, int triangle)
 {
-    const vplRgb rho = vplReflectanceOf(s->geometry, triangle);
+    const vplRgb rho = vplReflectanceOfTriangle(s->geometry, triangle);
     return !(rho.r > 0 || rho.g > 0 || rho.b > 0);
 }
 

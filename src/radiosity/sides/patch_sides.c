@@ -154,7 +154,7 @@ static void meanOfGroup(const vplPatches* patches, int patch, bool back, vplPatc
                 centre[k] += area / 3 * (double)vplComponent(c[corner], k);
             }
         }
-        vplAddRgb(reflected, area, vplReflectanceOf(g, parts.nodes[i]));
+        vplAddRgb(reflected, area, vplReflectanceOfTriangle(g, parts.nodes[i]));
         all += area;
     }
     const double length = (back ? -1 : 1) * sqrt(vplDot3(normal, normal));

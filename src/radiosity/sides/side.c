@@ -131,6 +131,13 @@ int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray)
 
 // ---- values
 
+vplRgb vplReflectanceOf(const vplPatchSides* sides, int triangle, int side)
+{
+    return side >= 0 && !vplPatches_IsGroup(sides->patches, sides->sides[side].patch)
+               ? sides->sides[side].reflectance
+               : vplReflectanceOfTriangle(sides->patches->geometry, triangle);
+}
+
 float vplClampToFloat(double x)
 {
     return x > (double)FLT_MAX ? FLT_MAX : x < -(double)FLT_MAX ? -FLT_MAX : (float)x;

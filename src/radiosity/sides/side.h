@@ -43,10 +43,13 @@ vplRay vplPatchSides_Leave(const vplPatchSides* sides, const vplSidePoint* from,
 int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray);
 
 // The reflectance of a triangle of the geometry.
-static inline vplRgb vplReflectanceOf(const vplGeometry* g, int triangle)
+static inline vplRgb vplReflectanceOfTriangle(const vplGeometry* g, int triangle)
 {
     return g->materials[g->triangleMaterials[triangle]].diffuse;
 }
+
+// The reflectance of a triangle that is a part of a patch. `side`: the patch's side, or -1.
+vplRgb vplReflectanceOf(const vplPatchSides* sides, int triangle, int side);
 
 // sum += weight * value, per channel.
 static inline void vplAddRgb(double sum[3], double weight, vplRgb value)
