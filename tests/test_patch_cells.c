@@ -111,7 +111,7 @@ TEST(TheReportsBoxHasItsFrontsButUnderBlocks, 2)
             continue;
         }
         vplPatchSide whole = {.patch = i};
-        vplSide_GetCorners(p, i, false, whole.corners);
+        vplPatchNode_GetCorners(p, p->patches[i], false, whole.corners);
         const unsigned open = front >= 0 ? s->sides[front].open : 0;
         bool dark = true;
         for (int k = 0; k < VPL_PATCH_CELLS; k++) {

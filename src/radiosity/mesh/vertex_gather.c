@@ -67,7 +67,9 @@ static bool findStart(const vplPatchMesh* mesh, int vertex, int face, Start* sta
     }
     const vplVec3 normal = mesh->normals[vertex];
     startOut->group = group;
-    startOut->from.at = total > 0 ? vplAdd(at, vplScale(INSET / total, sum)) : at;
+    // A mean over triangles that are not in one plane would be inside of a ball.
+    const vplVec3 way = group ? vplSub(openCentroid(mesh->sides, any, face), at) : sum;
+    startOut->from.at = total > 0 ? vplAdd(at, vplScale(group ? INSET : INSET / total, way)) : at;
     startOut->from.normal = !group      ? mesh->sides->sides[any->side[face]].normal
                             : face == 0 ? normal
                                         : vplNegate(normal);

@@ -111,7 +111,7 @@ vplVec3 vplLitSample_OnSide(const vplLitSearch* s, vplLitSample* sample)
     float place = u;
     sample->triangle = group ? vplGroup_SampleTriangle(s->patches, patch, sample->cell, u, &place)
                              : vplPatches_TriangleOf(s->patches, patch);
-    vplSide_GetCorners(s->patches, group ? sample->triangle : s->patches->patches[patch], sample->side & 1,
+    vplPatchNode_GetCorners(s->patches, group ? sample->triangle : s->patches->patches[patch], sample->side & 1,
                        corners);
     const vplVec3 at = group ? vplTriangle_Point(corners, place, v)
                              : vplCell_Point(corners, sample->cell, u, v),

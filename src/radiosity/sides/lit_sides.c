@@ -53,7 +53,7 @@ static bool facesOutside(const vplLitSearch* s, int side, int triangle)
         vplVec(n.x > 0 ? high.x : low.x, n.y > 0 ? high.y : low.y, n.z > 0 ? high.z : low.z);
     vplVec3 corners[3];
     const int patch = side / 2, node = vplPatches_IsGroup(s->patches, patch) ? triangle : s->patches->patches[patch];
-    vplSide_GetCorners(s->patches, node, side & 1, corners);
+    vplPatchNode_GetCorners(s->patches, node, side & 1, corners);
     return vplDot(vplSub(farthest, corners[0]), n) < s->heights[side / 2];
 }
 

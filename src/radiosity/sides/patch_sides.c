@@ -58,7 +58,7 @@ static void findHeights(vplLitSearch* s)
         float largest = 0;
         for (int k = 0; k < 9 * parts.count; k++) {
             if (k % 9 == 0) {
-                vplSide_GetCorners(s->patches, parts.nodes[k / 9], false, corners);
+                vplPatchNode_GetCorners(s->patches, parts.nodes[k / 9], false, corners);
             }
             largest = fmaxf(largest, fabsf(vplComponent(corners[k % 9 / 3], k % 3)));
         }
@@ -147,7 +147,7 @@ static void meanOfGroup(const vplPatches* patches, int patch, bool back, vplPatc
     for (int i = 0; i < parts.count; i++) {
         vplVec3 c[3];
         const double area = vplGeometry_TriangleArea(g, parts.nodes[i]);
-        vplSide_GetCorners(patches, parts.nodes[i], back, c);
+        vplPatchNode_GetCorners(patches, parts.nodes[i], back, c);
         for (int k = 0; k < 3; k++) {
             normal[k] += area * (double)vplComponent(g->normals[parts.nodes[i]], k);
             for (int corner = 0; corner < 3; corner++) {
@@ -173,7 +173,7 @@ static vplPatchSide makeSide(const vplPatches* patches, int patch, bool back, un
     const double area = vplPatches_Area(patches, patch) * __builtin_popcount(open) / VPL_PATCH_CELLS;
     side.area = fmaxf(vplClampToFloat(area), FLT_MIN); // others divide by it
     side.normal = back ? vplNegate(g->normals[triangle]) : g->normals[triangle];
-    vplSide_GetCorners(patches, patches->patches[patch], back, side.corners);
+    vplPatchNode_GetCorners(patches, patches->patches[patch], back, side.corners);
     side.incentre = incentreOf(side.corners);
     if (!back) {
         side.emission = vplScaleRadiometric(VPL_PI, material->emission);

@@ -7,7 +7,7 @@
 
 #include <float.h>
 
-void vplSide_GetCorners(const vplPatches* patches, int node, bool back, vplVec3 cornersOut[3])
+void vplPatchNode_GetCorners(const vplPatches* patches, int node, bool back, vplVec3 cornersOut[3])
 {
     const uint32_t* corners = patches->nodes[node].corners;
     for (int k = 0; k < 3; k++) {
@@ -83,7 +83,7 @@ vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchS
     vplVec3 corners[3];
     const int triangle = vplGroup_SampleTriangle(p, side->patch, k, u, &u);
     const vplVec3 n = p->geometry->normals[triangle];
-    vplSide_GetCorners(p, triangle, side->back, corners);
+    vplPatchNode_GetCorners(p, triangle, side->back, corners);
     return (vplSidePoint){vplTriangle_Point(corners, u, v), side->back ? vplNegate(n) : n, triangle};
 }
 

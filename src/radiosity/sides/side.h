@@ -19,7 +19,7 @@ static inline int vplSideOf(const vplPatchSides* sides, int patch, int face)
 }
 
 // The corners of a node, counter-clockwise seen from one of its sides.
-void vplSide_GetCorners(const vplPatches* patches, int node, bool back, vplVec3 cornersOut[3]);
+void vplPatchNode_GetCorners(const vplPatches* patches, int node, bool back, vplVec3 cornersOut[3]);
 
 // A point of a cell of a triangle, uniform over it for u, v uniform in [0, 1).
 vplVec3 vplCell_Point(const vplVec3 corners[3], int cell, float u, float v);
