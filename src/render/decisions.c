@@ -354,8 +354,7 @@ static void chooseGroups(const vplRunner* r, vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
-    const bool fixed = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0 ||
-                       o->hierarchy == VPL_HIERARCHY_OFF;
+    const bool fixed = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
     if (o->groups == VPL_PATCH_GROUPS_AUTO) {
         const bool many = g->triangleCount > o->patches;
         o->groups = many && !fixed ? VPL_PATCH_GROUPS_ON : VPL_PATCH_GROUPS_OFF;
@@ -387,20 +386,17 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
         p->groupedTriangles = vplPatches_CountGrouped(patches);
         p->patchSides = sides->count;
     }
-    const bool groups = o->placement == VPL_PATCHES_UNIFORM ? p->patchGroups > 0 : o->groups == VPL_PATCH_GROUPS_ON;
-    p->linked = p->patchSides > p->linkAbove || groups;
+    p->linked = p->patchSides > p->linkAbove;
     p->formFactorBytes = (int64_t)p->patchSides * p->patchSides * (int64_t)sizeof(float);
     if (o->hierarchy == VPL_HIERARCHY_AUTO) {
         o->hierarchy = p->linked ? VPL_HIERARCHY_ON : VPL_HIERARCHY_OFF;
         vplDecide(p, "hierarchy",
-                  groups ? "%d sides, some of them of many triangles, which have no exact form factors"
-                  : "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
+                  "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
                   VPL_ALL_PAIRS);
     }
-    if (groups && (o->hierarchy == VPL_HIERARCHY_OFF || o->formFactors == VPL_FORM_FACTORS_INCENTRE)) {
+    if (o->groups == VPL_PATCH_GROUPS_ON && o->formFactors == VPL_FORM_FACTORS_INCENTRE) {
         snprintf(p->problem, sizeof p->problem,
-                 "groups of triangles exchange light by links only, not with --hierarchy off or --form-factors "
-                 "incentre; use --patch-groups off");
+                 "groups of triangles have no incentre; use --patch-groups off or --form-factors monte-carlo");
     }
     if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
         p->refusal = VPL_LIMIT;

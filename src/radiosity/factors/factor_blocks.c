@@ -12,6 +12,17 @@ enum { SAMPLE_STREAM = 0x46460000 };
 
 // ---- samples
 
+static void setSample(const vplFactorWork* work, int p, int lane, const vplSidePoint* point,
+                      vplFactorSamples* samples)
+{
+    const vplRay ray = vplPatchSides_Leave(work->sides, point, point->normal);
+    vplSetLane(samples->at[p], lane, point->at);
+    vplSetLane(samples->normal[p], lane, point->normal);
+    vplSetLane(samples->origin[p], lane, ray.origin);
+    samples->skipFirst[p][lane] = ray.skip.first;
+    samples->skipCount[p][lane] = ray.skip.count;
+}
+
 // Sixteen strata of equal area: the cells of a side whose cells are all open.
 static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorSamples* samples)
 {
@@ -25,8 +36,7 @@ static void fillLane(const vplFactorWork* work, int index, int chunk, vplFactorS
         const int cell = vplPatchSide_OpenCell(side, vplMini((int)place, open - 1));
         const vplSidePoint point =
             vplPatchSide_SampleCell(work->sides, side, cell, vplUnitFloat(r.v[1]), vplUnitFloat(r.v[2]));
-        vplSetLane(samples->at[p], lane, point.at);
-        vplSetLane(samples->origin[p], lane, vplPatchSides_Leave(work->sides, &point, side->normal).origin);
+        setSample(work, p, lane, &point, samples);
     }
 }
 
@@ -88,14 +98,11 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
         const vplVec3 way = vplSub(side->corners[c], centre);
         block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
     }
-    const vplSidePoint middle = {side->incentre, side->normal,
-                                 vplPatches_TriangleOf(work->sides->patches, side->patch)};
-    const vplRay ray = vplPatchSides_Leave(work->sides, &middle, side->normal);
-    block->skipFirst[lane] = ray.skip.first;
-    block->skipCount[lane] = ray.skip.count;
+    block->groups |= (uint32_t)vplPatches_IsGroup(work->sides->patches, side->patch) << lane;
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
-        vplSetLane(block->samples.at[0], lane, side->incentre);
-        vplSetLane(block->samples.origin[0], lane, ray.origin);
+        const vplSidePoint middle = {side->incentre, side->normal,
+                                     vplPatches_TriangleOf(work->sides->patches, side->patch)};
+        setSample(work, 0, lane, &middle, &block->samples);
         const vplVec3 cross =
             vplCross(vplSub(side->corners[1], side->corners[0]), vplSub(side->corners[2], side->corners[0]));
         block->area[lane] = 0.5f * (float)vplCrossLength(cross);

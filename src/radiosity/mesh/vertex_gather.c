@@ -13,6 +13,10 @@ enum { CHUNK = 64, MOST_RAYS = 65536, GATHER_STREAM = 0x67617468 };
 // Rays start this fraction of the way from the vertex to the centroid of the open cells at it.
 static const float INSET = 0x1p-5f;
 
+// Rays at groups start this fraction of the way to a triangle's centroid. Long triangles end in dark corners, which say
+// nothing of their middle; the mean over a triangle on which light changes evenly stays the same.
+static const float GROUP_INSET = 0.5f;
+
 typedef struct Gathering {
     const vplPatchMesh* mesh;
     const vplVertexGather* def;
@@ -69,7 +73,7 @@ static bool findStart(const vplPatchMesh* mesh, int vertex, int face, Start* sta
     startOut->group = group;
     // A mean over triangles that are not in one plane would be inside of a ball.
     const vplVec3 way = group ? vplSub(openCentroid(mesh->sides, any, face), at) : sum;
-    startOut->from.at = total > 0 ? vplAdd(at, vplScale(group ? INSET : INSET / total, way)) : at;
+    startOut->from.at = total > 0 ? vplAdd(at, vplScale(group ? GROUP_INSET : INSET / total, way)) : at;
     startOut->from.normal = !group      ? mesh->sides->sides[any->side[face]].normal
                             : face == 0 ? normal
                                         : vplNegate(normal);

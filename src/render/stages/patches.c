@@ -264,7 +264,7 @@ vplResult vplMakeFormFactors(const vplRun* run, void** resultOut)
     vplExchangeFactors* f = vplArena_AllocZero(run->arena, 1, sizeof *f);
     TRY(vplArena_Check(run->arena));
     *resultOut = f;
-    if (sides->count > run->plan->linkAbove || sides->patches->groupCount > 0) {
+    if (sides->count > run->plan->linkAbove) {
         TRY(vplLinks_Create(sides, &links, &f->links));
         run->stats->rays += f->links->rays;
     } else {
