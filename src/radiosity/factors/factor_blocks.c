@@ -83,6 +83,20 @@ static void fillPart(const vplPatchSide* side, int lane, vplFactorBlock* block)
 
 // ---- blocks
 
+// Sets the sphere around a group.
+static void fillGroup(const vplPatches* patches, const vplPatchSide* side, int lane, vplFactorBlock* block)
+{
+    const vplPatchParts parts = vplPatches_GetParts(patches, side->patch);
+    block->groups |= 1u << lane;
+    block->radius2[lane] = 0;
+    vplSetLane(block->centre, lane, side->incentre);
+    for (int k = 0; k < 3 * parts.count; k++) {
+        const vplVec3 corner = patches->positions[patches->nodes[parts.nodes[k / 3]].corners[k % 3]],
+                      way = vplSub(corner, side->incentre);
+        block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
+    }
+}
+
 static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block)
 {
     const vplPatchSide* side = &work->sides->sides[index];
@@ -98,7 +112,9 @@ static void fillSide(const vplFactorWork* work, int index, vplFactorBlock* block
         const vplVec3 way = vplSub(side->corners[c], centre);
         block->radius2[lane] = vplMaxf(block->radius2[lane], vplDot(way, way));
     }
-    block->groups |= (uint32_t)vplPatches_IsGroup(work->sides->patches, side->patch) << lane;
+    if (vplPatches_IsGroup(work->sides->patches, side->patch)) {
+        fillGroup(work->sides->patches, side, lane, block);
+    }
     if (work->def.kind == VPL_FORM_FACTORS_INCENTRE) {
         const vplSidePoint middle = {side->incentre, side->normal,
                                      vplPatches_TriangleOf(work->sides->patches, side->patch)};

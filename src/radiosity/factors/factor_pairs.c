@@ -5,6 +5,7 @@
 // estimate the visible fraction.
 #include "base/rng.h"
 #include "geometry/bvh.h"
+#include "geometry/triangle.h"
 #include "math/scalar.h"
 #include "math/vec.h"
 #include "radiosity/factors/analytic.h"
@@ -118,6 +119,50 @@ static void sampledMeans(const Tile* tile, int i, float meanOut[LANES])
     memcpy(meanOut, sum, sizeof sum);
 }
 
+static vplSidePoint sampleOf(const vplFactorSamples* samples, int k, int lane)
+{
+    return (vplSidePoint){.at = {samples->at[k][0][lane], samples->at[k][1][lane], samples->at[k][2][lane]},
+                          .normal = {samples->normal[k][0][lane], samples->normal[k][1][lane],
+                                     samples->normal[k][2][lane]}};
+}
+
+// The mean of cos cos / (pi r^2) of a group and a triangle beside it: closed forms from the group's samples.
+static float meanBeside(const vplFactorSamples* group, int lane, const vplPatchSide* triangle)
+{
+    const vplTriangleCorners corners = {{triangle->corners[0], triangle->corners[1], triangle->corners[2]}};
+    double sum = 0;
+    for (int k = 0; k < VPL_FACTOR_SAMPLES; k++) {
+        const vplSidePoint p = sampleOf(group, k, lane);
+        sum += vplPointFormFactor(p.at, p.normal, triangle->corners);
+    }
+    return vplClampToFloat(sum / (VPL_FACTOR_SAMPLES * vplTriangle_Area(&corners)));
+}
+
+// That of two groups beside each other: all pairs of their samples.
+static float meanOfGroups(const Tile* tile, int i, int l)
+{
+    double sum = 0;
+    for (int k = 0; k < VPL_FACTOR_SAMPLES; k++) {
+        const vplSidePoint p = sampleOf(&tile->a->samples, k, i);
+        for (int j = 0; j < VPL_FACTOR_SAMPLES; j++) {
+            const vplSidePoint q = sampleOf(&tile->b->samples, j, l);
+            const vplVec3 way = vplSub(q.at, p.at);
+            const double square = (double)vplDot(way, way), a = (double)vplDot(way, p.normal),
+                         b = -(double)vplDot(way, q.normal);
+            sum += a > 0 && b > 0 ? a / square * (b / square) / VPL_PI : 0;
+        }
+    }
+    return vplClampToFloat(sum / (VPL_FACTOR_SAMPLES * VPL_FACTOR_SAMPLES));
+}
+
+static float meanBesideGroup(const Tile* tile, int i, int l)
+{
+    const vplPatchSide* sides = tile->shared->work->sides->sides;
+    return !(tile->a->groups >> i & 1)   ? meanBeside(&tile->b->samples, l, &sides[tile->row * LANES + i])
+           : !(tile->b->groups >> l & 1) ? meanBeside(&tile->a->samples, i, &sides[tile->column * LANES + l])
+                                         : meanOfGroups(tile, i, l);
+}
+
 // Finds the pairs of row i that exchange light and, if analytic, how much without occluders.
 static void estimateRow(Tile* tile, int i)
 {
@@ -138,6 +183,10 @@ static void estimateRow(Tile* tile, int i)
         sampledMeans(tile, i, means);
         for (int l = 0; l < LANES; l++) {
             tile->exact[i][l] = groups >> l & 1 ? means[l] : tile->exact[i][l];
+        }
+        for (uint32_t left = tile->pairs[i] & estimate.near & groups; left != 0; left &= left - 1) {
+            const int l = __builtin_ctz(left);
+            tile->exact[i][l] = meanBesideGroup(tile, i, l);
         }
     }
     for (uint32_t left = tile->pairs[i] & estimate.near & ~groups; left != 0; left &= left - 1) {
