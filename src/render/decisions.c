@@ -214,7 +214,8 @@ static void chooseRadiosity(vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
     const bool incentre = o->formFactors == VPL_FORM_FACTORS_INCENTRE;
-    if (o->rowSums == VPL_ROW_SUMS_USUAL && o->hierarchy == VPL_HIERARCHY_OFF) {
+    if (o->rowSums == VPL_ROW_SUMS_USUAL && o->hierarchy == VPL_HIERARCHY_OFF &&
+        o->groups == VPL_PATCH_GROUPS_OFF) {
         o->rowSums = incentre ? VPL_ROW_SUMS_KEEP : VPL_ROW_SUMS_CLAMP;
         vplDecide(p, "row-sums",
                   incentre ? "as the document has it" : "no patch sends more light than it has");
