@@ -33,7 +33,7 @@ static double meanOver(const vplPatchSide* side, double (*at)(vplVec3))
     double sum = 0;
     for (int i = 0; i < 16 * VPL_PATCH_CELLS; i++) {
         sum += at(vplCell_Point(side->corners, i / 16, ((float)(i % 4) + 0.5f) / 4,
-                                          ((float)(i / 4 % 4) + 0.5f) / 4));
+                                ((float)(i / 4 % 4) + 0.5f) / 4));
     }
     return sum / (16 * VPL_PATCH_CELLS);
 }

@@ -29,7 +29,7 @@ typedef struct vplPatchSide {
     vplVec3 normal;     // unit, of this side; a group's mean, weighted by area
     vplVec3 incentre;   // the centre of the inscribed circle; a group's centroid
     vplRgb reflectance; // a group's mean, weighted by area
-    vplRgb emission; // radiosity, W/m^2: pi times the material's radiance, 0 on the back
+    vplRgb emission;    // radiosity, W/m^2: pi times the material's radiance, 0 on the back
 } vplPatchSide;
 
 typedef struct vplPatchSidesDef {
@@ -84,7 +84,8 @@ typedef struct vplSidePoint {
 } vplSidePoint;
 
 // A point of cell k, uniform over it for u, v uniform in [0, 1).
-vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchSide* side, int k, float u, float v);
+vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchSide* side, int k, float u,
+                                     float v);
 
 // ---- form factors
 

@@ -56,11 +56,11 @@ typedef struct vplRenderStats {
     int largestCut;
     int clusters, clusterIterations; // SSVP: clusters of first-bounce lights; iterations of k-means
 
-    int patches, patchSides; // radiosity: patches, and sides of them that light reaches
+    int patches, patchSides;           // radiosity: patches, and sides of them that light reaches
     int patchGroups, groupedTriangles; // radiosity: patches that are groups, and the triangles in them
-    bool linked;             // radiosity: light was exchanged by links
-    int64_t formFactors;     // radiosity: pairs of sides, or links
-    vplSolveStats solve;     // radiosity: the solver of the last frame
+    bool linked;                       // radiosity: light was exchanged by links
+    int64_t formFactors;               // radiosity: pairs of sides, or links
+    vplSolveStats solve;               // radiosity: the solver of the last frame
 
     int passes; // the picture is their mean; path tracing: up to 32 paths per pixel each
     // Estimated rmse of the picture against the true one, and the same divided by the picture's mean; negative: not

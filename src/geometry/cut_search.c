@@ -201,8 +201,7 @@ vplResult vplCutSegments_Find(vplArena* scratch, const vplGeometry* g, const uin
     *out = (vplCutSegments){.tolerance = vplCutTolerance(g)};
     out->first = vplArena_Alloc(scratch, (size_t)g->triangleCount + 1, sizeof *out->first);
     TRY(vplArena_Check(scratch));
-    Search s = {
-        .geometry = g, .isUncut = uncut, .scratch = scratch, .out = out, .result = VPL_SUCCESS};
+    Search s = {.geometry = g, .isUncut = uncut, .scratch = scratch, .out = out, .result = VPL_SUCCESS};
     for (int t = 0; t < g->triangleCount; t++) {
         out->first[t] = (int)out->count;
         TRY(t % 1024 == 1023 ? vplAsk(g->context) : VPL_SUCCESS);

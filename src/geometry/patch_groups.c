@@ -143,8 +143,8 @@ static int halve(const vplGroupTree* t, const Node* node, const Range* r, int de
 {
     const bool uneven = r->most > LARGE * node->diagonal && r->least < SMALL * r->most;
     const int axis = longestAxis(r->first, r->last);
-    const float middle = uneven ? LARGE * r->most
-                                : 0.5f * vplComponent(r->first, axis) + 0.5f * vplComponent(r->last, axis);
+    const float middle =
+        uneven ? LARGE * r->most : 0.5f * vplComponent(r->first, axis) + 0.5f * vplComponent(r->last, axis);
     const int before = depth < HALVES_DEPTH
                            ? part(t, t->order + node->first, node->count, placeOf, uneven ? 3 : axis, middle)
                            : 0;

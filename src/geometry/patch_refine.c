@@ -79,7 +79,8 @@ static vplResult copyTree(const vplPatches* patches, int more, vplPatchTree* tre
     for (size_t i = 0; i < nodes; i++) {
         tree->nodes[i].patch = -1;
     }
-    const vplPatchGroups groups = {patches->groupCount, patches->firstMember, patches->members, patches->areaUpTo};
+    const vplPatchGroups groups = {patches->groupCount, patches->firstMember, patches->members,
+                                   patches->areaUpTo};
     TRY(vplPatchTree_CopyGroups(tree, &groups));
     return vplPatchTree_CopyCuts(tree, patches->cuts, patches->firstCut);
 }

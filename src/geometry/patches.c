@@ -79,8 +79,8 @@ static bool getRoot(const Roots* roots, int i, vplTriangleCorners* cornersOut, v
     const vplGeometry* g = roots->geometry;
     const vplPatchNode* node = roots->pieces.nodes != NULL ? &roots->pieces.nodes[i] : NULL;
     const int triangle = node != NULL ? node->triangle : i;
-    if (!vplCanBeHit(g, triangle) ||
-        (roots->tree != NULL && vplGroupTree_IsGrouped(roots->tree)[triangle]) || (node != NULL && node->children >= 0)) {
+    if (!vplCanBeHit(g, triangle) || (roots->tree != NULL && vplGroupTree_IsGrouped(roots->tree)[triangle]) ||
+        (node != NULL && node->children >= 0)) {
         return false;
     }
     *cornersOut =
@@ -231,7 +231,8 @@ static vplResult chooseLength(const vplPatchDef* def, vplArena* scratch, Roots* 
 }
 
 // Groups and cuts triangles for a length. Returns how many patches there are in *countOut.
-static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* roots, double length, int* countOut)
+static vplResult groupAndCut(const vplPatchDef* def, vplArena* scratch, Roots* roots, double length,
+                             int* countOut)
 {
     roots->pieces = (vplCutPieces){.nodes = NULL};
     roots->count = roots->geometry->triangleCount;
@@ -344,7 +345,8 @@ vplPatchParts vplPatches_GetParts(const vplPatches* p, int patch)
 double vplPatches_Area(const vplPatches* patches, int patch)
 {
     if (vplPatches_IsGroup(patches, patch)) {
-        return patches->areaUpTo[patches->firstMember[patch + 1 - (patches->patchCount - patches->groupCount)] - 1];
+        return patches
+            ->areaUpTo[patches->firstMember[patch + 1 - (patches->patchCount - patches->groupCount)] - 1];
     }
     const vplTriangleCorners at =
         vplCornersOf(patches->positions, patches->nodes[patches->patches[patch]].corners);

@@ -396,8 +396,9 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
                   VPL_ALL_PAIRS);
     }
     if (o->groups == VPL_PATCH_GROUPS_ON && o->formFactors == VPL_FORM_FACTORS_INCENTRE) {
-        snprintf(p->problem, sizeof p->problem,
-                 "groups of triangles have no incentre; use --patch-groups off or --form-factors monte-carlo");
+        snprintf(
+            p->problem, sizeof p->problem,
+            "groups of triangles have no incentre; use --patch-groups off or --form-factors monte-carlo");
     }
     if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
         p->refusal = VPL_LIMIT;

@@ -196,8 +196,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_PATCHES:
         return adaptivePatches(s);
     case VPL_STAGE_PATCH_MESH: // faces of cut patches have vertices of their own
-        return o->radiosity.cuts == VPL_PATCH_CUTS_ON ? (Bytes){320 * vplPlan_DrawnPatches(p), 300 * vplPlan_DrawnPatches(p)}
-                                                      : (Bytes){98 * vplPlan_DrawnPatches(p), 98 * vplPlan_DrawnPatches(p)};
+        return o->radiosity.cuts == VPL_PATCH_CUTS_ON
+                   ? (Bytes){320 * vplPlan_DrawnPatches(p), 300 * vplPlan_DrawnPatches(p)}
+                   : (Bytes){98 * vplPlan_DrawnPatches(p), 98 * vplPlan_DrawnPatches(p)};
     case VPL_STAGE_FORM_FACTORS:
         return formFactors(s, s->sides);
     case VPL_STAGE_PATCH_LIGHT:

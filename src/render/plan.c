@@ -84,8 +84,8 @@ static void refuseTime(const vplRunner* r, vplPlan* p)
     const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
     const double sides = g->triangleCount, ms = sides <= VPL_ALL_PAIRS ? 1e-4 * sides * sides : sides;
     const vplRadiosityOptions* o = &p->options.radiosity;
-    const bool groups = o->groups != VPL_PATCH_GROUPS_OFF && o->patchSize == 0 &&
-                        o->formFactors != VPL_FORM_FACTORS_INCENTRE;
+    const bool groups =
+        o->groups != VPL_PATCH_GROUPS_OFF && o->patchSize == 0 && o->formFactors != VPL_FORM_FACTORS_INCENTRE;
     if (p->showsPatches && !groups && p->options.stop.budgetMs > 0 && ms > p->options.stop.budgetMs) {
         snprintf(p->problem, sizeof p->problem,
                  "--budget %g: radiosity makes patches of all %d triangles, which takes about %.2g s at "

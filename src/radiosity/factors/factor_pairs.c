@@ -111,7 +111,8 @@ static void sampledMeans(const Tile* tile, int i, float meanOut[LANES])
         const float normal[3] = {from->normal[k][0][i], from->normal[k][1][i], from->normal[k][2][i]};
         const int other = (5 * k + i) % VPL_FACTOR_SAMPLES;
         float term[LANES], direction[3][LANES];
-        tile->shared->work->kernels->pointTerms(point, normal, to->at[other], to->normal[other], term, direction);
+        tile->shared->work->kernels->pointTerms(point, normal, to->at[other], to->normal[other], term,
+                                                direction);
         for (int l = 0; l < LANES; l++) {
             sum[l] += term[l] / VPL_FACTOR_SAMPLES;
         }
@@ -121,9 +122,9 @@ static void sampledMeans(const Tile* tile, int i, float meanOut[LANES])
 
 static vplSidePoint sampleOf(const vplFactorSamples* samples, int k, int lane)
 {
-    return (vplSidePoint){.at = {samples->at[k][0][lane], samples->at[k][1][lane], samples->at[k][2][lane]},
-                          .normal = {samples->normal[k][0][lane], samples->normal[k][1][lane],
-                                     samples->normal[k][2][lane]}};
+    return (vplSidePoint){
+        .at = {samples->at[k][0][lane], samples->at[k][1][lane], samples->at[k][2][lane]},
+        .normal = {samples->normal[k][0][lane], samples->normal[k][1][lane], samples->normal[k][2][lane]}};
 }
 
 // The mean of cos cos / (pi r^2) of a group and a triangle beside it: closed forms from the group's samples.
@@ -171,7 +172,8 @@ static void estimateRow(Tile* tile, int i)
     work->kernels->estimateFactors(tile->a, i, tile->b, tile->tolerance, NEAR * NEAR, &estimate);
     const uint32_t used = tile->a->area[i] > 0 ? usedLanes(tile->b) : 0,
                    groups = tile->a->groups >> i & 1 ? used : tile->b->groups & used;
-    tile->pairs[i] = (estimate.facing | groups) & (tile->row == tile->column ? 0xfffeu << i & 0xffffu : 0xffffu);
+    tile->pairs[i] =
+        (estimate.facing | groups) & (tile->row == tile->column ? 0xfffeu << i & 0xffffu : 0xffffu);
     if (!work->def.analytic || tile->pairs[i] == 0) {
         return;
     }

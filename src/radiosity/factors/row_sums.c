@@ -46,8 +46,9 @@ static double improve(Scaling* s, bool clamp)
     for (int i = 0; i < s->work->count; i++) {
         const double sum = s->scale[i] * s->sum[i];
         if (sum > 0) {
-            const double before = s->scale[i],
-                         wanted = s->target != NULL ? before * sqrt((double)s->target[i] / sum) : before / sqrt(sum);
+            const double before = s->scale[i], wanted = s->target != NULL
+                                                            ? before * sqrt((double)s->target[i] / sum)
+                                                            : before / sqrt(sum);
             s->scale[i] = clamp && wanted > 1 ? 1 : wanted;
             const double step = fabs(s->scale[i] / before - 1);
             largest = step > largest ? step : largest;

@@ -228,7 +228,8 @@ static void measureSides(const Pair* pair)
     double visible;
     const double open = measureMean(pair, &visible);
     // Neighbours on a curved surface are near, but exchange next to nothing.
-    const bool exact = !pair->p->group && !pair->q->group && isNear(pair) && pair->sent * open > TINY * pair->work->def->error;
+    const bool exact = !pair->p->group && !pair->q->group && isNear(pair) &&
+                       pair->sent * open > TINY * pair->work->def->error;
     keep(pair, visible * (exact ? exactMean(pair) : open));
 }
 

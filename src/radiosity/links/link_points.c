@@ -42,9 +42,9 @@ void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplL
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
         out[k].side = tree->order[place];
-        out[k].point = vplPatchSide_SampleCell(
-            work->sides, side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
-            vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+        out[k].point = vplPatchSide_SampleCell(work->sides, side,
+                                               vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
+                                               vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
     }
 }
 

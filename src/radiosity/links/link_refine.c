@@ -33,7 +33,7 @@ static void judgeTask(void* data, int task, int worker)
         } else { // a node and itself
             const vplLinkNode* node = &r->work.tree->nodes[pair->p];
             r->answers[i] = (vplLinkAnswer){.verdict = node->flat || node->children < 0 ? VPL_LINK_NONE
-                                                                                         : VPL_LINK_DIVIDE_P};
+                                                                                        : VPL_LINK_DIVIDE_P};
         }
     }
 }

@@ -79,7 +79,8 @@ static vplResult findEnclosed(EnclosedTest* t, vplArena* scratch, int64_t* rays)
 
 // One round: moves the sum of each row half of the way to 1; sides that are not enclosed only move if above
 // 1. The last round moves rows above 1 the whole way, which leaves none above, since no scale grows.
-static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, const EnclosedTest* test, bool last)
+static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, const EnclosedTest* test,
+                      bool last)
 {
     for (int i = 0; i < count; i++) {
         const double sum = sums[i][0], scale = (double)tree->scale[i];
@@ -87,14 +88,15 @@ static void fitScales(struct vplLinkTree* tree, double (*sums)[3], int count, co
             tree->scale[i] = (float)(sum > MARGIN ? scale * MARGIN / sum : scale);
         } else if (sum > 0) {
             const double wanted = scale / sqrt(sum);
-            tree->scale[i] = (float)(test->target != NULL              ? scale * sqrt((double)test->target[i] / sum)
+            tree->scale[i] = (float)(test->target != NULL ? scale * sqrt((double)test->target[i] / sum)
                                      : !test->enclosed[i] && wanted > 1 ? 1
                                                                         : wanted);
         }
     }
 }
 
-static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const EnclosedTest* test, float* rowSums)
+static vplResult fitRows(vplLinks* links, vplArena* scratch, bool keep, const EnclosedTest* test,
+                         float* rowSums)
 {
     const int count = links->sideCount, rounds = keep ? 0 : ROUNDS;
     vplPlanes ones = vplPlanes_Alloc(scratch, count);

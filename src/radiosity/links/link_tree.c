@@ -76,7 +76,8 @@ static void nextCorner(const Build* b, const vplPatchSide* side, Corner* c)
     if (c->left > 0) {
         const vplPatchParts parts = vplPatches_GetParts(b->patches, side->patch);
         const int at = 3 * parts.count - c->left, node = parts.nodes[at / 3];
-        c->at = parts.count > 1 ? b->patches->positions[b->patches->nodes[node].corners[at % 3]] : side->corners[at];
+        c->at = parts.count > 1 ? b->patches->positions[b->patches->nodes[node].corners[at % 3]]
+                                : side->corners[at];
         if (at % 3 == 0) {
             const vplVec3 n = b->patches->geometry->normals[node];
             c->normal = side->back ? vplNegate(n) : n;

@@ -135,7 +135,8 @@ static vplResult cut(Cutter* c, const vplPiece* piece)
     const uint32_t a = piece->corners[k], b = piece->corners[(k + 1) % 3], tip = piece->corners[(k + 2) % 3];
     const uint8_t next = piece->edges >> (k + 1) % 3 & 1, last = piece->edges >> (k + 2) % 3 & 1;
     const vplPiece first = {{tip, a, (uint32_t)middle}, piece->patch, piece->triangle, (uint8_t)(last | 2)};
-    const vplPiece second = {{tip, (uint32_t)middle, b}, piece->patch, piece->triangle, (uint8_t)(2 | next << 2)};
+    const vplPiece second = {
+        {tip, (uint32_t)middle, b}, piece->patch, piece->triangle, (uint8_t)(2 | next << 2)};
     TRY(cut(c, &first));
     return cut(c, &second);
 }

@@ -74,7 +74,7 @@ vplResult vplMeshCorners_Find(vplArena* scratch, const vplPatches* patches, cons
 typedef struct vplPatchAround {
     int patch;
     int triangle; // of the geometry: the first of a group's at this vertex
-    float angle; // radians, of all its pieces
+    float angle;  // radians, of all its pieces
     // Copies of the patch's sides, front and back, which halve the time of interpolation.
     int side[2];     // -1: light does not reach it, or a wall stands between it and the vertex
     uint8_t open[2]; // how many of its cells are open

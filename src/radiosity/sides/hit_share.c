@@ -42,7 +42,8 @@ static void shareTask(void* data, int task, int worker)
     }
 }
 
-vplResult vplPatchSides_FindHitShares(const vplPatchSides* sides, uint64_t seed, float* sharesOut, int64_t* rays)
+vplResult vplPatchSides_FindHitShares(const vplPatchSides* sides, uint64_t seed, float* sharesOut,
+                                      int64_t* rays)
 {
     Shares s = {sides, seed, sharesOut};
     *rays += (int64_t)RAYS * sides->count;

@@ -111,8 +111,8 @@ vplVec3 vplLitSample_OnSide(const vplLitSearch* s, vplLitSample* sample)
     float place = u;
     sample->triangle = group ? vplGroup_SampleTriangle(s->patches, patch, sample->cell, u, &place)
                              : vplPatches_TriangleOf(s->patches, patch);
-    vplPatchNode_GetCorners(s->patches, group ? sample->triangle : s->patches->patches[patch], sample->side & 1,
-                       corners);
+    vplPatchNode_GetCorners(s->patches, group ? sample->triangle : s->patches->patches[patch],
+                            sample->side & 1, corners);
     const vplVec3 at = group ? vplTriangle_Point(corners, place, v)
                              : vplCell_Point(corners, sample->cell, u, v),
                   centre = vplScale(1 / 3.0f, vplAdd(corners[0], vplAdd(corners[1], corners[2])));
@@ -175,7 +175,8 @@ bool vplLitSample_IsLit(const vplLitSearch* s, vplLitSample* sample, int gathers
         const vplRandom4 r = randomOf(s, sample, LIGHT_SOURCE);
         sample->fromEye = false;
         if (sampleLightSource(s, &r, sample->point, from) &&
-            vplDot(vplSub(*from, sample->point), vplLitSearch_Normal(s, sample->side, sample->triangle)) > 0 &&
+            vplDot(vplSub(*from, sample->point), vplLitSearch_Normal(s, sample->side, sample->triangle)) >
+                0 &&
             vplLitSearch_IsVisible(s, sample->point, *from, rays)) {
             return true;
         }

@@ -52,7 +52,8 @@ static bool facesOutside(const vplLitSearch* s, int side, int triangle)
     const vplVec3 farthest =
         vplVec(n.x > 0 ? high.x : low.x, n.y > 0 ? high.y : low.y, n.z > 0 ? high.z : low.z);
     vplVec3 corners[3];
-    const int patch = side / 2, node = vplPatches_IsGroup(s->patches, patch) ? triangle : s->patches->patches[patch];
+    const int patch = side / 2,
+              node = vplPatches_IsGroup(s->patches, patch) ? triangle : s->patches->patches[patch];
     vplPatchNode_GetCorners(s->patches, node, side & 1, corners);
     return vplDot(vplSub(farthest, corners[0]), n) < s->heights[side / 2];
 }
@@ -64,7 +65,8 @@ static void testLight(const vplLitSearch* s, int side, int64_t* rays)
         vplLitSample sample = {.side = side, .cell = 4 * i + s->pass % 4};
         vplVec3 from;
         if (vplLitSample_Offset(s, &sample, rays) &&
-            vplLitSample_IsLit(s, &sample, facesOutside(s, side, sample.triangle) ? 0 : GATHERS, rays, &from)) {
+            vplLitSample_IsLit(s, &sample, facesOutside(s, side, sample.triangle) ? 0 : GATHERS, rays,
+                               &from)) {
             markLit(s, &sample, from);
         }
     }

@@ -158,7 +158,8 @@ static void meanOfGroup(const vplPatches* patches, int patch, bool back, vplPatc
         all += area;
     }
     const double length = (back ? -1 : 1) * sqrt(vplDot3(normal, normal));
-    side->normal = vplVec((float)(normal[0] / length), (float)(normal[1] / length), (float)(normal[2] / length));
+    side->normal =
+        vplVec((float)(normal[0] / length), (float)(normal[1] / length), (float)(normal[2] / length));
     side->incentre = vplVec((float)(centre[0] / all), (float)(centre[1] / all), (float)(centre[2] / all));
     side->reflectance = vplDivideRgb(reflected, all);
 }

@@ -73,7 +73,8 @@ int vplGroup_SampleTriangle(const vplPatches* p, int patch, int k, float u, floa
     return p->members[low];
 }
 
-vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchSide* side, int k, float u, float v)
+vplSidePoint vplPatchSide_SampleCell(const vplPatchSides* sides, const vplPatchSide* side, int k, float u,
+                                     float v)
 {
     const vplPatches* p = sides->patches;
     if (!vplPatches_IsGroup(p, side->patch)) {

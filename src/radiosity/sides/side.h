@@ -43,7 +43,8 @@ vplRay vplPatchSides_Leave(const vplPatchSides* sides, const vplSidePoint* from,
 int vplPatchSides_Hit(const vplPatchSides* sides, const vplRay* ray);
 
 // The share of what each side emits that arrives at sides, by 64 rays from each. *rays grows by them. (hit_share.c)
-vplResult vplPatchSides_FindHitShares(const vplPatchSides* sides, uint64_t seed, float* sharesOut, int64_t* rays);
+vplResult vplPatchSides_FindHitShares(const vplPatchSides* sides, uint64_t seed, float* sharesOut,
+                                      int64_t* rays);
 
 // The reflectance of a triangle of the geometry.
 static inline vplRgb vplReflectanceOfTriangle(const vplGeometry* g, int triangle)
