@@ -315,7 +315,7 @@ vplResult vplPatches_Create(const vplGeometry* geometry, const vplPatchDef* def,
 {
     TRY(checkDef(geometry, def));
     Roots roots = {.geometry = geometry, .count = geometry->triangleCount};
-    double length;
+    double length = 0;
     vplArena* scratch = def->cut || def->group ? vplArena_Create(geometry->context) : NULL;
     vplResult result = (def->group ? chooseGroups : chooseLength)(def, scratch, &roots, &length);
     if (result == VPL_SUCCESS) {
