@@ -155,6 +155,15 @@ typedef enum vplPatchCuts {
     VPL_PATCH_CUTS_ON
 } vplPatchCuts;
 
+// Groups of small triangles.
+typedef enum vplPatchGroups {
+    VPL_PATCH_GROUPS_AUTO =
+        0, // on where there are more triangles than patches are asked for; off with patchSize or
+           // VPL_FORM_FACTORS_INCENTRE
+    VPL_PATCH_GROUPS_OFF, // each triangle is at least one patch
+    VPL_PATCH_GROUPS_ON
+} vplPatchGroups;
+
 // Interpolation of radiosity over a patch.
 typedef enum vplInterpolation {
     VPL_INTERPOLATION_GOURAUD = 0, // linear between the patches' corners

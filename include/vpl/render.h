@@ -60,10 +60,11 @@ typedef struct vplRenderStats {
     // points than its lights; by test rays, after clusters were split. Negative: not measured.
     double clusterDisagreement;
 
-    int patches, patchSides; // radiosity: patches, and sides of them that light reaches
-    bool linked;             // radiosity: light was exchanged by links
-    int64_t formFactors;     // radiosity: pairs of sides, or links
-    vplSolveStats solve;     // radiosity: the solver of the last frame
+    int patches, patchSides;           // radiosity: patches, and sides of them that light reaches
+    int patchGroups, groupedTriangles; // radiosity: patches that are groups, and the triangles in them
+    bool linked;                       // radiosity: light was exchanged by links
+    int64_t formFactors;               // radiosity: pairs of sides, or links
+    vplSolveStats solve;               // radiosity: the solver of the last frame
 
     int passes; // the picture is their mean; path tracing: up to 32 paths per pixel each
     // Estimated rmse of the picture against the true one, and the same divided by the picture's mean; negative: not

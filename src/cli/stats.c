@@ -10,6 +10,10 @@ static void addRadiosity(json_t* root, const vplRenderStats* stats)
     }
     const vplSolveStats* s = &stats->solve;
     json_object_set_new(root, "patch_sides", json_integer(stats->patchSides));
+    if (stats->patchGroups > 0) {
+        json_object_set_new(root, "patch_groups", json_integer(stats->patchGroups));
+        json_object_set_new(root, "grouped_triangles", json_integer(stats->groupedTriangles));
+    }
     json_object_set_new(root, stats->linked ? "links" : "form_factors", json_integer(stats->formFactors));
     if (s->rowSumMax == 0) {
         return; // no light was exchanged, or no statistics were asked for

@@ -155,7 +155,7 @@ static void addPicture(const Scale* s, vplWork* w)
         w->counts[PATH_RAY] += 1.4 * pixels * o->radiosity.gather * s->pathDepth;
     } else if (s->plan->showsPatches) {
         w->counts[PIXEL] += 0.15 * all * points;
-        w->counts[TRIANGLE] += 2.0 * s->plan->patches * points;
+        w->counts[TRIANGLE] += 2.0 * vplPlan_DrawnPatches(s->plan) * points;
     }
 }
 
@@ -266,16 +266,20 @@ static vplWork workOf(const Scale* s, vplStageId id)
     case VPL_STAGE_SIDES:
         w.counts[PATH_RAY] = 90.0 * p->patches * s->pathDepth;
         break;
-    case VPL_STAGE_FORM_FACTORS:
-        w.counts[FORM_FACTOR] =
-            p->linked ? 4000 * s->sides
-                      : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) * s->depth;
+    case VPL_STAGE_FORM_FACTORS: // groups have more samples, and no shaft finds what may be in the way
+        w.counts[FORM_FACTOR] = p->linked
+                                    ? 4000 * s->sides
+                                    : 1100 * s->sides + pairs * (0.24 + 0.14 * o->radiosity.formSamples) *
+                                                            s->depth * (p->patchGroups > 0 ? 3 : 1);
         break;
     case VPL_STAGE_PATCH_LIGHT:
         w.counts[SHADOW_RAY] = s->sides * o->radiosity.lightSamples * fmax(s->emitters, s->lamps) * s->depth;
         break;
     case VPL_STAGE_SOLUTION: // about 20 sweeps
         w.counts[FORM_FACTOR] = p->linked ? 1000 * s->sides : 0.55 * pairs;
+        break;
+    case VPL_STAGE_VERTEX_LIGHT: // 64 rays from every tenth vertex or so, which the camera sees
+        w.counts[PATH_RAY] = 8.0 * p->groupedTriangles * s->pathDepth;
         break;
     case VPL_STAGE_PICTURE:
         addPicture(s, &w);

@@ -3,6 +3,7 @@
 // those that need the scene's geometry.
 #include "render/plan.h"
 
+#include "geometry/triangle.h"
 #include "render/options.h"
 #include "render/show.h"
 #include "render/stages/make.h"
@@ -227,7 +228,8 @@ static void chooseRadiosity(vplPlan* p)
 {
     vplRadiosityOptions* o = &p->options.radiosity;
     const bool incentre = o->formFactors == VPL_FORM_FACTORS_INCENTRE;
-    if (o->rowSums == VPL_ROW_SUMS_USUAL && o->hierarchy == VPL_HIERARCHY_OFF) {
+    if (o->rowSums == VPL_ROW_SUMS_USUAL && o->hierarchy == VPL_HIERARCHY_OFF &&
+        o->groups == VPL_PATCH_GROUPS_OFF) {
         o->rowSums = incentre ? VPL_ROW_SUMS_KEEP : VPL_ROW_SUMS_CLAMP;
         vplDecide(p, "row-sums",
                   incentre ? "as the document has it" : "no patch sends more light than it has");
@@ -350,6 +352,23 @@ static void chooseCuts(vplPlan* p)
     }
 }
 
+// Decides whether small triangles share patches, before patches are made.
+static void chooseGroups(const vplRunner* r, vplPlan* p)
+{
+    vplRadiosityOptions* o = &p->options.radiosity;
+    const vplGeometry* g = r->run.results[VPL_STAGE_GEOMETRY];
+    const bool fixed = o->formFactors == VPL_FORM_FACTORS_INCENTRE || o->patchSize > 0;
+    if (o->groups == VPL_PATCH_GROUPS_AUTO) {
+        const bool many = g->triangleCount > o->patches;
+        o->groups = many && !fixed ? VPL_PATCH_GROUPS_ON : VPL_PATCH_GROUPS_OFF;
+        vplDecide(p, "patch-groups",
+                  !many   ? "no more triangles than patches"
+                  : fixed ? "other options ask for a patch per triangle"
+                          : "%d triangles for %d patches",
+                  g->triangleCount, o->patches);
+    }
+}
+
 // Decides whether patches exchange light in groups.
 static vplResult chooseLinks(vplRunner* r, vplPlan* p)
 {
@@ -366,6 +385,8 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
         const vplPatchSides* sides = r->run.results[VPL_STAGE_SIDES];
         p->patches = patches->patchCount;
         p->longestEdge = (double)patches->longestEdge;
+        p->patchGroups = patches->groupCount;
+        p->groupedTriangles = vplPatches_CountGrouped(patches);
         p->patchSides = sides->count;
     }
     p->linked = p->patchSides > p->linkAbove;
@@ -375,6 +396,11 @@ static vplResult chooseLinks(vplRunner* r, vplPlan* p)
         vplDecide(p, "hierarchy",
                   "%d sides; form factors of all pairs are exact and fit into memory up to %d", p->patchSides,
                   VPL_ALL_PAIRS);
+    }
+    if (o->groups == VPL_PATCH_GROUPS_ON && o->formFactors == VPL_FORM_FACTORS_INCENTRE) {
+        snprintf(
+            p->problem, sizeof p->problem,
+            "groups of triangles have no incentre; use --patch-groups off or --form-factors monte-carlo");
     }
     if (!p->linked && p->formFactorBytes > VPL_MAX_FORM_FACTOR_BYTES && p->showsPatches) {
         p->refusal = VPL_LIMIT;
@@ -395,6 +421,7 @@ vplResult vplDecideByGeometry(vplRunner* r, vplPlan* p)
     decideClamp(r, p);
     if (p->options.method == VPL_METHOD_RADIOSITY) {
         chooseCuts(p);
+        chooseGroups(r, p);
         TRY(chooseLinks(r, p));
         chooseRadiosity(p);
     }

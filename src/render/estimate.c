@@ -242,8 +242,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_PATCHES:
         return adaptivePatches(s);
     case VPL_STAGE_PATCH_MESH: // faces of cut patches have vertices of their own
-        return o->radiosity.cuts == VPL_PATCH_CUTS_ON ? (Bytes){320.0 * p->patches, 300.0 * p->patches}
-                                                      : (Bytes){98.0 * p->patches, 98.0 * p->patches};
+        return o->radiosity.cuts == VPL_PATCH_CUTS_ON
+                   ? (Bytes){320 * vplPlan_DrawnPatches(p), 300 * vplPlan_DrawnPatches(p)}
+                   : (Bytes){98 * vplPlan_DrawnPatches(p), 98 * vplPlan_DrawnPatches(p)};
     case VPL_STAGE_FORM_FACTORS:
         return formFactors(s, s->sides);
     case VPL_STAGE_PATCH_LIGHT:
@@ -251,7 +252,8 @@ static Bytes estimate(const Scale* s, vplStageId id)
     case VPL_STAGE_SOLUTION:
         return (Bytes){24 * s->sides, (p->linked ? 152 : 72) * s->sides};
     case VPL_STAGE_VERTEX_LIGHT:
-        return (Bytes){14.0 * p->patches, 57.0 * p->patches + (p->gathers ? 12 * s->sides : 0)};
+        return (Bytes){14 * vplPlan_DrawnPatches(p),
+                       57.0 * p->patches + 16.0 * p->groupedTriangles + (p->gathers ? 12 * s->sides : 0)};
     case VPL_STAGE_PICTURE:
         return picture(s);
     case VPL_STAGE_PATHS: // sums of two halves, and the picture that they resolve to

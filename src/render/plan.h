@@ -21,6 +21,12 @@ __attribute__((format(printf, 3, 4))) void vplDecide(vplPlan* plan, const char* 
 void vplDecideByOptions(const vplScene* scene, vplPlan* plan);
 
 // Decisions that need the scene's geometry, which the runner has, or results of stages, which it then runs.
+// The triangles that patches are drawn as, before they are cut at hanging vertices.
+static inline double vplPlan_DrawnPatches(const vplPlan* plan)
+{
+    return (double)plan->patches - plan->patchGroups + plan->groupedTriangles;
+}
+
 vplResult vplDecideByGeometry(vplRunner* runner, vplPlan* plan);
 
 // Chooses maps or rays for virtual lights, by their costs for the lights of the first pass.

@@ -277,7 +277,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "method lighting show show-index compensation min-distance particles grow-from PASS",
         needsVirtualLights, vplMakeVirtualLights, NULL, .report = vplReportVirtualLights},
     [VPL_STAGE_PATCHES] = {
-        "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement patch-cuts ADAPTIVE",
+        "patches", 0.05, IN(GEOMETRY), "patch-size patches subdivisions patch-placement patch-cuts patch-groups ADAPTIVE",
         needsPatches, vplMakePatches, vplDestroyPatches, .report = vplReportPatches},
     [VPL_STAGE_SIDES] = {
         "reachable sides", 0.1, IN(GEOMETRY) | IN(PATCHES), "form-factors camera seed",
@@ -295,7 +295,7 @@ const vplStage VPL_STAGES[VPL_STAGE_COUNT] = {
         "solve", 0.7, IN(SIDES) | IN(FORM_FACTORS) | IN(PATCH_LIGHT), "ALWAYS",
         needsSolution, vplMakeSolution, NULL, .report = vplReportSolution, .continues = true},
     [VPL_STAGE_VERTEX_LIGHT] = {
-        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather",
+        "corners", 0.71, IN(PATCH_MESH) | IN(SOLUTION), "vertex-weight sharpen gather GROUPS",
         needsVertexLight, vplMakeVertexLight, NULL, .report = NULL},
     [VPL_STAGE_PICTURE] = { // its result is taken away each time
         "shading", 1, IN(GEOMETRY) | IN(EMITTER_MAPS) | IN(AREA_LIGHTS) | IN(REFLECTIVE_MAPS) | IN(CLUSTERED_LIGHTS) |

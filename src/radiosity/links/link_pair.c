@@ -97,7 +97,7 @@ static bool isBehind(const Pair* pair, const vplLinkNode* node, const vplLinkNod
     }
     const vplVec3 n = firstSide(pair, plane)->normal, from = firstSide(pair, plane)->corners[0];
     float most = -INFINITY;
-    if (node->count == 1) {
+    if (node->count == 1 && !node->group) {
         for (int k = 0; k < 3; k++) {
             most = fmaxf(most, vplDot(n, vplSub(firstSide(pair, node)->corners[k], from)));
         }
@@ -161,15 +161,23 @@ static vplLinkVerdict divideWorse(const Pair* pair, double errorP, double errorQ
     return errorP > errorQ ? VPL_LINK_DIVIDE_P : errorQ > errorP ? VPL_LINK_DIVIDE_Q : divideLarger(pair);
 }
 
+static bool isTurned(const vplLinkNode* node)
+{
+    return node->cosTurn < TURNED;
+}
+
 static vplLinkVerdict divideTurned(const Pair* pair)
 {
-    const bool p = pair->p->cosSpread < TURNED, q = pair->q->cosSpread < TURNED;
+    const bool p = isTurned(pair->p), q = isTurned(pair->q);
     return p && q ? divideLarger(pair) : p ? VPL_LINK_DIVIDE_P : VPL_LINK_DIVIDE_Q;
 }
 
 // Sides whose centres are less than this many times the larger radius apart use the contour integral, times
 // the visible fraction.
 static const float NEAR = 3;
+
+// Points on either of two near sides if one is of a group.
+enum { NEAR_POINTS = 8 };
 
 static bool isNear(const Pair* pair)
 {
@@ -191,6 +199,12 @@ static void keep(const Pair* pair, double mean)
     pair->answer->mean = (float)(mean * area < 1 ? mean : 1 / area); // no form factor is above 1
 }
 
+// Points on either node. A group of triangles beside another has no integral, and 1 / r^2 varies much between the two.
+static int pointsOf(const Pair* pair)
+{
+    return (pair->p->group || pair->q->group) && isNear(pair) ? NEAR_POINTS : VPL_JUDGE_POINTS;
+}
+
 // The unoccluded mean of cos cos / (pi r^2) over points that are drawn for this pair alone: a link is kept if
 // the judging points miss peaks, so those would underestimate it. *visibleOut: the fraction of the mean that
 // rays find visible.
@@ -198,7 +212,7 @@ static double measureMean(const Pair* pair, double* visibleOut)
 {
     vplLinkTerms terms;
     vplLinkPoint p[VPL_LINK_POINTS], q[VPL_LINK_POINTS];
-    terms.count = VPL_JUDGE_POINTS;
+    terms.count = pointsOf(pair);
     while (terms.count * terms.count < pair->work->def->samples) {
         terms.count++;
     }
@@ -214,7 +228,8 @@ static void measureSides(const Pair* pair)
     double visible;
     const double open = measureMean(pair, &visible);
     // Neighbours on a curved surface are near, but exchange next to nothing.
-    const bool exact = isNear(pair) && pair->sent * open > TINY * pair->work->def->error;
+    const bool exact = !pair->p->group && !pair->q->group && isNear(pair) &&
+                       pair->sent * open > TINY * pair->work->def->error;
     keep(pair, visible * (exact ? exactMean(pair) : open));
 }
 
@@ -263,7 +278,7 @@ vplLinkAnswer vplJudgePair(const vplLinkWork* work, const vplLinkPair* ids)
         return answer;
     }
     const double bound = factorBound(&pair);
-    const bool turned = p->cosSpread < TURNED || q->cosSpread < TURNED;
+    const bool turned = isTurned(p) || isTurned(q);
     if (!(bound > 0)) {
         return answer;
     }

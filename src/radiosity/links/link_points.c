@@ -42,9 +42,9 @@ void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplL
         const int cells = __builtin_popcount(side->open);
         const int cell = (int)(into * cells);
         out[k].side = tree->order[place];
-        out[k].at =
-            vplPatchSide_SampleCell(side, vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
-                                    vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
+        out[k].point = vplPatchSide_SampleCell(work->sides, side,
+                                               vplPatchSide_OpenCell(side, cell < cells ? cell : cells - 1),
+                                               vplUnitFloat(random.v[1]), vplUnitFloat(random.v[2]));
     }
 }
 
@@ -53,7 +53,6 @@ void vplSampleNode(const vplLinkWork* work, int node, int other, int count, vplL
 void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoint* p, const vplLinkPoint* q,
                       vplLinkTerms* out)
 {
-    const vplPatchSide* sides = work->sides->sides;
     const vplRadiosityKernels* kernels = vplGetRadiosityKernels(work->sides->context->isa);
     const int n = out->count;
     for (int first = 0; first < n * n; first += VPL_SIDE_LANES) {
@@ -61,10 +60,10 @@ void vplFindLinkTerms(const vplLinkWork* work, const vplLinkPoint* p, const vplL
         float terms[VPL_SIDE_LANES];
         for (int l = 0; l < VPL_SIDE_LANES; l++) {
             const int at = first + l < n * n ? first + l : n * n - 1, i = at / n, k = at % n;
-            vplSetLane(pairs.x, l, p[i].at);
-            vplSetLane(pairs.nx, l, sides[p[i].side].normal);
-            vplSetLane(pairs.y, l, q[k].at);
-            vplSetLane(pairs.ny, l, sides[q[k].side].normal);
+            vplSetLane(pairs.x, l, p[i].point.at);
+            vplSetLane(pairs.nx, l, p[i].point.normal);
+            vplSetLane(pairs.y, l, q[k].point.at);
+            vplSetLane(pairs.ny, l, q[k].point.normal);
         }
         kernels->pairTerms(&pairs, terms);
         for (int l = 0; l < VPL_SIDE_LANES && first + l < n * n; l++) {
@@ -90,8 +89,8 @@ double vplVisibleFraction(const vplLinkWork* work, const vplLinkPoint* p, const 
             amount[l] = first + l < samples ? terms->of[i][k] : 0;
             open += (double)amount[l];
             if (amount[l] > 0) {
-                const vplVec3 way = vplWayToLight(q[k].at, sides->sides[q[k].side].normal, p[i].at);
-                const vplRay ray = vplPatchSide_Leave(sides, &sides->sides[p[i].side], p[i].at, way);
+                const vplVec3 way = vplWayToLight(q[k].point.at, q[k].point.normal, p[i].point.at);
+                const vplRay ray = vplPatchSides_Leave(sides, &p[i].point, way);
                 vplRayPacket_Set(&packet, l, &ray);
             }
         }

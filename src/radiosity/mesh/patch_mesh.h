@@ -14,6 +14,7 @@
 typedef struct vplPiece {
     uint32_t corners[3]; // in vplPatches.positions
     int patch;
+    int triangle;  // of the geometry
     uint8_t edges; // as vplPatchMesh.edges
 } vplPiece;
 
@@ -72,7 +73,8 @@ vplResult vplMeshCorners_Find(vplArena* scratch, const vplPatches* patches, cons
 // A patch that has a corner at a vertex, or an edge that was cut there, on the front or on the back.
 typedef struct vplPatchAround {
     int patch;
-    float angle; // radians, of all its pieces
+    int triangle; // of the geometry: the first of a group's at this vertex
+    float angle;  // radians, of all its pieces
     // Copies of the patch's sides, front and back, which halve the time of interpolation.
     int side[2];     // -1: light does not reach it, or a wall stands between it and the vertex
     uint8_t open[2]; // how many of its cells are open

@@ -64,7 +64,7 @@ static vplMetLight meetPatch(const void* user, const vplHit* hit, vplVec3 direct
         return (vplMetLight){{0, 0, 0}, 0};
     }
     const float size = NEAR_SHARE * sqrtf(2 * sides->sides[side].area);
-    if (light->vertexIrradiance == NULL) {
+    if (light->vertexIrradiance == NULL || vplPatches_IsGroup(sides->patches, patch)) {
         return (vplMetLight){light->reflected[side], size};
     }
     const vplPatchPoint at = {patch, face, hit->position};

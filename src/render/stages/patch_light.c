@@ -27,16 +27,16 @@ static int placePoints(const vplRun* run, int side, int samples, vplSurfacePoint
 {
     const vplPatchSides* sides = run->results[VPL_STAGE_SIDES];
     const vplPatchSide* p = &sides->sides[side];
-    const int triangle = vplPatches_TriangleOf(run->results[VPL_STAGE_PATCHES], p->patch);
     const int open = __builtin_popcount(p->open), count = open < samples ? open : samples;
     for (int i = 0; i < count; i++) {
         const int k = vplPatchSide_OpenCell(p, (2 * i + 1) * open / (2 * count));
         const vplRandom4 r = vplRandomAt(run->plan->options.seed, PATCH_LIGHT_STREAM,
                                          (uint64_t)side * VPL_PATCH_CELLS + (uint64_t)k);
-        points[i] = (vplSurfacePoint){
-            vplPatchSide_SampleCell(p, k, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1])), p->normal, triangle};
+        const vplSidePoint at =
+            vplPatchSide_SampleCell(sides, p, k, vplUnitFloat(r.v[0]), vplUnitFloat(r.v[1]));
+        points[i] = (vplSurfacePoint){at.at, at.normal, at.triangle};
     }
-    if (samples == 1 && open == VPL_PATCH_CELLS) {
+    if (samples == 1 && open == VPL_PATCH_CELLS && !vplPatches_IsGroup(sides->patches, p->patch)) {
         points[0].position = p->incentre;
     }
     return count;
@@ -257,5 +257,7 @@ vplResult vplMakeVertexLight(const vplRun* run, void** resultOut)
     }
     const vplRgb* values = all ? received : s->irradiance;
     TRY(vplPatchMesh_Interpolate(mesh, o->vertexWeight, values, corners));
-    return vplPatchMesh_Sharpen(mesh, o->vertexWeight, values, o->sharpen, corners);
+    TRY(vplPatchMesh_Sharpen(mesh, o->vertexWeight, values, o->sharpen, corners));
+    // Rays of pixels find the small things at groups themselves.
+    return mesh->sides->patches->groupCount > 0 && !all ? vplGatherAtGroups(run, mesh, corners) : VPL_SUCCESS;
 }

@@ -149,6 +149,9 @@ vplResult vplDrawPatchView(const vplRun* run, const vplView* view, vplImage* ima
 // Finds the reflected part of the radiosity of sides: all but their emission.
 void vplFindReflected(const vplPatchSides* sides, const vplRgb* radiosity, vplRgb* reflectedOut);
 
+// Gathers the irradiance of reflected light at those vertices of groups that the picture needs: [vertex][front, back].
+vplResult vplGatherAtGroups(const vplRun* run, const vplPatchMesh* mesh, vplRgb* corners);
+
 // Finds the irradiance of sides by the light that sides send and by emitters.
 vplResult vplReceive(const vplRun* run, const vplRgb* sent, vplRgb* irradianceOut);
 
