@@ -316,7 +316,9 @@ enum {
     SHADOW_MAPS = 1 << VPL_STAGE_EMITTER_MAPS | 1 << VPL_STAGE_REFLECTIVE_MAPS | 1 << VPL_STAGE_PARABOLOIDS |
                   1 << VPL_STAGE_SECOND_PARABOLOIDS | 1 << VPL_STAGE_FURTHER_BOUNCES,
     LIGHTS = 1 << VPL_STAGE_AREA_LIGHTS | 1 << VPL_STAGE_PARTICLES | 1 << VPL_STAGE_FIRST_BOUNCE |
-             1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS
+             1 << VPL_STAGE_SECOND_BOUNCE | 1 << VPL_STAGE_CLUSTERED_LIGHTS | 1 << VPL_STAGE_VIRTUAL_LIGHTS,
+    // Each pass makes them before it drops those of the last.
+    REMADE = 1 << VPL_STAGE_PARABOLOIDS | 1 << VPL_STAGE_SECOND_PARABOLOIDS | 1 << VPL_STAGE_FURTHER_BOUNCES
 };
 
 // Links depend on what sees what, so a sample of them is found; not for a render, of which that takes 3 %.
@@ -348,7 +350,7 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
     // The caller's own memory in the context does not count, but the scene's does.
     const int64_t foreign = (int64_t)r->heldBytes - (int64_t)vplArena_GetBytes(r->run.scene->arena);
     const int64_t peak = (int64_t)vplContext_GetPeakBytes(r->run.context), before = (int64_t)r->peakBytes;
-    int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign;
+    int64_t live = (int64_t)vplContext_GetBytes(r->run.context) - foreign, remade = 0;
     p->peakBytes = (peak > before ? peak : before) - foreign;
     for (int i = 0; i < p->stageCount; i++) {
         vplPlanStage* stage = &p->stages[i];
@@ -363,11 +365,13 @@ vplResult vplEstimatePlan(const vplRunner* r, const vplMachine* machine, vplPlan
             live += stage->bytes;
             p->peakBytes = live + stage->scratch > p->peakBytes ? live + stage->scratch : p->peakBytes;
         }
+        remade =
+            p->progressive && (1 << stage->id & REMADE) != 0 && stage->bytes > remade ? stage->bytes : remade;
         p->shadowMapBytes += (1 << stage->id & SHADOW_MAPS) != 0 ? stage->bytes : 0;
         p->lightBytes += (1 << stage->id & LIGHTS) != 0 ? stage->bytes : 0;
     }
     const Bytes more = layers(&s);
-    live += (int64_t)(more.held + more.scratch);
+    live += (int64_t)(more.held + more.scratch) + remade;
     p->peakBytes = live > p->peakBytes ? live : p->peakBytes;
     p->layerBytes = (int64_t)(12 * s.pixels) * __builtin_popcount((unsigned)p->options.output.aovs);
     p->pictureBytes = (int64_t)(12 * s.pixels);
