@@ -69,7 +69,7 @@ TEST(EmissionIsNotGathered, 2)
     vplScene_Destroy(scene);
 }
 
-TEST(MoreRaysComeNearerToPaths, 2)
+TEST(MoreRaysComeNearerToPaths, 2, SLOW)
 {
     for (int i = 0; i < 3; i++) {
         vplScene* scene = boxRoom(context, 0.7f, i > 0);
@@ -106,7 +106,7 @@ static double brightnessOfShadow(const vplScene* scene, vplRenderOptions o, cons
 
 // A flat box hangs 2 cm above the floor: under it there is hardly any light, which patches that are as large
 // as the room's walls do not know: they show 4.2 times its light, a gather 1.35 times.
-TEST(ContactShadowsAreThereOverCoarsePatches, 2)
+TEST(ContactShadowsAreThereOverCoarsePatches, 2, SLOW)
 {
     vplScene* scene = closedCubeScene(context, 0.7f, 0);
     addThing(scene, VPL_OBJECT_BOX, 0, vplVec(0, -0.93f, 0), 0, 0.3, vplVec(0.3f, 0.1f, 0.3f));
