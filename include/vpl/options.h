@@ -8,9 +8,7 @@
 
 #include <limits.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+VPL_HEADER_BEGIN
 
 typedef enum vplMethod {
     VPL_METHOD_INSTANT_RADIOSITY = 0, // Franchi and Ferrante, Virtual Point Lights
@@ -259,6 +257,9 @@ typedef struct vplRenderOptions {
     vplRadiosityOptions radiosity;
     vplSequenceOptions sequence;
     vplStopOptions stop;
+    // Replaces the scene's camera of output.camera and its path; NULL (default): that camera. It is read when a render
+    // starts. Plan files do not hold it.
+    const vplCameraDef* view;
     vplProgressFcn* progress; // called with the progress; NULL (default): never
     void* progressUser;       // passed to progress
     char problem[512];        // why the last vplRenderOptions_Set failed; empty if it did not
@@ -341,8 +342,6 @@ const vplOption* vplGetOptions(int* countOut);
 // NULL if there is none of that name.
 const vplOption* vplFindOption(const char* name);
 
-#ifdef __cplusplus
-}
-#endif
+VPL_HEADER_END
 
 #endif

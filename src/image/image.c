@@ -99,6 +99,19 @@ const char* vplImage_GetExtensions(void)
     return vplHasExr() ? ".png, .hdr, .pfm or .exr" : ".png, .hdr or .pfm (this build has no OpenEXR)";
 }
 
+vplResult vplCheckDisplay(vplContext* context, const char* type, float exposure, vplToneMap tonemap)
+{
+    if (!(fabsf(exposure) <= 64 || exposure == VPL_EXPOSURE_AUTO)) {
+        return vplFail(context, VPL_INVALID_ARGUMENT,
+                       "%s.exposure is %g, must be in [-64, 64] or VPL_EXPOSURE_AUTO", type,
+                       (double)exposure);
+    }
+    return (int)tonemap >= 0 && tonemap <= VPL_TONEMAP_AGX
+               ? VPL_SUCCESS
+               : vplFail(context, VPL_INVALID_ARGUMENT, "%s.tonemap is %d, no vplToneMap", type,
+                         (int)tonemap);
+}
+
 static vplResult encode(const Format* format, const vplImage* image, const char* what,
                         const vplWriteOptions* options, vplByteBuffer* buffer)
 {
@@ -107,15 +120,7 @@ static vplResult encode(const Format* format, const vplImage* image, const char*
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
                        "vplWriteOptions was not made by vplDefaultWriteOptions");
     }
-    if (!(fabsf(settings.exposure) <= 64 || settings.exposure == VPL_EXPOSURE_AUTO)) {
-        return vplFail(image->context, VPL_INVALID_ARGUMENT,
-                       "vplWriteOptions.exposure is %g, must be in [-64, 64] or VPL_EXPOSURE_AUTO",
-                       (double)settings.exposure);
-    }
-    if (settings.tonemap < VPL_TONEMAP_NONE || settings.tonemap > VPL_TONEMAP_AGX) {
-        return vplFail(image->context, VPL_INVALID_ARGUMENT, "vplWriteOptions.tonemap is %d, no vplToneMap",
-                       (int)settings.tonemap);
-    }
+    TRY(vplCheckDisplay(image->context, "vplWriteOptions", settings.exposure, settings.tonemap));
     TRY(vplImage_RequireFinite(image, what));
     TRY(format->encode(image, &settings, buffer));
     return buffer->failed ? VPL_OUT_OF_MEMORY : VPL_SUCCESS;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The option table, defaults and checks, all made from vpl/options.def.
 #include "render/options.h"
+#include "scene/scene.h"
 
 #include "base/arena.h"
 
@@ -110,6 +111,9 @@ vplResult vplCheckOptions(const vplScene* scene, const vplRenderOptions* o)
     }
     for (int i = 0; i < OPTION_COUNT; i++) {
         TRY(checkOption(context, o, &OPTIONS[i]));
+    }
+    if (o->view != NULL) {
+        return vplScene_CheckCamera(scene, "vplRenderOptions.view->", o->view);
     }
     if (cameras == 0) {
         return vplFail(context, VPL_INVALID_ARGUMENT, "the scene has no camera");
