@@ -127,16 +127,63 @@ names_what_is_missing() {
 }
 check PlainMakeNamesWhatIsMissing names_what_is_missing
 
-# Installation: a program finds the library by pkg-config alone.
-installed_program() {
-    make --no-print-directory BUILD="$build" DESTDIR="$scratch/root" PREFIX=/usr install &&
-        sed -i "s|^prefix=.*|prefix=$scratch/root/usr|" "$scratch/root/usr/lib/pkgconfig/libvpl.pc" &&
-        flags=$(PKG_CONFIG_PATH="$scratch/root/usr/lib/pkgconfig" pkg-config --cflags --libs libvpl) &&
-        "$cc" -std=gnu11 examples/hello.c $flags -o "$scratch/installed" &&
-        "$scratch/installed" $scene "$scratch/installed.png" && [ -s "$scratch/installed.png" ] &&
-        [ -s "$scratch/root/usr/share/man/man1/vpl.1" ]
+# The shared library exports what the public headers declare and nothing else. After a change of the API write the list
+# anew: nm -D --defined-only build/libvpl.so | awk '{ print $3 }' | LC_ALL=C sort >tests/data/symbols.txt
+exports() {
+    nm -D --defined-only "$build/libvpl.so" | awk '{ print $3 }' | LC_ALL=C sort
 }
-[ -n "$SANITIZE_FLAGS" ] || check InstalledLibraryIsFoundByPkgConfig installed_program
+same_symbols() {
+    exports | diff tests/data/symbols.txt -
+}
+declared_symbols() {
+    for symbol in $(exports); do
+        grep -qw "$symbol" include/vpl/*.h || { echo "no header declares $symbol" && return 1; }
+    done
+}
+[ -n "$SANITIZE_FLAGS" ] || check SharedLibraryExportsTheListedSymbols same_symbols
+[ -n "$SANITIZE_FLAGS" ] || check HeadersDeclareWhatIsExported declared_symbols
+
+# Installation: programs find the library by pkg-config or CMake alone, and nothing is left when it is removed.
+installs_and_finds() {
+    prefix=$scratch/root/usr
+    make --no-print-directory BUILD="$build" PREFIX="$prefix" install &&
+        export PKG_CONFIG_PATH="$prefix/lib/pkgconfig" LD_LIBRARY_PATH="$prefix/lib" || return 1
+    # Static first: it must not need the shared library.
+    "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags libvpl) "$prefix/lib/libvpl.a" \
+        $(pkg-config --libs --static libvpl | sed 's/-lvpl//') -o "$scratch/static" &&
+        "$cc" -std=gnu11 examples/hello.c $(pkg-config --cflags --libs libvpl) -o "$scratch/shared" &&
+        readelf -d "$scratch/shared" | grep -q 'libvpl\.so\.0\.1\]' &&
+        "$scratch/static" $scene "$scratch/static.pfm" && "$scratch/shared" $scene "$scratch/shared.pfm" &&
+        cmp "$scratch/static.pfm" "$scratch/shared.pfm" && [ -s "$prefix/share/man/man1/vpl.1" ]
+}
+packaged_program() {
+    cmake -S examples/embed/package -B "$scratch/package" -DCMAKE_PREFIX_PATH="$prefix" &&
+        cmake --build "$scratch/package" && "$scratch/package/hello-vpl" $scene "$scratch/vpl.pfm" &&
+        "$scratch/package/hello-vpl_static" $scene "$scratch/vpl_static.pfm" && cmp "$scratch/vpl.pfm" "$scratch/vpl_static.pfm"
+}
+embedded_by_cmake() {
+    cmake -S examples/embed/cmake -B "$scratch/cmake" -DBUILD="$(realpath "$build")" && cmake --build "$scratch/cmake" &&
+        "$scratch/cmake/hello" $scene "$scratch/cmake.png"
+}
+leaves_nothing() {
+    make --no-print-directory BUILD="$build" PREFIX="$prefix" uninstall && ! find "$prefix" -name '*vpl*' | grep .
+}
+# A project with libvpl's sources inside takes its objects from the build under test, or it would compile all of them.
+embedded_program() {
+    mkdir -p "$scratch/embedded" && cp -a "$build/obj" "$build/libvpl.a" "$scratch/embedded" &&
+        make -C examples/embed/make BUILD="$scratch/embedded" CC="$cc" && "$scratch/embedded/hello" $scene "$scratch/embedded.png"
+}
+if [ -z "$SANITIZE_FLAGS" ]; then
+    check InstalledLibrariesAreFoundByPkgConfig installs_and_finds
+    check SourcesInsideAnotherProjectBuildByThreeLines embedded_program
+    if command -v cmake >/dev/null; then
+        check InstalledLibrariesAreFoundByCMake packaged_program
+        check SourcesInsideAnotherProjectBuildByCMake embedded_by_cmake
+    else
+        echo "skipped: InstalledLibrariesAreFoundByCMake needs cmake"
+    fi
+    check UninstallLeavesNothing leaves_nothing
+fi
 
 # The man page names every option of rendering and of the program once, under the heading that the help has.
 options_in_man_page() {
