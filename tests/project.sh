@@ -143,6 +143,32 @@ declared_symbols() {
 [ -n "$SANITIZE_FLAGS" ] || check SharedLibraryExportsTheListedSymbols same_symbols
 [ -n "$SANITIZE_FLAGS" ] || check HeadersDeclareWhatIsExported declared_symbols
 
+# The Python package, with NumPy and without it, and its script.
+python_package() {
+    VPL_LIBRARY=$(realpath "$build/libvpl.so") PYTHONPATH=examples/python PYTHONDONTWRITEBYTECODE=1 \
+        "$@" examples/python/test_vpl.py "$build/vpl" $scene
+}
+python_script() {
+    VPL_LIBRARY=$(realpath "$build/libvpl.so") PYTHONPATH=examples/python PYTHONDONTWRITEBYTECODE=1 \
+        "$python" examples/python/error_curve.py $scene "$scratch/curve.png" | awk '
+            { last = $3 } NR == 1 { first = $3 } END { print first, last; exit !(NR == 6 && last + 0 < first / 2) }'
+}
+python=
+for candidate in python3 /usr/bin/python3; do
+    ! "$candidate" -c 'import numpy' 2>/dev/null || python=$candidate
+done
+if [ -n "$SANITIZE_FLAGS" ] || ! command -v python3 >/dev/null; then
+    echo "skipped: PythonPackage needs python3 and no sanitizer"
+else
+    check PythonPackageWithoutNumPy python_package python3 -S
+    if [ -n "$python" ]; then
+        check PythonPackageWithNumPy python_package "$python"
+        check PythonErrorCurveFalls python_script
+    else
+        echo "skipped: PythonPackageWithNumPy needs python3-numpy"
+    fi
+fi
+
 # Installation: programs find the library by pkg-config or CMake alone, and nothing is left when it is removed.
 installs_and_finds() {
     prefix=$scratch/root/usr

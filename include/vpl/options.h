@@ -270,6 +270,17 @@ typedef struct vplRenderOptions {
 // Every option at its default.
 vplRenderOptions vplDefaultRenderOptions(void);
 
+// Options on the heap, at their defaults, for languages that do not know the struct: they are read and written by the
+// functions below. vplRenderOptions_Create returns NULL when out of memory; NULL may be destroyed.
+vplRenderOptions* vplRenderOptions_Create(vplContext* context);
+void vplRenderOptions_Destroy(vplContext* context, vplRenderOptions* options);
+
+// The same as assigning vplRenderOptions.progress and progressUser.
+void vplRenderOptions_SetProgress(vplRenderOptions* options, vplProgressFcn* progress, void* user);
+
+// vplRenderOptions.problem.
+const char* vplRenderOptions_GetProblem(const vplRenderOptions* options);
+
 // Sets an option by its name on the command line, without dashes: vplRenderOptions_Set(&o, "particles",
 // "200"). VPL_INVALID_ARGUMENT if there is no such option or the value is not one of its values: then nothing
 // is changed but options->problem, one sentence.

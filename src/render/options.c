@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The option table, defaults and checks, all made from vpl/options.def.
 #include "render/options.h"
-#include "scene/scene.h"
 
 #include "base/arena.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,6 +29,31 @@ vplRenderOptions vplDefaultRenderOptions(void)
 #include <vpl/options.def>
     o.cookie = OPTIONS_COOKIE;
     return o;
+}
+
+vplRenderOptions* vplRenderOptions_Create(vplContext* context)
+{
+    vplRenderOptions* options = vplAlloc(context, 1, sizeof *options);
+    if (options != NULL) {
+        *options = vplDefaultRenderOptions();
+    }
+    return options;
+}
+
+void vplRenderOptions_Destroy(vplContext* context, vplRenderOptions* options)
+{
+    vplFree(context, options);
+}
+
+void vplRenderOptions_SetProgress(vplRenderOptions* options, vplProgressFcn* progress, void* user)
+{
+    options->progress = progress;
+    options->progressUser = user;
+}
+
+const char* vplRenderOptions_GetProblem(const vplRenderOptions* options)
+{
+    return options->problem;
 }
 
 const vplOption* vplGetOptions(int* countOut)
