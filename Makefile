@@ -175,19 +175,24 @@ faults: test-programs
 
 ## make install     libraries, headers, program, man page, libvpl.pc and a CMake package under PREFIX (/usr/local)
 LIBDIR  ?= $(PREFIX)/lib
+COMPLETIONS := $(PREFIX)/share/bash-completion/completions/vpl $(PREFIX)/share/zsh/site-functions/_vpl \
+  $(PREFIX)/share/fish/vendor_completions.d/vpl.fish
 INSTALLED := $(PREFIX)/bin/vpl $(PREFIX)/share/man/man1/vpl.1 $(LIBDIR)/libvpl.a $(LIBDIR)/$(SHARED) $(LIBDIR)/$(SONAME) \
-  $(LIBDIR)/libvpl.so $(LIBDIR)/pkgconfig/libvpl.pc $(LIBDIR)/cmake/libvpl $(PREFIX)/include/vpl
+  $(COMPLETIONS) $(LIBDIR)/libvpl.so $(LIBDIR)/pkgconfig/libvpl.pc $(LIBDIR)/cmake/libvpl $(PREFIX)/include/vpl
 FILL_IN = sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@SONAME@|$(SONAME)|' \
   -e 's|@SHARED@|$(SHARED)|' -e 's|@OMP@|$(OMP)|' -e 's|@LIBS@|$(LDLIBS)|'
 install: programs $(BUILD)/vpl.1
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/include/vpl $(DESTDIR)$(LIBDIR)/pkgconfig \
-	  $(DESTDIR)$(LIBDIR)/cmake/libvpl $(DESTDIR)$(PREFIX)/share/man/man1
+	  $(DESTDIR)$(LIBDIR)/cmake/libvpl $(DESTDIR)$(PREFIX)/share/man/man1 $(dir $(COMPLETIONS:%=$(DESTDIR)%))
 	install $(BUILD)/vpl $(DESTDIR)$(PREFIX)/bin
 	install -m 644 include/vpl/*.h include/vpl/*.def $(DESTDIR)$(PREFIX)/include/vpl
 	install -m 644 $(BUILD)/libvpl.a $(BUILD)/$(SHARED) $(DESTDIR)$(LIBDIR)
 	ln -sf $(SHARED) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libvpl.so
 	install -m 644 $(BUILD)/vpl.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	$(BUILD)/vpl completion bash > $(DESTDIR)$(word 1,$(COMPLETIONS))
+	$(BUILD)/vpl completion zsh > $(DESTDIR)$(word 2,$(COMPLETIONS))
+	$(BUILD)/vpl completion fish > $(DESTDIR)$(word 3,$(COMPLETIONS))
 	$(FILL_IN) src/libvpl.pc.in > $(DESTDIR)$(LIBDIR)/pkgconfig/libvpl.pc
 	for file in Config ConfigVersion; do \
 	  $(FILL_IN) src/libvpl$$file.cmake.in > $(DESTDIR)$(LIBDIR)/cmake/libvpl/libvpl$$file.cmake || exit 1; done

@@ -88,12 +88,12 @@ const char* vplImage_GetExtensions(void);
 // VPL_OUT_OF_MEMORY.
 vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options);
 
-// Encodes the .png file that vplImage_Write would write. Free the bytes with vplPng_Free.
-vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* options, uint8_t** bytesOut,
-                             size_t* sizeOut);
+// Encodes the file that vplImage_Write would write under the name, such as ".png". Free the bytes with vplBytes_Free.
+vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
+                          uint8_t** bytesOut, size_t* sizeOut);
 
-// Frees the bytes from vplImage_EncodePng. NULL is allowed.
-void vplPng_Free(vplContext* context, uint8_t* bytes);
+// Frees the bytes from vplImage_Encode. NULL is allowed.
+void vplBytes_Free(vplContext* context, uint8_t* bytes);
 
 // Reads .png, .jpg, .bmp and .tga (sRGB, decoded to linear), .hdr, .pfm and, where OpenEXR is built in, .exr.
 // VPL_INVALID_ARGUMENT for another extension, VPL_FILE_ERROR, VPL_PARSE_ERROR, VPL_OUT_OF_MEMORY.

@@ -126,27 +126,15 @@ static vplResult encode(const Format* format, const vplImage* image, const char*
     return buffer->failed ? VPL_OUT_OF_MEMORY : VPL_SUCCESS;
 }
 
-vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
+vplResult vplImage_Encode(const vplImage* image, const char* name, const vplWriteOptions* options,
+                          uint8_t** bytesOut, size_t* sizeOut)
 {
-    const Format* format = findFormat(path);
-    if (!vplImage_CanWrite(path)) {
+    if (!vplImage_CanWrite(name)) {
         return vplFail(image->context, VPL_INVALID_ARGUMENT,
-                       "%s: unknown picture format; the name must end in %s", path, vplImage_GetExtensions());
+                       "%s: unknown picture format; the name must end in %s", name, vplImage_GetExtensions());
     }
     vplByteBuffer buffer = {.context = image->context};
-    vplResult result = encode(format, image, path, options, &buffer);
-    if (result == VPL_SUCCESS) {
-        result = vplWriteFile(image->context, path, buffer.bytes, buffer.size);
-    }
-    vplFree(image->context, buffer.bytes);
-    return result;
-}
-
-vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* options, uint8_t** bytesOut,
-                             size_t* sizeOut)
-{
-    vplByteBuffer buffer = {.context = image->context};
-    vplResult result = encode(findFormat(".png"), image, "PNG", options, &buffer);
+    const vplResult result = encode(findFormat(name), image, name, options, &buffer);
     if (result != VPL_SUCCESS) {
         vplFree(image->context, buffer.bytes);
         return result;
@@ -156,9 +144,19 @@ vplResult vplImage_EncodePng(const vplImage* image, const vplWriteOptions* optio
     return VPL_SUCCESS;
 }
 
-void vplPng_Free(vplContext* context, uint8_t* bytes)
+void vplBytes_Free(vplContext* context, uint8_t* bytes)
 {
     vplFree(context, bytes);
+}
+
+vplResult vplImage_Write(const vplImage* image, const char* path, const vplWriteOptions* options)
+{
+    uint8_t* bytes;
+    size_t size;
+    TRY(vplImage_Encode(image, path, options, &bytes, &size));
+    const vplResult result = vplWriteFile(image->context, path, bytes, size);
+    vplBytes_Free(image->context, bytes);
+    return result;
 }
 
 // ---- layers
