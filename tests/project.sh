@@ -49,6 +49,21 @@ check ExampleHelloRuns writes "$scratch/hello.png" "$build/examples/hello" $scen
 check ExampleStagesRuns writes "$scratch/stages.png" "$build/examples/stages" $scene "$scratch/stages.png"
 check ExampleSceneByHandRuns writes "$scratch/hand.png" "$build/examples/scene_by_hand" "$scratch/hand.png"
 check ExampleRasterizerRuns writes "$scratch/raster.png" "$build/examples/rasterizer" "$scratch/raster.png"
+check ExampleDeadlineRuns writes "$scratch/deadline.png" "$build/examples/deadline" $scene "$scratch/deadline.png" 3000
+bakes_points() {
+    [ "$("$build/examples/bake_points" $scene 20 | awk -F, 'NF == 6 && $4 >= 0 && $4 < 1e6 { n++ } END { print n }')" -eq 20 ]
+}
+check ExampleBakePointsRuns bakes_points
+walks() { # the keys change the picture; without a terminal the last one is printed
+    printf '' | "$build/examples/interactive" $scene >"$scratch/still" && printf 'wwl' |
+        "$build/examples/interactive" $scene >"$scratch/moved" && [ "$(wc -l <"$scratch/moved")" -eq 22 ] &&
+        ! cmp -s "$scratch/still" "$scratch/moved"
+}
+check ExampleInteractiveRuns walks
+walks_in_a_terminal() {
+    printf 'wq' | timeout 60 script -qec "$build/examples/interactive $scene" /dev/null | grep -q '1 passes'
+}
+! command -v script >/dev/null || check ExampleInteractiveRunsInATerminal walks_in_a_terminal
 examples_name_failures() {
     for example in hello stages; do
         ! "$build/examples/$example" nowhere.json "$scratch/nowhere.png" 2>"$scratch/errors" &&
