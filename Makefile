@@ -37,6 +37,11 @@ EXR     := $(EXR)
 LDLIBS  := -ljansson $(if $(filter 1,$(EXR)),-lOpenEXRCore) -lm
 
 MACHINE := $(shell $(CC) -dumpmachine 2>/dev/null)
+# 32-bit x86: its old floating point unit rounds at other places than SSE2, which all other machines agree with.
+ifeq ($(shell $(CC) -dM -E -x c /dev/null 2>/dev/null | grep -c __i386__),1)
+MACHINE  := i386
+STANDARD += -msse2 -mfpmath=sse -mstackrealign
+endif
 ISAS    := scalar sse2 $(if $(filter x86_64%,$(MACHINE)),avx2 avx512)
 ISA_scalar := -fno-tree-vectorize -fno-tree-slp-vectorize
 ISA_sse2   :=
