@@ -379,5 +379,5 @@ vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vpl
     }
     vplScene* scene;
     TRY(vplScene_Create(context, &scene));
-    return vplArena_Deliver(scene->arena, fill(scene, path, def), scene, sceneOut);
+    return vplScene_Deliver(scene, fill(scene, path, def), sceneOut);
 }

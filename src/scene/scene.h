@@ -23,18 +23,25 @@ typedef struct vplEmitter {
     vplTrack track;
 } vplEmitter;
 
+typedef struct vplSceneTexture {
+    vplTextureDef def; // without texels
+    struct vplTexture* decoded;
+    float otherwise; // see vplTextureFile
+} vplSceneTexture;
+
 struct vplScene {
     vplContext* context;
     vplArena* arena; // owns the scene and everything in it
     uint64_t stamp;  // changes with each addition
     double origin[3];
     vplCamera* cameras;
+    vplSceneTexture* textures;
     vplMaterialDef* materials;
     vplMeshDef* meshes;
     vplObjectDef* objects;
     vplEmitter* emitters;
-    int cameraCount, materialCount, meshCount, objectCount, emitterCount;
-    size_t cameraCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
+    int cameraCount, textureCount, materialCount, meshCount, objectCount, emitterCount;
+    size_t cameraCapacity, textureCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
 };
 
 // Adds a mesh without checking it. Its arrays are in `arena`, which becomes part of the scene's; on failure
@@ -43,6 +50,15 @@ vplResult vplScene_AdoptMesh(vplScene* scene, const vplMeshDef* mesh, vplArena* 
 
 // Adds a material without checking it or copying its name.
 vplResult vplScene_AdoptMaterial(vplScene* scene, const vplMaterialDef* material, int* indexOut);
+
+// Bytes that the context holds for a scene and its textures.
+size_t vplScene_GetBytes(const vplScene* scene);
+
+// Releases all textures but the first `count`.
+void vplScene_DropTextures(vplScene* scene, int count);
+
+// Ends the creation of a scene: on success stores it in *sceneOut, else destroys it. Returns `result`.
+vplResult vplScene_Deliver(vplScene* scene, vplResult result, vplScene** sceneOut);
 
 // Reads an OBJ file as a whole scene, with a camera, a ground and a light of our own.
 vplResult vplScene_LoadObjAlone(vplContext* context, const char* path, const vplObjSceneDef* def,
@@ -60,7 +76,8 @@ typedef struct vplFault {
 } vplFault;
 
 vplFault vplCheckCamera(const vplCameraDef* def);
-vplFault vplCheckMaterial(const vplMaterialDef* def);
+vplFault vplCheckTexture(const vplTextureDef* def);
+vplFault vplCheckMaterial(const vplMaterialDef* def, int textureCount);
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
