@@ -294,9 +294,9 @@ static vplWork workOf(const Scale* s, vplStageId id)
 }
 
 // Keller's lights of step 0 lie on area lights; elsewhere they are the emitters themselves, which cast shadows by maps.
-static double drawnLights(const vplPlan* p, const vplGeometry* g)
+static double drawnLights(const vplPlan* p)
 {
-    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !g->emits;
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights && !p->hasSky;
     return (double)p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
 }
 
@@ -307,7 +307,7 @@ void vplCountWork(const vplRunner* r, const vplPlan* p, vplWork works[VPL_MAX_PL
                .probe = {1, 0.8, 0.4},
                .triangles = g->triangleCount,
                .pixels = (double)p->options.output.width * p->options.output.height,
-               .lights = drawnLights(p, g),
+               .lights = drawnLights(p),
                .lamps = g->emits,
                .area = vplGeometry_Area(g),
                .sides = p->patchSides,

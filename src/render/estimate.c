@@ -150,7 +150,7 @@ static bool drawsDirect(const vplPlan* p)
 {
     const bool keller = p->options.method == VPL_METHOD_KELLER;
     return p->splitsLight && p->options.method != VPL_METHOD_PATH &&
-           (!p->progressive || (keller && p->hasAreaLights));
+           (!p->progressive || (keller && (p->hasAreaLights || p->hasSky)));
 }
 
 // Bytes that shading holds for each light: its copy and class where lights are interleaved, and what lights
@@ -211,7 +211,9 @@ static Bytes estimate(const Scale* s, vplStageId id)
                            p->emitterCount * (double)sizeof(vplShadow),
                        2e5 + RASTER_CUBE * s->triangles};
     case VPL_STAGE_AREA_LIGHTS:
-        return (Bytes){o->lights.areaLightSamples * (double)sizeof(vplShadeLight), 0};
+        return (Bytes){(o->lights.areaLightSamples + (p->hasSky ? o->lights.skySamples : 0)) *
+                           (double)sizeof(vplShadeLight),
+                       0};
     case VPL_STAGE_REFLECTIVE_MAPS: // a distance and a triangle per texel
         return (Bytes){rsmFaces(p) * rsmTexels * 8, 1.5e5 + RASTER_VIEW * s->triangles};
     case VPL_STAGE_PARTICLES: // two counts and a flag per particle
@@ -283,7 +285,7 @@ static Bytes layers(const Scale* s)
 // Keller's lights of step 0 are drawn where they lie on area lights; elsewhere they are the emitter itself.
 static int64_t drawnLights(const vplRunner* r, const vplPlan* p)
 {
-    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights;
+    const bool asEmitters = p->options.method == VPL_METHOD_KELLER && !p->hasAreaLights && !p->hasSky;
     const vplVirtualLights* known = r->history->slots[VPL_STAGE_VIRTUAL_LIGHTS].result;
     return known != NULL ? known->count : p->virtualLights - (asEmitters ? p->particlesPerStep[0] : 0);
 }

@@ -34,6 +34,9 @@ struct vplScene {
     vplObjectDef* objects;
     vplEmitter* emitters;
     int cameraCount, materialCount, meshCount, objectCount, emitterCount;
+    vplEnvironmentDef environment;
+    float* environmentPixels; // in the arena
+    int sun;                  // 1 + index of the environment's emitter; 0: none
     size_t cameraCapacity, materialCapacity, meshCapacity, objectCapacity, emitterCapacity;
 };
 
@@ -64,6 +67,7 @@ vplFault vplCheckMaterial(const vplMaterialDef* def);
 vplFault vplCheckMesh(const vplMeshDef* def, int materialCount);
 vplFault vplCheckTransform(const vplMat4* transform);
 vplFault vplCheckEmitter(const vplEmitterDef* def);
+vplFault vplCheckEnvironment(const vplEnvironmentDef* def);
 
 // Logs a fault, if there is one, as "<subject><field> <text>"; fails if there is one.
 vplResult vplScene_ReportFault(const vplScene* scene, const char* subject, vplFault fault);
