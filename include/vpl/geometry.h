@@ -62,7 +62,8 @@ bool vplRay_HitBox(const vplRay* ray, const vplPlacement* placement, int fromFac
 // ---- the environment
 
 // Light from infinitely far away as a picture of all directions, laid out as vplEnvironmentDef.pixels, and its
-// distribution. Read only. Radiance is interpolated linearly between the centres of pixels.
+// distribution. Read only. The camera sees radiance that is interpolated linearly between the centres of pixels. Surfaces
+// receive its mean over each pixel, so that light and density of a direction are in the same ratio everywhere.
 typedef struct vplEnvironment {
     int width, height;
     const float* pixels;    // radiance, W/(m^2 sr)
@@ -80,17 +81,23 @@ vplResult vplEnvironment_Create(const vplScene* scene, vplEnvironment** environm
 // NULL is allowed.
 void vplEnvironment_Destroy(vplEnvironment* environment);
 
-// Radiance from the direction that a unit vector points to; black for NULL.
+// Radiance that the camera sees in the direction of a unit vector; black for NULL.
 vplRgb vplEnvironment_Radiance(const vplEnvironment* environment, vplVec3 direction);
 
-// Probability density of a direction (unit), per steradian: about its share of the light, the mean of red, green and
-// blue. Wherever there is light, it is above 0.
-double vplEnvironment_Density(const vplEnvironment* environment, vplVec3 direction);
+// Radiance that surfaces receive from a direction (unit). Stores the probability density of the direction, per steradian:
+// its share of the light, the mean of red, green and blue.
+vplRgb vplEnvironment_Light(const vplEnvironment* environment, vplVec3 direction, double* densityOut);
 
-// Samples a direction (unit, towards the light) of this density by two numbers in [0, 1).
+// Samples a direction (unit, towards the light) of this density by two numbers in [0, 1), with its light and density.
 // Source: Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 12.5.2; rows are sampled evenly in solid
 // angle.
-vplVec3 vplEnvironment_Sample(const vplEnvironment* environment, double u, double v, double* densityOut);
+typedef struct vplEnvironmentSample {
+    vplVec3 direction;
+    vplRgb light;   // W/(m^2 sr)
+    double density; // > 0
+} vplEnvironmentSample;
+
+vplEnvironmentSample vplEnvironment_Sample(const vplEnvironment* environment, double u, double v);
 
 // ---- the geometry
 
@@ -245,10 +252,8 @@ typedef struct vplParticle {
         ray; // unit direction; from a triangle as vplGeometry_Leave, directional and environment from outside
     vplVec3 position; // in m: of the emitter, or on its surface
     vplVec3 normal;   // unit: of the triangle, else the direction
-    vplRgb
-        flux; // W; its mean over the channels is vplEmission_Power for all sources but the environment, where
-              // it is about that
-    int source; // index
+    vplRgb flux;      // W; its mean over the channels is vplEmission_Power, whatever the source
+    int source;       // index
 } vplParticle;
 
 // Samples a particle from five numbers in [0, 1): `choice` chooses the source, u[0], u[1] the position

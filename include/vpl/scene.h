@@ -145,6 +145,7 @@ typedef struct vplObjSceneDef {
     double aspect;   // of the picture that the vertices fill: width / height, [1e-6, 1e6]; default 16 / 9
     bool ground;     // true (default): a grey ground under the lowest vertex, y being up
     bool areaLight;  // light, if nothing emits; true (default): two square lamps; false: a point light
+    bool unlit;      // true: no light is added; default false
     uint32_t cookie; // set by vplDefaultObjSceneDef
 } vplObjSceneDef;
 

@@ -45,7 +45,11 @@ vplResult loadScene(const Arguments* a, vplContext* context, vplScene** sceneOut
     def.ground = !a->noGround;
     def.areaLight = a->render.lighting != VPL_LIGHTING_DOCUMENTED; // which has no area lights
     vplContext_SetProgress(context, askInterrupts, NULL);          // a pipe may be silent
-    const vplResult result = vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
+    def.unlit = a->environment != NULL || a->sky != NULL;
+    vplResult result = vplScene_LoadFor(context, a->positionals[0], &def, sceneOut);
+    if (result == VPL_SUCCESS) {
+        result = addEnvironment(a, *sceneOut);
+    }
     vplContext_SetProgress(context, NULL, NULL); // an interrupted render still writes its picture
     return result;
 }
@@ -119,7 +123,9 @@ int runOnScene(const Arguments* a, SceneWork* work)
     vplScene* scene = NULL;
     int code = exitCode(loadScene(a, context, &scene), true);
     if (code == EXIT_DONE && a->planIn != NULL && !a->quiet && a->planScene != vplScene_GetHash(scene)) {
-        complain("warning: %s was made for another scene, or %s was changed since: the picture will differ",
+        complain("warning: %s was made for another scene, or %s or its environment was changed since: the "
+                 "picture will "
+                 "differ",
                  a->planIn, a->positionals[0]);
     }
     if (code == EXIT_DONE) {

@@ -70,14 +70,12 @@ static void startFromEmitter(const vplEmission* e, const vplEmitterDef* emitter,
 static void startFromEnvironment(const vplEmission* e, const float u[4], double factor, vplParticle* p)
 {
     const vplEnvironment* environment = e->geometry->environment;
-    double density;
-    const vplVec3 towards = vplEnvironment_Sample(environment, (double)u[2], (double)u[3], &density);
-    p->ray.direction = vplNegate(towards);
+    const vplEnvironmentSample sky = vplEnvironment_Sample(environment, (double)u[2], (double)u[3]);
+    p->ray.direction = vplNegate(sky.direction);
     p->ray.origin = startOutside(e, p->ray.direction, u[0], u[1]);
     p->ray.skip = (vplSkip){0, 0};
     p->normal = p->ray.direction;
-    p->flux = vplScaleRadiometric(factor * VPL_PI * e->radius * e->radius / density,
-                                  vplEnvironment_Radiance(environment, towards));
+    p->flux = vplScaleRadiometric(factor * VPL_PI * e->radius * e->radius / sky.density, sky.light);
 }
 
 bool vplEmission_SampleParticle(const vplEmission* emission, double choice, const float u[4],

@@ -23,12 +23,10 @@ int vplSampleSky(const vplEmission* e, int count, vplShadeLight* out)
     const double distance = (double)VPL_SKY_DISTANCE * e->radius;
     for (int i = 0; i < count; i++) {
         const double turns = 0.61803398874989485 * (i + 0.5);
-        double density;
-        const vplVec3 towards =
-            vplEnvironment_Sample(environment, (i + 0.5) / count, turns - floor(turns), &density);
-        const vplVec3 at = vplSkyLight_Position(e, towards);
-        const vplRgb intensity = vplScaleRadiometric(distance * distance / (density * count),
-                                                     vplEnvironment_Radiance(environment, towards));
+        const vplEnvironmentSample sky =
+            vplEnvironment_Sample(environment, (i + 0.5) / count, turns - floor(turns));
+        const vplVec3 towards = sky.direction, at = vplSkyLight_Position(e, towards);
+        const vplRgb intensity = vplScaleRadiometric(distance * distance / (sky.density * count), sky.light);
         out[i] = (vplShadeLight){at.x,       at.y,        at.z,        -towards.x, -towards.y,
                                  -towards.z, intensity.r, intensity.g, intensity.b};
     }

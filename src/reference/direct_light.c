@@ -80,17 +80,16 @@ static double along(vplVec3 n, const double direction[3])
 // all power over the area of the disc that particles cover; that share remains of the ratio.
 static Connection connectToSky(const vplPathScene* s, const vplPathVertex* vertex, vplVec3 towards)
 {
-    const vplEnvironment* environment = s->geometry->environment;
     const double to[3] = {towards.x, towards.y, towards.z};
     const double flat = along(vertex->normal, to), cosine = along(vertex->shading, to);
-    const double density = vplEnvironment_Density(environment, towards);
+    double density;
+    const vplRgb light = vplEnvironment_Light(s->geometry->environment, towards, &density);
     Connection found = {.distance = FLT_MAX, .cosineAtLight = 1};
     if (!(density > 0 && flat > 0 && cosine > 0)) {
         return (Connection){.distance = 0};
     }
     found.bsdfRatio = cosine / VPL_PI / density;
-    found.value = vplRadiance_Reflect(found.bsdfRatio, vertex->rho,
-                                      vplRadiance_Of(vplEnvironment_Radiance(environment, towards)));
+    found.value = vplRadiance_Reflect(found.bsdfRatio, vertex->rho, vplRadiance_Of(light));
     found.particleRatio = s->skyShare * flat / vertex->density;
     return found;
 }
@@ -232,9 +231,8 @@ static void addEmitter(vplPathState* path, const vplPathVertex* v, double choice
 
 static void addSky(vplPathState* path, const vplPathVertex* v, const float u[2], vplRadiance* sum)
 {
-    double density;
     const vplVec3 towards =
-        vplEnvironment_Sample(path->scene->geometry->environment, (double)u[0], (double)u[1], &density);
+        vplEnvironment_Sample(path->scene->geometry->environment, (double)u[0], (double)u[1]).direction;
     const Connection c = connectToSky(path->scene, v, towards);
     const double weight = lightSamplingWeight(path->scene, &c);
     if (weight > 0 && isOpen(path, v, towards)) {
@@ -283,9 +281,9 @@ vplRadiance vplMissEmission(const vplPathScene* s, const vplPathVertex* vertex, 
         return (vplRadiance){0, 0, 0};
     }
     const Connection c = connectToSky(s, vertex, direction);
-    const double weight = c.distance > 0 ? bsdfSamplingWeight(s, &c) : 0;
-    return vplRadiance_Scale(weight,
-                             vplRadiance_Of(vplEnvironment_Radiance(s->geometry->environment, direction)));
+    double density;
+    const vplRgb light = vplEnvironment_Light(s->geometry->environment, direction, &density);
+    return vplRadiance_Scale(c.distance > 0 ? bsdfSamplingWeight(s, &c) : 0, vplRadiance_Of(light));
 }
 
 // ---- particles

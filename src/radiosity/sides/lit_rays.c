@@ -151,10 +151,9 @@ static bool sampleLightSource(const vplLitSearch* s, const vplRandom4* r, vplVec
                                    : vplEmission_Choose(e, 0, (double)vplUnitFloat(r->v[0]), &rest);
     const vplEmissionSource* source = &e->sources[chosen];
     if (chosen == e->environment) {
-        double density;
-        const vplVec3 towards = vplEnvironment_Sample(s->geometry->environment, (double)vplUnitFloat(r->v[2]),
-                                                      (double)vplUnitFloat(r->v[3]), &density);
-        *from = vplAdd(point, vplScale(2.5f * (float)e->radius, towards));
+        const vplEnvironmentSample sky = vplEnvironment_Sample(
+            s->geometry->environment, (double)vplUnitFloat(r->v[2]), (double)vplUnitFloat(r->v[3]));
+        *from = vplAdd(point, vplScale(2.5f * (float)e->radius, sky.direction));
         return true;
     }
     if (source->emitter < 0) {

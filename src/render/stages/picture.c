@@ -34,8 +34,10 @@ static vplResult drawPatches(const vplRun* run, const vplView* view, vplImage* i
 static vplResult addBackground(const vplRun* run, const vplView* view, const vplShadeDef* shown,
                                vplImage* image)
 {
+    const bool smooth =
+        shown->accumulation >= VPL_ACCUMULATE_DEFERRED; // passes draw surfaces without smooth edges
     const vplShadeDef def = {
-        .lighting = shown->lighting, .output = VPL_OUTPUT_BACKGROUND, .samples = shown->samples};
+        .lighting = shown->lighting, .output = VPL_OUTPUT_BACKGROUND, .samples = smooth ? shown->samples : 0};
     vplImage* background;
     TRY(vplImage_Create(run->context, image->width, image->height, &background));
     const vplResult result = vplShadeView(run->results[VPL_STAGE_GEOMETRY], view, &def, background, NULL);
