@@ -186,6 +186,8 @@ static Bytes picture(const Scale* s)
     double scratch = pipelineScratch(s) + sampleScratch(s) + RASTER_VIEW * s->triangles;
     scratch += drawsDirect(s->plan) ? 12 * s->pixels : 0;
     scratch += o->output.supersample > 1 ? 24 * s->pixels : 0;
+    // What is behind all surfaces is a picture of its own, when the memory of interleaved shading is free again.
+    scratch += s->plan->hasSky && s->plan->showsDirect && !vplPixelsShareLight(s->plan) ? 12 * s->pixels : 0;
     scratch += s->plan->showsVirtual ? lightScratch(s) : 0;
     scratch += s->plan->gathers ? 12 * s->sides + 4.0 * s->plan->patches : 0; // what rays meet
     return (Bytes){(s->plan->progressive ? 72 : 12) * s->pixels, scratch};
