@@ -53,7 +53,7 @@ check PlanHoldsTheSamples grep -q '"sky-samples": "50"' "$out/plan.json"
 succeeds PlanIsReplayed "$vpl" render "$scratch/open.json" -o "$out/q.pfm" --sky 40 --plan "$out/plan.json"
 check ReplayHasTheSameBits cmp "$out/p.pfm" "$out/q.pfm"
 "$vpl" render "$scratch/open.json" -o "$out/q.pfm" --sky 41 --plan "$out/plan.json" 2>"$scratch/said"
-check AnotherSkyIsWarnedOf grep -q 'or its environment was changed' "$scratch/said"
+check AnotherSkyIsWarnedOf grep -q 'was made for another scene' "$scratch/said"
 succeeds StateUnderASky "$vpl" render "$scratch/open.json" -o "$out/p.pfm" $tiny --sky 40 --method keller --particles 50 --passes 2 --checkpoint "$out/state"
 succeeds StateGoesOn "$vpl" render "$scratch/open.json" -o "$out/p.pfm" --quiet --size 32x24 --sky 40 --method keller --particles 50 --passes 4 --resume "$out/state"
 "$vpl" render "$scratch/open.json" -o "$out/q.pfm" $tiny --sky 40 --method keller --particles 50 --passes 4
